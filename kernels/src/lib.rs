@@ -1,1 +1,11 @@
-//! Placeholder of the first commit.
+//! Hair scattering, eight lanes at a time.
+#![no_std]
+#![warn(clippy::missing_inline_in_public_items)]
+
+mod error;
+mod lobe;
+mod params;
+
+pub use error::ParamError;
+pub use lobe::{Lobe, LobeMask, PerLobe};
+pub use params::{HairDesc, HairParams, MAX_WIDTH, MIN_WIDTH};
