@@ -20,8 +20,10 @@ pub enum ParamError {
     GlintAngle(&'static str, f32),
     /// An intensity that is negative or not finite: the field, the channel (0 red, 1 green, 2 blue) and the value.
     Intensity(&'static str, usize, f32),
-    /// A scalar that is negative or not finite, such as the strength of the glints or a width factor.
+    /// A scalar that is negative or not finite, such as the strength of the glints.
     Scalar(&'static str, f32),
+    /// A factor on the widths outside `[0.5, 4]`, or not finite.
+    WidthFactor(&'static str, f32),
 }
 
 impl ParamError {
@@ -34,12 +36,14 @@ impl ParamError {
             | Self::Shift(field, _)
             | Self::GlintAngle(field, _)
             | Self::Intensity(field, _, _)
-            | Self::Scalar(field, _) => field,
+            | Self::Scalar(field, _)
+            | Self::WidthFactor(field, _) => field,
         }
     }
 }
 
 impl fmt::Display for ParamError {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Width(field, value) => write!(f, "{field} must be a width in [1e-4, pi] rad, got {value}"),
@@ -49,6 +53,7 @@ impl fmt::Display for ParamError {
                 write!(f, "{field}[{channel}] must be finite and at least 0, got {value}")
             }
             Self::Scalar(field, value) => write!(f, "{field} must be finite and at least 0, got {value}"),
+            Self::WidthFactor(field, value) => write!(f, "{field} must be in [0.5, 4], got {value}"),
         }
     }
 }

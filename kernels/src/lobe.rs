@@ -31,7 +31,7 @@ impl Lobe {
     #[inline]
     #[must_use]
     pub const fn slot(index: u8) -> Self {
-        assert!(index < Self::COUNT as u8, "a lobe slot is 0, 1, 2 or 3");
+        assert!((index as usize) < Self::COUNT, "a lobe slot is 0, 1, 2 or 3");
         Self(index)
     }
 

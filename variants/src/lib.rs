@@ -1,1 +1,16 @@
-//! Placeholder of the first commit.
+//! Scattering models on top of the public traits of [`hairis`].
+//!
+//! | model | what it changes | source | status |
+//! |---|---|---|---|
+//! | [`Cauchy`] in [`hairis::Hair`] | every Gaussian of the published model becomes a Cauchy | Ou et al. 2012, section 3.3 | complete |
+//!
+//! A model of one's own touches no file of the kernels: `examples/lambert_fiber.rs` is one in a hundred lines.
+#![no_std]
+#![warn(clippy::missing_inline_in_public_items)]
+
+mod cauchy;
+
+pub use cauchy::Cauchy;
+
+/// The all-Cauchy variant of the published model, see [`Cauchy`].
+pub type AllCauchy = hairis::Hair<Cauchy>;

@@ -1,0 +1,69 @@
+//! The bell curves that the published model is built of: its extension point.
+
+use crate::Lanes;
+use crate::math::exp2_neg;
+use core::f32::consts::LOG2_E;
+
+/// A bell of unit peak: every Gaussian of the published model, or what replaces it.
+///
+/// A bell is given `s = (x / width)^2`, the square of the distance from its centre in widths, and the Cauchy value
+/// `1 / (1 + s)` there, which the published sampler's pdf has paid for already. It is written once over [`Lanes`]; to
+/// be as fast as ours, mark both functions `#[inline(always)]` and pass no closures on.
+///
+/// ```
+/// use hairis::{Bell, Bsdf, Hair, HairParams, Lanes};
+/// use glam::Vec3;
+/// /// A parabola with its corners rounded: `max(0, 1 - s/8)^4`.
+/// #[derive(Clone, Copy, Debug)]
+/// struct Bump;
+/// impl Bell for Bump {
+///     #[inline(always)]
+///     fn one<L: Lanes>(s: L, _cauchy: L) -> L {
+///         let x = L::splat(0.0).max(s.mul_add(L::splat(-0.125), L::splat(1.0)));
+///         (x * x) * (x * x)
+///     }
+/// }
+/// let hair = Bsdf::new(&Hair(Bump), &HairParams::default());
+/// assert!(hair.prepare(Vec3::Y).pdf(Vec3::Y) > 0.0);
+/// ```
+pub trait Bell: Copy {
+    /// The bell at squared distance `s` in widths; 1 at 0.
+    ///
+    /// `cauchy` is `1 / (1 + s)`.
+    fn one<L: Lanes>(s: L, cauchy: L) -> L;
+
+    /// The product of two bells, at `s` and `t`.
+    ///
+    /// `cauchy` is `1 / ((1 + s) (1 + t))`, `cauchy_s` and `cauchy_t` its two factors.
+    #[inline(always)]
+    fn two<L: Lanes>(s: L, t: L, cauchy: L, cauchy_s: L, cauchy_t: L) -> L {
+        let _ = cauchy;
+        Self::one(s, cauchy_s) * Self::one(t, cauchy_t)
+    }
+
+    /// A factor on every width of the material, finite and at least 0.5; it is read once a material.
+    #[inline]
+    fn width_factor(&self) -> f32 {
+        1.0
+    }
+}
+
+/// The bell of the published model: `exp(-s/2)`, a Gaussian whose deviation is the width.
+///
+/// - Source: Ou et al. 2012, table 2; unit peak by ERRATA E4.
+/// - Accuracy: from `2^-110` down it is `2^-110`, see [`crate::math::exp2_neg`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Gaussian;
+
+impl Bell for Gaussian {
+    #[inline(always)]
+    fn one<L: Lanes>(s: L, _cauchy: L) -> L {
+        exp2_neg(s * L::splat(0.5 * LOG2_E))
+    }
+
+    // Two Gaussians are one.
+    #[inline(always)]
+    fn two<L: Lanes>(s: L, t: L, _cauchy: L, _cauchy_s: L, _cauchy_t: L) -> L {
+        Self::one(s + t, s)
+    }
+}

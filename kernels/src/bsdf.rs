@@ -1,0 +1,306 @@
+//! What users hold: a material and a gather point of any model.
+
+use crate::dispatch::{self, Level};
+use crate::model::{Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Sample, Sample8};
+use crate::{LobeMask, Model, PerLobe, Vec3x8};
+use core::f32::consts::FRAC_PI_2;
+use core::fmt;
+use glam::Vec3;
+use wide::f32x8;
+
+/// A material: a model with its parameters, made once a material and prepared once a gather point.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairis::{Bsdf, Gaussian, Hair, HairParams};
+/// let hair = Bsdf::new(&Hair(Gaussian), &HairParams::default());
+/// let gather = hair.prepare(Vec3::new(0.6, 0.8, 0.0)); // wo, in the fibre's frame
+/// let sample = gather.sample([0.2, 0.5, 0.5]).expect("not along the fibre");
+/// assert!((gather.pdf(sample.wi) / sample.pdf - 1.0).abs() < 1e-4);
+/// ```
+pub struct Bsdf<M: Model> {
+    material: M::Material<f32>,
+}
+
+/// Eight materials, one a lane: for eight gather points on different hair.
+pub struct Bsdf8<M: Model> {
+    material: M::Material<f32x8>,
+}
+
+/// A gather point: a material seen from one direction. Evaluate and sample it as often as it takes, one direction or
+/// eight at a time.
+pub struct Gather<M: Model> {
+    pub(crate) inner: M::Gather<f32>,
+}
+
+/// Eight gather points, one a lane.
+pub struct Gather8<M: Model> {
+    pub(crate) inner: M::Gather<f32x8>,
+}
+
+macro_rules! plain_data {
+    ($($name:ident $field:ident;)*) => { $(
+        impl<M: Model> Clone for $name<M> {
+            #[inline]
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+        impl<M: Model> Copy for $name<M> {}
+        impl<M: Model> fmt::Debug for $name<M> {
+            #[inline]
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.debug_tuple(stringify!($name)).field(&self.$field).finish()
+            }
+        }
+    )* };
+}
+plain_data! { Bsdf material; Bsdf8 material; Gather inner; Gather8 inner; }
+
+impl<M: Model> Bsdf<M> {
+    /// The material of checked parameters.
+    #[inline]
+    #[must_use]
+    pub fn new(model: &M, params: &M::Params) -> Self {
+        Self { material: model.material(params) }
+    }
+
+    /// The gather point of a hit: a [`Hit`], or `wo` alone.
+    ///
+    /// - Domain: `wo` in the fibre's frame, of any length; zero counts as the normal plane. Along the fibre its
+    ///   azimuth counts as 0.
+    #[inline]
+    #[must_use]
+    pub fn prepare(&self, hit: impl Into<Hit>) -> Gather<M> {
+        Gather { inner: M::prepare::<f32, f32>(&self.material, hit.into()) }
+    }
+
+    /// Eight gather points on this material, one a lane: a [`Hit8`], or eight `wo`.
+    #[inline]
+    #[must_use]
+    pub fn prepare8(&self, hits: impl Into<Hit8>) -> Gather8<M> {
+        self.prepare8_at(Level::detect(), hits)
+    }
+
+    /// As [`prepare8`](Self::prepare8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8<M> {
+        Gather8 { inner: dispatch::prepare8::<M, f32>(level, &self.material, &hits.into()) }
+    }
+
+    /// The largest directional albedo over all `wo` and the three channels: above 1 the hair gives back more light
+    /// than it receives.
+    ///
+    /// Found on 180 inclinations and between its neighbours on as many again; it is an upper bound by a margin of
+    /// 1e-3, tested against a scan ten times as fine.
+    #[must_use]
+    #[inline(never)]
+    pub fn max_albedo(&self) -> f32 {
+        const STEPS: u16 = 180;
+        let (mut best, mut at) = (0.0, 0.0);
+        let mut scan = |from: f32, to: f32| {
+            for i in 0..=STEPS {
+                let theta = from + (to - from) * f32::from(i) / f32::from(STEPS);
+                let wo = Vec3::new(libm::sinf(theta), libm::cosf(theta), 0.0);
+                let albedo = self.prepare(wo).albedo();
+                let most = (0..3).map(|c| albedo.0.iter().map(|lobe| lobe[c]).sum()).fold(0.0, f32::max);
+                if most > best {
+                    (best, at) = (most, theta);
+                }
+            }
+            at
+        };
+        let step = 2.0 * FRAC_PI_2 / f32::from(STEPS);
+        let coarse = scan(-FRAC_PI_2, FRAC_PI_2);
+        scan((coarse - step).max(-FRAC_PI_2), (coarse + step).min(FRAC_PI_2));
+        (best * 1.001).min(f32::MAX)
+    }
+
+    /// The factor on all intensities that keeps the directional albedo at most 1 whatever `wo`: 1 if it is already.
+    ///
+    /// One factor for all directions, so that the model stays reciprocal; path tracing needs it.
+    #[must_use]
+    #[inline]
+    pub fn conserving_scale(&self) -> f32 {
+        let most = self.max_albedo();
+        if most > 1.0 { 1.0 / most } else { 1.0 }
+    }
+}
+
+impl<M: Model> Bsdf8<M> {
+    /// Eight materials, one a lane.
+    #[inline]
+    #[must_use]
+    pub fn pack(materials: [&Bsdf<M>; 8]) -> Self {
+        Self { material: M::pack(materials.map(|m| &m.material)) }
+    }
+
+    /// Eight gather points, lane by lane: a [`Hit8`], or eight `wo`.
+    #[inline]
+    #[must_use]
+    pub fn prepare8(&self, hits: impl Into<Hit8>) -> Gather8<M> {
+        self.prepare8_at(Level::detect(), hits)
+    }
+
+    /// As [`prepare8`](Self::prepare8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8<M> {
+        Gather8 { inner: dispatch::prepare8::<M, f32x8>(level, &self.material, &hits.into()) }
+    }
+}
+
+impl<M: Model> Gather<M> {
+    /// S at `wi`, without the cosine, linear RGB, per steradian.
+    ///
+    /// - Domain: any finite `wi`; 0 within 1e-5 rad of the fibre's axis and for a vector longer than 2.
+    #[inline]
+    #[must_use]
+    pub fn eval(&self, wi: Vec3) -> [f32; 3] {
+        self.eval_pdf(wi).value
+    }
+
+    /// Density of sampling `wi`, per steradian; the domain is that of [`eval`](Self::eval).
+    ///
+    /// - Integral: 1 over the sphere, unless the model discards samples.
+    #[inline]
+    #[must_use]
+    pub fn pdf(&self, wi: Vec3) -> f32 {
+        self.eval_pdf(wi).pdf
+    }
+
+    /// Both at once, for little more than either.
+    #[inline]
+    #[must_use]
+    pub fn eval_pdf(&self, wi: Vec3) -> Eval {
+        M::eval::<f32, f32>(&self.inner, wi.into())
+    }
+
+    /// Each lobe's value, colour and own density.
+    #[inline]
+    #[must_use]
+    pub fn lobes(&self, wi: Vec3) -> PerLobe<LobeEval> {
+        M::lobes::<f32, f32>(&self.inner, wi.into())
+    }
+
+    /// A direction for three uniform numbers in `[0, 1)`: for the lobe, the longitude and the azimuth.
+    ///
+    /// `None` is a discarded sample: it counts, its contribution is 0, and it is not to be drawn again.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, xi: [f32; 3]) -> Option<Sample> {
+        Sample::from_drawn(&M::sample::<f32, f32>(&self.inner, xi))
+    }
+
+    /// As [`eval_pdf`](Self::eval_pdf), for eight directions.
+    #[inline]
+    #[must_use]
+    pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
+        self.eval_pdf8_at(Level::detect(), wi)
+    }
+
+    /// As [`eval_pdf8`](Self::eval_pdf8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
+        dispatch::eval8::<M, f32>(level, &self.inner, wi)
+    }
+
+    /// As [`lobes`](Self::lobes), for eight directions.
+    #[inline]
+    #[must_use]
+    pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
+        dispatch::lobes8::<M, f32>(Level::detect(), &self.inner, wi)
+    }
+
+    /// As [`sample`](Self::sample), for eight triples of numbers.
+    #[inline]
+    #[must_use]
+    pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
+        self.sample8_at(Level::detect(), xi)
+    }
+
+    /// As [`sample8`](Self::sample8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn sample8_at(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
+        dispatch::sample8::<M, f32>(level, &self.inner, xi)
+    }
+
+    /// The gather point with only some of its lobes: the others neither scatter nor are sampled.
+    #[inline]
+    #[must_use]
+    pub fn with_lobes(&self, lobes: LobeMask) -> Self {
+        Self { inner: M::restrict::<f32>(&self.inner, lobes) }
+    }
+
+    /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
+    #[inline]
+    #[must_use]
+    pub fn albedo(&self) -> PerLobe<[f32; 3]> {
+        M::albedo::<f32, f32>(&self.inner)
+    }
+}
+
+impl<M: Model> Gather8<M> {
+    /// Value and density at `wi`, each lane at its own gather point.
+    #[inline]
+    #[must_use]
+    pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
+        self.eval_pdf8_at(Level::detect(), wi)
+    }
+
+    /// As [`eval_pdf8`](Self::eval_pdf8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
+        dispatch::eval8::<M, f32x8>(level, &self.inner, wi)
+    }
+
+    /// Each lobe's value, colour and own density, each lane at its own gather point.
+    #[inline]
+    #[must_use]
+    pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
+        dispatch::lobes8::<M, f32x8>(Level::detect(), &self.inner, wi)
+    }
+
+    /// One direction for each gather point.
+    #[inline]
+    #[must_use]
+    pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
+        self.sample8_at(Level::detect(), xi)
+    }
+
+    /// As [`sample8`](Self::sample8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn sample8_at(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
+        dispatch::sample8::<M, f32x8>(level, &self.inner, xi)
+    }
+
+    /// The gather point of one lane.
+    ///
+    /// # Panics
+    ///
+    /// If `lane` is above 7.
+    #[inline]
+    #[must_use]
+    pub fn lane(&self, lane: usize) -> Gather<M> {
+        Gather { inner: M::lane(&self.inner, lane) }
+    }
+
+    /// The gather points with only some of their lobes: the others neither scatter nor are sampled.
+    #[inline]
+    #[must_use]
+    pub fn with_lobes(&self, lobes: LobeMask) -> Self {
+        Self { inner: M::restrict::<f32x8>(&self.inner, lobes) }
+    }
+
+    /// Directional albedo of each lobe, linear RGB, each lane at its own gather point.
+    #[inline]
+    #[must_use]
+    pub fn albedo8(&self) -> PerLobe<[f32x8; 3]> {
+        M::albedo::<f32x8, f32x8>(&self.inner)
+    }
+}

@@ -1,0 +1,172 @@
+//! Which instruction set runs: the only place that picks a backend at run time.
+#![allow(unsafe_code, reason = "calls into functions of target features that a `Level` proves present")]
+
+use crate::model::{Eval8, Hit8, LobeEval8, Sample8};
+use crate::{Broadcast, Hit, Model, PerLobe, Vec3x, Vec3x8};
+use core::fmt;
+use wide::f32x8;
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+use crate::lanes::avx2::Avx2;
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+cpufeatures::new!(avx2_fma, "avx2", "fma");
+
+/// An instruction set that this CPU has: a value is the proof.
+///
+/// ```
+/// use hairis::Level;
+/// println!("eight lanes run on {}", Level::detect());
+/// assert!(Level::available().any(|level| level == Level::portable()));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Level(Kind);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Portable,
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    Avx2,
+}
+
+impl Level {
+    /// The best level of this CPU. The CPU is asked once; after that it is a load and a compare.
+    #[inline(always)]
+    #[must_use]
+    pub fn detect() -> Self {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        if avx2_fma::get() {
+            return Self(Kind::Avx2);
+        }
+        Self::portable()
+    }
+
+    /// Eight lanes through `wide`: what the program was compiled for, on every CPU that runs it.
+    #[inline(always)]
+    #[must_use]
+    pub const fn portable() -> Self {
+        Self(Kind::Portable)
+    }
+
+    /// Every level of this CPU, the portable one first.
+    #[inline]
+    pub fn available() -> impl Iterator<Item = Self> {
+        let best = Self::detect();
+        core::iter::once(Self::portable()).chain((best != Self::portable()).then_some(best))
+    }
+
+    /// Name of the instruction set, for reports: `avx2+fma`, or what the program was compiled for.
+    #[inline]
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self.0 {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Kind::Avx2 => "avx2+fma",
+            Kind::Portable => PORTABLE,
+        }
+    }
+
+    /// Whether `mul_add` rounds once on this level. Levels that agree in this give the same bits.
+    #[inline]
+    #[must_use]
+    pub const fn fuses(self) -> bool {
+        match self.0 {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Kind::Avx2 => true,
+            Kind::Portable => cfg!(any(target_feature = "fma", target_arch = "aarch64")),
+        }
+    }
+}
+
+/// What `wide` was compiled for.
+const PORTABLE: &str = if cfg!(all(target_feature = "avx", target_feature = "fma")) {
+    "wide (avx+fma)"
+} else if cfg!(target_feature = "avx") {
+    "wide (avx)"
+} else if cfg!(target_feature = "sse2") {
+    "wide (sse2)"
+} else if cfg!(all(target_arch = "aarch64", target_feature = "neon")) {
+    "wide (neon)"
+} else if cfg!(target_feature = "simd128") {
+    "wide (simd128)"
+} else {
+    "wide (scalar)"
+};
+
+impl fmt::Display for Level {
+    #[inline]
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Declares an entry point: `body` over `L`, which is the portable lanes or the backend of `level`.
+///
+/// The constants `C` are read as `L` in `body`, so that one entry point serves one gather point and eight.
+macro_rules! entry {
+    ($(#[$meta:meta])* $name:ident($($arg:ident: $type:ty),*) -> $out:ty, $body:ident) => {
+        $(#[$meta])*
+        #[inline]
+        pub(crate) fn $name<M: Model, C: Constant>(level: Level, $($arg: $type),*) -> $out {
+            match level.0 {
+                #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+                Kind::Avx2 => {
+                    #[target_feature(enable = "avx2,fma")]
+                    fn avx2<M: Model, C: Constant>($($arg: $type),*) -> $out {
+                        $body!(M, Avx2, C, $($arg),*)
+                    }
+                    // SAFETY: a `Level` of this kind is made only where `avx2_fma` found both features.
+                    unsafe { avx2::<M, C>($($arg),*) }
+                }
+                Kind::Portable => $body!(M, f32x8, C, $($arg),*),
+            }
+        }
+    };
+}
+
+/// Storage that every backend reads: `f32` or `f32x8`.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+pub(crate) trait Constant: Broadcast<f32x8> + Broadcast<Avx2> + fmt::Debug {}
+#[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+pub(crate) trait Constant: Broadcast<f32x8> + fmt::Debug {}
+impl Constant for f32 {}
+impl Constant for f32x8 {}
+
+macro_rules! prepare {
+    ($M:ty, $L:ty, $C:ty, $material:ident, $hits:ident) => {
+        <$M>::prepare::<$L, $C>($material, Hit { wo: Vec3x::load(&$hits.wo), h: Broadcast::<$L>::lanes(&$hits.h) })
+    };
+}
+macro_rules! eval {
+    ($M:ty, $L:ty, $C:ty, $gather:ident, $wi:ident) => {
+        <$M>::eval::<$L, $C>($gather, Vec3x::load($wi)).store()
+    };
+}
+macro_rules! lobes {
+    ($M:ty, $L:ty, $C:ty, $gather:ident, $wi:ident) => {{
+        let [r, tt, trt, glint] = <$M>::lobes::<$L, $C>($gather, Vec3x::load($wi)).0;
+        PerLobe([r.store(), tt.store(), trt.store(), glint.store()])
+    }};
+}
+macro_rules! sample {
+    ($M:ty, $L:ty, $C:ty, $gather:ident, $xi:ident) => {
+        <$M>::sample::<$L, $C>($gather, crate::lanes::lanes3($xi)).store()
+    };
+}
+
+entry! {
+    /// Eight gather points.
+    prepare8(material: &M::Material<C>, hits: &Hit8) -> M::Gather<f32x8>, prepare
+}
+entry! {
+    /// Value and density of eight directions.
+    eval8(gather: &M::Gather<C>, wi: &Vec3x8) -> Eval8, eval
+}
+entry! {
+    /// Each lobe's value, colour and density at eight directions.
+    lobes8(gather: &M::Gather<C>, wi: &Vec3x8) -> PerLobe<LobeEval8>, lobes
+}
+entry! {
+    /// Eight sampled directions.
+    sample8(gather: &M::Gather<C>, xi: &[f32x8; 3]) -> Sample8, sample
+}

@@ -1,0 +1,267 @@
+//! Directions, and the frame of a fibre.
+//!
+//! In the frame of a fibre `x` is `u`, along the fibre from root to tip; `y` is `v` and `z` is `w`, which span the
+//! normal plane. The azimuth of `v` is 0 and that of `w` is pi/2.
+
+use crate::Lanes;
+use glam::{Vec3, Vec3A};
+use wide::f32x8;
+
+/// Three numbers a lane. In a fibre's frame: `x` along the fibre (u), `y` and `z` in its normal plane (v, w).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Vec3x<L> {
+    /// Along u, or the world's x.
+    pub x: L,
+    /// Along v, or the world's y.
+    pub y: L,
+    /// Along w, or the world's z.
+    pub z: L,
+}
+
+/// Eight vectors, lane by lane.
+pub type Vec3x8 = Vec3x<f32x8>;
+
+impl<L> Vec3x<L> {
+    /// A vector of its components.
+    #[inline(always)]
+    #[must_use]
+    pub const fn new(x: L, y: L, z: L) -> Self {
+        Self { x, y, z }
+    }
+}
+
+impl<L: Lanes> Vec3x<L> {
+    /// Dot product.
+    #[inline(always)]
+    #[must_use]
+    pub fn dot(self, other: Self) -> L {
+        self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
+    }
+
+    /// The vector times a number a lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn scale(self, by: L) -> Self {
+        Self::new(self.x * by, self.y * by, self.z * by)
+    }
+
+    /// The sum of two vectors.
+    #[inline(always)]
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+
+    /// The vector in the form it is kept in.
+    #[inline(always)]
+    pub fn store(self) -> Vec3x<L::Stored> {
+        Vec3x::new(self.x.store(), self.y.store(), self.z.store())
+    }
+
+    /// The vector read as lanes.
+    #[inline(always)]
+    pub(crate) fn load<C: crate::Broadcast<L>>(stored: &Vec3x<C>) -> Self {
+        Self::new(stored.x.lanes(), stored.y.lanes(), stored.z.lanes())
+    }
+}
+
+impl Vec3x8 {
+    /// The same vector in every lane.
+    #[inline]
+    #[must_use]
+    pub fn splat(v: Vec3) -> Self {
+        Self::new(f32x8::splat(v.x), f32x8::splat(v.y), f32x8::splat(v.z))
+    }
+
+    /// The vector of one lane.
+    ///
+    /// # Panics
+    ///
+    /// If `lane` is above 7.
+    #[inline]
+    #[must_use]
+    pub fn lane(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.x.as_array()[lane], self.y.as_array()[lane], self.z.as_array()[lane])
+    }
+}
+
+impl From<[Vec3; 8]> for Vec3x8 {
+    #[inline]
+    fn from(v: [Vec3; 8]) -> Self {
+        Self::new(f32x8::new(v.map(|v| v.x)), f32x8::new(v.map(|v| v.y)), f32x8::new(v.map(|v| v.z)))
+    }
+}
+
+impl From<[Vec3A; 8]> for Vec3x8 {
+    #[inline]
+    fn from(v: [Vec3A; 8]) -> Self {
+        v.map(Vec3::from).into()
+    }
+}
+
+impl From<Vec3x8> for [Vec3; 8] {
+    #[inline]
+    fn from(v: Vec3x8) -> Self {
+        core::array::from_fn(|lane| v.lane(lane))
+    }
+}
+
+impl From<Vec3x8> for [Vec3A; 8] {
+    #[inline]
+    fn from(v: Vec3x8) -> Self {
+        core::array::from_fn(|lane| v.lane(lane).into())
+    }
+}
+
+impl From<Vec3> for Vec3x<f32> {
+    #[inline(always)]
+    fn from(v: Vec3) -> Self {
+        Self::new(v.x, v.y, v.z)
+    }
+}
+
+impl From<Vec3A> for Vec3x<f32> {
+    #[inline(always)]
+    fn from(v: Vec3A) -> Self {
+        Self::new(v.x, v.y, v.z)
+    }
+}
+
+impl From<Vec3x<f32>> for Vec3 {
+    #[inline(always)]
+    fn from(v: Vec3x<f32>) -> Self {
+        Self::new(v.x, v.y, v.z)
+    }
+}
+
+/// The orthonormal, right-handed frame of a fibre: `u` along it from root to tip, `v` and `w` across.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairis::FiberFrame;
+/// let frame = FiberFrame::from_tangent(Vec3::new(0.0, 2.0, 0.0));
+/// let local = frame.to_local(Vec3::Y);
+/// assert!((local - Vec3::X).length() < 1e-6); // along the fibre
+/// assert!((frame.to_world(local) - Vec3::Y).length() < 1e-6);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FiberFrame {
+    /// Along the fibre, from root to tip, unit.
+    pub u: Vec3,
+    /// Azimuth 0, unit.
+    pub v: Vec3,
+    /// Azimuth pi/2, unit: `u` cross `v`.
+    pub w: Vec3,
+}
+
+impl FiberFrame {
+    /// The frame of a fibre with this tangent (root to tip, of any length).
+    ///
+    /// `v` and `w` depend on the tangent alone, and continuously but where the tangent passes -z. The published model
+    /// sees differences of azimuth only, so that their choice does not show.
+    ///
+    /// - Domain: a tangent that is zero or not finite counts as +x.
+    #[inline]
+    #[must_use]
+    pub fn from_tangent(tangent: Vec3) -> Self {
+        let u = unit_or(tangent, Vec3::X);
+        let (v, w) = u.any_orthonormal_pair();
+        Self { u, v, w }
+    }
+
+    /// The frame whose `v` (azimuth 0) is the part of `normal` across the fibre.
+    ///
+    /// - Domain: a normal that is zero, not finite or along the tangent counts for nothing: as
+    ///   [`from_tangent`](Self::from_tangent).
+    #[inline]
+    #[must_use]
+    pub fn from_tangent_normal(tangent: Vec3, normal: Vec3) -> Self {
+        let any = Self::from_tangent(tangent);
+        let normal = unit_or(normal, Vec3::ZERO);
+        let across = normal - any.u * normal.dot(any.u);
+        // Below this the direction is made of rounding errors.
+        if across.length_squared() < 1e-10 {
+            return any;
+        }
+        let v = unit_or(across, any.v);
+        // Once more: the first difference leaves up to 1e-2 of u where the normal is almost along it.
+        let v = unit_or(v - any.u * v.dot(any.u), any.v);
+        Self { u: any.u, v, w: any.u.cross(v) }
+    }
+
+    /// World to fibre: `(u, v, w)` components of `v`.
+    #[inline]
+    #[must_use]
+    pub fn to_local(&self, v: Vec3) -> Vec3 {
+        Vec3::new(v.dot(self.u), v.dot(self.v), v.dot(self.w))
+    }
+
+    /// Fibre to world.
+    #[inline]
+    #[must_use]
+    pub fn to_world(&self, v: Vec3) -> Vec3 {
+        self.u * v.x + self.v * v.y + self.w * v.z
+    }
+
+    /// World to fibre, for glam's aligned vectors.
+    #[inline]
+    #[must_use]
+    pub fn to_local_a(&self, v: Vec3A) -> Vec3A {
+        self.to_local(v.into()).into()
+    }
+
+    /// Fibre to world, for glam's aligned vectors.
+    #[inline]
+    #[must_use]
+    pub fn to_world_a(&self, v: Vec3A) -> Vec3A {
+        self.to_world(v.into()).into()
+    }
+}
+
+/// `v` at unit length; `fallback` if it is zero or not finite. Scaled first, so that no finite length overflows.
+#[inline]
+fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
+    let largest = v.abs().max_element();
+    if largest > 0.0 && v.is_finite() { (v / largest).normalize() } else { fallback }
+}
+
+/// A frame a lane: one frame for eight directions ([`splat`](Self::splat)), or the frames of eight gather points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FiberFrame8 {
+    /// Along each fibre.
+    pub u: Vec3x8,
+    /// Azimuth 0.
+    pub v: Vec3x8,
+    /// Azimuth pi/2.
+    pub w: Vec3x8,
+}
+
+impl FiberFrame8 {
+    /// The same frame in every lane.
+    #[inline]
+    #[must_use]
+    pub fn splat(frame: &FiberFrame) -> Self {
+        Self { u: Vec3x8::splat(frame.u), v: Vec3x8::splat(frame.v), w: Vec3x8::splat(frame.w) }
+    }
+
+    /// World to fibre, each lane in its own frame.
+    #[inline]
+    #[must_use]
+    pub fn to_local(&self, v: &Vec3x8) -> Vec3x8 {
+        Vec3x::new(v.dot(self.u), v.dot(self.v), v.dot(self.w))
+    }
+
+    /// Fibre to world, each lane out of its own frame.
+    #[inline]
+    #[must_use]
+    pub fn to_world(&self, v: &Vec3x8) -> Vec3x8 {
+        self.u.scale(v.x).plus(self.v.scale(v.y)).plus(self.w.scale(v.z))
+    }
+}
+
+impl From<[FiberFrame; 8]> for FiberFrame8 {
+    #[inline]
+    fn from(frames: [FiberFrame; 8]) -> Self {
+        Self { u: frames.map(|f| f.u).into(), v: frames.map(|f| f.v).into(), w: frames.map(|f| f.w).into() }
+    }
+}

@@ -1,0 +1,276 @@
+//! The published model over any bell: its value, its densities and its albedo.
+
+mod albedo;
+mod gather;
+mod sampling;
+
+pub use gather::{HairGather, HairMaterial};
+
+use crate::lanes::lanes3;
+use crate::math::atan_unit;
+use crate::model::{Drawn, Eval, Hit, LobeEval};
+use crate::{Bell, Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Vec3x};
+use core::f32::consts::PI;
+use core::fmt::Debug;
+use wide::f32x8;
+
+/// Cosine of the inclination below which a direction lies on the fibre's axis: value and density are 0 there, and a
+/// sample is discarded (section 3.3 of the paper).
+pub const GRAZING: f32 = 1e-5;
+
+/// The artist-friendly model of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the bell `B`, and the sampler
+/// they publish.
+///
+/// `S = sum of I M(theta_h) N(phi) / cos^2 theta_d` over R, TT, TRT-g and the glints. It is reciprocal. It does not
+/// conserve energy: see [`Bsdf::conserving_scale`](crate::Bsdf::conserving_scale).
+///
+/// - Source: Ou et al. 2012, equation 1, table 2 and section 3.2, with the misprints of `ERRATA.md` mended.
+/// - Units: value and density per steradian.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Hair<B>(pub B);
+
+/// A direction as the lobes see it.
+#[derive(Clone, Copy)]
+struct Place<L: Lanes> {
+    /// Half of `theta_i`.
+    half_theta_i: L,
+    sin_theta_i: L,
+    cos_theta_i: L,
+    /// `|phi|`, and `pi - |phi|` formed without a difference where it is small.
+    phi: L,
+    back: L,
+    /// `cos(phi / 2)`.
+    cos_half_phi: L,
+    /// Where `|phi| < pi/2`.
+    front: L::Mask,
+}
+
+/// What the lobes are at a place.
+#[derive(Clone, Copy)]
+struct Shapes<L> {
+    /// `M N`, with unit peaks: no colour, no strength.
+    value: [L; 4],
+    /// The sampler's density but for the gather point's constants, and for `1 / cos theta_i`.
+    density: [L; 4],
+    /// `1 / cos^2 theta_d`.
+    inv_cos_sq_theta_d: L,
+}
+
+impl<L: Lanes> Place<L> {
+    /// The place of `wi` as seen from a gather point, and where it is one: a direction off the axis.
+    #[inline(always)]
+    fn of<C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> (Self, L::Mask) {
+        let c = L::splat;
+        let one = c(1.0);
+        let plane_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
+        let cos_theta_i = plane_sq.sqrt();
+        // Longer than 2 is no direction; the comparison is false for the infinities of a sum that overflowed.
+        let sound = L::and(c(GRAZING).lt(cos_theta_i), wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)));
+
+        // Azimuth relative to wo, folded: tau is the half-angle tangent of |phi| or of pi - |phi|, at most 1.
+        let (cos_phi_o, sin_phi_o) = (gather.cos_phi_o.lanes(), gather.sin_phi_o.lanes());
+        let dot = wi.y.mul_add(cos_phi_o, wi.z * sin_phi_o);
+        let cross = wi.z.mul_add(cos_phi_o, -(wi.y * sin_phi_o)).abs();
+        let far = cos_theta_i + dot.abs();
+
+        // Both half-angle tangents, and the square below the root, from one division.
+        let near = one + cos_theta_i;
+        let far_cos = far * cos_theta_i;
+        let reciprocal = one / (near * far_cos);
+        let half_theta_i = atan_unit(wi.x * (far_cos * reciprocal));
+        let inv_far_near = reciprocal * near;
+        let tau = cross * (inv_far_near * cos_theta_i);
+        let cos_half = (far * far * inv_far_near * c(0.5)).sqrt();
+
+        let front = c(0.0).lt(dot);
+        let angle = atan_unit(tau);
+        let angle = angle + angle;
+        let rest = c(PI) - angle;
+        let place = Self {
+            half_theta_i,
+            sin_theta_i: wi.x,
+            cos_theta_i,
+            phi: L::select(front, angle, rest),
+            back: L::select(front, rest, angle),
+            cos_half_phi: L::select(front, cos_half, tau * cos_half),
+            front,
+        };
+        (place, sound)
+    }
+
+    /// The lobes here.
+    #[inline(always)]
+    fn shapes<B: Bell, C: Broadcast<L>>(&self, gather: &HairGather<C>) -> Shapes<L> {
+        let c = L::splat;
+        let (zero, one) = (c(0.0), c(1.0));
+        // Distances from the centres of the bells in widths, squared.
+        let x_r = (self.half_theta_i + gather.shift[0].lanes()) * gather.inv_beta[0].lanes();
+        let x_tt = (self.half_theta_i + gather.shift[1].lanes()) * gather.inv_beta[1].lanes();
+        let x_trt = (self.half_theta_i + gather.shift[2].lanes()) * gather.inv_beta[2].lanes();
+        let y_tt = self.back * gather.inv_gamma[0].lanes();
+        let y_g = (self.phi - gather.phi_g.lanes()) * gather.inv_gamma[1].lanes();
+        let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);
+
+        // The Cauchy value of each, from two divisions. Each of the five is at most 1e9, so that four of them
+        // multiplied stay below the largest float.
+        let (d_r, d_tt_x, d_tt_y, d_trt, d_g_y) = (one + s_r, one + s_tt, one + t_tt, one + s_trt, one + t_g);
+        let (d_tt, d_g) = (d_tt_x * d_tt_y, d_trt * d_g_y);
+        let inv_tt_g = one / (d_tt * d_g);
+        let (cauchy_tt, cauchy_g) = (inv_tt_g * d_g, inv_tt_g * d_tt);
+        let cauchy_trt = cauchy_g * d_g_y;
+        // Four times cos^2 theta_d is the squared length of the sum of the two directions in the meridian plane:
+        // exact where both are near opposite poles, where 1 + cos cos + sin sin cancels.
+        let sum_u = self.sin_theta_i + gather.sin_theta_o.lanes();
+        let sum_c = self.cos_theta_i + gather.cos_theta_o.lanes();
+        let meridian_sq = sum_u.mul_add(sum_u, sum_c * sum_c);
+        let inv_r = one / (d_r * meridian_sq);
+        let cauchy_r = inv_r * meridian_sq;
+
+        Shapes {
+            value: [
+                B::one(s_r, cauchy_r) * self.cos_half_phi,
+                B::two(s_tt, t_tt, cauchy_tt, cauchy_tt * d_tt_y, cauchy_tt * d_tt_x),
+                B::one(s_trt, cauchy_trt) * self.cos_half_phi,
+                B::two(s_trt, t_g, cauchy_g, cauchy_trt, cauchy_g * d_trt),
+            ],
+            density: [
+                cauchy_r * self.cos_half_phi,
+                cauchy_tt,
+                cauchy_trt * self.cos_half_phi,
+                // The sampler cuts the glints at pi/2: ERRATA E3.
+                L::select(self.front, cauchy_g, zero),
+            ],
+            inv_cos_sq_theta_d: c(4.0) * (inv_r * d_r),
+        }
+    }
+}
+
+impl<L: Lanes> Shapes<L> {
+    /// S before the final bound, linear RGB.
+    #[inline(always)]
+    fn value<C: Broadcast<L>>(&self, gather: &HairGather<C>) -> [L; 3] {
+        let trt = self.value[2] * gather.strength[2].lanes();
+        let secondary = self.value[3].mul_add(gather.strength[3].lanes(), trt);
+        let (f_r, f_tt) = (self.value[0] * self.inv_cos_sq_theta_d, self.value[1] * self.inv_cos_sq_theta_d);
+        let f_trt = secondary * self.inv_cos_sq_theta_d;
+        let (r, tt, trt) = (lanes3(&gather.color_r), lanes3(&gather.color_tt), lanes3(&gather.color_trt));
+        [
+            f_r.mul_add(r[0], f_tt.mul_add(tt[0], f_trt * trt[0])),
+            f_r.mul_add(r[1], f_tt.mul_add(tt[1], f_trt * trt[1])),
+            f_r.mul_add(r[2], f_tt.mul_add(tt[2], f_trt * trt[2])),
+        ]
+    }
+
+    /// The mixture density times `cos theta_i`.
+    #[inline(always)]
+    fn density<C: Broadcast<L>>(&self, gather: &HairGather<C>) -> L {
+        let back = self.density[1].mul_add(gather.weight[1].lanes(), self.density[3] * gather.weight[3].lanes());
+        let d = self.density[2].mul_add(gather.weight[2].lanes(), back);
+        self.density[0].mul_add(gather.weight[0].lanes(), d)
+    }
+}
+
+/// The largest result where a lane is sound, 0 where it is not. `x.min(limit)` then is 0 on an unsound lane whatever
+/// `x` is, NaN included, and finite on every other.
+#[inline(always)]
+fn limit<L: Lanes>(sound: L::Mask) -> L {
+    L::select(sound, L::splat(f32::MAX), L::splat(0.0))
+}
+
+#[inline(always)]
+fn min3<L: Lanes>(x: [L; 3], limit: L) -> [L; 3] {
+    [x[0].min(limit), x[1].min(limit), x[2].min(limit)]
+}
+
+impl<B: Bell> Model for Hair<B> {
+    type Params = HairParams;
+    type Material<C: Copy + Debug> = HairMaterial<C>;
+    type Gather<C: Copy + Debug> = HairGather<C>;
+
+    const LOBES: &'static [&'static str] = &["r", "tt", "trt", "glint"];
+
+    #[inline]
+    fn material(&self, params: &HairParams) -> HairMaterial<f32> {
+        HairMaterial::of(self.0, params)
+    }
+
+    #[inline]
+    fn pack(materials: [&HairMaterial<f32>; 8]) -> HairMaterial<f32x8> {
+        HairMaterial::pack(materials)
+    }
+
+    #[inline]
+    fn lane(gather: &HairGather<f32x8>, lane: usize) -> HairGather<f32> {
+        gather.lane(lane)
+    }
+
+    #[inline(always)]
+    fn prepare<L: Lanes, C: Broadcast<L> + Debug>(material: &HairMaterial<C>, hit: Hit<L>) -> HairGather<L::Stored>
+    where
+        L::Stored: Debug,
+    {
+        gather::prepare(material, hit.wo)
+    }
+
+    #[inline(always)]
+    fn restrict<C: Lanes + Debug>(gather: &HairGather<C>, lobes: LobeMask) -> HairGather<C> {
+        gather.restrict(lobes)
+    }
+
+    #[inline(always)]
+    fn eval<L: Lanes, C: Broadcast<L> + Debug>(gather: &HairGather<C>, wi: Vec3x<L>) -> Eval<L> {
+        let (place, sound) = Place::of(gather, wi);
+        let shapes = place.shapes::<B, C>(gather);
+        let limit = limit::<L>(sound);
+        Eval { value: min3(shapes.value(gather), limit), pdf: (shapes.density(gather) / place.cos_theta_i).min(limit) }
+    }
+
+    #[inline(always)]
+    fn lobes<L: Lanes, C: Broadcast<L> + Debug>(gather: &HairGather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
+        let (place, sound) = Place::of(gather, wi);
+        let shapes = place.shapes::<B, C>(gather);
+        let limit = limit::<L>(sound);
+        let inv_cos = L::splat(1.0) / place.cos_theta_i;
+        let colors =
+            [lanes3(&gather.color_r), lanes3(&gather.color_tt), lanes3(&gather.color_trt), lanes3(&gather.color_trt)];
+        let zero = L::splat(0.0);
+        let mut lobes = [LobeEval { value: zero, color: [zero; 3], pdf: zero }; 4];
+        let mut l = 0;
+        while l < 4 {
+            let strength = gather.strength[l].lanes() * shapes.inv_cos_sq_theta_d;
+            let density = gather.density[l].lanes() * inv_cos;
+            lobes[l] = LobeEval {
+                value: (shapes.value[l] * strength).min(limit),
+                color: colors[l],
+                pdf: (shapes.density[l] * density).min(limit),
+            };
+            l += 1;
+        }
+        PerLobe(lobes)
+    }
+
+    #[inline(always)]
+    fn sample<L: Lanes, C: Broadcast<L> + Debug>(gather: &HairGather<C>, xi: [L; 3]) -> Drawn<L> {
+        let (wi, choice, place) = sampling::draw(gather, xi);
+        let shapes = place.shapes::<B, C>(gather);
+        let density = shapes.density(gather);
+        let cos = place.cos_theta_i;
+        let sound = L::and(L::splat(GRAZING).lt(cos), L::splat(0.0).lt(density));
+        let limit = limit::<L>(sound);
+        let value = min3(shapes.value(gather), limit);
+        // weight = S cos theta_i / pdf, and pdf = density / cos theta_i.
+        let by = cos * cos / density;
+        Drawn {
+            wi,
+            value,
+            pdf: (density / cos).min(limit),
+            weight: min3([value[0] * by, value[1] * by, value[2] * by], limit),
+            slot: L::select(sound, L::slot_number(choice), L::splat(-1.0)),
+        }
+    }
+
+    #[inline(always)]
+    fn albedo<L: Lanes, C: Broadcast<L> + Debug>(gather: &HairGather<C>) -> PerLobe<[L; 3]> {
+        albedo::albedo::<B, L, C>(gather)
+    }
+}

@@ -1,0 +1,75 @@
+//! Directional albedo of the published model, by quadrature in the sampler's own coordinates.
+
+use super::HairGather;
+use crate::lanes::lanes3;
+use crate::math::sin_cos_half_turn;
+use crate::quadrature::GAUSS_LEGENDRE_32;
+use crate::truncated::TruncatedCauchy;
+use crate::{Bell, Broadcast, Lanes, PerLobe};
+
+/// Integral of a bell of width `width` over `[lo, hi]`, its centre at 0.
+///
+/// Over the cdf of the truncated Cauchy the integrand is bounded and smooth however narrow the bell.
+#[inline]
+pub(super) fn bell_area<B: Bell>(lo: f32, hi: f32, width: f32) -> f32 {
+    let cauchy = TruncatedCauchy::new(lo, hi, width);
+    let mut sum = 0.0;
+    for (xi, weight) in GAUSS_LEGENDRE_32 {
+        let x = cauchy.invert(xi);
+        let d = 1.0 + x * x;
+        sum += weight * d * B::one(x * x, 1.0 / d);
+    }
+    sum * cauchy.span * width
+}
+
+/// Directional albedo of each lobe, linear RGB.
+#[inline(always)]
+pub(super) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>) -> PerLobe<[L; 3]> {
+    let (r, tt, trt) = (lanes3(&gather.color_r), lanes3(&gather.color_tt), lanes3(&gather.color_trt));
+    let area =
+        [longitudinal::<B, L, C>(gather, 0), longitudinal::<B, L, C>(gather, 1), longitudinal::<B, L, C>(gather, 2)];
+    PerLobe([
+        lobe(gather, 0, area[0], r),
+        lobe(gather, 1, area[1], tt),
+        lobe(gather, 2, area[2], trt),
+        lobe(gather, 3, area[2], trt),
+    ])
+}
+
+#[inline(always)]
+fn lobe<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, l: usize, area: L, color: [L; 3]) -> [L; 3] {
+    let albedo = area * gather.azimuth_area[l].lanes() * gather.strength[l].lanes();
+    let most = L::splat(f32::MAX);
+    [(albedo * color[0]).min(most), (albedo * color[1]).min(most), (albedo * color[2]).min(most)]
+}
+
+/// Integral of `M cos^2 theta_i / cos^2 theta_d` over `theta_i`.
+#[inline(always)]
+fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, l: usize) -> L {
+    let c = L::splat;
+    let one = c(1.0);
+    let cauchy = TruncatedCauchy {
+        sin_mid: gather.longitude_sin[l].lanes(),
+        cos_mid: gather.longitude_cos[l].lanes(),
+        span: gather.longitude_span[l].lanes(),
+    };
+    let (beta, shift) = (gather.beta[l].lanes(), gather.shift[l].lanes());
+    let (sin_theta_o, cos_theta_o) = (gather.sin_theta_o.lanes(), gather.cos_theta_o.lanes());
+    let quarter = c(core::f32::consts::FRAC_PI_4);
+    let mut sum = c(0.0);
+    let mut k = 0;
+    while k < GAUSS_LEGENDRE_32.len() {
+        let (xi, weight) = GAUSS_LEGENDRE_32[k];
+        let x = cauchy.invert(c(xi));
+        let half = (-quarter).max(quarter.min(x.mul_add(beta, -shift)));
+        let (sin, cos) = sin_cos_half_turn(half + half);
+        let (sum_u, sum_c) = (sin + sin_theta_o, cos + cos_theta_o);
+        // W of SPEC 2 over 4; where both directions lie on opposite poles it is 0 / 0, and its limit is 0.
+        let w = cos * cos / sum_u.mul_add(sum_u, sum_c * sum_c).max(c(f32::MIN_POSITIVE));
+        let d = x.mul_add(x, one);
+        sum = (d * B::one(x * x, one / d) * w).mul_add(c(weight), sum);
+        k += 1;
+    }
+    // dtheta_i = 2 beta d(x), and the 4 of W.
+    sum * cauchy.span * beta * c(8.0)
+}

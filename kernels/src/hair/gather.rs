@@ -1,0 +1,298 @@
+//! What is constant for a material, and for a material seen from one direction (section 3.3 of the paper).
+
+use super::albedo::bell_area;
+use crate::lanes::{store3, store4};
+use crate::math::atan_unit;
+use crate::truncated::TruncatedCauchy;
+use crate::{Bell, Broadcast, HairParams, Lanes, Lobe, LobeMask, Vec3x};
+use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
+crate::lane_struct! {
+    /// The constants of a material of the published model.
+    ///
+    /// Arrays of three are R, TT, TRT; arrays of four are in the order of [`Lobe`].
+    pub struct HairMaterial {
+        /// Longitudinal shift, rad.
+        pub alpha: [C; 3],
+        /// Longitudinal width, rad; the glints share TRT's.
+        pub beta: [C; 4],
+        /// `1 / beta`.
+        pub inv_beta: [C; 3],
+        /// `1 / gamma` of TT and the glints.
+        pub inv_gamma: [C; 2],
+        /// Half angle between the glints, rad.
+        pub phi_g: C,
+        /// The azimuth's truncated Cauchy: sine of the middle of its angles (TT and the glints use it).
+        pub azimuth_sin: [C; 4],
+        /// Cosine of the middle.
+        pub azimuth_cos: [C; 4],
+        /// Angle from end to end, rad.
+        pub azimuth_span: [C; 4],
+        /// Half the azimuthal width, rad.
+        pub azimuth_scale: [C; 4],
+        /// Half the azimuth of the lobe's centre, rad.
+        pub azimuth_offset: [C; 4],
+        /// The azimuthal density but for its shape, per rad.
+        pub azimuth_density: [C; 4],
+        /// Integral of the azimuthal term over the circle, rad.
+        pub azimuth_area: [C; 4],
+        /// Colour of R, linear RGB.
+        pub color_r: [C; 3],
+        /// Colour of TT.
+        pub color_tt: [C; 3],
+        /// Colour of TRT and the glints.
+        pub color_trt: [C; 3],
+        /// Factor on each lobe that is no colour: 1, and the strength of the glints.
+        pub strength: [C; 4],
+        /// Probability of choosing each lobe: its share of the energy.
+        pub selection: [C; 4],
+        /// Where the next lobe begins in `xi_lobe`.
+        pub bounds: [C; 3],
+    }
+}
+
+crate::lane_struct! {
+    /// The constants of a gather point of the published model: those of its material, and those of `wo`.
+    pub struct HairGather {
+        /// Sine of `theta_o`.
+        pub sin_theta_o: C,
+        /// Cosine of `theta_o`.
+        pub cos_theta_o: C,
+        /// Cosine of `phi_o`.
+        pub cos_phi_o: C,
+        /// Sine of `phi_o`.
+        pub sin_phi_o: C,
+        /// `theta_o / 2 - alpha`: added to `theta_i / 2` it is `theta_h - alpha`.
+        pub shift: [C; 4],
+        /// The longitude's truncated Cauchy: sine of the middle of its angles.
+        pub longitude_sin: [C; 4],
+        /// Cosine of the middle.
+        pub longitude_cos: [C; 4],
+        /// Angle from end to end (A - B in the paper), rad.
+        pub longitude_span: [C; 4],
+        /// Density of each lobe but for its shape and for `1 / cos theta_i`.
+        pub density: [C; 4],
+        /// The same times the probability of the lobe.
+        pub weight: [C; 4],
+        /// As in the material.
+        pub beta: [C; 4],
+        /// As in the material.
+        pub inv_beta: [C; 3],
+        /// As in the material.
+        pub inv_gamma: [C; 2],
+        /// As in the material.
+        pub phi_g: C,
+        /// As in the material.
+        pub azimuth_sin: [C; 4],
+        /// As in the material.
+        pub azimuth_cos: [C; 4],
+        /// As in the material.
+        pub azimuth_span: [C; 4],
+        /// As in the material.
+        pub azimuth_scale: [C; 4],
+        /// As in the material.
+        pub azimuth_offset: [C; 4],
+        /// As in the material.
+        pub azimuth_area: [C; 4],
+        /// As in the material.
+        pub color_r: [C; 3],
+        /// As in the material.
+        pub color_tt: [C; 3],
+        /// As in the material.
+        pub color_trt: [C; 3],
+        /// As in the material.
+        pub strength: [C; 4],
+        /// Probability of choosing each lobe.
+        pub selection: [C; 4],
+        /// Where the next lobe begins in `xi_lobe`.
+        pub bounds: [C; 3],
+    }
+}
+
+/// The probability of each lobe from its energy, and where the next one begins.
+///
+/// The last lobe with any energy reaches to 2: a rounded sum never lets `xi_lobe` fall through to a lobe without.
+/// Without any energy all probabilities are 0.
+#[inline(always)]
+fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3]) {
+    let c = L::splat;
+    let zero = c(0.0);
+    let total = (energy[0] + energy[1]) + (energy[2] + energy[3]);
+    let inv_total = L::select(zero.lt(total), c(1.0) / total, zero);
+    let p = [energy[0] * inv_total, energy[1] * inv_total, energy[2] * inv_total, energy[3] * inv_total];
+    let (two, low) = (c(2.0), p[0] + p[1]);
+    let more = [p[1] + p[2] + p[3], p[2] + p[3], p[3]];
+    let bounds = [
+        L::select(zero.lt(more[0]), p[0], two),
+        L::select(zero.lt(more[1]), low, two),
+        L::select(zero.lt(more[2]), low + p[2], two),
+    ];
+    (p, bounds)
+}
+
+impl HairMaterial<f32> {
+    /// The material of checked parameters.
+    #[inline]
+    #[must_use]
+    pub(super) fn of<B: Bell>(bell: B, params: &HairParams) -> Self {
+        let d = params.desc();
+        let k = bell.width_factor();
+        // Below 5e-5 rad the product of four Cauchy denominators overflows far from the centres.
+        let [b_r, b_tt, b_trt, gamma_tt, gamma_g] =
+            [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g].map(|width| (width * k).max(5e-5));
+        let beta = [b_r, b_tt, b_trt];
+        let phi_g = d.phi_g;
+        let glint = TruncatedCauchy::new(-phi_g, FRAC_PI_2 - phi_g, gamma_g);
+        let tt = TruncatedCauchy::new(-PI, PI, gamma_tt);
+        let (p, bounds) = selection(energies(&beta, gamma_tt, gamma_g, params));
+        Self {
+            alpha: [d.alpha_r, d.alpha_tt, d.alpha_trt],
+            beta: [beta[0], beta[1], beta[2], beta[2]],
+            inv_beta: beta.map(|b| 1.0 / b),
+            inv_gamma: [1.0 / gamma_tt, 1.0 / gamma_g],
+            phi_g,
+            azimuth_sin: [0.0, tt.sin_mid, 0.0, glint.sin_mid],
+            azimuth_cos: [1.0, tt.cos_mid, 1.0, glint.cos_mid],
+            azimuth_span: [0.0, tt.span, 0.0, glint.span],
+            azimuth_scale: [0.0, 0.5 * gamma_tt, 0.0, 0.5 * gamma_g],
+            azimuth_offset: [0.0, 0.0, 0.0, 0.5 * phi_g],
+            azimuth_density: [0.25, 1.0 / (tt.span * gamma_tt), 0.25, 0.5 / (glint.span * gamma_g)],
+            azimuth_area: [
+                4.0,
+                bell_area::<B>(-PI, PI, gamma_tt),
+                4.0,
+                2.0 * bell_area::<B>(-phi_g, PI - phi_g, gamma_g),
+            ],
+            color_r: d.intensity_r,
+            color_tt: d.intensity_tt,
+            color_trt: d.intensity_trt,
+            strength: [1.0, 1.0, 1.0, d.intensity_g],
+            selection: p,
+            bounds,
+        }
+    }
+}
+
+/// Energy of each lobe as section 3.2.3 of the paper estimates it, to the scale of the largest.
+///
+/// In double precision: the product of two of the largest legal intensities overflows a float.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "shares of the largest, in [0, 1]")]
+fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -> [f32; 4] {
+    use core::f64::consts::PI;
+    let d = params.desc();
+    let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
+    let (i_r, i_tt, i_trt) = (mean(d.intensity_r), mean(d.intensity_tt), mean(d.intensity_trt));
+    let root = 4.0 * libm::sqrt(2.0 * PI);
+    let energy = [
+        root * f64::from(beta[0]) * i_r,
+        2.0 * PI * f64::from(beta[1]) * f64::from(gamma_tt) * i_tt,
+        root * f64::from(beta[2]) * i_trt,
+        4.0 * PI * f64::from(beta[2]) * f64::from(gamma_g) * i_trt * f64::from(d.intensity_g),
+    ];
+    let largest = energy.iter().fold(0.0, |a: f64, e| a.max(*e));
+    energy.map(|e| if largest > 0.0 { (e / largest) as f32 } else { 0.0 })
+}
+
+/// The gather point of a material seen from `wo`.
+#[inline(always)]
+pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<L>) -> HairGather<L::Stored> {
+    let c = L::splat;
+    let (zero, one) = (c(0.0), c(1.0));
+    // Scaled by the largest component, so that no finite wo overflows or vanishes; zero counts as v.
+    let largest = wo.x.abs().max(wo.y.abs().max(wo.z.abs()));
+    let some = c(1e-30).lt(largest);
+    let inv_largest = one / largest;
+    let x = L::select(some, wo.x * inv_largest, zero);
+    let y = L::select(some, wo.y * inv_largest, one);
+    let z = L::select(some, wo.z * inv_largest, zero);
+    let plane_sq = y.mul_add(y, z * z);
+    let plane = plane_sq.sqrt();
+    let len = x.mul_add(x, plane_sq).sqrt();
+    let inv_len = one / len;
+    // On the axis the azimuth is 0 by convention.
+    let off_axis = zero.lt(plane);
+    let inv_plane = one / plane;
+    let half_theta_o = atan_unit(x / (len + plane));
+
+    let mut shift = [zero; 4];
+    let mut sin = [zero; 4];
+    let mut cos = [zero; 4];
+    let mut span = [zero; 4];
+    let mut l = 0;
+    while l < 3 {
+        shift[l] = half_theta_o - m.alpha[l].lanes();
+        let lobe = TruncatedCauchy::new(shift[l] - c(FRAC_PI_4), shift[l] + c(FRAC_PI_4), m.beta[l].lanes());
+        (sin[l], cos[l], span[l]) = (lobe.sin_mid, lobe.cos_mid, lobe.span);
+        l += 1;
+    }
+    (shift[3], sin[3], cos[3], span[3]) = (shift[2], sin[2], cos[2], span[2]);
+
+    let mut density = [zero; 4];
+    let mut weight = [zero; 4];
+    l = 0;
+    while l < 4 {
+        let m_density = one / (c(2.0) * span[l] * m.beta[l].lanes());
+        density[l] = m_density * m.azimuth_density[l].lanes();
+        weight[l] = density[l] * m.selection[l].lanes();
+        l += 1;
+    }
+
+    HairGather {
+        sin_theta_o: (x * inv_len).store(),
+        cos_theta_o: (plane * inv_len).store(),
+        cos_phi_o: L::select(off_axis, y * inv_plane, one).store(),
+        sin_phi_o: L::select(off_axis, z * inv_plane, zero).store(),
+        shift: store4(shift),
+        longitude_sin: store4(sin),
+        longitude_cos: store4(cos),
+        longitude_span: store4(span),
+        density: store4(density),
+        weight: store4(weight),
+        beta: keep4(&m.beta),
+        inv_beta: keep3(&m.inv_beta),
+        inv_gamma: [m.inv_gamma[0].lanes().store(), m.inv_gamma[1].lanes().store()],
+        phi_g: m.phi_g.lanes().store(),
+        azimuth_sin: keep4(&m.azimuth_sin),
+        azimuth_cos: keep4(&m.azimuth_cos),
+        azimuth_span: keep4(&m.azimuth_span),
+        azimuth_scale: keep4(&m.azimuth_scale),
+        azimuth_offset: keep4(&m.azimuth_offset),
+        azimuth_area: keep4(&m.azimuth_area),
+        color_r: keep3(&m.color_r),
+        color_tt: keep3(&m.color_tt),
+        color_trt: keep3(&m.color_trt),
+        strength: keep4(&m.strength),
+        selection: keep4(&m.selection),
+        bounds: keep3(&m.bounds),
+    }
+}
+
+#[inline(always)]
+fn keep3<L: Lanes, C: Broadcast<L>>(x: &[C; 3]) -> [L::Stored; 3] {
+    store3(crate::lanes::lanes3(x))
+}
+
+#[inline(always)]
+fn keep4<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> [L::Stored; 4] {
+    store4([x[0].lanes(), x[1].lanes(), x[2].lanes(), x[3].lanes()])
+}
+
+impl<C: Lanes> HairGather<C> {
+    /// The gather point with only some of its lobes.
+    #[inline(always)]
+    pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
+        let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));
+        let times = |x: [C; 4]| [x[0] * factor[0], x[1] * factor[1], x[2] * factor[2], x[3] * factor[3]];
+        let (p, bounds) = selection(times(self.selection));
+        Self {
+            color_r: self.color_r.map(|x| x * factor[0]),
+            color_tt: self.color_tt.map(|x| x * factor[1]),
+            strength: times(self.strength),
+            selection: p,
+            bounds,
+            weight: [self.density[0] * p[0], self.density[1] * p[1], self.density[2] * p[2], self.density[3] * p[3]],
+            ..*self
+        }
+    }
+}

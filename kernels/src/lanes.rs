@@ -1,0 +1,178 @@
+//! The word in which every model is written: one lane (`f32`), or eight.
+//!
+//! A lane is one sample of one gather point, or one of eight gather points, as the caller has it: models never mix
+//! lanes. [`Lanes`] holds the arithmetic and nothing else, so that a model compiles to the same straight line of
+//! instructions on every backend. It is public for models to be written over it, and sealed: the backends are ours.
+//!
+//! Comparisons are false for NaN. `min` and `max` give their second operand when either is NaN, which is what the
+//! machine does and what lets one `min` at the end of a model turn a NaN into its bound.
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+pub(crate) mod avx2;
+mod portable;
+mod scalar;
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+pub(crate) mod sealed {
+    /// Keeps the backends in this crate.
+    pub trait Sealed {}
+}
+
+/// One number a lane, with the arithmetic that models are written in.
+pub trait Lanes:
+    sealed::Sealed
+    + Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// One truth value a lane.
+    type Mask: Copy;
+    /// One of four slots a lane, see [`choose`](Self::choose).
+    type Choice: Copy;
+    /// What the lanes are kept in between calls: `f32` for one, `wide::f32x8` for eight.
+    type Stored: Broadcast<Self>;
+
+    /// The same number in every lane.
+    fn splat(x: f32) -> Self;
+    /// The lanes in the form they are kept in.
+    fn store(self) -> Self::Stored;
+    /// `self * a + b`, rounded once where the backend fuses and twice where it does not.
+    #[must_use]
+    fn mul_add(self, a: Self, b: Self) -> Self;
+    /// Square root, correctly rounded.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// Magnitude.
+    #[must_use]
+    fn abs(self) -> Self;
+    /// `if self < other { self } else { other }`: NaN on either side gives `other`.
+    #[must_use]
+    fn min(self, other: Self) -> Self;
+    /// `if self > other { self } else { other }`: NaN on either side gives `other`.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+    /// Magnitude of `self`, sign of `sign`.
+    #[must_use]
+    fn copysign(self, sign: Self) -> Self;
+    /// The bits of each lane, as an integer, shifted left by 23: builds a power of two from a biased exponent.
+    #[must_use]
+    fn bits_shl_23(self) -> Self;
+    /// `self < other`, false for NaN.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// Both masks.
+    fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// Either mask.
+    fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// `yes` where the mask is set, `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// The slot that `xi` falls in: how many of the ascending `bounds` are at most `xi`.
+    fn choose(xi: Self, bounds: [Self; 3]) -> Self::Choice;
+    /// Where the chosen slot is `slot`, 0 to 3.
+    fn is_slot(choice: Self::Choice, slot: usize) -> Self::Mask;
+    /// The slot as a number: 0, 1, 2 or 3.
+    fn slot_number(choice: Self::Choice) -> Self;
+}
+
+/// Storage that lanes are read from: one number for all of them, or one a lane.
+///
+/// A model reads its constants through this trait, so that one source serves eight directions at one gather point
+/// (constants in `f32`) and eight gather points (constants in `f32x8`).
+pub trait Broadcast<L: Lanes>: Copy {
+    /// The number of each lane.
+    fn lanes(&self) -> L;
+    /// The number of each lane in the slot that the lane has chosen.
+    fn pick(table: &[Self; 4], choice: L::Choice) -> L;
+}
+
+/// The three numbers of `x`, read as lanes.
+#[inline(always)]
+pub fn lanes3<L: Lanes, C: Broadcast<L>>(x: &[C; 3]) -> [L; 3] {
+    [x[0].lanes(), x[1].lanes(), x[2].lanes()]
+}
+
+/// The three lanes of `x` in the form they are kept in.
+#[inline(always)]
+pub fn store3<L: Lanes>(x: [L; 3]) -> [L::Stored; 3] {
+    [x[0].store(), x[1].store(), x[2].store()]
+}
+
+/// The four lanes of `x` in the form they are kept in.
+#[inline(always)]
+pub fn store4<L: Lanes>(x: [L; 4]) -> [L::Stored; 4] {
+    [x[0].store(), x[1].store(), x[2].store(), x[3].store()]
+}
+
+/// `entries` where it was chosen, entry by entry; the portable form of [`Broadcast::pick`].
+#[inline(always)]
+pub(crate) fn pick_by_select<L: Lanes, C: Broadcast<L>>(table: &[C; 4], choice: L::Choice) -> L {
+    let low = L::select(L::is_slot(choice, 0), table[0].lanes(), table[1].lanes());
+    let high = L::select(L::is_slot(choice, 2), table[2].lanes(), table[3].lanes());
+    let is_low = L::or(L::is_slot(choice, 0), L::is_slot(choice, 1));
+    L::select(is_low, low, high)
+}
+
+/// Declares a struct of lanes, `Name<C>`, and its `pack` (eight scalars into lanes) and `lane` (one lane out).
+///
+/// Every field is a `C` or an array `[C; N]`.
+///
+/// ```
+/// hairis::lane_struct! {
+///     /// What is constant for one gather point.
+///     pub struct Constants {
+///         /// Exponent of the highlight.
+///         pub exponent: C,
+///         /// Colour, linear RGB.
+///         pub color: [C; 3],
+///     }
+/// }
+/// let one = Constants { exponent: 8.0_f32, color: [0.1, 0.2, 0.3] };
+/// let two = Constants { exponent: 2.0_f32, color: [0.4, 0.5, 0.6] };
+/// let eight = Constants::pack([&one, &two, &one, &one, &one, &one, &one, &one]);
+/// assert_eq!(eight.lane(1), two);
+/// ```
+#[macro_export]
+macro_rules! lane_struct {
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident { $($(#[$field_meta:meta])* pub $field:ident: $kind:tt,)* }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct $name<C> { $($(#[$field_meta])* pub $field: $kind,)* }
+
+        impl $name<f32> {
+            /// Eight structs as one: lane `i` holds the numbers of `items[i]`.
+            #[inline]
+            #[must_use]
+            pub fn pack(items: [&Self; 8]) -> $name<$crate::wide::f32x8> {
+                $name { $($field: $crate::lane_struct!(@pack items, $field, $kind),)* }
+            }
+        }
+
+        impl $name<$crate::wide::f32x8> {
+            /// The numbers of one lane.
+            ///
+            /// # Panics
+            ///
+            /// If `lane` is above 7.
+            #[inline]
+            #[must_use]
+            pub fn lane(&self, lane: usize) -> $name<f32> {
+                $name { $($field: $crate::lane_struct!(@lane self, lane, $field, $kind),)* }
+            }
+        }
+    };
+    (@pack $items:ident, $field:ident, C) => { $crate::wide::f32x8::new($items.map(|item| item.$field)) };
+    (@pack $items:ident, $field:ident, [C; $n:literal]) => {
+        core::array::from_fn::<_, $n, _>(|i| $crate::wide::f32x8::new($items.map(|item| item.$field[i])))
+    };
+    (@lane $this:ident, $lane:ident, $field:ident, C) => { $this.$field.as_array()[$lane] };
+    (@lane $this:ident, $lane:ident, $field:ident, [C; $n:literal]) => {
+        core::array::from_fn::<_, $n, _>(|i| $this.$field[i].as_array()[$lane])
+    };
+}

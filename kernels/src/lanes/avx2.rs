@@ -1,0 +1,173 @@
+//! Eight lanes in one `__m256`, for CPUs found at run time to have AVX2 and FMA.
+//!
+//! `wide` chooses its instructions at compile time, so that a plain build has SSE2 alone; this newtype is private to
+//! the crate, and `dispatch` is the only place that names it as a type.
+
+#![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
+
+use super::{Broadcast, Lanes, pick_by_select, sealed::Sealed};
+#[cfg(target_arch = "x86")]
+use core::arch::x86::*;
+#[cfg(target_arch = "x86_64")]
+use core::arch::x86_64::*;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+use wide::f32x8;
+
+/// Eight lanes. Values exist only below `dispatch`'s `#[target_feature(enable = "avx2,fma")]` functions, which it
+/// enters only where the CPU has both: that is what makes every `unsafe` of this module sound.
+#[derive(Clone, Copy, Debug)]
+pub struct Avx2(__m256);
+
+/// Intrinsics of this module's target features.
+macro_rules! avx2 {
+    ($e:expr) => {{
+        // SAFETY: a value of `Avx2` exists, or is made below `dispatch`'s check: the CPU has AVX2 and FMA.
+        unsafe { $e }
+    }};
+}
+macro_rules! binary {
+    ($($Trait:ident $method:ident $intrinsic:ident;)*) => { $(
+        impl $Trait for Avx2 {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(avx2!($intrinsic(self.0, other.0)))
+            }
+        }
+    )* };
+}
+binary! { Add add _mm256_add_ps; Sub sub _mm256_sub_ps; Mul mul _mm256_mul_ps; Div div _mm256_div_ps; }
+
+impl Neg for Avx2 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(avx2!(_mm256_xor_ps(self.0, _mm256_set1_ps(-0.0))))
+    }
+}
+
+impl Sealed for Avx2 {}
+
+/// One of four slots a lane: its number, and where it is at least 1, 2 and 3. What a model does not use is not kept.
+#[derive(Clone, Copy, Debug)]
+pub struct Slots {
+    number: __m256i,
+    at_least: [__m256; 3],
+}
+
+impl Lanes for Avx2 {
+    type Mask = __m256;
+    type Choice = Slots;
+    type Stored = f32x8;
+
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Self(avx2!(_mm256_set1_ps(x)))
+    }
+    #[inline(always)]
+    fn store(self) -> f32x8 {
+        let mut lanes = f32x8::ZERO;
+        avx2!(_mm256_storeu_ps(lanes.as_mut_array().as_mut_ptr(), self.0));
+        lanes
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Self(avx2!(_mm256_fmadd_ps(self.0, a.0, b.0)))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(avx2!(_mm256_sqrt_ps(self.0)))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(avx2!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0)))
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(avx2!(_mm256_min_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(avx2!(_mm256_max_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        let bit = avx2!(_mm256_set1_ps(-0.0));
+        Self(avx2!(_mm256_or_ps(_mm256_andnot_ps(bit, self.0), _mm256_and_ps(bit, sign.0))))
+    }
+    #[inline(always)]
+    fn bits_shl_23(self) -> Self {
+        Self(avx2!(_mm256_castsi256_ps(_mm256_slli_epi32::<23>(_mm256_castps_si256(self.0)))))
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> __m256 {
+        avx2!(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0))
+    }
+    #[inline(always)]
+    fn and(a: __m256, b: __m256) -> __m256 {
+        avx2!(_mm256_and_ps(a, b))
+    }
+    #[inline(always)]
+    fn or(a: __m256, b: __m256) -> __m256 {
+        avx2!(_mm256_or_ps(a, b))
+    }
+    #[inline(always)]
+    fn select(mask: __m256, yes: Self, no: Self) -> Self {
+        Self(avx2!(_mm256_blendv_ps(no.0, yes.0, mask)))
+    }
+    #[inline(always)]
+    fn choose(xi: Self, bounds: [Self; 3]) -> Slots {
+        let at_least = avx2!([
+            _mm256_cmp_ps::<_CMP_GE_OQ>(xi.0, bounds[0].0),
+            _mm256_cmp_ps::<_CMP_GE_OQ>(xi.0, bounds[1].0),
+            _mm256_cmp_ps::<_CMP_GE_OQ>(xi.0, bounds[2].0),
+        ]);
+        // A set mask is -1 as an integer.
+        let number = avx2!({
+            let [a, b, c] = [at_least[0], at_least[1], at_least[2]];
+            let sum = _mm256_add_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b));
+            _mm256_sub_epi32(_mm256_setzero_si256(), _mm256_add_epi32(sum, _mm256_castps_si256(c)))
+        });
+        Slots { number, at_least }
+    }
+    #[inline(always)]
+    fn is_slot(choice: Slots, slot: usize) -> __m256 {
+        let [one, two, three] = choice.at_least;
+        avx2!(match slot {
+            0 => _mm256_xor_ps(one, _mm256_castsi256_ps(_mm256_set1_epi32(-1))),
+            1 => _mm256_andnot_ps(two, one),
+            2 => _mm256_andnot_ps(three, two),
+            _ => three,
+        })
+    }
+    #[inline(always)]
+    fn slot_number(choice: Slots) -> Self {
+        Self(avx2!(_mm256_cvtepi32_ps(choice.number)))
+    }
+}
+
+impl Broadcast<Avx2> for f32 {
+    #[inline(always)]
+    fn lanes(&self) -> Avx2 {
+        Avx2(avx2!(_mm256_broadcast_ss(self)))
+    }
+    // One shuffle in place of three blends.
+    #[inline(always)]
+    fn pick(table: &[f32; 4], choice: Slots) -> Avx2 {
+        Avx2(avx2!({
+            let four = _mm_loadu_ps(table.as_ptr());
+            _mm256_permutevar_ps(_mm256_set_m128(four, four), choice.number)
+        }))
+    }
+}
+
+impl Broadcast<Avx2> for f32x8 {
+    #[inline(always)]
+    fn lanes(&self) -> Avx2 {
+        Avx2(avx2!(_mm256_loadu_ps(self.as_array().as_ptr())))
+    }
+    #[inline(always)]
+    fn pick(table: &[f32x8; 4], choice: Slots) -> Avx2 {
+        pick_by_select(table, choice)
+    }
+}

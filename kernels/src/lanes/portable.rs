@@ -1,0 +1,115 @@
+//! Eight lanes through `wide`: the instruction set the program was compiled for, whatever the machine has.
+
+use super::{Broadcast, Lanes, pick_by_select, sealed::Sealed};
+use wide::f32x8;
+
+impl Sealed for f32x8 {}
+
+impl Lanes for f32x8 {
+    type Mask = f32x8;
+    /// Where the chosen number is at least each of the three bounds.
+    type Choice = [f32x8; 3];
+    type Stored = f32x8;
+
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        f32x8::splat(x)
+    }
+    #[inline(always)]
+    fn store(self) -> f32x8 {
+        self
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        f32x8::mul_add(self, a, b)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32x8::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f32x8::abs(self)
+    }
+    // `fast_min` is the machine's own: only x86 promises what it does with NaN.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
+            self.fast_min(other)
+        } else {
+            self.simd_lt(other).select(self, other)
+        }
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
+            self.fast_max(other)
+        } else {
+            other.simd_lt(self).select(self, other)
+        }
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        f32x8::copysign(self, sign)
+    }
+    #[inline(always)]
+    fn bits_shl_23(self) -> Self {
+        f32x8::from_bits(self.to_bits() << 23_u32)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> f32x8 {
+        self.simd_lt(other)
+    }
+    #[inline(always)]
+    fn and(a: f32x8, b: f32x8) -> f32x8 {
+        a & b
+    }
+    #[inline(always)]
+    fn or(a: f32x8, b: f32x8) -> f32x8 {
+        a | b
+    }
+    #[inline(always)]
+    fn select(mask: f32x8, yes: Self, no: Self) -> Self {
+        mask.select(yes, no)
+    }
+    #[inline(always)]
+    fn choose(xi: Self, bounds: [Self; 3]) -> [f32x8; 3] {
+        [xi.simd_ge(bounds[0]), xi.simd_ge(bounds[1]), xi.simd_ge(bounds[2])]
+    }
+    #[inline(always)]
+    fn is_slot(choice: [f32x8; 3], slot: usize) -> f32x8 {
+        match slot {
+            0 => !choice[0],
+            1 => choice[0] & !choice[1],
+            2 => choice[1] & !choice[2],
+            _ => choice[2],
+        }
+    }
+    #[inline(always)]
+    fn slot_number(choice: [f32x8; 3]) -> Self {
+        let one = f32x8::splat(1.0);
+        (choice[0] & one) + (choice[1] & one) + (choice[2] & one)
+    }
+}
+
+impl Broadcast<f32x8> for f32 {
+    #[inline(always)]
+    fn lanes(&self) -> f32x8 {
+        f32x8::splat(*self)
+    }
+    #[inline(always)]
+    fn pick(table: &[f32; 4], choice: [f32x8; 3]) -> f32x8 {
+        pick_by_select(table, choice)
+    }
+}
+
+impl Broadcast<f32x8> for f32x8 {
+    #[inline(always)]
+    fn lanes(&self) -> f32x8 {
+        *self
+    }
+    #[inline(always)]
+    fn pick(table: &[f32x8; 4], choice: [f32x8; 3]) -> f32x8 {
+        pick_by_select(table, choice)
+    }
+}

@@ -1,0 +1,88 @@
+//! One lane.
+
+use super::{Broadcast, Lanes, sealed::Sealed};
+
+impl Sealed for f32 {}
+
+impl Lanes for f32 {
+    type Mask = bool;
+    type Choice = usize;
+    type Stored = f32;
+
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn store(self) -> f32 {
+        self
+    }
+    // Not fused: without the instruction, `libm::fmaf` would cost more than the rest of the model.
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        libm::sqrtf(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f32::abs(self)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        f32::copysign(self, sign)
+    }
+    #[inline(always)]
+    fn bits_shl_23(self) -> Self {
+        f32::from_bits(self.to_bits() << 23)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn and(a: bool, b: bool) -> bool {
+        a & b
+    }
+    #[inline(always)]
+    fn or(a: bool, b: bool) -> bool {
+        a | b
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn choose(xi: Self, bounds: [Self; 3]) -> usize {
+        usize::from(xi >= bounds[0]) + usize::from(xi >= bounds[1]) + usize::from(xi >= bounds[2])
+    }
+    #[inline(always)]
+    fn is_slot(choice: usize, slot: usize) -> bool {
+        choice == slot
+    }
+    #[inline(always)]
+    fn slot_number(choice: usize) -> Self {
+        [0.0, 1.0, 2.0, 3.0][choice & 3]
+    }
+}
+
+impl Broadcast<f32> for f32 {
+    #[inline(always)]
+    fn lanes(&self) -> f32 {
+        *self
+    }
+    #[inline(always)]
+    fn pick(table: &[f32; 4], choice: usize) -> f32 {
+        table[choice & 3]
+    }
+}

@@ -1,0 +1,234 @@
+//! What any scattering model gives: the trait that models in other crates implement.
+
+use crate::{Broadcast, Lanes, Lobe, LobeMask, PerLobe, Vec3x};
+use core::fmt::Debug;
+use glam::Vec3;
+use wide::f32x8;
+
+/// A scattering model, written once over [`Lanes`].
+///
+/// Implement it on a small marker and hand it to [`Bsdf`](crate::Bsdf): scalar calls, eight lanes (eight directions at
+/// one gather point, or eight gather points), run-time dispatch and slices come with it. A model holds its constants
+/// in two structs of lanes, most simply declared with [`lane_struct!`](crate::lane_struct): those of a material, and
+/// those of one gather point (a material seen from one `wo`).
+///
+/// # What an implementation promises
+///
+/// - Functions are total: for every finite input the results are finite and at least 0, and nothing panics.
+/// - `sample` draws from the density that `eval` reports. A discarded sample has slot -1 and no value, pdf or weight; a
+///   model does not draw again.
+/// - Every function over lanes is `#[inline(always)]`, and so is all it calls: the dispatched entry points then
+///   contain no call, and the model runs at the speed of ours. Array `map` and closures over lanes are calls.
+pub trait Model: Copy {
+    /// What users describe a material with, checked.
+    type Params;
+    /// Constants of a material: one number each (`C = f32`), or one a lane (`C = f32x8`).
+    type Material<C: Copy + Debug>: Copy + Debug;
+    /// Constants of a gather point.
+    type Gather<C: Copy + Debug>: Copy + Debug;
+
+    /// Names of the lobes, in slot order: at most [`Lobe::COUNT`].
+    const LOBES: &'static [&'static str];
+
+    /// The constants of a material.
+    fn material(&self, params: &Self::Params) -> Self::Material<f32>;
+
+    /// Eight materials, one a lane.
+    fn pack(materials: [&Self::Material<f32>; 8]) -> Self::Material<f32x8>;
+
+    /// The gather point of one lane, 0 to 7.
+    fn lane(gather: &Self::Gather<f32x8>, lane: usize) -> Self::Gather<f32>;
+
+    /// Everything that depends on the material and the hit alone (section 3.3 of the paper).
+    fn prepare<L: Lanes, C: Broadcast<L> + Debug>(material: &Self::Material<C>, hit: Hit<L>) -> Self::Gather<L::Stored>
+    where
+        L::Stored: Debug;
+
+    /// The gather point with only the lobes of `lobes`: the others neither scatter nor are sampled.
+    fn restrict<C: Lanes + Debug>(gather: &Self::Gather<C>, lobes: LobeMask) -> Self::Gather<C>;
+
+    /// Value and density of the direction `wi`.
+    fn eval<L: Lanes, C: Broadcast<L> + Debug>(gather: &Self::Gather<C>, wi: Vec3x<L>) -> Eval<L>;
+
+    /// Each lobe's value, colour and own density at `wi`.
+    fn lobes<L: Lanes, C: Broadcast<L> + Debug>(gather: &Self::Gather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>>;
+
+    /// A direction drawn with three uniform numbers in `[0, 1)`: for the lobe, the longitude and the azimuth.
+    fn sample<L: Lanes, C: Broadcast<L> + Debug>(gather: &Self::Gather<C>, xi: [L; 3]) -> Drawn<L>;
+
+    /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
+    fn albedo<L: Lanes, C: Broadcast<L> + Debug>(gather: &Self::Gather<C>) -> PerLobe<[L; 3]>;
+}
+
+/// Where a ray meets a fibre: the direction it came from, and how far off the axis it met it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit<L = f32> {
+    /// Towards the viewer, in the fibre's frame, unit.
+    pub wo: Vec3x<L>,
+    /// Offset across the fibre, in `[-1, 1]` radii; models of the far field, such as the published one, ignore it.
+    pub h: L,
+}
+
+/// Eight hits, one a lane.
+pub type Hit8 = Hit<f32x8>;
+
+impl From<Vec3> for Hit {
+    /// A hit on the axis (`h` is 0).
+    #[inline(always)]
+    fn from(wo: Vec3) -> Self {
+        Self { wo: wo.into(), h: 0.0 }
+    }
+}
+
+impl From<&Vec3x<f32x8>> for Hit8 {
+    /// Hits on the axes (`h` is 0).
+    #[inline(always)]
+    fn from(wo: &Vec3x<f32x8>) -> Self {
+        Self { wo: *wo, h: f32x8::ZERO }
+    }
+}
+
+/// Value and density of a direction, a lane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eval<L = f32> {
+    /// The scattering function S, without the cosine, linear RGB, per steradian.
+    pub value: [L; 3],
+    /// Density of sampling the direction, per steradian.
+    pub pdf: L,
+}
+
+/// Eight values and densities.
+pub type Eval8 = Eval<f32x8>;
+
+impl<L: Lanes> Eval<L> {
+    /// The lanes in the form they are kept in.
+    #[inline(always)]
+    pub fn store(self) -> Eval<L::Stored> {
+        Eval { value: crate::lanes::store3(self.value), pdf: self.pdf.store() }
+    }
+}
+
+impl Eval8 {
+    /// One lane.
+    ///
+    /// # Panics
+    ///
+    /// If `lane` is above 7.
+    #[inline]
+    #[must_use]
+    pub fn lane(&self, lane: usize) -> Eval {
+        Eval { value: self.value.map(|c| c.as_array()[lane]), pdf: self.pdf.as_array()[lane] }
+    }
+}
+
+/// One lobe at one direction, a lane.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LobeEval<L = f32> {
+    /// The lobe's part of S without its colour, per steradian: a spectral host applies its own.
+    pub value: L,
+    /// The lobe's colour, linear RGB: `value * color` summed over the lobes is S.
+    pub color: [L; 3],
+    /// Density of sampling the direction from this lobe alone, per steradian.
+    pub pdf: L,
+}
+
+/// One lobe at eight directions.
+pub type LobeEval8 = LobeEval<f32x8>;
+
+impl<L: Lanes> LobeEval<L> {
+    /// The lanes in the form they are kept in.
+    #[inline(always)]
+    pub fn store(self) -> LobeEval<L::Stored> {
+        LobeEval { value: self.value.store(), color: crate::lanes::store3(self.color), pdf: self.pdf.store() }
+    }
+}
+
+/// A sampled direction, a lane; value, pdf and weight 0 and slot -1 where it was discarded. What models return; users
+/// see [`Sample`] and [`Sample8`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drawn<L> {
+    /// Towards the light, in the fibre's frame, unit.
+    pub wi: Vec3x<L>,
+    /// S at `wi`, without the cosine, linear RGB, per steradian.
+    pub value: [L; 3],
+    /// Density of `wi`, per steradian.
+    pub pdf: L,
+    /// `value * cos theta_i / pdf`.
+    pub weight: [L; 3],
+    /// Slot of the lobe that was chosen, as a number; -1 if the sample was discarded.
+    pub slot: L,
+}
+
+impl<L: Lanes> Drawn<L> {
+    /// The lanes in the form they are kept in.
+    #[inline(always)]
+    pub fn store(self) -> Drawn<L::Stored> {
+        Drawn {
+            wi: self.wi.store(),
+            value: crate::lanes::store3(self.value),
+            pdf: self.pdf.store(),
+            weight: crate::lanes::store3(self.weight),
+            slot: self.slot.store(),
+        }
+    }
+}
+
+/// A direction sampled at one gather point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Towards the light, in the fibre's frame, unit.
+    pub wi: Vec3,
+    /// S at `wi`, without the cosine, linear RGB, per steradian.
+    pub value: [f32; 3],
+    /// Density of `wi`, per steradian, above 0.
+    pub pdf: f32,
+    /// Throughput weight `value * cos theta_i / pdf`.
+    pub weight: [f32; 3],
+    /// The lobe that was chosen; value and pdf are those of all lobes.
+    pub lobe: Lobe,
+}
+
+impl Sample {
+    /// The sample of one lane; `None` if it was discarded.
+    #[inline]
+    pub(crate) fn from_drawn(drawn: &Drawn<f32>) -> Option<Self> {
+        let lobe = Lobe::from_number(drawn.slot)?;
+        Some(Self { wi: drawn.wi.into(), value: drawn.value, pdf: drawn.pdf, weight: drawn.weight, lobe })
+    }
+}
+
+/// Eight sampled directions: of one gather point, or one of each of eight.
+///
+/// A discarded lane has value, pdf and weight 0 and slot -1, and counts as a sample whose contribution is 0.
+pub type Sample8 = Drawn<f32x8>;
+
+impl Sample8 {
+    /// The lanes that were not discarded: bit `i` for lane `i`.
+    #[inline]
+    #[must_use]
+    pub fn live(&self) -> u8 {
+        let mut bits = 0;
+        for (lane, pdf) in self.pdf.as_array().iter().enumerate() {
+            bits |= u8::from(*pdf > 0.0) << lane;
+        }
+        bits
+    }
+
+    /// One lane; `None` if it was discarded.
+    ///
+    /// # Panics
+    ///
+    /// If `lane` is above 7.
+    #[inline]
+    #[must_use]
+    pub fn lane(&self, lane: usize) -> Option<Sample> {
+        let at = |x: &f32x8| x.as_array()[lane];
+        Sample::from_drawn(&Drawn {
+            wi: self.wi.lane(lane).into(),
+            value: [at(&self.value[0]), at(&self.value[1]), at(&self.value[2])],
+            pdf: at(&self.pdf),
+            weight: [at(&self.weight[0]), at(&self.weight[1]), at(&self.weight[2])],
+            slot: at(&self.slot),
+        })
+    }
+}

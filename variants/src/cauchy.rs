@@ -1,0 +1,76 @@
+//! The all-Cauchy variant: a bell with wider tails that the published sampler follows exactly.
+
+use hairis::{Bell, Hair, Lanes, ParamError};
+
+/// The bell `1 / (1 + s)`, a Cauchy whose scale is the width: every Gaussian of the published model becomes this.
+///
+/// - Source: Ou et al. 2012, section 3.3 "Replacing Gaussian with Cauchy".
+/// - Widths: those of the Gaussian model times a factor, by default 1 as in the paper.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairis::{Bsdf, HairParams};
+/// use hairis_variants::Cauchy;
+/// let hair = Bsdf::new(&Cauchy::PAPER.model(), &HairParams::default());
+/// let sample = hair.prepare(Vec3::Y).sample([0.5, 0.25, 0.75]).expect("not along the fibre");
+/// assert!(sample.weight.iter().all(|w| *w > 0.0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cauchy {
+    width_factor: f32,
+}
+
+impl Cauchy {
+    /// The Gaussian model's own widths: the paper's words, and within 0.5% of the least-squares best factor.
+    pub const PAPER: Self = Self { width_factor: 1.0 };
+    /// Both bells are half as high at the same distance: a factor of `sqrt(2 ln 2)`.
+    pub const HALF_WIDTH: Self = Self { width_factor: 1.177_410_0 };
+    /// Both bells have the same area over the whole line: a factor of `sqrt(2 / pi)`.
+    pub const AREA: Self = Self { width_factor: 0.797_884_6 };
+
+    /// A bell whose widths are those of the Gaussian model times `width_factor`.
+    ///
+    /// # Errors
+    ///
+    /// If the factor is not in `[0.5, 4]`.
+    #[inline]
+    pub fn with_width_factor(width_factor: f32) -> Result<Self, ParamError> {
+        if (0.5..=4.0).contains(&width_factor) {
+            Ok(Self { width_factor })
+        } else {
+            Err(ParamError::WidthFactor("width_factor", width_factor))
+        }
+    }
+
+    /// The model made of this bell.
+    #[inline]
+    #[must_use]
+    pub const fn model(self) -> Hair<Self> {
+        Hair(self)
+    }
+}
+
+impl Default for Cauchy {
+    /// [`PAPER`](Self::PAPER).
+    #[inline]
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+impl Bell for Cauchy {
+    #[inline(always)]
+    fn one<L: Lanes>(_s: L, cauchy: L) -> L {
+        cauchy
+    }
+
+    #[inline(always)]
+    fn two<L: Lanes>(_s: L, _t: L, cauchy: L, _cauchy_s: L, _cauchy_t: L) -> L {
+        cauchy
+    }
+
+    #[inline]
+    fn width_factor(&self) -> f32 {
+        self.width_factor
+    }
+}
