@@ -2,6 +2,7 @@
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 
+mod batch;
 mod bell;
 mod bsdf;
 mod dispatch;
@@ -17,6 +18,7 @@ mod quadrature;
 pub mod random;
 mod truncated;
 
+pub use batch::{EvalSlices, LengthError, SampleSlices};
 pub use bell::{Bell, Gaussian};
 pub use bsdf::{Bsdf, Bsdf8, Gather, Gather8};
 pub use dispatch::Level;

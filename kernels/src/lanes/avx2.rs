@@ -171,3 +171,15 @@ impl Broadcast<Avx2> for f32x8 {
         pick_by_select(table, choice)
     }
 }
+
+crate::lanes::packet!(Avx2, from_array, to_array);
+
+#[inline(always)]
+fn from_array(packet: &[f32; 8]) -> Avx2 {
+    Avx2(avx2!(_mm256_loadu_ps(packet.as_ptr())))
+}
+
+#[inline(always)]
+fn to_array(lanes: Avx2, packet: &mut [f32; 8]) {
+    avx2!(_mm256_storeu_ps(packet.as_mut_ptr(), lanes.0));
+}

@@ -113,3 +113,15 @@ impl Broadcast<f32x8> for f32x8 {
         pick_by_select(table, choice)
     }
 }
+
+crate::lanes::packet!(f32x8, from_array, to_array);
+
+#[inline(always)]
+fn from_array(packet: &[f32; 8]) -> f32x8 {
+    f32x8::new(*packet)
+}
+
+#[inline(always)]
+fn to_array(lanes: f32x8, packet: &mut [f32; 8]) {
+    *packet = lanes.to_array();
+}
