@@ -22,6 +22,10 @@ pub enum ParamError {
     Intensity(&'static str, usize, f32),
     /// A scalar that is negative or not finite, such as the strength of the glints or a width factor.
     Scalar(&'static str, f32),
+    /// An artist's angle that is not finite or outside its range: the field, the value and the range, in degrees.
+    Degrees(&'static str, f32, [f32; 2]),
+    /// An artist's colour whose product with its intensity overflows: the field, the channel and the colour's value.
+    Overflow(&'static str, usize, f32),
 }
 
 impl ParamError {
@@ -34,12 +38,15 @@ impl ParamError {
             | Self::Shift(field, _)
             | Self::GlintAngle(field, _)
             | Self::Intensity(field, _, _)
-            | Self::Scalar(field, _) => field,
+            | Self::Scalar(field, _)
+            | Self::Degrees(field, _, _)
+            | Self::Overflow(field, _, _) => field,
         }
     }
 }
 
 impl fmt::Display for ParamError {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Width(field, value) => write!(f, "{field} must be a width in [1e-4, pi] rad, got {value}"),
@@ -49,6 +56,12 @@ impl fmt::Display for ParamError {
                 write!(f, "{field}[{channel}] must be finite and at least 0, got {value}")
             }
             Self::Scalar(field, value) => write!(f, "{field} must be finite and at least 0, got {value}"),
+            Self::Degrees(field, value, [least, most]) => {
+                write!(f, "{field} must be an angle in [{least}, {most}] degrees, got {value}")
+            }
+            Self::Overflow(field, channel, value) => {
+                write!(f, "{field}[{channel}] times its intensity must be finite, got a color of {value}")
+            }
         }
     }
 }

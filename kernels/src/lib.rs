@@ -5,7 +5,9 @@
 mod error;
 mod lobe;
 mod params;
+#[cfg(feature = "textbook")]
+pub mod textbook;
 
 pub use error::ParamError;
 pub use lobe::{Lobe, LobeMask, PerLobe};
-pub use params::{HairDesc, HairParams, MAX_WIDTH, MIN_WIDTH};
+pub use params::{ArtistControls, Glints, HairDesc, HairParams, Highlight, MAX_WIDTH, MIN_WIDTH, Transmission};
