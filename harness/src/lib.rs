@@ -1,4 +1,5 @@
 //! The comparison of hair scattering kernels: lights, number sequences, quadrature and statistics, and what a report says of the machine.
 
+pub mod quadrature;
 pub mod sequence;
 pub mod stats;
