@@ -138,9 +138,9 @@ fn estimates_equal_the_quadrature_of_radiance() {
         |d| [1.0 + 0.9 * d.x, (d.z - 0.2).powi(2), (2.0 * d.y).exp()],
     ];
     for (k, light) in lights().iter().enumerate() {
-        for (m, f) in fs.iter().enumerate() {
+        for (tilt, f) in fs.iter().enumerate() {
             let truth = light.integrate(&f, &tight());
-            let mut xi = Independent::new(2, stream_id(&[k as u64, m as u64]));
+            let mut xi = Independent::new(2, stream_id(&[k as u64, tilt as u64]));
             let mut moments = [Moments::new(); 3];
             for _ in 0..200_000 {
                 let s = light.sample(xi.next_xi());
@@ -149,12 +149,12 @@ fn estimates_equal_the_quadrature_of_radiance() {
                     moments[c].push(s.radiance[c] * y[c] / s.pdf);
                 }
             }
-            for c in 0..3 {
-                let e = moments[c].mean_estimate();
+            for (c, m) in moments.iter().enumerate() {
+                let e = m.mean_estimate();
                 let slack = 1e-9 * truth.value[c].abs();
                 assert!(
                     (e.value - truth.value[c]).abs() <= 4.0 * e.standard_error + slack,
-                    "{} f{m} channel {c}: {e:?}, want {:?}",
+                    "{} f{tilt} channel {c}: {e:?}, want {:?}",
                     light.name(),
                     truth.value
                 );

@@ -91,8 +91,8 @@ fn sky_estimates_match_its_sum() {
     let mut moments = [Moments::new(); 3];
     for _ in 0..100_000 {
         let s = map.sample(xi.next_xi());
-        for c in 0..3 {
-            moments[c].push(s.radiance[c] / s.pdf);
+        for (m, radiance) in moments.iter_mut().zip(s.radiance) {
+            m.push(radiance / s.pdf);
         }
     }
     for (m, want) in moments.iter().zip(map.total_radiance()) {
