@@ -28,6 +28,8 @@ pub struct Machine {
     /// Commit the build was made from, in full, or "unknown".
     pub commit: &'static str,
     /// Whether tracked files differed from that commit when the build was made; `None` when unknown.
+    ///
+    /// The build looks again after each commit and each change of what is compiled; an edit of other files alone is not seen until then.
     pub dirty: Option<bool>,
     /// Target features the code was compiled for, of those that matter here. Dispatch at run time may use more.
     pub target_features: Vec<&'static str>,
