@@ -258,8 +258,10 @@ fn f32_is_close_to_f64() {
 fn f32_results_are_finite() {
     let ends = [0.0, f32::EPSILON, 0.5, 1.0 - f32::EPSILON / 2.0];
     let axes = [[1.0, 0.0, 0.0], [-1.0, -0.0, 0.0], [0.0, -1.0, -0.0], [0.0, 0.0, 1.0], [-0.8, 0.36, -0.48]];
-    for (shape, width) in SHAPES.into_iter().flat_map(|shape| [1e-4, 0.13, core::f32::consts::PI].map(|w| (shape, w))) {
-        for (alpha, phi_g) in [-1.5_f32, 0.0, 1.5].into_iter().flat_map(|alpha| [0.0, 1.6, 3.14].map(|g| (alpha, g))) {
+    for (shape, width) in
+        SHAPES.into_iter().flat_map(|shape| [hairis::MIN_WIDTH, 0.13, hairis::MAX_WIDTH].map(|w| (shape, w)))
+    {
+        for (alpha, phi_g) in [-1.5_f32, 0.0, 1.5].into_iter().flat_map(|alpha| [0.0, 1.6, 3.1].map(|g| (alpha, g))) {
             let p = Parameters {
                 alpha: [alpha; 3],
                 beta: [width; 3],
