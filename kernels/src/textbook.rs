@@ -122,7 +122,7 @@ impl<T: Real> Textbook<T> {
     /// The estimated energies of the lobes, on which the choice of a lobe rests: section 3.2.3, with `I` the mean of
     /// the three channels.
     ///
-    /// - Integral: each is that of its `M(theta_h) N(phi)` over the whole line for Gaussians (ERRATA E4, E5).
+    /// - Integral: each is that of its `M(theta_h) N(phi)` over the whole line for Gaussians (ERRATA E4, E6).
     #[inline]
     #[must_use]
     pub fn energies(&self) -> PerLobe<T> {
