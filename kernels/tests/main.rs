@@ -1,6 +1,11 @@
 //! Tests of the kernels: one binary, a module a subject.
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
 
+mod math;
 mod params;
 mod quadrature;
+mod subject;
+mod support;
 mod textbook;
+mod tolerance;
+mod values;
