@@ -190,7 +190,7 @@ impl Worst {
     /// Fails if the worst is above `bound`; prints it for the record (`cargo test -- --nocapture`).
     #[track_caller]
     pub(crate) fn check(&self, row: &str, bound: f64) {
-        println!("{row}: measured {:.3e}, bound {bound:.1e}, at {}", self.error, self.at);
+        println!("{row}: measured {:.8e}, bound {bound:.1e}, at {}", self.error, self.at);
         assert!(self.error <= bound, "{row}: {:.3e} is above {bound:.1e} at {}", self.error, self.at);
     }
 }
