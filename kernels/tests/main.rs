@@ -8,6 +8,7 @@ mod lobes;
 mod math;
 mod params;
 mod parity;
+mod props;
 mod quadrature;
 mod sampling;
 mod subject;

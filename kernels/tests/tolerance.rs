@@ -39,8 +39,10 @@ pub(crate) const ALBEDO_LANES: f64 = 2e-6; // 0 where neither fuses
 pub(crate) const ALBEDO: f64 = 1.3e-4; // 1.0e-4, widths of 60 degrees seen along the axis
 
 // Reciprocity of S, relative, wide and grid materials.
-pub(crate) const RECIPROCITY: f64 = 1e9;
-// Value and density of a sample against those of its direction, relative to 1 + 1e-4 / width.
+pub(crate) const RECIPROCITY: f64 = 3.2e-5; // 2.5e-5
+// Density of a sample against that of its direction, relative, times `width / (width + 0.1)` with the least width.
 pub(crate) const SAMPLE_EVAL: f64 = 1e9;
 // A weight over its proven bound.
-pub(crate) const WEIGHT_BOUND: f64 = 1.0 + 3e-6; // 1 + 2e-6
+pub(crate) const WEIGHT_BOUND: f64 = 1.0 + 6e-7; // 1 + 3.3e-7
+// A frame: dot products, lengths, handedness.
+pub(crate) const FRAME: f32 = 1e-6;

@@ -171,6 +171,6 @@ fn the_published_flaw_is_there() {
         assert!(towards[2] > 20.0 * limit, "no weight far above the bound {limit}: {towards:?}");
         // cos(phi/2) falls as the root of xi, and the weight grows as its inverse.
         let growth = towards[2] / towards[1];
-        assert!((growth / 10.0 - 1.0).abs() < 0.03, "growth {growth} for a hundredth of xi, not 10: {towards:?}");
+        assert!((growth / 10.0 - 1.0).abs() < 0.05, "growth {growth} for a hundredth of xi, not 10: {towards:?}");
     }
 }
