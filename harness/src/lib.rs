@@ -1,1 +1,6 @@
-//! Placeholder of the first commit.
+//! The harness of `hairis`: what its binary does, as a library so that tests can call it.
+
+pub mod args;
+pub mod cmd;
+pub mod config;
+pub mod error;
