@@ -6,24 +6,27 @@ use clap::{Parser, Subcommand};
 
 /// Hair scattering: evaluate it line by line, and compare how it is computed.
 #[derive(Clone, Debug, Parser)]
-#[command(name = "hairis", version, about)]
+#[command(name = "hairis", version, arg_required_else_help = false)]
 pub struct Args {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
 
-const FORMAT: &str = r#"A request, with angles in radians and directions of unit length in the fibre's frame ("sampler" may be left out):
+const FORMAT: &str = r#"A request; angles are in radians, directions of unit length in the fibre's frame,
+and "sampler" may be left out:
   {"model":"gaussian"|"cauchy", "sampler":"ou",
    "params":{"alpha":[R,TT,TRT], "beta":[R,TT,TRT], "gamma_tt":x, "gamma_g":x, "phi_g":x,
              "i_r":[r,g,b], "i_tt":[r,g,b], "i_trt":[r,g,b], "i_g":x},
    "wo":[u,v,w], "wi":[u,v,w]}     or "xi":[lobe,theta,phi] in place of "wi"
-The answer to "wi", and to "xi":
+
+The answer to "wi", and to "xi" (lobe null: discarded, and 0 for the rest):
   {"s":[r,g,b], "pdf":x, "pdf_lobe":[R,TT,TRT-g,glint]}
   {"wi":[u,v,w], "s":[r,g,b], "pdf":x, "pdf_lobe":[R,TT,TRT-g,glint],
-   "lobe":"r"|"tt"|"trt"|"glint"|null, "weight":[r,g,b]}     null: discarded, and 0 for the rest
-A line that is refused, a blank one included, is answered by {"error":"field: problem"}; the rest still runs, and the
-exit code is 2."#;
+   "lobe":"r"|"tt"|"trt"|"glint"|null, "weight":[r,g,b]}
+
+A line that is refused, a blank one included, is answered by {"error":"field: problem"};
+the rest still runs, and the exit code is 2."#;
 
 /// The subcommands, each with its flags.
 #[derive(Clone, Debug, Subcommand)]

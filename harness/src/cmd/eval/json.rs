@@ -28,8 +28,11 @@ impl Json {
         parsed.map_err(|error| {
             let text = error.to_string();
             let problem = text.rsplit_once(" at line ").map_or(&*text, |(problem, _)| problem);
-            let field = if path.is_empty() { "line" } else { &path };
-            Refusal::at(field, format!("not JSON: {problem} (column {})", error.column()))
+            let column = error.column();
+            match &*path {
+                "" => Refusal::at("line", format!("not JSON: {problem} (column {column})")),
+                field => Refusal::at(field, format!("{problem} (column {column})")),
+            }
         })
     }
 
