@@ -1,5 +1,9 @@
-//! The comparison of hair scattering kernels: lights, number sequences, quadrature and statistics, and what a report says of the machine.
+//! The harness of `hairis`: what its binary does, as a library so that tests can call it.
 
+pub mod args;
+pub mod cmd;
+pub mod config;
+pub mod error;
 pub mod light;
 pub mod machine;
 pub mod quadrature;
