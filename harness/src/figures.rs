@@ -40,8 +40,8 @@ fn erf(x: f64) -> f64 {
 fn bells(title: &str, y: Axis, span: f64, height: impl Fn(&Bell, f64, f64) -> f64) -> String {
     let x = Axis::linear("distance from the centre (°)").range(-span, span).step(span / 6.0);
     let mut chart = LineChart::new(title, x, y);
-    for (color, width) in WIDTHS.into_iter().enumerate() {
-        for (bell, dash) in BELLS.iter().zip([Dash::Solid, Dash::Dashed]) {
+    for (bell, dash) in BELLS.iter().zip([Dash::Solid, Dash::Dashed]) {
+        for (color, width) in WIDTHS.into_iter().enumerate() {
             let at = |i: i32| f64::from(i) * span / 360.0;
             let points = (-360..=360).map(at).map(|x| (x, height(bell, x, width)));
             chart = chart.series(Series::curve(format!("{} {width}°", bell.0), points).styled(color, dash));
@@ -172,7 +172,8 @@ pub fn polar(params: &HairParams, theta_o: f64) -> Figure {
         "The scattering function of the published Gaussian model and of the all-Cauchy variant with the same widths, \
          seen from θₒ = {degrees:.0}° (ωₒ marks the direction to the viewer). Left: around the fibre, on the cone of \
          the mirror direction. Right: in the plane of the fibre and the viewer, where ±90° are the fibre's ends. Each \
-         circle has its own scale; the peaks agree by construction and the Cauchy fills the gaps between lobes."
+         circle has its own scale. Every lobe has the same peak in both models; within 1.6 widths of its centre the \
+         Cauchy is the lower one, further out the higher."
     );
     Figure::new(chart.panel(first).panel(second).svg(), caption)
 }

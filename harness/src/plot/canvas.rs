@@ -130,7 +130,9 @@ impl Canvas<'_> {
 
     pub(crate) fn block(&mut self, (x0, y0): Place, (x1, y1): Place, color: RGBColor, alpha: f64) {
         let (low, high) = (at((x0.min(x1), y0.min(y1))), at((x0.max(x1), y0.max(y1))));
-        let _ = self.backend.draw_rect(low, high, &color.mix(alpha), true);
+        if low != high {
+            let _ = self.backend.draw_rect(low, high, &color.mix(alpha), true);
+        }
     }
 
     pub(crate) fn frame(&mut self, (x0, y0): Place, (x1, y1): Place, pen: Pen) {

@@ -43,46 +43,43 @@ pub(super) fn title_height(text: &str, width: f64) -> f64 {
     y
 }
 
-/// The rows of a legend: which entries stand in each, and where they start.
-fn legend_rows(names: &[&str], width: f64) -> Vec<Vec<(usize, f64)>> {
-    let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
-    let mut end = f64::INFINITY;
-    for (i, name) in names.iter().enumerate() {
-        let need = 44.0 + text_width(name, LABEL) + 18.0;
-        if end + need > width {
-            rows.push(Vec::new());
-            end = 0.0;
+/// The places of a legend's entries in columns of one width, as few rows as fit, evenly filled.
+fn legend_places(names: &[&str], width: f64) -> Vec<Place> {
+    let widest = names.iter().map(|name| 44.0 + text_width(name, LABEL) + 18.0).fold(1.0, f64::max);
+    let fit = (1..names.len()).take_while(|n| f64::from(u32::try_from(n + 1).unwrap_or(u32::MAX)) * widest <= width);
+    let columns = names.len().div_ceil(names.len().div_ceil(fit.count() + 1).max(1)).max(1);
+    let mut place = (0.0, 0.0);
+    let mut places = Vec::new();
+    for i in 0..names.len() {
+        if i > 0 && i.is_multiple_of(columns) {
+            place = (0.0, place.1 + LEGEND_LINE);
         }
-        rows.last_mut().into_iter().for_each(|row| row.push((i, end)));
-        end += need;
+        places.push(place);
+        place.0 += widest;
     }
-    rows
+    places
 }
 
 /// The height of a legend.
 pub(super) fn legend_height(names: &[&str], width: f64) -> f64 {
-    legend_rows(names, width).iter().map(|_| LEGEND_LINE).sum()
+    legend_places(names, width).last().map_or(0.0, |place| place.1 + LEGEND_LINE)
 }
 
 /// Draws a legend from `place` (its top left) in rows no wider than `width`.
 pub(super) fn legend(canvas: &mut Canvas<'_>, names: &[&str], keys: &[Key], place: Place, width: f64) {
-    let mut y = place.1 + LEGEND_LINE / 2.0;
-    for row in legend_rows(names, width) {
-        for (i, x) in row {
-            let (Some(name), Some(key)) = (names.get(i), keys.get(i)) else { continue };
-            let x = place.0 + x;
-            if let Some(dash) = key.line {
-                canvas.line(&[(x, y), (x + 36.0, y)], Pen::new(key.color, 2.2), dash);
-            }
-            if let Some(marker) = key.marker {
-                canvas.marker((x + 18.0, y), marker, 4.2, key.color);
-            }
-            if let Some(index) = key.swatch {
-                swatch(canvas, (x + 8.0, y - 7.0), (x + 34.0, y + 7.0), key.color, index);
-            }
-            canvas.text(name, (x + 42.0, y), Type::new(LABEL, Hang::Left));
+    let places = legend_places(names, width);
+    for ((name, key), (x, y)) in names.iter().zip(keys).zip(places) {
+        let (x, y) = (place.0 + x, place.1 + y + LEGEND_LINE / 2.0);
+        if let Some(dash) = key.line {
+            canvas.line(&[(x, y), (x + 36.0, y)], Pen::new(key.color, 2.2), dash);
         }
-        y += LEGEND_LINE;
+        if let Some(marker) = key.marker {
+            canvas.marker((x + 18.0, y), marker, 4.2, key.color);
+        }
+        if let Some(index) = key.swatch {
+            swatch(canvas, (x + 8.0, y - 7.0), (x + 34.0, y + 7.0), key.color, index);
+        }
+        canvas.text(name, (x + 42.0, y), Type::new(LABEL, Hang::Left));
     }
 }
 

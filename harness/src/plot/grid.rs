@@ -106,11 +106,11 @@ impl Map {
         let (width, height) = (self.high.0 - self.low.0, self.high.1 - self.low.1);
         let (cell_width, cell_height) = (width / real(grid.columns), height / real(rows));
         let last = f64::from(levels - 1);
-        // One pass a colour: cells of a colour lie behind each other and become one path. A cell reaches a little
-        // under its neighbours, so that no seams show.
+        // One pass a colour, each over all cells of that colour and of later ones: a colour becomes one path, and no
+        // paper shines through the seams between colours.
         for level in 0..levels {
             let level = f64::from(level);
-            let is = |v: f64| v.is_finite() && (share(v).clamp(0.0, 1.0) * last).round() == level;
+            let is = |v: f64| v.is_finite() && (share(v).clamp(0.0, 1.0) * last).round() >= level;
             for (row, values) in grid.values.chunks_exact(grid.columns.max(1)).enumerate() {
                 let mut start = 0;
                 for run in values.chunk_by(|a, b| is(*a) == is(*b)) {
@@ -118,8 +118,7 @@ impl Map {
                     if is(run[0]) {
                         let x = |column: usize| self.low.0 + real(column) * cell_width;
                         let y = |row: usize| self.low.1 + real(row) * cell_height;
-                        let far = ((x(end) + 0.3).min(self.high.0), (y(row + 1) + 0.3).min(self.high.1));
-                        canvas.block((x(start), y(row)), far, color(level / last), 1.0);
+                        canvas.block((x(start), y(row)), (x(end), y(row + 1)), color(level / last), 1.0);
                     }
                     start = end;
                 }
@@ -176,7 +175,7 @@ pub(super) fn color_bar(
     for i in 0..steps {
         let low = fitted.start - height * f64::from(i);
         let color = color((f64::from(i) + 0.5) / f64::from(steps));
-        canvas.block((x, low - height - 0.3), (x + 18.0, low), color, 1.0);
+        canvas.block((x, fitted.end), (x + 18.0, low), color, 1.0);
     }
     canvas.frame((x, fitted.end), (x + 18.0, fitted.start), Pen::new(INK, 1.0));
     let mut widest = 0.0_f64;

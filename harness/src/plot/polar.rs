@@ -92,7 +92,7 @@ impl PolarChart {
         let width = frame::WIDTH / f64::from(count);
         let radius = (0.5 * width - 46.0).clamp(20.0, 190.0);
         let center_y = top + 50.0 + radius;
-        let legend_top = center_y + radius + 62.0;
+        let legend_top = center_y + radius + 78.0;
         let height = legend_top + frame::legend_height(&names, frame::WIDTH - 40.0) + 8.0;
         let panels: Vec<&str> = self.panels.iter().map(|p| p.title.as_str()).collect();
         let description = format!("Polar plots, {}: {}; {}.", self.radius, panels.join(", "), names.join(", "));
@@ -117,7 +117,8 @@ impl PolarPanel {
         let usable = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
         let values = self.series.iter().flat_map(|s| &s.points).filter(|p| usable(p)).map(|p| p.1.max(0.0));
         let most = values.fold(0.0, f64::max);
-        let axis = Axis::linear("").range(0.0, if most > 0.0 { most * 1.02 } else { 1.0 });
+        let most = if most > 0.0 { most.min(1e300) * 1.02 } else { 1.0 };
+        let axis = Axis::linear("").range(0.0, most).step(super::axis::nice_step(most / 4.0));
         let scale = axis.fit(core::iter::empty(), 0.0, radius);
         let at = |angle: f64, r: f64| (center.0 + r * angle.cos(), center.1 - r * angle.sin());
         for spoke in 0..12 {

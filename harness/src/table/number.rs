@@ -1,6 +1,7 @@
 //! Numbers as people read them, formatted in this one place for the terminal, the report and the plots.
 
-/// `value` with as many digits as its standard error deserves: two of the error, no more than six of the value.
+/// `value` with as many digits as its standard error deserves: two of the error, or one if it is 4 to 9, and no more
+/// than six of the value.
 ///
 /// ```
 /// use hairis_harness::table::number::with_error;
@@ -16,11 +17,11 @@ pub fn with_error(value: f64, error: f64) -> String {
     if !(1e-4..1e6).contains(&size) {
         let exponent = size.log10().floor();
         let unit = 10.0_f64.powf(exponent);
-        let places = places(error / unit, 2).min(5);
+        let places = error_places(error / unit).min(5);
         let value = format!("({:.places$} ± {:.places$})", value / unit, error / unit);
         return minus(&format!("{value}×10{}", superscript(exponent)));
     }
-    let places = places(error, 2);
+    let places = error_places(error);
     if places > self::places(size, 6) {
         // The error is below the last digit shown.
         return plain(value, 6);
@@ -110,6 +111,12 @@ pub(crate) fn power(digit: f64, exponent: f64) -> String {
     if digit == 1.0 { ten } else { format!("{digit}×{ten}") }
 }
 
+/// Decimal places that a standard error deserves: rounding to one digit is too coarse for 1 to 3.
+fn error_places(error: f64) -> usize {
+    let lead = error / 10.0_f64.powf(error.log10().floor());
+    places(error, if lead < 3.55 { 2 } else { 1 })
+}
+
 /// Decimal places that show `digits` significant digits of `value`.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0 .. 17 before the cast")]
 fn places(value: f64, digits: usize) -> usize {
@@ -151,12 +158,13 @@ mod tests {
             (0.209, 0.001, "0.2090 ± 0.0010"),
             (0.20912, 0.0234, "0.209 ± 0.023"),
             (123.4, 17.0, "123 ± 17"),
+            (0.2091, 0.0044, "0.209 ± 0.004"),
             (-2.5, 0.25, "−2.50 ± 0.25"),
             (0.0, 0.0021, "0.0000 ± 0.0021"),
             (1.5, f64::NAN, "1.500"),
             (f64::NAN, 1.0, "n/a"),
             (0.299_999_999, 1e-12, "0.300000"),
-            (1.234e-6, 5.0e-8, "(1.234 ± 0.050)×10⁻⁶"),
+            (1.234e-6, 5.0e-8, "(1.23 ± 0.05)×10⁻⁶"),
         ];
         for (value, error, text) in cases {
             assert_eq!(with_error(value, error), text, "{value} {error}");
