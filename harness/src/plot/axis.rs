@@ -194,10 +194,10 @@ impl Fitted {
     }
 }
 
-/// The least of 1, 2, 5, 10 .. times a power of ten that is at least `step`.
+/// The least of 1, 2, 5, 10 .. times a power of ten that is not much below `step`.
 pub(super) fn nice_step(step: f64) -> f64 {
     let power = 10.0_f64.powf(step.log10().floor());
-    let digit = [1.0, 2.0, 5.0].into_iter().find(|d| d * power >= step * (1.0 - 1e-9)).unwrap_or(10.0);
+    let digit = [1.0, 2.0, 5.0].into_iter().find(|d| d * power >= step * 0.75).unwrap_or(10.0);
     digit * power
 }
 
