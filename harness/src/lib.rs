@@ -1,5 +1,6 @@
 //! The comparison of hair scattering kernels: lights, number sequences, quadrature and statistics, and what a report says of the machine.
 
+pub mod efficiency;
 pub mod light;
 pub mod machine;
 pub mod quadrature;
