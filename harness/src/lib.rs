@@ -5,6 +5,7 @@ pub mod cmd;
 pub mod config;
 pub mod error;
 pub mod figures;
+pub mod efficiency;
 pub mod light;
 pub mod machine;
 pub mod markup;
