@@ -1,1 +1,6 @@
-//! Placeholder of the first commit.
+//! The comparison of hair scattering kernels: lights, number sequences, quadrature and statistics, and what a report says of the machine.
+
+pub mod light;
+pub mod quadrature;
+pub mod sequence;
+pub mod stats;
