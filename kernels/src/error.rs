@@ -24,6 +24,10 @@ pub enum ParamError {
     Scalar(&'static str, f32),
     /// A factor on the widths outside `[0.5, 4]`, or not finite.
     WidthFactor(&'static str, f32),
+    /// An artist's angle that is not finite or outside its range: the field, the value and the range, in degrees.
+    Degrees(&'static str, f32, [f32; 2]),
+    /// An artist's colour whose product with its intensity overflows: the field, the channel and the colour's value.
+    Overflow(&'static str, usize, f32),
 }
 
 impl ParamError {
@@ -37,7 +41,9 @@ impl ParamError {
             | Self::GlintAngle(field, _)
             | Self::Intensity(field, _, _)
             | Self::Scalar(field, _)
-            | Self::WidthFactor(field, _) => field,
+            | Self::WidthFactor(field, _)
+            | Self::Degrees(field, _, _)
+            | Self::Overflow(field, _, _) => field,
         }
     }
 }
@@ -54,6 +60,12 @@ impl fmt::Display for ParamError {
             }
             Self::Scalar(field, value) => write!(f, "{field} must be finite and at least 0, got {value}"),
             Self::WidthFactor(field, value) => write!(f, "{field} must be in [0.5, 4], got {value}"),
+            Self::Degrees(field, value, [least, most]) => {
+                write!(f, "{field} must be an angle in [{least}, {most}] degrees, got {value}")
+            }
+            Self::Overflow(field, channel, value) => {
+                write!(f, "{field}[{channel}] times its intensity must be finite, got a color of {value}")
+            }
         }
     }
 }

@@ -15,6 +15,8 @@ mod model;
 mod params;
 mod quadrature;
 pub mod random;
+#[cfg(feature = "textbook")]
+pub mod textbook;
 mod truncated;
 
 pub use bell::{Bell, Gaussian};
@@ -26,7 +28,7 @@ pub use hair::{GRAZING, Hair, HairGather, HairMaterial};
 pub use lanes::{Broadcast, Lanes, lanes3, store3, store4};
 pub use lobe::{Lobe, LobeMask, PerLobe};
 pub use model::{Drawn, Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Model, Sample, Sample8};
-pub use params::{HairDesc, HairParams, MAX_WIDTH, MIN_WIDTH};
+pub use params::{ArtistControls, Glints, HairDesc, HairParams, Highlight, MAX_WIDTH, MIN_WIDTH, Transmission};
 
 #[doc(hidden)]
 pub use wide;

@@ -3,6 +3,11 @@
 use crate::ParamError;
 use core::f32::consts::{FRAC_PI_2, PI};
 
+mod artist;
+mod presets;
+
+pub use artist::{ArtistControls, Glints, Highlight, Transmission};
+
 /// Smallest width accepted, rad.
 pub const MIN_WIDTH: f32 = 1e-4;
 /// Largest width accepted, rad.
@@ -44,9 +49,9 @@ pub struct HairDesc {
     pub intensity_g: f32,
 }
 
-impl Default for HairDesc {
-    #[inline]
-    fn default() -> Self {
+impl HairDesc {
+    /// The default, for constants.
+    pub(crate) const DEFAULT: Self = {
         let deg = PI / 180.0;
         Self {
             alpha_r: -7.5 * deg,
@@ -63,6 +68,13 @@ impl Default for HairDesc {
             intensity_trt: [0.7, 0.5, 0.3],
             intensity_g: 0.5,
         }
+    };
+}
+
+impl Default for HairDesc {
+    #[inline]
+    fn default() -> Self {
+        Self::DEFAULT
     }
 }
 

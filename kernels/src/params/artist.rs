@@ -1,0 +1,195 @@
+//! Hair described in an artist's terms: colour, intensity, position and width of each highlight, in degrees.
+
+use super::{HairDesc, HairParams, MAX_WIDTH, check, is_intensity};
+use crate::ParamError;
+use core::f32::consts::{FRAC_PI_2, PI};
+
+const RAD_PER_DEG: f32 = PI / 180.0;
+/// Widths accepted, degrees.
+const WIDTHS: [f32; 2] = [0.01, 180.0];
+/// Shifts accepted, degrees.
+const SHIFTS: [f32; 2] = [-90.0, 90.0];
+/// Separations of the glints accepted, degrees.
+const SEPARATIONS: [f32; 2] = [0.0, 360.0];
+
+/// A highlight that runs around the fibre: the primary (R) or the secondary (TRT).
+///
+/// - Source: Sadeghi et al. 2010, section 4: colour, intensity, longitudinal shift and width of a lobe.
+/// - Default: the primary highlight of [`ArtistControls::default`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Highlight {
+    /// Linear RGB, each finite and at least 0; usually in [0, 1].
+    pub color: [f32; 3],
+    /// Factor on `color`, finite and at least 0.
+    pub intensity: f32,
+    /// Where the highlight sits along the fibre, degrees in [-90, 90]; the lobe's `alpha`, of the same sign.
+    ///
+    /// Positive turns the lobe towards the tip (it peaks where `theta_i + theta_o` is twice the shift), so on hair
+    /// that curves over a head the highlight moves towards the *root*; negative moves it towards the *tip*. Real hair
+    /// has its primary highlight at -5 to -10 degrees and its secondary one at +7 to +15.
+    pub shift_deg: f32,
+    /// Width along the fibre, degrees in [0.01, 180]: the lobe's `beta`, the standard deviation in `theta_h`. The
+    /// highlight itself is about 2.35 times as wide at half its height, in `theta_h`.
+    pub width_deg: f32,
+}
+
+impl Default for Highlight {
+    #[inline]
+    fn default() -> Self {
+        Self { color: [1.0; 3], intensity: 0.3, shift_deg: -7.5, width_deg: 7.5 }
+    }
+}
+
+/// The light that shines through the fibre (TT): the rim of hair lit from behind.
+///
+/// - Default: that of [`ArtistControls::default`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transmission {
+    /// Linear RGB, each finite and at least 0; usually in [0, 1].
+    pub color: [f32; 3],
+    /// Factor on `color`, finite and at least 0.
+    pub intensity: f32,
+    /// As [`Highlight::shift_deg`]; +2.5 to +5 degrees in real hair.
+    pub shift_deg: f32,
+    /// As [`Highlight::width_deg`].
+    pub width_deg: f32,
+    /// Width around the fibre, degrees in [0.01, 180]: `gamma_tt`. Small values light hair only from right behind.
+    pub azimuthal_width_deg: f32,
+}
+
+impl Default for Transmission {
+    #[inline]
+    fn default() -> Self {
+        Self { color: [0.8, 0.6, 0.4], intensity: 1.0, shift_deg: 3.75, width_deg: 3.75, azimuthal_width_deg: 10.0 }
+    }
+}
+
+/// The two bright spots inside the secondary highlight, whose colour, shift and width they share.
+///
+/// - Default: those of [`ArtistControls::default`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glints {
+    /// Strength relative to the secondary highlight, finite and at least 0: `intensity_g`. 0 switches them off.
+    pub strength: f32,
+    /// Full angle from one glint to the other around the fibre, degrees in [0, 360]: twice `phi_g`.
+    pub separation_deg: f32,
+    /// Width of each glint around the fibre, degrees in [0.01, 180]: `gamma_g`.
+    pub azimuthal_width_deg: f32,
+}
+
+impl Default for Glints {
+    #[inline]
+    fn default() -> Self {
+        Self { strength: 0.5, separation_deg: 70.0, azimuthal_width_deg: 10.0 }
+    }
+}
+
+/// Hair in an artist's terms; [`HairParams::from_artist`] turns it into the parameters of the model.
+///
+/// Every control acts alone, unlike the physical quantities behind a hair (Sadeghi et al. 2010, section 4): a colour
+/// times an intensity is the `intensity_*` of a [`HairDesc`], a shift its `alpha_*`, a width its `beta_*` or
+/// `gamma_*`, with degrees for radians, and half the separation of the glints is its `phi_g`. The default is
+/// [`HairParams::default`].
+///
+/// ```
+/// use hairis::{ArtistControls, HairParams, Highlight};
+/// let red_sheen = ArtistControls {
+///     secondary: Highlight { color: [0.9, 0.3, 0.1], intensity: 0.5, shift_deg: 11.0, width_deg: 14.0 },
+///     ..ArtistControls::default()
+/// };
+/// let hair = HairParams::from_artist(&red_sheen)?;
+/// assert_eq!(hair.desc().intensity_trt, [0.45, 0.15, 0.05]);
+/// assert!((hair.desc().beta_trt.to_degrees() - 14.0).abs() < 1e-5);
+/// # Ok::<(), hairis::ParamError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArtistControls {
+    /// The primary highlight (R), of the colour of the light: keep it white or nearly so.
+    pub primary: Highlight,
+    /// The light from behind (TT), which passed the pigment once.
+    pub transmission: Transmission,
+    /// The secondary highlight (TRT), of the colour of the hair: wider, and on the root's side of the primary.
+    pub secondary: Highlight,
+    /// The glints of the secondary highlight.
+    pub glints: Glints,
+}
+
+impl Default for ArtistControls {
+    #[inline]
+    fn default() -> Self {
+        Self {
+            primary: Highlight::default(),
+            transmission: Transmission::default(),
+            secondary: Highlight { color: [0.7, 0.5, 0.3], intensity: 1.0, shift_deg: 11.25, width_deg: 15.0 },
+            glints: Glints::default(),
+        }
+    }
+}
+
+impl HairParams {
+    /// The hair that `controls` describe.
+    ///
+    /// # Errors
+    ///
+    /// The first control out of its range, under its own name (for instance `"secondary.width_deg"`), with its value
+    /// as given, in degrees where it is an angle. NaN and infinities never pass; nor does a colour whose product with
+    /// its intensity overflows.
+    #[inline]
+    pub fn from_artist(controls: &ArtistControls) -> Result<Self, ParamError> {
+        let ArtistControls { primary: r, transmission: tt, secondary: trt, glints } = controls;
+        check(is_intensity(glints.strength), ParamError::Scalar("glints.strength", glints.strength))?;
+        Self::new(&HairDesc {
+            alpha_r: shift("primary.shift_deg", r.shift_deg)?,
+            alpha_tt: shift("transmission.shift_deg", tt.shift_deg)?,
+            alpha_trt: shift("secondary.shift_deg", trt.shift_deg)?,
+            beta_r: width("primary.width_deg", r.width_deg)?,
+            beta_tt: width("transmission.width_deg", tt.width_deg)?,
+            beta_trt: width("secondary.width_deg", trt.width_deg)?,
+            gamma_tt: width("transmission.azimuthal_width_deg", tt.azimuthal_width_deg)?,
+            gamma_g: width("glints.azimuthal_width_deg", glints.azimuthal_width_deg)?,
+            phi_g: (degrees("glints.separation_deg", glints.separation_deg, SEPARATIONS)? * 0.5).min(PI),
+            intensity_r: tint("primary.color", r.color, "primary.intensity", r.intensity)?,
+            intensity_tt: tint("transmission.color", tt.color, "transmission.intensity", tt.intensity)?,
+            intensity_trt: tint("secondary.color", trt.color, "secondary.intensity", trt.intensity)?,
+            intensity_g: glints.strength,
+        })
+    }
+}
+
+/// `value` in radians, if it is within `range` degrees.
+#[inline]
+fn degrees(field: &'static str, value: f32, range: [f32; 2]) -> Result<f32, ParamError> {
+    let [least, most] = range;
+    check((least..=most).contains(&value), ParamError::Degrees(field, value, range))?;
+    Ok(value * RAD_PER_DEG)
+}
+
+/// A shift in radians, within the exact bound of [`HairParams::new`] whatever the rounding.
+#[inline]
+fn shift(field: &'static str, value: f32) -> Result<f32, ParamError> {
+    Ok(degrees(field, value, SHIFTS)?.clamp(-FRAC_PI_2, FRAC_PI_2))
+}
+
+/// A width in radians; its smallest, 1.7e-4, is above [`MIN_WIDTH`](super::MIN_WIDTH).
+#[inline]
+fn width(field: &'static str, value: f32) -> Result<f32, ParamError> {
+    Ok(degrees(field, value, WIDTHS)?.min(MAX_WIDTH))
+}
+
+/// A colour times its intensity.
+#[inline]
+fn tint(
+    color_field: &'static str,
+    color: [f32; 3],
+    intensity_field: &'static str,
+    intensity: f32,
+) -> Result<[f32; 3], ParamError> {
+    check(is_intensity(intensity), ParamError::Scalar(intensity_field, intensity))?;
+    let mut rgb = [0.0; 3];
+    for (channel, (product, value)) in rgb.iter_mut().zip(color).enumerate() {
+        check(is_intensity(value), ParamError::Intensity(color_field, channel, value))?;
+        *product = value * intensity;
+        check(is_intensity(*product), ParamError::Overflow(color_field, channel, value))?;
+    }
+    Ok(rgb)
+}

@@ -1,0 +1,164 @@
+//! Named hair: everyday looks to start from.
+
+use super::{HairDesc, HairParams};
+use core::f32::consts::PI;
+
+/// What tells one preset from another, in degrees; the other shifts and widths follow from R (Marschner et al. 2003,
+/// table 1): `alpha_tt = -alpha_r / 2`, `alpha_trt = -3 alpha_r / 2`, `beta_tt = beta_r / 2`, `beta_trt = 2 beta_r`.
+struct Look {
+    alpha_r: f32,
+    beta_r: f32,
+    gamma_tt: f32,
+    gamma_g: f32,
+    phi_g: f32,
+    /// What one passage through the fibre leaves of red, green and blue.
+    pigment: [f32; 3],
+    reflected: f32,
+    /// Intensity of TT before the pigment, which it passes once.
+    transmitted: f32,
+    /// Intensity of TRT before the pigment, which it passes twice.
+    returned: f32,
+    glint: f32,
+}
+
+impl Look {
+    const fn params(self) -> HairParams {
+        let deg = PI / 180.0;
+        let [r, g, b] = self.pigment;
+        let (tt, trt) = (self.transmitted, self.returned);
+        HairParams(HairDesc {
+            alpha_r: self.alpha_r * deg,
+            alpha_tt: -0.5 * self.alpha_r * deg,
+            alpha_trt: -1.5 * self.alpha_r * deg,
+            beta_r: self.beta_r * deg,
+            beta_tt: 0.5 * self.beta_r * deg,
+            beta_trt: 2.0 * self.beta_r * deg,
+            gamma_tt: self.gamma_tt * deg,
+            gamma_g: self.gamma_g * deg,
+            phi_g: self.phi_g * deg,
+            intensity_r: [self.reflected; 3],
+            intensity_tt: [tt * r, tt * g, tt * b],
+            intensity_trt: [trt * r * r, trt * g * g, trt * b * b],
+            intensity_g: self.glint,
+        })
+    }
+}
+
+/// Shared by the presets; each names what differs from it.
+const BASE: Look = Look {
+    alpha_r: -7.5,
+    beta_r: 7.5,
+    gamma_tt: 10.0,
+    gamma_g: 10.0,
+    phi_g: 35.0,
+    pigment: [1.0; 3],
+    reflected: 0.025,
+    transmitted: 3.0,
+    returned: 0.1,
+    glint: 0.5,
+};
+
+const BLOND: HairParams = Look {
+    alpha_r: -7.0,
+    beta_r: 8.0,
+    gamma_g: 14.0,
+    pigment: [0.92, 0.76, 0.48],
+    reflected: 0.02,
+    transmitted: 2.5,
+    glint: 0.6,
+    ..BASE
+}
+.params();
+const BROWN: HairParams = Look { pigment: [0.6, 0.4, 0.24], glint: 0.8, ..BASE }.params();
+const RED: HairParams = Look { alpha_r: -7.0, gamma_g: 12.0, pigment: [0.8, 0.36, 0.14], glint: 0.7, ..BASE }.params();
+const BLACK: HairParams =
+    Look { alpha_r: -6.0, beta_r: 6.0, pigment: [0.14, 0.1, 0.08], reflected: 0.03, returned: 0.2, ..BASE }.params();
+const WHITE: HairParams = Look {
+    alpha_r: -8.0,
+    beta_r: 9.0,
+    gamma_tt: 12.0,
+    gamma_g: 18.0,
+    phi_g: 40.0,
+    pigment: [0.97, 0.96, 0.94],
+    reflected: 0.02,
+    transmitted: 1.6,
+    ..BASE
+}
+.params();
+
+/// Presets. Shifts and widths are in the range Marschner et al. 2003 (table 1) measured on everyday hair, glints in
+/// that of Sadeghi et al. 2010. Intensities are ours: but for [`default_set`](Self::default_set), the light a fibre
+/// returns, averaged over directions, is below what it receives in every channel (figures beside each, Gaussian
+/// model; test `params::presets_return_less_than_they_receive`). From grazing directions it may still return up to
+/// twice as much, as the model does not conserve energy: see [`Bsdf::conserving_scale`](crate::Bsdf::conserving_scale).
+impl HairParams {
+    /// Blond: bright, warm, translucent; `beta_r` 8 degrees, soft glints. Returns (.81 .62 .34) of the light.
+    #[inline]
+    #[must_use]
+    pub const fn blond() -> Self {
+        BLOND
+    }
+
+    /// Brown: `beta_r` 7.5 degrees, clear glints in a warm secondary highlight. Returns (.48 .30 .19) of the light.
+    #[inline]
+    #[must_use]
+    pub const fn brown() -> Self {
+        BROWN
+    }
+
+    /// Red: copper when lit from behind, `beta_r` 7.5 degrees. Returns (.70 .27 .13) of the light.
+    #[inline]
+    #[must_use]
+    pub const fn red() -> Self {
+        RED
+    }
+
+    /// Black: sleek, `beta_r` 6 degrees; all but the white primary highlight is absorbed. Returns (.12 .10 .09).
+    #[inline]
+    #[must_use]
+    pub const fn black() -> Self {
+        BLACK
+    }
+
+    /// White, as of an elderly person: rough, `beta_r` 9 degrees, hardly any pigment. Returns (.87 .85 .83).
+    #[inline]
+    #[must_use]
+    pub const fn white() -> Self {
+        WHITE
+    }
+
+    /// The default set of the efficiency figures, [`HairDesc::default`]: brown, highlights strong as an artist would
+    /// have them under direct light alone. It returns about (3.9 3.0 2.1) times the light: scale it for path tracing.
+    #[inline]
+    #[must_use]
+    pub const fn default_set() -> Self {
+        Self(HairDesc::DEFAULT)
+    }
+
+    /// Every preset with its name, for menus and test grids.
+    ///
+    /// ```
+    /// use hairis::HairParams;
+    /// assert!(HairParams::presets().contains(&("red", HairParams::red())));
+    /// ```
+    #[inline]
+    #[must_use]
+    pub const fn presets() -> [(&'static str, Self); 6] {
+        [
+            ("default", Self::default_set()),
+            ("blond", BLOND),
+            ("brown", BROWN),
+            ("red", RED),
+            ("black", BLACK),
+            ("white", WHITE),
+        ]
+    }
+}
+
+impl Default for HairParams {
+    /// [`HairParams::default_set`].
+    #[inline]
+    fn default() -> Self {
+        Self::default_set()
+    }
+}

@@ -1,0 +1,158 @@
+//! The two number types the textbook is written for.
+
+use core::fmt::Debug;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+mod sealed {
+    /// Keeps [`Real`](super::Real) to `f32` and `f64`.
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// `f32` or `f64`, with the elementary functions of `libm` (sealed).
+///
+/// ```
+/// use hairis::textbook::Real;
+/// fn full_turn<T: Real>() -> T {
+///     T::from_f64(2.0) * T::PI
+/// }
+/// assert!(full_turn::<f64>().to_f64().cos() == 1.0);
+/// ```
+pub trait Real:
+    sealed::Sealed
+    + Copy
+    + Debug
+    + Default
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// pi.
+    const PI: Self;
+    /// `value`, rounded for `f32`.
+    #[must_use]
+    fn from_f64(value: f64) -> Self;
+    /// `value`, exactly.
+    #[must_use]
+    fn from_f32(value: f32) -> Self;
+    /// The value as an `f64`, exactly.
+    #[must_use]
+    fn to_f64(self) -> f64;
+    /// Sine.
+    #[must_use]
+    fn sin(self) -> Self;
+    /// Cosine.
+    #[must_use]
+    fn cos(self) -> Self;
+    /// Tangent.
+    #[must_use]
+    fn tan(self) -> Self;
+    /// Arc sine.
+    #[must_use]
+    fn asin(self) -> Self;
+    /// Arc tangent.
+    #[must_use]
+    fn atan(self) -> Self;
+    /// Angle of the point (`x`, `self`).
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
+    /// Exponential.
+    #[must_use]
+    fn exp(self) -> Self;
+    /// Square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// `sqrt(self^2 + other^2)` without overflow.
+    #[must_use]
+    fn hypot(self, other: Self) -> Self;
+    /// Absolute value.
+    #[must_use]
+    fn abs(self) -> Self;
+    /// The smaller of two numbers; the one that is not NaN if one is.
+    #[must_use]
+    fn min(self, other: Self) -> Self;
+    /// The larger of two numbers; the one that is not NaN if one is.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+}
+
+macro_rules! real {
+    ($t:ident, $sin:ident, $cos:ident, $tan:ident, $asin:ident, $atan:ident, $atan2:ident, $exp:ident, $sqrt:ident,
+     $hypot:ident) => {
+        impl Real for $t {
+            const PI: Self = core::$t::consts::PI;
+            #[inline]
+            #[allow(
+                clippy::cast_possible_truncation,
+                trivial_numeric_casts,
+                reason = "constants are meant to be rounded to f32; the f64 twin of this function casts nothing"
+            )]
+            fn from_f64(value: f64) -> Self {
+                value as $t
+            }
+            #[inline]
+            fn from_f32(value: f32) -> Self {
+                Self::from(value)
+            }
+            #[inline]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline]
+            fn sin(self) -> Self {
+                libm::$sin(self)
+            }
+            #[inline]
+            fn cos(self) -> Self {
+                libm::$cos(self)
+            }
+            #[inline]
+            fn tan(self) -> Self {
+                libm::$tan(self)
+            }
+            #[inline]
+            fn asin(self) -> Self {
+                libm::$asin(self)
+            }
+            #[inline]
+            fn atan(self) -> Self {
+                libm::$atan(self)
+            }
+            #[inline]
+            fn atan2(self, x: Self) -> Self {
+                libm::$atan2(self, x)
+            }
+            #[inline]
+            fn exp(self) -> Self {
+                libm::$exp(self)
+            }
+            #[inline]
+            fn sqrt(self) -> Self {
+                libm::$sqrt(self)
+            }
+            #[inline]
+            fn hypot(self, other: Self) -> Self {
+                libm::$hypot(self, other)
+            }
+            #[inline]
+            fn abs(self) -> Self {
+                <$t>::abs(self)
+            }
+            #[inline]
+            fn min(self, other: Self) -> Self {
+                <$t>::min(self, other)
+            }
+            #[inline]
+            fn max(self, other: Self) -> Self {
+                <$t>::max(self, other)
+            }
+        }
+    };
+}
+
+real!(f32, sinf, cosf, tanf, asinf, atanf, atan2f, expf, sqrtf, hypotf);
+real!(f64, sin, cos, tan, asin, atan, atan2, exp, sqrt, hypot);
