@@ -3,4 +3,6 @@
 pub mod light;
 pub mod quadrature;
 pub mod sequence;
+pub mod speed;
 pub mod stats;
+pub mod subject;
