@@ -1,11 +1,12 @@
 //! The harness of `hairis`: what its binary does, as a library so that tests can call it.
 
+pub mod agreement;
 pub mod args;
 pub mod cmd;
 pub mod config;
+pub mod efficiency;
 pub mod error;
 pub mod figures;
-pub mod efficiency;
 pub mod light;
 pub mod machine;
 pub mod markup;
@@ -13,5 +14,6 @@ pub mod plot;
 pub mod quadrature;
 pub mod report;
 pub mod sequence;
+pub mod speed;
 pub mod stats;
 pub mod table;
