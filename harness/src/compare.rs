@@ -116,9 +116,7 @@ const SAMPLES_A_POINT: f64 = 16.0;
 
 /// Time of a sample on eight lanes, set-up included: a uniform direction is free but for its evaluation.
 fn sample_costs(speed: &SpeedReport) -> Option<SampleCosts> {
-    let ns = |op, model: ModelKind| {
-        speed.row(op, model.name(), "eight lanes", speed.detected_level).map(|row| row.ns)
-    };
+    let ns = |op, model: ModelKind| speed.row(op, model.name(), "eight lanes", speed.detected_level).map(|row| row.ns);
     let costs = |model| {
         let setup = ns(Op::Prepare, model)? / SAMPLES_A_POINT;
         Some([ns(Op::EvalPdf, model)? + setup, ns(Op::Sample, model)? + setup])
@@ -130,9 +128,10 @@ impl Comparison {
     /// What failed: wrong answers, errors beyond their bounds, biased estimates. Empty if nothing did.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
-        let slow = self.speed.rows.iter().filter(|row| !row.passed).map(|row| {
-            format!("speed: {} {} {} {} gave wrong answers", row.op, row.model, row.contender, row.level)
-        });
+        let slow =
+            self.speed.rows.iter().filter(|row| !row.passed).map(|row| {
+                format!("speed: {} {} {} {} gave wrong answers", row.op, row.model, row.contender, row.level)
+            });
         let far = self.agreement.iter().filter(|row| !row.passed).map(|row| {
             format!(
                 "agreement: {} {} {} {} {}: {:.2e} is beyond {:.0e}",

@@ -3,6 +3,7 @@
 pub mod agreement;
 pub mod args;
 pub mod cmd;
+pub mod compare;
 pub mod config;
 pub mod efficiency;
 pub mod error;
@@ -16,4 +17,5 @@ pub mod report;
 pub mod sequence;
 pub mod speed;
 pub mod stats;
+pub mod subject;
 pub mod table;

@@ -56,29 +56,39 @@ pub(super) fn speed(of: &Comparison) -> Figure {
 
 /// V against the width of the primary highlight.
 pub(super) fn widths(of: &Comparison) -> Vec<Figure> {
-    of.efficiency.settings.theta_o_deg.iter().take(3).map(|theta_o| {
-        let title = format!("Variance against width, θ_o = {theta_o}°");
-        let mut chart =
-            LineChart::new(title, Axis::linear("β_R (°)").from_zero(), Axis::log("relative variance of one sample V"));
-        for model in ModelKind::ALL {
-            for sampler in Sampler::ALL {
-                let rows = of.efficiency.beta_sweep.iter().filter(|row| {
-                    (row.model, row.sampler) == (model, sampler) && row.theta_o_deg == *theta_o
-                });
-                let points = rows.map(|row| {
-                    Point::new(f64::from(row.beta_r_deg), row.v.value).with_error(row.v.standard_error)
-                });
-                chart = chart.series(Series::new(format!("{}, {}", model.name(), sampler.name()), points));
+    of.efficiency
+        .settings
+        .theta_o_deg
+        .iter()
+        .take(3)
+        .map(|theta_o| {
+            let title = format!("Variance against width, θ_o = {theta_o}°");
+            let mut chart = LineChart::new(
+                title,
+                Axis::linear("β_R (°)").from_zero(),
+                Axis::log("relative variance of one sample V"),
+            );
+            for model in ModelKind::ALL {
+                for sampler in Sampler::ALL {
+                    let rows = of
+                        .efficiency
+                        .beta_sweep
+                        .iter()
+                        .filter(|row| (row.model, row.sampler) == (model, sampler) && row.theta_o_deg == *theta_o);
+                    let points = rows
+                        .map(|row| Point::new(f64::from(row.beta_r_deg), row.v.value).with_error(row.v.standard_error));
+                    chart = chart.series(Series::new(format!("{}, {}", model.name(), sampler.name()), points));
+                }
             }
-        }
-        Figure::new(
-            chart.svg(),
-            format!(
-                "Relative variance of one sample under constant light, seen from {theta_o}°, with β_TT = β_R/2 and \
+            Figure::new(
+                chart.svg(),
+                format!(
+                    "Relative variance of one sample under constant light, seen from {theta_o}°, with β_TT = β_R/2 and \
                  β_TRT = 2 β_R; error bars are one standard error."
-            ),
-        )
-    }).collect()
+                ),
+            )
+        })
+        .collect()
 }
 
 /// The error of the mean against the number of samples.
@@ -93,8 +103,7 @@ pub(super) fn convergence(of: &Comparison) -> Vec<Figure> {
     for light in lights {
         for model in ModelKind::ALL {
             let title = format!("Convergence, {} model, {light}", model.name());
-            let mut chart =
-                LineChart::new(title, Axis::log("samples N"), Axis::log("root mean square relative error"));
+            let mut chart = LineChart::new(title, Axis::log("samples N"), Axis::log("root mean square relative error"));
             let mut first = None;
             for sampler in Sampler::ALL {
                 for sequence in SequenceKind::ALL {

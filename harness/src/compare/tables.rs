@@ -190,7 +190,8 @@ fn cost(of: &Comparison) -> Table {
         "Effective samples in 1000, samples for an error of 1%, and efficiency 1/(V · µs)",
         &[SequenceKind::Independent],
         |row| {
-            let efficiency = row.efficiency.map_or_else(String::new, |e| format!(" · {}", number::plain(e.value * 1e3, 3)));
+            let efficiency =
+                row.efficiency.map_or_else(String::new, |e| format!(" · {}", number::plain(e.value * 1e3, 3)));
             let (ess, n) = (row.ess_per_1000.value, row.samples_for_1_percent.value);
             format!("{} · {}{efficiency}", number::plain(ess, 3), number::si(n.ceil(), ""))
         },
@@ -219,12 +220,13 @@ fn light_sampling(of: &Comparison) -> Table {
             continue;
         }
         seen.push(key);
-        let mut cells =
-            vec![first.model.name().to_owned(), first.light.clone(), number::plain(first.theta_o_deg, 3)];
+        let mut cells = vec![first.model.name().to_owned(), first.light.clone(), number::plain(first.theta_o_deg, 3)];
         for name in &names {
-            let row = of.efficiency.mis_rows.iter().find(|row| {
-                (row.model, &row.light, row.theta_o_deg.to_bits()) == key && row.name == *name
-            });
+            let row = of
+                .efficiency
+                .mis_rows
+                .iter()
+                .find(|row| (row.model, &row.light, row.theta_o_deg.to_bits()) == key && row.name == *name);
             cells.push(row.map_or_else(String::new, |row| estimate(&row.v)));
         }
         table.push(cells);
