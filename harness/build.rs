@@ -5,48 +5,21 @@ use std::process::Command;
 
 fn main() {
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
-    set(
-        "RUSTC",
-        &run(&rustc, &["--version"]).unwrap_or_else(unknown),
-    );
-    set(
-        "OPT_LEVEL",
-        &std::env::var("OPT_LEVEL").unwrap_or_else(|_| unknown()),
-    );
+    set("RUSTC", &run(&rustc, &["--version"]).unwrap_or_else(unknown));
+    set("OPT_LEVEL", &std::env::var("OPT_LEVEL").unwrap_or_else(|_| unknown()));
 
     // Only a repository that tracks this very file is ours: an unpacked copy may lie inside somebody else's.
     let ours = run("git", &["ls-files", "--error-unmatch", "build.rs"]).is_some();
     let commit = ours.then(|| run("git", &["rev-parse", "HEAD"])).flatten();
     // No optional locks: a refreshed index would change under the user's hands.
-    let status = ours
-        .then(|| {
-            run(
-                "git",
-                &[
-                    "--no-optional-locks",
-                    "status",
-                    "--porcelain",
-                    "--untracked-files=no",
-                ],
-            )
-        })
-        .flatten();
+    let status =
+        ours.then(|| run("git", &["--no-optional-locks", "status", "--porcelain", "--untracked-files=no"])).flatten();
     set("COMMIT", &commit.unwrap_or_else(unknown));
-    set(
-        "DIRTY",
-        status.map_or("unknown", |s| if s.is_empty() { "no" } else { "yes" }),
-    );
+    set("DIRTY", status.map_or("unknown", |s| if s.is_empty() { "no" } else { "yes" }));
 
     // Commits, checkouts and edits of what is compiled run this again, and nothing else does: these all rebuild the package anyway, save a commit.
     println!("cargo::rerun-if-changed=build.rs");
-    for path in [
-        "Cargo.toml",
-        "src",
-        "../Cargo.toml",
-        "../Cargo.lock",
-        "../kernels/src",
-        "../variants/src",
-    ] {
+    for path in ["Cargo.toml", "src", "../Cargo.toml", "../Cargo.lock", "../kernels/src", "../variants/src"] {
         watch(path);
     }
     if ours {
@@ -66,10 +39,7 @@ fn watch(path: &str) {
 }
 
 fn set(name: &str, value: &str) {
-    println!(
-        "cargo::rustc-env=HAIRIS_BUILD_{name}={}",
-        value.lines().next().unwrap_or_default()
-    );
+    println!("cargo::rustc-env=HAIRIS_BUILD_{name}={}", value.lines().next().unwrap_or_default());
 }
 
 fn unknown() -> String {
@@ -79,8 +49,5 @@ fn unknown() -> String {
 /// What a command prints, trimmed; `None` when it is missing or fails.
 fn run(program: &str, args: &[&str]) -> Option<String> {
     let output = Command::new(program).args(args).output().ok()?;
-    output
-        .status
-        .success()
-        .then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }

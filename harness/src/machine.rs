@@ -65,11 +65,8 @@ impl Machine {
             Some(true) => "+changes",
             _ => "",
         };
-        let features = if self.target_features.is_empty() {
-            "baseline".to_owned()
-        } else {
-            self.target_features.join("+")
-        };
+        let features =
+            if self.target_features.is_empty() { "baseline".to_owned() } else { self.target_features.join("+") };
         format!(
             "{}, {} logical cores, {} {}, compiled for {features}, {}, commit {commit}{dirty}",
             self.cpu, self.logical_cores, self.os, self.arch, self.rustc
@@ -87,16 +84,7 @@ fn cpu_name() -> String {
 
 /// The first name a `cpuinfo` text gives: "model name" on x86, others on ARM, POWER and RISC-V.
 fn name_in_cpuinfo(text: &str) -> Option<String> {
-    [
-        "model name",
-        "Model",
-        "Hardware",
-        "cpu",
-        "uarch",
-        "Processor",
-    ]
-    .iter()
-    .find_map(|key| {
+    ["model name", "Model", "Hardware", "cpu", "uarch", "Processor"].iter().find_map(|key| {
         text.lines().find_map(|line| {
             let (name, value) = line.split_once(':')?;
             let value = value.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -121,10 +109,7 @@ fn target_features() -> Vec<&'static str> {
         ("sve", cfg!(target_feature = "sve")),
         ("simd128", cfg!(target_feature = "simd128")),
     ];
-    known
-        .into_iter()
-        .filter_map(|(name, on)| on.then_some(name))
-        .collect()
+    known.into_iter().filter_map(|(name, on)| on.then_some(name)).collect()
 }
 
 #[cfg(test)]
@@ -133,16 +118,11 @@ mod tests {
 
     #[test]
     fn cpu_names_are_found_in_the_dialects_of_cpuinfo() {
-        let x86 = "processor\t: 0\nvendor_id\t: X\nmodel\t\t: 85\nmodel name\t: Some(R)   CPU @ 2.70GHz\nflags\t: a b\n";
-        assert_eq!(
-            name_in_cpuinfo(x86).as_deref(),
-            Some("Some(R) CPU @ 2.70GHz")
-        );
+        let x86 =
+            "processor\t: 0\nvendor_id\t: X\nmodel\t\t: 85\nmodel name\t: Some(R)   CPU @ 2.70GHz\nflags\t: a b\n";
+        assert_eq!(name_in_cpuinfo(x86).as_deref(), Some("Some(R) CPU @ 2.70GHz"));
         let arm = "processor\t: 0\nBogoMIPS\t: 108.00\nHardware\t: BCM2711\nModel\t: Raspberry Pi 4 Model B\n";
-        assert_eq!(
-            name_in_cpuinfo(arm).as_deref(),
-            Some("Raspberry Pi 4 Model B")
-        );
+        assert_eq!(name_in_cpuinfo(arm).as_deref(), Some("Raspberry Pi 4 Model B"));
         assert_eq!(
             name_in_cpuinfo("cpu\t\t: POWER9, altivec supported\n").as_deref(),
             Some("POWER9, altivec supported")
@@ -155,38 +135,18 @@ mod tests {
     fn the_current_machine_is_complete() {
         let m = Machine::current();
         assert!(!m.cpu.is_empty() && !m.os.is_empty() && !m.arch.is_empty() && m.logical_cores > 0);
-        assert!(
-            m.rustc == "unknown" || m.rustc.starts_with("rustc "),
-            "{}",
-            m.rustc
-        );
+        assert!(m.rustc == "unknown" || m.rustc.starts_with("rustc "), "{}", m.rustc);
         let hash = m.commit.len() >= 40 && m.commit.bytes().all(|b| b.is_ascii_hexdigit());
         assert!(m.commit == "unknown" || hash, "{}", m.commit);
-        assert_eq!(
-            m.target_features.contains(&"sse2"),
-            cfg!(target_feature = "sse2")
-        );
+        assert_eq!(m.target_features.contains(&"sse2"), cfg!(target_feature = "sse2"));
         let summary = m.summary();
-        assert!(
-            summary.contains(&m.cpu) && !summary.contains('\n'),
-            "{summary}"
-        );
+        assert!(summary.contains(&m.cpu) && !summary.contains('\n'), "{summary}");
     }
 
     #[test]
     fn it_serialises() {
         let json = serde_json::to_value(Machine::current()).expect("plain data");
-        for key in [
-            "cpu",
-            "logical_cores",
-            "os",
-            "arch",
-            "rustc",
-            "opt_level",
-            "commit",
-            "dirty",
-            "target_features",
-        ] {
+        for key in ["cpu", "logical_cores", "os", "arch", "rustc", "opt_level", "commit", "dirty", "target_features"] {
             assert!(json.get(key).is_some(), "{key}");
         }
     }
@@ -197,11 +157,7 @@ mod tests {
         m.commit = "0123456789abcdef0123456789abcdef01234567";
         m.dirty = Some(true);
         m.target_features.clear();
-        assert!(
-            m.summary().ends_with("commit 0123456789ab+changes"),
-            "{}",
-            m.summary()
-        );
+        assert!(m.summary().ends_with("commit 0123456789ab+changes"), "{}", m.summary());
         assert!(m.summary().contains("compiled for baseline"));
     }
 }
