@@ -182,7 +182,7 @@ pub(crate) struct Worst {
 impl Worst {
     pub(crate) fn see(&mut self, error: f64, at: impl FnOnce() -> String) {
         // NaN is the worst of all.
-        if !(error <= self.error) {
+        if error.is_nan() || error > self.error {
             *self = Self { error, at: at() };
         }
     }

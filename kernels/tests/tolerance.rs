@@ -10,7 +10,7 @@ pub(crate) const ATAN2_UPPER_RAD: f64 = 3.7e-7; // 3.11e-7, beside pi
 pub(crate) const SIN_HALF_TURN: f64 = 2.7; // 2.31, x in [-pi/2, pi/2]
 pub(crate) const COS_HALF_TURN: f64 = 2.7; // 2.22, up to its zero
 pub(crate) const SIN_COS_HALF_TURN_ABS: f64 = 1.6e-7; // 1.38e-7
-pub(crate) const MATH_LANES: f64 = 2.7; // 0 where neither fuses
+pub(crate) const MATH_LANES: f64 = 2.4; // 2.0; 0 where neither fuses
 
 // S and density against the textbook, relative, further than 1e-3 rad from the axis; then those of a lobe
 // alone.
@@ -42,7 +42,7 @@ pub(crate) const ALBEDO: f64 = 1.3e-4; // 1.0e-4, widths of 60 degrees seen alon
 // Reciprocity of S, relative, wide and grid materials.
 pub(crate) const RECIPROCITY: f64 = 3.2e-5; // 2.5e-5
 // Density of a sample against that of its direction, relative, times `width / (width + 0.1)` with the least width.
-pub(crate) const SAMPLE_EVAL: f64 = 2.2e-6; // 1.7e-6
+pub(crate) const SAMPLE_EVAL: f64 = 1.6e-6; // 1.2e-6
 // A weight over its proven bound.
 pub(crate) const WEIGHT_BOUND: f64 = 1.0 + 6e-7; // 1 + 3.3e-7
 // A frame: dot products, lengths, handedness.

@@ -3,7 +3,7 @@
 
 // S and density against the textbook, relative, further than 1e-3 rad from the axis; then those of a lobe
 // alone.
-pub(crate) const GRID: [f64; 4] = [1.2e-5, 1.2e-5, 1.5e-5, 1.5e-5]; // 9.8e-6, 9.6e-6, 1.2e-5, 1.2e-5; the narrowest is 1 degree
+pub(crate) const GRID: [f64; 4] = [1e-5, 1e-5, 1.5e-5, 1.5e-5]; // 9.8e-6, 9.6e-6, 1.2e-5, 1.2e-5; the narrowest is 1 degree
 pub(crate) const NARROW: [f64; 4] = [3.4e-5, 3.2e-5, 3.9e-5, 3.9e-5]; // 2.7e-5, 2.5e-5, 3.1e-5, 3.1e-5
 pub(crate) const WIDE: [f64; 4] = [9.5e-7, 8e-7, 1.2e-6, 1.2e-6]; // 7.3e-7, 6.2e-7, 9.1e-7, 9.1e-7
 
