@@ -173,13 +173,19 @@ pub(crate) fn difference_fused<L: Lanes>(a: L, b: L, c: L, d: L) -> L {
     a.mul_add(b, -product) - left_out
 }
 
-/// [`Lanes::difference_of_products`] from factors whose upper half has 12 bits, after Dekker: products of upper
-/// halves are exact.
+/// [`Lanes::difference_of_products`] from factors split in two halves of 12 bits, after Dekker.
 #[inline(always)]
 pub(crate) fn difference_split<L: Lanes>(a: [L; 2], b: [L; 2], c: [L; 2], d: [L; 2]) -> L {
-    let upper = a[0] * b[0] - c[0] * d[0];
-    let mixed = (a[0] * b[1] - c[0] * d[1]) + (a[1] * b[0] - c[1] * d[0]);
-    upper + (mixed + (a[1] * b[1] - c[1] * d[1]))
+    let (left, right) = (product_split(a, b), product_split(c, d));
+    (left[0] - right[0]) + (left[1] - right[1])
+}
+
+/// A product, and what its rounding leaves out: exact, as the products of halves are.
+#[inline(always)]
+fn product_split<L: Lanes>(a: [L; 2], b: [L; 2]) -> [L; 2] {
+    let product = (a[0] + a[1]) * (b[0] + b[1]);
+    let left_out = ((a[0] * b[0] - product) + a[0] * b[1]) + a[1] * b[0];
+    [product, left_out + a[1] * b[1]]
 }
 
 /// Bits of the sign, the exponent and the upper 11 of the fraction.

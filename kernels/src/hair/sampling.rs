@@ -21,6 +21,8 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let x = longitude.invert(xi[1]) * C::pick(&gather.beta, choice);
     let half_theta_i = c(-FRAC_PI_4).max(c(FRAC_PI_4).min(x - C::pick(&gather.shift, choice)));
     let (sin_theta_i, cos_theta_i) = sin_cos_half_turn(half_theta_i + half_theta_i);
+    // At the poles the cosine is the rounding of pi/2, of either sign: below 0 the density would be too.
+    let cos_theta_i = zero.max(cos_theta_i);
 
     // Azimuth of TT and the glints: psi is half of phi - pi or of phi. The second half of xi mirrors the first.
     let g = xi[2] + xi[2];

@@ -1,0 +1,156 @@
+//! The elementary functions against double precision, over dense scans of their ranges.
+
+use crate::support::{Draws, Worst, narrow};
+use crate::tolerance as bound;
+use core::f32::consts::{FRAC_PI_2, PI};
+use hairis::math::{atan_unit, atan2_upper, exp2_neg, sin_cos_half_turn};
+use hairis::wide::f32x8;
+use hairis::{Lanes, Level};
+
+const POINTS: u32 = 1 << 20;
+
+/// Distance in units of the last place of `want` as a float, denormals counting as the smallest normal.
+fn ulp(got: f32, want: f64) -> f64 {
+    let exponent = want.abs().max(f64::from(f32::MIN_POSITIVE)).log2().floor();
+    (f64::from(got) - want).abs() / (exponent - 23.0).exp2()
+}
+
+/// `POINTS` numbers from `lo` to `hi`, both included, and special ones in between.
+fn scan(lo: f32, hi: f32) -> impl Iterator<Item = f32> {
+    let (a, b) = (f64::from(lo), f64::from(hi));
+    let even = (0..=POINTS).map(move |i| narrow(a + (b - a) * f64::from(i) / f64::from(POINTS)).clamp(lo, hi));
+    // Every magnitude down to the denormals, on both sides of 0.
+    let small = (0..2048).flat_map(move |i| {
+        let x = hi * narrow((-f64::from(i) / 13.0).exp2());
+        [x, -x, 0.0, -0.0, f32::from_bits(i), f32::MIN_POSITIVE]
+    });
+    even.chain(small.filter(move |x| (lo..=hi).contains(x)))
+}
+
+/// Both lanes: the scalar result, after it was compared with that of every position of the eight.
+fn both(x: [f32; 2], one: impl Fn([f32; 2]) -> f32, eight: impl Fn([f32x8; 2]) -> f32x8, worst: &mut Worst) -> f32 {
+    let scalar = one(x);
+    let wide = eight(x.map(f32x8::splat));
+    for lane in wide.to_array() {
+        if Level::portable().fuses() {
+            worst.see(ulp(lane, f64::from(scalar)), || format!("{x:?}"));
+        } else {
+            assert_eq!(lane.to_bits(), scalar.to_bits(), "eight lanes and one at {x:?}: {lane} {scalar}");
+        }
+    }
+    scalar
+}
+
+fn exp<L: Lanes>([x, _]: [L; 2]) -> L {
+    exp2_neg(x)
+}
+fn atan<L: Lanes>([x, _]: [L; 2]) -> L {
+    atan_unit(x)
+}
+fn atan2<L: Lanes>([y, x]: [L; 2]) -> L {
+    atan2_upper(y, x)
+}
+fn sin<L: Lanes>([x, _]: [L; 2]) -> L {
+    sin_cos_half_turn(x).0
+}
+fn cos<L: Lanes>([x, _]: [L; 2]) -> L {
+    sin_cos_half_turn(x).1
+}
+
+#[test]
+fn exp2_neg_is_accurate_and_then_zero() {
+    let (mut worst, mut lanes) = (Worst::default(), Worst::default());
+    for x in scan(0.0, 114.0).chain(scan(0.0, 2.0)) {
+        let got = both([x, 0.0], exp, exp, &mut lanes);
+        worst.see(ulp(got, (-f64::from(x)).exp2()), || format!("{x}"));
+    }
+    worst.check("EXP2_NEG", bound::EXP2_NEG);
+    lanes.check("EXP2_NEG_LANES", bound::MATH_LANES);
+    let mut last = 1.0;
+    for x in scan(114.0, 130.0).filter(|x| *x >= 114.0) {
+        let got = exp2_neg(x);
+        assert!(got >= 0.0 && got <= (-113.9_f32).exp2(), "2^-{x} is {got}");
+        assert!(x < 115.6 || got == 0.0, "2^-{x} is {got}, not 0");
+        assert!(got == 0.0 || got >= 0.5e-35, "2^-{x} is {got}, almost a denormal");
+        last = got;
+    }
+    assert!(last == 0.0, "2^-130");
+    for x in [130.0, 1e4, 8e6, 1e30, f32::MAX, f32::INFINITY] {
+        assert_eq!(exp2_neg(x), 0.0, "2^-{x}");
+        assert_eq!(exp2_neg(f32x8::splat(x)), f32x8::ZERO, "2^-{x}, eight lanes");
+    }
+    assert_eq!((exp2_neg(0.0_f32), exp2_neg(-0.0_f32)), (1.0, 1.0), "2^0");
+    assert!(exp2_neg(f32::NAN).is_nan(), "2^-NaN");
+    assert!(exp2_neg(f32x8::splat(f32::NAN)).to_array().iter().all(|x| x.is_nan()), "2^-NaN, eight lanes");
+}
+
+#[test]
+fn atan_unit_is_accurate() {
+    let (mut worst, mut absolute, mut lanes) = (Worst::default(), Worst::default(), Worst::default());
+    for x in scan(-1.0, 1.0) {
+        let (got, want) = (both([x, 0.0], atan, atan, &mut lanes), f64::from(x).atan());
+        worst.see(ulp(got, want), || format!("{x:e}"));
+        absolute.see((f64::from(got) - want).abs(), || format!("{x:e}"));
+    }
+    worst.check("ATAN_UNIT", bound::ATAN_UNIT);
+    absolute.check("ATAN_UNIT_RAD", bound::ATAN_UNIT_RAD);
+    lanes.check("ATAN_UNIT_LANES", bound::MATH_LANES);
+    assert!(atan_unit(f32::NAN).is_nan(), "NaN");
+    assert_eq!(atan_unit(0.0_f32), 0.0, "0");
+}
+
+#[test]
+fn atan2_upper_is_accurate_at_every_magnitude() {
+    let (mut worst, mut absolute, mut lanes) = (Worst::default(), Worst::default(), Worst::default());
+    let mut draws = Draws(5);
+    for i in 0..POINTS {
+        let angle = match i % 4 {
+            0 => draws.scale(1e-9, 1.0),
+            1 => f64::from(PI) - draws.scale(1e-6, 1.0),
+            2 => f64::from(FRAC_PI_2) + draws.sign() * draws.scale(1e-6, 1.0),
+            _ => draws.between(0.0, f64::from(PI)),
+        };
+        let size = draws.scale(1e-15, 1e15);
+        let (y, x) = (narrow(size * angle.sin()).abs(), narrow(size * angle.cos()));
+        let (got, want) = (both([y, x], atan2, atan2, &mut lanes), f64::from(y).atan2(f64::from(x)));
+        worst.see(ulp(got, want), || format!("y {y:e} x {x:e}"));
+        absolute.see((f64::from(got) - want).abs(), || format!("y {y:e} x {x:e}"));
+    }
+    worst.check("ATAN2_UPPER", bound::ATAN2_UPPER);
+    absolute.check("ATAN2_UPPER_RAD", bound::ATAN2_UPPER_RAD);
+    lanes.check("ATAN2_UPPER_LANES", bound::MATH_LANES);
+    let exact = [
+        (0.0, 0.0, 0.0),
+        (0.0, -0.0, 0.0),
+        (0.0, 1.0, 0.0),
+        (0.0, -1.0, PI),
+        (1.0, 0.0, FRAC_PI_2),
+        (1.0, -0.0, FRAC_PI_2),
+        (f32::MAX, 1.0, FRAC_PI_2),
+        (1.0, f32::MIN, PI),
+    ];
+    for (y, x, want) in exact {
+        assert_eq!(atan2_upper(y, x), want, "atan2({y}, {x})");
+    }
+}
+
+#[test]
+fn sine_and_cosine_are_accurate_where_they_vanish() {
+    let (mut sine, mut cosine, mut absolute) = (Worst::default(), Worst::default(), Worst::default());
+    let (mut sine_lanes, mut cosine_lanes) = (Worst::default(), Worst::default());
+    let near_the_pole = (0..=4096).map(|i| f32::from_bits(FRAC_PI_2.to_bits() - i));
+    for x in scan(-FRAC_PI_2, FRAC_PI_2).chain(near_the_pole) {
+        let (s, c) = (both([x, 0.0], sin, sin, &mut sine_lanes), both([x, 0.0], cos, cos, &mut cosine_lanes));
+        let (want_s, want_c) = f64::from(x).sin_cos();
+        sine.see(ulp(s, want_s), || format!("{x:e}"));
+        cosine.see(ulp(c, want_c), || format!("{x:e}"));
+        absolute.see((f64::from(s) - want_s).abs().max((f64::from(c) - want_c).abs()), || format!("{x:e}"));
+    }
+    sine.check("SIN_HALF_TURN", bound::SIN_HALF_TURN);
+    cosine.check("COS_HALF_TURN", bound::COS_HALF_TURN);
+    absolute.check("SIN_COS_HALF_TURN_ABS", bound::SIN_COS_HALF_TURN_ABS);
+    sine_lanes.check("SIN_LANES", bound::MATH_LANES);
+    cosine_lanes.check("COS_LANES", bound::MATH_LANES);
+    assert_eq!(sin_cos_half_turn(0.0_f32), (0.0, 1.0), "at 0");
+    assert!(sin_cos_half_turn(f32::NAN).0.is_nan(), "NaN");
+}

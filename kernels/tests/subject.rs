@@ -1,0 +1,17 @@
+//! The model under test: the published one. The tests that name [`crate::subject`] are run again, word for word, by
+//! the package of variants on the bell it adds.
+
+use hairis::textbook::Shape;
+use hairis::{Gaussian, Hair};
+
+/// The bell.
+pub(crate) type Subject = Gaussian;
+/// The same bell in the textbook.
+pub(crate) const SHAPE: Shape = Shape::Gaussian;
+/// The bell over the Cauchy value at its worst: `exp(-x^2/2) (1 + x^2)` at `x = 1`, `2 / sqrt(e)`.
+pub(crate) const OVER_CAUCHY: f64 = 1.213_061_319_425_267;
+
+/// Every form of the model, with its factor on the widths.
+pub(crate) fn subjects() -> Vec<(Hair<Subject>, f32)> {
+    vec![(Hair(Gaussian), 1.0)]
+}

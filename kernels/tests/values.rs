@@ -1,0 +1,79 @@
+//! Values, densities and lobes against the textbook in double precision, one lane and eight, on every level.
+
+use crate::support::{Kind, Worst, for_each_point, packet, relative};
+use crate::tolerance as bound;
+use hairis::{Eval, Level, Lobe};
+
+/// Below this share of 1 per steradian a Gaussian is compared absolutely: it is cut to 0 at `2^-115` of its peak.
+const FLOOR: f64 = 1e-20;
+
+/// Largest errors of S and of the density over the materials of a kind.
+fn scan(kind: Kind, per_point: usize) -> [Worst; 4] {
+    let mut worst: [Worst; 4] = Default::default();
+    for_each_point(kind, |bsdf, textbook, point| {
+        let gather = bsdf.prepare(point.wo);
+        for eight in point.directions(per_point).chunks(8) {
+            let wi = packet(eight);
+            let wide: Vec<_> =
+                Level::available().map(|level| (level, bsdf.prepare(point.wo).eval_pdf8_at(level, &wi))).collect();
+            let wide_lobes = gather.lobes8(&wi);
+            for (lane, wi) in eight.iter().enumerate() {
+                let d = crate::support::double(*wi);
+                let (value, pdf) = (textbook.eval(d), textbook.pdf(d));
+                let (lobe_values, lobe_pdfs) = (textbook.lobe_values(d), textbook.lobe_pdfs(d));
+                let mut see = |got: Eval, level: &str| {
+                    let at = || format!("{level} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
+                    for c in 0..3 {
+                        worst[0].see(relative(got.value[c], value[c], FLOOR), at);
+                    }
+                    worst[1].see(relative(got.pdf, pdf, 0.0), at);
+                };
+                see(gather.eval_pdf(*wi), "scalar");
+                for (level, eval) in &wide {
+                    see(eval.lane(lane), level.name());
+                }
+                let scalar = gather.lobes(*wi);
+                for lobe in Lobe::ALL {
+                    let eight = &wide_lobes[lobe];
+                    let wide = [eight.value.as_array()[lane], eight.pdf.as_array()[lane]];
+                    for [value, pdf] in [[scalar[lobe].value, scalar[lobe].pdf], wide] {
+                        let at = || format!("{lobe:?} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
+                        worst[2].see(relative(value, lobe_values[lobe], FLOOR), at);
+                        worst[3].see(relative(pdf, lobe_pdfs[lobe], f64::MIN_POSITIVE), at);
+                    }
+                }
+            }
+        }
+    });
+    worst
+}
+
+#[test]
+fn values_on_the_grid() {
+    let [s, pdf, lobe, lobe_pdf] = scan(Kind::Grid, 64);
+    let [s_bound, pdf_bound] = bound::GRID;
+    s.check("GRID S", s_bound);
+    pdf.check("GRID pdf", pdf_bound);
+    lobe.check("GRID S of a lobe", s_bound);
+    lobe_pdf.check("GRID pdf of a lobe", pdf_bound);
+}
+
+#[test]
+fn values_of_narrow_lobes() {
+    let [s, pdf, lobe, lobe_pdf] = scan(Kind::Narrow, 4096);
+    let [s_bound, pdf_bound] = bound::NARROW;
+    s.check("NARROW S", s_bound);
+    pdf.check("NARROW pdf", pdf_bound);
+    lobe.check("NARROW S of a lobe", s_bound);
+    lobe_pdf.check("NARROW pdf of a lobe", pdf_bound);
+}
+
+#[test]
+fn values_of_wide_lobes() {
+    let [s, pdf, lobe, lobe_pdf] = scan(Kind::Wide, 4096);
+    let [s_bound, pdf_bound] = bound::WIDE;
+    s.check("WIDE S", s_bound);
+    pdf.check("WIDE pdf", pdf_bound);
+    lobe.check("WIDE S of a lobe", s_bound);
+    lobe_pdf.check("WIDE pdf of a lobe", pdf_bound);
+}
