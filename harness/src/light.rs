@@ -1,7 +1,7 @@
 //! Lights for the comparison: functions of direction alone, infinitely far away.
 //!
-//! World frame: y is up. With the fibre along world x, the fibre frame (u, v, w) is the world frame (x, y, z), and [`fibre_angles`](crate::quadrature::fibre_angles)
-//! of a world direction are its inclination and azimuth. Radiance is linear RGB with the Rec. 709 primaries, in arbitrary but common units.
+//! World frame: y is up. With the fibre along world x, the fibre frame (u, v, w) is the world frame (x, y, z), and
+//! [`fibre_angles`](crate::quadrature::fibre_angles) of a world direction are its inclination and azimuth. Radiance is linear RGB with the Rec. 709 primaries, in arbitrary but common units.
 
 mod constant;
 mod environment;

@@ -1,6 +1,7 @@
 //! Which instruction set runs: the only place that picks a backend at run time.
 #![allow(unsafe_code, reason = "calls into functions of target features that a `Level` proves present")]
 
+use crate::batch::{self, Row};
 use crate::model::{Eval8, Hit8, LobeEval8, Sample8};
 use crate::{Broadcast, Hit, Model, PerLobe, Vec3x, Vec3x8};
 use core::fmt;
@@ -73,7 +74,7 @@ impl Level {
         match self.0 {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Kind::Avx2 => true,
-            Kind::Portable => cfg!(any(target_feature = "fma", target_arch = "aarch64")),
+            Kind::Portable => crate::lanes::portable::FUSES,
         }
     }
 }
@@ -169,4 +170,30 @@ entry! {
 entry! {
     /// Eight sampled directions.
     sample8(gather: &M::Gather<C>, xi: &[f32x8; 3]) -> Sample8, sample
+}
+
+/// `N` numbers for each three of a batch.
+#[inline]
+pub(crate) fn batch<M: Model, R: Row<N>, const N: usize>(
+    level: Level,
+    gather: &M::Gather<f32>,
+    inputs: [&[f32]; 3],
+    outputs: &mut [&mut [f32]; N],
+) {
+    match level.0 {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Kind::Avx2 => {
+            #[target_feature(enable = "avx2,fma")]
+            fn avx2<M: Model, R: Row<N>, const N: usize>(
+                gather: &M::Gather<f32>,
+                inputs: [&[f32]; 3],
+                outputs: &mut [&mut [f32]; N],
+            ) {
+                batch::run::<M, R, Avx2, f32, N>(gather, inputs, outputs);
+            }
+            // SAFETY: a `Level` of this kind is made only where `avx2_fma` found both features.
+            unsafe { avx2::<M, R, N>(gather, inputs, outputs) }
+        }
+        Kind::Portable => batch::run::<M, R, f32x8, f32, N>(gather, inputs, outputs),
+    }
 }

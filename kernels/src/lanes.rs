@@ -9,7 +9,7 @@
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod avx2;
-mod portable;
+pub(crate) mod portable;
 mod scalar;
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -43,6 +43,11 @@ pub trait Lanes:
     /// `self * a + b`, rounded once where the backend fuses and twice where it does not.
     #[must_use]
     fn mul_add(self, a: Self, b: Self) -> Self;
+    /// `a * b - c * d`, to within two units in the last place however much it cancels.
+    ///
+    /// Backends that fuse keep what the rounding of a product leaves out; others split the factors. The difference of
+    /// two plain products loses all that the cancellation takes.
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
     /// Square root, correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -89,6 +94,59 @@ pub trait Broadcast<L: Lanes>: Copy {
     fn pick(table: &[Self; 4], choice: L::Choice) -> L;
 }
 
+/// Eight lanes that are read from slices and written to them.
+pub(crate) trait Packet: Lanes {
+    /// The eight numbers at `at`; 0 for those beyond the end.
+    fn read(from: &[f32], at: usize) -> Self;
+    /// Writes eight numbers at `at`, but none beyond the end.
+    fn write(self, to: &mut [f32], at: usize);
+}
+
+/// Copies what there is of a packet at the end of a slice.
+#[cold]
+fn read_tail(from: &[f32], at: usize) -> [f32; 8] {
+    let mut packet = [0.0; 8];
+    for (to, from) in packet.iter_mut().zip(from.iter().skip(at)) {
+        *to = *from;
+    }
+    packet
+}
+
+/// Writes what there is room for of a packet at the end of a slice.
+#[cold]
+fn write_tail(packet: &[f32; 8], to: &mut [f32], at: usize) {
+    for (to, from) in to.iter_mut().skip(at).zip(packet) {
+        *to = *from;
+    }
+}
+
+/// Reads and writes whole packets as `$from` and `$to` do, and the end of a slice number by number.
+macro_rules! packet {
+    ($name:ty, $from:expr, $to:expr) => {
+        impl $crate::lanes::Packet for $name {
+            #[inline(always)]
+            fn read(from: &[f32], at: usize) -> Self {
+                match from.get(at..).and_then(<[f32]>::first_chunk) {
+                    Some(packet) => $from(packet),
+                    None => $from(&$crate::lanes::read_tail(from, at)),
+                }
+            }
+            #[inline(always)]
+            fn write(self, to: &mut [f32], at: usize) {
+                match to.get_mut(at..).and_then(<[f32]>::first_chunk_mut) {
+                    Some(packet) => $to(self, packet),
+                    None => {
+                        let mut packet = [0.0; 8];
+                        $to(self, &mut packet);
+                        $crate::lanes::write_tail(&packet, to, at);
+                    }
+                }
+            }
+        }
+    };
+}
+use packet;
+
 /// The three numbers of `x`, read as lanes.
 #[inline(always)]
 pub fn lanes3<L: Lanes, C: Broadcast<L>>(x: &[C; 3]) -> [L; 3] {
@@ -106,6 +164,26 @@ pub fn store3<L: Lanes>(x: [L; 3]) -> [L::Stored; 3] {
 pub fn store4<L: Lanes>(x: [L; 4]) -> [L::Stored; 4] {
     [x[0].store(), x[1].store(), x[2].store(), x[3].store()]
 }
+
+/// [`Lanes::difference_of_products`] with a fused `mul_add`, after Kahan.
+#[inline(always)]
+pub(crate) fn difference_fused<L: Lanes>(a: L, b: L, c: L, d: L) -> L {
+    let product = c * d;
+    let left_out = c.mul_add(d, -product);
+    a.mul_add(b, -product) - left_out
+}
+
+/// [`Lanes::difference_of_products`] from factors whose upper half has 12 bits, after Dekker: products of upper
+/// halves are exact.
+#[inline(always)]
+pub(crate) fn difference_split<L: Lanes>(a: [L; 2], b: [L; 2], c: [L; 2], d: [L; 2]) -> L {
+    let upper = a[0] * b[0] - c[0] * d[0];
+    let mixed = (a[0] * b[1] - c[0] * d[1]) + (a[1] * b[0] - c[1] * d[0]);
+    upper + (mixed + (a[1] * b[1] - c[1] * d[1]))
+}
+
+/// Bits of the sign, the exponent and the upper 11 of the fraction.
+pub(crate) const UPPER: u32 = 0xffff_f000;
 
 /// `entries` where it was chosen, entry by entry; the portable form of [`Broadcast::pick`].
 #[inline(always)]

@@ -47,11 +47,7 @@ impl Light for Constant {
         // (1 - y)(1 + y) by its factors: no cancellation near the poles.
         let r = (4.0 * xi[0] * (1.0 - xi[0])).max(0.0).sqrt();
         let (sin_phi, cos_phi) = (2.0 * PI * xi[1]).sin_cos();
-        LightSample {
-            dir: DVec3::new(r * cos_phi, y, r * sin_phi),
-            radiance: self.radiance,
-            pdf: self.pdf(DVec3::Y),
-        }
+        LightSample { dir: DVec3::new(r * cos_phi, y, r * sin_phi), radiance: self.radiance, pdf: self.pdf(DVec3::Y) }
     }
 
     fn pdf(&self, _dir: DVec3) -> f64 {

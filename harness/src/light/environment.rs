@@ -65,20 +65,13 @@ impl Environment {
             return Err(format!("the map has no pixels: {width} x {height}"));
         }
         if width.checked_mul(height) != Some(pixels.len()) {
-            return Err(format!(
-                "{width} x {height} pixels expected, {} given",
-                pixels.len()
-            ));
+            return Err(format!("{width} x {height} pixels expected, {} given", pixels.len()));
         }
         Ok(Self::from_size(name, [width, height], pixels))
     }
 
     /// The map of a size already known to fit its pixels and to be at least 1 x 1.
-    pub(super) fn from_size(
-        name: impl Into<String>,
-        [width, height]: [usize; 2],
-        mut pixels: Vec<[f32; 3]>,
-    ) -> Self {
+    pub(super) fn from_size(name: impl Into<String>, [width, height]: [usize; 2], mut pixels: Vec<[f32; 3]>) -> Self {
         let mut repairs = PixelRepairs::default();
         for channel in pixels.iter_mut().flatten() {
             if channel.is_nan() {
@@ -92,15 +85,8 @@ impl Environment {
                 *channel = INFINITE_PIXEL;
             }
         }
-        let edges: Vec<f64> = (0..=height)
-            .map(|j| {
-                if 2 * j == height {
-                    0.0
-                } else {
-                    (PI * j as f64 / height as f64).cos()
-                }
-            })
-            .collect();
+        let edges: Vec<f64> =
+            (0..=height).map(|j| if 2 * j == height { 0.0 } else { (PI * j as f64 / height as f64).cos() }).collect();
         let mut columns = Vec::with_capacity(pixels.len());
         let mut rows = Vec::with_capacity(height);
         let mut total = 0.0;
@@ -113,16 +99,7 @@ impl Environment {
             total += sum * (edges[j] - edges[j + 1]);
             rows.push(total);
         }
-        Self {
-            name: name.into(),
-            width,
-            height,
-            pixels,
-            edges,
-            rows,
-            columns,
-            repairs,
-        }
+        Self { name: name.into(), width, height, pixels, edges, rows, columns, repairs }
     }
 
     /// Width and height in texels.
@@ -147,11 +124,7 @@ impl Environment {
                 self.name, self.width, self.height
             ));
         }
-        let PixelRepairs {
-            nan,
-            negative,
-            infinite,
-        } = self.repairs;
+        let PixelRepairs { nan, negative, infinite } = self.repairs;
         if nan + negative + infinite > 0 {
             notes.push(format!("{}: repaired channels: {nan} NaN and {negative} negative set to 0, {infinite} infinite set to {INFINITE_PIXEL}", self.name));
         }
@@ -221,11 +194,7 @@ impl Environment {
 
 /// The cell of [0, 1] cut in `n` that holds `x`.
 fn cell(x: f64, n: usize) -> usize {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "clamped to 0..=n; NaN becomes 0"
-    )]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0..=n; NaN becomes 0")]
     let i = (x * n as f64).clamp(0.0, n as f64) as usize;
     i.min(n - 1)
 }
@@ -237,20 +206,9 @@ fn draw(cumulative: &[f64], xi: f64) -> (usize, f64) {
     // Strictly below the total, or rounding could fall off the end into indices of no weight.
     let target = (xi * total).min(total * (1.0 - f64::EPSILON / 2.0));
     let index = cumulative.partition_point(|&c| c <= target).min(last);
-    let before = if index == 0 {
-        0.0
-    } else {
-        cumulative[index - 1]
-    };
+    let before = if index == 0 { 0.0 } else { cumulative[index - 1] };
     let rest = (target - before) / (cumulative[index] - before);
-    (
-        index,
-        if rest.is_finite() {
-            rest.clamp(0.0, 1.0)
-        } else {
-            0.5
-        },
-    )
+    (index, if rest.is_finite() { rest.clamp(0.0, 1.0) } else { 0.5 })
 }
 
 impl Light for Environment {
@@ -275,11 +233,7 @@ impl Light for Environment {
         };
         // Looked up again: on an edge between texels rounding may land next door, and value and density must speak of one texel.
         let texel = self.texel(dir);
-        LightSample {
-            dir,
-            radiance: self.radiance_of(texel),
-            pdf: self.density_of(texel),
-        }
+        LightSample { dir, radiance: self.radiance_of(texel), pdf: self.density_of(texel) }
     }
 
     fn pdf(&self, dir: DVec3) -> f64 {
@@ -300,10 +254,7 @@ impl Light for Environment {
                 let mut sums = [[0.0; 3]; 2];
                 for (rule, sum) in rules.iter().zip(&mut sums) {
                     for [cosine, w] in rule.on(self.edges[j + 1], self.edges[j]) {
-                        for [turn, v] in rule.on(
-                            i as f64 / self.width as f64,
-                            (i + 1) as f64 / self.width as f64,
-                        ) {
+                        for [turn, v] in rule.on(i as f64 / self.width as f64, (i + 1) as f64 / self.width as f64) {
                             let y = f(Self::direction(turn, cosine));
                             evaluations += 1;
                             for c in 0..3 {
@@ -321,11 +272,6 @@ impl Light for Environment {
         let tolerance = sphere.tolerance();
         let largest = value.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
         let allowed = tolerance.absolute.max(tolerance.relative * largest);
-        Integral {
-            value,
-            error,
-            evaluations,
-            converged: error.iter().all(|e| *e <= allowed),
-        }
+        Integral { value, error, evaluations, converged: error.iter().all(|e| *e <= allowed) }
     }
 }

@@ -30,24 +30,16 @@ impl fmt::Display for LightError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Io(path, reason) => write!(f, "{}: cannot read: {reason}", path.display()),
-            Self::Directory(path) => write!(
-                f,
-                "{}: is a directory, not an environment map",
-                path.display()
-            ),
+            Self::Directory(path) => write!(f, "{}: is a directory, not an environment map", path.display()),
             Self::Unsupported(path, reason) => {
                 write!(f, "{}: unsupported: {reason}", path.display())
             }
-            Self::ZeroSize(path, width, height) => write!(
-                f,
-                "{}: the image has no pixels: {width} x {height}",
-                path.display()
-            ),
-            Self::TooLarge(path, width, height) => write!(
-                f,
-                "{}: {width} x {height} is more than 2^25 pixels",
-                path.display()
-            ),
+            Self::ZeroSize(path, width, height) => {
+                write!(f, "{}: the image has no pixels: {width} x {height}", path.display())
+            }
+            Self::TooLarge(path, width, height) => {
+                write!(f, "{}: {width} x {height} is more than 2^25 pixels", path.display())
+            }
             Self::Decode(path, reason) => {
                 write!(f, "{}: damaged or cut short: {reason}", path.display())
             }
@@ -77,16 +69,10 @@ impl Environment {
         match reader.format() {
             Some(ImageFormat::Hdr | ImageFormat::OpenExr) => {}
             Some(other) => {
-                return Err(LightError::Unsupported(
-                    file(),
-                    format!("{other:?} is not Radiance HDR or OpenEXR"),
-                ));
+                return Err(LightError::Unsupported(file(), format!("{other:?} is not Radiance HDR or OpenEXR")));
             }
             None => {
-                return Err(LightError::Unsupported(
-                    file(),
-                    "not a Radiance HDR or OpenEXR file".into(),
-                ));
+                return Err(LightError::Unsupported(file(), "not a Radiance HDR or OpenEXR file".into()));
             }
         }
         let refuse = |e: image::ImageError| match e {
@@ -109,20 +95,12 @@ impl Environment {
         decoder.set_limits(limits).map_err(refuse)?;
         let pixels = match DynamicImage::from_decoder(decoder).map_err(refuse)? {
             DynamicImage::ImageRgb32F(map) => map.pixels().map(|p| p.0).collect(),
-            DynamicImage::ImageRgba32F(map) => {
-                map.pixels().map(|p| [p.0[0], p.0[1], p.0[2]]).collect()
-            }
+            DynamicImage::ImageRgba32F(map) => map.pixels().map(|p| [p.0[0], p.0[1], p.0[2]]).collect(),
             other => {
-                return Err(LightError::Unsupported(
-                    file(),
-                    format!("pixels of type {:?}", other.color()),
-                ));
+                return Err(LightError::Unsupported(file(), format!("pixels of type {:?}", other.color())));
             }
         };
-        let name = path.file_name().map_or_else(
-            || path.display().to_string(),
-            |n| n.to_string_lossy().into_owned(),
-        );
+        let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
         Self::from_pixels(name, width as usize, height as usize, pixels)
             .map_err(|reason| LightError::Decode(file(), reason))
     }
@@ -130,8 +108,5 @@ impl Environment {
 
 /// A foreign error's message on one line.
 fn line(e: &dyn fmt::Display) -> String {
-    e.to_string()
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
+    e.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }

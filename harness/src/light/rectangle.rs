@@ -41,21 +41,9 @@ impl Rectangle {
 
     /// A rectangle of `length` along x and `width` along z at `height` above. Sizes in units of length, clamped to [1e-3, 1e3].
     #[must_use]
-    pub fn new(
-        length: f64,
-        width: f64,
-        height: f64,
-        radiance: [f64; 3],
-        sampling: RectangleSampling,
-    ) -> Self {
+    pub fn new(length: f64, width: f64, height: f64, radiance: [f64; 3], sampling: RectangleSampling) -> Self {
         let size = |x: f64| x.clamp(1e-3, 1e3);
-        Self {
-            half_x: 0.5 * size(length),
-            half_z: 0.5 * size(width),
-            height: size(height),
-            radiance,
-            sampling,
-        }
+        Self { half_x: 0.5 * size(length), half_z: 0.5 * size(width), height: size(height), radiance, sampling }
     }
 
     /// The same light with another sampling.
@@ -106,8 +94,7 @@ impl Rectangle {
                 // The strip between the centre plane and x subtends 2 atan(x b / (h sqrt(x^2 + b^2 + h^2))): invert for x.
                 let part = (2.0 * xi[0] - 1.0) * 0.25 * self.solid_angle();
                 let t = h * part.tan();
-                let x = (t * ((b * b + h * h) / ((b - t) * (b + t)).max(f64::MIN_POSITIVE)).sqrt())
-                    .clamp(-a, a);
+                let x = (t * ((b * b + h * h) / ((b - t) * (b + t)).max(f64::MIN_POSITIVE)).sqrt()).clamp(-a, a);
                 // Across the strip the sine of the angle to the plane of x and h is uniform.
                 let rho_sq = x * x + h * h;
                 let s = (2.0 * xi[1] - 1.0) * b / (rho_sq + b * b).sqrt();
@@ -127,20 +114,12 @@ impl Light for Rectangle {
     }
 
     fn radiance(&self, dir: DVec3) -> [f64; 3] {
-        if self.hit(dir).is_some() {
-            self.radiance
-        } else {
-            [0.0; 3]
-        }
+        if self.hit(dir).is_some() { self.radiance } else { [0.0; 3] }
     }
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
         let [x, z] = self.point(xi);
-        LightSample {
-            dir: DVec3::new(x, self.height, z).normalize(),
-            radiance: self.radiance,
-            pdf: self.density(x, z),
-        }
+        LightSample { dir: DVec3::new(x, self.height, z).normalize(), radiance: self.radiance, pdf: self.density(x, z) }
     }
 
     fn pdf(&self, dir: DVec3) -> f64 {
@@ -152,16 +131,13 @@ impl Light for Rectangle {
         let h = self.height;
         let edge = |half: f64| {
             let end = (half / h).atan();
-            (0..=16)
-                .map(|i| end * (f64::from(i) / 8.0 - 1.0))
-                .collect::<Vec<f64>>()
+            (0..=16).map(|i| end * (f64::from(i) / 8.0 - 1.0)).collect::<Vec<f64>>()
         };
         integrate_rectangle(
             |a, b| {
                 let (x, z) = (h * a.tan(), h * b.tan());
                 let rho_sq = x * x + z * z + h * h;
-                let jacobian =
-                    h / (rho_sq * rho_sq.sqrt()) * (x * x + h * h) * (z * z + h * h) / (h * h);
+                let jacobian = h / (rho_sq * rho_sq.sqrt()) * (x * x + h * h) * (z * z + h * h) / (h * h);
                 product(self.radiance, f(DVec3::new(x, h, z).normalize())).map(|v| v * jacobian)
             },
             &edge(self.half_x),
@@ -191,16 +167,9 @@ mod tests {
     fn corners_come_from_the_corners_of_the_square() {
         let r = Rectangle::figure_6a();
         let last = 1.0 - f64::EPSILON / 2.0;
-        for (xi, want) in [
-            ([0.0, 0.0], [-2.0, -0.5]),
-            ([last, last], [2.0, 0.5]),
-            ([0.5, 0.5], [0.0, 0.0]),
-        ] {
+        for (xi, want) in [([0.0, 0.0], [-2.0, -0.5]), ([last, last], [2.0, 0.5]), ([0.5, 0.5], [0.0, 0.0])] {
             let got = r.point(xi);
-            assert!(
-                (got[0] - want[0]).abs() < 1e-12 && (got[1] - want[1]).abs() < 1e-12,
-                "{xi:?}: {got:?}"
-            );
+            assert!((got[0] - want[0]).abs() < 1e-12 && (got[1] - want[1]).abs() < 1e-12, "{xi:?}: {got:?}");
         }
     }
 }

@@ -43,10 +43,7 @@ impl Smooth {
     #[must_use]
     pub fn new() -> Self {
         let gradient = core::array::from_fn(|c| MEAN[c] * CONTRAST[c]);
-        Self {
-            axis: AXIS.normalize(),
-            slope: luminance(gradient) / luminance(MEAN),
-        }
+        Self { axis: AXIS.normalize(), slope: luminance(gradient) / luminance(MEAN) }
     }
 }
 
@@ -69,11 +66,7 @@ impl Light for Smooth {
         let (sin_phi, cos_phi) = (2.0 * PI * xi[1]).sin_cos();
         let [e1, e2] = tangents(self.axis);
         let dir = t * self.axis + r * cos_phi * e1 + r * sin_phi * e2;
-        LightSample {
-            dir,
-            radiance: self.radiance(dir),
-            pdf: self.pdf(dir),
-        }
+        LightSample { dir, radiance: self.radiance(dir), pdf: self.pdf(dir) }
     }
 
     fn pdf(&self, dir: DVec3) -> f64 {

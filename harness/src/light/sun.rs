@@ -30,21 +30,14 @@ impl Sun {
     #[must_use]
     pub fn five_degrees(towards: DVec3) -> Self {
         let sun = Self::new(towards, 5.0_f64.to_radians(), [1.0; 3]);
-        Self {
-            radiance: [1.0 / sun.solid_angle(); 3],
-            ..sun
-        }
+        Self { radiance: [1.0 / sun.solid_angle(); 3], ..sun }
     }
 
     /// A disc of angular `diameter`, in rad and clamped to [1e-4, pi], around `towards` (of any length; straight up when it has no direction).
     #[must_use]
     pub fn new(towards: DVec3, diameter: f64, radiance: [f64; 3]) -> Self {
         let half_sin = (0.25 * diameter.clamp(1e-4, PI)).sin();
-        Self {
-            axis: unit_or_up(towards),
-            height: 2.0 * half_sin * half_sin,
-            radiance,
-        }
+        Self { axis: unit_or_up(towards), height: 2.0 * half_sin * half_sin, radiance }
     }
 
     /// Solid angle of the disc, in sr.
@@ -74,38 +67,23 @@ impl Light for Sun {
     }
 
     fn radiance(&self, dir: DVec3) -> [f64; 3] {
-        if self.covers(dir) {
-            self.radiance
-        } else {
-            [0.0; 3]
-        }
+        if self.covers(dir) { self.radiance } else { [0.0; 3] }
     }
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
         let dir = self.direction(self.height * xi[0], 2.0 * PI * xi[1]);
-        LightSample {
-            dir,
-            radiance: self.radiance,
-            pdf: 1.0 / self.solid_angle(),
-        }
+        LightSample { dir, radiance: self.radiance, pdf: 1.0 / self.solid_angle() }
     }
 
     fn pdf(&self, dir: DVec3) -> f64 {
-        if self.covers(dir) {
-            1.0 / self.solid_angle()
-        } else {
-            0.0
-        }
+        if self.covers(dir) { 1.0 / self.solid_angle() } else { 0.0 }
     }
 
     fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {
         // Square root of the fall is the radius to first order: polar coordinates without the kink at the centre.
         let rim = self.height.sqrt();
         integrate_rectangle(
-            |radius, phi| {
-                product(self.radiance, f(self.direction(radius * radius, phi)))
-                    .map(|v| v * 2.0 * radius)
-            },
+            |radius, phi| product(self.radiance, f(self.direction(radius * radius, phi))).map(|v| v * 2.0 * radius),
             &[0.0, 0.25 * rim, 0.5 * rim, rim],
             &[0.0, 0.5 * PI, PI, 1.5 * PI, 2.0 * PI],
             sphere.tolerance(),

@@ -16,11 +16,7 @@ fn small_map() -> Environment {
         .map(|k| {
             let [a, b, c] = xi.next_xi_f32::<3>();
             let sun = if k == 37 { 500.0 } else { 1.0 };
-            if k / 16 == 2 || k % 16 == 5 {
-                [0.0; 3]
-            } else {
-                [sun * a, sun * b, sun * c]
-            }
+            if k / 16 == 2 || k % 16 == 5 { [0.0; 3] } else { [sun * a, sun * b, sun * c] }
         })
         .collect();
     Environment::from_pixels("small", 16, 8, pixels).expect("valid")
@@ -47,11 +43,7 @@ fn tight() -> SphereIntegrator {
 fn densities_integrate_to_one_over_their_support() {
     for light in lights() {
         // The reference integral runs over radiance times f: with f = pdf / radiance it is the mass where the light shines.
-        let f = |dir: DVec3| {
-            light
-                .radiance(dir)
-                .map(|l| if l > 0.0 { light.pdf(dir) / l } else { 0.0 })
-        };
+        let f = |dir: DVec3| light.radiance(dir).map(|l| if l > 0.0 { light.pdf(dir) / l } else { 0.0 });
         let mass = light.integrate(&f, &tight()).value;
         let dark = light.integrate(&|_| [1.0; 3], &tight()).value;
         for c in 0..3 {
@@ -87,45 +79,17 @@ fn samples_agree_with_radiance_and_density() {
     for (k, light) in lights().iter().enumerate() {
         let mut xi = Independent::new(1, stream_id(&[1, k as u64]));
         let edges = [0.0, 1e-300, 0.25, 0.5, 0.75, last];
-        let corners = edges
-            .iter()
-            .flat_map(|&a| edges.iter().map(move |&b| [a, b]));
+        let corners = edges.iter().flat_map(|&a| edges.iter().map(move |&b| [a, b]));
         let random: Vec<[f64; 2]> = (0..20_000).map(|_| xi.next_xi()).collect();
         for xi in corners.chain(random) {
             let s = light.sample(xi);
-            assert!(
-                (s.dir.length() - 1.0).abs() < 1e-14,
-                "{}: {xi:?} {s:?}",
-                light.name()
-            );
-            assert!(
-                s.pdf.is_finite() && s.pdf > 0.0,
-                "{}: {xi:?} {s:?}",
-                light.name()
-            );
-            assert_eq!(
-                light.radiance(s.dir),
-                s.radiance,
-                "{}: {xi:?}",
-                light.name()
-            );
-            assert!(
-                (light.pdf(s.dir) / s.pdf - 1.0).abs() < 1e-12,
-                "{}: {xi:?} {s:?}",
-                light.name()
-            );
+            assert!((s.dir.length() - 1.0).abs() < 1e-14, "{}: {xi:?} {s:?}", light.name());
+            assert!(s.pdf.is_finite() && s.pdf > 0.0, "{}: {xi:?} {s:?}", light.name());
+            assert_eq!(light.radiance(s.dir), s.radiance, "{}: {xi:?}", light.name());
+            assert!((light.pdf(s.dir) / s.pdf - 1.0).abs() < 1e-12, "{}: {xi:?} {s:?}", light.name());
             // Length does not matter.
-            assert!(
-                (light.pdf(s.dir * 2.0) / s.pdf - 1.0).abs() < 1e-12,
-                "{}: {xi:?} {s:?}",
-                light.name()
-            );
-            assert_eq!(
-                light.radiance(s.dir * 2.0),
-                s.radiance,
-                "{}: {xi:?}",
-                light.name()
-            );
+            assert!((light.pdf(s.dir * 2.0) / s.pdf - 1.0).abs() < 1e-12, "{}: {xi:?} {s:?}", light.name());
+            assert_eq!(light.radiance(s.dir * 2.0), s.radiance, "{}: {xi:?}", light.name());
         }
     }
 }
@@ -133,14 +97,11 @@ fn samples_agree_with_radiance_and_density() {
 #[test]
 fn estimates_equal_the_quadrature_of_radiance() {
     // Against f = 1 and against a tilted f, so that a density right in total but wrong in place is seen.
-    let fs: [fn(DVec3) -> [f64; 3]; 2] = [
-        |_| [1.0; 3],
-        |d| [1.0 + 0.9 * d.x, (d.z - 0.2).powi(2), (2.0 * d.y).exp()],
-    ];
+    let fs: [fn(DVec3) -> [f64; 3]; 2] = [|_| [1.0; 3], |d| [1.0 + 0.9 * d.x, (d.z - 0.2).powi(2), (2.0 * d.y).exp()]];
     for (k, light) in lights().iter().enumerate() {
-        for (m, f) in fs.iter().enumerate() {
+        for (tilt, f) in fs.iter().enumerate() {
             let truth = light.integrate(&f, &tight());
-            let mut xi = Independent::new(2, stream_id(&[k as u64, m as u64]));
+            let mut xi = Independent::new(2, stream_id(&[k as u64, tilt as u64]));
             let mut moments = [Moments::new(); 3];
             for _ in 0..200_000 {
                 let s = light.sample(xi.next_xi());
@@ -149,12 +110,12 @@ fn estimates_equal_the_quadrature_of_radiance() {
                     moments[c].push(s.radiance[c] * y[c] / s.pdf);
                 }
             }
-            for c in 0..3 {
-                let e = moments[c].mean_estimate();
+            for (c, m) in moments.iter().enumerate() {
+                let e = m.mean_estimate();
                 let slack = 1e-9 * truth.value[c].abs();
                 assert!(
                     (e.value - truth.value[c]).abs() <= 4.0 * e.standard_error + slack,
-                    "{} f{m} channel {c}: {e:?}, want {:?}",
+                    "{} f{tilt} channel {c}: {e:?}, want {:?}",
                     light.name(),
                     truth.value
                 );
@@ -167,10 +128,7 @@ fn estimates_equal_the_quadrature_of_radiance() {
 fn reference_integrals_have_closed_forms() {
     let one = |_: DVec3| [1.0; 3];
     let constant = Constant::white().integrate(&one, &tight()).value;
-    assert!(
-        constant.iter().all(|v| (v - 4.0 * PI).abs() < 1e-10),
-        "{constant:?}"
-    );
+    assert!(constant.iter().all(|v| (v - 4.0 * PI).abs() < 1e-10), "{constant:?}");
     let smooth = Smooth::new().integrate(&one, &tight()).value;
     for (v, mean) in smooth.iter().zip([1.0, 0.9, 0.8]) {
         assert!((v - 4.0 * PI * mean).abs() < 1e-9, "{smooth:?}");
@@ -179,10 +137,7 @@ fn reference_integrals_have_closed_forms() {
     assert!(sun.iter().all(|v| (v - 1.0).abs() < 1e-10), "{sun:?}");
     let area = Rectangle::figure_6a();
     let got = area.integrate(&one, &tight());
-    assert!(
-        got.converged && (got.value[0] / area.solid_angle() - 1.0).abs() < 1e-10,
-        "{got:?}"
-    );
+    assert!(got.converged && (got.value[0] / area.solid_angle() - 1.0).abs() < 1e-10, "{got:?}");
     let map = small_map();
     let got = map.integrate(&one, &tight()).value;
     for (v, want) in got.iter().zip(map.total_radiance()) {
@@ -199,20 +154,13 @@ fn fit(light: &dyn Light, stream: u64, mass: &[f64], cell: impl Fn(DVec3) -> usi
         counts[cell(light.sample(xi.next_xi()).dir)] += 1;
     }
     let total: f64 = mass.iter().sum();
-    assert!(
-        (total - 1.0).abs() < 1e-9,
-        "{}: the cells hold {total}",
-        light.name()
-    );
+    assert!((total - 1.0).abs() < 1e-9, "{}: the cells hold {total}", light.name());
     let expected: Vec<f64> = mass.iter().map(|m| m * f64::from(n)).collect();
     chi_square(&counts, &expected, 5.0).p_value
 }
 
 fn bin(x: f64, n: usize) -> usize {
-    (0..n)
-        .rev()
-        .find(|&i| x >= i as f64 / n as f64)
-        .unwrap_or(0)
+    (0..n).rev().find(|&i| x >= i as f64 / n as f64).unwrap_or(0)
 }
 
 #[test]
@@ -221,9 +169,7 @@ fn samples_follow_their_density() {
     let n = 24;
     let even = vec![1.0 / (n * n) as f64; n * n];
     let turn = |a: f64, b: f64| bin(0.5 + a.atan2(b) / (2.0 * PI), n);
-    let p = fit(&Constant::white(), 0, &even, |d| {
-        bin(0.5 + 0.5 * d.y, n) * n + turn(d.x, d.z)
-    });
+    let p = fit(&Constant::white(), 0, &even, |d| bin(0.5 + 0.5 * d.y, n) * n + turn(d.x, d.z));
     assert!(p > level, "constant: {p}");
     // Smooth: bands of equal height hold the integral of its linear density.
     let smooth = Smooth::new();
@@ -236,22 +182,16 @@ fn samples_follow_their_density() {
         })
         .collect();
     let [e1, e2] = tangents(axis);
-    let p = fit(&smooth, 1, &mass, |d| {
-        bin(0.5 + 0.5 * d.dot(axis), n) * n + turn(d.dot(e1), d.dot(e2))
-    });
+    let p = fit(&smooth, 1, &mass, |d| bin(0.5 + 0.5 * d.dot(axis), n) * n + turn(d.dot(e1), d.dot(e2)));
     assert!(p > level, "smooth: {p}");
     let sun = Sun::five_degrees(DVec3::new(0.4, 0.7, -0.3));
     let axis = DVec3::new(0.4, 0.7, -0.3).normalize();
     let [e1, e2] = tangents(axis);
     let height = 1.0 - 2.5_f64.to_radians().cos();
-    let p = fit(&sun, 2, &even, |d| {
-        bin(0.5 * (d - axis).length_squared() / height, n) * n + turn(d.dot(e1), d.dot(e2))
-    });
+    let p =
+        fit(&sun, 2, &even, |d| bin(0.5 * (d - axis).length_squared() / height, n) * n + turn(d.dot(e1), d.dot(e2)));
     assert!(p > level, "sun: {p}");
-    for (stream, sampling) in [
-        (3, RectangleSampling::Area),
-        (4, RectangleSampling::SolidAngle),
-    ] {
+    for (stream, sampling) in [(3, RectangleSampling::Area), (4, RectangleSampling::SolidAngle)] {
         let light = Rectangle::figure_6a().with_sampling(sampling);
         let mass: Vec<f64> = (0..n * n)
             .map(|k| match sampling {
@@ -261,15 +201,12 @@ fn samples_follow_their_density() {
                     let z = |j: usize| j as f64 / n as f64 - 0.5;
                     let corner = |x: f64, z: f64| (x * z).atan2((x * x + z * z + 1.0).sqrt());
                     let (i, j) = (k / n, k % n);
-                    (corner(x(i + 1), z(j + 1)) - corner(x(i), z(j + 1)) - corner(x(i + 1), z(j))
-                        + corner(x(i), z(j)))
+                    (corner(x(i + 1), z(j + 1)) - corner(x(i), z(j + 1)) - corner(x(i + 1), z(j)) + corner(x(i), z(j)))
                         / light.solid_angle()
                 }
             })
             .collect();
-        let p = fit(&light, stream, &mass, |d| {
-            bin(0.5 + 0.25 * d.x / d.y, n) * n + bin(0.5 + d.z / d.y, n)
-        });
+        let p = fit(&light, stream, &mass, |d| bin(0.5 + 0.25 * d.x / d.y, n) * n + bin(0.5 + d.z / d.y, n));
         assert!(p > level, "{}: {p}", light.name());
     }
     // The map: four cells a texel, so that the spread within a texel is tested too.
@@ -278,15 +215,9 @@ fn samples_follow_their_density() {
     let polar = |j: usize| (PI * j as f64 / h as f64).cos();
     let mass: Vec<f64> = (0..w * h)
         .map(|k| {
-            let (theta, phi) = (
-                PI * ((k / w) as f64 + 0.5) / h as f64,
-                2.0 * PI * (((k % w) as f64 + 0.5) / w as f64 - 0.5),
-            );
-            let dir = DVec3::new(
-                theta.sin() * phi.sin(),
-                theta.cos(),
-                -theta.sin() * phi.cos(),
-            );
+            let (theta, phi) =
+                (PI * ((k / w) as f64 + 0.5) / h as f64, 2.0 * PI * (((k % w) as f64 + 0.5) / w as f64 - 0.5));
+            let dir = DVec3::new(theta.sin() * phi.sin(), theta.cos(), -theta.sin() * phi.cos());
             map.pdf(dir) * 2.0 * PI / w as f64 * (polar(k / w) - polar(k / w + 1))
         })
         .collect();

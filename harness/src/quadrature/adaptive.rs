@@ -54,11 +54,7 @@ pub struct Tolerance {
 impl Default for Tolerance {
     /// 1e-10 relative, 1e-300 absolute, at most 20 000 panels.
     fn default() -> Self {
-        Self {
-            absolute: 1e-300,
-            relative: 1e-10,
-            max_panels: 20_000,
-        }
+        Self { absolute: 1e-300, relative: 1e-10, max_panels: 20_000 }
     }
 }
 
@@ -66,10 +62,7 @@ impl Tolerance {
     /// The default with another relative error.
     #[must_use]
     pub fn relative(relative: f64) -> Self {
-        Self {
-            relative,
-            ..Self::default()
-        }
+        Self { relative, ..Self::default() }
     }
 }
 
@@ -147,10 +140,7 @@ pub fn integrate<const N: usize>(
     tolerance: &Tolerance,
 ) -> Integral<N> {
     let edges = clean(breakpoints);
-    let panels = edges
-        .windows(2)
-        .map(|x| ([x[0], 0.0], [x[1], 0.0]))
-        .collect();
+    let panels = edges.windows(2).map(|x| ([x[0], 0.0], [x[1], 0.0])).collect();
     adapt(panels, 15, tolerance, |lo, hi| {
         let (centre, half) = (0.5 * (lo[0] + hi[0]), 0.5 * (hi[0] - lo[0]));
         let mut kronrod = [0.0; N];
@@ -181,10 +171,7 @@ pub fn integrate_rectangle<const N: usize>(
     tolerance: &Tolerance,
 ) -> Integral<N> {
     let (xs, ys) = (clean(x_breakpoints), clean(y_breakpoints));
-    let panels = xs
-        .windows(2)
-        .flat_map(|x| ys.windows(2).map(move |y| ([x[0], y[0]], [x[1], y[1]])))
-        .collect();
+    let panels = xs.windows(2).flat_map(|x| ys.windows(2).map(move |y| ([x[0], y[0]], [x[1], y[1]]))).collect();
     adapt(panels, 225, tolerance, |lo, hi| {
         let centre = [0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1])];
         let half = [0.5 * (hi[0] - lo[0]), 0.5 * (hi[1] - lo[1])];
@@ -240,35 +227,16 @@ fn for_each_node(mut visit: impl FnMut(f64, f64, f64)) {
 
 /// Breakpoints sorted, finite and without repeats.
 fn clean(breakpoints: &[f64]) -> Vec<f64> {
-    let mut edges: Vec<f64> = breakpoints
-        .iter()
-        .copied()
-        .filter(|x| x.is_finite())
-        .collect();
+    let mut edges: Vec<f64> = breakpoints.iter().copied().filter(|x| x.is_finite()).collect();
     edges.sort_by(f64::total_cmp);
     edges.dedup();
     edges
 }
 
-fn panel<const N: usize>(
-    lo: [f64; 2],
-    hi: [f64; 2],
-    value: [f64; N],
-    error: [f64; N],
-    split: usize,
-) -> Panel<N> {
+fn panel<const N: usize>(lo: [f64; 2], hi: [f64; 2], value: [f64; N], error: [f64; N], split: usize) -> Panel<N> {
     // A NaN counts as an infinite error, so that it is split, reported and never hidden.
-    let worst = error.iter().fold(0.0, |a: f64, &e| {
-        a.max(if e.is_nan() { f64::INFINITY } else { e })
-    });
-    Panel {
-        lo,
-        hi,
-        value,
-        error,
-        worst,
-        split,
-    }
+    let worst = error.iter().fold(0.0, |a: f64, &e| a.max(if e.is_nan() { f64::INFINITY } else { e }));
+    Panel { lo, hi, value, error, worst, split }
 }
 
 /// Splits the panel of the largest error until the total meets the tolerance.
@@ -316,12 +284,7 @@ fn adapt<const N: usize>(
         }
         heap.extend(halves);
     }
-    Integral {
-        value: running.0,
-        error: running.1,
-        evaluations,
-        converged: met(&running, tolerance),
-    }
+    Integral { value: running.0, error: running.1, evaluations, converged: met(&running, tolerance) }
 }
 
 /// Sums of values and errors over all panels, in an order that does not depend on the heap's.

@@ -13,10 +13,7 @@ pub const HALTON_BASES: [u32; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37,
 /// When `base` is below 2.
 #[must_use]
 pub fn radical_inverse(base: u32, index: u64) -> f64 {
-    assert!(
-        base >= 2,
-        "a radical inverse needs a base of at least 2, got {base}"
-    );
+    assert!(base >= 2, "a radical inverse needs a base of at least 2, got {base}");
     let b = u64::from(base);
     let inv = 1.0 / f64::from(base);
     let (mut n, mut scale, mut value) = (index, inv, 0.0);
@@ -60,16 +57,8 @@ impl Halton {
     /// When `dims` exceeds the number of [`HALTON_BASES`].
     #[must_use]
     pub fn new(dims: usize, seed: u64, stream: u64) -> Self {
-        assert!(
-            dims <= HALTON_BASES.len(),
-            "Halton has {} dimensions, {dims} asked for",
-            HALTON_BASES.len()
-        );
-        Self {
-            dims,
-            key: mix(mix(seed) ^ stream),
-            index: 0,
-        }
+        assert!(dims <= HALTON_BASES.len(), "Halton has {} dimensions, {dims} asked for", HALTON_BASES.len());
+        Self { dims, key: mix(mix(seed) ^ stream), index: 0 }
     }
 
     /// Coordinate `dim` of the point at `index`, in [0, 1).
@@ -102,12 +91,7 @@ fn below(hash: u64, bound: u64) -> u64 {
 
 impl XiSource for Halton {
     fn next_point(&mut self, point: &mut [f64]) {
-        assert!(
-            point.len() <= self.dims,
-            "{} coordinates asked of a Halton source with {}",
-            point.len(),
-            self.dims
-        );
+        assert!(point.len() <= self.dims, "{} coordinates asked of a Halton source with {}", point.len(), self.dims);
         for (dim, x) in point.iter_mut().enumerate() {
             *x = self.coordinate(dim, self.index);
         }
@@ -121,24 +105,13 @@ mod tests {
     use crate::stats::{Moments, chi_square, ks_p_value, ks_statistic};
 
     fn cell(x: f64, cells: u32) -> usize {
-        (0..cells as usize)
-            .rev()
-            .find(|&i| x >= i as f64 / f64::from(cells))
-            .unwrap_or(0)
+        (0..cells as usize).rev().find(|&i| x >= i as f64 / f64::from(cells)).unwrap_or(0)
     }
 
     #[test]
     fn radical_inverse_values() {
-        assert_eq!(
-            [0, 1, 2, 3, 4, 5].map(|i| radical_inverse(2, i)),
-            [0.0, 0.5, 0.25, 0.75, 0.125, 0.625]
-        );
-        for (i, want) in [
-            (1, 1.0 / 3.0),
-            (2, 2.0 / 3.0),
-            (3, 1.0 / 9.0),
-            (5, 7.0 / 9.0),
-        ] {
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|i| radical_inverse(2, i)), [0.0, 0.5, 0.25, 0.75, 0.125, 0.625]);
+        for (i, want) in [(1, 1.0 / 3.0), (2, 2.0 / 3.0), (3, 1.0 / 9.0), (5, 7.0 / 9.0)] {
             assert!((radical_inverse(3, i) - want).abs() < 1e-15, "{i}");
         }
         assert!(radical_inverse(2, u64::MAX) < 1.0);
@@ -156,10 +129,7 @@ mod tests {
                     let [x, y, z] = halton.next_xi::<3>();
                     counts[(cell(x, 4) * 9 + cell(y, 9)) * 5 + cell(z, 5)] += 1;
                 }
-                assert!(
-                    counts.iter().all(|&c| c == 1),
-                    "stream {stream} block {block}"
-                );
+                assert!(counts.iter().all(|&c| c == 1), "stream {stream} block {block}");
             }
         }
     }
@@ -168,15 +138,11 @@ mod tests {
     fn one_point_is_uniform_over_randomisations() {
         for dim in 0..6 {
             for index in [0, 1, 77, u64::MAX] {
-                let mut s: Vec<f64> = (0..20_000)
-                    .map(|stream| Halton::new(6, 3, stream).coordinate(dim, index))
-                    .collect();
+                let mut s: Vec<f64> =
+                    (0..20_000).map(|stream| Halton::new(6, 3, stream).coordinate(dim, index)).collect();
                 let d = ks_statistic(&mut s, |x| x);
                 // 24 tests in all: Sidak at 1%.
-                assert!(
-                    ks_p_value(d, s.len()) > crate::stats::sidak(0.01, 24),
-                    "dim {dim} index {index}: {d}"
-                );
+                assert!(ks_p_value(d, s.len()) > crate::stats::sidak(0.01, 24), "dim {dim} index {index}: {d}");
             }
         }
     }
@@ -189,9 +155,7 @@ mod tests {
             let h = Halton::new(3, 8, stream);
             counts[cell(h.coordinate(2, 0), 5) * 5 + cell(h.coordinate(2, 1), 5)] += 1;
         }
-        let expected: Vec<f64> = (0..25)
-            .map(|i| if i % 6 == 0 { 0.0 } else { 2_000.0 })
-            .collect();
+        let expected: Vec<f64> = (0..25).map(|i| if i % 6 == 0 { 0.0 } else { 2_000.0 }).collect();
         let p = chi_square(&counts, &expected, 5.0).p_value;
         assert!(p > 0.01, "p {p}");
     }

@@ -29,12 +29,7 @@ pub struct ChiSquare {
 /// - Domain: p-value NaN when the lengths differ, an expected count is negative or not finite, or fewer than two cells are left.
 #[must_use]
 pub fn chi_square(observed: &[u64], expected: &[f64], min_expected: f64) -> ChiSquare {
-    let mut result = ChiSquare {
-        statistic: f64::NAN,
-        degrees_of_freedom: 0,
-        p_value: f64::NAN,
-        pooled: 0,
-    };
+    let mut result = ChiSquare { statistic: f64::NAN, degrees_of_freedom: 0, p_value: f64::NAN, pooled: 0 };
     if observed.len() != expected.len() || expected.iter().any(|e| !(e.is_finite() && *e >= 0.0)) {
         return result;
     }
@@ -79,10 +74,7 @@ pub fn chi_square(observed: &[u64], expected: &[f64], min_expected: f64) -> ChiS
     }
     result.statistic = cells.iter().map(|(o, e)| (o - e) * (o - e) / e).sum();
     result.degrees_of_freedom = cells.len() - 1;
-    result.p_value = regularised_gamma_q(
-        0.5 * result.degrees_of_freedom as f64,
-        0.5 * result.statistic,
-    );
+    result.p_value = regularised_gamma_q(0.5 * result.degrees_of_freedom as f64, 0.5 * result.statistic);
     result
 }
 
@@ -170,10 +162,7 @@ mod tests {
     #[test]
     fn pooling_keeps_totals_and_counts() {
         let r = chi_square(&[1, 2, 3, 40, 54], &[1.0, 2.0, 3.0, 40.0, 54.0], 5.0);
-        assert_eq!(
-            (r.pooled, r.degrees_of_freedom, r.statistic, r.p_value),
-            (3, 2, 0.0, 1.0)
-        );
+        assert_eq!((r.pooled, r.degrees_of_freedom, r.statistic, r.p_value), (3, 2, 0.0, 1.0));
         // 4.9 never reaches the limit alone and joins the cell of 40.
         let r = chi_square(&[5, 40, 55], &[4.9, 40.1, 55.0], 5.0);
         assert_eq!((r.pooled, r.degrees_of_freedom), (1, 1));
@@ -182,14 +171,8 @@ mod tests {
 
     #[test]
     fn chi_square_edges() {
-        assert_eq!(
-            chi_square(&[1, 99, 100], &[0.0, 100.0, 100.0], 5.0).p_value,
-            0.0
-        );
-        assert_eq!(
-            chi_square(&[0, 100, 100], &[0.0, 100.0, 100.0], 5.0).p_value,
-            1.0
-        );
+        assert_eq!(chi_square(&[1, 99, 100], &[0.0, 100.0, 100.0], 5.0).p_value, 0.0);
+        assert_eq!(chi_square(&[0, 100, 100], &[0.0, 100.0, 100.0], 5.0).p_value, 1.0);
         assert!(chi_square(&[1], &[1.0, 2.0], 5.0).p_value.is_nan());
         assert!(chi_square(&[1, 2], &[f64::NAN, 2.0], 5.0).p_value.is_nan());
         assert!(chi_square(&[10], &[10.0], 5.0).p_value.is_nan());

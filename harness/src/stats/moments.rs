@@ -19,11 +19,7 @@ impl Estimate {
     #[must_use]
     pub fn z_score(&self, truth: f64) -> f64 {
         let d = self.value - truth;
-        if d == 0.0 {
-            0.0
-        } else {
-            d / self.standard_error
-        }
+        if d == 0.0 { 0.0 } else { d / self.standard_error }
     }
 
     /// Quotient of two independent estimates, with its first-order standard error.
@@ -32,21 +28,14 @@ impl Estimate {
     #[must_use]
     pub fn ratio(&self, divisor: &Self) -> Self {
         let value = self.value / divisor.value;
-        let relative =
-            (self.standard_error / self.value).hypot(divisor.standard_error / divisor.value);
-        Self {
-            value,
-            standard_error: (value * relative).abs(),
-        }
+        let relative = (self.standard_error / self.value).hypot(divisor.standard_error / divisor.value);
+        Self { value, standard_error: (value * relative).abs() }
     }
 
     /// Estimate times an exact number.
     #[must_use]
     pub fn scale(&self, factor: f64) -> Self {
-        Self {
-            value: self.value * factor,
-            standard_error: (self.standard_error * factor).abs(),
-        }
+        Self { value: self.value * factor, standard_error: (self.standard_error * factor).abs() }
     }
 }
 
@@ -92,8 +81,7 @@ impl Moments {
         let delta_n_sq = delta_n * delta_n;
         let term = delta * delta_n * n1;
         self.mean += delta_n;
-        self.sum_fourth += term * delta_n_sq * (n * n - 3.0 * n + 3.0)
-            + 6.0 * delta_n_sq * self.sum_sq
+        self.sum_fourth += term * delta_n_sq * (n * n - 3.0 * n + 3.0) + 6.0 * delta_n_sq * self.sum_sq
             - 4.0 * delta_n * self.sum_cube;
         self.sum_cube += term * delta_n * (n - 2.0) - 3.0 * delta_n * self.sum_sq;
         self.sum_sq += term;
@@ -159,10 +147,7 @@ impl Moments {
     /// Mean with its standard error `sqrt(variance / n)`.
     #[must_use]
     pub fn mean_estimate(&self) -> Estimate {
-        Estimate {
-            value: self.mean,
-            standard_error: (self.variance() / self.count as f64).sqrt(),
-        }
+        Estimate { value: self.mean, standard_error: (self.variance() / self.count as f64).sqrt() }
     }
 
     /// Relative variance `V = variance / mean^2` of one sample, with its standard error by the delta method.
@@ -179,10 +164,7 @@ impl Moments {
         let s2 = self.variance();
         let m = self.mean;
         if self.count < 2 || m == 0.0 {
-            return Estimate {
-                value: f64::NAN,
-                standard_error: f64::NAN,
-            };
+            return Estimate { value: f64::NAN, standard_error: f64::NAN };
         }
         let [m3, m4] = self.higher_moments();
         let v = s2 / (m * m);
@@ -190,10 +172,7 @@ impl Moments {
         let skew = m3 / m / (m * m);
         let kurt = m4 / (m * m) / (m * m);
         let n_var = kurt - v * v - 4.0 * v * skew + 4.0 * v * v * v;
-        Estimate {
-            value: v,
-            standard_error: (n_var.max(0.0) / self.count as f64).sqrt(),
-        }
+        Estimate { value: v, standard_error: (n_var.max(0.0) / self.count as f64).sqrt() }
     }
 }
 
@@ -237,9 +216,7 @@ mod tests {
 
     #[test]
     fn known_small_set() {
-        let m: Moments = [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0]
-            .into_iter()
-            .collect();
+        let m: Moments = [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0].into_iter().collect();
         assert_eq!(m.count(), 8);
         assert!((m.mean() - 5.0).abs() < 1e-15);
         assert!((m.variance() - 32.0 / 7.0).abs() < 1e-14);
@@ -262,19 +239,12 @@ mod tests {
             merged.merge(&Moments::new());
             assert_eq!(merged.count(), whole.count());
             assert!((merged.mean() / whole.mean() - 1.0).abs() < 1e-14);
-            assert!(
-                (merged.variance() / whole.variance() - 1.0).abs() < 1e-9,
-                "block {block}"
-            );
+            assert!((merged.variance() / whole.variance() - 1.0).abs() < 1e-9, "block {block}");
             for (a, b) in merged.higher_moments().iter().zip(whole.higher_moments()) {
                 assert!((a / b - 1.0).abs() < 1e-8, "block {block}: {a} {b}");
             }
         }
-        assert!(
-            (whole.variance() - 1.0).abs() < 0.15,
-            "the offset did not eat the variance: {}",
-            whole.variance()
-        );
+        assert!((whole.variance() - 1.0).abs() < 0.15, "the offset did not eat the variance: {}", whole.variance());
     }
 
     #[test]
@@ -283,10 +253,8 @@ mod tests {
         // for the order 1/sqrt(n) bias of the delta method (-0.14 and 1.16 measured for the exponential, -0.005 and 0.996 for the uniform).
         type Draw = fn(&mut Independent) -> f64;
         let uniform: Draw = |xi| xi.next_f64();
-        let cases: [(Draw, f64, f64, &str); 2] = [
-            (exponential, 1.0, 4.0, "exponential"),
-            (uniform, 1.0 / 3.0, 0.237_037_037, "uniform"),
-        ];
+        let cases: [(Draw, f64, f64, &str); 2] =
+            [(exponential, 1.0, 4.0, "exponential"), (uniform, 1.0 / 3.0, 0.237_037_037, "uniform")];
         for (draw, v, n_var, name) in cases {
             let mut z = Moments::new();
             let mut se = Moments::new();
@@ -299,17 +267,9 @@ mod tests {
             }
 
             assert!(z.mean().abs() < 0.2, "{name}: mean z {}", z.mean());
-            assert!(
-                (z.variance() - 1.0).abs() < 0.25,
-                "{name}: variance of z {}",
-                z.variance()
-            );
+            assert!((z.variance() - 1.0).abs() < 0.25, "{name}: variance of z {}", z.variance());
             let want = (n_var / 1_000.0_f64).sqrt();
-            assert!(
-                (se.mean() / want - 1.0).abs() < 0.05,
-                "{name}: mean error {} want {want}",
-                se.mean()
-            );
+            assert!((se.mean() / want - 1.0).abs() < 0.05, "{name}: mean error {} want {want}", se.mean());
         }
     }
 
@@ -322,54 +282,20 @@ mod tests {
         let zero: Moments = [0.0, 0.0].into_iter().collect();
         assert!(zero.relative_variance().value.is_nan());
         let constant: Moments = [3.0; 10].into_iter().collect();
-        assert_eq!(
-            constant.relative_variance(),
-            Estimate {
-                value: 0.0,
-                standard_error: 0.0
-            }
-        );
+        assert_eq!(constant.relative_variance(), Estimate { value: 0.0, standard_error: 0.0 });
         let tiny: Moments = [1e-70, 3e-70].into_iter().collect();
         assert!((tiny.relative_variance().value - 0.5).abs() < 1e-12);
-        assert!(
-            [1.0, f64::NAN]
-                .into_iter()
-                .collect::<Moments>()
-                .mean()
-                .is_nan()
-        );
+        assert!([1.0, f64::NAN].into_iter().collect::<Moments>().mean().is_nan());
     }
 
     #[test]
     fn estimates_combine() {
-        let a = Estimate {
-            value: 6.0,
-            standard_error: 0.3,
-        };
-        let b = Estimate {
-            value: 2.0,
-            standard_error: 0.1,
-        };
+        let a = Estimate { value: 6.0, standard_error: 0.3 };
+        let b = Estimate { value: 2.0, standard_error: 0.1 };
         let r = a.ratio(&b);
-        assert!(
-            (r.value - 3.0).abs() < 1e-15
-                && (r.standard_error - 3.0 * 0.05 * 2.0_f64.sqrt()).abs() < 1e-15
-        );
-        assert_eq!(
-            a.scale(-2.0),
-            Estimate {
-                value: -12.0,
-                standard_error: 0.6
-            }
-        );
-        assert_eq!(
-            Estimate {
-                value: 1.0,
-                standard_error: 0.0
-            }
-            .z_score(1.0),
-            0.0
-        );
+        assert!((r.value - 3.0).abs() < 1e-15 && (r.standard_error - 3.0 * 0.05 * 2.0_f64.sqrt()).abs() < 1e-15);
+        assert_eq!(a.scale(-2.0), Estimate { value: -12.0, standard_error: 0.6 });
+        assert_eq!(Estimate { value: 1.0, standard_error: 0.0 }.z_score(1.0), 0.0);
         assert_eq!(a.z_score(5.4), (6.0 - 5.4) / 0.3);
     }
 

@@ -19,20 +19,12 @@ pub fn percentile(sorted: &[f64], p: f64) -> f64 {
     let hi = (lo + 1).min(last);
     let t = h - h.floor();
     // Equal neighbours must give themselves, also when they are infinite.
-    if t == 0.0 || sorted[lo] == sorted[hi] {
-        sorted[lo]
-    } else {
-        sorted[lo] + t * (sorted[hi] - sorted[lo])
-    }
+    if t == 0.0 || sorted[lo] == sorted[hi] { sorted[lo] } else { sorted[lo] + t * (sorted[hi] - sorted[lo]) }
 }
 
 /// A whole, non-negative number as an index no larger than `last`.
 fn index(x: f64, last: usize) -> usize {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "x is whole and clamped to 0..=last"
-    )]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "x is whole and clamped to 0..=last")]
     let i = x.clamp(0.0, last as f64) as usize;
     i.min(last)
 }
@@ -100,15 +92,7 @@ mod tests {
     #[test]
     fn percentiles_match_type_seven() {
         let s = [1.0, 2.0, 3.0, 4.0];
-        for (p, want) in [
-            (0.0, 1.0),
-            (0.25, 1.75),
-            (0.5, 2.5),
-            (0.75, 3.25),
-            (1.0, 4.0),
-            (2.0, 4.0),
-            (-1.0, 1.0),
-        ] {
+        for (p, want) in [(0.0, 1.0), (0.25, 1.75), (0.5, 2.5), (0.75, 3.25), (1.0, 4.0), (2.0, 4.0), (-1.0, 1.0)] {
             assert_eq!(percentile(&s, p), want, "p {p}");
         }
         assert!(percentile(&[], 0.5).is_nan());
@@ -119,16 +103,10 @@ mod tests {
     #[test]
     fn spread_ignores_order_and_one_outlier() {
         let s = Spread::of(&[5.0, 1.0, 3.0, 2.0, 1_000.0, 4.0, 6.0]).expect("finite samples");
-        assert_eq!(
-            (s.count, s.min, s.q1, s.median, s.q3, s.max, s.mad),
-            (7, 1.0, 2.5, 4.0, 5.5, 1_000.0, 2.0)
-        );
+        assert_eq!((s.count, s.min, s.q1, s.median, s.q3, s.max, s.mad), (7, 1.0, 2.5, 4.0, 5.5, 1_000.0, 2.0));
         assert!(Spread::of(&[]).is_none() && Spread::of(&[1.0, f64::NAN]).is_none());
         let one = Spread::of(&[2.0]).expect("one sample");
-        assert_eq!(
-            (one.median_lo, one.median, one.median_hi, one.mad),
-            (2.0, 2.0, 2.0, 0.0)
-        );
+        assert_eq!((one.median_lo, one.median, one.median_hi, one.mad), (2.0, 2.0, 2.0, 0.0));
     }
 
     #[test]

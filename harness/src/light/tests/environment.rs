@@ -9,25 +9,12 @@ fn rows_run_from_the_zenith_and_columns_from_behind() {
     let map = Environment::from_pixels("eight", 4, 2, pixels).expect("valid");
     let value = |x, y, z| map.radiance(DVec3::new(x, y, z))[0];
     assert_eq!(
-        [
-            value(-0.1, 1.0, 0.2),
-            value(-0.1, 1.0, -0.2),
-            value(0.1, 1.0, -0.2),
-            value(0.1, 1.0, 0.2)
-        ],
+        [value(-0.1, 1.0, 0.2), value(-0.1, 1.0, -0.2), value(0.1, 1.0, -0.2), value(0.1, 1.0, 0.2)],
         [1.0, 2.0, 3.0, 4.0]
     );
     assert_eq!([value(-0.1, -1.0, 0.2), value(0.1, -1.0, -0.2)], [5.0, 7.0]);
     // Poles, the seam and a direction that is none give a texel, not a panic.
-    for d in [
-        DVec3::Y,
-        -DVec3::Y,
-        DVec3::Z,
-        DVec3::new(-0.0, 0.0, 1.0),
-        DVec3::ZERO,
-        DVec3::NAN,
-        DVec3::INFINITY,
-    ] {
+    for d in [DVec3::Y, -DVec3::Y, DVec3::Z, DVec3::new(-0.0, 0.0, 1.0), DVec3::ZERO, DVec3::NAN, DVec3::INFINITY] {
         assert!(map.radiance(d)[0] >= 1.0, "{d}");
         assert!(map.pdf(d) > 0.0, "{d}");
     }
@@ -35,20 +22,9 @@ fn rows_run_from_the_zenith_and_columns_from_behind() {
 
 #[test]
 fn bad_pixels_are_repaired_counted_and_noted() {
-    let pixels = vec![
-        [f32::NAN, 1.0, f32::INFINITY],
-        [-1.0, f32::NEG_INFINITY, 2.0],
-        [-0.0, 0.0, f32::MAX],
-    ];
+    let pixels = vec![[f32::NAN, 1.0, f32::INFINITY], [-1.0, f32::NEG_INFINITY, 2.0], [-0.0, 0.0, f32::MAX]];
     let map = Environment::from_pixels("bad", 3, 1, pixels).expect("valid");
-    assert_eq!(
-        map.repairs(),
-        PixelRepairs {
-            nan: 1,
-            negative: 2,
-            infinite: 1
-        }
-    );
+    assert_eq!(map.repairs(), PixelRepairs { nan: 1, negative: 2, infinite: 1 });
     assert_eq!(map.notes().len(), 2, "shape and repairs: {:?}", map.notes());
     assert!(map.notes().iter().all(|n| n.starts_with("bad: ")));
     for k in 0..100 {
@@ -91,15 +67,11 @@ fn sky_estimates_match_its_sum() {
     let mut moments = [Moments::new(); 3];
     for _ in 0..100_000 {
         let s = map.sample(xi.next_xi());
-        for c in 0..3 {
-            moments[c].push(s.radiance[c] / s.pdf);
+        for (m, radiance) in moments.iter_mut().zip(s.radiance) {
+            m.push(radiance / s.pdf);
         }
     }
     for (m, want) in moments.iter().zip(map.total_radiance()) {
-        assert!(
-            m.mean_estimate().z_score(want).abs() < 4.0,
-            "{:?} {want}",
-            m.mean_estimate()
-        );
+        assert!(m.mean_estimate().z_score(want).abs() < 4.0, "{:?} {want}", m.mean_estimate());
     }
 }

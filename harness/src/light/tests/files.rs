@@ -16,14 +16,8 @@ fn texel(x: u32, y: u32) -> [f32; 3] {
 fn write(dir: &Path, name: &str) -> PathBuf {
     let path = dir.join(name);
     let map = Rgb32FImage::from_fn(16, 8, |x, y| image::Rgb(texel(x, y)));
-    let format = if name.ends_with("hdr") {
-        ImageFormat::Hdr
-    } else {
-        ImageFormat::OpenExr
-    };
-    image::DynamicImage::ImageRgb32F(map)
-        .save_with_format(&path, format)
-        .expect("written");
+    let format = if name.ends_with("hdr") { ImageFormat::Hdr } else { ImageFormat::OpenExr };
+    image::DynamicImage::ImageRgb32F(map).save_with_format(&path, format).expect("written");
     path
 }
 
@@ -35,26 +29,12 @@ fn both_formats_read_back() {
         assert_eq!((map.size(), map.name()), ([16, 8], name));
         assert!(map.notes().is_empty());
         for (x, y) in [(0, 0), (15, 7), (5, 2)] {
-            let (theta, phi) = (
-                PI * (f64::from(y) + 0.5) / 8.0,
-                2.0 * PI * ((f64::from(x) + 0.5) / 16.0 - 0.5),
-            );
-            let got = map.radiance(DVec3::new(
-                theta.sin() * phi.sin(),
-                theta.cos(),
-                -theta.sin() * phi.cos(),
-            ));
+            let (theta, phi) = (PI * (f64::from(y) + 0.5) / 8.0, 2.0 * PI * ((f64::from(x) + 0.5) / 16.0 - 0.5));
+            let got = map.radiance(DVec3::new(theta.sin() * phi.sin(), theta.cos(), -theta.sin() * phi.cos()));
             // Eight bits of mantissa shared by the channels: half a step of the largest.
-            let bound = if name.ends_with("hdr") {
-                16.0 / 128.0
-            } else {
-                0.0
-            };
+            let bound = if name.ends_with("hdr") { 16.0 / 128.0 } else { 0.0 };
             for (got, want) in got.iter().zip(texel(x, y)) {
-                assert!(
-                    (got - f64::from(want)).abs() <= bound,
-                    "{name} ({x}, {y}): {got} {want}"
-                );
+                assert!((got - f64::from(want)).abs() <= bound, "{name} ({x}, {y}): {got} {want}");
             }
         }
     }
@@ -66,44 +46,23 @@ fn content_decides_and_alpha_is_ignored() {
     let exr = write(dir.path(), "real.exr");
     let renamed = dir.path().join("renamed.hdr");
     std::fs::rename(exr, &renamed).expect("renamed");
-    assert_eq!(
-        Environment::load(&renamed)
-            .expect("an EXR under another name")
-            .size(),
-        [16, 8]
-    );
+    assert_eq!(Environment::load(&renamed).expect("an EXR under another name").size(), [16, 8]);
     let path = dir.path().join("alpha.exr");
     let map = Rgba32FImage::from_fn(4, 2, |_, _| image::Rgba([1.0, 2.0, 3.0, 0.25]));
-    image::DynamicImage::ImageRgba32F(map)
-        .save_with_format(&path, ImageFormat::OpenExr)
-        .expect("written");
-    assert_eq!(
-        Environment::load(&path).expect("alpha").radiance(DVec3::X),
-        [1.0, 2.0, 3.0]
-    );
+    image::DynamicImage::ImageRgba32F(map).save_with_format(&path, ImageFormat::OpenExr).expect("written");
+    assert_eq!(Environment::load(&path).expect("alpha").radiance(DVec3::X), [1.0, 2.0, 3.0]);
 }
 
 #[test]
 fn bad_pixels_of_a_file_are_counted() {
     let dir = directory();
     let path = dir.path().join("bad.exr");
-    let map = Rgb32FImage::from_fn(4, 2, |x, _| {
-        image::Rgb(if x == 0 {
-            [f32::NAN, -1.0, f32::INFINITY]
-        } else {
-            [1.0; 3]
-        })
-    });
-    image::DynamicImage::ImageRgb32F(map)
-        .save_with_format(&path, ImageFormat::OpenExr)
-        .expect("written");
+    let map =
+        Rgb32FImage::from_fn(4, 2, |x, _| image::Rgb(if x == 0 { [f32::NAN, -1.0, f32::INFINITY] } else { [1.0; 3] }));
+    image::DynamicImage::ImageRgb32F(map).save_with_format(&path, ImageFormat::OpenExr).expect("written");
     assert_eq!(
         Environment::load(&path).expect("repaired").repairs(),
-        PixelRepairs {
-            nan: 2,
-            negative: 2,
-            infinite: 2
-        }
+        PixelRepairs { nan: 2, negative: 2, infinite: 2 }
     );
 }
 
@@ -115,8 +74,7 @@ fn every_cut_is_an_error_and_no_panic() {
         let cut = dir.path().join(format!("cut-{name}"));
         for length in 0..bytes.len() {
             std::fs::write(&cut, &bytes[..length]).expect("written");
-            let error = Environment::load(&cut)
-                .expect_err(&format!("{name} cut to {length} of {}", bytes.len()));
+            let error = Environment::load(&cut).expect_err(&format!("{name} cut to {length} of {}", bytes.len()));
             one_line(&error, &cut);
         }
     }
@@ -135,10 +93,7 @@ fn damaged_bytes_never_panic() {
                 copy[at] = value;
                 std::fs::write(&bad, &copy).expect("written");
                 match Environment::load(&bad) {
-                    Ok(map) => assert!(
-                        map.sample([0.5, 0.5]).pdf.is_finite(),
-                        "{name} byte {at} = {value}"
-                    ),
+                    Ok(map) => assert!(map.sample([0.5, 0.5]).pdf.is_finite(), "{name} byte {at} = {value}"),
                     Err(error) => one_line(&error, &bad),
                 }
             }
@@ -167,29 +122,13 @@ fn each_refusal_says_why() {
     assert_eq!(error, LightError::Directory(dir.path().to_path_buf()));
     one_line(&error, dir.path());
     let cases: [(&str, &[u8], &str); 7] = [
-        (
-            "zero.hdr",
-            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 16\n",
-            "no pixels",
-        ),
-        (
-            "huge.hdr",
-            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 65536 +X 65536\n",
-            "2^25",
-        ),
+        ("zero.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 16\n", "no pixels"),
+        ("huge.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 65536 +X 65536\n", "2^25"),
         ("text.hdr", b"hello, this is no picture", "damaged"),
         ("empty.exr", b"", "damaged"),
         ("notes.txt", b"hello, this is no picture", "unsupported"),
-        (
-            "picture.png",
-            b"\x89PNG\r\n\x1a\n0000000000000000",
-            "unsupported",
-        ),
-        (
-            "picture.hdr",
-            b"\x89PNG\r\n\x1a\n0000000000000000",
-            "unsupported",
-        ),
+        ("picture.png", b"\x89PNG\r\n\x1a\n0000000000000000", "unsupported"),
+        ("picture.hdr", b"\x89PNG\r\n\x1a\n0000000000000000", "unsupported"),
     ];
     for (name, bytes, want) in cases {
         let path = dir.path().join(name);

@@ -1,0 +1,70 @@
+//! The raw flags. What clap cannot check, [`config`](crate::config) does.
+
+use crate::config::Path;
+use crate::error::Error;
+use clap::{Parser, Subcommand};
+
+/// Hair scattering: evaluate it line by line, and compare how it is computed.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "hairis", version, arg_required_else_help = false)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const FORMAT: &str = r#"A request; angles are in radians, directions of unit length in the fibre's frame,
+and "sampler" may be left out:
+  {"model":"gaussian"|"cauchy", "sampler":"ou",
+   "params":{"alpha":[R,TT,TRT], "beta":[R,TT,TRT], "gamma_tt":x, "gamma_g":x, "phi_g":x,
+             "i_r":[r,g,b], "i_tt":[r,g,b], "i_trt":[r,g,b], "i_g":x},
+   "wo":[u,v,w], "wi":[u,v,w]}     or "xi":[lobe,theta,phi] in place of "wi"
+
+The answer to "wi", and to "xi" (lobe null: discarded, and 0 for the rest):
+  {"s":[r,g,b], "pdf":x, "pdf_lobe":[R,TT,TRT-g,glint]}
+  {"wi":[u,v,w], "s":[r,g,b], "pdf":x, "pdf_lobe":[R,TT,TRT-g,glint],
+   "lobe":"r"|"tt"|"trt"|"glint"|null, "weight":[r,g,b]}
+
+A line that is refused, a blank one included, is answered by {"error":"field: problem"};
+the rest still runs, and the exit code is 2."#;
+
+/// The subcommands, each with its flags.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Command {
+    /// Evaluate JSON Lines: one request a line on standard input, one answer a line on standard output
+    #[command(after_help = FORMAT)]
+    Eval(Eval),
+}
+
+/// Flags of `hairis eval`.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct Eval {
+    /// The code that answers
+    #[arg(long, value_enum, default_value_t = Path::X8)]
+    pub path: Path,
+}
+
+/// The flags this process was started with; `None` if they asked for help or the version, which then is printed.
+///
+/// # Errors
+///
+/// [`Error::Usage`], in one line, if they make no sense.
+pub fn parse() -> Result<Option<Args>, Error> {
+    match Args::try_parse() {
+        Ok(args) => Ok(Some(args)),
+        Err(error) if error.use_stderr() => Err(Error::Usage(one_line(&error.to_string()))),
+        Err(help) => {
+            // A reader that left, as in `hairis --help | head -1`, has read what it wanted.
+            let _ = help.print();
+            Ok(None)
+        }
+    }
+}
+
+/// The first paragraph of clap's message, in one line; the usage that follows it is left to `--help`.
+fn one_line(message: &str) -> String {
+    let first = message.split("\n\n").next().unwrap_or(message);
+    let words: Vec<&str> = first.split_whitespace().collect();
+    let line = words.join(" ");
+    format!("{} (see --help)", line.strip_prefix("error: ").unwrap_or(&line))
+}

@@ -1,0 +1,91 @@
+//! `hairis eval`: JSON Lines in, JSON Lines out.
+//!
+//! One line is written for each line read, in order. Lines are answered in blocks as long as the chosen path takes
+//! them, in constant memory however long the input is. A block ends early where the input has no more line ready, so
+//! that a program that writes a line and waits for its answer gets it; lanes are independent, so answers do not
+//! depend on that.
+
+mod answer;
+mod json;
+mod lines;
+mod request;
+
+use crate::config;
+use crate::error::Error;
+use answer::{Line, answers, block_len};
+use lines::Lines;
+use request::{Refusal, Request};
+use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Write};
+
+const BUFFER: usize = 1 << 16;
+
+/// Answers standard input on standard output.
+///
+/// A reader that leaves early ends the run without an error of its own.
+///
+/// # Errors
+///
+/// - [`Error::Malformed`] if any line was refused, after all others were answered.
+/// - [`Error::Read`] and [`Error::Write`] if a stream failed.
+pub fn run(config: &config::Eval) -> Result<(), Error> {
+    let input = BufReader::with_capacity(BUFFER, io::stdin().lock());
+    let output = BufWriter::with_capacity(BUFFER, io::stdout().lock());
+    stream(config.path, input, output)
+}
+
+/// Answers `input` on `output`: see [`run`].
+///
+/// # Errors
+///
+/// As [`run`].
+pub fn stream<R: Read, W: Write>(path: config::Path, input: BufReader<R>, mut output: W) -> Result<(), Error> {
+    let mut lines = Lines::new(input);
+    let mut block = Vec::with_capacity(block_len(path));
+    let (mut read, mut refused) = (0, 0);
+    let mut more = true;
+    while more {
+        block.clear();
+        more = fill(&mut block, block_len(path), &mut lines).map_err(Error::Read)?;
+        read += block.len() as u64;
+        refused += block.iter().filter(|line| line.is_err()).count() as u64;
+        let written = write_block(path, &block, &mut output).and_then(|()| {
+            // Whoever waits for these answers before writing on must get them now.
+            if more && lines.ready() { Ok(()) } else { output.flush() }
+        });
+        match written {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => break,
+            other => other.map_err(Error::Write)?,
+        }
+    }
+    if refused == 0 { Ok(()) } else { Err(Error::Malformed { lines: refused, of: read }) }
+}
+
+/// Reads up to `len` lines, fewer where no more are ready; false at the end of the input.
+fn fill<R: Read>(block: &mut Vec<Result<Request, Refusal>>, len: usize, lines: &mut Lines<R>) -> io::Result<bool> {
+    loop {
+        match lines.next()? {
+            None => return Ok(false),
+            Some(line) => block.push(line.and_then(Request::parse)),
+        }
+        if block.len() == len || !lines.ready() {
+            return Ok(true);
+        }
+    }
+}
+
+/// Answers a block, a line each.
+fn write_block(path: config::Path, block: &[Result<Request, Refusal>], output: &mut impl Write) -> io::Result<()> {
+    let requests: Vec<&Request> = block.iter().flatten().collect();
+    let mut answers = answers(path, &requests).into_iter();
+    for line in block {
+        match line {
+            Ok(_) => {
+                let answer = answers.next().ok_or_else(|| io::Error::other("a request was left unanswered"))?;
+                serde_json::to_writer(&mut *output, &answer)?;
+            }
+            Err(refusal) => serde_json::to_writer(&mut *output, &Line::Refused { error: refusal.to_string() })?,
+        }
+        output.write_all(b"\n")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,43 @@
+//! The lines of a stream, with a bound on their length.
+
+use super::request::Refusal;
+use std::io::{self, BufRead, BufReader, Read};
+
+/// Longest line taken, in bytes: a thousand times what a request needs.
+const LONGEST: usize = 1 << 20;
+
+/// Lines one by one, in one buffer.
+pub(super) struct Lines<R> {
+    input: BufReader<R>,
+    line: Vec<u8>,
+}
+
+impl<R: Read> Lines<R> {
+    pub(super) fn new(input: BufReader<R>) -> Self {
+        Self { input, line: Vec::new() }
+    }
+
+    /// Whether a whole line can be had without waiting for one.
+    pub(super) fn ready(&self) -> bool {
+        self.input.buffer().contains(&b'\n')
+    }
+
+    /// The next line without its end, or why it is refused; `None` at the end of the input. A last line needs no end.
+    pub(super) fn next(&mut self) -> io::Result<Option<Result<&str, Refusal>>> {
+        self.line.clear();
+        // One byte more than the longest line, for its end.
+        let read = self.input.by_ref().take(LONGEST as u64 + 1).read_until(b'\n', &mut self.line)?;
+        if read == 0 {
+            return Ok(None);
+        }
+        if self.line.last() == Some(&b'\n') {
+            self.line.pop();
+        } else if self.line.len() > LONGEST {
+            self.input.skip_until(b'\n')?;
+            return Ok(Some(Err(Refusal::at("line", format!("longer than {LONGEST} bytes")))));
+        }
+        let text = core::str::from_utf8(&self.line)
+            .map_err(|error| Refusal::at("line", format!("not UTF-8 after byte {}", error.valid_up_to())));
+        Ok(Some(text))
+    }
+}

@@ -1,0 +1,45 @@
+//! A checked run, made of raw flags.
+
+use crate::args::{Args, Command};
+use crate::error::Error;
+use clap::ValueEnum;
+
+/// What to do, with everything checked that can be before the work starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Run {
+    /// `hairis eval`.
+    Eval(Eval),
+}
+
+/// A run of `hairis eval`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Eval {
+    /// The code that answers.
+    pub path: Path,
+}
+
+/// One of the ways to compute the same numbers. All give the same fields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Path {
+    /// One direction a call, in single precision
+    Scalar,
+    /// Eight lines a call, in single precision: eight materials and gather points, one a lane
+    X8,
+    /// Slices in, slices out, in single precision: neighbouring lines on the same hair with the same wo are one call
+    Batch,
+    /// The paper's formulas line by line, in double precision and on unrounded input
+    F64,
+}
+
+impl Run {
+    /// The run that `args` ask for.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Usage`] if flags contradict each other or have values out of range. `eval` has no such flag.
+    pub fn check(args: Args) -> Result<Self, Error> {
+        match args.command {
+            Command::Eval(eval) => Ok(Self::Eval(Eval { path: eval.path })),
+        }
+    }
+}

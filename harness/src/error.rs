@@ -1,0 +1,52 @@
+//! Why a run of `hairis` ends with an exit code other than 0.
+
+use core::fmt;
+use std::io;
+
+/// Why a run failed; it is printed once, by `main`, in one line.
+#[derive(Debug)]
+pub enum Error {
+    /// The command line makes no sense.
+    Usage(String),
+    /// Standard input could not be read.
+    Read(io::Error),
+    /// Standard output could not be written, for another reason than that its reader left.
+    Write(io::Error),
+    /// Some lines of the input were refused; each was answered by an error of its own.
+    Malformed {
+        /// How many.
+        lines: u64,
+        /// How many lines there were.
+        of: u64,
+    },
+}
+
+impl Error {
+    /// The exit code: 1 for a failed comparison or check, 2 for bad usage or input.
+    #[must_use]
+    pub const fn exit_code(&self) -> u8 {
+        match self {
+            Self::Usage(_) | Self::Read(_) | Self::Write(_) | Self::Malformed { .. } => 2,
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Usage(problem) => f.write_str(problem),
+            Self::Read(source) => write!(f, "cannot read standard input: {source}"),
+            Self::Write(source) => write!(f, "cannot write standard output: {source}"),
+            Self::Malformed { lines, of } => write!(f, "{lines} of {of} lines were refused"),
+        }
+    }
+}
+
+impl core::error::Error for Error {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Read(source) | Self::Write(source) => Some(source),
+            Self::Usage(_) | Self::Malformed { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Random gather points and directions over realistic hair.
+
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use glam::{DVec3, Vec3};
+use hairis::HairDesc;
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+
+/// Where `wi` was put.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Region {
+    /// Uniform on the sphere, as `wo` is.
+    Sphere,
+    /// Within a few widths of the centre of a lobe, in longitude and azimuth.
+    Peaks,
+    /// `wo`, `wi` or both between 1e-3 and 0.1 rad from the axis.
+    Grazing,
+    /// `|phi|` within 1e-4 to 1e-2 of pi.
+    Back,
+    /// `|phi|` within 1e-5 to 1e-2 of pi/2, where the glints' pdf is cut.
+    GlintCut,
+}
+
+impl Region {
+    pub(crate) const ALL: [Self; 5] = [Self::Sphere, Self::Peaks, Self::Grazing, Self::Back, Self::GlintCut];
+}
+
+/// A gather point and a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Case {
+    pub(crate) region: Region,
+    pub(crate) desc: HairDesc,
+    pub(crate) wo: Vec3,
+    pub(crate) wi: Vec3,
+}
+
+/// The directions compared are further than this from the axis, rad.
+const FROM_AXIS: f64 = 1e-3;
+
+/// The pdf jumps by the glints' where `|phi|` is pi/2, and single precision knows `phi` to some 1e-7 rad only: no
+/// case is nearer to the jump than this, rad.
+const CUT_BAND: f64 = 1e-6;
+
+/// Case after case, all of them from one seed.
+pub(crate) struct Cases(ChaCha8Rng);
+
+impl Cases {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+
+    /// The next case; the regions take turns.
+    pub(crate) fn case(&mut self, i: usize) -> Case {
+        let region = Region::ALL[i % Region::ALL.len()];
+        let desc = self.desc();
+        loop {
+            let (wo, wi) = self.directions(region, &desc);
+            let phi = angles(wo).1 - angles(wi).1;
+            let from_cut = (phi.cos().asin()).abs();
+            let off_axis = |w: Vec3| w.as_dvec3().y.hypot(w.as_dvec3().z) > FROM_AXIS;
+            if from_cut > CUT_BAND && off_axis(wo) && off_axis(wi) {
+                return Case { region, desc, wo, wi };
+            }
+        }
+    }
+
+    /// In `[0, 1)`.
+    pub(crate) fn unit(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Uniform numbers of 24 bits, exact in single precision; one in eight at an end of the interval.
+    pub(crate) fn xi(&mut self) -> [f64; 3] {
+        const STEP: f64 = 1.0 / 16_777_216.0;
+        [(); 3].map(|()| match self.0.next_u32() % 16 {
+            0 => 0.0,
+            1 => 1.0 - STEP,
+            _ => f64::from(self.0.next_u32() >> 8) * STEP,
+        })
+    }
+
+    fn between(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * self.unit()
+    }
+
+    fn log_between(&mut self, lo: f64, hi: f64) -> f64 {
+        self.between(lo.ln(), hi.ln()).exp()
+    }
+
+    fn chance(&mut self, probability: f64) -> bool {
+        self.unit() < probability
+    }
+
+    fn sign(&mut self) -> f64 {
+        if self.chance(0.5) { 1.0 } else { -1.0 }
+    }
+
+    /// Widths of 1 to 30 degrees, shifts within 15, glints of 10 to 80; some colours, channels and glints are 0.
+    fn desc(&mut self) -> HairDesc {
+        let [beta_r, beta_tt, beta_trt, gamma_tt, gamma_g] =
+            [(); 5].map(|()| single(self.log_between(1.0, 30.0).to_radians()));
+        let [alpha_r, alpha_tt, alpha_trt] = [(); 3].map(|()| single(self.between(-15.0, 15.0).to_radians()));
+        let [intensity_r, intensity_tt, intensity_trt] = [(); 3].map(|()| self.color());
+        let intensity_g = if self.chance(0.1) { 0.0 } else { single(self.log_between(0.1, 5.0)) };
+        HairDesc {
+            alpha_r,
+            alpha_tt,
+            alpha_trt,
+            beta_r,
+            beta_tt,
+            beta_trt,
+            gamma_tt,
+            gamma_g,
+            phi_g: single(self.between(10.0, 80.0).to_radians()),
+            intensity_r,
+            intensity_tt,
+            intensity_trt,
+            intensity_g,
+        }
+    }
+
+    fn color(&mut self) -> [f32; 3] {
+        let black = self.chance(0.2);
+        [(); 3].map(|()| if black || self.chance(0.1) { 0.0 } else { single(self.unit()) })
+    }
+
+    fn directions(&mut self, region: Region, desc: &HairDesc) -> (Vec3, Vec3) {
+        let (mut cos_o, mut sin_o) = self.longitude();
+        let phi_o = self.between(-PI, PI);
+        let (mut cos_i, mut sin_i) = self.longitude();
+        let mut phi = self.between(-PI, PI);
+        match region {
+            Region::Sphere => {}
+            Region::Peaks => {
+                let (alpha, beta) =
+                    [(desc.alpha_r, desc.beta_r), (desc.alpha_tt, desc.beta_tt), (desc.alpha_trt, desc.beta_trt)]
+                        [self.0.next_u32() as usize % 3];
+                let theta_h = f64::from(alpha) + f64::from(beta) * self.between(-4.0, 4.0);
+                let theta_i = (2.0 * theta_h - sin_o.atan2(cos_o)).clamp(-FRAC_PI_2, FRAC_PI_2);
+                (cos_i, sin_i) = (theta_i.cos(), theta_i.sin());
+                phi = match self.0.next_u32() % 3 {
+                    0 => PI - f64::from(desc.gamma_tt) * self.between(-4.0, 4.0),
+                    1 => self.sign() * (f64::from(desc.phi_g) + f64::from(desc.gamma_g) * self.between(-4.0, 4.0)),
+                    _ => phi,
+                };
+            }
+            Region::Grazing => {
+                let which = self.0.next_u32() % 3;
+                if which != 0 {
+                    (cos_o, sin_o) = self.near_axis();
+                }
+                if which != 1 {
+                    (cos_i, sin_i) = self.near_axis();
+                }
+            }
+            Region::Back => phi = self.sign() * (PI - self.log_between(1e-4, 1e-2)),
+            Region::GlintCut => phi = self.sign() * (FRAC_PI_2 + self.sign() * self.log_between(1e-5, 1e-2)),
+        }
+        (direction(cos_o, sin_o, phi_o), direction(cos_i, sin_i, (phi_o - phi) % TAU))
+    }
+
+    /// Cosine and sine of the inclination of a direction uniform on the sphere.
+    fn longitude(&mut self) -> (f64, f64) {
+        let sin: f64 = self.between(-1.0, 1.0);
+        ((1.0 - sin * sin).sqrt(), sin)
+    }
+
+    /// Cosine and sine of an inclination 1e-3 to 0.1 rad from the axis, either end of it.
+    fn near_axis(&mut self) -> (f64, f64) {
+        let from_axis = self.log_between(FROM_AXIS, 0.1);
+        (from_axis.sin(), from_axis.cos() * self.sign())
+    }
+}
+
+/// Inclination and azimuth, in double precision.
+pub(crate) fn angles(w: Vec3) -> (f64, f64) {
+    let w = w.as_dvec3();
+    (w.x.atan2(w.y.hypot(w.z)), w.z.atan2(w.y))
+}
+
+fn direction(cos_theta: f64, sin_theta: f64, phi: f64) -> Vec3 {
+    DVec3::new(sin_theta, cos_theta * phi.cos(), cos_theta * phi.sin()).as_vec3()
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "single precision is what is tested")]
+fn single(x: f64) -> f32 {
+    x as f32
+}

@@ -1,0 +1,89 @@
+//! The binary `hairis`, run as scripts run it.
+
+mod agreement;
+mod refusals;
+mod streams;
+
+use crate::cases::Case;
+use serde_json::{Value, json};
+use std::io::Write;
+use std::process::{Command, Stdio};
+use std::thread;
+
+const PATHS: [&str; 4] = ["scalar", "x8", "batch", "f64"];
+
+/// What a run left behind.
+struct Run {
+    code: Option<i32>,
+    out: Vec<String>,
+    err: Vec<String>,
+}
+
+impl Run {
+    fn json(&self) -> Vec<Value> {
+        self.out.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
+    }
+}
+
+fn command(args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hairis"));
+    command.args(args).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+fn run(args: &[&str], input: &[u8]) -> Run {
+    let mut child = command(args).spawn().unwrap();
+    let (mut stdin, input) = (child.stdin.take().unwrap(), input.to_vec());
+    // A run that refuses its flags reads nothing.
+    let writer = thread::spawn(move || drop(stdin.write_all(&input)));
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    let lines = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().lines().map(str::to_owned).collect();
+    Run { code: output.status.code(), out: lines(output.stdout), err: lines(output.stderr) }
+}
+
+fn eval(path: &str, requests: &[Value]) -> Run {
+    let lines: Vec<String> = requests.iter().map(Value::to_string).collect();
+    run(&["eval", "--path", path], lines.join("\n").as_bytes())
+}
+
+/// A request that is answered.
+fn good() -> Value {
+    json!({
+        "model": "gaussian",
+        "params": {
+            "alpha": [-0.13, 0.065, 0.2], "beta": [0.13, 0.065, 0.26], "gamma_tt": 0.17, "gamma_g": 0.17, "phi_g": 0.61,
+            "i_r": [0.3, 0.3, 0.3], "i_tt": [0.8, 0.6, 0.4], "i_trt": [0.7, 0.5, 0.3], "i_g": 0.5
+        },
+        "wo": [0.6, 0.8, 0.0],
+        "wi": [0.0, 1.0, 0.0]
+    })
+}
+
+/// The request of a case, every number written as it is in single precision.
+fn request(model: &str, case: &Case) -> Value {
+    let d = &case.desc;
+    let three = |x: [f32; 3]| x.map(f64::from);
+    json!({
+        "model": model,
+        "params": {
+            "alpha": three([d.alpha_r, d.alpha_tt, d.alpha_trt]), "beta": three([d.beta_r, d.beta_tt, d.beta_trt]),
+            "gamma_tt": f64::from(d.gamma_tt), "gamma_g": f64::from(d.gamma_g), "phi_g": f64::from(d.phi_g),
+            "i_r": three(d.intensity_r), "i_tt": three(d.intensity_tt), "i_trt": three(d.intensity_trt),
+            "i_g": f64::from(d.intensity_g)
+        },
+        "wo": three(case.wo.into()),
+        "wi": three(case.wi.into())
+    })
+}
+
+/// A request for the sample of `xi` in place of the value at wi.
+fn with_xi(mut request: Value, xi: [f64; 3]) -> Value {
+    request.as_object_mut().unwrap().remove("wi");
+    request["xi"] = json!(xi);
+    request
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}

@@ -1,0 +1,202 @@
+//! The paths give the same answers.
+
+use super::{PATHS, eval, numbers, request, with_xi};
+use crate::cases::{Case, Cases, angles};
+use core::f64::consts::PI;
+use serde_json::{Value, json};
+
+/// Single precision rounds a direction of the input by up to this, rad.
+const ROUNDING: f64 = 1.2e-7;
+
+/// Relative error that the bounds of SPEC 6 allow, and that the rounding of the input forces on any code of single
+/// precision: it moves a direction against a bell's width and against the seam at |phi| = pi, where cos(phi/2) is 0.
+fn allowed(model: &str, quantity: &str, case: &Case) -> f64 {
+    let d = &case.desc;
+    let widths = [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g].map(f64::from);
+    let narrowest = widths.into_iter().fold(PI, f64::min);
+    let from_seam = ((angles(case.wo).1 - angles(case.wi).1).sin().abs()).max(1e-12);
+    let steepness = if (model, quantity) == ("gaussian", "s") { 12.0 } else { 1.0 };
+    let bound = if (model, quantity) == ("gaussian", "s") { 1e-4 } else { 1e-5 };
+    bound + ROUNDING * (steepness / narrowest + 1.0 / from_seam)
+}
+
+/// A Gaussian below 2^-110 is that by design; below this, S is nothing but such bells.
+fn floor(model: &str) -> f64 {
+    if model == "gaussian" { 1e-27 } else { 0.0 }
+}
+
+/// Models and cases in turn, so that neighbours differ in everything.
+fn cases(seed: u64, len: usize) -> Vec<(&'static str, Case)> {
+    let mut source = Cases::new(seed);
+    (0..len).map(|i| (["gaussian", "cauchy"][i / 5 % 2], source.case(i))).collect()
+}
+
+fn assert_close(name: &str, got: &Value, expected: &Value, allowed: f64, floor: f64) {
+    let list = |value: &Value| if value.is_array() { numbers(value) } else { vec![value.as_f64().unwrap()] };
+    for (got, expected) in list(got).into_iter().zip(list(expected)) {
+        let error = (got - expected).abs();
+        assert!(error <= allowed * expected + floor, "{name}: {got:e} where {expected:e} was expected, to {allowed:e}");
+    }
+}
+
+#[test]
+fn all_paths_agree_on_directions() {
+    let cases = cases(1, 400);
+    let requests: Vec<Value> = cases.iter().map(|(model, case)| request(model, case)).collect();
+    let oracle = eval("f64", &requests).json();
+    for path in &PATHS[..3] {
+        let run = eval(path, &requests);
+        assert_eq!(run.code, Some(0), "{path}: {:?}", run.err);
+        for ((answer, expected), (model, case)) in run.json().iter().zip(&oracle).zip(&cases) {
+            assert_eq!(keys(answer), keys(expected), "{path}: fields");
+            for quantity in ["s", "pdf", "pdf_lobe"] {
+                let name = format!("{path} {model} {quantity} at {case:?}");
+                let floor = if quantity == "s" { floor(model) } else { 0.0 };
+                assert_close(&name, &answer[quantity], &expected[quantity], allowed(model, quantity, case), floor);
+            }
+        }
+    }
+}
+
+/// A sample is right if it is that of numbers at most this far from those given: far from a narrow lobe the last bit of
+/// one moves a direction by 1e-4 rad, whatever the code.
+const XI_ERROR: f64 = 4.0 / 16_777_216.0;
+
+#[test]
+fn all_paths_agree_on_samples() {
+    let mut source = Cases::new(2);
+    let cases = cases(3, 400);
+    let xi: Vec<[f64; 3]> = cases.iter().map(|_| source.xi()).collect();
+    let requests = |by: f64| -> Vec<Value> {
+        let moved = |xi: [f64; 3]| [xi[0], (xi[1] + by).clamp(0.0, 1.0 - 1e-12), (xi[2] + by).clamp(0.0, 1.0 - 1e-12)];
+        cases.iter().zip(&xi).map(|((model, case), xi)| with_xi(request(model, case), moved(*xi))).collect()
+    };
+    let [below, oracle, above] = [-XI_ERROR, 0.0, XI_ERROR].map(|by| eval("f64", &requests(by)).json());
+    for path in &PATHS[..3] {
+        let run = eval(path, &requests(0.0));
+        assert_eq!(run.code, Some(0), "{path}: {:?}", run.err);
+        let answers = run.json();
+        let (mut kept, mut returned) = (Vec::new(), Vec::new());
+        for (i, (answer, (model, case))) in answers.iter().zip(&cases).enumerate() {
+            let expected = &oracle[i];
+            let name = format!("{path} {model} {case:?}: {answer} where {expected} was expected");
+            assert_eq!(keys(answer), keys(expected), "{name}");
+            if answer["lobe"].is_null() || expected["lobe"].is_null() {
+                let other = if answer["lobe"].is_null() { expected } else { answer };
+                assert!(other["lobe"].is_null() || is_edge(other), "{name}");
+                continue;
+            }
+            assert_eq!(answer["lobe"], expected["lobe"], "{name}");
+            let slack = 1e-6 + apart(&below[i], expected) + apart(&above[i], expected);
+            assert!(apart(answer, expected) <= slack, "{name}, to {slack}");
+            let mut at_wi = request(model, case);
+            at_wi["wi"] = answer["wi"].clone();
+            kept.push(i);
+            returned.push(at_wi);
+        }
+        assert!(kept.len() > 300, "{path}: {} samples were not discarded", kept.len());
+        // S and the pdf that came with a sample are those of its direction, up to the rounding of that direction.
+        for (i, expected) in kept.into_iter().zip(eval("f64", &returned).json()) {
+            let ((model, case), wi) = (&cases[i], numbers(&answers[i]["wi"]));
+            let wi = glam::DVec3::new(wi[0], wi[1], wi[2]).as_vec3();
+            let case = Case { wi, ..*case };
+            let phi = angles(case.wo).1 - angles(wi).1;
+            let from_axis = f64::from(wi.y).hypot(f64::from(wi.z));
+            if from_axis < 1e-3 || phi.cos().abs() < 1e-6 {
+                continue;
+            }
+            for quantity in ["s", "pdf"] {
+                let name = format!("{path} {model} {quantity} of a sample at {case:?}");
+                let floor = if quantity == "s" { floor(model) } else { 0.0 };
+                let (got, allowed) = (&answers[i][quantity], allowed(model, quantity, &case));
+                assert_close(&name, got, &expected[quantity], allowed, floor);
+            }
+        }
+    }
+}
+
+/// Distance between two sampled directions.
+fn apart(a: &Value, b: &Value) -> f64 {
+    let (a, b) = (numbers(&a["wi"]), numbers(&b["wi"]));
+    a.iter().zip(&b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}
+
+/// Whether a sample may be discarded or not by the last bit of a number: one within 1e-4 rad of the axis, or one where
+/// no lobe reaches (`xi_phi` of 0 puts a cosine lobe at |phi| = pi, where the cosine of a rounded pi/2 is just above 0).
+fn is_edge(sample: &Value) -> bool {
+    let wi = numbers(&sample["wi"]);
+    wi[1].hypot(wi[2]) < 1e-4 || sample["pdf"].as_f64().unwrap() < 1e-15
+}
+
+#[test]
+fn black_hair_scatters_nothing() {
+    let (_, mut case) = cases(4, 1)[0];
+    case.desc.intensity_r = [0.0; 3];
+    case.desc.intensity_tt = [0.0; 3];
+    case.desc.intensity_trt = [0.0; 3];
+    let request = request("gaussian", &case);
+    let requests = [request.clone(), with_xi(request, [0.5; 3])];
+    for path in PATHS {
+        let answers = eval(path, &requests).json();
+        assert_eq!((numbers(&answers[0]["s"]), answers[0]["pdf"].as_f64()), (vec![0.0; 3], Some(0.0)), "{path}");
+        assert_eq!(answers[1]["lobe"], Value::Null, "{path}: a discarded sample");
+        for field in ["wi", "s", "pdf_lobe", "weight"] {
+            assert!(numbers(&answers[1][field]).iter().all(|x| *x == 0.0), "{path}: {field} of {}", answers[1]);
+        }
+        assert_eq!(answers[1]["pdf"].as_f64(), Some(0.0), "{path}: pdf of a discarded sample");
+    }
+}
+
+#[test]
+fn lobes_without_energy_are_never_drawn() {
+    let mut source = Cases::new(5);
+    let mut requests = Vec::new();
+    for (model, mut case) in cases(6, 120) {
+        case.desc.intensity_r = [0.0; 3];
+        case.desc.intensity_tt = [0.2; 3];
+        case.desc.intensity_trt = [0.2; 3];
+        case.desc.intensity_g = 0.0;
+        requests.push(with_xi(request(model, &case), source.xi()));
+    }
+    for path in PATHS {
+        for answer in eval(path, &requests).json() {
+            assert!(answer["lobe"] != "r" && answer["lobe"] != "glint", "{path}: {answer}");
+        }
+    }
+}
+
+#[test]
+fn the_narrowest_hair_gives_finite_answers_everywhere() {
+    let mut source = Cases::new(7);
+    let mut requests = Vec::new();
+    for (model, case) in cases(8, 100) {
+        let mut request = request(model, &case);
+        request["params"]["beta"] = json!([1e-4, 1e-4, 1e-4]);
+        request["params"]["gamma_tt"] = json!(1e-4);
+        request["params"]["gamma_g"] = json!(1e-4);
+        let mut along = request.clone();
+        along["wi"] = json!([-1, 0, 0]);
+        let mut both = along.clone();
+        both["wo"] = json!([1, 0, 0]);
+        requests.extend([
+            with_xi(request.clone(), source.xi()),
+            with_xi(both.clone(), source.xi()),
+            request,
+            along,
+            both,
+        ]);
+    }
+    for path in PATHS {
+        let run = eval(path, &requests);
+        assert_eq!(run.code, Some(0), "{path}: {:?}", run.err);
+        for line in &run.out {
+            // A number that is not finite is printed as null, which is legal for the lobe alone.
+            let nulls = line.matches("null").count() - line.matches("\"lobe\":null").count();
+            assert_eq!(nulls, 0, "{path}: {line}");
+        }
+    }
+}
+
+fn keys(answer: &Value) -> Vec<&String> {
+    answer.as_object().unwrap().keys().collect()
+}

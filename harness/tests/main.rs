@@ -1,0 +1,6 @@
+//! Tests of the harness: one binary, a module a subject.
+#![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
+
+mod accuracy;
+mod cases;
+mod cli;

@@ -1,0 +1,186 @@
+//! Slices in, slices out: structures of arrays of any length and alignment.
+
+use crate::dispatch::{self, Level};
+use crate::lanes::Packet;
+use crate::{Broadcast, Gather, Model, Vec3x};
+use core::fmt::{self, Debug};
+
+/// Slices of one call whose lengths differ: which, how long it is, and how long the first is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LengthError {
+    /// Name of the slice at fault.
+    pub field: &'static str,
+    /// Its length.
+    pub len: usize,
+    /// Length of the first slice, which all others must have.
+    pub expected: usize,
+}
+
+impl fmt::Display for LengthError {
+    #[inline]
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { field, len, expected } = self;
+        write!(f, "{field} has {len} entries where the first slice has {expected}")
+    }
+}
+
+impl core::error::Error for LengthError {}
+
+/// Where [`Gather::eval_pdf_batch`] writes: one entry a direction.
+#[derive(Debug)]
+pub struct EvalSlices<'a> {
+    /// S, red, green and blue, per steradian.
+    pub value: [&'a mut [f32]; 3],
+    /// Density, per steradian.
+    pub pdf: &'a mut [f32],
+}
+
+/// Where [`Gather::sample_batch`] writes: one entry a sample, all 0 but the direction for a discarded one.
+#[derive(Debug)]
+pub struct SampleSlices<'a> {
+    /// Towards the light, in the fibre's frame: u, v, w.
+    pub wi: [&'a mut [f32]; 3],
+    /// S, red, green and blue, per steradian.
+    pub value: [&'a mut [f32]; 3],
+    /// Density, per steradian.
+    pub pdf: &'a mut [f32],
+    /// `value * cos theta_i / pdf`, red, green and blue.
+    pub weight: [&'a mut [f32]; 3],
+    /// Slot of the chosen lobe as a number, -1 for a discarded sample.
+    pub slot: &'a mut [f32],
+}
+
+impl<M: Model> Gather<M> {
+    /// Value and density of many directions: `wi` by component u, v, w.
+    ///
+    /// Nothing is read or written beyond the slices, which may be of any length and alignment.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then.
+    ///
+    /// ```
+    /// use hairis::{Bsdf, EvalSlices, Gaussian, Hair, HairParams};
+    /// let gather = Bsdf::new(&Hair(Gaussian), &HairParams::default()).prepare(glam::Vec3::Y);
+    /// let wi = [[0.0; 11], [0.6; 11], [0.8; 11]];
+    /// let (mut value, mut pdf) = ([[0.0; 11]; 3], [0.0; 11]);
+    /// let [r, g, b] = &mut value;
+    /// gather.eval_pdf_batch([&wi[0], &wi[1], &wi[2]], EvalSlices { value: [r, g, b], pdf: &mut pdf })?;
+    /// assert!(pdf.iter().all(|pdf| *pdf > 0.0));
+    /// # Ok::<(), hairis::LengthError>(())
+    /// ```
+    #[inline]
+    pub fn eval_pdf_batch(&self, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
+        self.eval_pdf_batch_at(Level::detect(), wi, out)
+    }
+
+    /// As [`eval_pdf_batch`](Self::eval_pdf_batch), on a given instruction set.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then.
+    #[inline]
+    pub fn eval_pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
+        let [r, g, b] = out.value;
+        let mut out = [r, g, b, out.pdf];
+        check_lengths(["wi.u", "wi.v", "wi.w"], wi, ["value.r", "value.g", "value.b", "pdf"], &out)?;
+        dispatch::batch::<M, EvalRow, 4>(level, &self.inner, wi, &mut out);
+        Ok(())
+    }
+
+    /// Many samples: `xi` by component, for the lobe, the longitude and the azimuth, each in `[0, 1)`.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then.
+    #[inline]
+    pub fn sample_batch(&self, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
+        self.sample_batch_at(Level::detect(), xi, out)
+    }
+
+    /// As [`sample_batch`](Self::sample_batch), on a given instruction set.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then.
+    #[inline]
+    pub fn sample_batch_at(&self, level: Level, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
+        let ([u, v, w], [r, g, b], [wr, wg, wb]) = (out.wi, out.value, out.weight);
+        let mut out = [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot];
+        let names = [
+            "wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf", "weight.r", "weight.g", "weight.b", "slot",
+        ];
+        check_lengths(["xi.lobe", "xi.theta", "xi.phi"], xi, names, &out)?;
+        dispatch::batch::<M, SampleRow, 11>(level, &self.inner, xi, &mut out);
+        Ok(())
+    }
+}
+
+#[inline]
+fn check_lengths<const N: usize>(
+    in_names: [&'static str; 3],
+    inputs: [&[f32]; 3],
+    out_names: [&'static str; N],
+    outputs: &[&mut [f32]; N],
+) -> Result<(), LengthError> {
+    let expected = inputs[0].len();
+    let inputs = in_names.into_iter().zip(inputs.iter().map(|s| s.len()));
+    let outputs = out_names.into_iter().zip(outputs.iter().map(|s| s.len()));
+    for (field, len) in inputs.chain(outputs) {
+        if len != expected {
+            return Err(LengthError { field, len, expected });
+        }
+    }
+    Ok(())
+}
+
+/// What a batch computes of three numbers a lane: `N` numbers a lane.
+pub(crate) trait Row<const N: usize> {
+    fn row<M: Model, L: Packet, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, input: [L; 3]) -> [L; N];
+}
+
+pub(crate) struct EvalRow;
+impl Row<4> for EvalRow {
+    #[inline(always)]
+    fn row<M: Model, L: Packet, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, [x, y, z]: [L; 3]) -> [L; 4] {
+        let eval = M::eval::<L, C>(gather, Vec3x::new(x, y, z));
+        let [r, g, b] = eval.value;
+        [r, g, b, eval.pdf]
+    }
+}
+
+pub(crate) struct SampleRow;
+impl Row<11> for SampleRow {
+    #[inline(always)]
+    fn row<M: Model, L: Packet, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, xi: [L; 3]) -> [L; 11] {
+        let s = M::sample::<L, C>(gather, xi);
+        let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
+        [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
+    }
+}
+
+/// The loop of a batch: whole packets in place, the rest through a packet on the stack.
+#[inline(always)]
+pub(crate) fn run<M: Model, R: Row<N>, L: Packet, C: Broadcast<L> + Debug, const N: usize>(
+    gather: &M::Gather<C>,
+    inputs: [&[f32]; 3],
+    outputs: &mut [&mut [f32]; N],
+) {
+    let len = inputs[0].len();
+    let mut at = 0;
+    while at < len {
+        let mut input = [L::splat(0.0); 3];
+        let mut i = 0;
+        while i < 3 {
+            input[i] = L::read(inputs[i], at);
+            i += 1;
+        }
+        let output = R::row::<M, L, C>(gather, input);
+        i = 0;
+        while i < N {
+            output[i].write(outputs[i], at);
+            i += 1;
+        }
+        at += 8;
+    }
+}
