@@ -51,7 +51,7 @@ pub trait Bell: Copy {
 /// The bell of the published model: `exp(-s/2)`, a Gaussian whose deviation is the width.
 ///
 /// - Source: Ou et al. 2012, table 2; unit peak by ERRATA E4.
-/// - Accuracy: from `2^-110` down it is `2^-110`, see [`crate::math::exp2_neg`].
+/// - Accuracy: exactly 0 from about `2^-115` down, see [`crate::math::exp2_neg`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Gaussian;
 

@@ -74,7 +74,7 @@ impl Level {
         match self.0 {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Kind::Avx2 => true,
-            Kind::Portable => cfg!(any(target_feature = "fma", target_arch = "aarch64")),
+            Kind::Portable => crate::lanes::portable::FUSES,
         }
     }
 }

@@ -68,19 +68,21 @@ impl<L: Lanes> Place<L> {
         let sound = L::and(c(GRAZING).lt(cos_theta_i), wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)));
 
         // Azimuth relative to wo, folded: tau is the half-angle tangent of |phi| or of pi - |phi|, at most 1.
-        let (cos_phi_o, sin_phi_o) = (gather.cos_phi_o.lanes(), gather.sin_phi_o.lanes());
-        let dot = wi.y.mul_add(cos_phi_o, wi.z * sin_phi_o);
-        let cross = wi.z.mul_add(cos_phi_o, -(wi.y * sin_phi_o)).abs();
-        let far = cos_theta_i + dot.abs();
+        // R and TRT-g vanish with it at phi = pi: it takes the digits of wo as they are, and a sum that does not cancel.
+        let [v_o, w_o, cos_o] = lanes3(&gather.plane_o);
+        let dot = wi.y.mul_add(v_o, wi.z * w_o);
+        let cross = L::difference_of_products(wi.z, v_o, wi.y, w_o).abs();
+        let reach = cos_theta_i * cos_o;
+        let far = reach + dot.abs();
 
         // Both half-angle tangents, and the square below the root, from one division.
         let near = one + cos_theta_i;
-        let far_cos = far * cos_theta_i;
-        let reciprocal = one / (near * far_cos);
-        let half_theta_i = atan_unit(wi.x * (far_cos * reciprocal));
-        let inv_far_near = reciprocal * near;
-        let tau = cross * (inv_far_near * cos_theta_i);
-        let cos_half = (far * far * inv_far_near * c(0.5)).sqrt();
+        let far_reach = far * reach;
+        let reciprocal = one / (near * far_reach);
+        let half_theta_i = atan_unit(wi.x * (far_reach * reciprocal));
+        let by_near = reciprocal * near;
+        let tau = cross * (by_near * reach);
+        let cos_half = (far * far * by_near * c(0.5)).sqrt();
 
         let front = c(0.0).lt(dot);
         let angle = atan_unit(tau);

@@ -9,7 +9,7 @@
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod avx2;
-mod portable;
+pub(crate) mod portable;
 mod scalar;
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -43,6 +43,11 @@ pub trait Lanes:
     /// `self * a + b`, rounded once where the backend fuses and twice where it does not.
     #[must_use]
     fn mul_add(self, a: Self, b: Self) -> Self;
+    /// `a * b - c * d`, to within two units in the last place however much it cancels.
+    ///
+    /// Backends that fuse keep what the rounding of a product leaves out; others split the factors. The difference of
+    /// two plain products loses all that the cancellation takes.
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
     /// Square root, correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -159,6 +164,26 @@ pub fn store3<L: Lanes>(x: [L; 3]) -> [L::Stored; 3] {
 pub fn store4<L: Lanes>(x: [L; 4]) -> [L::Stored; 4] {
     [x[0].store(), x[1].store(), x[2].store(), x[3].store()]
 }
+
+/// [`Lanes::difference_of_products`] with a fused `mul_add`, after Kahan.
+#[inline(always)]
+pub(crate) fn difference_fused<L: Lanes>(a: L, b: L, c: L, d: L) -> L {
+    let product = c * d;
+    let left_out = c.mul_add(d, -product);
+    a.mul_add(b, -product) - left_out
+}
+
+/// [`Lanes::difference_of_products`] from factors whose upper half has 12 bits, after Dekker: products of upper
+/// halves are exact.
+#[inline(always)]
+pub(crate) fn difference_split<L: Lanes>(a: [L; 2], b: [L; 2], c: [L; 2], d: [L; 2]) -> L {
+    let upper = a[0] * b[0] - c[0] * d[0];
+    let mixed = (a[0] * b[1] - c[0] * d[1]) + (a[1] * b[0] - c[1] * d[0]);
+    upper + (mixed + (a[1] * b[1] - c[1] * d[1]))
+}
+
+/// Bits of the sign, the exponent and the upper 11 of the fraction.
+pub(crate) const UPPER: u32 = 0xffff_f000;
 
 /// `entries` where it was chosen, entry by entry; the portable form of [`Broadcast::pick`].
 #[inline(always)]

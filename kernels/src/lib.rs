@@ -1,4 +1,63 @@
-//! Hair scattering, eight lanes at a time.
+//! Hair scattering, evaluated and sampled eight lanes at a time, without std and without an allocator.
+//!
+//! The model is that of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the importance sampler
+//! published there; its bells are Gaussians ([`Gaussian`]), and any [`Bell`] may take their place: the all-Cauchy
+//! variant lives in the crate `hairis-variants`. Any other scattering model is a [`Model`], written once over
+//! [`Lanes`]; scalar calls, eight lanes, run-time dispatch and slices come with it.
+//!
+//! ```
+//! use glam::Vec3;
+//! use hairis::{Bsdf, FiberFrame, Gaussian, Hair, HairParams};
+//!
+//! let hair = Bsdf::new(&Hair(Gaussian), &HairParams::brown()); // once a material
+//! let frame = FiberFrame::from_tangent(Vec3::new(0.1, 0.9, 0.2)); // once a hit, root to tip
+//! let gather = hair.prepare(frame.to_local(Vec3::new(0.6, 0.0, 0.8))); // towards the viewer
+//!
+//! let sample = gather.sample([0.3, 0.6, 0.9]).expect("not along the fibre"); // once a path
+//! let towards_light = frame.to_world(sample.wi);
+//! assert!(towards_light.is_normalized() && sample.weight[0] > 0.0);
+//! ```
+//!
+//! # From parameters to a sample
+//!
+//! | step | once a | call |
+//! |---|---|---|
+//! | describe | material | [`HairDesc`] and [`HairParams::new`], a preset, or [`HairParams::from_artist`] |
+//! | build | material | [`Bsdf::new`]; eight different ones: [`Bsdf8::pack`] |
+//! | prepare | hit | [`Bsdf::prepare`]; eight hits: [`Bsdf::prepare8`], [`Bsdf8::prepare8`] |
+//! | evaluate, sample | direction | [`Gather::eval_pdf`], [`Gather::sample`]; eight directions at one hit: [`Gather::eval_pdf8`], [`Gather::sample8`]; one at each of eight hits: [`Gather8::eval_pdf8`], [`Gather8::sample8`]; slices: [`Gather::eval_pdf_batch`], [`Gather::sample_batch`] |
+//!
+//! # Conventions
+//!
+//! - **Frame.** A fibre has the frame (u, v, w): u along it from root to tip, v and w across. A direction is
+//!   `(sin theta, cos theta cos phi, cos theta sin phi)` in it, so that `theta`, in `[-pi/2, pi/2]`, is measured from
+//!   the normal plane. Vectors hold u, v, w in `x`, `y`, `z`. Both directions point away from the fibre.
+//! - **Directions.** `wo` is given (towards the viewer), `wi` is sampled (towards the light).
+//! - **Relative angles.** `phi = phi_o - phi_i`, `theta_h = (theta_i + theta_o) / 2`, `theta_d = (theta_o - theta_i) / 2`.
+//! - **Measures.** `L_o` is the integral of `L_i S cos theta_i` over `wi`. `eval` is S without the cosine; `pdf` is per
+//!   steradian; `weight` is `S cos theta_i / pdf`. Angles are radians.
+//! - **Lanes.** A lane is one sample: of the one gather point of a [`Gather`], or of the gather point in the same lane
+//!   of a [`Gather8`]. Lanes never mix.
+//! - **Totality.** Parameters are checked once, by [`HairParams::new`]. After that nothing fails: for every finite
+//!   input, results are finite and not negative. Directions within [`GRAZING`] of the axis have value and density 0,
+//!   and a sample there is discarded; it counts, and it is not to be drawn again.
+//! - **Energy.** The model is reciprocal but does not conserve energy. Before path tracing, scale the material by
+//!   [`Bsdf::conserving_scale`] through [`HairParams::scaled`].
+//! - **Bits.** Results depend on whether a level fuses multiply and add ([`Level::fuses`]), in the last bits, and on
+//!   nothing else of the machine.
+//!
+//! # Signs and frames elsewhere
+//!
+//! | renderer | along the fibre | how its values translate |
+//! |---|---|---|
+//! | Cycles (Hair BSDF) | - | `alpha` is minus Offset, `beta` is Roughness U; its R stretches `phi` by Roughness V (use 1) and is cut at `|phi|` = 90 degrees, its TT at the back half; its value equals its pdf |
+//! | Mitsuba 3 (`hair`) | y | `scale_tilt` has the opposite sign of Marschner's `alpha_R`; its `eval` includes the cosine |
+//! | pbrt-v4 | x | a model of its own (Chiang et al. 2016) |
+//!
+//! # What this crate does not do
+//!
+//! It traces no rays, reads no files, and draws no random numbers but through [`random`]. Multiple scattering is the
+//! path tracer's. Spectral hosts take the lobes without their colours from [`Gather::lobes`].
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 

@@ -22,30 +22,32 @@ fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     halves[1].mul_add(x, halves[0])
 }
 
-/// `2^-x` for `x >= 0`, at least `2^-110`: far below any other term of a sum, and so far above the denormals that the
-/// products made of it seldom are one. Denormals cost as much as the rest of the model.
+/// `2^-x` for `x >= 0`; exactly 0 from about `2^-115` down.
 ///
-/// NaN gives NaN.
+/// That is far below any other term of a sum, and so far above the denormals that the products made of it seldom are
+/// one: denormals cost as much as the rest of the model. NaN gives NaN.
 #[inline(always)]
 pub fn exp2_neg<L: Lanes>(x: L) -> L {
-    // Adding 2^23 rounds to an integer and leaves it in the low bits, biased as an exponent is.
-    let magic = L::splat(8_388_608.0 + 127.0);
+    // Adding 2^23 rounds to an integer and leaves it in the low bits, biased as an exponent is. The bias is 12 short,
+    // so that the exponent reaches 0, and with it the power, at -115 already; the polynomial makes up for it.
+    let magic = L::splat(8_388_608.0 + 115.0);
     // The second operand of `max` wins over NaN.
-    let t = L::splat(-110.0).max(-x);
+    let t = L::splat(-115.0).max(-x);
     let n = t + magic;
     let f = t - (n - magic);
+    const SCALE: f32 = 4096.0;
     let p = polynomial(
         f,
         [
-            0.693_147_182_464_599_6,
-            0.240_226_477_384_567_26,
-            0.055_503_323_674_201_965,
-            0.009_618_436_917_662_62,
-            0.001_339_887_385_256_588_5,
-            0.000_153_533_619_595_691_56,
+            SCALE * 0.693_147_182_464_599_6,
+            SCALE * 0.240_226_477_384_567_26,
+            SCALE * 0.055_503_323_674_201_965,
+            SCALE * 0.009_618_436_917_662_62,
+            SCALE * 0.001_339_887_385_256_588_5,
+            SCALE * 0.000_153_533_619_595_691_56,
         ],
     );
-    p.mul_add(f, L::splat(1.0)) * n.bits_shl_23()
+    p.mul_add(f, L::splat(SCALE)) * n.bits_shl_23()
 }
 
 /// `atan t` for `|t| <= 1`.

@@ -18,7 +18,7 @@ pub const MAX_WIDTH: f32 = PI;
 ///
 /// - Source: Ou et al. 2012, section 3.1 and table 2 (after Sadeghi et al. 2010).
 /// - Units: angles in radians; intensities linear RGB.
-/// - Default: the default set of the efficiency figures (SPEC 8): a `beta_r` of 7.5 degrees, brown hair.
+/// - Default: the default set of the efficiency figures: a `beta_r` of 7.5 degrees, brown hair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HairDesc {
     /// Longitudinal shift of R, the centre of its lobe in `theta_h`, in `[-pi/2, pi/2]`.

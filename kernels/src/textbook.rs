@@ -72,6 +72,8 @@ struct Angles<T> {
     cos_theta_i: T,
     /// `phi_o - phi_i` in (-pi, pi].
     phi: T,
+    /// `cos(phi / 2)`: R and TRT-g have it in their value and in their density.
+    cos_half_phi: T,
 }
 
 impl<T: Real> Textbook<T> {
@@ -122,7 +124,7 @@ impl<T: Real> Textbook<T> {
     /// The estimated energies of the lobes, on which the choice of a lobe rests: section 3.2.3, with `I` the mean of
     /// the three channels.
     ///
-    /// - Integral: each is that of its `M(theta_h) N(phi)` over the whole line for Gaussians (ERRATA E4, E5).
+    /// - Integral: each is that of its `M(theta_h) N(phi)` over the whole line for Gaussians (ERRATA E4, E6).
     #[inline]
     #[must_use]
     pub fn energies(&self) -> PerLobe<T> {
@@ -164,6 +166,16 @@ impl<T: Real> Textbook<T> {
         self.angles(wi).map_or_else(T::default, |at| self.mixture(&self.pdfs_at(&at)))
     }
 
+    /// [`eval`](Self::eval) and [`pdf`](Self::pdf) at once: the angles are taken from `wi` once, as anyone would who
+    /// needs both.
+    #[inline]
+    #[must_use]
+    pub fn eval_pdf(&self, wi: [T; 3]) -> ([T; 3], T) {
+        self.angles(wi).map_or(([T::default(); 3], T::default()), |at| {
+            (self.colour(&self.values_at(&at)), self.mixture(&self.pdfs_at(&at)))
+        })
+    }
+
     /// Density of [`sample_lobe`](Self::sample_lobe) for each lobe at `wi`, per steradian.
     #[inline]
     #[must_use]
@@ -174,12 +186,13 @@ impl<T: Real> Textbook<T> {
     /// `None` within 1e-5 rad of the axis.
     #[inline]
     fn angles(&self, wi: [T; 3]) -> Option<Angles<T>> {
-        let cos_theta_i = wi[1].hypot(wi[2]);
+        let cos_theta_i = (wi[1] * wi[1] + wi[2] * wi[2]).sqrt();
         if cos_theta_i < T::from_f64(GRAZING) {
             return None;
         }
         let theta_i = wi[0].atan2(cos_theta_i);
-        Some(Angles { theta_i, cos_theta_i, phi: wrapped(self.phi_o - azimuth(wi)) })
+        let phi = wrapped(self.phi_o - azimuth(wi));
+        Some(Angles { theta_i, cos_theta_i, phi, cos_half_phi: cos_half(phi) })
     }
 
     #[inline]
@@ -188,17 +201,17 @@ impl<T: Real> Textbook<T> {
         let p = &self.parameters;
         let theta_h = (at.theta_i + self.theta_o) * half;
         let theta_d = (self.theta_o - at.theta_i) * half;
-        let cos_sq_theta_d = theta_d.cos() * theta_d.cos();
-        let cos_half_phi = cos_half(at.phi);
+        let cos_theta_d = theta_d.cos();
+        let cos_sq_theta_d = cos_theta_d * cos_theta_d;
         let m_r = self.shape.bell(p.beta[0], theta_h - p.alpha[0]);
         let m_tt = self.shape.bell(p.beta[1], theta_h - p.alpha[1]);
         let m_trt = self.shape.bell(p.beta[2], theta_h - p.alpha[2]);
         let n_tt = self.shape.bell(p.gamma_tt, T::PI - at.phi.abs());
         let n_g = self.shape.bell(p.gamma_g, at.phi.abs() - p.phi_g);
         let mut values = PerLobe::default();
-        values[Lobe::R] = m_r * cos_half_phi / cos_sq_theta_d;
+        values[Lobe::R] = m_r * at.cos_half_phi / cos_sq_theta_d;
         values[Lobe::TT] = m_tt * n_tt / cos_sq_theta_d;
-        values[Lobe::TRT] = m_trt * cos_half_phi / cos_sq_theta_d;
+        values[Lobe::TRT] = m_trt * at.cos_half_phi / cos_sq_theta_d;
         values[Lobe::GLINT] = m_trt * p.intensity_g * n_g / cos_sq_theta_d;
         values
     }
@@ -218,10 +231,11 @@ impl<T: Real> Textbook<T> {
     #[inline]
     fn pdfs_at(&self, at: &Angles<T>) -> PerLobe<T> {
         let theta_trt = self.pdf_theta(Lobe::TRT, at.theta_i);
+        let phi_cosine = at.cos_half_phi / T::from_f64(4.0);
         let mut pdfs = PerLobe::default();
-        pdfs[Lobe::R] = self.pdf_theta(Lobe::R, at.theta_i) * self.pdf_phi(Lobe::R, at.phi) / at.cos_theta_i;
+        pdfs[Lobe::R] = self.pdf_theta(Lobe::R, at.theta_i) * phi_cosine / at.cos_theta_i;
         pdfs[Lobe::TT] = self.pdf_theta(Lobe::TT, at.theta_i) * self.pdf_phi(Lobe::TT, at.phi) / at.cos_theta_i;
-        pdfs[Lobe::TRT] = theta_trt * self.pdf_phi(Lobe::TRT, at.phi) / at.cos_theta_i;
+        pdfs[Lobe::TRT] = theta_trt * phi_cosine / at.cos_theta_i;
         pdfs[Lobe::GLINT] = theta_trt * self.pdf_phi(Lobe::GLINT, at.phi) / at.cos_theta_i;
         pdfs
     }

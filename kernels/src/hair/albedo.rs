@@ -64,7 +64,7 @@ fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, l: u
         let half = (-quarter).max(quarter.min(x.mul_add(beta, -shift)));
         let (sin, cos) = sin_cos_half_turn(half + half);
         let (sum_u, sum_c) = (sin + sin_theta_o, cos + cos_theta_o);
-        // W of SPEC 2 over 4; where both directions lie on opposite poles it is 0 / 0, and its limit is 0.
+        // (cos theta_i / cos theta_d)^2 over 4; where both directions lie on opposite poles it is 0 / 0, and its limit is 0.
         let w = cos * cos / sum_u.mul_add(sum_u, sum_c * sum_c).max(c(f32::MIN_POSITIVE));
         let d = x.mul_add(x, one);
         sum = (d * B::one(x * x, one / d) * w).mul_add(c(weight), sum);

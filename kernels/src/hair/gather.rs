@@ -58,10 +58,10 @@ crate::lane_struct! {
         pub sin_theta_o: C,
         /// Cosine of `theta_o`.
         pub cos_theta_o: C,
-        /// Cosine of `phi_o`.
-        pub cos_phi_o: C,
-        /// Sine of `phi_o`.
-        pub sin_phi_o: C,
+        /// The part of `wo` in the normal plane, as it was given: v and w, and its length.
+        pub plane_o: [C; 3],
+        /// Cosine and sine of `phi_o`.
+        pub phi_o: [C; 2],
         /// `theta_o / 2 - alpha`: added to `theta_i / 2` it is `theta_h - alpha`.
         pub shift: [C; 4],
         /// The longitude's truncated Cauchy: sine of the middle of its angles.
@@ -199,13 +199,15 @@ fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<L>) -> HairGather<L::Stored> {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    // Scaled by the largest component, so that no finite wo overflows or vanishes; zero counts as v.
+    // The digits of a wo of about unit length are kept as they are; any other is scaled by its largest component, so
+    // that no finite wo overflows or vanishes. Zero counts as v.
     let largest = wo.x.abs().max(wo.y.abs().max(wo.z.abs()));
     let some = c(1e-30).lt(largest);
-    let inv_largest = one / largest;
-    let x = L::select(some, wo.x * inv_largest, zero);
-    let y = L::select(some, wo.y * inv_largest, one);
-    let z = L::select(some, wo.z * inv_largest, zero);
+    let usual = L::and(c(0.25).lt(largest), largest.lt(c(4.0)));
+    let by = L::select(usual, one, one / largest);
+    let x = L::select(some, wo.x * by, zero);
+    let y = L::select(some, wo.y * by, one);
+    let z = L::select(some, wo.z * by, zero);
     let plane_sq = y.mul_add(y, z * z);
     let plane = plane_sq.sqrt();
     let len = x.mul_add(x, plane_sq).sqrt();
@@ -241,8 +243,8 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     HairGather {
         sin_theta_o: (x * inv_len).store(),
         cos_theta_o: (plane * inv_len).store(),
-        cos_phi_o: L::select(off_axis, y * inv_plane, one).store(),
-        sin_phi_o: L::select(off_axis, z * inv_plane, zero).store(),
+        plane_o: store3([L::select(off_axis, y, one), L::select(off_axis, z, zero), L::select(off_axis, plane, one)]),
+        phi_o: [L::select(off_axis, y * inv_plane, one).store(), L::select(off_axis, z * inv_plane, zero).store()],
         shift: store4(shift),
         longitude_sin: store4(sin),
         longitude_cos: store4(cos),

@@ -40,7 +40,7 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let sign = L::select(is_tt, c(-1.0), one);
     let sin_phi = (sin_psi + sin_psi) * cos_psi * sign;
     let cos_phi = (sin_psi * sin_psi).mul_add(c(-2.0), one) * sign;
-    let (cos_phi_o, sin_phi_o) = (gather.cos_phi_o.lanes(), gather.sin_phi_o.lanes());
+    let (cos_phi_o, sin_phi_o) = (gather.phi_o[0].lanes(), gather.phi_o[1].lanes());
     let v = cos_phi_o.mul_add(cos_phi, sin_phi_o * sin_phi) * cos_theta_i;
     let w = sin_phi_o.mul_add(cos_phi, -(cos_phi_o * sin_phi)) * cos_theta_i;
 

@@ -5,7 +5,7 @@
 
 #![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
 
-use super::{Broadcast, Lanes, pick_by_select, sealed::Sealed};
+use super::{Broadcast, Lanes, difference_fused, pick_by_select, sealed::Sealed};
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
@@ -73,6 +73,10 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
         Self(avx2!(_mm256_fmadd_ps(self.0, a.0, b.0)))
+    }
+    #[inline(always)]
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
+        difference_fused(a, b, c, d)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

@@ -1,9 +1,19 @@
 //! Eight lanes through `wide`: the instruction set the program was compiled for, whatever the machine has.
 
-use super::{Broadcast, Lanes, pick_by_select, sealed::Sealed};
-use wide::f32x8;
+use super::{Broadcast, Lanes, UPPER, difference_fused, difference_split, pick_by_select, sealed::Sealed};
+use wide::{f32x8, u32x8};
 
 impl Sealed for f32x8 {}
+
+/// Whether `wide`'s `mul_add` rounds once in this build.
+pub(crate) const FUSES: bool = cfg!(any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon")));
+
+/// The upper half of the digits, and the rest.
+#[inline(always)]
+fn split(x: f32x8) -> [f32x8; 2] {
+    let upper = f32x8::from_bits(x.to_bits() & u32x8::splat(UPPER));
+    [upper, x - upper]
+}
 
 impl Lanes for f32x8 {
     type Mask = f32x8;
@@ -22,6 +32,10 @@ impl Lanes for f32x8 {
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
         f32x8::mul_add(self, a, b)
+    }
+    #[inline(always)]
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
+        if FUSES { difference_fused(a, b, c, d) } else { difference_split(split(a), split(b), split(c), split(d)) }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

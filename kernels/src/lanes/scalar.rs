@@ -1,8 +1,15 @@
 //! One lane.
 
-use super::{Broadcast, Lanes, sealed::Sealed};
+use super::{Broadcast, Lanes, UPPER, difference_split, sealed::Sealed};
 
 impl Sealed for f32 {}
+
+/// The upper half of the digits, and the rest.
+#[inline(always)]
+fn split(x: f32) -> [f32; 2] {
+    let upper = f32::from_bits(x.to_bits() & UPPER);
+    [upper, x - upper]
+}
 
 impl Lanes for f32 {
     type Mask = bool;
@@ -21,6 +28,10 @@ impl Lanes for f32 {
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
         self * a + b
+    }
+    #[inline(always)]
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
+        difference_split(split(a), split(b), split(c), split(d))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

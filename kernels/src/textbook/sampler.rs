@@ -18,7 +18,8 @@ impl<T: Real> Textbook<T> {
         let Some(lobe) = self.choose(xi[0]) else { return discarded };
         let theta_i = self.sample_theta(lobe, xi[1]);
         let phi = self.sample_phi(lobe, xi[2]);
-        let at = Angles { theta_i, cos_theta_i: theta_i.cos(), phi: wrapped(phi) };
+        let phi = wrapped(phi);
+        let at = Angles { theta_i, cos_theta_i: theta_i.cos(), phi, cos_half_phi: cos_half(phi) };
         if at.cos_theta_i < T::from_f64(GRAZING) {
             return discarded;
         }

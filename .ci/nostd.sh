@@ -1,0 +1,29 @@
+#!/bin/bash
+# Proof that the kernels need neither std nor alloc: a program with a panic handler and no allocator links, runs and
+# holds neither; and a program that asks for one of them is refused.
+set -euo pipefail
+cd "$(dirname "$0")/nostd"
+target=${CARGO_TARGET_DIR:-../../target}/nostd
+
+prove() { # prove NAME RUSTFLAGS
+  RUSTFLAGS=$2 cargo build -q --release --target-dir "$target/$1"
+  local program=$target/$1/release/hairis-nostd
+  local undefined
+  undefined=$(nm -u "$program")
+  [ -z "$undefined" ] || { echo "FAIL $1: undefined symbols: $undefined"; exit 1; }
+  if nm -C "$program" | grep -E '(^|[ <(&])(std|alloc)::|__rust_(alloc|dealloc|realloc)'; then
+    echo "FAIL $1: std or alloc in the program"; exit 1
+  fi
+  "$program" || { echo "FAIL $1: check $? failed"; exit 1; }
+}
+refused() { # refused FEATURE WORDS
+  local out
+  out=$(cargo build -q --release --target-dir "$target/x86-64" --features "$1" 2>&1) && { echo "FAIL $1 was accepted"; exit 1; }
+  grep -q "$2" <<<"$out" || { echo "FAIL $1 was refused for another reason: $out"; exit 1; }
+  echo "refused, as it must be: $1"
+}
+
+prove x86-64 ''
+if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then prove x86-64-v3 '-C target-cpu=x86-64-v3'; fi
+refused neg-std 'panic_impl'
+refused neg-alloc 'no global memory allocator'

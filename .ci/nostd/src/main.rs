@@ -1,0 +1,97 @@
+//! Linux on x86-64 without std, alloc or libc: evaluates and samples both models, one lane, eight lanes, eight gather
+//! points and slices, and checks that they agree. Exits with the number of the first check that failed, or 0.
+#![no_std]
+#![no_main]
+
+#[cfg(feature = "neg-alloc")]
+extern crate alloc;
+#[cfg(feature = "neg-std")]
+extern crate std;
+
+mod system;
+
+use core::convert::Infallible;
+use glam::Vec3;
+use hairis::{Bsdf, EvalSlices, Gaussian, Hair, HairParams, Model, Vec3x8, random};
+use hairis_variants::Cauchy;
+use rand_core::TryRng;
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    system::exit(101)
+}
+
+/// Xorshift: enough for a check, and no dependency.
+struct Numbers(u64);
+
+impl TryRng for Numbers {
+    type Error = Infallible;
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        self.try_next_u64().map(|x| (x >> 32) as u32)
+    }
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        Ok(self.0)
+    }
+    fn try_fill_bytes(&mut self, to: &mut [u8]) -> Result<(), Infallible> {
+        for byte in to {
+            *byte = self.try_next_u64()? as u8;
+        }
+        Ok(())
+    }
+}
+
+fn close(a: f32, b: f32) -> bool {
+    (a - b).abs() <= 1e-4 * a.abs().max(b.abs())
+}
+
+fn check<M: Model<Params = HairParams>>(model: &M, first: i32) -> Result<(), i32> {
+    let ensure = |passed: bool, number: i32| if passed { Ok(()) } else { Err(first + number) };
+    let hair = [HairParams::blond(), HairParams::brown(), HairParams::black()].map(|p| Bsdf::new(model, &p));
+    let wo = [Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.96, 0.0, 0.28), Vec3::Y];
+    let gathers = [hair[0].prepare(wo[0]), hair[1].prepare(wo[1]), hair[2].prepare(wo[2])];
+    let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
+    for _ in 0..100 {
+        let xi = random::xi8(&mut numbers);
+        for gather in &gathers {
+            let samples = gather.sample8(&xi);
+            let evals = gather.eval_pdf8(&samples.wi);
+            let (mut value, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
+            let [r, g, b] = &mut value;
+            let wi = [samples.wi.x.as_array(), samples.wi.y.as_array(), samples.wi.z.as_array()];
+            let out = EvalSlices { value: [r, g, b], pdf: &mut pdf };
+            ensure(gather.eval_pdf_batch([&wi[0][..], &wi[1][..], &wi[2][..]], out).is_ok(), 1)?;
+            for lane in 0..8 {
+                let Some(sample) = samples.lane(lane) else { continue };
+                let one = gather.eval_pdf(sample.wi);
+                ensure(close(sample.pdf, evals.lane(lane).pdf), 2)?;
+                ensure(close(sample.pdf, one.pdf), 3)?;
+                ensure(pdf[lane] == evals.lane(lane).pdf && value[0][lane] == evals.lane(lane).value[0], 4)?;
+            }
+        }
+        let points = hairis::Bsdf8::pack(core::array::from_fn(|i| &hair[i % 3]));
+        let points = points.prepare8(&Vec3x8::from(core::array::from_fn(|i| wo[i % 3])));
+        let samples = points.sample8(&xi);
+        for lane in 0..8 {
+            let Some(sample) = samples.lane(lane) else { continue };
+            ensure(close(sample.pdf, gathers[lane % 3].pdf(sample.wi)), 5)?;
+        }
+    }
+    Ok(())
+}
+
+fn start() -> i32 {
+    #[cfg(feature = "neg-alloc")]
+    drop(alloc::boxed::Box::new(hairis::Level::detect()));
+    match check(&Hair(Gaussian), 10).and_then(|()| check(&Cauchy::PAPER.model(), 20)) {
+        Ok(()) => {
+            system::write(b"both models agree on ");
+            system::write(hairis::Level::detect().name().as_bytes());
+            system::write(b", without std\n");
+            0
+        }
+        Err(number) => number,
+    }
+}

@@ -1,0 +1,53 @@
+//! Captures what a report says of its own build: compiler, commit and optimisation level. Without git or without a repository the commit is "unknown".
+
+use std::path::Path;
+use std::process::Command;
+
+fn main() {
+    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
+    set("RUSTC", &run(&rustc, &["--version"]).unwrap_or_else(unknown));
+    set("OPT_LEVEL", &std::env::var("OPT_LEVEL").unwrap_or_else(|_| unknown()));
+
+    // Only a repository that tracks this very file is ours: an unpacked copy may lie inside somebody else's.
+    let ours = run("git", &["ls-files", "--error-unmatch", "build.rs"]).is_some();
+    let commit = ours.then(|| run("git", &["rev-parse", "HEAD"])).flatten();
+    // No optional locks: a refreshed index would change under the user's hands.
+    let status =
+        ours.then(|| run("git", &["--no-optional-locks", "status", "--porcelain", "--untracked-files=no"])).flatten();
+    set("COMMIT", &commit.unwrap_or_else(unknown));
+    set("DIRTY", status.map_or("unknown", |s| if s.is_empty() { "no" } else { "yes" }));
+
+    // Commits, checkouts and edits of what is compiled run this again, and nothing else does: these all rebuild the package anyway, save a commit.
+    println!("cargo::rerun-if-changed=build.rs");
+    for path in ["Cargo.toml", "src", "../Cargo.toml", "../Cargo.lock", "../kernels/src", "../variants/src"] {
+        watch(path);
+    }
+    if ours {
+        for name in ["HEAD", "logs/HEAD"] {
+            if let Some(path) = run("git", &["rev-parse", "--git-path", name]) {
+                watch(&path);
+            }
+        }
+    }
+}
+
+/// Watches a path that exists; cargo takes a missing one for changed, each time.
+fn watch(path: &str) {
+    if Path::new(path).exists() {
+        println!("cargo::rerun-if-changed={path}");
+    }
+}
+
+fn set(name: &str, value: &str) {
+    println!("cargo::rustc-env=HAIRIS_BUILD_{name}={}", value.lines().next().unwrap_or_default());
+}
+
+fn unknown() -> String {
+    "unknown".into()
+}
+
+/// What a command prints, trimmed; `None` when it is missing or fails.
+fn run(program: &str, args: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(args).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}

@@ -1,0 +1,56 @@
+//! The same radiance from everywhere.
+
+use super::{Light, LightSample};
+use core::f64::consts::PI;
+use glam::DVec3;
+
+/// Constant radiance, sampled uniformly on the sphere.
+///
+/// - Integral: of the radiance, `4 pi` times it.
+///
+/// # Examples
+/// ```
+/// use hairis_harness::light::{Constant, Light};
+/// let s = Constant::white().sample([0.2, 0.7]);
+/// assert_eq!(s.radiance, [1.0; 3]);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Constant {
+    radiance: [f64; 3],
+}
+
+impl Constant {
+    /// Radiance 1 in every channel.
+    #[must_use]
+    pub fn white() -> Self {
+        Self { radiance: [1.0; 3] }
+    }
+
+    /// The given radiance, linear RGB.
+    #[must_use]
+    pub fn new(radiance: [f64; 3]) -> Self {
+        Self { radiance }
+    }
+}
+
+impl Light for Constant {
+    fn name(&self) -> &str {
+        "constant"
+    }
+
+    fn radiance(&self, _dir: DVec3) -> [f64; 3] {
+        self.radiance
+    }
+
+    fn sample(&self, xi: [f64; 2]) -> LightSample {
+        let y = 1.0 - 2.0 * xi[0];
+        // (1 - y)(1 + y) by its factors: no cancellation near the poles.
+        let r = (4.0 * xi[0] * (1.0 - xi[0])).max(0.0).sqrt();
+        let (sin_phi, cos_phi) = (2.0 * PI * xi[1]).sin_cos();
+        LightSample { dir: DVec3::new(r * cos_phi, y, r * sin_phi), radiance: self.radiance, pdf: self.pdf(DVec3::Y) }
+    }
+
+    fn pdf(&self, _dir: DVec3) -> f64 {
+        0.25 / PI
+    }
+}

@@ -1,0 +1,140 @@
+//! Files: written here, read back, cut short, renamed and missing.
+
+use super::*;
+use image::{ImageFormat, Rgb32FImage, Rgba32FImage};
+use std::path::{Path, PathBuf};
+
+fn directory() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary directory")
+}
+
+fn texel(x: u32, y: u32) -> [f32; 3] {
+    [(1 + x) as f32, 0.5 * (1 + y) as f32, 0.25]
+}
+
+/// A 16 x 8 map, as Radiance HDR or `OpenEXR` by the ending of `name`.
+fn write(dir: &Path, name: &str) -> PathBuf {
+    let path = dir.join(name);
+    let map = Rgb32FImage::from_fn(16, 8, |x, y| image::Rgb(texel(x, y)));
+    let format = if name.ends_with("hdr") { ImageFormat::Hdr } else { ImageFormat::OpenExr };
+    image::DynamicImage::ImageRgb32F(map).save_with_format(&path, format).expect("written");
+    path
+}
+
+#[test]
+fn both_formats_read_back() {
+    let dir = directory();
+    for name in ["map.hdr", "map.exr"] {
+        let map = Environment::load(write(dir.path(), name)).expect(name);
+        assert_eq!((map.size(), map.name()), ([16, 8], name));
+        assert!(map.notes().is_empty());
+        for (x, y) in [(0, 0), (15, 7), (5, 2)] {
+            let (theta, phi) = (PI * (f64::from(y) + 0.5) / 8.0, 2.0 * PI * ((f64::from(x) + 0.5) / 16.0 - 0.5));
+            let got = map.radiance(DVec3::new(theta.sin() * phi.sin(), theta.cos(), -theta.sin() * phi.cos()));
+            // Eight bits of mantissa shared by the channels: half a step of the largest.
+            let bound = if name.ends_with("hdr") { 16.0 / 128.0 } else { 0.0 };
+            for (got, want) in got.iter().zip(texel(x, y)) {
+                assert!((got - f64::from(want)).abs() <= bound, "{name} ({x}, {y}): {got} {want}");
+            }
+        }
+    }
+}
+
+#[test]
+fn content_decides_and_alpha_is_ignored() {
+    let dir = directory();
+    let exr = write(dir.path(), "real.exr");
+    let renamed = dir.path().join("renamed.hdr");
+    std::fs::rename(exr, &renamed).expect("renamed");
+    assert_eq!(Environment::load(&renamed).expect("an EXR under another name").size(), [16, 8]);
+    let path = dir.path().join("alpha.exr");
+    let map = Rgba32FImage::from_fn(4, 2, |_, _| image::Rgba([1.0, 2.0, 3.0, 0.25]));
+    image::DynamicImage::ImageRgba32F(map).save_with_format(&path, ImageFormat::OpenExr).expect("written");
+    assert_eq!(Environment::load(&path).expect("alpha").radiance(DVec3::X), [1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn bad_pixels_of_a_file_are_counted() {
+    let dir = directory();
+    let path = dir.path().join("bad.exr");
+    let map =
+        Rgb32FImage::from_fn(4, 2, |x, _| image::Rgb(if x == 0 { [f32::NAN, -1.0, f32::INFINITY] } else { [1.0; 3] }));
+    image::DynamicImage::ImageRgb32F(map).save_with_format(&path, ImageFormat::OpenExr).expect("written");
+    assert_eq!(
+        Environment::load(&path).expect("repaired").repairs(),
+        PixelRepairs { nan: 2, negative: 2, infinite: 2 }
+    );
+}
+
+#[test]
+fn every_cut_is_an_error_and_no_panic() {
+    let dir = directory();
+    for name in ["map.hdr", "map.exr"] {
+        let bytes = std::fs::read(write(dir.path(), name)).expect("read");
+        let cut = dir.path().join(format!("cut-{name}"));
+        for length in 0..bytes.len() {
+            std::fs::write(&cut, &bytes[..length]).expect("written");
+            let error = Environment::load(&cut).expect_err(&format!("{name} cut to {length} of {}", bytes.len()));
+            one_line(&error, &cut);
+        }
+    }
+}
+
+#[test]
+fn damaged_bytes_never_panic() {
+    // One byte at a time set to 0, to 255 and to its complement: whatever loads must still be a light.
+    let dir = directory();
+    for name in ["map.hdr", "map.exr"] {
+        let bytes = std::fs::read(write(dir.path(), name)).expect("read");
+        let bad = dir.path().join(format!("bad-{name}"));
+        for at in 0..bytes.len().min(600) {
+            for value in [0, 255, !bytes[at]] {
+                let mut copy = bytes.clone();
+                copy[at] = value;
+                std::fs::write(&bad, &copy).expect("written");
+                match Environment::load(&bad) {
+                    Ok(map) => assert!(map.sample([0.5, 0.5]).pdf.is_finite(), "{name} byte {at} = {value}"),
+                    Err(error) => one_line(&error, &bad),
+                }
+            }
+        }
+    }
+}
+
+fn one_line(error: &LightError, path: &Path) {
+    let text = error.to_string();
+    assert!(
+        !text.contains('\n')
+            && text.starts_with(&path.display().to_string())
+            && text.len() > path.display().to_string().len() + 10,
+        "{text}"
+    );
+}
+
+#[test]
+fn each_refusal_says_why() {
+    let dir = directory();
+    let missing = dir.path().join("missing.hdr");
+    let error = Environment::load(&missing).expect_err("missing");
+    assert!(matches!(error, LightError::Io(..)), "{error}");
+    one_line(&error, &missing);
+    let error = Environment::load(dir.path()).expect_err("directory");
+    assert_eq!(error, LightError::Directory(dir.path().to_path_buf()));
+    one_line(&error, dir.path());
+    let cases: [(&str, &[u8], &str); 7] = [
+        ("zero.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 16\n", "no pixels"),
+        ("huge.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 65536 +X 65536\n", "2^25"),
+        ("text.hdr", b"hello, this is no picture", "damaged"),
+        ("empty.exr", b"", "damaged"),
+        ("notes.txt", b"hello, this is no picture", "unsupported"),
+        ("picture.png", b"\x89PNG\r\n\x1a\n0000000000000000", "unsupported"),
+        ("picture.hdr", b"\x89PNG\r\n\x1a\n0000000000000000", "unsupported"),
+    ];
+    for (name, bytes, want) in cases {
+        let path = dir.path().join(name);
+        std::fs::write(&path, bytes).expect("written");
+        let error = Environment::load(&path).expect_err(name);
+        assert!(error.to_string().contains(want), "{name}: {error}");
+        one_line(&error, &path);
+    }
+}

@@ -1,0 +1,163 @@
+//! What a report prints beside each figure: the machine it ran on and the build that ran.
+
+use serde::Serialize;
+
+/// The machine and the build. Nothing here is measured; all of it is what the system and the compiler say.
+///
+/// # Examples
+/// ```
+/// let machine = hairis_harness::machine::Machine::current();
+/// assert!(machine.logical_cores >= 1);
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Machine {
+    /// Model name of the processor, or its architecture when the system does not tell.
+    pub cpu: String,
+    /// Logical cores this process may use.
+    pub logical_cores: usize,
+    /// Operating system, as Rust names it.
+    pub os: &'static str,
+    /// Architecture, as Rust names it.
+    pub arch: &'static str,
+    /// Version line of the compiler.
+    pub rustc: &'static str,
+    /// Optimisation level of this package.
+    pub opt_level: &'static str,
+    /// Whether debug assertions are compiled in: figures of speed from such a build mean nothing.
+    pub debug_assertions: bool,
+    /// Commit the build was made from, in full, or "unknown".
+    pub commit: &'static str,
+    /// Whether tracked files differed from that commit when the build was made; `None` when unknown.
+    ///
+    /// The build looks again after each commit and each change of what is compiled; an edit of other files alone is not seen until then.
+    pub dirty: Option<bool>,
+    /// Target features the code was compiled for, of those that matter here. Dispatch at run time may use more.
+    pub target_features: Vec<&'static str>,
+}
+
+impl Machine {
+    /// This machine and this build.
+    #[must_use]
+    pub fn current() -> Self {
+        Self {
+            cpu: cpu_name(),
+            logical_cores: std::thread::available_parallelism().map_or(1, usize::from),
+            os: std::env::consts::OS,
+            arch: std::env::consts::ARCH,
+            rustc: env!("HAIRIS_BUILD_RUSTC"),
+            opt_level: env!("HAIRIS_BUILD_OPT_LEVEL"),
+            debug_assertions: cfg!(debug_assertions),
+            commit: env!("HAIRIS_BUILD_COMMIT"),
+            dirty: match env!("HAIRIS_BUILD_DIRTY") {
+                "yes" => Some(true),
+                "no" => Some(false),
+                _ => None,
+            },
+            target_features: target_features(),
+        }
+    }
+
+    /// One line for table captions: processor, cores, compiled features, commit.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let commit = self.commit.get(..12).unwrap_or(self.commit);
+        let dirty = match self.dirty {
+            Some(true) => "+changes",
+            _ => "",
+        };
+        let features =
+            if self.target_features.is_empty() { "baseline".to_owned() } else { self.target_features.join("+") };
+        format!(
+            "{}, {} logical cores, {} {}, compiled for {features}, {}, commit {commit}{dirty}",
+            self.cpu, self.logical_cores, self.os, self.arch, self.rustc
+        )
+    }
+}
+
+/// The processor's name from the system, or the architecture.
+fn cpu_name() -> String {
+    std::fs::read_to_string("/proc/cpuinfo")
+        .ok()
+        .and_then(|text| name_in_cpuinfo(&text))
+        .unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+}
+
+/// The first name a `cpuinfo` text gives: "model name" on x86, others on ARM, POWER and RISC-V.
+fn name_in_cpuinfo(text: &str) -> Option<String> {
+    ["model name", "Model", "Hardware", "cpu", "uarch", "Processor"].iter().find_map(|key| {
+        text.lines().find_map(|line| {
+            let (name, value) = line.split_once(':')?;
+            let value = value.split_whitespace().collect::<Vec<_>>().join(" ");
+            (name.trim() == *key && !value.is_empty()).then_some(value)
+        })
+    })
+}
+
+/// Compiled target features, of those the kernels' speed may depend on.
+fn target_features() -> Vec<&'static str> {
+    let known = [
+        ("sse2", cfg!(target_feature = "sse2")),
+        ("sse4.1", cfg!(target_feature = "sse4.1")),
+        ("sse4.2", cfg!(target_feature = "sse4.2")),
+        ("avx", cfg!(target_feature = "avx")),
+        ("avx2", cfg!(target_feature = "avx2")),
+        ("fma", cfg!(target_feature = "fma")),
+        ("bmi2", cfg!(target_feature = "bmi2")),
+        ("avx512f", cfg!(target_feature = "avx512f")),
+        ("avx512vl", cfg!(target_feature = "avx512vl")),
+        ("neon", cfg!(target_feature = "neon")),
+        ("sve", cfg!(target_feature = "sve")),
+        ("simd128", cfg!(target_feature = "simd128")),
+    ];
+    known.into_iter().filter_map(|(name, on)| on.then_some(name)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cpu_names_are_found_in_the_dialects_of_cpuinfo() {
+        let x86 =
+            "processor\t: 0\nvendor_id\t: X\nmodel\t\t: 85\nmodel name\t: Some(R)   CPU @ 2.70GHz\nflags\t: a b\n";
+        assert_eq!(name_in_cpuinfo(x86).as_deref(), Some("Some(R) CPU @ 2.70GHz"));
+        let arm = "processor\t: 0\nBogoMIPS\t: 108.00\nHardware\t: BCM2711\nModel\t: Raspberry Pi 4 Model B\n";
+        assert_eq!(name_in_cpuinfo(arm).as_deref(), Some("Raspberry Pi 4 Model B"));
+        assert_eq!(
+            name_in_cpuinfo("cpu\t\t: POWER9, altivec supported\n").as_deref(),
+            Some("POWER9, altivec supported")
+        );
+        assert_eq!(name_in_cpuinfo("model name\t:\nprocessor\t: 0\n"), None);
+        assert_eq!(name_in_cpuinfo(""), None);
+    }
+
+    #[test]
+    fn the_current_machine_is_complete() {
+        let m = Machine::current();
+        assert!(!m.cpu.is_empty() && !m.os.is_empty() && !m.arch.is_empty() && m.logical_cores > 0);
+        assert!(m.rustc == "unknown" || m.rustc.starts_with("rustc "), "{}", m.rustc);
+        let hash = m.commit.len() >= 40 && m.commit.bytes().all(|b| b.is_ascii_hexdigit());
+        assert!(m.commit == "unknown" || hash, "{}", m.commit);
+        assert_eq!(m.target_features.contains(&"sse2"), cfg!(target_feature = "sse2"));
+        let summary = m.summary();
+        assert!(summary.contains(&m.cpu) && !summary.contains('\n'), "{summary}");
+    }
+
+    #[test]
+    fn it_serialises() {
+        let json = serde_json::to_value(Machine::current()).expect("plain data");
+        for key in ["cpu", "logical_cores", "os", "arch", "rustc", "opt_level", "commit", "dirty", "target_features"] {
+            assert!(json.get(key).is_some(), "{key}");
+        }
+    }
+
+    #[test]
+    fn summaries_mark_changes_and_baseline() {
+        let mut m = Machine::current();
+        m.commit = "0123456789abcdef0123456789abcdef01234567";
+        m.dirty = Some(true);
+        m.target_features.clear();
+        assert!(m.summary().ends_with("commit 0123456789ab+changes"), "{}", m.summary());
+        assert!(m.summary().contains("compiled for baseline"));
+    }
+}

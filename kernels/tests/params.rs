@@ -1,0 +1,160 @@
+//! Parameters: the presets and the artist's controls.
+
+use crate::quadrature::{panels, rule};
+use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::{ArtistControls, Glints, HairDesc, HairParams, Highlight, ParamError, Transmission};
+
+#[test]
+fn presets_pass_their_own_checks() {
+    for (name, preset) in HairParams::presets() {
+        assert_eq!(HairParams::new(preset.desc()), Ok(preset), "preset {name}");
+    }
+    assert_eq!(HairParams::default(), HairParams::new(&HairDesc::default()).unwrap(), "the default set");
+}
+
+/// Share of the light a fibre returns, by channel, averaged over the directions it comes from (Gaussian model).
+fn mean_albedo(params: &HairParams) -> [f64; 3] {
+    let p = Parameters::<f64>::from(params);
+    let inner = FRAC_PI_2 - 1e-5;
+    let phi = rule(&panels(0.0, PI, &[(PI, p.gamma_tt), (p.phi_g, p.gamma_g)]));
+    let mut sum = [0.0; 3];
+    for (theta_o, w_o) in rule(&[-inner, 0.0, inner]) {
+        let hair = Textbook::prepare(&p, Shape::Gaussian, [theta_o.sin(), theta_o.cos(), 0.0]);
+        let peaks = [0, 1, 2].map(|lobe| (2.0 * p.alpha[lobe] - theta_o, 2.0 * p.beta[lobe]));
+        for (theta_i, w_i) in rule(&panels(-inner, inner, &peaks)) {
+            let (sin, cos) = theta_i.sin_cos();
+            let w = 2.0 * w_i * cos * cos * w_o * theta_o.cos().powi(2) / FRAC_PI_2;
+            for &(phi, w_phi) in &phi {
+                let value = hair.eval([sin, cos * phi.cos(), cos * phi.sin()]);
+                sum = core::array::from_fn(|c| sum[c] + w * w_phi * value[c]);
+            }
+        }
+    }
+    sum
+}
+
+#[test]
+fn presets_return_less_than_they_receive() {
+    // As documented beside each preset.
+    let documented = [
+        ("default", [3.91, 3.00, 2.09]),
+        ("blond", [0.81, 0.62, 0.34]),
+        ("brown", [0.48, 0.30, 0.19]),
+        ("red", [0.70, 0.27, 0.13]),
+        ("black", [0.12, 0.10, 0.09]),
+        ("white", [0.87, 0.85, 0.83]),
+    ];
+    for ((name, preset), (expected_name, expected)) in HairParams::presets().into_iter().zip(documented) {
+        assert_eq!(name, expected_name, "the order of the presets");
+        let albedo = mean_albedo(&preset);
+        println!("{name}: {albedo:.4?}");
+        for (found, expected) in albedo.into_iter().zip(expected) {
+            assert!((found - expected).abs() < 0.006, "{name}: albedo {albedo:?}, documented {expected}");
+            assert!(found < 1.0 || name == "default", "{name} returns more than it receives: {albedo:?}");
+        }
+    }
+}
+
+#[test]
+fn artist_defaults_are_the_default_set() {
+    assert_eq!(HairParams::from_artist(&ArtistControls::default()), Ok(HairParams::default()), "default controls");
+}
+
+#[test]
+fn artist_controls_reach_their_parameters() {
+    let controls = ArtistControls {
+        primary: Highlight { color: [0.5, 1.0, 2.0], intensity: 0.5, shift_deg: -9.0, width_deg: 6.0 },
+        transmission: Transmission { shift_deg: 4.5, width_deg: 3.0, azimuthal_width_deg: 20.0, ..Default::default() },
+        secondary: Highlight { shift_deg: 13.5, width_deg: 12.0, ..Default::default() },
+        glints: Glints { strength: 2.0, separation_deg: 80.0, azimuthal_width_deg: 15.0 },
+    };
+    let desc = *HairParams::from_artist(&controls).unwrap().desc();
+    let angles = [
+        (desc.alpha_r, -9.0),
+        (desc.alpha_tt, 4.5),
+        (desc.alpha_trt, 13.5),
+        (desc.beta_r, 6.0),
+        (desc.beta_tt, 3.0),
+        (desc.beta_trt, 12.0),
+        (desc.gamma_tt, 20.0),
+        (desc.gamma_g, 15.0),
+        (desc.phi_g, 40.0),
+    ];
+    for (radians, degrees) in angles {
+        assert!((radians.to_degrees() - degrees).abs() < 1e-5, "{radians} rad is not {degrees} degrees");
+    }
+    assert_eq!((desc.intensity_r, desc.intensity_g), ([0.25, 0.5, 1.0], 2.0), "color times intensity, and strength");
+}
+
+#[test]
+fn artist_ranges_hold_their_ends() {
+    for (shift_deg, width_deg, separation_deg) in [(-90.0, 0.01, 0.0), (90.0, 180.0, 360.0)] {
+        let highlight = Highlight { shift_deg, width_deg, ..Default::default() };
+        let controls = ArtistControls {
+            primary: highlight,
+            transmission: Transmission { shift_deg, width_deg, azimuthal_width_deg: width_deg, ..Default::default() },
+            secondary: highlight,
+            glints: Glints { separation_deg, azimuthal_width_deg: width_deg, ..Default::default() },
+        };
+        let made = HairParams::from_artist(&controls);
+        assert!(made.is_ok(), "shift {shift_deg} width {width_deg} separation {separation_deg}: {made:?}");
+    }
+}
+
+#[test]
+fn artist_errors_name_the_control() {
+    type Edit = fn(&mut ArtistControls);
+    let cases: [(Edit, ParamError, &str); 8] = [
+        (
+            |c| c.secondary.width_deg = 0.0,
+            ParamError::Degrees("secondary.width_deg", 0.0, [0.01, 180.0]),
+            "secondary.width_deg must be an angle in [0.01, 180] degrees, got 0",
+        ),
+        (
+            |c| c.primary.shift_deg = -91.0,
+            ParamError::Degrees("primary.shift_deg", -91.0, [-90.0, 90.0]),
+            "primary.shift_deg must be an angle in [-90, 90] degrees, got -91",
+        ),
+        (
+            |c| c.glints.separation_deg = 400.0,
+            ParamError::Degrees("glints.separation_deg", 400.0, [0.0, 360.0]),
+            "glints.separation_deg must be an angle in [0, 360] degrees, got 400",
+        ),
+        (
+            |c| c.transmission.azimuthal_width_deg = f32::INFINITY,
+            ParamError::Degrees("transmission.azimuthal_width_deg", f32::INFINITY, [0.01, 180.0]),
+            "transmission.azimuthal_width_deg must be an angle in [0.01, 180] degrees, got inf",
+        ),
+        (
+            |c| c.transmission.color[1] = -0.5,
+            ParamError::Intensity("transmission.color", 1, -0.5),
+            "transmission.color[1] must be finite and at least 0, got -0.5",
+        ),
+        (
+            |c| c.primary.intensity = -1.0,
+            ParamError::Scalar("primary.intensity", -1.0),
+            "primary.intensity must be finite and at least 0, got -1",
+        ),
+        (
+            |c| c.glints.strength = -2.0,
+            ParamError::Scalar("glints.strength", -2.0),
+            "glints.strength must be finite and at least 0, got -2",
+        ),
+        (
+            |c| (c.primary.intensity, c.primary.color) = (f32::MAX, [2.0; 3]),
+            ParamError::Overflow("primary.color", 0, 2.0),
+            "primary.color[0] times its intensity must be finite, got a color of 2",
+        ),
+    ];
+    for (edit, error, message) in cases {
+        let mut controls = ArtistControls::default();
+        edit(&mut controls);
+        assert_eq!(HairParams::from_artist(&controls), Err(error), "the error of {message}");
+        assert_eq!(error.to_string(), message, "the message");
+        assert!(message.starts_with(error.field()), "field {} of {message}", error.field());
+    }
+    let nan = ArtistControls { primary: Highlight { shift_deg: f32::NAN, ..Default::default() }, ..Default::default() };
+    let error = HairParams::from_artist(&nan).unwrap_err();
+    assert_eq!(error.field(), "primary.shift_deg", "NaN never passes");
+}
