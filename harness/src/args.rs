@@ -3,6 +3,7 @@
 use crate::config::Path;
 use crate::error::Error;
 use clap::{Parser, Subcommand};
+use std::path::PathBuf;
 
 /// Hair scattering: evaluate it line by line, and compare how it is computed.
 #[derive(Clone, Debug, Parser)]
@@ -34,6 +35,8 @@ pub enum Command {
     /// Evaluate JSON Lines: one request a line on standard input, one answer a line on standard output
     #[command(after_help = FORMAT)]
     Eval(Eval),
+    /// Compare scalar with eight lanes and the Gaussian model with the all-Cauchy one: speed, agreement, variance
+    Compare(Compare),
 }
 
 /// Flags of `hairis eval`.
@@ -42,6 +45,23 @@ pub struct Eval {
     /// The code that answers
     #[arg(long, value_enum, default_value_t = Path::X8)]
     pub path: Path,
+}
+
+/// Flags of `hairis compare`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Compare {
+    /// A short run, of less than 40 seconds
+    #[arg(long)]
+    pub quick: bool,
+    /// Seed of everything that is drawn; results but for the timings depend on it alone
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for compare.json and report.html; made if missing
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Environment light, latitude-longitude, as a .hdr or .exr file [default: a procedural sky]
+    #[arg(long, value_name = "FILE")]
+    pub env: Option<PathBuf>,
 }
 
 /// The flags this process was started with; `None` if they asked for help or the version, which then is printed.

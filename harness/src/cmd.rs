@@ -1,5 +1,6 @@
 //! The subcommands, one a file.
 
+pub mod compare;
 pub mod eval;
 
 use crate::config::Run;
@@ -13,5 +14,6 @@ use crate::error::Error;
 pub fn run(run: &Run) -> Result<(), Error> {
     match run {
         Run::Eval(config) => eval::run(config),
+        Run::Compare(config) => compare::run(config),
     }
 }

@@ -1,7 +1,10 @@
 //! Why a run of `hairis` ends with an exit code other than 0.
 
+use crate::light::LightError;
 use core::fmt;
+use hairis::ParamError;
 use std::io;
+use std::path::PathBuf;
 
 /// Why a run failed; it is printed once, by `main`, in one line.
 #[derive(Debug)]
@@ -12,6 +15,19 @@ pub enum Error {
     Read(io::Error),
     /// Standard output could not be written, for another reason than that its reader left.
     Write(io::Error),
+    /// The environment light could not be used.
+    Environment(LightError),
+    /// A file or folder of results could not be written.
+    Output {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Hair that the program itself made was refused: a fault of the program.
+    Params(ParamError),
+    /// Checks failed; each has been named on standard error.
+    Failed(usize),
     /// Some lines of the input were refused; each was answered by an error of its own.
     Malformed {
         /// How many.
@@ -26,7 +42,13 @@ impl Error {
     #[must_use]
     pub const fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(_) | Self::Read(_) | Self::Write(_) | Self::Malformed { .. } => 2,
+            Self::Failed(_) | Self::Params(_) => 1,
+            Self::Usage(_)
+            | Self::Read(_)
+            | Self::Write(_)
+            | Self::Environment(_)
+            | Self::Output { .. }
+            | Self::Malformed { .. } => 2,
         }
     }
 }
@@ -37,6 +59,11 @@ impl fmt::Display for Error {
             Self::Usage(problem) => f.write_str(problem),
             Self::Read(source) => write!(f, "cannot read standard input: {source}"),
             Self::Write(source) => write!(f, "cannot write standard output: {source}"),
+            Self::Environment(source) => write!(f, "{source}"),
+            Self::Output { path, source } => write!(f, "cannot write {}: {source}", path.display()),
+            Self::Params(source) => write!(f, "{source}"),
+            Self::Failed(1) => f.write_str("1 check failed"),
+            Self::Failed(checks) => write!(f, "{checks} checks failed"),
             Self::Malformed { lines, of } => write!(f, "{lines} of {of} lines were refused"),
         }
     }
@@ -46,7 +73,10 @@ impl core::error::Error for Error {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
             Self::Read(source) | Self::Write(source) => Some(source),
-            Self::Usage(_) | Self::Malformed { .. } => None,
+            Self::Output { source, .. } => Some(source),
+            Self::Environment(source) => Some(source),
+            Self::Params(source) => Some(source),
+            Self::Usage(_) | Self::Failed(_) | Self::Malformed { .. } => None,
         }
     }
 }

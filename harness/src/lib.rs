@@ -1,11 +1,21 @@
-//! The comparison of hair scattering kernels: the commands of the binary, lights, number sequences, quadrature and statistics, and what a report says of the machine.
+//! The harness of `hairis`: what its binary does, as a library so that tests can call it.
 
+pub mod agreement;
 pub mod args;
 pub mod cmd;
+pub mod compare;
 pub mod config;
+pub mod efficiency;
 pub mod error;
+pub mod figures;
 pub mod light;
 pub mod machine;
+pub mod markup;
+pub mod plot;
 pub mod quadrature;
+pub mod report;
 pub mod sequence;
+pub mod speed;
 pub mod stats;
+pub mod subject;
+pub mod table;

@@ -1,0 +1,120 @@
+//! Eight gather points, and directions and numbers that fall into a region.
+
+use super::Region;
+use crate::sequence::{Independent, stream_id};
+use crate::subject::{Subject, direction, random_hair, uniform_direction};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use glam::Vec3;
+use hairis::textbook::Textbook;
+use hairis::{HairParams, Model, ParamError};
+
+/// Between these angles from the axis, rad, a direction is near it.
+pub(super) const AXIS: [f64; 2] = [1e-3, 1e-2];
+/// Within this of pi, rad, `|phi|` is near it.
+pub(super) const BACK: f64 = 1e-2;
+/// Within this of pi/2, rad, `|phi|` may fall on either side of the cut of the glints' density.
+const CUT: f64 = 1e-6;
+
+/// Eight heads of hair seen from eight directions, with the directions and the numbers to ask about.
+pub(super) struct Packet {
+    pub(super) hair: [HairParams; 8],
+    pub(super) wo: [Vec3; 8],
+    /// One for each gather point.
+    pub(super) wi: [Vec3; 8],
+    /// Eight for the first gather point.
+    pub(super) wi_shared: [Vec3; 8],
+    pub(super) xi: [[f32; 3]; 8],
+    pub(super) oracle: [Textbook<f64>; 8],
+}
+
+impl Packet {
+    /// Packet `index` of a run; the same whatever other packets are drawn.
+    pub(super) fn draw<M>(subject: &Subject<M>, region: Region, seed: u64, index: u64) -> Result<Self, ParamError>
+    where
+        M: Model<Params = HairParams>,
+    {
+        let mut from = Independent::new(seed, stream_id(&[0xa9ee, region as u64, index]));
+        let mut hair = [HairParams::default(); 8];
+        for one in &mut hair {
+            *one = random_hair(&mut from)?;
+        }
+        let wo = core::array::from_fn(|_| match region {
+            // Half of them see the fibre along its axis, too.
+            Region::Axis if from.next_f64() < 0.5 => near_axis(&mut from),
+            _ => uniform_direction(&mut from),
+        });
+        let wi = wo.map(|wo| region.direction(wo, &mut from));
+        let wi_shared = core::array::from_fn(|_| region.direction(wo[0], &mut from));
+        let xi = core::array::from_fn(|_| region.numbers(&mut from));
+        let oracle = core::array::from_fn(|k| subject.oracle(&hair[k], wo[k]));
+        Ok(Self { hair, wo, wi, wi_shared, xi, oracle })
+    }
+}
+
+impl Region {
+    /// A direction in the region.
+    fn direction(self, wo: Vec3, from: &mut Independent) -> Vec3 {
+        match self {
+            Self::General => uniform_direction(from),
+            Self::Axis => near_axis(from),
+            Self::Back => {
+                let sin_theta = 2.0 * from.next_f64() - 1.0;
+                let off = BACK * log_uniform(from, 1e-6) * sign(from);
+                let phi_o = f64::from(wo.z).atan2(f64::from(wo.y));
+                direction(sin_theta, (1.0 - sin_theta * sin_theta).sqrt(), phi_o + PI + off)
+            }
+        }
+    }
+
+    /// Numbers whose samples often fall into the region.
+    fn numbers(self, from: &mut Independent) -> [f32; 3] {
+        let mut xi = [from.next_f32(), from.next_f32(), from.next_f32()];
+        #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
+        let mut edge = || 1e-2 * log_uniform(from, 1e-5) as f32;
+        match self {
+            Self::General => {}
+            // The ends of the longitude.
+            Self::Axis => xi[1] = if xi[1] < 0.5 { edge() } else { 1.0 - edge() },
+            // The ends for the cosines of R and TRT, the middle for TT.
+            Self::Back => {
+                xi[2] = match xi[2] {
+                    low if low < 0.25 => edge(),
+                    high if high < 0.5 => 1.0 - edge(),
+                    mid => 0.5 + (if mid < 0.75 { edge() } else { -edge() }),
+                };
+            }
+        }
+        xi
+    }
+
+    /// Whether the pair of directions is in the region, and where the bounds hold: further than 1e-3 rad from the axis
+    /// and off the cut of the glints.
+    pub(super) fn holds(self, wo: Vec3, wi: Vec3) -> bool {
+        let [u, v, w] = [wi.x, wi.y, wi.z].map(f64::from);
+        let from_axis = v.hypot(w).atan2(u.abs());
+        let turn = f64::from(wo.z).atan2(f64::from(wo.y)) - w.atan2(v);
+        let phi = (turn - TAU * (turn / TAU).round()).abs();
+        let sound = from_axis > AXIS[0] && (phi - FRAC_PI_2).abs() > CUT;
+        sound
+            && match self {
+                Self::General => true,
+                Self::Axis => from_axis < AXIS[1],
+                Self::Back => PI - phi < BACK,
+            }
+    }
+}
+
+/// A direction near either end of the axis, its angle to it log-uniform.
+fn near_axis(from: &mut Independent) -> Vec3 {
+    let angle = AXIS[1] * log_uniform(from, AXIS[0] / AXIS[1]);
+    direction(sign(from) * angle.cos(), angle.sin(), TAU * from.next_f64())
+}
+
+/// Log-uniform in `(least, 1]`.
+fn log_uniform(from: &mut Independent, least: f64) -> f64 {
+    least.powf(from.next_f64())
+}
+
+fn sign(from: &mut Independent) -> f64 {
+    if from.next_f64() < 0.5 { -1.0 } else { 1.0 }
+}

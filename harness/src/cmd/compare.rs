@@ -1,0 +1,100 @@
+//! `hairis compare`: runs the comparison, prints its tables, and writes `compare.json` and `report.html`.
+
+use crate::compare::{self, CompareConfig, Comparison, Depth, Part};
+use crate::config::Compare;
+use crate::error::Error;
+use crate::light::{Environment, Sky};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+use std::sync::Mutex;
+
+/// Runs the comparison.
+///
+/// # Errors
+///
+/// [`Error::Environment`] and [`Error::Output`] before any work is done, if a file cannot be read or the folder cannot
+/// be written; [`Error::Failed`] at the end, with all files written, if a check failed.
+pub fn run(config: &Compare) -> Result<(), Error> {
+    let (environment, name) = match &config.env {
+        Some(path) => (Environment::load(path).map_err(Error::Environment)?, path.display().to_string()),
+        None => (Sky::default().environment(), "procedural sky".to_owned()),
+    };
+    fs::create_dir_all(&config.out).map_err(|source| output(&config.out, source))?;
+
+    let bar = Bar::new();
+    let settings =
+        CompareConfig { seed: config.seed, quick: config.quick, environment: &environment, environment_name: &name };
+    let comparison = compare::run(&settings, &|part, done| bar.show(part, done)).map_err(Error::Params)?;
+    bar.finish();
+
+    write(&config.out.join("compare.json"), &json(&comparison)?)?;
+    write(&config.out.join("report.html"), &compare::report(&comparison).html())?;
+    print(&comparison).map_err(Error::Write)?;
+    let say = |name: &str| config.out.join(name).display().to_string();
+    eprintln!("wrote {} and {}", say("report.html"), say("compare.json"));
+
+    let failures = comparison.failures();
+    for failure in &failures {
+        eprintln!("failed: {failure}");
+    }
+    if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
+}
+
+fn output(path: &Path, source: io::Error) -> Error {
+    Error::Output { path: path.to_owned(), source }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Error> {
+    fs::write(path, text).map_err(|source| output(path, source))
+}
+
+fn json(comparison: &Comparison) -> Result<String, Error> {
+    let mut text = serde_json::to_string_pretty(comparison).map_err(|source| Error::Write(source.into()))?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// The tables on standard output. A reader that left has read what it wanted.
+fn print(comparison: &Comparison) -> io::Result<()> {
+    let tables = compare::tables(comparison, Depth::Summary);
+    let mut out = io::stdout().lock();
+    for table in tables.speed.iter().chain(&tables.agreement).chain(&tables.efficiency) {
+        match writeln!(out, "{}", table.to_terminal()) {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+            result => result?,
+        }
+    }
+    Ok(())
+}
+
+/// One bar a part, on standard error; nothing where that is no terminal.
+struct Bar(Mutex<(ProgressBar, Option<Part>)>);
+
+impl Bar {
+    fn new() -> Self {
+        let bar = ProgressBar::new(1000);
+        if let Ok(style) = ProgressStyle::with_template("{msg:>18} {wide_bar} {percent:>3}% {elapsed} (left {eta})") {
+            bar.set_style(style);
+        }
+        Self(Mutex::new((bar, None)))
+    }
+
+    fn show(&self, part: Part, done: f64) {
+        let Ok(mut state) = self.0.lock() else { return };
+        if state.1 != Some(part) {
+            state.0.reset();
+            state.0.set_message(part.label());
+            state.1 = Some(part);
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
+        state.0.set_position((done.clamp(0.0, 1.0) * 1000.0) as u64);
+    }
+
+    fn finish(&self) {
+        if let Ok(state) = self.0.lock() {
+            state.0.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The plots of a comparison.
+
+use super::Comparison;
+use crate::efficiency::{ModelKind, Sampler};
+use crate::figures;
+use crate::plot::{Axis, Bar, BarChart, LineChart, Point, Reference, Series};
+use crate::report::Figure;
+use crate::sequence::{SequenceKind, XiSource};
+use crate::speed::Op;
+use hairis::HairParams;
+
+/// Points of each panel of the sample distributions.
+const POINTS: usize = 2000;
+
+/// The Gaussian and the Cauchy bells, and the models made of them.
+pub(super) fn models() -> Vec<Figure> {
+    let params = HairParams::default();
+    vec![figures::normalised_bells(), figures::unit_bells(), figures::polar(&params, 20_f64.to_radians())]
+}
+
+/// Where samples go: the paper's figure 5.
+pub(super) fn distributions(of: &Comparison) -> Figure {
+    let mut numbers = SequenceKind::Halton.source(of.settings.seed, 0, 3, POINTS);
+    let xi: Vec<[f32; 3]> = (0..POINTS).map(|_| numbers.next_xi_f32()).collect();
+    figures::sample_distributions(&HairParams::default(), 20_f64.to_radians(), xi.into_iter())
+}
+
+/// Speed against the textbook.
+pub(super) fn speed(of: &Comparison) -> Figure {
+    let ops = [Op::Prepare, Op::EvalPdf, Op::Sample, Op::PointsMixed];
+    let groups = ModelKind::ALL.iter().flat_map(|m| ops.map(|op| format!("{}: {}", m.name(), op.label())));
+    let mut chart = BarChart::new("Speed against the textbook in f32", Axis::log("times as fast (×)"), groups);
+    let mut contenders: Vec<(&str, &str)> = Vec::new();
+    for row in of.speed.rows.iter().filter(|row| row.contender != "textbook") {
+        if !contenders.contains(&(row.contender, row.level)) {
+            contenders.push((row.contender, row.level));
+        }
+    }
+    for (contender, level) in contenders {
+        let bars = ModelKind::ALL.iter().flat_map(|model| {
+            ops.map(|op| {
+                let row = of.speed.row(op, model.name(), contender, level);
+                row.map_or(Bar::new(f64::NAN), |row| {
+                    Bar::new(row.ratio).with_error(0.5 * (row.ratio_q3 - row.ratio_q1))
+                })
+            })
+        });
+        chart = chart.series(format!("{contender}, {level}"), bars);
+    }
+    Figure::new(
+        chart.level(1.0).svg(),
+        "How many times as fast as the paper's formulas in scalar f32, by operation; bars are medians, whiskers half \
+         the distance between the quartiles.",
+    )
+}
+
+/// V against the width of the primary highlight.
+pub(super) fn widths(of: &Comparison) -> Vec<Figure> {
+    of.efficiency
+        .settings
+        .theta_o_deg
+        .iter()
+        .take(3)
+        .map(|theta_o| {
+            let title = format!("Variance against width, θ_o = {theta_o}°");
+            let mut chart = LineChart::new(
+                title,
+                Axis::linear("β_R (°)").from_zero(),
+                Axis::log("relative variance of one sample V"),
+            );
+            for model in ModelKind::ALL {
+                for sampler in Sampler::ALL {
+                    let rows = of
+                        .efficiency
+                        .beta_sweep
+                        .iter()
+                        .filter(|row| (row.model, row.sampler) == (model, sampler) && row.theta_o_deg == *theta_o);
+                    let points = rows
+                        .map(|row| Point::new(f64::from(row.beta_r_deg), row.v.value).with_error(row.v.standard_error));
+                    chart = chart.series(Series::new(format!("{}, {}", model.name(), sampler.name()), points));
+                }
+            }
+            Figure::new(
+                chart.svg(),
+                format!(
+                    "Relative variance of one sample under constant light, seen from {theta_o}°, with β_TT = β_R/2 and \
+                 β_TRT = 2 β_R; error bars are one standard error."
+                ),
+            )
+        })
+        .collect()
+}
+
+/// The error of the mean against the number of samples.
+pub(super) fn convergence(of: &Comparison) -> Vec<Figure> {
+    let mut lights: Vec<&str> = Vec::new();
+    for point in &of.efficiency.convergence {
+        if !lights.contains(&point.light.as_str()) {
+            lights.push(&point.light);
+        }
+    }
+    let mut figures = Vec::new();
+    for light in lights {
+        for model in ModelKind::ALL {
+            let title = format!("Convergence, {} model, {light}", model.name());
+            let mut chart = LineChart::new(title, Axis::log("samples N"), Axis::log("root mean square relative error"));
+            let mut first = None;
+            for sampler in Sampler::ALL {
+                for sequence in SequenceKind::ALL {
+                    let points: Vec<Point> = of
+                        .efficiency
+                        .convergence
+                        .iter()
+                        .filter(|p| (p.model, p.sampler, p.sequence) == (model, sampler, sequence) && p.light == light)
+                        .map(|p| {
+                            #[expect(clippy::cast_precision_loss, reason = "at most 4096 samples")]
+                            let n = p.n as f64;
+                            first.get_or_insert((n, p.rms.value));
+                            Point::new(n, p.rms.value).with_error(p.rms.standard_error)
+                        })
+                        .collect();
+                    chart = chart.series(Series::new(format!("{}, {}", sampler.name(), sequence.name()), points));
+                }
+            }
+            if let Some(through) = first {
+                chart = chart.reference(Reference::Power { label: "slope −1/2".to_owned(), slope: -0.5, through });
+            }
+            figures.push(Figure::new(
+                chart.svg(),
+                format!(
+                    "Error of the mean of N samples, {} model, light: {light}, θ_o = {}°, over independent \
+                     randomisations; error bars are one standard error.",
+                    model.name(),
+                    of.efficiency.settings.convergence_theta_o_deg
+                ),
+            ));
+        }
+    }
+    figures
+}

@@ -1,0 +1,239 @@
+//! The tables of a comparison, the same for the terminal and for the page.
+
+use super::Comparison;
+use crate::agreement::{Quantity, Region};
+use crate::efficiency::{ModelKind, Row, Sampler};
+use crate::sequence::SequenceKind;
+use crate::speed::Op;
+use crate::stats::Estimate;
+use crate::table::{Table, number};
+
+/// How much a set of tables holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// What fits a terminal.
+    Summary,
+    /// All of it.
+    Full,
+}
+
+/// The tables of a comparison, by section.
+#[derive(Clone, Debug)]
+pub struct Tables {
+    /// Time a direction.
+    pub speed: Vec<Table>,
+    /// Errors against the oracle.
+    pub agreement: Vec<Table>,
+    /// Variance a sample.
+    pub efficiency: Vec<Table>,
+}
+
+/// Makes the tables.
+#[must_use]
+pub fn tables(of: &Comparison, depth: Depth) -> Tables {
+    let mut efficiency = vec![reference(of), variance(of)];
+    if depth == Depth::Full {
+        efficiency.push(correlated(of));
+        efficiency.push(cost(of));
+    }
+    efficiency.push(light_sampling(of));
+    let speed = ModelKind::ALL.iter().map(|model| speed(of, *model, depth)).collect();
+    Tables { speed, agreement: vec![agreement(of, depth)], efficiency }
+}
+
+fn speed(of: &Comparison, model: ModelKind, depth: Depth) -> Table {
+    let title = format!("Time a direction, {} model", model.name());
+    let mut table = Table::new(title)
+        .text("operation")
+        .text("contender")
+        .text("instruction set")
+        .number("ns")
+        .number("quartiles, ns")
+        .number("against the textbook");
+    for row in of.speed.rows.iter().filter(|row| row.model == model.name()) {
+        if depth == Depth::Summary && !matches!(row.op, Op::Prepare | Op::EvalPdf | Op::Sample | Op::PointsMixed) {
+            continue;
+        }
+        table.push([
+            row.op.label().to_owned(),
+            row.contender.to_owned(),
+            row.level.to_owned(),
+            number::plain(row.ns, 3),
+            format!("{} to {}", number::plain(row.ns_q1, 3), number::plain(row.ns_q3, 3)),
+            number::ratio(row.ratio),
+        ]);
+    }
+    table.note(format!(
+        "{}. Medians over rounds in which all contenders run in turn; the ratio is formed within each round. The \
+         textbook is the paper's formulas in f32 on the libm crate.",
+        of.machine.summary()
+    ))
+}
+
+fn agreement(of: &Comparison, depth: Depth) -> Table {
+    let shown = [Quantity::Pdf, Quantity::Value, Quantity::SamplePdf, Quantity::SampleCdf];
+    let mut table = Table::new("Largest relative error against f64 (99.9th percentile)")
+        .text("model")
+        .text("path")
+        .text("instruction set")
+        .text("region");
+    for quantity in shown {
+        table = table.number(quantity.label());
+    }
+    let mut seen = Vec::new();
+    for first in &of.agreement {
+        let key = (first.model, first.path, first.level, first.region);
+        if seen.contains(&key) || (depth == Depth::Summary && first.region != Region::General) {
+            continue;
+        }
+        seen.push(key);
+        let same = |row: &&_| -> bool {
+            let row: &crate::agreement::AgreementResult = row;
+            (row.model, row.path, row.level, row.region) == key
+        };
+        let mut cells = vec![key.0.to_owned(), key.1.to_owned(), key.2.to_owned(), key.3.label().to_owned()];
+        for quantity in shown {
+            let row = of.agreement.iter().filter(same).find(|row| row.quantity == quantity);
+            cells.push(row.map_or_else(String::new, |row| format!("{:.1e} ({:.1e})", row.worst, row.p999)));
+        }
+        table.push(cells);
+    }
+    table.note(
+        "Bounds: density 1e-5; S 1e-4 (Gaussian) and 1e-5 (Cauchy); further than 1e-3 rad from the fibre's axis. The \
+         cdf is the distance from the number a sample was drawn with.",
+    )
+}
+
+fn reference(of: &Comparison) -> Table {
+    let mut table = Table::new("V of the default set under constant light")
+        .text("model")
+        .text("sampler")
+        .number("θ_o, °")
+        .number("V")
+        .number("quadrature")
+        .number("recorded")
+        .number("z");
+    for row in &of.efficiency.reference_v {
+        let missing = String::new;
+        table.push([
+            row.model.name().to_owned(),
+            row.sampler.name().to_owned(),
+            number::plain(row.theta_o_deg, 3),
+            estimate(&row.v),
+            number::plain(row.quadrature, 4),
+            row.published.map_or_else(missing, |v| number::plain(v, 3)),
+            row.z_published.map_or_else(missing, |z| format!("{z:+.1}")),
+        ]);
+    }
+    table.note("V is the variance of one sample over the squared mean; z is the distance from the recorded figure in standard errors.")
+}
+
+/// The columns of the tables of variances.
+const ESTIMATORS: [(ModelKind, Sampler); 4] = [
+    (ModelKind::Gaussian, Sampler::Uniform),
+    (ModelKind::Gaussian, Sampler::Ou),
+    (ModelKind::Cauchy, Sampler::Uniform),
+    (ModelKind::Cauchy, Sampler::Ou),
+];
+
+/// A table with a row for each light and inclination, and a column for each of [`ESTIMATORS`].
+fn by_light(of: &Comparison, title: &str, sequences: &[SequenceKind], cell: impl Fn(&Row) -> String) -> Table {
+    let mut table = Table::new(title).text("light").number("θ_o, °");
+    if sequences.len() > 1 {
+        table = table.text("numbers");
+    }
+    for (model, sampler) in ESTIMATORS {
+        table = table.number(format!("{}, {}", model.name(), sampler.name()));
+    }
+    let rows = &of.efficiency.rows;
+    for light in &of.efficiency.settings.lights {
+        for theta_o in of.efficiency.settings.theta_o_deg {
+            for sequence in sequences {
+                let mut cells = vec![light.clone(), number::plain(theta_o, 3)];
+                if sequences.len() > 1 {
+                    cells.push(sequence.name().to_owned());
+                }
+                for (model, sampler) in ESTIMATORS {
+                    let row = rows.iter().find(|row| {
+                        (row.model, row.sampler, row.sequence) == (model, sampler, *sequence)
+                            && row.light == *light
+                            && row.theta_o_deg == theta_o
+                    });
+                    cells.push(row.map_or_else(String::new, &cell));
+                }
+                table.push(cells);
+            }
+        }
+    }
+    table
+}
+
+fn variance(of: &Comparison) -> Table {
+    by_light(of, "Relative variance of one sample, independent numbers", &[SequenceKind::Independent], |row| {
+        estimate(&row.v)
+    })
+    .note("± one standard error. Samples for an error of 1%: 10⁴ V.")
+}
+
+fn correlated(of: &Comparison) -> Table {
+    let sequences = [SequenceKind::Stratified, SequenceKind::Halton];
+    let n = of.efficiency.settings.budget.correlated;
+    by_light(of, "Relative variance times the number of samples, stratified and Halton numbers", &sequences, |row| {
+        estimate(&row.v)
+    })
+    .note(format!("Of the mean of {n} samples, over independent randomisations; uniform on stratified numbers is the paper's stratified uniform sampling."))
+}
+
+fn cost(of: &Comparison) -> Table {
+    by_light(
+        of,
+        "Effective samples in 1000, samples for an error of 1%, and efficiency 1/(V · µs)",
+        &[SequenceKind::Independent],
+        |row| {
+            let efficiency =
+                row.efficiency.map_or_else(String::new, |e| format!(" · {}", number::plain(e.value * 1e3, 3)));
+            let (ess, n) = (row.ess_per_1000.value, row.samples_for_1_percent.value);
+            format!("{} · {}{efficiency}", number::plain(ess, 3), number::si(n.ceil(), ""))
+        },
+    )
+    .note("Time on eight lanes, a sixteenth of the preparation included, lights excluded.")
+}
+
+fn light_sampling(of: &Comparison) -> Table {
+    let mut names: Vec<&'static str> = Vec::new();
+    for row in &of.efficiency.mis_rows {
+        if !names.contains(&row.name) {
+            names.push(row.name);
+        }
+    }
+    let mut table = Table::new("Light sampling and multiple importance sampling: relative variance a sample")
+        .text("model")
+        .text("light")
+        .number("θ_o, °");
+    for name in &names {
+        table = table.number(*name);
+    }
+    let mut seen = Vec::new();
+    for first in &of.efficiency.mis_rows {
+        let key = (first.model, &first.light, first.theta_o_deg.to_bits());
+        if seen.contains(&key) {
+            continue;
+        }
+        seen.push(key);
+        let mut cells = vec![first.model.name().to_owned(), first.light.clone(), number::plain(first.theta_o_deg, 3)];
+        for name in &names {
+            let row = of
+                .efficiency
+                .mis_rows
+                .iter()
+                .find(|row| (row.model, &row.light, row.theta_o_deg.to_bits()) == key && row.name == *name);
+            cells.push(row.map_or_else(String::new, |row| estimate(&row.v)));
+        }
+        table.push(cells);
+    }
+    table.note("Combined with the power heuristic; every column spends the same number of samples in all.")
+}
+
+fn estimate(of: &Estimate) -> String {
+    number::with_error(of.value, of.standard_error)
+}

@@ -1,0 +1,286 @@
+//! How many samples the published sampler saves: variance, bias and convergence of both models under five lights.
+//!
+//! # What is measured
+//!
+//! The estimators of direct lighting, `L S cos theta_i / pdf` as one number (the mean of its RGB), of both models through the eight-lane path. `V` is the
+//! relative variance of one sample: a mean of `N` independent samples has a relative error of `sqrt(V / N)`.
+//!
+//! - One number out of three: every figure is of the mean of RGB, the intensity the sampler weighs its lobes by. The published table of "luminance V"
+//!   means it too. Quadrature tells the two apart (test `the_published_figures_are_of_the_mean_of_rgb`): `ou` on the Gaussian model at `theta_o = 45` has V = 0.1890
+//!   for the mean of RGB, 0.1923 for the luminance of Rec. 709, and the table has 0.189. All twelve figures agree with the mean of RGB to 6e-4.
+//! - Samples that hang together (stratified, Halton) have no variance of their own. For them `V = N Var(mean) / mean^2` with `Var(mean)` the variance of the mean
+//!   of `N` samples over `R` independent randomisations, so that V / N is again the squared relative error, but at that `N` alone: each row states its `N`.
+//!   For independent numbers `N` is 1 and `R` the number of samples, the same formula.
+//! - Standard errors of V are those of [`Moments::relative_variance`](crate::stats::Moments::relative_variance).
+//! - The effective sample size of 1000 samples is `1000 / (1 + V)`: Kish's for independent numbers, the same function of V elsewhere.
+//! - Every mean is held against a reference, see [`Reference`], and gives a bias z-score. Contributions of rare hits are skewed, which would spoil the tails of
+//!   a plain z: it is put through Hall's transformation (1992, On the removal of skewness by transformation). [`Check`] collects them.
+//! - A run that expects to see a small light a few times only is no test: it misses it and is sure of the wrong mean. What it may expect is known beforehand, from
+//!   the V of [`Reference::v`]: a z-score enters the check when the samples are worth at least [`MIN_EFFECTIVE`] of them, `n / (1 + V)`. The rest
+//!   are printed and marked, and so are their V: those of the reference are the better figures there.
+//!
+//! # The scene
+//!
+//! The fibre lies along world x, and (u, v, w) is the world's (x, y, z). The viewer is at azimuth [`PHI_O_DEG`], 60 degrees from straight up (+y), inclined by
+//! [`THETA_O_DEG`]. So one glint, 35 degrees from the viewer in azimuth, runs along azimuth 25 and meets the area light above, which spans 27 degrees either side of 0.
+//! The [`Sun`](crate::light::Sun) stands at inclination [`SUN_DEG`]`[0]` = -60 and azimuth 25 degrees: the centre of the R lobe and of that glint for
+//! `theta_o = 45`, well inside the TRT lobe for 75, in the tails for 0 and 85. The sun of the procedural [`Sky`](crate::light::Sky) is near
+//! inclination 26 degrees, the centre of the TRT lobe for `theta_o = 0`.
+//!
+//! # Determinism
+//!
+//! A result depends on the configuration and on nothing else. Each cell of a table draws from a stream of its own and is computed by one thread.
+
+mod case;
+mod cells;
+mod measure;
+mod mis;
+mod reference;
+mod result;
+mod run;
+#[cfg(test)]
+mod tests;
+
+pub use result::{
+    Check, ConvergencePoint, EfficiencyResult, MisRow, Reference, ReferenceMethod, ReferenceV, Row, Settings, SweepRow,
+};
+pub use run::run;
+
+use crate::light::Environment;
+use crate::sequence::stream_id;
+use hairis::{HairDesc, HairParams, ParamError};
+use serde::Serialize;
+
+/// Inclinations of the viewer, in degrees.
+pub const THETA_O_DEG: [f64; 4] = [0.0, 45.0, 75.0, 85.0];
+
+/// Azimuth of the viewer, in degrees.
+pub const PHI_O_DEG: f64 = 60.0;
+
+/// Inclination and azimuth of the sun's centre, in degrees.
+pub const SUN_DEG: [f64; 2] = [-60.0, 25.0];
+
+/// Widths `beta_r` of the sweep, in degrees; `beta_tt` is half of it and `beta_trt` twice.
+pub const BETA_R_DEG: [f32; 6] = [2.5, 5.0, 7.5, 10.0, 15.0, 20.0];
+
+/// Inclination of the viewer in the convergence table, in degrees.
+pub const CONVERGENCE_THETA_O_DEG: f64 = 45.0;
+
+/// Least effective number of samples, `n / (1 + V)` with the V of the reference, of a mean that is tested.
+pub const MIN_EFFECTIVE: f64 = 200.0;
+
+/// Chance that a run without any fault fails its [`Check`], over all its figures together.
+pub const FALSE_ALARM: f64 = 1e-3;
+
+/// The models compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModelKind {
+    /// The published model.
+    Gaussian,
+    /// The all-Cauchy variant with the same widths.
+    Cauchy,
+}
+
+impl ModelKind {
+    /// Every model, in the order of reports.
+    pub const ALL: [Self; 2] = [Self::Gaussian, Self::Cauchy];
+
+    /// Name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gaussian => "gaussian",
+            Self::Cauchy => "cauchy",
+        }
+    }
+
+    fn index(self) -> u64 {
+        match self {
+            Self::Gaussian => 0,
+            Self::Cauchy => 1,
+        }
+    }
+}
+
+/// How directions are drawn. "Stratified uniform" is `Uniform` with [`SequenceKind::Stratified`](crate::sequence::SequenceKind::Stratified) numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sampler {
+    /// Uniformly over the sphere.
+    Uniform,
+    /// By the published sampler.
+    Ou,
+}
+
+impl Sampler {
+    /// Every sampler, in the order of reports.
+    pub const ALL: [Self; 2] = [Self::Uniform, Self::Ou];
+
+    /// Name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Uniform => "uniform",
+            Self::Ou => "ou",
+        }
+    }
+
+    /// Uniform numbers a sample takes.
+    #[must_use]
+    pub fn dims(self) -> usize {
+        match self {
+            Self::Uniform => 2,
+            Self::Ou => 3,
+        }
+    }
+
+    fn index(self) -> u64 {
+        match self {
+            Self::Uniform => 0,
+            Self::Ou => 1,
+        }
+    }
+}
+
+/// Time of one sample of one model on the eight-lane path, in ns: set-up amortised over 16 samples, lights excluded.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SampleCosts {
+    /// `[uniform, ou]` of the Gaussian model.
+    pub gaussian: [f64; 2],
+    /// `[uniform, ou]` of the Cauchy model.
+    pub cauchy: [f64; 2],
+}
+
+impl SampleCosts {
+    /// The time of a sample of `sampler` for `model`, in ns.
+    #[must_use]
+    pub fn ns(&self, model: ModelKind, sampler: Sampler) -> f64 {
+        let [uniform, ou] = match model {
+            ModelKind::Gaussian => self.gaussian,
+            ModelKind::Cauchy => self.cauchy,
+        };
+        match sampler {
+            Sampler::Uniform => uniform,
+            Sampler::Ou => ou,
+        }
+    }
+}
+
+/// How much to compute. [`full`](Self::full) and [`quick`](Self::quick) are those of the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Budget {
+    /// Independent samples a row.
+    pub independent: usize,
+    /// Samples `N` of one randomisation of correlated numbers.
+    pub correlated: usize,
+    /// Randomisations `R` of correlated numbers a row.
+    pub randomisations: usize,
+    /// Pairs (or samples, for techniques alone) a row of multiple importance sampling.
+    pub mis: usize,
+    /// Independent samples a row of the sweep.
+    pub sweep: usize,
+    /// Randomisations a point of the convergence table.
+    pub convergence: usize,
+    /// Texels above which an environment's reference is a stratified run and no quadrature.
+    pub quadrature_texels: usize,
+    /// Randomisations of 4096 samples of that run, which also predicts the variance under the environment.
+    pub reference_passes: usize,
+}
+
+impl Budget {
+    /// About 50 s on two cores.
+    #[must_use]
+    pub const fn full() -> Self {
+        Self {
+            independent: 4_000_000,
+            correlated: 64,
+            randomisations: 8_192,
+            mis: 1_000_000,
+            sweep: 1_000_000,
+            convergence: 256,
+            quadrature_texels: 1024 * 512,
+            reference_passes: 256,
+        }
+    }
+
+    /// About 8 s on two cores.
+    #[must_use]
+    pub const fn quick() -> Self {
+        Self {
+            independent: 250_000,
+            correlated: 64,
+            randomisations: 512,
+            mis: 65_536,
+            sweep: 65_536,
+            convergence: 64,
+            quadrature_texels: 128 * 64,
+            reference_passes: 64,
+        }
+    }
+}
+
+/// What to compare.
+#[derive(Clone, Copy, Debug)]
+pub struct EfficiencyConfig<'a> {
+    /// Seed of every stream.
+    pub seed: u64,
+    /// How much to compute.
+    pub budget: Budget,
+    /// The environment among the lights: a file's, or [`Sky`](crate::light::Sky)'s.
+    pub environment: &'a Environment,
+    /// The hair.
+    pub params: HairParams,
+    /// Times of a sample, measured elsewhere; without them there are no figures of `1 / (V time)`.
+    pub costs: Option<SampleCosts>,
+}
+
+impl<'a> EfficiencyConfig<'a> {
+    /// The specification's default hair, without times.
+    ///
+    /// # Examples
+    /// ```
+    /// use hairis_harness::efficiency::{Budget, EfficiencyConfig};
+    /// let sky = hairis_harness::light::Sky::default().environment();
+    /// let config = EfficiencyConfig::new(1, true, &sky);
+    /// assert_eq!(config.budget, Budget::quick());
+    /// ```
+    #[must_use]
+    pub fn new(seed: u64, quick: bool, environment: &'a Environment) -> Self {
+        Self {
+            seed,
+            budget: if quick { Budget::quick() } else { Budget::full() },
+            environment,
+            params: HairParams::default(),
+            costs: None,
+        }
+    }
+}
+
+/// The hair of the sweep: `base` with `beta_r` and the two widths tied to it, in degrees.
+///
+/// # Errors
+/// When a width leaves its range.
+fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, ParamError> {
+    let beta_r = beta_r_deg.to_radians();
+    HairParams::new(&HairDesc { beta_r, beta_tt: 0.5 * beta_r, beta_trt: 2.0 * beta_r, ..*base.desc() })
+}
+
+/// The one number of a colour that figures are of: its mean.
+fn intensity(rgb: [f64; 3]) -> f64 {
+    (rgb[0] + rgb[1] + rgb[2]) / 3.0
+}
+
+/// Streams of the tables.
+mod stream {
+    pub(super) const REFERENCE: u64 = 0;
+    pub(super) const ROW: u64 = 1;
+    pub(super) const MIS: u64 = 2;
+    pub(super) const CONVERGENCE: u64 = 3;
+    pub(super) const SWEEP: u64 = 4;
+}
+
+/// The stream of a cell; salted, so that no other part of the harness draws from it.
+fn stream(indices: &[u64]) -> u64 {
+    stream_id(&[0xeff1_c1e4_c700_0001, stream_id(indices)])
+}

@@ -1,0 +1,128 @@
+//! What the estimates are held against: integrals by quadrature over the oracle, and the variance they predict.
+
+use super::case::{Case, UNIFORM_PDF};
+use super::{Reference, ReferenceMethod, Sampler, intensity, stream};
+use crate::light::{Environment, Light, luminance};
+use crate::sequence::{Stratified, XiSource};
+use crate::stats::Moments;
+use glam::DVec3;
+
+/// The oracle's density of `sampler`, per steradian.
+fn density(case: &Case, sampler: Sampler, dir: DVec3) -> f64 {
+    match sampler {
+        Sampler::Uniform => UNIFORM_PDF,
+        Sampler::Ou => case.oracle.pdf(dir.to_array()),
+    }
+}
+
+/// `numerator / pdf`, 0 where nothing is drawn: the contribution is 0 there too.
+fn over(numerator: f64, pdf: f64) -> f64 {
+    if pdf > 0.0 { numerator / pdf } else { 0.0 }
+}
+
+/// The integral of `light * S cos theta_i` by the light's own quadrature, without the variances.
+fn mean_by_quadrature(case: &Case, light: &dyn Light) -> Reference {
+    let integral = light.integrate(&|dir| case.oracle_value(dir), &case.sphere);
+    Reference {
+        value: intensity(integral.value),
+        standard_error: 0.0,
+        quadrature_error: intensity(integral.error),
+        method: ReferenceMethod::Quadrature,
+        v: [f64::NAN; 2],
+    }
+}
+
+/// Mean and variances by the light's own quadrature.
+pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
+    let mean = mean_by_quadrature(case, light);
+    let v = Sampler::ALL.map(|sampler| {
+        // The light multiplies by its radiance, channel by channel: the brightest channel carries the integrand, divided by it.
+        let square = |dir: DVec3| {
+            let radiance = light.radiance(dir);
+            let value = case.oracle_value(dir);
+            let y = intensity(core::array::from_fn(|c| radiance[c] * value[c]));
+            let brightest = (1..3).fold(0, |b, c| if radiance[c] > radiance[b] { c } else { b });
+            let mut carried = [0.0; 3];
+            if radiance[brightest] > 0.0 {
+                carried[brightest] = over(y * y, density(case, sampler, dir)) / radiance[brightest];
+            }
+            carried
+        };
+        let second: f64 = light.integrate(&square, &case.sphere).value.iter().sum();
+        second / (mean.value * mean.value) - 1.0
+    });
+    Reference { v, ..mean }
+}
+
+/// Mean and variances under an environment map: the mean by quadrature while the map has at most `max_texels`, all else by a stratified run over the oracle.
+///
+/// The run draws from the map, `passes` randomisations of 64 x 64 strata; only the map's own sampling is shared with what it is a reference for.
+pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, passes: usize, seed: u64) -> Reference {
+    let id = stream(&[stream::REFERENCE, case.model.index(), case.theta_o_deg.to_bits()]);
+    let mut source = Stratified::new(&[64, 64], seed, id);
+    let cells = source.cells();
+    let mut means = Moments::new();
+    let mut squares = [0.0; 2];
+    for _ in 0..passes {
+        let mut sum = 0.0;
+        for _ in 0..cells {
+            let s = map.sample(source.next_xi());
+            let value = case.oracle_value(s.dir);
+            let y = intensity(core::array::from_fn(|c| s.radiance[c] * value[c]));
+            sum += over(y, s.pdf);
+            for (square, sampler) in squares.iter_mut().zip(Sampler::ALL) {
+                *square += over(over(y * y, density(case, sampler, s.dir)), s.pdf);
+            }
+        }
+        means.push(sum / cells as f64);
+    }
+    let mean = means.mean_estimate();
+    let n = (passes * cells) as f64;
+    let v = squares.map(|square| square / n / (mean.value * mean.value) - 1.0);
+    let [width, height] = map.size();
+    if width * height <= max_texels {
+        return Reference { v, ..mean_by_quadrature(case, map) };
+    }
+    Reference {
+        value: mean.value,
+        standard_error: mean.standard_error,
+        quadrature_error: 0.0,
+        method: ReferenceMethod::StratifiedRun,
+        v,
+    }
+}
+
+/// Relative variance per sample under constant light, by quadrature.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ExactVariance {
+    /// The integral of `S cos theta_i`, as the mean of RGB.
+    pub(super) mean: f64,
+    /// Bound estimate of its error, absolute.
+    pub(super) mean_error: f64,
+    /// V of the mean of RGB.
+    pub(super) intensity: f64,
+    /// V of the luminance of Rec. 709.
+    pub(super) luminance: f64,
+    /// Whether the tolerance of 1e-7 was met.
+    #[cfg(test)]
+    pub(super) converged: bool,
+}
+
+/// `V = E[f^2] / E[f]^2 - 1` with `f = S cos theta_i / pdf`, for both numbers of a colour at once, from the oracle.
+pub(super) fn exact_variance(case: &Case, sampler: Sampler) -> ExactVariance {
+    let r = case.sphere.integrate_direction(|dir| {
+        let rgb = case.oracle_value(dir);
+        let pdf = density(case, sampler, dir);
+        let (m, y) = (intensity(rgb), luminance(rgb));
+        [m, y, over(m * m, pdf), over(y * y, pdf)]
+    });
+    let [m, y, m_sq, y_sq] = r.value;
+    ExactVariance {
+        mean: m,
+        mean_error: r.error[0],
+        intensity: m_sq / (m * m) - 1.0,
+        luminance: y_sq / (y * y) - 1.0,
+        #[cfg(test)]
+        converged: r.converged,
+    }
+}

@@ -1,0 +1,254 @@
+//! The tables, as plain data: what reports print and JSON keeps.
+
+use super::{Budget, ModelKind, SampleCosts, Sampler};
+use crate::sequence::SequenceKind;
+use crate::stats::Estimate;
+use serde::Serialize;
+
+/// Every table of the comparison of sample efficiency.
+#[derive(Clone, Debug, Serialize)]
+pub struct EfficiencyResult {
+    /// What was computed.
+    pub settings: Settings,
+    /// Under constant light: measured V against quadrature and against the published figures.
+    pub reference_v: Vec<ReferenceV>,
+    /// Variance and bias of every estimator under every light.
+    pub rows: Vec<Row>,
+    /// Light sampling and multiple importance sampling.
+    pub mis_rows: Vec<MisRow>,
+    /// Error against the number of samples.
+    pub convergence: Vec<ConvergencePoint>,
+    /// V against the width of the lobes, under constant light.
+    pub beta_sweep: Vec<SweepRow>,
+    /// Whether the figures agree with their references.
+    pub check: Check,
+}
+
+/// What the figures depend on, besides the hair and the environment.
+#[derive(Clone, Debug, Serialize)]
+pub struct Settings {
+    /// Seed of every stream.
+    pub seed: u64,
+    /// Sample counts.
+    pub budget: Budget,
+    /// Inclinations of the viewer, in degrees.
+    pub theta_o_deg: [f64; 4],
+    /// Azimuth of the viewer, in degrees.
+    pub phi_o_deg: f64,
+    /// Inclination and azimuth of the sun, in degrees.
+    pub sun_deg: [f64; 2],
+    /// Inclination of the viewer in the convergence table, in degrees.
+    pub convergence_theta_o_deg: f64,
+    /// The lights, in the order of reports.
+    pub lights: Vec<String>,
+    /// Times of a sample, when given.
+    pub costs: Option<SampleCosts>,
+}
+
+/// Where a reference comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ReferenceMethod {
+    /// Deterministic quadrature over the double-precision oracle.
+    Quadrature,
+    /// A long stratified run over the oracle, drawn from the light: for maps too large for quadrature.
+    StratifiedRun,
+}
+
+/// The value an estimator ought to have: the integral of `L S cos theta_i`, as the mean of RGB.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Reference {
+    /// The integral.
+    pub value: f64,
+    /// Its standard error: 0 for quadrature.
+    pub standard_error: f64,
+    /// Bound estimate of the quadrature's error, absolute.
+    pub quadrature_error: f64,
+    /// Where it comes from.
+    pub method: ReferenceMethod,
+    /// V of one independent sample, `[uniform, ou]`: by quadrature, or for an environment by a stratified run from the light, good to about a percent.
+    pub v: [f64; 2],
+}
+
+/// V under constant light, three times.
+#[derive(Clone, Debug, Serialize)]
+pub struct ReferenceV {
+    /// The model.
+    pub model: ModelKind,
+    /// The sampler.
+    pub sampler: Sampler,
+    /// Inclination of the viewer, in degrees.
+    pub theta_o_deg: f64,
+    /// As measured with independent numbers.
+    pub v: Estimate,
+    /// By quadrature: of the mean of RGB, as every figure here.
+    pub quadrature: f64,
+    /// Distance of the measured V to that, in standard errors.
+    pub z_quadrature: f64,
+    /// By quadrature: of the luminance of Rec. 709, for comparison.
+    pub quadrature_luminance: f64,
+    /// The specification's figure, for its default hair.
+    pub published: Option<f64>,
+    /// Distance of the measured V to it, in standard errors; that of its rounding is added.
+    pub z_published: Option<f64>,
+}
+
+/// One estimator under one light.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The model.
+    pub model: ModelKind,
+    /// The sampler.
+    pub sampler: Sampler,
+    /// The numbers it consumed.
+    pub sequence: SequenceKind,
+    /// Name of the light.
+    pub light: String,
+    /// Inclination of the viewer, in degrees.
+    pub theta_o_deg: f64,
+    /// Samples `N` of the means whose variance V is defined by: 1 for independent numbers.
+    pub n: usize,
+    /// How many such means there were.
+    pub randomisations: usize,
+    /// Relative variance per sample.
+    pub v: Estimate,
+    /// Effective sample size of 1000 samples, `1000 / (1 + V)`.
+    pub ess_per_1000: Estimate,
+    /// Samples for a relative error of 1%, `V / 1e-4`.
+    pub samples_for_1_percent: Estimate,
+    /// `1 / (V seconds)`, when the time of a sample is known.
+    pub efficiency: Option<Estimate>,
+    /// Largest mean of RGB of a weight `S cos theta_i / pdf`, whatever the light.
+    pub max_weight: f64,
+    /// Largest contribution of a sample, in means.
+    pub max_contribution: f64,
+    /// The mean of all samples.
+    pub mean: Estimate,
+    /// What it ought to be.
+    pub reference: Reference,
+    /// Bias in standard errors, corrected for skewness.
+    pub z: f64,
+    /// Whether there were enough effective samples for `z` to be a test, and for V to be trusted.
+    pub tested: bool,
+}
+
+/// How the samples of a row of multiple importance sampling were drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Technique {
+    /// From the light alone.
+    Light,
+    /// From the scattering function alone.
+    Bsdf(Sampler),
+    /// As many from both, by the power heuristic of exponent 2.
+    Mis(Sampler),
+}
+
+/// One way of drawing samples for one light, independent numbers.
+///
+/// V is per sample of a budget shared by all techniques: `T Var(estimate) / mean^2` where the estimate took `T` samples in all. A technique alone spends all
+/// of them on itself; with both, `T / 2` go to either, so V is twice the relative variance of a pair.
+#[derive(Clone, Debug, Serialize)]
+pub struct MisRow {
+    /// The model.
+    pub model: ModelKind,
+    /// How the samples were drawn.
+    pub technique: Technique,
+    /// Its name in reports.
+    pub name: &'static str,
+    /// Name of the light.
+    pub light: String,
+    /// Inclination of the viewer, in degrees.
+    pub theta_o_deg: f64,
+    /// Samples a contribution took: 1, or 2 for a pair.
+    pub samples_each: usize,
+    /// Number of contributions.
+    pub n: usize,
+    /// Relative variance per sample at an equal total number of samples.
+    pub v: Estimate,
+    /// Samples for a relative error of 1%, of both kinds together.
+    pub samples_for_1_percent: Estimate,
+    /// Largest contribution, in means.
+    pub max_contribution: f64,
+    /// The mean of all contributions.
+    pub mean: Estimate,
+    /// What it ought to be.
+    pub reference: Reference,
+    /// Bias in standard errors, corrected for skewness.
+    pub z: f64,
+    /// Whether there were enough effective samples for `z` to be a test, and for V to be trusted.
+    pub tested: bool,
+}
+
+/// Error of a mean of `n` samples.
+#[derive(Clone, Debug, Serialize)]
+pub struct ConvergencePoint {
+    /// The model.
+    pub model: ModelKind,
+    /// The sampler.
+    pub sampler: Sampler,
+    /// The numbers it consumed.
+    pub sequence: SequenceKind,
+    /// Name of the light.
+    pub light: String,
+    /// Inclination of the viewer, in degrees.
+    pub theta_o_deg: f64,
+    /// Samples of a mean.
+    pub n: usize,
+    /// Randomisations.
+    pub randomisations: usize,
+    /// Root of the mean squared relative error against the reference.
+    pub rms: Estimate,
+    /// Bias over all randomisations in standard errors, corrected for skewness.
+    pub z: f64,
+    /// Whether there were enough effective samples for `z` to be a test.
+    pub tested: bool,
+}
+
+/// One width of the sweep, constant light, independent numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct SweepRow {
+    /// The model.
+    pub model: ModelKind,
+    /// The sampler.
+    pub sampler: Sampler,
+    /// Width of R, in degrees.
+    pub beta_r_deg: f32,
+    /// Inclination of the viewer, in degrees.
+    pub theta_o_deg: f64,
+    /// Samples.
+    pub n: usize,
+    /// Relative variance per sample, as measured.
+    pub v: Estimate,
+    /// The same by quadrature.
+    pub quadrature: f64,
+    /// Distance of the two, in standard errors.
+    pub z_quadrature: f64,
+    /// Bias of the mean in standard errors, corrected for skewness.
+    pub z: f64,
+}
+
+/// All z-scores against one bound.
+#[derive(Clone, Debug, Serialize)]
+pub struct Check {
+    /// Number of figures held against a reference.
+    pub tests: usize,
+    /// Number of figures with too few effective samples to be held against it.
+    pub untested: usize,
+    /// Chance of a false alarm over all of them.
+    pub false_alarm: f64,
+    /// Bound on `|z|`: the chance is shared out over the tests by Sidak's formula.
+    pub bound: f64,
+    /// Largest `|z|`; infinite when one was no number.
+    pub largest_z: f64,
+    /// One line for each figure beyond the bound.
+    pub failures: Vec<String>,
+}
+
+impl Check {
+    /// Whether every figure agrees with its reference. When not, `compare` ends with exit code 1.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.failures.is_empty()
+    }
+}

@@ -1,0 +1,230 @@
+//! All the tables, cell by cell.
+
+use super::case::Case;
+use super::cells::{self, Lit};
+use super::reference::{by_quadrature, of_environment};
+use super::result::{Check, EfficiencyResult, Settings, Technique};
+use super::{
+    BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG, Reference, SUN_DEG,
+    Sampler, THETA_O_DEG, with_beta,
+};
+use crate::light::{Constant, Light, Rectangle, Smooth, Sun};
+use crate::quadrature::fibre_direction;
+use crate::sequence::SequenceKind;
+use crate::stats::{sidak, z_p_value};
+use core::sync::atomic::{AtomicUsize, Ordering};
+use hairis::ParamError;
+use rayon::prelude::*;
+
+/// Places of the lights in the order of reports.
+const CONSTANT: usize = 0;
+const SUN: usize = 2;
+const AREA: usize = 3;
+const ENVIRONMENT: usize = 4;
+
+/// Reports finished cells.
+struct Progress<'a> {
+    done: AtomicUsize,
+    total: usize,
+    report: &'a (dyn Fn(usize, usize) + Sync),
+}
+
+impl Progress<'_> {
+    /// Computes `f` on every cell, in parallel; results keep the order of the cells.
+    fn map<C: Sync, R: Send>(&self, cells: &[C], f: impl Fn(&C) -> R + Sync) -> Vec<R> {
+        let each = |cell| {
+            let result = f(cell);
+            let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+            (self.report)(done, self.total);
+            result
+        };
+        // One cell at a time: they differ in length by a factor of a hundred.
+        cells.par_iter().with_max_len(1).map(each).collect()
+    }
+}
+
+/// Computes every table. `progress` is called from the workers with the number of cells done and of all cells.
+///
+/// # Errors
+/// When the parameters of the sweep are refused, which valid parameters of the run exclude.
+pub fn run(
+    config: &EfficiencyConfig<'_>,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<EfficiencyResult, ParamError> {
+    let constant = Constant::white();
+    let smooth = Smooth::new();
+    let [sun_theta, sun_phi] = SUN_DEG.map(f64::to_radians);
+    let sun = Sun::five_degrees(fibre_direction(sun_theta, sun_phi));
+    let area = Rectangle::figure_6a();
+    let lights: [&dyn Light; 5] = [&constant, &smooth, &sun, &area, config.environment];
+
+    let cases: Vec<Case> = product(&ModelKind::ALL, &THETA_O_DEG)
+        .into_iter()
+        .map(|(model, theta_o)| Case::new(model, &config.params, theta_o))
+        .collect();
+    let mut sweep_cases = Vec::new();
+    for beta_r in BETA_R_DEG {
+        let params = with_beta(&config.params, beta_r)?;
+        for (model, theta_o) in product(&ModelKind::ALL, &THETA_O_DEG) {
+            sweep_cases.push((beta_r, Case::new(model, &params, theta_o)));
+        }
+    }
+
+    let case_indices: Vec<usize> = (0..cases.len()).collect();
+    let reference_cells = product(&case_indices, &[0, 1, 2, 3, 4]);
+    let estimators = product(&Sampler::ALL, &SequenceKind::ALL);
+    let row_cells = product(&reference_cells, &estimators);
+    let mis_cells = product(&product(&case_indices, &[SUN, AREA, ENVIRONMENT]), &Technique::ALL);
+    let sizes: Vec<usize> = (2..=12).map(|k| 1 << k).collect();
+    let convergence_cases: Vec<usize> =
+        case_indices.iter().copied().filter(|&c| cases[c].theta_o_deg == CONVERGENCE_THETA_O_DEG).collect();
+    let curves = product(&product(&convergence_cases, &[CONSTANT, ENVIRONMENT]), &estimators);
+    let convergence_cells = product(&curves, &sizes);
+    let sweep_indices: Vec<usize> = (0..sweep_cases.len()).collect();
+    let sweep_cells = product(&sweep_indices, &Sampler::ALL);
+    let v_cells = product(&case_indices, &Sampler::ALL);
+
+    let total = reference_cells.len()
+        + row_cells.len()
+        + mis_cells.len()
+        + convergence_cells.len()
+        + sweep_cells.len()
+        + v_cells.len();
+    let progress = Progress { done: AtomicUsize::new(0), total, report: progress };
+
+    let budget = &config.budget;
+    let references: Vec<Reference> = progress.map(&reference_cells, |&(case, light)| {
+        if light == ENVIRONMENT {
+            let passes = budget.reference_passes;
+            of_environment(&cases[case], config.environment, budget.quadrature_texels, passes, config.seed)
+        } else {
+            by_quadrature(&cases[case], lights[light])
+        }
+    });
+    let lit = |case: usize, light: usize| Lit {
+        light: lights[light],
+        index: light as u64,
+        reference: &references[case * lights.len() + light],
+    };
+
+    let rows = progress.map(&row_cells, |&((case, light), (sampler, sequence))| {
+        cells::row(config, &cases[case], sampler, sequence, &lit(case, light))
+    });
+    let mis_rows = progress.map(&mis_cells, |&((case, light), technique)| {
+        cells::mis_row(config, &cases[case], technique, &lit(case, light))
+    });
+    let convergence = progress.map(&convergence_cells, |&(((case, light), (sampler, sequence)), n)| {
+        cells::convergence_point(config, &cases[case], sampler, sequence, &lit(case, light), n)
+    });
+    let beta_sweep = progress.map(&sweep_cells, |&(index, sampler)| {
+        let (beta_r, case) = &sweep_cases[index];
+        cells::sweep_row(config, case, sampler, *beta_r)
+    });
+    let reference_v = progress.map(&v_cells, |&(case, sampler)| {
+        // The row of this case under constant light, independent numbers.
+        let wanted = ((case, CONSTANT), (sampler, SequenceKind::Independent));
+        let v = row_cells.iter().zip(&rows).find(|(cell, _)| **cell == wanted).map(|(_, row)| row.v);
+        v.map(|v| cells::reference_v(config, &cases[case], sampler, v))
+    });
+
+    let mut result = EfficiencyResult {
+        settings: Settings {
+            seed: config.seed,
+            budget: config.budget,
+            theta_o_deg: THETA_O_DEG,
+            phi_o_deg: PHI_O_DEG,
+            sun_deg: SUN_DEG,
+            convergence_theta_o_deg: CONVERGENCE_THETA_O_DEG,
+            lights: lights.iter().map(|light| light.name().to_owned()).collect(),
+            costs: config.costs,
+        },
+        reference_v: reference_v.into_iter().flatten().collect(),
+        rows,
+        mis_rows,
+        convergence,
+        beta_sweep,
+        check: Check {
+            tests: 0,
+            untested: 0,
+            false_alarm: FALSE_ALARM,
+            bound: 0.0,
+            largest_z: 0.0,
+            failures: Vec::new(),
+        },
+    };
+    result.check = check(&result);
+    Ok(result)
+}
+
+/// Every pair of an `a` and a `b`, the latter running faster.
+fn product<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
+    a.iter().flat_map(|&x| b.iter().map(move |&y| (x, y))).collect()
+}
+
+/// Holds every z-score against the bound that all of them together pass with probability `1 - FALSE_ALARM`.
+pub(super) fn check(result: &EfficiencyResult) -> Check {
+    let mut scores: Vec<(f64, String)> = Vec::new();
+    let mut untested = 0;
+    for r in &result.rows {
+        if !r.tested {
+            untested += 1;
+            continue;
+        }
+        let (model, sampler) = (r.model.name(), r.sampler.name());
+        let numbers = r.sequence.name();
+        scores.push((r.z, format!("{model} {sampler} {numbers}, {}, theta_o {}: mean", r.light, r.theta_o_deg)));
+    }
+    for r in &result.mis_rows {
+        if !r.tested {
+            untested += 1;
+            continue;
+        }
+        scores.push((r.z, format!("{} {}, {}, theta_o {}: mean", r.model.name(), r.name, r.light, r.theta_o_deg)));
+    }
+    for r in &result.convergence {
+        if !r.tested {
+            untested += 1;
+            continue;
+        }
+        let (model, sampler) = (r.model.name(), r.sampler.name());
+        let numbers = r.sequence.name();
+        scores.push((r.z, format!("{model} {sampler} {numbers}, {}, means of {}: bias", r.light, r.n)));
+    }
+    for r in &result.beta_sweep {
+        let (model, sampler) = (r.model.name(), r.sampler.name());
+        let place = format!("{model} {sampler}, beta_r {}, theta_o {}", r.beta_r_deg, r.theta_o_deg);
+        scores.push((r.z_quadrature, format!("{place}: V against quadrature")));
+        scores.push((r.z, format!("{place}: mean")));
+    }
+    for r in &result.reference_v {
+        let place = format!("{} {}, constant, theta_o {}", r.model.name(), r.sampler.name(), r.theta_o_deg);
+        scores.push((r.z_quadrature, format!("{place}: V against quadrature")));
+        if let Some(z) = r.z_published {
+            scores.push((z, format!("{place}: V against the published figure")));
+        }
+    }
+    let bound = z_bound(sidak(FALSE_ALARM, scores.len()));
+    let size = |z: f64| if z.is_nan() { f64::INFINITY } else { z.abs() };
+    Check {
+        tests: scores.len(),
+        untested,
+        false_alarm: FALSE_ALARM,
+        bound,
+        largest_z: scores.iter().map(|(z, _)| size(*z)).fold(0.0, f64::max),
+        failures: scores
+            .iter()
+            .filter(|(z, _)| size(*z) > bound)
+            .map(|(z, what)| format!("{what}: {z:.2} standard errors off, allowed {bound:.2}"))
+            .collect(),
+    }
+}
+
+/// The `|z|` of a two-sided p-value, by bisection.
+fn z_bound(p: f64) -> f64 {
+    let (mut lo, mut hi) = (0.0, 40.0);
+    for _ in 0..64 {
+        let mid = 0.5 * (lo + hi);
+        if z_p_value(mid) > p { lo = mid } else { hi = mid }
+    }
+    hi
+}

@@ -1,0 +1,68 @@
+//! A scalar on a map of the sphere.
+
+use super::axis::Axis;
+use super::canvas::sheet;
+use super::frame;
+use super::grid::{Grid, Map, color_bar};
+use super::palette::scale_color;
+
+/// A map of the sphere coloured by a scalar, in viridis, with a bar of its colours.
+///
+/// ```
+/// use hairis_harness::plot::{Axis, Grid, HeatMap, Projection};
+/// let grid = Grid::sample(Projection::EqualArea, (36, 72), |theta, phi| theta.cos() * (1.0 + phi.cos()));
+/// let svg = HeatMap::new("Radiance", Axis::linear("L (W/m²/sr)"), grid).svg();
+/// assert!(svg.ends_with("</svg>\n"));
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeatMap {
+    title: String,
+    description: String,
+    value: Axis,
+    grid: Grid,
+}
+
+impl HeatMap {
+    /// A map of `grid`; `value` says what its numbers are and how colours spread over them.
+    #[must_use]
+    pub fn new(title: impl Into<String>, value: Axis, grid: Grid) -> Self {
+        Self { title: title.into(), description: String::new(), value, grid }
+    }
+
+    /// What the map shows, for those who cannot see it; by default the range of its values.
+    #[must_use]
+    pub fn description(mut self, text: impl Into<String>) -> Self {
+        self.description = text.into();
+        self
+    }
+
+    /// The map as SVG.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        let top = frame::title_height(&self.title, frame::WIDTH);
+        let (low, high) = ((70.0, top), (frame::WIDTH - 110.0, top + 270.0));
+        let map = Map { low, high, projection: self.grid.projection() };
+        let values = self.grid.range().into_iter().flat_map(|(a, b)| [a, b]);
+        let fitted = match self.grid.range() {
+            // The colours end where the values do.
+            Some((a, b)) if a < b && self.value.shows(a) => {
+                self.value.clone().or_range(a, b).fit(values, high.1, low.1)
+            }
+            _ => self.value.fit(values, high.1, low.1),
+        };
+        let description = if self.description.is_empty() {
+            let number = |v| crate::table::number::plain(v, 3);
+            let (low, high) = (number(fitted.low), number(fitted.high));
+            format!("{} over the sphere, from {low} to {high}.", self.value.label)
+        } else {
+            self.description.clone()
+        };
+        sheet((frame::WIDTH, high.1 + 48.0), &self.title, &description, |canvas| {
+            frame::title(canvas, &self.title, frame::WIDTH);
+            let share = |v: f64| (fitted.within(v) - fitted.start) / (fitted.end - fitted.start);
+            map.fill(canvas, &self.grid, 48, share, scale_color);
+            map.axes(canvas, frame::TICK, (Some("azimuth φ"), Some("inclination θ")));
+            color_bar(canvas, &self.value, &fitted, high.0 + 16.0, scale_color);
+        })
+    }
+}

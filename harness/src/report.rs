@@ -1,0 +1,315 @@
+//! The report: one HTML page that needs nothing else, not even a script.
+
+use crate::markup::escape;
+use crate::table::Table;
+
+const STYLE: &str = include_str!("report/style.css");
+
+/// A page under construction.
+///
+/// Texts are plain: everything in them is escaped, and what stands between `` ` `` marks is set as code.
+///
+/// ```
+/// use hairis_harness::report::{Report, Section};
+/// let html = Report::new("Comparison")
+///     .finding("Eight lanes are `7.1×` as fast as one.")
+///     .section(Section::new("Speed").paragraph("Measured on an idle machine."))
+///     .fact("CPU", "Example <9000>")
+///     .html();
+/// assert!(html.contains("<code>7.1×</code>") && html.contains("Example &lt;9000&gt;"));
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    title: String,
+    subtitle: String,
+    findings: Vec<String>,
+    sections: Vec<Section>,
+    facts: Vec<(String, String)>,
+    method: Vec<String>,
+}
+
+/// A part of a report, under a heading of its own and in the table of contents.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Section {
+    title: String,
+    blocks: Vec<Block>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Block {
+    Heading(String),
+    Paragraph(String),
+    List(Vec<String>),
+    Table(Table),
+    Figure(Figure),
+}
+
+/// A drawing with its caption and, folded away, its numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// A complete `<svg>` element, as those of [`crate::plot`]: it goes into the page as it is.
+    pub svg: String,
+    /// What it shows, as text.
+    pub caption: String,
+    /// The numbers it was drawn from.
+    pub data: Option<Table>,
+}
+
+impl Figure {
+    /// A drawing with its caption.
+    #[must_use]
+    pub fn new(svg: impl Into<String>, caption: impl Into<String>) -> Self {
+        Self { svg: svg.into(), caption: caption.into(), data: None }
+    }
+
+    /// Adds the numbers it was drawn from.
+    #[must_use]
+    pub fn with_data(self, data: Table) -> Self {
+        Self { data: Some(data), ..self }
+    }
+}
+
+impl Section {
+    /// A section without content.
+    #[must_use]
+    pub fn new(title: impl Into<String>) -> Self {
+        Self { title: title.into(), blocks: Vec::new() }
+    }
+
+    /// Adds a heading within the section.
+    #[must_use]
+    pub fn heading(self, text: impl Into<String>) -> Self {
+        self.with(Block::Heading(text.into()))
+    }
+
+    /// Adds a paragraph.
+    #[must_use]
+    pub fn paragraph(self, text: impl Into<String>) -> Self {
+        self.with(Block::Paragraph(text.into()))
+    }
+
+    /// Adds a list.
+    #[must_use]
+    pub fn list<S: Into<String>>(self, items: impl IntoIterator<Item = S>) -> Self {
+        self.with(Block::List(items.into_iter().map(Into::into).collect()))
+    }
+
+    /// Adds a table.
+    #[must_use]
+    pub fn table(self, table: Table) -> Self {
+        self.with(Block::Table(table))
+    }
+
+    /// Adds a figure; figures are numbered through the report.
+    #[must_use]
+    pub fn figure(self, figure: Figure) -> Self {
+        self.with(Block::Figure(figure))
+    }
+
+    fn with(mut self, block: Block) -> Self {
+        self.blocks.push(block);
+        self
+    }
+}
+
+impl Report {
+    /// A page without content.
+    #[must_use]
+    pub fn new(title: impl Into<String>) -> Self {
+        Self { title: title.into(), ..Self::default() }
+    }
+
+    /// The line under the title, such as when and where it was made.
+    #[must_use]
+    pub fn subtitle(mut self, text: impl Into<String>) -> Self {
+        self.subtitle = text.into();
+        self
+    }
+
+    /// Adds a key finding; they come first.
+    #[must_use]
+    pub fn finding(mut self, text: impl Into<String>) -> Self {
+        self.findings.push(text.into());
+        self
+    }
+
+    /// Adds a section.
+    #[must_use]
+    pub fn section(mut self, section: Section) -> Self {
+        self.sections.push(section);
+        self
+    }
+
+    /// Adds a paragraph to "Method and machine", the last section.
+    #[must_use]
+    pub fn method(mut self, text: impl Into<String>) -> Self {
+        self.method.push(text.into());
+        self
+    }
+
+    /// Adds a fact to "Method and machine": the CPU, the seed, the commit.
+    #[must_use]
+    pub fn fact(mut self, name: impl Into<String>, value: impl Into<String>) -> Self {
+        self.facts.push((name.into(), value.into()));
+        self
+    }
+
+    /// The page.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let title = escape(&self.title);
+        let mut page = format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n\
+             </head>\n<body>\n<header>\n<h1>{title}</h1>\n"
+        );
+        if !self.subtitle.is_empty() {
+            page.push_str(&format!("<p class=\"subtitle\">{}</p>\n", inline(&self.subtitle)));
+        }
+        page.push_str("</header>\n<main>\n");
+        if !self.findings.is_empty() {
+            page.push_str("<section id=\"findings\" class=\"findings\">\n<h2>Key findings</h2>\n");
+            list(&mut page, &self.findings);
+            page.push_str("</section>\n");
+        }
+        self.contents(&mut page);
+        let mut figures = 0;
+        for (i, section) in self.sections.iter().enumerate() {
+            page.push_str(&format!("<section id=\"section-{}\">\n<h2>{}</h2>\n", i + 1, inline(&section.title)));
+            section.blocks.iter().for_each(|block| block.write(&mut page, &mut figures));
+            page.push_str("</section>\n");
+        }
+        if self.has_method() {
+            page.push_str("<section id=\"method\">\n<h2>Method and machine</h2>\n");
+            self.method.iter().for_each(|text| paragraph(&mut page, text));
+            if !self.facts.is_empty() {
+                page.push_str("<dl>\n");
+                for (name, value) in &self.facts {
+                    page.push_str(&format!("<dt>{}</dt><dd>{}</dd>\n", inline(name), inline(value)));
+                }
+                page.push_str("</dl>\n");
+            }
+            page.push_str("</section>\n");
+        }
+        page.push_str("</main>\n</body>\n</html>\n");
+        page
+    }
+
+    fn has_method(&self) -> bool {
+        !(self.method.is_empty() && self.facts.is_empty())
+    }
+
+    fn contents(&self, page: &mut String) {
+        if self.sections.is_empty() && !self.has_method() {
+            return;
+        }
+        page.push_str("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ol>\n");
+        for (i, section) in self.sections.iter().enumerate() {
+            page.push_str(&format!("<li><a href=\"#section-{}\">{}</a></li>\n", i + 1, inline(&section.title)));
+        }
+        if self.has_method() {
+            page.push_str("<li><a href=\"#method\">Method and machine</a></li>\n");
+        }
+        page.push_str("</ol>\n</nav>\n");
+    }
+}
+
+impl Block {
+    fn write(&self, page: &mut String, figures: &mut usize) {
+        match self {
+            Self::Heading(text) => page.push_str(&format!("<h3>{}</h3>\n", inline(text))),
+            Self::Paragraph(text) => paragraph(page, text),
+            Self::List(items) => list(page, items),
+            Self::Table(table) => page.push_str(&table.to_html()),
+            Self::Figure(figure) => {
+                *figures += 1;
+                page.push_str(&format!(
+                    "<figure id=\"figure-{figures}\">\n<div class=\"plot\" role=\"region\" tabindex=\"0\" \
+                     aria-label=\"Figure {figures}\">\n{}</div>\n\
+                     <figcaption><strong>Figure {figures}.</strong> {}</figcaption>\n",
+                    figure.svg,
+                    inline(&figure.caption)
+                ));
+                if let Some(data) = &figure.data {
+                    let html = data.to_html();
+                    page.push_str(&format!("<details><summary>Its numbers</summary>\n{html}</details>\n"));
+                }
+                page.push_str("</figure>\n");
+            }
+        }
+    }
+}
+
+fn paragraph(page: &mut String, text: &str) {
+    page.push_str(&format!("<p>{}</p>\n", inline(text)));
+}
+
+fn list(page: &mut String, items: &[String]) {
+    page.push_str("<ul>\n");
+    for item in items {
+        page.push_str(&format!("<li>{}</li>\n", inline(item)));
+    }
+    page.push_str("</ul>\n");
+}
+
+/// Escaped text with what stands between pairs of `` ` `` as code.
+fn inline(text: &str) -> String {
+    let mut html = String::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('`') {
+        let Some((code, after)) = after.split_once('`') else { break };
+        html.push_str(&format!("{}<code>{}</code>", escape(before), escape(code)));
+        rest = after;
+    }
+    html + &escape(rest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::markup::well_formed;
+    use crate::plot::{Axis, LineChart, Series};
+
+    const HOSTILE: &str = "`<img src=x onerror=alert(1)>`\"'</style></section>&amp;`\u{0}";
+
+    fn full(text: &str) -> Report {
+        let chart = LineChart::new(text, Axis::linear(text), Axis::log(text)).series(Series::curve(text, [(1.0, 2.0)]));
+        let table = || Table::new(text).text(text).number(text).row([text, text]).note(text);
+        let section = Section::new(text).heading(text).paragraph(text).list([text]).table(table());
+        let section =
+            section.figure(Figure::new(chart.svg(), text)).figure(Figure::new(chart.svg(), text).with_data(table()));
+        Report::new(text).subtitle(text).finding(text).section(section).method(text).fact(text, text)
+    }
+
+    #[test]
+    fn hostile_text_is_inert() {
+        let html = full(HOSTILE).html();
+        well_formed(&html).expect("the page nests");
+        assert!(!html.contains("<img") && !html.contains('\u{0}'), "hostile text got through");
+        assert_eq!(html.matches("</style>").count(), 1, "the style ends once");
+        assert!(html.contains("<code>&lt;img src=x onerror=alert(1)&gt;</code>"), "code is set as code");
+    }
+
+    #[test]
+    fn a_page_stands_alone_and_ids_are_unique() {
+        let html = full("text").html();
+        for outside in ["http-equiv", "<script", "<link", "src=", "url(", "@import"] {
+            assert!(!html.contains(outside), "{outside} reaches outside");
+        }
+        let links = html.replace("http://www.w3.org/2000/svg", "");
+        assert!(!links.contains("http"), "no addresses");
+        let mut ids: Vec<&str> = html.split(" id=\"").skip(1).filter_map(|t| t.split('"').next()).collect();
+        let all = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), all, "an id stands twice");
+        let anchors = html.split("href=\"#").skip(1).filter_map(|t| t.split('"').next());
+        assert!(anchors.clone().count() == 2 && anchors.into_iter().all(|a| ids.contains(&a)), "links have ends");
+    }
+
+    #[test]
+    fn an_empty_report_is_a_page() {
+        well_formed(&Report::new("").html()).expect("the page nests");
+    }
+}

@@ -1,0 +1,307 @@
+//! How long each operation takes: the textbook's scalar code, the kernel on one lane, and on eight lanes of every
+//! instruction set of this CPU, interleaved in one run.
+//!
+//! A round times every contender of every operation once, so that all of them see the same machine; a ratio is formed
+//! within a round, and what is reported is the median over the rounds with its quartiles. Directions and numbers are
+//! drawn beforehand and stay in the second-level cache. The answers of every contender are compared with the textbook
+//! in `f64` after the timing.
+
+mod cells;
+mod check;
+mod inputs;
+mod task;
+
+use crate::stats::percentile;
+use crate::subject::Subject;
+use cells::{Cell, cells};
+use core::fmt;
+use hairis::{Level, ParamError};
+use inputs::{DIRECTIONS, Inputs};
+use serde::Serialize;
+use std::time::Instant;
+use task::Pass;
+
+/// Rounds below which no figure is given, however slow the machine.
+const MIN_ROUNDS: usize = 15;
+/// Shortest time a stretch may take, ns, timed or not: a thousand times the clock's own, and longer than the upper
+/// halves of the vector units of many CPUs take to wake after code that does without (10 to 20 us at a quarter of
+/// their speed).
+const MIN_STRETCH: f64 = 5e4;
+/// Share of wrong answers from which a contender fails: samples next to the boundary of two lobes may choose either,
+/// and the `f32` textbook loses digits near the axis; a wrong lane is an eighth.
+const MAX_WRONG: f64 = 0.01;
+
+/// What is timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Op {
+    /// Everything constant for one gather point (section 3.3 of the paper).
+    Prepare,
+    /// Value and density of a direction, the gather point prepared beforehand.
+    EvalPdf,
+    /// A direction with its value, density and weight, the gather point prepared beforehand.
+    Sample,
+    /// A gather point of its own for each direction, and one sample with its value: all on one head of hair.
+    PointsShared,
+    /// The same on eight heads of hair, one a lane, packed once.
+    PointsMixed,
+    /// The same, packed anew for each eight gather points.
+    PointsPacked,
+}
+
+impl Op {
+    /// Every operation, in the order of the tables.
+    pub const ALL: [Self; 6] =
+        [Self::Prepare, Self::EvalPdf, Self::Sample, Self::PointsShared, Self::PointsMixed, Self::PointsPacked];
+
+    /// What the operation is, for tables.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Prepare => "prepare",
+            Self::EvalPdf => "eval + pdf",
+            Self::Sample => "sample",
+            Self::PointsShared => "8 points, 1 hair",
+            Self::PointsMixed => "8 points, 8 hairs",
+            Self::PointsPacked => "8 points, 8 hairs, packing",
+        }
+    }
+}
+
+impl fmt::Display for Op {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.label())
+    }
+}
+
+/// How long to measure, and with which inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SpeedConfig {
+    /// Time for all rounds together, s. At least fifteen rounds are made even if they take longer.
+    pub seconds: f64,
+    /// Seed of the directions, of the numbers and of the hair.
+    pub seed: u64,
+}
+
+impl SpeedConfig {
+    /// About four seconds.
+    #[must_use]
+    pub const fn quick(seed: u64) -> Self {
+        Self { seconds: 4.0, seed }
+    }
+
+    /// About twenty seconds.
+    #[must_use]
+    pub const fn full(seed: u64) -> Self {
+        Self { seconds: 20.0, seed }
+    }
+}
+
+/// One contender in one operation: a row of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SpeedResult {
+    /// The operation.
+    pub op: Op,
+    /// The model.
+    pub model: &'static str,
+    /// `textbook`, `one lane` or `eight lanes`.
+    pub contender: &'static str,
+    /// Instruction set of the lanes; `scalar` for one lane.
+    pub level: &'static str,
+    /// Number of rounds.
+    pub rounds: usize,
+    /// Calls over all the inputs in each timed stretch.
+    pub passes: u32,
+    /// Time for one direction (one gather point where each direction has its own), ns: median over the rounds.
+    pub ns: f64,
+    /// First quartile of the same.
+    pub ns_q1: f64,
+    /// Third quartile of the same.
+    pub ns_q3: f64,
+    /// How many times as fast as the textbook: median over the rounds of the ratio within a round.
+    pub ratio: f64,
+    /// First quartile of the same.
+    pub ratio_q1: f64,
+    /// Third quartile of the same.
+    pub ratio_q3: f64,
+    /// Share of the answers further than 1e-3 (relative, or rad) from the textbook's in `f64`.
+    pub wrong_share: f64,
+    /// Whether the answers are right, but for one in a hundred. A row that did not pass is no result.
+    pub passed: bool,
+}
+
+/// The table, and what it was measured with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SpeedReport {
+    /// As asked for.
+    pub config: SpeedConfig,
+    /// Directions a pass.
+    pub directions: usize,
+    /// What the program was compiled for.
+    pub compiled_level: &'static str,
+    /// What eight lanes run on when nobody says otherwise.
+    pub detected_level: &'static str,
+    /// By model, operation and contender; the textbook leads each block.
+    pub rows: Vec<SpeedResult>,
+}
+
+impl SpeedReport {
+    /// Whether every contender's answers are right.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.rows.iter().all(|row| row.passed)
+    }
+
+    /// The row of a contender, by operation, model, name and level.
+    #[must_use]
+    pub fn row(&self, op: Op, model: &str, contender: &str, level: &str) -> Option<&SpeedResult> {
+        self.rows
+            .iter()
+            .find(|row| row.op == op && row.model == model && row.contender == contender && row.level == level)
+    }
+}
+
+/// Measures all operations on both models. `progress` is told the share done, from 0 to 1, after every round.
+///
+/// Nothing else should run on the machine meanwhile, and not on other threads of this program.
+///
+/// # Errors
+///
+/// Never: the hair that is drawn is within the ranges accepted.
+pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedReport, ParamError> {
+    let inputs = Inputs::draw(config.seed)?;
+    let mut all = cells(&Subject::gaussian(), &inputs);
+    all.extend(cells(&Subject::cauchy(), &inputs));
+    let mut timings: Vec<Timing> = all.iter().map(Timing::calibrate).collect();
+
+    let start = Instant::now();
+    for round in 0.. {
+        let done = start.elapsed().as_secs_f64() / config.seconds;
+        progress(done.min(1.0));
+        if done >= 1.0 && round >= MIN_ROUNDS {
+            break;
+        }
+        for timing in &mut timings {
+            timing.round(round);
+        }
+    }
+    Ok(SpeedReport {
+        config: *config,
+        directions: DIRECTIONS,
+        compiled_level: Level::portable().name(),
+        detected_level: Level::detect().name(),
+        rows: timings.iter().flat_map(Timing::rows).collect(),
+    })
+}
+
+/// The timings of one cell: a column a contender, an entry a round, ns a direction.
+struct Timing<'a> {
+    cell: &'a Cell,
+    passes: Vec<u32>,
+    ns: Vec<Vec<f64>>,
+}
+
+impl<'a> Timing<'a> {
+    /// Finds how many passes make a stretch long enough to time.
+    fn calibrate(cell: &'a Cell) -> Self {
+        let passes = cell.contenders.iter().map(|contender| {
+            let fastest = (0..5).map(|_| stretch(&*contender.task, 1)).fold(f64::INFINITY, f64::min);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 1000")]
+            let passes = (MIN_STRETCH / fastest).ceil().clamp(1.0, 1e3) as u32;
+            passes
+        });
+        Self { cell, passes: passes.collect(), ns: vec![Vec::new(); cell.contenders.len()] }
+    }
+
+    /// Times every contender once; who goes first changes from round to round.
+    fn round(&mut self, round: usize) {
+        let count = self.cell.contenders.len();
+        for k in 0..count {
+            let k = (k + round) % count;
+            let task = &*self.cell.contenders[k].task;
+            // One stretch untimed: the one before was another's, and left the caches its own and the vector units asleep.
+            stretch(task, self.passes[k]);
+            let ns = stretch(task, self.passes[k]);
+            self.ns[k].push(ns / (f64::from(self.passes[k]) * DIRECTIONS as f64));
+        }
+    }
+
+    fn rows(&self) -> Vec<SpeedResult> {
+        let contenders = self.cell.contenders.iter().zip(&self.passes).zip(&self.ns);
+        contenders
+            .map(|((contender, passes), ns)| {
+                let ratios: Vec<f64> = self.ns[0].iter().zip(ns).map(|(textbook, ns)| textbook / ns).collect();
+                let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) = (quartiles(ns), quartiles(&ratios));
+                let wrong_share = self.cell.truth.wrong_share(&contender.task.answers());
+                SpeedResult {
+                    op: self.cell.op,
+                    model: self.cell.model,
+                    contender: contender.name,
+                    level: contender.level,
+                    rounds: ratios.len(),
+                    passes: *passes,
+                    ns,
+                    ns_q1,
+                    ns_q3,
+                    ratio,
+                    ratio_q1,
+                    ratio_q3,
+                    wrong_share,
+                    passed: wrong_share <= MAX_WRONG,
+                }
+            })
+            .collect()
+    }
+}
+
+/// Time of `passes` passes, ns.
+fn stretch(task: &dyn Pass, passes: u32) -> f64 {
+    let start = Instant::now();
+    for _ in 0..passes {
+        task.pass();
+    }
+    start.elapsed().as_secs_f64() * 1e9
+}
+
+/// First quartile, median and third quartile.
+fn quartiles(samples: &[f64]) -> [f64; 3] {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    [0.25, 0.5, 0.75].map(|p| percentile(&sorted, p))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_contender_is_timed_and_right() {
+        let mut last = 0.0;
+        let report = run(&SpeedConfig { seconds: 0.0, seed: 1 }, |done| last = done).expect("hair within range");
+        assert_eq!(report.rows.len(), 2 * Op::ALL.len() * (2 + Level::available().count()), "a row is missing");
+        assert!(last >= 1.0, "progress ended at {last}");
+        for row in &report.rows {
+            assert!(row.passed, "wrong answers: {row:?}");
+            assert!(row.rounds == MIN_ROUNDS && row.ns > 0.0 && row.ns_q1 <= row.ns && row.ns <= row.ns_q3, "{row:?}");
+            assert!(row.contender != cells::TEXTBOOK || row.ratio == 1.0, "the textbook against itself: {row:?}");
+        }
+        assert!(report.passed(), "all rows passed");
+        let row = report.row(Op::Sample, "cauchy", "eight lanes", Level::portable().name());
+        assert!(row.is_some(), "the portable level is always there");
+    }
+
+    #[test]
+    fn one_wrong_lane_in_eight_fails() {
+        let inputs = Inputs::draw(1).expect("hair within range");
+        for cell in cells(&Subject::gaussian(), &inputs) {
+            let mut answers = cell.contenders[1].task.answers();
+            assert!(cell.truth.wrong_share(&answers) <= MAX_WRONG, "{}: right answers", cell.op);
+            for answer in answers.iter_mut().step_by(8) {
+                answer.pdf *= 1.01;
+            }
+            assert!(cell.truth.wrong_share(&answers) >= 0.12, "{}: a wrong density passed", cell.op);
+            answers.truncate(DIRECTIONS - 1);
+            assert_eq!(cell.truth.wrong_share(&answers), 1.0, "{}: an answer is missing", cell.op);
+        }
+    }
+}

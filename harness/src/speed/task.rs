@@ -1,0 +1,131 @@
+//! What a contender does in a pass, and its answers in one form for all contenders.
+
+use core::hint::black_box;
+use core::marker::PhantomData;
+use glam::Vec3;
+use hairis::textbook::{self, Textbook};
+use hairis::{Eval, Eval8, Gather, Gather8, HairParams, Model, Sample, Sample8, Vec3x8};
+
+/// Where gather points are evaluated to check how they were prepared: no lobe of it is negligible.
+pub(super) const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
+
+/// What a contender says of one direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Answer {
+    /// The direction it drew; `None` if it was given one, zero if it discarded the sample.
+    pub(super) wi: Option<Vec3>,
+    pub(super) value: [f32; 3],
+    pub(super) pdf: f32,
+}
+
+/// The result of one call: of one direction, or of eight.
+pub(super) trait Output {
+    fn answers(&self, out: &mut Vec<Answer>);
+}
+
+/// Work over all the inputs of a run.
+pub(super) trait Pass {
+    /// Calls once an input; nothing is kept.
+    fn pass(&self);
+    /// The same calls, their results kept, in the order of the directions.
+    fn answers(&self) -> Vec<Answer>;
+}
+
+/// A function of one argument and the arguments it is given.
+struct Task<I, O, F> {
+    inputs: Vec<I>,
+    call: F,
+    output: PhantomData<fn() -> O>,
+}
+
+/// A pass that calls `call` with each of `inputs`.
+pub(super) fn task<I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass>
+where
+    I: Clone + 'static,
+    O: Output + 'static,
+    F: Fn(&I) -> O + 'static,
+{
+    Box::new(Task { inputs: inputs.to_vec(), call, output: PhantomData })
+}
+
+impl<I, O: Output, F: Fn(&I) -> O> Pass for Task<I, O, F> {
+    // One loop for all contenders: each call reads its input from memory and leaves its result there. References are
+    // hidden from the optimiser, not values, so that nobody pays for a copy; and calls stay apart, so that no loop over
+    // one lane is made into one over four.
+    #[inline(never)]
+    fn pass(&self) {
+        for input in &self.inputs {
+            black_box(&(self.call)(black_box(input)));
+        }
+    }
+
+    fn answers(&self) -> Vec<Answer> {
+        let mut out = Vec::new();
+        for input in &self.inputs {
+            (self.call)(input).answers(&mut out);
+        }
+        out
+    }
+}
+
+impl Output for ([f32; 3], f32) {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        out.push(Answer { wi: None, value: self.0, pdf: self.1 });
+    }
+}
+
+impl Output for Eval {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        out.push(Answer { wi: None, value: self.value, pdf: self.pdf });
+    }
+}
+
+impl Output for Eval8 {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        for lane in 0..8 {
+            self.lane(lane).answers(out);
+        }
+    }
+}
+
+impl Output for textbook::Drawn<f32> {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        out.push(Answer { wi: Some(self.wi.into()), value: self.value, pdf: self.pdf });
+    }
+}
+
+impl Output for Option<Sample> {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        out.push(match self {
+            Some(sample) => Answer { wi: Some(sample.wi), value: sample.value, pdf: sample.pdf },
+            None => Answer { wi: Some(Vec3::ZERO), value: [0.0; 3], pdf: 0.0 },
+        });
+    }
+}
+
+impl Output for Sample8 {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        for lane in 0..8 {
+            self.lane(lane).answers(out);
+        }
+    }
+}
+
+impl Output for Textbook<f32> {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        let probe = PROBE.to_array();
+        (self.eval(probe), self.pdf(probe)).answers(out);
+    }
+}
+
+impl<M: Model<Params = HairParams>> Output for Gather<M> {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        self.eval_pdf(PROBE).answers(out);
+    }
+}
+
+impl<M: Model<Params = HairParams>> Output for Gather8<M> {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        self.eval_pdf8(&Vec3x8::splat(PROBE)).answers(out);
+    }
+}
