@@ -3,4 +3,5 @@
 
 mod accuracy;
 mod cases;
+mod chi2;
 mod cli;

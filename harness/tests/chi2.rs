@@ -1,0 +1,244 @@
+//! Samples against densities: chi-square on the sphere and Kolmogorov-Smirnov on the line, a million eight-lane samples
+//! each, from fixed seeds. A red test here is a bug.
+
+use core::f64::consts::{FRAC_PI_2, PI};
+use glam::Vec3;
+use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::wide::f32x8;
+use hairis::{Bell, Bsdf, Gather, Gaussian, Hair, HairDesc, HairParams, Lobe, LobeMask};
+use hairis_harness::sequence::Independent;
+use hairis_harness::stats::{ChiSquare, chi_square, ks_statistic, sidak};
+use hairis_variants::Cauchy;
+use std::fmt::Write as _;
+
+const SAMPLES: u32 = 1_000_000;
+/// Degrees; the tilted and grazing ones are where errors of the bounds show.
+const THETA_O: [f32; 4] = [0.0, 45.0, 85.0, -80.0];
+/// Cosine of the caps that are discarded.
+const GRAZING: f64 = 1e-5;
+/// Chi-square tests of the whole grid: models, materials, inclinations, four lobes and their mixture.
+const TESTS: usize = 2 * 3 * 4 * 5;
+
+/// The default set, the same with every width 0.5 degrees and with every width 60 degrees; all are tilted.
+fn materials() -> [(&'static str, HairParams); 3] {
+    let all = |degrees: f32| {
+        let width = degrees.to_radians();
+        let (beta_r, beta_tt, beta_trt) = (width, width, width);
+        let desc = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: width, gamma_g: width, ..HairDesc::default() };
+        HairParams::new(&desc).unwrap()
+    };
+    [("default", HairParams::default()), ("narrow", all(0.5)), ("wide", all(60.0))]
+}
+
+/// The default set with every width times `factor`.
+fn widened(factor: f32) -> HairParams {
+    let d = HairDesc::default();
+    let (beta_r, beta_tt, beta_trt) = (d.beta_r * factor, d.beta_tt * factor, d.beta_trt * factor);
+    let (gamma_tt, gamma_g) = (d.gamma_tt * factor, d.gamma_g * factor);
+    HairParams::new(&HairDesc { beta_r, beta_tt, beta_trt, gamma_tt, gamma_g, ..d }).unwrap()
+}
+
+fn wo(degrees: f32) -> Vec3 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    Vec3::new(sin, cos * 0.6, cos * -0.8)
+}
+
+fn double(v: Vec3) -> [f64; 3] {
+    v.to_array().map(f64::from)
+}
+
+/// `theta_i` and `phi_o - phi_i` in (-pi, pi].
+fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
+    let ([_, v_o, w_o], [u, v, w]) = (double(wo), double(wi));
+    [u.atan2(v.hypot(w)), (v * w_o - w * v_o).atan2(v * v_o + w * w_o)]
+}
+
+/// Calls `f` with each of a million samples, `None` for the discarded.
+fn for_each_sample<B: Bell>(gather: &Gather<Hair<B>>, stream: u64, mut f: impl FnMut(Option<Vec3>)) {
+    let mut xi = Independent::new(2012, stream);
+    for _ in 0..SAMPLES / 8 {
+        let packet = core::array::from_fn(|_| f32x8::new(core::array::from_fn(|_| xi.next_f32())));
+        let eight = gather.sample8(&packet);
+        for lane in 0..8 {
+            f((eight.live() >> lane & 1 == 1).then(|| eight.wi.lane(lane)));
+        }
+    }
+}
+
+/// Cells in `theta_i` and `phi` that resolve every lobe, and the samples each should hold.
+struct Cells {
+    theta: Vec<f64>,
+    phi: Vec<f64>,
+    /// Row by row, then one for the caps, whose samples are discarded.
+    expected: Vec<f64>,
+}
+
+impl Cells {
+    fn new(textbook: &Textbook<f64>, mask: LobeMask) -> Self {
+        let share = textbook.probabilities().0;
+        let of = |lobe: Lobe| share[lobe.index()] * f64::from(mask.factor(lobe));
+        let total: f64 = Lobe::ALL.into_iter().map(of).sum();
+        let inner = FRAC_PI_2 - GRAZING;
+        let (mut theta, mut phi) = (vec![-inner, inner], vec![-PI, -FRAC_PI_2, 0.0, FRAC_PI_2, PI]);
+        for i in 1..12 {
+            let even = f64::from(i) / 12.0;
+            theta.push(inner * (2.0 * even - 1.0));
+            phi.push(PI * (2.0 * even - 1.0));
+            for lobe in Lobe::ALL.into_iter().filter(|lobe| mask.contains(*lobe)) {
+                theta.push(textbook.sample_theta(lobe, even));
+                let drawn = textbook.sample_phi(lobe, even);
+                phi.push(if drawn > PI { drawn - 2.0 * PI } else { drawn });
+            }
+        }
+        let tidy = |edges: &mut Vec<f64>, end: f64| {
+            edges.retain(|x| x.abs() <= end);
+            edges.sort_by(f64::total_cmp);
+            // Edges closer than a float resolves would split hairs.
+            edges.dedup_by(|a, b| *a - *b < 1e-5);
+        };
+        tidy(&mut theta, inner);
+        tidy(&mut phi, PI);
+        let mut expected = vec![0.0; (theta.len() - 1) * (phi.len() - 1) + 1];
+        for lobe in Lobe::ALL.into_iter().filter(|lobe| mask.contains(*lobe)) {
+            let number = f64::from(SAMPLES) * of(lobe) / total;
+            // Every cdf of phi ascends from -pi to 0 and from 0 to pi, and some jump between.
+            let part = |ends: &[f64]| {
+                let end = if ends[1] == 0.0 { -f64::MIN_POSITIVE } else { ends[1] };
+                let start = if ends[0] == -PI { -PI + 1e-15 } else { ends[0] };
+                textbook.cdf_phi(lobe, end) - textbook.cdf_phi(lobe, start)
+            };
+            let columns: Vec<f64> = phi.windows(2).map(part).collect();
+            let mut cells = expected.iter_mut();
+            for row in theta.windows(2) {
+                let row = textbook.cdf_theta(lobe, row[1]) - textbook.cdf_theta(lobe, row[0]);
+                columns.iter().zip(&mut cells).for_each(|(column, cell)| *cell += number * row * column);
+            }
+            let caps = textbook.cdf_theta(lobe, -inner) + 1.0 - textbook.cdf_theta(lobe, inner);
+            *expected.last_mut().unwrap() += number * caps;
+        }
+        Self { theta, phi, expected }
+    }
+
+    fn index(&self, theta: f64, phi: f64) -> usize {
+        let row = self.theta.partition_point(|edge| *edge <= theta);
+        let column = self.phi.partition_point(|edge| *edge <= phi).clamp(1, self.phi.len() - 1);
+        let inside = (1..self.theta.len()).contains(&row);
+        if inside { (row - 1) * (self.phi.len() - 1) + column - 1 } else { self.expected.len() - 1 }
+    }
+
+    /// Counts a million samples and tests them.
+    fn test<B: Bell>(&self, gather: &Gather<Hair<B>>, wo: Vec3, stream: u64) -> (ChiSquare, Vec<u64>) {
+        let mut observed = vec![0; self.expected.len()];
+        for_each_sample(gather, stream, |wi| {
+            let cell = wi.map_or(self.expected.len() - 1, |wi| {
+                let [theta, phi] = angles(wo, wi);
+                self.index(theta, phi)
+            });
+            observed[cell] += 1;
+        });
+        (chi_square(&observed, &self.expected, 5.0), observed)
+    }
+
+    /// Writes both tables where a failure can be looked at, and says where.
+    fn dump(&self, observed: &[u64], name: &str) -> String {
+        let mut text = String::from("theta_from,theta_to,phi_from,phi_to,observed,expected\n");
+        let mut cells = observed.iter().zip(&self.expected);
+        for theta in self.theta.windows(2) {
+            for (phi, (o, e)) in self.phi.windows(2).zip(&mut cells) {
+                writeln!(text, "{},{},{},{},{o},{e}", theta[0], theta[1], phi[0], phi[1]).unwrap();
+            }
+        }
+        let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}.csv", name.replace(' ', "-")));
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    }
+}
+
+/// The lobes one by one, and their mixture.
+fn masks() -> impl Iterator<Item = (String, LobeMask)> {
+    let alone = Lobe::ALL.into_iter().map(|lobe| (format!("{lobe:?}"), LobeMask::of(&[lobe])));
+    alone.chain([("mixture".to_owned(), LobeMask::ALL)])
+}
+
+fn check<B: Bell>(model: Hair<B>, shape: Shape, seed: u64) {
+    let level = sidak(0.01, TESTS);
+    let (mut least, mut least_at, mut stream) = (1.0_f64, String::new(), seed * 1000);
+    for (name, params) in materials() {
+        for degrees in THETA_O {
+            let wo = wo(degrees);
+            let textbook = Textbook::prepare(&Parameters::from(&params), shape, double(wo));
+            let gather = Bsdf::new(&model, &params).prepare(wo);
+            for (lobe, mask) in masks() {
+                stream += 1;
+                let cells = Cells::new(&textbook, mask);
+                let at = format!("{shape:?} {name} {degrees} {lobe}");
+                let mass: f64 = cells.expected.iter().sum::<f64>() / f64::from(SAMPLES);
+                assert!((mass - 1.0).abs() < 1e-9, "{at}: the density has a mass of {mass}");
+                let (result, observed) = cells.test(&gather.with_lobes(mask), wo, stream);
+                assert!(result.degrees_of_freedom > 60, "{at}: too few cells to tell anything, {result:?}");
+                if result.p_value < least {
+                    (least, least_at) = (result.p_value, at.clone());
+                }
+                if !(result.p_value >= level) {
+                    panic!("{at}: {result:?} at level {level}, tables in {}", cells.dump(&observed, &at));
+                }
+            }
+        }
+    }
+    println!("{shape:?}: measured least p-value {least:.2e} of {} tests, level {level:.2e}, {least_at}", TESTS / 2);
+}
+
+#[test]
+fn samples_of_the_published_model_follow_its_density() {
+    check(Hair(Gaussian), Shape::Gaussian, 1);
+}
+
+#[test]
+fn samples_of_the_cauchy_model_follow_its_density() {
+    check(Cauchy::PAPER.model(), Shape::Cauchy, 2);
+}
+
+#[test]
+fn widths_off_by_a_twentieth_are_found() {
+    // The control: the same test must reject a sampler whose widths are 5% too large.
+    for degrees in [0.0, -80.0] {
+        let wo = wo(degrees);
+        let textbook = Textbook::prepare(&Parameters::from(&HairParams::default()), Shape::Gaussian, double(wo));
+        let gather = Bsdf::new(&Hair(Gaussian), &widened(1.05)).prepare(wo);
+        for (lobe, mask) in masks() {
+            let cells = Cells::new(&textbook, mask);
+            let (result, _) = cells.test(&gather.with_lobes(mask), wo, 7);
+            assert!(result.p_value < sidak(0.01, TESTS), "{lobe} at {degrees}: {result:?} passes a wrong width");
+        }
+    }
+}
+
+#[test]
+fn every_sampler_on_the_line_follows_its_cdf() {
+    let limit = 1.95 / f64::from(SAMPLES).sqrt();
+    let mut worst = 0.0_f64;
+    for (name, params) in materials() {
+        for degrees in [0.0, 85.0] {
+            let wo = wo(degrees);
+            let textbook = Textbook::prepare(&Parameters::from(&params), Shape::Gaussian, double(wo));
+            let gather = Bsdf::new(&Hair(Gaussian), &params).prepare(wo);
+            for lobe in Lobe::ALL {
+                let mut uniform = [const { Vec::new() }; 2];
+                let stream = 9000 + lobe.index() as u64;
+                for_each_sample(&gather.with_lobes(LobeMask::of(&[lobe])), stream, |wi| {
+                    let Some(wi) = wi else { return };
+                    let [theta, phi] = angles(wo, wi);
+                    uniform[0].push(textbook.cdf_theta(lobe, theta));
+                    uniform[1].push(textbook.cdf_phi(lobe, phi));
+                });
+                for (axis, u) in ["theta", "phi"].into_iter().zip(&mut uniform) {
+                    assert!(u.len() > 990_000, "{name} {degrees} {lobe:?}: only {} were kept", u.len());
+                    let d = ks_statistic(u, |x| x);
+                    worst = worst.max(d / limit);
+                    assert!(d < limit, "{name} {degrees} {lobe:?} {axis}: D = {d:.3e}, limit {limit:.3e}");
+                }
+            }
+        }
+    }
+    println!("measured largest D {worst:.3} of its limit");
+}
