@@ -9,7 +9,7 @@
 //!   fall on either side.
 //! - Next to `|phi|` = pi the R and TRT-g lobes vanish as `cos(phi / 2)`, and no rounded azimuth tells how far off it is:
 //!   errors beyond the bound that turning `wi` by 2^-22 rad explains are counted apart.
-//! - Gaussian values may be off by `2^-110` a lobe before anything counts: the kernels' bells end there by design.
+//! - Gaussian values may be off by `2^-114` a lobe before anything counts: the kernels' bells end there by design.
 
 mod measure;
 mod packet;

@@ -9,6 +9,7 @@
 mod cells;
 mod check;
 mod inputs;
+mod slices;
 mod task;
 
 use crate::stats::percentile;
@@ -104,7 +105,7 @@ pub struct SpeedResult {
     pub op: Op,
     /// The model.
     pub model: &'static str,
-    /// `textbook`, `one lane` or `eight lanes`.
+    /// `textbook`, `one lane`, `eight lanes` or `slices`.
     pub contender: &'static str,
     /// Instruction set of the lanes; `scalar` for one lane.
     pub level: &'static str,
@@ -278,7 +279,9 @@ mod tests {
     fn every_contender_is_timed_and_right() {
         let mut last = 0.0;
         let report = run(&SpeedConfig { seconds: 0.0, seed: 1 }, |done| last = done).expect("hair within range");
-        assert_eq!(report.rows.len(), 2 * Op::ALL.len() * (2 + Level::available().count()), "a row is missing");
+        // Slices take part where a gather point is given: evaluation and sampling.
+        let levels = Level::available().count();
+        assert_eq!(report.rows.len(), 2 * (Op::ALL.len() * (2 + levels) + 2 * levels), "a row is missing");
         assert!(last >= 1.0, "progress ended at {last}");
         for row in &report.rows {
             assert!(row.passed, "wrong answers: {row:?}");

@@ -3,7 +3,7 @@
 pub mod number;
 
 use crate::markup;
-use comfy_table::{CellAlignment, ContentArrangement, presets};
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, TableStyle};
 use core::fmt;
 
 /// Where a column's cells stand.
@@ -117,7 +117,8 @@ impl Table {
 
     fn comfy(&self) -> comfy_table::Table {
         let mut table = comfy_table::Table::new();
-        table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+        let line = || LineStyle::none().fill('─').junction('─');
+        table.load_style(TableStyle::new().header_separator(line()).bottom_border(line()));
         table
     }
 

@@ -159,28 +159,48 @@ impl Row<11> for SampleRow {
     }
 }
 
-/// The loop of a batch: whole packets in place, the rest through a packet on the stack.
+/// The loop of a batch over whole packets. Every column has as many packets as the first; a missing one would be
+/// left out, for want of a branch that panics.
 #[inline(always)]
-pub(crate) fn run<M: Model, R: Row<N>, L: Packet, C: Broadcast<L> + Debug, const N: usize>(
+pub(crate) fn packets<M: Model, R: Row<N>, L: Packet, C: Broadcast<L> + Debug, const N: usize>(
     gather: &M::Gather<C>,
+    inputs: [&[[f32; 8]]; 3],
+    outputs: &mut [&mut [[f32; 8]]; N],
+) {
+    let [first, second, third] = inputs;
+    for (at, first) in first.iter().enumerate() {
+        let (Some(second), Some(third)) = (second.get(at), third.get(at)) else { return };
+        let row = R::row::<M, L, C>(gather, [L::read(first), L::read(second), L::read(third)]);
+        let mut column = 0;
+        while column < N {
+            if let Some(packet) = outputs[column].get_mut(at) {
+                row[column].write(packet);
+            }
+            column += 1;
+        }
+    }
+}
+
+/// Cuts slices into whole packets, and the rest into one packet on the stack; `run` is called on either.
+#[inline(always)]
+pub(crate) fn in_packets<const N: usize>(
     inputs: [&[f32]; 3],
     outputs: &mut [&mut [f32]; N],
+    mut run: impl FnMut([&[[f32; 8]]; 3], &mut [&mut [[f32; 8]]; N]),
 ) {
-    let len = inputs[0].len();
-    let mut at = 0;
-    while at < len {
-        let mut input = [L::splat(0.0); 3];
-        let mut i = 0;
-        while i < 3 {
-            input[i] = L::read(inputs[i], at);
-            i += 1;
-        }
-        let output = R::row::<M, L, C>(gather, input);
-        i = 0;
-        while i < N {
-            output[i].write(outputs[i], at);
-            i += 1;
-        }
-        at += 8;
+    let cut = inputs.map(<[f32]>::as_chunks);
+    let mut out = outputs.each_mut().map(|column| column.as_chunks_mut());
+    run(cut.map(|(whole, _)| whole), &mut out.each_mut().map(|(whole, _)| &mut **whole));
+    if cut[0].1.is_empty() {
+        return;
+    }
+    let mut from = [[[0.0; 8]]; 3];
+    for ([packet], (_, rest)) in from.iter_mut().zip(cut) {
+        packet.iter_mut().zip(rest).for_each(|(to, from)| *to = *from);
+    }
+    let mut to = [[[0.0; 8]]; N];
+    run(from.each_ref().map(<[_; 1]>::as_slice), &mut to.each_mut().map(<[_; 1]>::as_mut_slice));
+    for ([packet], (_, rest)) in to.iter().zip(out) {
+        rest.iter_mut().zip(packet).for_each(|(to, from)| *to = *from);
     }
 }

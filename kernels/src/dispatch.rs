@@ -186,14 +186,18 @@ pub(crate) fn batch<M: Model, R: Row<N>, const N: usize>(
             #[target_feature(enable = "avx2,fma")]
             fn avx2<M: Model, R: Row<N>, const N: usize>(
                 gather: &M::Gather<f32>,
-                inputs: [&[f32]; 3],
-                outputs: &mut [&mut [f32]; N],
+                inputs: [&[[f32; 8]]; 3],
+                outputs: &mut [&mut [[f32; 8]]; N],
             ) {
-                batch::run::<M, R, Avx2, f32, N>(gather, inputs, outputs);
+                batch::packets::<M, R, Avx2, f32, N>(gather, inputs, outputs);
             }
-            // SAFETY: a `Level` of this kind is made only where `avx2_fma` found both features.
-            unsafe { avx2::<M, R, N>(gather, inputs, outputs) }
+            batch::in_packets(inputs, outputs, |inputs, outputs| {
+                // SAFETY: a `Level` of this kind is made only where `avx2_fma` found both features.
+                unsafe { avx2::<M, R, N>(gather, inputs, outputs) }
+            });
         }
-        Kind::Portable => batch::run::<M, R, f32x8, f32, N>(gather, inputs, outputs),
+        Kind::Portable => batch::in_packets(inputs, outputs, |inputs, outputs| {
+            batch::packets::<M, R, f32x8, f32, N>(gather, inputs, outputs);
+        }),
     }
 }

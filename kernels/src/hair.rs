@@ -75,14 +75,11 @@ impl<L: Lanes> Place<L> {
         let reach = cos_theta_i * cos_o;
         let far = reach + dot.abs();
 
-        // Both half-angle tangents, and the square below the root, from one division.
-        let near = one + cos_theta_i;
-        let far_reach = far * reach;
-        let reciprocal = one / (near * far_reach);
-        let half_theta_i = atan_unit(wi.x * (far_reach * reciprocal));
-        let by_near = reciprocal * near;
-        let tau = cross * (by_near * reach);
-        let cos_half = (far * far * by_near * c(0.5)).sqrt();
+        // A division of its own: next to opposite poles theta_i and theta_o cancel, and each digit counts.
+        let half_theta_i = atan_unit(wi.x / (one + cos_theta_i));
+        let reciprocal = one / (far * reach);
+        let tau = cross * (reciprocal * reach);
+        let cos_half = (far * (far * reciprocal) * c(0.5)).sqrt();
 
         let front = c(0.0).lt(dot);
         let angle = atan_unit(tau);

@@ -94,58 +94,13 @@ pub trait Broadcast<L: Lanes>: Copy {
     fn pick(table: &[Self; 4], choice: L::Choice) -> L;
 }
 
-/// Eight lanes that are read from slices and written to them.
+/// Eight lanes that are read from eight numbers in a row, of any alignment, and written to them.
 pub(crate) trait Packet: Lanes {
-    /// The eight numbers at `at`; 0 for those beyond the end.
-    fn read(from: &[f32], at: usize) -> Self;
-    /// Writes eight numbers at `at`, but none beyond the end.
-    fn write(self, to: &mut [f32], at: usize);
+    /// Reads eight numbers.
+    fn read(from: &[f32; 8]) -> Self;
+    /// Writes eight numbers.
+    fn write(self, to: &mut [f32; 8]);
 }
-
-/// Copies what there is of a packet at the end of a slice.
-#[cold]
-fn read_tail(from: &[f32], at: usize) -> [f32; 8] {
-    let mut packet = [0.0; 8];
-    for (to, from) in packet.iter_mut().zip(from.iter().skip(at)) {
-        *to = *from;
-    }
-    packet
-}
-
-/// Writes what there is room for of a packet at the end of a slice.
-#[cold]
-fn write_tail(packet: &[f32; 8], to: &mut [f32], at: usize) {
-    for (to, from) in to.iter_mut().skip(at).zip(packet) {
-        *to = *from;
-    }
-}
-
-/// Reads and writes whole packets as `$from` and `$to` do, and the end of a slice number by number.
-macro_rules! packet {
-    ($name:ty, $from:expr, $to:expr) => {
-        impl $crate::lanes::Packet for $name {
-            #[inline(always)]
-            fn read(from: &[f32], at: usize) -> Self {
-                match from.get(at..).and_then(<[f32]>::first_chunk) {
-                    Some(packet) => $from(packet),
-                    None => $from(&$crate::lanes::read_tail(from, at)),
-                }
-            }
-            #[inline(always)]
-            fn write(self, to: &mut [f32], at: usize) {
-                match to.get_mut(at..).and_then(<[f32]>::first_chunk_mut) {
-                    Some(packet) => $to(self, packet),
-                    None => {
-                        let mut packet = [0.0; 8];
-                        $to(self, &mut packet);
-                        $crate::lanes::write_tail(&packet, to, at);
-                    }
-                }
-            }
-        }
-    };
-}
-use packet;
 
 /// The three numbers of `x`, read as lanes.
 #[inline(always)]

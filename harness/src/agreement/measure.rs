@@ -12,8 +12,8 @@ use wide::f32x8;
 /// What rounding may do to an azimuth, rad: a few units in the last place of a component near 1.
 const ROUNDING: f64 = 1.0 / 4_194_304.0;
 
-/// Where the kernels' Gaussians end, and the bound on the rounding of what they are multiplied with.
-const FLOOR: f64 = 1.0001 / (1_u128 << 110) as f64;
+/// Below this the kernels' Gaussians are 0, which they reach between `2^-114` and `2^-115`.
+const FLOOR: f64 = 1.0 / (1_u128 << 114) as f64;
 
 /// Who computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,7 +173,7 @@ impl Exact<'_> {
         Measured { error, unexplained: error > Quantity::SampleCdf.bound(self.shape), at: self.place }
     }
 
-    /// How far a Gaussian value may be off by design: the kernel's bells end at `2^-110`, each of the four lobes.
+    /// How far a Gaussian value may be off by design: the kernel's bells end at `2^-114`, each of the four lobes.
     fn floor(&self) -> [f64; 3] {
         if self.shape != Shape::Gaussian {
             return [0.0; 3];

@@ -62,8 +62,8 @@ pub fn report(of: &Comparison) -> Report {
     let (tests, bound) = (check.tests, check.bound);
     page = page
         .method(
-            "Every estimate is of the reflected radiance, Rec. 709 luminance, on a fibre along the world's x axis, \
-             y up. Random numbers come from ChaCha8 with a stream for each cell, so that results depend on the seed \
+            "Every estimate is of the reflected radiance, the mean of red, green and blue, on a fibre along the world's \
+             x axis, y up. Random numbers come from ChaCha8 with a stream for each cell, so that results depend on the seed \
              alone; Halton numbers are scrambled after Owen.",
         )
         .method(format!(

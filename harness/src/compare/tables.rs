@@ -34,7 +34,7 @@ pub fn tables(of: &Comparison, depth: Depth) -> Tables {
     let mut efficiency = vec![reference(of), variance(of)];
     if depth == Depth::Full {
         efficiency.push(correlated(of));
-        efficiency.push(cost(of));
+        efficiency.extend([effective(of), samples(of), self::efficiency(of)]);
     }
     efficiency.push(light_sampling(of));
     let speed = ModelKind::ALL.iter().map(|model| speed(of, *model, depth)).collect();
@@ -184,18 +184,23 @@ fn correlated(of: &Comparison) -> Table {
     .note(format!("Of the mean of {n} samples, over independent randomisations; uniform on stratified numbers is the paper's stratified uniform sampling."))
 }
 
-fn cost(of: &Comparison) -> Table {
-    by_light(
-        of,
-        "Effective samples in 1000, samples for an error of 1%, and efficiency 1/(V · µs)",
-        &[SequenceKind::Independent],
-        |row| {
-            let efficiency =
-                row.efficiency.map_or_else(String::new, |e| format!(" · {}", number::plain(e.value * 1e3, 3)));
-            let (ess, n) = (row.ess_per_1000.value, row.samples_for_1_percent.value);
-            format!("{} · {}{efficiency}", number::plain(ess, 3), number::si(n.ceil(), ""))
-        },
-    )
+fn effective(of: &Comparison) -> Table {
+    by_light(of, "Effective samples in 1000", &[SequenceKind::Independent], |row| estimate(&row.ess_per_1000))
+        .note("1000 / (1 + V): how many samples without variance in the weights carry as much.")
+}
+
+fn samples(of: &Comparison) -> Table {
+    by_light(of, "Samples for an error of 1%", &[SequenceKind::Independent], |row| {
+        let n = row.samples_for_1_percent;
+        if n.value < 1e5 { estimate(&n) } else { number::si(n.value, "") }
+    })
+    .note("10⁴ V.")
+}
+
+fn efficiency(of: &Comparison) -> Table {
+    by_light(of, "Efficiency, 1/(V · µs)", &[SequenceKind::Independent], |row| {
+        row.efficiency.map_or_else(String::new, |e| estimate(&e.scale(1e-6)))
+    })
     .note("Time on eight lanes, a sixteenth of the preparation included, lights excluded.")
 }
 

@@ -178,9 +178,14 @@ pub(super) fn sweep_row(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sam
         n,
         v,
         quadrature: exact.intensity,
-        z_quadrature: v.z_score(exact.intensity),
+        z_quadrature: agreement(v, exact.intensity),
         z: bias_z(&tally.moments, &reference),
     }
+}
+
+/// Distance of a measured V to the exact one in standard errors. Hair that scatters nothing has neither: 0.
+fn agreement(v: Estimate, exact: f64) -> f64 {
+    if v.value.is_nan() && exact.is_nan() { 0.0 } else { v.z_score(exact) }
 }
 
 /// V under constant light against quadrature and, for the specification's hair, against its table. `v` is that of the independent row.
@@ -195,7 +200,7 @@ pub(super) fn reference_v(config: &EfficiencyConfig<'_>, case: &Case, sampler: S
         theta_o_deg: case.theta_o_deg,
         v,
         quadrature: exact.intensity,
-        z_quadrature: v.z_score(exact.intensity),
+        z_quadrature: agreement(v, exact.intensity),
         quadrature_luminance: exact.luminance,
         published,
         z_published: published.map(|p| rounded.z_score(p)),

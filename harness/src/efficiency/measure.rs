@@ -42,8 +42,8 @@ fn samples(
         let draws = case.draw(sampler, source, lanes);
         for lane in 0..lanes {
             let weight = draws.weight[lane];
-            // A discarded sample counts, and contributes 0; it may have no direction to look at.
-            let y = if draws.pdf[lane] > 0.0 { contribution(light.radiance(draws.dir[lane]), weight) } else { 0.0 };
+            // A discarded sample counts, and contributes 0; it may have no direction to look at. A NaN is let through, for the check to find.
+            let y = if draws.pdf[lane] == 0.0 { 0.0 } else { contribution(light.radiance(draws.dir[lane]), weight) };
             each(intensity(weight), y);
         }
         left -= lanes;

@@ -52,13 +52,12 @@ pub(super) fn estimate(case: &Case, technique: Technique, light: &dyn Light, at:
 
 /// Balance of the power heuristic for the technique of density `mine`; 0 where it has none.
 fn power_heuristic(mine: f64, other: f64) -> f64 {
-    if mine > 0.0 {
-        // The ratio rather than the squares: densities of narrow lights are large.
-        let ratio = other / mine;
-        1.0 / (1.0 + ratio * ratio)
-    } else {
-        0.0
+    if mine == 0.0 {
+        return 0.0;
     }
+    // The ratio rather than the squares: densities of narrow lights are large.
+    let ratio = other / mine;
+    1.0 / (1.0 + ratio * ratio)
 }
 
 /// One light sample, and with `partner` one sample of that too, a contribution.
@@ -74,7 +73,8 @@ fn pairs(case: &Case, partner: Option<Sampler>, light: &dyn Light, [seed, stream
             let draws = case.draw(sampler, &mut source, lanes);
             for (lane, y) in y.iter_mut().enumerate().take(lanes) {
                 let (dir, pdf) = (draws.dir[lane], draws.pdf[lane]);
-                if pdf > 0.0 {
+                // As for samples alone: a NaN is let through.
+                if pdf != 0.0 {
                     let share = power_heuristic(pdf, light.pdf(dir));
                     *y += share * contribution(light.radiance(dir), draws.weight[lane]);
                 }
@@ -88,7 +88,7 @@ fn pairs(case: &Case, partner: Option<Sampler>, light: &dyn Light, [seed, stream
         let (value, pdf) = case.eval(partner.unwrap_or(Sampler::Uniform), &from_light.map(|s| s.dir));
         for lane in 0..lanes {
             let s = &from_light[lane];
-            if s.pdf > 0.0 {
+            if s.pdf != 0.0 {
                 let share = if partner.is_some() { power_heuristic(s.pdf, pdf[lane]) } else { 1.0 };
                 y[lane] += share * contribution(s.radiance, value[lane]) / s.pdf;
             }

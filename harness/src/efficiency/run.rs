@@ -75,7 +75,7 @@ pub fn run(
     let estimators = product(&Sampler::ALL, &SequenceKind::ALL);
     let row_cells = product(&reference_cells, &estimators);
     let mis_cells = product(&product(&case_indices, &[SUN, AREA, ENVIRONMENT]), &Technique::ALL);
-    let sizes: Vec<usize> = (2..=12).map(|k| 1 << k).collect();
+    let sizes: Vec<usize> = (2..24).map(|k| 1_usize << k).take_while(|n| *n <= config.budget.convergence_n).collect();
     let convergence_cases: Vec<usize> =
         case_indices.iter().copied().filter(|&c| cases[c].theta_o_deg == CONVERGENCE_THETA_O_DEG).collect();
     let curves = product(&product(&convergence_cases, &[CONSTANT, ENVIRONMENT]), &estimators);

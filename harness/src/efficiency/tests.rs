@@ -9,7 +9,8 @@ use super::*;
 use crate::light::{Constant, Light, Rectangle, Smooth, Sun};
 use crate::quadrature::fibre_direction;
 use crate::sequence::{Independent, SequenceKind, XiSource};
-use crate::stats::Moments;
+use crate::stats::{Estimate, Moments};
+use std::sync::{Mutex, OnceLock};
 
 /// Everything, small enough to be computed in seconds.
 const SMALL: Budget = Budget {
@@ -19,6 +20,7 @@ const SMALL: Budget = Budget {
     mis: 4_096,
     sweep: 4_096,
     convergence: 16,
+    convergence_n: 64,
     quadrature_texels: 128,
     reference_passes: 4,
 };
@@ -127,48 +129,60 @@ fn the_sun_is_for_light_sampling_and_the_rest_for_both() {
     assert!(v(Technique::Mis(Sampler::Ou)) < 3.0);
 }
 
+/// The small run and its calls of the progress report, computed once, on two threads.
+fn small_run() -> &'static (EfficiencyResult, Vec<(usize, usize)>) {
+    static RUN: OnceLock<(EfficiencyResult, Vec<(usize, usize)>)> = OnceLock::new();
+    RUN.get_or_init(|| {
+        let calls = Mutex::new(Vec::new());
+        let report = |done, total| calls.lock().expect("no panic").push((done, total));
+        let result = on_threads(2, || run(&small(&small_map()), &report)).expect("valid");
+        (result, calls.into_inner().expect("no panic"))
+    })
+}
+
+fn on_threads<R: Send>(threads: usize, f: impl FnOnce() -> R + Send) -> R {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(f)
+}
+
 #[test]
 fn results_do_not_depend_on_the_number_of_threads() {
-    let map = small_map();
-    let json = [1, 2].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let result = pool.install(|| run(&small(&map), &|_, _| ())).expect("valid");
-        serde_json::to_string(&result).expect("serialises")
-    });
+    let one = on_threads(1, || run(&small(&small_map()), &|_, _| ())).expect("valid");
+    let json = [&one, &small_run().0].map(|result| serde_json::to_string(result).expect("serialises"));
     assert!(json[0] == json[1], "one thread and two gave different tables");
 }
 
 #[test]
 fn a_small_run_has_every_row_and_passes_its_check() {
-    let map = small_map();
-    let costs = SampleCosts { gaussian: [4.0, 8.0], cauchy: [3.0, 6.0] };
-    let config = EfficiencyConfig { costs: Some(costs), ..small(&map) };
-    let calls = std::sync::Mutex::new(Vec::new());
-    let report = |done, total| calls.lock().expect("no panic").push((done, total));
-    let result = run(&config, &report).expect("valid");
+    let (result, calls) = small_run();
     assert_eq!(result.reference_v.len(), 16);
     assert_eq!(result.rows.len(), 240);
     assert_eq!(result.mis_rows.len(), 120);
-    assert_eq!(result.convergence.len(), 264);
+    assert_eq!(result.convergence.len(), 120);
     assert_eq!(result.beta_sweep.len(), 96);
-    let mut calls = calls.into_inner().expect("no panic");
+    let mut calls = calls.clone();
     calls.sort_unstable();
     assert!(calls.iter().enumerate().all(|(i, call)| *call == (i + 1, calls.len())), "progress skips");
     let check = &result.check;
     assert!(check.passed(), "{check:#?}");
-    // The sun at these sizes is the only light too small to be tested, besides the first points of the curves.
-    assert!(check.tests > 600 && check.untested > 0, "{} {}", check.tests, check.untested);
+    // The sun at these sizes is too small to be tested by the scattering function alone.
+    let sun = |r: &&Row| r.light == "sun";
+    assert!(result.rows.iter().filter(sun).all(|r| !r.tested), "{check:?}");
+    assert!(result.rows.iter().filter(|r| r.light == "constant").all(|r| r.tested), "{check:?}");
+    assert!(check.tests > 450 && check.untested >= 48, "{} {}", check.tests, check.untested);
     assert!((4.0..6.0).contains(&check.bound), "{}", check.bound);
-    let row = &result.rows[3];
-    let efficiency = row.efficiency.expect("costs were given");
-    assert!((efficiency.value * row.v.value * costs.ns(row.model, row.sampler) * 1e-9 - 1.0).abs() < 1e-12);
-    assert_eq!(result.rows[0].sequence, SequenceKind::Independent);
+}
+
+#[test]
+fn efficiency_is_one_over_variance_and_time() {
+    let costs = SampleCosts { gaussian: [4.0, 8.0], cauchy: [3.0, 6.0] };
+    let v = Estimate { value: 0.2, standard_error: 0.01 };
+    let e = measure::efficiency(&v, costs.ns(ModelKind::Cauchy, Sampler::Ou));
+    assert!((e.value * 0.2 * 6e-9 - 1.0).abs() < 1e-12 && (e.standard_error / e.value - 0.05).abs() < 1e-12, "{e:?}");
 }
 
 #[test]
 fn a_wrong_mean_fails_the_check() {
-    let map = small_map();
-    let mut result = run(&small(&map), &|_, _| ()).expect("valid");
+    let mut result = small_run().0.clone();
     // The sampler's weights too large by 5%.
     let row = result.rows.iter_mut().find(|r| r.sampler == Sampler::Ou && r.light == "constant").expect("a row");
     row.z = 0.05 * row.mean.value / row.mean.standard_error;
@@ -186,9 +200,15 @@ fn black_hair_and_black_maps_are_no_failures() {
     let params = HairParams::new(&black).expect("black is legal");
     let result = run(&EfficiencyConfig { params, ..small(&map) }, &|_, _| ()).expect("valid");
     assert!(result.rows.iter().all(|r| r.mean.value == 0.0 && r.z == 0.0), "black hair scatters");
-    let hair = run(&small(&map), &|_, _| ()).expect("valid");
-    assert!(hair.check.passed(), "{:#?}", hair.check);
+    assert!(result.mis_rows.iter().all(|r| r.mean.value == 0.0 && r.z == 0.0), "black hair scatters");
+    assert!(result.check.passed(), "{:#?}", result.check);
     serde_json::to_string(&result).expect("serialises");
+    let case = Case::new(ModelKind::Gaussian, &HairParams::default(), 45.0);
+    let reference = reference::of_environment(&case, &map, 8, 1, 0);
+    for technique in Technique::ALL {
+        let tally = mis::estimate(&case, technique, &map, [61, 0], 1_000);
+        assert_eq!(bias_z(&tally.moments, &reference), 0.0, "{}", technique.name());
+    }
 }
 
 #[test]
@@ -211,4 +231,15 @@ fn the_bias_score_is_normal_where_hits_are_rare() {
     }
     // 1% of 4000 are 40, give or take 6.3.
     assert!((18..=65).contains(&corrected), "{corrected} of 4000 beyond 1%, a plain z has {plain}");
+}
+
+#[test]
+#[ignore = "slow: 150 s of processor time in release"]
+fn a_full_run_under_the_sky_passes_its_check() {
+    let sky = crate::light::Sky::default().environment();
+    let result = run(&EfficiencyConfig::new(2, false, &sky), &|_, _| ()).expect("valid");
+    assert!(result.check.passed(), "{:#?}", result.check);
+    // Correlated numbers at theta_o = 0 are short of it: 262 144 samples at a V of 2994 are worth 88.
+    let independent = result.rows.iter().filter(|r| r.sequence == SequenceKind::Independent);
+    assert!(independent.clone().all(|r| r.tested), "every light is seen often enough by independent numbers");
 }

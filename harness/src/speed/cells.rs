@@ -3,6 +3,7 @@
 use super::Op;
 use super::check::Truth;
 use super::inputs::{DIRECTIONS, Inputs, arrays, packets, pairs, xi_packets};
+use super::slices;
 use super::task::{PROBE, Pass, task};
 use crate::subject::Subject;
 use glam::Vec3;
@@ -15,6 +16,9 @@ pub(super) const TEXTBOOK: &str = "textbook";
 const ONE: &str = "one lane";
 /// The kernel, eight directions a call.
 const EIGHT: &str = "eight lanes";
+
+/// The kernel, all directions in one call.
+const SLICES: &str = "slices";
 
 /// One who takes part.
 pub(super) struct Contender {
@@ -58,13 +62,13 @@ fn scalar(name: &'static str, task: Box<dyn Pass>) -> Contender {
     Contender { name, level: "scalar", task }
 }
 
-/// The contenders on one lane, then eight lanes on every level of this CPU.
-fn with_levels(mut contenders: Vec<Contender>, eight: impl Fn(Level) -> Box<dyn Pass>) -> Vec<Contender> {
-    contenders.extend(Level::available().map(|level| Contender {
-        name: EIGHT,
-        level: level.name(),
-        task: eight(level),
-    }));
+/// The contenders so far, then one on every level of this CPU.
+fn with_levels(
+    mut contenders: Vec<Contender>,
+    name: &'static str,
+    task: impl Fn(Level) -> Box<dyn Pass>,
+) -> Vec<Contender> {
+    contenders.extend(Level::available().map(|level| Contender { name, level: level.name(), task: task(level) }));
     contenders
 }
 
@@ -79,7 +83,8 @@ where
         scalar(TEXTBOOK, task(&arrays(&inputs.wo), move |wo| Textbook::prepare(&parameters, shape, *wo))),
         scalar(ONE, task(&inputs.wo, move |wo| bsdf.prepare(*wo))),
     ];
-    let contenders = with_levels(contenders, |level| task(&packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo)));
+    let contenders =
+        with_levels(contenders, EIGHT, |level| task(&packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo)));
     let points = inputs.wo.iter().map(|wo| subject.oracle(hair, *wo)).collect();
     (contenders, Truth::of_directions(points, &[PROBE; DIRECTIONS]))
 }
@@ -92,11 +97,12 @@ where
     let textbook = Textbook::prepare(&subject.parameters::<f32>(hair), subject.shape, wo.to_array());
     let gather = Bsdf::new(&subject.model, hair).prepare(wo);
     let contenders = vec![
-        scalar(TEXTBOOK, task(&arrays(&inputs.wi), move |wi| (textbook.eval(*wi), textbook.pdf(*wi)))),
+        scalar(TEXTBOOK, task(&arrays(&inputs.wi), move |wi| textbook.eval_pdf(*wi))),
         scalar(ONE, task(&inputs.wi, move |wi| gather.eval_pdf(*wi))),
     ];
     let contenders =
-        with_levels(contenders, |level| task(&packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi)));
+        with_levels(contenders, EIGHT, |level| task(&packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi)));
+    let contenders = with_levels(contenders, SLICES, |level| slices::eval_pdf(gather, level, &inputs.wi));
     (contenders, Truth::of_directions(vec![subject.oracle(hair, wo); DIRECTIONS], &inputs.wi))
 }
 
@@ -112,7 +118,8 @@ where
         scalar(ONE, task(&inputs.xi, move |xi| gather.sample(*xi))),
     ];
     let contenders =
-        with_levels(contenders, |level| task(&xi_packets(&inputs.xi), move |xi| gather.sample8_at(level, xi)));
+        with_levels(contenders, EIGHT, |level| task(&xi_packets(&inputs.xi), move |xi| gather.sample8_at(level, xi)));
+    let contenders = with_levels(contenders, SLICES, |level| slices::sample(gather, level, &inputs.xi));
     (contenders, Truth::of_samples(vec![subject.oracle(hair, wo); DIRECTIONS], &inputs.xi))
 }
 
@@ -133,7 +140,7 @@ where
         ),
         scalar(ONE, task(&pairs(&inputs.wo, &inputs.xi), move |(wo, xi)| bsdf.prepare(*wo).sample(*xi))),
     ];
-    let contenders = with_levels(contenders, |level| {
+    let contenders = with_levels(contenders, EIGHT, |level| {
         task(&pairs(&packets(&inputs.wo), &xi_packets(&inputs.xi)), move |(wo, xi)| {
             bsdf.prepare8_at(level, wo).sample8_at(level, xi)
         })
@@ -163,7 +170,7 @@ where
     ];
     let eights = pairs(&packets(&inputs.wo), &xi_packets(&inputs.xi));
     let packed = Bsdf8::pack(bsdfs.each_ref());
-    let contenders = with_levels(contenders, |level| {
+    let contenders = with_levels(contenders, EIGHT, |level| {
         if pack_each {
             task(&eights, move |(wo, xi)| Bsdf8::pack(bsdfs.each_ref()).prepare8_at(level, wo).sample8_at(level, xi))
         } else {

@@ -10,7 +10,7 @@ use hairis::textbook::Textbook;
 /// The `f32` textbook, which takes part, needs it; `agreement` holds the kernels to tighter bounds.
 pub(super) const TOLERANCE: f64 = 1e-3;
 
-/// Values below this count as 0: the kernels' Gaussians end at `2^-110`, those of the `f32` textbook at denormals.
+/// Values below this count as 0: the kernels' Gaussians end at `2^-115`, those of the `f32` textbook at denormals.
 const NEGLIGIBLE: f64 = 1e-25;
 
 /// What is right for each direction of a pass, by the textbook in `f64`.

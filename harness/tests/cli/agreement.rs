@@ -20,7 +20,7 @@ fn allowed(model: &str, quantity: &str, case: &Case) -> f64 {
     bound + ROUNDING * (steepness / narrowest + 1.0 / from_seam)
 }
 
-/// A Gaussian below 2^-110 is that by design; below this, S is nothing but such bells.
+/// A Gaussian below about 2^-115 is 0 by design; below this, S is nothing but such bells.
 fn floor(model: &str) -> f64 {
     if model == "gaussian" { 1e-27 } else { 0.0 }
 }

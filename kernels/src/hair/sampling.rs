@@ -6,8 +6,8 @@ use crate::truncated::TruncatedCauchy;
 use crate::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-/// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place: the angles it was made of are
-/// kept, not taken back from the direction.
+/// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place: of the angles it was made of, those
+/// that keep their digits in the direction are kept, not taken back from it.
 #[inline(always)]
 pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> (Vec3x<L>, L::Choice, Place<L>) {
     let c = L::splat;
@@ -46,22 +46,25 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let v = cos_phi_o.mul_add(cos_phi, sin_phi_o * sin_phi) * cos_theta_i;
     let w = sin_phi_o.mul_add(cos_phi, -(cos_phi_o * sin_phi)) * cos_theta_i;
 
-    // |phi| from the half angle.
-    let cos_psi = zero.max(cos_psi);
-    let sin_psi = sin_psi.abs();
-    let sin_half_phi = L::select(is_tt, cos_psi, sin_psi);
-    let cos_half_phi = L::select(is_tt, sin_psi, cos_psi);
-    let front = sin_half_phi.lt(cos_half_phi);
-    let angle = atan_unit(sin_half_phi.min(cos_half_phi) / sin_half_phi.max(cos_half_phi));
+    // |phi| as the rounded direction has it: next to pi, where R and TRT-g vanish, the angle it was made of is another.
+    let [v_o, w_o, cos_o] = crate::lanes::lanes3(&gather.plane_o);
+    let dot = v.mul_add(v_o, w * w_o);
+    let cross = L::difference_of_products(w, v_o, v, w_o).abs();
+    let tau = cross / cos_theta_i.mul_add(cos_o, dot.abs());
+    let front = zero.lt(dot);
+    let angle = atan_unit(tau);
     let angle = angle + angle;
     let rest = c(PI) - angle;
+    let (sin_psi, cos_psi) = (sin_psi.abs(), zero.max(cos_psi));
+    let sin_half_phi = L::select(is_tt, cos_psi, sin_psi);
+    let cos_half_phi = L::select(is_tt, sin_psi, cos_psi);
     let place = Place {
         half_theta_i,
         sin_theta_i,
         cos_theta_i,
         phi: L::select(front, angle, rest),
         back: L::select(front, rest, angle),
-        cos_half_phi,
+        cos_half_phi: L::select(front, cos_half_phi, tau * sin_half_phi),
         front,
     };
     (Vec3x::new(sin_theta_i, v, w), choice, place)

@@ -5,7 +5,7 @@
 
 #![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
 
-use super::{Broadcast, Lanes, difference_fused, pick_by_select, sealed::Sealed};
+use super::{Broadcast, Lanes, Packet, difference_fused, pick_by_select, sealed::Sealed};
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
@@ -176,14 +176,13 @@ impl Broadcast<Avx2> for f32x8 {
     }
 }
 
-crate::lanes::packet!(Avx2, from_array, to_array);
-
-#[inline(always)]
-fn from_array(packet: &[f32; 8]) -> Avx2 {
-    Avx2(avx2!(_mm256_loadu_ps(packet.as_ptr())))
-}
-
-#[inline(always)]
-fn to_array(lanes: Avx2, packet: &mut [f32; 8]) {
-    avx2!(_mm256_storeu_ps(packet.as_mut_ptr(), lanes.0));
+impl Packet for Avx2 {
+    #[inline(always)]
+    fn read(from: &[f32; 8]) -> Self {
+        Self(avx2!(_mm256_loadu_ps(from.as_ptr())))
+    }
+    #[inline(always)]
+    fn write(self, to: &mut [f32; 8]) {
+        avx2!(_mm256_storeu_ps(to.as_mut_ptr(), self.0));
+    }
 }

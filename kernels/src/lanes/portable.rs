@@ -1,6 +1,6 @@
 //! Eight lanes through `wide`: the instruction set the program was compiled for, whatever the machine has.
 
-use super::{Broadcast, Lanes, UPPER, difference_fused, difference_split, pick_by_select, sealed::Sealed};
+use super::{Broadcast, Lanes, Packet, UPPER, difference_fused, difference_split, pick_by_select, sealed::Sealed};
 use wide::{f32x8, u32x8};
 
 impl Sealed for f32x8 {}
@@ -128,14 +128,13 @@ impl Broadcast<f32x8> for f32x8 {
     }
 }
 
-crate::lanes::packet!(f32x8, from_array, to_array);
-
-#[inline(always)]
-fn from_array(packet: &[f32; 8]) -> f32x8 {
-    f32x8::new(*packet)
-}
-
-#[inline(always)]
-fn to_array(lanes: f32x8, packet: &mut [f32; 8]) {
-    *packet = lanes.to_array();
+impl Packet for f32x8 {
+    #[inline(always)]
+    fn read(from: &[f32; 8]) -> Self {
+        f32x8::new(*from)
+    }
+    #[inline(always)]
+    fn write(self, to: &mut [f32; 8]) {
+        *to = self.to_array();
+    }
 }

@@ -1,0 +1,33 @@
+#!/bin/bash
+# The main job on real input, as a user runs it: the short comparison, and what bad input gets.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+cargo build --release --locked -p hairis-harness
+hairis=$PWD/${CARGO_TARGET_DIR:-target}/release/hairis
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+
+"$hairis" compare --quick --out "$dir/out" > "$dir/tables.txt"
+for file in "$dir/out/compare.json" "$dir/out/report.html" "$dir/tables.txt"; do
+  [ -s "$file" ] || { echo "FAIL $file is missing or empty"; exit 1; }
+done
+python3 -m json.tool "$dir/out/compare.json" > /dev/null
+
+refused() { # refused WORDS ARGUMENT...: exit code 2 and one line that says WORDS
+  local words=$1 code=0; shift
+  "$hairis" "$@" > /dev/null 2> "$dir/error" < /dev/null || code=$?
+  [ "$code" = 2 ] || { echo "FAIL exit code $code of: $*"; exit 1; }
+  [ "$(wc -l < "$dir/error")" = 1 ] && grep -q "$words" "$dir/error" || { echo "FAIL $*:"; cat "$dir/error"; exit 1; }
+}
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n\x02\x02' > "$dir/cut.hdr"
+refused 'missing.hdr' compare --quick --out "$dir/out" --env "$dir/missing.hdr"
+refused 'cut.hdr' compare --quick --out "$dir/out" --env "$dir/cut.hdr"
+refused 'tables.txt' compare --quick --out "$dir/tables.txt/out"
+refused 'seed' compare --seed many
+refused 'quik' compare --quik
+
+answer=$(echo '{"model":"cauchy","params":{"alpha":[-0.13,0.065,0.2],"beta":[0.13,0.065,0.26],"gamma_tt":0.17,"gamma_g":0.17,
+"phi_g":0.6,"i_r":[0.3,0.3,0.3],"i_tt":[0.8,0.6,0.4],"i_trt":[0.7,0.5,0.3],"i_g":0.5},"wo":[0,1,0],"wi":[0.6,0.8,0]}' |
+  tr -d '\n' | "$hairis" eval)
+grep -q '"pdf_lobe"' <<<"$answer" || { echo "FAIL eval: $answer"; exit 1; }
+echo "the main job runs, and bad input is refused in one line"
