@@ -23,8 +23,8 @@ fn scan(kind: Kind, per_point: usize) -> [Worst; 4] {
                 let (lobe_values, lobe_pdfs) = (textbook.lobe_values(d), textbook.lobe_pdfs(d));
                 let mut see = |got: Eval, level: &str| {
                     let at = || format!("{level} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
-                    for c in 0..3 {
-                        worst[0].see(relative(got.value[c], value[c], FLOOR), at);
+                    for (got, want) in got.value.into_iter().zip(value) {
+                        worst[0].see(relative(got, want, FLOOR), at);
                     }
                     worst[1].see(relative(got.pdf, pdf, 0.0), at);
                 };
