@@ -29,7 +29,9 @@ fn integrals(textbook: &Textbook<f64>, point: &Point) -> PerLobe<f64> {
         let phi = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt)]);
         let longitude = integrate(&theta, |theta| at(lobe, theta, phi_0) * theta.cos().powi(2));
         let azimuth = 2.0 * integrate(&phi, |phi| at(lobe, theta_0, phi));
-        all[lobe] = longitude * azimuth / at(lobe, theta_0, phi_0);
+        // A lobe so far off the sphere that even its largest value is 0 returns nothing.
+        let largest = at(lobe, theta_0, phi_0);
+        all[lobe] = if largest > 0.0 { longitude * azimuth / largest } else { 0.0 };
     }
     all
 }

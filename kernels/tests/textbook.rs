@@ -144,15 +144,20 @@ fn cdf_of_the_drawn_angle_is_xi() {
 
 #[test]
 fn eval_is_reciprocal() {
-    // Exactly: theta_h is a commutative sum, and theta_d and phi only change sign.
+    let mut worst = 0.0_f64;
+    // But for rounding: theta_h is a commutative sum, theta_d and phi only change sign. Measured: 6e-15 relative.
     for (shape, params) in SHAPES.into_iter().flat_map(|shape| HairParams::presets().map(|preset| (shape, preset.1))) {
         let p = Parameters::<f64>::from(&params);
         for [a, b, c] in points(500) {
             let (wo, wi) = (direction((a - 0.5) * PI, 6.0 * c), direction((b - 0.5) * PI, -2.0 * c));
             let forth = Textbook::prepare(&p, shape, wo).eval(wi);
-            assert_eq!(forth, Textbook::prepare(&p, shape, wi).eval(wo), "{shape:?} {wo:?} {wi:?}");
+            let back = Textbook::prepare(&p, shape, wi).eval(wo);
+            let off = forth.into_iter().zip(back).map(|(a, b)| (a - b).abs() / (a + 1e-280)).fold(0.0, f64::max);
+            worst = worst.max(off);
+            assert!(off < 1e-12, "{shape:?} {wo:?} {wi:?}: {forth:?} and {back:?}");
         }
     }
+    println!("worst reciprocity of the textbook: {worst:e}");
 }
 
 #[test]
@@ -167,7 +172,9 @@ fn a_sample_agrees_with_eval_and_pdf() {
                 continue;
             };
             let alone = hair.sample_lobe(lobe, xi[1], xi[2]);
-            assert_eq!(drawn.wi, alone, "the lobe alone draws the same direction, xi {xi:?}");
+            // But for rounding: the azimuth is wrapped in one and not in the other.
+            let off = drawn.wi.into_iter().zip(alone).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-14, "the lobe alone draws the same direction, xi {xi:?}: {:?} and {alone:?}", drawn.wi);
             let [u, v, w] = drawn.wi;
             assert!((u * u + v * v + w * w - 1.0).abs() < 1e-14, "not a unit vector at xi {xi:?}");
             // Measured: 2.2e-14 relative, of rounded angles near the axis.
