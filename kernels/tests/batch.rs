@@ -3,6 +3,7 @@
 use crate::subject::{Subject, subjects};
 use crate::support::{Draws, direction};
 use glam::Vec3;
+use hairis::wide::f32x8;
 use hairis::{Bsdf, EvalSlices, Gather, Hair, HairParams, LengthError, Level, SampleSlices, Vec3x8};
 
 /// What a slice held before.
@@ -79,7 +80,7 @@ fn sampled_batches_equal_packets_at_every_length_and_alignment() {
                 gather.sample_batch_at(level, read, slices).unwrap();
                 assert_margins(&out, len, offset, &at);
                 for i in 0..len {
-                    let s = gather.sample8_at(level, &read.map(|column| hairis::wide::f32x8::splat(column[i])));
+                    let s = gather.sample8_at(level, &read.map(|column| f32x8::splat(column[i])));
                     let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
                     let want = [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot];
                     let want = want.map(|x| x.as_array()[0].to_bits());
@@ -111,16 +112,16 @@ fn the_level_found_is_the_default() {
 fn a_slice_of_another_length_is_named_and_nothing_written() {
     const NAMES: [&str; 7] = ["wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf"];
     let gather = gather();
-    for wrong in 1..NAMES.len() {
+    for (wrong, name) in NAMES.into_iter().enumerate().skip(1) {
         for len in [0, 4, 6, 40] {
             let length = |i: usize| if i == wrong { len } else { 5 };
             let wi = [0, 1, 2].map(|i| vec![0.5; length(i)]);
             let mut out = [3, 4, 5, 6].map(|i| vec![UNTOUCHED; length(i)]);
             let [r, g, b, pdf] = out.each_mut().map(|column| &mut column[..]);
             let got = gather.eval_pdf_batch(wi.each_ref().map(|c| &c[..]), EvalSlices { value: [r, g, b], pdf });
-            assert_eq!(got, Err(LengthError { field: NAMES[wrong], len, expected: 5 }), "slice {wrong}");
-            assert!(out.iter().flatten().all(|x| *x == UNTOUCHED), "{} is refused, yet written", NAMES[wrong]);
-            let text = format!("{} has {len} entries where the first slice has 5", NAMES[wrong]);
+            assert_eq!(got, Err(LengthError { field: name, len, expected: 5 }), "slice {wrong}");
+            assert!(out.iter().flatten().all(|x| *x == UNTOUCHED), "{name} is refused, yet written");
+            let text = format!("{name} has {len} entries where the first slice has 5");
             assert_eq!(got.unwrap_err().to_string(), text, "the message");
         }
     }
@@ -133,14 +134,14 @@ fn a_slice_of_samples_of_another_length_is_named_and_nothing_written() {
         "weight.g", "weight.b", "slot",
     ];
     let gather = gather();
-    for wrong in 1..NAMES.len() {
+    for (wrong, name) in NAMES.into_iter().enumerate().skip(1) {
         let length = |i: usize| if i == wrong { 17 } else { 16 };
         let xi = [0, 1, 2].map(|i| vec![0.5; length(i)]);
         let mut out: [Vec<f32>; 11] = core::array::from_fn(|i| vec![UNTOUCHED; length(i + 3)]);
         let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = out.each_mut().map(|column| &mut column[..]);
         let slices = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
         let got = gather.sample_batch(xi.each_ref().map(|c| &c[..]), slices);
-        assert_eq!(got, Err(LengthError { field: NAMES[wrong], len: 17, expected: 16 }), "slice {wrong}");
-        assert!(out.iter().flatten().all(|x| *x == UNTOUCHED), "{} is refused, yet written", NAMES[wrong]);
+        assert_eq!(got, Err(LengthError { field: name, len: 17, expected: 16 }), "slice {wrong}");
+        assert!(out.iter().flatten().all(|x| *x == UNTOUCHED), "{name} is refused, yet written");
     }
 }

@@ -46,9 +46,9 @@ fn see(worst: &mut [Worst; 4], textbook: &Textbook<f64>, point: &Point, sample: 
         // On the seam R and TRT-g vanish, and the rounding of the direction is all that is left of them.
         return;
     }
-    for c in 0..3 {
-        worst[0].see(relative(sample.value[c], value[c], 1e-20), at);
-        worst[2].see(relative(sample.weight[c], value[c] * theta.cos() / pdf, 1e-20), at);
+    for ((got, weight), want) in sample.value.into_iter().zip(sample.weight).zip(value) {
+        worst[0].see(relative(got, want, 1e-20), at);
+        worst[2].see(relative(weight, want * theta.cos() / pdf, 1e-20), at);
     }
 }
 

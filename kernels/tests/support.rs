@@ -87,7 +87,7 @@ impl Draws {
         let mut width = || match self.below(8) {
             0 => MIN_WIDTH,
             1 => MAX_WIDTH,
-            _ => narrow(self.scale(1.001e-4, 3.14)),
+            _ => narrow(self.scale(1.001e-4, 3.1)),
         };
         let (beta_r, beta_tt, beta_trt, gamma_tt, gamma_g) = (width(), width(), width(), width(), width());
         let right = core::f32::consts::FRAC_PI_2;
@@ -182,7 +182,7 @@ pub(crate) struct Worst {
 impl Worst {
     pub(crate) fn see(&mut self, error: f64, at: impl FnOnce() -> String) {
         // NaN is the worst of all.
-        if !(error <= self.error) {
+        if error.is_nan() || error > self.error {
             *self = Self { error, at: at() };
         }
     }

@@ -10,12 +10,13 @@ pub(crate) const ATAN2_UPPER_RAD: f64 = 3.7e-7; // 3.11e-7, beside pi
 pub(crate) const SIN_HALF_TURN: f64 = 2.7; // 2.31, x in [-pi/2, pi/2]
 pub(crate) const COS_HALF_TURN: f64 = 2.7; // 2.22, up to its zero
 pub(crate) const SIN_COS_HALF_TURN_ABS: f64 = 1.6e-7; // 1.38e-7
-pub(crate) const MATH_LANES: f64 = 2.7; // 0 where neither fuses
+pub(crate) const MATH_LANES: f64 = 2.4; // 2.0; 0 where neither fuses
 
-// S and density against the textbook, relative, further than 1e-3 rad from the axis; the lobes' own included.
-pub(crate) const GRID: [f64; 2] = [1e-4, 1e-5]; // 7.3e-5, 8.8e-6: the grid of the efficiency figures, and the presets
-pub(crate) const NARROW: [f64; 2] = [2.5e-4, 2.7e-5]; // 2.0e-4, 2.2e-5: every width 0.5 degrees
-pub(crate) const WIDE: [f64; 2] = [2.4e-6, 1.1e-6]; // 1.9e-6, 9.1e-7: every width 60 degrees
+// S and density against the textbook, relative, further than 1e-3 rad from the axis; then those of a lobe
+// alone.
+pub(crate) const GRID: [f64; 4] = [6e-5, 1e-5, 1e-4, 1e-5]; // 4.6e-5, 8.8e-6, 7.3e-5, 8.7e-6: the efficiency grid, and the presets
+pub(crate) const NARROW: [f64; 4] = [2.5e-4, 2.5e-5, 2.5e-4, 2.8e-5]; // 2.0e-4, 2.0e-5, 2.0e-4, 2.2e-5: every width 0.5 degrees
+pub(crate) const WIDE: [f64; 4] = [1e-6, 7e-7, 2.4e-6, 1.1e-6]; // 7.7e-7, 5.6e-7, 1.9e-6, 9.1e-7: every width 60 degrees
 
 // The sum of the lobes against the whole, relative.
 pub(crate) const LOBE_SUM: f64 = 4.5e-7; // 3.5e-7
@@ -33,7 +34,7 @@ pub(crate) const WIDE_CDF: [f64; 2] = [4e-7, 1.4e-7]; // 2.9e-7, 9.8e-8
 
 // A level that fuses against one lane that does not, wide lobes off the seam and the axis: S, density, direction.
 pub(crate) const LEVELS: [f64; 3] = [6e-7, 6e-7, 1.3e-6]; // 4.5e-7, 4.3e-7, 9.6e-7
-pub(crate) const ALBEDO_LANES: f64 = 2e-6; // 0 where neither fuses
+pub(crate) const ALBEDO_LANES: f64 = 1.5e-5; // 1.2e-5; 0 where neither fuses
 
 // Directional albedo of a lobe against quadrature, relative.
 pub(crate) const ALBEDO: f64 = 1.3e-4; // 1.0e-4, widths of 60 degrees seen along the axis
@@ -41,7 +42,7 @@ pub(crate) const ALBEDO: f64 = 1.3e-4; // 1.0e-4, widths of 60 degrees seen alon
 // Reciprocity of S, relative, wide and grid materials.
 pub(crate) const RECIPROCITY: f64 = 3.2e-5; // 2.5e-5
 // Density of a sample against that of its direction, relative, times `width / (width + 0.1)` with the least width.
-pub(crate) const SAMPLE_EVAL: f64 = 1e9;
+pub(crate) const SAMPLE_EVAL: f64 = 1.6e-6; // 1.2e-6
 // A weight over its proven bound.
 pub(crate) const WEIGHT_BOUND: f64 = 1.0 + 6e-7; // 1 + 3.3e-7
 // A frame: dot products, lengths, handedness.

@@ -23,8 +23,8 @@ fn scan(kind: Kind, per_point: usize) -> [Worst; 4] {
                 let (lobe_values, lobe_pdfs) = (textbook.lobe_values(d), textbook.lobe_pdfs(d));
                 let mut see = |got: Eval, level: &str| {
                     let at = || format!("{level} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
-                    for c in 0..3 {
-                        worst[0].see(relative(got.value[c], value[c], FLOOR), at);
+                    for (got, want) in got.value.into_iter().zip(value) {
+                        worst[0].see(relative(got, want, FLOOR), at);
                     }
                     worst[1].see(relative(got.pdf, pdf, 0.0), at);
                 };
@@ -48,32 +48,24 @@ fn scan(kind: Kind, per_point: usize) -> [Worst; 4] {
     worst
 }
 
+fn check(kind: Kind, per_point: usize, bounds: [f64; 4]) {
+    let names = ["S", "pdf", "S of a lobe", "pdf of a lobe"];
+    for ((name, worst), bound) in names.into_iter().zip(scan(kind, per_point)).zip(bounds) {
+        worst.check(&format!("{kind:?} {name}"), bound);
+    }
+}
+
 #[test]
 fn values_on_the_grid() {
-    let [s, pdf, lobe, lobe_pdf] = scan(Kind::Grid, 64);
-    let [s_bound, pdf_bound] = bound::GRID;
-    s.check("GRID S", s_bound);
-    pdf.check("GRID pdf", pdf_bound);
-    lobe.check("GRID S of a lobe", s_bound);
-    lobe_pdf.check("GRID pdf of a lobe", pdf_bound);
+    check(Kind::Grid, 64, bound::GRID);
 }
 
 #[test]
 fn values_of_narrow_lobes() {
-    let [s, pdf, lobe, lobe_pdf] = scan(Kind::Narrow, 4096);
-    let [s_bound, pdf_bound] = bound::NARROW;
-    s.check("NARROW S", s_bound);
-    pdf.check("NARROW pdf", pdf_bound);
-    lobe.check("NARROW S of a lobe", s_bound);
-    lobe_pdf.check("NARROW pdf of a lobe", pdf_bound);
+    check(Kind::Narrow, 4096, bound::NARROW);
 }
 
 #[test]
 fn values_of_wide_lobes() {
-    let [s, pdf, lobe, lobe_pdf] = scan(Kind::Wide, 4096);
-    let [s_bound, pdf_bound] = bound::WIDE;
-    s.check("WIDE S", s_bound);
-    pdf.check("WIDE pdf", pdf_bound);
-    lobe.check("WIDE S of a lobe", s_bound);
-    lobe_pdf.check("WIDE pdf of a lobe", pdf_bound);
+    check(Kind::Wide, 4096, bound::WIDE);
 }

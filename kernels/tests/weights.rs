@@ -69,12 +69,12 @@ fn w(wo: Vec3, wi: Vec3) -> f64 {
 fn worst_ratio(worst: &mut Worst, limit: [f64; 3], wo: Vec3, sample: &Sample, params: &HairParams) {
     let w = w(wo, sample.wi);
     assert!(w <= 4.0 * (1.0 + 1e-6), "W = {w} wo {wo:?} wi {:?}", sample.wi);
-    for c in 0..3 {
-        let weight = f64::from(sample.weight[c]);
-        assert!(weight <= 4.0 * limit[c] * (1.0 + 1e-3), "a firefly: {sample:?} wo {wo:?} {params:?}");
+    for (weight, limit) in sample.weight.into_iter().zip(limit) {
+        let weight = f64::from(weight);
+        assert!(weight <= 4.0 * limit * (1.0 + 1e-3), "a firefly: {sample:?} wo {wo:?} {params:?}");
         // Next to the axis W is made of rounding errors.
-        if w > 1e-4 && limit[c] > 0.0 {
-            worst.see(weight / (w * limit[c]), || format!("{sample:?} wo {wo:?} {params:?}"));
+        if w > 1e-4 && limit > 0.0 {
+            worst.see(weight / (w * limit), || format!("{sample:?} wo {wo:?} {params:?}"));
         }
     }
 }
