@@ -19,3 +19,9 @@ pub mod speed;
 pub mod stats;
 pub mod subject;
 pub mod table;
+
+/// The example of the README, held to what it says.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+#[derive(Debug)]
+pub struct Readme;
