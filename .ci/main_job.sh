@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 cargo build --release --locked -p hairis-harness
-hairis=$PWD/${CARGO_TARGET_DIR:-target}/release/hairis
+hairis=$(realpath "${CARGO_TARGET_DIR:-target}")/release/hairis
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 

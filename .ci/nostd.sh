@@ -2,11 +2,12 @@
 # Proof that the kernels need neither std nor alloc: a program with a panic handler and no allocator links, runs and
 # holds neither; and a program that asks for one of them is refused.
 set -euo pipefail
-cd "$(dirname "$0")/nostd"
-target=${CARGO_TARGET_DIR:-../../target}/nostd
+cd "$(dirname "$0")/.."
+target=$(realpath -m "${CARGO_TARGET_DIR:-target}")/nostd
+cd .ci/nostd
 
 prove() { # prove NAME RUSTFLAGS
-  RUSTFLAGS=$2 cargo build -q --release --target-dir "$target/$1"
+  RUSTFLAGS=$2 cargo build -q --release --locked --target-dir "$target/$1"
   local program=$target/$1/release/hairis-nostd
   local undefined
   undefined=$(nm -u "$program")
@@ -18,7 +19,7 @@ prove() { # prove NAME RUSTFLAGS
 }
 refused() { # refused FEATURE WORDS
   local out
-  out=$(cargo build -q --release --target-dir "$target/x86-64" --features "$1" 2>&1) && { echo "FAIL $1 was accepted"; exit 1; }
+  out=$(cargo build -q --release --locked --target-dir "$target/x86-64" --features "$1" 2>&1) && { echo "FAIL $1 was accepted"; exit 1; }
   grep -q "$2" <<<"$out" || { echo "FAIL $1 was refused for another reason: $out"; exit 1; }
   echo "refused, as it must be: $1"
 }

@@ -6,9 +6,9 @@
 //! - Samples: density, value and weight are compared with those of the direction that was returned; the direction
 //!   through the lobe's cdf, which must give back the numbers it was drawn with.
 //! - Left out: `|phi|` within 1e-6 rad of pi/2, where the glints' density jumps (ERRATA E3) and a rounded azimuth may
-//!   fall on either side.
+//!   fall on either side; and within 1e-9 rad of pi, where the textbook itself has no digits left.
 //! - Next to `|phi|` = pi the R and TRT-g lobes vanish as `cos(phi / 2)`, and no rounded azimuth tells how far off it is:
-//!   errors beyond the bound that turning `wi` by 2^-22 rad explains are counted apart.
+//!   of the errors beyond a bound, those that turning `wi` by 2^-22 rad does not explain are counted apart.
 //! - Gaussian values may be off by `2^-114` a lobe before anything counts: the kernels' bells end there by design.
 
 mod measure;

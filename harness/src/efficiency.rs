@@ -5,8 +5,8 @@
 //! The estimators of direct lighting, `L S cos theta_i / pdf` as one number (the mean of its RGB), of both models through the eight-lane path. `V` is the
 //! relative variance of one sample: a mean of `N` independent samples has a relative error of `sqrt(V / N)`.
 //!
-//! - One number out of three: every figure is of the mean of RGB, the intensity the sampler weighs its lobes by. The published table of "luminance V"
-//!   means it too. Quadrature tells the two apart (test `the_published_figures_are_of_the_mean_of_rgb`): `ou` on the Gaussian model at `theta_o = 45` has V = 0.1890
+//! - One number out of three: every figure is of the mean of RGB, the intensity the sampler weighs its lobes by. The recorded table of "luminance V"
+//!   means it too. Quadrature tells the two apart (test `the_recorded_figures_are_of_the_mean_of_rgb`): `ou` on the Gaussian model at `theta_o = 45` has V = 0.1890
 //!   for the mean of RGB, 0.1923 for the luminance of Rec. 709, and the table has 0.189. All twelve figures agree with the mean of RGB to 6e-4.
 //! - Samples that hang together (stratified, Halton) have no variance of their own. For them `V = N Var(mean) / mean^2` with `Var(mean)` the variance of the mean
 //!   of `N` samples over `R` independent randomisations, so that V / N is again the squared relative error, but at that `N` alone: each row states its `N`.
@@ -243,7 +243,7 @@ pub struct EfficiencyConfig<'a> {
 }
 
 impl<'a> EfficiencyConfig<'a> {
-    /// The specification's default hair, without times.
+    /// The default hair, without times.
     ///
     /// # Examples
     /// ```

@@ -10,7 +10,7 @@ use hairis_variants::Cauchy;
 
 const CASES: usize = 10_000;
 const SEED: u64 = 0x0a17;
-/// Largest relative error of the pdf: SPEC 6.
+/// Largest relative error of the pdf, as promised.
 const PDF: f64 = 1e-5;
 /// Largest relative error of S with Gaussians.
 const S_GAUSSIAN: f64 = 1e-4;

@@ -2,7 +2,7 @@
 
 use crate::dispatch::{self, Level};
 use crate::model::{Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Sample, Sample8};
-use crate::{LobeMask, Model, PerLobe, Vec3x8};
+use crate::{LobeMask, Model, PerLobe, Vec3x, Vec3x8};
 use core::f32::consts::FRAC_PI_2;
 use core::fmt;
 use glam::Vec3;
@@ -119,7 +119,8 @@ impl<M: Model> Bsdf<M> {
 
     /// The factor on all intensities that keeps the directional albedo at most 1 whatever `wo`: 1 if it is already.
     ///
-    /// One factor for all directions, so that the model stays reciprocal; path tracing needs it.
+    /// One factor for all directions, so that the model stays reciprocal; path tracing needs it. Intensities whose
+    /// albedo no float holds (above 1e37) are beyond it.
     #[must_use]
     #[inline]
     pub fn conserving_scale(&self) -> f32 {
@@ -152,12 +153,13 @@ impl<M: Model> Bsdf8<M> {
 }
 
 impl<M: Model> Gather<M> {
-    /// S at `wi`, without the cosine, linear RGB, per steradian.
+    /// S at `wi`, without the cosine, linear RGB, per steradian. Every scalar call takes a `Vec3`, a `Vec3A` or a
+    /// [`Vec3x`].
     ///
     /// - Domain: any finite `wi`; 0 within 1e-5 rad of the fibre's axis and for a vector longer than 2.
     #[inline]
     #[must_use]
-    pub fn eval(&self, wi: Vec3) -> [f32; 3] {
+    pub fn eval(&self, wi: impl Into<Vec3x<f32>>) -> [f32; 3] {
         self.eval_pdf(wi).value
     }
 
@@ -166,21 +168,21 @@ impl<M: Model> Gather<M> {
     /// - Integral: 1 over the sphere, unless the model discards samples.
     #[inline]
     #[must_use]
-    pub fn pdf(&self, wi: Vec3) -> f32 {
+    pub fn pdf(&self, wi: impl Into<Vec3x<f32>>) -> f32 {
         self.eval_pdf(wi).pdf
     }
 
     /// Both at once, for little more than either.
     #[inline]
     #[must_use]
-    pub fn eval_pdf(&self, wi: Vec3) -> Eval {
+    pub fn eval_pdf(&self, wi: impl Into<Vec3x<f32>>) -> Eval {
         M::eval::<f32, f32>(&self.inner, wi.into())
     }
 
     /// Each lobe's value, colour and own density.
     #[inline]
     #[must_use]
-    pub fn lobes(&self, wi: Vec3) -> PerLobe<LobeEval> {
+    pub fn lobes(&self, wi: impl Into<Vec3x<f32>>) -> PerLobe<LobeEval> {
         M::lobes::<f32, f32>(&self.inner, wi.into())
     }
 

@@ -127,6 +127,13 @@ impl From<Vec3A> for Vec3x<f32> {
     }
 }
 
+impl From<Vec3x<f32>> for Vec3A {
+    #[inline(always)]
+    fn from(v: Vec3x<f32>) -> Self {
+        Self::new(v.x, v.y, v.z)
+    }
+}
+
 impl From<Vec3x<f32>> for Vec3 {
     #[inline(always)]
     fn from(v: Vec3x<f32>) -> Self {
@@ -157,8 +164,8 @@ pub struct FiberFrame {
 impl FiberFrame {
     /// The frame of a fibre with this tangent (root to tip, of any length).
     ///
-    /// `v` and `w` depend on the tangent alone, and continuously but where the tangent passes -z. The published model
-    /// sees differences of azimuth only, so that their choice does not show.
+    /// `v` and `w` depend on the tangent alone, and continuously but where its z changes sign. The published model sees
+    /// differences of azimuth only, so that their choice does not show.
     ///
     /// - Domain: a tangent that is zero or not finite counts as +x.
     #[inline]
@@ -190,6 +197,8 @@ impl FiberFrame {
     }
 
     /// World to fibre: `(u, v, w)` components of `v`.
+    ///
+    /// - Domain: directions, and any vector up to 1e37; beyond, the sums may overflow.
     #[inline]
     #[must_use]
     pub fn to_local(&self, v: Vec3) -> Vec3 {

@@ -18,6 +18,9 @@ use wide::f32x8;
 /// sample is discarded (section 3.3 of the paper).
 pub const GRAZING: f32 = 1e-5;
 
+/// The density below which a sample is discarded: next to denormals its weight would have no digits.
+const LEAST_DENSITY: f32 = 1e-30;
+
 /// The artist-friendly model of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the bell `B`, and the sampler
 /// they publish.
 ///
@@ -254,7 +257,7 @@ impl<B: Bell> Model for Hair<B> {
         let shapes = place.shapes::<B, C>(gather);
         let density = shapes.density(gather);
         let cos = place.cos_theta_i;
-        let sound = L::and(L::splat(GRAZING).lt(cos), L::splat(0.0).lt(density));
+        let sound = L::and(L::splat(GRAZING).lt(cos), L::splat(LEAST_DENSITY).lt(density));
         let limit = limit::<L>(sound);
         let value = min3(shapes.value(gather), limit);
         // weight = S cos theta_i / pdf, and pdf = density / cos theta_i.

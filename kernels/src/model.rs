@@ -2,7 +2,7 @@
 
 use crate::{Broadcast, Lanes, Lobe, LobeMask, PerLobe, Vec3x};
 use core::fmt::Debug;
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 use wide::f32x8;
 
 /// A scattering model, written once over [`Lanes`].
@@ -76,6 +76,14 @@ impl From<Vec3> for Hit {
     /// A hit on the axis (`h` is 0).
     #[inline(always)]
     fn from(wo: Vec3) -> Self {
+        Self { wo: wo.into(), h: 0.0 }
+    }
+}
+
+impl From<Vec3A> for Hit {
+    /// A hit on the axis (`h` is 0).
+    #[inline(always)]
+    fn from(wo: Vec3A) -> Self {
         Self { wo: wo.into(), h: 0.0 }
     }
 }

@@ -4,7 +4,7 @@
 //! |---|---|---|---|
 //! | [`Cauchy`] in [`hairis::Hair`] | every Gaussian of the published model becomes a Cauchy | Ou et al. 2012, section 3.3 | complete |
 //!
-//! A model of one's own touches no file of the kernels: `examples/lambert_fiber.rs` is one in a hundred lines.
+//! A model of one's own touches no file of the kernels: `examples/lambert_fiber.rs` is one.
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 

@@ -14,6 +14,8 @@ pub(super) const AXIS: [f64; 2] = [1e-3, 1e-2];
 pub(super) const BACK: f64 = 1e-2;
 /// Within this of pi/2, rad, `|phi|` may fall on either side of the cut of the glints' density.
 const CUT: f64 = 1e-6;
+/// Within this of pi, rad, the textbook itself has lost the digits of `cos(phi / 2)`: a double at pi is good to 4e-16.
+const SEAM: f64 = 1e-9;
 
 /// Eight heads of hair seen from eight directions, with the directions and the numbers to ask about.
 pub(super) struct Packet {
@@ -88,13 +90,13 @@ impl Region {
     }
 
     /// Whether the pair of directions is in the region, and where the bounds hold: further than 1e-3 rad from the axis
-    /// and off the cut of the glints.
+    /// off the cut of the glints, and not so close to pi that the oracle fails.
     pub(super) fn holds(self, wo: Vec3, wi: Vec3) -> bool {
         let [u, v, w] = [wi.x, wi.y, wi.z].map(f64::from);
         let from_axis = v.hypot(w).atan2(u.abs());
         let turn = f64::from(wo.z).atan2(f64::from(wo.y)) - w.atan2(v);
         let phi = (turn - TAU * (turn / TAU).round()).abs();
-        let sound = from_axis > AXIS[0] && (phi - FRAC_PI_2).abs() > CUT;
+        let sound = from_axis > AXIS[0] && (phi - FRAC_PI_2).abs() > CUT && PI - phi > SEAM;
         sound
             && match self {
                 Self::General => true,

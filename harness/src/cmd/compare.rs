@@ -5,7 +5,7 @@ use crate::config::Compare;
 use crate::error::Error;
 use crate::light::{Environment, Sky};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Mutex;
@@ -22,6 +22,10 @@ pub fn run(config: &Compare) -> Result<(), Error> {
         None => (Sky::default().environment(), "procedural sky".to_owned()),
     };
     fs::create_dir_all(&config.out).map_err(|source| output(&config.out, source))?;
+    let [json_path, page_path] = ["compare.json", "report.html"].map(|name| config.out.join(name));
+    for path in [&json_path, &page_path] {
+        File::options().append(true).create(true).open(path).map_err(|source| output(path, source))?;
+    }
 
     let bar = Bar::new();
     let settings =
@@ -29,16 +33,16 @@ pub fn run(config: &Compare) -> Result<(), Error> {
     let comparison = compare::run(&settings, &|part, done| bar.show(part, done)).map_err(Error::Params)?;
     bar.finish();
 
-    write(&config.out.join("compare.json"), &json(&comparison)?)?;
-    write(&config.out.join("report.html"), &compare::report(&comparison).html())?;
+    write(&json_path, &json(&comparison)?)?;
+    write(&page_path, &compare::report(&comparison).html())?;
     print(&comparison).map_err(Error::Write)?;
-    let say = |name: &str| config.out.join(name).display().to_string();
-    eprintln!("wrote {} and {}", say("report.html"), say("compare.json"));
-
     let failures = comparison.failures();
+    let mut said = format!("wrote {} and {}\n", page_path.display(), json_path.display());
     for failure in &failures {
-        eprintln!("failed: {failure}");
+        said.push_str(&format!("failed: {failure}\n"));
     }
+    // Nobody is left to hear that standard error is closed.
+    let _ = io::stderr().write_all(said.as_bytes());
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
 }
 

@@ -62,7 +62,7 @@ pub(super) fn widths(of: &Comparison) -> Vec<Figure> {
         .iter()
         .take(3)
         .map(|theta_o| {
-            let title = format!("Variance against width, θ_o = {theta_o}°");
+            let title = format!("Variance against width, θₒ = {theta_o}°");
             let mut chart = LineChart::new(
                 title,
                 Axis::linear("β_R (°)").from_zero(),
@@ -128,7 +128,7 @@ pub(super) fn convergence(of: &Comparison) -> Vec<Figure> {
             figures.push(Figure::new(
                 chart.svg(),
                 format!(
-                    "Error of the mean of N samples, {} model, light: {light}, θ_o = {}°, over independent \
+                    "Error of the mean of N samples, {} model, light: {light}, θₒ = {}°, over independent \
                      randomisations; error bars are one standard error.",
                     model.name(),
                     of.efficiency.settings.convergence_theta_o_deg

@@ -85,6 +85,24 @@ pub fn report(of: &Comparison) -> Report {
     page
 }
 
+/// Where the published sampler does worse than uniform directions.
+fn worse_than_uniform(of: &Comparison) -> Option<String> {
+    let mut lights: Vec<&str> = Vec::new();
+    for row in &of.efficiency.rows {
+        let [uniform, ou] = row.reference.v;
+        if ou > 1.05 * uniform && !lights.contains(&row.light.as_str()) {
+            lights.push(&row.light);
+        }
+    }
+    (!lights.is_empty()).then(|| {
+        format!(
+            "Sampling the BSDF alone can do worse than uniform directions where a small light lies off the highlights: \
+             it does under {}, from some sides. The table of light sampling shows what combining the two gives.",
+            lights.join(" and ")
+        )
+    })
+}
+
 /// The answer first, in sentences with figures.
 fn findings(of: &Comparison) -> Vec<String> {
     let mut findings = Vec::new();
@@ -112,6 +130,7 @@ fn findings(of: &Comparison) -> Vec<String> {
             number::with_error(cauchy.value, cauchy.standard_error),
         ));
     }
+    findings.extend(worse_than_uniform(of));
     let level = of.speed.detected_level;
     let ratio = |op, model: ModelKind| of.speed.row(op, model.name(), "eight lanes", level).map(|row| row.ratio);
     if let (Some(eval), Some(cauchy), Some(sample), Some(points)) = (

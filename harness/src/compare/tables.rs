@@ -108,7 +108,7 @@ fn reference(of: &Comparison) -> Table {
     let mut table = Table::new("V of the default set under constant light")
         .text("model")
         .text("sampler")
-        .number("θ_o, °")
+        .number("θₒ, °")
         .number("V")
         .number("quadrature")
         .number("recorded")
@@ -121,8 +121,8 @@ fn reference(of: &Comparison) -> Table {
             number::plain(row.theta_o_deg, 3),
             estimate(&row.v),
             number::plain(row.quadrature, 4),
-            row.published.map_or_else(missing, |v| number::plain(v, 3)),
-            row.z_published.map_or_else(missing, |z| format!("{z:+.1}")),
+            row.recorded.map_or_else(missing, |v| number::plain(v, 3)),
+            row.z_recorded.map_or_else(missing, |z| format!("{z:+.1}")),
         ]);
     }
     table.note("V is the variance of one sample over the squared mean; z is the distance from the recorded figure in standard errors.")
@@ -138,7 +138,7 @@ const ESTIMATORS: [(ModelKind, Sampler); 4] = [
 
 /// A table with a row for each light and inclination, and a column for each of [`ESTIMATORS`].
 fn by_light(of: &Comparison, title: &str, sequences: &[SequenceKind], cell: impl Fn(&Row) -> String) -> Table {
-    let mut table = Table::new(title).text("light").number("θ_o, °");
+    let mut table = Table::new(title).text("light").number("θₒ, °");
     if sequences.len() > 1 {
         table = table.text("numbers");
     }
@@ -170,9 +170,9 @@ fn by_light(of: &Comparison, title: &str, sequences: &[SequenceKind], cell: impl
 
 fn variance(of: &Comparison) -> Table {
     by_light(of, "Relative variance of one sample, independent numbers", &[SequenceKind::Independent], |row| {
-        estimate(&row.v)
+        if row.tested { estimate(&row.v) } else { format!("≈ {}", number::plain(predicted(row), 3)) }
     })
-    .note("± one standard error. Samples for an error of 1%: 10⁴ V.")
+    .note("± one standard error; ≈ predicted from the reference, where too few samples see the light to measure it. Samples for an error of 1%: 10⁴ V.")
 }
 
 fn correlated(of: &Comparison) -> Table {
@@ -185,12 +185,21 @@ fn correlated(of: &Comparison) -> Table {
 }
 
 fn effective(of: &Comparison) -> Table {
-    by_light(of, "Effective samples in 1000", &[SequenceKind::Independent], |row| estimate(&row.ess_per_1000))
-        .note("1000 / (1 + V): how many samples without variance in the weights carry as much.")
+    by_light(of, "Effective samples in 1000", &[SequenceKind::Independent], |row| {
+        if row.tested {
+            estimate(&row.ess_per_1000)
+        } else {
+            format!("≈ {}", number::plain(1e3 / (1.0 + predicted(row)), 3))
+        }
+    })
+    .note("1000 / (1 + V): how many samples without variance in the weights carry as much.")
 }
 
 fn samples(of: &Comparison) -> Table {
     by_light(of, "Samples for an error of 1%", &[SequenceKind::Independent], |row| {
+        if !row.tested {
+            return format!("≈ {}", number::si(1e4 * predicted(row), ""));
+        }
         let n = row.samples_for_1_percent;
         if n.value < 1e5 { estimate(&n) } else { number::si(n.value, "") }
     })
@@ -199,9 +208,13 @@ fn samples(of: &Comparison) -> Table {
 
 fn efficiency(of: &Comparison) -> Table {
     by_light(of, "Efficiency, 1/(V · µs)", &[SequenceKind::Independent], |row| {
-        row.efficiency.map_or_else(String::new, |e| estimate(&e.scale(1e-6)))
+        let shown = row.efficiency.filter(|_| row.tested);
+        shown.map_or_else(String::new, |e| estimate(&e.scale(1e-6)))
     })
-    .note("Time on eight lanes, a sixteenth of the preparation included, lights excluded.")
+    .note(
+        "Time on eight lanes: an evaluation or a sample, and a sixteenth of the preparation; lights and the drawing of \
+         uniform directions are not charged. The error is that of V alone. Blank where V could not be measured.",
+    )
 }
 
 fn light_sampling(of: &Comparison) -> Table {
@@ -214,7 +227,7 @@ fn light_sampling(of: &Comparison) -> Table {
     let mut table = Table::new("Light sampling and multiple importance sampling: relative variance a sample")
         .text("model")
         .text("light")
-        .number("θ_o, °");
+        .number("θₒ, °");
     for name in &names {
         table = table.number(*name);
     }
@@ -237,6 +250,15 @@ fn light_sampling(of: &Comparison) -> Table {
         table.push(cells);
     }
     table.note("Combined with the power heuristic; every column spends the same number of samples in all.")
+}
+
+/// V of a row as the reference predicts it.
+fn predicted(row: &Row) -> f64 {
+    let [uniform, ou] = row.reference.v;
+    match row.sampler {
+        Sampler::Uniform => uniform,
+        Sampler::Ou => ou,
+    }
 }
 
 fn estimate(of: &Estimate) -> String {

@@ -188,11 +188,11 @@ fn agreement(v: Estimate, exact: f64) -> f64 {
     if v.value.is_nan() && exact.is_nan() { 0.0 } else { v.z_score(exact) }
 }
 
-/// V under constant light against quadrature and, for the specification's hair, against its table. `v` is that of the independent row.
+/// V under constant light against quadrature and, for the default hair, against its recorded figures. `v` is that of the independent row.
 pub(super) fn reference_v(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sampler, v: Estimate) -> ReferenceV {
     let exact = exact_variance(case, sampler);
-    let published =
-        (config.params == HairParams::default()).then(|| published_v(case.model, sampler, case.theta_o_deg)).flatten();
+    let recorded =
+        (config.params == HairParams::default()).then(|| recorded_v(case.model, sampler, case.theta_o_deg)).flatten();
     let rounded = Estimate { standard_error: v.standard_error.hypot(ROUNDING), ..v };
     ReferenceV {
         model: case.model,
@@ -202,13 +202,13 @@ pub(super) fn reference_v(config: &EfficiencyConfig<'_>, case: &Case, sampler: S
         quadrature: exact.intensity,
         z_quadrature: agreement(v, exact.intensity),
         quadrature_luminance: exact.luminance,
-        published,
-        z_published: published.map(|p| rounded.z_score(p)),
+        recorded,
+        z_recorded: recorded.map(|p| rounded.z_score(p)),
     }
 }
 
-/// The specification's V of its default hair, to three decimals.
-pub(super) fn published_v(model: ModelKind, sampler: Sampler, theta_o_deg: f64) -> Option<f64> {
+/// V of the default hair to three decimals, recorded by another implementation.
+pub(super) fn recorded_v(model: ModelKind, sampler: Sampler, theta_o_deg: f64) -> Option<f64> {
     let figures = match (model, sampler) {
         (ModelKind::Gaussian, Sampler::Uniform) => [0.706, 0.931, 2.268],
         (ModelKind::Gaussian, Sampler::Ou) => [0.209, 0.189, 0.290],

@@ -10,7 +10,7 @@ use serde::Serialize;
 pub struct EfficiencyResult {
     /// What was computed.
     pub settings: Settings,
-    /// Under constant light: measured V against quadrature and against the published figures.
+    /// Under constant light: measured V against quadrature and against the recorded figures.
     pub reference_v: Vec<ReferenceV>,
     /// Variance and bias of every estimator under every light.
     pub rows: Vec<Row>,
@@ -87,10 +87,10 @@ pub struct ReferenceV {
     pub z_quadrature: f64,
     /// By quadrature: of the luminance of Rec. 709, for comparison.
     pub quadrature_luminance: f64,
-    /// The specification's figure, for its default hair.
-    pub published: Option<f64>,
+    /// For the default hair, the figure recorded by another implementation.
+    pub recorded: Option<f64>,
     /// Distance of the measured V to it, in standard errors; that of its rounding is added.
-    pub z_published: Option<f64>,
+    pub z_recorded: Option<f64>,
 }
 
 /// One estimator under one light.

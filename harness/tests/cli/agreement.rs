@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 /// Single precision rounds a direction of the input by up to this, rad.
 const ROUNDING: f64 = 1.2e-7;
 
-/// Relative error that the bounds of SPEC 6 allow, and that the rounding of the input forces on any code of single
+/// Relative error that the bounds of the kernels allow, and that the rounding of the input forces on any code of single
 /// precision: it moves a direction against a bell's width and against the seam at |phi| = pi, where cos(phi/2) is 0.
 fn allowed(model: &str, quantity: &str, case: &Case) -> f64 {
     let d = &case.desc;

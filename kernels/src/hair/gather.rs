@@ -42,7 +42,8 @@ crate::lane_struct! {
         pub color_tt: [C; 3],
         /// Colour of TRT and the glints.
         pub color_trt: [C; 3],
-        /// Factor on each lobe that is no colour: 1, and the strength of the glints.
+        /// Factor on each lobe that is no colour: 1, and the strength of the glints (up to 1e6; its excess is in the
+        /// colour of TRT).
         pub strength: [C; 4],
         /// Probability of choosing each lobe: its share of the energy.
         pub selection: [C; 4],
@@ -58,7 +59,7 @@ crate::lane_struct! {
         pub sin_theta_o: C,
         /// Cosine of `theta_o`.
         pub cos_theta_o: C,
-        /// The part of `wo` in the normal plane, as it was given: v and w, and its length.
+        /// The part of `wo` in the normal plane, with the digits it was given: v and w, and its length.
         pub plane_o: [C; 3],
         /// Cosine and sine of `phi_o`.
         pub phi_o: [C; 2],
@@ -145,6 +146,8 @@ impl HairMaterial<f32> {
         let glint = TruncatedCauchy::new(-phi_g, FRAC_PI_2 - phi_g, gamma_g);
         let tt = TruncatedCauchy::new(-PI, PI, gamma_tt);
         let (p, bounds) = selection(energies(&beta, gamma_tt, gamma_g, params));
+        // Glints of absurd strength take the excess from the colour, so that their product overflows last.
+        let excess = (d.intensity_g * 1e-6).max(1.0);
         Self {
             alpha: [d.alpha_r, d.alpha_tt, d.alpha_trt],
             beta: [beta[0], beta[1], beta[2], beta[2]],
@@ -165,8 +168,8 @@ impl HairMaterial<f32> {
             ],
             color_r: d.intensity_r,
             color_tt: d.intensity_tt,
-            color_trt: d.intensity_trt,
-            strength: [1.0, 1.0, 1.0, d.intensity_g],
+            color_trt: d.intensity_trt.map(|c| (c * excess).min(f32::MAX)),
+            strength: [1.0, 1.0, 1.0 / excess, d.intensity_g / excess],
             selection: p,
             bounds,
         }
@@ -215,6 +218,10 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     // On the axis the azimuth is 0 by convention.
     let off_axis = zero.lt(plane);
     let inv_plane = one / plane;
+    let cos_phi_o = L::select(off_axis, y * inv_plane, one);
+    let sin_phi_o = L::select(off_axis, z * inv_plane, zero);
+    // Products of components this small would leave the range of a float; their last digit is none of the bounds'.
+    let near_axis = plane.lt(c(1e-4));
     let half_theta_o = atan_unit(x / (len + plane));
 
     let mut shift = [zero; 4];
@@ -243,8 +250,12 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     HairGather {
         sin_theta_o: (x * inv_len).store(),
         cos_theta_o: (plane * inv_len).store(),
-        plane_o: store3([L::select(off_axis, y, one), L::select(off_axis, z, zero), L::select(off_axis, plane, one)]),
-        phi_o: [L::select(off_axis, y * inv_plane, one).store(), L::select(off_axis, z * inv_plane, zero).store()],
+        plane_o: store3([
+            L::select(near_axis, cos_phi_o, y),
+            L::select(near_axis, sin_phi_o, z),
+            L::select(near_axis, one, plane),
+        ]),
+        phi_o: [cos_phi_o.store(), sin_phi_o.store()],
         shift: store4(shift),
         longitude_sin: store4(sin),
         longitude_cos: store4(cos),

@@ -8,6 +8,9 @@ use hairis::{HairDesc, HairParams, ParamError};
 
 /// How far from 1 the length of a direction may be; it is normalised then.
 const LENGTH_TOLERANCE: f64 = 1e-3;
+/// How far from 1 the length of a unit vector of single precision may be: its digits are kept as they are, so that all
+/// paths answer for the same direction.
+const ROUNDED: f64 = 2e-7;
 
 /// Why a line was refused: the path of the field at fault, and what is wrong with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -162,7 +165,9 @@ fn refused(error: &ParamError, exact: &Parameters<f64>) -> Refusal {
 fn direction(json: Option<Json>, field: &str) -> Result<[f64; 3], Refusal> {
     let [u, v, w] = Json::three(json, field)?;
     let length = u.hypot(v).hypot(w);
-    if (length - 1.0).abs() <= LENGTH_TOLERANCE {
+    if (length - 1.0).abs() <= ROUNDED {
+        Ok([u, v, w])
+    } else if (length - 1.0).abs() <= LENGTH_TOLERANCE {
         Ok([u / length, v / length, w / length])
     } else {
         Err(Refusal::at(field, format!("must be a unit vector (to {LENGTH_TOLERANCE}), got length {length}")))
