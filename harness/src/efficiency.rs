@@ -16,7 +16,8 @@
 //! - Every mean is held against a reference, see [`Reference`], and gives a bias z-score. Contributions of rare hits are skewed, which would spoil the tails of
 //!   a plain z: it is put through Hall's transformation (1992, On the removal of skewness by transformation). [`Check`] collects them.
 //! - A run that expects to see a small light a few times only is no test: it misses it and is sure of the wrong mean. What it may expect is known beforehand, from
-//!   the V of [`Reference::v`]: a z-score enters the check when the samples are worth at least [`MIN_EFFECTIVE`] of them, `n / (1 + V)`. The rest
+//!   the V of [`Reference::v`]: a z-score enters the check when the samples are worth at least [`MIN_EFFECTIVE`] of them, `n / (1 + V)`, and
+//!   the hits that carry the skewness are expected to be as many, `n / skewness^2`. The rest
 //!   are printed and marked, and so are their V: those of the reference are the better figures there.
 //!
 //! # The scene

@@ -220,3 +220,31 @@ fn grazing_samples_are_discarded() {
         }
     }
 }
+
+/// Products of components next to nothing left the range of a float, and every result was the largest one.
+#[test]
+fn an_azimuth_next_to_nothing_is_still_an_azimuth() {
+    let gather = material(&HairDesc::default()).prepare(Vec3::new(1.0, 1e-15, 0.0));
+    let reference = material(&HairDesc::default()).prepare(Vec3::new(1.0, 1e-6, 0.0));
+    for wi in [Vec3::new(1.0, 2e-5, 0.0), Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.6, 0.0, 0.8)] {
+        let (got, want) = (gather.eval_pdf(wi), reference.eval_pdf(wi));
+        assert!((got.pdf / want.pdf - 1.0).abs() < 1e-4, "{wi}: {got:?} against {want:?}");
+        for (got, want) in got.value.iter().zip(want.value) {
+            assert!((got / want - 1.0).abs() < 0.2, "{wi}: {got} against {want}");
+        }
+    }
+}
+
+/// The strength of the glints and their colour may each be absurd where their product is not.
+#[test]
+fn absurd_glints_of_a_faint_colour_do_not_overflow() {
+    let usual = HairDesc { intensity_g: 2.0, intensity_trt: [0.15; 3], phi_g: PI, ..HairDesc::default() };
+    let absurd = HairDesc { intensity_g: 3e37, intensity_trt: [1e-38; 3], ..usual };
+    let [usual, absurd] = [usual, absurd].map(|desc| material(&desc).prepare(Vec3::Y));
+    let wi = Vec3::new(0.1, -0.99, -0.05).normalize();
+    let only = LobeMask::of(&[Lobe::GLINT]);
+    let (usual, absurd) = (usual.with_lobes(only).eval(wi), absurd.with_lobes(only).eval(wi));
+    for (usual, absurd) in usual.iter().zip(absurd) {
+        assert!((absurd / usual - 1.0).abs() < 1e-4, "{absurd} against {usual}");
+    }
+}

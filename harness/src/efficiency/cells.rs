@@ -75,12 +75,12 @@ pub(super) fn row(
     }
 }
 
-/// V of one independent sample.
-fn predicted(lit: &Lit<'_>, sampler: Sampler) -> f64 {
-    let [uniform, ou] = lit.reference.v;
+/// V and skewness of one independent sample.
+fn predicted(lit: &Lit<'_>, sampler: Sampler) -> [f64; 2] {
+    let [v, skewness] = [lit.reference.v, lit.reference.skewness];
     match sampler {
-        Sampler::Uniform => uniform,
-        Sampler::Ou => ou,
+        Sampler::Uniform => [v[0], skewness[0]],
+        Sampler::Ou => [v[1], skewness[1]],
     }
 }
 
@@ -169,6 +169,7 @@ pub(super) fn sweep_row(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sam
         quadrature_error: exact.mean_error,
         method: ReferenceMethod::Quadrature,
         v: [exact.intensity; 2],
+        skewness: [0.0; 2],
     };
     SweepRow {
         model: case.model,

@@ -119,9 +119,11 @@ pub(super) fn bias_z(moments: &Moments, reference: &Reference) -> f64 {
     n.sqrt() * cubic * widened
 }
 
-/// Whether `samples` of variance `v` are worth enough for a test of their mean. A V that is no number (black light, black hair) is no reason not to.
-pub(super) fn is_tested(samples: usize, v: f64) -> bool {
-    v.is_nan() || samples as f64 / (1.0 + v) >= MIN_EFFECTIVE
+/// Whether `samples` of variance `v` and of this skewness are worth enough for a test of their mean: if rare hits carry a part of it, by their number, which is
+/// `n / skewness^2` whatever the part; if they carry all of it, by `n / (1 + V)` as well. What is no number (black light, black hair) is no reason not to.
+pub(super) fn is_tested(samples: usize, [v, skewness]: [f64; 2]) -> bool {
+    let n = samples as f64;
+    (v.is_nan() || n / (1.0 + v) >= MIN_EFFECTIVE) && (skewness.is_nan() || n >= MIN_EFFECTIVE * skewness * skewness)
 }
 
 /// `1000 / (1 + V)`.

@@ -29,6 +29,7 @@ fn mean_by_quadrature(case: &Case, light: &dyn Light) -> Reference {
         quadrature_error: intensity(integral.error),
         method: ReferenceMethod::Quadrature,
         v: [f64::NAN; 2],
+        skewness: [0.0; 2],
     }
 }
 
@@ -62,7 +63,7 @@ pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, 
     let mut source = Stratified::new(&[64, 64], seed, id);
     let cells = source.cells();
     let mut means = Moments::new();
-    let mut squares = [0.0; 2];
+    let (mut squares, mut cubes) = ([0.0; 2], [0.0; 2]);
     for _ in 0..passes {
         let mut sum = 0.0;
         for _ in 0..cells {
@@ -70,8 +71,11 @@ pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, 
             let value = case.oracle_value(s.dir);
             let y = intensity(core::array::from_fn(|c| s.radiance[c] * value[c]));
             sum += over(y, s.pdf);
-            for (square, sampler) in squares.iter_mut().zip(Sampler::ALL) {
-                *square += over(over(y * y, density(case, sampler, s.dir)), s.pdf);
+            for ((square, cube), sampler) in squares.iter_mut().zip(&mut cubes).zip(Sampler::ALL) {
+                // What one sample of the sampler gives in this direction.
+                let contribution = over(y, density(case, sampler, s.dir));
+                *square += over(y * contribution, s.pdf);
+                *cube += over(y * contribution * contribution, s.pdf);
             }
         }
         means.push(sum / cells as f64);
@@ -79,9 +83,14 @@ pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, 
     let mean = means.mean_estimate();
     let n = (passes * cells) as f64;
     let v = squares.map(|square| square / n / (mean.value * mean.value) - 1.0);
+    // The third central moment over the cube of the deviation, both over powers of the mean.
+    let skewness = core::array::from_fn(|i| {
+        let third = cubes[i] / n / mean.value.powi(3);
+        (third - 3.0 * v[i] - 1.0) / v[i].powf(1.5)
+    });
     let [width, height] = map.size();
     if width * height <= max_texels {
-        return Reference { v, ..mean_by_quadrature(case, map) };
+        return Reference { v, skewness, ..mean_by_quadrature(case, map) };
     }
     Reference {
         value: mean.value,
@@ -89,6 +98,7 @@ pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, 
         quadrature_error: 0.0,
         method: ReferenceMethod::StratifiedRun,
         v,
+        skewness,
     }
 }
 

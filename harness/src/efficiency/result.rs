@@ -68,6 +68,8 @@ pub struct Reference {
     pub method: ReferenceMethod,
     /// V of one independent sample, `[uniform, ou]`: by quadrature, or for an environment by a stratified run from the light, good to about a percent.
     pub v: [f64; 2],
+    /// Skewness of one independent sample, `[uniform, ou]`, from the same run; 0 for lights of one brightness, whose V tells all.
+    pub skewness: [f64; 2],
 }
 
 /// V under constant light, three times.

@@ -157,7 +157,7 @@ fn a_small_run_has_every_row_and_passes_its_check() {
     assert_eq!(result.reference_v.len(), 16);
     assert_eq!(result.rows.len(), 240);
     assert_eq!(result.mis_rows.len(), 120);
-    assert_eq!(result.convergence.len(), 120);
+    assert_eq!(result.convergence.len(), 180);
     assert_eq!(result.beta_sweep.len(), 96);
     let mut calls = calls.clone();
     calls.sort_unstable();
