@@ -2,7 +2,7 @@
 
 use super::case::Case;
 use super::cells::recorded_v;
-use super::measure::{bias_z, independent};
+use super::measure::{bias_z, independent, is_tested};
 use super::reference::{by_quadrature, exact_variance};
 use super::result::Technique;
 use super::*;
@@ -220,6 +220,7 @@ fn the_bias_score_is_normal_where_hits_are_rare() {
         quadrature_error: 0.0,
         method: ReferenceMethod::Quadrature,
         v: [399.0; 2],
+        skewness: [0.0; 2],
     };
     let mut xi = Independent::new(51, 0);
     let mut plain = 0;
@@ -231,6 +232,14 @@ fn the_bias_score_is_normal_where_hits_are_rare() {
     }
     // 1% of 4000 are 40, give or take 6.3.
     assert!((18..=65).contains(&corrected), "{corrected} of 4000 beyond 1%, a plain z has {plain}");
+}
+
+#[test]
+fn ten_hits_that_carry_a_fifth_of_the_mean_are_too_few() {
+    // 0.8, and once in 10^4 samples 2000 more: worth 249 samples of 10^5, and ten hits.
+    let (v, skewness) = (0.04 / 1e-4, 100.0);
+    assert!(!is_tested(100_000, [v, skewness]), "ten hits are expected");
+    assert!(is_tested(1_000_000, [v, skewness]), "a hundred are");
 }
 
 #[test]
