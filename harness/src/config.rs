@@ -43,7 +43,7 @@ pub enum Path {
     X8,
     /// Slices in, slices out, in single precision: neighbouring lines on the same hair with the same wo are one call
     Batch,
-    /// The paper's formulas line by line, in double precision and on unrounded input
+    /// The paper's formulas line by line, in double precision, on input rounded as for the others
     F64,
 }
 

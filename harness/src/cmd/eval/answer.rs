@@ -1,10 +1,10 @@
 //! The answers, computed along the chosen path.
 
-use super::request::{Model, Query, Request, single_xi, single3};
+use super::request::{Model, Query, Request};
 use crate::config::Path;
 use core::array::from_fn;
 use glam::Vec3;
-use hairis::textbook::{Shape, Textbook};
+use hairis::textbook::{Parameters, Shape, Textbook};
 use hairis::{
     Bell, Bsdf, Bsdf8, Eval, EvalSlices, Gather, Gaussian, Hair, Lobe, LobeEval, LobeEval8, Model as _, PerLobe,
     Sample, SampleSlices, Vec3x8,
@@ -79,8 +79,8 @@ fn scalar<B: Bell>(hair: Hair<B>, requests: &[&Request]) -> Vec<Answer<f32>> {
     let one = |request: &&Request| {
         let gather = gather(hair, request);
         match request.query {
-            Query::Wi(wi) => valued(gather.eval_pdf(single3(wi)), densities(&gather.lobes(single3(wi)))),
-            Query::Xi(xi) => sampled(gather.sample(single_xi(xi)), |wi| densities(&gather.lobes(wi))),
+            Query::Wi(wi) => valued(gather.eval_pdf(wi), densities(&gather.lobes(wi))),
+            Query::Xi(xi) => sampled(gather.sample(xi), |wi| densities(&gather.lobes(wi))),
         }
     };
     requests.iter().map(one).collect()
@@ -92,16 +92,16 @@ fn eight<B: Bell>(hair: Hair<B>, requests: &[&Request]) -> Vec<Answer<f32>> {
     for group in requests.chunks(8) {
         let lane = |i: usize| group[i.min(group.len() - 1)];
         let materials: [Bsdf<Hair<B>>; 8] = from_fn(|i| Bsdf::new(&hair, &lane(i).params));
-        let wo = Vec3x8::from(from_fn(|i| single3(lane(i).wo)));
+        let wo = Vec3x8::from(from_fn(|i| lane(i).wo));
         let gathers = Bsdf8::pack(materials.each_ref()).prepare8(&wo);
         // A lane whose line has no xi samples all the same, and its sample is not looked at.
         let xi: [[f32; 3]; 8] = from_fn(|i| match lane(i).query {
             Query::Wi(_) => [0.5; 3],
-            Query::Xi(xi) => single_xi(xi),
+            Query::Xi(xi) => xi,
         });
         let samples = gathers.sample8(&from_fn(|row| f32x8::new(xi.map(|xi| xi[row]))));
         let wi = Vec3x8::from(from_fn(|i| match lane(i).query {
-            Query::Wi(wi) => single3(wi),
+            Query::Wi(wi) => wi,
             Query::Xi(_) => samples.wi.lane(i),
         }));
         let (evals, lobes) = (gathers.eval_pdf8(&wi), gathers.lobes8(&wi));
@@ -123,8 +123,8 @@ fn batch<B: Bell>(hair: Hair<B>, requests: &[&Request]) -> Vec<Answer<f32>> {
         let mut xi = Vec::new();
         for request in run {
             match request.query {
-                Query::Wi(direction) => wi.push(single3(direction)),
-                Query::Xi(numbers) => xi.push(single_xi(numbers)),
+                Query::Wi(direction) => wi.push(direction),
+                Query::Xi(numbers) => xi.push(numbers),
             }
         }
         let mut values = batch_values(&gather, &wi).into_iter();
@@ -184,11 +184,15 @@ fn textbook(request: &Request) -> Answer<f64> {
         Model::Gaussian => Shape::Gaussian,
         Model::Cauchy => Shape::Cauchy,
     };
-    let hair = Textbook::prepare(&request.exact, shape, request.wo);
+    let double = |v: [f32; 3]| v.map(f64::from);
+    let hair = Textbook::prepare(&Parameters::from(&request.params), shape, double(request.wo.to_array()));
     match request.query {
-        Query::Wi(wi) => Answer::Value { s: hair.eval(wi), pdf: hair.pdf(wi), pdf_lobe: hair.lobe_pdfs(wi).0 },
+        Query::Wi(wi) => {
+            let wi = double(wi.to_array());
+            Answer::Value { s: hair.eval(wi), pdf: hair.pdf(wi), pdf_lobe: hair.lobe_pdfs(wi).0 }
+        }
         Query::Xi(xi) => {
-            let drawn = hair.sample(xi);
+            let drawn = hair.sample(double(xi));
             Answer::Sample {
                 wi: drawn.wi,
                 s: drawn.value,
@@ -202,7 +206,7 @@ fn textbook(request: &Request) -> Answer<f64> {
 }
 
 fn gather<B: Bell>(hair: Hair<B>, request: &Request) -> Gather<Hair<B>> {
-    Bsdf::new(&hair, &request.params).prepare(single3(request.wo))
+    Bsdf::new(&hair, &request.params).prepare(request.wo)
 }
 
 fn valued(eval: Eval, pdf_lobe: [f32; 4]) -> Answer<f32> {

@@ -42,21 +42,19 @@ pub(super) enum Model {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Query {
     /// The value and the densities at a unit direction.
-    Wi([f64; 3]),
+    Wi(Vec3),
     /// The sample of three numbers in `[0, 1)`: for the lobe, the longitude and the azimuth.
-    Xi([f64; 3]),
+    Xi([f32; 3]),
 }
 
-/// A line of the input.
+/// A line of the input, rounded to single precision: every path is asked the same question, and what they differ by is
+/// computed, not read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Request {
     pub(super) model: Model,
-    /// The parameters in single precision, which is how they are checked.
     pub(super) params: HairParams,
-    /// The same as they were given.
-    pub(super) exact: Parameters<f64>,
     /// Unit.
-    pub(super) wo: [f64; 3],
+    pub(super) wo: Vec3,
     pub(super) query: Query,
 }
 
@@ -85,7 +83,7 @@ impl Request {
             (None, None) => return Err(Refusal::at("wi", "missing, and so is xi: one of them is needed")),
             (Some(_), Some(_)) => return Err(Refusal::at("wi", "given together with xi: only one of them may be")),
         };
-        Ok(Self { model, params, exact, wo, query })
+        Ok(Self { model, params, wo, query })
     }
 }
 
@@ -162,27 +160,27 @@ fn refused(error: &ParamError, exact: &Parameters<f64>) -> Refusal {
 }
 
 /// A direction, normalised.
-fn direction(json: Option<Json>, field: &str) -> Result<[f64; 3], Refusal> {
+fn direction(json: Option<Json>, field: &str) -> Result<Vec3, Refusal> {
     let [u, v, w] = Json::three(json, field)?;
     let length = u.hypot(v).hypot(w);
     if (length - 1.0).abs() <= ROUNDED {
-        Ok([u, v, w])
+        Ok(single3([u, v, w]))
     } else if (length - 1.0).abs() <= LENGTH_TOLERANCE {
-        Ok([u / length, v / length, w / length])
+        Ok(single3([u / length, v / length, w / length]))
     } else {
         Err(Refusal::at(field, format!("must be a unit vector (to {LENGTH_TOLERANCE}), got length {length}")))
     }
 }
 
 /// Three numbers in `[0, 1)`.
-fn uniform(json: Option<Json>, field: &str) -> Result<[f64; 3], Refusal> {
+fn uniform(json: Option<Json>, field: &str) -> Result<[f32; 3], Refusal> {
     let xi = Json::three(json, field)?;
     for (i, x) in xi.iter().enumerate() {
         if !(0.0..1.0).contains(x) {
             return Err(Refusal::at(&format!("{field}[{i}]"), format!("must be in [0, 1), got {x}")));
         }
     }
-    Ok(xi)
+    Ok(single_xi(xi))
 }
 
 /// The nearest number of single precision.
@@ -192,12 +190,12 @@ pub(super) fn single(x: f64) -> f32 {
 }
 
 /// A direction in single precision.
-pub(super) fn single3([u, v, w]: [f64; 3]) -> Vec3 {
+fn single3([u, v, w]: [f64; 3]) -> Vec3 {
     Vec3::new(single(u), single(v), single(w))
 }
 
 /// Uniform numbers in single precision, below 1 still.
-pub(super) fn single_xi(xi: [f64; 3]) -> [f32; 3] {
+fn single_xi(xi: [f64; 3]) -> [f32; 3] {
     const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
     xi.map(|x| single(x).min(LARGEST))
 }
