@@ -2,7 +2,7 @@
 
 use crate::dispatch::{self, Level};
 use crate::lanes::Packet;
-use crate::{Broadcast, Gather, Model, Vec3x};
+use crate::{Broadcast, Gather, Lanes, Model, Vec3x};
 use core::fmt::{self, Debug};
 
 /// Slices of one call whose lengths differ: which, how long it is, and how long the first is.
@@ -136,13 +136,13 @@ fn check_lengths<const N: usize>(
 
 /// What a batch computes of three numbers a lane: `N` numbers a lane.
 pub(crate) trait Row<const N: usize> {
-    fn row<M: Model, L: Packet, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, input: [L; 3]) -> [L; N];
+    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, input: [L; 3]) -> [L; N];
 }
 
 pub(crate) struct EvalRow;
 impl Row<4> for EvalRow {
     #[inline(always)]
-    fn row<M: Model, L: Packet, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, [x, y, z]: [L; 3]) -> [L; 4] {
+    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, [x, y, z]: [L; 3]) -> [L; 4] {
         let eval = M::eval::<L, C>(gather, Vec3x::new(x, y, z));
         let [r, g, b] = eval.value;
         [r, g, b, eval.pdf]
@@ -152,7 +152,7 @@ impl Row<4> for EvalRow {
 pub(crate) struct SampleRow;
 impl Row<11> for SampleRow {
     #[inline(always)]
-    fn row<M: Model, L: Packet, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, xi: [L; 3]) -> [L; 11] {
+    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, xi: [L; 3]) -> [L; 11] {
         let s = M::sample::<L, C>(gather, xi);
         let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
         [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
@@ -162,10 +162,10 @@ impl Row<11> for SampleRow {
 /// The loop of a batch over whole packets. Every column has as many packets as the first; a missing one would be
 /// left out, for want of a branch that panics.
 #[inline(always)]
-pub(crate) fn packets<M: Model, R: Row<N>, L: Packet, C: Broadcast<L> + Debug, const N: usize>(
+pub(crate) fn packets<M: Model, R: Row<N>, L: Packet<W>, C: Broadcast<L> + Debug, const N: usize, const W: usize>(
     gather: &M::Gather<C>,
-    inputs: [&[[f32; 8]]; 3],
-    outputs: &mut [&mut [[f32; 8]]; N],
+    inputs: [&[[f32; W]]; 3],
+    outputs: &mut [&mut [[f32; W]]; N],
 ) {
     let [first, second, third] = inputs;
     for (at, first) in first.iter().enumerate() {
@@ -183,10 +183,10 @@ pub(crate) fn packets<M: Model, R: Row<N>, L: Packet, C: Broadcast<L> + Debug, c
 
 /// Cuts slices into whole packets, and the rest into one packet on the stack; `run` is called on either.
 #[inline(always)]
-pub(crate) fn in_packets<const N: usize>(
+pub(crate) fn in_packets<const N: usize, const W: usize>(
     inputs: [&[f32]; 3],
     outputs: &mut [&mut [f32]; N],
-    mut run: impl FnMut([&[[f32; 8]]; 3], &mut [&mut [[f32; 8]]; N]),
+    mut run: impl FnMut([&[[f32; W]]; 3], &mut [&mut [[f32; W]]; N]),
 ) {
     let cut = inputs.map(<[f32]>::as_chunks);
     let mut out = outputs.each_mut().map(|column| column.as_chunks_mut());
@@ -194,11 +194,11 @@ pub(crate) fn in_packets<const N: usize>(
     if cut[0].1.is_empty() {
         return;
     }
-    let mut from = [[[0.0; 8]]; 3];
+    let mut from = [[[0.0; W]]; 3];
     for ([packet], (_, rest)) in from.iter_mut().zip(cut) {
         packet.iter_mut().zip(rest).for_each(|(to, from)| *to = *from);
     }
-    let mut to = [[[0.0; 8]]; N];
+    let mut to = [[[0.0; W]]; N];
     run(from.each_ref().map(<[_; 1]>::as_slice), &mut to.each_mut().map(<[_; 1]>::as_mut_slice));
     for ([packet], (_, rest)) in to.iter().zip(out) {
         rest.iter_mut().zip(packet).for_each(|(to, from)| *to = *from);

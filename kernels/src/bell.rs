@@ -1,8 +1,7 @@
 //! The bell curves that the published model is built of: its extension point.
 
 use crate::Lanes;
-use crate::math::exp2_neg;
-use core::f32::consts::LOG2_E;
+use crate::math::gaussian;
 
 /// A bell of unit peak: every Gaussian of the published model, or what replaces it.
 ///
@@ -51,14 +50,14 @@ pub trait Bell: Copy {
 /// The bell of the published model: `exp(-s/2)`, a Gaussian whose deviation is the width.
 ///
 /// - Source: Ou et al. 2012, table 2; unit peak by ERRATA E4.
-/// - Accuracy: exactly 0 from about `2^-115` down, see [`crate::math::exp2_neg`].
+/// - Accuracy: exactly 0 from about `2^-115` down, see [`crate::math::gaussian`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Gaussian;
 
 impl Bell for Gaussian {
     #[inline(always)]
     fn one<L: Lanes>(s: L, _cauchy: L) -> L {
-        exp2_neg(s * L::splat(0.5 * LOG2_E))
+        gaussian(s)
     }
 
     // Two Gaussians are one.

@@ -3,15 +3,19 @@
 
 use crate::batch::{self, Row};
 use crate::model::{Eval8, Hit8, LobeEval8, Sample8};
-use crate::{Broadcast, Hit, Model, PerLobe, Vec3x, Vec3x8};
+use crate::{Broadcast, Gather8, Hit, Model, PerLobe, Vec3x, Vec3x8};
 use core::fmt;
 use wide::f32x8;
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use crate::lanes::avx2::Avx2;
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+use crate::lanes::{avx512::Avx512, pair::Pair};
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 cpufeatures::new!(avx2_fma, "avx2", "fma");
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+cpufeatures::new!(avx512, "avx2", "fma", "avx512f", "avx512vl", "avx512dq", "avx512bw");
 
 /// An instruction set that this CPU has: a value is the proof.
 ///
@@ -28,6 +32,8 @@ enum Kind {
     Portable,
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     Avx2,
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    Avx512,
 }
 
 impl Level {
@@ -36,8 +42,13 @@ impl Level {
     #[must_use]
     pub fn detect() -> Self {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        if avx2_fma::get() {
-            return Self(Kind::Avx2);
+        {
+            if avx512::get() {
+                return Self(Kind::Avx512);
+            }
+            if avx2_fma::get() {
+                return Self(Kind::Avx2);
+            }
         }
         Self::portable()
     }
@@ -49,20 +60,25 @@ impl Level {
         Self(Kind::Portable)
     }
 
-    /// Every level of this CPU, the portable one first.
+    /// Every level of this CPU, the portable one first and the best one last.
     #[inline]
     pub fn available() -> impl Iterator<Item = Self> {
-        let best = Self::detect();
-        core::iter::once(Self::portable()).chain((best != Self::portable()).then_some(best))
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        let more = [avx2_fma::get().then_some(Self(Kind::Avx2)), avx512::get().then_some(Self(Kind::Avx512))];
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        let more: [Option<Self>; 0] = [];
+        core::iter::once(Self::portable()).chain(more.into_iter().flatten())
     }
 
-    /// Name of the instruction set, for reports: `avx2+fma`, or what the program was compiled for.
+    /// Name of the instruction set, for reports: `avx2+fma`, `avx512`, or what the program was compiled for.
     #[inline]
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self.0 {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Kind::Avx2 => "avx2+fma",
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Kind::Avx512 => "avx512",
             Kind::Portable => PORTABLE,
         }
     }
@@ -73,7 +89,7 @@ impl Level {
     pub const fn fuses(self) -> bool {
         match self.0 {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Kind::Avx2 => true,
+            Kind::Avx2 | Kind::Avx512 => true,
             Kind::Portable => crate::lanes::portable::FUSES,
         }
     }
@@ -111,7 +127,7 @@ macro_rules! entry {
         pub(crate) fn $name<M: Model, C: Constant>(level: Level, $($arg: $type),*) -> $out {
             match level.0 {
                 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-                Kind::Avx2 => {
+                Kind::Avx2 | Kind::Avx512 => {
                     #[target_feature(enable = "avx2,fma")]
                     fn avx2<M: Model, C: Constant>($($arg: $type),*) -> $out {
                         $body!(M, Avx2, C, $($arg),*)
@@ -135,7 +151,12 @@ impl Constant for f32x8 {}
 
 macro_rules! prepare {
     ($M:ty, $L:ty, $C:ty, $material:ident, $hits:ident) => {
-        <$M>::prepare::<$L, $C>($material, Hit { wo: Vec3x::load(&$hits.wo), h: Broadcast::<$L>::lanes(&$hits.h) })
+        Gather8 {
+            inner: <$M>::prepare::<$L, $C>(
+                $material,
+                Hit { wo: Vec3x::load(&$hits.wo), h: Broadcast::<$L>::lanes(&$hits.h) },
+            ),
+        }
     };
 }
 macro_rules! eval {
@@ -157,7 +178,7 @@ macro_rules! sample {
 
 entry! {
     /// Eight gather points.
-    prepare8(material: &M::Material<C>, hits: &Hit8) -> M::Gather<f32x8>, prepare
+    prepare8(material: &M::Material<C>, hits: &Hit8) -> Gather8<M>, prepare
 }
 entry! {
     /// Value and density of eight directions.
@@ -172,6 +193,29 @@ entry! {
     sample8(gather: &M::Gather<C>, xi: &[f32x8; 3]) -> Sample8, sample
 }
 
+/// Declares the loop of a batch on the backend `$L` of `$W` lanes, whole packets and then the rest.
+macro_rules! batch_on {
+    ($M:ty, $R:ty, $L:ty, $N:ident, $W:literal, $gather:ident, $inputs:ident, $outputs:ident) => {
+        batch::in_packets($inputs, $outputs, |inputs, outputs| {
+            batch::packets::<$M, $R, $L, f32, $N, $W>($gather, inputs, outputs);
+        })
+    };
+    ($M:ty, $R:ty, $L:ty, $N:ident, $W:literal, $gather:ident, $inputs:ident, $outputs:ident, $name:ident, $features:literal) => {{
+        #[target_feature(enable = $features)]
+        fn $name<M: Model, R: Row<N>, const N: usize>(
+            gather: &M::Gather<f32>,
+            inputs: [&[[f32; $W]]; 3],
+            outputs: &mut [&mut [[f32; $W]]; N],
+        ) {
+            batch::packets::<M, R, $L, f32, N, $W>(gather, inputs, outputs);
+        }
+        batch::in_packets($inputs, $outputs, |inputs, outputs| {
+            // SAFETY: a `Level` of this kind is made only where these features were found.
+            unsafe { $name::<$M, $R, $N>($gather, inputs, outputs) }
+        })
+    }};
+}
+
 /// `N` numbers for each three of a batch.
 #[inline]
 pub(crate) fn batch<M: Model, R: Row<N>, const N: usize>(
@@ -182,22 +226,22 @@ pub(crate) fn batch<M: Model, R: Row<N>, const N: usize>(
 ) {
     match level.0 {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Kind::Avx2 => {
-            #[target_feature(enable = "avx2,fma")]
-            fn avx2<M: Model, R: Row<N>, const N: usize>(
-                gather: &M::Gather<f32>,
-                inputs: [&[[f32; 8]]; 3],
-                outputs: &mut [&mut [[f32; 8]]; N],
-            ) {
-                batch::packets::<M, R, Avx2, f32, N>(gather, inputs, outputs);
-            }
-            batch::in_packets(inputs, outputs, |inputs, outputs| {
-                // SAFETY: a `Level` of this kind is made only where `avx2_fma` found both features.
-                unsafe { avx2::<M, R, N>(gather, inputs, outputs) }
-            });
+        Kind::Avx2 => batch_on!(M, R, Pair<Avx2>, N, 16, gather, inputs, outputs, avx2, "avx2,fma"),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Kind::Avx512 => {
+            batch_on!(
+                M,
+                R,
+                Pair<Avx512>,
+                N,
+                32,
+                gather,
+                inputs,
+                outputs,
+                avx512,
+                "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw"
+            );
         }
-        Kind::Portable => batch::in_packets(inputs, outputs, |inputs, outputs| {
-            batch::packets::<M, R, f32x8, f32, N>(gather, inputs, outputs);
-        }),
+        Kind::Portable => batch_on!(M, R, f32x8, N, 8, gather, inputs, outputs),
     }
 }

@@ -10,7 +10,7 @@ use crate::lanes::lanes3;
 use crate::math::atan_unit;
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::{Bell, Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Vec3x};
-use core::f32::consts::PI;
+use core::f32::consts::FRAC_PI_2;
 use core::fmt::Debug;
 use wide::f32x8;
 
@@ -39,9 +39,11 @@ struct Place<L: Lanes> {
     half_theta_i: L,
     sin_theta_i: L,
     cos_theta_i: L,
-    /// `|phi|`, and `pi - |phi|` formed without a difference where it is small.
-    phi: L,
-    back: L,
+    /// `1 / cos theta_i`.
+    inv_cos_theta_i: L,
+    /// Half of `|phi|`, and half of `pi - |phi|` formed without a difference where it is small.
+    half_phi: L,
+    half_back: L,
     /// `cos(phi / 2)`.
     cos_half_phi: L,
     /// Where `|phi| < pi/2`.
@@ -70,7 +72,7 @@ impl<L: Lanes> Place<L> {
         // Longer than 2 is no direction; the comparison is false for the infinities of a sum that overflowed.
         let sound = L::and(c(GRAZING).lt(cos_theta_i), wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)));
 
-        // Azimuth relative to wo, folded: tau is the half-angle tangent of |phi| or of pi - |phi|, at most 1.
+        // Azimuth relative to wo, folded: tau is the tangent of half of |phi| or of pi - |phi|, at most 1.
         // R and TRT-g vanish with it at phi = pi: it takes the digits of wo as they are, and a sum that does not cancel.
         let [v_o, w_o, cos_o] = lanes3(&gather.plane_o);
         let dot = wi.y.mul_add(v_o, wi.z * w_o);
@@ -81,36 +83,53 @@ impl<L: Lanes> Place<L> {
         // A division of its own: next to opposite poles theta_i and theta_o cancel, and each digit counts.
         let half_theta_i = atan_unit(wi.x / (one + cos_theta_i));
         let reciprocal = one / (far * reach);
-        let tau = cross * (reciprocal * reach);
+        let inv_far = reciprocal * reach;
+        let tau = cross * inv_far;
         let cos_half = (far * (far * reciprocal) * c(0.5)).sqrt();
-
+        let inv_cos = reciprocal * (far * cos_o);
         let front = c(0.0).lt(dot);
-        let angle = atan_unit(tau);
-        let angle = angle + angle;
-        let rest = c(PI) - angle;
-        let place = Self {
-            half_theta_i,
-            sin_theta_i: wi.x,
-            cos_theta_i,
-            phi: L::select(front, angle, rest),
-            back: L::select(front, rest, angle),
-            cos_half_phi: L::select(front, cos_half, tau * cos_half),
-            front,
-        };
+        let sin_cos = [tau * cos_half, cos_half];
+        let place = Self::new(half_theta_i, wi.x, cos_theta_i, inv_cos, atan_unit(tau), sin_cos, front);
         (place, sound)
+    }
+
+    /// The place of `theta_i` and of an azimuth, told by half of the smaller of `|phi|` and `pi - |phi|`, its sine and
+    /// its cosine.
+    #[inline(always)]
+    fn new(
+        half_theta_i: L,
+        sin_theta_i: L,
+        cos_theta_i: L,
+        inv_cos_theta_i: L,
+        half: L,
+        [sin_half, cos_half]: [L; 2],
+        front: L::Mask,
+    ) -> Self {
+        let rest = L::splat(FRAC_PI_2) - half;
+        Self {
+            half_theta_i,
+            sin_theta_i,
+            cos_theta_i,
+            inv_cos_theta_i,
+            half_phi: L::select(front, half, rest),
+            half_back: L::select(front, rest, half),
+            cos_half_phi: L::select(front, cos_half, sin_half),
+            front,
+        }
     }
 
     /// The lobes here.
     #[inline(always)]
     fn shapes<B: Bell, C: Broadcast<L>>(&self, gather: &HairGather<C>) -> Shapes<L> {
         let c = L::splat;
-        let (zero, one) = (c(0.0), c(1.0));
+        let one = c(1.0);
         // Distances from the centres of the bells in widths, squared.
-        let x_r = (self.half_theta_i + gather.shift[0].lanes()) * gather.inv_beta[0].lanes();
-        let x_tt = (self.half_theta_i + gather.shift[1].lanes()) * gather.inv_beta[1].lanes();
-        let x_trt = (self.half_theta_i + gather.shift[2].lanes()) * gather.inv_beta[2].lanes();
-        let y_tt = self.back * gather.inv_gamma[0].lanes();
-        let y_g = (self.phi - gather.phi_g.lanes()) * gather.inv_gamma[1].lanes();
+        let hair = &gather.material;
+        let x_r = (self.half_theta_i + gather.shift[0].lanes()) * hair.inv_beta[0].lanes();
+        let x_tt = (self.half_theta_i + gather.shift[1].lanes()) * hair.inv_beta[1].lanes();
+        let x_trt = (self.half_theta_i + gather.shift[2].lanes()) * hair.inv_beta[2].lanes();
+        let y_tt = self.half_back * hair.inv_half_gamma[0].lanes();
+        let y_g = (self.half_phi - hair.half_phi_g.lanes()) * hair.inv_half_gamma[1].lanes();
         let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);
 
         // The Cauchy value of each, from two divisions. Each of the five is at most 1e9, so that four of them
@@ -140,7 +159,7 @@ impl<L: Lanes> Place<L> {
                 cauchy_tt,
                 cauchy_trt * self.cos_half_phi,
                 // The sampler cuts the glints at pi/2: ERRATA E3.
-                L::select(self.front, cauchy_g, zero),
+                L::keep(self.front, cauchy_g),
             ],
             inv_cos_sq_theta_d: c(4.0) * (inv_r * d_r),
         }
@@ -151,11 +170,12 @@ impl<L: Lanes> Shapes<L> {
     /// S before the final bound, linear RGB.
     #[inline(always)]
     fn value<C: Broadcast<L>>(&self, gather: &HairGather<C>) -> [L; 3] {
-        let trt = self.value[2] * gather.strength[2].lanes();
-        let secondary = self.value[3].mul_add(gather.strength[3].lanes(), trt);
+        let hair = &gather.material;
+        let trt = self.value[2] * hair.strength[2].lanes();
+        let secondary = self.value[3].mul_add(hair.strength[3].lanes(), trt);
         let (f_r, f_tt) = (self.value[0] * self.inv_cos_sq_theta_d, self.value[1] * self.inv_cos_sq_theta_d);
         let f_trt = secondary * self.inv_cos_sq_theta_d;
-        let (r, tt, trt) = (lanes3(&gather.color_r), lanes3(&gather.color_tt), lanes3(&gather.color_trt));
+        let (r, tt, trt) = (lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt));
         [
             f_r.mul_add(r[0], f_tt.mul_add(tt[0], f_trt * trt[0])),
             f_r.mul_add(r[1], f_tt.mul_add(tt[1], f_trt * trt[1])),
@@ -176,7 +196,7 @@ impl<L: Lanes> Shapes<L> {
 /// `x` is, NaN included, and finite on every other.
 #[inline(always)]
 fn limit<L: Lanes>(sound: L::Mask) -> L {
-    L::select(sound, L::splat(f32::MAX), L::splat(0.0))
+    L::keep(sound, L::splat(f32::MAX))
 }
 
 #[inline(always)]
@@ -224,7 +244,10 @@ impl<B: Bell> Model for Hair<B> {
         let (place, sound) = Place::of(gather, wi);
         let shapes = place.shapes::<B, C>(gather);
         let limit = limit::<L>(sound);
-        Eval { value: min3(shapes.value(gather), limit), pdf: (shapes.density(gather) / place.cos_theta_i).min(limit) }
+        Eval {
+            value: min3(shapes.value(gather), limit),
+            pdf: (shapes.density(gather) * place.inv_cos_theta_i).min(limit),
+        }
     }
 
     #[inline(always)]
@@ -232,15 +255,14 @@ impl<B: Bell> Model for Hair<B> {
         let (place, sound) = Place::of(gather, wi);
         let shapes = place.shapes::<B, C>(gather);
         let limit = limit::<L>(sound);
-        let inv_cos = L::splat(1.0) / place.cos_theta_i;
-        let colors =
-            [lanes3(&gather.color_r), lanes3(&gather.color_tt), lanes3(&gather.color_trt), lanes3(&gather.color_trt)];
+        let hair = &gather.material;
+        let colors = [lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt), lanes3(&hair.color_trt)];
         let zero = L::splat(0.0);
         let mut lobes = [LobeEval { value: zero, color: [zero; 3], pdf: zero }; 4];
         let mut l = 0;
         while l < 4 {
-            let strength = gather.strength[l].lanes() * shapes.inv_cos_sq_theta_d;
-            let density = gather.density[l].lanes() * inv_cos;
+            let strength = hair.strength[l].lanes() * shapes.inv_cos_sq_theta_d;
+            let density = gather.density[l].lanes() * place.inv_cos_theta_i;
             lobes[l] = LobeEval {
                 value: (shapes.value[l] * strength).min(limit),
                 color: colors[l],
@@ -265,7 +287,7 @@ impl<B: Bell> Model for Hair<B> {
         Drawn {
             wi,
             value,
-            pdf: (density / cos).min(limit),
+            pdf: (density * place.inv_cos_theta_i).min(limit),
             weight: min3([value[0] * by, value[1] * by, value[2] * by], limit),
             slot: L::select(sound, L::slot_number(choice), L::splat(-1.0)),
         }

@@ -9,6 +9,10 @@
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod avx2;
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+pub(crate) mod avx512;
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+pub(crate) mod pair;
 pub(crate) mod portable;
 mod scalar;
 
@@ -63,6 +67,8 @@ pub trait Lanes:
     /// Magnitude of `self`, sign of `sign`.
     #[must_use]
     fn copysign(self, sign: Self) -> Self;
+    /// `-x` where the mask is set, `x` elsewhere.
+    fn negate(mask: Self::Mask, x: Self) -> Self;
     /// The bits of each lane, as an integer, shifted left by 23: builds a power of two from a biased exponent.
     #[must_use]
     fn bits_shl_23(self) -> Self;
@@ -74,6 +80,8 @@ pub trait Lanes:
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// `yes` where the mask is set, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// `x` where the mask is set, 0 elsewhere.
+    fn keep(mask: Self::Mask, x: Self) -> Self;
 
     /// The slot that `xi` falls in: how many of the ascending `bounds` are at most `xi`.
     fn choose(xi: Self, bounds: [Self; 3]) -> Self::Choice;
@@ -92,14 +100,18 @@ pub trait Broadcast<L: Lanes>: Copy {
     fn lanes(&self) -> L;
     /// The number of each lane in the slot that the lane has chosen.
     fn pick(table: &[Self; 4], choice: L::Choice) -> L;
+    /// The same of a table whose entries for slots 2 and 3 are equal, for less.
+    fn pick_three(table: &[Self; 4], choice: L::Choice) -> L;
+    /// The first entry of a table for slots 0 and 1, the second for slots 2 and 3.
+    fn pick_pair(table: &[Self; 2], choice: L::Choice) -> L;
 }
 
-/// Eight lanes that are read from eight numbers in a row, of any alignment, and written to them.
-pub(crate) trait Packet: Lanes {
-    /// Reads eight numbers.
-    fn read(from: &[f32; 8]) -> Self;
-    /// Writes eight numbers.
-    fn write(self, to: &mut [f32; 8]);
+/// `W` lanes that are read from as many numbers in a row, of any alignment, and written to them.
+pub(crate) trait Packet<const W: usize>: Lanes {
+    /// Reads the numbers.
+    fn read(from: &[f32; W]) -> Self;
+    /// Writes the numbers.
+    fn write(self, to: &mut [f32; W]);
 }
 
 /// The three numbers of `x`, read as lanes.
@@ -146,18 +158,22 @@ fn product_split<L: Lanes>(a: [L; 2], b: [L; 2]) -> [L; 2] {
 /// Bits of the sign, the exponent and the upper 11 of the fraction.
 pub(crate) const UPPER: u32 = 0xffff_f000;
 
-/// `entries` where it was chosen, entry by entry; the portable form of [`Broadcast::pick`].
+/// The entry of `table` for a choice given by where its number is at least 1, 2 and 3.
 #[inline(always)]
-pub(crate) fn pick_by_select<L: Lanes, C: Broadcast<L>>(table: &[C; 4], choice: L::Choice) -> L {
-    let low = L::select(L::is_slot(choice, 0), table[0].lanes(), table[1].lanes());
-    let high = L::select(L::is_slot(choice, 2), table[2].lanes(), table[3].lanes());
-    let is_low = L::or(L::is_slot(choice, 0), L::is_slot(choice, 1));
-    L::select(is_low, low, high)
+pub(crate) fn pick_by_select<L: Lanes>(table: [L; 4], [one, two, three]: [L::Mask; 3]) -> L {
+    L::select(two, L::select(three, table[3], table[2]), L::select(one, table[1], table[0]))
 }
 
-/// Declares a struct of lanes, `Name<C>`, and its `pack` (eight scalars into lanes) and `lane` (one lane out).
+/// The same of a table whose last two entries are equal.
+#[inline(always)]
+pub(crate) fn pick_three_by_select<L: Lanes>(table: [L; 3], [one, two, _]: [L::Mask; 3]) -> L {
+    L::select(two, table[2], L::select(one, table[1], table[0]))
+}
+
+/// Declares a struct of lanes, `Name<C>`, and its `pack` (eight scalars into lanes), `lane` (one lane out) and `spread`
+/// (the same numbers in the storage of lanes).
 ///
-/// Every field is a `C` or an array `[C; N]`.
+/// Every field is a `C`, an array `[C; N]`, or another such struct in parentheses, `(Other<C>)`.
 ///
 /// ```
 /// hairis::lane_struct! {
@@ -182,7 +198,20 @@ macro_rules! lane_struct {
     ) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(unused_parens, reason = "parentheses tell a nested struct from a number")]
         pub struct $name<C> { $($(#[$field_meta])* pub $field: $kind,)* }
+
+        impl<C: Copy> $name<C> {
+            /// The same numbers in the storage of `L`: one number for all lanes becomes one a lane.
+            #[inline(always)]
+            #[must_use]
+            pub fn spread<L: $crate::Lanes>(&self) -> $name<L::Stored>
+            where
+                C: $crate::Broadcast<L>,
+            {
+                $name { $($field: $crate::lane_struct!(@spread self, L, $field, $kind),)* }
+            }
+        }
 
         impl $name<f32> {
             /// Eight structs as one: lane `i` holds the numbers of `items[i]`.
@@ -210,6 +239,22 @@ macro_rules! lane_struct {
     (@pack $items:ident, $field:ident, [C; $n:literal]) => {
         core::array::from_fn::<_, $n, _>(|i| $crate::wide::f32x8::new($items.map(|item| item.$field[i])))
     };
+    (@pack $items:ident, $field:ident, ($inner:ident<C>)) => { $inner::pack($items.map(|item| &item.$field)) };
+    (@spread $this:ident, $L:ident, $field:ident, C) => {
+        $crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field))
+    };
+    (@spread $this:ident, $L:ident, $field:ident, [C; $n:literal]) => {{
+        // A loop, not `map`: closures over lanes are not inlined into functions of target features.
+        let mut out = [$crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field[0])); $n];
+        let mut i = 1;
+        while i < $n {
+            out[i] = $crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field[i]));
+            i += 1;
+        }
+        out
+    }};
+    (@spread $this:ident, $L:ident, $field:ident, ($inner:ident<C>)) => { $this.$field.spread::<$L>() };
+    (@lane $this:ident, $lane:ident, $field:ident, ($inner:ident<C>)) => { $this.$field.lane($lane) };
     (@lane $this:ident, $lane:ident, $field:ident, C) => { $this.$field.as_array()[$lane] };
     (@lane $this:ident, $lane:ident, $field:ident, [C; $n:literal]) => {
         core::array::from_fn::<_, $n, _>(|i| $this.$field[i].as_array()[$lane])

@@ -4,7 +4,7 @@
 //! its range, and the error measured on it by the tests (rows of `tests/tolerance.rs`). None branches.
 
 use crate::Lanes;
-use core::f32::consts::{FRAC_PI_2, PI};
+use core::f32::consts::{FRAC_PI_2, LOG2_E, PI};
 
 /// `pi/2 - FRAC_PI_2`, what the rounding of the constant leaves out.
 const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
@@ -22,32 +22,34 @@ fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     halves[1].mul_add(x, halves[0])
 }
 
-/// `2^-x` for `x >= 0`; exactly 0 from about `2^-115` down.
+/// `exp(-s/2)` for `s >= 0`, a Gaussian of the squared distance from its centre; exactly 0 from about `2^-115` down.
 ///
 /// That is far below any other term of a sum, and so far above the denormals that the products made of it seldom are
-/// one: denormals cost as much as the rest of the model. NaN gives NaN.
+/// one: denormals cost as much as the rest of the model. NaN gives 0.
 #[inline(always)]
-pub fn exp2_neg<L: Lanes>(x: L) -> L {
+pub fn gaussian<L: Lanes>(s: L) -> L {
+    const TO_EXPONENT: f32 = -0.5 * LOG2_E;
     // Adding 2^23 rounds to an integer and leaves it in the low bits, biased as an exponent is. The bias is 12 short,
     // so that the exponent reaches 0, and with it the power, at -115 already; the polynomial makes up for it.
     let magic = L::splat(8_388_608.0 + 115.0);
-    // The second operand of `max` wins over NaN.
-    let t = L::splat(-115.0).max(-x);
-    let n = t + magic;
-    let f = t - (n - magic);
+    let to_exponent = L::splat(TO_EXPONENT);
+    // The second operand of `min` wins over NaN.
+    let s = s.min(L::splat(115.0 / -TO_EXPONENT));
+    let n = s.mul_add(to_exponent, magic);
+    let f = s.mul_add(to_exponent, magic - n);
     const SCALE: f32 = 4096.0;
     let p = polynomial(
         f,
         [
-            SCALE * 0.693_147_182_464_599_6,
-            SCALE * 0.240_226_477_384_567_26,
-            SCALE * 0.055_503_323_674_201_965,
-            SCALE * 0.009_618_436_917_662_62,
-            SCALE * 0.001_339_887_385_256_588_5,
-            SCALE * 0.000_153_533_619_595_691_56,
+            SCALE,
+            SCALE * 0.693_146_977_598_470_9,
+            SCALE * 0.240_222_420_849_192_87,
+            SCALE * 0.055_507_337_442_446_49,
+            SCALE * 0.009_671_512_660_561_226,
+            SCALE * 0.001_326_472_689_901_139_9,
         ],
     );
-    p.mul_add(f, L::splat(SCALE)) * n.bits_shl_23()
+    p * n.bits_shl_23()
 }
 
 /// `atan t` for `|t| <= 1`.
@@ -85,9 +87,29 @@ pub fn atan2_upper<L: Lanes>(y: L, x: L) -> L {
 /// `(sin x, cos x)` for `|x| <= pi/2`.
 #[inline(always)]
 pub fn sin_cos_half_turn<L: Lanes>(x: L) -> (L, L) {
-    // cos x = sin(pi/2 - |x|), with pi/2 in two parts: the cosine keeps its digits where it vanishes.
-    let y = (L::splat(FRAC_PI_2) - x.abs()) + L::splat(FRAC_PI_2_LOW);
-    (sin_half_turn(x), sin_half_turn(y))
+    sin_cos_twice(x * L::splat(0.5))
+}
+
+/// `(sin 2x, cos 2x)` for `|x| <= pi/4`.
+#[inline(always)]
+pub fn sin_cos_twice<L: Lanes>(x: L) -> (L, L) {
+    // cos 2x = sin(pi/2 - |2x|), with pi/2 in two parts: the cosine keeps its digits where it vanishes.
+    let y = x.abs().mul_add(L::splat(-2.0), L::splat(FRAC_PI_2)) + L::splat(FRAC_PI_2_LOW);
+    (sin_half_turn(x + x), sin_half_turn(y))
+}
+
+/// `(sin x, cos x)` for `|x| <= pi/2` to an absolute error: a third less work than [`sin_cos_twice`], whose cosine
+/// keeps its digits where it vanishes.
+///
+/// For inversion: an error of 2e-7 in the angle that a number is mapped to is one of 2e-7 in the number.
+#[inline(always)]
+pub fn sin_cos_absolute<L: Lanes>(x: L) -> (L, L) {
+    let z = x * x;
+    let p = polynomial(
+        z,
+        [-0.499_999_314_546_584_9, 0.041_663_989_424_705_51, -0.001_385_592_622_682_452_2, 2.319_435_589_015_484e-5],
+    );
+    (sin_half_turn(x), p.mul_add(z, L::splat(1.0)))
 }
 
 /// `sin x` for `|x| <= pi/2`.

@@ -1,7 +1,7 @@
 //! The Cauchy distribution cut to an interval: the published sampler's longitude, TT azimuth and glint azimuth.
 
-use crate::math::{atan2_upper, sin_cos_half_turn};
-use crate::{Broadcast, Lanes};
+use crate::Lanes;
+use crate::math::{atan2_upper, sin_cos_absolute};
 
 /// A Cauchy distribution of width 1 centred on 0 and cut to `[lo, hi]`, as the angles of its ends: with
 /// `x = tan y`, `y` is uniform on an interval of length `span` about `mid`.
@@ -13,6 +13,7 @@ use crate::{Broadcast, Lanes};
 /// their digits where the interval lies far from the centre, as it does for a narrow lobe shifted past the pole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TruncatedCauchy<L> {
+    /// Sine of the middle angle, and its cosine, times a positive number: only their ratio is read.
     pub(crate) sin_mid: L,
     pub(crate) cos_mid: L,
     pub(crate) span: L,
@@ -22,36 +23,28 @@ impl<L: Lanes> TruncatedCauchy<L> {
     /// The distribution on `[lo, hi]`, in the units of `width`.
     #[inline(always)]
     pub(crate) fn new(lo: L, hi: L, width: L) -> Self {
-        let c = L::splat;
-        let (one, half) = (c(1.0), c(0.5));
         let width_sq = width * width;
         // Cosine and sine of the sum of the end angles, times `r`.
         let cos_sum = width_sq - lo * hi;
         let sin_sum = width * (lo + hi);
         let r = (lo.mul_add(lo, width_sq) * hi.mul_add(hi, width_sq)).sqrt();
-        // Half of that sum, from whichever of the two half-angle forms does not cancel.
-        let ratio = cos_sum / r;
-        let sine = sin_sum / r;
-        let large = (half * (one + ratio.abs())).sqrt();
-        let small = half * sine / large;
-        let inside = c(0.0).lt(cos_sum);
+        // Half of that sum, from whichever of the two half-angle forms does not cancel: the cosine is not negative.
+        let inside = L::splat(0.0).lt(cos_sum);
+        let large = r + cos_sum.abs();
         Self {
-            sin_mid: L::select(inside, small, large.copysign(sin_sum)),
-            cos_mid: L::select(inside, large, small.abs()),
+            sin_mid: L::select(inside, sin_sum, large.copysign(sin_sum)),
+            cos_mid: L::select(inside, large, sin_sum.abs()),
             span: atan2_upper(width * (hi - lo), lo.mul_add(hi, width_sq)),
         }
     }
 
     /// The value at cdf `xi`, in widths.
+    ///
+    /// The ends of every interval of the models are less than `1e5` widths from the centre, so that the denominator
+    /// stays further above 0 than it is rounded.
     #[inline(always)]
     pub(crate) fn invert(self, xi: L) -> L {
-        let (sin, cos) = sin_cos_half_turn((xi - L::splat(0.5)) * self.span);
+        let (sin, cos) = sin_cos_absolute((xi - L::splat(0.5)) * self.span);
         self.cos_mid.mul_add(sin, self.sin_mid * cos) / self.cos_mid.mul_add(cos, -(self.sin_mid * sin))
-    }
-
-    /// One distribution for each lobe, read for the lobe each lane has chosen.
-    #[inline(always)]
-    pub(crate) fn pick<C: Broadcast<L>>(sin_mid: &[C; 4], cos_mid: &[C; 4], span: &[C; 4], choice: L::Choice) -> Self {
-        Self { sin_mid: C::pick(sin_mid, choice), cos_mid: C::pick(cos_mid, choice), span: C::pick(span, choice) }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::HairGather;
 use crate::lanes::lanes3;
-use crate::math::sin_cos_half_turn;
+use crate::math::sin_cos_twice;
 use crate::quadrature::GAUSS_LEGENDRE_32;
 use crate::truncated::TruncatedCauchy;
 use crate::{Bell, Broadcast, Lanes, PerLobe};
@@ -25,20 +25,24 @@ pub(super) fn bell_area<B: Bell>(lo: f32, hi: f32, width: f32) -> f32 {
 /// Directional albedo of each lobe, linear RGB.
 #[inline(always)]
 pub(super) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>) -> PerLobe<[L; 3]> {
-    let (r, tt, trt) = (lanes3(&gather.color_r), lanes3(&gather.color_tt), lanes3(&gather.color_trt));
+    let hair = &gather.material;
+    let (r, tt, trt) = (lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt));
+    // The azimuthal term of R and TRT-g, cos(phi / 2), has an area of 4.
+    let four = L::splat(4.0);
     let area =
         [longitudinal::<B, L, C>(gather, 0), longitudinal::<B, L, C>(gather, 1), longitudinal::<B, L, C>(gather, 2)];
     PerLobe([
-        lobe(gather, 0, area[0], r),
-        lobe(gather, 1, area[1], tt),
-        lobe(gather, 2, area[2], trt),
-        lobe(gather, 3, area[2], trt),
+        lobe(gather, 0, area[0] * four, r),
+        lobe(gather, 1, area[1] * hair.azimuth_area[0].lanes(), tt),
+        lobe(gather, 2, area[2] * four, trt),
+        lobe(gather, 3, area[2] * hair.azimuth_area[1].lanes(), trt),
     ])
 }
 
 #[inline(always)]
 fn lobe<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, l: usize, area: L, color: [L; 3]) -> [L; 3] {
-    let albedo = area * gather.azimuth_area[l].lanes() * gather.strength[l].lanes();
+    let hair = &gather.material;
+    let albedo = area * hair.strength[l].lanes();
     let most = L::splat(f32::MAX);
     [(albedo * color[0]).min(most), (albedo * color[1]).min(most), (albedo * color[2]).min(most)]
 }
@@ -53,7 +57,7 @@ fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, l: u
         cos_mid: gather.longitude_cos[l].lanes(),
         span: gather.longitude_span[l].lanes(),
     };
-    let (beta, shift) = (gather.beta[l].lanes(), gather.shift[l].lanes());
+    let (beta, shift) = (gather.material.beta[l].lanes(), gather.shift[l].lanes());
     let (sin_theta_o, cos_theta_o) = (gather.sin_theta_o.lanes(), gather.cos_theta_o.lanes());
     let quarter = c(core::f32::consts::FRAC_PI_4);
     let mut sum = c(0.0);
@@ -62,7 +66,7 @@ fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, l: u
         let (xi, weight) = GAUSS_LEGENDRE_32[k];
         let x = cauchy.invert(c(xi));
         let half = (-quarter).max(quarter.min(x.mul_add(beta, -shift)));
-        let (sin, cos) = sin_cos_half_turn(half + half);
+        let (sin, cos) = sin_cos_twice(half);
         let (sum_u, sum_c) = (sin + sin_theta_o, cos + cos_theta_o);
         // (cos theta_i / cos theta_d)^2 over 4; where both directions lie on opposite poles it is 0 / 0, and its limit is 0.
         let w = cos * cos / sum_u.mul_add(sum_u, sum_c * sum_c).max(c(f32::MIN_POSITIVE));

@@ -10,7 +10,7 @@ use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 crate::lane_struct! {
     /// The constants of a material of the published model.
     ///
-    /// Arrays of three are R, TT, TRT; arrays of four are in the order of [`Lobe`].
+    /// Arrays of two are TT and the glints, of three R, TT, TRT; arrays of four are in the order of [`Lobe`].
     pub struct HairMaterial {
         /// Longitudinal shift, rad.
         pub alpha: [C; 3],
@@ -18,24 +18,23 @@ crate::lane_struct! {
         pub beta: [C; 4],
         /// `1 / beta`.
         pub inv_beta: [C; 3],
-        /// `1 / gamma` of TT and the glints.
-        pub inv_gamma: [C; 2],
-        /// Half angle between the glints, rad.
-        pub phi_g: C,
-        /// The azimuth's truncated Cauchy: sine of the middle of its angles (TT and the glints use it).
-        pub azimuth_sin: [C; 4],
+        /// Half the azimuthal width of TT and the glints, rad.
+        pub half_gamma: [C; 2],
+        /// `2 / gamma`.
+        pub inv_half_gamma: [C; 2],
+        /// Half of the angle between a glint and `wo`, rad.
+        pub half_phi_g: C,
+        /// The azimuth's truncated Cauchy on one side: sine of the middle of its angles, to a
+        /// common scale with the cosine.
+        pub azimuth_sin: [C; 2],
         /// Cosine of the middle.
-        pub azimuth_cos: [C; 4],
-        /// Angle from end to end, rad.
-        pub azimuth_span: [C; 4],
-        /// Half the azimuthal width, rad.
-        pub azimuth_scale: [C; 4],
-        /// Half the azimuth of the lobe's centre, rad.
-        pub azimuth_offset: [C; 4],
+        pub azimuth_cos: [C; 2],
+        /// Angle from end to end, rad; below 0 for TT, whose cdf runs towards its centre.
+        pub azimuth_span: [C; 2],
         /// The azimuthal density but for its shape, per rad.
-        pub azimuth_density: [C; 4],
+        pub azimuth_density: [C; 2],
         /// Integral of the azimuthal term over the circle, rad.
-        pub azimuth_area: [C; 4],
+        pub azimuth_area: [C; 2],
         /// Colour of R, linear RGB.
         pub color_r: [C; 3],
         /// Colour of TT.
@@ -61,11 +60,11 @@ crate::lane_struct! {
         pub cos_theta_o: C,
         /// The part of `wo` in the normal plane, with the digits it was given: v and w, and its length.
         pub plane_o: [C; 3],
-        /// Cosine and sine of `phi_o`.
-        pub phi_o: [C; 2],
+        /// One over that length.
+        pub inv_plane_o: C,
         /// `theta_o / 2 - alpha`: added to `theta_i / 2` it is `theta_h - alpha`.
         pub shift: [C; 4],
-        /// The longitude's truncated Cauchy: sine of the middle of its angles.
+        /// The longitude's truncated Cauchy: sine of the middle of its angles, to a common scale with the cosine.
         pub longitude_sin: [C; 4],
         /// Cosine of the middle.
         pub longitude_cos: [C; 4],
@@ -75,38 +74,8 @@ crate::lane_struct! {
         pub density: [C; 4],
         /// The same times the probability of the lobe.
         pub weight: [C; 4],
-        /// As in the material.
-        pub beta: [C; 4],
-        /// As in the material.
-        pub inv_beta: [C; 3],
-        /// As in the material.
-        pub inv_gamma: [C; 2],
-        /// As in the material.
-        pub phi_g: C,
-        /// As in the material.
-        pub azimuth_sin: [C; 4],
-        /// As in the material.
-        pub azimuth_cos: [C; 4],
-        /// As in the material.
-        pub azimuth_span: [C; 4],
-        /// As in the material.
-        pub azimuth_scale: [C; 4],
-        /// As in the material.
-        pub azimuth_offset: [C; 4],
-        /// As in the material.
-        pub azimuth_area: [C; 4],
-        /// As in the material.
-        pub color_r: [C; 3],
-        /// As in the material.
-        pub color_tt: [C; 3],
-        /// As in the material.
-        pub color_trt: [C; 3],
-        /// As in the material.
-        pub strength: [C; 4],
-        /// Probability of choosing each lobe.
-        pub selection: [C; 4],
-        /// Where the next lobe begins in `xi_lobe`.
-        pub bounds: [C; 3],
+        /// The constants of the material.
+        pub material: (HairMaterial<C>),
     }
 }
 
@@ -144,7 +113,7 @@ impl HairMaterial<f32> {
         let beta = [b_r, b_tt, b_trt];
         let phi_g = d.phi_g;
         let glint = TruncatedCauchy::new(-phi_g, FRAC_PI_2 - phi_g, gamma_g);
-        let tt = TruncatedCauchy::new(-PI, PI, gamma_tt);
+        let tt = TruncatedCauchy::new(0.0, PI, gamma_tt);
         let (p, bounds) = selection(energies(&beta, gamma_tt, gamma_g, params));
         // Glints of absurd strength take the excess from the colour, so that their product overflows last.
         let excess = (d.intensity_g * 1e-6).max(1.0);
@@ -152,20 +121,14 @@ impl HairMaterial<f32> {
             alpha: [d.alpha_r, d.alpha_tt, d.alpha_trt],
             beta: [beta[0], beta[1], beta[2], beta[2]],
             inv_beta: beta.map(|b| 1.0 / b),
-            inv_gamma: [1.0 / gamma_tt, 1.0 / gamma_g],
-            phi_g,
-            azimuth_sin: [0.0, tt.sin_mid, 0.0, glint.sin_mid],
-            azimuth_cos: [1.0, tt.cos_mid, 1.0, glint.cos_mid],
-            azimuth_span: [0.0, tt.span, 0.0, glint.span],
-            azimuth_scale: [0.0, 0.5 * gamma_tt, 0.0, 0.5 * gamma_g],
-            azimuth_offset: [0.0, 0.0, 0.0, 0.5 * phi_g],
-            azimuth_density: [0.25, 1.0 / (tt.span * gamma_tt), 0.25, 0.5 / (glint.span * gamma_g)],
-            azimuth_area: [
-                4.0,
-                bell_area::<B>(-PI, PI, gamma_tt),
-                4.0,
-                2.0 * bell_area::<B>(-phi_g, PI - phi_g, gamma_g),
-            ],
+            half_gamma: [0.5 * gamma_tt, 0.5 * gamma_g],
+            inv_half_gamma: [2.0 / gamma_tt, 2.0 / gamma_g],
+            half_phi_g: 0.5 * phi_g,
+            azimuth_sin: [tt.sin_mid, glint.sin_mid],
+            azimuth_cos: [tt.cos_mid, glint.cos_mid],
+            azimuth_span: [-tt.span, glint.span],
+            azimuth_density: [0.5 / (tt.span * gamma_tt), 0.5 / (glint.span * gamma_g)],
+            azimuth_area: [bell_area::<B>(-PI, PI, gamma_tt), 2.0 * bell_area::<B>(-phi_g, PI - phi_g, gamma_g)],
             color_r: d.intensity_r,
             color_tt: d.intensity_tt,
             color_trt: d.intensity_trt.map(|c| (c * excess).min(f32::MAX)),
@@ -214,15 +177,16 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     let plane_sq = y.mul_add(y, z * z);
     let plane = plane_sq.sqrt();
     let len = x.mul_add(x, plane_sq).sqrt();
-    let inv_len = one / len;
     // On the axis the azimuth is 0 by convention.
     let off_axis = zero.lt(plane);
-    let inv_plane = one / plane;
-    let cos_phi_o = L::select(off_axis, y * inv_plane, one);
-    let sin_phi_o = L::select(off_axis, z * inv_plane, zero);
+    let span_plane = L::select(off_axis, plane, one);
+    let reciprocal = one / (len * span_plane);
+    let (inv_len, inv_plane) = (reciprocal * span_plane, reciprocal * len);
+    let half_theta_o = atan_unit(x / (len + plane));
     // Products of components this small would leave the range of a float; their last digit is none of the bounds'.
     let near_axis = plane.lt(c(1e-4));
-    let half_theta_o = atan_unit(x / (len + plane));
+    let cos_phi_o = L::select(off_axis, y * inv_plane, one);
+    let sin_phi_o = z * inv_plane;
 
     let mut shift = [zero; 4];
     let mut sin = [zero; 4];
@@ -237,12 +201,21 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     }
     (shift[3], sin[3], cos[3], span[3]) = (shift[2], sin[2], cos[2], span[2]);
 
-    let mut density = [zero; 4];
+    // 1 / (2 span beta) of the three, from one division; each is at least 1e-9.
+    let range = [span[0] * m.beta[0].lanes(), span[1] * m.beta[1].lanes(), span[2] * m.beta[2].lanes()];
+    let first_two = range[0] * range[1];
+    let reciprocal = c(0.5) / (first_two * range[2]);
+    let (of_trt, rest) = (reciprocal * first_two, reciprocal * range[2]);
+    let quarter = c(0.25);
+    let density = [
+        rest * range[1] * quarter,
+        rest * range[0] * m.azimuth_density[0].lanes(),
+        of_trt * quarter,
+        of_trt * m.azimuth_density[1].lanes(),
+    ];
     let mut weight = [zero; 4];
     l = 0;
     while l < 4 {
-        let m_density = one / (c(2.0) * span[l] * m.beta[l].lanes());
-        density[l] = m_density * m.azimuth_density[l].lanes();
         weight[l] = density[l] * m.selection[l].lanes();
         l += 1;
     }
@@ -255,40 +228,15 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
             L::select(near_axis, sin_phi_o, z),
             L::select(near_axis, one, plane),
         ]),
-        phi_o: [cos_phi_o.store(), sin_phi_o.store()],
+        inv_plane_o: L::select(near_axis, one, inv_plane).store(),
         shift: store4(shift),
         longitude_sin: store4(sin),
         longitude_cos: store4(cos),
         longitude_span: store4(span),
         density: store4(density),
         weight: store4(weight),
-        beta: keep4(&m.beta),
-        inv_beta: keep3(&m.inv_beta),
-        inv_gamma: [m.inv_gamma[0].lanes().store(), m.inv_gamma[1].lanes().store()],
-        phi_g: m.phi_g.lanes().store(),
-        azimuth_sin: keep4(&m.azimuth_sin),
-        azimuth_cos: keep4(&m.azimuth_cos),
-        azimuth_span: keep4(&m.azimuth_span),
-        azimuth_scale: keep4(&m.azimuth_scale),
-        azimuth_offset: keep4(&m.azimuth_offset),
-        azimuth_area: keep4(&m.azimuth_area),
-        color_r: keep3(&m.color_r),
-        color_tt: keep3(&m.color_tt),
-        color_trt: keep3(&m.color_trt),
-        strength: keep4(&m.strength),
-        selection: keep4(&m.selection),
-        bounds: keep3(&m.bounds),
+        material: m.spread::<L>(),
     }
-}
-
-#[inline(always)]
-fn keep3<L: Lanes, C: Broadcast<L>>(x: &[C; 3]) -> [L::Stored; 3] {
-    store3(crate::lanes::lanes3(x))
-}
-
-#[inline(always)]
-fn keep4<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> [L::Stored; 4] {
-    store4([x[0].lanes(), x[1].lanes(), x[2].lanes(), x[3].lanes()])
 }
 
 impl<C: Lanes> HairGather<C> {
@@ -297,14 +245,18 @@ impl<C: Lanes> HairGather<C> {
     pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
         let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));
         let times = |x: [C; 4]| [x[0] * factor[0], x[1] * factor[1], x[2] * factor[2], x[3] * factor[3]];
-        let (p, bounds) = selection(times(self.selection));
+        let hair = &self.material;
+        let (p, bounds) = selection(times(hair.selection));
         Self {
-            color_r: self.color_r.map(|x| x * factor[0]),
-            color_tt: self.color_tt.map(|x| x * factor[1]),
-            strength: times(self.strength),
-            selection: p,
-            bounds,
             weight: [self.density[0] * p[0], self.density[1] * p[1], self.density[2] * p[2], self.density[3] * p[3]],
+            material: HairMaterial {
+                color_r: hair.color_r.map(|x| x * factor[0]),
+                color_tt: hair.color_tt.map(|x| x * factor[1]),
+                strength: times(hair.strength),
+                selection: p,
+                bounds,
+                ..*hair
+            },
             ..*self
         }
     }

@@ -5,7 +5,7 @@
 
 #![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
 
-use super::{Broadcast, Lanes, Packet, difference_fused, pick_by_select, sealed::Sealed};
+use super::{Broadcast, Lanes, Packet, difference_fused, pick_by_select, pick_three_by_select, sealed::Sealed};
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
@@ -100,6 +100,10 @@ impl Lanes for Avx2 {
         Self(avx2!(_mm256_or_ps(_mm256_andnot_ps(bit, self.0), _mm256_and_ps(bit, sign.0))))
     }
     #[inline(always)]
+    fn negate(mask: __m256, x: Self) -> Self {
+        Self(avx2!(_mm256_xor_ps(x.0, _mm256_and_ps(mask, _mm256_set1_ps(-0.0)))))
+    }
+    #[inline(always)]
     fn bits_shl_23(self) -> Self {
         Self(avx2!(_mm256_castsi256_ps(_mm256_slli_epi32::<23>(_mm256_castps_si256(self.0)))))
     }
@@ -118,6 +122,10 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn select(mask: __m256, yes: Self, no: Self) -> Self {
         Self(avx2!(_mm256_blendv_ps(no.0, yes.0, mask)))
+    }
+    #[inline(always)]
+    fn keep(mask: __m256, x: Self) -> Self {
+        Self(avx2!(_mm256_and_ps(mask, x.0)))
     }
     #[inline(always)]
     fn choose(xi: Self, bounds: [Self; 3]) -> Slots {
@@ -163,6 +171,18 @@ impl Broadcast<Avx2> for f32 {
             _mm256_permutevar_ps(_mm256_set_m128(four, four), choice.number)
         }))
     }
+    #[inline(always)]
+    fn pick_three(table: &[f32; 4], choice: Slots) -> Avx2 {
+        Self::pick(table, choice)
+    }
+    #[inline(always)]
+    fn pick_pair(table: &[f32; 2], choice: Slots) -> Avx2 {
+        Avx2(avx2!({
+            // Either entry in every second lane: the upper of a slot's two bits is which.
+            let two = _mm256_castpd_ps(_mm256_set1_pd(table.as_ptr().cast::<f64>().read_unaligned()));
+            _mm256_permutevar_ps(two, _mm256_srli_epi32::<1>(choice.number))
+        }))
+    }
 }
 
 impl Broadcast<Avx2> for f32x8 {
@@ -172,11 +192,19 @@ impl Broadcast<Avx2> for f32x8 {
     }
     #[inline(always)]
     fn pick(table: &[f32x8; 4], choice: Slots) -> Avx2 {
-        pick_by_select(table, choice)
+        pick_by_select([table[0].lanes(), table[1].lanes(), table[2].lanes(), table[3].lanes()], choice.at_least)
+    }
+    #[inline(always)]
+    fn pick_three(table: &[f32x8; 4], choice: Slots) -> Avx2 {
+        pick_three_by_select([table[0].lanes(), table[1].lanes(), table[2].lanes()], choice.at_least)
+    }
+    #[inline(always)]
+    fn pick_pair(table: &[f32x8; 2], choice: Slots) -> Avx2 {
+        Avx2::select(choice.at_least[1], table[1].lanes(), table[0].lanes())
     }
 }
 
-impl Packet for Avx2 {
+impl Packet<8> for Avx2 {
     #[inline(always)]
     fn read(from: &[f32; 8]) -> Self {
         Self(avx2!(_mm256_loadu_ps(from.as_ptr())))

@@ -1,6 +1,9 @@
 //! Eight lanes through `wide`: the instruction set the program was compiled for, whatever the machine has.
 
-use super::{Broadcast, Lanes, Packet, UPPER, difference_fused, difference_split, pick_by_select, sealed::Sealed};
+use super::{
+    Broadcast, Lanes, Packet, UPPER, difference_fused, difference_split, pick_by_select, pick_three_by_select,
+    sealed::Sealed,
+};
 use wide::{f32x8, u32x8};
 
 impl Sealed for f32x8 {}
@@ -67,6 +70,10 @@ impl Lanes for f32x8 {
         f32x8::copysign(self, sign)
     }
     #[inline(always)]
+    fn negate(mask: f32x8, x: Self) -> Self {
+        x ^ (mask & f32x8::splat(-0.0))
+    }
+    #[inline(always)]
     fn bits_shl_23(self) -> Self {
         f32x8::from_bits(self.to_bits() << 23_u32)
     }
@@ -85,6 +92,10 @@ impl Lanes for f32x8 {
     #[inline(always)]
     fn select(mask: f32x8, yes: Self, no: Self) -> Self {
         mask.select(yes, no)
+    }
+    #[inline(always)]
+    fn keep(mask: f32x8, x: Self) -> Self {
+        mask & x
     }
     #[inline(always)]
     fn choose(xi: Self, bounds: [Self; 3]) -> [f32x8; 3] {
@@ -106,29 +117,33 @@ impl Lanes for f32x8 {
     }
 }
 
-impl Broadcast<f32x8> for f32 {
-    #[inline(always)]
-    fn lanes(&self) -> f32x8 {
-        f32x8::splat(*self)
-    }
-    #[inline(always)]
-    fn pick(table: &[f32; 4], choice: [f32x8; 3]) -> f32x8 {
-        pick_by_select(table, choice)
-    }
+/// [`Broadcast`] by selection among the entries, each read as lanes.
+macro_rules! broadcast {
+    ($($Stored:ty, $x:ident, $lanes:expr;)*) => { $(
+        impl Broadcast<f32x8> for $Stored {
+            #[inline(always)]
+            fn lanes(&self) -> f32x8 {
+                let $x = *self;
+                $lanes
+            }
+            #[inline(always)]
+            fn pick(table: &[$Stored; 4], choice: [f32x8; 3]) -> f32x8 {
+                pick_by_select([table[0].lanes(), table[1].lanes(), table[2].lanes(), table[3].lanes()], choice)
+            }
+            #[inline(always)]
+            fn pick_three(table: &[$Stored; 4], choice: [f32x8; 3]) -> f32x8 {
+                pick_three_by_select([table[0].lanes(), table[1].lanes(), table[2].lanes()], choice)
+            }
+            #[inline(always)]
+            fn pick_pair(table: &[$Stored; 2], choice: [f32x8; 3]) -> f32x8 {
+                choice[1].select(table[1].lanes(), table[0].lanes())
+            }
+        }
+    )* };
 }
+broadcast! { f32, x, f32x8::splat(x); f32x8, x, x; }
 
-impl Broadcast<f32x8> for f32x8 {
-    #[inline(always)]
-    fn lanes(&self) -> f32x8 {
-        *self
-    }
-    #[inline(always)]
-    fn pick(table: &[f32x8; 4], choice: [f32x8; 3]) -> f32x8 {
-        pick_by_select(table, choice)
-    }
-}
-
-impl Packet for f32x8 {
+impl Packet<8> for f32x8 {
     #[inline(always)]
     fn read(from: &[f32; 8]) -> Self {
         f32x8::new(*from)

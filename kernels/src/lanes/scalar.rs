@@ -54,6 +54,10 @@ impl Lanes for f32 {
         f32::copysign(self, sign)
     }
     #[inline(always)]
+    fn negate(mask: bool, x: Self) -> Self {
+        f32::from_bits(x.to_bits() ^ (u32::from(mask) << 31))
+    }
+    #[inline(always)]
     fn bits_shl_23(self) -> Self {
         f32::from_bits(self.to_bits() << 23)
     }
@@ -72,6 +76,10 @@ impl Lanes for f32 {
     #[inline(always)]
     fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn keep(mask: bool, x: Self) -> Self {
+        if mask { x } else { 0.0 }
     }
     #[inline(always)]
     fn choose(xi: Self, bounds: [Self; 3]) -> usize {
@@ -95,5 +103,13 @@ impl Broadcast<f32> for f32 {
     #[inline(always)]
     fn pick(table: &[f32; 4], choice: usize) -> f32 {
         table[choice & 3]
+    }
+    #[inline(always)]
+    fn pick_three(table: &[f32; 4], choice: usize) -> f32 {
+        table[choice & 3]
+    }
+    #[inline(always)]
+    fn pick_pair(table: &[f32; 2], choice: usize) -> f32 {
+        table[choice >> 1 & 1]
     }
 }

@@ -1,0 +1,211 @@
+//! Sixteen lanes in one `__m512`, for the slices of CPUs found at run time to have AVX-512.
+//!
+//! Packets of eight stay with AVX2 there: masks, and twice as many registers, gain a packet nothing that the longer way
+//! to a mask does not cost. Multiplication fuses as on AVX2, and the results are the same to the bit.
+
+#![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
+
+use super::{Broadcast, Lanes, Packet, difference_fused, pick_by_select, sealed::Sealed};
+#[cfg(target_arch = "x86")]
+use core::arch::x86::*;
+#[cfg(target_arch = "x86_64")]
+use core::arch::x86_64::*;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Sixteen lanes. Values exist only below `dispatch`'s functions of AVX-512F, VL, DQ and BW, which it enters only where
+/// the CPU has them: that is what makes every `unsafe` of this module sound.
+#[derive(Clone, Copy, Debug)]
+pub struct Avx512(__m512);
+
+/// Intrinsics of this module's target features.
+macro_rules! avx512 {
+    ($e:expr) => {{
+        // SAFETY: a value of `Avx512` exists, or is made below `dispatch`'s check: the CPU has these features.
+        unsafe { $e }
+    }};
+}
+macro_rules! binary {
+    ($($Trait:ident $method:ident $intrinsic:ident;)*) => { $(
+        impl $Trait for Avx512 {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(avx512!($intrinsic(self.0, other.0)))
+            }
+        }
+    )* };
+}
+binary! { Add add _mm512_add_ps; Sub sub _mm512_sub_ps; Mul mul _mm512_mul_ps; Div div _mm512_div_ps; }
+
+impl Neg for Avx512 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(avx512!(_mm512_xor_ps(self.0, _mm512_set1_ps(-0.0))))
+    }
+}
+
+impl Sealed for Avx512 {}
+
+/// One of four slots a lane: its number, and where it is at least 1, 2 and 3. What a model does not use is not kept.
+#[derive(Clone, Copy, Debug)]
+pub struct Slots {
+    number: __m512i,
+    at_least: [__mmask16; 3],
+}
+
+impl Lanes for Avx512 {
+    type Mask = __mmask16;
+    type Choice = Slots;
+    // Slices have one gather point: nothing is kept in sixteen lanes between calls.
+    type Stored = Self;
+
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Self(avx512!(_mm512_set1_ps(x)))
+    }
+    #[inline(always)]
+    fn store(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Self(avx512!(_mm512_fmadd_ps(self.0, a.0, b.0)))
+    }
+    #[inline(always)]
+    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
+        difference_fused(a, b, c, d)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(avx512!(_mm512_sqrt_ps(self.0)))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(avx512!(_mm512_andnot_ps(_mm512_set1_ps(-0.0), self.0)))
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(avx512!(_mm512_min_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(avx512!(_mm512_max_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        let bit = avx512!(_mm512_set1_ps(-0.0));
+        Self(avx512!(_mm512_or_ps(_mm512_andnot_ps(bit, self.0), _mm512_and_ps(bit, sign.0))))
+    }
+    #[inline(always)]
+    fn negate(mask: __mmask16, x: Self) -> Self {
+        Self(avx512!(_mm512_mask_xor_ps(x.0, mask, x.0, _mm512_set1_ps(-0.0))))
+    }
+    #[inline(always)]
+    fn bits_shl_23(self) -> Self {
+        Self(avx512!(_mm512_castsi512_ps(_mm512_slli_epi32::<23>(_mm512_castps_si512(self.0)))))
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> __mmask16 {
+        avx512!(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0))
+    }
+    #[inline(always)]
+    fn and(a: __mmask16, b: __mmask16) -> __mmask16 {
+        a & b
+    }
+    #[inline(always)]
+    fn or(a: __mmask16, b: __mmask16) -> __mmask16 {
+        a | b
+    }
+    #[inline(always)]
+    fn select(mask: __mmask16, yes: Self, no: Self) -> Self {
+        Self(avx512!(_mm512_mask_blend_ps(mask, no.0, yes.0)))
+    }
+    #[inline(always)]
+    fn keep(mask: __mmask16, x: Self) -> Self {
+        Self(avx512!(_mm512_maskz_mov_ps(mask, x.0)))
+    }
+    #[inline(always)]
+    fn choose(xi: Self, bounds: [Self; 3]) -> Slots {
+        let at_least = avx512!([
+            _mm512_cmp_ps_mask::<_CMP_GE_OQ>(xi.0, bounds[0].0),
+            _mm512_cmp_ps_mask::<_CMP_GE_OQ>(xi.0, bounds[1].0),
+            _mm512_cmp_ps_mask::<_CMP_GE_OQ>(xi.0, bounds[2].0),
+        ]);
+        let number = avx512!({
+            let one = _mm512_set1_epi32(1);
+            let first = _mm512_maskz_mov_epi32(at_least[0], one);
+            let second = _mm512_mask_add_epi32(first, at_least[1], first, one);
+            _mm512_mask_add_epi32(second, at_least[2], second, one)
+        });
+        Slots { number, at_least }
+    }
+    #[inline(always)]
+    fn is_slot(choice: Slots, slot: usize) -> __mmask16 {
+        let [one, two, three] = choice.at_least;
+        match slot {
+            0 => !one,
+            1 => one & !two,
+            2 => two & !three,
+            _ => three,
+        }
+    }
+    #[inline(always)]
+    fn slot_number(choice: Slots) -> Self {
+        Self(avx512!(_mm512_cvtepi32_ps(choice.number)))
+    }
+}
+
+impl Broadcast<Avx512> for f32 {
+    #[inline(always)]
+    fn lanes(&self) -> Avx512 {
+        Avx512::splat(*self)
+    }
+    // One shuffle in place of three blends.
+    #[inline(always)]
+    fn pick(table: &[f32; 4], choice: Slots) -> Avx512 {
+        Avx512(avx512!(_mm512_permutevar_ps(_mm512_broadcast_f32x4(_mm_loadu_ps(table.as_ptr())), choice.number)))
+    }
+    #[inline(always)]
+    fn pick_three(table: &[f32; 4], choice: Slots) -> Avx512 {
+        Self::pick(table, choice)
+    }
+    #[inline(always)]
+    fn pick_pair(table: &[f32; 2], choice: Slots) -> Avx512 {
+        Avx512(avx512!({
+            // Either entry in every second lane: the upper of a slot's two bits is which.
+            let two = _mm512_castpd_ps(_mm512_set1_pd(table.as_ptr().cast::<f64>().read_unaligned()));
+            _mm512_permutevar_ps(two, _mm512_srli_epi32::<1>(choice.number))
+        }))
+    }
+}
+
+impl Broadcast<Self> for Avx512 {
+    #[inline(always)]
+    fn lanes(&self) -> Self {
+        *self
+    }
+    #[inline(always)]
+    fn pick(table: &[Self; 4], choice: Slots) -> Self {
+        pick_by_select(*table, choice.at_least)
+    }
+    #[inline(always)]
+    fn pick_three(table: &[Self; 4], choice: Slots) -> Self {
+        pick_by_select(*table, choice.at_least)
+    }
+    #[inline(always)]
+    fn pick_pair(table: &[Self; 2], choice: Slots) -> Self {
+        Self::select(choice.at_least[1], table[1], table[0])
+    }
+}
+
+impl Packet<16> for Avx512 {
+    #[inline(always)]
+    fn read(from: &[f32; 16]) -> Self {
+        Self(avx512!(_mm512_loadu_ps(from.as_ptr())))
+    }
+    #[inline(always)]
+    fn write(self, to: &mut [f32; 16]) {
+        avx512!(_mm512_storeu_ps(to.as_mut_ptr(), self.0));
+    }
+}
