@@ -55,24 +55,29 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by;
     let w = w_o.mul_add(cos_phi, -(v_o * sin_phi)) * by;
 
-    // Half of |phi| or of pi - |phi|, whichever is smaller: from the sine and cosine that the direction was made of,
-    // and moved by what rounding has moved the direction. Next to pi R and TRT-g vanish, and take all of its digits.
+    // Half of |phi| or of pi - |phi|, whichever is smaller: its tangent from the sine and cosine that the direction was
+    // made of, and then that of the rounded direction, as evaluation has it, which is so near that one step of Newton's
+    // gives its division and a tangent line its arc. Next to pi R and TRT-g vanish, and take all of its digits.
     let (small, large) = (sin_psi.min(cos_psi).abs(), sin_psi.max(cos_psi));
-    let reach = cos_theta_i * cos_o;
-    let reciprocal = one / (reach * large);
-    let inv_large = reciprocal * reach;
-    let angle = atan_unit(small * inv_large);
+    let (reach, large_sq) = (cos_theta_i * cos_o, large * large);
+    let reciprocal = one / (reach * large_sq);
+    let tau = (small * large) * (reciprocal * reach);
+    let angle = atan_unit(tau);
+    let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
-    let rounded = cross * (reciprocal * c(0.5));
-    let angle = (rounded - small).mul_add(inv_large, angle);
+    let inv_far = reciprocal * c(0.5);
+    let excess = one - (reach + dot.abs()) * inv_far;
+    let rounded = cross * inv_far;
+    let rounded = rounded.mul_add(excess, rounded);
+    let angle = (rounded - tau).mul_add(large_sq, angle);
     let place = Place::new(
         half_theta_i,
         sin_theta_i,
         cos_theta_i,
-        reciprocal * (cos_o * large),
+        reciprocal * (cos_o * large_sq),
         angle,
-        [rounded, large],
-        zero.lt(v.mul_add(v_o, w * w_o)),
+        [rounded * large, large],
+        zero.lt(dot),
     );
     (Vec3x::new(sin_theta_i, v, w), choice, place)
 }
