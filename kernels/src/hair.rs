@@ -7,7 +7,7 @@ mod sampling;
 pub use gather::{HairGather, HairMaterial};
 
 use crate::lanes::lanes3;
-use crate::math::atan_unit;
+use crate::math::{FRAC_PI_2_LOW, atan_unit};
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::{Bell, Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Vec3x};
 use core::f32::consts::FRAC_PI_2;
@@ -105,7 +105,7 @@ impl<L: Lanes> Place<L> {
         [sin_half, cos_half]: [L; 2],
         front: L::Mask,
     ) -> Self {
-        let rest = L::splat(FRAC_PI_2) - half;
+        let rest = (L::splat(FRAC_PI_2) - half) + L::splat(FRAC_PI_2_LOW);
         Self {
             half_theta_i,
             sin_theta_i,

@@ -7,7 +7,7 @@ use crate::Lanes;
 use core::f32::consts::{FRAC_PI_2, LOG2_E, PI};
 
 /// `pi/2 - FRAC_PI_2`, what the rounding of the constant leaves out.
-const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
+pub(crate) const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
 
 /// A polynomial, its even and odd halves apart: half the dependency chain of Horner's rule.
 #[inline(always)]
@@ -59,14 +59,14 @@ pub fn atan_unit<L: Lanes>(t: L) -> L {
     let p = polynomial(
         z,
         [
-            -0.333_331_525_325_775_15,
-            0.199_937_671_422_958_37,
-            -0.142_110_009_922_256_47,
-            0.106_657_691_299_915_31,
-            -0.075_516_752_898_693_08,
-            0.043_205_402_791_500_09,
-            -0.016_364_114_359_021_187,
-            0.002_919_823_629_781_604,
+            -0.333_329_856_395_721_44,
+            0.199_903_666_973_114,
+            -0.141_857_504_844_665_53,
+            0.105_731_047_689_914_7,
+            -0.073_650_382_459_163_67,
+            0.041_103_046_387_434_006,
+            -0.015_121_388_249_099_255,
+            0.002_619_541_482_999_921,
         ],
     );
     p.mul_add(z * t, t)

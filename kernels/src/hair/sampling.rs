@@ -2,9 +2,10 @@
 
 use super::{HairGather, Place};
 use crate::lanes::lanes3;
-use crate::math::{atan_unit, sin_cos_absolute, sin_cos_twice};
+use crate::math::{FRAC_PI_2_LOW, atan_unit, sin_cos_absolute, sin_cos_twice};
 use crate::truncated::TruncatedCauchy;
 use crate::{Broadcast, Lanes, Vec3x};
+use core::f32::consts::FRAC_PI_2;
 
 /// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place: of the angles it was made of, those
 /// that keep their digits in the direction are kept, not taken back from it.
@@ -42,41 +43,42 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let y = azimuth.invert(one - across);
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::pick_pair(&hair.half_gamma, choice), center);
-    let (sin_psi, cos_psi) = sin_cos_absolute(psi);
-    let sin_psi = L::select(is_bell, sin_psi, across);
-    let cos_psi = L::select(is_bell, cos_psi, (one - across * across).sqrt());
+    let (sin_bell, cos_bell) = sin_cos_absolute(psi);
+    let sin_psi = L::select(is_bell, sin_bell, across);
+    let cos_psi = L::select(is_bell, cos_bell, (one - across * across).sqrt());
 
     // The direction, from the double angle; phi_i = phi_o - phi. The sides of R and TRT-g are the other way round.
-    let twice = sin_psi + sin_psi;
-    let sin_phi = (twice * cos_psi).copysign(L::negate(is_bell, side));
-    let cos_phi = L::negate(is_tt, one - twice * sin_psi);
+    let sin_psi_sq = sin_psi * sin_psi;
+    let sin_turn = (sin_psi + sin_psi) * cos_psi;
+    let cos_turn = cos_psi.mul_add(cos_psi, -sin_psi_sq);
+    let sin_phi = sin_turn.copysign(L::negate(is_bell, side));
+    let cos_phi = L::negate(is_tt, cos_turn);
+    // What the sine and the cosine are off the unit circle is taken from the length.
+    let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;
     let [v_o, w_o, cos_o] = lanes3(&gather.plane_o);
     let by = cos_theta_i * gather.inv_plane_o.lanes();
+    let by = by - by * off_unit;
     let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by;
     let w = w_o.mul_add(cos_phi, -(v_o * sin_phi)) * by;
 
-    // Half of |phi| or of pi - |phi|, whichever is smaller: its tangent from the sine and cosine that the direction was
-    // made of, and then that of the rounded direction, as evaluation has it, which is so near that one step of Newton's
-    // gives its division and a tangent line its arc. Next to pi R and TRT-g vanish, and take all of its digits.
+    // Half of |phi| or of pi - |phi|, whichever is smaller, from the sine and cosine that the direction was made of, and
+    // then turned by what rounding has turned the direction. Next to pi R and TRT-g vanish, and take all of its digits.
     let (small, large) = (sin_psi.min(cos_psi).abs(), sin_psi.max(cos_psi));
     let (reach, large_sq) = (cos_theta_i * cos_o, large * large);
     let reciprocal = one / (reach * large_sq);
-    let tau = (small * large) * (reciprocal * reach);
-    let angle = atan_unit(tau);
+    let inv_reach = reciprocal * large_sq;
+    let rest = (c(FRAC_PI_2) - psi) + c(FRAC_PI_2_LOW);
+    let angle = L::select(is_bell, psi.min(rest), atan_unit((small * large) * (reciprocal * reach)));
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
-    let inv_far = reciprocal * c(0.5);
-    let excess = one - (reach + dot.abs()) * inv_far;
-    let rounded = cross * inv_far;
-    let rounded = rounded.mul_add(excess, rounded);
-    let angle = (rounded - tau).mul_add(large_sq, angle);
+    let turned = cross.mul_add(cos_turn.abs(), -(dot.abs() * sin_turn)) * (inv_reach * c(0.5));
     let place = Place::new(
         half_theta_i,
         sin_theta_i,
         cos_theta_i,
-        reciprocal * (cos_o * large_sq),
-        angle,
-        [rounded * large, large],
+        inv_reach * cos_o,
+        angle + turned,
+        [turned.mul_add(large, small), large],
         zero.lt(dot),
     );
     (Vec3x::new(sin_theta_i, v, w), choice, place)
