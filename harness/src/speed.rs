@@ -9,6 +9,7 @@
 mod cells;
 mod check;
 mod inputs;
+mod points;
 mod slices;
 mod task;
 
@@ -44,7 +45,11 @@ pub enum Op {
     Sample,
     /// A gather point of its own for each direction, and one sample with its value: all on one head of hair.
     PointsShared,
-    /// The same on eight heads of hair, one a lane, packed once.
+    /// The same with four samples a gather point.
+    PointsOf4,
+    /// With sixteen.
+    PointsOf16,
+    /// With one, on eight heads of hair, one a lane, packed once.
     PointsMixed,
     /// The same, packed anew for each eight gather points.
     PointsPacked,
@@ -52,8 +57,16 @@ pub enum Op {
 
 impl Op {
     /// Every operation, in the order of the tables.
-    pub const ALL: [Self; 6] =
-        [Self::Prepare, Self::EvalPdf, Self::Sample, Self::PointsShared, Self::PointsMixed, Self::PointsPacked];
+    pub const ALL: [Self; 8] = [
+        Self::Prepare,
+        Self::EvalPdf,
+        Self::Sample,
+        Self::PointsShared,
+        Self::PointsOf4,
+        Self::PointsOf16,
+        Self::PointsMixed,
+        Self::PointsPacked,
+    ];
 
     /// What the operation is, for tables.
     #[must_use]
@@ -62,9 +75,11 @@ impl Op {
             Self::Prepare => "prepare",
             Self::EvalPdf => "eval + pdf",
             Self::Sample => "sample",
-            Self::PointsShared => "8 points, 1 hair",
-            Self::PointsMixed => "8 points, 8 hairs",
-            Self::PointsPacked => "8 points, 8 hairs, packing",
+            Self::PointsShared => "prepare + 1 sample",
+            Self::PointsOf4 => "prepare + 4 samples",
+            Self::PointsOf16 => "prepare + 16 samples",
+            Self::PointsMixed => "prepare + 1, 8 hairs",
+            Self::PointsPacked => "prepare + 1, 8 hairs, packing",
         }
     }
 }
@@ -279,9 +294,10 @@ mod tests {
     fn every_contender_is_timed_and_right() {
         let mut last = 0.0;
         let report = run(&SpeedConfig { seconds: 0.0, seed: 1 }, |done| last = done).expect("hair within range");
-        // Slices take part where a gather point is given: evaluation and sampling.
+        // Slices take part where a gather point is given: evaluation and sampling. Eight lanes at one gather point take
+        // part where it has several samples.
         let levels = Level::available().count();
-        assert_eq!(report.rows.len(), 2 * (Op::ALL.len() * (2 + levels) + 2 * levels), "a row is missing");
+        assert_eq!(report.rows.len(), 2 * (Op::ALL.len() * (2 + levels) + 4 * levels), "a row is missing");
         assert!(last >= 1.0, "progress ended at {last}");
         for row in &report.rows {
             assert!(row.passed, "wrong answers: {row:?}");

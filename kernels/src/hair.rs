@@ -7,7 +7,7 @@ mod sampling;
 pub use gather::{HairGather, HairMaterial};
 
 use crate::lanes::lanes3;
-use crate::math::{FRAC_PI_2_LOW, atan_unit};
+use crate::math::{FRAC_PI_2_LOW, atan_unit, half_atan2};
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::{Bell, Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Vec3x};
 use core::f32::consts::FRAC_PI_2;
@@ -81,7 +81,7 @@ impl<L: Lanes> Place<L> {
         let far = reach + dot.abs();
 
         // A division of its own: next to opposite poles theta_i and theta_o cancel, and each digit counts.
-        let half_theta_i = atan_unit(wi.x / (one + cos_theta_i));
+        let half_theta_i = half_atan2(wi.x, cos_theta_i, one);
         let reciprocal = one / (far * reach);
         let inv_far = reciprocal * reach;
         let tau = cross * inv_far;

@@ -4,7 +4,7 @@
 //! its range, and the error measured on it by the tests (rows of `tests/tolerance.rs`). None branches.
 
 use crate::Lanes;
-use core::f32::consts::{FRAC_PI_2, LOG2_E, PI};
+use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
 /// `pi/2 - FRAC_PI_2`, what the rounding of the constant leaves out.
 pub(crate) const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
@@ -70,6 +70,25 @@ pub fn atan_unit<L: Lanes>(t: L) -> L {
         ],
     );
     p.mul_add(z * t, t)
+}
+
+/// Half of `atan2(y, x)` for `x >= 0`, an angle in `[-pi/4, pi/4]`; `length` is that of `(x, y)`. Zero length gives NaN.
+///
+/// The half-angle tangent of the angle or of its complement, whichever is smaller: half as far off as [`atan_unit`] of
+/// `y / (length + x)` is at the ends.
+#[inline(always)]
+pub fn half_atan2<L: Lanes>(y: L, x: L, length: L) -> L {
+    let c = L::splat;
+    let across = y.abs();
+    let t = across.min(x) / (length + across.max(x));
+    let z = t * t;
+    let p = polynomial(
+        z,
+        [-0.333_329_498_767_852_8, 0.199_777_275_323_867_8, -0.138_777_986_168_861_4, 0.080_539_561_808_109_28],
+    );
+    let half = p.mul_add(z * t, t);
+    let rest = (c(FRAC_PI_4) - half) + c(0.5 * FRAC_PI_2_LOW);
+    L::select(x.lt(across), rest, half).copysign(y)
 }
 
 /// `atan2(y, x)` for `y >= 0`: an angle in `[0, pi]`. Both zero give 0.

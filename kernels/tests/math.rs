@@ -3,7 +3,7 @@
 use crate::support::{Draws, Worst, narrow};
 use crate::tolerance as bound;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
-use hairis::math::{atan_unit, atan2_upper, gaussian, sin_cos_absolute, sin_cos_twice};
+use hairis::math::{atan_unit, atan2_upper, gaussian, half_atan2, sin_cos_absolute, sin_cos_twice};
 use hairis::wide::f32x8;
 use hairis::{Lanes, Level};
 
@@ -49,6 +49,9 @@ fn atan<L: Lanes>([x, _]: [L; 2]) -> L {
 }
 fn atan2<L: Lanes>([y, x]: [L; 2]) -> L {
     atan2_upper(y, x)
+}
+fn half<L: Lanes>([y, x]: [L; 2]) -> L {
+    half_atan2(y, x, x.mul_add(x, y * y).sqrt())
 }
 fn sin<L: Lanes>([x, _]: [L; 2]) -> L {
     sin_cos_twice(x).0
@@ -139,6 +142,28 @@ fn atan2_upper_is_accurate_at_every_magnitude() {
     for (y, x, want) in exact {
         assert_eq!(atan2_upper(y, x), want, "atan2({y}, {x})");
     }
+}
+
+#[test]
+fn half_atan2_is_accurate_at_both_ends() {
+    let (mut worst, mut absolute, mut lanes) = (Worst::default(), Worst::default(), Worst::default());
+    let mut draws = Draws(6);
+    for i in 0..POINTS {
+        let angle = match i % 3 {
+            0 => draws.scale(1e-9, 1.0),
+            1 => f64::from(FRAC_PI_2) - draws.scale(1e-9, 1.0),
+            _ => draws.between(0.0, f64::from(FRAC_PI_2)),
+        };
+        let size = draws.scale(0.25, 7.0);
+        let (y, x) = (narrow(draws.sign() * size * angle.sin()), narrow(size * angle.cos()).abs());
+        let (got, want) = (both([y, x], half, half, &mut lanes), 0.5 * f64::from(y).atan2(f64::from(x)));
+        worst.see(ulp(got, want), || format!("y {y:e} x {x:e}"));
+        absolute.see((f64::from(got) - want).abs(), || format!("y {y:e} x {x:e}"));
+    }
+    worst.check("HALF_ATAN2", bound::HALF_ATAN2);
+    absolute.check("HALF_ATAN2_RAD", bound::HALF_ATAN2_RAD);
+    lanes.check("HALF_ATAN2_LANES", bound::MATH_LANES);
+    assert_eq!([half_atan2(0.0_f32, 1.0, 1.0), half_atan2(-1.0_f32, 0.0, 1.0)], [0.0, -FRAC_PI_4], "the ends");
 }
 
 #[test]

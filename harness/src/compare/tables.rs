@@ -51,7 +51,7 @@ fn speed(of: &Comparison, model: ModelKind, depth: Depth) -> Table {
         .number("quartiles, ns")
         .number("against the textbook");
     for row in of.speed.rows.iter().filter(|row| row.model == model.name()) {
-        if depth == Depth::Summary && !matches!(row.op, Op::Prepare | Op::EvalPdf | Op::Sample | Op::PointsMixed) {
+        if depth == Depth::Summary && matches!(row.op, Op::PointsShared | Op::PointsOf4 | Op::PointsPacked) {
             continue;
         }
         table.push([

@@ -68,6 +68,49 @@ impl<I, O: Output, F: Fn(&I) -> O> Pass for Task<I, O, F> {
     }
 }
 
+/// A function of one argument with several results, each handed on as it comes.
+struct Several<I, O, F> {
+    inputs: Vec<I>,
+    call: F,
+    /// The place of the `i`th answer among those of the directions.
+    place: fn(usize) -> usize,
+    output: PhantomData<fn() -> O>,
+}
+
+/// A pass that calls `call` with each of `inputs`; of its answers in the order they come, the `i`th is the answer to
+/// direction `place(i)`.
+pub(super) fn several<I, O, F>(inputs: &[I], place: fn(usize) -> usize, call: F) -> Box<dyn Pass>
+where
+    I: Clone + 'static,
+    O: Output + 'static,
+    F: Fn(&I, &mut dyn FnMut(&O)) + 'static,
+{
+    Box::new(Several { inputs: inputs.to_vec(), call, place, output: PhantomData })
+}
+
+impl<I, O: Output, F: Fn(&I, &mut dyn FnMut(&O))> Pass for Several<I, O, F> {
+    #[inline(never)]
+    fn pass(&self) {
+        for input in &self.inputs {
+            (self.call)(black_box(input), &mut |result| {
+                black_box(result);
+            });
+        }
+    }
+
+    fn answers(&self) -> Vec<Answer> {
+        let mut out = Vec::new();
+        for input in &self.inputs {
+            (self.call)(input, &mut |result| result.answers(&mut out));
+        }
+        let mut ordered = out.clone();
+        for (i, answer) in out.iter().enumerate() {
+            ordered[(self.place)(i)] = *answer;
+        }
+        ordered
+    }
+}
+
 impl Output for ([f32; 3], f32) {
     fn answers(&self, out: &mut Vec<Answer>) {
         out.push(Answer { wi: None, value: self.0, pdf: self.1 });

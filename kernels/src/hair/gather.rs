@@ -2,7 +2,7 @@
 
 use super::albedo::bell_area;
 use crate::lanes::{store3, store4};
-use crate::math::atan_unit;
+use crate::math::half_atan2;
 use crate::truncated::TruncatedCauchy;
 use crate::{Bell, Broadcast, HairParams, Lanes, Lobe, LobeMask, Vec3x};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
@@ -182,7 +182,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     let span_plane = L::select(off_axis, plane, one);
     let reciprocal = one / (len * span_plane);
     let (inv_len, inv_plane) = (reciprocal * span_plane, reciprocal * len);
-    let half_theta_o = atan_unit(x / (len + plane));
+    let half_theta_o = half_atan2(x, plane, len);
     // Products of components this small would leave the range of a float; their last digit is none of the bounds'.
     let near_axis = plane.lt(c(1e-4));
     let cos_phi_o = L::select(off_axis, y * inv_plane, one);
