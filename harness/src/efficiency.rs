@@ -48,7 +48,13 @@ pub use result::{
 };
 pub use run::run;
 
-use crate::light::Environment;
+pub(crate) use case::Scatter;
+pub(crate) use run::z_bound;
+
+#[cfg(test)]
+use crate::light::Light;
+use crate::light::{Environment, Sun};
+use crate::quadrature::fibre_direction;
 use crate::sequence::stream_id;
 use hairis::{HairDesc, HairParams, ParamError};
 use serde::Serialize;
@@ -99,7 +105,7 @@ impl ModelKind {
         }
     }
 
-    fn index(self) -> u64 {
+    pub(crate) fn index(self) -> u64 {
         match self {
             Self::Gaussian => 0,
             Self::Cauchy => 1,
@@ -139,7 +145,7 @@ impl Sampler {
         }
     }
 
-    fn index(self) -> u64 {
+    pub(crate) fn index(self) -> u64 {
         match self {
             Self::Uniform => 0,
             Self::Ou => 1,
@@ -269,9 +275,21 @@ impl<'a> EfficiencyConfig<'a> {
 ///
 /// # Errors
 /// When a width leaves its range.
-fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, ParamError> {
+pub(crate) fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, ParamError> {
     let beta_r = beta_r_deg.to_radians();
     HairParams::new(&HairDesc { beta_r, beta_tt: 0.5 * beta_r, beta_trt: 2.0 * beta_r, ..*base.desc() })
+}
+
+/// The sun of the comparison.
+pub(crate) fn sun() -> Sun {
+    let [theta, phi] = SUN_DEG.map(f64::to_radians);
+    Sun::five_degrees(fibre_direction(theta, phi))
+}
+
+/// Mean and V of a model under a light that quadrature can integrate, seen from [`PHI_O_DEG`].
+#[cfg(test)]
+pub(crate) fn quadrature(model: ModelKind, params: &HairParams, theta_o_deg: f64, light: &dyn Light) -> Reference {
+    reference::by_quadrature(&case::Case::new(model, params, theta_o_deg), light)
 }
 
 /// The one number of a colour that figures are of: its mean.
