@@ -29,8 +29,8 @@ The answer to "wi", and to "xi" (lobe null: discarded, and 0 for the rest):
 A line that is refused, a blank one included, is answered by {"error":"field: problem"};
 the rest still runs, and the exit code is 2."#;
 
-const STUDY: &str = "Writes into DIR: study.csv, the rows, which depend on the seed and the build alone; study.json, the settings; times.csv
-and efficiency.csv, which depend on the machine as well. Finished cells are kept
+const STUDY: &str = "Writes into DIR: study.csv and study.parquet, the rows, which depend on the seed and the build alone; study.json, the
+settings; times.csv, efficiency.csv and efficiency.parquet, which depend on the machine as well. Finished cells are kept
 in DIR/cells-I-of-N.jsonl: the same command goes on from there.";
 
 /// The subcommands, each with its flags.

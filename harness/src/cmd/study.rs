@@ -57,7 +57,7 @@ pub(super) fn finish(study: &Study, out: &Path) -> Result<(), Error> {
     study.write(out, &times)?;
     print_tables(study.summary(&times).iter()).map_err(Error::Write)?;
     let [rows, efficiency] = ["study", "efficiency"].map(|name| out.join(name).display().to_string());
-    say(&format!("wrote {rows}.csv and .json, and {efficiency}.csv"));
+    say(&format!("wrote {rows}.csv, .parquet and .json, and {efficiency}.csv and .parquet"));
     let failures = study.failures();
     failures.iter().for_each(|failure| say(&format!("failed: {failure}")));
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }

@@ -176,19 +176,27 @@ impl Study {
         summary::tables(&self.cells, &self.header.lights, &times.0)
     }
 
-    /// Writes `study.csv` (the rows), `study.json` (the settings), `times.csv` and `efficiency.csv` into `dir`, each as
-    /// a whole or not at all.
+    /// Writes `study.csv` and `study.parquet` (the rows), `study.json` (the settings), `times.csv`, `efficiency.csv`
+    /// and `efficiency.parquet` into `dir`, each as a whole or not at all.
     ///
     /// # Errors
     ///
     /// [`Error::Output`] for the first that cannot be written.
     pub fn write(&self, dir: &Path, times: &Times) -> Result<(), Error> {
+        let notes: Vec<(String, String)> = match serde_json::to_value(&self.header) {
+            Ok(serde_json::Value::Object(fields)) => {
+                fields.into_iter().map(|(k, v)| (format!("hairis.{k}"), v.to_string())).collect()
+            }
+            _ => Vec::new(),
+        };
         let machine = json!({ "study": self.header, "times_measured_on": Machine::current() });
         let rows = self.columns();
         let efficiencies = self.efficiencies(times);
         whole(&dir.join("study.csv"), |out| rows.write_csv(out))?;
+        whole(&dir.join("study.parquet"), |out| rows.write_parquet(&notes, out))?;
         whole(&dir.join("times.csv"), |out| times::columns(&times.0).write_csv(out))?;
         whole(&dir.join("efficiency.csv"), |out| efficiencies.write_csv(out))?;
+        whole(&dir.join("efficiency.parquet"), |out| efficiencies.write_parquet(&notes, out))?;
         whole(&dir.join("study.json"), |out| writeln!(out, "{machine:#}"))
     }
 }

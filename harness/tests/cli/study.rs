@@ -51,8 +51,10 @@ fn reference() -> &'static Path {
 
 /// That `dir` holds the rows of the reference, byte by byte.
 fn assert_same_rows(dir: &Path, what: &str) {
-    let [got, want] = [dir, reference()].map(|dir| fs::read(dir.join("study.csv")).unwrap());
-    assert!(!want.is_empty() && got == want, "{what}: study.csv differs");
+    for name in ["study.csv", "study.parquet"] {
+        let (got, want) = (fs::read(dir.join(name)).unwrap(), fs::read(reference().join(name)).unwrap());
+        assert!(!want.is_empty() && got == want, "{what}: {name} differs");
+    }
 }
 
 fn assert_refused(run: &Run, words: &str) {

@@ -1,8 +1,10 @@
 //! The files of a finished study.
 
 use super::{CELLS, reference};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
 use serde_json::Value;
-use std::fs;
+use std::fs::{self, File};
 
 /// Rows of a cell: two models, each sampler, five lights.
 fn rows_of_a_cell() -> usize {
@@ -32,6 +34,37 @@ fn the_rows_are_all_there() {
         assert!(contribution > 1.0, "{row:?}");
         let bounded = !row[column("weight_bound")].is_empty();
         assert!(bounded || row[column("sampler")] != "uniform", "{row:?}");
+    }
+}
+
+#[test]
+fn csv_and_parquet_have_the_same_content() {
+    for name in ["study", "efficiency"] {
+        let rows = csv(&format!("{name}.csv"));
+        let file = File::open(reference().join(format!("{name}.parquet"))).unwrap();
+        let reader = SerializedFileReader::new(file).unwrap();
+        let schema = reader.metadata().file_metadata().schema();
+        let names: Vec<&str> = schema.get_fields().iter().map(|field| field.name()).collect();
+        assert_eq!(names, rows[0], "{name}: columns");
+        let mut count = 0;
+        for (row, want) in reader.get_row_iter(None).unwrap().zip(&rows[1..]) {
+            let row = row.unwrap();
+            for ((name, field), want) in row.get_column_iter().zip(want) {
+                let same = match field {
+                    Field::Str(text) => text == want,
+                    Field::Int(count) => Ok(*count) == want.parse(),
+                    Field::Double(number) => want.parse::<f64>().is_ok_and(|want| want.to_bits() == number.to_bits()),
+                    Field::Null => want.is_empty(),
+                    _ => false,
+                };
+                assert!(same, "{name} of row {count}: {field} is not {want}");
+            }
+            count += 1;
+        }
+        assert_eq!(count, rows.len() - 1, "{name}: rows");
+        let notes = reader.metadata().file_metadata().key_value_metadata().unwrap();
+        let note = |key: &str| notes.iter().find(|note| note.key == key).and_then(|note| note.value.clone());
+        assert_eq!(note("hairis.seed").as_deref(), Some("1"), "{name}: {notes:?}");
     }
 }
 
