@@ -104,7 +104,7 @@ impl Plan<'_> {
             format: part::FORMAT.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: format!("{}{changed}", machine.commit),
-            level: Level::detect().name().to_owned(),
+            level: format!("{}, compiled for {}", Level::detect().name(), machine.target_features.join("+")),
             quick: self.quick,
             seed: self.seed,
             samples: budget.samples,

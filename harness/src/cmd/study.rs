@@ -34,7 +34,7 @@ pub fn run(config: &Config) -> Result<(), Error> {
     if !finished.is_empty() && !todo.is_empty() {
         say(&format!("{}: goes on after {} of {} cells", part.path().display(), finished.len(), owned().count()));
     }
-    let bar = bar(owned().count(), finished.len());
+    let bar = bar(todo.len());
     study::run(&plan, &todo, |cell| {
         part.keep(&cell)?;
         bar.inc(1);
@@ -63,13 +63,11 @@ pub(super) fn finish(study: &Study, out: &Path) -> Result<(), Error> {
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
 }
 
-/// A bar over cells, on standard error; nothing where that is no terminal.
-fn bar(cells: usize, done: usize) -> ProgressBar {
-    let bar = ProgressBar::new(cells as u64).with_position(done as u64);
+/// A bar over the cells that are left, on standard error; nothing where that is no terminal.
+fn bar(cells: usize) -> ProgressBar {
+    let bar = ProgressBar::new(cells as u64);
     if let Ok(style) = ProgressStyle::with_template("cells {pos:>4} of {len} {wide_bar} {elapsed} (left {eta})") {
         bar.set_style(style);
     }
-    // What was there before is no measure of speed.
-    bar.reset_eta();
     bar
 }

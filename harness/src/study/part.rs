@@ -28,7 +28,7 @@ pub struct Header {
     pub version: String,
     /// Commit of the program, with "+changes" if its files differed from it.
     pub commit: String,
-    /// Instruction set of the eight lanes.
+    /// Instruction set of the eight lanes, and those the rest was compiled for: last digits depend on both.
     pub level: String,
     /// Whether it is the short run.
     pub quick: bool,

@@ -1,4 +1,4 @@
-//! What a study comes to: gains over the published sampler, as geometric means over the grid.
+//! What a study comes to: gains over the published sampler and of the Cauchy model, as geometric means over the grid.
 
 use super::cell::Measured;
 use super::rows::place;
@@ -20,7 +20,7 @@ struct Gain {
     unsure: usize,
 }
 
-/// Gains of the second of two lists of V over the first, cell by cell.
+/// The first of two lists of V over the second, cell by cell.
 ///
 /// The standard error of the geometric mean is that of its figures, the grid being what it is. Both samplers are held
 /// against the same directions of the light: errors of the ratios are, if anything, less than said.
@@ -51,64 +51,115 @@ fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
     Estimate { value, standard_error: value * relative }
 }
 
-/// The tables: variance, and variance in equal time.
+/// A sampler of a model.
+type Estimator = (ModelKind, Sampler);
+
+/// Two estimators held against each other, and the words that begin their row.
+struct Comparison {
+    words: [&'static str; 2],
+    base: Estimator,
+    other: Estimator,
+}
+
+/// What a summary is made of.
+struct Figures<'a> {
+    cells: &'a [Vec<Measured>],
+    lights: &'a [String],
+    times: &'a [Time],
+}
+
+/// The tables: the samplers of each model against `ou`, then the models against each other; variances, then variances in
+/// equal time.
 pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &[Time]) -> Vec<Table> {
-    let mut variance = Table::new("Variance of ou over that of the sampler, over the grid")
-        .text("model")
-        .text("sampler")
-        .text("light")
-        .number("geometric mean")
-        .number("least")
-        .number("most")
-        .number("cells left out");
-    let mut equal_time = Table::new("The same in equal time, set-up included: geometric means")
-        .text("model")
-        .text("sampler")
-        .text("light");
-    for per_point in PER_POINT {
-        equal_time = equal_time.number(format!("{per_point} a point"));
-    }
+    let figures = Figures { cells, lights, times };
+    let mut samplers = Vec::new();
     for model in ModelKind::ALL {
-        for sampler in Sampler::ALL {
-            if sampler == Sampler::Ou {
-                continue;
-            }
-            for (light, name) in lights.iter().enumerate() {
-                let v = |cell: &[Measured], sampler| cell[place(model, sampler, light, lights.len())].figures.v;
-                let pairs = cells.iter().map(|cell| [v(cell, Sampler::Ou), v(cell, sampler)]);
-                let keys = [model.name().to_owned(), sampler.name().to_owned(), name.clone()];
-                let Some(gain) = gain(pairs) else {
-                    variance.push(keys.into_iter().chain([
-                        String::new(),
-                        String::new(),
-                        String::new(),
-                        cells.len().to_string(),
-                    ]));
-                    continue;
-                };
-                let shown = |of: Estimate| number::with_error(of.value, of.standard_error);
-                let of = [gain.geometric_mean, gain.least, gain.most].map(shown);
-                variance.push(keys.clone().into_iter().chain(of).chain([gain.unsure.to_string()]));
-                let of = PER_POINT.map(|per_point| {
-                    let [ou, own] = [Sampler::Ou, sampler].map(|of| ns(times, model, of, per_point));
-                    shown(in_equal_time(gain.geometric_mean, ou.ratio(&own)))
-                });
-                equal_time.push(keys.into_iter().chain(of));
-            }
+        for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
+            let words = [model.name(), sampler.name()];
+            samplers.push(Comparison { words, base: (model, Sampler::Ou), other: (model, sampler) });
         }
     }
+    let models: Vec<Comparison> = Sampler::ALL
+        .into_iter()
+        .map(|sampler| Comparison {
+            words: [ModelKind::Cauchy.name(), sampler.name()],
+            base: (ModelKind::Gaussian, sampler),
+            other: (ModelKind::Cauchy, sampler),
+        })
+        .collect();
     let percent = 100.0 * MAX_RELATIVE_ERROR;
+    let left_out = format!(
+        "{} cells. Left out: cells where the standard error of a V is above {percent}% of it, or nothing was seen of the \
+         light. ±: one standard error.",
+        cells.len()
+    );
+    let timed = "Times of the default hair, eight lanes, one thread, on this machine; ±: one standard error, that of the \
+                 times included.";
+    let above = |who: &str| format!("Above 1, it needs fewer samples than {who}. {left_out}");
     vec![
-        variance.note(format!(
-            "{} cells; above 1, the sampler needs fewer samples than ou. Left out: cells where the standard error of a V \
-             is above {percent}% of it, or nothing was seen of the light. ±: one standard error.",
-            cells.len()
-        )),
-        equal_time.note(
-            "Times of the default hair, eight lanes, one thread, on this machine; ±: one standard error, that of the times \
-             included.",
-        ),
+        figures.variance("V of ou over V of the sampler, over the grid", &samplers).note(above("ou")),
+        figures.equal_time("The same in equal time, set-up included: geometric means", &samplers).note(timed),
+        figures
+            .variance("V on the Gaussian model over V on the Cauchy model, over the grid", &models)
+            .note(above("on the Gaussian model")),
+        figures.equal_time("The same in equal time, set-up included: geometric means", &models).note(timed),
     ]
+}
+
+impl Figures<'_> {
+    /// Gains under the light at `light`; `None` if no cell is sure.
+    fn gain(&self, of: &Comparison, light: usize) -> Option<Gain> {
+        let v = |cell: &[Measured], (model, sampler)| cell[place(model, sampler, light, self.lights.len())].figures.v;
+        gain(self.cells.iter().map(|cell| [v(cell, of.base), v(cell, of.other)]))
+    }
+
+    /// A row for every light of every comparison, its first three cells filled in.
+    fn each<'c>(&'c self, of: &'c [Comparison]) -> impl Iterator<Item = (Vec<String>, &'c Comparison, Option<Gain>)> {
+        of.iter().flat_map(move |of| {
+            self.lights.iter().enumerate().map(move |(light, name)| {
+                let [first, second] = of.words.map(str::to_owned);
+                (vec![first, second, name.clone()], of, self.gain(of, light))
+            })
+        })
+    }
+
+    fn variance(&self, title: &str, of: &[Comparison]) -> Table {
+        let mut table = keys(title).number("geometric mean").number("least").number("most").number("left out");
+        for (mut row, _, gain) in self.each(of) {
+            match gain {
+                Some(gain) => {
+                    row.extend([gain.geometric_mean, gain.least, gain.most].map(shown));
+                    row.push(gain.unsure.to_string());
+                }
+                None => row.extend(["", "", "", "all"].map(str::to_owned)),
+            }
+            table.push(row);
+        }
+        table
+    }
+
+    fn equal_time(&self, title: &str, of: &[Comparison]) -> Table {
+        let table = keys(title);
+        let mut table = PER_POINT.into_iter().fold(table, |table, n| table.number(format!("{n} a point")));
+        for (mut row, of, gain) in self.each(of) {
+            row.extend(gain.iter().flat_map(|gain| {
+                PER_POINT.map(|per_point| {
+                    let [base, other] = [of.base, of.other].map(|(m, s)| ns(self.times, m, s, per_point));
+                    shown(in_equal_time(gain.geometric_mean, base.ratio(&other)))
+                })
+            }));
+            table.push(row);
+        }
+        table
+    }
+}
+
+fn keys(title: &str) -> Table {
+    Table::new(title).text("model").text("sampler").text("light")
+}
+
+fn shown(of: Estimate) -> String {
+    number::with_error(of.value, of.standard_error)
 }
 
 #[cfg(test)]
