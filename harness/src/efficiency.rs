@@ -24,7 +24,7 @@
 //!
 //! The fibre lies along world x, and (u, v, w) is the world's (x, y, z). The viewer is at azimuth [`PHI_O_DEG`], 60 degrees from straight up (+y), inclined by
 //! [`THETA_O_DEG`]. So one glint, 35 degrees from the viewer in azimuth, runs along azimuth 25 and meets the area light above, which spans 27 degrees either side of 0.
-//! The [`Sun`](crate::light::Sun) stands at inclination [`SUN_DEG`]`[0]` = -60 and azimuth 25 degrees: the centre of the R lobe and of that glint for
+//! The [`Sun`] stands at inclination [`SUN_DEG`]`[0]` = -60 and azimuth 25 degrees: the centre of the R lobe and of that glint for
 //! `theta_o = 45`, well inside the TRT lobe for 75, in the tails for 0 and 85. The sun of the procedural [`Sky`](crate::light::Sky) is near
 //! inclination 26 degrees, the centre of the TRT lobe for `theta_o = 0`.
 //!
