@@ -50,7 +50,7 @@ impl Grid {
         theta_o_deg: &[0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0],
     };
 
-    /// 48 of them: the ends of the axes and the default hair.
+    /// 48 of them, from narrow hair to wide, the default hair among them.
     pub const QUICK: Self = Self {
         beta_r_deg: &[2.5, 7.5, 20.0],
         gamma_tt_deg: &[10.0, 45.0],

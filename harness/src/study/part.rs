@@ -196,7 +196,8 @@ fn refuse(path: &Path, problem: impl Into<String>) -> Error {
 #[derive(Debug)]
 pub struct Part {
     path: PathBuf,
-    file: Mutex<File>,
+    /// `None` once a line may be torn: nothing must follow it.
+    file: Mutex<Option<File>>,
 }
 
 impl Part {
@@ -234,7 +235,7 @@ impl Part {
         if whole == 0 {
             file.write_all(&first).map_err(output)?;
         }
-        Ok((Self { path, file: Mutex::new(file) }, finished))
+        Ok((Self { path, file: Mutex::new(Some(file)) }, finished))
     }
 
     /// The file.
@@ -252,8 +253,13 @@ impl Part {
         let output = |source| Error::Output { path: self.path.clone(), source };
         let mut line = serde_json::to_vec(finished).map_err(|source| output(source.into()))?;
         line.push(b'\n');
-        let mut file = self.file.lock().map_err(|_| output(io::Error::other("a writer failed")))?;
-        file.write_all(&line).map_err(output)
+        let failed = || output(io::Error::other("an earlier line could not be written"));
+        let mut file = self.file.lock().map_err(|_| failed())?;
+        let written = file.as_mut().ok_or_else(failed)?.write_all(&line).map_err(output);
+        if written.is_err() {
+            *file = None;
+        }
+        written
     }
 }
 
@@ -297,5 +303,18 @@ mod tests {
         let (one, two) = (header(1), header(2));
         assert_eq!(one.difference(&two), Some(["seed".to_owned(), "1".to_owned(), "2".to_owned()]));
         assert_eq!(one.difference(&Header { shard: "2/3".to_owned(), ..one.clone() }), None);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn nothing_follows_a_line_that_could_not_be_written() {
+        let path = PathBuf::from("/dev/full");
+        let file = File::options().append(true).open(&path).expect("Linux has it");
+        let part = Part { path, file: Mutex::new(Some(file)) };
+        let header = header(1);
+        for words in ["No space left", "an earlier line"] {
+            let error = part.keep(&finished(0, &header)).expect_err("the device is full").to_string();
+            assert!(error.starts_with("cannot write /dev/full: ") && error.contains(words), "{error}");
+        }
     }
 }
