@@ -13,6 +13,14 @@ for file in "$dir/out/compare.json" "$dir/out/report.html" "$dir/tables.txt"; do
 done
 python3 -m json.tool "$dir/out/compare.json" > /dev/null
 
+# The study: two parts are the same as one run.
+"$hairis" study --quick --out "$dir/study" > "$dir/tables.txt" 2> /dev/null
+for shard in 1/2 2/2; do "$hairis" study --quick --shard "$shard" --out "$dir/parts" 2> /dev/null; done
+"$hairis" merge "$dir/joined" "$dir/parts" > /dev/null 2>&1
+for file in study.csv study.parquet; do
+  [ -s "$dir/study/$file" ] && cmp "$dir/study/$file" "$dir/joined/$file" || { echo "FAIL $file"; exit 1; }
+done
+
 refused() { # refused WORDS ARGUMENT...: exit code 2 and one line that says WORDS
   local words=$1 code=0; shift
   "$hairis" "$@" > /dev/null 2> "$dir/error" < /dev/null || code=$?
@@ -25,6 +33,9 @@ refused 'cut.hdr' compare --quick --out "$dir/out" --env "$dir/cut.hdr"
 refused 'tables.txt' compare --quick --out "$dir/tables.txt/out"
 refused 'seed' compare --seed many
 refused 'quik' compare --quik
+refused 'shard' study --shard 5/4
+refused 'seed 1' study --quick --seed 2 --out "$dir/study"
+refused 'no part' merge "$dir/joined" "$dir/joined"
 
 answer=$(echo '{"model":"cauchy","params":{"alpha":[-0.13,0.065,0.2],"beta":[0.13,0.065,0.26],"gamma_tt":0.17,"gamma_g":0.17,
 "phi_g":0.6,"i_r":[0.3,0.3,0.3],"i_tt":[0.8,0.6,0.4],"i_trt":[0.7,0.5,0.3],"i_g":0.5},"wo":[0,1,0],"wi":[0.6,0.8,0]}' |

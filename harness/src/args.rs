@@ -29,6 +29,10 @@ The answer to "wi", and to "xi" (lobe null: discarded, and 0 for the rest):
 A line that is refused, a blank one included, is answered by {"error":"field: problem"};
 the rest still runs, and the exit code is 2."#;
 
+const STUDY: &str = "Writes into DIR: study.csv and study.parquet, the rows, which depend on the seed and the build alone; study.json, the
+settings; times.csv, efficiency.csv and efficiency.parquet, which depend on the machine as well. Finished cells are kept
+in DIR/cells-I-of-N.jsonl: the same command goes on from there.";
+
 /// The subcommands, each with its flags.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
@@ -37,6 +41,12 @@ pub enum Command {
     Eval(Eval),
     /// Compare scalar with eight lanes and the Gaussian model with the all-Cauchy one: speed, agreement, variance
     Compare(Compare),
+    /// Measure every sampler of both models under every light over the whole parameter grid; a run that was stopped
+    /// goes on
+    #[command(after_help = STUDY)]
+    Study(Study),
+    /// Join the parts of a study that ran in shards, into the same tables as one run
+    Merge(Merge),
 }
 
 /// Flags of `hairis eval`.
@@ -62,6 +72,37 @@ pub struct Compare {
     /// Environment light, latitude-longitude, as a .hdr or .exr file [default: a procedural sky]
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
+}
+
+/// Flags of `hairis study`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Study {
+    /// A few cells and samples, in less than two minutes
+    #[arg(long)]
+    pub quick: bool,
+    /// Seed of everything that is drawn; rows depend on it alone
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for the results; made if missing. Shards may share it
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Environment light, latitude-longitude, as a .hdr or .exr file [default: a procedural sky]
+    #[arg(long, value_name = "FILE")]
+    pub env: Option<PathBuf>,
+    /// Compute part I of N only, I from 1 to N, for `hairis merge` to join
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<String>,
+}
+
+/// Arguments of `hairis merge`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Merge {
+    /// Folder for the results; made if missing
+    #[arg(value_name = "OUT_DIR")]
+    pub out: PathBuf,
+    /// Folders that hold the parts; one may hold several
+    #[arg(value_name = "PART_DIR", required = true)]
+    pub parts: Vec<PathBuf>,
 }
 
 /// The flags this process was started with; `None` if they asked for help or the version, which then is printed.

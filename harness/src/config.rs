@@ -2,6 +2,7 @@
 
 use crate::args::{self, Args, Command};
 use crate::error::Error;
+use crate::study::Shard;
 use clap::ValueEnum;
 use std::path::PathBuf;
 
@@ -12,6 +13,10 @@ pub enum Run {
     Eval(Eval),
     /// `hairis compare`.
     Compare(Compare),
+    /// `hairis study`.
+    Study(Study),
+    /// `hairis merge`.
+    Merge(Merge),
 }
 
 /// A run of `hairis compare`.
@@ -25,6 +30,30 @@ pub struct Compare {
     pub out: PathBuf,
     /// Environment light; the procedural sky if there is none.
     pub env: Option<PathBuf>,
+}
+
+/// A run of `hairis study`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Study {
+    /// Whether to make it short.
+    pub quick: bool,
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Environment light; the procedural sky if there is none.
+    pub env: Option<PathBuf>,
+    /// The part to compute.
+    pub shard: Shard,
+}
+
+/// A run of `hairis merge`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Merge {
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Folders that hold the parts.
+    pub parts: Vec<PathBuf>,
 }
 
 /// A run of `hairis eval`.
@@ -62,6 +91,14 @@ impl Run {
                 }
                 Ok(Self::Compare(Compare { quick, seed, out, env }))
             }
+            Command::Study(args::Study { quick, seed, out, env, shard }) => {
+                let shard = match shard {
+                    Some(text) => text.parse().map_err(|problem| Error::Usage(format!("--shard {problem}")))?,
+                    None => Shard::WHOLE,
+                };
+                Ok(Self::Study(Study { quick, seed, out, env, shard }))
+            }
+            Command::Merge(args::Merge { out, parts }) => Ok(Self::Merge(Merge { out, parts })),
         }
     }
 }

@@ -24,7 +24,7 @@
 //!
 //! The fibre lies along world x, and (u, v, w) is the world's (x, y, z). The viewer is at azimuth [`PHI_O_DEG`], 60 degrees from straight up (+y), inclined by
 //! [`THETA_O_DEG`]. So one glint, 35 degrees from the viewer in azimuth, runs along azimuth 25 and meets the area light above, which spans 27 degrees either side of 0.
-//! The [`Sun`](crate::light::Sun) stands at inclination [`SUN_DEG`]`[0]` = -60 and azimuth 25 degrees: the centre of the R lobe and of that glint for
+//! The [`Sun`] stands at inclination [`SUN_DEG`]`[0]` = -60 and azimuth 25 degrees: the centre of the R lobe and of that glint for
 //! `theta_o = 45`, well inside the TRT lobe for 75, in the tails for 0 and 85. The sun of the procedural [`Sky`](crate::light::Sky) is near
 //! inclination 26 degrees, the centre of the TRT lobe for `theta_o = 0`.
 //!
@@ -48,7 +48,13 @@ pub use result::{
 };
 pub use run::run;
 
-use crate::light::Environment;
+pub(crate) use case::Scatter;
+pub(crate) use run::z_bound;
+
+#[cfg(test)]
+use crate::light::Light;
+use crate::light::{Environment, Sun};
+use crate::quadrature::fibre_direction;
 use crate::sequence::stream_id;
 use hairis::{HairDesc, HairParams, ParamError};
 use serde::Serialize;
@@ -99,7 +105,7 @@ impl ModelKind {
         }
     }
 
-    fn index(self) -> u64 {
+    pub(crate) fn index(self) -> u64 {
         match self {
             Self::Gaussian => 0,
             Self::Cauchy => 1,
@@ -139,7 +145,7 @@ impl Sampler {
         }
     }
 
-    fn index(self) -> u64 {
+    pub(crate) fn index(self) -> u64 {
         match self {
             Self::Uniform => 0,
             Self::Ou => 1,
@@ -269,9 +275,21 @@ impl<'a> EfficiencyConfig<'a> {
 ///
 /// # Errors
 /// When a width leaves its range.
-fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, ParamError> {
+pub(crate) fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, ParamError> {
     let beta_r = beta_r_deg.to_radians();
     HairParams::new(&HairDesc { beta_r, beta_tt: 0.5 * beta_r, beta_trt: 2.0 * beta_r, ..*base.desc() })
+}
+
+/// The sun of the comparison.
+pub(crate) fn sun() -> Sun {
+    let [theta, phi] = SUN_DEG.map(f64::to_radians);
+    Sun::five_degrees(fibre_direction(theta, phi))
+}
+
+/// Mean and V of a model under a light that quadrature can integrate, seen from [`PHI_O_DEG`].
+#[cfg(test)]
+pub(crate) fn quadrature(model: ModelKind, params: &HairParams, theta_o_deg: f64, light: &dyn Light) -> Reference {
+    reference::by_quadrature(&case::Case::new(model, params, theta_o_deg), light)
 }
 
 /// The one number of a colour that figures are of: its mean.

@@ -24,6 +24,15 @@ pub enum Error {
         /// Why.
         source: io::Error,
     },
+    /// A part of a study, or a folder of them, could not be used.
+    Part {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        problem: String,
+    },
+    /// Parts of a study were joined, but not all: what is missing.
+    Missing(String),
     /// Hair that the program itself made was refused: a fault of the program.
     Params(ParamError),
     /// Checks failed; each has been named on standard error.
@@ -48,6 +57,8 @@ impl Error {
             | Self::Write(_)
             | Self::Environment(_)
             | Self::Output { .. }
+            | Self::Part { .. }
+            | Self::Missing(_)
             | Self::Malformed { .. } => 2,
         }
     }
@@ -61,11 +72,19 @@ impl fmt::Display for Error {
             Self::Write(source) => write!(f, "cannot write standard output: {source}"),
             Self::Environment(source) => write!(f, "{source}"),
             Self::Output { path, source } => write!(f, "cannot write {}: {source}", path.display()),
+            Self::Part { path, problem } => write!(f, "{}: {problem}", path.display()),
+            Self::Missing(what) => write!(f, "the study is not complete: {what}"),
             Self::Params(source) => write!(f, "{source}"),
             Self::Failed(1) => f.write_str("1 check failed"),
             Self::Failed(checks) => write!(f, "{checks} checks failed"),
             Self::Malformed { lines, of } => write!(f, "{lines} of {of} lines were refused"),
         }
+    }
+}
+
+impl From<ParamError> for Error {
+    fn from(source: ParamError) -> Self {
+        Self::Params(source)
     }
 }
 
@@ -76,7 +95,7 @@ impl core::error::Error for Error {
             Self::Output { source, .. } => Some(source),
             Self::Environment(source) => Some(source),
             Self::Params(source) => Some(source),
-            Self::Usage(_) | Self::Failed(_) | Self::Malformed { .. } => None,
+            Self::Usage(_) | Self::Part { .. } | Self::Missing(_) | Self::Failed(_) | Self::Malformed { .. } => None,
         }
     }
 }

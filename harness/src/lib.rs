@@ -17,6 +17,7 @@ pub mod report;
 pub mod sequence;
 pub mod speed;
 pub mod stats;
+pub mod study;
 pub mod subject;
 pub mod table;
 

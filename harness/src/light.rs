@@ -23,6 +23,8 @@ pub use sun::Sun;
 
 use crate::quadrature::{Integral, SphereIntegrator};
 use glam::DVec3;
+use hairis::Vec3x8;
+use wide::f32x8;
 
 /// Luminance of a linear RGB colour with the Rec. 709 primaries, in the unit of the colour.
 #[must_use]
@@ -41,6 +43,15 @@ pub struct LightSample {
     pub pdf: f64,
 }
 
+/// What a light is in eight directions, one a lane, in single precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen8 {
+    /// Radiance from there, linear RGB.
+    pub radiance: [f32x8; 3],
+    /// Density of drawing the direction from the light, per steradian.
+    pub pdf: f32x8,
+}
+
 /// Light arriving from infinitely far away.
 ///
 /// Directions given to `radiance` and `pdf` need not be exactly of unit length: a direction that went through `f32` is good enough.
@@ -57,6 +68,21 @@ pub trait Light: Sync + Send {
     /// Density of [`sample`](Self::sample) at `dir`, per steradian; integrates to 1 over the sphere.
     fn pdf(&self, dir: DVec3) -> f64;
 
+    /// [`radiance`](Self::radiance) and [`pdf`](Self::pdf) in eight directions, one a lane: unit vectors of single precision.
+    ///
+    /// - Accuracy: that of `f32`; a direction within a few 1e-7 rad of an edge may be taken for one on the other side.
+    fn see8(&self, dir: &Vec3x8) -> Seen8 {
+        let (mut radiance, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
+        for lane in 0..8 {
+            let dir = dir.lane(lane).as_dvec3();
+            for (row, c) in radiance.iter_mut().zip(self.radiance(dir)) {
+                row[lane] = rounded(c);
+            }
+            pdf[lane] = rounded(self.pdf(dir));
+        }
+        Seen8 { radiance: radiance.map(f32x8::new), pdf: f32x8::new(pdf) }
+    }
+
     /// Reference integral of `radiance * f` over the sphere, `f` per steradian and linear RGB.
     ///
     /// Each light integrates over its own support, so its edges cost nothing. `sphere` gives the tolerance and, for lights that cover the whole sphere, the
@@ -64,6 +90,17 @@ pub trait Light: Sync + Send {
     fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {
         sphere.integrate_direction(|dir| product(self.radiance(dir), f(dir)))
     }
+}
+
+/// The nearest number of single precision.
+#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
+const fn rounded(x: f64) -> f32 {
+    x as f32
+}
+
+/// A colour in every lane.
+fn splat3(rgb: [f64; 3]) -> [f32x8; 3] {
+    rgb.map(|c| f32x8::splat(rounded(c)))
 }
 
 /// Channel-wise product of two colours.

@@ -11,7 +11,7 @@ mod check;
 mod inputs;
 mod points;
 mod slices;
-mod task;
+pub(crate) mod task;
 
 use crate::stats::percentile;
 use crate::subject::Subject;
@@ -271,7 +271,7 @@ impl<'a> Timing<'a> {
 }
 
 /// Time of `passes` passes, ns.
-fn stretch(task: &dyn Pass, passes: u32) -> f64 {
+pub(crate) fn stretch(task: &dyn Pass, passes: u32) -> f64 {
     let start = Instant::now();
     for _ in 0..passes {
         task.pass();
@@ -280,7 +280,7 @@ fn stretch(task: &dyn Pass, passes: u32) -> f64 {
 }
 
 /// First quartile, median and third quartile.
-fn quartiles(samples: &[f64]) -> [f64; 3] {
+pub(crate) fn quartiles(samples: &[f64]) -> [f64; 3] {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
     [0.25, 0.5, 0.75].map(|p| percentile(&sorted, p))

@@ -3,6 +3,7 @@
 mod agreement;
 mod refusals;
 mod streams;
+mod study;
 
 use crate::cases::Case;
 use serde_json::{Value, json};

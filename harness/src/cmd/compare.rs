@@ -1,9 +1,9 @@
 //! `hairis compare`: runs the comparison, prints its tables, and writes `compare.json` and `report.html`.
 
+use crate::cmd::{environment, print_tables};
 use crate::compare::{self, CompareConfig, Comparison, Depth, Part};
 use crate::config::Compare;
 use crate::error::Error;
-use crate::light::{Environment, Sky};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -17,10 +17,7 @@ use std::sync::Mutex;
 /// [`Error::Environment`] and [`Error::Output`] before any work is done, if a file cannot be read or the folder cannot
 /// be written; [`Error::Failed`] at the end, with all files written, if a check failed.
 pub fn run(config: &Compare) -> Result<(), Error> {
-    let (environment, name) = match &config.env {
-        Some(path) => (Environment::load(path).map_err(Error::Environment)?, path.display().to_string()),
-        None => (Sky::default().environment(), "procedural sky".to_owned()),
-    };
+    let (environment, name) = environment(config.env.as_deref())?;
     fs::create_dir_all(&config.out).map_err(|source| output(&config.out, source))?;
     let [json_path, page_path] = ["compare.json", "report.html"].map(|name| config.out.join(name));
     for path in [&json_path, &page_path] {
@@ -60,17 +57,10 @@ fn json(comparison: &Comparison) -> Result<String, Error> {
     Ok(text)
 }
 
-/// The tables on standard output. A reader that left has read what it wanted.
+/// The tables on standard output.
 fn print(comparison: &Comparison) -> io::Result<()> {
     let tables = compare::tables(comparison, Depth::Summary);
-    let mut out = io::stdout().lock();
-    for table in tables.speed.iter().chain(&tables.agreement).chain(&tables.efficiency) {
-        match writeln!(out, "{}", table.to_terminal()) {
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
-            result => result?,
-        }
-    }
-    Ok(())
+    print_tables(tables.speed.iter().chain(&tables.agreement).chain(&tables.efficiency))
 }
 
 /// One bar a part, on standard error; nothing where that is no terminal.

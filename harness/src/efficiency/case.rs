@@ -14,7 +14,7 @@ use hairis_variants::Cauchy;
 pub(super) const UNIFORM_PDF: f64 = 0.25 / PI;
 
 /// A gather point of any model, eight directions at a time: one call through a table for eight samples costs nothing that shows.
-pub(super) trait Scatter: Send + Sync {
+pub(crate) trait Scatter: Send + Sync {
     fn sample8(&self, xi: &[f32x8; 3]) -> Sample8;
     fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8;
 }

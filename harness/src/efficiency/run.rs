@@ -8,8 +8,7 @@ use super::{
     BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG, Reference, SUN_DEG,
     Sampler, THETA_O_DEG, with_beta,
 };
-use crate::light::{Constant, Light, Rectangle, Smooth, Sun};
-use crate::quadrature::fibre_direction;
+use crate::light::{Constant, Light, Rectangle, Smooth};
 use crate::sequence::SequenceKind;
 use crate::stats::{sidak, z_p_value};
 use core::sync::atomic::{AtomicUsize, Ordering};
@@ -56,8 +55,7 @@ pub fn run(
 ) -> Result<EfficiencyResult, ParamError> {
     let constant = Constant::white();
     let smooth = Smooth::new();
-    let [sun_theta, sun_phi] = SUN_DEG.map(f64::to_radians);
-    let sun = Sun::five_degrees(fibre_direction(sun_theta, sun_phi));
+    let sun = super::sun();
     let area = Rectangle::figure_6a();
     let lights: [&dyn Light; 5] = [&constant, &smooth, &sun, &area, config.environment];
 
@@ -230,7 +228,7 @@ pub(super) fn check(result: &EfficiencyResult) -> Check {
 }
 
 /// The `|z|` of a two-sided p-value, by bisection.
-fn z_bound(p: f64) -> f64 {
+pub(crate) fn z_bound(p: f64) -> f64 {
     let (mut lo, mut hi) = (0.0, 40.0);
     for _ in 0..64 {
         let mid = 0.5 * (lo + hi);

@@ -1,8 +1,10 @@
 //! The same radiance from everywhere.
 
-use super::{Light, LightSample};
+use super::{Light, LightSample, Seen8, rounded, splat3};
 use core::f64::consts::PI;
 use glam::DVec3;
+use hairis::Vec3x8;
+use wide::f32x8;
 
 /// Constant radiance, sampled uniformly on the sphere.
 ///
@@ -52,5 +54,9 @@ impl Light for Constant {
 
     fn pdf(&self, _dir: DVec3) -> f64 {
         0.25 / PI
+    }
+
+    fn see8(&self, _dir: &Vec3x8) -> Seen8 {
+        Seen8 { radiance: splat3(self.radiance), pdf: f32x8::splat(rounded(0.25 / PI)) }
     }
 }

@@ -1,10 +1,13 @@
 //! Latitude-longitude environment maps with exact importance sampling.
 
-use super::{Light, LightSample, luminance};
+use super::{Light, LightSample, Seen8, luminance, rounded};
 use crate::quadrature::{GaussLegendre, Integral, SphereIntegrator};
+use crate::sequence::mix;
 use core::f64::consts::PI;
 use glam::DVec3;
+use hairis::Vec3x8;
 use serde::Serialize;
+use wide::f32x8;
 
 /// The radiance that stands for an infinite pixel: the largest half float, the most an `OpenEXR` half could have held.
 const INFINITE_PIXEL: f32 = 65_504.0;
@@ -155,6 +158,13 @@ impl Environment {
         sum
     }
 
+    /// A number that tells maps apart: a hash of the size and of every pixel, not of the name.
+    #[must_use]
+    pub fn digest(&self) -> u64 {
+        let start = mix(mix(self.width as u64) ^ self.height as u64);
+        self.pixels.iter().flatten().fold(start, |hash, channel| mix(hash ^ u64::from(channel.to_bits())))
+    }
+
     fn total(&self) -> f64 {
         self.rows[self.height - 1]
     }
@@ -199,6 +209,13 @@ fn cell(x: f64, n: usize) -> usize {
     i.min(n - 1)
 }
 
+/// The whole part of `x` as an index below `n`; NaN and what is below 0 become 0.
+fn index(x: f32, n: usize) -> usize {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the cast saturates; NaN becomes 0")]
+    let i = x as usize;
+    i.min(n - 1)
+}
+
 /// Draws an index from a cumulative sum, and what is left of `xi` in [0, 1). Indices of no weight are never drawn while some have weight.
 fn draw(cumulative: &[f64], xi: f64) -> (usize, f64) {
     let last = cumulative.len() - 1;
@@ -238,6 +255,24 @@ impl Light for Environment {
 
     fn pdf(&self, dir: DVec3) -> f64 {
         self.density_of(self.texel(dir))
+    }
+
+    fn see8(&self, dir: &Vec3x8) -> Seen8 {
+        let splat = |x: f64| f32x8::splat(rounded(x));
+        let flat = (dir.x * dir.x + dir.z * dir.z).sqrt();
+        let row = (flat.atan2(dir.y) * splat(self.height as f64 / PI)).to_array();
+        let turn = dir.x.atan2(-dir.z) * splat(0.5 / PI) + splat(0.5);
+        let column = (turn * splat(self.width as f64)).to_array();
+        let (mut radiance, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
+        let scale = if self.is_black() { 0.0 } else { self.width as f64 / (2.0 * PI * self.total()) };
+        for lane in 0..8 {
+            let rgb = self.pixels[index(row[lane], self.height) * self.width + index(column[lane], self.width)];
+            for (of, c) in radiance.iter_mut().zip(rgb) {
+                of[lane] = c;
+            }
+            pdf[lane] = if scale > 0.0 { rounded(luminance(rgb.map(f64::from)) * scale) } else { rounded(0.25 / PI) };
+        }
+        Seen8 { radiance: radiance.map(f32x8::new), pdf: f32x8::new(pdf) }
     }
 
     /// Gauss-Legendre in each texel, 4 by 4 nodes and 3 by 3 for the error; texels of no light are skipped. Exact edges, but lobes of `f` much narrower than

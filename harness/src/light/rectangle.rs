@@ -1,8 +1,10 @@
 //! The large area light of the paper's Figure 6A: a rectangle above the fibre, its long side along it.
 
-use super::{Light, LightSample, product};
+use super::{Light, LightSample, Seen8, product, rounded, splat3};
 use crate::quadrature::{Integral, SphereIntegrator, integrate_rectangle};
 use glam::DVec3;
+use hairis::Vec3x8;
+use wide::f32x8;
 
 /// How a [`Rectangle`] draws its points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,6 +126,23 @@ impl Light for Rectangle {
 
     fn pdf(&self, dir: DVec3) -> f64 {
         self.hit(dir).map_or(0.0, |[x, z]| self.density(x, z))
+    }
+
+    fn see8(&self, dir: &Vec3x8) -> Seen8 {
+        let splat = |x: f64| f32x8::splat(rounded(x));
+        // The plane is met at dir * height / y: compare without the division, which below the horizon would come back up.
+        let within = |x: f32x8, half: f64| (x.abs() * splat(self.height)).simd_le(dir.y * splat(half));
+        let hit = dir.y.simd_gt(f32x8::ZERO) & within(dir.x, self.half_x) & within(dir.z, self.half_z);
+        let on = |x: f32x8| hit.select(x, f32x8::ZERO);
+        let pdf = match self.sampling {
+            RectangleSampling::SolidAngle => splat(1.0 / self.solid_angle()),
+            // Distance^3 / (height area) with the distance height / y.
+            RectangleSampling::Area => {
+                let inverse = splat(self.height) / dir.y;
+                inverse * inverse * inverse / splat(self.height * 4.0 * self.half_x * self.half_z)
+            }
+        };
+        Seen8 { radiance: splat3(self.radiance).map(on), pdf: on(pdf) }
     }
 
     fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {

@@ -1,8 +1,10 @@
 //! A smooth, strictly positive light of order one.
 
-use super::{Light, LightSample, luminance, tangents, unit_or_up};
+use super::{Light, LightSample, Seen8, luminance, rounded, splat3, tangents, unit_or_up};
 use core::f64::consts::PI;
 use glam::DVec3;
+use hairis::Vec3x8;
+use wide::f32x8;
 
 /// Axis of the gradient: above, ahead and to the side, so that no symmetry of the fibre hides a mistake. Unit to rounding after normalisation.
 const AXIS: DVec3 = DVec3::new(0.36, 0.80, 0.48);
@@ -71,5 +73,15 @@ impl Light for Smooth {
 
     fn pdf(&self, dir: DVec3) -> f64 {
         (1.0 + self.slope * self.axis.dot(unit_or_up(dir))) * (0.25 / PI)
+    }
+
+    fn see8(&self, dir: &Vec3x8) -> Seen8 {
+        let t = Vec3x8::splat(self.axis.as_vec3()).dot(*dir);
+        let (mean, slope) = (splat3(MEAN), splat3(core::array::from_fn(|c| MEAN[c] * CONTRAST[c])));
+        let uniform = f32x8::splat(rounded(0.25 / PI));
+        Seen8 {
+            radiance: core::array::from_fn(|c| slope[c].mul_add(t, mean[c])),
+            pdf: (f32x8::splat(rounded(self.slope)) * t + f32x8::splat(1.0)) * uniform,
+        }
     }
 }

@@ -1,9 +1,11 @@
 //! A disc of constant radiance: a sun, five degrees wide by default.
 
-use super::{Light, LightSample, product, tangents, unit_or_up};
+use super::{Light, LightSample, Seen8, product, rounded, splat3, tangents, unit_or_up};
 use crate::quadrature::{Integral, SphereIntegrator, integrate_rectangle};
 use core::f64::consts::PI;
 use glam::DVec3;
+use hairis::Vec3x8;
+use wide::f32x8;
 
 /// A disc on the sky, sampled uniformly over its cone.
 ///
@@ -77,6 +79,13 @@ impl Light for Sun {
 
     fn pdf(&self, dir: DVec3) -> f64 {
         if self.covers(dir) { 1.0 / self.solid_angle() } else { 0.0 }
+    }
+
+    fn see8(&self, dir: &Vec3x8) -> Seen8 {
+        let away = Vec3x8::splat(-self.axis.as_vec3()).plus(*dir);
+        let inside = away.dot(away).simd_le(f32x8::splat(rounded(2.0 * self.height)));
+        let on = |x: f32x8| inside.select(x, f32x8::ZERO);
+        Seen8 { radiance: splat3(self.radiance).map(on), pdf: on(f32x8::splat(rounded(1.0 / self.solid_angle()))) }
     }
 
     fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {

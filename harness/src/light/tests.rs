@@ -74,6 +74,49 @@ fn densities_integrate_to_one_over_the_sphere() {
 }
 
 #[test]
+fn eight_lanes_see_what_one_sees() {
+    let mut xi = Independent::new(5, 0);
+    for light in lights() {
+        let (mut far, mut lit) = (0, 0);
+        for k in 0..2_500 {
+            // Half of the directions are the light's own, so that small ones are met.
+            let dirs: [DVec3; 8] = core::array::from_fn(|lane| {
+                if lane % 2 == 0 { light.sample(xi.next_xi()).dir } else { Constant::white().sample(xi.next_xi()).dir }
+            });
+            let seen = light.see8(&dirs.map(|dir| dir.as_vec3()).into());
+            for (lane, dir) in dirs.into_iter().enumerate() {
+                let (radiance, pdf) = (light.radiance(dir), light.pdf(dir));
+                let got = seen.radiance.map(|c| f64::from(c.as_array()[lane]));
+                let close = |a: f64, b: f64| (a - b).abs() <= 2e-5 * b.abs();
+                let same = close(f64::from(seen.pdf.as_array()[lane]), pdf)
+                    && got.iter().zip(radiance).all(|(a, b)| close(*a, b));
+                // Edges may be rounded across.
+                far += i32::from(!same);
+                lit += i32::from(radiance[0] > 0.0);
+                assert!(got.iter().all(|c| c.is_finite() && *c >= 0.0), "{}: {got:?} at {k}", light.name());
+            }
+        }
+        assert!(far <= 4, "{}: {far} of 20000 differ", light.name());
+        assert!(lit > 5_000 || light.name() == "black", "{}: only {lit} saw it", light.name());
+    }
+}
+
+#[test]
+fn maps_are_told_apart_by_their_digest() {
+    let map = small_map();
+    let pixels = |k: usize| {
+        let mut pixels = vec![[1.0_f32; 3]; 8];
+        pixels[k][1] = 2.0;
+        pixels
+    };
+    let of = |w, h, pixels| Environment::from_pixels("m", w, h, pixels).expect("valid").digest();
+    assert_eq!(map.digest(), small_map().digest());
+    assert_eq!(of(4, 2, pixels(3)), of(4, 2, pixels(3)));
+    assert_ne!(of(4, 2, pixels(3)), of(4, 2, pixels(4)), "another pixel");
+    assert_ne!(of(4, 2, pixels(3)), of(2, 4, pixels(3)), "another shape");
+}
+
+#[test]
 fn samples_agree_with_radiance_and_density() {
     let last = 1.0 - f64::EPSILON / 2.0;
     for (k, light) in lights().iter().enumerate() {

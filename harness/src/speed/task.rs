@@ -11,7 +11,7 @@ pub(super) const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
 
 /// What a contender says of one direction.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Answer {
+pub(crate) struct Answer {
     /// The direction it drew; `None` if it was given one, zero if it discarded the sample.
     pub(super) wi: Option<Vec3>,
     pub(super) value: [f32; 3],
@@ -19,12 +19,12 @@ pub(super) struct Answer {
 }
 
 /// The result of one call: of one direction, or of eight.
-pub(super) trait Output {
+pub(crate) trait Output {
     fn answers(&self, out: &mut Vec<Answer>);
 }
 
 /// Work over all the inputs of a run.
-pub(super) trait Pass {
+pub(crate) trait Pass {
     /// Calls once an input; nothing is kept.
     fn pass(&self);
     /// The same calls, their results kept, in the order of the directions.
@@ -39,7 +39,7 @@ struct Task<I, O, F> {
 }
 
 /// A pass that calls `call` with each of `inputs`.
-pub(super) fn task<I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass>
+pub(crate) fn task<I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass>
 where
     I: Clone + 'static,
     O: Output + 'static,

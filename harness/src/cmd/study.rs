@@ -1,0 +1,73 @@
+//! `hairis study`: runs the study, or its part; once all is there, prints its summary and writes its tables.
+
+use crate::cmd::{environment, print_tables, say};
+use crate::config::Study as Config;
+use crate::error::Error;
+use crate::study::output::{Study, Times};
+use crate::study::part::{Part, read};
+use crate::study::{self, Plan, Shard};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::fs;
+use std::path::Path;
+
+/// Runs the study, from where it was stopped if it was.
+///
+/// # Errors
+///
+/// [`Error::Environment`], [`Error::Output`] and [`Error::Part`] before any work is done, if a file cannot be read or
+/// written, or is of another study; [`Error::Failed`] at the end, with all files written, if a check failed.
+pub fn run(config: &Config) -> Result<(), Error> {
+    let (environment, _) = environment(config.env.as_deref())?;
+    for note in environment.notes() {
+        say(&note);
+    }
+    let plan = Plan { seed: config.seed, quick: config.quick, environment: &environment };
+    fs::create_dir_all(&config.out).map_err(|source| Error::Output { path: config.out.clone(), source })?;
+    let (part, finished) = Part::open(&config.out, &plan.header(config.shard))?;
+
+    let owned = || (0..plan.grid().len()).filter(|index| config.shard.owns(*index));
+    let mut done = vec![false; plan.grid().len()];
+    for cell in &finished {
+        done[cell.cell] = true;
+    }
+    let todo: Vec<usize> = owned().filter(|index| !done[*index]).collect();
+    if !finished.is_empty() && !todo.is_empty() {
+        say(&format!("{}: goes on after {} of {} cells", part.path().display(), finished.len(), owned().count()));
+    }
+    let bar = bar(todo.len());
+    study::run(&plan, &todo, |cell| {
+        part.keep(&cell)?;
+        bar.inc(1);
+        Ok::<(), Error>(())
+    })?;
+    bar.finish_and_clear();
+
+    if config.shard == Shard::WHOLE {
+        finish(&Study::join(&[(part.path().to_owned(), read(part.path())?)])?, &config.out)
+    } else {
+        say(&format!("wrote {}; `hairis merge` joins it with the others", part.path().display()));
+        Ok(())
+    }
+}
+
+/// Measures times, writes the tables and prints the summary.
+pub(super) fn finish(study: &Study, out: &Path) -> Result<(), Error> {
+    let (seed, quick) = study.settings();
+    let times = Times::measure(seed, quick);
+    study.write(out, &times)?;
+    print_tables(study.summary(&times).iter()).map_err(Error::Write)?;
+    let [rows, efficiency] = ["study", "efficiency"].map(|name| out.join(name).display().to_string());
+    say(&format!("wrote {rows}.csv, .parquet and .json, and {efficiency}.csv and .parquet"));
+    let failures = study.failures();
+    failures.iter().for_each(|failure| say(&format!("failed: {failure}")));
+    if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
+}
+
+/// A bar over the cells that are left, on standard error; nothing where that is no terminal.
+fn bar(cells: usize) -> ProgressBar {
+    let bar = ProgressBar::new(cells as u64);
+    if let Ok(style) = ProgressStyle::with_template("cells {pos:>4} of {len} {wide_bar} {elapsed} (left {eta})") {
+        bar.set_style(style);
+    }
+    bar
+}

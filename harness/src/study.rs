@@ -1,0 +1,146 @@
+//! The study: both models, every sampler and every light over the whole parameter grid.
+//!
+//! # What is measured
+//!
+//! For each cell of the [`Grid`], model, [`Sampler`] and light: the mean of `L S cos theta_i / pdf` (the mean of its RGB,
+//! as in [`efficiency`](crate::efficiency)), its relative variance V a sample, the effective sample size, the samples
+//! to an error of 1%, the largest weight and contribution, and the Kullback-Leibler divergence of the density from the
+//! normalised integrand, with standard errors. [`Study::columns`](output::Study::columns) lists them.
+//!
+//! V and the divergence are integrals, and are estimated with directions of the sampler and, for lights that are not
+//! seen from everywhere, of the light: the figures are those of the sampler alone, but no small light has to be hit by
+//! luck. Drawing from the sampler alone, a V of 1000 is known to 10% after some hundred thousand samples, and its error
+//! is thought smaller than it is.
+//!
+//! # Determinism
+//!
+//! The rows depend on the [`Plan`], on the build and on its instruction set, and on nothing else: each cell draws from
+//! streams of its own and is computed by one thread. Finished cells are kept in a part file, see [`part`], so that a run
+//! that was stopped goes on where it was, and so that many processes can share the work. Times are measured apart.
+//!
+//! # Another sampler
+//!
+//! is a variant of [`Sampler`], and an arm in each of the two functions at the head of `study/sampler.rs`.
+
+mod cell;
+mod check;
+pub mod columns;
+pub mod grid;
+pub mod output;
+pub mod part;
+mod rows;
+mod sampler;
+pub mod shard;
+mod summary;
+mod tally;
+mod times;
+
+pub use grid::{Cell, Grid};
+pub use shard::Shard;
+
+use crate::efficiency::{ModelKind, Sampler, sun};
+use crate::light::{Constant, Environment, Light, Rectangle, Smooth};
+use crate::machine::Machine;
+use hairis::{Level, ParamError};
+use part::{Finished, Header};
+use rayon::prelude::*;
+use wide::f32x8;
+
+/// The lights, in the order of reports.
+type Light5<'a> = [&'a dyn Light; 5];
+
+/// Samples of a cell. Both are multiples of eight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Of each sampler of each model.
+    pub samples: usize,
+    /// Of each light that is not seen from everywhere.
+    pub light_samples: usize,
+}
+
+impl Budget {
+    /// Samples of a light to one of a sampler.
+    fn ratio(self) -> f32x8 {
+        #[expect(clippy::cast_possible_truncation, reason = "a ratio of two small numbers")]
+        f32x8::splat((self.light_samples as f64 / self.samples as f64) as f32)
+    }
+}
+
+/// What to compute.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan<'a> {
+    /// Seed of every stream.
+    pub seed: u64,
+    /// Whether it is the short run.
+    pub quick: bool,
+    /// The environment among the lights.
+    pub environment: &'a Environment,
+}
+
+impl Plan<'_> {
+    /// The cells.
+    #[must_use]
+    pub const fn grid(&self) -> Grid {
+        grid_of(self.quick)
+    }
+
+    /// How many samples each takes.
+    #[must_use]
+    pub const fn budget(&self) -> Budget {
+        if self.quick {
+            Budget { samples: 1 << 15, light_samples: 1 << 12 }
+        } else {
+            Budget { samples: 1 << 18, light_samples: 1 << 15 }
+        }
+    }
+
+    /// What a part file of `shard` says of itself.
+    #[must_use]
+    pub fn header(&self, shard: Shard) -> Header {
+        let machine = Machine::current();
+        let budget = self.budget();
+        let changed = if machine.dirty == Some(true) { "+changes" } else { "" };
+        Header {
+            format: part::FORMAT.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: format!("{}{changed}", machine.commit),
+            level: format!("{}, compiled for {}", Level::detect().name(), machine.target_features.join("+")),
+            quick: self.quick,
+            seed: self.seed,
+            samples: budget.samples,
+            light_samples: budget.light_samples,
+            environment: format!("{:016x}", self.environment.digest()),
+            models: ModelKind::ALL.iter().map(|model| model.name().to_owned()).collect(),
+            samplers: Sampler::ALL.iter().map(|sampler| sampler.name().to_owned()).collect(),
+            lights: self.with_lights(|lights| lights.iter().map(|light| light.name().to_owned()).collect()),
+            cells: self.grid().len(),
+            shard: shard.to_string(),
+        }
+    }
+
+    fn with_lights<R>(&self, f: impl FnOnce(&Light5<'_>) -> R) -> R {
+        f(&[&Constant::white(), &Smooth::new(), &sun(), &Rectangle::figure_6a(), self.environment])
+    }
+}
+
+const fn grid_of(quick: bool) -> Grid {
+    if quick { Grid::QUICK } else { Grid::FULL }
+}
+
+/// Computes the cells at `todo` on all cores and hands each to `keep`, from the workers, in no order.
+///
+/// # Errors
+///
+/// The first that `keep` gave, or the hair's: the cells in work are then finished, and no others begun.
+pub fn run<E>(plan: &Plan<'_>, todo: &[usize], keep: impl Fn(Finished) -> Result<(), E> + Sync) -> Result<(), E>
+where
+    E: From<ParamError> + Send,
+{
+    let (grid, budget) = (plan.grid(), plan.budget());
+    plan.with_lights(|lights| {
+        todo.par_iter().with_max_len(1).try_for_each(|&index| {
+            let measured = cell::measure(plan.seed, budget, lights, &grid.cell(index))?;
+            keep(Finished::of(index, &measured))
+        })
+    })
+}

@@ -1,0 +1,174 @@
+//! The parameter grid.
+
+use crate::efficiency::with_beta;
+use hairis::{HairDesc, HairParams, ParamError};
+
+/// Values of each axis. A cell is one of their combinations; the last axis runs fastest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Width of R, in degrees; `beta_tt` is half of it and `beta_trt` twice.
+    pub beta_r_deg: &'static [f32],
+    /// Azimuthal width of TT, in degrees.
+    pub gamma_tt_deg: &'static [f32],
+    /// Azimuthal width of a glint, in degrees.
+    pub gamma_g_deg: &'static [f32],
+    /// Half angle between the glints, in degrees.
+    pub phi_g_deg: &'static [f32],
+    /// Strength of the glints.
+    pub intensity_g: &'static [f32],
+    /// Inclination of the viewer, in degrees.
+    pub theta_o_deg: &'static [f32],
+}
+
+/// One cell of the grid: hair, and the inclination it is seen from. Shifts and colours are those of the default hair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Place in the grid, from 0.
+    pub index: usize,
+    /// See [`Grid::beta_r_deg`].
+    pub beta_r_deg: f32,
+    /// See [`Grid::gamma_tt_deg`].
+    pub gamma_tt_deg: f32,
+    /// See [`Grid::gamma_g_deg`].
+    pub gamma_g_deg: f32,
+    /// See [`Grid::phi_g_deg`].
+    pub phi_g_deg: f32,
+    /// See [`Grid::intensity_g`].
+    pub intensity_g: f32,
+    /// See [`Grid::theta_o_deg`].
+    pub theta_o_deg: f32,
+}
+
+impl Grid {
+    /// All 3024 cells.
+    pub const FULL: Self = Self {
+        beta_r_deg: &[2.5, 5.0, 7.5, 10.0, 15.0, 20.0],
+        gamma_tt_deg: &[5.0, 10.0, 25.0, 45.0],
+        gamma_g_deg: &[5.0, 10.0, 20.0],
+        phi_g_deg: &[20.0, 35.0, 45.0],
+        intensity_g: &[0.5, 5.0],
+        theta_o_deg: &[0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0],
+    };
+
+    /// 48 of them, from narrow hair to wide, the default hair among them.
+    pub const QUICK: Self = Self {
+        beta_r_deg: &[2.5, 7.5, 20.0],
+        gamma_tt_deg: &[10.0, 45.0],
+        gamma_g_deg: &[10.0],
+        phi_g_deg: &[35.0],
+        intensity_g: &[0.5, 5.0],
+        theta_o_deg: &[0.0, 45.0, 75.0, 85.0],
+    };
+
+    fn axes(&self) -> [&'static [f32]; 6] {
+        [self.beta_r_deg, self.gamma_tt_deg, self.gamma_g_deg, self.phi_g_deg, self.intensity_g, self.theta_o_deg]
+    }
+
+    /// Number of cells.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.axes().iter().map(|axis| axis.len()).product()
+    }
+
+    /// Whether an axis has no values.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The cell at `index`, which is taken modulo the number of cells.
+    ///
+    /// # Panics
+    ///
+    /// If an axis has no values.
+    #[must_use]
+    pub fn cell(&self, index: usize) -> Cell {
+        let mut rest = index;
+        let mut values = [0.0; 6];
+        for (value, axis) in values.iter_mut().zip(self.axes()).rev() {
+            *value = axis[rest % axis.len()];
+            rest /= axis.len();
+        }
+        let [beta_r_deg, gamma_tt_deg, gamma_g_deg, phi_g_deg, intensity_g, theta_o_deg] = values;
+        Cell { index, beta_r_deg, gamma_tt_deg, gamma_g_deg, phi_g_deg, intensity_g, theta_o_deg }
+    }
+}
+
+impl Cell {
+    /// The values of the axes, in the order of [`Grid`]'s fields.
+    #[must_use]
+    pub const fn values(&self) -> [f32; 6] {
+        [self.beta_r_deg, self.gamma_tt_deg, self.gamma_g_deg, self.phi_g_deg, self.intensity_g, self.theta_o_deg]
+    }
+
+    /// The hair.
+    ///
+    /// # Errors
+    ///
+    /// Never for the cells of [`Grid::FULL`] and [`Grid::QUICK`]: all of them are within the ranges accepted.
+    pub fn params(&self) -> Result<HairParams, ParamError> {
+        let base = with_beta(&HairParams::default(), self.beta_r_deg)?;
+        HairParams::new(&HairDesc {
+            gamma_tt: self.gamma_tt_deg.to_radians(),
+            gamma_g: self.gamma_g_deg.to_radians(),
+            phi_g: self.phi_g_deg.to_radians(),
+            intensity_g: self.intensity_g,
+            ..*base.desc()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_cell_is_there_once_and_accepted() {
+        assert_eq!(Grid::FULL.len(), 3024);
+        for grid in [Grid::FULL, Grid::QUICK] {
+            let mut seen: Vec<[u32; 6]> = (0..grid.len()).map(|i| grid.cell(i).values().map(f32::to_bits)).collect();
+            for i in 0..grid.len() {
+                grid.cell(i).params().expect("within the ranges accepted");
+            }
+            seen.sort_unstable();
+            seen.dedup();
+            assert_eq!(seen.len(), grid.len());
+        }
+        assert_eq!(Grid::FULL.cell(1).theta_o_deg, 15.0, "the last axis runs fastest");
+    }
+
+    #[test]
+    fn the_short_grid_is_part_of_the_whole_and_holds_the_default_hair() {
+        let full: Vec<[f32; 6]> = (0..Grid::FULL.len()).map(|i| Grid::FULL.cell(i).values()).collect();
+        let quick: Vec<Cell> = (0..Grid::QUICK.len()).map(|i| Grid::QUICK.cell(i)).collect();
+        assert!(quick.iter().all(|cell| full.contains(&cell.values())), "cells of its own");
+        let default = HairParams::default();
+        let near = |a: f32, b: f32| (a - b).abs() <= 1e-6;
+        let is_default = |cell: &&Cell| {
+            let params = cell.params().expect("accepted");
+            let (a, b) = (params.desc(), default.desc());
+            near(a.beta_r, b.beta_r)
+                && near(a.beta_tt, b.beta_tt)
+                && near(a.beta_trt, b.beta_trt)
+                && near(a.gamma_tt, b.gamma_tt)
+                && near(a.gamma_g, b.gamma_g)
+                && near(a.phi_g, b.phi_g)
+                && a.intensity_g == b.intensity_g
+        };
+        assert_eq!(quick.iter().filter(is_default).count(), 4, "the default hair from four inclinations");
+    }
+
+    #[test]
+    fn shifts_and_colours_are_those_of_the_grid() {
+        let params = Grid::FULL.cell(0).params().expect("accepted");
+        let desc = params.desc();
+        let deg = |rad: f32| f64::from(rad.to_degrees());
+        for (got, want) in [(desc.alpha_r, -7.5), (desc.alpha_tt, 3.75), (desc.alpha_trt, 11.25)] {
+            assert!((deg(got) - want).abs() < 1e-5, "{got} for {want}");
+        }
+        assert_eq!(
+            [desc.intensity_r, desc.intensity_tt, desc.intensity_trt],
+            [[0.3; 3], [0.8, 0.6, 0.4], [0.7, 0.5, 0.3]]
+        );
+    }
+}

@@ -1,0 +1,320 @@
+//! The part file: finished cells, one a line, under a line that says what they are of.
+//!
+//! It is only ever appended to, a whole line at a time. A process that is killed leaves at most its last line torn:
+//! the next run drops that line and computes its cell again.
+
+use super::Shard;
+use super::cell::Measured;
+use super::tally::Figures;
+use crate::error::Error;
+use crate::stats::Estimate;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// First word of every part file: the layout of its lines.
+pub const FORMAT: &str = "hairis-study-1";
+
+/// What the cells of a part file are of. All of it must agree for cells to be of one study, but for the shard.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Header {
+    /// [`FORMAT`].
+    pub format: String,
+    /// Version of the program.
+    pub version: String,
+    /// Commit of the program, with "+changes" if its files differed from it.
+    pub commit: String,
+    /// Instruction set of the eight lanes, and those the rest was compiled for: last digits depend on both.
+    pub level: String,
+    /// Whether it is the short run.
+    pub quick: bool,
+    /// Seed of every stream.
+    pub seed: u64,
+    /// Samples of each sampler of each model in a cell.
+    pub samples: usize,
+    /// Samples of each light in a cell.
+    pub light_samples: usize,
+    /// Digest of the environment's pixels.
+    pub environment: String,
+    /// Names of the models, in the order of the rows.
+    pub models: Vec<String>,
+    /// Names of the samplers.
+    pub samplers: Vec<String>,
+    /// Names of the lights.
+    pub lights: Vec<String>,
+    /// Cells of the grid.
+    pub cells: usize,
+    /// Which of them this part has.
+    pub shard: String,
+}
+
+impl Header {
+    /// Rows of a cell.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.models.len() * self.samplers.len() * self.lights.len()
+    }
+
+    /// The first field in which `other` differs, with its value here and there, if one does; the shard may.
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> Option<[String; 3]> {
+        let fields = |of: &Self| match serde_json::to_value(of) {
+            Ok(Value::Object(fields)) => fields,
+            _ => serde_json::Map::new(),
+        };
+        let theirs = fields(other);
+        fields(self).into_iter().find_map(|(name, here)| {
+            let there = theirs.get(&name).cloned().unwrap_or(Value::Null);
+            let differs = name != "shard" && here != there;
+            differs.then(|| [name.replace('_', " "), here.to_string(), there.to_string()])
+        })
+    }
+
+    /// The shard.
+    ///
+    /// # Errors
+    ///
+    /// When it is none.
+    pub fn shard(&self) -> Result<Shard, String> {
+        self.shard.parse().map_err(|problem| format!("shard {problem}"))
+    }
+}
+
+/// A finished cell: for each of its rows mean, V and divergence, each with its standard error, the largest weight and
+/// the largest contribution. What is no number is `None`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Finished {
+    /// Place of the cell in the grid.
+    pub cell: usize,
+    /// Its rows: models outermost, then samplers, then lights.
+    pub rows: Vec<[Option<f64>; 8]>,
+}
+
+impl Finished {
+    pub(super) fn of(cell: usize, measured: &[Measured]) -> Self {
+        let row = |m: &Measured| {
+            let Figures { mean, v, kl } = m.figures;
+            let errors = [mean, v, kl].map(|of| [of.value, of.standard_error]);
+            let [[a, b], [c, d], [e, f]] = errors;
+            [a, b, c, d, e, f, m.max_weight, m.max_contribution].map(|x| x.is_finite().then_some(x))
+        };
+        Self { cell, rows: measured.iter().map(row).collect() }
+    }
+
+    pub(super) fn measured(&self) -> Vec<Measured> {
+        let row = |row: &[Option<f64>; 8]| {
+            let [a, b, c, d, e, f, max_weight, max_contribution] = row.map(|x| x.unwrap_or(f64::NAN));
+            let of = |value, standard_error| Estimate { value, standard_error };
+            Measured { figures: Figures { mean: of(a, b), v: of(c, d), kl: of(e, f) }, max_weight, max_contribution }
+        };
+        self.rows.iter().map(row).collect()
+    }
+}
+
+/// A part file that is read to its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Read {
+    /// Its first line.
+    pub header: Header,
+    /// Its cells, in the order in which they were finished.
+    pub finished: Vec<Finished>,
+    /// Bytes up to the end of the last whole line.
+    whole: usize,
+}
+
+/// Name of the part file of a shard.
+#[must_use]
+pub fn file_name(shard: Shard) -> String {
+    format!("cells-{}-of-{}.jsonl", shard.index(), shard.of())
+}
+
+/// The part files in `dir`, by name.
+///
+/// # Errors
+///
+/// [`Error::Part`] if the folder cannot be read or holds none.
+pub fn find(dir: &Path) -> Result<Vec<PathBuf>, Error> {
+    let unreadable = |source: io::Error| refuse(dir, format!("cannot read: {source}"));
+    let mut found = Vec::new();
+    for entry in fs::read_dir(dir).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        if name.starts_with("cells-") && name.ends_with(".jsonl") {
+            found.push(path);
+        }
+    }
+    if found.is_empty() {
+        return Err(refuse(dir, "holds no part of a study (cells-I-of-N.jsonl)"));
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Reads a part file. A torn last line is left out.
+///
+/// # Errors
+///
+/// [`Error::Part`] if it cannot be read, is none, or is damaged elsewhere than at its end.
+pub fn read(path: &Path) -> Result<Read, Error> {
+    let bytes = fs::read(path).map_err(|source| refuse(path, format!("cannot read: {source}")))?;
+    parse(path, &bytes)?.ok_or_else(|| refuse(path, "is no part of a study: it has no first line"))
+}
+
+/// The part in `bytes`; `None` if not even its first line is whole.
+fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
+    let Some(last) = bytes.iter().rposition(|byte| *byte == b'\n') else {
+        return Ok(None);
+    };
+    let mut lines = bytes[..last].split(|byte| *byte == b'\n');
+    let first = lines.next().unwrap_or_default();
+    let header: Header = serde_json::from_slice(first).map_err(|_| refuse(path, "is no part of a study"))?;
+    let shard = header.shard().map_err(|problem| refuse(path, problem))?;
+    let mut finished = Vec::new();
+    for (line, number) in lines.zip(2..) {
+        let damaged = |problem: &str| refuse(path, format!("line {number} is damaged: {problem}"));
+        let cell: Finished = serde_json::from_slice(line).map_err(|_| damaged("not a cell"))?;
+        if cell.cell >= header.cells || !shard.owns(cell.cell) {
+            return Err(damaged(&format!("cell {} is not of shard {shard}", cell.cell)));
+        }
+        if cell.rows.len() != header.rows() {
+            return Err(damaged(&format!("{} rows, expected {}", cell.rows.len(), header.rows())));
+        }
+        finished.push(cell);
+    }
+    Ok(Some(Read { header, finished, whole: last + 1 }))
+}
+
+fn refuse(path: &Path, problem: impl Into<String>) -> Error {
+    Error::Part { path: path.to_owned(), problem: problem.into() }
+}
+
+/// A part file that is being written. The system frees it when the process ends, however it ends.
+#[derive(Debug)]
+pub struct Part {
+    path: PathBuf,
+    /// `None` once a line may be torn: nothing must follow it.
+    file: Mutex<Option<File>>,
+}
+
+impl Part {
+    /// Opens the part file of `header` in `dir`, or begins it; also gives the cells it has.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Output`] if it cannot be written; [`Error::Part`] if it is of another study, damaged, or in use.
+    pub fn open(dir: &Path, header: &Header) -> Result<(Self, Vec<Finished>), Error> {
+        let shard = header.shard().map_err(Error::Usage)?;
+        let path = dir.join(file_name(shard));
+        let output = |source| Error::Output { path: path.clone(), source };
+        let mut file = File::options().append(true).create(true).read(true).open(&path).map_err(output)?;
+        // File systems without locks go without.
+        if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
+            return Err(refuse(&path, "another process is writing to it"));
+        }
+        let bytes = fs::read(&path).map_err(output)?;
+        let mut first = serde_json::to_vec(header).map_err(|source| output(source.into()))?;
+        first.push(b'\n');
+        let (whole, finished) = match parse(&path, &bytes)? {
+            Some(read) => {
+                if let Some([field, was, is]) = read.header.difference(header) {
+                    return Err(refuse(
+                        &path,
+                        format!("is of a run with {field} {was}, this one has {is}: take another --out, or delete it"),
+                    ));
+                }
+                (read.whole, read.finished)
+            }
+            None if first.starts_with(&bytes) => (0, Vec::new()),
+            None => return Err(refuse(&path, "is no part of a study")),
+        };
+        file.set_len(whole as u64).map_err(output)?;
+        if whole == 0 {
+            file.write_all(&first).map_err(output)?;
+        }
+        Ok((Self { path, file: Mutex::new(Some(file)) }, finished))
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Appends a cell.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Output`] if it cannot be written.
+    pub fn keep(&self, finished: &Finished) -> Result<(), Error> {
+        let output = |source| Error::Output { path: self.path.clone(), source };
+        let mut line = serde_json::to_vec(finished).map_err(|source| output(source.into()))?;
+        line.push(b'\n');
+        let failed = || output(io::Error::other("an earlier line could not be written"));
+        let mut file = self.file.lock().map_err(|_| failed())?;
+        let written = file.as_mut().ok_or_else(failed)?.write_all(&line).map_err(output);
+        if written.is_err() {
+            *file = None;
+        }
+        written
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::Sky;
+    use crate::study::Plan;
+
+    fn header(seed: u64) -> Header {
+        let sky = Sky::default().environment();
+        Plan { seed, quick: true, environment: &sky }.header(Shard::WHOLE)
+    }
+
+    fn finished(cell: usize, header: &Header) -> Finished {
+        let row = [Some(0.1), Some(1e-300), None, None, Some(f64::MAX), Some(1.0 / 3.0), Some(0.0), None];
+        Finished { cell, rows: vec![row; header.rows()] }
+    }
+
+    #[test]
+    fn cells_come_back_as_they_were() {
+        let dir = tempfile::TempDir::new().expect("a folder");
+        let header = header(1);
+        let (part, before) = Part::open(dir.path(), &header).expect("new");
+        assert!(before.is_empty());
+        let cells = [finished(3, &header), finished(0, &header)];
+        cells.iter().for_each(|cell| part.keep(cell).expect("written"));
+        let read = read(part.path()).expect("read");
+        assert_eq!((read.header, &read.finished[..]), (header.clone(), &cells[..]));
+        assert!(cells[0].measured()[0].figures.v.value.is_nan(), "what is no number stays none");
+        assert_eq!(Finished::of(3, &cells[0].measured()), cells[0]);
+        let again = Part::open(dir.path(), &header);
+        assert!(matches!(&again, Err(Error::Part { problem, .. }) if problem.contains("another process")), "{again:?}");
+        drop(part);
+        let (_, before) = Part::open(dir.path(), &header).expect("free again");
+        assert_eq!(before, cells);
+    }
+
+    #[test]
+    fn headers_tell_runs_apart_but_for_the_shard() {
+        let (one, two) = (header(1), header(2));
+        assert_eq!(one.difference(&two), Some(["seed".to_owned(), "1".to_owned(), "2".to_owned()]));
+        assert_eq!(one.difference(&Header { shard: "2/3".to_owned(), ..one.clone() }), None);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn nothing_follows_a_line_that_could_not_be_written() {
+        let path = PathBuf::from("/dev/full");
+        let file = File::options().append(true).open(&path).expect("Linux has it");
+        let part = Part { path, file: Mutex::new(Some(file)) };
+        let header = header(1);
+        for words in ["No space left", "an earlier line"] {
+            let error = part.keep(&finished(0, &header)).expect_err("the device is full").to_string();
+            assert!(error.starts_with("cannot write /dev/full: ") && error.contains(words), "{error}");
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! The rows of a study, as columns.
+
+use super::cell::Measured;
+use super::columns::Columns;
+use super::grid::{Cell, Grid};
+use super::sampler::weight_bound;
+use crate::efficiency::{ModelKind, Sampler};
+
+/// A row: what it is of, and what was found.
+pub(super) struct Row<'a> {
+    pub(super) cell: Cell,
+    pub(super) model: ModelKind,
+    pub(super) sampler: Sampler,
+    /// Place of the light.
+    pub(super) light: usize,
+    pub(super) measured: &'a Measured,
+}
+
+/// Place of a row within its cell.
+pub(super) fn place(model: ModelKind, sampler: Sampler, light: usize, lights: usize) -> usize {
+    let at = |found: Option<usize>| found.unwrap_or_default();
+    let model = at(ModelKind::ALL.iter().position(|of| *of == model));
+    let sampler = at(Sampler::ALL.iter().position(|of| *of == sampler));
+    (model * Sampler::ALL.len() + sampler) * lights + light
+}
+
+/// Every row, in order: cells outermost, then models, samplers and lights.
+pub(super) fn rows<'a>(grid: Grid, cells: &'a [Vec<Measured>], lights: usize) -> Vec<Row<'a>> {
+    let mut rows = Vec::new();
+    for (index, measured) in cells.iter().enumerate() {
+        let cell = grid.cell(index);
+        for model in ModelKind::ALL {
+            for sampler in Sampler::ALL {
+                for light in 0..lights {
+                    let measured = &measured[place(model, sampler, light, lights)];
+                    rows.push(Row { cell, model, sampler, light, measured });
+                }
+            }
+        }
+    }
+    rows
+}
+
+impl Row<'_> {
+    /// The proven bound on the weights; not a number where there is none.
+    pub(super) fn weight_bound(&self) -> f64 {
+        let cos_theta_o = f64::from(self.cell.theta_o_deg).to_radians().cos();
+        let params = self.cell.params().ok();
+        params.and_then(|params| weight_bound(self.sampler, &params, cos_theta_o)).unwrap_or(f64::NAN)
+    }
+}
+
+/// The columns that say what a row is of.
+pub(super) fn keys(rows: &[Row<'_>], lights: &[String]) -> Columns {
+    let axis = |axis: usize| rows.iter().map(move |row| f64::from(row.cell.values()[axis]));
+    Columns::new()
+        .whole("cell", rows.iter().map(|row| row.cell.index))
+        .number("beta_r_deg", axis(0))
+        .number("gamma_tt_deg", axis(1))
+        .number("gamma_g_deg", axis(2))
+        .number("phi_g_deg", axis(3))
+        .number("intensity_g", axis(4))
+        .number("theta_o_deg", axis(5))
+        .text("model", rows.iter().map(|row| row.model.name()))
+        .text("sampler", rows.iter().map(|row| row.sampler.name()))
+        .text("light", rows.iter().map(|row| lights[row.light].clone()))
+}
+
+/// The columns of the study.
+pub(super) fn columns(rows: &[Row<'_>], lights: &[String]) -> Columns {
+    let figures = |of: fn(&Measured) -> f64| rows.iter().map(move |row| of(row.measured));
+    keys(rows, lights)
+        .number("mean", figures(|m| m.figures.mean.value))
+        .number("mean_se", figures(|m| m.figures.mean.standard_error))
+        .number("v", figures(|m| m.figures.v.value))
+        .number("v_se", figures(|m| m.figures.v.standard_error))
+        .number("ess_per_1000", figures(|m| 1_000.0 / (1.0 + m.figures.v.value)))
+        .number("samples_for_1_percent", figures(|m| m.figures.v.value * 1e4))
+        .number("max_weight", figures(|m| m.max_weight))
+        .number("weight_bound", rows.iter().map(Row::weight_bound))
+        .number("max_contribution", figures(|m| m.max_contribution))
+        .number("kl", figures(|m| m.figures.kl.value))
+        .number("kl_se", figures(|m| m.figures.kl.standard_error))
+}

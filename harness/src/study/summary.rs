@@ -1,0 +1,188 @@
+//! What a study comes to: gains over the published sampler and of the Cauchy model, as geometric means over the grid.
+
+use super::cell::Measured;
+use super::rows::place;
+use super::times::{PER_POINT, Time, ns};
+use crate::efficiency::{ModelKind, Sampler};
+use crate::stats::Estimate;
+use crate::table::{Table, number};
+
+/// Relative standard error of V beyond which a cell is left out: the light was hardly seen.
+const MAX_RELATIVE_ERROR: f64 = 0.25;
+
+/// Ratios of V over the cells of a grid.
+#[derive(Clone, Debug, PartialEq)]
+struct Gain {
+    geometric_mean: Estimate,
+    least: Estimate,
+    most: Estimate,
+    /// Cells left out.
+    unsure: usize,
+}
+
+/// The first of two lists of V over the second, cell by cell.
+///
+/// The standard error of the geometric mean is that of its figures, the grid being what it is. Both samplers are held
+/// against the same directions of the light: errors of the ratios are, if anything, less than said.
+fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
+    let sure = |v: &Estimate| v.value > 0.0 && v.standard_error <= MAX_RELATIVE_ERROR * v.value;
+    let (mut ratios, mut unsure) = (Vec::new(), 0);
+    for [base, other] in pairs {
+        if sure(&base) && sure(&other) {
+            ratios.push(base.ratio(&other));
+        } else {
+            unsure += 1;
+        }
+    }
+    let by_value = |a: &&Estimate, b: &&Estimate| a.value.total_cmp(&b.value);
+    let least = *ratios.iter().min_by(by_value)?;
+    let most = *ratios.iter().max_by(by_value)?;
+    let n = ratios.len() as f64;
+    let logarithm = ratios.iter().map(|ratio| ratio.value.ln()).sum::<f64>() / n;
+    let error = ratios.iter().map(|ratio| (ratio.standard_error / ratio.value).powi(2)).sum::<f64>().sqrt() / n;
+    let value = logarithm.exp();
+    Some(Gain { geometric_mean: Estimate { value, standard_error: value * error }, least, most, unsure })
+}
+
+/// A ratio of variances times that of the times.
+fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
+    let value = variance.value * time.value;
+    let relative = (variance.standard_error / variance.value).hypot(time.standard_error / time.value);
+    Estimate { value, standard_error: value * relative }
+}
+
+/// A sampler of a model.
+type Estimator = (ModelKind, Sampler);
+
+/// Two estimators held against each other, and the words that begin their row.
+struct Comparison {
+    words: [&'static str; 2],
+    base: Estimator,
+    other: Estimator,
+}
+
+/// What a summary is made of.
+struct Figures<'a> {
+    cells: &'a [Vec<Measured>],
+    lights: &'a [String],
+    times: &'a [Time],
+}
+
+/// The tables: the samplers of each model against `ou`, then the models against each other; variances, then variances in
+/// equal time.
+pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &[Time]) -> Vec<Table> {
+    let figures = Figures { cells, lights, times };
+    let mut samplers = Vec::new();
+    for model in ModelKind::ALL {
+        for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
+            let words = [model.name(), sampler.name()];
+            samplers.push(Comparison { words, base: (model, Sampler::Ou), other: (model, sampler) });
+        }
+    }
+    let models: Vec<Comparison> = Sampler::ALL
+        .into_iter()
+        .map(|sampler| Comparison {
+            words: [ModelKind::Cauchy.name(), sampler.name()],
+            base: (ModelKind::Gaussian, sampler),
+            other: (ModelKind::Cauchy, sampler),
+        })
+        .collect();
+    let percent = 100.0 * MAX_RELATIVE_ERROR;
+    let left_out = format!(
+        "{} cells. Left out: cells where the standard error of a V is above {percent}% of it, or nothing was seen of the \
+         light. ±: one standard error.",
+        cells.len()
+    );
+    let timed = "Times of the default hair, eight lanes, one thread, on this machine; ±: one standard error, that of the \
+                 times included.";
+    let above = |who: &str| format!("Above 1, it needs fewer samples than {who}. {left_out}");
+    vec![
+        figures.variance("V of ou over V of the sampler, over the grid", &samplers).note(above("ou")),
+        figures.equal_time("The same in equal time, set-up included: geometric means", &samplers).note(timed),
+        figures
+            .variance("V on the Gaussian model over V on the Cauchy model, over the grid", &models)
+            .note(above("on the Gaussian model")),
+        figures.equal_time("The same in equal time, set-up included: geometric means", &models).note(timed),
+    ]
+}
+
+impl Figures<'_> {
+    /// Gains under the light at `light`; `None` if no cell is sure.
+    fn gain(&self, of: &Comparison, light: usize) -> Option<Gain> {
+        let v = |cell: &[Measured], (model, sampler)| cell[place(model, sampler, light, self.lights.len())].figures.v;
+        gain(self.cells.iter().map(|cell| [v(cell, of.base), v(cell, of.other)]))
+    }
+
+    /// A row for every light of every comparison, its first three cells filled in.
+    fn each<'c>(&'c self, of: &'c [Comparison]) -> impl Iterator<Item = (Vec<String>, &'c Comparison, Option<Gain>)> {
+        of.iter().flat_map(move |of| {
+            self.lights.iter().enumerate().map(move |(light, name)| {
+                let [first, second] = of.words.map(str::to_owned);
+                (vec![first, second, name.clone()], of, self.gain(of, light))
+            })
+        })
+    }
+
+    fn variance(&self, title: &str, of: &[Comparison]) -> Table {
+        let mut table = keys(title).number("geometric mean").number("least").number("most").number("left out");
+        for (mut row, _, gain) in self.each(of) {
+            match gain {
+                Some(gain) => {
+                    row.extend([gain.geometric_mean, gain.least, gain.most].map(shown));
+                    row.push(gain.unsure.to_string());
+                }
+                None => row.extend(["", "", "", "all"].map(str::to_owned)),
+            }
+            table.push(row);
+        }
+        table
+    }
+
+    fn equal_time(&self, title: &str, of: &[Comparison]) -> Table {
+        let table = keys(title);
+        let mut table = PER_POINT.into_iter().fold(table, |table, n| table.number(format!("{n} a point")));
+        for (mut row, of, gain) in self.each(of) {
+            row.extend(gain.iter().flat_map(|gain| {
+                PER_POINT.map(|per_point| {
+                    let [base, other] = [of.base, of.other].map(|(m, s)| ns(self.times, m, s, per_point));
+                    shown(in_equal_time(gain.geometric_mean, base.ratio(&other)))
+                })
+            }));
+            table.push(row);
+        }
+        table
+    }
+}
+
+fn keys(title: &str) -> Table {
+    Table::new(title).text("model").text("sampler").text("light")
+}
+
+fn shown(of: Estimate) -> String {
+    number::with_error(of.value, of.standard_error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn v(value: f64, standard_error: f64) -> Estimate {
+        Estimate { value, standard_error }
+    }
+
+    #[test]
+    fn gains_are_geometric_and_leave_out_what_is_unsure() {
+        let nan = v(f64::NAN, f64::NAN);
+        let pairs = [
+            [v(2.0, 0.02), v(1.0, 0.0)],
+            [v(8.0, 0.08), v(1.0, 0.0)],
+            [v(1.0, 0.0), v(100.0, 30.0)],
+            [nan, v(1.0, 0.0)],
+        ];
+        let gain = gain(pairs.into_iter()).expect("two cells");
+        assert!((gain.geometric_mean.value - 4.0).abs() < 1e-12);
+        assert!((gain.geometric_mean.standard_error - 4.0 * 0.01 / 2.0_f64.sqrt()).abs() < 1e-12);
+        assert_eq!((gain.least.value, gain.most.value, gain.unsure), (2.0, 8.0, 2));
+        assert_eq!(super::gain([[nan, nan]].into_iter()), None, "nothing is sure");
+    }
+}

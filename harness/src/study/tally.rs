@@ -1,0 +1,191 @@
+//! Estimates of one sampler under one light: mean, relative variance and divergence from weighted contributions.
+//!
+//! The contribution of a direction is `y = L S cos theta_i / p`, with `p` the sampler's density. Its moments
+//! `E_p[y]`, `E_p[y^2]` and `E_p[y ln y]` are integrals over the sphere, and directions of any density tell them. Those
+//! of the sampler alone would need millions to see a small sun often enough, so directions drawn from the light
+//! (density `q`) join them by the balance heuristic: with `n` of the one and `c n` of the other, a direction counts
+//! `p / (p + c q)` among the sampler's and `c p / (p + c q)` among the light's.
+
+use crate::stats::Estimate;
+use wide::f64x8;
+
+/// Sums over the directions of one stratum, the sampler's or the light's: the lanes side by side.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tally {
+    /// Of a, b, c, aa, ab, bb, ac, cc, where a is `m y`, b is `m y^2` and c is `m y ln y`.
+    sums: [f64x8; 8],
+    count: u64,
+    largest: f64x8,
+}
+
+/// What a study finds of a sampler under a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Figures {
+    /// `E_p[y]`: the integral of `L S cos theta_i`.
+    pub(super) mean: Estimate,
+    /// Relative variance of one sample, `E_p[y^2] / E_p[y]^2 - 1`.
+    pub(super) v: Estimate,
+    /// Kullback-Leibler divergence of the sampler's density from the normalised integrand, in nats:
+    /// `E_p[w ln w]` with `w = y / E_p[y]`.
+    pub(super) kl: Estimate,
+}
+
+impl Tally {
+    /// Adds eight directions of contribution `y`, each counted `m`.
+    #[inline]
+    pub(super) fn push(&mut self, y: f64x8, m: f64x8) {
+        self.count += 8;
+        self.largest = self.largest.max(y);
+        // Most directions miss a small light: they count, and add nothing.
+        if !y.simd_gt(f64x8::ZERO).any() {
+            return;
+        }
+        let a = m * y;
+        let b = a * y;
+        // The clamp keeps 0 ln 0 from being anything but 0.
+        let c = a * y.max(f64x8::splat(f64::MIN_POSITIVE)).ln();
+        for (sum, x) in self.sums.iter_mut().zip([a, b, c, a * a, a * b, b * b, a * c, c * c]) {
+            *sum += x;
+        }
+    }
+
+    /// The largest contribution.
+    pub(super) fn largest(&self) -> f64 {
+        self.largest.to_array().into_iter().fold(0.0, f64::max)
+    }
+
+    /// Means of a, b and c, and the variances and covariances of those means: aa, ab, bb, ac, cc.
+    fn means(&self) -> ([f64; 3], [f64; 5]) {
+        if self.count < 2 {
+            return ([0.0; 3], [0.0; 5]);
+        }
+        let n = self.count as f64;
+        let [a, b, c, aa, ab, bb, ac, cc] = self.sums.map(|sum| sum.to_array().iter().sum::<f64>() / n);
+        let covariances = [aa - a * a, ab - a * b, bb - b * b, ac - a * c, cc - c * c];
+        ([a, b, c], covariances.map(|s| s / (n - 1.0)))
+    }
+}
+
+/// The estimates of the directions of all strata together; not a number where no direction contributed.
+///
+/// Standard errors are those of the delta method.
+pub(super) fn figures(strata: &[Tally]) -> Figures {
+    let (mut m, mut s) = ([0.0; 3], [0.0; 5]);
+    for tally in strata {
+        let (means, covariances) = tally.means();
+        m.iter_mut().zip(means).for_each(|(sum, x)| *sum += x);
+        s.iter_mut().zip(covariances).for_each(|(sum, x)| *sum += x);
+    }
+    let ([a, b, c], [aa, ab, bb, ac, cc]) = (m, s);
+    let error = |variance: f64| variance.max(0.0).sqrt();
+    // Gradients of b/a^2 - 1 and of c/a - ln a, by the means they depend on.
+    let (v_a, v_b) = (-2.0 * b / (a * a * a), 1.0 / (a * a));
+    let (kl_a, kl_c) = (-(c / a + 1.0) / a, 1.0 / a);
+    Figures {
+        mean: Estimate { value: a, standard_error: error(aa) },
+        v: Estimate {
+            value: b / (a * a) - 1.0,
+            standard_error: error(v_a * v_a * aa + 2.0 * v_a * v_b * ab + v_b * v_b * bb),
+        },
+        kl: Estimate {
+            value: c / a - a.ln(),
+            standard_error: error(kl_a * kl_a * aa + 2.0 * kl_a * kl_c * ac + kl_c * kl_c * cc),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sequence::Independent;
+    use crate::stats::Moments;
+
+    fn draw(from: &mut Independent) -> f64x8 {
+        f64x8::new(core::array::from_fn(|_| -(1.0 - from.next_f64()).ln()))
+    }
+
+    #[test]
+    fn a_single_stratum_gives_the_moments() {
+        let mut from = Independent::new(1, 0);
+        let (mut tally, mut moments) = (Tally::default(), Moments::new());
+        for _ in 0..2_000 {
+            let y = draw(&mut from);
+            tally.push(y, f64x8::splat(1.0));
+            y.to_array().iter().for_each(|y| moments.push(*y));
+        }
+        let (got, want) = (figures(&[tally]), moments.relative_variance());
+        assert!((got.mean.value / moments.mean() - 1.0).abs() < 1e-12);
+        assert!((got.mean.standard_error / moments.mean_estimate().standard_error - 1.0).abs() < 1e-9);
+        assert!((got.v.value / want.value - 1.0).abs() < 1e-3, "n or n - 1: {got:?} {want:?}");
+        assert!((got.v.standard_error / want.standard_error - 1.0).abs() < 1e-3, "{got:?} {want:?}");
+        // E[w ln w] of the exponential distribution is 1 minus Euler's constant.
+        assert!(got.kl.z_score(0.422_784_335_098_467).abs() < 4.0, "{got:?}");
+    }
+
+    #[test]
+    fn errors_of_the_divergence_are_those_of_its_spread() {
+        let mut z = Moments::new();
+        for run in 0..1_000 {
+            let mut from = Independent::new(2, run);
+            let mut tally = Tally::default();
+            for _ in 0..250 {
+                tally.push(draw(&mut from), f64x8::splat(1.0));
+            }
+            z.push(figures(&[tally]).kl.z_score(0.422_784_335_098_467));
+        }
+        assert!(z.mean().abs() < 0.2 && (z.variance() - 1.0).abs() < 0.25, "{} {}", z.mean(), z.variance());
+    }
+
+    /// A light of radiance 1 on [0, 0.1) of [0, 1), under the density `p = 1/2 + x`; `ratio` directions of the light to one of the sampler.
+    fn small_light(run: u64, ratio: u64) -> Figures {
+        let mut from = Independent::new(3, run);
+        let mut uniform = || f64x8::new(core::array::from_fn(|_| from.next_f64()));
+        let [half, c, q] = [0.5, ratio as f64, 10.0].map(f64x8::splat);
+        let mut strata = [Tally::default(); 2];
+        for _ in 0..500 {
+            let xi = uniform();
+            let p = (f64x8::splat(0.25) + xi + xi).sqrt();
+            let lit = f64x8::splat(0.6).simd_gt(p);
+            let seen = lit.select(q, f64x8::ZERO);
+            strata[0].push(lit.select(f64x8::splat(1.0) / p, f64x8::ZERO), p / (p + c * seen));
+        }
+        for _ in 0..500 * ratio {
+            let p = half + uniform() / q;
+            strata[1].push(f64x8::splat(1.0) / p, c * p / (p + c * q));
+        }
+        figures(&strata)
+    }
+
+    #[test]
+    fn both_strata_together_are_unbiased_and_their_errors_honest() {
+        let entropy = |p: f64| p * p.ln() - p;
+        let kl = 10.0_f64.ln() - 10.0 * (entropy(0.6) - entropy(0.5));
+        for ratio in [0, 1, 3] {
+            let mut z = [Moments::new(); 3];
+            for run in 0..1_000 {
+                let got = small_light(run, ratio);
+                let scores = [got.mean.z_score(0.1), got.v.z_score(100.0 * 1.2_f64.ln() - 1.0), got.kl.z_score(kl)];
+                z.iter_mut().zip(scores).for_each(|(z, score)| z.push(score));
+            }
+            for (z, of) in z.iter().zip(["mean", "V", "divergence"]) {
+                let (mean, variance) = (z.mean(), z.variance());
+                assert!(mean.abs() < 0.2 && (variance - 1.0).abs() < 0.25, "{of} at {ratio}: {mean} {variance}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_seen_is_no_number() {
+        let mut tally = Tally::default();
+        tally.push(f64x8::ZERO, f64x8::splat(1.0));
+        let got = figures(&[tally, Tally::default()]);
+        assert!(got.mean.value == 0.0 && got.v.value.is_nan() && got.kl.value.is_nan(), "{got:?}");
+        let constant = {
+            let mut tally = Tally::default();
+            tally.push(f64x8::splat(3.0), f64x8::splat(1.0));
+            figures(&[tally])
+        };
+        assert_eq!((constant.v.value, constant.v.standard_error), (0.0, 0.0));
+        assert!(constant.kl.value.abs() < 1e-15, "{constant:?}");
+    }
+}

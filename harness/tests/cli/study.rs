@@ -1,0 +1,157 @@
+//! `hairis study` and `hairis merge`: stopped, resumed, split, joined and refused.
+
+mod files;
+mod refused;
+
+use super::{Run, command};
+use core::time::Duration;
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::sync::OnceLock;
+use std::thread;
+use std::time::Instant;
+use tempfile::TempDir;
+
+/// Cells of the short run.
+const CELLS: usize = 48;
+/// Part file of a run that is not split.
+const WHOLE: &str = "cells-1-of-1.jsonl";
+
+/// `hairis study --quick` into `dir` on `threads` threads.
+fn study(dir: &Path, threads: &str, more: &[&str]) -> Run {
+    let mut args = vec!["study", "--quick", "--out", dir.to_str().unwrap()];
+    args.extend(more);
+    finish(command(&args).env("RAYON_NUM_THREADS", threads).stdin(Stdio::null()).output().unwrap())
+}
+
+fn merge(out: &Path, parts: &[&Path]) -> Run {
+    let mut args = vec!["merge", out.to_str().unwrap()];
+    args.extend(parts.iter().map(|part| part.to_str().unwrap()));
+    finish(command(&args).stdin(Stdio::null()).output().unwrap())
+}
+
+fn finish(output: std::process::Output) -> Run {
+    let lines = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().lines().map(str::to_owned).collect();
+    Run { code: output.status.code(), out: lines(output.stdout), err: lines(output.stderr) }
+}
+
+/// A finished run on one thread, made once.
+fn reference() -> &'static Path {
+    static DIR: OnceLock<TempDir> = OnceLock::new();
+    DIR.get_or_init(|| {
+        let dir = TempDir::new().unwrap();
+        let run = study(dir.path(), "1", &[]);
+        assert_eq!(run.code, Some(0), "{:?}", run.err);
+        assert!(run.out.iter().any(|line| line.contains("geometric mean")), "a summary: {:?}", run.out);
+        dir
+    })
+    .path()
+}
+
+/// That `dir` holds the rows of the reference, byte by byte.
+fn assert_same_rows(dir: &Path, what: &str) {
+    for name in ["study.csv", "study.parquet"] {
+        let (got, want) = (fs::read(dir.join(name)).unwrap(), fs::read(reference().join(name)).unwrap());
+        assert!(!want.is_empty() && got == want, "{what}: {name} differs");
+    }
+}
+
+fn assert_refused(run: &Run, words: &str) {
+    assert_eq!((run.code, run.out.len(), run.err.len()), (Some(2), 0, 1), "{words}: {:?}", run.err);
+    assert!(run.err[0].starts_with("hairis: ") && run.err[0].contains(words), "{words}: {:?}", run.err);
+}
+
+#[test]
+fn rows_do_not_depend_on_the_number_of_threads() {
+    let dir = TempDir::new().unwrap();
+    let run = study(dir.path(), "2", &[]);
+    assert_eq!(run.code, Some(0), "{:?}", run.err);
+    assert_same_rows(dir.path(), "two threads");
+}
+
+#[test]
+fn a_run_goes_on_from_any_byte_it_was_stopped_at() {
+    let part = fs::read(reference().join(WHOLE)).unwrap();
+    let ends: Vec<usize> = (0..part.len()).filter(|i| part[*i] == b'\n').collect();
+    assert_eq!(ends.len(), CELLS + 1, "a line a cell, and one above");
+    let dir = TempDir::new().unwrap();
+    // Within the first line, and next to its end; within a cell's line, next to its end, and in the last one.
+    let cuts = [0, 1, ends[0], ends[0] + 1, ends[20] - 300, ends[30], ends[30] + 1, ends[CELLS] - 1, part.len()];
+    for cut in cuts {
+        fs::write(dir.path().join(WHOLE), &part[..cut]).unwrap();
+        let run = study(dir.path(), "2", &[]);
+        assert_eq!(run.code, Some(0), "cut at {cut}: {:?}", run.err);
+        assert_same_rows(dir.path(), &format!("cut at {cut}"));
+        let whole = ends.iter().filter(|end| **end < cut).count();
+        let kept = fs::read(dir.path().join(WHOLE)).unwrap();
+        if whole > 1 {
+            assert!(kept.starts_with(&part[..=ends[whole - 1]]), "cut at {cut}: finished cells are kept");
+        }
+        assert_eq!(kept.iter().filter(|byte| **byte == b'\n').count(), CELLS + 1, "cut at {cut}: each cell once");
+    }
+}
+
+#[test]
+fn a_killed_run_goes_on() {
+    let dir = TempDir::new().unwrap();
+    let part = dir.path().join(WHOLE);
+    let lines = || fs::read(&part).unwrap_or_default().iter().filter(|byte| **byte == b'\n').count();
+    for least in [2, 5, 12] {
+        let mut child = command(&["study", "--quick", "--out", dir.path().to_str().unwrap()])
+            .env("RAYON_NUM_THREADS", "1")
+            .stdin(Stdio::null())
+            .spawn()
+            .unwrap();
+        let start = Instant::now();
+        while lines() < least && start.elapsed() < Duration::from_secs(60) {
+            thread::sleep(Duration::from_millis(1));
+        }
+        // On Unix: SIGKILL, which nothing can prepare for.
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(lines() >= least, "only {} lines after a minute", lines());
+    }
+    assert!(lines() < CELLS + 1 && !dir.path().join("study.csv").exists(), "killed too late to show anything");
+    let run = study(dir.path(), "2", &[]);
+    assert_eq!(run.code, Some(0), "{:?}", run.err);
+    assert!(run.err[0].contains("goes on after"), "{:?}", run.err);
+    assert_same_rows(dir.path(), "killed three times");
+}
+
+#[test]
+fn parts_joined_are_the_same_as_one_run() {
+    let (shared, apart, out) = (TempDir::new().unwrap(), TempDir::new().unwrap(), TempDir::new().unwrap());
+    for (dir, shard) in [(&shared, "1/4"), (&apart, "4/4"), (&shared, "3/4")] {
+        let run = study(dir.path(), "1", &["--shard", shard]);
+        assert_eq!((run.code, run.out.len()), (Some(0), 0), "{shard}: {:?}", run.err);
+    }
+    // Not yet all of it: what is missing is named, and nothing is written.
+    let folders = [shared.path(), apart.path()];
+    assert_refused(&merge(&out.path().join("new"), &folders), "not complete: shard 2/4 missing");
+    assert!(!out.path().join("new").exists(), "a folder for nothing");
+    let run = study(apart.path(), "1", &["--shard", "2/4"]);
+    assert_eq!(run.code, Some(0), "{:?}", run.err);
+    let run = merge(&out.path().join("new"), &folders);
+    assert_eq!(run.code, Some(0), "{:?}", run.err);
+    assert!(run.out.iter().any(|line| line.contains("geometric mean")), "a summary: {:?}", run.out);
+    assert_same_rows(&out.path().join("new"), "four parts");
+
+    // A part that was stopped is named too; one that is there twice does no harm.
+    let part = shared.path().join("cells-3-of-4.jsonl");
+    let bytes = fs::read(&part).unwrap();
+    fs::write(&part, &bytes[..bytes.len() - 10]).unwrap();
+    assert_refused(&merge(out.path(), &folders), "not complete: shard 3/4 has 11 of 12 cells");
+    fs::copy(apart.path().join("cells-2-of-4.jsonl"), shared.path().join("cells-2-of-4.jsonl")).unwrap();
+    let run = study(shared.path(), "1", &["--shard", "3/4"]);
+    assert_eq!(run.code, Some(0), "{:?}", run.err);
+    assert_eq!(merge(out.path(), &folders).code, Some(0));
+    assert_same_rows(out.path(), "a part stopped and one twice");
+}
+
+#[test]
+fn a_whole_run_can_be_merged_too() {
+    let out = TempDir::new().unwrap();
+    assert_eq!(merge(out.path(), &[reference()]).code, Some(0));
+    assert_same_rows(out.path(), "one part");
+}

@@ -1,0 +1,82 @@
+//! The files of a finished study.
+
+use super::{CELLS, reference};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+use serde_json::Value;
+use std::fs::{self, File};
+
+/// Rows of a cell: two models, each sampler, five lights.
+fn rows_of_a_cell() -> usize {
+    2 * hairis_harness::efficiency::Sampler::ALL.len() * 5
+}
+
+fn csv(name: &str) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(reference().join(name)).unwrap();
+    text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
+}
+
+#[test]
+fn the_rows_are_all_there() {
+    let rows = csv("study.csv");
+    assert_eq!(rows.len(), 1 + CELLS * rows_of_a_cell());
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()), "as many fields as names");
+    let column = |name: &str| rows[0].iter().position(|of| of == name).unwrap();
+    for row in &rows[1..] {
+        // The standard error of a V, of a divergence; the largest contribution is at least the mean.
+        for name in ["v", "v_se", "kl", "kl_se", "mean", "mean_se", "max_weight", "ess_per_1000"] {
+            let value: f64 = row[column(name)].parse().unwrap();
+            assert!(value.is_finite() && value >= 0.0, "{name} of {row:?}");
+        }
+        let [v, percent, ess, contribution] = ["v", "samples_for_1_percent", "ess_per_1000", "max_contribution"]
+            .map(|name| row[column(name)].parse::<f64>().unwrap());
+        assert!((percent / (1e4 * v) - 1.0).abs() < 1e-12 && (ess * (1.0 + v) / 1e3 - 1.0).abs() < 1e-12, "{row:?}");
+        assert!(contribution > 1.0, "{row:?}");
+        let bounded = !row[column("weight_bound")].is_empty();
+        assert!(bounded || row[column("sampler")] != "uniform", "{row:?}");
+    }
+}
+
+#[test]
+fn csv_and_parquet_have_the_same_content() {
+    for name in ["study", "efficiency"] {
+        let rows = csv(&format!("{name}.csv"));
+        let file = File::open(reference().join(format!("{name}.parquet"))).unwrap();
+        let reader = SerializedFileReader::new(file).unwrap();
+        let schema = reader.metadata().file_metadata().schema();
+        let names: Vec<&str> = schema.get_fields().iter().map(|field| field.name()).collect();
+        assert_eq!(names, rows[0], "{name}: columns");
+        let mut count = 0;
+        for (row, want) in reader.get_row_iter(None).unwrap().zip(&rows[1..]) {
+            let row = row.unwrap();
+            for ((name, field), want) in row.get_column_iter().zip(want) {
+                let same = match field {
+                    Field::Str(text) => text == want,
+                    Field::Int(count) => Ok(*count) == want.parse(),
+                    Field::Double(number) => want.parse::<f64>().is_ok_and(|want| want.to_bits() == number.to_bits()),
+                    Field::Null => want.is_empty(),
+                    _ => false,
+                };
+                assert!(same, "{name} of row {count}: {field} is not {want}");
+            }
+            count += 1;
+        }
+        assert_eq!(count, rows.len() - 1, "{name}: rows");
+        let notes = reader.metadata().file_metadata().key_value_metadata().unwrap();
+        let note = |key: &str| notes.iter().find(|note| note.key == key).and_then(|note| note.value.clone());
+        assert_eq!(note("hairis.seed").as_deref(), Some("1"), "{name}: {notes:?}");
+    }
+}
+
+#[test]
+fn settings_and_times_are_complete() {
+    let settings: Value = serde_json::from_slice(&fs::read(reference().join("study.json")).unwrap()).unwrap();
+    assert_eq!(settings["study"]["seed"], 1);
+    assert_eq!(settings["study"]["cells"], CELLS);
+    assert!(settings["times_measured_on"]["cpu"].is_string(), "{settings}");
+    let times = csv("times.csv");
+    assert_eq!(times.len() - 1, 3 * rows_of_a_cell() / 5, "1, 4 and 16 samples a point");
+    assert!(times[1..].iter().all(|row| row[3].parse::<f64>().unwrap() > 0.0), "{times:?}");
+    let left: Vec<_> = fs::read_dir(reference()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(left.iter().all(|name| !name.to_string_lossy().ends_with(".new")), "{left:?}");
+}

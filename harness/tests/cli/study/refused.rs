@@ -1,0 +1,136 @@
+//! What a study refuses: flags, and files that are of another one.
+
+use super::{WHOLE, assert_refused, merge, reference, study};
+use crate::cli::run;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+#[test]
+fn shards_that_are_none_are_refused() {
+    let dir = TempDir::new().unwrap();
+    let shape = "--shard must be I/N with whole numbers";
+    for (shard, words) in [
+        ("5/4", "--shard I must be from 1 to N, got \"5/4\""),
+        ("0/4", "--shard I must be from 1 to N"),
+        ("0/0", "--shard I must be from 1 to N"),
+        ("x", shape),
+        ("1", shape),
+        ("1/x", shape),
+        ("1/2/3", shape),
+        ("1.5/2", shape),
+        ("", shape),
+    ] {
+        assert_refused(&study(dir.path(), "1", &["--shard", shard]), words);
+    }
+    assert_refused(&study(dir.path(), "1", &["--shard=-1/4"]), shape);
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0, "nothing was written");
+}
+
+#[test]
+fn other_bad_flags_are_refused() {
+    for (args, words) in [
+        (&["study", "--seed", "x"][..], "--seed"),
+        (&["study", "--out", ""], "--out"),
+        (&["study", "--quik"], "--quik"),
+        (&["study", "--env", "missing.hdr"], "missing.hdr"),
+        (&["merge"], "OUT_DIR"),
+        (&["merge", "out"], "PART_DIR"),
+        (&["merge", "out", ""], "PART_DIR"),
+    ] {
+        assert_refused(&run(args, b""), words);
+    }
+}
+
+/// A folder with a copy of the reference's part file.
+fn copied() -> TempDir {
+    let dir = TempDir::new().unwrap();
+    fs::copy(reference().join(WHOLE), dir.path().join(WHOLE)).unwrap();
+    dir
+}
+
+#[test]
+fn cells_of_another_run_are_refused() {
+    let dir = copied();
+    let before = fs::read(dir.path().join(WHOLE)).unwrap();
+    let words = "cells-1-of-1.jsonl: is of a run with seed 1, this one has 2: take another --out, or delete it";
+    assert_refused(&study(dir.path(), "1", &["--seed", "2"]), words);
+    let path = dir.path().to_str().unwrap();
+    assert_refused(&run(&["study", "--out", path], b""), "is of a run with quick true, this one has false");
+    assert_eq!(fs::read(dir.path().join(WHOLE)).unwrap(), before, "a refused file is left alone");
+
+    // An older program, another instruction set.
+    let text = String::from_utf8(before).unwrap();
+    for field in ["version", "commit", "level", "environment"] {
+        let (head, rest) = text.split_once(&format!("\"{field}\":\"")).unwrap();
+        let (_, tail) = rest.split_once('"').unwrap();
+        fs::write(dir.path().join(WHOLE), format!("{head}\"{field}\":\"other\"{tail}")).unwrap();
+        assert_refused(&study(dir.path(), "1", &[]), &format!("is of a run with {field} \"other\""));
+    }
+}
+
+#[test]
+fn files_that_are_no_parts_are_refused_and_left_alone() {
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join(WHOLE);
+    for text in ["something else\n", "something without an end", "{}\n", "\n"] {
+        fs::write(&path, text).unwrap();
+        assert_refused(&study(dir.path(), "1", &[]), "cells-1-of-1.jsonl: is no part of a study");
+        assert_refused(&merge(dir.path(), &[dir.path()]), "cells-1-of-1.jsonl: is no part of a study");
+        assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    }
+}
+
+#[test]
+fn damage_before_the_last_line_is_refused() {
+    let dir = copied();
+    let path = dir.path().join(WHOLE);
+    let text = fs::read_to_string(&path).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let with = |number: usize, line: &str| {
+        let mut lines = lines.clone();
+        lines[number - 1] = line;
+        fs::write(&path, format!("{}\n", lines.join("\n"))).unwrap();
+    };
+    with(7, &lines[6][..100]);
+    assert_refused(&study(dir.path(), "1", &[]), "line 7 is damaged: not a cell");
+    with(9, "{\"cell\":48,\"rows\":[]}");
+    assert_refused(&study(dir.path(), "1", &[]), "line 9 is damaged: cell 48 is not of shard 1/1");
+    with(3, "{\"cell\":4,\"rows\":[]}");
+    assert_refused(&merge(dir.path(), &[dir.path()]), "line 3 is damaged: 0 rows");
+}
+
+#[test]
+fn parts_that_do_not_belong_together_are_refused() {
+    let out = TempDir::new().unwrap();
+    let shard = |seed: &str, shard: &str| {
+        let dir = TempDir::new().unwrap();
+        // Nobody looks at more than the first line.
+        let run = study(dir.path(), "2", &["--seed", seed, "--shard", shard]);
+        assert_eq!(run.code, Some(0), "{:?}", run.err);
+        dir
+    };
+    let (first, other_seed, other_split) = (shard("1", "1/24"), shard("2", "2/24"), shard("1", "3/30"));
+    let merged = |a: &TempDir, b: &TempDir| merge(out.path(), &[a.path(), b.path()]);
+    assert_refused(&merged(&first, &other_seed), "cells-2-of-24.jsonl: is of a run with seed 2, but");
+    assert_refused(&merged(&first, &other_split), "cells-3-of-30.jsonl: is one of 30 parts, but");
+    assert_refused(&merge(out.path(), &[out.path()]), "holds no part of a study");
+    assert_refused(&merge(out.path(), &[Path::new("/nonexistent")]), "/nonexistent: cannot read");
+
+    // The same cell with other figures.
+    let twin = TempDir::new().unwrap();
+    let name = "cells-1-of-24.jsonl";
+    let text = fs::read_to_string(first.path().join(name)).unwrap();
+    let at = text.rfind("1.").unwrap();
+    fs::write(twin.path().join(name), format!("{}2.{}", &text[..at], &text[at + 2..])).unwrap();
+    assert_refused(&merged(&first, &twin), "has another cell");
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_refused() {
+    let dir = TempDir::new().unwrap();
+    fs::write(dir.path().join("file"), "").unwrap();
+    assert_refused(&study(&dir.path().join("file/out"), "1", &[]), "cannot write");
+    fs::create_dir(dir.path().join(WHOLE)).unwrap();
+    assert_refused(&study(dir.path(), "1", &[]), "cannot write");
+}
