@@ -12,6 +12,7 @@ mod inputs;
 mod points;
 mod slices;
 pub(crate) mod task;
+mod threads;
 
 use crate::stats::percentile;
 use crate::subject::Subject;
@@ -22,6 +23,7 @@ use inputs::{DIRECTIONS, Inputs};
 use serde::Serialize;
 use std::time::Instant;
 use task::Pass;
+pub use threads::ThreadsResult;
 
 /// Rounds below which no figure is given, however slow the machine.
 const MIN_ROUNDS: usize = 15;
@@ -159,6 +161,8 @@ pub struct SpeedReport {
     pub detected_level: &'static str,
     /// By model, operation and contender; the textbook leads each block.
     pub rows: Vec<SpeedResult>,
+    /// Slices on several threads.
+    pub threads: Vec<ThreadsResult>,
 }
 
 impl SpeedReport {
@@ -201,12 +205,15 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
             timing.round(round);
         }
     }
+    let mut threads = threads::run(&Subject::gaussian(), &inputs);
+    threads.extend(threads::run(&Subject::cauchy(), &inputs));
     Ok(SpeedReport {
         config: *config,
         directions: DIRECTIONS,
         compiled_level: Level::portable().name(),
         detected_level: Level::detect().name(),
         rows: timings.iter().flat_map(Timing::rows).collect(),
+        threads,
     })
 }
 

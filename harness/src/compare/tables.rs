@@ -37,7 +37,8 @@ pub fn tables(of: &Comparison, depth: Depth) -> Tables {
         efficiency.extend([effective(of), samples(of), self::efficiency(of)]);
     }
     efficiency.push(light_sampling(of));
-    let speed = ModelKind::ALL.iter().map(|model| speed(of, *model, depth)).collect();
+    let mut speed: Vec<Table> = ModelKind::ALL.iter().map(|model| speed(of, *model, depth)).collect();
+    speed.push(threads(of));
     Tables { speed, agreement: vec![agreement(of, depth)], efficiency }
 }
 
@@ -68,6 +69,29 @@ fn speed(of: &Comparison, model: ModelKind, depth: Depth) -> Table {
          textbook is the paper's formulas in f32 on the libm crate.",
         of.machine.summary()
     ))
+}
+
+fn threads(of: &Comparison) -> Table {
+    let mut table = Table::new("Slices on several threads")
+        .text("model")
+        .text("operation")
+        .text("instruction set")
+        .number("threads")
+        .number("million directions a second")
+        .number("against one thread")
+        .number("quartiles");
+    for row in &of.speed.threads {
+        table.push([
+            row.model.to_owned(),
+            row.op.label().to_owned(),
+            row.level.to_owned(),
+            row.threads.to_string(),
+            number::plain(row.millions, 3),
+            number::ratio(row.speedup),
+            format!("{} to {}", number::ratio(row.speedup_q1), number::ratio(row.speedup_q3)),
+        ]);
+    }
+    table.note("Chunks of 8064 directions through rayon; the numbers of threads take turns. Logical cores may be halves of one.")
 }
 
 fn agreement(of: &Comparison, depth: Depth) -> Table {

@@ -1,0 +1,139 @@
+//! How throughput grows with the number of threads: slices worked off in chunks through rayon.
+
+use super::inputs::Inputs;
+use super::{Op, quartiles};
+use crate::subject::Subject;
+use core::hint::black_box;
+use hairis::{Bsdf, EvalSlices, Gather, HairParams, Level, Model, SampleSlices};
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use serde::Serialize;
+use std::time::Instant;
+
+/// Directions in a chunk: as many as the inputs, over and over, so that a chunk stays in its core's cache.
+const REPEATS: usize = 9;
+/// Chunks a pass: enough for every core to finish at about the same time.
+const CHUNKS_A_THREAD: usize = 16;
+/// Passes that are timed on each number of threads.
+const ROUNDS: usize = 15;
+
+/// Throughput on a number of threads: a row of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ThreadsResult {
+    /// [`Op::EvalPdf`] or [`Op::Sample`], through slices.
+    pub op: Op,
+    /// The model.
+    pub model: &'static str,
+    /// Instruction set of the lanes.
+    pub level: &'static str,
+    /// Threads at work.
+    pub threads: usize,
+    /// Millions of directions a second, all threads together: median over the rounds.
+    pub millions: f64,
+    /// How many times as fast as one thread: median over the rounds of the ratio within a round.
+    pub speedup: f64,
+    /// First quartile of the same.
+    pub speedup_q1: f64,
+    /// Third quartile of the same.
+    pub speedup_q3: f64,
+}
+
+/// Slices of one chunk, `N` of results.
+struct Chunk<const N: usize> {
+    inputs: [Vec<f32>; 3],
+    out: [Vec<f32>; N],
+}
+
+impl<const N: usize> Chunk<N> {
+    fn new(rows: &[[f32; 3]]) -> Self {
+        let inputs =
+            core::array::from_fn(|k| rows.iter().map(|row| row[k]).cycle().take(rows.len() * REPEATS).collect());
+        Self { inputs, out: core::array::from_fn(|_| vec![0.0; rows.len() * REPEATS]) }
+    }
+}
+
+/// One, two, four and so on up to all logical cores.
+fn thread_counts() -> Vec<usize> {
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut counts: Vec<usize> = core::iter::successors(Some(1), |n| Some(2 * n)).take_while(|n| *n < all).collect();
+    counts.push(all);
+    counts
+}
+
+/// Measures evaluation and sampling of one model on every number of threads.
+pub(super) fn run<M>(subject: &Subject<M>, inputs: &Inputs) -> Vec<ThreadsResult>
+where
+    M: Model<Params = HairParams> + 'static,
+    Gather<M>: Sync,
+{
+    let counts = thread_counts();
+    // Where the system refuses threads there is nothing to report.
+    let Ok(pools) =
+        counts.iter().map(|n| ThreadPoolBuilder::new().num_threads(*n).build()).collect::<Result<Vec<_>, _>>()
+    else {
+        return Vec::new();
+    };
+    let gather = Bsdf::new(&subject.model, &inputs.hair[0]).prepare(inputs.wo[0]);
+    let wi: Vec<[f32; 3]> = inputs.wi.iter().map(|wi| wi.to_array()).collect();
+    let eval = time(&pools, &wi, |chunk: &mut Chunk<4>| {
+        let [r, g, b, pdf] = chunk.out.each_mut().map(Vec::as_mut_slice);
+        // The columns of a chunk are of one length.
+        let _ = gather.eval_pdf_batch(chunk.inputs.each_ref().map(Vec::as_slice), EvalSlices { value: [r, g, b], pdf });
+    });
+    let sample = time(&pools, &inputs.xi, |chunk: &mut Chunk<11>| {
+        let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = chunk.out.each_mut().map(Vec::as_mut_slice);
+        let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
+        let _ = gather.sample_batch(chunk.inputs.each_ref().map(Vec::as_slice), out);
+    });
+    let rows = |op, ns: Vec<Vec<f64>>| {
+        let of = |(threads, times): (&usize, &Vec<f64>)| {
+            let ratios: Vec<f64> = ns[0].iter().zip(times).map(|(one, many)| one / many).collect();
+            let ([_, ns, _], [speedup_q1, speedup, speedup_q3]) = (quartiles(times), quartiles(&ratios));
+            let (model, level) = (subject.name, Level::detect().name());
+            ThreadsResult { op, model, level, threads: *threads, millions: 1e3 / ns, speedup, speedup_q1, speedup_q3 }
+        };
+        counts.iter().zip(&ns).map(of).collect::<Vec<_>>()
+    };
+    let mut all = rows(Op::EvalPdf, eval);
+    all.extend(rows(Op::Sample, sample));
+    all
+}
+
+/// Time a direction of each pool in each round, ns; the pools take turns.
+fn time<const N: usize>(pools: &[ThreadPool], rows: &[[f32; 3]], work: impl Fn(&mut Chunk<N>) + Sync) -> Vec<Vec<f64>> {
+    let most = pools.iter().map(ThreadPool::current_num_threads).max().unwrap_or(1);
+    let mut chunks: Vec<Chunk<N>> = (0..CHUNKS_A_THREAD * most).map(|_| Chunk::new(rows)).collect();
+    let directions = (chunks.len() * rows.len() * REPEATS) as f64;
+    let mut ns = vec![Vec::new(); pools.len()];
+    for round in 0..=ROUNDS {
+        for (pool, ns) in pools.iter().zip(&mut ns) {
+            let start = Instant::now();
+            pool.install(|| chunks.par_iter_mut().with_max_len(1).for_each(&work));
+            let elapsed = start.elapsed().as_secs_f64() * 1e9;
+            black_box(&chunks);
+            // The first round finds the memory and wakes the threads.
+            if round > 0 {
+                ns.push(elapsed / directions);
+            }
+        }
+    }
+    ns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_of_threads_has_its_row() {
+        let counts = thread_counts();
+        assert!(counts[0] == 1 && counts.windows(2).all(|pair| pair[0] < pair[1]), "{counts:?}");
+        let inputs = Inputs::draw(1).expect("hair within range");
+        let rows = run(&Subject::gaussian(), &inputs);
+        assert_eq!(rows.len(), 2 * counts.len(), "a row is missing");
+        for row in &rows {
+            assert!(row.millions > 0.0 && row.speedup > 0.0 && row.speedup_q1 <= row.speedup_q3, "{row:?}");
+            assert!(row.threads != 1 || row.speedup == 1.0, "one thread against itself: {row:?}");
+        }
+    }
+}
