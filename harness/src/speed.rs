@@ -45,6 +45,10 @@ pub enum Op {
     EvalPdf,
     /// A direction with its value, density and weight, the gather point prepared beforehand.
     Sample,
+    /// [`EvalPdf`](Self::EvalPdf) of hair so narrow that the directions lie in the far tails of every lobe.
+    EvalPdfTails,
+    /// [`Sample`](Self::Sample) of the same hair.
+    SampleTails,
     /// A gather point of its own for each direction, and one sample with its value: all on one head of hair.
     PointsShared,
     /// The same with four samples a gather point.
@@ -59,10 +63,12 @@ pub enum Op {
 
 impl Op {
     /// Every operation, in the order of the tables.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Prepare,
         Self::EvalPdf,
         Self::Sample,
+        Self::EvalPdfTails,
+        Self::SampleTails,
         Self::PointsShared,
         Self::PointsOf4,
         Self::PointsOf16,
@@ -77,6 +83,8 @@ impl Op {
             Self::Prepare => "prepare",
             Self::EvalPdf => "eval + pdf",
             Self::Sample => "sample",
+            Self::EvalPdfTails => "eval + pdf, far tails",
+            Self::SampleTails => "sample, far tails",
             Self::PointsShared => "prepare + 1 sample",
             Self::PointsOf4 => "prepare + 4 samples",
             Self::PointsOf16 => "prepare + 16 samples",
@@ -304,7 +312,7 @@ mod tests {
         // Slices take part where a gather point is given: evaluation and sampling. Eight lanes at one gather point take
         // part where it has several samples.
         let levels = Level::available().count();
-        assert_eq!(report.rows.len(), 2 * (Op::ALL.len() * (2 + levels) + 4 * levels), "a row is missing");
+        assert_eq!(report.rows.len(), 2 * (Op::ALL.len() * (2 + levels) + 6 * levels), "a row is missing");
         assert!(last >= 1.0, "progress ended at {last}");
         for row in &report.rows {
             assert!(row.passed, "wrong answers: {row:?}");

@@ -52,7 +52,9 @@ fn speed(of: &Comparison, model: ModelKind, depth: Depth) -> Table {
         .number("quartiles, ns")
         .number("against the textbook");
     for row in of.speed.rows.iter().filter(|row| row.model == model.name()) {
-        if depth == Depth::Summary && matches!(row.op, Op::PointsShared | Op::PointsOf4 | Op::PointsPacked) {
+        if depth == Depth::Summary
+            && matches!(row.op, Op::PointsShared | Op::PointsOf4 | Op::PointsPacked | Op::SampleTails)
+        {
             continue;
         }
         table.push([

@@ -49,8 +49,10 @@ where
         .map(|op| {
             let (contenders, truth) = match op {
                 Op::Prepare => prepare(subject, inputs),
-                Op::EvalPdf => eval_pdf(subject, inputs),
-                Op::Sample => sample(subject, inputs),
+                Op::EvalPdf => eval_pdf(subject, &inputs.hair[0], inputs),
+                Op::EvalPdfTails => eval_pdf(subject, &inputs.narrow, inputs),
+                Op::Sample => sample(subject, &inputs.hair[0], inputs),
+                Op::SampleTails => sample(subject, &inputs.narrow, inputs),
                 Op::PointsShared => points::shared::<_, 1, 1>(subject, inputs),
                 Op::PointsOf4 => points::shared::<_, 4, 1>(subject, inputs),
                 Op::PointsOf16 => points::shared::<_, 16, 2>(subject, inputs),
@@ -93,11 +95,11 @@ where
     (contenders, Truth::of_directions(points, &[PROBE; DIRECTIONS]))
 }
 
-fn eval_pdf<M>(subject: &Subject<M>, inputs: &Inputs) -> (Vec<Contender>, Truth)
+fn eval_pdf<M>(subject: &Subject<M>, hair: &HairParams, inputs: &Inputs) -> (Vec<Contender>, Truth)
 where
     M: Model<Params = HairParams> + 'static,
 {
-    let (hair, wo) = (&inputs.hair[0], inputs.wo[0]);
+    let wo = inputs.wo[0];
     let textbook = Textbook::prepare(&subject.parameters::<f32>(hair), subject.shape, wo.to_array());
     let gather = Bsdf::new(&subject.model, hair).prepare(wo);
     let contenders = vec![
@@ -110,11 +112,11 @@ where
     (contenders, Truth::of_directions(vec![subject.oracle(hair, wo); DIRECTIONS], &inputs.wi))
 }
 
-fn sample<M>(subject: &Subject<M>, inputs: &Inputs) -> (Vec<Contender>, Truth)
+fn sample<M>(subject: &Subject<M>, hair: &HairParams, inputs: &Inputs) -> (Vec<Contender>, Truth)
 where
     M: Model<Params = HairParams> + 'static,
 {
-    let (hair, wo) = (&inputs.hair[0], inputs.wo[0]);
+    let wo = inputs.wo[0];
     let textbook = Textbook::prepare(&subject.parameters::<f32>(hair), subject.shape, wo.to_array());
     let gather = Bsdf::new(&subject.model, hair).prepare(wo);
     let contenders = vec![

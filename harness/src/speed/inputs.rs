@@ -3,7 +3,7 @@
 use crate::sequence::{Independent, stream_id};
 use crate::subject::{random_hair, uniform_direction};
 use glam::Vec3;
-use hairis::{HairParams, ParamError, Vec3x8};
+use hairis::{HairDesc, HairParams, ParamError, Vec3x8};
 use wide::f32x8;
 
 /// Directions a pass. With their numbers `xi` they take 21 KB.
@@ -12,12 +12,18 @@ use wide::f32x8;
 /// which costs slices up to 40 %.
 pub(super) const DIRECTIONS: usize = 896;
 
+/// Half a degree, rad.
+const NARROW: f32 = 0.008_726_646;
+
 /// Directions and numbers, all lanes different, and eight heads of hair.
 pub(super) struct Inputs {
     pub(super) wi: Vec<Vec3>,
     pub(super) wo: Vec<Vec3>,
     pub(super) xi: Vec<[f32; 3]>,
     pub(super) hair: [HairParams; 8],
+    /// The default hair with every width half a degree: almost all directions lie in the far tails of every lobe, where
+    /// numbers would be denormal if they were let.
+    pub(super) narrow: HairParams,
 }
 
 impl Inputs {
@@ -33,6 +39,14 @@ impl Inputs {
             wo: (0..DIRECTIONS).map(|_| uniform_direction(&mut from)).collect(),
             xi: (0..DIRECTIONS).map(|_| [from.next_f32(), from.next_f32(), from.next_f32()]).collect(),
             hair,
+            narrow: HairParams::new(&HairDesc {
+                beta_r: NARROW,
+                beta_tt: NARROW,
+                beta_trt: NARROW,
+                gamma_tt: NARROW,
+                gamma_g: NARROW,
+                ..*HairParams::default().desc()
+            })?,
         })
     }
 }
