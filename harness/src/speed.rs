@@ -18,6 +18,7 @@ use crate::stats::percentile;
 use crate::subject::Subject;
 use cells::{Cell, cells};
 use core::fmt;
+use core::hint::black_box;
 use hairis::{Level, ParamError};
 use inputs::{DIRECTIONS, Inputs};
 use serde::Serialize;
@@ -252,7 +253,8 @@ impl<'a> Timing<'a> {
             let task = &*self.cell.contenders[k].task;
             // One stretch untimed: the one before was another's, and left the caches its own and the vector units asleep.
             stretch(task, self.passes[k]);
-            let ns = stretch(task, self.passes[k]);
+            let mut ns = 0.0;
+            deeper(round % FRAMES, &mut || ns = stretch(task, self.passes[k]));
             self.ns[k].push(ns / (f64::from(self.passes[k]) * DIRECTIONS as f64));
         }
     }
@@ -283,6 +285,25 @@ impl<'a> Timing<'a> {
             })
             .collect()
     }
+}
+
+/// Frames of [`deeper`] to about a page.
+const FRAMES: usize = 23;
+
+/// Calls `f` from so many frames further down the stack.
+///
+/// Results are left on the stack. Where their addresses agree with those of a gather point's constants in the lower
+/// twelve bits, which is a matter of luck, each call waits for the stores of the one before, and takes up to twice as
+/// long: rounds at different depths leave such places to the tail of the distribution.
+#[inline(never)]
+fn deeper(depth: usize, f: &mut dyn FnMut()) {
+    let frame = black_box([0_u8; 144]);
+    if depth == 0 {
+        f()
+    } else {
+        deeper(depth - 1, f)
+    }
+    black_box(&frame);
 }
 
 /// Time of `passes` passes, ns.

@@ -106,13 +106,14 @@ impl<L: Lanes> Place<L> {
         front: L::Mask,
     ) -> Self {
         let rest = (L::splat(FRAC_PI_2) - half) + L::splat(FRAC_PI_2_LOW);
+        let (half_phi, half_back) = L::swap(front, half, rest);
         Self {
             half_theta_i,
             sin_theta_i,
             cos_theta_i,
             inv_cos_theta_i,
-            half_phi: L::select(front, half, rest),
-            half_back: L::select(front, rest, half),
+            half_phi,
+            half_back,
             cos_half_phi: L::select(front, cos_half, sin_half),
             front,
         }

@@ -80,6 +80,8 @@ pub trait Lanes:
     fn or(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// `yes` where the mask is set, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// `(a, b)` where the mask is set, `(b, a)` elsewhere.
+    fn swap(mask: Self::Mask, a: Self, b: Self) -> (Self, Self);
     /// `x` where the mask is set, 0 elsewhere.
     fn keep(mask: Self::Mask, x: Self) -> Self;
 

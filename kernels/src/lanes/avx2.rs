@@ -123,6 +123,12 @@ impl Lanes for Avx2 {
     fn select(mask: __m256, yes: Self, no: Self) -> Self {
         Self(avx2!(_mm256_blendv_ps(no.0, yes.0, mask)))
     }
+    // Four operations on bits, where two blends are up to six.
+    #[inline(always)]
+    fn swap(mask: __m256, a: Self, b: Self) -> (Self, Self) {
+        let kept = avx2!(_mm256_and_ps(_mm256_xor_ps(a.0, b.0), mask));
+        (Self(avx2!(_mm256_xor_ps(b.0, kept))), Self(avx2!(_mm256_xor_ps(a.0, kept))))
+    }
     #[inline(always)]
     fn keep(mask: __m256, x: Self) -> Self {
         Self(avx2!(_mm256_and_ps(mask, x.0)))

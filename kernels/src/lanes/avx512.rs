@@ -122,6 +122,10 @@ impl Lanes for Avx512 {
         Self(avx512!(_mm512_mask_blend_ps(mask, no.0, yes.0)))
     }
     #[inline(always)]
+    fn swap(mask: __mmask16, a: Self, b: Self) -> (Self, Self) {
+        (Self::select(mask, a, b), Self::select(mask, b, a))
+    }
+    #[inline(always)]
     fn keep(mask: __mmask16, x: Self) -> Self {
         Self(avx512!(_mm512_maskz_mov_ps(mask, x.0)))
     }

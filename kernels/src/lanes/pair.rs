@@ -100,6 +100,11 @@ impl<L: Lanes> Lanes for Pair<L> {
         Self(L::select(mask.0, yes.0, no.0), L::select(mask.1, yes.1, no.1))
     }
     #[inline(always)]
+    fn swap(mask: Self::Mask, a: Self, b: Self) -> (Self, Self) {
+        let (first, second) = (L::swap(mask.0, a.0, b.0), L::swap(mask.1, a.1, b.1));
+        (Self(first.0, second.0), Self(first.1, second.1))
+    }
+    #[inline(always)]
     fn keep(mask: Self::Mask, x: Self) -> Self {
         Self(L::keep(mask.0, x.0), L::keep(mask.1, x.1))
     }

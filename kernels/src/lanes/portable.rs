@@ -94,6 +94,11 @@ impl Lanes for f32x8 {
         mask.select(yes, no)
     }
     #[inline(always)]
+    fn swap(mask: f32x8, a: Self, b: Self) -> (Self, Self) {
+        let kept = (a ^ b) & mask;
+        (b ^ kept, a ^ kept)
+    }
+    #[inline(always)]
     fn keep(mask: f32x8, x: Self) -> Self {
         mask & x
     }

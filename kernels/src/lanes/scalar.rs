@@ -78,6 +78,10 @@ impl Lanes for f32 {
         if mask { yes } else { no }
     }
     #[inline(always)]
+    fn swap(mask: bool, a: Self, b: Self) -> (Self, Self) {
+        if mask { (a, b) } else { (b, a) }
+    }
+    #[inline(always)]
     fn keep(mask: bool, x: Self) -> Self {
         if mask { x } else { 0.0 }
     }
