@@ -64,9 +64,9 @@ pub trait Lanes:
     /// `if self > other { self } else { other }`: NaN on either side gives `other`.
     #[must_use]
     fn max(self, other: Self) -> Self;
-    /// Magnitude of `self`, sign of `sign`.
+    /// `self` with its sign turned where that of `sign` is set.
     #[must_use]
-    fn copysign(self, sign: Self) -> Self;
+    fn times_sign(self, sign: Self) -> Self;
     /// `-x` where the mask is set, `x` elsewhere.
     fn negate(mask: Self::Mask, x: Self) -> Self;
     /// The bits of each lane, as an integer, shifted left by 23: builds a power of two from a biased exponent.

@@ -54,10 +54,10 @@ crate::lane_struct! {
 crate::lane_struct! {
     /// The constants of a gather point of the published model: those of its material, and those of `wo`.
     pub struct HairGather {
-        /// Sine of `theta_o`.
-        pub sin_theta_o: C,
-        /// Cosine of `theta_o`.
-        pub cos_theta_o: C,
+        /// Half the sine of `theta_o`.
+        pub half_sin_theta_o: C,
+        /// Half its cosine.
+        pub half_cos_theta_o: C,
         /// The part of `wo` in the normal plane, with the digits it was given: v and w, and its length.
         pub plane_o: [C; 3],
         /// One over that length.
@@ -181,7 +181,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     let off_axis = zero.lt(plane);
     let span_plane = L::select(off_axis, plane, one);
     let reciprocal = one / (len * span_plane);
-    let (inv_len, inv_plane) = (reciprocal * span_plane, reciprocal * len);
+    let (half_inv_len, inv_plane) = (c(0.5) * (reciprocal * span_plane), reciprocal * len);
     let half_theta_o = half_atan2(x, plane, len);
     // Products of components this small would leave the range of a float; their last digit is none of the bounds'.
     let near_axis = plane.lt(c(1e-4));
@@ -221,8 +221,8 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     }
 
     HairGather {
-        sin_theta_o: (x * inv_len).store(),
-        cos_theta_o: (plane * inv_len).store(),
+        half_sin_theta_o: (x * half_inv_len).store(),
+        half_cos_theta_o: (plane * half_inv_len).store(),
         plane_o: store3([
             L::select(near_axis, cos_phi_o, y),
             L::select(near_axis, sin_phi_o, z),

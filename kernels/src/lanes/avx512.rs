@@ -93,9 +93,8 @@ impl Lanes for Avx512 {
         Self(avx512!(_mm512_max_ps(self.0, other.0)))
     }
     #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        let bit = avx512!(_mm512_set1_ps(-0.0));
-        Self(avx512!(_mm512_or_ps(_mm512_andnot_ps(bit, self.0), _mm512_and_ps(bit, sign.0))))
+    fn times_sign(self, sign: Self) -> Self {
+        Self(avx512!(_mm512_xor_ps(self.0, _mm512_and_ps(_mm512_set1_ps(-0.0), sign.0))))
     }
     #[inline(always)]
     fn negate(mask: __mmask16, x: Self) -> Self {

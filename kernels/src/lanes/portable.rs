@@ -66,8 +66,8 @@ impl Lanes for f32x8 {
         }
     }
     #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        f32x8::copysign(self, sign)
+    fn times_sign(self, sign: Self) -> Self {
+        self ^ (sign & f32x8::splat(-0.0))
     }
     #[inline(always)]
     fn negate(mask: f32x8, x: Self) -> Self {
