@@ -1,7 +1,7 @@
 //! Sixteen lanes in one `__m512`, for the slices of CPUs found at run time to have AVX-512.
 //!
-//! Packets of eight stay with AVX2 there: masks, and twice as many registers, gain a packet nothing that the longer way
-//! to a mask does not cost. Multiplication fuses as on AVX2, and the results are the same to the bit.
+//! Packets of eight are [`Avx2`](super::avx2::Avx2) there, too: `dispatch` compiles it for AVX-512 once more. Multiplication
+//! fuses as on AVX2, and the results are the same to the bit.
 
 #![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
 
