@@ -85,6 +85,7 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn eval_pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
+        dispatch::clean_upper_halves();
         let [r, g, b] = out.value;
         let mut out = [r, g, b, out.pdf];
         check_lengths(WI, wi, ["value.r", "value.g", "value.b", "pdf"], &out)?;
@@ -155,6 +156,7 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn sample_batch_at(&self, level: Level, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
+        dispatch::clean_upper_halves();
         let ([u, v, w], [r, g, b], [wr, wg, wb]) = (out.wi, out.value, out.weight);
         let mut out = [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot];
         let names = [
