@@ -224,6 +224,18 @@ impl<M: Model<Params = HairParams>> Of<'_, M> {
                     })
                 });
             }
+            self.show(visitor, "eval_batch", label(level), one, || {
+                let gather = self.gather();
+                Slices::new(DIRECTIONS, &arrays(&inputs.wi), move |wi, value: [&mut [f32]; 3]| {
+                    gather.eval_batch_at(level, wi, value)
+                })
+            });
+            self.show(visitor, "pdf_batch", label(level), one, || {
+                let gather = self.gather();
+                Slices::new(DIRECTIONS, &arrays(&inputs.wi), move |wi, [pdf]: [&mut [f32]; 1]| {
+                    gather.pdf_batch_at(level, wi, pdf)
+                })
+            });
         }
     }
 

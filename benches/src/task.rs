@@ -16,10 +16,10 @@ pub const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
 pub struct Answer {
     /// The direction it drew; `None` if it was given one, zero if it discarded the sample.
     pub wi: Option<Vec3>,
-    /// S.
-    pub value: [f32; 3],
-    /// Density.
-    pub pdf: f32,
+    /// S, unless it was not asked for.
+    pub value: Option<[f32; 3]>,
+    /// Density, unless it was not asked for.
+    pub pdf: Option<f32>,
 }
 
 /// An entry point and the arguments of all its calls.
@@ -78,7 +78,8 @@ impl<I, O: Output, F: Fn(&I) -> O> Task for Each<I, O, F> {
     }
 }
 
-/// A function from three slices to `N`, and the columns that it is given parts of.
+/// A function from three slices to `N` (the density; the value; or the value, the density and more), and the columns that
+/// it is given parts of.
 #[derive(Debug)]
 pub struct Slices<F, const N: usize> {
     inputs: [Column; 3],
@@ -128,8 +129,12 @@ where
         (0..calls * self.len)
             .map(|i| Answer {
                 wi: (N > 4).then(|| Vec3::new(at(4, i), at(5, i), at(6, i))),
-                value: [at(0, i), at(1, i), at(2, i)],
-                pdf: at(3, i),
+                value: (N >= 3).then(|| [at(0, i), at(1, i), at(2, i)]),
+                pdf: match N {
+                    1 => Some(at(0, i)),
+                    3 => None,
+                    _ => Some(at(3, i)),
+                },
             })
             .collect()
     }
@@ -137,13 +142,13 @@ where
 
 impl Output for ([f32; 3], f32) {
     fn answers(&self, out: &mut Vec<Answer>) {
-        out.push(Answer { wi: None, value: self.0, pdf: self.1 });
+        out.push(Answer { wi: None, value: Some(self.0), pdf: Some(self.1) });
     }
 }
 
 impl Output for Eval {
     fn answers(&self, out: &mut Vec<Answer>) {
-        out.push(Answer { wi: None, value: self.value, pdf: self.pdf });
+        out.push(Answer { wi: None, value: Some(self.value), pdf: Some(self.pdf) });
     }
 }
 
@@ -157,15 +162,15 @@ impl Output for Eval8 {
 
 impl Output for textbook::Drawn<f32> {
     fn answers(&self, out: &mut Vec<Answer>) {
-        out.push(Answer { wi: Some(self.wi.into()), value: self.value, pdf: self.pdf });
+        out.push(Answer { wi: Some(self.wi.into()), value: Some(self.value), pdf: Some(self.pdf) });
     }
 }
 
 impl Output for Option<Sample> {
     fn answers(&self, out: &mut Vec<Answer>) {
         out.push(match self {
-            Some(sample) => Answer { wi: Some(sample.wi), value: sample.value, pdf: sample.pdf },
-            None => Answer { wi: Some(Vec3::ZERO), value: [0.0; 3], pdf: 0.0 },
+            Some(sample) => Answer { wi: Some(sample.wi), value: Some(sample.value), pdf: Some(sample.pdf) },
+            None => Answer { wi: Some(Vec3::ZERO), value: Some([0.0; 3]), pdf: Some(0.0) },
         });
     }
 }

@@ -110,6 +110,7 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn eval_batch_at(&self, level: Level, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError> {
+        dispatch::clean_upper_halves();
         let mut out = value;
         check_lengths(WI, wi, VALUE, &out)?;
         dispatch::batch::<M, ValueRow, 3>(level, &self.inner, wi, &mut out);
@@ -133,6 +134,7 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError> {
+        dispatch::clean_upper_halves();
         let mut out = [pdf];
         check_lengths(WI, wi, ["pdf"], &out)?;
         dispatch::batch::<M, PdfRow, 1>(level, &self.inner, wi, &mut out);
