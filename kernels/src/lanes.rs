@@ -245,6 +245,13 @@ macro_rules! lane_struct {
     (@spread $this:ident, $L:ident, $field:ident, C) => {
         $crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field))
     };
+    // Without a loop where arrays are short: compilers that save space leave it one.
+    (@spread $this:ident, $L:ident, $field:ident, [C; 2]) => { $crate::lane_struct!(@each $this, $L, $field, 0 1) };
+    (@spread $this:ident, $L:ident, $field:ident, [C; 3]) => { $crate::lane_struct!(@each $this, $L, $field, 0 1 2) };
+    (@spread $this:ident, $L:ident, $field:ident, [C; 4]) => { $crate::lane_struct!(@each $this, $L, $field, 0 1 2 3) };
+    (@each $this:ident, $L:ident, $field:ident, $($i:literal)*) => {
+        [$($crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field[$i]))),*]
+    };
     (@spread $this:ident, $L:ident, $field:ident, [C; $n:literal]) => {{
         // A loop, not `map`: closures over lanes are not inlined into functions of target features.
         let mut out = [$crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field[0])); $n];

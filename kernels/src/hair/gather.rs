@@ -160,6 +160,14 @@ fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -
     energy.map(|e| if largest > 0.0 { (e / largest) as f32 } else { 0.0 })
 }
 
+/// `theta_o / 2 - alpha`, and the longitude of a lobe.
+#[inline(always)]
+fn longitude<L: Lanes, C: Broadcast<L>>(half_theta_o: L, alpha: C, beta: C) -> (L, TruncatedCauchy<L>) {
+    let shift = half_theta_o - alpha.lanes();
+    let quarter = L::splat(FRAC_PI_4);
+    (shift, TruncatedCauchy::new(shift - quarter, shift + quarter, beta.lanes()))
+}
+
 /// The gather point of a material seen from `wo`.
 #[inline(always)]
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<L>) -> HairGather<L::Stored> {
@@ -188,18 +196,12 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     let cos_phi_o = L::select(off_axis, y * inv_plane, one);
     let sin_phi_o = z * inv_plane;
 
-    let mut shift = [zero; 4];
-    let mut sin = [zero; 4];
-    let mut cos = [zero; 4];
-    let mut span = [zero; 4];
-    let mut l = 0;
-    while l < 3 {
-        shift[l] = half_theta_o - m.alpha[l].lanes();
-        let lobe = TruncatedCauchy::new(shift[l] - c(FRAC_PI_4), shift[l] + c(FRAC_PI_4), m.beta[l].lanes());
-        (sin[l], cos[l], span[l]) = (lobe.sin_mid, lobe.cos_mid, lobe.span);
-        l += 1;
-    }
-    (shift[3], sin[3], cos[3], span[3]) = (shift[2], sin[2], cos[2], span[2]);
+    let [r, tt, trt] = [
+        longitude::<L, C>(half_theta_o, m.alpha[0], m.beta[0]),
+        longitude::<L, C>(half_theta_o, m.alpha[1], m.beta[1]),
+        longitude::<L, C>(half_theta_o, m.alpha[2], m.beta[2]),
+    ];
+    let span = [r.1.span, tt.1.span, trt.1.span];
 
     // 1 / (2 span beta) of the three, from one division; each is at least 1e-9.
     let range = [span[0] * m.beta[0].lanes(), span[1] * m.beta[1].lanes(), span[2] * m.beta[2].lanes()];
@@ -213,12 +215,9 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
         of_trt * quarter,
         of_trt * m.azimuth_density[1].lanes(),
     ];
-    let mut weight = [zero; 4];
-    l = 0;
-    while l < 4 {
-        weight[l] = density[l] * m.selection[l].lanes();
-        l += 1;
-    }
+    let p = &m.selection;
+    let weight =
+        [density[0] * p[0].lanes(), density[1] * p[1].lanes(), density[2] * p[2].lanes(), density[3] * p[3].lanes()];
 
     HairGather {
         half_sin_theta_o: (x * half_inv_len).store(),
@@ -229,10 +228,10 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
             L::select(near_axis, one, plane),
         ]),
         inv_plane_o: L::select(near_axis, one, inv_plane).store(),
-        shift: store4(shift),
-        longitude_sin: store4(sin),
-        longitude_cos: store4(cos),
-        longitude_span: store4(span),
+        shift: store4([r.0, tt.0, trt.0, trt.0]),
+        longitude_sin: store4([r.1.sin_mid, tt.1.sin_mid, trt.1.sin_mid, trt.1.sin_mid]),
+        longitude_cos: store4([r.1.cos_mid, tt.1.cos_mid, trt.1.cos_mid, trt.1.cos_mid]),
+        longitude_span: store4([span[0], span[1], span[2], span[2]]),
         density: store4(density),
         weight: store4(weight),
         material: m.spread::<L>(),
