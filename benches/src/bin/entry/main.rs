@@ -5,7 +5,11 @@
 //!   costs more.
 //! - `entry time NAME SECONDS`: ns a direction, the median of stretches of a millisecond.
 //!
+//! - `entry keep`: nothing; it keeps the functions whose size `.ci/sizes.sh` reports.
+//!
 //! Names end in `*` for all that begin so. `run` prints how many calls a pass makes.
+
+mod outlined;
 
 use hairis_benches::{Name, Op, Task, Visitor, entries};
 use std::env::args;
@@ -23,8 +27,12 @@ fn main() -> ExitCode {
         ["time", name, seconds] if seconds.parse::<f64>().is_ok() => {
             Runner { name, work: Work::Time(seconds.parse().unwrap_or(0.0)), found: false }
         }
+        ["keep"] => {
+            outlined::keep();
+            return ExitCode::SUCCESS;
+        }
         _ => {
-            eprintln!("usage: entry list | entry run NAME PASSES | entry time NAME SECONDS");
+            eprintln!("usage: entry keep | entry list | entry run NAME PASSES | entry time NAME SECONDS");
             return ExitCode::from(2);
         }
     };
