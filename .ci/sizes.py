@@ -53,7 +53,8 @@ def body(program, table, address):
     """Bytes and calls of a function, or of the one that it does nothing but call."""
     while True:
         name, size = table[address]
-        code = tool("objdump", "-d", "--no-show-raw-insn", f"--start-address={address}", f"--stop-address={address + size}", program)
+        span = (f"--start-address={address}", f"--stop-address={address + size}")
+        code = tool("objdump", "-d", "--no-show-raw-insn", *span, program)
         further = [int(to, 16) for to in re.findall(r"\t(?:jmp|call) +([0-9a-f]+) ", code)]
         if size > 64 or not further or further[-1] not in table:
             return size, len(re.findall(r"\tcall ", code))
@@ -85,4 +86,5 @@ def main():
     return 1 if failed else 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())
