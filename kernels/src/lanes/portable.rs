@@ -1,8 +1,8 @@
 //! Eight lanes through `wide`: the instruction set the program was compiled for, whatever the machine has.
 
 use super::{
-    Broadcast, Lanes, Packet, UPPER, difference_fused, difference_split, pick_by_select, pick_three_by_select,
-    sealed::Sealed,
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, UPPER, difference_fused, difference_split,
+    pick_by_select, pick_three_by_select, sealed::Sealed,
 };
 use wide::{f32x8, u32x8};
 
@@ -76,6 +76,13 @@ impl Lanes for f32x8 {
     #[inline(always)]
     fn bits_shl_23(self) -> Self {
         f32x8::from_bits(self.to_bits() << 23_u32)
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let bits = self.to_bits();
+        let exponent = (bits + u32x8::splat(ROUND_EXPONENT)) >> 23_u32;
+        let mantissa = bits + u32x8::splat(ONE) - (exponent << 23_u32);
+        (f32x8::from_bits(mantissa), f32x8::from_bits(exponent | u32x8::splat(INTEGER)) - f32x8::splat(INTEGER_BIAS))
     }
     #[inline(always)]
     fn lt(self, other: Self) -> f32x8 {
