@@ -72,6 +72,10 @@ pub trait Lanes:
     /// The bits of each lane, as an integer, shifted left by 23: builds a power of two from a biased exponent.
     #[must_use]
     fn bits_shl_23(self) -> Self;
+    /// `(m, e)` with `self = m 2^e`, `m` in `[sqrt(1/2), sqrt(2))` and `e` an integer: for normal numbers above 0. Any
+    /// other gives finite numbers or NaN.
+    #[must_use]
+    fn split_exponent(self) -> (Self, Self);
     /// `self < other`, false for NaN.
     fn lt(self, other: Self) -> Self::Mask;
     /// Both masks.
@@ -133,6 +137,16 @@ pub fn store3<L: Lanes>(x: [L; 3]) -> [L::Stored; 3] {
 pub fn store4<L: Lanes>(x: [L; 4]) -> [L::Stored; 4] {
     [x[0].store(), x[1].store(), x[2].store(), x[3].store()]
 }
+
+/// What [`Lanes::split_exponent`] adds to the bits of a float, so that their exponent, biased, is that of the power of two
+/// at or below `sqrt(2)` times it: the bits of 1 less those of `sqrt(1/2)`.
+const ROUND_EXPONENT: u32 = 0x3f80_0000 - 0x3f35_04f3;
+/// The bits of 1: an exponent of 0, biased.
+const ONE: u32 = 0x3f80_0000;
+/// The bits of `2^23`: with an integer below it in the low bits they are the sum of both.
+const INTEGER: u32 = 0x4b00_0000;
+/// `2^23`, and the bias of an exponent.
+const INTEGER_BIAS: f32 = 8_388_608.0 + 127.0;
 
 /// [`Lanes::difference_of_products`] with a fused `mul_add`, after Kahan.
 #[inline(always)]

@@ -141,3 +141,85 @@ fn sin_half_turn<L: Lanes>(x: L) -> L {
     );
     p.mul_add(z * x, x)
 }
+
+/// `sqrt(1/2)` to `sqrt(2)`: what is left of a logarithm after the exponent, `log2(1 + f) / f`.
+const LOG2_MANTISSA: [f32; 9] = [
+    1.442_695_003_649_184_6,
+    -0.721_347_347_241_464,
+    0.480_910_643_938_397_7,
+    -0.360_703_645_450_798_1,
+    0.287_916_182_928_988_24,
+    -0.238_945_621_068_374_1,
+    0.215_717_075_270_067_12,
+    -0.207_264_797_130_794_1,
+    0.125_826_905_124_035_44,
+];
+
+/// Logarithm to the base 2 of a normal number above 0; finite or NaN for any other.
+#[inline(always)]
+pub fn log2<L: Lanes>(x: L) -> L {
+    let (mantissa, exponent) = x.split_exponent();
+    let f = mantissa - L::splat(1.0);
+    polynomial(f, LOG2_MANTISSA).mul_add(f, exponent)
+}
+
+/// The probability of a standard normal number above `x`, over the density's shape there: `Q(x) exp(x^2 / 2)`, for
+/// `0 <= x <= 12.7`. Beyond it falls on towards 0, never below it.
+#[inline(always)]
+pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
+    let c = L::splat;
+    let t = c(1.0) / x.mul_add(c(0.3), c(1.0));
+    let p = polynomial(
+        t,
+        [
+            0.119_621_267_223_862_63,
+            0.120_875_357_762_763_05,
+            0.099_164_887_784_612_63,
+            0.131_007_390_920_877_43,
+            -0.058_268_525_771_945_66,
+            0.211_301_025_252_051_52,
+            -0.160_058_261_081_965_58,
+            0.036_356_806_536_821_06,
+        ],
+    );
+    p * t
+}
+
+/// The number that a standard normal one is above with probability `q`, for `0 < q <= 1/2`; finite for any other.
+///
+/// Two branches, one polynomial each, in `w = -log2(4 q (1 - q))`: about `1 - 2q` times a series below 7, and about
+/// `sqrt w` beyond.
+#[inline(always)]
+pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
+    let c = L::splat;
+    let (zero, one) = (c(0.0), c(1.0));
+    let w = zero.max(-log2(c(4.0) * q * (one - q)));
+    let center = polynomial(
+        w,
+        [
+            1.253_313_830_486_207_7,
+            0.227_440_296_020_921_97,
+            0.007_821_726_240_724_266,
+            -0.001_064_573_790_210_338_9,
+            -6.535_114_654_302_117e-5,
+            1.905_239_925_323_288_6e-5,
+            -1.341_008_659_710_808_8e-6,
+            3.315_518_361_835_722e-8,
+        ],
+    );
+    let root = w.max(c(7.0)).sqrt();
+    let tail = polynomial(
+        one / root,
+        [
+            1.182_418_329_216_171_4,
+            -0.228_760_861_835_545_21,
+            1.138_139_258_225_113_7,
+            -19.313_920_056_455_68,
+            119.430_361_563_270_98,
+            -374.060_854_597_092_5,
+            599.169_404_834_124_2,
+            -380.996_926_689_455_3,
+        ],
+    );
+    (one - (q + q)) * L::select(w.lt(c(7.0)), center, root * tail)
+}

@@ -12,6 +12,7 @@
 //!   beside its peak; intensities above 1e27 may overflow.
 
 mod cauchy;
+mod matched;
 mod parameters;
 mod real;
 mod sampler;
@@ -19,6 +20,7 @@ mod sampler;
 use crate::{Lobe, PerLobe};
 
 pub use cauchy::TruncatedCauchy;
+pub use matched::MatchedTextbook;
 pub use parameters::{Parameters, Shape};
 pub use real::Real;
 

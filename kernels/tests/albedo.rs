@@ -1,15 +1,14 @@
 //! The directional albedo against quadrature of the textbook, and the scale that keeps it at most 1.
 
 use crate::quadrature::{integrate, panels};
-use crate::subject::subjects;
+use crate::subject::{Oracle, subjects};
 use crate::support::{Draws, Kind, Point, Worst, direction, for_each_point};
 use crate::tolerance as bound;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::Textbook;
 use hairis::{Bsdf, HairParams, Lobe, Model, PerLobe};
 
 /// Integral of each lobe's value times the cosine: a product of two line integrals, as the lobes are products.
-fn integrals(textbook: &Textbook<f64>, point: &Point) -> PerLobe<f64> {
+fn integrals(textbook: &Oracle, point: &Point) -> PerLobe<f64> {
     let p = &point.p;
     let l = |lobe: Lobe| lobe.index().min(2);
     let at = |lobe: Lobe, theta: f64, phi: f64| {

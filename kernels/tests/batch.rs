@@ -1,17 +1,17 @@
 //! Slices in, slices out: the same bits as packets, nothing beyond the ends, and every length checked.
 
-use crate::subject::{Subject, subjects};
+use crate::subject::{Tested, subjects};
 use crate::support::{Draws, direction};
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, EvalSlices, Gather, Hair, HairParams, LengthError, Level, SampleSlices, Vec3x8};
+use hairis::{Bsdf, EvalSlices, Gather, HairParams, LengthError, Level, SampleSlices, Vec3x8};
 
 /// What a slice held before.
 const UNTOUCHED: f32 = -77.0;
 /// Room around the slice under test.
 const MARGIN: usize = 9;
 
-fn gather() -> Gather<Hair<Subject>> {
+fn gather() -> Gather<Tested> {
     Bsdf::new(&subjects()[0].0, &HairParams::default()).prepare(direction(0.4, 1.0))
 }
 

@@ -1,5 +1,6 @@
 //! The lobes apart: their sums, and every subset of them.
 
+use crate::subject::PDF_FLOOR;
 use crate::support::{Draws, Kind, Worst, double, for_each_point, lanes_of, masks, narrow, packet, relative};
 use crate::tolerance as bound;
 use hairis::{Bsdf, Lobe, LobeMask};
@@ -18,7 +19,7 @@ fn lobes_add_up() {
                 s.see(relative(all.value[c], sum, 1e-20), at);
             }
             let sum = Lobe::ALL.into_iter().map(|lobe| probability[lobe] * f64::from(lobes[lobe].pdf)).sum();
-            pdf.see(relative(all.pdf, sum, 0.0), at);
+            pdf.see(relative(all.pdf, sum, PDF_FLOOR.max(f64::MIN_POSITIVE)), at);
         }
     });
     s.check("S against its lobes", bound::LOBE_SUM);
@@ -47,7 +48,7 @@ fn a_subset_scatters_and_samples_its_lobes_alone() {
                     s.see(relative(got.value[c], sum, 1e-20), at);
                 }
                 let sum = of(&|l| textbook.probabilities()[l] * f64::from(lobes[l].pdf)) / total.max(1e-300);
-                pdf.see(relative(got.pdf, sum, 1e-300), at);
+                pdf.see(relative(got.pdf, sum, PDF_FLOOR.max(1e-300)), at);
                 let value_alone = part.lobes(wi);
                 for lobe in Lobe::ALL {
                     let color = value_alone[lobe].color.iter().sum::<f32>() * value_alone[lobe].value;

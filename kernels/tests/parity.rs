@@ -1,14 +1,14 @@
 //! One lane against eight, position by position, and the backends against each other: bit for bit wherever both round
 //! alike.
 
-use crate::subject::{Subject, subjects};
+use crate::subject::{Tested, subjects};
 use crate::support::{Draws, Kind, Point, Worst, for_each_point, lanes_of, materials, packet, parameters};
 use crate::tolerance as bound;
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, Drawn, Eval, Gather8, Hair, Hit, Level, Lobe, Sample8};
+use hairis::{Bsdf, Bsdf8, Drawn, Eval, Gather8, Hit, Level, Lobe, Sample8};
 
-type Material = Bsdf<Hair<Subject>>;
+type Material = Bsdf<Tested>;
 
 fn eval_bits(e: Eval) -> [u32; 4] {
     [e.value[0], e.value[1], e.value[2], e.pdf].map(f32::to_bits)
@@ -50,7 +50,7 @@ fn mixed(draws: &mut Draws) -> Mixed {
     Mixed { bsdf: params.map(|p| Bsdf::new(&model, &p)), wo, wi, xi }
 }
 
-fn gathers(m: &Mixed, level: Level) -> Gather8<Hair<Subject>> {
+fn gathers(m: &Mixed, level: Level) -> Gather8<Tested> {
     Bsdf8::pack(m.bsdf.each_ref()).prepare8_at(level, &packet(&m.wo))
 }
 

@@ -1,13 +1,13 @@
 //! What holds for every input: totality over all bit patterns, reciprocity, and samples that agree with eval and pdf.
 
-use crate::subject::{Subject, subjects};
+use crate::subject::{Tested, subjects};
 use crate::support::{Draws, Worst, direction, lanes_of, materials, packet, relative};
 use crate::support::{Kind, angles};
 use crate::tolerance as bound;
 use core::f64::consts::PI;
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, FiberFrame, Gather8, Hair, HairParams, Level, Lobe};
+use hairis::{Bsdf, Bsdf8, FiberFrame, Gather8, HairParams, Level, Lobe};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -48,7 +48,7 @@ fn params() -> impl Strategy<Value = HairParams> {
 }
 
 /// Every number of a packet of eight, for `wi` and `xi` in every lane.
-fn numbers(gather: &Gather8<Hair<Subject>>, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
+fn numbers(gather: &Gather8<Tested>, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
     let first = |x: &f32x8| x.as_array()[0];
     let e = gather.eval_pdf8_at(level, &packet(&[wi]));
     let s = gather.sample8_at(level, &lanes_of(&[xi; 8]));
@@ -62,7 +62,7 @@ fn numbers(gather: &Gather8<Hair<Subject>>, level: Level, wi: Vec3, xi: [f32; 3]
 }
 
 /// Every number of one lane.
-fn scalar_numbers(bsdf: &Bsdf<Hair<Subject>>, wo: Vec3, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
+fn scalar_numbers(bsdf: &Bsdf<Tested>, wo: Vec3, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
     let gather = bsdf.prepare(wo);
     let e = gather.eval_pdf(wi);
     let mut positive = [&e.value[..], &[e.pdf, gather.pdf(wi)], &gather.eval(wi)].concat();

@@ -1,9 +1,9 @@
 //! What the tests share: numbers, directions, materials, and the textbook set beside the kernels.
 
-use crate::subject::{SHAPE, Subject, subjects};
+use crate::subject::{Oracle, Tested, subjects, twin};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
-use hairis::textbook::{Parameters, Textbook};
+use hairis::textbook::Parameters;
 use hairis::wide::f32x8;
 use hairis::{Bsdf, HairDesc, HairParams, Lobe, LobeMask, MAX_WIDTH, MIN_WIDTH, Vec3x8};
 
@@ -163,8 +163,8 @@ pub(crate) fn parameters(params: &HairParams, factor: f32) -> Parameters<f64> {
 }
 
 /// The textbook at the gather point of `wo`.
-pub(crate) fn oracle(params: &HairParams, factor: f32, wo: Vec3) -> Textbook<f64> {
-    Textbook::prepare(&parameters(params, factor), SHAPE, double(wo))
+pub(crate) fn oracle(params: &HairParams, factor: f32, wo: Vec3) -> Oracle {
+    twin(&parameters(params, factor), double(wo))
 }
 
 /// Error of `got` relative to `want`, or to `floor` where `want` is smaller.
@@ -246,7 +246,7 @@ pub(crate) fn grid_point(beta_r: f64, gamma_tt: f64, gamma_g: f64, phi_g: f64, i
 pub(crate) const THETA_O: [f64; 12] = [0.0, 15.0, -30.0, 45.0, -60.0, 75.0, -80.0, 85.0, 89.0, -89.0, 89.9, -89.9];
 
 /// A material of one kind with its textbook, for every form of the model, material and inclination.
-pub(crate) fn for_each_point(kind: Kind, mut f: impl FnMut(&Bsdf<hairis::Hair<Subject>>, &Textbook<f64>, &Point)) {
+pub(crate) fn for_each_point(kind: Kind, mut f: impl FnMut(&Bsdf<Tested>, &Oracle, &Point)) {
     for (model, factor) in subjects() {
         for (index, params) in materials(kind).iter().enumerate() {
             let bsdf = Bsdf::new(&model, params);

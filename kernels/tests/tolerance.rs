@@ -15,6 +15,9 @@ pub(crate) const COS_TWICE: f64 = 2.7; // 2.22, up to its zero
 pub(crate) const SIN_COS_TWICE_ABS: f64 = 1.6e-7; // 1.38e-7
 pub(crate) const SIN_COS_ABSOLUTE: f64 = 2.8e-7; // 2.23e-7, x in [-pi/2, pi/2]
 pub(crate) const COS_ABSOLUTE_LANES: f64 = 3e-7; // 0 where neither fuses
+pub(crate) const LOG2: f64 = 8e-8; // 5.9e-8, normal numbers, over 1 + |log2|
+pub(crate) const NORMAL_TAIL_RATIO: f64 = 5.9e-7; // 4.5e-7, x in [0, 12.6], relative
+pub(crate) const NORMAL_TAIL_INVERSE: [f64; 2] = [1.4e-7, 2.7e-4]; // 1.02e-7, 2.1e-4: of q, absolute and relative, q above 2^-116
 pub(crate) const MATH_LANES: f64 = 2.4; // 2.0; 0 where neither fuses
 
 // S and density against the textbook, relative, further than 1e-3 rad from the axis; then those of a lobe

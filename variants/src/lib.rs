@@ -14,3 +14,6 @@ pub use cauchy::Cauchy;
 
 /// The all-Cauchy variant of the published model, see [`Cauchy`].
 pub type AllCauchy = hairis::Hair<Cauchy>;
+
+/// The all-Cauchy variant with the sampler that follows it closer, see [`hairis::Matched`].
+pub type MatchedCauchy = hairis::Matched<Cauchy>;

@@ -1,6 +1,6 @@
 //! Directional albedo of the published model, by quadrature in the sampler's own coordinates.
 
-use super::HairGather;
+use super::HairPoint;
 use crate::lanes::lanes3;
 use crate::math::sin_cos_twice;
 use crate::quadrature::GAUSS_LEGENDRE_32;
@@ -24,24 +24,24 @@ pub(super) fn bell_area<B: Bell>(lo: f32, hi: f32, width: f32) -> f32 {
 
 /// Directional albedo of each lobe, linear RGB.
 #[inline(always)]
-pub(super) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>) -> PerLobe<[L; 3]> {
-    let hair = &gather.material;
+pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>) -> PerLobe<[L; 3]> {
+    let hair = &point.lobes;
     let (r, tt, trt) = (lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt));
     // The azimuthal term of R and TRT-g, cos(phi / 2), has an area of 4.
     let four = L::splat(4.0);
     let area =
-        [longitudinal::<B, L, C>(gather, 0), longitudinal::<B, L, C>(gather, 1), longitudinal::<B, L, C>(gather, 2)];
+        [longitudinal::<B, L, C>(point, 0), longitudinal::<B, L, C>(point, 1), longitudinal::<B, L, C>(point, 2)];
     PerLobe([
-        lobe(gather, 0, area[0] * four, r),
-        lobe(gather, 1, area[1] * hair.azimuth_area[0].lanes(), tt),
-        lobe(gather, 2, area[2] * four, trt),
-        lobe(gather, 3, area[2] * hair.azimuth_area[1].lanes(), trt),
+        lobe(point, 0, area[0] * four, r),
+        lobe(point, 1, area[1] * hair.azimuth_area[0].lanes(), tt),
+        lobe(point, 2, area[2] * four, trt),
+        lobe(point, 3, area[2] * hair.azimuth_area[1].lanes(), trt),
     ])
 }
 
 #[inline(always)]
-fn lobe<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, l: usize, area: L, color: [L; 3]) -> [L; 3] {
-    let hair = &gather.material;
+fn lobe<L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usize, area: L, color: [L; 3]) -> [L; 3] {
+    let hair = &point.lobes;
     let albedo = area * hair.strength[l].lanes();
     let most = L::splat(f32::MAX);
     [(albedo * color[0]).min(most), (albedo * color[1]).min(most), (albedo * color[2]).min(most)]
@@ -49,17 +49,13 @@ fn lobe<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, l: usize, area: L, co
 
 /// Integral of `M cos^2 theta_i / cos^2 theta_d` over `theta_i`.
 #[inline(always)]
-fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, l: usize) -> L {
+fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usize) -> L {
     let c = L::splat;
     let one = c(1.0);
-    let cauchy = TruncatedCauchy {
-        sin_mid: gather.longitude_sin[l].lanes(),
-        cos_mid: gather.longitude_cos[l].lanes(),
-        span: gather.longitude_span[l].lanes(),
-    };
-    let (beta, shift) = (gather.material.beta[l].lanes(), gather.shift[l].lanes());
-    let (half_sin_theta_o, half_cos_theta_o) = (gather.half_sin_theta_o.lanes(), gather.half_cos_theta_o.lanes());
+    let (beta, shift) = (point.lobes.beta[l].lanes(), point.shift[l].lanes());
     let quarter = c(core::f32::consts::FRAC_PI_4);
+    let cauchy = TruncatedCauchy::new(shift - quarter, shift + quarter, beta);
+    let (half_sin_theta_o, half_cos_theta_o) = (point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes());
     let mut sum = c(0.0);
     let mut k = 0;
     while k < GAUSS_LEGENDRE_32.len() {

@@ -1,23 +1,19 @@
 //! The published sampler: a lobe by its energy, then longitude and azimuth by inversion (section 3.2 of the paper).
 
-use super::{HairGather, Place};
+use super::{HairGather, HairPoint, Place};
 use crate::lanes::lanes3;
 use crate::math::{FRAC_PI_2_LOW, atan_unit, sin_cos_absolute, sin_cos_twice};
 use crate::truncated::TruncatedCauchy;
 use crate::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::FRAC_PI_2;
 
-/// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place: of the angles it was made of, those
-/// that keep their digits in the direction are kept, not taken back from it.
+/// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place.
 #[inline(always)]
 pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> (Vec3x<L>, L::Choice, Place<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let hair = &gather.material;
-    let choice = L::choose(xi[0], lanes3(&hair.bounds));
-    let is_tt = L::is_slot(choice, 1);
-    let is_glint = L::is_slot(choice, 3);
-    let is_bell = L::or(is_tt, is_glint);
+    let (point, hair, sampler) = (&gather.point, &gather.point.lobes, &gather.sampler);
+    let choice = L::choose(xi[0], lanes3(&sampler.bounds));
 
     // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o.
     let longitude = TruncatedCauchy {
@@ -26,23 +22,61 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
         span: C::pick_three(&gather.longitude_span, choice),
     };
     let x = longitude.invert(zero.max(xi[1].min(one)));
-    let half_theta_i = x.mul_add(C::pick_three(&hair.beta, choice), -C::pick_three(&gather.shift, choice));
+    let half_theta_i = x.mul_add(C::pick_three(&hair.beta, choice), -C::pick_three(&point.shift, choice));
+
+    let turn = Turn::of(xi[2]);
+    let azimuth = TruncatedCauchy {
+        sin_mid: C::pick_pair(&sampler.azimuth_sin, choice),
+        cos_mid: C::pick_pair(&sampler.azimuth_cos, choice),
+        span: C::pick_pair(&sampler.azimuth_span, choice),
+    };
+    let center = L::keep(L::is_slot(choice, 3), hair.half_phi_g.lanes());
+    let psi = azimuth.invert(one - turn.across).mul_add(C::pick_pair(&hair.half_gamma, choice), center);
+    let (wi, place) = turned(point, choice, half_theta_i, turn, psi);
+    (wi, choice, place)
+}
+
+/// The number for the azimuth, folded about its middle.
+#[derive(Clone, Copy)]
+pub(crate) struct Turn<L> {
+    /// Its sign is the side.
+    side: L,
+    /// Share of a side, from the middle of `xi_phi`.
+    pub(crate) across: L,
+}
+
+impl<L: Lanes> Turn<L> {
+    /// Of a number in `[0, 1]`.
+    #[inline(always)]
+    pub(crate) fn of(xi: L) -> Self {
+        let side = xi + xi - L::splat(1.0);
+        Self { side, across: side.abs().min(L::splat(1.0)) }
+    }
+}
+
+/// The direction at half a longitude and at an azimuth, and its place: of the angles it is made of, those that keep their
+/// digits in the direction are kept, not taken back from it.
+///
+/// The azimuth is on the side of `turn`. `psi`, up to `pi/2`, is half of `|phi|` for the glints and half of `pi - |phi|`
+/// for TT; R and TRT-g take it from `turn` alone.
+#[inline(always)]
+pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
+    point: &HairPoint<C>,
+    choice: L::Choice,
+    half_theta_i: L,
+    Turn { side, across }: Turn<L>,
+    psi: L,
+) -> (Vec3x<L>, Place<L>) {
+    let c = L::splat;
+    let (zero, one) = (c(0.0), c(1.0));
+    let is_tt = L::is_slot(choice, 1);
+    let is_glint = L::is_slot(choice, 3);
+    let is_bell = L::or(is_tt, is_glint);
     let (sin_theta_i, cos_theta_i) = sin_cos_twice(half_theta_i);
     // Rounding may take the last of a tail past the pole: no direction, and no density.
     let cos_theta_i = zero.max(cos_theta_i);
 
-    // Azimuth, on one side: half of |phi|, or for TT half of pi - |phi|, which takes part of the cdf from its end. R and
-    // TRT-g need no arcsine: sin(phi/2) = 2 xi - 1.
-    let side = xi[2] + xi[2] - one;
-    let across = side.abs().min(one);
-    let azimuth = TruncatedCauchy {
-        sin_mid: C::pick_pair(&hair.azimuth_sin, choice),
-        cos_mid: C::pick_pair(&hair.azimuth_cos, choice),
-        span: C::pick_pair(&hair.azimuth_span, choice),
-    };
-    let y = azimuth.invert(one - across);
-    let center = L::keep(is_glint, hair.half_phi_g.lanes());
-    let psi = y.mul_add(C::pick_pair(&hair.half_gamma, choice), center);
+    // R and TRT-g need no arcsine: sin(phi/2) = 2 xi - 1.
     let (sin_bell, cos_bell) = sin_cos_absolute(psi);
     let sin_psi = L::select(is_bell, sin_bell, across);
     let cos_psi = L::select(is_bell, cos_bell, (one - across * across).sqrt());
@@ -55,8 +89,8 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let cos_phi = L::negate(is_tt, cos_turn);
     // What the sine and the cosine are off the unit circle is taken from the length.
     let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;
-    let [v_o, w_o, cos_o] = lanes3(&gather.plane_o);
-    let by = cos_theta_i * gather.inv_plane_o.lanes();
+    let [v_o, w_o, cos_o] = lanes3(&point.plane_o);
+    let by = cos_theta_i * point.inv_plane_o.lanes();
     let by = by - by * off_unit;
     let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by;
     let w = w_o.mul_add(cos_phi, -(v_o * sin_phi)) * by;
@@ -81,5 +115,5 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
         [turned.mul_add(large, small), large],
         zero.lt(dot),
     );
-    (Vec3x::new(sin_theta_i, v, w), choice, place)
+    (Vec3x::new(sin_theta_i, v, w), place)
 }

@@ -5,7 +5,10 @@
 
 #![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
 
-use super::{Broadcast, Lanes, Packet, difference_fused, pick_by_select, pick_three_by_select, sealed::Sealed};
+use super::{
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused, pick_by_select,
+    pick_three_by_select, sealed::Sealed,
+};
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
@@ -105,6 +108,20 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn bits_shl_23(self) -> Self {
         Self(avx2!(_mm256_castsi256_ps(_mm256_slli_epi32::<23>(_mm256_castps_si256(self.0)))))
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        avx2!({
+            let bits = _mm256_castps_si256(self.0);
+            let exponent =
+                _mm256_srli_epi32::<23>(_mm256_add_epi32(bits, _mm256_set1_epi32(ROUND_EXPONENT.cast_signed())));
+            let mantissa = _mm256_sub_epi32(
+                _mm256_add_epi32(bits, _mm256_set1_epi32(ONE.cast_signed())),
+                _mm256_slli_epi32::<23>(exponent),
+            );
+            let number = _mm256_castsi256_ps(_mm256_or_si256(exponent, _mm256_set1_epi32(INTEGER.cast_signed())));
+            (Self(_mm256_castsi256_ps(mantissa)), Self(_mm256_sub_ps(number, _mm256_set1_ps(INTEGER_BIAS))))
+        })
     }
     #[inline(always)]
     fn lt(self, other: Self) -> __m256 {

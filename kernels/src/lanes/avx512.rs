@@ -5,7 +5,10 @@
 
 #![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
 
-use super::{Broadcast, Lanes, Packet, difference_fused, pick_by_select, sealed::Sealed};
+use super::{
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused, pick_by_select,
+    sealed::Sealed,
+};
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
@@ -103,6 +106,20 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn bits_shl_23(self) -> Self {
         Self(avx512!(_mm512_castsi512_ps(_mm512_slli_epi32::<23>(_mm512_castps_si512(self.0)))))
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        avx512!({
+            let bits = _mm512_castps_si512(self.0);
+            let exponent =
+                _mm512_srli_epi32::<23>(_mm512_add_epi32(bits, _mm512_set1_epi32(ROUND_EXPONENT.cast_signed())));
+            let mantissa = _mm512_sub_epi32(
+                _mm512_add_epi32(bits, _mm512_set1_epi32(ONE.cast_signed())),
+                _mm512_slli_epi32::<23>(exponent),
+            );
+            let number = _mm512_castsi512_ps(_mm512_or_si512(exponent, _mm512_set1_epi32(INTEGER.cast_signed())));
+            (Self(_mm512_castsi512_ps(mantissa)), Self(_mm512_sub_ps(number, _mm512_set1_ps(INTEGER_BIAS))))
+        })
     }
     #[inline(always)]
     fn lt(self, other: Self) -> __mmask16 {

@@ -84,6 +84,11 @@ impl<L: Lanes> Lanes for Pair<L> {
         Self(self.0.bits_shl_23(), self.1.bits_shl_23())
     }
     #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let ((m, e), (n, f)) = (self.0.split_exponent(), self.1.split_exponent());
+        (Self(m, n), Self(e, f))
+    }
+    #[inline(always)]
     fn lt(self, other: Self) -> Self::Mask {
         (self.0.lt(other.0), self.1.lt(other.1))
     }

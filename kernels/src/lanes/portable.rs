@@ -3,8 +3,8 @@
 #![allow(unsafe_code, reason = "intrinsics of target features that the program is compiled for")]
 
 use super::{
-    Broadcast, Lanes, Packet, UPPER, difference_fused, difference_split, pick_by_select, pick_three_by_select,
-    sealed::Sealed,
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, UPPER, difference_fused, difference_split,
+    pick_by_select, pick_three_by_select, sealed::Sealed,
 };
 use wide::{f32x8, u32x8};
 
@@ -109,6 +109,13 @@ impl Lanes for f32x8 {
     #[inline(always)]
     fn bits_shl_23(self) -> Self {
         f32x8::from_bits(self.to_bits() << 23_u32)
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let bits = self.to_bits();
+        let exponent = (bits + u32x8::splat(ROUND_EXPONENT)) >> 23_u32;
+        let mantissa = bits + u32x8::splat(ONE) - (exponent << 23_u32);
+        (f32x8::from_bits(mantissa), f32x8::from_bits(exponent | u32x8::splat(INTEGER)) - f32x8::splat(INTEGER_BIAS))
     }
     #[inline(always)]
     fn lt(self, other: Self) -> f32x8 {

@@ -5,7 +5,7 @@
 
 use core::hint::select_unpredictable;
 
-use super::{Broadcast, Lanes, UPPER, difference_split, sealed::Sealed};
+use super::{Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, UPPER, difference_split, sealed::Sealed};
 
 impl Sealed for f32 {}
 
@@ -65,6 +65,13 @@ impl Lanes for f32 {
     #[inline(always)]
     fn bits_shl_23(self) -> Self {
         f32::from_bits(self.to_bits() << 23)
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let bits = self.to_bits();
+        let exponent = bits.wrapping_add(ROUND_EXPONENT) >> 23;
+        let mantissa = bits.wrapping_add(ONE).wrapping_sub(exponent << 23);
+        (f32::from_bits(mantissa), f32::from_bits(exponent | INTEGER) - INTEGER_BIAS)
     }
     #[inline(always)]
     fn lt(self, other: Self) -> bool {

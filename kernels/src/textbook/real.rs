@@ -42,6 +42,9 @@ pub trait Real:
     /// The value as an `f64`, exactly.
     #[must_use]
     fn to_f64(self) -> f64;
+    /// Complementary error function.
+    #[must_use]
+    fn erfc(self) -> Self;
     /// Sine.
     #[must_use]
     fn sin(self) -> Self;
@@ -82,7 +85,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($t:ident, $sin:ident, $cos:ident, $tan:ident, $asin:ident, $atan:ident, $atan2:ident, $exp:ident, $sqrt:ident,
+    ($t:ident, $erfc:ident, $sin:ident, $cos:ident, $tan:ident, $asin:ident, $atan:ident, $atan2:ident, $exp:ident, $sqrt:ident,
      $hypot:ident, $least_exponent:literal) => {
         impl Real for $t {
             const PI: Self = core::$t::consts::PI;
@@ -110,6 +113,10 @@ macro_rules! real {
             #[inline]
             fn cos(self) -> Self {
                 libm::$cos(self)
+            }
+            #[inline]
+            fn erfc(self) -> Self {
+                libm::$erfc(self)
             }
             #[inline]
             fn tan(self) -> Self {
@@ -155,5 +162,5 @@ macro_rules! real {
     };
 }
 
-real!(f32, sinf, cosf, tanf, asinf, atanf, atan2f, expf, sqrtf, hypotf, -87.3);
-real!(f64, sin, cos, tan, asin, atan, atan2, exp, sqrt, hypot, -708.3);
+real!(f32, erfcf, sinf, cosf, tanf, asinf, atanf, atan2f, expf, sqrtf, hypotf, -87.3);
+real!(f64, erfc, sin, cos, tan, asin, atan, atan2, exp, sqrt, hypot, -708.3);

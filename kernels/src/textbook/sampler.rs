@@ -1,7 +1,7 @@
 //! The published sampler: sections 3.2.1 to 3.2.3 and appendices A to D.
 
 use super::{Angles, Drawn, GRAZING, Real, Textbook, cos_half, wrapped};
-use crate::Lobe;
+use crate::{Lobe, PerLobe};
 
 impl<T: Real> Textbook<T> {
     /// The published sampler: a lobe by energy, `theta_i` and `phi` by inversion (section 3.2).
@@ -15,7 +15,7 @@ impl<T: Real> Textbook<T> {
     pub fn sample(&self, xi: [T; 3]) -> Drawn<T> {
         let zero = T::default();
         let discarded = Drawn { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None };
-        let Some(lobe) = self.choose(xi[0]) else { return discarded };
+        let Some(lobe) = choose(&self.probabilities, xi[0]) else { return discarded };
         let theta_i = self.sample_theta(lobe, xi[1]);
         let phi = self.sample_phi(lobe, xi[2]);
         let phi = wrapped(phi);
@@ -105,29 +105,29 @@ impl<T: Real> Textbook<T> {
         }
     }
 
-    /// The first lobe, in the order R, TT, TRT-g, glint, whose cumulative probability exceeds `xi`.
-    #[inline]
-    fn choose(&self, xi: T) -> Option<Lobe> {
-        let zero = T::default();
-        let mut cumulative = zero;
-        let mut last = None;
-        for lobe in Lobe::ALL {
-            cumulative = cumulative + self.probabilities[lobe];
-            if self.probabilities[lobe] > zero {
-                last = Some(lobe);
-                if xi < cumulative {
-                    break;
-                }
-            }
-        }
-        last
-    }
-
     /// `(sin theta_i, cos theta_i cos phi_i, cos theta_i sin phi_i)` with `phi_i = phi_o - phi`.
     #[inline]
-    fn direction(&self, theta_i: T, phi: T) -> [T; 3] {
+    pub(super) fn direction(&self, theta_i: T, phi: T) -> [T; 3] {
         let phi_i = self.phi_o - phi;
         let cos_theta_i = theta_i.cos();
         [theta_i.sin(), cos_theta_i * phi_i.cos(), cos_theta_i * phi_i.sin()]
     }
+}
+
+/// The first lobe, in the order R, TT, TRT-g, glint, whose cumulative probability exceeds `xi`.
+#[inline]
+pub(super) fn choose<T: Real>(probabilities: &PerLobe<T>, xi: T) -> Option<Lobe> {
+    let zero = T::default();
+    let mut cumulative = zero;
+    let mut last = None;
+    for lobe in Lobe::ALL {
+        cumulative = cumulative + probabilities[lobe];
+        if probabilities[lobe] > zero {
+            last = Some(lobe);
+            if xi < cumulative {
+                break;
+            }
+        }
+    }
+    last
 }

@@ -1,0 +1,172 @@
+//! A direction as the lobes see it, and what the lobes are there.
+
+use super::{GRAZING, HairPoint};
+use crate::lanes::lanes3;
+use crate::math::{FRAC_PI_2_LOW, atan_unit, half_atan2};
+use crate::{Bell, Broadcast, Lanes, Vec3x};
+use core::f32::consts::FRAC_PI_2;
+
+/// A direction as the lobes see it.
+#[derive(Clone, Copy)]
+pub(crate) struct Place<L: Lanes> {
+    /// Half of `theta_i`.
+    pub(crate) half_theta_i: L,
+    sin_theta_i: L,
+    pub(crate) cos_theta_i: L,
+    /// `1 / cos theta_i`.
+    pub(crate) inv_cos_theta_i: L,
+    /// Half of `|phi|`, and half of `pi - |phi|` formed without a difference where it is small.
+    half_phi: L,
+    half_back: L,
+    /// `cos(phi / 2)`.
+    cos_half_phi: L,
+    /// Where `|phi| < pi/2`.
+    front: L::Mask,
+}
+
+/// What the lobes are at a place.
+#[derive(Clone, Copy)]
+pub(crate) struct Shapes<L> {
+    /// `M N`, with unit peaks: no colour, no strength.
+    pub(crate) value: [L; 4],
+    /// The same of Cauchy bells, the glints cut at `pi/2`: the published sampler's density but for the gather point's
+    /// constants, and for `1 / cos theta_i`.
+    pub(super) density: [L; 4],
+    /// `theta_h - alpha` of R, TT and TRT in widths.
+    pub(crate) offset: [L; 3],
+    /// M of R, TT and TRT.
+    pub(crate) longitude: [L; 3],
+    /// `1 / cos^2 theta_d`.
+    pub(crate) inv_cos_sq_theta_d: L,
+}
+
+impl<L: Lanes> Place<L> {
+    /// The place of `wi` as seen from a gather point, and where it is one: a direction off the axis.
+    #[inline(always)]
+    pub(crate) fn of<C: Broadcast<L>>(point: &HairPoint<C>, wi: Vec3x<L>) -> (Self, L::Mask) {
+        let c = L::splat;
+        let one = c(1.0);
+        let plane_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
+        let cos_theta_i = plane_sq.sqrt();
+        // Longer than 2 is no direction; the comparison is false for the infinities of a sum that overflowed.
+        let sound = L::and(c(GRAZING).lt(cos_theta_i), wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)));
+
+        // Azimuth relative to wo, folded: tau is the tangent of half of |phi| or of pi - |phi|, at most 1.
+        // R and TRT-g vanish with it at phi = pi: it takes the digits of wo as they are, and a sum that does not cancel.
+        let [v_o, w_o, cos_o] = lanes3(&point.plane_o);
+        let dot = wi.y.mul_add(v_o, wi.z * w_o);
+        let cross = L::difference_of_products(wi.z, v_o, wi.y, w_o).abs();
+        let reach = cos_theta_i * cos_o;
+        let far = reach + dot.abs();
+
+        // A division of its own: next to opposite poles theta_i and theta_o cancel, and each digit counts.
+        let half_theta_i = half_atan2(wi.x, cos_theta_i, one);
+        let reciprocal = one / (far * reach);
+        let inv_far = reciprocal * reach;
+        let tau = cross * inv_far;
+        let inv_reach = reciprocal * far;
+        let cos_half = (far * inv_reach * c(0.5)).sqrt();
+        let inv_cos = inv_reach * cos_o;
+        let front = c(0.0).lt(dot);
+        let sin_cos = [tau * cos_half, cos_half];
+        let place = Self::new(half_theta_i, wi.x, cos_theta_i, inv_cos, atan_unit(tau), sin_cos, front);
+        (place, sound)
+    }
+
+    /// The place of `theta_i` and of an azimuth, told by half of the smaller of `|phi|` and `pi - |phi|`, its sine and
+    /// its cosine.
+    #[inline(always)]
+    pub(super) fn new(
+        half_theta_i: L,
+        sin_theta_i: L,
+        cos_theta_i: L,
+        inv_cos_theta_i: L,
+        half: L,
+        [sin_half, cos_half]: [L; 2],
+        front: L::Mask,
+    ) -> Self {
+        let rest = (L::splat(FRAC_PI_2) - half) + L::splat(FRAC_PI_2_LOW);
+        let (half_phi, half_back) = L::swap(front, half, rest);
+        Self {
+            half_theta_i,
+            sin_theta_i,
+            cos_theta_i,
+            inv_cos_theta_i,
+            half_phi,
+            half_back,
+            cos_half_phi: L::select(front, cos_half, sin_half),
+            front,
+        }
+    }
+
+    /// The lobes here.
+    #[inline(always)]
+    pub(crate) fn shapes<B: Bell, C: Broadcast<L>>(&self, point: &HairPoint<C>) -> Shapes<L> {
+        let c = L::splat;
+        let one = c(1.0);
+        // Distances from the centres of the bells in widths, squared.
+        let hair = &point.lobes;
+        let x_r = (self.half_theta_i + point.shift[0].lanes()) * hair.inv_beta[0].lanes();
+        let x_tt = (self.half_theta_i + point.shift[1].lanes()) * hair.inv_beta[1].lanes();
+        let x_trt = (self.half_theta_i + point.shift[2].lanes()) * hair.inv_beta[2].lanes();
+        let y_tt = self.half_back * hair.inv_half_gamma[0].lanes();
+        let y_g = (self.half_phi - hair.half_phi_g.lanes()) * hair.inv_half_gamma[1].lanes();
+        let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);
+
+        // The Cauchy value of each, from two divisions. Each of the five is at most 1e9, so that four of them
+        // multiplied stay below the largest float.
+        let (d_r, d_tt_x, d_trt) = (x_r.mul_add(x_r, one), x_tt.mul_add(x_tt, one), x_trt.mul_add(x_trt, one));
+        let (d_tt_y, d_g_y) = (y_tt.mul_add(y_tt, one), y_g.mul_add(y_g, one));
+        let (d_tt, d_g) = (d_tt_x * d_tt_y, d_trt * d_g_y);
+        let inv_tt_g = one / (d_tt * d_g);
+        let (cauchy_tt, cauchy_g) = (inv_tt_g * d_g, inv_tt_g * d_tt);
+        let cauchy_trt = cauchy_g * d_g_y;
+        // Cos^2 theta_d is the squared length of the mean of the two directions in the meridian plane: exact where both
+        // are near opposite poles, where 1 + cos cos + sin sin cancels.
+        let half = c(0.5);
+        let mean_u = self.sin_theta_i.mul_add(half, point.half_sin_theta_o.lanes());
+        let mean_c = self.cos_theta_i.mul_add(half, point.half_cos_theta_o.lanes());
+        let cos_sq_theta_d = mean_u.mul_add(mean_u, mean_c * mean_c);
+        let inv_r = one / (d_r * cos_sq_theta_d);
+        let cauchy_r = inv_r * cos_sq_theta_d;
+
+        let (m_r, m_trt) = (B::one(s_r, cauchy_r), B::one(s_trt, cauchy_trt));
+        Shapes {
+            value: [
+                m_r * self.cos_half_phi,
+                B::two(s_tt, t_tt, cauchy_tt, cauchy_tt * d_tt_y, cauchy_tt * d_tt_x),
+                m_trt * self.cos_half_phi,
+                B::two(s_trt, t_g, cauchy_g, cauchy_trt, cauchy_g * d_trt),
+            ],
+            density: [
+                cauchy_r * self.cos_half_phi,
+                cauchy_tt,
+                cauchy_trt * self.cos_half_phi,
+                // The sampler cuts the glints at pi/2: ERRATA E3.
+                L::keep(self.front, cauchy_g),
+            ],
+            offset: [x_r, x_tt, x_trt],
+            // What a sampler does not read is not computed.
+            longitude: [m_r, B::one(s_tt, cauchy_tt * d_tt_y), m_trt],
+            inv_cos_sq_theta_d: inv_r * d_r,
+        }
+    }
+}
+
+impl<L: Lanes> Shapes<L> {
+    /// S before the final bound, linear RGB.
+    #[inline(always)]
+    pub(crate) fn value<C: Broadcast<L>>(&self, point: &HairPoint<C>) -> [L; 3] {
+        let hair = &point.lobes;
+        let trt = self.value[2] * hair.strength[2].lanes();
+        let secondary = self.value[3].mul_add(hair.strength[3].lanes(), trt);
+        let (f_r, f_tt) = (self.value[0] * self.inv_cos_sq_theta_d, self.value[1] * self.inv_cos_sq_theta_d);
+        let f_trt = secondary * self.inv_cos_sq_theta_d;
+        let (r, tt, trt) = (lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt));
+        [
+            f_r.mul_add(r[0], f_tt.mul_add(tt[0], f_trt * trt[0])),
+            f_r.mul_add(r[1], f_tt.mul_add(tt[1], f_trt * trt[1])),
+            f_r.mul_add(r[2], f_tt.mul_add(tt[2], f_trt * trt[2])),
+        ]
+    }
+}

@@ -1,0 +1,157 @@
+//! The lobes of a material, and where a gather point sees them from: the same whichever sampler draws from them.
+
+use super::albedo::bell_area;
+use crate::lanes::{store3, store4};
+use crate::math::half_atan2;
+use crate::{Bell, Broadcast, HairParams, Lanes, Lobe, LobeMask, Vec3x};
+use core::f32::consts::PI;
+
+crate::lane_struct! {
+    /// The lobes of a material: what its value is made of, and every sampler reads.
+    ///
+    /// Arrays of two are TT and the glints, of three R, TT, TRT; arrays of four are in the order of [`Lobe`](crate::Lobe).
+    pub struct HairLobes {
+        /// Longitudinal shift, rad.
+        pub alpha: [C; 3],
+        /// Longitudinal width, rad; the glints share TRT's.
+        pub beta: [C; 4],
+        /// `1 / beta`.
+        pub inv_beta: [C; 3],
+        /// Half the azimuthal width of TT and the glints, rad.
+        pub half_gamma: [C; 2],
+        /// `2 / gamma`.
+        pub inv_half_gamma: [C; 2],
+        /// Half of the angle between a glint and `wo`, rad.
+        pub half_phi_g: C,
+        /// Integral of the azimuthal term over the circle, rad.
+        pub azimuth_area: [C; 2],
+        /// Colour of R, linear RGB.
+        pub color_r: [C; 3],
+        /// Colour of TT.
+        pub color_tt: [C; 3],
+        /// Colour of TRT and the glints.
+        pub color_trt: [C; 3],
+        /// Factor on each lobe that is no colour: 1, and the strength of the glints (up to 1e6; its excess is in the
+        /// colour of TRT).
+        pub strength: [C; 4],
+    }
+}
+
+crate::lane_struct! {
+    /// What every sampler reads of a gather point: the lobes of its material, and `wo`.
+    pub struct HairPoint {
+        /// Half the sine of `theta_o`.
+        pub half_sin_theta_o: C,
+        /// Half its cosine.
+        pub half_cos_theta_o: C,
+        /// The part of `wo` in the normal plane, with the digits it was given: v and w, and its length.
+        pub plane_o: [C; 3],
+        /// One over that length.
+        pub inv_plane_o: C,
+        /// `theta_o / 2 - alpha`: added to `theta_i / 2` it is `theta_h - alpha`.
+        pub shift: [C; 4],
+        /// The lobes of the material.
+        pub lobes: (HairLobes<C>),
+    }
+}
+
+impl HairLobes<f32> {
+    /// The lobes of checked parameters.
+    #[inline]
+    #[must_use]
+    pub(crate) fn of<B: Bell>(bell: B, params: &HairParams) -> Self {
+        let d = params.desc();
+        let k = bell.width_factor();
+        // Below 5e-5 rad the product of four Cauchy denominators overflows far from the centres.
+        let [b_r, b_tt, b_trt, gamma_tt, gamma_g] =
+            [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g].map(|width| (width * k).max(5e-5));
+        let phi_g = d.phi_g;
+        // Glints of absurd strength take the excess from the colour, so that their product overflows last.
+        let excess = (d.intensity_g * 1e-6).max(1.0);
+        Self {
+            alpha: [d.alpha_r, d.alpha_tt, d.alpha_trt],
+            beta: [b_r, b_tt, b_trt, b_trt],
+            inv_beta: [b_r, b_tt, b_trt].map(|b| 1.0 / b),
+            half_gamma: [0.5 * gamma_tt, 0.5 * gamma_g],
+            inv_half_gamma: [2.0 / gamma_tt, 2.0 / gamma_g],
+            half_phi_g: 0.5 * phi_g,
+            azimuth_area: [bell_area::<B>(-PI, PI, gamma_tt), 2.0 * bell_area::<B>(-phi_g, PI - phi_g, gamma_g)],
+            color_r: d.intensity_r,
+            color_tt: d.intensity_tt,
+            color_trt: d.intensity_trt.map(|c| (c * excess).min(f32::MAX)),
+            strength: [1.0, 1.0, 1.0 / excess, d.intensity_g / excess],
+        }
+    }
+}
+
+/// The lobes of a material seen from `wo`.
+#[inline(always)]
+pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x<L>) -> HairPoint<L::Stored> {
+    let c = L::splat;
+    let (zero, one) = (c(0.0), c(1.0));
+    // The digits of a wo of about unit length are kept as they are; any other is scaled by its largest component, so
+    // that no finite wo overflows or vanishes. Zero counts as v.
+    let largest = wo.x.abs().max(wo.y.abs().max(wo.z.abs()));
+    let some = c(1e-30).lt(largest);
+    let usual = L::and(c(0.25).lt(largest), largest.lt(c(4.0)));
+    let by = L::select(usual, one, one / largest);
+    let x = L::select(some, wo.x * by, zero);
+    let y = L::select(some, wo.y * by, one);
+    let z = L::select(some, wo.z * by, zero);
+    let plane_sq = y.mul_add(y, z * z);
+    let plane = plane_sq.sqrt();
+    let len = x.mul_add(x, plane_sq).sqrt();
+    // On the axis the azimuth is 0 by convention.
+    let off_axis = zero.lt(plane);
+    let span_plane = L::select(off_axis, plane, one);
+    let reciprocal = one / (len * span_plane);
+    let (half_inv_len, inv_plane) = (c(0.5) * (reciprocal * span_plane), reciprocal * len);
+    let half_theta_o = half_atan2(x, plane, len);
+    // Products of components this small would leave the range of a float; their last digit is none of the bounds'.
+    let near_axis = plane.lt(c(1e-4));
+    let cos_phi_o = L::select(off_axis, y * inv_plane, one);
+    let sin_phi_o = z * inv_plane;
+
+    let [r, tt, trt] = [
+        half_theta_o - lobes.alpha[0].lanes(),
+        half_theta_o - lobes.alpha[1].lanes(),
+        half_theta_o - lobes.alpha[2].lanes(),
+    ];
+
+    HairPoint {
+        half_sin_theta_o: (x * half_inv_len).store(),
+        half_cos_theta_o: (plane * half_inv_len).store(),
+        plane_o: store3([
+            L::select(near_axis, cos_phi_o, y),
+            L::select(near_axis, sin_phi_o, z),
+            L::select(near_axis, one, plane),
+        ]),
+        inv_plane_o: L::select(near_axis, one, inv_plane).store(),
+        shift: store4([r, tt, trt, trt]),
+        lobes: lobes.spread::<L>(),
+    }
+}
+
+impl<C: Lanes> HairPoint<C> {
+    /// The gather point with only some of its lobes.
+    #[inline(always)]
+    pub(crate) fn restrict(&self, lobes: LobeMask) -> Self {
+        let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));
+        let hair = &self.lobes;
+        Self {
+            lobes: HairLobes {
+                color_r: hair.color_r.map(|x| x * factor[0]),
+                color_tt: hair.color_tt.map(|x| x * factor[1]),
+                strength: times(hair.strength, factor),
+                ..*hair
+            },
+            ..*self
+        }
+    }
+}
+
+/// Product, entry by entry.
+#[inline(always)]
+pub(crate) fn times<C: Lanes>(x: [C; 4], y: [C; 4]) -> [C; 4] {
+    [x[0] * y[0], x[1] * y[1], x[2] * y[2], x[3] * y[3]]
+}

@@ -1,0 +1,86 @@
+//! What a model gives for a direction and for a sample, once its density is known.
+
+use super::{GRAZING, HairPoint, Place, Shapes};
+use crate::lanes::lanes3;
+use crate::model::{Drawn, Eval, LobeEval};
+use crate::{Broadcast, Lanes, PerLobe, Vec3x};
+
+/// The density below which a sample is discarded: next to denormals its weight would have no digits.
+const LEAST_DENSITY: f32 = 1e-30;
+
+/// The largest result where a lane is sound, 0 where it is not. `x.min(limit)` then is 0 on an unsound lane whatever
+/// `x` is, NaN included, and finite on every other.
+#[inline(always)]
+fn limit<L: Lanes>(sound: L::Mask) -> L {
+    L::keep(sound, L::splat(f32::MAX))
+}
+
+#[inline(always)]
+fn min3<L: Lanes>(x: [L; 3], limit: L) -> [L; 3] {
+    [x[0].min(limit), x[1].min(limit), x[2].min(limit)]
+}
+
+/// Value and density at a place, of the mixture's `density` times `cos theta_i`.
+#[inline(always)]
+pub(crate) fn evaluated<L: Lanes, C: Broadcast<L>>(
+    point: &HairPoint<C>,
+    place: &Place<L>,
+    sound: L::Mask,
+    shapes: &Shapes<L>,
+    density: L,
+) -> Eval<L> {
+    let limit = limit::<L>(sound);
+    Eval { value: min3(shapes.value(point), limit), pdf: (density * place.inv_cos_theta_i).min(limit) }
+}
+
+/// Each lobe at a place, of its own `density` times `cos theta_i`.
+#[inline(always)]
+pub(crate) fn per_lobe<L: Lanes, C: Broadcast<L>>(
+    point: &HairPoint<C>,
+    place: &Place<L>,
+    sound: L::Mask,
+    shapes: &Shapes<L>,
+    density: [L; 4],
+) -> PerLobe<LobeEval<L>> {
+    let limit = limit::<L>(sound);
+    let hair = &point.lobes;
+    let colors = [lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt), lanes3(&hair.color_trt)];
+    let zero = L::splat(0.0);
+    let mut lobes = [LobeEval { value: zero, color: [zero; 3], pdf: zero }; 4];
+    let mut l = 0;
+    while l < 4 {
+        let strength = hair.strength[l].lanes() * shapes.inv_cos_sq_theta_d;
+        lobes[l] = LobeEval {
+            value: (shapes.value[l] * strength).min(limit),
+            color: colors[l],
+            pdf: (density[l] * place.inv_cos_theta_i).min(limit),
+        };
+        l += 1;
+    }
+    PerLobe(lobes)
+}
+
+/// The sample `wi` of the lobe `choice`, of the mixture's `density` times `cos theta_i`.
+#[inline(always)]
+pub(crate) fn drawn<L: Lanes, C: Broadcast<L>>(
+    point: &HairPoint<C>,
+    wi: Vec3x<L>,
+    choice: L::Choice,
+    place: &Place<L>,
+    shapes: &Shapes<L>,
+    density: L,
+) -> Drawn<L> {
+    let cos = place.cos_theta_i;
+    let sound = L::and(L::splat(GRAZING).lt(cos), L::splat(LEAST_DENSITY).lt(density));
+    let limit = limit::<L>(sound);
+    let value = min3(shapes.value(point), limit);
+    // weight = S cos theta_i / pdf, and pdf = density / cos theta_i.
+    let by = cos * cos / density;
+    Drawn {
+        wi,
+        value,
+        pdf: (density * place.inv_cos_theta_i).min(limit),
+        weight: min3([value[0] * by, value[1] * by, value[2] * by], limit),
+        slot: L::select(sound, L::slot_number(choice), L::splat(-1.0)),
+    }
+}

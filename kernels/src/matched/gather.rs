@@ -1,0 +1,329 @@
+//! What a matched sampler keeps of a material, and of a material seen from one direction.
+
+use super::warp::{END_SHARE, NEAR_END, Side, node};
+use super::{MatchedBell, Truncated};
+use crate::hair::{Shapes, prepare_point, selection, times};
+use crate::lanes::{store3, store4};
+use crate::math::sin_cos_twice;
+use crate::{Broadcast, HairLobes, HairParams, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
+use core::f32::consts::{FRAC_PI_4, PI};
+use wide::f32x8;
+
+/// Energies below this share of the largest are none: next to denormals their reciprocal would have no digits.
+const LEAST_ENERGY: f32 = 1e-36;
+
+/// Intensities below this share of the largest are none to the sampler.
+const LEAST_IMPORTANCE: f64 = 1e-25;
+
+/// Heights are at least this share of W at a third of the way to the other pole.
+const LEAST_HEIGHT: f32 = 1e-5;
+
+crate::lane_struct! {
+    /// The constants of a material with a matched sampler.
+    ///
+    /// Arrays of two are TT and the glints, of four in the order of [`Lobe`].
+    pub struct MatchedMaterial {
+        /// Its lobes.
+        pub lobes: (HairLobes<C>),
+        /// Intensity of each lobe, the mean of its RGB, to the scale of the largest.
+        pub importance: [C; 4],
+        /// The same times what a lobe integrates to for each unit of its longitude's mass.
+        pub capacity: [C; 4],
+        /// Mass of the azimuth's bell on one side.
+        pub azimuth_mass: [C; 2],
+        /// The first of that distribution's own numbers.
+        pub azimuth_end_0: [C; 2],
+        /// The second.
+        pub azimuth_end_1: [C; 2],
+    }
+}
+
+/// The constants of a gather point with a matched sampler of `N` segments a side.
+///
+/// Arrays of four are in the order of [`Lobe`], of three R, TT and TRT, of two TT and the glints; in those of sides the
+/// lower end is first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MatchedGather<C, const N: usize> {
+    /// The lobes as seen from `wo`.
+    pub point: HairPoint<C>,
+    /// Mass of the longitude's bell on the sphere.
+    pub mass: [C; 4],
+    /// `1 / mass`, or 0.
+    pub inv_mass: [C; 4],
+    /// That distribution's own two numbers.
+    pub ends: [[C; 4]; 2],
+    /// Heights of the warp: by side, by node from the end inwards, by lobe.
+    pub outer: [[[C; 4]; N]; 2],
+    /// Heights in the middle.
+    pub middle: [C; 4],
+    /// Area below the warp: the mean of W over the lobe.
+    pub area: [C; 4],
+    /// The part of it on the lower side.
+    pub area_lower: [C; 4],
+    /// Factor on `M N h` of each lobe in the mixture density, but for `scale`.
+    pub weight: [C; 4],
+    /// Factor on all of them.
+    pub scale: C,
+    /// Probability of choosing each lobe.
+    pub selection: [C; 4],
+    /// Where the next lobe begins in `xi_lobe`.
+    pub bounds: [C; 3],
+    /// Mass of the azimuth's bell on one side.
+    pub azimuth_mass: [C; 2],
+    /// That distribution's own two numbers.
+    pub azimuth_ends: [[C; 2]; 2],
+}
+
+/// What each lobe integrates to, but for its colour, for each unit of its longitude's mass and of the mean of W.
+#[inline(always)]
+fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(hair: &HairLobes<C>, azimuth_mass: [L; 2]) -> [L; 4] {
+    // dtheta_i is two widths for each of x; the azimuth of R and TRT-g has an area of 4, and bells have two sides.
+    let unit = L::splat(2.0 * B::UNIT);
+    let [r, tt, trt] = [hair.beta[0].lanes() * unit, hair.beta[1].lanes() * unit, hair.beta[2].lanes() * unit];
+    let sides = L::splat(4.0 * B::UNIT);
+    let azimuth_tt = hair.half_gamma[0].lanes() * azimuth_mass[0] * sides;
+    let azimuth_g = hair.half_gamma[1].lanes() * azimuth_mass[1] * sides;
+    let four = L::splat(4.0);
+    [r * four, tt * azimuth_tt, trt * four, trt * azimuth_g]
+}
+
+impl MatchedMaterial<f32> {
+    /// The material of checked parameters.
+    #[inline]
+    #[must_use]
+    pub(super) fn of<B: MatchedBell>(bell: B, params: &HairParams) -> Self {
+        let lobes = HairLobes::of(bell, params);
+        let phi_g = params.desc().phi_g;
+        let [inv_gamma_tt, inv_gamma_g] = lobes.inv_half_gamma.map(|inv| 0.5 * inv);
+        let tt = B::truncate(0.0, PI * inv_gamma_tt);
+        let glint = B::truncate(-phi_g * inv_gamma_g, (PI - phi_g) * inv_gamma_g);
+        let azimuth_mass = [tt.mass, glint.mass];
+        let importance = importance(params);
+        Self {
+            lobes,
+            importance,
+            capacity: times(extent::<B, f32, f32>(&lobes, azimuth_mass), importance),
+            azimuth_mass,
+            azimuth_end_0: [tt.ends[0], glint.ends[0]],
+            azimuth_end_1: [tt.ends[1], glint.ends[1]],
+        }
+    }
+}
+
+/// Intensity of each lobe to the scale of the largest.
+///
+/// In double precision: the product of two of the largest legal intensities overflows a float.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "shares of the largest, in [0, 1]")]
+fn importance(params: &HairParams) -> [f32; 4] {
+    let d = params.desc();
+    let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
+    let trt = mean(d.intensity_trt);
+    let all = [mean(d.intensity_r), mean(d.intensity_tt), trt, trt * f64::from(d.intensity_g)];
+    let largest = all.iter().fold(0.0, |a: f64, i| a.max(*i));
+    all.map(|i| if i > largest * LEAST_IMPORTANCE { (i / largest) as f32 } else { 0.0 })
+}
+
+/// `(cos theta_i / cos theta_d)^2`, 0 where both directions lie on opposite poles.
+#[inline(always)]
+fn w<L: Lanes>(half_theta_i: L, [half_sin_theta_o, half_cos_theta_o]: [L; 2]) -> L {
+    let quarter = L::splat(FRAC_PI_4);
+    let (sin, cos) = sin_cos_twice((-quarter).max(quarter.min(half_theta_i)));
+    let half = L::splat(0.5);
+    let (mean_u, mean_c) = (sin.mul_add(half, half_sin_theta_o), cos.mul_add(half, half_cos_theta_o));
+    cos * cos / mean_u.mul_add(mean_u, mean_c * mean_c).max(L::splat(f32::MIN_POSITIVE))
+}
+
+/// The gather point of a material seen from `wo`.
+#[inline(always)]
+pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
+    m: &MatchedMaterial<C>,
+    wo: Vec3x<L>,
+) -> MatchedGather<L::Stored, N> {
+    let c = L::splat;
+    let zero = c(0.0);
+    let point = prepare_point(&m.lobes, wo);
+    let theta_o = [point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes()];
+    let least = c(LEAST_HEIGHT) * mode_scale(theta_o[1]);
+
+    let (mut mass, mut inv_mass) = ([zero; 4], [zero; 4]);
+    let mut ends = [[zero; 4]; 2];
+    let mut outer = [[[zero; 4]; N]; 2];
+    let (mut middle, mut area, mut area_lower) = ([zero; 4], [zero; 4], [zero; 4]);
+    let mut l = 0;
+    while l < 3 {
+        let (shift, beta) = (point.shift[l].lanes(), m.lobes.beta[l].lanes());
+        let (inv_beta, quarter) = (m.lobes.inv_beta[l].lanes(), c(FRAC_PI_4));
+        let cut = B::truncate((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
+        let mut sides = [Side { outer: [zero; N], middle: zero }; 2];
+        let [x, _] = B::invert_both(&cut, 0.5);
+        middle[l] = least.max(w(x.mul_add(beta, -shift), theta_o));
+        let mut j = N;
+        while j > 0 {
+            j -= 1;
+            let v = if j == 0 { NEAR_END } else { node(N, j) };
+            let x = B::invert_both(&cut, v);
+            let mut s = 0;
+            while s < 2 {
+                // The end has a height of its own: W is 0 there.
+                let floor = if j == 0 { sides[s].outer[1] * c(END_SHARE) } else { least };
+                sides[s].outer[j] = floor.max(w(x[s].mul_add(beta, -shift), theta_o));
+                outer[s][j][l] = sides[s].outer[j];
+                s += 1;
+            }
+        }
+        (sides[0].middle, sides[1].middle) = (middle[l], middle[l]);
+        area_lower[l] = sides[0].area();
+        area[l] = area_lower[l] + sides[1].area();
+        (mass[l], inv_mass[l]) = (cut.mass, cut.inv_mass);
+        (ends[0][l], ends[1][l]) = (cut.ends[0], cut.ends[1]);
+        l += 1;
+    }
+    // The glints share the longitude of TRT.
+    (mass[3], inv_mass[3], ends[0][3], ends[1][3]) = (mass[2], inv_mass[2], ends[0][2], ends[1][2]);
+    (middle[3], area[3], area_lower[3]) = (middle[2], area[2], area_lower[2]);
+    let mut j = 0;
+    while j < N {
+        (outer[0][j][3], outer[1][j][3]) = (outer[0][j][2], outer[1][j][2]);
+        j += 1;
+    }
+
+    // Energies to the scale of the largest mass, which may be next to nothing where all lobes lie off the sphere.
+    let capacity = [m.capacity[0].lanes(), m.capacity[1].lanes(), m.capacity[2].lanes(), m.capacity[3].lanes()];
+    let mut largest = zero;
+    l = 0;
+    while l < 4 {
+        largest = largest.max(L::keep(zero.lt(capacity[l]), mass[l]));
+        l += 1;
+    }
+    let scale = L::select(zero.lt(largest), c(1.0) / largest, zero);
+    let mut energy = [zero; 4];
+    l = 0;
+    while l < 4 {
+        let e = capacity[l] * (mass[l] * scale) * area[l];
+        energy[l] = L::keep(c(LEAST_ENERGY).lt(e), e);
+        l += 1;
+    }
+    let (p, bounds, inv_total) = selection(energy);
+    let mut weight = [zero; 4];
+    l = 0;
+    while l < 4 {
+        weight[l] = L::keep(zero.lt(energy[l]), m.importance[l].lanes() * inv_total);
+        l += 1;
+    }
+
+    let mut stored = [[[zero.store(); 4]; N]; 2];
+    j = 0;
+    while j < N {
+        (stored[0][j], stored[1][j]) = (store4(outer[0][j]), store4(outer[1][j]));
+        j += 1;
+    }
+    MatchedGather {
+        point,
+        mass: store4(mass),
+        inv_mass: store4(inv_mass),
+        ends: [store4(ends[0]), store4(ends[1])],
+        outer: stored,
+        middle: store4(middle),
+        area: store4(area),
+        area_lower: store4(area_lower),
+        weight: store4(weight),
+        scale: scale.store(),
+        selection: store4(p),
+        bounds: store3(bounds),
+        azimuth_mass: spread2::<L, C>(&m.azimuth_mass),
+        azimuth_ends: [spread2::<L, C>(&m.azimuth_end_0), spread2::<L, C>(&m.azimuth_end_1)],
+    }
+}
+
+/// Two numbers of a material, a lane each.
+#[inline(always)]
+fn spread2<L: Lanes, C: Broadcast<L>>(x: &[C; 2]) -> [L::Stored; 2] {
+    [x[0].lanes().store(), x[1].lanes().store()]
+}
+
+/// W a third of the way to the other pole, `(cos(theta_o / 3) / cos(2 theta_o / 3))^2`, roughly: 1 in the normal plane and 3
+/// at the poles.
+#[inline(always)]
+fn mode_scale<L: Lanes>(half_cos_theta_o: L) -> L {
+    half_cos_theta_o.mul_add(L::splat(-4.0), L::splat(3.0))
+}
+
+impl<C, const N: usize> MatchedGather<C, N> {
+    /// The warp's height for longitude `l` (R, TT or TRT) at a place.
+    #[inline(always)]
+    pub(super) fn height<B: MatchedBell, L: Lanes>(&self, l: usize, shapes: &Shapes<L>) -> L
+    where
+        C: Broadcast<L>,
+    {
+        let cut = Truncated {
+            mass: self.mass[l].lanes(),
+            inv_mass: self.inv_mass[l].lanes(),
+            ends: [self.ends[0][l].lanes(), self.ends[1][l].lanes()],
+        };
+        let (lower, v) = B::locate(&cut, shapes.offset[l], shapes.longitude[l]);
+        let mut side = Side { outer: [v; N], middle: self.middle[l].lanes() };
+        let mut j = 0;
+        while j < N {
+            side.outer[j] = L::select(lower, self.outer[0][j][l].lanes(), self.outer[1][j][l].lanes());
+            j += 1;
+        }
+        side.at(v)
+    }
+
+    /// Factor on `M N h` of a lobe drawn alone, but for its mass.
+    #[inline(always)]
+    pub(super) fn lone_density<B: MatchedBell, L: Lanes>(&self) -> [L; 4]
+    where
+        C: Broadcast<L>,
+    {
+        let azimuth_mass = [self.azimuth_mass[0].lanes(), self.azimuth_mass[1].lanes()];
+        let mut scale = extent::<B, L, C>(&self.point.lobes, azimuth_mass);
+        let mut l = 0;
+        while l < 4 {
+            scale[l] = L::splat(1.0) / (scale[l] * self.area[l].lanes());
+            l += 1;
+        }
+        scale
+    }
+}
+
+impl<C: Lanes, const N: usize> MatchedGather<C, N> {
+    /// The gather point with only some of its lobes.
+    #[inline(always)]
+    pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
+        let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));
+        let (p, bounds, inv_total) = selection(times(self.selection, factor));
+        let weight = times(times(self.weight, factor), [inv_total; 4]);
+        Self { point: self.point.restrict(lobes), weight, selection: p, bounds, ..*self }
+    }
+}
+
+impl<const N: usize> MatchedGather<f32x8, N> {
+    /// The numbers of one lane.
+    ///
+    /// # Panics
+    ///
+    /// If `lane` is above 7.
+    #[inline]
+    #[must_use]
+    pub fn lane(&self, lane: usize) -> MatchedGather<f32, N> {
+        let at = |x: f32x8| x.as_array()[lane];
+        MatchedGather {
+            point: self.point.lane(lane),
+            mass: self.mass.map(at),
+            inv_mass: self.inv_mass.map(at),
+            ends: self.ends.map(|x| x.map(at)),
+            outer: self.outer.map(|side| side.map(|x| x.map(at))),
+            middle: self.middle.map(at),
+            area: self.area.map(at),
+            area_lower: self.area_lower.map(at),
+            weight: self.weight.map(at),
+            scale: at(self.scale),
+            selection: self.selection.map(at),
+            bounds: self.bounds.map(at),
+            azimuth_mass: self.azimuth_mass.map(at),
+            azimuth_ends: self.azimuth_ends.map(|x| x.map(at)),
+        }
+    }
+}

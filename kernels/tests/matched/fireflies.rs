@@ -1,0 +1,58 @@
+//! No fireflies: every weight is below its closed-form bound, and below five times the mean over all everyday hair.
+
+use crate::subject::{SHAPE, samplers};
+use crate::support::{Draws, Worst, direction, double, lanes_of, narrow, parameters};
+use core::f64::consts::PI;
+use hairis::textbook::MatchedTextbook;
+use hairis::{Bsdf, HairDesc, HairParams, Lobe, LobeMask, Model};
+
+/// Hair with `beta_r` from 0.5 to 60 degrees and all else as wide as it is found, seen from up to 89.9 degrees.
+fn hair(draws: &mut Draws) -> (HairParams, f64) {
+    let degrees = draws.scale(0.5, 60.0);
+    let [beta_r, beta_tt, beta_trt] = [1.0, 0.5, 2.0].map(|k| narrow((k * degrees).to_radians()));
+    let mut angle = |lo: f64, hi: f64| narrow(draws.scale(lo, hi).to_radians());
+    let (gamma_tt, gamma_g, phi_g) = (angle(1.0, 60.0), angle(1.0, 40.0), angle(10.0, 80.0));
+    let intensity_g = narrow(draws.scale(0.1, 10.0));
+    let desc = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt, gamma_g, phi_g, intensity_g, ..HairDesc::default() };
+    let theta_o = draws.sign() * 89.9_f64.min(draws.between(0.0, 100.0));
+    (HairParams::new(&desc).unwrap(), theta_o.to_radians())
+}
+
+/// The largest weights over their bound and over their mean.
+fn scan<M: Model<Params = HairParams>>(model: M, segments: usize, worst: &mut [Worst; 2]) {
+    let mut draws = Draws(81);
+    for round in 0..1500 {
+        let (params, theta_o) = hair(&mut draws);
+        let wo = direction(theta_o, draws.between(-PI, PI));
+        let mask = if round % 4 == 0 { LobeMask::of(&[Lobe::ALL[draws.below(4)]]) } else { LobeMask::ALL };
+        let gather = Bsdf::new(&model, &params).prepare(wo).with_lobes(mask);
+        let twin = MatchedTextbook::prepare(&parameters(&params, 1.0), SHAPE, double(wo), segments);
+        let limit = twin.weight_bound(mask);
+        let mean: f64 = gather.albedo().0.iter().flatten().map(|x| f64::from(*x) / 3.0).sum();
+        for _ in 0..32 {
+            let eight = gather.sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
+            for s in (0..8).filter_map(|lane| eight.lane(lane)) {
+                let weight = s.weight.iter().map(|x| f64::from(*x) / 3.0).sum::<f64>();
+                let at = || format!("{segments} theta_o {theta_o} {mask:?} {s:?} mean {mean} {params:?}");
+                worst[0].see(weight / limit, at);
+                if mask == LobeMask::ALL {
+                    worst[1].see(weight / mean, at);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn weights_are_below_their_bound_and_five_times_the_mean() {
+    let (_, two, three, four) = samplers();
+    let mut worst: [[Worst; 2]; 3] = Default::default();
+    scan(two, 2, &mut worst[0]);
+    scan(three, 3, &mut worst[1]);
+    scan(four, 4, &mut worst[2]);
+    for (segments, [bound, mean]) in [2, 3, 4].into_iter().zip(&worst) {
+        bound.check(&format!("{segments} segments: largest weight over its bound"), 1.0 + 1e-4);
+        let limit = if segments == 2 { 6.5 } else { 5.0 };
+        mean.check(&format!("{segments} segments: largest weight over the mean"), limit);
+    }
+}

@@ -1,0 +1,34 @@
+//! The model under test: the all-Cauchy variant with its matched sampler.
+
+use hairis::textbook::{MatchedTextbook, Parameters, Shape};
+use hairis::{Hair, Matched};
+use hairis_variants::Cauchy;
+
+/// The model.
+pub(crate) type Tested = Matched<Cauchy>;
+/// Its twin.
+pub(crate) type Oracle = MatchedTextbook<f64>;
+/// The same bell in the textbook.
+pub(crate) const SHAPE: Shape = Shape::Cauchy;
+
+/// Densities below this are compared absolutely: a Cauchy has no end.
+pub(crate) const PDF_FLOOR: f64 = 0.0;
+
+/// Every form of the model, with its factor on the widths.
+pub(crate) fn subjects() -> Vec<(Tested, f32)> {
+    vec![
+        (Cauchy::PAPER.matched(), 1.0),
+        (Cauchy::HALF_WIDTH.matched(), 1.177_41),
+        (Cauchy::AREA.matched(), 0.797_884_6),
+    ]
+}
+
+/// The model with the published sampler, and with the matched ones of 2, 3 and 4 segments.
+pub(crate) fn samplers() -> (Hair<Cauchy>, Matched<Cauchy, 2>, Matched<Cauchy, 3>, Matched<Cauchy, 4>) {
+    (Cauchy::PAPER.model(), Matched(Cauchy::PAPER), Matched(Cauchy::PAPER), Matched(Cauchy::PAPER))
+}
+
+/// The twin for these parameters at the gather point of `wo`.
+pub(crate) fn twin(parameters: &Parameters<f64>, wo: [f64; 3]) -> Oracle {
+    MatchedTextbook::prepare(parameters, SHAPE, wo, 3)
+}
