@@ -36,9 +36,10 @@ mod tally;
 mod times;
 
 pub use grid::{Cell, Grid};
+pub use sampler::Sampler;
 pub use shard::Shard;
 
-use crate::efficiency::{ModelKind, Sampler, sun};
+use crate::efficiency::{ModelKind, sun};
 use crate::light::{Constant, Environment, Light, Rectangle, Smooth};
 use crate::machine::Machine;
 use hairis::{Level, ParamError};

@@ -1,10 +1,11 @@
 //! One cell of the grid: every sampler of every model under every light.
 
+use super::Sampler;
 use super::grid::Cell;
 use super::sampler::gather;
 use super::tally::{Figures, Tally, figures};
 use super::{Budget, Light5};
-use crate::efficiency::{ModelKind, PHI_O_DEG, Sampler, Scatter};
+use crate::efficiency::{ModelKind, PHI_O_DEG, Scatter};
 use crate::light::Light;
 use crate::quadrature::fibre_direction;
 use crate::sequence::{Independent, XiSource, stream_id};

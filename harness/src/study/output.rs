@@ -1,12 +1,13 @@
 //! A finished study, and its files.
 
+use super::Sampler;
 use super::cell::Measured;
 use super::columns::Columns;
 use super::part::{self, FORMAT, Finished, Header, Read};
 use super::rows::{self, Row, rows};
 use super::times::{self, PER_POINT, Time};
 use super::{Grid, Shard, check, grid_of, summary};
-use crate::efficiency::{ModelKind, Sampler};
+use crate::efficiency::ModelKind;
 use crate::error::Error;
 use crate::machine::Machine;
 use crate::table::Table;
