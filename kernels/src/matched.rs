@@ -26,7 +26,36 @@ use wide::f32x8;
 ///   the constants of the bells' distributions cancel.
 /// - Weights: bounded. They are `W / h` about their mean: at most the ratio of W at the ends of a segment, or
 ///   4 over the lower end where the mode of W lies inside.
+/// - Accuracy: the density is that of the formula to some 2e-5 relative (Cauchy 1e-5); beside a pole that a lobe is centred on,
+///   where the last bit of `theta_i` counts, to 4e-4. It is the same function for a sample and for its direction. A
+///   Gaussian lobe below `2^-115` of its peak has neither value nor density; nor is a lobe drawn whose energy is below
+///   1e-36 of the largest.
 /// - Source: ours; section 3.2 of Ou et al. 2012 is what it replaces.
+///
+/// # What it buys, and what it costs
+///
+/// Under constant light, over the 3024 points of a grid of everyday hair (every 37th of them here: test
+/// `matched::variance`), `V` being the relative variance of one sample, its mean and that of the published sampler;
+/// the gain is the geometric mean of the ratio, with the least. Times are nanoseconds a direction, default hair, AVX2, eight
+/// lanes: to prepare a gather point, to sample, to evaluate. Efficiency is `1 / (V time)` over that of the published sampler at
+/// 1, 4 and 16 samples a gather point, preparation included: of eight lanes, then of one.
+///
+/// | model, sampler | V | gain | prepare, sample, eval | eight lanes | one lane |
+/// |---|---|---|---|---|---|
+/// | Gaussian, published | .2481 | 1 | 11, 6.8, 4.1 | 1 | 1 |
+/// | `Matched<_, 2>` | .0087 | 42, 14 | 62, 16, 7.4 | 9.6, 13, 16 | 6.4, 11, 15 |
+/// | `Matched<_, 3>`, the default | .0021 | 185, 47 | 81, 18, 8.4 | 33, 47, 62 | 24, 42, 61 |
+/// | `Matched<_, 4>` | .0007 | 532, 132 | 97, 20, 10 | 81, 115, 153 | 56, 101, 151 |
+/// | all-Cauchy, published | .1887 | 1 | 11, 5.8, 2.9 | 1 | 1 |
+/// | `Matched<_, 2>` | .0160 | 11.5, 6.7 | 36, 13, 7.8 | 3.9, 4.4, 4.7 | 2.6, 3.7, 4.7 |
+/// | `Matched<_, 3>`, the default | .0039 | 45, 11.7 | 50, 16, 9.2 | 12, 14, 16 | 8.4, 13, 16 |
+/// | `Matched<_, 4>` | .0014 | 132, 28 | 57, 18, 11 | 29, 34, 39 | 21, 32, 41 |
+///
+/// Any broad light gains. Of what a small light or a textured one adds to the variance no sampler of the hair takes anything
+/// away: there the published sampler's cheaper samples are worth more, and for a small light where W is small it may even
+/// be the better density. The more segments the better under constant light alone; elsewhere what is left of V with 3 is
+/// below what lights add, and 2 are enough for most. The largest weight is 2.6 times the mean with 3 segments, 1.5 with 4
+/// and 5.2 with 2, for `beta_r` from 0.5 to 60 degrees and `theta_o` up to 89.9 (test `matched::fireflies`).
 ///
 /// ```
 /// use glam::Vec3;

@@ -16,6 +16,7 @@ mod matched;
 mod parameters;
 mod real;
 mod sampler;
+mod warped;
 
 use crate::{Lobe, PerLobe};
 

@@ -1,17 +1,37 @@
 //! The paths give the same answers.
 
-use super::{PATHS, eval, numbers, request, with_xi};
+use super::{PATHS, eval, numbers, with_xi};
 use crate::cases::{Case, Cases, angles};
 use serde_json::{Value, json};
 
+const SAMPLERS: [&str; 2] = ["ou", "matched"];
+
 /// Relative error that the bounds of the kernels allow. All paths are asked about the same rounded input.
-fn allowed(model: &str, quantity: &str) -> f64 {
-    if (model, quantity) == ("gaussian", "s") { 1e-4 } else { 1e-5 }
+///
+/// A matched density follows W down to the poles, where the last bit of an inclination counts: of a lobe centred there
+/// it is off by up to 4e-4.
+fn allowed(sampler: &str, model: &str, quantity: &str) -> f64 {
+    match (sampler, model, quantity) {
+        ("matched", _, "pdf" | "pdf_lobe") => 4e-4,
+        (_, "gaussian", "s") => 1e-4,
+        _ => 1e-5,
+    }
 }
 
-/// A Gaussian below about 2^-115 is 0 by design; below this, S is nothing but such bells.
-fn floor(model: &str) -> f64 {
-    if model == "gaussian" { 1e-27 } else { 0.0 }
+/// A Gaussian below about 2^-115 is 0 by design; below this, S is nothing but such bells, and so is a matched density.
+fn floor(sampler: &str, model: &str, quantity: &str) -> f64 {
+    match (sampler, model, quantity) {
+        (_, "gaussian", "s") => 1e-27,
+        ("matched", "gaussian", _) => 1e-20,
+        _ => 0.0,
+    }
+}
+
+/// The request of a case for a sampler.
+fn request(sampler: &str, model: &str, case: &Case) -> Value {
+    let mut request = super::request(model, case);
+    request["sampler"] = json!(sampler);
+    request
 }
 
 /// Models and cases in turn, so that neighbours differ in everything.
@@ -30,8 +50,12 @@ fn assert_close(name: &str, got: &Value, expected: &Value, allowed: f64, floor: 
 
 #[test]
 fn all_paths_agree_on_directions() {
+    SAMPLERS.into_iter().for_each(agree_on_directions);
+}
+
+fn agree_on_directions(sampler: &str) {
     let cases = cases(1, 400);
-    let requests: Vec<Value> = cases.iter().map(|(model, case)| request(model, case)).collect();
+    let requests: Vec<Value> = cases.iter().map(|(model, case)| request(sampler, model, case)).collect();
     let oracle = eval("f64", &requests).json();
     for path in &PATHS[..3] {
         let run = eval(path, &requests);
@@ -39,9 +63,9 @@ fn all_paths_agree_on_directions() {
         for ((answer, expected), (model, case)) in run.json().iter().zip(&oracle).zip(&cases) {
             assert_eq!(keys(answer), keys(expected), "{path}: fields");
             for quantity in ["s", "pdf", "pdf_lobe"] {
-                let name = format!("{path} {model} {quantity} at {case:?}");
-                let floor = if quantity == "s" { floor(model) } else { 0.0 };
-                assert_close(&name, &answer[quantity], &expected[quantity], allowed(model, quantity), floor);
+                let name = format!("{path} {model} {sampler} {quantity} at {case:?}");
+                let (allowed, floor) = (allowed(sampler, model, quantity), floor(sampler, model, quantity));
+                assert_close(&name, &answer[quantity], &expected[quantity], allowed, floor);
             }
         }
     }
@@ -53,12 +77,16 @@ const XI_ERROR: f64 = 4.0 / 16_777_216.0;
 
 #[test]
 fn all_paths_agree_on_samples() {
+    SAMPLERS.into_iter().for_each(agree_on_samples);
+}
+
+fn agree_on_samples(sampler: &str) {
     let mut source = Cases::new(2);
     let cases = cases(3, 400);
     let xi: Vec<[f64; 3]> = cases.iter().map(|_| source.xi()).collect();
     let requests = |by: f64| -> Vec<Value> {
         let moved = |xi: [f64; 3]| [xi[0], (xi[1] + by).clamp(0.0, 1.0 - 1e-12), (xi[2] + by).clamp(0.0, 1.0 - 1e-12)];
-        cases.iter().zip(&xi).map(|((model, case), xi)| with_xi(request(model, case), moved(*xi))).collect()
+        cases.iter().zip(&xi).map(|((model, case), xi)| with_xi(request(sampler, model, case), moved(*xi))).collect()
     };
     let [below, oracle, above] = [-XI_ERROR, 0.0, XI_ERROR].map(|by| eval("f64", &requests(by)).json());
     for path in &PATHS[..3] {
@@ -68,7 +96,7 @@ fn all_paths_agree_on_samples() {
         let (mut kept, mut returned) = (Vec::new(), Vec::new());
         for (i, (answer, (model, case))) in answers.iter().zip(&cases).enumerate() {
             let expected = &oracle[i];
-            let name = format!("{path} {model} {case:?}: {answer} where {expected} was expected");
+            let name = format!("{path} {model} {sampler} {case:?}: {answer} where {expected} was expected");
             assert_eq!(keys(answer), keys(expected), "{name}");
             if answer["lobe"].is_null() || expected["lobe"].is_null() {
                 let other = if answer["lobe"].is_null() { expected } else { answer };
@@ -78,7 +106,7 @@ fn all_paths_agree_on_samples() {
             assert_eq!(answer["lobe"], expected["lobe"], "{name}");
             let slack = 1e-6 + apart(&below[i], expected) + apart(&above[i], expected);
             assert!(apart(answer, expected) <= slack, "{name}, to {slack}");
-            let mut at_wi = request(model, case);
+            let mut at_wi = request(sampler, model, case);
             at_wi["wi"] = answer["wi"].clone();
             kept.push(i);
             returned.push(at_wi);
@@ -95,10 +123,9 @@ fn all_paths_agree_on_samples() {
                 continue;
             }
             for quantity in ["s", "pdf"] {
-                let name = format!("{path} {model} {quantity} of a sample at {case:?}");
-                let floor = if quantity == "s" { floor(model) } else { 0.0 };
-                let (got, allowed) = (&answers[i][quantity], allowed(model, quantity));
-                assert_close(&name, got, &expected[quantity], allowed, floor);
+                let name = format!("{path} {model} {sampler} {quantity} of a sample at {case:?}");
+                let (allowed, floor) = (allowed(sampler, model, quantity), floor(sampler, model, quantity));
+                assert_close(&name, &answers[i][quantity], &expected[quantity], allowed, floor);
             }
         }
     }
@@ -123,9 +150,9 @@ fn black_hair_scatters_nothing() {
     case.desc.intensity_r = [0.0; 3];
     case.desc.intensity_tt = [0.0; 3];
     case.desc.intensity_trt = [0.0; 3];
-    let request = request("gaussian", &case);
-    let requests = [request.clone(), with_xi(request, [0.5; 3])];
-    for path in PATHS {
+    for (path, sampler) in PATHS.into_iter().flat_map(|path| SAMPLERS.map(|sampler| (path, sampler))) {
+        let request = request(sampler, "gaussian", &case);
+        let requests = [request.clone(), with_xi(request, [0.5; 3])];
         let answers = eval(path, &requests).json();
         assert_eq!((numbers(&answers[0]["s"]), answers[0]["pdf"].as_f64()), (vec![0.0; 3], Some(0.0)), "{path}");
         assert_eq!(answers[1]["lobe"], Value::Null, "{path}: a discarded sample");
@@ -145,7 +172,7 @@ fn lobes_without_energy_are_never_drawn() {
         case.desc.intensity_tt = [0.2; 3];
         case.desc.intensity_trt = [0.2; 3];
         case.desc.intensity_g = 0.0;
-        requests.push(with_xi(request(model, &case), source.xi()));
+        requests.extend(SAMPLERS.map(|sampler| with_xi(request(sampler, model, &case), source.xi())));
     }
     for path in PATHS {
         for answer in eval(path, &requests).json() {
@@ -158,8 +185,8 @@ fn lobes_without_energy_are_never_drawn() {
 fn the_narrowest_hair_gives_finite_answers_everywhere() {
     let mut source = Cases::new(7);
     let mut requests = Vec::new();
-    for (model, case) in cases(8, 100) {
-        let mut request = request(model, &case);
+    for (i, (model, case)) in cases(8, 200).into_iter().enumerate() {
+        let mut request = request(SAMPLERS[i % 2], model, &case);
         request["params"]["beta"] = json!([1e-4, 1e-4, 1e-4]);
         request["params"]["gamma_tt"] = json!(1e-4);
         request["params"]["gamma_g"] = json!(1e-4);

@@ -30,8 +30,7 @@ fn bad_values() -> Vec<(Value, &'static str)> {
         (without("", "model"), "model: missing"),
         (with("/model", json!("phong")), "model: must be \"gaussian\" or \"cauchy\", got \"phong\""),
         (with("/model", json!(3)), "model: must be a string, got 3"),
-        (and("", "sampler", json!("matched")), "sampler: \"matched\" is not available yet"),
-        (and("", "sampler", json!("best")), "sampler: must be \"ou\", got \"best\""),
+        (and("", "sampler", json!("best")), "sampler: must be \"ou\" or \"matched\", got \"best\""),
         (without("", "params"), "params: missing"),
         (with("/params", json!([])), "params: must be an object, got an array of 0"),
         (without("/params", "gamma_tt"), "params.gamma_tt: missing"),
@@ -121,6 +120,7 @@ fn limits_written_in_double_precision_are_accepted() {
         with("/wo", json!([0.9991, 0.0, 0.0])),
         super::with_xi(good(), [0.999_999_999_999, 0.0, 0.999_999_999_999]),
         and("", "sampler", json!("ou")),
+        and("", "sampler", json!("matched")),
     ];
     for path in PATHS {
         let run = eval(path, &requests);

@@ -78,11 +78,16 @@ impl MatchedBell for Gaussian {
 
     #[inline(always)]
     fn invert<L: Lanes>(cut: &Truncated<L>, from_lo: L, from_hi: L) -> L {
-        let below = from_lo.mul_add(cut.mass, cut.ends[0]);
-        let above = from_hi.mul_add(cut.mass, cut.ends[1]);
+        let least = L::splat(LEAST_SHARE);
+        let below = from_lo.max(least).mul_add(cut.mass, cut.ends[0]);
+        let above = from_hi.max(least).mul_add(cut.mass, cut.ends[1]);
         normal_tail_inverse(below.min(above)).times_sign(below - above)
     }
 }
+
+/// A quarter of the step between uniform numbers of 24 bits, which a cdf is kept from its ends: the very end of a Gaussian
+/// would be where it has no density left.
+const LEAST_SHARE: f32 = f32::EPSILON / 8.0;
 
 /// The probability of a standard normal number beyond `x`, away from 0.
 #[inline(always)]

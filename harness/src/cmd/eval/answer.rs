@@ -1,13 +1,13 @@
 //! The answers, computed along the chosen path.
 
-use super::request::{Model, Query, Request};
+use super::request::{Model, Query, Request, Sampler};
 use crate::config::Path;
 use core::array::from_fn;
 use glam::Vec3;
-use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::textbook::{Drawn, MatchedTextbook, Parameters, Shape, Textbook};
 use hairis::{
-    Bell, Bsdf, Bsdf8, Eval, EvalSlices, Gather, Gaussian, Hair, Lobe, LobeEval, LobeEval8, Model as _, PerLobe,
-    Sample, SampleSlices, Vec3x8,
+    Bsdf, Bsdf8, Eval, EvalSlices, Gather, Gaussian, Hair, HairParams, Lobe, LobeEval, LobeEval8, Matched, Model as _,
+    PerLobe, Sample, SampleSlices, Vec3x8,
 };
 use hairis_variants::Cauchy;
 use serde::Serialize;
@@ -49,33 +49,49 @@ pub(super) const fn block_len(path: Path) -> usize {
 
 /// The answers to a block of requests, in order.
 pub(super) fn answers(path: Path, requests: &[&Request]) -> Vec<Line> {
-    let cauchy = Cauchy::PAPER.model();
-    match path {
-        Path::Scalar => by_model(requests, |r| scalar(Hair(Gaussian), r), |r| scalar(cauchy, r)),
-        Path::X8 => by_model(requests, |r| eight(Hair(Gaussian), r), |r| eight(cauchy, r)),
-        Path::Batch => by_model(requests, |r| batch(Hair(Gaussian), r), |r| batch(cauchy, r)),
-        Path::F64 => requests.iter().map(|request| Line::Double(textbook(request))).collect(),
+    if path == Path::F64 {
+        return requests.iter().map(|request| Line::Double(textbook(request))).collect();
     }
-}
-
-/// Answers the requests of each model together, and puts the answers back in order.
-fn by_model(
-    requests: &[&Request],
-    gaussian: impl Fn(&[&Request]) -> Vec<Answer<f32>>,
-    cauchy: impl Fn(&[&Request]) -> Vec<Answer<f32>>,
-) -> Vec<Line> {
-    let of = |model| -> (Vec<usize>, Vec<&Request>) {
-        requests.iter().enumerate().filter(|(_, request)| request.model == model).map(|(at, r)| (at, *r)).unzip()
-    };
-    let ((gaussian_at, gaussian_requests), (cauchy_at, cauchy_requests)) = (of(Model::Gaussian), of(Model::Cauchy));
-    let gaussian = gaussian_at.into_iter().zip(gaussian(&gaussian_requests));
-    let mut answers: Vec<_> = gaussian.chain(cauchy_at.into_iter().zip(cauchy(&cauchy_requests))).collect();
+    // The requests of each model and sampler together; the answers then go back to their places.
+    let mut answers = Vec::with_capacity(requests.len());
+    for (model, sampler) in SUBJECTS {
+        let of = requests.iter().enumerate().filter(|(_, r)| (r.model, r.sampler) == (model, sampler));
+        let (at, requests): (Vec<usize>, Vec<&Request>) = of.map(|(at, r)| (at, *r)).unzip();
+        let cauchy = Cauchy::PAPER;
+        answers.extend(at.into_iter().zip(match (model, sampler) {
+            (Model::Gaussian, Sampler::Ou) => along(path, Hair(Gaussian), &requests),
+            (Model::Gaussian, Sampler::Matched) => along(path, Matched::<_>(Gaussian), &requests),
+            (Model::Cauchy, Sampler::Ou) => along(path, cauchy.model(), &requests),
+            (Model::Cauchy, Sampler::Matched) => along(path, cauchy.matched(), &requests),
+        }));
+    }
     answers.sort_unstable_by_key(|(at, _)| *at);
     answers.into_iter().map(|(_, answer)| Line::Single(answer)).collect()
 }
 
+/// Everything a line may ask for.
+const SUBJECTS: [(Model, Sampler); 4] = [
+    (Model::Gaussian, Sampler::Ou),
+    (Model::Gaussian, Sampler::Matched),
+    (Model::Cauchy, Sampler::Ou),
+    (Model::Cauchy, Sampler::Matched),
+];
+
+/// A model of hair, whichever way its directions are drawn.
+trait HairModel: hairis::Model<Params = HairParams> {}
+impl<M: hairis::Model<Params = HairParams>> HairModel for M {}
+
+/// The answers of one model along a path that calls the kernels.
+fn along<M: HairModel>(path: Path, model: M, requests: &[&Request]) -> Vec<Answer<f32>> {
+    match path {
+        Path::X8 => eight(model, requests),
+        Path::Batch => batch(model, requests),
+        Path::Scalar | Path::F64 => scalar(model, requests),
+    }
+}
+
 /// One direction a call.
-fn scalar<B: Bell>(hair: Hair<B>, requests: &[&Request]) -> Vec<Answer<f32>> {
+fn scalar<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
     let one = |request: &&Request| {
         let gather = gather(hair, request);
         match request.query {
@@ -87,11 +103,11 @@ fn scalar<B: Bell>(hair: Hair<B>, requests: &[&Request]) -> Vec<Answer<f32>> {
 }
 
 /// Eight lines a call: every lane has its own material, gather point and query. Lanes to spare repeat the last line.
-fn eight<B: Bell>(hair: Hair<B>, requests: &[&Request]) -> Vec<Answer<f32>> {
+fn eight<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
     let mut answers = Vec::with_capacity(requests.len());
     for group in requests.chunks(8) {
         let lane = |i: usize| group[i.min(group.len() - 1)];
-        let materials: [Bsdf<Hair<B>>; 8] = from_fn(|i| Bsdf::new(&hair, &lane(i).params));
+        let materials: [Bsdf<M>; 8] = from_fn(|i| Bsdf::new(&hair, &lane(i).params));
         let wo = Vec3x8::from(from_fn(|i| lane(i).wo));
         let gathers = Bsdf8::pack(materials.each_ref()).prepare8(&wo);
         // A lane whose line has no xi samples all the same, and its sample is not looked at.
@@ -115,7 +131,7 @@ fn eight<B: Bell>(hair: Hair<B>, requests: &[&Request]) -> Vec<Answer<f32>> {
 
 /// Slices in, slices out: a call for all directions, and one for all samples, of neighbouring lines that share a gather
 /// point.
-fn batch<B: Bell>(hair: Hair<B>, requests: &[&Request]) -> Vec<Answer<f32>> {
+fn batch<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
     let mut answers = Vec::with_capacity(requests.len());
     for run in requests.chunk_by(|a, b| a.params == b.params && a.wo == b.wo) {
         let gather = gather(hair, run[0]);
@@ -139,7 +155,7 @@ fn batch<B: Bell>(hair: Hair<B>, requests: &[&Request]) -> Vec<Answer<f32>> {
 
 const ONE_LENGTH: &str = "slices that were made of one length";
 
-fn batch_values<B: Bell>(gather: &Gather<Hair<B>>, wi: &[Vec3]) -> Vec<Answer<f32>> {
+fn batch_values<M: HairModel>(gather: &Gather<M>, wi: &[Vec3]) -> Vec<Answer<f32>> {
     let len = wi.len();
     let [u, v, w]: [Vec<f32>; 3] = from_fn(|row| wi.iter().map(|wi| wi[row]).collect());
     let (mut value, mut pdf) = ([vec![0.0; len], vec![0.0; len], vec![0.0; len]], vec![0.0; len]);
@@ -150,7 +166,7 @@ fn batch_values<B: Bell>(gather: &Gather<Hair<B>>, wi: &[Vec3]) -> Vec<Answer<f3
     (0..len).map(answer).collect()
 }
 
-fn batch_samples<B: Bell>(gather: &Gather<Hair<B>>, xi: &[[f32; 3]]) -> Vec<Answer<f32>> {
+fn batch_samples<M: HairModel>(gather: &Gather<M>, xi: &[[f32; 3]]) -> Vec<Answer<f32>> {
     let len = xi.len();
     let [lobe, theta, phi]: [Vec<f32>; 3] = from_fn(|row| xi.iter().map(|xi| xi[row]).collect());
     let mut vectors: [[Vec<f32>; 3]; 3] = from_fn(|_| from_fn(|_| vec![0.0; len]));
@@ -170,7 +186,7 @@ fn batch_samples<B: Bell>(gather: &Gather<Hair<B>>, xi: &[[f32; 3]]) -> Vec<Answ
 }
 
 /// Densities of the lobes: they have no slices of their own, so eight directions a call.
-fn batch_densities<B: Bell>(gather: &Gather<Hair<B>>, wi: &[Vec3]) -> Vec<[f32; 4]> {
+fn batch_densities<M: HairModel>(gather: &Gather<M>, wi: &[Vec3]) -> Vec<[f32; 4]> {
     let eight = |wi: &[Vec3]| {
         let lobes = gather.lobes8(&Vec3x8::from(from_fn(|i| wi[i.min(wi.len() - 1)])));
         (0..wi.len()).map(|i| densities_of_lane(&lobes, i)).collect::<Vec<_>>()
@@ -178,34 +194,51 @@ fn batch_densities<B: Bell>(gather: &Gather<Hair<B>>, wi: &[Vec3]) -> Vec<[f32; 
     wi.chunks(8).flat_map(eight).collect()
 }
 
-/// The paper's formulas in double precision.
+/// The formulas in double precision.
 fn textbook(request: &Request) -> Answer<f64> {
     let shape = match request.model {
         Model::Gaussian => Shape::Gaussian,
         Model::Cauchy => Shape::Cauchy,
     };
     let double = |v: [f32; 3]| v.map(f64::from);
-    let hair = Textbook::prepare(&Parameters::from(&request.params), shape, double(request.wo.to_array()));
-    match request.query {
-        Query::Wi(wi) => {
-            let wi = double(wi.to_array());
-            Answer::Value { s: hair.eval(wi), pdf: hair.pdf(wi), pdf_lobe: hair.lobe_pdfs(wi).0 }
+    let (parameters, wo) = (Parameters::from(&request.params), double(request.wo.to_array()));
+    match request.sampler {
+        Sampler::Ou => {
+            let hair = Textbook::prepare(&parameters, shape, wo);
+            match request.query {
+                Query::Wi(wi) => doubled(hair.eval_pdf(double(wi.to_array())), hair.lobe_pdfs(double(wi.to_array()))),
+                Query::Xi(xi) => redoubled(hair.sample(double(xi)), |wi| hair.lobe_pdfs(wi)),
+            }
         }
-        Query::Xi(xi) => {
-            let drawn = hair.sample(double(xi));
-            Answer::Sample {
-                wi: drawn.wi,
-                s: drawn.value,
-                pdf: drawn.pdf,
-                pdf_lobe: hair.lobe_pdfs(drawn.wi).0,
-                lobe: drawn.lobe.map(name),
-                weight: drawn.weight,
+        Sampler::Matched => {
+            let hair = MatchedTextbook::prepare(&parameters, shape, wo, 3);
+            match request.query {
+                Query::Wi(wi) => {
+                    let wi = double(wi.to_array());
+                    doubled((hair.eval(wi), hair.pdf(wi)), hair.lobe_pdfs(wi))
+                }
+                Query::Xi(xi) => redoubled(hair.sample(double(xi)), |wi| hair.lobe_pdfs(wi)),
             }
         }
     }
 }
 
-fn gather<B: Bell>(hair: Hair<B>, request: &Request) -> Gather<Hair<B>> {
+fn doubled((s, pdf): ([f64; 3], f64), pdf_lobe: PerLobe<f64>) -> Answer<f64> {
+    Answer::Value { s, pdf, pdf_lobe: pdf_lobe.0 }
+}
+
+fn redoubled(drawn: Drawn<f64>, pdf_lobe: impl FnOnce([f64; 3]) -> PerLobe<f64>) -> Answer<f64> {
+    Answer::Sample {
+        wi: drawn.wi,
+        s: drawn.value,
+        pdf: drawn.pdf,
+        pdf_lobe: pdf_lobe(drawn.wi).0,
+        lobe: drawn.lobe.map(name),
+        weight: drawn.weight,
+    }
+}
+
+fn gather<M: HairModel>(hair: M, request: &Request) -> Gather<M> {
     Bsdf::new(&hair, &request.params).prepare(request.wo)
 }
 

@@ -38,6 +38,15 @@ pub(super) enum Model {
     Cauchy,
 }
 
+/// How directions are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sampler {
+    /// As published.
+    Ou,
+    /// By the model's own bells.
+    Matched,
+}
+
 /// What is asked about a gather point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Query {
@@ -52,6 +61,7 @@ pub(super) enum Query {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Request {
     pub(super) model: Model,
+    pub(super) sampler: Sampler,
     pub(super) params: HairParams,
     /// Unit.
     pub(super) wo: Vec3,
@@ -69,11 +79,11 @@ impl Request {
             None => return Err(Refusal::at("model", "missing")),
             Some(other) => return Err(unknown("model", "\"gaussian\" or \"cauchy\"", other)),
         };
-        match Json::text(sampler, "sampler")?.as_deref() {
-            None | Some("ou") => {}
-            Some("matched") => return Err(Refusal::at("sampler", "\"matched\" is not available yet, use \"ou\"")),
-            Some(other) => return Err(unknown("sampler", "\"ou\"", other)),
-        }
+        let sampler = match Json::text(sampler, "sampler")?.as_deref() {
+            None | Some("ou") => Sampler::Ou,
+            Some("matched") => Sampler::Matched,
+            Some(other) => return Err(unknown("sampler", "\"ou\" or \"matched\"", other)),
+        };
         let exact = parameters(params.ok_or_else(|| Refusal::at("params", "missing"))?)?;
         let params = checked(&exact)?;
         let wo = direction(wo, "wo")?;
@@ -83,7 +93,7 @@ impl Request {
             (None, None) => return Err(Refusal::at("wi", "missing, and so is xi: one of them is needed")),
             (Some(_), Some(_)) => return Err(Refusal::at("wi", "given together with xi: only one of them may be")),
         };
-        Ok(Self { model, params, wo, query })
+        Ok(Self { model, sampler, params, wo, query })
     }
 }
 
