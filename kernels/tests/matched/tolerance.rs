@@ -12,7 +12,7 @@ pub(crate) const WIDE: [f64; 4] = [8.9e-7, 2.3e-4, 2.5e-6, 3.4e-4]; // 6.8e-7, 1
 pub(crate) const LOBE_SUM: f64 = 9e-6; // 6.9e-6
 
 // Samples against the textbook at the direction they return: S, density, weight, relative, off the seam and the axis.
-pub(crate) const GRID_SAMPLE: [f64; 3] = [1.1e-5, 5.6e-5, 5.6e-5]; // 8.2e-6, 4.3e-5, 4.3e-5
+pub(crate) const GRID_SAMPLE: [f64; 3] = [1.8e-5, 5.6e-5, 5.6e-5]; // 1.4e-5, 4.3e-5, 4.3e-5
 pub(crate) const NARROW_SAMPLE: [f64; 3] = [9.7e-5, 3.4e-4, 1.3e-4]; // 7.4e-5, 2.6e-4, 1.0e-4
 pub(crate) const WIDE_SAMPLE: [f64; 3] = [9.3e-7, 1.7e-4, 1.7e-4]; // 7.1e-7, 1.3e-4, 1.3e-4
 pub(crate) const SAMPLE_LENGTH: f64 = 3.9e-7; // 3.0e-7
