@@ -42,14 +42,14 @@ use wide::f32x8;
 ///
 /// | model, sampler | V | gain | prepare, sample, eval | eight lanes | one lane |
 /// |---|---|---|---|---|---|
-/// | Gaussian, published | .2481 | 1 | 11, 6.8, 4.1 | 1 | 1 |
-/// | `Matched<_, 2>` | .0087 | 42, 14 | 62, 16, 7.4 | 9.6, 13, 16 | 6.4, 11, 15 |
-/// | `Matched<_, 3>`, the default | .0021 | 185, 47 | 81, 18, 8.4 | 33, 47, 62 | 24, 42, 61 |
-/// | `Matched<_, 4>` | .0007 | 532, 132 | 97, 20, 10 | 81, 115, 153 | 56, 101, 151 |
-/// | all-Cauchy, published | .1887 | 1 | 11, 5.8, 2.9 | 1 | 1 |
-/// | `Matched<_, 2>` | .0160 | 11.5, 6.7 | 36, 13, 7.8 | 3.9, 4.4, 4.7 | 2.6, 3.7, 4.7 |
-/// | `Matched<_, 3>`, the default | .0039 | 45, 11.7 | 50, 16, 9.2 | 12, 14, 16 | 8.4, 13, 16 |
-/// | `Matched<_, 4>` | .0014 | 132, 28 | 57, 18, 11 | 29, 34, 39 | 21, 32, 41 |
+/// | Gaussian, published | .2481 | 1 | 10, 6.5, 3.9 | 1 | 1 |
+/// | `Matched<_, 2>` | .0087 | 42, 14 | 42, 14, 6.0 | 13, 15, 18 | 12, 15, 18 |
+/// | `Matched<_, 3>`, the default | .0021 | 185, 47 | 64, 16, 6.5 | 39, 53, 68 | 28, 48, 69 |
+/// | `Matched<_, 4>` | .0007 | 532, 132 | 79, 16, 7.0 | 95, 136, 184 | 64, 119, 184 |
+/// | all-Cauchy, published | .1887 | 1 | 10, 5.5, 2.7 | 1 | 1 |
+/// | `Matched<_, 2>` | .0160 | 11.5, 6.7 | 26, 12, 6.5 | 4.9, 5.1, 5.3 | 4.6, 5.5, 6.1 |
+/// | `Matched<_, 3>`, the default | .0039 | 45, 11.7 | 30, 13, 7.0 | 17, 18, 19 | 16, 20, 22 |
+/// | `Matched<_, 4>` | .0014 | 132, 28 | 37, 13, 7.2 | 42, 48, 53 | 26, 41, 55 |
 ///
 /// Any broad light gains. Of what a small light or a textured one adds to the variance no sampler of the hair takes anything
 /// away: there the published sampler's cheaper samples are worth more, and for a small light where W is small it may even

@@ -134,6 +134,46 @@ fn w<L: Lanes>(half_theta_i: L, [half_sin_theta_o, half_cos_theta_o]: [L; 2]) ->
     cos * cos / mean_u.mul_add(mean_u, mean_c * mean_c).max(L::splat(f32::MIN_POSITIVE))
 }
 
+/// The longitude of R, TT or TRT.
+#[derive(Clone, Copy)]
+struct Longitude<L, const N: usize> {
+    cut: Truncated<L>,
+    sides: [Side<L, N>; 2],
+    area: L,
+    area_lower: L,
+}
+
+/// Longitude `l` of a gather point; `theta_o` by half its sine and half its cosine.
+#[inline(always)]
+fn longitude<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
+    hair: &HairLobes<C>,
+    l: usize,
+    shift: L,
+    theta_o: [L; 2],
+) -> Longitude<L, N> {
+    let c = L::splat;
+    let (beta, inv_beta, quarter) = (hair.beta[l].lanes(), hair.inv_beta[l].lanes(), c(FRAC_PI_4));
+    let cut = B::truncate((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
+    let least = c(LEAST_HEIGHT) * mode_scale(theta_o[1]);
+    let [x, _] = B::invert_both(&cut, 0.5);
+    let middle = least.max(w(x.mul_add(beta, -shift), theta_o));
+    let (mut lower, mut upper) = (Side { outer: [middle; N], middle }, Side { outer: [middle; N], middle });
+    let mut j = 1;
+    while j < N {
+        let [below, above] = B::invert_both(&cut, node(N, j));
+        lower.outer[j] = least.max(w(below.mul_add(beta, -shift), theta_o));
+        upper.outer[j] = least.max(w(above.mul_add(beta, -shift), theta_o));
+        j += 1;
+    }
+    // The end has a height of its own: W is 0 there.
+    let [below, above] = B::invert_both(&cut, NEAR_END);
+    let share = c(END_SHARE);
+    lower.outer[0] = (lower.outer[1] * share).max(w(below.mul_add(beta, -shift), theta_o));
+    upper.outer[0] = (upper.outer[1] * share).max(w(above.mul_add(beta, -shift), theta_o));
+    let area_lower = lower.area();
+    Longitude { cut, sides: [lower, upper], area: area_lower + upper.area(), area_lower }
+}
+
 /// The gather point of a material seen from `wo`.
 #[inline(always)]
 pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
@@ -144,54 +184,17 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
     let zero = c(0.0);
     let point = prepare_point(&m.lobes, wo);
     let theta_o = [point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes()];
-    let least = c(LEAST_HEIGHT) * mode_scale(theta_o[1]);
-
-    let (mut mass, mut inv_mass) = ([zero; 4], [zero; 4]);
-    let mut ends = [[zero; 4]; 2];
-    let mut outer = [[[zero; 4]; N]; 2];
-    let (mut middle, mut area, mut area_lower) = ([zero; 4], [zero; 4], [zero; 4]);
-    let mut l = 0;
-    while l < 3 {
-        let (shift, beta) = (point.shift[l].lanes(), m.lobes.beta[l].lanes());
-        let (inv_beta, quarter) = (m.lobes.inv_beta[l].lanes(), c(FRAC_PI_4));
-        let cut = B::truncate((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
-        let mut sides = [Side { outer: [zero; N], middle: zero }; 2];
-        let [x, _] = B::invert_both(&cut, 0.5);
-        middle[l] = least.max(w(x.mul_add(beta, -shift), theta_o));
-        let mut j = N;
-        while j > 0 {
-            j -= 1;
-            let v = if j == 0 { NEAR_END } else { node(N, j) };
-            let x = B::invert_both(&cut, v);
-            let mut s = 0;
-            while s < 2 {
-                // The end has a height of its own: W is 0 there.
-                let floor = if j == 0 { sides[s].outer[1] * c(END_SHARE) } else { least };
-                sides[s].outer[j] = floor.max(w(x[s].mul_add(beta, -shift), theta_o));
-                outer[s][j][l] = sides[s].outer[j];
-                s += 1;
-            }
-        }
-        (sides[0].middle, sides[1].middle) = (middle[l], middle[l]);
-        area_lower[l] = sides[0].area();
-        area[l] = area_lower[l] + sides[1].area();
-        (mass[l], inv_mass[l]) = (cut.mass, cut.inv_mass);
-        (ends[0][l], ends[1][l]) = (cut.ends[0], cut.ends[1]);
-        l += 1;
-    }
+    let r = longitude::<B, L, C, N>(&m.lobes, 0, point.shift[0].lanes(), theta_o);
+    let tt = longitude::<B, L, C, N>(&m.lobes, 1, point.shift[1].lanes(), theta_o);
+    let trt = longitude::<B, L, C, N>(&m.lobes, 2, point.shift[2].lanes(), theta_o);
     // The glints share the longitude of TRT.
-    (mass[3], inv_mass[3], ends[0][3], ends[1][3]) = (mass[2], inv_mass[2], ends[0][2], ends[1][2]);
-    (middle[3], area[3], area_lower[3]) = (middle[2], area[2], area_lower[2]);
-    let mut j = 0;
-    while j < N {
-        (outer[0][j][3], outer[1][j][3]) = (outer[0][j][2], outer[1][j][2]);
-        j += 1;
-    }
+    let mass = [r.cut.mass, tt.cut.mass, trt.cut.mass, trt.cut.mass];
+    let area = [r.area, tt.area, trt.area, trt.area];
 
     // Energies to the scale of the largest mass, which may be next to nothing where all lobes lie off the sphere.
     let capacity = [m.capacity[0].lanes(), m.capacity[1].lanes(), m.capacity[2].lanes(), m.capacity[3].lanes()];
     let mut largest = zero;
-    l = 0;
+    let mut l = 0;
     while l < 4 {
         largest = largest.max(L::keep(zero.lt(capacity[l]), mass[l]));
         l += 1;
@@ -212,21 +215,25 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
         l += 1;
     }
 
-    let mut stored = [[[zero.store(); 4]; N]; 2];
-    j = 0;
+    let mut outer = [[[r.area.store(); 4]; N]; 2];
+    let mut j = 0;
     while j < N {
-        (stored[0][j], stored[1][j]) = (store4(outer[0][j]), store4(outer[1][j]));
+        outer[0][j] = shared4(r.sides[0].outer[j], tt.sides[0].outer[j], trt.sides[0].outer[j]);
+        outer[1][j] = shared4(r.sides[1].outer[j], tt.sides[1].outer[j], trt.sides[1].outer[j]);
         j += 1;
     }
     MatchedGather {
         point,
         mass: store4(mass),
-        inv_mass: store4(inv_mass),
-        ends: [store4(ends[0]), store4(ends[1])],
-        outer: stored,
-        middle: store4(middle),
+        inv_mass: shared4(r.cut.inv_mass, tt.cut.inv_mass, trt.cut.inv_mass),
+        ends: [
+            shared4(r.cut.ends[0], tt.cut.ends[0], trt.cut.ends[0]),
+            shared4(r.cut.ends[1], tt.cut.ends[1], trt.cut.ends[1]),
+        ],
+        outer,
+        middle: shared4(r.sides[0].middle, tt.sides[0].middle, trt.sides[0].middle),
         area: store4(area),
-        area_lower: store4(area_lower),
+        area_lower: shared4(r.area_lower, tt.area_lower, trt.area_lower),
         weight: store4(weight),
         scale: scale.store(),
         selection: store4(p),
@@ -234,6 +241,12 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
         azimuth_mass: spread2::<L, C>(&m.azimuth_mass),
         azimuth_ends: [spread2::<L, C>(&m.azimuth_end_0), spread2::<L, C>(&m.azimuth_end_1)],
     }
+}
+
+/// R, TT, TRT, and for the glints TRT again.
+#[inline(always)]
+fn shared4<L: Lanes>(r: L, tt: L, trt: L) -> [L::Stored; 4] {
+    store4([r, tt, trt, trt])
 }
 
 /// Two numbers of a material, a lane each.

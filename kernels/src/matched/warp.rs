@@ -13,6 +13,7 @@ pub(super) const NEAR_END: f32 = 1e-3;
 pub(super) const END_SHARE: f32 = 0.25;
 
 /// Node `j` of `segments` a side, 0 to `segments`.
+#[inline(always)]
 pub(super) const fn node(segments: usize, j: usize) -> f32 {
     assert!(segments >= 2 && segments <= 4, "2, 3 or 4 segments a side");
     NODES[segments - 2][j]
