@@ -21,6 +21,14 @@ for file in study.csv study.parquet; do
   [ -s "$dir/study/$file" ] && cmp "$dir/study/$file" "$dir/joined/$file" || { echo "FAIL $file"; exit 1; }
 done
 
+# The claims: each with a verdict.
+"$hairis" claims --quick --out "$dir/claims" > "$dir/tables.txt" 2> /dev/null
+python3 - "$dir/claims/claims.json" <<'END'
+import json, sys
+claims = json.load(open(sys.argv[1]))["claims"]
+assert claims and all(c["verdict"] in ("holds", "holds within limits", "false") for c in claims), claims
+END
+
 refused() { # refused WORDS ARGUMENT...: exit code 2 and one line that says WORDS
   local words=$1 code=0; shift
   "$hairis" "$@" > /dev/null 2> "$dir/error" < /dev/null || code=$?
@@ -33,6 +41,7 @@ refused 'cut.hdr' compare --quick --out "$dir/out" --env "$dir/cut.hdr"
 refused 'tables.txt' compare --quick --out "$dir/tables.txt/out"
 refused 'seed' compare --seed many
 refused 'quik' compare --quik
+refused 'seed' claims --seed many
 refused 'shard' study --shard 5/4
 refused 'seed 1' study --quick --seed 2 --out "$dir/study"
 refused 'no part' merge "$dir/joined" "$dir/joined"

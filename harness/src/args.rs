@@ -45,6 +45,8 @@ pub enum Command {
     /// goes on
     #[command(after_help = STUDY)]
     Study(Study),
+    /// Hold each of the paper's claims against figures: what holds, what holds within limits and what is false
+    Claims(Claims),
     /// Join the parts of a study that ran in shards, into the same tables as one run
     Merge(Merge),
 }
@@ -92,6 +94,20 @@ pub struct Study {
     /// Compute part I of N only, I from 1 to N, for `hairis merge` to join
     #[arg(long, value_name = "I/N")]
     pub shard: Option<String>,
+}
+
+/// Flags of `hairis claims`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Claims {
+    /// A few cells and samples, in less than 30 seconds
+    #[arg(long)]
+    pub quick: bool,
+    /// Seed of everything that is drawn; results but for the timings depend on it alone
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for claims.json; made if missing
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
 }
 
 /// Arguments of `hairis merge`.

@@ -1,5 +1,6 @@
 //! The subcommands, one a file.
 
+pub mod claims;
 pub mod compare;
 pub mod eval;
 pub mod merge;
@@ -22,6 +23,7 @@ pub fn run(run: &Run) -> Result<(), Error> {
         Run::Eval(config) => eval::run(config),
         Run::Compare(config) => compare::run(config),
         Run::Study(config) => study::run(config),
+        Run::Claims(config) => claims::run(config),
         Run::Merge(config) => merge::run(config),
     }
 }

@@ -15,6 +15,8 @@ pub enum Run {
     Compare(Compare),
     /// `hairis study`.
     Study(Study),
+    /// `hairis claims`.
+    Claims(Claims),
     /// `hairis merge`.
     Merge(Merge),
 }
@@ -45,6 +47,17 @@ pub struct Study {
     pub env: Option<PathBuf>,
     /// The part to compute.
     pub shard: Shard,
+}
+
+/// A run of `hairis claims`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Claims {
+    /// Whether to make it short.
+    pub quick: bool,
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+    /// Folder for the results.
+    pub out: PathBuf,
 }
 
 /// A run of `hairis merge`.
@@ -86,10 +99,10 @@ impl Run {
         match args.command {
             Command::Eval(eval) => Ok(Self::Eval(Eval { path: eval.path })),
             Command::Compare(args::Compare { quick, seed, out, env }) => {
-                if out.as_os_str().is_empty() {
-                    return Err(Error::Usage("--out needs the name of a folder".to_owned()));
-                }
-                Ok(Self::Compare(Compare { quick, seed, out, env }))
+                Ok(Self::Compare(Compare { quick, seed, out: folder(out)?, env }))
+            }
+            Command::Claims(args::Claims { quick, seed, out }) => {
+                Ok(Self::Claims(Claims { quick, seed, out: folder(out)? }))
             }
             Command::Study(args::Study { quick, seed, out, env, shard }) => {
                 let shard = match shard {
@@ -101,4 +114,12 @@ impl Run {
             Command::Merge(args::Merge { out, parts }) => Ok(Self::Merge(Merge { out, parts })),
         }
     }
+}
+
+/// A folder that has a name.
+fn folder(out: PathBuf) -> Result<PathBuf, Error> {
+    if out.as_os_str().is_empty() {
+        return Err(Error::Usage("--out needs the name of a folder".to_owned()));
+    }
+    Ok(out)
 }

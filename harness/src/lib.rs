@@ -2,6 +2,7 @@
 
 pub mod agreement;
 pub mod args;
+pub mod claims;
 pub mod cmd;
 pub mod compare;
 pub mod config;

@@ -36,11 +36,15 @@ mod tally;
 mod times;
 
 pub use grid::{Cell, Grid};
+pub use sampler::Sampler;
 pub use shard::Shard;
 
-use crate::efficiency::{ModelKind, Sampler, sun};
+pub(crate) use summary::{gain, in_equal_time};
+
+use crate::efficiency::{ModelKind, sun};
 use crate::light::{Constant, Environment, Light, Rectangle, Smooth};
 use crate::machine::Machine;
+use crate::stats::Estimate;
 use hairis::{Level, ParamError};
 use part::{Finished, Header};
 use rayon::prelude::*;
@@ -139,8 +143,24 @@ where
     let (grid, budget) = (plan.grid(), plan.budget());
     plan.with_lights(|lights| {
         todo.par_iter().with_max_len(1).try_for_each(|&index| {
-            let measured = cell::measure(plan.seed, budget, lights, &grid.cell(index))?;
+            let measured = cell::measure(plan.seed, budget, lights, &grid.cell(index), &Sampler::ALL)?;
             keep(Finished::of(index, &measured))
         })
     })
+}
+
+/// V of some samplers in one cell: models outermost, then `samplers`, then lights. With the budget of the plan, the
+/// figures of [`run`].
+///
+/// # Errors
+///
+/// The hair's.
+pub(crate) fn variances(
+    plan: &Plan<'_>,
+    budget: Budget,
+    cell: &Cell,
+    samplers: &[Sampler],
+) -> Result<Vec<Estimate>, ParamError> {
+    let measured = plan.with_lights(|lights| cell::measure(plan.seed, budget, lights, cell, samplers))?;
+    Ok(measured.iter().map(|of| of.figures.v).collect())
 }

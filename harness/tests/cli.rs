@@ -1,6 +1,7 @@
 //! The binary `hairis`, run as scripts run it.
 
 mod agreement;
+mod claims;
 mod refusals;
 mod streams;
 mod study;

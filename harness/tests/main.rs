@@ -4,4 +4,5 @@
 mod accuracy;
 mod cases;
 mod chi2;
+mod claims;
 mod cli;

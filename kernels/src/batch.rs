@@ -85,6 +85,7 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn eval_pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
+        dispatch::clean_upper_halves();
         let [r, g, b] = out.value;
         let mut out = [r, g, b, out.pdf];
         check_lengths(WI, wi, ["value.r", "value.g", "value.b", "pdf"], &out)?;
@@ -109,6 +110,7 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn eval_batch_at(&self, level: Level, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError> {
+        dispatch::clean_upper_halves();
         let mut out = value;
         check_lengths(WI, wi, VALUE, &out)?;
         dispatch::batch::<M, ValueRow, 3>(level, &self.inner, wi, &mut out);
@@ -132,6 +134,7 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError> {
+        dispatch::clean_upper_halves();
         let mut out = [pdf];
         check_lengths(WI, wi, ["pdf"], &out)?;
         dispatch::batch::<M, PdfRow, 1>(level, &self.inner, wi, &mut out);
@@ -155,6 +158,7 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn sample_batch_at(&self, level: Level, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
+        dispatch::clean_upper_halves();
         let ([u, v, w], [r, g, b], [wr, wg, wb]) = (out.wi, out.value, out.weight);
         let mut out = [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot];
         let names = [
@@ -243,13 +247,16 @@ pub(crate) fn packets<M: Model, R: Row<N>, L: Packet<W>, C: Broadcast<L> + Debug
     for (at, first) in first.iter().enumerate() {
         let (Some(second), Some(third)) = (second.get(at), third.get(at)) else { return };
         let row = R::row::<M, L, C>(gather, [L::read(first), L::read(second), L::read(third)]);
-        let mut column = 0;
-        while column < N {
-            if let Some(packet) = outputs[column].get_mut(at) {
-                row[column].write(packet);
-            }
-            column += 1;
+        // No loop: compilers that save space leave it one, and the row in memory.
+        macro_rules! write {
+            ($($column:literal)*) => { $(
+                if let Some(Some(packet)) = outputs.get_mut($column).map(|column| column.get_mut(at)) {
+                    row[$column].write(packet);
+                }
+            )* };
         }
+        const { assert!(N <= 11, "every column is written") };
+        write!(0 1 2 3 4 5 6 7 8 9 10);
     }
 }
 

@@ -86,7 +86,7 @@ impl<M: Model> Bsdf<M> {
     #[inline]
     #[must_use]
     pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8<M> {
-        dispatch::prepare8::<M, f32>(level, &self.material, &hits.into())
+        dispatch::prepare8::<M, f32, _>(level, &self.material, hits)
     }
 
     /// The largest directional albedo over all `wo` and the three channels: above 1 the hair gives back more light
@@ -148,7 +148,7 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8<M> {
-        dispatch::prepare8::<M, f32x8>(level, &self.material, &hits.into())
+        dispatch::prepare8::<M, f32x8, _>(level, &self.material, hits)
     }
 }
 

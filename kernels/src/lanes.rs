@@ -64,9 +64,9 @@ pub trait Lanes:
     /// `if self > other { self } else { other }`: NaN on either side gives `other`.
     #[must_use]
     fn max(self, other: Self) -> Self;
-    /// Magnitude of `self`, sign of `sign`.
+    /// `self` with its sign turned where that of `sign` is set.
     #[must_use]
-    fn copysign(self, sign: Self) -> Self;
+    fn times_sign(self, sign: Self) -> Self;
     /// `-x` where the mask is set, `x` elsewhere.
     fn negate(mask: Self::Mask, x: Self) -> Self;
     /// The bits of each lane, as an integer, shifted left by 23: builds a power of two from a biased exponent.
@@ -258,6 +258,13 @@ macro_rules! lane_struct {
     (@pack $items:ident, $field:ident, ($inner:ident<C>)) => { $inner::pack($items.map(|item| &item.$field)) };
     (@spread $this:ident, $L:ident, $field:ident, C) => {
         $crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field))
+    };
+    // Without a loop where arrays are short: compilers that save space leave it one.
+    (@spread $this:ident, $L:ident, $field:ident, [C; 2]) => { $crate::lane_struct!(@each $this, $L, $field, 0 1) };
+    (@spread $this:ident, $L:ident, $field:ident, [C; 3]) => { $crate::lane_struct!(@each $this, $L, $field, 0 1 2) };
+    (@spread $this:ident, $L:ident, $field:ident, [C; 4]) => { $crate::lane_struct!(@each $this, $L, $field, 0 1 2 3) };
+    (@each $this:ident, $L:ident, $field:ident, $($i:literal)*) => {
+        [$($crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field[$i]))),*]
     };
     (@spread $this:ident, $L:ident, $field:ident, [C; $n:literal]) => {{
         // A loop, not `map`: closures over lanes are not inlined into functions of target features.

@@ -88,7 +88,7 @@ pub fn half_atan2<L: Lanes>(y: L, x: L, length: L) -> L {
     );
     let half = p.mul_add(z * t, t);
     let rest = (c(FRAC_PI_4) - half) + c(0.5 * FRAC_PI_2_LOW);
-    L::select(x.lt(across), rest, half).copysign(y)
+    L::select(x.lt(across), rest, half).times_sign(y)
 }
 
 /// `atan2(y, x)` for `y >= 0`: an angle in `[0, pi]`. Both zero give 0.

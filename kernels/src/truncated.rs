@@ -32,7 +32,7 @@ impl<L: Lanes> TruncatedCauchy<L> {
         let inside = L::splat(0.0).lt(cos_sum);
         let large = r + cos_sum.abs();
         Self {
-            sin_mid: L::select(inside, sin_sum, large.copysign(sin_sum)),
+            sin_mid: L::select(inside, sin_sum, large.times_sign(sin_sum)),
             cos_mid: L::select(inside, large, sin_sum.abs()),
             span: atan2_upper(width * (hi - lo), lo.mul_add(hi, width_sq)),
         }

@@ -117,7 +117,7 @@ impl MatchedBell for Cauchy {
         // The nearer end, turned towards the other.
         let end = L::select(from_lo.lt(from_hi), cut.ends[0], cut.ends[1]);
         let (sin, cos) = sin_cos_absolute(from_lo.min(from_hi) * cut.mass);
-        turned(end, sin.copysign(from_hi - from_lo), cos)
+        turned(end, sin.times_sign(from_hi - from_lo), cos)
     }
 
     #[inline(always)]

@@ -23,7 +23,7 @@ pub(crate) const WIDE_CDF: [f64; 2] = [4e-7, 1.4e-7]; // 2.9e-7, 9.9e-8
 
 // A level that fuses against one lane that does not, wide lobes off the seam and the axis: S, density, direction.
 pub(crate) const LEVELS: [f64; 3] = [7e-7, 6e-7, 1.3e-6]; // 5.1e-7, 4.7e-7, 9.6e-7
-pub(crate) const ALBEDO_LANES: f64 = 7e-5; // 5.4e-5; 0 where neither fuses
+pub(crate) const ALBEDO_LANES: f64 = 1.1e-4; // 8.4e-5; 0 where neither fuses
 
 // Directional albedo of a lobe against quadrature, relative.
 pub(crate) const ALBEDO: f64 = 5.2e-3; // 4.1e-3, in the tails of lobes of 0.5 degrees; 32 nodes do not resolve W there

@@ -5,6 +5,7 @@ use crate::compare::{self, CompareConfig, Comparison, Depth, Part};
 use crate::config::Compare;
 use crate::error::Error;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
@@ -43,16 +44,17 @@ pub fn run(config: &Compare) -> Result<(), Error> {
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
 }
 
-fn output(path: &Path, source: io::Error) -> Error {
+pub(super) fn output(path: &Path, source: io::Error) -> Error {
     Error::Output { path: path.to_owned(), source }
 }
 
-fn write(path: &Path, text: &str) -> Result<(), Error> {
+pub(super) fn write(path: &Path, text: &str) -> Result<(), Error> {
     fs::write(path, text).map_err(|source| output(path, source))
 }
 
-fn json(comparison: &Comparison) -> Result<String, Error> {
-    let mut text = serde_json::to_string_pretty(comparison).map_err(|source| Error::Write(source.into()))?;
+/// What a JSON file holds.
+pub(super) fn json(results: &impl Serialize) -> Result<String, Error> {
+    let mut text = serde_json::to_string_pretty(results).map_err(|source| Error::Write(source.into()))?;
     text.push('\n');
     Ok(text)
 }

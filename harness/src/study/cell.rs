@@ -1,10 +1,11 @@
 //! One cell of the grid: every sampler of every model under every light.
 
+use super::Sampler;
 use super::grid::Cell;
 use super::sampler::gather;
 use super::tally::{Figures, Tally, figures};
 use super::{Budget, Light5};
-use crate::efficiency::{ModelKind, PHI_O_DEG, Sampler, Scatter};
+use crate::efficiency::{ModelKind, PHI_O_DEG, Scatter};
 use crate::light::Light;
 use crate::quadrature::fibre_direction;
 use crate::sequence::{Independent, XiSource, stream_id};
@@ -33,7 +34,7 @@ struct LightDraw {
     pdf: f64x8,
 }
 
-/// The figures of a cell: models outermost, then samplers, then lights.
+/// The figures of a cell: models outermost, then `samplers`, then lights.
 ///
 /// Each sampler's directions are drawn once and weighed by every light; each light's once and weighed by every sampler.
 /// The streams are keyed by what the cell is, not by where it stands or who computes it.
@@ -42,6 +43,7 @@ pub(super) fn measure(
     budget: Budget,
     lights: &Light5<'_>,
     cell: &Cell,
+    samplers: &[Sampler],
 ) -> Result<Vec<Measured>, ParamError> {
     let params = cell.params()?;
     let wo = fibre_direction(f64::from(cell.theta_o_deg).to_radians(), PHI_O_DEG.to_radians()).as_vec3();
@@ -55,9 +57,9 @@ pub(super) fn measure(
             (0..packets).map(|_| LightDraw::next(*light, &mut from)).collect()
         })
         .collect();
-    let mut measured = Vec::with_capacity(ModelKind::ALL.len() * Sampler::ALL.len() * lights.len());
+    let mut measured = Vec::with_capacity(ModelKind::ALL.len() * samplers.len() * lights.len());
     for model in ModelKind::ALL {
-        for sampler in Sampler::ALL {
+        for &sampler in samplers {
             let scatter = gather(model, sampler, &params, wo);
             let mut from = stream(&[1, model.index(), sampler.index()]);
             let (tallies, max_weight) = by_sampler(&*scatter, &mut from, budget, lights);
@@ -156,7 +158,7 @@ mod tests {
         for (beta_r, theta_o) in [(2.5, 0.0), (7.5, 45.0), (20.0, 85.0)] {
             let cell = cell_of(beta_r, theta_o);
             let params = cell.params().expect("accepted");
-            let measured = measure(1, BUDGET, &lights, &cell).expect("accepted");
+            let measured = measure(1, BUDGET, &lights, &cell, &Sampler::ALL).expect("accepted");
             let samplers = Sampler::ALL.len();
             for (m, model) in ModelKind::ALL.into_iter().enumerate() {
                 for (l, light) in lights.iter().take(4).enumerate() {
@@ -182,11 +184,14 @@ mod tests {
         let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), sun(), Rectangle::figure_6a());
         let lights: Light5<'_> = [&constant, &smooth, &sun, &area, &sky];
         let budget = Budget { samples: 256, light_samples: 64 };
-        let of = |seed, cell: &Cell| measure(seed, budget, &lights, cell).expect("accepted");
+        let of = |seed, cell: &Cell| measure(seed, budget, &lights, cell, &Sampler::ALL).expect("accepted");
         let cell = cell_of(7.5, 45.0);
         let found = of(1, &cell);
         assert_eq!(found.len(), 2 * Sampler::ALL.len() * 5);
         assert_eq!(found, of(1, &Cell { index: 7, ..cell }), "where the cell stands");
         assert_ne!(found, of(2, &cell), "another seed");
+        let alone = measure(1, budget, &lights, &cell, &[Sampler::Ou]).expect("accepted");
+        let among = |of: &Measured| found.contains(of);
+        assert!(alone.len() == 10 && alone.iter().all(among), "a sampler alone and among others");
     }
 }

@@ -1,14 +1,16 @@
 //! A finished study, and its files.
 
+use super::Sampler;
 use super::cell::Measured;
 use super::columns::Columns;
 use super::part::{self, FORMAT, Finished, Header, Read};
 use super::rows::{self, Row, rows};
 use super::times::{self, PER_POINT, Time};
 use super::{Grid, Shard, check, grid_of, summary};
-use crate::efficiency::{ModelKind, Sampler};
+use crate::efficiency::ModelKind;
 use crate::error::Error;
 use crate::machine::Machine;
+use crate::stats::Estimate;
 use crate::table::Table;
 use serde_json::json;
 use std::fs::{self, File};
@@ -31,6 +33,11 @@ impl Times {
     #[must_use]
     pub fn measure(seed: u64, quick: bool) -> Self {
         Self(times::measure(seed, if quick { 15 } else { 75 }))
+    }
+
+    /// Median time of a sample in ns, for 1, 4 or 16 samples a gather point; not a number for others.
+    pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
+        times::ns(&self.0, model, sampler, per_point)
     }
 }
 

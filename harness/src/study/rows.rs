@@ -1,10 +1,11 @@
 //! The rows of a study, as columns.
 
+use super::Sampler;
 use super::cell::Measured;
 use super::columns::Columns;
 use super::grid::{Cell, Grid};
 use super::sampler::weight_bound;
-use crate::efficiency::{ModelKind, Sampler};
+use crate::efficiency::ModelKind;
 
 /// A row: what it is of, and what was found.
 pub(super) struct Row<'a> {

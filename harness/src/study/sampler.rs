@@ -1,11 +1,48 @@
 //! The samplers of each model. A new one is a variant of [`Sampler`] and its arms in [`visit`] and [`weight_bound`].
 
-use crate::efficiency::{ModelKind, Sampler, Scatter};
+use crate::efficiency::{ModelKind, Scatter};
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
-use hairis::{Bsdf, Eval8, Gaussian, Hair, HairParams, Model, Sample8, Vec3x8};
+use hairis::{Bsdf, Eval8, Gaussian, Hair, HairParams, Matched, Model, Sample8, Vec3x8};
 use hairis_variants::Cauchy;
 use wide::f32x8;
+
+/// How directions are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Sampler {
+    /// Uniformly over the sphere.
+    Uniform,
+    /// By the published sampler.
+    Ou,
+    /// By the sampler matched to the model with two segments a side: its cheapest.
+    Matched2,
+    /// With three, as by default.
+    Matched,
+    /// With four: its least variance.
+    Matched4,
+}
+
+impl Sampler {
+    /// Every sampler, in the order of reports.
+    pub const ALL: [Self; 5] = [Self::Uniform, Self::Ou, Self::Matched2, Self::Matched, Self::Matched4];
+
+    /// Name in reports and in rows.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Uniform => "uniform",
+            Self::Ou => "ou",
+            Self::Matched2 => "matched-2",
+            Self::Matched => "matched",
+            Self::Matched4 => "matched-4",
+        }
+    }
+
+    /// Place among the streams of random numbers.
+    pub(super) fn index(self) -> u64 {
+        self as u64
+    }
+}
 
 /// Where a sampler's directions come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,11 +65,21 @@ pub(super) trait Visit {
 
 /// Shows `visitor` the sampler of a model. Every sampler of a model has the model's `eval`.
 pub(super) fn visit<V: Visit>(model: ModelKind, sampler: Sampler, visitor: V) -> V::Output {
-    match (model, sampler) {
-        (ModelKind::Gaussian, Sampler::Uniform) => visitor.visit(Hair(Gaussian), Directions::Uniform),
-        (ModelKind::Gaussian, Sampler::Ou) => visitor.visit(Hair(Gaussian), Directions::Sampled),
-        (ModelKind::Cauchy, Sampler::Uniform) => visitor.visit(Cauchy::PAPER.model(), Directions::Uniform),
-        (ModelKind::Cauchy, Sampler::Ou) => visitor.visit(Cauchy::PAPER.model(), Directions::Sampled),
+    match model {
+        ModelKind::Gaussian => match sampler {
+            Sampler::Uniform => visitor.visit(Hair(Gaussian), Directions::Uniform),
+            Sampler::Ou => visitor.visit(Hair(Gaussian), Directions::Sampled),
+            Sampler::Matched2 => visitor.visit(Matched::<_, 2>(Gaussian), Directions::Sampled),
+            Sampler::Matched => visitor.visit(Matched::<_>(Gaussian), Directions::Sampled),
+            Sampler::Matched4 => visitor.visit(Matched::<_, 4>(Gaussian), Directions::Sampled),
+        },
+        ModelKind::Cauchy => match sampler {
+            Sampler::Uniform => visitor.visit(Cauchy::PAPER.model(), Directions::Uniform),
+            Sampler::Ou => visitor.visit(Cauchy::PAPER.model(), Directions::Sampled),
+            Sampler::Matched2 => visitor.visit(Matched::<_, 2>(Cauchy::PAPER), Directions::Sampled),
+            Sampler::Matched => visitor.visit(Matched::<_>(Cauchy::PAPER), Directions::Sampled),
+            Sampler::Matched4 => visitor.visit(Matched::<_, 4>(Cauchy::PAPER), Directions::Sampled),
+        },
     }
 }
 
@@ -42,6 +89,7 @@ pub(super) fn visit<V: Visit>(model: ModelKind, sampler: Sampler, visitor: V) ->
 ///   reaches at `theta_i = -theta_o`.
 /// - `ou`: none in closed form. Its glints end at `|phi| = pi/2`; what is left of them behind is covered by whatever
 ///   other lobe is there.
+/// - `matched`: the ratio of W at the ends of a segment bounds each gather point's, by numbers the sampler keeps to itself.
 pub(super) fn weight_bound(sampler: Sampler, params: &HairParams, cos_theta_o: f64) -> Option<f64> {
     match sampler {
         Sampler::Uniform => {
@@ -51,7 +99,7 @@ pub(super) fn weight_bound(sampler: Sampler, params: &HairParams, cos_theta_o: f
             let peak = mean(desc.intensity_r) + mean(desc.intensity_tt) + mean(desc.intensity_trt) * glints;
             Some(4.0 * core::f64::consts::PI * peak / cos_theta_o)
         }
-        Sampler::Ou => None,
+        Sampler::Ou | Sampler::Matched2 | Sampler::Matched | Sampler::Matched4 => None,
     }
 }
 

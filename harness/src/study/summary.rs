@@ -1,9 +1,10 @@
 //! What a study comes to: gains over the published sampler and of the Cauchy model, as geometric means over the grid.
 
+use super::Sampler;
 use super::cell::Measured;
 use super::rows::place;
 use super::times::{PER_POINT, Time, ns};
-use crate::efficiency::{ModelKind, Sampler};
+use crate::efficiency::ModelKind;
 use crate::stats::Estimate;
 use crate::table::{Table, number};
 
@@ -12,19 +13,19 @@ const MAX_RELATIVE_ERROR: f64 = 0.25;
 
 /// Ratios of V over the cells of a grid.
 #[derive(Clone, Debug, PartialEq)]
-struct Gain {
-    geometric_mean: Estimate,
-    least: Estimate,
-    most: Estimate,
+pub(crate) struct Gain {
+    pub(crate) geometric_mean: Estimate,
+    pub(crate) least: Estimate,
+    pub(crate) most: Estimate,
     /// Cells left out.
-    unsure: usize,
+    pub(crate) unsure: usize,
 }
 
 /// The first of two lists of V over the second, cell by cell.
 ///
 /// The standard error of the geometric mean is that of its figures, the grid being what it is. Both samplers are held
 /// against the same directions of the light: errors of the ratios are, if anything, less than said.
-fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
+pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
     let sure = |v: &Estimate| v.value > 0.0 && v.standard_error <= MAX_RELATIVE_ERROR * v.value;
     let (mut ratios, mut unsure) = (Vec::new(), 0);
     for [base, other] in pairs {
@@ -45,7 +46,7 @@ fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
 }
 
 /// A ratio of variances times that of the times.
-fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
+pub(crate) fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
     let value = variance.value * time.value;
     let relative = (variance.standard_error / variance.value).hypot(time.standard_error / time.value);
     Estimate { value, standard_error: value * relative }

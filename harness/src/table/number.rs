@@ -39,7 +39,9 @@ pub fn plain(value: f64, digits: usize) -> String {
         return odd(value);
     }
     if !(1e-4..1e6).contains(&value.abs()) {
-        let exponent = value.abs().log10().floor();
+        // Rounding may carry into one more digit: 9.96e-5 to one digit is 10^-4.
+        let half = 0.5 * 10.0_f64.powf(-f64::from(u32::try_from(digits).unwrap_or(17)));
+        let exponent = (value.abs() / (1.0 - half)).log10().floor();
         let places = digits.saturating_sub(1);
         return minus(&format!("{:.places$}×10{}", value / 10.0_f64.powf(exponent), superscript(exponent)));
     }
@@ -184,5 +186,6 @@ mod tests {
         assert_eq!(plain(f64::NEG_INFINITY, 3), "−∞", "infinite");
         assert_eq!(plain(0.000_012_3, 2), "1.2×10⁻⁵", "small");
         assert_eq!(plain(999.96, 4), "1000", "a carry");
+        assert_eq!([plain(9.96e-5, 1), plain(9.94e-5, 2)], ["1×10⁻⁴", "9.9×10⁻⁵"], "a carry into the exponent");
     }
 }

@@ -55,7 +55,7 @@ fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usi
     let (beta, shift) = (point.lobes.beta[l].lanes(), point.shift[l].lanes());
     let quarter = c(core::f32::consts::FRAC_PI_4);
     let cauchy = TruncatedCauchy::new(shift - quarter, shift + quarter, beta);
-    let (sin_theta_o, cos_theta_o) = (point.sin_theta_o.lanes(), point.cos_theta_o.lanes());
+    let (half_sin_theta_o, half_cos_theta_o) = (point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes());
     let mut sum = c(0.0);
     let mut k = 0;
     while k < GAUSS_LEGENDRE_32.len() {
@@ -63,13 +63,14 @@ fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usi
         let x = cauchy.invert(c(xi));
         let half = (-quarter).max(quarter.min(x.mul_add(beta, -shift)));
         let (sin, cos) = sin_cos_twice(half);
-        let (sum_u, sum_c) = (sin + sin_theta_o, cos + cos_theta_o);
-        // (cos theta_i / cos theta_d)^2 over 4; where both directions lie on opposite poles it is 0 / 0, and its limit is 0.
-        let w = cos * cos / sum_u.mul_add(sum_u, sum_c * sum_c).max(c(f32::MIN_POSITIVE));
+        let mean_u = sin.mul_add(c(0.5), half_sin_theta_o);
+        let mean_c = cos.mul_add(c(0.5), half_cos_theta_o);
+        // (cos theta_i / cos theta_d)^2; where both directions lie on opposite poles it is 0 / 0, and its limit is 0.
+        let w = cos * cos / mean_u.mul_add(mean_u, mean_c * mean_c).max(c(f32::MIN_POSITIVE));
         let d = x.mul_add(x, one);
         sum = (d * B::one(x * x, one / d) * w).mul_add(c(weight), sum);
         k += 1;
     }
-    // dtheta_i = 2 beta d(x), and the 4 of W.
-    sum * cauchy.span * beta * c(8.0)
+    // dtheta_i = 2 beta d(x).
+    sum * cauchy.span * beta * c(2.0)
 }

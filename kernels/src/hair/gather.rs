@@ -121,24 +121,25 @@ fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -
     energy.map(|e| if largest > 0.0 { (e / largest) as f32 } else { 0.0 })
 }
 
+/// The longitude of a lobe, whose `theta_o / 2 - alpha` is `shift`.
+#[inline(always)]
+fn longitude<L: Lanes, C: Broadcast<L>>(shift: L, beta: C) -> TruncatedCauchy<L> {
+    let quarter = L::splat(FRAC_PI_4);
+    TruncatedCauchy::new(shift - quarter, shift + quarter, beta.lanes())
+}
+
 /// The gather point of a material seen from `wo`.
 #[inline(always)]
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<L>) -> HairGather<L::Stored> {
     let c = L::splat;
-    let zero = c(0.0);
     let (hair, sampler) = (&m.lobes, &m.sampler);
     let point = point::prepare(hair, wo);
-    let mut sin = [zero; 4];
-    let mut cos = [zero; 4];
-    let mut span = [zero; 4];
-    let mut l = 0;
-    while l < 3 {
-        let shift = point.shift[l].lanes();
-        let lobe = TruncatedCauchy::new(shift - c(FRAC_PI_4), shift + c(FRAC_PI_4), hair.beta[l].lanes());
-        (sin[l], cos[l], span[l]) = (lobe.sin_mid, lobe.cos_mid, lobe.span);
-        l += 1;
-    }
-    (sin[3], cos[3], span[3]) = (sin[2], cos[2], span[2]);
+    let [r, tt, trt] = [
+        longitude::<L, C>(point.shift[0].lanes(), hair.beta[0]),
+        longitude::<L, C>(point.shift[1].lanes(), hair.beta[1]),
+        longitude::<L, C>(point.shift[2].lanes(), hair.beta[2]),
+    ];
+    let span = [r.span, tt.span, trt.span];
 
     // 1 / (2 span beta) of the three, from one division; each is at least 1e-9.
     let range = [span[0] * hair.beta[0].lanes(), span[1] * hair.beta[1].lanes(), span[2] * hair.beta[2].lanes()];
@@ -152,18 +153,15 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
         of_trt * quarter,
         of_trt * sampler.azimuth_density[1].lanes(),
     ];
-    let mut weight = [zero; 4];
-    l = 0;
-    while l < 4 {
-        weight[l] = density[l] * sampler.selection[l].lanes();
-        l += 1;
-    }
+    let p = &sampler.selection;
+    let weight =
+        [density[0] * p[0].lanes(), density[1] * p[1].lanes(), density[2] * p[2].lanes(), density[3] * p[3].lanes()];
 
     HairGather {
         point,
-        longitude_sin: store4(sin),
-        longitude_cos: store4(cos),
-        longitude_span: store4(span),
+        longitude_sin: store4([r.sin_mid, tt.sin_mid, trt.sin_mid, trt.sin_mid]),
+        longitude_cos: store4([r.cos_mid, tt.cos_mid, trt.cos_mid, trt.cos_mid]),
+        longitude_span: store4([span[0], span[1], span[2], span[2]]),
         density: store4(density),
         weight: store4(weight),
         sampler: sampler.spread::<L>(),

@@ -64,8 +64,9 @@ impl<L: Lanes> Place<L> {
         let reciprocal = one / (far * reach);
         let inv_far = reciprocal * reach;
         let tau = cross * inv_far;
-        let cos_half = (far * (far * reciprocal) * c(0.5)).sqrt();
-        let inv_cos = reciprocal * (far * cos_o);
+        let inv_reach = reciprocal * far;
+        let cos_half = (far * inv_reach * c(0.5)).sqrt();
+        let inv_cos = inv_reach * cos_o;
         let front = c(0.0).lt(dot);
         let sin_cos = [tau * cos_half, cos_half];
         let place = Self::new(half_theta_i, wi.x, cos_theta_i, inv_cos, atan_unit(tau), sin_cos, front);
@@ -114,18 +115,20 @@ impl<L: Lanes> Place<L> {
 
         // The Cauchy value of each, from two divisions. Each of the five is at most 1e9, so that four of them
         // multiplied stay below the largest float.
-        let (d_r, d_tt_x, d_tt_y, d_trt, d_g_y) = (one + s_r, one + s_tt, one + t_tt, one + s_trt, one + t_g);
+        let (d_r, d_tt_x, d_trt) = (x_r.mul_add(x_r, one), x_tt.mul_add(x_tt, one), x_trt.mul_add(x_trt, one));
+        let (d_tt_y, d_g_y) = (y_tt.mul_add(y_tt, one), y_g.mul_add(y_g, one));
         let (d_tt, d_g) = (d_tt_x * d_tt_y, d_trt * d_g_y);
         let inv_tt_g = one / (d_tt * d_g);
         let (cauchy_tt, cauchy_g) = (inv_tt_g * d_g, inv_tt_g * d_tt);
         let cauchy_trt = cauchy_g * d_g_y;
-        // Four times cos^2 theta_d is the squared length of the sum of the two directions in the meridian plane:
-        // exact where both are near opposite poles, where 1 + cos cos + sin sin cancels.
-        let sum_u = self.sin_theta_i + point.sin_theta_o.lanes();
-        let sum_c = self.cos_theta_i + point.cos_theta_o.lanes();
-        let meridian_sq = sum_u.mul_add(sum_u, sum_c * sum_c);
-        let inv_r = one / (d_r * meridian_sq);
-        let cauchy_r = inv_r * meridian_sq;
+        // Cos^2 theta_d is the squared length of the mean of the two directions in the meridian plane: exact where both
+        // are near opposite poles, where 1 + cos cos + sin sin cancels.
+        let half = c(0.5);
+        let mean_u = self.sin_theta_i.mul_add(half, point.half_sin_theta_o.lanes());
+        let mean_c = self.cos_theta_i.mul_add(half, point.half_cos_theta_o.lanes());
+        let cos_sq_theta_d = mean_u.mul_add(mean_u, mean_c * mean_c);
+        let inv_r = one / (d_r * cos_sq_theta_d);
+        let cauchy_r = inv_r * cos_sq_theta_d;
 
         let (m_r, m_trt) = (B::one(s_r, cauchy_r), B::one(s_trt, cauchy_trt));
         Shapes {
@@ -145,7 +148,7 @@ impl<L: Lanes> Place<L> {
             offset: [x_r, x_tt, x_trt],
             // What a sampler does not read is not computed.
             longitude: [m_r, B::one(s_tt, cauchy_tt * d_tt_y), m_trt],
-            inv_cos_sq_theta_d: c(4.0) * (inv_r * d_r),
+            inv_cos_sq_theta_d: inv_r * d_r,
         }
     }
 }

@@ -40,10 +40,10 @@ crate::lane_struct! {
 crate::lane_struct! {
     /// What every sampler reads of a gather point: the lobes of its material, and `wo`.
     pub struct HairPoint {
-        /// Sine of `theta_o`.
-        pub sin_theta_o: C,
-        /// Cosine of `theta_o`.
-        pub cos_theta_o: C,
+        /// Half the sine of `theta_o`.
+        pub half_sin_theta_o: C,
+        /// Half its cosine.
+        pub half_cos_theta_o: C,
         /// The part of `wo` in the normal plane, with the digits it was given: v and w, and its length.
         pub plane_o: [C; 3],
         /// One over that length.
@@ -105,31 +105,29 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
     let off_axis = zero.lt(plane);
     let span_plane = L::select(off_axis, plane, one);
     let reciprocal = one / (len * span_plane);
-    let (inv_len, inv_plane) = (reciprocal * span_plane, reciprocal * len);
+    let (half_inv_len, inv_plane) = (c(0.5) * (reciprocal * span_plane), reciprocal * len);
     let half_theta_o = half_atan2(x, plane, len);
     // Products of components this small would leave the range of a float; their last digit is none of the bounds'.
     let near_axis = plane.lt(c(1e-4));
     let cos_phi_o = L::select(off_axis, y * inv_plane, one);
     let sin_phi_o = z * inv_plane;
 
-    let mut shift = [zero; 4];
-    let mut l = 0;
-    while l < 3 {
-        shift[l] = half_theta_o - lobes.alpha[l].lanes();
-        l += 1;
-    }
-    shift[3] = shift[2];
+    let [r, tt, trt] = [
+        half_theta_o - lobes.alpha[0].lanes(),
+        half_theta_o - lobes.alpha[1].lanes(),
+        half_theta_o - lobes.alpha[2].lanes(),
+    ];
 
     HairPoint {
-        sin_theta_o: (x * inv_len).store(),
-        cos_theta_o: (plane * inv_len).store(),
+        half_sin_theta_o: (x * half_inv_len).store(),
+        half_cos_theta_o: (plane * half_inv_len).store(),
         plane_o: store3([
             L::select(near_axis, cos_phi_o, y),
             L::select(near_axis, sin_phi_o, z),
             L::select(near_axis, one, plane),
         ]),
         inv_plane_o: L::select(near_axis, one, inv_plane).store(),
-        shift: store4(shift),
+        shift: store4([r, tt, trt, trt]),
         lobes: lobes.spread::<L>(),
     }
 }

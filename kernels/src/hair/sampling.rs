@@ -85,7 +85,7 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     let sin_psi_sq = sin_psi * sin_psi;
     let sin_turn = (sin_psi + sin_psi) * cos_psi;
     let cos_turn = cos_psi.mul_add(cos_psi, -sin_psi_sq);
-    let sin_phi = sin_turn.copysign(L::negate(is_bell, side));
+    let sin_phi = sin_turn.times_sign(L::negate(is_bell, side));
     let cos_phi = L::negate(is_tt, cos_turn);
     // What the sine and the cosine are off the unit circle is taken from the length.
     let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;

@@ -98,9 +98,8 @@ impl Lanes for Avx2 {
         Self(avx2!(_mm256_max_ps(self.0, other.0)))
     }
     #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        let bit = avx2!(_mm256_set1_ps(-0.0));
-        Self(avx2!(_mm256_or_ps(_mm256_andnot_ps(bit, self.0), _mm256_and_ps(bit, sign.0))))
+    fn times_sign(self, sign: Self) -> Self {
+        Self(avx2!(_mm256_xor_ps(self.0, _mm256_and_ps(_mm256_set1_ps(-0.0), sign.0))))
     }
     #[inline(always)]
     fn negate(mask: __m256, x: Self) -> Self {

@@ -1,7 +1,7 @@
 //! Sixteen lanes in one `__m512`, for the slices of CPUs found at run time to have AVX-512.
 //!
-//! Packets of eight stay with AVX2 there: masks, and twice as many registers, gain a packet nothing that the longer way
-//! to a mask does not cost. Multiplication fuses as on AVX2, and the results are the same to the bit.
+//! Packets of eight are [`Avx2`](super::avx2::Avx2) there, too: `dispatch` compiles it for AVX-512 once more. Multiplication
+//! fuses as on AVX2, and the results are the same to the bit.
 
 #![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
 
@@ -96,9 +96,8 @@ impl Lanes for Avx512 {
         Self(avx512!(_mm512_max_ps(self.0, other.0)))
     }
     #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        let bit = avx512!(_mm512_set1_ps(-0.0));
-        Self(avx512!(_mm512_or_ps(_mm512_andnot_ps(bit, self.0), _mm512_and_ps(bit, sign.0))))
+    fn times_sign(self, sign: Self) -> Self {
+        Self(avx512!(_mm512_xor_ps(self.0, _mm512_and_ps(_mm512_set1_ps(-0.0), sign.0))))
     }
     #[inline(always)]
     fn negate(mask: __mmask16, x: Self) -> Self {

@@ -72,8 +72,8 @@ impl<L: Lanes> Lanes for Pair<L> {
         Self(self.0.max(other.0), self.1.max(other.1))
     }
     #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        Self(self.0.copysign(sign.0), self.1.copysign(sign.1))
+    fn times_sign(self, sign: Self) -> Self {
+        Self(self.0.times_sign(sign.0), self.1.times_sign(sign.1))
     }
     #[inline(always)]
     fn negate(mask: Self::Mask, x: Self) -> Self {

@@ -1,5 +1,7 @@
 //! Eight lanes through `wide`: the instruction set the program was compiled for, whatever the machine has.
 
+#![allow(unsafe_code, reason = "intrinsics of target features that the program is compiled for")]
+
 use super::{
     Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, UPPER, difference_fused, difference_split,
     pick_by_select, pick_three_by_select, sealed::Sealed,
@@ -11,10 +13,41 @@ impl Sealed for f32x8 {}
 /// Whether `wide`'s `mul_add` rounds once in this build.
 pub(crate) const FUSES: bool = cfg!(any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon")));
 
+/// Masks of the sign, and of everything but the sign.
+const SIGN: f32x8 = f32x8::new([-0.0; 8]);
+const MAGNITUDE: f32x8 = f32x8::new([f32::from_bits(0x7fff_ffff); 8]);
+
+/// The same number in every lane.
+///
+/// `wide` fills an array, which the compiler leaves a loop over memory where it saves space: a packet took ten times as
+/// long at opt-level s.
+#[inline(always)]
+fn splat(x: f32) -> f32x8 {
+    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+    {
+        #[cfg(target_arch = "x86")]
+        use core::arch::x86 as arch;
+        #[cfg(target_arch = "x86_64")]
+        use core::arch::x86_64 as arch;
+        // SAFETY: the program is compiled for CPUs that have the instruction; all these types are floats in a row.
+        #[cfg(target_feature = "avx")]
+        return unsafe { core::mem::transmute::<arch::__m256, f32x8>(arch::_mm256_set1_ps(x)) };
+        // SAFETY: as above.
+        #[cfg(not(target_feature = "avx"))]
+        return unsafe {
+            let half = arch::_mm_set1_ps(x);
+            core::mem::transmute::<[arch::__m128; 2], f32x8>([half, half])
+        };
+    }
+    #[cfg(not(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2")))]
+    f32x8::splat(x)
+}
+
 /// The upper half of the digits, and the rest.
 #[inline(always)]
 fn split(x: f32x8) -> [f32x8; 2] {
-    let upper = f32x8::from_bits(x.to_bits() & u32x8::splat(UPPER));
+    const MASK: u32x8 = u32x8::new([UPPER; 8]);
+    let upper = f32x8::from_bits(x.to_bits() & MASK);
     [upper, x - upper]
 }
 
@@ -26,7 +59,7 @@ impl Lanes for f32x8 {
 
     #[inline(always)]
     fn splat(x: f32) -> Self {
-        f32x8::splat(x)
+        splat(x)
     }
     #[inline(always)]
     fn store(self) -> f32x8 {
@@ -46,7 +79,7 @@ impl Lanes for f32x8 {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        f32x8::abs(self)
+        self & MAGNITUDE
     }
     // `fast_min` is the machine's own: only x86 promises what it does with NaN.
     #[inline(always)]
@@ -66,12 +99,12 @@ impl Lanes for f32x8 {
         }
     }
     #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        f32x8::copysign(self, sign)
+    fn times_sign(self, sign: Self) -> Self {
+        self ^ (sign & SIGN)
     }
     #[inline(always)]
     fn negate(mask: f32x8, x: Self) -> Self {
-        x ^ (mask & f32x8::splat(-0.0))
+        x ^ (mask & SIGN)
     }
     #[inline(always)]
     fn bits_shl_23(self) -> Self {
@@ -124,7 +157,7 @@ impl Lanes for f32x8 {
     }
     #[inline(always)]
     fn slot_number(choice: [f32x8; 3]) -> Self {
-        let one = f32x8::splat(1.0);
+        let one = splat(1.0);
         (choice[0] & one) + (choice[1] & one) + (choice[2] & one)
     }
 }
@@ -153,7 +186,7 @@ macro_rules! broadcast {
         }
     )* };
 }
-broadcast! { f32, x, f32x8::splat(x); f32x8, x, x; }
+broadcast! { f32, x, splat(x); f32x8, x, x; }
 
 impl Packet<8> for f32x8 {
     #[inline(always)]

@@ -1,4 +1,9 @@
 //! One lane.
+//!
+//! Selections are marked unpredictable: as branches, which the compiler makes of them here and there, they would be
+//! mispredicted half of the time.
+
+use core::hint::select_unpredictable;
 
 use super::{Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, UPPER, difference_split, sealed::Sealed};
 
@@ -50,8 +55,8 @@ impl Lanes for f32 {
         if self > other { self } else { other }
     }
     #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        f32::copysign(self, sign)
+    fn times_sign(self, sign: Self) -> Self {
+        f32::from_bits(self.to_bits() ^ (sign.to_bits() & (1 << 31)))
     }
     #[inline(always)]
     fn negate(mask: bool, x: Self) -> Self {
@@ -82,15 +87,15 @@ impl Lanes for f32 {
     }
     #[inline(always)]
     fn select(mask: bool, yes: Self, no: Self) -> Self {
-        if mask { yes } else { no }
+        select_unpredictable(mask, yes, no)
     }
     #[inline(always)]
     fn swap(mask: bool, a: Self, b: Self) -> (Self, Self) {
-        if mask { (a, b) } else { (b, a) }
+        (select_unpredictable(mask, a, b), select_unpredictable(mask, b, a))
     }
     #[inline(always)]
     fn keep(mask: bool, x: Self) -> Self {
-        if mask { x } else { 0.0 }
+        select_unpredictable(mask, x, 0.0)
     }
     #[inline(always)]
     fn choose(xi: Self, bounds: [Self; 3]) -> usize {

@@ -81,7 +81,7 @@ impl MatchedBell for Gaussian {
         let least = L::splat(LEAST_SHARE);
         let below = from_lo.max(least).mul_add(cut.mass, cut.ends[0]);
         let above = from_hi.max(least).mul_add(cut.mass, cut.ends[1]);
-        normal_tail_inverse(below.min(above)).copysign(below - above)
+        normal_tail_inverse(below.min(above)).times_sign(below - above)
     }
 }
 

@@ -126,12 +126,12 @@ fn importance(params: &HairParams) -> [f32; 4] {
 
 /// `(cos theta_i / cos theta_d)^2`, 0 where both directions lie on opposite poles.
 #[inline(always)]
-fn w<L: Lanes>(half_theta_i: L, [sin_theta_o, cos_theta_o]: [L; 2]) -> L {
+fn w<L: Lanes>(half_theta_i: L, [half_sin_theta_o, half_cos_theta_o]: [L; 2]) -> L {
     let quarter = L::splat(FRAC_PI_4);
     let (sin, cos) = sin_cos_twice((-quarter).max(quarter.min(half_theta_i)));
-    let (sum_u, sum_c) = (sin + sin_theta_o, cos + cos_theta_o);
-    let twice = cos + cos;
-    twice * twice / sum_u.mul_add(sum_u, sum_c * sum_c).max(L::splat(f32::MIN_POSITIVE))
+    let half = L::splat(0.5);
+    let (mean_u, mean_c) = (sin.mul_add(half, half_sin_theta_o), cos.mul_add(half, half_cos_theta_o));
+    cos * cos / mean_u.mul_add(mean_u, mean_c * mean_c).max(L::splat(f32::MIN_POSITIVE))
 }
 
 /// The longitude of R, TT or TRT.
@@ -143,7 +143,7 @@ struct Longitude<L, const N: usize> {
     area_lower: L,
 }
 
-/// Longitude `l` of a gather point; `theta_o` by sine and cosine.
+/// Longitude `l` of a gather point; `theta_o` by half its sine and half its cosine.
 #[inline(always)]
 fn longitude<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     hair: &HairLobes<C>,
@@ -183,7 +183,7 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
     let c = L::splat;
     let zero = c(0.0);
     let point = prepare_point(&m.lobes, wo);
-    let theta_o = [point.sin_theta_o.lanes(), point.cos_theta_o.lanes()];
+    let theta_o = [point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes()];
     let r = longitude::<B, L, C, N>(&m.lobes, 0, point.shift[0].lanes(), theta_o);
     let tt = longitude::<B, L, C, N>(&m.lobes, 1, point.shift[1].lanes(), theta_o);
     let trt = longitude::<B, L, C, N>(&m.lobes, 2, point.shift[2].lanes(), theta_o);
@@ -258,8 +258,8 @@ fn spread2<L: Lanes, C: Broadcast<L>>(x: &[C; 2]) -> [L::Stored; 2] {
 /// W a third of the way to the other pole, `(cos(theta_o / 3) / cos(2 theta_o / 3))^2`, roughly: 1 in the normal plane and 3
 /// at the poles.
 #[inline(always)]
-fn mode_scale<L: Lanes>(cos_theta_o: L) -> L {
-    cos_theta_o.mul_add(L::splat(-2.0), L::splat(3.0))
+fn mode_scale<L: Lanes>(half_cos_theta_o: L) -> L {
+    half_cos_theta_o.mul_add(L::splat(-4.0), L::splat(3.0))
 }
 
 impl<C, const N: usize> MatchedGather<C, N> {

@@ -24,7 +24,7 @@ pub(crate) const WIDE_CDF: [f64; 2] = [1.9e-6, 2e-7]; // 1.4e-6, 1.5e-7
 
 // A level that fuses against one lane that does not, wide lobes off the seam and the axis: S, density, direction.
 pub(crate) const LEVELS: [f64; 3] = [8.1e-7, 1.2e-5, 1.3e-6]; // 6.2e-7, 8.5e-6, 9.6e-7
-pub(crate) const ALBEDO_LANES: f64 = 7e-5;
+pub(crate) const ALBEDO_LANES: f64 = 1.1e-4; // 8.4e-5; 0 where neither fuses
 
 // Directional albedo of a lobe against quadrature, relative.
 pub(crate) const ALBEDO: f64 = 1.4e-4; // 1.0e-4

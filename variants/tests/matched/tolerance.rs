@@ -24,7 +24,7 @@ pub(crate) const WIDE_CDF: [f64; 2] = [5.1e-7, 2e-7]; // 3.9e-7, 1.5e-7
 
 // A level that fuses against one lane that does not, wide lobes off the seam and the axis: S, density, direction.
 pub(crate) const LEVELS: [f64; 3] = [6.7e-7, 4.5e-6, 1.3e-6]; // 5.1e-7, 3.4e-6, 9.6e-7
-pub(crate) const ALBEDO_LANES: f64 = 7e-5;
+pub(crate) const ALBEDO_LANES: f64 = 1.1e-4; // 8.4e-5; 0 where neither fuses
 
 // Directional albedo of a lobe against quadrature, relative.
 pub(crate) const ALBEDO: f64 = 5.4e-3; // 4.1e-3

@@ -1,0 +1,113 @@
+//! What an entry point costs a host that calls it with the upper halves of the vector registers dirty.
+//!
+//! Code for AVX ought to end in `vzeroupper`; hosts were met that do not (a just-in-time compiler was one). Until then
+//! every legacy SSE instruction has to merge its result with the upper half of the register, and waits for whoever wrote
+//! that last; CPUs before Skylake save and restore all upper halves instead, once. Before each call the program either
+//! dirties all sixteen registers, or does the same and cleans up. Packets and slices must take no more than
+//! [`MOST`] times as long; scalar code, which is legacy SSE in a plain build, is shown and not judged.
+//!
+//! `hairis-dirty [START]`: only the entry points whose names begin so.
+
+use hairis_benches::{Name, Op, Task, Visitor, entries};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Largest factor of packets and slices.
+const MOST: f64 = 1.3;
+/// Rounds, each of a clean and a dirty stretch.
+const ROUNDS: usize = 31;
+/// Length of a stretch, s.
+const STRETCH: f64 = 3e-4;
+
+#[cfg(not(target_arch = "x86_64"))]
+compile_error!("upper halves are a matter of x86-64");
+
+/// Writes all sixteen registers in full, and zeroes their upper halves if `clean`.
+#[inline(always)]
+fn write_registers(clean: bool) {
+    macro_rules! ones {
+        ($end:literal) => {
+            // SAFETY: `main` has found AVX2. The registers written are clobbered, and no calling convention keeps an
+            // upper half.
+            unsafe {
+                core::arch::asm!(
+                    "vpcmpeqd ymm0, ymm0, ymm0", "vpcmpeqd ymm1, ymm1, ymm1", "vpcmpeqd ymm2, ymm2, ymm2",
+                    "vpcmpeqd ymm3, ymm3, ymm3", "vpcmpeqd ymm4, ymm4, ymm4", "vpcmpeqd ymm5, ymm5, ymm5",
+                    "vpcmpeqd ymm6, ymm6, ymm6", "vpcmpeqd ymm7, ymm7, ymm7", "vpcmpeqd ymm8, ymm8, ymm8",
+                    "vpcmpeqd ymm9, ymm9, ymm9", "vpcmpeqd ymm10, ymm10, ymm10", "vpcmpeqd ymm11, ymm11, ymm11",
+                    "vpcmpeqd ymm12, ymm12, ymm12", "vpcmpeqd ymm13, ymm13, ymm13", "vpcmpeqd ymm14, ymm14, ymm14",
+                    "vpcmpeqd ymm15, ymm15, ymm15", $end,
+                    out("xmm0") _, out("xmm1") _, out("xmm2") _, out("xmm3") _, out("xmm4") _, out("xmm5") _,
+                    out("xmm6") _, out("xmm7") _, out("xmm8") _, out("xmm9") _, out("xmm10") _, out("xmm11") _,
+                    out("xmm12") _, out("xmm13") _, out("xmm14") _, out("xmm15") _,
+                    options(nostack, nomem, preserves_flags),
+                );
+            }
+        };
+    }
+    if clean { ones!("vzeroupper") } else { ones!("") }
+}
+
+/// Times an entry point both ways, in turns.
+struct Both {
+    start: String,
+    failed: u32,
+}
+
+impl Visitor for Both {
+    fn wants(&self, name: &Name) -> bool {
+        !matches!(name.op, Op::Path(_)) && name.entry != entries::TEXTBOOK && name.to_string().starts_with(&self.start)
+    }
+
+    fn visit<T: Task>(&mut self, name: &Name, mut task: T) {
+        stretch(&mut task, 1, true);
+        let passes = (STRETCH / stretch(&mut task, 1, true)).clamp(1.0, 1e3) as u32;
+        let mut ratios = Vec::new();
+        let mut times = Vec::new();
+        for _ in 0..ROUNDS {
+            let [clean, dirty] = [true, false].map(|clean| stretch(&mut task, passes, clean));
+            ratios.push(dirty / clean);
+            times.push(clean * 1e9 / (f64::from(passes) * task.calls() as f64));
+        }
+        let (ratio, ns) = (median(ratios), median(times));
+        let judged = name.level != "scalar";
+        let verdict = if judged && ratio > MOST { "FAIL" } else { "" };
+        println!("{:46} {ns:9.1} ns a call, dirty {:9.1} ns, {ratio:.2} times {verdict}", name.to_string(), ns * ratio);
+        self.failed += u32::from(!verdict.is_empty());
+    }
+}
+
+/// Time of so many passes, s.
+#[inline(never)]
+fn stretch<T: Task>(task: &mut T, passes: u32, clean: bool) -> f64 {
+    let start = Instant::now();
+    for _ in 0..passes {
+        for index in 0..task.calls() {
+            write_registers(clean);
+            task.call(index);
+        }
+    }
+    // What is timed next begins clean.
+    write_registers(true);
+    start.elapsed().as_secs_f64()
+}
+
+fn median(mut x: Vec<f64>) -> f64 {
+    x.sort_by(f64::total_cmp);
+    x[x.len() / 2]
+}
+
+fn main() -> ExitCode {
+    if !std::arch::is_x86_feature_detected!("avx2") {
+        println!("this CPU has no AVX2: nothing can be dirty");
+        return ExitCode::SUCCESS;
+    }
+    let mut both = Both { start: std::env::args().nth(1).unwrap_or_default(), failed: 0 };
+    for op in Op::ALL {
+        entries::visit(op, &mut both);
+    }
+    if both.failed > 0 {
+        println!("{} entry points take more than {MOST} times as long when the upper halves are dirty", both.failed);
+    }
+    ExitCode::from(u8::from(both.failed > 0))
+}

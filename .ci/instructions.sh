@@ -1,0 +1,99 @@
+#!/bin/bash
+# Instructions per call of every entry point, both models, on every level that valgrind's CPU has (it knows AVX2 and not
+# AVX-512), against the committed table: one that grows by more than 3% fails.
+#
+#   .ci/instructions.sh                  compare with the table
+#   .ci/instructions.sh --write          make the table anew, after a change that is worth its instructions
+#   .ci/instructions.sh --count PROGRAM  count for another build of the program `entry`; compares with nothing
+#
+# The program is run under callgrind with two numbers of passes; the difference is what a pass costs. Only the program's
+# own instructions count: what the system's libraries do depends on their version and on the CPU, so that of calls into
+# them (memcpy and the like) the table holds only whether there are any. The counts depend on the compiler alone.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+table=benches/records/instructions.csv
+fewer=2 more=6 # passes
+
+command -v valgrind > /dev/null || { apt-get update -qq && apt-get install -qqy valgrind; }
+program=${CARGO_TARGET_DIR:-target}/release/entry
+if [ "${1:-}" = --count ]; then
+  program=$2
+else
+  RUSTFLAGS='' cargo build -q --release --locked -p hairis-benches --bin entry
+fi
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+
+# sums OUTPUT: instructions of the program itself, and of everything else.
+sums() {
+  awk -v program="/$(basename "$program")" '
+    /^c?ob=/ {
+      match($0, /\([0-9]+\)/)
+      id = substr($0, RSTART, RLENGTH)
+      if (length($0) >= RSTART + RLENGTH) name[id] = substr($0, RSTART + RLENGTH + 1)
+      if (/^ob/) now = id
+      next
+    }
+    /^calls=/ { callee = 1; next }
+    /^[-+*0-9]/ { if (!callee) sum[now] += $2; callee = 0 }
+    END {
+      for (id in sum)
+        if (substr(name[id], length(name[id]) - length(program) + 1) == program) own += sum[id]
+        else others += sum[id]
+      printf "%d %d\n", own, others
+    }' "$1"
+}
+
+# count NAME: a row of the table.
+count() {
+  local name=$1 out=$dir/${1//\//_}
+  for passes in $fewer $more; do
+    valgrind -q --tool=callgrind --callgrind-out-file="$out.$passes" "$program" run "$name" "$passes" > "$out.calls"
+  done
+  # Calls in a pass and directions in a call; then own and other instructions of the few passes, and of the more.
+  echo "$(cat "$out.calls") $(sums "$out.$fewer") $(sums "$out.$more")" | awk -v passes=$((more - fewer)) '{
+    calls = passes * $2
+    libraries = ($7 - $5 < 0.5 * calls) ? "no" : "yes"
+    printf "%s,%d,%.1f,%s\n", $1, $3, ($6 - $4) / calls, libraries
+  }' > "$out.row"
+}
+export -f count sums
+export program dir fewer more
+
+valgrind -q --tool=none "$program" list > "$dir/names"
+names=$(grep -vE '^path-|/textbook/' "$dir/names")
+xargs -P "$(nproc)" -I NAME bash -euo pipefail -c 'count NAME' <<< "$names"
+rows=$(while read -r name; do cat "$dir/${name//\//_}.row"; done <<< "$names")
+[ "$(wc -l <<< "$rows")" -ge 42 ] || echo "this CPU has no AVX2: its level was not counted" >&2
+
+case ${1:-} in
+  --count) echo "$rows" ;;
+  --write)
+    {
+      echo "# Instructions per call, by .ci/instructions.sh --write with $(rustc -V); libraries: whether a call leaves the program."
+      echo "entry,directions,instructions,libraries"
+      echo "$rows"
+    } > "$table"
+    echo "wrote $table"
+    ;;
+  *)
+    grep -qF "with $(rustc -V);" "$table" ||
+      echo "note: $(rustc -V) is not the compiler of the table: $(sed -n 1p "$table")"
+    awk -F, '
+      /^#/ || /^entry,/ { next }
+      FNR == NR { was[$1] = $3; left[$1] = $4; next }
+      !($1 in was) { print "FAIL " $1 " is not in the table"; bad++; next }
+      {
+        compared++
+        grown = 100 * ($3 / was[$1] - 1)
+        if (grown > 3) { printf "FAIL %s: %.1f instructions, %.1f%% more than the %.1f of the table\n", $1, $3, grown, was[$1]; bad++ }
+        else if (grown < -3) printf "%s: %.1f instructions, %.1f%% fewer than the %.1f of the table\n", $1, $3, -grown, was[$1]
+        if ($4 == "yes" && left[$1] == "no") { print "FAIL " $1 " now calls a library"; bad++ }
+      }
+      END {
+        printf "%d entry points counted, %d grew or are new\n", compared, bad
+        if (bad) print "if that is intended, .ci/instructions.sh --write makes the table anew: commit it, and say why"
+        exit bad > 0 || compared == 0
+      }' "$table" - <<< "$rows"
+    ;;
+esac

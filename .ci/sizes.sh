@@ -1,0 +1,60 @@
+#!/bin/bash
+# What opt-levels "s" and "z" do to the entry points, against 3: bytes of code, calls (of AVX2 and AVX-512 none is
+# allowed), instructions per call and, asked for, time.
+#
+#   .ci/sizes.sh           checks; no entry point may take more than 2.1 times the instructions at "s": what stays a loop
+#                          there costs more in instructions than in time
+#   .ci/sizes.sh --write   writes the table to benches/records/sizes.csv as well
+#   .ci/sizes.sh --time    the time of every entry point at "s" and "z" against 3, the programs in turns
+set -euo pipefail
+cd "$(dirname "$0")/.."
+command -v objdump > /dev/null || { apt-get update -qq && apt-get install -qqy binutils; }
+target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+
+for level in 3 s z; do
+  value=$level
+  [ $level = 3 ] || value="\"$level\""
+  # The newer mangling keeps the types of generic functions in their names.
+  RUSTFLAGS='-Csymbol-mangling-version=v0' cargo build -q --release --locked -p hairis-benches --bin entry \
+    --config "profile.release.opt-level=$value" --target-dir "$target/opt-$level"
+  cp "$target/opt-$level/release/entry" "$dir/entry-$level"
+done
+
+if [ "${1:-}" = --time ]; then
+  # ROUNDS rounds; the median over them of the time, and of the ratios within a round.
+  for round in $(seq "${ROUNDS:-5}"); do
+    for start in prepare/ eval/ sample/; do
+      for level in 3 s z; do "$dir/entry-$level" time "$start*" 0.02 | sed "s/^/$round $level /"; done
+    done
+  done | grep -v textbook | python3 -c '
+import statistics, sys
+ns = {}
+for line in sys.stdin:
+    round, level, name, time = line.split()
+    ns.setdefault(name, {}).setdefault(round, {})[level] = float(time)
+print("entry,ns_3,ns_s,ns_z,s_over_3,z_over_3")
+for name, rounds in ns.items():
+    median = lambda f: statistics.median(f(r) for r in rounds.values())
+    times = ",".join(f"{median(lambda r: r[level]):.3f}" for level in "3sz")
+    ratios = ",".join(f"{median(lambda r: r[level] / r[chr(51)]):.2f}" for level in "sz")
+    print(f"{name},{times},{ratios}")'
+  exit
+fi
+
+failed=0
+python3 .ci/sizes.py 3="$dir/entry-3" s="$dir/entry-s" z="$dir/entry-z" > "$dir/sizes.csv" || failed=1
+for level in 3 s; do .ci/instructions.sh --count "$dir/entry-$level" > "$dir/$level.csv"; done
+paste -d, "$dir/3.csv" "$dir/s.csv" | awk -F, '
+  { ratio = $7 / $3; compared++ }
+  ratio > most { most = ratio; name = $1 }
+  ratio > 2.1 { printf "FAIL %s: %.2f times the instructions at s\n", $1, ratio; bad++ }
+  END { printf "%d entry points, at most %.2f times the instructions at s (%s)\n", compared, most, name; exit bad > 0 }' || failed=1
+
+if [ "${1:-}" = --write ]; then
+  { echo "# Bytes of code and calls by opt-level, by .ci/sizes.sh --write with $(rustc -V)."; cat "$dir/sizes.csv"; } > benches/records/sizes.csv
+else
+  cat "$dir/sizes.csv"
+fi
+exit $failed

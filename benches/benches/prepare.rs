@@ -1,0 +1,19 @@
+//! What a path tracer pays once a hit: a gather point alone, and a gather point with 1, 4 and 16 samples of it, whether
+//! the lanes of a packet are eight directions at one gather point or eight gather points.
+//!
+//! `cargo bench -p hairis-benches --bench prepare`, with `-- path-4/gaussian` for one group. Throughput is in gather
+//! points for `prepare` and in samples for `path`.
+
+mod timing;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use hairis_benches::Op;
+
+fn prepare(c: &mut Criterion) {
+    for op in [Op::Prepare, Op::Path(1), Op::Path(4), Op::Path(16)] {
+        timing::bench(c, op);
+    }
+}
+
+criterion_group!(benches, prepare);
+criterion_main!(benches);

@@ -1,0 +1,114 @@
+//! One entry point at a time, for callgrind and for timing by hand.
+//!
+//! - `entry list`: the names of all entry points on every level of this CPU.
+//! - `entry run NAME PASSES`: passes over the inputs and nothing else: what they cost is what a run with more of them
+//!   costs more.
+//! - `entry time NAME SECONDS`: ns a direction, the median of stretches of a millisecond.
+//!
+//! - `entry keep`: nothing; it keeps the functions whose size `.ci/sizes.sh` reports.
+//!
+//! Names end in `*` for all that begin so. `run` prints how many calls a pass makes.
+
+mod outlined;
+
+use hairis_benches::{Name, Op, Task, Visitor, entries};
+use std::env::args;
+use std::process::ExitCode;
+use std::time::Instant;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let mut runner = match words[..] {
+        ["list"] => Runner { name: "*", work: Work::List, found: false },
+        ["run", name, passes] if passes.parse::<u32>().is_ok() => {
+            Runner { name, work: Work::Run(passes.parse().unwrap_or(0)), found: false }
+        }
+        ["time", name, seconds] if seconds.parse::<f64>().is_ok() => {
+            Runner { name, work: Work::Time(seconds.parse().unwrap_or(0.0)), found: false }
+        }
+        ["keep"] => {
+            outlined::keep();
+            return ExitCode::SUCCESS;
+        }
+        _ => {
+            eprintln!("usage: entry keep | entry list | entry run NAME PASSES | entry time NAME SECONDS");
+            return ExitCode::from(2);
+        }
+    };
+    for op in Op::ALL {
+        entries::visit(op, &mut runner);
+    }
+    if runner.found || runner.work == Work::List {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!("there is no entry point {} on this CPU", runner.name);
+    ExitCode::from(2)
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Work {
+    List,
+    Run(u32),
+    Time(f64),
+}
+
+struct Runner<'a> {
+    name: &'a str,
+    work: Work,
+    found: bool,
+}
+
+impl Visitor for Runner<'_> {
+    fn wants(&self, name: &Name) -> bool {
+        let name = name.to_string();
+        if self.work == Work::List {
+            println!("{name}");
+            return false;
+        }
+        self.name.strip_suffix('*').map_or(name == self.name, |start| name.starts_with(start))
+    }
+
+    fn visit<T: Task>(&mut self, name: &Name, mut task: T) {
+        self.found = true;
+        match self.work {
+            Work::List => {}
+            Work::Run(passes) => {
+                pass(&mut task, passes);
+                println!("{name} {} {}", task.calls(), task.directions());
+            }
+            Work::Time(seconds) => println!("{name} {:.3}", time(&mut task, seconds)),
+        }
+    }
+}
+
+#[inline(never)]
+fn pass<T: Task>(task: &mut T, passes: u32) {
+    for _ in 0..passes {
+        for index in 0..task.calls() {
+            task.call(index);
+        }
+    }
+}
+
+/// Time of a direction, ns: median over stretches of at least a millisecond.
+fn time<T: Task>(task: &mut T, seconds: f64) -> f64 {
+    let mut stretch = |passes: u32| {
+        let start = Instant::now();
+        pass(task, passes);
+        start.elapsed().as_secs_f64()
+    };
+    let once = (0..5).map(|_| stretch(1)).fold(f64::INFINITY, f64::min).max(1e-9);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to a thousand")]
+    let passes = (1e-3 / once).ceil().clamp(1.0, 1e3) as u32;
+    let start = Instant::now();
+    let mut stretches = Vec::new();
+    while stretches.is_empty() || start.elapsed().as_secs_f64() < seconds {
+        stretches.push(stretch(passes));
+    }
+    stretches.sort_by(f64::total_cmp);
+    let median = stretches[stretches.len() / 2];
+    #[expect(clippy::cast_precision_loss, reason = "some thousand")]
+    let directions = (task.calls() * task.directions()) as f64;
+    median * 1e9 / (f64::from(passes) * directions)
+}

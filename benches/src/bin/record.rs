@@ -1,0 +1,129 @@
+//! Turns what Criterion has left in a folder into a record: `record FOLDER`.
+//!
+//! Prints a CSV: first, as comments, the CPU, the compiler, the commit and the levels; then a row a bench, with the time
+//! of a direction (for `prepare` of a gather point, for `math` of an argument) in ns: the median over Criterion's
+//! samples, the bounds of its 95% confidence interval, and the median absolute deviation of a sample.
+
+use core::error::Error;
+use core::fmt::Write;
+use hairis::Level;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::{env, fs};
+
+fn main() -> ExitCode {
+    let words: Vec<String> = env::args().skip(1).collect();
+    let done = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["cpu"] => Ok(slug(&cpu()) + "\n"),
+        [folder] => record(Path::new(folder)),
+        _ => Err("usage: record FOLDER | record cpu".into()),
+    };
+    match done {
+        Ok(text) => {
+            print!("{text}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("record: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn record(folder: &Path) -> Result<String, Box<dyn Error>> {
+    let mut rows = Vec::new();
+    benches(folder, &mut rows)?;
+    if rows.is_empty() {
+        return Err(format!("no benches in {}", folder.display()).into());
+    }
+    rows.sort();
+    let modified = if output("git", &["status", "--porcelain"])?.is_empty() { "" } else { ", modified" };
+    let mut text = String::new();
+    writeln!(text, "# CPU: {}", cpu())?;
+    for line in output("rustc", &["-vV"])?.lines().filter(|line| !line.is_empty()) {
+        writeln!(text, "# {line}")?;
+    }
+    writeln!(text, "# commit: {}{modified}", output("git", &["rev-parse", "HEAD"])?.trim())?;
+    writeln!(text, "# compiled for {}; eight lanes run on {}", Level::portable(), Level::detect())?;
+    writeln!(text, "group,entry,level,ns,ns_low,ns_high,ns_deviation")?;
+    for (_, row) in rows {
+        writeln!(text, "{row}")?;
+    }
+    Ok(text)
+}
+
+/// Finds all benches in a folder: what to sort them by, and their rows.
+fn benches(folder: &Path, rows: &mut Vec<([String; 3], String)>) -> Result<(), Box<dyn Error>> {
+    for entry in fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))? {
+        let path = entry?.path();
+        if !path.is_dir() {
+            continue;
+        }
+        if path.ends_with("new") && path.join("estimates.json").exists() {
+            rows.push(row(&path)?);
+        } else {
+            benches(&path, rows)?;
+        }
+    }
+    Ok(())
+}
+
+fn row(folder: &Path) -> Result<([String; 3], String), Box<dyn Error>> {
+    let bench = json(&folder.join("benchmark.json"))?;
+    let estimates = json(&folder.join("estimates.json"))?;
+    let text = |key: &str| bench[key].as_str().unwrap_or_default().to_owned();
+    let key = [text("group_id"), text("function_id"), text("value_str")];
+    let elements = bench["throughput"]["Elements"].as_f64().ok_or_else(|| format!("{key:?} has no throughput"))?;
+    let ns = |value: &Value| value.as_f64().map(|ns| ns / elements).ok_or_else(|| format!("{key:?}: no estimate"));
+    let (median, interval) = (&estimates["median"], &estimates["median"]["confidence_interval"]);
+    let row = format!(
+        "{},{},{},{:.3},{:.3},{:.3},{:.3}",
+        key[0],
+        key[1],
+        key[2],
+        ns(&median["point_estimate"])?,
+        ns(&interval["lower_bound"])?,
+        ns(&interval["upper_bound"])?,
+        ns(&estimates["median_abs_dev"]["point_estimate"])?,
+    );
+    Ok((key, row))
+}
+
+fn json(path: &PathBuf) -> Result<Value, Box<dyn Error>> {
+    let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok(serde_json::from_str(&text)?)
+}
+
+fn output(program: &str, words: &[&str]) -> Result<String, Box<dyn Error>> {
+    let done = Command::new(program).args(words).output().map_err(|error| format!("{program}: {error}"))?;
+    if !done.status.success() {
+        return Err(format!("{program} {words:?}: {}", done.status).into());
+    }
+    Ok(String::from_utf8(done.stdout)?)
+}
+
+/// What the system calls the CPU; names alone are often empty words on rented machines, hence the numbers.
+fn cpu() -> String {
+    let Ok(info) = fs::read_to_string("/proc/cpuinfo") else {
+        return env::consts::ARCH.to_owned();
+    };
+    let field = |name: &str| {
+        let line = info.lines().find(|line| line.split(':').next().is_some_and(|key| key.trim() == name));
+        line.and_then(|line| line.split(':').nth(1)).map_or("", str::trim)
+    };
+    format!(
+        "{} family {} model {} stepping {}",
+        field("model name"),
+        field("cpu family"),
+        field("model"),
+        field("stepping")
+    )
+}
+
+/// The same as the name of a folder.
+fn slug(cpu: &str) -> String {
+    let plain = cpu.replace("(R)", "").replace("(TM)", "").to_lowercase();
+    let words = plain.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join("-")
+}

@@ -1,0 +1,336 @@
+//! The entry points.
+
+use crate::check::{Asked, Given, check};
+use crate::inputs::{DIRECTIONS, Inputs, hair, materials, packets, xi_packets};
+use crate::task::{Each, PROBE, Slices, Task};
+use core::fmt;
+use core::hint::black_box;
+use glam::Vec3;
+use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::{Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Gaussian, Hair, HairParams, Level, Model, SampleSlices};
+use hairis_variants::Cauchy;
+
+/// What an entry point does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Op {
+    /// Everything constant for one gather point.
+    Prepare,
+    /// Value and density of a direction.
+    Eval,
+    /// A direction, its value, density and weight.
+    Sample,
+    /// A gather point, and so many samples of it.
+    Path(usize),
+}
+
+impl Op {
+    /// All of them: a path takes 1, 4 or 16 samples a gather point.
+    pub const ALL: [Self; 6] = [Self::Prepare, Self::Eval, Self::Sample, Self::Path(1), Self::Path(4), Self::Path(16)];
+}
+
+impl fmt::Display for Op {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Prepare => f.write_str("prepare"),
+            Self::Eval => f.write_str("eval"),
+            Self::Sample => f.write_str("sample"),
+            Self::Path(samples) => write!(f, "path-{samples}"),
+        }
+    }
+}
+
+/// Which entry point, of which model, on which instruction set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Name {
+    /// What it does.
+    pub op: Op,
+    /// The entry point: a function of `hairis`, with a suffix if it is measured in several ways.
+    pub entry: &'static str,
+    /// `gaussian` or `cauchy`.
+    pub model: &'static str,
+    /// `scalar`, `portable`, or the name of the level.
+    pub level: &'static str,
+}
+
+impl fmt::Display for Name {
+    /// A word: `eval/eval_pdf8/gaussian/avx2+fma`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { op, entry, model, level } = self;
+        write!(f, "{op}/{entry}/{model}/{level}")
+    }
+}
+
+/// One who measures.
+pub trait Visitor {
+    /// Whether an entry point is to be measured at all.
+    fn wants(&self, name: &Name) -> bool;
+    /// Measures it.
+    fn visit<T: Task>(&mut self, name: &Name, task: T);
+}
+
+/// Name of the scalar baseline, the paper's formulas in `f32`.
+pub const TEXTBOOK: &str = "textbook";
+/// Directions in a short slice: less than a packet.
+const SHORT: usize = 5;
+
+/// A level in one word, the same on every machine and in every build.
+#[must_use]
+pub fn label(level: Level) -> &'static str {
+    if level == Level::portable() { "portable" } else { level.name() }
+}
+
+/// Shows an operation's entry points to `visitor`, those of both models; the textbook comes first. Answers are checked
+/// before.
+///
+/// # Panics
+///
+/// If an entry point that the visitor wants gives wrong answers.
+pub fn visit(op: Op, visitor: &mut impl Visitor) {
+    let inputs = Inputs::draw();
+    let gaussian = Of { op, model: Hair(Gaussian), name: "gaussian", shape: Shape::Gaussian, inputs: &inputs };
+    let cauchy = Of { op, model: Cauchy::PAPER.model(), name: "cauchy", shape: Shape::Cauchy, inputs: &inputs };
+    gaussian.visit(visitor);
+    cauchy.visit(visitor);
+}
+
+/// The entry points of one operation of one model.
+struct Of<'a, M> {
+    op: Op,
+    model: M,
+    name: &'static str,
+    shape: Shape,
+    inputs: &'a Inputs,
+}
+
+impl<M: Model<Params = HairParams>> Of<'_, M> {
+    fn visit(&self, visitor: &mut impl Visitor) {
+        match self.op {
+            Op::Prepare => self.prepare(visitor),
+            Op::Eval => self.eval(visitor),
+            Op::Sample => self.sample(visitor),
+            Op::Path(samples) => self.path(visitor, samples),
+        }
+    }
+
+    /// Shows one entry point, if it is wanted and its answers are right.
+    fn show<T: Task>(
+        &self,
+        visitor: &mut impl Visitor,
+        entry: &'static str,
+        level: &'static str,
+        asked: impl Fn(usize) -> Asked,
+        task: impl FnOnce() -> T,
+    ) {
+        let name = Name { op: self.op, entry, model: self.name, level };
+        if visitor.wants(&name) {
+            let mut task = task();
+            check(&name, &mut task, self.shape, asked);
+            visitor.visit(&name, task);
+        }
+    }
+
+    fn parameters(&self) -> Parameters<f32> {
+        Parameters::from(&HairParams::default())
+    }
+
+    fn bsdf(&self) -> Bsdf<M> {
+        Bsdf::new(&self.model, &HairParams::default())
+    }
+
+    fn mixed(&self) -> Bsdf8<M> {
+        Bsdf8::pack(materials(&self.model).each_ref())
+    }
+
+    /// The one gather point of evaluations and samples.
+    fn gather(&self) -> Gather<M> {
+        self.bsdf().prepare(self.inputs.wo[0])
+    }
+
+    /// Eight gather points on eight heads of hair.
+    fn gather8(&self, level: Level) -> Gather8<M> {
+        self.mixed().prepare8_at(level, &packets(&self.inputs.wo[..8])[0])
+    }
+
+    /// The question at [`gather`](Self::gather).
+    fn at_one(&self, given: Given) -> Asked {
+        Asked { hair: HairParams::default(), wo: self.inputs.wo[0], given }
+    }
+
+    /// The question at a lane of [`gather8`](Self::gather8).
+    fn at_lane(&self, i: usize, given: Given) -> Asked {
+        Asked { hair: hair()[i % 8], wo: self.inputs.wo[i % 8], given }
+    }
+
+    /// The question at a gather point of its own, on one head of hair.
+    fn shared(&self, i: usize, given: Given) -> Asked {
+        Asked { hair: HairParams::default(), wo: self.inputs.wo[i], given }
+    }
+
+    /// The same on eight heads of hair.
+    fn mixed_hair(&self, i: usize, given: Given) -> Asked {
+        Asked { hair: hair()[i % 8], wo: self.inputs.wo[i], given }
+    }
+
+    fn prepare(&self, visitor: &mut impl Visitor) {
+        let inputs = self.inputs;
+        let shared = |i| self.shared(i, Given::Wi(PROBE));
+        let mixed = |i| self.mixed_hair(i, Given::Wi(PROBE));
+        self.show(visitor, TEXTBOOK, "scalar", shared, || {
+            let (parameters, shape) = (self.parameters(), self.shape);
+            Each::new(1, arrays(&inputs.wo), move |wo| Textbook::prepare(&parameters, shape, *wo))
+        });
+        self.show(visitor, "prepare", "scalar", shared, || {
+            let bsdf = self.bsdf();
+            Each::new(1, inputs.wo.clone(), move |wo| bsdf.prepare(*wo))
+        });
+        for level in Level::available() {
+            self.show(visitor, "prepare8-shared", label(level), shared, || {
+                let bsdf = self.bsdf();
+                Each::new(8, packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo))
+            });
+            self.show(visitor, "prepare8-mixed", label(level), mixed, || {
+                let bsdf = self.mixed();
+                Each::new(8, packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo))
+            });
+        }
+    }
+
+    fn eval(&self, visitor: &mut impl Visitor) {
+        let inputs = self.inputs;
+        let one = |i| self.at_one(Given::Wi(inputs.wi[i]));
+        let lane = |i| self.at_lane(i, Given::Wi(inputs.wi[i]));
+        self.show(visitor, TEXTBOOK, "scalar", one, || {
+            let textbook = Textbook::prepare(&self.parameters(), self.shape, inputs.wo[0].to_array());
+            Each::new(1, arrays(&inputs.wi), move |wi| textbook.eval_pdf(*wi))
+        });
+        self.show(visitor, "eval_pdf", "scalar", one, || {
+            let gather = self.gather();
+            Each::new(1, inputs.wi.clone(), move |wi| gather.eval_pdf(*wi))
+        });
+        for level in Level::available() {
+            self.show(visitor, "eval_pdf8", label(level), one, || {
+                let gather = self.gather();
+                Each::new(8, packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi))
+            });
+            self.show(visitor, "eval_pdf8-points", label(level), lane, || {
+                let gather = self.gather8(level);
+                Each::new(8, packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi))
+            });
+            for (entry, len) in [("eval_pdf_batch", DIRECTIONS), ("eval_pdf_batch-short", SHORT)] {
+                self.show(visitor, entry, label(level), one, || {
+                    let gather = self.gather();
+                    Slices::new(len, &arrays(&inputs.wi), move |wi, [r, g, b, pdf]: [&mut [f32]; 4]| {
+                        gather.eval_pdf_batch_at(level, wi, EvalSlices { value: [r, g, b], pdf })
+                    })
+                });
+            }
+            self.show(visitor, "eval_batch", label(level), one, || {
+                let gather = self.gather();
+                Slices::new(DIRECTIONS, &arrays(&inputs.wi), move |wi, value: [&mut [f32]; 3]| {
+                    gather.eval_batch_at(level, wi, value)
+                })
+            });
+            self.show(visitor, "pdf_batch", label(level), one, || {
+                let gather = self.gather();
+                Slices::new(DIRECTIONS, &arrays(&inputs.wi), move |wi, [pdf]: [&mut [f32]; 1]| {
+                    gather.pdf_batch_at(level, wi, pdf)
+                })
+            });
+        }
+    }
+
+    fn sample(&self, visitor: &mut impl Visitor) {
+        let inputs = self.inputs;
+        let one = |i| self.at_one(Given::Xi(inputs.xi[i]));
+        let lane = |i| self.at_lane(i, Given::Xi(inputs.xi[i]));
+        self.show(visitor, TEXTBOOK, "scalar", one, || {
+            let textbook = Textbook::prepare(&self.parameters(), self.shape, inputs.wo[0].to_array());
+            Each::new(1, inputs.xi.clone(), move |xi| textbook.sample(*xi))
+        });
+        self.show(visitor, "sample", "scalar", one, || {
+            let gather = self.gather();
+            Each::new(1, inputs.xi.clone(), move |xi| gather.sample(*xi))
+        });
+        for level in Level::available() {
+            self.show(visitor, "sample8", label(level), one, || {
+                let gather = self.gather();
+                Each::new(8, xi_packets(&inputs.xi), move |xi| gather.sample8_at(level, xi))
+            });
+            self.show(visitor, "sample8-points", label(level), lane, || {
+                let gather = self.gather8(level);
+                Each::new(8, xi_packets(&inputs.xi), move |xi| gather.sample8_at(level, xi))
+            });
+            for (entry, len) in [("sample_batch", DIRECTIONS), ("sample_batch-short", SHORT)] {
+                self.show(visitor, entry, label(level), one, || {
+                    let gather = self.gather();
+                    Slices::new(
+                        len,
+                        &inputs.xi,
+                        move |xi, [r, g, b, pdf, u, v, w, weight_r, weight_g, weight_b, slot]: [&mut [f32]; 11]| {
+                            let weight = [weight_r, weight_g, weight_b];
+                            let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight, slot };
+                            gather.sample_batch_at(level, xi, out)
+                        },
+                    )
+                });
+            }
+        }
+    }
+
+    /// A gather point and `samples` samples of it: the answers checked are those of the last call.
+    fn path(&self, visitor: &mut impl Visitor, samples: usize) {
+        let inputs = self.inputs;
+        // The numbers of a path are the first that were drawn, whatever the gather point.
+        let (xi, eights) = (&inputs.xi[..samples], xi_packets(&inputs.xi));
+        let packets_at_one = samples.div_ceil(8);
+        let scalar = |i| self.shared(i, Given::Xi(xi[samples - 1]));
+        let one = |i| self.shared(i / 8, Given::Xi(inputs.xi[8 * (packets_at_one - 1) + i % 8]));
+        let eight = |i| self.mixed_hair(i, Given::Xi(inputs.xi[8 * (samples - 1) + i % 8]));
+        self.show(visitor, TEXTBOOK, "scalar", scalar, || {
+            let (parameters, shape, xi) = (self.parameters(), self.shape, xi.to_vec());
+            Each::new(samples, arrays(&inputs.wo), move |wo| {
+                let textbook = Textbook::prepare(&parameters, shape, *wo);
+                last(&xi, |xi| textbook.sample(*xi))
+            })
+        });
+        self.show(visitor, "prepare-sample", "scalar", scalar, || {
+            let (bsdf, xi) = (self.bsdf(), xi.to_vec());
+            Each::new(samples, inputs.wo.clone(), move |wo| {
+                let gather = bsdf.prepare(*wo);
+                last(&xi, |xi| gather.sample(*xi))
+            })
+        });
+        for level in Level::available() {
+            // Eight directions at one gather point; of the last packet only so many lanes count as are asked for.
+            self.show(visitor, "prepare-sample8", label(level), one, || {
+                let (bsdf, xi) = (self.bsdf(), eights[..packets_at_one].to_vec());
+                Each::new(samples, inputs.wo.clone(), move |wo| {
+                    let gather = bsdf.prepare(*wo);
+                    last(&xi, |xi| gather.sample8_at(level, xi))
+                })
+            });
+            // Eight gather points on eight heads of hair.
+            self.show(visitor, "prepare8-sample8", label(level), eight, || {
+                let (bsdf, xi) = (self.mixed(), eights[..samples].to_vec());
+                Each::new(8 * samples, packets(&inputs.wo), move |wo| {
+                    let gather = bsdf.prepare8_at(level, wo);
+                    last(&xi, |xi| gather.sample8_at(level, xi))
+                })
+            });
+        }
+    }
+}
+
+/// What the last call gives; the results of the others are left in memory and thrown away.
+#[inline(always)]
+fn last<X, O>(inputs: &[X], call: impl Fn(&X) -> O) -> O {
+    let [before @ .., input] = inputs else { unreachable!("there is at least one sample") };
+    for input in before {
+        black_box(&call(black_box(input)));
+    }
+    call(black_box(input))
+}
+
+fn arrays(v: &[Vec3]) -> Vec<[f32; 3]> {
+    v.iter().map(|v| v.to_array()).collect()
+}

@@ -1,0 +1,202 @@
+//! One entry point on its inputs, and its answers in one form for all entry points.
+
+use crate::inputs::{Column, DIRECTIONS};
+use core::array::from_fn;
+use core::hint::black_box;
+use core::marker::PhantomData;
+use glam::Vec3;
+use hairis::textbook::{self, Textbook};
+use hairis::{Eval, Eval8, Gather, Gather8, HairParams, LengthError, Model, Sample, Sample8, Vec3x8};
+
+/// Where gather points are evaluated to check how they were prepared: no lobe of it is negligible.
+pub const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
+
+/// What an entry point says of one direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Answer {
+    /// The direction it drew; `None` if it was given one, zero if it discarded the sample.
+    pub wi: Option<Vec3>,
+    /// S, unless it was not asked for.
+    pub value: Option<[f32; 3]>,
+    /// Density, unless it was not asked for.
+    pub pdf: Option<f32>,
+}
+
+/// An entry point and the arguments of all its calls.
+pub trait Task {
+    /// Calls in a pass.
+    fn calls(&self) -> usize;
+    /// Directions that a call answers for.
+    fn directions(&self) -> usize;
+    /// One call, its result left in memory and thrown away.
+    fn call(&mut self, index: usize);
+    /// The answers of a pass, in the order of the directions.
+    fn answers(&mut self) -> Vec<Answer>;
+}
+
+/// The result of one call: of one direction, or of eight.
+pub trait Output {
+    /// Adds an answer for each direction.
+    fn answers(&self, out: &mut Vec<Answer>);
+}
+
+/// A function of one argument and the arguments it is given.
+#[derive(Debug)]
+pub struct Each<I, O, F> {
+    inputs: Vec<I>,
+    directions: usize,
+    call: F,
+    output: PhantomData<fn() -> O>,
+}
+
+impl<I, O: Output, F: Fn(&I) -> O> Each<I, O, F> {
+    /// Calls `call` once for each of `inputs`; a call answers for `directions` directions.
+    pub const fn new(directions: usize, inputs: Vec<I>, call: F) -> Self {
+        Self { inputs, directions, call, output: PhantomData }
+    }
+}
+
+impl<I, O: Output, F: Fn(&I) -> O> Task for Each<I, O, F> {
+    fn calls(&self) -> usize {
+        self.inputs.len()
+    }
+    fn directions(&self) -> usize {
+        self.directions
+    }
+    // References are hidden from the optimiser, not values, so that nobody pays for a copy; and calls stay apart, so
+    // that no loop over one lane is made into one over four.
+    #[inline(always)]
+    fn call(&mut self, index: usize) {
+        black_box(&(self.call)(black_box(&self.inputs[index])));
+    }
+    fn answers(&mut self) -> Vec<Answer> {
+        let mut out = Vec::new();
+        for input in &self.inputs {
+            (self.call)(input).answers(&mut out);
+        }
+        out
+    }
+}
+
+/// A function from three slices to `N` (the density; the value; or the value, the density and more), and the columns that
+/// it is given parts of.
+#[derive(Debug)]
+pub struct Slices<F, const N: usize> {
+    inputs: [Column; 3],
+    outputs: [Column; N],
+    len: usize,
+    call: F,
+}
+
+impl<F, const N: usize> Slices<F, N>
+where
+    F: Fn([&[f32]; 3], [&mut [f32]; N]) -> Result<(), LengthError>,
+{
+    /// Calls `call` on `len` rows after `len` rows.
+    pub fn new(len: usize, rows: &[[f32; 3]], call: F) -> Self {
+        Self {
+            inputs: from_fn(|k| Column::new(k, rows.iter().map(|row| row[k]))),
+            outputs: from_fn(|k| Column::new(3 + k, [])),
+            len,
+            call,
+        }
+    }
+}
+
+impl<F, const N: usize> Task for Slices<F, N>
+where
+    F: Fn([&[f32]; 3], [&mut [f32]; N]) -> Result<(), LengthError>,
+{
+    fn calls(&self) -> usize {
+        DIRECTIONS / self.len
+    }
+    fn directions(&self) -> usize {
+        self.len
+    }
+    #[inline(always)]
+    fn call(&mut self, index: usize) {
+        let (at, len) = (index * self.len, self.len);
+        let [a, b, c] = black_box(&self.inputs);
+        let inputs = [a.part(at, len), b.part(at, len), c.part(at, len)];
+        // All slices are of one length; if they were not, the answers would be found wrong.
+        let done = (self.call)(inputs, self.outputs.each_mut().map(|column| column.part_mut(at, len)));
+        black_box((&self.outputs, done.is_ok()));
+    }
+    fn answers(&mut self) -> Vec<Answer> {
+        let calls = self.calls();
+        (0..calls).for_each(|index| self.call(index));
+        let at = |k: usize, i: usize| self.outputs[k].part(i, 1)[0];
+        (0..calls * self.len)
+            .map(|i| Answer {
+                wi: (N > 4).then(|| Vec3::new(at(4, i), at(5, i), at(6, i))),
+                value: (N >= 3).then(|| [at(0, i), at(1, i), at(2, i)]),
+                pdf: match N {
+                    1 => Some(at(0, i)),
+                    3 => None,
+                    _ => Some(at(3, i)),
+                },
+            })
+            .collect()
+    }
+}
+
+impl Output for ([f32; 3], f32) {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        out.push(Answer { wi: None, value: Some(self.0), pdf: Some(self.1) });
+    }
+}
+
+impl Output for Eval {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        out.push(Answer { wi: None, value: Some(self.value), pdf: Some(self.pdf) });
+    }
+}
+
+impl Output for Eval8 {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        for lane in 0..8 {
+            self.lane(lane).answers(out);
+        }
+    }
+}
+
+impl Output for textbook::Drawn<f32> {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        out.push(Answer { wi: Some(self.wi.into()), value: Some(self.value), pdf: Some(self.pdf) });
+    }
+}
+
+impl Output for Option<Sample> {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        out.push(match self {
+            Some(sample) => Answer { wi: Some(sample.wi), value: Some(sample.value), pdf: Some(sample.pdf) },
+            None => Answer { wi: Some(Vec3::ZERO), value: Some([0.0; 3]), pdf: Some(0.0) },
+        });
+    }
+}
+
+impl Output for Sample8 {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        for lane in 0..8 {
+            self.lane(lane).answers(out);
+        }
+    }
+}
+
+impl Output for Textbook<f32> {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        self.eval_pdf(PROBE.to_array()).answers(out);
+    }
+}
+
+impl<M: Model<Params = HairParams>> Output for Gather<M> {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        self.eval_pdf(PROBE).answers(out);
+    }
+}
+
+impl<M: Model<Params = HairParams>> Output for Gather8<M> {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        self.eval_pdf8(&Vec3x8::splat(PROBE)).answers(out);
+    }
+}

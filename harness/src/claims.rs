@@ -1,0 +1,132 @@
+//! The paper's claims, each with its figures and a verdict that they decide.
+//!
+//! - `energy`: the estimated energies are within 1%.
+//! - `tails`: wider tails do not increase variance.
+//! - `uniform`: always better than uniform sampling.
+//! - `grazing`: discarding samples at grazing angles does no harm.
+//! - `performance`: the all-Cauchy model is sampled better, light by light.
+//! - `bounds`, `glint`: what the misprints cost, and the interval of the glint.
+//!
+//! # How a verdict comes about
+//!
+//! A [`Claim`] has a [`Threshold`], stated beside it, and two figures that are held against it: the worst of all the cases
+//! the claim is made for, and the worst within stated limits. If the first keeps the threshold, the claim holds; if only
+//! the second does, it holds within those limits; else it is false. A figure keeps it if it does so with two of its
+//! standard errors to spare, or with the error of the quadrature. Nothing else enters ([`Claim::verdict`]).
+//!
+//! # Determinism
+//!
+//! Figures depend on the seed and on the build, whatever the number of threads; those whose [`Origin`] is
+//! [`Timed`](Origin::Timed), all in one claim, depend on the machine as well.
+
+mod bounds;
+mod claim;
+mod energy;
+mod glint;
+mod grazing;
+mod hair;
+mod performance;
+mod tables;
+mod tails;
+mod uniform;
+
+pub use claim::{Claim, Figure, Origin, Role, Side, Threshold, Verdict};
+pub use tables::tables;
+
+use crate::efficiency::ModelKind;
+use crate::light::Sky;
+use crate::machine::Machine;
+use crate::study::{Cell, Grid, Plan};
+use hair::{Found, Hair};
+use hairis::ParamError;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// What to compute.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClaimsConfig {
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+    /// Whether to take the 48 cells and the samples of the short study, in place of all 3024.
+    pub quick: bool,
+}
+
+/// Everything that was found; `claims.json` is this.
+#[derive(Clone, Debug, Serialize)]
+pub struct Claims {
+    /// The command's settings.
+    pub settings: Settings,
+    /// Where it ran, and what ran.
+    pub machine: Machine,
+    /// The claims, in the order of the paper's sections but for the misprints, which come last.
+    pub claims: Vec<Claim>,
+}
+
+/// What the figures depend on.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Settings {
+    /// Seed of everything that was drawn.
+    pub seed: u64,
+    /// Whether it was the short run.
+    pub quick: bool,
+    /// Cells of the parameter grid.
+    pub cells: usize,
+    /// Samples of each model in a cell.
+    pub samples: usize,
+    /// The lights, in the order of the claims.
+    pub lights: [&'static str; 5],
+}
+
+/// What quadrature finds of every cell and model.
+type Cells = [(Cell, ModelKind, Found)];
+
+/// Computes the claims. `progress` is told the share that is done, from 0 to 1, from the workers and in no order.
+///
+/// # Errors
+///
+/// Never in practice: the hair of the grid is within the accepted ranges.
+pub fn run(config: ClaimsConfig, progress: &(dyn Fn(f64) + Sync)) -> Result<Claims, ParamError> {
+    let sky = Sky::default().environment();
+    let plan = Plan { seed: config.seed, quick: config.quick, environment: &sky };
+    let grid = plan.grid();
+    // Quadrature and sampling take about as long.
+    let half = |begin: f64, done: usize| progress(begin + 0.5 * done as f64 / grid.len() as f64);
+    let cells = by_quadrature(grid, &|done| half(0.0, done))?;
+
+    let mut claims = vec![energy::claim(), tails::claim(), uniform::claim(&plan, &cells)?, grazing::claim()];
+    claims.extend(performance::claims(&plan, &|done| half(0.5, done))?);
+    claims.extend([bounds::claim(&cells), glint::density(&cells)?, glint::interval(&cells)?]);
+    let settings = Settings {
+        seed: config.seed,
+        quick: config.quick,
+        cells: grid.len(),
+        samples: plan.budget().samples,
+        lights: performance::LIGHTS,
+    };
+    Ok(Claims { settings, machine: Machine::current(), claims })
+}
+
+/// The hair of a cell.
+fn hair_of(cell: &Cell, model: ModelKind) -> Result<Hair, ParamError> {
+    Ok(Hair::new(model, &cell.params()?, f64::from(cell.theta_o_deg).to_radians()))
+}
+
+/// Integrates every cell of `grid` on all cores. `done` is told how many cells are.
+fn by_quadrature(grid: Grid, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<(Cell, ModelKind, Found)>, ParamError> {
+    let finished = core::sync::atomic::AtomicUsize::new(0);
+    let of_cell = |index: usize| {
+        let cell = grid.cell(index);
+        let found = ModelKind::ALL.map(|model| Ok((cell, model, hair_of(&cell, model)?.found())));
+        done(finished.fetch_add(1, core::sync::atomic::Ordering::Relaxed) + 1);
+        found
+    };
+    (0..grid.len()).into_par_iter().with_max_len(1).flat_map_iter(of_cell).collect()
+}
+
+impl Claims {
+    /// The claim of this name.
+    #[must_use]
+    pub fn claim(&self, id: &str) -> Option<&Claim> {
+        self.claims.iter().find(|claim| claim.id == id)
+    }
+}

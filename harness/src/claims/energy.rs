@@ -1,0 +1,123 @@
+//! The estimated energies: how far they are from the integrals they stand for.
+
+use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, largest};
+use super::hair::theta_h_interval;
+use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
+use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::textbook::Shape;
+
+const WORDS: Words = Words {
+    id: "energy-within-1-percent",
+    quotation: "The approximation error is less than 1% for β < 30° and |α| < 20°.",
+    source: "section 3.2.3",
+};
+
+/// The claimed range, in degrees.
+const BETA: f64 = 30.0;
+const ALPHA: f64 = 20.0;
+
+/// Inclinations at which the claim is tested, in degrees.
+const THETA_O: [f64; 2] = [0.0, 75.0];
+
+/// Widest R, TT or TRT within the limits, in degrees.
+const NARROW: f64 = 10.0;
+
+const THRESHOLD: Threshold = Threshold {
+    of: "relative error of the longitudinal integral √(2π) β",
+    side: Side::AtMost,
+    bound: 0.01,
+    limits: "θ_o = 0°, β ≤ 10°, |α| ≤ 20°",
+};
+
+/// Relative error of the integral of a Gaussian over the whole line in place of that over `interval`; all in degrees.
+fn error(alpha: f64, beta: f64, interval: [f64; 2]) -> Bounded {
+    let [alpha, beta] = [alpha, beta].map(f64::to_radians);
+    let [lo, hi] = interval;
+    let mut breaks = vec![lo, hi];
+    breaks.extend(bell_breakpoints(alpha, beta).into_iter().filter(|x| (lo..=hi).contains(x)));
+    let r = integrate(|x| [Shape::Gaussian.bell(beta, x - alpha)], &breaks, &Tolerance::default());
+    let whole = (2.0 * PI).sqrt() * beta;
+    Bounded { value: 1.0 - r.value[0] / whole, error: f64::EPSILON + r.error[0] / whole }.magnitude()
+}
+
+/// The largest error over the claimed shifts and the widths up to `beta`, in steps of half a degree.
+fn worst(interval: [f64; 2], beta: f64) -> Bounded {
+    largest(steps(beta).flat_map(|beta| shifts().map(move |alpha| error(alpha, beta, interval))))
+}
+
+/// Widths from half a degree to `most`, in degrees.
+fn steps(most: f64) -> impl Iterator<Item = f64> {
+    (1..).map(|n| 0.5 * f64::from(n)).take_while(move |beta| *beta <= most)
+}
+
+/// Shifts over the claimed range, in degrees: the ends, where the error is largest, among them.
+fn shifts() -> impl Iterator<Item = f64> {
+    (-4..=4).map(|n| f64::from(n) * ALPHA / 4.0)
+}
+
+/// The widest lobe of which all narrower ones, shifted as claimed, are within 1%, in degrees; 0 if none is.
+fn widest(interval: [f64; 2]) -> f64 {
+    let kept = |beta: f64| shifts().all(|alpha| error(alpha, beta, interval).value < THRESHOLD.bound);
+    steps(BETA).take_while(|beta| kept(*beta)).last().unwrap_or(0.0)
+}
+
+/// The claim.
+pub(super) fn claim() -> Claim {
+    let real = THETA_O.map(|theta_o| theta_h_interval(theta_o.to_radians()));
+    let seen = real.map(|interval| worst(interval, BETA));
+    let widest_lobe = real.map(|interval| largest(shifts().map(|alpha| error(alpha, BETA, interval))));
+    let limits = real.map(widest);
+    let printed = worst([-FRAC_PI_2, FRAC_PI_2], BETA);
+    let figure = |name: &str, of| Figure::integral(name, of, "");
+    let degrees = |name: &str, value| Figure::integral(name, Bounded { value, error: 0.5 }, "°");
+    let sentence = format!(
+        "That is so if θ_h runs over ±90° ({:.2}%); it runs over ±45° about θ_o/2, where the error reaches {:.0}% seen \
+         from 0° and {:.0}% from 75° (a narrow lobe off the sphere); from 0° it stays below 1% for β up to {}°.",
+        100.0 * printed.value,
+        100.0 * seen[0].value,
+        100.0 * seen[1].value,
+        limits[0],
+    );
+    Claim::judge(
+        WORDS,
+        THRESHOLD,
+        [
+            figure("largest error in the claimed range, θ_o = 0° and 75°", largest(seen)),
+            figure("largest error for β ≤ 10°, θ_o = 0°", worst(real[0], NARROW)),
+        ],
+        vec![
+            figure("largest error, θ_o = 0°", seen[0]),
+            figure("largest error, θ_o = 75°", seen[1]),
+            figure("largest error at β = 30°, θ_o = 75°", widest_lobe[1]),
+            figure("largest error if θ_h ran over ±90°", printed),
+            degrees("widest β for which it holds, θ_o = 0°", limits[0]),
+            degrees("widest β for which it holds, θ_o = 75°", limits[1]),
+        ],
+        sentence,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_the_tails_of_the_normal_distribution() {
+        // One and two deviations either side of the centre: 31.73% and 4.55% lie beyond.
+        for (reach, beyond) in [(1.0_f64, 0.317_310_507_862_914), (2.0, 0.045_500_263_896_358)] {
+            let end = (10.0 * reach).to_radians();
+            let got = error(0.0, 10.0, [-end, end]);
+            assert!((got.value - beyond).abs() < 1e-10 && got.error < 1e-9, "{got:?}");
+        }
+    }
+
+    #[test]
+    fn the_largest_error_is_at_the_ends_of_the_shifts() {
+        let interval = theta_h_interval(0.0);
+        for beta in [5.0, 15.0, 30.0] {
+            let ends = largest([-ALPHA, ALPHA].map(|alpha| error(alpha, beta, interval)));
+            let inside = largest((-19..=19).map(|alpha| error(f64::from(alpha), beta, interval)));
+            assert!(inside.value < ends.value, "{beta}: {inside:?} {ends:?}");
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! The glint's density: printed without an end, and its end at a right angle.
+
+use super::Cells;
+use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, geometric_mean, largest, smallest};
+use super::hair::{Found, Hair, whole_glint};
+use crate::efficiency::ModelKind;
+use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
+use crate::study::Grid;
+use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::textbook::Parameters;
+use hairis::{HairDesc, HairParams, ParamError};
+
+const DENSITY: Words = Words {
+    id: "misprint-glint-density",
+    quotation: "p(φ_i) = p(φ)/2 = γ_g / (2 (C_g − D_g) ((|φ| − φ_g)² + γ_g²))",
+    source: "section 3.2.2, appendix D",
+};
+
+const DENSITY_THRESHOLD: Threshold = Threshold {
+    of: "total of the density over all azimuths, less 1",
+    side: Side::AtMost,
+    bound: 1e-6,
+    limits: "the glints of the parameter grid with the smallest excess",
+};
+
+const INTERVAL: Words = Words {
+    id: "glint-interval",
+    quotation: "Then we sample φ in the domain [0, π/2], and change its sign to its corresponding half of the lobe.",
+    source: "appendix D",
+};
+
+const INTERVAL_THRESHOLD: Threshold = Threshold {
+    of: "growth of V, constant light, from azimuths up to 1e-7 rad from π to those up to 1e-8 rad",
+    side: Side::AtMost,
+    bound: 1e-6,
+    limits: "hair that transmits (TT) besides",
+};
+
+/// Distances from `|phi| = pi` at which the second moment is cut off, rad.
+const GAPS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
+
+/// Every pair of widths and half angles of the grid's glints, of the stronger kind, without R and, unless `tt`, without TT.
+fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
+    let base = *HairParams::default().desc();
+    let (grid, none) = (Grid::FULL, [0.0; 3]);
+    let strongest = grid.intensity_g.iter().copied().fold(0.0, f32::max);
+    let mut all = Vec::new();
+    for gamma_g in grid.gamma_g_deg {
+        for phi_g in grid.phi_g_deg {
+            all.push(HairParams::new(&HairDesc {
+                gamma_g: gamma_g.to_radians(),
+                phi_g: phi_g.to_radians(),
+                intensity_g: strongest,
+                intensity_r: none,
+                intensity_tt: if tt { base.intensity_tt } else { none },
+                ..base
+            })?);
+        }
+    }
+    Ok(all)
+}
+
+/// Total of the printed density, less 1.
+fn excess(params: &HairParams) -> Bounded {
+    let glint = whole_glint(&Parameters::from(params));
+    let printed = |phi: f64| [glint.pdf(phi) / glint.cdf(FRAC_PI_2)];
+    let d = params.desc();
+    let mut breaks = vec![0.0, FRAC_PI_2, PI];
+    breaks.extend(bell_breakpoints(f64::from(d.phi_g), f64::from(d.gamma_g)));
+    breaks.retain(|x| (0.0..=PI).contains(x));
+    let r = integrate(printed, &breaks, &Tolerance::default());
+    Bounded { value: r.value[0], error: r.error[0] }.plus(-1.0)
+}
+
+/// The printed density.
+pub(super) fn density(cells: &Cells) -> Result<Claim, ParamError> {
+    let glints = glints(false)?;
+    let excesses = || glints.iter().map(excess);
+    let bias = || cells.iter().map(|(.., found)| found.uncut_bias.magnitude());
+    let (most, least) = (largest(excesses()), smallest(excesses()));
+    let sentence = format!(
+        "Samples end at a right angle and the printed density does not: it totals {:.3} to {:.3}, and an estimator that \
+         divides by it is up to {:.1}% too dark.",
+        1.0 + least.value,
+        1.0 + most.value,
+        100.0 * largest(bias()).value,
+    );
+    let figure = |name: &str, of| Figure::integral(name, of, "");
+    Ok(Claim::judge(
+        DENSITY,
+        DENSITY_THRESHOLD,
+        [
+            figure("total of the density above 1, most on the grid", most),
+            figure("total of the density above 1, least on the grid", least),
+        ],
+        vec![
+            figure("relative loss of an estimator that divides by it, most", largest(bias())),
+            figure("relative loss of an estimator that divides by it, least", smallest(bias())),
+        ],
+        sentence,
+    ))
+}
+
+/// V with azimuths up to `gap` from pi, of the published sampler and with glints drawn from [0, pi].
+fn up_to(hair: &Hair, gap: f64) -> [Bounded; 2] {
+    let decades = (1..).map(|k| 10.0_f64.powi(-k)).take_while(|x| *x > gap);
+    let ends: Vec<f64> = [0.0].into_iter().chain(decades.map(|x| PI - x)).chain([PI - gap]).collect();
+    hair.second_moments(&ends).map(|of| of.plus(-1.0))
+}
+
+/// What azimuths from `10 gap` to `gap` away from pi add to V.
+fn decade(hair: &Hair, gap: f64) -> [Bounded; 2] {
+    hair.second_moments(&[PI - 10.0 * gap, PI - gap])
+}
+
+/// The end at a right angle.
+pub(super) fn interval(cells: &Cells) -> Result<Claim, ParamError> {
+    let (alone, with_tt) = (glints(false)?, glints(true)?);
+    let last = GAPS[GAPS.len() - 1];
+    let growth = |model: ModelKind, all: &[HairParams], place: usize| {
+        largest(all.iter().map(|params| decade(&Hair::new(model, params, 0.0), last)[place]))
+    };
+    let both = |all: &[HairParams], place: usize| largest(ModelKind::ALL.map(|model| growth(model, all, place)));
+    let (worst, transmits) = (both(&alone, 0), both(&with_tt, 0));
+    // The glints that leave most of themselves behind: the widest, furthest from the viewer.
+    let widest = alone.last().map(|params| Hair::new(ModelKind::Cauchy, params, 0.0));
+    let growing = widest.map(|hair| GAPS.map(|gap| (gap, up_to(&hair, gap))));
+    let ratio = |found: &Found| found.ou.over(found.whole);
+    let ratios = || cells.iter().map(|(.., found)| ratio(found));
+    let mean = geometric_mean(ratios());
+    let sentence = format!(
+        "Behind a right angle TRT-g alone covers the tail of the glints and vanishes at π: without R and TT the variance \
+         on the Cauchy model is infinite, V growing by {:.4} a decade; with all lobes V is {:.3} times that of glints \
+         drawn from [0, π] (geometric mean; {:.2} to {:.2}).",
+        worst.value,
+        mean.value,
+        smallest(ratios()).value,
+        largest(ratios()).value,
+    );
+    let figure = |name: String, of| Figure::integral(name, of, "");
+    let mut further = vec![
+        figure("growth of V, TRT and glints alone, Gaussian".to_owned(), growth(ModelKind::Gaussian, &alone, 0)),
+        figure("growth of V, TRT and glints alone, glints on [0, π]".to_owned(), both(&alone, 1)),
+    ];
+    let at = "γ_g = 20°, φ_g = 45°, I_g = 5, Cauchy";
+    for (gap, [ou, whole]) in growing.into_iter().flatten() {
+        further.push(figure(format!("V up to {gap:e} rad from π, {at}"), ou));
+        if gap == last {
+            further.push(figure(format!("the same, glints on [0, π], {at}"), whole));
+        }
+    }
+    further.extend([
+        figure("V over V of glints on [0, π], all lobes, geometric mean".to_owned(), mean),
+        figure("V over V of glints on [0, π], all lobes, most".to_owned(), largest(ratios())),
+        figure("V over V of glints on [0, π], all lobes, least".to_owned(), smallest(ratios())),
+    ]);
+    Ok(Claim::judge(
+        INTERVAL,
+        INTERVAL_THRESHOLD,
+        [
+            figure("growth of V, TRT and glints alone, most of the grid's glints".to_owned(), worst),
+            figure("growth of V, TT besides, most of the grid's glints".to_owned(), transmits),
+        ],
+        further,
+        sentence,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_printed_density_exceeds_one_by_what_lies_beyond() {
+        let base = *HairParams::default().desc();
+        let params = HairParams::new(&HairDesc { phi_g: 0.61, gamma_g: 0.17, ..base }).expect("accepted");
+        let arc = |end: f64| ((end - 0.61) / 0.17_f64).atan();
+        let want = (arc(PI) - arc(0.0)) / (arc(FRAC_PI_2) - arc(0.0)) - 1.0;
+        let got = excess(&params);
+        assert!((got.value - want).abs() < 1e-6 && (got.value - 0.04).abs() < 5e-3, "{got:?} {want}");
+    }
+
+    #[test]
+    fn every_decade_adds_the_same_and_nothing_when_glints_reach_the_end() {
+        let params = *glints(false).expect("accepted").last().expect("some");
+        let hair = Hair::new(ModelKind::Cauchy, &params, 0.0);
+        let [[first, first_whole], [last, last_whole]] = [1e-5, 1e-8].map(|gap| decade(&hair, gap));
+        assert!((last.value / first.value - 1.0).abs() < 0.01 && last.value > 1e-3, "{first:?} {last:?}");
+        assert!(last_whole.value < 2e-3 * first_whole.value, "{first_whole:?} {last_whole:?}");
+        let [[near, _], [far, _]] = [1e-8, 1e-7].map(|gap| up_to(&hair, gap));
+        assert!((near.value - far.value - last.value).abs() < 1e-5, "{near:?} {far:?} {last:?}");
+    }
+}

@@ -1,0 +1,238 @@
+//! One hair seen from one direction, by quadrature over the oracle: the published density beside the misprinted ones.
+
+use super::claim::Bounded;
+use crate::efficiency::{ModelKind, with_beta};
+use crate::quadrature::{Tolerance, bell_breakpoints, fibre_direction, integrate_rectangle};
+use crate::study::Grid;
+use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::textbook::{Parameters, Shape, Textbook, TruncatedCauchy};
+use hairis::{HairParams, Lobe, PerLobe};
+
+/// The bell of a model.
+pub(super) const fn shape(model: ModelKind) -> Shape {
+    match model {
+        ModelKind::Gaussian => Shape::Gaussian,
+        ModelKind::Cauchy => Shape::Cauchy,
+    }
+}
+
+/// The interval of `theta_h` as `theta_i` runs over all inclinations, rad.
+pub(super) fn theta_h_interval(theta_o: f64) -> [f64; 2] {
+    [-FRAC_PI_2, FRAC_PI_2].map(|end| 0.5 * (theta_o + end))
+}
+
+/// A lobe's factor M, seen from an inclination; in rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Longitudinal {
+    pub(super) alpha: f64,
+    pub(super) beta: f64,
+    pub(super) theta_o: f64,
+}
+
+impl Longitudinal {
+    /// That of R, TT or TRT, by place.
+    pub(super) fn of(p: &Parameters<f64>, lobe: usize, theta_o: f64) -> Self {
+        Self { alpha: p.alpha[lobe], beta: p.beta[lobe], theta_o }
+    }
+
+    /// The interval of `theta_h`.
+    pub(super) fn interval(&self) -> [f64; 2] {
+        theta_h_interval(self.theta_o)
+    }
+
+    /// The share of the printed sampler's `theta_i` that are inclinations.
+    pub(super) fn printed_mass(&self) -> f64 {
+        let printed = printed_bounds(self.alpha, self.beta, self.theta_o);
+        let [lo, hi] = self.interval();
+        printed.cdf(hi) - printed.cdf(lo)
+    }
+}
+
+/// Every M of the parameter grid: three lobes of each width of R, from each inclination.
+pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
+    let mut all = Vec::new();
+    for beta_r_deg in Grid::FULL.beta_r_deg {
+        let Ok(params) = with_beta(&HairParams::default(), *beta_r_deg) else { continue };
+        let p = Parameters::from(&params);
+        for theta_o_deg in Grid::FULL.theta_o_deg {
+            let theta_o = f64::from(*theta_o_deg).to_radians();
+            all.extend([0, 1, 2].map(|lobe| Longitudinal::of(&p, lobe, theta_o)));
+        }
+    }
+    all
+}
+
+/// The longitudinal density that A and B normalise as printed, without the half: on an interval twice as long as that of
+/// `theta_h`.
+fn printed_bounds(alpha: f64, beta: f64, theta_o: f64) -> TruncatedCauchy<f64> {
+    TruncatedCauchy::new(alpha, beta, theta_o - FRAC_PI_2, theta_o + FRAC_PI_2)
+}
+
+/// A glint's density of `|phi|` on [0, pi]; as printed, without an end, it is this over its cdf at a right angle.
+pub(super) fn whole_glint(p: &Parameters<f64>) -> TruncatedCauchy<f64> {
+    TruncatedCauchy::new(p.phi_g, p.gamma_g, 0.0, PI)
+}
+
+/// A hair of a model seen from an inclination.
+pub(super) struct Hair {
+    parameters: Parameters<f64>,
+    oracle: Textbook<f64>,
+    theta_o: f64,
+}
+
+/// What is found of a hair, all under constant light and of the mean of RGB.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    /// V of uniform directions.
+    pub(super) uniform: Bounded,
+    /// V of the published sampler.
+    pub(super) ou: Bounded,
+    /// V of the published sampler with the printed A and B, where samples off the sphere count and contribute nothing.
+    pub(super) printed: Bounded,
+    /// V of the published sampler with glints drawn from [0, pi].
+    pub(super) whole: Bounded,
+    /// Relative bias of an estimator that draws as published and divides by the density whose glint does not end.
+    pub(super) uncut_bias: Bounded,
+    /// Share of the samples that the printed A and B lose.
+    pub(super) lost: f64,
+}
+
+impl Hair {
+    pub(super) fn new(model: ModelKind, params: &HairParams, theta_o: f64) -> Self {
+        let parameters = Parameters::from(params);
+        let wo = fibre_direction(theta_o, 0.0).to_array();
+        Self { parameters, oracle: Textbook::prepare(&parameters, shape(model), wo), theta_o }
+    }
+
+    /// Shares of the lobes' samples that the printed A and B leave on the sphere.
+    fn masses(&self) -> PerLobe<f64> {
+        let p = &self.parameters;
+        let of = |lobe: usize| Longitudinal::of(p, lobe, self.theta_o).printed_mass();
+        let mut masses = PerLobe::default();
+        masses[Lobe::R] = of(0);
+        masses[Lobe::TT] = of(1);
+        masses[Lobe::TRT] = of(2);
+        masses[Lobe::GLINT] = of(2);
+        masses
+    }
+
+    /// What is integrated, by place: y, the mean of RGB of `S cos theta_i`; its square over each density; and y times the
+    /// published density over the one whose glint does not end.
+    fn integrals(&self, phi: &[f64]) -> [Bounded; 6] {
+        let (masses, shares) = (self.masses(), self.oracle.probabilities());
+        let glint = whole_glint(&self.parameters);
+        let within = glint.cdf(FRAC_PI_2);
+        let sum = |of: &PerLobe<f64>| Lobe::ALL.into_iter().map(|lobe| shares[lobe] * of[lobe]).sum::<f64>();
+        let integrand = |theta_i: f64, phi: f64| {
+            let wi = fibre_direction(theta_i, phi).to_array();
+            let cos_theta_i = theta_i.cos();
+            let y = self.oracle.eval(wi).iter().sum::<f64>() / 3.0 * cos_theta_i;
+            let mut pdfs = self.oracle.lobe_pdfs(wi);
+            let ou = sum(&pdfs);
+            if ou <= 0.0 {
+                return [0.0; 6];
+            }
+            let printed = Lobe::ALL.into_iter().map(|lobe| shares[lobe] * masses[lobe] * pdfs[lobe]).sum::<f64>();
+            pdfs[Lobe::GLINT] = self.oracle.pdf_theta(Lobe::TRT, theta_i) * 0.5 * glint.pdf(phi) / cos_theta_i;
+            let whole = sum(&pdfs);
+            pdfs[Lobe::GLINT] /= within;
+            let uncut = sum(&pdfs);
+            let y_sq = y * y;
+            [y, y_sq * 4.0 * PI, y_sq / ou, y_sq / printed, y_sq / whole, y * (ou / uncut)].map(|x| x * cos_theta_i)
+        };
+        let r = integrate_rectangle(integrand, &self.theta_breakpoints(), phi, &Tolerance::relative(1e-6));
+        // Half the sphere: hair is the same for phi and -phi.
+        core::array::from_fn(|k| Bounded { value: 2.0 * r.value[k], error: 2.0 * r.error[k] })
+    }
+
+    /// All that is found of it.
+    pub(super) fn found(&self) -> Found {
+        let (masses, shares) = (self.masses(), self.oracle.probabilities());
+        let all = self.integrals(&self.phi_breakpoints());
+        let mean = all[0];
+        let v = |k: usize| all[k].over(mean.times(mean)).plus(-1.0);
+        Found {
+            uniform: v(1),
+            ou: v(2),
+            printed: v(3),
+            whole: v(4),
+            uncut_bias: all[5].over(mean).plus(-1.0),
+            lost: 1.0 - Lobe::ALL.into_iter().map(|lobe| shares[lobe] * masses[lobe]).sum::<f64>(),
+        }
+    }
+
+    /// What azimuths between `ends`, in [0, pi], add to `E[y^2] / E[y]^2`: of the published sampler, and with glints drawn
+    /// from [0, pi].
+    pub(super) fn second_moments(&self, ends: &[f64]) -> [Bounded; 2] {
+        let bounds = |x: &f64| ends.first().is_some_and(|lo| lo <= x) && ends.last().is_some_and(|hi| x <= hi);
+        let whole = self.phi_breakpoints();
+        let mean = self.integrals(&whole)[0];
+        let phi: Vec<f64> = whole.into_iter().filter(bounds).chain(ends.iter().copied()).collect();
+        let all = self.integrals(&phi);
+        [2, 4].map(|k| all[k].over(mean.times(mean)))
+    }
+
+    /// Ends of panels in `theta_i` that announce every bell.
+    fn theta_breakpoints(&self) -> Vec<f64> {
+        let p = &self.parameters;
+        let mut theta = vec![-FRAC_PI_2, 0.0, FRAC_PI_2];
+        for (alpha, beta) in p.alpha.iter().zip(p.beta) {
+            theta.extend(bell_breakpoints(2.0 * alpha - self.theta_o, 2.0 * beta));
+        }
+        theta.retain(|x| x.abs() <= FRAC_PI_2);
+        theta
+    }
+
+    /// Ends of panels in `phi` that do.
+    fn phi_breakpoints(&self) -> Vec<f64> {
+        let p = &self.parameters;
+        let mut phi = vec![0.0, FRAC_PI_2, PI];
+        phi.extend(bell_breakpoints(p.phi_g, p.gamma_g).into_iter().chain(bell_breakpoints(PI, p.gamma_tt)));
+        phi.retain(|x| (0.0..=PI).contains(x));
+        phi
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::efficiency::quadrature;
+    use crate::light::Constant;
+
+    #[test]
+    fn variances_are_those_of_the_whole_sphere() {
+        let params = HairParams::default();
+        for model in ModelKind::ALL {
+            for theta_o_deg in [0.0_f64, 45.0, 75.0] {
+                let found = Hair::new(model, &params, theta_o_deg.to_radians()).found();
+                let want = quadrature(model, &params, theta_o_deg, &Constant::white()).v;
+                for (got, want) in [found.uniform, found.ou].into_iter().zip(want) {
+                    assert!((got.value - want).abs() < 1e-5 && got.error < 1e-4, "{model:?}: {got:?} {want}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_lobe_alone_loses_what_its_mass_says() {
+        // With one lobe the printed density is the right one times its mass: the second moment grows by its inverse.
+        let mut desc = *HairParams::default().desc();
+        (desc.intensity_tt, desc.intensity_trt) = ([0.0; 3], [0.0; 3]);
+        let params = HairParams::new(&desc).expect("accepted");
+        let found = Hair::new(ModelKind::Gaussian, &params, 0.5).found();
+        let mass = Longitudinal::of(&Parameters::from(&params), 0, 0.5).printed_mass();
+        assert!((found.lost - (1.0 - mass)).abs() < 1e-12 && mass < 0.99, "{found:?} {mass}");
+        assert!(((1.0 + found.ou.value) / mass - 1.0 - found.printed.value).abs() < 1e-6, "{found:?} {mass}");
+        assert!(found.uncut_bias.value.abs() < 1e-9, "no glints, no bias: {found:?}");
+    }
+
+    #[test]
+    fn the_printed_mass_is_that_of_the_printed_constants() {
+        let (alpha, beta, theta_o) = (-0.1, 0.15, 0.4);
+        let span = |[lo, hi]: [f64; 2]| ((hi - alpha) / beta).atan() - ((lo - alpha) / beta).atan();
+        let want = span(theta_h_interval(theta_o)) / span([theta_o - FRAC_PI_2, theta_o + FRAC_PI_2]);
+        let got = Longitudinal { alpha, beta, theta_o }.printed_mass();
+        assert!((got - want).abs() < 1e-12 && (got - 0.923).abs() < 5e-4, "{got} {want}");
+        assert_eq!(longitudinal_grid().len(), 6 * 7 * 3, "widths, inclinations and lobes");
+    }
+}

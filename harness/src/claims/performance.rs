@@ -1,0 +1,137 @@
+//! The all-Cauchy model against the Gaussian one, each under the published sampler: the study's machinery, light by light.
+
+use super::claim::{Claim, Figure, Origin, Side, Threshold, Words};
+use crate::efficiency::ModelKind;
+use crate::stats::Estimate;
+use crate::study::Sampler;
+use crate::study::output::Times;
+use crate::study::{Plan, gain, in_equal_time, variances};
+use crate::table::number;
+use core::sync::atomic::{AtomicUsize, Ordering};
+use hairis::ParamError;
+use rayon::prelude::*;
+
+const QUOTATION: &str = "This new bsdf model introduces some very minor visual differences, but it is able to achieve a \
+                         better sampling performance.";
+const SOURCE: &str = "section 3.3";
+
+/// Names of the claims, in the order of the lights.
+const IDS: [&str; 5] = [
+    "cauchy-samples-better-constant",
+    "cauchy-samples-better-smooth",
+    "cauchy-samples-better-sun",
+    "cauchy-samples-better-area",
+    "cauchy-samples-better-sky",
+];
+
+/// The lights in words, in the order of the study.
+pub(super) const LIGHTS: [&str; 5] =
+    ["constant light", "smooth light", "a 5° sun", "a large area light along the fibre", "the procedural sky"];
+
+const THRESHOLD: Threshold = Threshold {
+    of: "V on the Gaussian model over V on the Cauchy model, published sampler",
+    side: Side::AtLeast,
+    bound: 1.0,
+    limits: "the geometric mean over the grid",
+};
+
+const IN_EQUAL_TIME: Threshold = Threshold {
+    of: "V times time, Gaussian over Cauchy, geometric mean over the grid",
+    side: Side::AtLeast,
+    bound: 1.0,
+    limits: "the light under which the Cauchy model gains most",
+};
+
+/// Samples of a gather point over which its set-up is spread in the comparison of times.
+const PER_POINT: usize = 16;
+
+/// V on both models in a cell, under each light.
+type Pairs = [[Estimate; 2]; 5];
+
+/// Measures every cell. `done` is called after each.
+fn measure(plan: &Plan<'_>, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Pairs>, ParamError> {
+    let (grid, finished) = (plan.grid(), AtomicUsize::new(0));
+    let cell = |index: usize| {
+        let v = variances(plan, plan.budget(), &grid.cell(index), &[Sampler::Ou])?;
+        done(finished.fetch_add(1, Ordering::Relaxed) + 1);
+        Ok(core::array::from_fn(|light| [v[light], v[LIGHTS.len() + light]]))
+    };
+    (0..grid.len()).into_par_iter().with_max_len(1).map(cell).collect()
+}
+
+/// The claims: one a light, then one of all lights in equal time.
+pub(super) fn claims(plan: &Plan<'_>, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Claim>, ParamError> {
+    let cells = measure(plan, done)?;
+    let mut claims = Vec::new();
+    let mut means = Vec::new();
+    for (light, (id, name)) in IDS.into_iter().zip(LIGHTS).enumerate() {
+        let pairs = || cells.iter().map(move |cell| cell[light]);
+        let nothing = Estimate { value: f64::NAN, standard_error: f64::NAN };
+        let (mean, least, most, unsure) = gain(pairs()).map_or((nothing, nothing, nothing, cells.len()), |gain| {
+            (gain.geometric_mean, gain.least, gain.most, gain.unsure)
+        });
+        let worse = pairs().filter(|[gaussian, cauchy]| is_below_one(gaussian.ratio(cauchy))).count();
+        let sentence = format!(
+            "Under {name} the published sampler needs {} times as many samples on the Gaussian model as on the Cauchy \
+             model ({} to {} over {} cells, surely below 1 in {worse}).",
+            number::plain(mean.value, 3),
+            number::plain(least.value, 2),
+            number::plain(most.value, 2),
+            cells.len() - unsure,
+        );
+        claims.push(Claim::judge(
+            Words { id, quotation: QUOTATION, source: SOURCE },
+            THRESHOLD,
+            [
+                Figure::sampled(format!("V on Gaussian over V on Cauchy, {name}, least of the grid"), least, ""),
+                Figure::sampled(format!("V on Gaussian over V on Cauchy, {name}, geometric mean"), mean, ""),
+            ],
+            vec![
+                Figure::sampled(format!("V on Gaussian over V on Cauchy, {name}, most of the grid"), most, ""),
+                Figure::count("cells where the Gaussian model surely needs fewer samples", worse, "cells"),
+                Figure::count("cells left out: V unsure by more than a quarter", unsure, "cells"),
+            ],
+            sentence,
+        ));
+        means.push(mean);
+    }
+    claims.push(in_time(plan, &means));
+    Ok(claims)
+}
+
+/// By more than two standard errors.
+fn is_below_one(ratio: Estimate) -> bool {
+    ratio.value + 2.0 * ratio.standard_error < 1.0
+}
+
+/// The claim in equal time.
+fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
+    let times = Times::measure(plan.seed, plan.quick);
+    let [gaussian, cauchy] = ModelKind::ALL.map(|model| times.ns(model, Sampler::Ou, PER_POINT));
+    let faster = gaussian.ratio(&cauchy);
+    let gains: Vec<Estimate> = means.iter().map(|mean| in_equal_time(*mean, faster)).collect();
+    let figure = |name: String, of| Figure::sampled(name, of, "").by(Origin::Timed);
+    let by_value = |a: &usize, b: &usize| gains[*a].value.total_cmp(&gains[*b].value);
+    let known = || (0..gains.len()).filter(|light| gains[*light].value.is_finite());
+    let (least, most) = (known().min_by(by_value).unwrap_or(0), known().max_by(by_value).unwrap_or(0));
+    let sentence = format!(
+        "A sample of the Cauchy model takes {:.2} times less time here; in equal time its variance is lower by {:.2} under \
+         {} and by {:.2} under {}.",
+        faster.value, gains[most].value, LIGHTS[most], gains[least].value, LIGHTS[least],
+    );
+    let mut further: Vec<Figure> =
+        gains.iter().zip(LIGHTS).map(|(gain, name)| figure(format!("gain in equal time, {name}"), *gain)).collect();
+    let ns = |name: &str, of: Estimate| Figure::sampled(name, of, "ns").by(Origin::Timed);
+    further.push(ns("time of a sample, Gaussian", gaussian));
+    further.push(ns("time of a sample, Cauchy", cauchy));
+    Claim::judge(
+        Words { id: "cauchy-samples-better-in-equal-time", quotation: QUOTATION, source: SOURCE },
+        IN_EQUAL_TIME,
+        [
+            figure("gain in equal time, least of the lights".to_owned(), gains[least]),
+            figure("gain in equal time, most of the lights".to_owned(), gains[most]),
+        ],
+        further,
+        sentence,
+    )
+}

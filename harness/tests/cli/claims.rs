@@ -1,0 +1,61 @@
+//! `hairis claims`: its file, its seed and its threads.
+
+use super::{Run, command};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use tempfile::TempDir;
+
+fn claims(dir: &Path, threads: &str, seed: &str) -> Run {
+    let args = ["claims", "--quick", "--seed", seed, "--out", dir.to_str().unwrap()];
+    let output = command(&args).env("RAYON_NUM_THREADS", threads).stdin(Stdio::null()).output().unwrap();
+    let lines = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().lines().map(str::to_owned).collect();
+    Run { code: output.status.code(), out: lines(output.stdout), err: lines(output.stderr) }
+}
+
+/// `claims.json` of a run, without the claim that depends on times.
+fn untimed(threads: &str, seed: &str) -> Value {
+    let dir = TempDir::new().unwrap();
+    let run = claims(dir.path(), threads, seed);
+    assert_eq!(run.code, Some(0), "{:?}", run.err);
+    let mut json: Value = serde_json::from_slice(&fs::read(dir.path().join("claims.json")).unwrap()).unwrap();
+    let all = json["claims"].as_array_mut().unwrap();
+    let before = all.len();
+    all.retain(|claim| claim["figures"][0]["origin"] != "timed");
+    assert_eq!(all.len(), before - 1, "one claim is timed");
+    json
+}
+
+#[test]
+fn the_file_is_complete_and_depends_on_the_seed_alone() {
+    let one = untimed("1", "1");
+    assert_eq!(one, untimed("2", "1"), "another number of threads");
+    let other = untimed("2", "2");
+    assert_ne!(one["claims"], other["claims"], "another seed");
+    assert_eq!((&one["settings"]["seed"], &one["settings"]["quick"]), (&1.into(), &true.into()));
+    assert!(one["machine"]["cpu"].is_string(), "{}", one["machine"]);
+    for claim in one["claims"].as_array().unwrap() {
+        for key in ["id", "quotation", "source", "verdict", "sentence"] {
+            assert!(claim[key].as_str().is_some_and(|text| !text.is_empty()), "{key} of {claim}");
+        }
+        assert!(["holds", "holds within limits", "false"].contains(&claim["verdict"].as_str().unwrap()), "{claim}");
+        assert!(claim["threshold"]["bound"].is_number() && claim["threshold"]["limits"].is_string(), "{claim}");
+        for figure in claim["figures"].as_array().unwrap() {
+            assert!(figure["value"].is_number() && figure["error"].is_number(), "{figure}");
+            assert!(figure["unit"].is_string() && figure["role"].is_string(), "{figure}");
+        }
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_refused() {
+    let dir = TempDir::new().unwrap();
+    fs::write(dir.path().join("file"), "").unwrap();
+    fs::create_dir(dir.path().join("claims.json")).unwrap();
+    for out in [dir.path().join("file/out"), dir.path().to_owned()] {
+        let run = claims(&out, "1", "1");
+        assert_eq!((run.code, run.out.len(), run.err.len()), (Some(2), 0, 1), "{:?}", run.err);
+        assert!(run.err[0].starts_with("hairis: cannot write"), "{:?}", run.err);
+    }
+}
