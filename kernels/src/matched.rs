@@ -34,22 +34,22 @@ use wide::f32x8;
 ///
 /// # What it buys, and what it costs
 ///
-/// Under constant light, over the 3024 points of a grid of everyday hair (every 37th of them here: test
-/// `matched::variance`), `V` being the relative variance of one sample, its mean and that of the published sampler;
-/// the gain is the geometric mean of the ratio, with the least. Times are nanoseconds a direction, default hair, AVX2, eight
+/// Under constant light, over the 3024 points of a grid of everyday hair (test `matched::variance`), `V` being the relative
+/// variance of one sample, its mean and that of the published sampler; the gain is the geometric mean of the ratio, with the
+/// least. Times are nanoseconds a direction, default hair, AVX2, eight
 /// lanes: to prepare a gather point, to sample, to evaluate. Efficiency is `1 / (V time)` over that of the published sampler at
 /// 1, 4 and 16 samples a gather point, preparation included: of eight lanes, then of one.
 ///
 /// | model, sampler | V | gain | prepare, sample, eval | eight lanes | one lane |
 /// |---|---|---|---|---|---|
-/// | Gaussian, published | .2481 | 1 | 10, 6.5, 3.9 | 1 | 1 |
-/// | `Matched<_, 2>` | .0087 | 42, 14 | 42, 14, 6.0 | 13, 15, 18 | 12, 15, 18 |
-/// | `Matched<_, 3>`, the default | .0021 | 185, 47 | 64, 16, 6.5 | 39, 53, 68 | 28, 48, 69 |
-/// | `Matched<_, 4>` | .0007 | 532, 132 | 79, 16, 7.0 | 95, 136, 184 | 64, 119, 184 |
-/// | all-Cauchy, published | .1887 | 1 | 10, 5.5, 2.7 | 1 | 1 |
-/// | `Matched<_, 2>` | .0160 | 11.5, 6.7 | 26, 12, 6.5 | 4.9, 5.1, 5.3 | 4.6, 5.5, 6.1 |
-/// | `Matched<_, 3>`, the default | .0039 | 45, 11.7 | 30, 13, 7.0 | 17, 18, 19 | 16, 20, 22 |
-/// | `Matched<_, 4>` | .0014 | 132, 28 | 37, 13, 7.2 | 42, 48, 53 | 26, 41, 55 |
+/// | Gaussian, published | .2469 | 1 | 10, 6.5, 3.9 | 1 | 1 |
+/// | `Matched<_, 2>` | .0086 | 42, 11 | 42, 14, 6.0 | 13, 15, 18 | 12, 15, 18 |
+/// | `Matched<_, 3>`, the default | .0021 | 187, 41 | 64, 16, 6.5 | 39, 53, 68 | 28, 48, 69 |
+/// | `Matched<_, 4>` | .0007 | 537, 114 | 79, 16, 7.0 | 95, 136, 184 | 64, 119, 184 |
+/// | all-Cauchy, published | .1889 | 1 | 10, 5.5, 2.7 | 1 | 1 |
+/// | `Matched<_, 2>` | .0160 | 11.5, 6.1 | 26, 12, 6.5 | 4.9, 5.1, 5.3 | 4.6, 5.5, 6.1 |
+/// | `Matched<_, 3>`, the default | .0040 | 45, 11.4 | 30, 13, 7.0 | 17, 18, 19 | 16, 20, 22 |
+/// | `Matched<_, 4>` | .0014 | 130, 27 | 37, 13, 7.2 | 42, 48, 53 | 26, 41, 55 |
 ///
 /// Any broad light gains. Of what a small light or a textured one adds to the variance no sampler of the hair takes anything
 /// away: there the published sampler's cheaper samples are worth more, and for a small light where W is small it may even
