@@ -42,14 +42,14 @@ use wide::f32x8;
 ///
 /// | model, sampler | V | gain | prepare, sample, eval | eight lanes | one lane |
 /// |---|---|---|---|---|---|
-/// | Gaussian, published | .2469 | 1 | 10, 6.5, 3.9 | 1 | 1 |
-/// | `Matched<_, 2>` | .0086 | 42, 11 | 42, 14, 6.0 | 13, 15, 18 | 12, 15, 18 |
-/// | `Matched<_, 3>`, the default | .0021 | 187, 41 | 64, 16, 6.5 | 39, 53, 68 | 28, 48, 69 |
-/// | `Matched<_, 4>` | .0007 | 537, 114 | 79, 16, 7.0 | 95, 136, 184 | 64, 119, 184 |
-/// | all-Cauchy, published | .1889 | 1 | 10, 5.5, 2.7 | 1 | 1 |
-/// | `Matched<_, 2>` | .0160 | 11.5, 6.1 | 26, 12, 6.5 | 4.9, 5.1, 5.3 | 4.6, 5.5, 6.1 |
-/// | `Matched<_, 3>`, the default | .0040 | 45, 11.4 | 30, 13, 7.0 | 17, 18, 19 | 16, 20, 22 |
-/// | `Matched<_, 4>` | .0014 | 130, 27 | 37, 13, 7.2 | 42, 48, 53 | 26, 41, 55 |
+/// | Gaussian, published | .2469 | 1 | 7, 6.3, 3.6 | 1 | 1 |
+/// | `Matched<_, 2>` | .0086 | 42, 11 | 39, 14, 5.7 | 10, 14, 17 | 12, 16, 18 |
+/// | `Matched<_, 3>`, the default | .0021 | 187, 41 | 60, 14, 6.7 | 33, 51, 70 | 27, 46, 67 |
+/// | `Matched<_, 4>` | .0007 | 537, 114 | 72, 15, 6.5 | 79, 127, 180 | 62, 116, 179 |
+/// | all-Cauchy, published | .1889 | 1 | 7, 5.0, 2.5 | 1 | 1 |
+/// | `Matched<_, 2>` | .0160 | 11.5, 6.1 | 22, 11, 6.2 | 4.1, 4.8, 5.2 | 4.4, 5.3, 5.9 |
+/// | `Matched<_, 3>`, the default | .0040 | 45, 11.4 | 27, 12, 6.4 | 14, 17, 19 | 16, 19, 22 |
+/// | `Matched<_, 4>` | .0014 | 130, 27 | 32, 13, 6.8 | 35, 43, 50 | 25, 40, 54 |
 ///
 /// Any broad light gains. Of what a small light or a textured one adds to the variance no sampler of the hair takes anything
 /// away: there the published sampler's cheaper samples are worth more, and for a small light where W is small it may even
