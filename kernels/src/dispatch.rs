@@ -144,28 +144,34 @@ impl fmt::Display for Level {
 /// Declares an entry point: `body` over `L`, which is the portable lanes or the backend of `level`.
 ///
 /// The constants `C` are read as `L` in `body`, so that one entry point serves one gather point and eight. Packets of
-/// eight are of AVX2 on AVX-512, too, compiled for the features given: twice the registers, and constants that are read
+/// eight are of AVX2 on AVX-512, too, compiled for the set given: twice the registers, and constants that are read
 /// by the instructions that use them, gain evaluation and sampling 5 %; preparation, which mostly writes, loses 25 %.
 macro_rules! entry {
     (
         $(#[$meta:meta])*
         $name:ident$(<$H:ident>)?($($arg:ident: $type:ty),*) -> $out:ty, $body:ident,
-        on AVX-512 $set:ident $features:literal
+        on AVX-512 $set:ident
     ) => {
         $(#[$meta])*
         #[inline]
         pub(crate) fn $name<M: Model, C: Constant $(, $H: Into<Hit8>)?>(level: Level, $($arg: $type),*) -> $out {
             match level.0 {
                 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-                Kind::Avx2 => entry!(@$body $(<$H>)?($($arg: $type),*) -> $out, avx2 "avx2,fma"),
+                Kind::Avx2 => entry!(@$body $(<$H>)?($($arg: $type),*) -> $out, avx2),
                 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-                Kind::Avx512 => entry!(@$body $(<$H>)?($($arg: $type),*) -> $out, $set $features),
+                Kind::Avx512 => entry!(@$body $(<$H>)?($($arg: $type),*) -> $out, $set),
                 Kind::Portable => {
                     clean_upper_halves();
                     $body!(M, f32x8, C, $($arg),*)
                 }
             }
         }
+    };
+    (@$body:ident $(<$H:ident>)?($($arg:ident: $type:ty),*) -> $out:ty, avx2) => {
+        entry!(@$body $(<$H>)?($($arg: $type),*) -> $out, avx2 "avx2,fma")
+    };
+    (@$body:ident $(<$H:ident>)?($($arg:ident: $type:ty),*) -> $out:ty, avx512) => {
+        entry!(@$body $(<$H>)?($($arg: $type),*) -> $out, avx512 "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw")
     };
     (@$body:ident $(<$H:ident>)?($($arg:ident: $type:ty),*) -> $out:ty, $set:ident $features:literal) => {{
         #[target_feature(enable = $features)]
@@ -211,19 +217,19 @@ macro_rules! sample {
 
 entry! {
     /// Eight gather points. The hits are made from what the caller has on the far side: what copies them is vector code.
-    prepare8<H>(material: &M::Material<C>, hits: H) -> Gather8<M>, prepare, on AVX-512 avx2 "avx2,fma"
+    prepare8<H>(material: &M::Material<C>, hits: H) -> Gather8<M>, prepare, on AVX-512 avx2
 }
 entry! {
     /// Value and density of eight directions.
-    eval8(gather: &M::Gather<C>, wi: &Vec3x8) -> Eval8, eval, on AVX-512 avx512 "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw"
+    eval8(gather: &M::Gather<C>, wi: &Vec3x8) -> Eval8, eval, on AVX-512 avx512
 }
 entry! {
     /// Each lobe's value, colour and density at eight directions.
-    lobes8(gather: &M::Gather<C>, wi: &Vec3x8) -> PerLobe<LobeEval8>, lobes, on AVX-512 avx512 "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw"
+    lobes8(gather: &M::Gather<C>, wi: &Vec3x8) -> PerLobe<LobeEval8>, lobes, on AVX-512 avx512
 }
 entry! {
     /// Eight sampled directions.
-    sample8(gather: &M::Gather<C>, xi: &[f32x8; 3]) -> Sample8, sample, on AVX-512 avx512 "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw"
+    sample8(gather: &M::Gather<C>, xi: &[f32x8; 3]) -> Sample8, sample, on AVX-512 avx512
 }
 
 /// Declares the loop of a batch on the backend `$L` of `$W` lanes, whole packets and then the rest.

@@ -13,7 +13,7 @@ pub use point::{HairLobes, HairPoint};
 pub(crate) use gather::selection;
 pub(crate) use place::{Place, Shapes};
 pub(crate) use point::{prepare as prepare_point, times};
-pub(crate) use results::{drawn, evaluated, per_lobe};
+pub(crate) use results::{drawn, evaluated, mixture, per_lobe};
 pub(crate) use sampling::{Turn, turned};
 
 use crate::model::{Drawn, Eval, Hit, LobeEval};
@@ -35,15 +35,6 @@ pub const GRAZING: f32 = 1e-5;
 /// - Units: value and density per steradian.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hair<B>(pub B);
-
-/// The mixture density times `cos theta_i`.
-#[inline(always)]
-fn density<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, shapes: &Shapes<L>) -> L {
-    let of = &shapes.density;
-    let back = of[1].mul_add(gather.weight[1].lanes(), of[3] * gather.weight[3].lanes());
-    let d = of[2].mul_add(gather.weight[2].lanes(), back);
-    of[0].mul_add(gather.weight[0].lanes(), d)
-}
 
 impl<B: Bell> Model for Hair<B> {
     type Params = HairParams;
@@ -84,7 +75,7 @@ impl<B: Bell> Model for Hair<B> {
     fn eval<L: Lanes, C: Broadcast<L> + Debug>(gather: &HairGather<C>, wi: Vec3x<L>) -> Eval<L> {
         let (place, sound) = Place::of(&gather.point, wi);
         let shapes = place.shapes::<B, C>(&gather.point);
-        evaluated(&gather.point, &place, sound, &shapes, density(gather, &shapes))
+        evaluated(&gather.point, &place, sound, &shapes, mixture(shapes.density, &gather.weight))
     }
 
     #[inline(always)]
@@ -104,7 +95,7 @@ impl<B: Bell> Model for Hair<B> {
     fn sample<L: Lanes, C: Broadcast<L> + Debug>(gather: &HairGather<C>, xi: [L; 3]) -> Drawn<L> {
         let (wi, choice, place) = sampling::draw(gather, xi);
         let shapes = place.shapes::<B, C>(&gather.point);
-        drawn(&gather.point, wi, choice, &place, &shapes, density(gather, &shapes))
+        drawn(&gather.point, wi, choice, &place, &shapes, mixture(shapes.density, &gather.weight))
     }
 
     #[inline(always)]

@@ -8,7 +8,7 @@ mod warp;
 pub use bell::{MatchedBell, Truncated};
 pub use gather::{MatchedGather, MatchedMaterial};
 
-use crate::hair::{Place, Shapes, albedo, drawn, evaluated, per_lobe};
+use crate::hair::{Place, Shapes, albedo, drawn, evaluated, mixture, per_lobe};
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Vec3x};
 use core::fmt::Debug;
@@ -111,7 +111,7 @@ impl<B: MatchedBell, const SEGMENTS: usize> Model for Matched<B, SEGMENTS> {
     fn eval<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, SEGMENTS>, wi: Vec3x<L>) -> Eval<L> {
         let (place, sound) = Place::of(&gather.point, wi);
         let shapes = place.shapes::<B, C>(&gather.point);
-        let density = mixture(gather, warped::<B, L, C, SEGMENTS>(gather, &shapes));
+        let density = density(gather, warped::<B, L, C, SEGMENTS>(gather, &shapes));
         evaluated(&gather.point, &place, sound, &shapes, density)
     }
 
@@ -137,7 +137,7 @@ impl<B: MatchedBell, const SEGMENTS: usize> Model for Matched<B, SEGMENTS> {
     fn sample<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, SEGMENTS>, xi: [L; 3]) -> Drawn<L> {
         let (wi, choice, place) = sampling::draw::<B, L, C, SEGMENTS>(gather, xi);
         let shapes = place.shapes::<B, C>(&gather.point);
-        let density = mixture(gather, warped::<B, L, C, SEGMENTS>(gather, &shapes));
+        let density = density(gather, warped::<B, L, C, SEGMENTS>(gather, &shapes));
         drawn(&gather.point, wi, choice, &place, &shapes, density)
     }
 
@@ -161,8 +161,6 @@ fn warped<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
 
 /// The mixture density times `cos theta_i`.
 #[inline(always)]
-fn mixture<L: Lanes, C: Broadcast<L>, const N: usize>(gather: &MatchedGather<C, N>, warped: [L; 4]) -> L {
-    let back = warped[1].mul_add(gather.weight[1].lanes(), warped[3] * gather.weight[3].lanes());
-    let d = warped[2].mul_add(gather.weight[2].lanes(), back);
-    warped[0].mul_add(gather.weight[0].lanes(), d) * gather.scale.lanes()
+fn density<L: Lanes, C: Broadcast<L>, const N: usize>(gather: &MatchedGather<C, N>, warped: [L; 4]) -> L {
+    mixture(warped, &gather.weight) * gather.scale.lanes()
 }

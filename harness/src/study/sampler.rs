@@ -3,7 +3,7 @@
 use crate::efficiency::{ModelKind, Scatter};
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
-use hairis::{Bsdf, Eval8, Gaussian, Hair, HairParams, Matched, Model, Sample8, Vec3x8};
+use hairis::{Bsdf, Eval8, Gaussian, Hair, HairParams, Matched, MatchedBell, Model, Sample8, Vec3x8};
 use hairis_variants::Cauchy;
 use wide::f32x8;
 
@@ -66,20 +66,18 @@ pub(super) trait Visit {
 /// Shows `visitor` the sampler of a model. Every sampler of a model has the model's `eval`.
 pub(super) fn visit<V: Visit>(model: ModelKind, sampler: Sampler, visitor: V) -> V::Output {
     match model {
-        ModelKind::Gaussian => match sampler {
-            Sampler::Uniform => visitor.visit(Hair(Gaussian), Directions::Uniform),
-            Sampler::Ou => visitor.visit(Hair(Gaussian), Directions::Sampled),
-            Sampler::Matched2 => visitor.visit(Matched::<_, 2>(Gaussian), Directions::Sampled),
-            Sampler::Matched => visitor.visit(Matched::<_>(Gaussian), Directions::Sampled),
-            Sampler::Matched4 => visitor.visit(Matched::<_, 4>(Gaussian), Directions::Sampled),
-        },
-        ModelKind::Cauchy => match sampler {
-            Sampler::Uniform => visitor.visit(Cauchy::PAPER.model(), Directions::Uniform),
-            Sampler::Ou => visitor.visit(Cauchy::PAPER.model(), Directions::Sampled),
-            Sampler::Matched2 => visitor.visit(Matched::<_, 2>(Cauchy::PAPER), Directions::Sampled),
-            Sampler::Matched => visitor.visit(Matched::<_>(Cauchy::PAPER), Directions::Sampled),
-            Sampler::Matched4 => visitor.visit(Matched::<_, 4>(Cauchy::PAPER), Directions::Sampled),
-        },
+        ModelKind::Gaussian => visit_bell(Gaussian, sampler, visitor),
+        ModelKind::Cauchy => visit_bell(Cauchy::PAPER, sampler, visitor),
+    }
+}
+
+fn visit_bell<B: MatchedBell + 'static, V: Visit>(bell: B, sampler: Sampler, visitor: V) -> V::Output {
+    match sampler {
+        Sampler::Uniform => visitor.visit(Hair(bell), Directions::Uniform),
+        Sampler::Ou => visitor.visit(Hair(bell), Directions::Sampled),
+        Sampler::Matched2 => visitor.visit(Matched::<_, 2>(bell), Directions::Sampled),
+        Sampler::Matched => visitor.visit(Matched::<_>(bell), Directions::Sampled),
+        Sampler::Matched4 => visitor.visit(Matched::<_, 4>(bell), Directions::Sampled),
     }
 }
 

@@ -47,6 +47,17 @@ fn lobe<L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usize, area: L, colo
     [(albedo * color[0]).min(most), (albedo * color[1]).min(most), (albedo * color[2]).min(most)]
 }
 
+/// `W = (cos theta_i / cos theta_d)^2`, what the bells leave out of `S cos theta_i`, from half of `theta_i`, and half the sine
+/// and half the cosine of `theta_o`. Where both directions lie on opposite poles it is 0 / 0, and its limit is 0.
+#[inline(always)]
+pub(crate) fn residual<L: Lanes>(half_theta_i: L, [half_sin_theta_o, half_cos_theta_o]: [L; 2]) -> L {
+    let quarter = L::splat(core::f32::consts::FRAC_PI_4);
+    let (sin, cos) = sin_cos_twice((-quarter).max(quarter.min(half_theta_i)));
+    let half = L::splat(0.5);
+    let (mean_u, mean_c) = (sin.mul_add(half, half_sin_theta_o), cos.mul_add(half, half_cos_theta_o));
+    cos * cos / mean_u.mul_add(mean_u, mean_c * mean_c).max(L::splat(f32::MIN_POSITIVE))
+}
+
 /// Integral of `M cos^2 theta_i / cos^2 theta_d` over `theta_i`.
 #[inline(always)]
 fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usize) -> L {
@@ -55,18 +66,13 @@ fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usi
     let (beta, shift) = (point.lobes.beta[l].lanes(), point.shift[l].lanes());
     let quarter = c(core::f32::consts::FRAC_PI_4);
     let cauchy = TruncatedCauchy::new(shift - quarter, shift + quarter, beta);
-    let (half_sin_theta_o, half_cos_theta_o) = (point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes());
+    let half_theta_o = [point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes()];
     let mut sum = c(0.0);
     let mut k = 0;
     while k < GAUSS_LEGENDRE_32.len() {
         let (xi, weight) = GAUSS_LEGENDRE_32[k];
         let x = cauchy.invert(c(xi));
-        let half = (-quarter).max(quarter.min(x.mul_add(beta, -shift)));
-        let (sin, cos) = sin_cos_twice(half);
-        let mean_u = sin.mul_add(c(0.5), half_sin_theta_o);
-        let mean_c = cos.mul_add(c(0.5), half_cos_theta_o);
-        // (cos theta_i / cos theta_d)^2; where both directions lie on opposite poles it is 0 / 0, and its limit is 0.
-        let w = cos * cos / mean_u.mul_add(mean_u, mean_c * mean_c).max(c(f32::MIN_POSITIVE));
+        let w = residual(x.mul_add(beta, -shift), half_theta_o);
         let d = x.mul_add(x, one);
         sum = (d * B::one(x * x, one / d) * w).mul_add(c(weight), sum);
         k += 1;

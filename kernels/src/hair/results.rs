@@ -20,6 +20,14 @@ fn min3<L: Lanes>(x: [L; 3], limit: L) -> [L; 3] {
     [x[0].min(limit), x[1].min(limit), x[2].min(limit)]
 }
 
+/// The density of a mixture of lobes from what each lobe's is but for its weight.
+#[inline(always)]
+pub(crate) fn mixture<L: Lanes, C: Broadcast<L>>(lobes: [L; 4], weight: &[C; 4]) -> L {
+    let back = lobes[1].mul_add(weight[1].lanes(), lobes[3] * weight[3].lanes());
+    let d = lobes[2].mul_add(weight[2].lanes(), back);
+    lobes[0].mul_add(weight[0].lanes(), d)
+}
+
 /// Value and density at a place, of the mixture's `density` times `cos theta_i`.
 #[inline(always)]
 pub(crate) fn evaluated<L: Lanes, C: Broadcast<L>>(

@@ -2,9 +2,9 @@
 
 use super::warp::{END_SHARE, NEAR_END, Side, node};
 use super::{MatchedBell, Truncated};
+use crate::hair::albedo::residual;
 use crate::hair::{Shapes, prepare_point, selection, times};
 use crate::lanes::{store3, store4};
-use crate::math::sin_cos_twice;
 use crate::{Broadcast, HairLobes, HairParams, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
 use core::f32::consts::{FRAC_PI_4, PI};
 use wide::f32x8;
@@ -124,16 +124,6 @@ fn importance(params: &HairParams) -> [f32; 4] {
     all.map(|i| if i > largest * LEAST_IMPORTANCE { (i / largest) as f32 } else { 0.0 })
 }
 
-/// `(cos theta_i / cos theta_d)^2`, 0 where both directions lie on opposite poles.
-#[inline(always)]
-fn w<L: Lanes>(half_theta_i: L, [half_sin_theta_o, half_cos_theta_o]: [L; 2]) -> L {
-    let quarter = L::splat(FRAC_PI_4);
-    let (sin, cos) = sin_cos_twice((-quarter).max(quarter.min(half_theta_i)));
-    let half = L::splat(0.5);
-    let (mean_u, mean_c) = (sin.mul_add(half, half_sin_theta_o), cos.mul_add(half, half_cos_theta_o));
-    cos * cos / mean_u.mul_add(mean_u, mean_c * mean_c).max(L::splat(f32::MIN_POSITIVE))
-}
-
 /// The longitude of R, TT or TRT.
 #[derive(Clone, Copy)]
 struct Longitude<L, const N: usize> {
@@ -156,20 +146,20 @@ fn longitude<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let cut = B::truncate((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
     let least = c(LEAST_HEIGHT) * mode_scale(theta_o[1]);
     let [x, _] = B::invert_both(&cut, 0.5);
-    let middle = least.max(w(x.mul_add(beta, -shift), theta_o));
+    let middle = least.max(residual(x.mul_add(beta, -shift), theta_o));
     let (mut lower, mut upper) = (Side { outer: [middle; N], middle }, Side { outer: [middle; N], middle });
     let mut j = 1;
     while j < N {
         let [below, above] = B::invert_both(&cut, node(N, j));
-        lower.outer[j] = least.max(w(below.mul_add(beta, -shift), theta_o));
-        upper.outer[j] = least.max(w(above.mul_add(beta, -shift), theta_o));
+        lower.outer[j] = least.max(residual(below.mul_add(beta, -shift), theta_o));
+        upper.outer[j] = least.max(residual(above.mul_add(beta, -shift), theta_o));
         j += 1;
     }
     // The end has a height of its own: W is 0 there.
     let [below, above] = B::invert_both(&cut, NEAR_END);
     let share = c(END_SHARE);
-    lower.outer[0] = (lower.outer[1] * share).max(w(below.mul_add(beta, -shift), theta_o));
-    upper.outer[0] = (upper.outer[1] * share).max(w(above.mul_add(beta, -shift), theta_o));
+    lower.outer[0] = (lower.outer[1] * share).max(residual(below.mul_add(beta, -shift), theta_o));
+    upper.outer[0] = (upper.outer[1] * share).max(residual(above.mul_add(beta, -shift), theta_o));
     let area_lower = lower.area();
     Longitude { cut, sides: [lower, upper], area: area_lower + upper.area(), area_lower }
 }
