@@ -103,8 +103,8 @@ fn published(shape: Shape) -> impl Fn(&HairParams, Vec3) -> Textbook<f64> {
 }
 
 /// The matched sampler of a shape.
-fn matched(shape: Shape, segments: usize) -> impl Fn(&HairParams, Vec3) -> MatchedTextbook<f64> {
-    move |params, wo| MatchedTextbook::prepare(&Parameters::from(params), shape, double(wo), segments)
+fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedTextbook<f64> {
+    move |params, wo| MatchedTextbook::prepare(&Parameters::from(params), shape, double(wo), bands)
 }
 
 /// Cells in `theta_i` and `phi` that resolve every lobe, and the samples each should hold.
@@ -255,12 +255,12 @@ fn samples_of_the_cauchy_model_follow_its_density() {
 
 #[test]
 fn matched_samples_of_the_published_model_follow_their_density() {
-    check(Matched::<_>(Gaussian), matched(Shape::Gaussian, 3), "matched Gaussian", 3);
+    check(Matched::<_>(Gaussian), matched(Shape::Gaussian, 6), "matched Gaussian", 3);
 }
 
 #[test]
 fn matched_samples_of_the_cauchy_model_follow_their_density() {
-    check(Cauchy::PAPER.matched(), matched(Shape::Cauchy, 3), "matched Cauchy", 4);
+    check(Cauchy::PAPER.matched(), matched(Shape::Cauchy, 6), "matched Cauchy", 4);
 }
 
 #[test]

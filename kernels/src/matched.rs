@@ -1,14 +1,14 @@
 //! Lower-variance samplers of the published model: the bells themselves, times what they leave out.
 
+mod bands;
 mod bell;
 mod gather;
 mod sampling;
-mod warp;
 
-pub use bell::{MatchedBell, Truncated};
-pub use gather::{MatchedGather, MatchedMaterial};
+pub use bell::MatchedBell;
+pub use gather::{MatchedGather, MatchedMaterial, MatchedSide};
 
-use crate::hair::{Place, Shapes, albedo, drawn, evaluated, mixture, per_lobe};
+use crate::hair::{Place, Shapes, albedo, drawn, evaluated, mixture, per_lobe, times};
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Vec3x};
 use core::fmt::Debug;
@@ -19,43 +19,37 @@ use wide::f32x8;
 ///
 /// Each lobe is drawn from its own bells, cut to the sphere: truncated Gaussians on the Gaussian model, truncated Cauchys
 /// on the all-Cauchy one, and the glints on the whole circle. What the bells leave out of `S cos theta_i` is
-/// `W = (cos theta_i / cos theta_d)^2`, at most 4: a piecewise-linear function of the longitude's cdf takes its place, with
-/// `2 SEGMENTS` pieces and W as it is at their ends. Lobes are chosen by what they then integrate to.
+/// `W = (cos theta_i / cos theta_d)^2`, at most 4 and the same for all lobes: it is taken for constant in bands of inclination,
+/// `BANDS` on each side of the normal plane, narrower towards the poles, where it falls to 0. Lobes are chosen by what they then
+/// integrate to.
 ///
-/// - Density: exact, as reported. With `h` the piecewise-linear function it is `sum I M N h / sum E`, over `cos theta_i`:
-///   the constants of the bells' distributions cancel.
-/// - Weights: bounded. They are `W / h` about their mean: at most the ratio of W at the ends of a segment, or
-///   4 over the lower end where the mode of W lies inside.
-/// - Accuracy: the density is that of the formula to some 2e-5 relative (Cauchy 1e-5); beside a pole that a lobe is centred on,
-///   where the last bit of `theta_i` counts, to 4e-4. It is the same function for a sample and for its direction. A
-///   Gaussian lobe below `2^-115` of its peak has neither value nor density; nor is a lobe drawn whose energy is below
-///   1e-36 of the largest.
+/// - Density: exact, as reported. With `h` the W of the band it is `h sum I M N / sum E`, over `cos theta_i`: the model itself
+///   but for `h / W`. It jumps where bands meet, by what W changes from band to band. Which band a direction is in is told from
+///   its first component alone, so that every precision agrees.
+/// - Weights: bounded by the sum of the energies times the largest `W / h`, in closed form
+///   (`textbook::MatchedTextbook::weight_bound`); the mean of a weight's RGB is `W / h` times that sum.
+/// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it; the weight is
+///   good to 2e-6. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor is a lobe drawn whose energy is
+///   below 1e-36 of the largest.
+/// - Domain: `BANDS` is 4, 6 or 12.
 /// - Source: ours; section 3.2 of Ou et al. 2012 is what it replaces.
 ///
 /// # What it buys, and what it costs
 ///
-/// Under constant light, over the 3024 points of a grid of everyday hair (test `matched::variance`), `V` being the relative
-/// variance of one sample, its mean and that of the published sampler; the gain is the geometric mean of the ratio, with the
-/// least. Times are nanoseconds a direction, default hair, AVX2, eight
-/// lanes: to prepare a gather point, to sample, to evaluate. Efficiency is `1 / (V time)` over that of the published sampler at
-/// 1, 4 and 16 samples a gather point, preparation included: of eight lanes, then of one.
+/// Under constant light, over the 3024 points of a grid of everyday hair (test `matched::variance`): V, the relative
+/// variance of one sample, its mean; and the gain, that of the published sampler over it, its geometric mean and its least. The
+/// largest weight is over the mean, for `beta_r` from 0.5 to 60 degrees and `theta_o` up to 89.9 (test `matched::fireflies`).
 ///
-/// | model, sampler | V | gain | prepare, sample, eval | eight lanes | one lane |
-/// |---|---|---|---|---|---|
-/// | Gaussian, published | .2469 | 1 | 7, 6.3, 3.6 | 1 | 1 |
-/// | `Matched<_, 2>` | .0086 | 42, 11 | 39, 14, 5.7 | 10, 14, 17 | 12, 16, 18 |
-/// | `Matched<_, 3>`, the default | .0021 | 187, 41 | 60, 14, 6.7 | 33, 51, 70 | 27, 46, 67 |
-/// | `Matched<_, 4>` | .0007 | 537, 114 | 72, 15, 6.5 | 79, 127, 180 | 62, 116, 179 |
-/// | all-Cauchy, published | .1889 | 1 | 7, 5.0, 2.5 | 1 | 1 |
-/// | `Matched<_, 2>` | .0160 | 11.5, 6.1 | 22, 11, 6.2 | 4.1, 4.8, 5.2 | 4.4, 5.3, 5.9 |
-/// | `Matched<_, 3>`, the default | .0040 | 45, 11.4 | 27, 12, 6.4 | 14, 17, 19 | 16, 19, 22 |
-/// | `Matched<_, 4>` | .0014 | 130, 27 | 32, 13, 6.8 | 35, 43, 50 | 25, 40, 54 |
+/// | sampler | Gaussian: V, gain | all-Cauchy: V, gain | largest weight |
+/// |---|---|---|---|
+/// | published | .2469 | .1889 | |
+/// | `Matched<_, 4>` | .0232, 12 (4.4) | .0244, 7.6 (3.9) | 2.3 |
+/// | `Matched<_, 6>`, the default | .0140, 19 (9.3) | .0150, 12 (4.5) | 2.1 |
+/// | `Matched<_, 12>` | .0043, 61 (33) | .0045, 40 (14) | 1.9 |
 ///
 /// Any broad light gains. Of what a small light or a textured one adds to the variance no sampler of the hair takes anything
-/// away: there the published sampler's cheaper samples are worth more, and for a small light where W is small it may even
-/// be the better density. The more segments the better under constant light alone; elsewhere what is left of V with 3 is
-/// below what lights add, and 2 are enough for most. The largest weight is 2.6 times the mean with 3 segments, 1.5 with 4
-/// and 5.2 with 2, for `beta_r` from 0.5 to 60 degrees and `theta_o` up to 89.9 (test `matched::fireflies`).
+/// away, and in the far tails of a Gaussian lobe, where such a light may stand, the published Cauchy puts more samples: draw
+/// those lights, and combine. The README has times, and which sampler to use when.
 ///
 /// ```
 /// use glam::Vec3;
@@ -67,12 +61,12 @@ use wide::f32x8;
 /// assert_eq!(hair, matched); // one model, two samplers
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Matched<B, const SEGMENTS: usize = 3>(pub B);
+pub struct Matched<B, const BANDS: usize = 6>(pub B);
 
-impl<B: MatchedBell, const SEGMENTS: usize> Model for Matched<B, SEGMENTS> {
+impl<B: MatchedBell, const BANDS: usize> Model for Matched<B, BANDS> {
     type Params = HairParams;
     type Material<C: Copy + Debug> = MatchedMaterial<C>;
-    type Gather<C: Copy + Debug> = MatchedGather<C, SEGMENTS>;
+    type Gather<C: Copy + Debug> = MatchedGather<C, BANDS>;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "glint"];
 
@@ -87,7 +81,7 @@ impl<B: MatchedBell, const SEGMENTS: usize> Model for Matched<B, SEGMENTS> {
     }
 
     #[inline]
-    fn lane(gather: &MatchedGather<f32x8, SEGMENTS>, lane: usize) -> MatchedGather<f32, SEGMENTS> {
+    fn lane(gather: &MatchedGather<f32x8, BANDS>, lane: usize) -> MatchedGather<f32, BANDS> {
         gather.lane(lane)
     }
 
@@ -95,72 +89,56 @@ impl<B: MatchedBell, const SEGMENTS: usize> Model for Matched<B, SEGMENTS> {
     fn prepare<L: Lanes, C: Broadcast<L> + Debug>(
         material: &MatchedMaterial<C>,
         hit: Hit<L>,
-    ) -> MatchedGather<L::Stored, SEGMENTS>
+    ) -> MatchedGather<L::Stored, BANDS>
     where
         L::Stored: Debug,
     {
-        gather::prepare::<B, L, C, SEGMENTS>(material, hit.wo)
+        gather::prepare::<B, L, C, BANDS>(material, hit.wo)
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes + Debug>(gather: &MatchedGather<C, SEGMENTS>, lobes: LobeMask) -> MatchedGather<C, SEGMENTS> {
+    fn restrict<C: Lanes + Debug>(gather: &MatchedGather<C, BANDS>, lobes: LobeMask) -> MatchedGather<C, BANDS> {
         gather.restrict(lobes)
     }
 
     #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, SEGMENTS>, wi: Vec3x<L>) -> Eval<L> {
+    fn eval<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> Eval<L> {
         let (place, sound) = Place::of(&gather.point, wi);
         let shapes = place.shapes::<B, C>(&gather.point);
-        let density = density(gather, warped::<B, L, C, SEGMENTS>(gather, &shapes));
-        evaluated(&gather.point, &place, sound, &shapes, density)
+        evaluated(&gather.point, &place, sound, &shapes, density(gather, &place, &shapes))
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L> + Debug>(
-        gather: &MatchedGather<C, SEGMENTS>,
+        gather: &MatchedGather<C, BANDS>,
         wi: Vec3x<L>,
     ) -> PerLobe<LobeEval<L>> {
         let (place, sound) = Place::of(&gather.point, wi);
         let shapes = place.shapes::<B, C>(&gather.point);
-        let warped = warped::<B, L, C, SEGMENTS>(gather, &shapes);
-        let scale = gather.lone_density::<B, L>();
-        let density = [
-            warped[0] * gather.inv_mass[0].lanes() * scale[0],
-            warped[1] * gather.inv_mass[1].lanes() * scale[1],
-            warped[2] * gather.inv_mass[2].lanes() * scale[2],
-            warped[3] * gather.inv_mass[2].lanes() * scale[3],
-        ];
+        let height = gather.height::<L>(place.sin_theta_i) * gather.scale.lanes();
+        let density = times(times(shapes.value, [height; 4]), gather.lone_density::<B, L>());
         per_lobe(&gather.point, &place, sound, &shapes, density)
     }
 
     #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, SEGMENTS>, xi: [L; 3]) -> Drawn<L> {
-        let (wi, choice, place) = sampling::draw::<B, L, C, SEGMENTS>(gather, xi);
+    fn sample<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, BANDS>, xi: [L; 3]) -> Drawn<L> {
+        let (wi, choice, place) = sampling::draw::<B, L, C, BANDS>(gather, xi);
         let shapes = place.shapes::<B, C>(&gather.point);
-        let density = density(gather, warped::<B, L, C, SEGMENTS>(gather, &shapes));
-        drawn(&gather.point, wi, choice, &place, &shapes, density)
+        drawn(&gather.point, wi, choice, &place, &shapes, density(gather, &place, &shapes))
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, SEGMENTS>) -> PerLobe<[L; 3]> {
+    fn albedo<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, BANDS>) -> PerLobe<[L; 3]> {
         albedo::albedo::<B, L, C>(&gather.point)
     }
 }
 
-/// `M N h` of each lobe: its density times `cos theta_i`, but for the gather point's constants.
-#[inline(always)]
-fn warped<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
-    gather: &MatchedGather<C, N>,
-    shapes: &Shapes<L>,
-) -> [L; 4] {
-    let h_r = gather.height::<B, L>(0, shapes);
-    let h_tt = gather.height::<B, L>(1, shapes);
-    let h_trt = gather.height::<B, L>(2, shapes);
-    [shapes.value[0] * h_r, shapes.value[1] * h_tt, shapes.value[2] * h_trt, shapes.value[3] * h_trt]
-}
-
 /// The mixture density times `cos theta_i`.
 #[inline(always)]
-fn density<L: Lanes, C: Broadcast<L>, const N: usize>(gather: &MatchedGather<C, N>, warped: [L; 4]) -> L {
-    mixture(warped, &gather.weight) * gather.scale.lanes()
+fn density<L: Lanes, C: Broadcast<L>, const N: usize>(
+    gather: &MatchedGather<C, N>,
+    place: &Place<L>,
+    shapes: &Shapes<L>,
+) -> L {
+    mixture(shapes.value, &gather.weight) * (gather.height(place.sin_theta_i) * gather.scale.lanes())
 }

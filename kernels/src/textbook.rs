@@ -12,11 +12,11 @@
 //!   beside its peak; intensities above 1e27 may overflow.
 
 mod cauchy;
+mod cut;
 mod matched;
 mod parameters;
 mod real;
 mod sampler;
-mod warped;
 
 use crate::{Lobe, PerLobe};
 

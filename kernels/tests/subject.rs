@@ -18,6 +18,9 @@ pub(crate) const OVER_CAUCHY: f64 = 1.213_061_319_425_267;
 /// Densities below this are compared absolutely: a Cauchy has no end.
 pub(crate) const PDF_FLOOR: f64 = 0.0;
 
+/// Whether the density vanishes where the model does: it does not.
+pub(crate) const MATCHED: bool = false;
+
 /// Every form of the model, with its factor on the widths.
 pub(crate) fn subjects() -> Vec<(Tested, f32)> {
     vec![(Hair(Gaussian), 1.0)]

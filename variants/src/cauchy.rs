@@ -1,8 +1,8 @@
 //! The all-Cauchy variant: a bell with wider tails that the published sampler follows exactly.
 
 use core::f32::consts::FRAC_PI_2;
-use hairis::math::{atan_unit, atan2_upper, sin_cos_absolute};
-use hairis::{Bell, Hair, Lanes, Matched, MatchedBell, ParamError, Truncated};
+use hairis::math::{atan_unit, sin_cos_absolute};
+use hairis::{Bell, Hair, Lanes, Matched, MatchedBell, ParamError};
 
 /// The bell `1 / (1 + s)`, a Cauchy whose scale is the width: every Gaussian of the published model becomes this.
 ///
@@ -84,51 +84,30 @@ impl Bell for Cauchy {
     }
 }
 
-/// A Cauchy cut to an interval: masses are angles, the ends those of the interval.
+/// The integral is an angle, from the point of the interval that is nearest to the centre.
 ///
-/// - Accuracy: a point's cdf is that asked for to 3e-7, and next to an end to as much of its distance from it.
+/// - Accuracy: a point's integral is that asked for to 3e-7 rad.
 impl MatchedBell for Cauchy {
     const UNIT: f32 = 1.0;
 
     #[inline(always)]
-    fn truncate<L: Lanes>(lo: L, hi: L) -> Truncated<L> {
-        let one = L::splat(1.0);
-        let span = atan2_upper(hi - lo, lo.mul_add(hi, one));
-        Truncated { mass: span, inv_mass: one / span, ends: [lo, hi] }
+    fn origin<L: Lanes>(lo: L, hi: L) -> L {
+        lo.max(L::splat(0.0).min(hi))
     }
 
     #[inline(always)]
-    fn locate<L: Lanes>(cut: &Truncated<L>, x: L, _bell: L) -> (L::Mask, L) {
-        let one = L::splat(1.0);
-        let [lo, hi] = cut.ends;
-        // Sine and cosine, to a scale, of the angles that the point makes with the ends. The smaller is at most a right
-        // one.
-        let (sin_lo, sin_hi) = ((x - lo).abs(), (hi - x).abs());
-        let (cos_lo, cos_hi) = (x.mul_add(lo, one), x.mul_add(hi, one));
-        let lower = (sin_lo * cos_hi).lt(sin_hi * cos_lo);
-        let (sin, cos) = (L::select(lower, sin_lo, sin_hi), L::select(lower, cos_lo, cos_hi));
-        let steep = cos.lt(sin);
-        let angle = atan_unit(L::select(steep, cos, sin) / L::select(steep, sin, cos));
-        (lower, L::select(steep, L::splat(FRAC_PI_2) - angle, angle) * cut.inv_mass)
+    fn integral<L: Lanes>(origin: L, x: L) -> L {
+        // Sine and cosine, to a scale, of the angle from the origin, which is at most a right one.
+        let (sin, cos) = (x - origin, x.mul_add(origin, L::splat(1.0)));
+        let across = sin.abs();
+        let steep = cos.lt(across);
+        let angle = atan_unit(across.min(cos) / across.max(cos));
+        L::select(steep, L::splat(FRAC_PI_2) - angle, angle).times_sign(sin)
     }
 
     #[inline(always)]
-    fn invert<L: Lanes>(cut: &Truncated<L>, from_lo: L, from_hi: L) -> L {
-        // The nearer end, turned towards the other.
-        let end = L::select(from_lo.lt(from_hi), cut.ends[0], cut.ends[1]);
-        let (sin, cos) = sin_cos_absolute(from_lo.min(from_hi) * cut.mass);
-        turned(end, sin.times_sign(from_hi - from_lo), cos)
+    fn invert<L: Lanes>(origin: L, sum: L) -> L {
+        let (sin, cos) = sin_cos_absolute(sum);
+        origin.mul_add(cos, sin) / origin.mul_add(-sin, cos)
     }
-
-    #[inline(always)]
-    fn invert_both<L: Lanes>(cut: &Truncated<L>, v: f32) -> [L; 2] {
-        let (sin, cos) = sin_cos_absolute(L::splat(v) * cut.mass);
-        [turned(cut.ends[0], sin, cos), turned(cut.ends[1], -sin, cos)]
-    }
-}
-
-/// The tangent of the angle of `tangent` plus one of this sine and cosine.
-#[inline(always)]
-fn turned<L: Lanes>(tangent: L, sin: L, cos: L) -> L {
-    tangent.mul_add(cos, sin) / tangent.mul_add(-sin, cos)
 }

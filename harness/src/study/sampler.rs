@@ -14,17 +14,17 @@ pub enum Sampler {
     Uniform,
     /// By the published sampler.
     Ou,
-    /// By the sampler matched to the model with two segments a side: its cheapest.
-    Matched2,
-    /// With three, as by default.
-    Matched,
-    /// With four: its least variance.
+    /// By the sampler matched to the model with four bands a side: its cheapest.
     Matched4,
+    /// With six, as by default.
+    Matched,
+    /// With twelve: its least variance.
+    Matched12,
 }
 
 impl Sampler {
     /// Every sampler, in the order of reports.
-    pub const ALL: [Self; 5] = [Self::Uniform, Self::Ou, Self::Matched2, Self::Matched, Self::Matched4];
+    pub const ALL: [Self; 5] = [Self::Uniform, Self::Ou, Self::Matched4, Self::Matched, Self::Matched12];
 
     /// Name in reports and in rows.
     #[must_use]
@@ -32,9 +32,9 @@ impl Sampler {
         match self {
             Self::Uniform => "uniform",
             Self::Ou => "ou",
-            Self::Matched2 => "matched-2",
-            Self::Matched => "matched",
             Self::Matched4 => "matched-4",
+            Self::Matched => "matched",
+            Self::Matched12 => "matched-12",
         }
     }
 
@@ -75,9 +75,9 @@ fn visit_bell<B: MatchedBell + 'static, V: Visit>(bell: B, sampler: Sampler, vis
     match sampler {
         Sampler::Uniform => visitor.visit(Hair(bell), Directions::Uniform),
         Sampler::Ou => visitor.visit(Hair(bell), Directions::Sampled),
-        Sampler::Matched2 => visitor.visit(Matched::<_, 2>(bell), Directions::Sampled),
-        Sampler::Matched => visitor.visit(Matched::<_>(bell), Directions::Sampled),
         Sampler::Matched4 => visitor.visit(Matched::<_, 4>(bell), Directions::Sampled),
+        Sampler::Matched => visitor.visit(Matched::<_>(bell), Directions::Sampled),
+        Sampler::Matched12 => visitor.visit(Matched::<_, 12>(bell), Directions::Sampled),
     }
 }
 
@@ -97,7 +97,7 @@ pub(super) fn weight_bound(sampler: Sampler, params: &HairParams, cos_theta_o: f
             let peak = mean(desc.intensity_r) + mean(desc.intensity_tt) + mean(desc.intensity_trt) * glints;
             Some(4.0 * core::f64::consts::PI * peak / cos_theta_o)
         }
-        Sampler::Ou | Sampler::Matched2 | Sampler::Matched | Sampler::Matched4 => None,
+        Sampler::Ou | Sampler::Matched4 | Sampler::Matched | Sampler::Matched12 => None,
     }
 }
 

@@ -50,7 +50,7 @@ fn lobe<L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usize, area: L, colo
 /// `W = (cos theta_i / cos theta_d)^2`, what the bells leave out of `S cos theta_i`, from half of `theta_i`, and half the sine
 /// and half the cosine of `theta_o`. Where both directions lie on opposite poles it is 0 / 0, and its limit is 0.
 #[inline(always)]
-pub(crate) fn residual<L: Lanes>(half_theta_i: L, [half_sin_theta_o, half_cos_theta_o]: [L; 2]) -> L {
+fn residual<L: Lanes>(half_theta_i: L, [half_sin_theta_o, half_cos_theta_o]: [L; 2]) -> L {
     let quarter = L::splat(core::f32::consts::FRAC_PI_4);
     let (sin, cos) = sin_cos_twice((-quarter).max(quarter.min(half_theta_i)));
     let half = L::splat(0.5);

@@ -11,7 +11,7 @@ use core::f32::consts::FRAC_PI_2;
 pub(crate) struct Place<L: Lanes> {
     /// Half of `theta_i`.
     pub(crate) half_theta_i: L,
-    sin_theta_i: L,
+    pub(crate) sin_theta_i: L,
     pub(crate) cos_theta_i: L,
     /// `1 / cos theta_i`.
     pub(crate) inv_cos_theta_i: L,
@@ -32,10 +32,6 @@ pub(crate) struct Shapes<L> {
     /// The same of Cauchy bells, the glints cut at `pi/2`: the published sampler's density but for the gather point's
     /// constants, and for `1 / cos theta_i`.
     pub(super) density: [L; 4],
-    /// `theta_h - alpha` of R, TT and TRT in widths.
-    pub(crate) offset: [L; 3],
-    /// M of R, TT and TRT.
-    pub(crate) longitude: [L; 3],
     /// `1 / cos^2 theta_d`.
     pub(crate) inv_cos_sq_theta_d: L,
 }
@@ -145,9 +141,6 @@ impl<L: Lanes> Place<L> {
                 // The sampler cuts the glints at pi/2: ERRATA E3.
                 L::keep(self.front, cauchy_g),
             ],
-            offset: [x_r, x_tt, x_trt],
-            // What a sampler does not read is not computed.
-            longitude: [m_r, B::one(s_tt, cauchy_tt * d_tt_y), m_trt],
             inv_cos_sq_theta_d: inv_r * d_r,
         }
     }

@@ -1,9 +1,8 @@
 //! What a matched sampler keeps of a material, and of a material seen from one direction.
 
-use super::warp::{END_SHARE, NEAR_END, Side, node};
-use super::{MatchedBell, Truncated};
-use crate::hair::albedo::residual;
-use crate::hair::{Shapes, prepare_point, selection, times};
+use super::MatchedBell;
+use super::bands::bands;
+use crate::hair::{prepare_point, selection, times};
 use crate::lanes::{store3, store4};
 use crate::{Broadcast, HairLobes, HairParams, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
 use core::f32::consts::{FRAC_PI_4, PI};
@@ -15,9 +14,6 @@ const LEAST_ENERGY: f32 = 1e-36;
 /// Intensities below this share of the largest are none to the sampler.
 const LEAST_IMPORTANCE: f64 = 1e-25;
 
-/// Heights are at least this share of W at a third of the way to the other pole.
-const LEAST_HEIGHT: f32 = 1e-5;
-
 crate::lane_struct! {
     /// The constants of a material with a matched sampler.
     ///
@@ -27,54 +23,58 @@ crate::lane_struct! {
         pub lobes: (HairLobes<C>),
         /// Intensity of each lobe, the mean of its RGB, to the scale of the largest.
         pub importance: [C; 4],
-        /// The same times what a lobe integrates to for each unit of its longitude's mass.
+        /// The same times what a lobe integrates to for each unit of its longitude's integral.
         pub capacity: [C; 4],
-        /// Mass of the azimuth's bell on one side.
+        /// Integral of the azimuth's bell over one side.
         pub azimuth_mass: [C; 2],
-        /// The first of that distribution's own numbers.
-        pub azimuth_end_0: [C; 2],
-        /// The second.
-        pub azimuth_end_1: [C; 2],
+        /// Its integral up to where the side begins.
+        pub azimuth_from: [C; 2],
+        /// The origin of both.
+        pub azimuth_origin: [C; 2],
     }
 }
 
-/// The constants of a gather point with a matched sampler of `N` segments a side.
+/// The bands on one side of the normal plane, from the pole to the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MatchedSide<C, const N: usize> {
+    /// W in each band.
+    pub height: [C; N],
+    /// Integral of M up to a band's end towards the pole, for each lobe.
+    pub integral: [[C; 4]; N],
+    /// Integral of `M W` over the side.
+    pub area: [C; 4],
+}
+
+/// The constants of a gather point with a matched sampler of `N` bands a side.
 ///
-/// Arrays of four are in the order of [`Lobe`], of three R, TT and TRT, of two TT and the glints; in those of sides the
-/// lower end is first.
+/// Arrays of four are in the order of [`Lobe`], of two TT and the glints; the side below the normal plane is first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchedGather<C, const N: usize> {
     /// The lobes as seen from `wo`.
     pub point: HairPoint<C>,
-    /// Mass of the longitude's bell on the sphere.
-    pub mass: [C; 4],
-    /// `1 / mass`, or 0.
-    pub inv_mass: [C; 4],
-    /// That distribution's own two numbers.
-    pub ends: [[C; 4]; 2],
-    /// Heights of the warp: by side, by node from the end inwards, by lobe.
-    pub outer: [[[C; 4]; N]; 2],
-    /// Heights in the middle.
-    pub middle: [C; 4],
-    /// Area below the warp: the mean of W over the lobe.
+    /// Origin of the integrals of each longitude.
+    pub origin: [C; 4],
+    /// The bands of each side.
+    pub sides: [MatchedSide<C, N>; 2],
+    /// Integral of `M W` over the sphere.
     pub area: [C; 4],
-    /// The part of it on the lower side.
-    pub area_lower: [C; 4],
-    /// Factor on `M N h` of each lobe in the mixture density, but for `scale`.
+    /// Factor on `M N` of each lobe in the mixture density, but for W.
     pub weight: [C; 4],
-    /// Factor on all of them.
+    /// What areas are multiplied with, so that the largest is 1.
     pub scale: C,
     /// Probability of choosing each lobe.
     pub selection: [C; 4],
     /// Where the next lobe begins in `xi_lobe`.
     pub bounds: [C; 3],
-    /// Mass of the azimuth's bell on one side.
+    /// Integral of the azimuth's bell over one side.
     pub azimuth_mass: [C; 2],
-    /// That distribution's own two numbers.
-    pub azimuth_ends: [[C; 2]; 2],
+    /// Its integral up to where the side begins.
+    pub azimuth_from: [C; 2],
+    /// The origin of both.
+    pub azimuth_origin: [C; 2],
 }
 
-/// What each lobe integrates to, but for its colour, for each unit of its longitude's mass and of the mean of W.
+/// What each lobe integrates to, but for its colour, for each unit of its longitude's integral.
 #[inline(always)]
 fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(hair: &HairLobes<C>, azimuth_mass: [L; 2]) -> [L; 4] {
     // dtheta_i is two widths for each of x; the azimuth of R and TRT-g has an area of 4, and bells have two sides.
@@ -95,17 +95,20 @@ impl MatchedMaterial<f32> {
         let lobes = HairLobes::of(bell, params);
         let phi_g = params.desc().phi_g;
         let [inv_gamma_tt, inv_gamma_g] = lobes.inv_half_gamma.map(|inv| 0.5 * inv);
-        let tt = B::truncate(0.0, PI * inv_gamma_tt);
-        let glint = B::truncate(-phi_g * inv_gamma_g, (PI - phi_g) * inv_gamma_g);
-        let azimuth_mass = [tt.mass, glint.mass];
+        let sides = [(0.0, PI * inv_gamma_tt), (-phi_g * inv_gamma_g, (PI - phi_g) * inv_gamma_g)];
+        let azimuth_origin = sides.map(|(lo, hi)| B::origin(lo, hi));
+        let from_to = |i: usize| [sides[i].0, sides[i].1].map(|x| B::integral(azimuth_origin[i], x));
+        let [tt, glint] = [from_to(0), from_to(1)];
+        // Integrals ascend but for their rounding.
+        let azimuth_mass = [tt, glint].map(|[from, to]| 0.0_f32.max(to - from));
         let importance = importance(params);
         Self {
             lobes,
             importance,
             capacity: times(extent::<B, f32, f32>(&lobes, azimuth_mass), importance),
             azimuth_mass,
-            azimuth_end_0: [tt.ends[0], glint.ends[0]],
-            azimuth_end_1: [tt.ends[1], glint.ends[1]],
+            azimuth_from: [tt[0], glint[0]],
+            azimuth_origin,
         }
     }
 }
@@ -124,44 +127,77 @@ fn importance(params: &HairParams) -> [f32; 4] {
     all.map(|i| if i > largest * LEAST_IMPORTANCE { (i / largest) as f32 } else { 0.0 })
 }
 
-/// The longitude of R, TT or TRT.
+/// A longitude, from one of the poles towards the normal plane.
 #[derive(Clone, Copy)]
-struct Longitude<L, const N: usize> {
-    cut: Truncated<L>,
-    sides: [Side<L, N>; 2],
+struct Longitude<L> {
+    shift: L,
+    inv_beta: L,
+    origin: L,
+    /// Integral of M up to here, and that of `M W` from the pole.
+    integral: L,
     area: L,
-    area_lower: L,
 }
 
-/// Longitude `l` of a gather point; `theta_o` by half its sine and half its cosine.
-#[inline(always)]
-fn longitude<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
-    hair: &HairLobes<C>,
-    l: usize,
-    shift: L,
-    theta_o: [L; 2],
-) -> Longitude<L, N> {
-    let c = L::splat;
-    let (beta, inv_beta, quarter) = (hair.beta[l].lanes(), hair.inv_beta[l].lanes(), c(FRAC_PI_4));
-    let cut = B::truncate((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
-    let least = c(LEAST_HEIGHT) * mode_scale(theta_o[1]);
-    let [x, _] = B::invert_both(&cut, 0.5);
-    let middle = least.max(residual(x.mul_add(beta, -shift), theta_o));
-    let (mut lower, mut upper) = (Side { outer: [middle; N], middle }, Side { outer: [middle; N], middle });
-    let mut j = 1;
-    while j < N {
-        let [below, above] = B::invert_both(&cut, node(N, j));
-        lower.outer[j] = least.max(residual(below.mul_add(beta, -shift), theta_o));
-        upper.outer[j] = least.max(residual(above.mul_add(beta, -shift), theta_o));
-        j += 1;
+impl<L: Lanes> Longitude<L> {
+    /// At a pole, `pole` -1 for the lower one and 1 for the upper.
+    #[inline(always)]
+    fn at_pole<B: MatchedBell>(shift: L, inv_beta: L, pole: f32) -> Self {
+        let (zero, quarter) = (L::splat(0.0), L::splat(FRAC_PI_4));
+        let origin = B::origin((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
+        let this = Self { shift, inv_beta, origin, integral: zero, area: zero };
+        Self { integral: this.integral_to::<B>(pole * FRAC_PI_4), ..this }
     }
-    // The end has a height of its own: W is 0 there.
-    let [below, above] = B::invert_both(&cut, NEAR_END);
-    let share = c(END_SHARE);
-    lower.outer[0] = (lower.outer[1] * share).max(residual(below.mul_add(beta, -shift), theta_o));
-    upper.outer[0] = (upper.outer[1] * share).max(residual(above.mul_add(beta, -shift), theta_o));
-    let area_lower = lower.area();
-    Longitude { cut, sides: [lower, upper], area: area_lower + upper.area(), area_lower }
+
+    #[inline(always)]
+    fn integral_to<B: MatchedBell>(&self, half_theta_i: f32) -> L {
+        B::integral(self.origin, (self.shift + L::splat(half_theta_i)) * self.inv_beta)
+    }
+
+    /// Goes on through a band.
+    #[inline(always)]
+    fn pass<B: MatchedBell>(&mut self, half_theta_i: f32, height: L) {
+        let next = self.integral_to::<B>(half_theta_i);
+        self.area = (next - self.integral).abs().mul_add(height, self.area);
+        self.integral = next;
+    }
+}
+
+/// Runs a body for every band `j` of `N`: straight on, so that what it writes is written where it belongs.
+macro_rules! for_bands {
+    ($j:ident < $n:ident, $body:block) => { for_bands!(@$j $n $body 0 1 2 3 4 5 6 7 8 9 10 11) };
+    (@$j:ident $n:ident $body:block $($i:literal)*) => {
+        $(if $i < $n {
+            let $j = $i;
+            $body
+        })*
+    };
+}
+
+/// One side of R, TT and TRT, `pole` as in [`Longitude::at_pole`]: the areas as they are, and the origins.
+#[inline(always)]
+fn side<B: MatchedBell, L: Lanes, const N: usize>(
+    shift: [L; 3],
+    inv_beta: [L; 3],
+    pole: f32,
+    theta_o: [L; 2],
+) -> (MatchedSide<L::Stored, N>, [L; 3], [L; 3]) {
+    let mut r = Longitude::at_pole::<B>(shift[0], inv_beta[0], pole);
+    let mut tt = Longitude::at_pole::<B>(shift[1], inv_beta[1], pole);
+    let mut trt = Longitude::at_pole::<B>(shift[2], inv_beta[2], pole);
+    let none = L::splat(0.0).store();
+    let (mut integral, mut height) = ([[none; 4]; N], [none; N]);
+    for_bands!(j < N, {
+        let band = &const { bands::<N>() }[j];
+        integral[j] = shared4([r.integral, tt.integral, trt.integral]);
+        let w = band.residual(pole, theta_o);
+        height[j] = w.store();
+        let end = pole * band.half_inner;
+        r.pass::<B>(end, w);
+        tt.pass::<B>(end, w);
+        trt.pass::<B>(end, w);
+    });
+    let area = [r.area, tt.area, trt.area];
+    (MatchedSide { height, integral, area: shared4(area) }, area, [r.origin, tt.origin, trt.origin])
 }
 
 /// The gather point of a material seen from `wo`.
@@ -172,28 +208,35 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
 ) -> MatchedGather<L::Stored, N> {
     let c = L::splat;
     let zero = c(0.0);
-    let point = prepare_point(&m.lobes, wo);
+    let hair = &m.lobes;
+    let point = prepare_point(hair, wo);
     let theta_o = [point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes()];
-    let r = longitude::<B, L, C, N>(&m.lobes, 0, point.shift[0].lanes(), theta_o);
-    let tt = longitude::<B, L, C, N>(&m.lobes, 1, point.shift[1].lanes(), theta_o);
-    let trt = longitude::<B, L, C, N>(&m.lobes, 2, point.shift[2].lanes(), theta_o);
-    // The glints share the longitude of TRT.
-    let mass = [r.cut.mass, tt.cut.mass, trt.cut.mass, trt.cut.mass];
-    let area = [r.area, tt.area, trt.area, trt.area];
+    let (mut shift, mut inv_beta) = ([zero; 3], [zero; 3]);
+    let mut l = 0;
+    while l < 3 {
+        (shift[l], inv_beta[l]) = (point.shift[l].lanes(), hair.inv_beta[l].lanes());
+        l += 1;
+    }
 
-    // Energies to the scale of the largest mass, which may be next to nothing where all lobes lie off the sphere.
+    let (lower, area_lower, origin) = side::<B, L, N>(shift, inv_beta, -1.0, theta_o);
+    let (upper, area_upper, _) = side::<B, L, N>(shift, inv_beta, 1.0, theta_o);
+    // The glints share the longitude of TRT.
+    let trt = area_lower[2] + area_upper[2];
+    let total = [area_lower[0] + area_upper[0], area_lower[1] + area_upper[1], trt, trt];
+
+    // Energies to the scale of the largest area, which may be next to nothing where all lobes lie off the sphere.
     let capacity = [m.capacity[0].lanes(), m.capacity[1].lanes(), m.capacity[2].lanes(), m.capacity[3].lanes()];
     let mut largest = zero;
     let mut l = 0;
     while l < 4 {
-        largest = largest.max(L::keep(zero.lt(capacity[l]), mass[l]));
+        largest = largest.max(L::keep(zero.lt(capacity[l]), total[l]));
         l += 1;
     }
     let scale = L::select(zero.lt(largest), c(1.0) / largest, zero);
     let mut energy = [zero; 4];
     l = 0;
     while l < 4 {
-        let e = capacity[l] * (mass[l] * scale) * area[l];
+        let e = capacity[l] * (total[l] * scale);
         energy[l] = L::keep(c(LEAST_ENERGY).lt(e), e);
         l += 1;
     }
@@ -205,37 +248,24 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
         l += 1;
     }
 
-    let mut outer = [[[r.area.store(); 4]; N]; 2];
-    let mut j = 0;
-    while j < N {
-        outer[0][j] = shared4(r.sides[0].outer[j], tt.sides[0].outer[j], trt.sides[0].outer[j]);
-        outer[1][j] = shared4(r.sides[1].outer[j], tt.sides[1].outer[j], trt.sides[1].outer[j]);
-        j += 1;
-    }
     MatchedGather {
         point,
-        mass: store4(mass),
-        inv_mass: shared4(r.cut.inv_mass, tt.cut.inv_mass, trt.cut.inv_mass),
-        ends: [
-            shared4(r.cut.ends[0], tt.cut.ends[0], trt.cut.ends[0]),
-            shared4(r.cut.ends[1], tt.cut.ends[1], trt.cut.ends[1]),
-        ],
-        outer,
-        middle: shared4(r.sides[0].middle, tt.sides[0].middle, trt.sides[0].middle),
-        area: store4(area),
-        area_lower: shared4(r.area_lower, tt.area_lower, trt.area_lower),
+        origin: shared4(origin),
+        sides: [lower, upper],
+        area: store4(total),
         weight: store4(weight),
         scale: scale.store(),
         selection: store4(p),
         bounds: store3(bounds),
         azimuth_mass: spread2::<L, C>(&m.azimuth_mass),
-        azimuth_ends: [spread2::<L, C>(&m.azimuth_end_0), spread2::<L, C>(&m.azimuth_end_1)],
+        azimuth_from: spread2::<L, C>(&m.azimuth_from),
+        azimuth_origin: spread2::<L, C>(&m.azimuth_origin),
     }
 }
 
 /// R, TT, TRT, and for the glints TRT again.
 #[inline(always)]
-fn shared4<L: Lanes>(r: L, tt: L, trt: L) -> [L::Stored; 4] {
+fn shared4<L: Lanes>([r, tt, trt]: [L; 3]) -> [L::Stored; 4] {
     store4([r, tt, trt, trt])
 }
 
@@ -245,49 +275,41 @@ fn spread2<L: Lanes, C: Broadcast<L>>(x: &[C; 2]) -> [L::Stored; 2] {
     [x[0].lanes().store(), x[1].lanes().store()]
 }
 
-/// W a third of the way to the other pole, `(cos(theta_o / 3) / cos(2 theta_o / 3))^2`, roughly: 1 in the normal plane and 3
-/// at the poles.
-#[inline(always)]
-fn mode_scale<L: Lanes>(half_cos_theta_o: L) -> L {
-    half_cos_theta_o.mul_add(L::splat(-4.0), L::splat(3.0))
-}
-
 impl<C, const N: usize> MatchedGather<C, N> {
-    /// The warp's height for longitude `l` (R, TT or TRT) at a place.
+    /// W in the band of an inclination.
     #[inline(always)]
-    pub(super) fn height<B: MatchedBell, L: Lanes>(&self, l: usize, shapes: &Shapes<L>) -> L
+    pub(super) fn height<L: Lanes>(&self, sin_theta_i: L) -> L
     where
         C: Broadcast<L>,
     {
-        let cut = Truncated {
-            mass: self.mass[l].lanes(),
-            inv_mass: self.inv_mass[l].lanes(),
-            ends: [self.ends[0][l].lanes(), self.ends[1][l].lanes()],
-        };
-        let (lower, v) = B::locate(&cut, shapes.offset[l], shapes.longitude[l]);
-        let mut side = Side { outer: [v; N], middle: self.middle[l].lanes() };
-        let mut j = 0;
+        let across = sin_theta_i.abs();
+        let [below, above] = [&self.sides[0].height, &self.sides[1].height];
+        let (mut lower, mut upper) = (below[0].lanes(), above[0].lanes());
+        let mut j = 1;
         while j < N {
-            side.outer[j] = L::select(lower, self.outer[0][j][l].lanes(), self.outer[1][j][l].lanes());
+            let inside = across.lt(L::splat(const { bands::<N>() }[j].outer));
+            lower = L::select(inside, below[j].lanes(), lower);
+            upper = L::select(inside, above[j].lanes(), upper);
             j += 1;
         }
-        side.at(v)
+        L::select(sin_theta_i.lt(L::splat(0.0)), lower, upper)
     }
 
-    /// Factor on `M N h` of a lobe drawn alone, but for its mass.
+    /// Factor on `M N W` of a lobe drawn alone, but for `scale`.
     #[inline(always)]
     pub(super) fn lone_density<B: MatchedBell, L: Lanes>(&self) -> [L; 4]
     where
         C: Broadcast<L>,
     {
         let azimuth_mass = [self.azimuth_mass[0].lanes(), self.azimuth_mass[1].lanes()];
-        let mut scale = extent::<B, L, C>(&self.point.lobes, azimuth_mass);
+        let mut factor = extent::<B, L, C>(&self.point.lobes, azimuth_mass);
         let mut l = 0;
         while l < 4 {
-            scale[l] = L::splat(1.0) / (scale[l] * self.area[l].lanes());
+            let integral = factor[l] * (self.area[l].lanes() * self.scale.lanes());
+            factor[l] = L::keep(L::splat(LEAST_ENERGY).lt(integral), L::splat(1.0) / integral);
             l += 1;
         }
-        scale
+        factor
     }
 }
 
@@ -314,19 +336,20 @@ impl<const N: usize> MatchedGather<f32x8, N> {
         let at = |x: f32x8| x.as_array()[lane];
         MatchedGather {
             point: self.point.lane(lane),
-            mass: self.mass.map(at),
-            inv_mass: self.inv_mass.map(at),
-            ends: self.ends.map(|x| x.map(at)),
-            outer: self.outer.map(|side| side.map(|x| x.map(at))),
-            middle: self.middle.map(at),
+            origin: self.origin.map(at),
+            sides: self.sides.map(|side| MatchedSide {
+                height: side.height.map(at),
+                integral: side.integral.map(|band| band.map(at)),
+                area: side.area.map(at),
+            }),
             area: self.area.map(at),
-            area_lower: self.area_lower.map(at),
             weight: self.weight.map(at),
             scale: at(self.scale),
             selection: self.selection.map(at),
             bounds: self.bounds.map(at),
             azimuth_mass: self.azimuth_mass.map(at),
-            azimuth_ends: self.azimuth_ends.map(|x| x.map(at)),
+            azimuth_from: self.azimuth_from.map(at),
+            azimuth_origin: self.azimuth_origin.map(at),
         }
     }
 }

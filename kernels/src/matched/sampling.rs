@@ -1,11 +1,14 @@
 //! A direction from three uniform numbers.
 
-use super::warp::Side;
-use super::{MatchedBell, MatchedGather, Truncated};
+use super::{MatchedBell, MatchedGather};
 use crate::hair::{Place, Turn, turned};
 use crate::lanes::lanes3;
 use crate::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+
+/// A quarter of the step between uniform numbers of 24 bits: the share of an angle that is left out at its ends, so that
+/// rounding takes no sample past them, and none to a pole or to where a Gaussian has no density left.
+const LEAST_SHARE: f32 = f32::EPSILON / 8.0;
 
 /// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place.
 #[inline(always)]
@@ -18,40 +21,43 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let (point, hair) = (&gather.point, &gather.point.lobes);
     let choice = L::choose(xi[0], lanes3(&gather.bounds));
 
-    // Longitude: the number's share of the area below the warp, from the end of its side.
-    let (total, below) = (C::pick_three(&gather.area, choice), C::pick_three(&gather.area_lower, choice));
+    // Longitude: the number's share of the integral of M W, from the pole of its side, and the band it falls in.
+    let [below, above] = &gather.sides;
+    let total = C::pick_three(&gather.area, choice);
     let area = zero.max(xi[1].min(one)) * total;
-    let lower = area.lt(below);
-    let area = L::select(lower, area, (total - area).min(total - below));
-    let mut side = Side { outer: [zero; N], middle: C::pick_three(&gather.middle, choice) };
-    let mut j = 0;
+    let lower = area.lt(C::pick_three(&below.area, choice));
+    let area = L::select(lower, area, total - area);
+    let [first, last] = [C::pick_three(&below.integral[0], choice), C::pick_three(&above.integral[0], choice)];
+    // The band's end towards the pole, W in it, and what lies beyond it.
+    let w = L::select(lower, below.height[0].lanes(), above.height[0].lanes());
+    let (mut from, mut height, mut beyond) = (L::select(lower, first, last), w, zero);
+    let (mut end, mut w, mut sum) = (from, height, zero);
+    let mut j = 1;
     while j < N {
-        let [at_lower, at_upper] = [&gather.outer[0][j], &gather.outer[1][j]];
-        side.outer[j] = L::select(lower, C::pick_three(at_lower, choice), C::pick_three(at_upper, choice));
+        let [low, high] = [C::pick_three(&below.integral[j], choice), C::pick_three(&above.integral[j], choice)];
+        let next = L::select(lower, low, high);
+        sum = (next - end).abs().mul_add(w, sum);
+        (end, w) = (next, L::select(lower, below.height[j].lanes(), above.height[j].lanes()));
+        let past = sum.lt(area);
+        from = L::select(past, end, from);
+        height = L::select(past, w, height);
+        beyond = L::select(past, sum, beyond);
         j += 1;
     }
-    let v = side.invert(area);
-    let rest = one - v;
-    let cut = Truncated {
-        mass: C::pick_three(&gather.mass, choice),
-        inv_mass: C::pick_three(&gather.inv_mass, choice),
-        ends: [C::pick_three(&gather.ends[0], choice), C::pick_three(&gather.ends[1], choice)],
-    };
-    let x = B::invert(&cut, L::select(lower, v, rest), L::select(lower, rest, v));
+    let integral = from + L::negate(lower, beyond - area) / height;
+    let least = (last - first) * c(LEAST_SHARE);
+    let integral = (first + least).max(integral.min(last - least));
+    let x = B::invert(C::pick_three(&gather.origin, choice), integral);
     let half_theta_i = x.mul_add(C::pick_three(&hair.beta, choice), -C::pick_three(&point.shift, choice));
     let half_theta_i = c(-FRAC_PI_4).max(half_theta_i.min(c(FRAC_PI_4)));
 
-    // Azimuth: TT's cdf runs from its centre outwards, that of a glint from phi = 0.
+    // Azimuth: TT's runs from its centre outwards, that of a glint from phi = 0.
     let turn = Turn::of(xi[2]);
     let is_glint = L::is_slot(choice, 3);
-    let mass = C::pick_pair(&gather.azimuth_mass, choice);
-    let cut = Truncated {
-        mass,
-        inv_mass: one / mass,
-        ends: [C::pick_pair(&gather.azimuth_ends[0], choice), C::pick_pair(&gather.azimuth_ends[1], choice)],
-    };
-    let rest = one - turn.across;
-    let y = B::invert(&cut, L::select(is_glint, rest, turn.across), L::select(is_glint, turn.across, rest));
+    let share = L::select(is_glint, one - turn.across, turn.across);
+    let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON / 2.0)));
+    let (mass, from) = (C::pick_pair(&gather.azimuth_mass, choice), C::pick_pair(&gather.azimuth_from, choice));
+    let y = B::invert(C::pick_pair(&gather.azimuth_origin, choice), share.mul_add(mass, from));
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::pick_pair(&hair.half_gamma, choice), center);
     let psi = zero.max(psi.min(c(FRAC_PI_2)));

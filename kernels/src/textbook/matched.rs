@@ -1,15 +1,27 @@
 //! The matched sampler, formula by formula: what [`Matched`](crate::Matched) computes, without its economies.
 
-use super::warped::{Cut, Warp};
+use super::cut::Cut;
 use super::{Angles, Drawn, GRAZING, Parameters, Real, Shape, Textbook, cos_half, wrapped};
 use crate::{Lobe, LobeMask, PerLobe};
+
+/// Most bands, of both sides.
+const MOST: usize = 24;
+
+/// Sines of the inclinations where the bands of a side end, the pole and the normal plane left out.
+const fn ends(bands: usize) -> &'static [f32] {
+    match bands {
+        4 => &[0.96875, 0.875, 0.5],
+        6 => &[0.996, 0.986, 0.951, 0.829, 0.4],
+        _ => &[0.9983, 0.9969, 0.9943, 0.9897, 0.9811, 0.9655, 0.937, 0.885, 0.79, 0.617, 0.3],
+    }
+}
 
 /// The model with its matched sampler, for one set of parameters and one `wo`.
 ///
 /// ```
 /// use hairis::{HairParams, textbook::{MatchedTextbook, Parameters, Shape}};
 /// let parameters = Parameters::<f64>::from(&HairParams::brown());
-/// let hair = MatchedTextbook::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0], 3);
+/// let hair = MatchedTextbook::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0], 6);
 /// let drawn = hair.sample([0.1, 0.4, 0.7]);
 /// assert!((hair.pdf(drawn.wi) / drawn.pdf - 1.0).abs() < 1e-9);
 /// ```
@@ -17,7 +29,12 @@ use crate::{Lobe, LobeMask, PerLobe};
 pub struct MatchedTextbook<T> {
     book: Textbook<T>,
     longitudinal: PerLobe<Cut<T>>,
-    warps: PerLobe<Warp<T>>,
+    /// Number of bands, from the lower pole to the upper, the sines they lie between, and W in each.
+    bands: usize,
+    sines: [T; MOST + 1],
+    heights: [T; MOST],
+    /// Integral of each lobe's bell, times W, up to where a band begins.
+    areas: PerLobe<[T; MOST + 1]>,
     /// TT's azimuth from its centre to one side, and a glint's from `phi = 0` to pi.
     transmission: Cut<T>,
     glint: Cut<T>,
@@ -33,30 +50,26 @@ fn w<T: Real>(theta_i: T, theta_o: T) -> T {
 }
 
 impl<T: Real> MatchedTextbook<T> {
-    /// What is constant for `parameters` and `wo`, with 2, 3 or 4 segments a side.
+    /// What is constant for `parameters` and `wo`, with 4, 6 or 12 bands a side.
     #[inline]
     #[must_use]
-    pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3], segments: usize) -> Self {
+    pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3], bands: usize) -> Self {
         let number = T::from_f64;
         let (zero, one, half) = (T::default(), number(1.0), number(0.5));
         let book = Textbook::prepare(parameters, shape, wo);
         let p = parameters;
         let transmission = Cut::new(shape, zero, T::PI / p.gamma_tt);
         let glint = Cut::new(shape, -p.phi_g / p.gamma_g, (T::PI - p.phi_g) / p.gamma_g);
-        let mut this = Self {
-            book,
-            longitudinal: PerLobe::default(),
-            warps: PerLobe::default(),
-            transmission,
-            glint,
-            energies: PerLobe::default(),
-            probabilities: PerLobe::default(),
-        };
-        let side: &[f64] = match segments {
-            2 => &[0.06],
-            3 => &[0.023, 0.135],
-            _ => &[0.012, 0.06, 0.2],
-        };
+        let side = ends(bands);
+        let bands = 2 * side.len() + 2;
+        let (mut sines, mut heights) = ([zero; MOST + 1], [zero; MOST]);
+        (sines[0], sines[bands]) = (-one, one);
+        for (j, end) in side.iter().enumerate() {
+            (sines[j + 1], sines[bands - 1 - j]) = (-T::from_f32(*end), T::from_f32(*end));
+        }
+        for j in 0..bands {
+            heights[j] = w((half * (sines[j] + sines[j + 1])).asin(), book.theta_o);
+        }
         let mean = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / number(3.0);
         let trt = mean(p.intensity_trt);
         let intensity = PerLobe([mean(p.intensity_r), mean(p.intensity_tt), trt, trt * p.intensity_g]);
@@ -67,28 +80,29 @@ impl<T: Real> MatchedTextbook<T> {
             number(2.0) * p.gamma_g * glint.area,
         ]);
         let quarter = T::PI * number(0.25);
+        let mut this = Self {
+            book,
+            longitudinal: PerLobe::default(),
+            bands,
+            sines,
+            heights,
+            areas: PerLobe([[zero; MOST + 1]; 4]),
+            transmission,
+            glint,
+            energies: PerLobe::default(),
+            probabilities: PerLobe::default(),
+        };
         for lobe in Lobe::ALL {
             let i = lobe.index().min(2);
             let centre = half * book.theta_o - p.alpha[i];
             let cut = Cut::new(shape, (centre - quarter) / p.beta[i], (centre + quarter) / p.beta[i]);
             this.longitudinal[lobe] = cut;
-            let at = |xi: T| w(this.theta_i(lobe, cut.sample(xi)), book.theta_o);
-            let least = number(1e-5) * (number(3.0) - number(2.0) * book.theta_o.cos());
-            let count = 2 * side.len() + 3;
-            let mut warp = Warp { count, ..Warp::default() };
-            warp.nodes[count - 1] = one;
-            warp.nodes[side.len() + 1] = half;
-            warp.heights[side.len() + 1] = at(half).max(least);
-            for (j, v) in side.iter().enumerate() {
-                let v = T::from_f32(rounded(*v));
-                (warp.nodes[j + 1], warp.nodes[count - 2 - j]) = (v, one - v);
-                (warp.heights[j + 1], warp.heights[count - 2 - j]) = (at(v).max(least), at(one - v).max(least));
+            for j in 0..bands {
+                let [from, to] = [j, j + 1].map(|j| cut.below(this.offset(lobe, sines[j].asin())));
+                this.areas[lobe][j + 1] = this.areas[lobe][j] + heights[j] * (to - from);
             }
-            let (end, share) = (number(1e-3), number(0.25));
-            warp.heights[0] = at(end).max(share * warp.heights[1]);
-            warp.heights[count - 1] = at(one - end).max(share * warp.heights[count - 2]);
-            this.warps[lobe] = warp;
-            let longitude = number(2.0) * p.beta[i] * cut.area * warp.total();
+            // Nothing is drawn from a bell that is 0 all over the sphere.
+            let longitude = number(2.0) * p.beta[i] * if cut.area > zero { this.areas[lobe][bands] } else { zero };
             this.energies[lobe] = intensity[lobe] * azimuth[lobe] * longitude;
         }
         let total = Lobe::ALL.into_iter().fold(zero, |sum, lobe| sum + this.energies[lobe]);
@@ -96,6 +110,15 @@ impl<T: Real> MatchedTextbook<T> {
             this.probabilities[lobe] = if total > zero { this.energies[lobe] / total } else { zero };
         }
         this
+    }
+
+    /// The band of an inclination, by its sine.
+    fn band(&self, sin_theta_i: T) -> usize {
+        // On the lower side an end belongs to the band below it, as does the plane to the band above.
+        let below = |j: &usize| {
+            if self.sines[*j] < T::default() { sin_theta_i <= self.sines[*j] } else { sin_theta_i < self.sines[*j] }
+        };
+        (1..self.bands).find(below).unwrap_or(self.bands) - 1
     }
 
     /// `theta_i` at an offset of `x` widths from a lobe's centre.
@@ -120,40 +143,38 @@ impl<T: Real> MatchedTextbook<T> {
     }
 
     /// What no weight exceeds, the mean of its three channels, of the lobes in `mask`: the sum of their energies times the
-    /// largest ratio of W to the function in its place.
-    ///
-    /// In a segment that ratio is at most that of the two heights at its ends, as W is unimodal; where W has its mode,
-    /// 4 over the lower of them.
+    /// largest ratio of W to what it is taken for in a band.
     #[inline]
     #[must_use]
     pub fn weight_bound(&self, mask: LobeMask) -> T {
-        let number = T::from_f64;
         let theta_o = self.book.theta_o;
-        let rises = |t: T| number(-2.0) * t.tan() - (number(0.5) * (theta_o - t)).tan() > T::default();
-        let right = T::PI * number(0.5);
-        let (mut sum, mut most) = (T::default(), T::default());
-        for lobe in Lobe::ALL.into_iter().filter(|l| mask.contains(*l) && self.energies[*l] > T::default()) {
-            sum = sum + self.energies[lobe];
-            let warp = &self.warps[lobe];
-            for i in 1..warp.count {
-                let (a, b) = (warp.heights[i - 1], warp.heights[i]);
-                let [from, to] = [i - 1, i].map(|j| self.node(lobe, j).unwrap_or(right));
-                // At the poles W rises inwards, whatever its tangent.
-                let (from_rises, to_rises) = (i == 1 || rises(from), i + 1 < warp.count && rises(to));
-                let top = if from_rises && !to_rises { number(4.0) } else { a.max(b) };
-                most = most.max(top / a.min(b));
-            }
-        }
+        let lobes = Lobe::ALL.into_iter().filter(|l| mask.contains(*l));
+        let sum = lobes.fold(T::default(), |sum, lobe| sum + self.energies[lobe]);
+        // W has one mode, between the normal plane and the pole away from wo.
+        let mode = self.mode();
+        let most = (0..self.bands).fold(T::default(), |most, j| {
+            let [from, to] = [j, j + 1].map(|j| self.sines[j].asin());
+            most.max(w(mode.max(from).min(to), theta_o) / self.heights[j])
+        });
         sum * most
     }
 
-    /// `theta_i` of the node `j` of a lobe's piecewise-linear function, both ends of the sphere included.
+    /// Where W is largest: `ln W` is concave, as W is at most 4.
+    fn mode(&self) -> T {
+        let number = T::from_f64;
+        let (mut lo, mut hi) = (number(-0.5) * T::PI, number(0.5) * T::PI);
+        for _ in 0..60 {
+            let t = number(0.5) * (lo + hi);
+            let rises = number(-2.0) * t.tan() - (number(0.5) * (self.book.theta_o - t)).tan() > T::default();
+            (lo, hi) = if rises { (t, hi) } else { (lo, t) };
+        }
+        number(0.5) * (lo + hi)
+    }
+
+    /// The inclinations between which W is taken for constant, both poles included.
     #[inline]
-    #[must_use]
-    pub fn node(&self, lobe: Lobe, j: usize) -> Option<T> {
-        let warp = &self.warps[lobe];
-        let cut = &self.longitudinal[lobe];
-        (j < warp.count).then(|| self.theta_i(lobe, cut.sample(warp.nodes[j])))
+    pub fn bands(&self) -> impl Iterator<Item = T> + '_ {
+        self.sines[..=self.bands].iter().map(|sine| sine.asin())
     }
 
     /// As [`Textbook::eval`]: the sampler does not change the model.
@@ -174,26 +195,37 @@ impl<T: Real> MatchedTextbook<T> {
     #[inline]
     #[must_use]
     pub fn pdf(&self, wi: [T; 3]) -> T {
-        self.book.angles(wi).map_or_else(T::default, |at| self.mixture(&self.pdfs_at(&at)))
+        self.book.angles(wi).map_or_else(T::default, |at| self.mixture(&self.pdfs_at(&at, wi[0])))
     }
 
     /// Density of each lobe alone at `wi`, per steradian.
     #[inline]
     #[must_use]
     pub fn lobe_pdfs(&self, wi: [T; 3]) -> PerLobe<T> {
-        self.book.angles(wi).map_or_else(PerLobe::default, |at| self.pdfs_at(&at))
+        self.book.angles(wi).map_or_else(PerLobe::default, |at| self.pdfs_at(&at, wi[0]))
     }
 
     fn mixture(&self, pdfs: &PerLobe<T>) -> T {
         Lobe::ALL.into_iter().fold(T::default(), |sum, lobe| sum + self.probabilities[lobe] * pdfs[lobe])
     }
 
-    fn pdfs_at(&self, at: &Angles<T>) -> PerLobe<T> {
+    fn pdfs_at(&self, at: &Angles<T>, sin_theta_i: T) -> PerLobe<T> {
+        let height = self.heights[self.band(sin_theta_i)];
         let mut pdfs = PerLobe::default();
         for lobe in Lobe::ALL {
-            pdfs[lobe] = self.pdf_theta(lobe, at.theta_i) * self.pdf_phi(lobe, at.phi) / at.cos_theta_i;
+            pdfs[lobe] = height * self.bell_theta(lobe, at.theta_i) * self.pdf_phi(lobe, at.phi) / at.cos_theta_i;
         }
         pdfs
+    }
+
+    /// Density of `theta_i` over W, per radian.
+    fn bell_theta(&self, lobe: Lobe, theta_i: T) -> T {
+        if self.longitudinal[lobe].area <= T::default() {
+            return T::default();
+        }
+        let bell = self.book.shape.bell(T::from_f64(1.0), self.offset(lobe, theta_i));
+        let width = T::from_f64(2.0) * self.book.parameters.beta[lobe.index().min(2)];
+        bell / (self.areas[lobe][self.bands] * width)
     }
 
     /// A lobe, then `theta_i` and `phi`, by inversion.
@@ -206,21 +238,28 @@ impl<T: Real> MatchedTextbook<T> {
         let theta_i = self.sample_theta(lobe, xi[1]);
         let phi = wrapped(self.sample_phi(lobe, xi[2]));
         let at = Angles { theta_i, cos_theta_i: theta_i.cos(), phi, cos_half_phi: cos_half(phi) };
-        let pdf = self.mixture(&self.pdfs_at(&at));
+        let wi = self.book.direction(theta_i, phi);
+        let pdf = self.mixture(&self.pdfs_at(&at, wi[0]));
         if at.cos_theta_i < T::from_f64(GRAZING) || pdf <= zero {
             return discarded;
         }
         let value = self.book.colour(&self.book.values_at(&at));
         let weight = value.map(|s| s * at.cos_theta_i / pdf);
-        Drawn { wi: self.book.direction(theta_i, phi), value, pdf, weight, lobe: Some(lobe) }
+        Drawn { wi, value, pdf, weight, lobe: Some(lobe) }
     }
 
     /// `theta_i` of a lobe.
     #[inline]
     #[must_use]
     pub fn sample_theta(&self, lobe: Lobe, xi: T) -> T {
-        let warp = &self.warps[lobe];
-        self.theta_i(lobe, self.longitudinal[lobe].sample(warp.invert(xi * warp.total())))
+        let (cut, areas) = (&self.longitudinal[lobe], &self.areas[lobe]);
+        let area = xi * areas[self.bands];
+        let j = (1..self.bands).find(|j| area < areas[*j]).unwrap_or(self.bands) - 1;
+        let from = cut.below(self.offset(lobe, self.sines[j].asin()));
+        // There is no direction on a pole: as the kernels, keep from it.
+        let least = T::from_f64(f64::from(f32::EPSILON) / 8.0);
+        let share = (from + (area - areas[j]) / self.heights[j]) / cut.area;
+        self.theta_i(lobe, cut.sample(share.max(least).min(T::from_f64(1.0) - least)))
     }
 
     /// Density of `theta_i`, per radian.
@@ -229,22 +268,16 @@ impl<T: Real> MatchedTextbook<T> {
     #[inline]
     #[must_use]
     pub fn pdf_theta(&self, lobe: Lobe, theta_i: T) -> T {
-        let (cut, warp, zero) = (&self.longitudinal[lobe], &self.warps[lobe], T::default());
-        if cut.area <= zero {
-            return zero;
-        }
-        let x = self.offset(lobe, theta_i);
-        let bell = self.book.shape.bell(T::from_f64(1.0), x) / cut.area;
-        let width = T::from_f64(2.0) * self.book.parameters.beta[lobe.index().min(2)];
-        bell * warp.height(cut.cdf(x)) / warp.total() / width
+        self.heights[self.band(theta_i.sin())] * self.bell_theta(lobe, theta_i)
     }
 
     /// Probability of an inclination of at most `theta_i`.
     #[inline]
     #[must_use]
     pub fn cdf_theta(&self, lobe: Lobe, theta_i: T) -> T {
-        let warp = &self.warps[lobe];
-        warp.cumulative(self.longitudinal[lobe].cdf(self.offset(lobe, theta_i))) / warp.total()
+        let (cut, areas, j) = (&self.longitudinal[lobe], &self.areas[lobe], self.band(theta_i.sin()));
+        let part = cut.below(self.offset(lobe, theta_i)) - cut.below(self.offset(lobe, self.sines[j].asin()));
+        (areas[j] + self.heights[j] * part) / areas[self.bands]
     }
 
     /// `phi = phi_o - phi_i`, as [`Textbook::sample_phi`] has it, the glint's in [-pi, pi].
@@ -297,10 +330,4 @@ impl<T: Real> MatchedTextbook<T> {
             }
         }
     }
-}
-
-/// The nearest single, as the kernels have the nodes.
-#[expect(clippy::cast_possible_truncation, reason = "rounding is the purpose")]
-fn rounded(x: f64) -> f32 {
-    x as f32
 }

@@ -19,21 +19,21 @@ fn hair(draws: &mut Draws) -> (HairParams, f64) {
 }
 
 /// The largest weights over their bound and over their mean.
-fn scan<M: Model<Params = HairParams>>(model: M, segments: usize, worst: &mut [Worst; 2]) {
+fn scan<M: Model<Params = HairParams>>(model: M, bands: usize, worst: &mut [Worst; 2]) {
     let mut draws = Draws(81);
     for round in 0..1500 {
         let (params, theta_o) = hair(&mut draws);
         let wo = direction(theta_o, draws.between(-PI, PI));
         let mask = if round % 4 == 0 { LobeMask::of(&[Lobe::ALL[draws.below(4)]]) } else { LobeMask::ALL };
         let gather = Bsdf::new(&model, &params).prepare(wo).with_lobes(mask);
-        let twin = MatchedTextbook::prepare(&parameters(&params, 1.0), SHAPE, double(wo), segments);
+        let twin = MatchedTextbook::prepare(&parameters(&params, 1.0), SHAPE, double(wo), bands);
         let limit = twin.weight_bound(mask);
         let mean: f64 = gather.albedo().0.iter().flatten().map(|x| f64::from(*x) / 3.0).sum();
         for _ in 0..32 {
             let eight = gather.sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
             for s in (0..8).filter_map(|lane| eight.lane(lane)) {
                 let weight = s.weight.iter().map(|x| f64::from(*x) / 3.0).sum::<f64>();
-                let at = || format!("{segments} theta_o {theta_o} {mask:?} {s:?} mean {mean} {params:?}");
+                let at = || format!("{bands} theta_o {theta_o} {mask:?} {s:?} mean {mean} {params:?}");
                 worst[0].see(weight / limit, at);
                 if mask == LobeMask::ALL {
                     worst[1].see(weight / mean, at);
@@ -45,14 +45,13 @@ fn scan<M: Model<Params = HairParams>>(model: M, segments: usize, worst: &mut [W
 
 #[test]
 fn weights_are_below_their_bound_and_five_times_the_mean() {
-    let (_, two, three, four) = samplers();
+    let (_, few, usual, many) = samplers();
     let mut worst: [[Worst; 2]; 3] = Default::default();
-    scan(two, 2, &mut worst[0]);
-    scan(three, 3, &mut worst[1]);
-    scan(four, 4, &mut worst[2]);
-    for (segments, [bound, mean]) in [2, 3, 4].into_iter().zip(&worst) {
-        bound.check(&format!("{segments} segments: largest weight over its bound"), 1.0 + 1e-4);
-        let limit = if segments == 2 { 6.5 } else { 5.0 };
-        mean.check(&format!("{segments} segments: largest weight over the mean"), limit);
+    scan(few, 4, &mut worst[0]);
+    scan(usual, 6, &mut worst[1]);
+    scan(many, 12, &mut worst[2]);
+    for (bands, [bound, mean]) in [4, 6, 12].into_iter().zip(&worst) {
+        bound.check(&format!("{bands} bands: largest weight over its bound"), 1.0 + 1e-4);
+        mean.check(&format!("{bands} bands: largest weight over the mean"), 5.0);
     }
 }

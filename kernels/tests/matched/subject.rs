@@ -13,17 +13,20 @@ pub(crate) const SHAPE: Shape = Shape::Gaussian;
 /// Densities below this are compared absolutely: a Gaussian, and with it the density, is cut to 0 at `2^-115` of its peak.
 pub(crate) const PDF_FLOOR: f64 = 1e-20;
 
+/// Whether the density vanishes where the model does.
+pub(crate) const MATCHED: bool = true;
+
 /// Every form of the model, with its factor on the widths.
 pub(crate) fn subjects() -> Vec<(Tested, f32)> {
     vec![(Matched(Gaussian), 1.0)]
 }
 
-/// The model with the published sampler, and with the matched ones of 2, 3 and 4 segments.
-pub(crate) fn samplers() -> (Hair<Gaussian>, Matched<Gaussian, 2>, Matched<Gaussian, 3>, Matched<Gaussian, 4>) {
+/// The model with the published sampler, and with the matched ones of 4, 6 and 12 bands a side.
+pub(crate) fn samplers() -> (Hair<Gaussian>, Matched<Gaussian, 4>, Matched<Gaussian, 6>, Matched<Gaussian, 12>) {
     (Hair(Gaussian), Matched(Gaussian), Matched(Gaussian), Matched(Gaussian))
 }
 
 /// The twin for these parameters at the gather point of `wo`.
 pub(crate) fn twin(parameters: &Parameters<f64>, wo: [f64; 3]) -> Oracle {
-    MatchedTextbook::prepare(parameters, SHAPE, wo, 3)
+    MatchedTextbook::prepare(parameters, SHAPE, wo, 6)
 }

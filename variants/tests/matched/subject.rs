@@ -14,6 +14,9 @@ pub(crate) const SHAPE: Shape = Shape::Cauchy;
 /// Densities below this are compared absolutely: a Cauchy has no end.
 pub(crate) const PDF_FLOOR: f64 = 0.0;
 
+/// Whether the density vanishes where the model does.
+pub(crate) const MATCHED: bool = true;
+
 /// Every form of the model, with its factor on the widths.
 pub(crate) fn subjects() -> Vec<(Tested, f32)> {
     vec![
@@ -23,12 +26,12 @@ pub(crate) fn subjects() -> Vec<(Tested, f32)> {
     ]
 }
 
-/// The model with the published sampler, and with the matched ones of 2, 3 and 4 segments.
-pub(crate) fn samplers() -> (Hair<Cauchy>, Matched<Cauchy, 2>, Matched<Cauchy, 3>, Matched<Cauchy, 4>) {
+/// The model with the published sampler, and with the matched ones of 4, 6 and 12 bands a side.
+pub(crate) fn samplers() -> (Hair<Cauchy>, Matched<Cauchy, 4>, Matched<Cauchy, 6>, Matched<Cauchy, 12>) {
     (Cauchy::PAPER.model(), Matched(Cauchy::PAPER), Matched(Cauchy::PAPER), Matched(Cauchy::PAPER))
 }
 
 /// The twin for these parameters at the gather point of `wo`.
 pub(crate) fn twin(parameters: &Parameters<f64>, wo: [f64; 3]) -> Oracle {
-    MatchedTextbook::prepare(parameters, SHAPE, wo, 3)
+    MatchedTextbook::prepare(parameters, SHAPE, wo, 6)
 }

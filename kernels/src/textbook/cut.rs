@@ -1,4 +1,4 @@
-//! What the matched sampler is made of: a bell cut to an interval, and a piecewise-linear density.
+//! A bell cut to an interval.
 
 use super::{Real, Shape};
 
@@ -29,7 +29,7 @@ impl<T: Real> Cut<T> {
     }
 
     /// Integral of the bell from `lo` to `x`.
-    fn below(&self, x: T) -> T {
+    pub(super) fn below(&self, x: T) -> T {
         let (zero, one) = (T::default(), T::from_f64(1.0));
         if !self.gaussian {
             return (x - self.lo).atan2(one + self.lo * x);
@@ -65,9 +65,6 @@ impl<T: Real> Cut<T> {
             let (sin, cos) = (turn.sin(), turn.cos());
             return ((end * cos + sin) / (cos - end * sin)).max(self.lo).min(self.hi);
         }
-        // The very end of a Gaussian is where it has no density left: as the kernels, keep from it.
-        let least = T::from_f64(f64::from(f32::EPSILON) / 8.0);
-        let xi = xi.max(least).min(one - least);
         let (mut lo, mut hi) = (self.lo, self.hi);
         for _ in 0..64 {
             let middle = half * (lo + hi);
@@ -78,64 +75,5 @@ impl<T: Real> Cut<T> {
             }
         }
         half * (lo + hi)
-    }
-}
-
-/// A density on `[0, 1]` that is linear between nodes, to a factor of its own.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Warp<T> {
-    pub(super) nodes: [T; 9],
-    pub(super) heights: [T; 9],
-    /// Number of nodes.
-    pub(super) count: usize,
-}
-
-impl<T: Real> Default for Warp<T> {
-    fn default() -> Self {
-        Self { nodes: [T::default(); 9], heights: [T::default(); 9], count: 0 }
-    }
-}
-
-impl<T: Real> Warp<T> {
-    /// Integral up to node `j`.
-    fn area(&self, j: usize) -> T {
-        let segment = |i: usize| {
-            let length = self.nodes[i] - self.nodes[i - 1];
-            T::from_f64(0.5) * length * (self.heights[i] + self.heights[i - 1])
-        };
-        (1..=j).fold(T::default(), |sum, i| sum + segment(i))
-    }
-
-    pub(super) fn total(&self) -> T {
-        self.area(self.count - 1)
-    }
-
-    /// The segment that holds `x` among ascending `bounds`, by its upper end.
-    fn segment(&self, below: impl Fn(usize) -> bool) -> usize {
-        (1..self.count - 1).find(|i| below(*i)).unwrap_or(self.count - 1)
-    }
-
-    pub(super) fn height(&self, x: T) -> T {
-        let i = self.segment(|i| x < self.nodes[i]);
-        let along = (x - self.nodes[i - 1]) / (self.nodes[i] - self.nodes[i - 1]);
-        self.heights[i - 1] + along * (self.heights[i] - self.heights[i - 1])
-    }
-
-    /// Integral up to `x`.
-    pub(super) fn cumulative(&self, x: T) -> T {
-        let i = self.segment(|i| x < self.nodes[i]);
-        let from = self.nodes[i - 1];
-        self.area(i - 1) + T::from_f64(0.5) * (x - from) * (self.heights[i - 1] + self.height(x))
-    }
-
-    /// The number up to which the integral is `area`.
-    pub(super) fn invert(&self, area: T) -> T {
-        let i = self.segment(|i| area < self.area(i));
-        let (rest, from) = (area - self.area(i - 1), self.heights[i - 1]);
-        let length = self.nodes[i] - self.nodes[i - 1];
-        let two = T::from_f64(2.0);
-        let slope = (self.heights[i] - from) / length;
-        let root = (from * from + two * slope * rest).max(T::default()).sqrt();
-        self.nodes[i - 1] + (two * rest / (from + root)).max(T::default()).min(length)
     }
 }
