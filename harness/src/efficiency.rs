@@ -56,6 +56,7 @@ use crate::light::Light;
 use crate::light::{Environment, Sun};
 use crate::quadrature::fibre_direction;
 use crate::sequence::stream_id;
+use hairis::textbook::Shape;
 use hairis::{HairDesc, HairParams, ParamError};
 use serde::Serialize;
 
@@ -102,6 +103,14 @@ impl ModelKind {
         match self {
             Self::Gaussian => "gaussian",
             Self::Cauchy => "cauchy",
+        }
+    }
+
+    /// Its bell in the textbook.
+    pub(crate) const fn shape(self) -> Shape {
+        match self {
+            Self::Gaussian => Shape::Gaussian,
+            Self::Cauchy => Shape::Cauchy,
         }
     }
 

@@ -1,7 +1,6 @@
 //! The discard of samples at grazing angles: the energy within 1e-5 rad of the fibre's axis, over the whole.
 
 use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, largest};
-use super::hair::shape;
 use crate::efficiency::ModelKind;
 use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
 use crate::study::Grid;
@@ -119,14 +118,15 @@ pub(super) fn claim() -> Claim {
             Some((cell.params().ok()?, f64::from(cell.theta_o_deg).to_radians()))
         })
         .collect();
-    let grid = |model| largest(cells.iter().map(|(params, theta_o)| share_of(shape(model), params, *theta_o)));
+    let grid =
+        |model: ModelKind| largest(cells.iter().map(|(params, theta_o)| share_of(model.shape(), params, *theta_o)));
     let [gaussian, cauchy] = ModelKind::ALL.map(grid);
     let lost = cells.iter().map(|(params, theta_o)| discarded(params, *theta_o)).fold(0.0, f64::max);
     let theta_o = [0.0, 45.0, 85.0, 90.0].map(f64::to_radians);
     let across = |beta: f64| largest(theta_o[..3].iter().map(|t| pointed(Shape::Gaussian, beta, *t).share()));
     let along = |beta: f64| pointed(Shape::Gaussian, beta, FRAC_PI_2).share();
     let all = BETA.iter().flat_map(|beta| {
-        ModelKind::ALL.into_iter().flat_map(move |model| theta_o.map(|t| pointed(shape(model), *beta, t).share()))
+        ModelKind::ALL.into_iter().flat_map(move |model| theta_o.map(|t| pointed(model.shape(), *beta, t).share()))
     });
     let (worst, narrow, half, wide) = (largest(all), across(BETA[0]), across(BETA[2]), across(BETA[5]));
     let sentence = format!(

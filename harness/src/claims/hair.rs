@@ -5,16 +5,8 @@ use crate::efficiency::{ModelKind, with_beta};
 use crate::quadrature::{Tolerance, bell_breakpoints, fibre_direction, integrate_rectangle};
 use crate::study::Grid;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::{Parameters, Shape, Textbook, TruncatedCauchy};
+use hairis::textbook::{Parameters, Textbook, TruncatedCauchy};
 use hairis::{HairParams, Lobe, PerLobe};
-
-/// The bell of a model.
-pub(super) const fn shape(model: ModelKind) -> Shape {
-    match model {
-        ModelKind::Gaussian => Shape::Gaussian,
-        ModelKind::Cauchy => Shape::Cauchy,
-    }
-}
 
 /// The interval of `theta_h` as `theta_i` runs over all inclinations, rad.
 pub(super) fn theta_h_interval(theta_o: f64) -> [f64; 2] {
@@ -101,7 +93,7 @@ impl Hair {
     pub(super) fn new(model: ModelKind, params: &HairParams, theta_o: f64) -> Self {
         let parameters = Parameters::from(params);
         let wo = fibre_direction(theta_o, 0.0).to_array();
-        Self { parameters, oracle: Textbook::prepare(&parameters, shape(model), wo), theta_o }
+        Self { parameters, oracle: Textbook::prepare(&parameters, model.shape(), wo), theta_o }
     }
 
     /// Shares of the lobes' samples that the printed A and B leave on the sphere.

@@ -5,7 +5,7 @@ use crate::quadrature::{SphereIntegrator, Tolerance, fibre_direction};
 use crate::sequence::{XiSource, to_unit_f32};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::{DVec3, Vec3};
-use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::textbook::{Parameters, Textbook};
 use hairis::wide::f32x8;
 use hairis::{Bsdf, Eval8, Gather, Gaussian, Hair, HairParams, Model, Sample8, Vec3x8};
 use hairis_variants::Cauchy;
@@ -55,13 +55,13 @@ impl Case {
     pub(super) fn new(model: ModelKind, params: &HairParams, theta_o_deg: f64) -> Self {
         let exact = fibre_direction(theta_o_deg.to_radians(), PHI_O_DEG.to_radians());
         let wo = exact.as_vec3();
-        let (scatter, shape) = match model {
-            ModelKind::Gaussian => (gather(&Hair(Gaussian), params, wo), Shape::Gaussian),
-            ModelKind::Cauchy => (gather(&Cauchy::PAPER.model(), params, wo), Shape::Cauchy),
+        let scatter = match model {
+            ModelKind::Gaussian => gather(&Hair(Gaussian), params, wo),
+            ModelKind::Cauchy => gather(&Cauchy::PAPER.model(), params, wo),
         };
         // The oracle sees the same rounded direction.
         let parameters = Parameters::<f64>::from(params);
-        let oracle = Textbook::prepare(&parameters, shape, wo.as_dvec3().to_array());
+        let oracle = Textbook::prepare(&parameters, model.shape(), wo.as_dvec3().to_array());
         Self { model, theta_o_deg, scatter, oracle, sphere: integrator(&parameters, wo.as_dvec3()) }
     }
 

@@ -19,8 +19,8 @@ pub(super) fn failures(rows: &[Row<'_>], lights: &[String]) -> Vec<String> {
         format!("cell {}, {model} {sampler}, {}", row.cell.index, lights[row.light])
     };
     let mut failures = Vec::new();
-    for row in rows.iter().filter(|row| row.measured.max_weight > row.weight_bound() * (1.0 + ROUNDING)) {
-        let (weight, bound) = (row.measured.max_weight, row.weight_bound());
+    for row in rows.iter().filter(|row| row.measured.max_weight > row.weight_bound * (1.0 + ROUNDING)) {
+        let (weight, bound) = (row.measured.max_weight, row.weight_bound);
         failures.push(format!("{}: a weight of {weight} is above its bound {bound}", name(row)));
     }
     let mut scores = Vec::new();

@@ -15,6 +15,8 @@ pub(super) struct Row<'a> {
     /// Place of the light.
     pub(super) light: usize,
     pub(super) measured: &'a Measured,
+    /// The proven bound on the weights; not a number where there is none.
+    pub(super) weight_bound: f64,
 }
 
 /// Place of a row within its cell.
@@ -30,25 +32,20 @@ pub(super) fn rows<'a>(grid: Grid, cells: &'a [Vec<Measured>], lights: usize) ->
     let mut rows = Vec::new();
     for (index, measured) in cells.iter().enumerate() {
         let cell = grid.cell(index);
+        let params = cell.params().ok();
         for model in ModelKind::ALL {
             for sampler in Sampler::ALL {
+                let theta_o = f64::from(cell.theta_o_deg).to_radians();
+                let bound = params.as_ref().and_then(|params| weight_bound(model, sampler, params, theta_o));
+                let weight_bound = bound.unwrap_or(f64::NAN);
                 for light in 0..lights {
                     let measured = &measured[place(model, sampler, light, lights)];
-                    rows.push(Row { cell, model, sampler, light, measured });
+                    rows.push(Row { cell, model, sampler, light, measured, weight_bound });
                 }
             }
         }
     }
     rows
-}
-
-impl Row<'_> {
-    /// The proven bound on the weights; not a number where there is none.
-    pub(super) fn weight_bound(&self) -> f64 {
-        let cos_theta_o = f64::from(self.cell.theta_o_deg).to_radians().cos();
-        let params = self.cell.params().ok();
-        params.and_then(|params| weight_bound(self.sampler, &params, cos_theta_o)).unwrap_or(f64::NAN)
-    }
 }
 
 /// The columns that say what a row is of.
@@ -78,7 +75,7 @@ pub(super) fn columns(rows: &[Row<'_>], lights: &[String]) -> Columns {
         .number("ess_per_1000", figures(|m| 1_000.0 / (1.0 + m.figures.v.value)))
         .number("samples_for_1_percent", figures(|m| m.figures.v.value * 1e4))
         .number("max_weight", figures(|m| m.max_weight))
-        .number("weight_bound", rows.iter().map(Row::weight_bound))
+        .number("weight_bound", rows.iter().map(|row| row.weight_bound))
         .number("max_contribution", figures(|m| m.max_contribution))
         .number("kl", figures(|m| m.figures.kl.value))
         .number("kl_se", figures(|m| m.figures.kl.standard_error))

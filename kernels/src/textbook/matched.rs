@@ -67,8 +67,8 @@ impl<T: Real> MatchedTextbook<T> {
         for (j, end) in side.iter().enumerate() {
             (sines[j + 1], sines[bands - 1 - j]) = (-T::from_f32(*end), T::from_f32(*end));
         }
-        for j in 0..bands {
-            heights[j] = w((half * (sines[j] + sines[j + 1])).asin(), book.theta_o);
+        for (height, ends) in heights.iter_mut().zip(sines[..=bands].windows(2)) {
+            *height = w((half * (ends[0] + ends[1])).asin(), book.theta_o);
         }
         let mean = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / number(3.0);
         let trt = mean(p.intensity_trt);
