@@ -10,16 +10,23 @@ use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 pub(crate) const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
 
 /// A polynomial, its even and odd halves apart: half the dependency chain of Horner's rule.
+///
+/// Written out, not a loop: compilers that save space leave it one, over coefficients in memory.
 #[inline(always)]
 fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     let square = x * x;
-    let mut halves = [L::splat(coefficients[(N - 1) & !1]), L::splat(coefficients[(N - 2) | 1])];
-    let mut i = N - 2;
-    while i > 0 {
-        i -= 1;
-        halves[i & 1] = halves[i & 1].mul_add(square, L::splat(coefficients[i]));
+    let mut even = L::splat(coefficients[(N - 1) & !1]);
+    let mut odd = L::splat(coefficients[(N - 2) | 1]);
+    macro_rules! steps {
+        ($($half:ident $i:literal)*) => { $(
+            if $i + 2 < N {
+                $half = $half.mul_add(square, L::splat(coefficients[$i]));
+            }
+        )* };
     }
-    halves[1].mul_add(x, halves[0])
+    const { assert!(N <= 9, "every coefficient has a step") };
+    steps!(even 6 odd 5 even 4 odd 3 even 2 odd 1 even 0);
+    odd.mul_add(x, even)
 }
 
 /// `exp(-s/2)` for `s >= 0`, a Gaussian of the squared distance from its centre; exactly 0 from about `2^-115` down.
