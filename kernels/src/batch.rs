@@ -8,6 +8,7 @@ use crate::dispatch::{self, Level};
 use crate::lanes::Packet;
 use crate::{Broadcast, Gather, Lanes, Model, Vec3x};
 use core::fmt::{self, Debug};
+use core::mem;
 
 /// Slices of one call whose lengths differ: which, how long it is, and how long the first is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -235,28 +236,40 @@ impl Row<11> for SampleRow {
     }
 }
 
-/// The loop of a batch over whole packets. Every column has as many packets as the first; a missing one would be
-/// left out, for want of a branch that panics.
+/// The loop of a batch over whole packets. Every column has as many packets as the first; were one shorter, none would
+/// be written, for want of a branch that panics.
+///
+/// Columns are cut to one length before the loop, so that it has no branch but its own: the compiler moves what leads to
+/// a result past the branch that decides on its being written, and with it all of one packet of a pair before the other.
 #[inline(always)]
 pub(crate) fn packets<M: Model, R: Row<N>, L: Packet<W>, C: Broadcast<L> + Debug, const N: usize, const W: usize>(
     gather: &M::Gather<C>,
-    inputs: [&[[f32; W]]; 3],
+    [first, second, third]: [&[[f32; W]]; 3],
     outputs: &mut [&mut [[f32; W]]; N],
 ) {
-    let [first, second, third] = inputs;
-    for (at, first) in first.iter().enumerate() {
-        let (Some(second), Some(third)) = (second.get(at), third.get(at)) else { return };
-        let row = R::row::<M, L, C>(gather, [L::read(first), L::read(second), L::read(third)]);
-        // No loop: compilers that save space leave it one, and the row in memory.
-        macro_rules! write {
-            ($($column:literal)*) => { $(
-                if let Some(Some(packet)) = outputs.get_mut($column).map(|column| column.get_mut(at)) {
-                    row[$column].write(packet);
-                }
-            )* };
-        }
-        const { assert!(N <= 11, "every column is written") };
-        write!(0 1 2 3 4 5 6 7 8 9 10);
+    let len = first.len();
+    let (Some(second), Some(third)) = (second.get(..len), third.get(..len)) else { return };
+    // No loops over columns: compilers that save space leave them, and the row in memory.
+    macro_rules! cut {
+        ($($column:literal)*) => { $(
+            if let Some(column) = outputs.get_mut($column) {
+                let Some((whole, _)) = mem::take(column).split_at_mut_checked(len) else { return };
+                *column = whole;
+            }
+        )* };
+    }
+    macro_rules! write {
+        ($at:ident, $row:ident; $($column:literal)*) => { $(
+            if let Some(Some(packet)) = outputs.get_mut($column).map(|column| column.get_mut($at)) {
+                $row[$column].write(packet);
+            }
+        )* };
+    }
+    const { assert!(N <= 11, "every column is written") };
+    cut!(0 1 2 3 4 5 6 7 8 9 10);
+    for at in 0..len {
+        let row = R::row::<M, L, C>(gather, [L::read(&first[at]), L::read(&second[at]), L::read(&third[at])]);
+        write!(at, row; 0 1 2 3 4 5 6 7 8 9 10);
     }
 }
 
