@@ -11,7 +11,6 @@
 pub(crate) mod avx2;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod avx512;
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod pair;
 pub(crate) mod portable;
 mod scalar;

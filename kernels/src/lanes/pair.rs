@@ -8,7 +8,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The lanes of two packets.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair<L>(L, L);
+pub struct Pair<L>(pub(crate) L, pub(crate) L);
 
 impl<L: Lanes> Sealed for Pair<L> {}
 
