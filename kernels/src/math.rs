@@ -4,6 +4,7 @@
 //! its range, and the error measured on it by the tests (rows of `tests/tolerance.rs`). None branches.
 
 use crate::Lanes;
+use crate::lanes::pair::Pair;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
 /// `pi/2 - FRAC_PI_2`, what the rounding of the constant leaves out.
@@ -121,7 +122,8 @@ pub fn sin_cos_half_turn<L: Lanes>(x: L) -> (L, L) {
 pub fn sin_cos_twice<L: Lanes>(x: L) -> (L, L) {
     // cos 2x = sin(pi/2 - |2x|), with pi/2 in two parts: the cosine keeps its digits where it vanishes.
     let y = x.abs().mul_add(L::splat(-2.0), L::splat(FRAC_PI_2)) + L::splat(FRAC_PI_2_LOW);
-    (sin_half_turn(x + x), sin_half_turn(y))
+    let Pair(sin, cos) = sin_half_turn(Pair(x + x, y));
+    (sin, cos)
 }
 
 /// `(sin x, cos x)` for `|x| <= pi/2` to an absolute error: a third less work than [`sin_cos_twice`], whose cosine

@@ -1,7 +1,7 @@
 //! The published sampler: a lobe by its energy, then longitude and azimuth by inversion (section 3.2 of the paper).
 
 use super::{HairGather, HairPoint, Place};
-use crate::lanes::lanes3;
+use crate::lanes::{lanes3, pair::Pair};
 use crate::math::{FRAC_PI_2_LOW, atan_unit, sin_cos_absolute, sin_cos_twice};
 use crate::truncated::TruncatedCauchy;
 use crate::{Broadcast, Lanes, Vec3x};
@@ -15,23 +15,17 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let (point, hair, sampler) = (&gather.point, &gather.point.lobes, &gather.sampler);
     let choice = L::choose(xi[0], lanes3(&sampler.bounds));
 
-    // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o.
-    let longitude = TruncatedCauchy {
-        sin_mid: C::pick_three(&gather.longitude_sin, choice),
-        cos_mid: C::pick_three(&gather.longitude_cos, choice),
-        span: C::pick_three(&gather.longitude_span, choice),
-    };
-    let x = longitude.invert(zero.max(xi[1].min(one)));
-    let half_theta_i = x.mul_add(C::pick_three(&hair.beta, choice), -C::pick_three(&point.shift, choice));
-
+    // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Side by side with the azimuth.
     let turn = Turn::of(xi[2]);
-    let azimuth = TruncatedCauchy {
-        sin_mid: C::pick_pair(&sampler.azimuth_sin, choice),
-        cos_mid: C::pick_pair(&sampler.azimuth_cos, choice),
-        span: C::pick_pair(&sampler.azimuth_span, choice),
+    let both = TruncatedCauchy {
+        sin_mid: Pair(C::pick_three(&gather.longitude_sin, choice), C::pick_pair(&sampler.azimuth_sin, choice)),
+        cos_mid: Pair(C::pick_three(&gather.longitude_cos, choice), C::pick_pair(&sampler.azimuth_cos, choice)),
+        span: Pair(C::pick_three(&gather.longitude_span, choice), C::pick_pair(&sampler.azimuth_span, choice)),
     };
+    let Pair(x, y) = both.invert(Pair(zero.max(xi[1].min(one)), one - turn.across));
+    let half_theta_i = x.mul_add(C::pick_three(&hair.beta, choice), -C::pick_three(&point.shift, choice));
     let center = L::keep(L::is_slot(choice, 3), hair.half_phi_g.lanes());
-    let psi = azimuth.invert(one - turn.across).mul_add(C::pick_pair(&hair.half_gamma, choice), center);
+    let psi = y.mul_add(C::pick_pair(&hair.half_gamma, choice), center);
     let (wi, place) = turned(point, choice, half_theta_i, turn, psi);
     (wi, choice, place)
 }
