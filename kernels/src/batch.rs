@@ -250,27 +250,27 @@ pub(crate) fn packets<M: Model, R: Row<N>, L: Packet<W>, C: Broadcast<L> + Debug
     let len = first.len();
     let (Some(second), Some(third)) = (second.get(..len), third.get(..len)) else { return };
     // No loops over columns: compilers that save space leave them, and the row in memory.
-    macro_rules! cut {
-        ($($column:literal)*) => { $(
-            if let Some(column) = outputs.get_mut($column) {
-                let Some((whole, _)) = mem::take(column).split_at_mut_checked(len) else { return };
-                *column = whole;
+    macro_rules! run {
+        ($($column:ident $index:literal)*) => {
+            $(
+                let $column = match outputs.get_mut($index).map(|column| mem::take(column).split_at_mut_checked(len)) {
+                    Some(Some((whole, _))) => whole,
+                    Some(None) => return,
+                    None => &mut [],
+                };
+            )*
+            for at in 0..len {
+                let row = R::row::<M, L, C>(gather, [L::read(&first[at]), L::read(&second[at]), L::read(&third[at])]);
+                $(
+                    if $index < N {
+                        row[$index].write(&mut $column[at]);
+                    }
+                )*
             }
-        )* };
-    }
-    macro_rules! write {
-        ($at:ident, $row:ident; $($column:literal)*) => { $(
-            if let Some(Some(packet)) = outputs.get_mut($column).map(|column| column.get_mut($at)) {
-                $row[$column].write(packet);
-            }
-        )* };
+        };
     }
     const { assert!(N <= 11, "every column is written") };
-    cut!(0 1 2 3 4 5 6 7 8 9 10);
-    for at in 0..len {
-        let row = R::row::<M, L, C>(gather, [L::read(&first[at]), L::read(&second[at]), L::read(&third[at])]);
-        write!(at, row; 0 1 2 3 4 5 6 7 8 9 10);
-    }
+    run!(a 0 b 1 c 2 d 3 e 4 f 5 g 6 h 7 i 8 j 9 k 10);
 }
 
 /// Cuts slices into whole packets, and the rest into one packet on the stack; `run` is called on either.
