@@ -202,7 +202,7 @@ pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
 pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let w = zero.max(-log2(c(4.0) * q * (one - q)));
+    let w = zero.max(zero - log2(c(4.0) * q * (one - q)));
     let center = polynomial(
         w,
         [

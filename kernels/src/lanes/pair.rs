@@ -52,6 +52,10 @@ impl<L: Lanes> Lanes for Pair<L> {
         Self(self.0.mul_add(a.0, b.0), self.1.mul_add(a.1, b.1))
     }
     #[inline(always)]
+    fn mul_sub(self, a: Self, b: Self) -> Self {
+        Self(self.0.mul_sub(a.0, b.0), self.1.mul_sub(a.1, b.1))
+    }
+    #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         Self(L::difference_of_products(a.0, b.0, c.0, d.0), L::difference_of_products(a.1, b.1, c.1, d.1))
     }

@@ -69,6 +69,11 @@ impl Lanes for f32x8 {
     fn mul_add(self, a: Self, b: Self) -> Self {
         f32x8::mul_add(self, a, b)
     }
+    // `wide` splats the sign that it negates with, at a cost (see `splat`).
+    #[inline(always)]
+    fn mul_sub(self, a: Self, b: Self) -> Self {
+        if FUSES { f32x8::mul_add(self, a, b ^ SIGN) } else { self * a - b }
+    }
     #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         if FUSES { difference_fused(a, b, c, d) } else { difference_split(split(a), split(b), split(c), split(d)) }
@@ -112,10 +117,13 @@ impl Lanes for f32x8 {
     }
     #[inline(always)]
     fn split_exponent(self) -> (Self, Self) {
+        const ROUND: u32x8 = u32x8::new([ROUND_EXPONENT; 8]);
+        const ONES: u32x8 = u32x8::new([ONE; 8]);
+        const INTEGERS: u32x8 = u32x8::new([INTEGER; 8]);
         let bits = self.to_bits();
-        let exponent = (bits + u32x8::splat(ROUND_EXPONENT)) >> 23_u32;
-        let mantissa = bits + u32x8::splat(ONE) - (exponent << 23_u32);
-        (f32x8::from_bits(mantissa), f32x8::from_bits(exponent | u32x8::splat(INTEGER)) - f32x8::splat(INTEGER_BIAS))
+        let exponent = (bits + ROUND) >> 23_u32;
+        let mantissa = bits + ONES - (exponent << 23_u32);
+        (f32x8::from_bits(mantissa), f32x8::from_bits(exponent | INTEGERS) - splat(INTEGER_BIAS))
     }
     #[inline(always)]
     fn lt(self, other: Self) -> f32x8 {

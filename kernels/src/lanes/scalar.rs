@@ -35,6 +35,10 @@ impl Lanes for f32 {
         self * a + b
     }
     #[inline(always)]
+    fn mul_sub(self, a: Self, b: Self) -> Self {
+        self * a - b
+    }
+    #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         difference_split(split(a), split(b), split(c), split(d))
     }
