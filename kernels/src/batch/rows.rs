@@ -1,4 +1,8 @@
 //! What runs over slices: rows of numbers, in whole packets and then eight at a time.
+#![cfg_attr(
+    not(any(target_arch = "x86", target_arch = "x86_64")),
+    allow(dead_code, reason = "packets of other levels have more than eight lanes on these machines alone")
+)]
 
 use crate::dispatch::{self, Level};
 use crate::lanes::Packet;
