@@ -1,7 +1,9 @@
-//! Two packets side by side, for slices: where one waits for its last result, the other has work.
+//! Two packets side by side: where one waits for its last result, the other has work.
 //!
 //! A sample is a chain of some two hundred cycles, of which a CPU finds no more than the next few hundred instructions
 //! to do meanwhile: with two chains in every stretch of instructions it waits a quarter less.
+//!
+//! Models put equal steps of one packet side by side in the same way, two or four of them.
 
 use super::{Broadcast, Lanes, Packet, sealed::Sealed};
 use core::ops::{Add, Div, Mul, Neg, Sub};
