@@ -31,7 +31,7 @@ def entry(name):
     model = next((MODELS[m] for m in MODELS if re.search(rf"\b{m}\b", name)), None)
     if model is None:
         return None
-    found = re.search(r"dispatch::batch::(?:(avx\w+)::)?<.*batch::(\w+), \d+>(::\{closure#\d\})?$", name)
+    found = re.search(r"dispatch::batch::(?:(avx\w+)::)?<.*batch::rows::(\w+), \d+>(::\{closure#\d\})?$", name)
     if found:
         # Without a level it is the portable one, or the code that cuts slices into packets, which is no loop.
         if not found[1] and not found[3]:

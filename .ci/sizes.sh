@@ -2,8 +2,8 @@
 # What opt-levels "s" and "z" do to the entry points, against 3: bytes of code, calls (of AVX2 and AVX-512 none is
 # allowed), instructions per call and, asked for, time.
 #
-#   .ci/sizes.sh           checks; no entry point may take more than 2.4 times the instructions at "s": what stays a loop
-#                          there costs more in instructions than in time
+#   .ci/sizes.sh           checks; no entry point may take more than 1.55 times the instructions at "s". What is promised
+#                          is 1.5 times the time, which --time shows: an instruction more costs less than its share of it
 #   .ci/sizes.sh --write   writes the table to benches/records/sizes.csv as well
 #   .ci/sizes.sh --time    the time of every entry point at "s" and "z" against 3, the programs in turns
 set -euo pipefail
@@ -49,7 +49,7 @@ for level in 3 s; do .ci/instructions.sh --count "$dir/entry-$level" > "$dir/$le
 paste -d, "$dir/3.csv" "$dir/s.csv" | awk -F, '
   { ratio = $7 / $3; compared++ }
   ratio > most { most = ratio; name = $1 }
-  ratio > 2.4 { printf "FAIL %s: %.2f times the instructions at s\n", $1, ratio; bad++ }
+  ratio > 1.55 { printf "FAIL %s: %.2f times the instructions at s\n", $1, ratio; bad++ }
   END { printf "%d entry points, at most %.2f times the instructions at s (%s)\n", compared, most, name; exit bad > 0 }' || failed=1
 
 if [ "${1:-}" = --write ]; then

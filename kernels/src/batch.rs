@@ -4,10 +4,12 @@
 //! on many CPUs: a load waits for an earlier store whose address has the same lower twelve bits. A few unused numbers
 //! between columns avoid it.
 
+pub(crate) mod rows;
+
 use crate::dispatch::{self, Level};
-use crate::lanes::Packet;
-use crate::{Broadcast, Gather, Lanes, Model, Vec3x};
-use core::fmt::{self, Debug};
+use crate::{Gather, Model};
+use core::fmt;
+use rows::{EvalRow, PdfRow, SampleRow, ValueRow};
 
 /// Slices of one call whose lengths differ: which, how long it is, and how long the first is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -182,104 +184,35 @@ fn check_lengths<const N: usize>(
     outputs: &[&mut [f32]; N],
 ) -> Result<(), LengthError> {
     let expected = inputs[0].len();
-    let inputs = in_names.into_iter().zip(inputs.iter().map(|s| s.len()));
-    let outputs = out_names.into_iter().zip(outputs.iter().map(|s| s.len()));
-    for (field, len) in inputs.chain(outputs) {
-        if len != expected {
-            return Err(LengthError { field, len, expected });
-        }
+    let differs = |len: usize| len != expected;
+    if differs(inputs[1].len()) | differs(inputs[2].len()) | outputs.iter().any(|s| differs(s.len())) {
+        return Err(first_that_differs(
+            expected,
+            &in_names,
+            &inputs.map(<[f32]>::len),
+            &out_names,
+            &outputs.each_ref().map(|s| s.len()),
+        ));
     }
     Ok(())
 }
 
-/// What a batch computes of three numbers a lane: `N` numbers a lane.
-pub(crate) trait Row<const N: usize> {
-    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, input: [L; 3]) -> [L; N];
-}
-
-/// The value alone: what only the density needs is not computed.
-pub(crate) struct ValueRow;
-impl Row<3> for ValueRow {
-    #[inline(always)]
-    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, [x, y, z]: [L; 3]) -> [L; 3] {
-        M::eval::<L, C>(gather, Vec3x::new(x, y, z)).value
-    }
-}
-
-/// The density alone.
-pub(crate) struct PdfRow;
-impl Row<1> for PdfRow {
-    #[inline(always)]
-    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, [x, y, z]: [L; 3]) -> [L; 1] {
-        [M::eval::<L, C>(gather, Vec3x::new(x, y, z)).pdf]
-    }
-}
-
-pub(crate) struct EvalRow;
-impl Row<4> for EvalRow {
-    #[inline(always)]
-    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, [x, y, z]: [L; 3]) -> [L; 4] {
-        let eval = M::eval::<L, C>(gather, Vec3x::new(x, y, z));
-        let [r, g, b] = eval.value;
-        [r, g, b, eval.pdf]
-    }
-}
-
-pub(crate) struct SampleRow;
-impl Row<11> for SampleRow {
-    #[inline(always)]
-    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, xi: [L; 3]) -> [L; 11] {
-        let s = M::sample::<L, C>(gather, xi);
-        let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
-        [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
-    }
-}
-
-/// The loop of a batch over whole packets. Every column has as many packets as the first; a missing one would be
-/// left out, for want of a branch that panics.
-#[inline(always)]
-pub(crate) fn packets<M: Model, R: Row<N>, L: Packet<W>, C: Broadcast<L> + Debug, const N: usize, const W: usize>(
-    gather: &M::Gather<C>,
-    inputs: [&[[f32; W]]; 3],
-    outputs: &mut [&mut [[f32; W]]; N],
-) {
-    let [first, second, third] = inputs;
-    for (at, first) in first.iter().enumerate() {
-        let (Some(second), Some(third)) = (second.get(at), third.get(at)) else { return };
-        let row = R::row::<M, L, C>(gather, [L::read(first), L::read(second), L::read(third)]);
-        // No loop: compilers that save space leave it one, and the row in memory.
-        macro_rules! write {
-            ($($column:literal)*) => { $(
-                if let Some(Some(packet)) = outputs.get_mut($column).map(|column| column.get_mut(at)) {
-                    row[$column].write(packet);
-                }
-            )* };
+/// The first of the slices that is not of the expected length.
+#[cold]
+fn first_that_differs(
+    expected: usize,
+    in_names: &[&'static str],
+    inputs: &[usize],
+    out_names: &[&'static str],
+    outputs: &[usize],
+) -> LengthError {
+    let all = in_names.iter().zip(inputs).chain(out_names.iter().zip(outputs));
+    let mut error = LengthError { field: "", len: expected, expected };
+    for (field, len) in all {
+        if *len != expected {
+            error = LengthError { field, len: *len, expected };
+            break;
         }
-        const { assert!(N <= 11, "every column is written") };
-        write!(0 1 2 3 4 5 6 7 8 9 10);
     }
-}
-
-/// Cuts slices into whole packets, and the rest into one packet on the stack; `run` is called on either.
-#[inline(always)]
-pub(crate) fn in_packets<const N: usize, const W: usize>(
-    inputs: [&[f32]; 3],
-    outputs: &mut [&mut [f32]; N],
-    mut run: impl FnMut([&[[f32; W]]; 3], &mut [&mut [[f32; W]]; N]),
-) {
-    let cut = inputs.map(<[f32]>::as_chunks);
-    let mut out = outputs.each_mut().map(|column| column.as_chunks_mut());
-    run(cut.map(|(whole, _)| whole), &mut out.each_mut().map(|(whole, _)| &mut **whole));
-    if cut[0].1.is_empty() {
-        return;
-    }
-    let mut from = [[[0.0; W]]; 3];
-    for ([packet], (_, rest)) in from.iter_mut().zip(cut) {
-        packet.iter_mut().zip(rest).for_each(|(to, from)| *to = *from);
-    }
-    let mut to = [[[0.0; W]]; N];
-    run(from.each_ref().map(<[_; 1]>::as_slice), &mut to.each_mut().map(<[_; 1]>::as_mut_slice));
-    for ([packet], (_, rest)) in to.iter().zip(out) {
-        rest.iter_mut().zip(packet).for_each(|(to, from)| *to = *from);
-    }
+    error
 }

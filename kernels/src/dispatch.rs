@@ -1,7 +1,7 @@
 //! Which instruction set runs: the only place that picks a backend at run time.
 #![allow(unsafe_code, reason = "calls into functions of target features that a `Level` proves present")]
 
-use crate::batch::{self, Row};
+use crate::batch::rows::{self, Row};
 use crate::model::{Eval8, Hit8, LobeEval8, Sample8};
 use crate::{Broadcast, Gather8, Hit, Model, PerLobe, Vec3x, Vec3x8};
 use core::fmt;
@@ -232,26 +232,23 @@ entry! {
     sample8(gather: &M::Gather<C>, xi: &[f32x8; 3]) -> Sample8, sample, on AVX-512 avx512
 }
 
-/// Declares the loop of a batch on the backend `$L` of `$W` lanes, whole packets and then the rest.
+/// The loop of a batch on the backend `$L` of `$W` lanes: whole packets, and then packets of eight.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 macro_rules! batch_on {
-    ($M:ty, $R:ty, $L:ty, $N:ident, $W:literal, $gather:ident, $inputs:ident, $outputs:ident) => {
-        batch::in_packets($inputs, $outputs, |inputs, outputs| {
-            batch::packets::<$M, $R, $L, f32, $N, $W>($gather, inputs, outputs);
-        })
-    };
-    ($M:ty, $R:ty, $L:ty, $N:ident, $W:literal, $gather:ident, $inputs:ident, $outputs:ident, $name:ident, $features:literal) => {{
+    ($level:ident, $M:ty, $R:ty, $L:ty, $N:ident, $W:literal, $gather:ident, $inputs:ident, $outputs:ident, $name:ident, $features:literal) => {{
         #[target_feature(enable = $features)]
         fn $name<M: Model, R: Row<N>, const N: usize>(
             gather: &M::Gather<f32>,
             inputs: [&[[f32; $W]]; 3],
             outputs: &mut [&mut [[f32; $W]]; N],
         ) {
-            batch::packets::<M, R, $L, f32, N, $W>(gather, inputs, outputs);
+            rows::packets::<M, R, $L, f32, N, $W>(gather, inputs, outputs);
         }
-        batch::in_packets($inputs, $outputs, |inputs, outputs| {
+        let done = rows::in_packets($inputs, $outputs, |inputs, outputs| {
             // SAFETY: a `Level` of this kind is made only where these features were found.
             unsafe { $name::<$M, $R, $N>($gather, inputs, outputs) }
-        })
+        });
+        rows::in_eights::<$M, $R, $N>($level, $gather, $inputs, $outputs, done);
     }};
 }
 
@@ -265,10 +262,11 @@ pub(crate) fn batch<M: Model, R: Row<N>, const N: usize>(
 ) {
     match level.0 {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Kind::Avx2 => batch_on!(M, R, Pair<Avx2>, N, 16, gather, inputs, outputs, avx2, "avx2,fma"),
+        Kind::Avx2 => batch_on!(level, M, R, Pair<Avx2>, N, 16, gather, inputs, outputs, avx2, "avx2,fma"),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Kind::Avx512 => {
             batch_on!(
+                level,
                 M,
                 R,
                 Pair<Avx512>,
@@ -281,6 +279,10 @@ pub(crate) fn batch<M: Model, R: Row<N>, const N: usize>(
                 "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw"
             );
         }
-        Kind::Portable => batch_on!(M, R, f32x8, N, 8, gather, inputs, outputs),
+        Kind::Portable => {
+            rows::in_packets(inputs, outputs, |inputs, outputs| {
+                rows::packets::<M, R, f32x8, f32, N, 8>(gather, inputs, outputs);
+            });
+        }
     }
 }

@@ -11,7 +11,6 @@
 pub(crate) mod avx2;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod avx512;
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod pair;
 pub(crate) mod portable;
 mod scalar;
@@ -47,6 +46,9 @@ pub trait Lanes:
     /// `self * a + b`, rounded once where the backend fuses and twice where it does not.
     #[must_use]
     fn mul_add(self, a: Self, b: Self) -> Self;
+    /// `self * a - b`, rounded as [`mul_add`](Self::mul_add).
+    #[must_use]
+    fn mul_sub(self, a: Self, b: Self) -> Self;
     /// `a * b - c * d`, to within two units in the last place however much it cancels.
     ///
     /// Backends that fuse keep what the rounding of a product leaves out; others split the factors. The difference of
@@ -152,8 +154,8 @@ const INTEGER_BIAS: f32 = 8_388_608.0 + 127.0;
 #[inline(always)]
 pub(crate) fn difference_fused<L: Lanes>(a: L, b: L, c: L, d: L) -> L {
     let product = c * d;
-    let left_out = c.mul_add(d, -product);
-    a.mul_add(b, -product) - left_out
+    let left_out = c.mul_sub(d, product);
+    a.mul_sub(b, product) - left_out
 }
 
 /// [`Lanes::difference_of_products`] from factors split in two halves of 12 bits, after Dekker.

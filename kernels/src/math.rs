@@ -4,22 +4,30 @@
 //! its range, and the error measured on it by the tests (rows of `tests/tolerance.rs`). None branches.
 
 use crate::Lanes;
+use crate::lanes::pair::Pair;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
 /// `pi/2 - FRAC_PI_2`, what the rounding of the constant leaves out.
 pub(crate) const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
 
 /// A polynomial, its even and odd halves apart: half the dependency chain of Horner's rule.
+///
+/// Written out, not a loop: compilers that save space leave it one, over coefficients in memory.
 #[inline(always)]
 fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     let square = x * x;
-    let mut halves = [L::splat(coefficients[(N - 1) & !1]), L::splat(coefficients[(N - 2) | 1])];
-    let mut i = N - 2;
-    while i > 0 {
-        i -= 1;
-        halves[i & 1] = halves[i & 1].mul_add(square, L::splat(coefficients[i]));
+    let mut even = L::splat(coefficients[(N - 1) & !1]);
+    let mut odd = L::splat(coefficients[(N - 2) | 1]);
+    macro_rules! steps {
+        ($($half:ident $i:literal)*) => { $(
+            if $i + 2 < N {
+                $half = $half.mul_add(square, L::splat(coefficients[$i]));
+            }
+        )* };
     }
-    halves[1].mul_add(x, halves[0])
+    const { assert!(N <= 9, "every coefficient has a step") };
+    steps!(even 6 odd 5 even 4 odd 3 even 2 odd 1 even 0);
+    odd.mul_add(x, even)
 }
 
 /// `exp(-s/2)` for `s >= 0`, a Gaussian of the squared distance from its centre; exactly 0 from about `2^-115` down.
@@ -114,7 +122,8 @@ pub fn sin_cos_half_turn<L: Lanes>(x: L) -> (L, L) {
 pub fn sin_cos_twice<L: Lanes>(x: L) -> (L, L) {
     // cos 2x = sin(pi/2 - |2x|), with pi/2 in two parts: the cosine keeps its digits where it vanishes.
     let y = x.abs().mul_add(L::splat(-2.0), L::splat(FRAC_PI_2)) + L::splat(FRAC_PI_2_LOW);
-    (sin_half_turn(x + x), sin_half_turn(y))
+    let Pair(sin, cos) = sin_half_turn(Pair(x + x, y));
+    (sin, cos)
 }
 
 /// `(sin x, cos x)` for `|x| <= pi/2` to an absolute error: a third less work than [`sin_cos_twice`], whose cosine
@@ -193,7 +202,7 @@ pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
 pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let w = zero.max(-log2(c(4.0) * q * (one - q)));
+    let w = zero.max(zero - log2(c(4.0) * q * (one - q)));
     let center = polynomial(
         w,
         [

@@ -126,14 +126,11 @@ impl<L: Lanes> Place<L> {
         let inv_r = one / (d_r * cos_sq_theta_d);
         let cauchy_r = inv_r * cos_sq_theta_d;
 
-        let (m_r, m_trt) = (B::one(s_r, cauchy_r), B::one(s_trt, cauchy_trt));
+        let of_tt = [s_tt, t_tt, cauchy_tt, cauchy_tt * d_tt_y, cauchy_tt * d_tt_x];
+        let of_g = [s_trt, t_g, cauchy_g, cauchy_trt, cauchy_g * d_trt];
+        let [m_r, f_tt, m_trt, f_g] = B::four([s_r, cauchy_r], of_tt, [s_trt, cauchy_trt], of_g);
         Shapes {
-            value: [
-                m_r * self.cos_half_phi,
-                B::two(s_tt, t_tt, cauchy_tt, cauchy_tt * d_tt_y, cauchy_tt * d_tt_x),
-                m_trt * self.cos_half_phi,
-                B::two(s_trt, t_g, cauchy_g, cauchy_trt, cauchy_g * d_trt),
-            ],
+            value: [m_r * self.cos_half_phi, f_tt, m_trt * self.cos_half_phi, f_g],
             density: [
                 cauchy_r * self.cos_half_phi,
                 cauchy_tt,

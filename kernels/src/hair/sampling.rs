@@ -1,7 +1,7 @@
 //! The published sampler: a lobe by its energy, then longitude and azimuth by inversion (section 3.2 of the paper).
 
 use super::{HairGather, HairPoint, Place};
-use crate::lanes::lanes3;
+use crate::lanes::{lanes3, pair::Pair};
 use crate::math::{FRAC_PI_2_LOW, atan_unit, sin_cos_absolute, sin_cos_twice};
 use crate::truncated::TruncatedCauchy;
 use crate::{Broadcast, Lanes, Vec3x};
@@ -15,23 +15,17 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let (point, hair, sampler) = (&gather.point, &gather.point.lobes, &gather.sampler);
     let choice = L::choose(xi[0], lanes3(&sampler.bounds));
 
-    // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o.
-    let longitude = TruncatedCauchy {
-        sin_mid: C::pick_three(&gather.longitude_sin, choice),
-        cos_mid: C::pick_three(&gather.longitude_cos, choice),
-        span: C::pick_three(&gather.longitude_span, choice),
-    };
-    let x = longitude.invert(zero.max(xi[1].min(one)));
-    let half_theta_i = x.mul_add(C::pick_three(&hair.beta, choice), -C::pick_three(&point.shift, choice));
-
+    // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Side by side with the azimuth.
     let turn = Turn::of(xi[2]);
-    let azimuth = TruncatedCauchy {
-        sin_mid: C::pick_pair(&sampler.azimuth_sin, choice),
-        cos_mid: C::pick_pair(&sampler.azimuth_cos, choice),
-        span: C::pick_pair(&sampler.azimuth_span, choice),
+    let both = TruncatedCauchy {
+        sin_mid: Pair(C::pick_three(&gather.longitude_sin, choice), C::pick_pair(&sampler.azimuth_sin, choice)),
+        cos_mid: Pair(C::pick_three(&gather.longitude_cos, choice), C::pick_pair(&sampler.azimuth_cos, choice)),
+        span: Pair(C::pick_three(&gather.longitude_span, choice), C::pick_pair(&sampler.azimuth_span, choice)),
     };
+    let Pair(x, y) = both.invert(Pair(zero.max(xi[1].min(one)), one - turn.across));
+    let half_theta_i = x.mul_sub(C::pick_three(&hair.beta, choice), C::pick_three(&point.shift, choice));
     let center = L::keep(L::is_slot(choice, 3), hair.half_phi_g.lanes());
-    let psi = azimuth.invert(one - turn.across).mul_add(C::pick_pair(&hair.half_gamma, choice), center);
+    let psi = y.mul_add(C::pick_pair(&hair.half_gamma, choice), center);
     let (wi, place) = turned(point, choice, half_theta_i, turn, psi);
     (wi, choice, place)
 }
@@ -84,7 +78,7 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     // The direction, from the double angle; phi_i = phi_o - phi. The sides of R and TRT-g are the other way round.
     let sin_psi_sq = sin_psi * sin_psi;
     let sin_turn = (sin_psi + sin_psi) * cos_psi;
-    let cos_turn = cos_psi.mul_add(cos_psi, -sin_psi_sq);
+    let cos_turn = cos_psi.mul_sub(cos_psi, sin_psi_sq);
     let sin_phi = sin_turn.times_sign(L::negate(is_bell, side));
     let cos_phi = L::negate(is_tt, cos_turn);
     // What the sine and the cosine are off the unit circle is taken from the length.
@@ -93,7 +87,7 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     let by = cos_theta_i * point.inv_plane_o.lanes();
     let by = by - by * off_unit;
     let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by;
-    let w = w_o.mul_add(cos_phi, -(v_o * sin_phi)) * by;
+    let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by;
 
     // Half of |phi| or of pi - |phi|, whichever is smaller, from the sine and cosine that the direction was made of, and
     // then turned by what rounding has turned the direction. Next to pi R and TRT-g vanish, and take all of its digits.
@@ -105,7 +99,7 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     let angle = L::select(is_bell, psi.min(rest), atan_unit((small * large) * (reciprocal * reach)));
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
-    let turned = cross.mul_add(cos_turn.abs(), -(dot.abs() * sin_turn)) * (inv_reach * c(0.5));
+    let turned = cross.mul_sub(cos_turn.abs(), dot.abs() * sin_turn) * (inv_reach * c(0.5));
     let place = Place::new(
         half_theta_i,
         sin_theta_i,

@@ -78,6 +78,10 @@ impl Lanes for Avx2 {
         Self(avx2!(_mm256_fmadd_ps(self.0, a.0, b.0)))
     }
     #[inline(always)]
+    fn mul_sub(self, a: Self, b: Self) -> Self {
+        Self(avx2!(_mm256_fmsub_ps(self.0, a.0, b.0)))
+    }
+    #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         difference_fused(a, b, c, d)
     }

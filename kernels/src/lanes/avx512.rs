@@ -76,6 +76,10 @@ impl Lanes for Avx512 {
         Self(avx512!(_mm512_fmadd_ps(self.0, a.0, b.0)))
     }
     #[inline(always)]
+    fn mul_sub(self, a: Self, b: Self) -> Self {
+        Self(avx512!(_mm512_fmsub_ps(self.0, a.0, b.0)))
+    }
+    #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         difference_fused(a, b, c, d)
     }

@@ -1,14 +1,16 @@
-//! Two packets side by side, for slices: where one waits for its last result, the other has work.
+//! Two packets side by side: where one waits for its last result, the other has work.
 //!
 //! A sample is a chain of some two hundred cycles, of which a CPU finds no more than the next few hundred instructions
 //! to do meanwhile: with two chains in every stretch of instructions it waits a quarter less.
+//!
+//! Models put equal steps of one packet side by side in the same way, two or four of them.
 
 use super::{Broadcast, Lanes, Packet, sealed::Sealed};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The lanes of two packets.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair<L>(L, L);
+pub struct Pair<L>(pub(crate) L, pub(crate) L);
 
 impl<L: Lanes> Sealed for Pair<L> {}
 
@@ -50,6 +52,10 @@ impl<L: Lanes> Lanes for Pair<L> {
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
         Self(self.0.mul_add(a.0, b.0), self.1.mul_add(a.1, b.1))
+    }
+    #[inline(always)]
+    fn mul_sub(self, a: Self, b: Self) -> Self {
+        Self(self.0.mul_sub(a.0, b.0), self.1.mul_sub(a.1, b.1))
     }
     #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {

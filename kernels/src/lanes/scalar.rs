@@ -3,6 +3,8 @@
 //! Selections are marked unpredictable: as branches, which the compiler makes of them here and there, they would be
 //! mispredicted half of the time.
 
+#![allow(unsafe_code, reason = "an intrinsic of a target feature that the program is compiled for")]
+
 use core::hint::select_unpredictable;
 
 use super::{Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, UPPER, difference_split, sealed::Sealed};
@@ -14,6 +16,22 @@ impl Sealed for f32 {}
 fn split(x: f32) -> [f32; 2] {
     let upper = f32::from_bits(x.to_bits() & UPPER);
     [upper, x - upper]
+}
+
+/// Square root: the instruction. That of `libm` stays a call where the compiler saves space.
+#[inline(always)]
+fn sqrt(x: f32) -> f32 {
+    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+    {
+        #[cfg(target_arch = "x86")]
+        use core::arch::x86::{_mm_cvtss_f32, _mm_set_ss, _mm_sqrt_ss};
+        #[cfg(target_arch = "x86_64")]
+        use core::arch::x86_64::{_mm_cvtss_f32, _mm_set_ss, _mm_sqrt_ss};
+        // SAFETY: the program is compiled for CPUs that have SSE2.
+        unsafe { _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(x))) }
+    }
+    #[cfg(not(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2")))]
+    libm::sqrtf(x)
 }
 
 impl Lanes for f32 {
@@ -35,12 +53,16 @@ impl Lanes for f32 {
         self * a + b
     }
     #[inline(always)]
+    fn mul_sub(self, a: Self, b: Self) -> Self {
+        self * a - b
+    }
+    #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         difference_split(split(a), split(b), split(c), split(d))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        libm::sqrtf(self)
+        sqrt(self)
     }
     #[inline(always)]
     fn abs(self) -> Self {
