@@ -48,7 +48,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let least = (last - first) * c(LEAST_SHARE);
     let integral = (first + least).max(integral.min(last - least));
     let x = B::invert(C::pick_three(&gather.origin, choice), integral);
-    let half_theta_i = x.mul_add(C::pick_three(&hair.beta, choice), -C::pick_three(&point.shift, choice));
+    let half_theta_i = x.mul_sub(C::pick_three(&hair.beta, choice), C::pick_three(&point.shift, choice));
     let half_theta_i = c(-FRAC_PI_4).max(half_theta_i.min(c(FRAC_PI_4)));
 
     // Azimuth: TT's runs from its centre outwards, that of a glint from phi = 0.
@@ -57,6 +57,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let share = L::select(is_glint, one - turn.across, turn.across);
     let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON / 2.0)));
     let (mass, from) = (C::pick_pair(&gather.azimuth_mass, choice), C::pick_pair(&gather.azimuth_from, choice));
+
     let y = B::invert(C::pick_pair(&gather.azimuth_origin, choice), share.mul_add(mass, from));
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::pick_pair(&hair.half_gamma, choice), center);
