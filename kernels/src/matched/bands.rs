@@ -1,6 +1,7 @@
 //! Bands of inclination, in each of which W is taken for constant.
 
 use crate::Lanes;
+use crate::lanes::pair::Pair;
 
 /// A band between two inclinations of one sign.
 #[derive(Clone, Copy)]
@@ -75,12 +76,14 @@ const fn cosine_of(sine: f64) -> f64 {
 }
 
 impl Band {
-    /// `W = (cos theta_i / cos theta_d)^2` in the middle of the band on one side, `pole` -1 for the lower one and 1 for the upper.
+    /// `W = (cos theta_i / cos theta_d)^2` in the middle of the band, below the normal plane and above it.
     #[inline(always)]
-    pub(super) fn residual<L: Lanes>(&self, pole: f32, [half_sin_theta_o, half_cos_theta_o]: [L; 2]) -> L {
+    pub(super) fn residual<L: Lanes>(&self, [half_sin_theta_o, half_cos_theta_o]: [L; 2]) -> Pair<L> {
         let c = L::splat;
-        let (mean_u, mean_c) = (half_sin_theta_o + c(pole * self.half_sin), half_cos_theta_o + c(self.half_cos));
-        c(4.0 * self.half_cos * self.half_cos) / mean_u.mul_add(mean_u, mean_c * mean_c)
+        let (sin, cos) = (c(self.half_sin), half_cos_theta_o + c(self.half_cos));
+        let (below, above, cos_sq) = (half_sin_theta_o - sin, half_sin_theta_o + sin, cos * cos);
+        let cos_sq_theta_d = Pair(below.mul_add(below, cos_sq), above.mul_add(above, cos_sq));
+        Pair::splat(4.0 * self.half_cos * self.half_cos) / cos_sq_theta_d
     }
 }
 

@@ -3,7 +3,7 @@
 use super::MatchedBell;
 use super::bands::bands;
 use crate::hair::{prepare_point, selection, times};
-use crate::lanes::{store3, store4};
+use crate::lanes::{pair::Pair, store3, store4};
 use crate::{Broadcast, HairLobes, HairParams, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
 use core::f32::consts::{FRAC_PI_4, PI};
 use wide::f32x8;
@@ -127,35 +127,38 @@ fn importance(params: &HairParams) -> [f32; 4] {
     all.map(|i| if i > largest * LEAST_IMPORTANCE { (i / largest) as f32 } else { 0.0 })
 }
 
-/// A longitude, from one of the poles towards the normal plane.
+/// A longitude, from the lower pole and from the upper one towards the normal plane, side by side.
 #[derive(Clone, Copy)]
 struct Longitude<L> {
     shift: L,
     inv_beta: L,
     origin: L,
     /// Integral of M up to here, and that of `M W` from the pole.
-    integral: L,
-    area: L,
+    integral: Pair<L>,
+    area: Pair<L>,
 }
 
 impl<L: Lanes> Longitude<L> {
-    /// At a pole, `pole` -1 for the lower one and 1 for the upper.
+    /// At the poles.
     #[inline(always)]
-    fn at_pole<B: MatchedBell>(shift: L, inv_beta: L, pole: f32) -> Self {
+    fn at_poles<B: MatchedBell>(shift: L, inv_beta: L) -> Self {
         let (zero, quarter) = (L::splat(0.0), L::splat(FRAC_PI_4));
         let origin = B::origin((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
-        let this = Self { shift, inv_beta, origin, integral: zero, area: zero };
-        Self { integral: this.integral_to::<B>(pole * FRAC_PI_4), ..this }
+        let this = Self { shift, inv_beta, origin, integral: Pair(zero, zero), area: Pair(zero, zero) };
+        Self { integral: this.integral_to::<B>(FRAC_PI_4), ..this }
     }
 
+    /// The integrals up to half an inclination on either side.
     #[inline(always)]
-    fn integral_to<B: MatchedBell>(&self, half_theta_i: f32) -> L {
-        B::integral(self.origin, (self.shift + L::splat(half_theta_i)) * self.inv_beta)
+    fn integral_to<B: MatchedBell>(&self, half_theta_i: f32) -> Pair<L> {
+        let end = L::splat(half_theta_i);
+        let x = Pair((self.shift - end) * self.inv_beta, (self.shift + end) * self.inv_beta);
+        B::integral(Pair(self.origin, self.origin), x)
     }
 
     /// Goes on through a band.
     #[inline(always)]
-    fn pass<B: MatchedBell>(&mut self, half_theta_i: f32, height: L) {
+    fn pass<B: MatchedBell>(&mut self, half_theta_i: f32, height: Pair<L>) {
         let next = self.integral_to::<B>(half_theta_i);
         self.area = (next - self.integral).abs().mul_add(height, self.area);
         self.integral = next;
@@ -173,31 +176,32 @@ macro_rules! for_bands {
     };
 }
 
-/// One side of R, TT and TRT, `pole` as in [`Longitude::at_pole`]: the areas as they are, and the origins.
+/// Both sides of R, TT and TRT: the areas as they are, and the origins.
 #[inline(always)]
-fn side<B: MatchedBell, L: Lanes, const N: usize>(
+fn sides<B: MatchedBell, L: Lanes, const N: usize>(
     shift: [L; 3],
     inv_beta: [L; 3],
-    pole: f32,
     theta_o: [L; 2],
-) -> (MatchedSide<L::Stored, N>, [L; 3], [L; 3]) {
-    let mut r = Longitude::at_pole::<B>(shift[0], inv_beta[0], pole);
-    let mut tt = Longitude::at_pole::<B>(shift[1], inv_beta[1], pole);
-    let mut trt = Longitude::at_pole::<B>(shift[2], inv_beta[2], pole);
+) -> ([MatchedSide<L::Stored, N>; 2], [Pair<L>; 3], [L; 3]) {
+    let mut r = Longitude::at_poles::<B>(shift[0], inv_beta[0]);
+    let mut tt = Longitude::at_poles::<B>(shift[1], inv_beta[1]);
+    let mut trt = Longitude::at_poles::<B>(shift[2], inv_beta[2]);
     let none = L::splat(0.0).store();
-    let (mut integral, mut height) = ([[none; 4]; N], [none; N]);
+    let side = MatchedSide { height: [none; N], integral: [[none; 4]; N], area: [none; 4] };
+    let [mut lower, mut upper] = [side; 2];
     for_bands!(j < N, {
         let band = &const { bands::<N>() }[j];
-        integral[j] = shared4([r.integral, tt.integral, trt.integral]);
-        let w = band.residual(pole, theta_o);
-        height[j] = w.store();
-        let end = pole * band.half_inner;
-        r.pass::<B>(end, w);
-        tt.pass::<B>(end, w);
-        trt.pass::<B>(end, w);
+        lower.integral[j] = shared4([r.integral.0, tt.integral.0, trt.integral.0]);
+        upper.integral[j] = shared4([r.integral.1, tt.integral.1, trt.integral.1]);
+        let w = band.residual(theta_o);
+        (lower.height[j], upper.height[j]) = (w.0.store(), w.1.store());
+        r.pass::<B>(band.half_inner, w);
+        tt.pass::<B>(band.half_inner, w);
+        trt.pass::<B>(band.half_inner, w);
     });
-    let area = [r.area, tt.area, trt.area];
-    (MatchedSide { height, integral, area: shared4(area) }, area, [r.origin, tt.origin, trt.origin])
+    lower.area = shared4([r.area.0, tt.area.0, trt.area.0]);
+    upper.area = shared4([r.area.1, tt.area.1, trt.area.1]);
+    ([lower, upper], [r.area, tt.area, trt.area], [r.origin, tt.origin, trt.origin])
 }
 
 /// The gather point of a material seen from `wo`.
@@ -218,11 +222,10 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
         l += 1;
     }
 
-    let (lower, area_lower, origin) = side::<B, L, N>(shift, inv_beta, -1.0, theta_o);
-    let (upper, area_upper, _) = side::<B, L, N>(shift, inv_beta, 1.0, theta_o);
+    let (sides, [r, tt, trt], origin) = sides::<B, L, N>(shift, inv_beta, theta_o);
     // The glints share the longitude of TRT.
-    let trt = area_lower[2] + area_upper[2];
-    let total = [area_lower[0] + area_upper[0], area_lower[1] + area_upper[1], trt, trt];
+    let trt = trt.0 + trt.1;
+    let total = [r.0 + r.1, tt.0 + tt.1, trt, trt];
 
     // Energies to the scale of the largest area, which may be next to nothing where all lobes lie off the sphere.
     let capacity = [m.capacity[0].lanes(), m.capacity[1].lanes(), m.capacity[2].lanes(), m.capacity[3].lanes()];
@@ -251,7 +254,7 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
     MatchedGather {
         point,
         origin: shared4(origin),
-        sides: [lower, upper],
+        sides,
         area: store4(total),
         weight: store4(weight),
         scale: scale.store(),
