@@ -39,7 +39,7 @@ fn the_rows_are_all_there() {
 
 #[test]
 fn csv_and_parquet_have_the_same_content() {
-    for name in ["study", "efficiency"] {
+    for name in ["study", "efficiency", "difference"] {
         let rows = csv(&format!("{name}.csv"));
         let file = File::open(reference().join(format!("{name}.parquet"))).unwrap();
         let reader = SerializedFileReader::new(file).unwrap();
