@@ -28,6 +28,7 @@ mod output;
 
 pub use blur::SIGMA_DEG;
 pub use measure::{Figures, Norms};
+pub(crate) use output::{Summary, albedo_ratio};
 
 use crate::study::{Cell, Grid};
 use blur::Blur;
@@ -130,6 +131,22 @@ impl Difference {
     pub fn of(&self, width: Width) -> impl Iterator<Item = &Row> + Clone {
         self.rows.iter().filter(move |row| row.width == width)
     }
+}
+
+/// `S cos theta_i` of the Gaussian model after the blur, and what a Cauchy model with its widths times `k` has more, as
+/// functions of `theta_i` and of `phi`, in rad, seen from `theta_o`.
+pub(crate) fn blurred_difference(
+    params: &HairParams,
+    theta_o: f64,
+    k: f64,
+) -> (impl Fn(f64, f64) -> f64, impl Fn(f64, f64) -> f64) {
+    let view = View::new(params, theta_o);
+    let rule = view.rule(ORDER);
+    let values = [Kind::GAUSSIAN, Kind::cauchy(k)].map(|kind| rule.values(&view, kind));
+    let blurred = Blur::new(SIGMA_DEG.to_radians(), 1, 1).harmonics(&rule, &values);
+    let gaussian = blurred[0].clone();
+    let more = move |theta, phi| blurred[1].at(theta, phi) - blurred[0].at(theta, phi);
+    (move |theta, phi| gaussian.at(theta, phi), more)
 }
 
 fn hair(cell: &Cell) -> Result<Hair, ParamError> {

@@ -57,12 +57,19 @@ pub(super) fn finish(study: &Study, out: &Path) -> Result<(), Error> {
     let times = Times::measure(seed, quick);
     let difference = Difference::over(study.grid())?;
     study.write(out, &times, &difference)?;
+    study.report(&times, &difference, claims(out).as_ref()).write(out, "study")?;
     print_tables(study.summary(&times).iter().chain(&difference.tables())).map_err(Error::Write)?;
     let [rows, others @ ..] = ["study", "efficiency", "difference"].map(|name| out.join(name).display().to_string());
     say(&format!("wrote {rows}.csv, .parquet and .json, and {} as .csv and .parquet", others.join(" and ")));
+    say(&format!("wrote {} and figures/", out.join("report.html").display()));
     let failures = study.failures();
     failures.iter().for_each(|failure| say(&format!("failed: {failure}")));
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
+}
+
+/// What `hairis claims` left in `out`, if anything.
+fn claims(out: &Path) -> Option<serde_json::Value> {
+    serde_json::from_slice(&fs::read(out.join("claims.json")).ok()?).ok()
 }
 
 /// A bar over the cells that are left, on standard error; nothing where that is no terminal.

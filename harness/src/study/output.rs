@@ -21,8 +21,8 @@ use std::path::{Path, PathBuf};
 /// Every cell of a study, in the order of the grid.
 #[derive(Clone, Debug)]
 pub struct Study {
-    header: Header,
-    cells: Vec<Vec<Measured>>,
+    pub(super) header: Header,
+    pub(super) cells: Vec<Vec<Measured>>,
 }
 
 /// Times of a sample, measured on this machine.
