@@ -3,7 +3,7 @@
 //! The blur is the von Mises-Fisher density `exp(kappa cos gamma) kappa / (4 pi sinh kappa)` with `kappa = 1 / sigma^2`:
 //! the Gaussian of the sphere, of deviation `sigma` along each of two directions at right angles. A convolution with it
 //! multiplies every harmonic of degree l by one number, which falls so fast that degrees beyond [`DEGREE`] are below
-//! [`REST`] of what they were: the error in L2 is below that share of the function's own norm, since it is the norm of
+//! 1e-9 of what they were: the error in L2 is below that share of the function's own norm, since it is the norm of
 //! what is left out (Parseval).
 //!
 //! Functions are even in `phi`, so that `cos(m phi)` is all they need.

@@ -5,7 +5,7 @@ use super::super::times::PER_POINT;
 use super::super::{Cell, Sampler};
 use super::view::{Estimator, View, default_matched, ess};
 use crate::efficiency::ModelKind;
-use crate::plot::{Axis, Bar, BarChart, LineChart, Point, Reference, Series};
+use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
 use crate::report::Figure;
 use crate::stats::Estimate;
 
@@ -137,7 +137,7 @@ pub(super) fn distributions(of: &View<'_>) -> Vec<Figure> {
         of.each_cell().map(ratio).collect()
     };
     let share = || Axis::linear("cells with at most as much (%)").range(0.0, 100.0).step(20.0);
-    let even = || Series::curve("as good", [(1.0, 0.0), (1.0, 100.0)]);
+    let even = || Series::curve("as good", [(1.0, 0.0), (1.0, 100.0)]).styled(5, Dash::Dotted);
     let mut figures = Vec::new();
     for sampler in [Some(Sampler::Ou), default_matched()].into_iter().flatten() {
         let title = format!("Variance, Gaussian over Cauchy, with {}", sampler.name());

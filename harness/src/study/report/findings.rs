@@ -77,7 +77,7 @@ fn worth(of: &View<'_>) -> Option<String> {
     })
 }
 
-/// The samplers that are not told from the best of a model under a light, best first, with the best one's gain over `ou`.
+/// The samplers that are not told from the best of a model under a light, with the best one's gain over `ou`.
 fn best(of: &View<'_>, model: ModelKind, light: usize, per_point: usize) -> Option<(Vec<Sampler>, Estimate)> {
     let gain = |sampler| {
         let over_ou = of.equal_time((model, Sampler::Ou), (model, sampler), light, per_point)?;
@@ -86,8 +86,12 @@ fn best(of: &View<'_>, model: ModelKind, light: usize, per_point: usize) -> Opti
     let mut gains: Vec<(Sampler, Estimate)> = Sampler::ALL.into_iter().filter_map(gain).collect();
     gains.sort_by(|a, b| b.1.value.total_cmp(&a.1.value));
     let (_, most) = *gains.first()?;
-    let level = gains.iter().filter(|(_, gain)| Sign::of(most.ratio(gain)) != Sign::Above || *gain == most);
-    Some((level.map(|(sampler, _)| *sampler).collect(), most))
+    let level: Vec<Sampler> = gains
+        .iter()
+        .filter(|(_, gain)| Sign::of(most.ratio(gain)) != Sign::Above)
+        .map(|(sampler, _)| *sampler)
+        .collect();
+    Some((Sampler::ALL.into_iter().filter(|sampler| level.contains(sampler)).collect(), most))
 }
 
 /// Which sampler?
