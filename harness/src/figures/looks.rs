@@ -76,13 +76,16 @@ pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Figure; 3] {
     let seen = format!("seen from θₒ = {degrees:.0}° at azimuth 0: the mean of RGB, logarithmic over three decades");
     let k = cauchy.width_factor();
     [
-        Figure::new(heat("S, Gaussian model", gaussian), format!("S of the Gaussian model, {seen}.")).named("map-gaussian"),
-        Figure::new(heat("S, Cauchy model", other), format!("S of the Cauchy model with k = {k}, {seen}; same colours."))
-            .named("map-cauchy"),
+        Figure::new(heat("S, Gaussian model", gaussian), format!("S of the Gaussian model, {seen}."))
+            .named("map-gaussian"),
+        Figure::new(
+            heat("S, Cauchy model", other),
+            format!("S of the Cauchy model with k = {k}, {seen}; same colours."),
+        )
+        .named("map-cauchy"),
         Figure::new(
             HeatMap::new("S, Cauchy less Gaussian", Axis::linear("difference of S (1/sr)"), more).signed().svg(),
-            "What the Cauchy model has more (vermilion) and less (blue) than the Gaussian one: less on the shoulders of \
-             the highlights, more between them.",
+            "What the Cauchy model has more (vermilion) and less (blue) than the Gaussian one, linear.",
         )
         .named("map-difference"),
     ]

@@ -71,7 +71,7 @@ fn worth(of: &View<'_>) -> Option<String> {
     (!parts.is_empty()).then(|| {
         format!(
             "Is the Cauchy model worth it? Against the Gaussian model in equal time, {MANY} samples a gather point, means \
-             over the grid: {}.",
+             over the grid (a few cells can carry them: see how the gains spread): {}.",
             parts.join("; ")
         )
     })
