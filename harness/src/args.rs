@@ -29,9 +29,10 @@ The answer to "wi", and to "xi" (lobe null: discarded, and 0 for the rest):
 A line that is refused, a blank one included, is answered by {"error":"field: problem"};
 the rest still runs, and the exit code is 2."#;
 
-const STUDY: &str = "Writes into DIR: study.csv and study.parquet, the rows, which depend on the seed and the build alone; study.json, the
-settings; times.csv, efficiency.csv and efficiency.parquet, which depend on the machine as well. Finished cells are kept
-in DIR/cells-I-of-N.jsonl: the same command goes on from there.";
+const STUDY: &str = "Writes into DIR: report.html, and its plots in figures/; study.csv and study.parquet, the rows, which depend on the seed
+and the build alone; difference.csv and difference.parquet, how different the models look; study.json, the settings;
+times.csv, efficiency.csv and efficiency.parquet, which depend on the machine as well. Finished cells are kept in
+DIR/cells-I-of-N.jsonl: the same command goes on from there.";
 
 /// The subcommands, each with its flags.
 #[derive(Clone, Debug, Subcommand)]
@@ -68,7 +69,7 @@ pub struct Compare {
     /// Seed of everything that is drawn; results but for the timings depend on it alone
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Folder for compare.json and report.html; made if missing
+    /// Folder for compare.json, report.html and figures/; made if missing
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
     /// Environment light, latitude-longitude, as a .hdr or .exr file [default: a procedural sky]

@@ -1,15 +1,16 @@
 //! The figures that need nothing but the kernels: the paper's figures 4 and 5, and the scattering function around the
 //! fibre.
 
-use crate::plot::{
-    Axis, Dash, Grid, LineChart, Panel, PolarChart, PolarPanel, PolarSeries, Projection, ScatterMap, Series,
-};
+mod looks;
+
+pub use looks::{difference_map, maps, polar};
+
+use crate::plot::{Axis, Dash, Grid, LineChart, Panel, Projection, ScatterMap, Series};
 use crate::report::Figure;
 use core::f32::consts::TAU as TAU_F32;
-use core::f64::consts::{FRAC_PI_2, PI, SQRT_2};
+use core::f64::consts::{PI, SQRT_2};
 use glam::Vec3;
 use hairis::{Bsdf, Gather, Gaussian, Hair, HairParams, Lobe, LobeMask, Model};
-use hairis_variants::Cauchy;
 
 /// Widths of the bells shown, degrees.
 const WIDTHS: [f64; 3] = [5.0, 10.0, 20.0];
@@ -60,7 +61,7 @@ pub fn normalised_bells() -> Figure {
     let caption = "Gaussian (unbroken) and Cauchy (dashed) distributions of the same width and offset, both \
                    normalised on [−90°, 90°], as figure 4 of the paper: these are the densities that the sampler draws \
                    from and those it stands in for. The Cauchy's tails are wider and its peak is lower.";
-    Figure::new(svg, caption)
+    Figure::new(svg, caption).named("bells-of-area-1")
 }
 
 /// The same bells as the scattering function has them: of peak 1.
@@ -71,7 +72,7 @@ pub fn unit_bells() -> Figure {
     let caption = "The same bells with peak 1, as the lobes of the published model (Gaussian) and of the all-Cauchy \
                    variant use them. At the same width parameter the Cauchy is narrower at half height (1 width \
                    against 1.177) and far higher in the tails: 1/10 against 1/90 three widths out.";
-    Figure::new(svg, caption)
+    Figure::new(svg, caption).named("bells-of-peak-1")
 }
 
 /// The unit vector of an inclination and an azimuth.
@@ -126,7 +127,7 @@ pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: impl Iterator
          mixture, (c) to (f) each lobe alone. The background is S cos θᵢ of the same lobes (square root; darker is \
          more), so samples should lie where it is dark. TT surrounds φ = ±180°, the direction away from the viewer."
     );
-    Figure::new(svg, caption)
+    Figure::new(svg, caption).named("sample-distributions")
 }
 
 fn uniform_direction(a: f32, b: f32) -> Vec3 {
@@ -134,48 +135,6 @@ fn uniform_direction(a: f32, b: f32) -> Vec3 {
     let cos_theta = (1.0 - sin_theta * sin_theta).max(0.0).sqrt();
     let (sin, cos) = (TAU_F32 * b).sin_cos();
     Vec3::new(sin_theta, cos_theta * cos, cos_theta * sin)
-}
-
-/// S around the fibre and along it, Gaussian against Cauchy, seen from the inclination `theta_o` (radians).
-///
-/// Around it, `wi` turns on the cone of the mirror direction, `theta_i = -theta_o`, which is the normal plane when
-/// `theta_o` is 0; along it, `wi` turns in the plane of incidence, that of the fibre and the viewer.
-#[must_use]
-pub fn polar(params: &HairParams, theta_o: f64) -> Figure {
-    const STEPS: i32 = 1440;
-    let wo = direction(theta_o, 0.0);
-    let gaussian = Bsdf::new(&Hair(Gaussian), params).prepare(wo);
-    let cauchy = Bsdf::new(&Cauchy::PAPER.model(), params).prepare(wo);
-    let mean = |[r, g, b]: [f32; 3]| f64::from(r + g + b) / 3.0;
-    let turn = || (0..=STEPS).map(|i| 2.0 * PI * f64::from(i) / f64::from(STEPS));
-    let series = |wi: &dyn Fn(f64) -> Vec3| {
-        let values = |eval: &dyn Fn(Vec3) -> [f32; 3]| turn().map(|t| (t, mean(eval(wi(t))))).collect::<Vec<_>>();
-        [
-            PolarSeries::new("Gaussian (published)", values(&|w| gaussian.eval(w))),
-            PolarSeries::new("Cauchy (same widths)", values(&|w| cauchy.eval(w))),
-        ]
-    };
-    let around = series(&|phi| direction(-theta_o, phi));
-    // 90° is the fibre's tip, 0° the side of the viewer.
-    let along = series(&|angle| {
-        let (sin, cos) = angle.sin_cos();
-        direction(sin.atan2(cos.abs()).clamp(-FRAC_PI_2, FRAC_PI_2), if cos < 0.0 { PI } else { 0.0 })
-    });
-    let [a, b] = around;
-    let first = PolarPanel::new("around the fibre (θᵢ = −θₒ)", "azimuth φ").series(a).series(b).arrow("ωₒ", 0.0);
-    let [a, b] = along;
-    let second = PolarPanel::new("in the plane of incidence", "inclination; tip at 90°").series(a).series(b);
-    let second = second.arrow("ωₒ", theta_o);
-    let degrees = theta_o.to_degrees();
-    let chart = PolarChart::new(format!("S, Gaussian and Cauchy, θₒ = {degrees:.0}°"), "radius: S (1/sr), mean of RGB");
-    let caption = format!(
-        "The scattering function of the published Gaussian model and of the all-Cauchy variant with the same widths, \
-         seen from θₒ = {degrees:.0}° (ωₒ marks the direction to the viewer). Left: around the fibre, on the cone of \
-         the mirror direction. Right: in the plane of the fibre and the viewer, where ±90° are the fibre's ends. Each \
-         circle has its own scale. Every lobe has the same peak in both models; within 1.6 widths of its centre the \
-         Cauchy is the lower one, further out the higher."
-    );
-    Figure::new(chart.panel(first).panel(second).svg(), caption)
 }
 
 #[cfg(test)]
@@ -186,6 +145,7 @@ mod tests {
     use crate::report::{Report, Section};
     use crate::table::{Table, number};
     use hairis::HairDesc;
+    use hairis_variants::Cauchy;
 
     fn default_hair() -> HairParams {
         HairParams::new(&HairDesc::default()).expect("the default is legal")
@@ -209,7 +169,7 @@ mod tests {
         let params = default_hair();
         let theta_o = 20.0_f64.to_radians();
         let samples = sample_distributions(&params, theta_o, halton(2000));
-        vec![normalised_bells(), unit_bells(), samples, polar(&params, theta_o)]
+        vec![normalised_bells(), unit_bells(), samples, polar(&params, theta_o, &[("Cauchy", Cauchy::PAPER)])]
     }
 
     #[test]

@@ -14,6 +14,7 @@ mod grid;
 mod heat;
 mod line;
 mod palette;
+mod png;
 mod polar;
 mod scatter;
 
@@ -23,6 +24,7 @@ pub use grid::{Grid, Projection};
 pub use heat::HeatMap;
 pub use line::{LineChart, Point, Reference, Series};
 pub use palette::Dash;
+pub use png::png;
 pub use polar::{PolarChart, PolarPanel, PolarSeries};
 pub use scatter::{Panel, ScatterMap};
 

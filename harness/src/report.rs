@@ -1,7 +1,14 @@
 //! The report: one HTML page that needs nothing else, not even a script.
 
+use crate::error::Error;
+use crate::files::whole;
 use crate::markup::escape;
+use crate::plot::png;
 use crate::table::Table;
+use rayon::prelude::*;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
 
 const STYLE: &str = include_str!("report/style.css");
 
@@ -47,6 +54,8 @@ enum Block {
 /// A drawing with its caption and, folded away, its numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
+    /// Name of its files, without the end; empty for none.
+    pub name: String,
     /// A complete `<svg>` element, as those of [`crate::plot`]: it goes into the page as it is.
     pub svg: String,
     /// What it shows, as text.
@@ -59,7 +68,13 @@ impl Figure {
     /// A drawing with its caption.
     #[must_use]
     pub fn new(svg: impl Into<String>, caption: impl Into<String>) -> Self {
-        Self { svg: svg.into(), caption: caption.into(), data: None }
+        Self { name: String::new(), svg: svg.into(), caption: caption.into(), data: None }
+    }
+
+    /// Names its files: letters, digits and hyphens.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..self }
     }
 
     /// Adds the numbers it was drawn from.
@@ -196,6 +211,32 @@ impl Report {
         page
     }
 
+    /// The figures, each with its number.
+    pub fn figures(&self) -> impl Iterator<Item = (usize, &Figure)> {
+        let blocks = self.sections.iter().flat_map(|section| &section.blocks);
+        let figures = blocks.filter_map(|block| if let Block::Figure(figure) = block { Some(figure) } else { None });
+        (1..).zip(figures)
+    }
+
+    /// Writes the page to `report.html` in `dir`, and every figure to `figures/NAME-NUMBER-....svg` and `.png`, each as a
+    /// whole or not at all.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Output`] for one that cannot be written.
+    pub fn write(&self, dir: &Path, name: &str) -> Result<(), Error> {
+        whole(&dir.join("report.html"), |out| out.write_all(self.html().as_bytes()))?;
+        let folder = dir.join("figures");
+        fs::create_dir_all(&folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
+        let figures: Vec<(usize, &Figure)> = self.figures().collect();
+        figures.par_iter().try_for_each(|(number, figure)| {
+            let hyphen = if figure.name.is_empty() { "" } else { "-" };
+            let stem = format!("{name}-{number:02}{hyphen}{}", figure.name);
+            whole(&folder.join(format!("{stem}.svg")), |out| out.write_all(figure.svg.as_bytes()))?;
+            whole(&folder.join(format!("{stem}.png")), |out| out.write_all(&png(&figure.svg)?))
+        })
+    }
+
     fn has_method(&self) -> bool {
         !(self.method.is_empty() && self.facts.is_empty())
     }
@@ -306,6 +347,22 @@ mod tests {
         assert_eq!(ids.len(), all, "an id stands twice");
         let anchors = html.split("href=\"#").skip(1).filter_map(|t| t.split('"').next());
         assert!(anchors.clone().count() == 2 && anchors.into_iter().all(|a| ids.contains(&a)), "links have ends");
+    }
+
+    #[test]
+    fn figures_are_written_by_number_and_name() {
+        let dir = tempfile::TempDir::new().expect("a folder");
+        let mut report = full("text");
+        let chart = LineChart::new("t", Axis::linear("x"), Axis::linear("y"));
+        report = report.section(Section::new("s").figure(Figure::new(chart.svg(), "c").named("last")));
+        report.write(dir.path(), "example").expect("written");
+        let read = |name: &str| fs::read(dir.path().join(name)).expect("there");
+        assert_eq!(read("report.html"), report.html().as_bytes());
+        assert_eq!(read("figures/example-03-last.svg"), chart.svg().as_bytes());
+        for name in ["example-01.png", "example-02.png", "example-03-last.png"] {
+            assert!(read(&format!("figures/{name}")).starts_with(b"\x89PNG"), "{name}");
+        }
+        assert_eq!(fs::read_dir(dir.path().join("figures")).expect("a folder").count(), 6);
     }
 
     #[test]

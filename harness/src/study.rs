@@ -28,6 +28,7 @@ pub mod columns;
 pub mod grid;
 pub mod output;
 pub mod part;
+mod report;
 mod rows;
 mod sampler;
 pub mod shard;

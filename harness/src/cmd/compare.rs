@@ -1,4 +1,5 @@
-//! `hairis compare`: runs the comparison, prints its tables, and writes `compare.json` and `report.html`.
+//! `hairis compare`: runs the comparison, prints its tables, and writes `compare.json`, `report.html` and
+//! `figures/`.
 
 use crate::cmd::{environment, print_tables};
 use crate::compare::{self, CompareConfig, Comparison, Depth, Part};
@@ -32,7 +33,7 @@ pub fn run(config: &Compare) -> Result<(), Error> {
     bar.finish();
 
     write(&json_path, &json(&comparison)?)?;
-    write(&page_path, &compare::report(&comparison).html())?;
+    compare::report(&comparison).write(&config.out, "compare")?;
     print(&comparison).map_err(Error::Write)?;
     let failures = comparison.failures();
     let mut said = format!("wrote {} and {}\n", page_path.display(), json_path.display());

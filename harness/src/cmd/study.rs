@@ -2,6 +2,7 @@
 
 use crate::cmd::{environment, print_tables, say};
 use crate::config::Study as Config;
+use crate::difference::Difference;
 use crate::error::Error;
 use crate::study::output::{Study, Times};
 use crate::study::part::{Part, read};
@@ -50,17 +51,25 @@ pub fn run(config: &Config) -> Result<(), Error> {
     }
 }
 
-/// Measures times, writes the tables and prints the summary.
+/// Measures times, computes how different the models look, writes the tables and prints the summary.
 pub(super) fn finish(study: &Study, out: &Path) -> Result<(), Error> {
     let (seed, quick) = study.settings();
     let times = Times::measure(seed, quick);
-    study.write(out, &times)?;
-    print_tables(study.summary(&times).iter()).map_err(Error::Write)?;
-    let [rows, efficiency] = ["study", "efficiency"].map(|name| out.join(name).display().to_string());
-    say(&format!("wrote {rows}.csv, .parquet and .json, and {efficiency}.csv and .parquet"));
+    let difference = Difference::over(study.grid())?;
+    study.write(out, &times, &difference)?;
+    study.report(&times, &difference, claims(out).as_ref()).write(out, "study")?;
+    print_tables(study.summary(&times).iter().chain(&difference.tables())).map_err(Error::Write)?;
+    let [rows, others @ ..] = ["study", "efficiency", "difference"].map(|name| out.join(name).display().to_string());
+    say(&format!("wrote {rows}.csv, .parquet and .json, and {} as .csv and .parquet", others.join(" and ")));
+    say(&format!("wrote {} and figures/", out.join("report.html").display()));
     let failures = study.failures();
     failures.iter().for_each(|failure| say(&format!("failed: {failure}")));
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
+}
+
+/// What `hairis claims` left in `out`, if anything.
+fn claims(out: &Path) -> Option<serde_json::Value> {
+    serde_json::from_slice(&fs::read(out.join("claims.json")).ok()?).ok()
 }
 
 /// A bar over the cells that are left, on standard error; nothing where that is no terminal.

@@ -8,6 +8,7 @@ use crate::report::Figure;
 use crate::sequence::{SequenceKind, XiSource};
 use crate::speed::Op;
 use hairis::HairParams;
+use hairis_variants::Cauchy;
 
 /// Points of each panel of the sample distributions.
 const POINTS: usize = 2000;
@@ -15,7 +16,11 @@ const POINTS: usize = 2000;
 /// The Gaussian and the Cauchy bells, and the models made of them.
 pub(super) fn models() -> Vec<Figure> {
     let params = HairParams::default();
-    vec![figures::normalised_bells(), figures::unit_bells(), figures::polar(&params, 20_f64.to_radians())]
+    vec![
+        figures::normalised_bells(),
+        figures::unit_bells(),
+        figures::polar(&params, 20_f64.to_radians(), &[("Cauchy (same widths)", Cauchy::PAPER)]),
+    ]
 }
 
 /// Where samples go: the paper's figure 5.
@@ -52,6 +57,7 @@ pub(super) fn speed(of: &Comparison) -> Figure {
         "How many times as fast as the paper's formulas in scalar f32, by operation; bars are medians, whiskers half \
          the distance between the quartiles.",
     )
+    .named("speed")
 }
 
 /// V against the width of the primary highlight.
@@ -87,6 +93,7 @@ pub(super) fn widths(of: &Comparison) -> Vec<Figure> {
                  β_TRT = 2 β_R; error bars are one standard error."
                 ),
             )
+            .named(format!("variance-by-width-{theta_o}"))
         })
         .collect()
 }
@@ -125,16 +132,24 @@ pub(super) fn convergence(of: &Comparison) -> Vec<Figure> {
             if let Some(through) = first {
                 chart = chart.reference(Reference::Power { label: "slope −1/2".to_owned(), slope: -0.5, through });
             }
-            figures.push(Figure::new(
-                chart.svg(),
-                format!(
-                    "Error of the mean of N samples, {} model, light: {light}, θₒ = {}°, over independent \
+            figures.push(
+                Figure::new(
+                    chart.svg(),
+                    format!(
+                        "Error of the mean of N samples, {} model, light: {light}, θₒ = {}°, over independent \
                      randomisations; error bars are one standard error.",
-                    model.name(),
-                    of.efficiency.settings.convergence_theta_o_deg
-                ),
-            ));
+                        model.name(),
+                        of.efficiency.settings.convergence_theta_o_deg
+                    ),
+                )
+                .named(format!("convergence-{}-{}", model.name(), slug(light))),
+            );
         }
     }
     figures
+}
+
+/// Words as part of a file's name.
+fn slug(words: &str) -> String {
+    words.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-")
 }

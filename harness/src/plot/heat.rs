@@ -4,9 +4,10 @@ use super::axis::Axis;
 use super::canvas::sheet;
 use super::frame;
 use super::grid::{Grid, Map, color_bar};
-use super::palette::scale_color;
+use super::palette::{scale_color, signed_color};
 
-/// A map of the sphere coloured by a scalar, in viridis, with a bar of its colours.
+/// A map of the sphere coloured by a scalar, in viridis, with a bar of its colours; by a difference, in blue and
+/// vermilion either side of white.
 ///
 /// ```
 /// use hairis_harness::plot::{Axis, Grid, HeatMap, Projection};
@@ -20,13 +21,23 @@ pub struct HeatMap {
     description: String,
     value: Axis,
     grid: Grid,
+    signed: bool,
 }
 
 impl HeatMap {
     /// A map of `grid`; `value` says what its numbers are and how colours spread over them.
     #[must_use]
     pub fn new(title: impl Into<String>, value: Axis, grid: Grid) -> Self {
-        Self { title: title.into(), description: String::new(), value, grid }
+        Self { title: title.into(), description: String::new(), value, grid, signed: false }
+    }
+
+    /// Colours by sign: white is 0, and both ends are as far from it as the values go.
+    #[must_use]
+    pub fn signed(mut self) -> Self {
+        let most = self.grid.range().map_or(0.0, |(low, high)| high.max(-low));
+        self.value = self.value.or_range(-most, most);
+        self.signed = true;
+        self
     }
 
     /// What the map shows, for those who cannot see it; by default the range of its values.
@@ -59,10 +70,11 @@ impl HeatMap {
         };
         sheet((frame::WIDTH, high.1 + 48.0), &self.title, &description, |canvas| {
             frame::title(canvas, &self.title, frame::WIDTH);
+            let color = if self.signed { signed_color } else { scale_color };
             let share = |v: f64| (fitted.within(v) - fitted.start) / (fitted.end - fitted.start);
-            map.fill(canvas, &self.grid, 48, share, scale_color);
+            map.fill(canvas, &self.grid, 49, share, color);
             map.axes(canvas, frame::TICK, (Some("azimuth φ"), Some("inclination θ")));
-            color_bar(canvas, &self.value, &fitted, high.0 + 16.0, scale_color);
+            color_bar(canvas, &self.value, &fitted, high.0 + 16.0, color);
         })
     }
 }

@@ -35,6 +35,19 @@ pub(super) fn scale_color(t: f64) -> RGBColor {
     ViridisRGB.get_color(t)
 }
 
+/// Blue below 0.5, white there, vermilion above: both ends as dark, and apart for everyone.
+pub(super) fn signed_color(t: f64) -> RGBColor {
+    let t = if t.is_finite() { 2.0 * t.clamp(0.0, 1.0) - 1.0 } else { 0.0 };
+    let end = if t < 0.0 { SERIES[0] } else { SERIES[1] };
+    let mix = |full: u8| -> u8 {
+        let value = 255.0 + (f64::from(full) - 255.0) * t.abs();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
+        let byte = value as u8;
+        byte
+    };
+    RGBColor(mix(end.0), mix(end.1), mix(end.2))
+}
+
 /// A pale background that dark dots stand out from: white to a soft ochre.
 pub(super) fn soft_color(t: f64) -> RGBColor {
     let t = if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 };

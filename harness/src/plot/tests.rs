@@ -46,6 +46,7 @@ fn other_charts_take_any_data() {
     let grid = Grid::sample(Projection::EqualArea, (9, 13), |_, _| odd.next().unwrap_or(0.0));
     for value in [Axis::linear("v"), Axis::log("v")] {
         check(&HeatMap::new("t", value.clone(), grid.clone()).svg(), "an odd heat map");
+        check(&HeatMap::new("t", value.clone(), grid.clone()).signed().svg(), "an odd map of differences");
         let flat = Grid::sample(Projection::EqualAngle, (3, 5), |_, _| 0.0);
         check(&HeatMap::new("t", value.clone(), flat).svg(), "a flat heat map");
         let none = Grid::sample(Projection::EqualAngle, (0, 0), |_, _| 0.0);

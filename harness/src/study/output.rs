@@ -7,21 +7,22 @@ use super::part::{self, FORMAT, Finished, Header, Read};
 use super::rows::{self, Row, rows};
 use super::times::{self, PER_POINT, Time};
 use super::{Grid, Shard, check, grid_of, summary};
+use crate::difference::Difference;
 use crate::efficiency::ModelKind;
 use crate::error::Error;
+use crate::files::whole;
 use crate::machine::Machine;
 use crate::stats::Estimate;
 use crate::table::Table;
 use serde_json::json;
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Every cell of a study, in the order of the grid.
 #[derive(Clone, Debug)]
 pub struct Study {
-    header: Header,
-    cells: Vec<Vec<Measured>>,
+    pub(super) header: Header,
+    pub(super) cells: Vec<Vec<Measured>>,
 }
 
 /// Times of a sample, measured on this machine.
@@ -114,7 +115,9 @@ impl Study {
         rows(self.grid(), &self.cells, self.header.lights.len())
     }
 
-    const fn grid(&self) -> Grid {
+    /// The cells it is of.
+    #[must_use]
+    pub const fn grid(&self) -> Grid {
         grid_of(self.header.quick)
     }
 
@@ -183,13 +186,13 @@ impl Study {
         summary::tables(&self.cells, &self.header.lights, &times.0)
     }
 
-    /// Writes `study.csv` and `study.parquet` (the rows), `study.json` (the settings), `times.csv`, `efficiency.csv`
-    /// and `efficiency.parquet` into `dir`, each as a whole or not at all.
+    /// Writes `study.csv` and `study.parquet` (the rows), `study.json` (the settings), `times.csv`, and `efficiency` and
+    /// `difference` (how far apart the models are) as `.csv` and `.parquet` into `dir`, each as a whole or not at all.
     ///
     /// # Errors
     ///
     /// [`Error::Output`] for the first that cannot be written.
-    pub fn write(&self, dir: &Path, times: &Times) -> Result<(), Error> {
+    pub fn write(&self, dir: &Path, times: &Times, difference: &Difference) -> Result<(), Error> {
         let notes: Vec<(String, String)> = match serde_json::to_value(&self.header) {
             Ok(serde_json::Value::Object(fields)) => {
                 fields.into_iter().map(|(k, v)| (format!("hairis.{k}"), v.to_string())).collect()
@@ -198,12 +201,14 @@ impl Study {
         };
         let machine = json!({ "study": self.header, "times_measured_on": Machine::current() });
         let rows = self.columns();
-        let efficiencies = self.efficiencies(times);
+        let (efficiencies, differences) = (self.efficiencies(times), difference.columns());
         whole(&dir.join("study.csv"), |out| rows.write_csv(out))?;
         whole(&dir.join("study.parquet"), |out| rows.write_parquet(&notes, out))?;
         whole(&dir.join("times.csv"), |out| times::columns(&times.0).write_csv(out))?;
         whole(&dir.join("efficiency.csv"), |out| efficiencies.write_csv(out))?;
         whole(&dir.join("efficiency.parquet"), |out| efficiencies.write_parquet(&notes, out))?;
+        whole(&dir.join("difference.csv"), |out| differences.write_csv(out))?;
+        whole(&dir.join("difference.parquet"), |out| differences.write_parquet(&notes, out))?;
         whole(&dir.join("study.json"), |out| writeln!(out, "{machine:#}"))
     }
 }
@@ -229,18 +234,4 @@ fn missing(of: usize, shards: &[Shard], has: impl Fn(usize) -> bool, cells: usiz
         unfinished.insert(0, format!("shard{plural} {} missing", absent.join(", ")));
     }
     (!unfinished.is_empty()).then(|| unfinished.join("; "))
-}
-
-/// Writes a file under another name and renames it once it is whole.
-fn whole(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<(), Error> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".new");
-    let unfinished = path.with_file_name(name);
-    let attempt = || {
-        let mut out = BufWriter::new(File::create(&unfinished)?);
-        write(&mut out)?;
-        out.flush()?;
-        fs::rename(&unfinished, path)
-    };
-    attempt().map_err(|source| Error::Output { path: path.to_owned(), source })
 }

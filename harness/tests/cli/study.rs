@@ -51,7 +51,7 @@ fn reference() -> &'static Path {
 
 /// That `dir` holds the rows of the reference, byte by byte.
 fn assert_same_rows(dir: &Path, what: &str) {
-    for name in ["study.csv", "study.parquet"] {
+    for name in ["study.csv", "study.parquet", "difference.csv"] {
         let (got, want) = (fs::read(dir.join(name)).unwrap(), fs::read(reference().join(name)).unwrap());
         assert!(!want.is_empty() && got == want, "{what}: {name} differs");
     }

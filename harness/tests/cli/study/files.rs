@@ -39,7 +39,7 @@ fn the_rows_are_all_there() {
 
 #[test]
 fn csv_and_parquet_have_the_same_content() {
-    for name in ["study", "efficiency"] {
+    for name in ["study", "efficiency", "difference"] {
         let rows = csv(&format!("{name}.csv"));
         let file = File::open(reference().join(format!("{name}.parquet"))).unwrap();
         let reader = SerializedFileReader::new(file).unwrap();
@@ -79,4 +79,48 @@ fn settings_and_times_are_complete() {
     assert!(times[1..].iter().all(|row| row[3].parse::<f64>().unwrap() > 0.0), "{times:?}");
     let left: Vec<_> = fs::read_dir(reference()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert!(left.iter().all(|name| !name.to_string_lossy().ends_with(".new")), "{left:?}");
+}
+
+#[test]
+fn the_report_stands_alone_and_has_every_part() {
+    let page = fs::read_to_string(reference().join("report.html")).unwrap();
+    let answers = ["Is the Cauchy model worth it?", "Which sampler?", "change in looks?", "cost?", "Where not?"];
+    for words in answers {
+        assert_eq!(page.matches(words).count(), 1, "{words}");
+    }
+    for words in ["How different the models look", "Method and machine", "standard error", "hairis claims"] {
+        assert!(page.contains(words), "{words}");
+    }
+    for outside in ["<script", "<link", " src=", "url(", "@import", "NaN"] {
+        assert!(!page.contains(outside), "{outside} in the page");
+    }
+    // Every figure is a file of either kind, and there are no others.
+    let figures = page.matches("<figure ").count();
+    let mut ends: Vec<String> = Vec::new();
+    for entry in fs::read_dir(reference().join("figures")).unwrap() {
+        let path = entry.unwrap().path();
+        let bytes = fs::read(&path).unwrap();
+        let end = path.extension().unwrap().to_str().unwrap().to_owned();
+        assert!(bytes.starts_with(if end == "png" { b"\x89PNG" } else { b"<svg" }), "{}", path.display());
+        ends.push(end);
+    }
+    for kind in ["svg", "png"] {
+        assert_eq!(ends.iter().filter(|end| *end == kind).count(), figures, "{kind}");
+    }
+}
+
+#[test]
+fn differences_have_a_row_for_each_cell_and_width() {
+    let rows = csv("difference.csv");
+    assert_eq!(rows.len() - 1, 5 * CELLS);
+    let column = |name: &str| rows[0].iter().position(|of| of == name).unwrap();
+    for row in &rows[1..] {
+        let number = |name: &str| row[column(name)].parse::<f64>().unwrap();
+        for name in ["l1", "l2", "shape_l1", "blurred_l1", "blurred_shape_l2"] {
+            assert!(number(name) > 0.0 && number(name) < 2.0, "{name} of {row:?}");
+        }
+        // A blur cannot add to L1, and L1 is at least the change of the albedo.
+        assert!(number("blurred_l1") <= number("l1") * 1.001, "{row:?}");
+        assert!(number("blurred_l1") >= (number("albedo_ratio") - 1.0).abs() * 0.999, "{row:?}");
+    }
 }

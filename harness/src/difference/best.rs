@@ -1,0 +1,56 @@
+//! The width factor that fits best.
+
+use core::f64::consts::E;
+
+/// The factors that are tried, the range that the kernels accept.
+pub(super) const RANGE: [f64; 2] = [0.5, 4.0];
+
+/// Widths to which the least is known, relative.
+const PRECISION: f64 = 1e-6;
+
+/// Where `f` is least in [`RANGE`]: the best of a scan, then golden sections on either side of it.
+pub(super) fn least(mut f: impl FnMut(f64) -> f64) -> f64 {
+    const STEPS: i32 = 16;
+    let [low, high] = RANGE.map(f64::ln);
+    let at = |step: i32| low + (high - low) * f64::from(step) / f64::from(STEPS);
+    let mut best = (0, f64::INFINITY);
+    for step in 0..=STEPS {
+        let value = f(at(step).exp());
+        if value < best.1 {
+            best = (step, value);
+        }
+    }
+    let (mut low, mut high) = (at((best.0 - 1).max(0)), at((best.0 + 1).min(STEPS)));
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut a, mut b) = (high - golden * (high - low), low + golden * (high - low));
+    let (mut f_a, mut f_b) = (f(a.exp()), f(b.exp()));
+    while high - low > PRECISION {
+        if f_a < f_b {
+            (high, b, f_b) = (b, a, f_a);
+            a = high - golden * (high - low);
+            f_a = f(a.exp());
+        } else {
+            (low, a, f_a) = (a, b, f_b);
+            b = low + golden * (high - low);
+            f_b = f(b.exp());
+        }
+    }
+    E.powf(0.5 * (low + high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_is_found_wherever_it_is() {
+        for want in [0.6, 1.0, 1.177, 3.7] {
+            let found = least(|k| (k / want).ln().powi(2) + 1.0);
+            assert!((found / want - 1.0).abs() < 1e-5, "{found} for {want}");
+        }
+        // Of two hollows the deeper one.
+        let found = least(|k| (k - 1.0).powi(2).min((k - 3.0).powi(2) - 0.1));
+        assert!((found - 3.0).abs() < 1e-4, "{found}");
+        assert!((least(|k| k) / RANGE[0] - 1.0).abs() < 1e-5 && (least(|k| -k) / RANGE[1] - 1.0).abs() < 1e-5, "ends");
+    }
+}

@@ -1,0 +1,214 @@
+//! `S cos theta_i` of one hair as a sum of three products, each of a function of `theta_i` and one of `phi`.
+//!
+//! `S cos theta_i = sum_j along_j(theta_i) around_j(phi)`, the mean of RGB, with
+//! - `cos(phi / 2)` around for R and TRT-g together,
+//! - the bell of TT,
+//! - the bell of the glints,
+//!
+//! so that integrals of S, and of products of two S, are sums of products of integrals on a line.
+
+use crate::quadrature::GaussLegendre;
+use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::HairParams;
+use hairis::textbook::{Parameters, Shape};
+
+/// The products of `S cos theta_i`.
+pub(super) const TERMS: usize = 3;
+
+/// A bell, and the factor on its widths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Kind {
+    pub(super) shape: Shape,
+    pub(super) factor: f64,
+}
+
+impl Kind {
+    /// The published model.
+    pub(super) const GAUSSIAN: Self = Self { shape: Shape::Gaussian, factor: 1.0 };
+
+    /// The Cauchy model with its widths times `factor`.
+    pub(super) const fn cauchy(factor: f64) -> Self {
+        Self { shape: Shape::Cauchy, factor }
+    }
+}
+
+/// Hair seen from an inclination.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    parameters: Parameters<f64>,
+    theta_o: f64,
+}
+
+/// Points of a quadrature rule and their weights.
+#[derive(Clone, Debug)]
+pub(super) struct Nodes(pub(super) Vec<[f64; 2]>);
+
+/// The points at which a hair is integrated. They serve every [`Kind`] whose factor is near 1.
+#[derive(Clone, Debug)]
+pub(super) struct Rule {
+    /// `theta_i` in rad; weights include the `cos theta_i` of the solid angle.
+    pub(super) along: Nodes,
+    /// `|phi|` in rad; weights count both signs.
+    pub(super) around: Nodes,
+}
+
+/// The values of the three products of a [`Kind`] at the points of a [`Rule`].
+#[derive(Clone, Debug)]
+pub(super) struct Values {
+    pub(super) along: Vec<[f64; TERMS]>,
+    pub(super) around: Vec<[f64; TERMS]>,
+}
+
+/// The 3 by 3 integrals of the products of two models' terms.
+type Gram = [[f64; TERMS]; TERMS];
+
+impl View {
+    /// The hair seen from `theta_o`, in rad, within (-pi/2, pi/2).
+    pub(super) fn new(params: &HairParams, theta_o: f64) -> Self {
+        Self { parameters: Parameters::from(params), theta_o }
+    }
+
+    /// The factors that depend on `theta_i`.
+    pub(super) fn along(&self, kind: Kind, theta_i: f64) -> [f64; TERMS] {
+        let p = self.parameters.with_width_factor(kind.factor);
+        let (theta_h, theta_d) = (0.5 * (theta_i + self.theta_o), 0.5 * (self.theta_o - theta_i));
+        let cos_theta_d = theta_d.cos();
+        let common = theta_i.cos() / (cos_theta_d * cos_theta_d);
+        let [m_r, m_tt, m_trt] = [0, 1, 2].map(|l| common * kind.shape.bell(p.beta[l], theta_h - p.alpha[l]));
+        let [r, tt, trt] = [p.intensity_r, p.intensity_tt, p.intensity_trt].map(|rgb| rgb.iter().sum::<f64>() / 3.0);
+        [r * m_r + trt * m_trt, tt * m_tt, trt * p.intensity_g * m_trt]
+    }
+
+    /// The factors that depend on `phi`, which is in [-pi, pi].
+    pub(super) fn around(&self, kind: Kind, phi: f64) -> [f64; TERMS] {
+        let p = self.parameters.with_width_factor(kind.factor);
+        let bell = |width, x| kind.shape.bell(width, x);
+        [(0.5 * phi).cos().max(0.0), bell(p.gamma_tt, PI - phi.abs()), bell(p.gamma_g, phi.abs() - p.phi_g)]
+    }
+
+    /// Gauss-Legendre rules of `order` points on panels that follow the lobes.
+    pub(super) fn rule(&self, order: usize) -> Rule {
+        const DISTANCES: [f64; 9] = [-12.0, -5.0, -2.5, -1.0, 0.0, 1.0, 2.5, 5.0, 12.0];
+        let p = &self.parameters;
+        let rule = GaussLegendre::new(order);
+        let mut along = vec![-FRAC_PI_2, FRAC_PI_2];
+        for l in 0..3 {
+            // A bell of width beta in theta_h has twice the width in theta_i.
+            let centre = 2.0 * p.alpha[l] - self.theta_o;
+            along.extend(DISTANCES.map(|d| centre + 2.0 * d * p.beta[l]));
+        }
+        // cos^2 theta_i / cos^2 theta_d turns at theta_i = -theta_o within the distance of the pole.
+        let pole = FRAC_PI_2 - self.theta_o.abs();
+        along.extend(
+            [-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 5.0].map(|d| -self.theta_o + self.theta_o.signum() * d * pole),
+        );
+        let mut around = vec![0.0, FRAC_PI_2, PI];
+        around.extend(DISTANCES.map(|d| p.phi_g + d * p.gamma_g));
+        around.extend(DISTANCES.map(|d| PI - d.abs() * p.gamma_tt));
+        let along = panels(&rule, along, [-FRAC_PI_2, FRAC_PI_2]).map(|[x, w]| [x, w * x.cos()]).collect();
+        let around = panels(&rule, around, [0.0, PI]).map(|[x, w]| [x, 2.0 * w]).collect();
+        Rule { along: Nodes(along), around: Nodes(around) }
+    }
+}
+
+/// A rule on each panel between the breakpoints within the interval.
+fn panels(rule: &GaussLegendre, mut breaks: Vec<f64>, [lo, hi]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+    breaks.retain(|x| (lo..=hi).contains(x));
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    breaks.windows(2).flat_map(|ends| rule.on(ends[0], ends[1]).collect::<Vec<_>>()).collect::<Vec<_>>().into_iter()
+}
+
+impl Rule {
+    /// The values of a model at its points.
+    pub(super) fn values(&self, view: &View, kind: Kind) -> Values {
+        Values {
+            along: self.along.0.iter().map(|[theta, _]| view.along(kind, *theta)).collect(),
+            around: self.around.0.iter().map(|[phi, _]| view.around(kind, *phi)).collect(),
+        }
+    }
+
+    /// The integral of `S cos theta_i` over the sphere: the directional albedo, the mean of RGB.
+    pub(super) fn albedo(&self, of: &Values) -> f64 {
+        let (along, around) = (self.along.integral(&of.along), self.around.integral(&of.around));
+        along.iter().zip(around).map(|(a, b)| a * b).sum()
+    }
+
+    /// The integral of the product of two models' `S cos theta_i` over the sphere.
+    pub(super) fn product(&self, a: &Values, b: &Values) -> f64 {
+        let (along, around) = (self.along.gram(&a.along, &b.along), self.around.gram(&a.around, &b.around));
+        along.as_flattened().iter().zip(around.as_flattened()).map(|(x, y)| x * y).sum()
+    }
+}
+
+impl Nodes {
+    fn integral(&self, values: &[[f64; TERMS]]) -> [f64; TERMS] {
+        let mut sum = [0.0; TERMS];
+        for ([_, weight], value) in self.0.iter().zip(values) {
+            sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += weight * value);
+        }
+        sum
+    }
+
+    fn gram(&self, a: &[[f64; TERMS]], b: &[[f64; TERMS]]) -> Gram {
+        let mut sum = Gram::default();
+        for (([_, weight], a), b) in self.0.iter().zip(a).zip(b) {
+            for (row, a) in sum.iter_mut().zip(a) {
+                row.iter_mut().zip(b).for_each(|(sum, b)| *sum += weight * a * b);
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quadrature::fibre_direction;
+    use crate::sequence::Independent;
+    use crate::study::Grid;
+    use crate::subject::random_hair;
+    use hairis::textbook::Textbook;
+    use hairis::{Bsdf, Gaussian, Hair};
+    use hairis_variants::Cauchy;
+
+    #[test]
+    fn the_products_are_the_textbook() {
+        let mut xi = Independent::new(11, 0);
+        for _ in 0..200 {
+            let hair = random_hair(&mut xi).expect("within range");
+            let theta_o = 1.5 * (2.0 * xi.next_f64() - 1.0);
+            let view = View::new(&hair, theta_o);
+            for kind in [Kind::GAUSSIAN, Kind::cauchy(1.0), Kind::cauchy(0.8)] {
+                let parameters = Parameters::from(&hair).with_width_factor(kind.factor);
+                let oracle = Textbook::prepare(&parameters, kind.shape, fibre_direction(theta_o, 0.3).to_array());
+                let (theta_i, phi) = (1.55 * (2.0 * xi.next_f64() - 1.0), PI * (2.0 * xi.next_f64() - 1.0));
+                let (along, around) = (view.along(kind, theta_i), view.around(kind, phi));
+                let got: f64 = along.iter().zip(around).map(|(a, b)| a * b).sum();
+                let s = oracle.eval(fibre_direction(theta_i, 0.3 - phi).to_array());
+                let want = theta_i.cos() * s.iter().sum::<f64>() / 3.0;
+                assert!((got - want).abs() <= 1e-11 * want + 1e-13, "{kind:?} at {theta_i} {phi}: {got} {want}");
+            }
+        }
+    }
+
+    #[test]
+    fn albedos_are_those_of_the_kernels() {
+        for index in (0..Grid::QUICK.len()).step_by(5) {
+            let cell = Grid::QUICK.cell(index);
+            let (params, theta_o) = (cell.params().expect("accepted"), f64::from(cell.theta_o_deg).to_radians());
+            let wo = fibre_direction(theta_o, 0.0);
+            let view = View::new(&params, theta_o);
+            let rule = view.rule(8);
+            let kernels = [
+                (Kind::GAUSSIAN, Bsdf::new(&Hair(Gaussian), &params).prepare(wo.as_vec3()).albedo()),
+                (Kind::cauchy(1.0), Bsdf::new(&Cauchy::PAPER.model(), &params).prepare(wo.as_vec3()).albedo()),
+            ];
+            for (kind, lobes) in kernels {
+                let want = lobes.0.as_flattened().iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
+                let got = rule.albedo(&rule.values(&view, kind));
+                assert!((got / want - 1.0).abs() < 1e-4, "cell {index} {kind:?}: {got} {want}");
+            }
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! One cell: how far a Cauchy model is from the Gaussian one.
+
+use super::blur::Blur;
+use super::lobes::{Kind, Rule, TERMS, Values, View};
+
+/// What is found of a Cauchy model beside the Gaussian one of the same hair. Differences are of `S cos theta_i`, the mean
+/// of RGB, over the sphere, relative to the same norm of the Gaussian model alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// Factor on the widths.
+    pub k: f64,
+    /// Albedo of the Gaussian model: the integral of `S cos theta_i`.
+    pub albedo_gaussian: f64,
+    /// Albedo of the Cauchy model.
+    pub albedo_cauchy: f64,
+    /// As they are.
+    pub plain: Norms,
+    /// With the Cauchy model scaled to the albedo of the Gaussian one: the shape alone.
+    pub shape: Norms,
+    /// As they are, after a blur of [`SIGMA_DEG`](super::SIGMA_DEG).
+    pub blurred: Norms,
+    /// The shape alone, after the blur.
+    pub blurred_shape: Norms,
+}
+
+/// Two norms of a difference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Norms {
+    /// The integral of the magnitude.
+    pub l1: f64,
+    /// The root of the integral of the square.
+    pub l2: f64,
+}
+
+/// A hair with the values of its Gaussian model at the points of its rule.
+#[derive(Debug)]
+pub(super) struct Hair {
+    view: View,
+    rule: Rule,
+    /// As fine again: the magnitude of a difference has kinks wherever the models cross.
+    fine: Rule,
+    gaussian: Values,
+    /// Integral of its square.
+    square: f64,
+}
+
+impl Hair {
+    /// Prepares a hair; `order` is that of the rules on each panel.
+    pub(super) fn new(view: View, order: usize) -> Self {
+        let rule = view.rule(order);
+        let gaussian = rule.values(&view, Kind::GAUSSIAN);
+        let square = rule.product(&gaussian, &gaussian);
+        Self { view, rule, fine: view.rule(2 * order), gaussian, square }
+    }
+
+    /// The square of the relative L2 difference of `kind`.
+    pub(super) fn square_error(&self, kind: Kind) -> f64 {
+        let other = self.rule.values(&self.view, kind);
+        self.square_of(&other, 1.0)
+    }
+
+    fn square_of(&self, other: &Values, scale: f64) -> f64 {
+        let (cross, square) = (self.rule.product(&self.gaussian, other), self.rule.product(other, other));
+        // Rounding may leave less than nothing of models that are the same.
+        ((self.square - 2.0 * scale * cross + scale * scale * square) / self.square).max(0.0)
+    }
+
+    /// The figures of several models.
+    pub(super) fn figures(&self, kinds: &[Kind], blur: &Blur) -> Vec<Figures> {
+        let mut models = vec![self.gaussian.clone()];
+        models.extend(kinds.iter().map(|kind| self.rule.values(&self.view, *kind)));
+        let albedos: Vec<f64> = models.iter().map(|model| self.rule.albedo(model)).collect();
+        let sums = self.magnitudes(kinds, &albedos);
+        let harmonics = blur.harmonics(&self.rule, &models);
+        let blurred: Vec<Vec<f64>> = harmonics.iter().map(|of| blur.values(of)).collect();
+        let norm = harmonics[0].norm();
+        let albedo = albedos[0];
+        (1..models.len())
+            .map(|n| {
+                let scale = albedo / albedos[n];
+                let plain = |scale, l1: f64| Norms { l1: l1 / albedo, l2: self.square_of(&models[n], scale).sqrt() };
+                let soft = |scale| Norms {
+                    l1: blur.l1(&blurred[0], &blurred[n], scale) / albedo,
+                    l2: harmonics[0].l2(&harmonics[n], scale) / norm,
+                };
+                Figures {
+                    k: kinds[n - 1].factor,
+                    albedo_gaussian: albedo,
+                    albedo_cauchy: albedos[n],
+                    plain: plain(1.0, sums[n - 1][0]),
+                    shape: plain(scale, sums[n - 1][1]),
+                    blurred: soft(1.0),
+                    blurred_shape: soft(scale),
+                }
+            })
+            .collect()
+    }
+
+    /// The integrals of the magnitude of the Gaussian model less each of the others: as it is, and scaled to its albedo.
+    fn magnitudes(&self, kinds: &[Kind], albedos: &[f64]) -> Vec<[f64; 2]> {
+        let kinds = [Kind::GAUSSIAN].iter().chain(kinds);
+        let models: Vec<Values> = kinds.map(|kind| self.fine.values(&self.view, *kind)).collect();
+        let mut sums = vec![[0.0; 2]; models.len() - 1];
+        let columns = self.fine.around.0.len();
+        // A row of the map a model.
+        let mut rows = vec![vec![0.0; columns]; models.len()];
+        for (place, [_, weight]) in self.fine.along.0.iter().enumerate() {
+            for (row, model) in rows.iter_mut().zip(&models) {
+                let along: [f64; TERMS] = model.along[place];
+                for (value, around) in row.iter_mut().zip(&model.around) {
+                    *value = along[0] * around[0] + along[1] * around[1] + along[2] * around[2];
+                }
+            }
+            for (n, sums) in sums.iter_mut().enumerate() {
+                let scale = albedos[0] / albedos[n + 1];
+                let mut row = [0.0; 2];
+                for (([_, w], a), b) in self.fine.around.0.iter().zip(&rows[0]).zip(&rows[n + 1]) {
+                    row[0] += w * (a - b).abs();
+                    row[1] += w * (a - scale * b).abs();
+                }
+                sums.iter_mut().zip(row).for_each(|(sum, row)| *sum += weight * row);
+            }
+        }
+        sums
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::blur::SIGMA_DEG;
+    use super::super::{LATITUDES, ORDER};
+    use super::*;
+    use crate::study::Grid;
+    use core::f64::consts::PI;
+    use hairis::textbook::Real;
+    use hairis::{HairDesc, HairParams};
+
+    fn blur(size: usize) -> Blur {
+        Blur::new(SIGMA_DEG.to_radians(), size, size)
+    }
+
+    fn hair(index: usize, order: usize) -> Hair {
+        let cell = Grid::FULL.cell(index);
+        let params = cell.params().expect("accepted");
+        Hair::new(View::new(&params, f64::from(cell.theta_o_deg).to_radians()), order)
+    }
+
+    fn numbers(of: &Figures) -> [f64; 10] {
+        let Figures { albedo_gaussian, albedo_cauchy, plain, shape, blurred, blurred_shape, .. } = *of;
+        let [a, b, c, d] = [plain, shape, blurred, blurred_shape].map(|norms| [norms.l1, norms.l2]);
+        [albedo_gaussian, albedo_cauchy, a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1]]
+    }
+
+    #[test]
+    fn a_model_does_not_differ_from_itself() {
+        let found = hair(1700, ORDER).figures(&[Kind::GAUSSIAN], &blur(LATITUDES))[0];
+        for (place, value) in numbers(&found)[2..].iter().enumerate() {
+            // The squares of L2 cancel to some 1e-16, their roots to 1e-8.
+            assert!(*value < 1e-7, "{place}: {value}");
+        }
+    }
+
+    #[test]
+    fn narrow_highlights_differ_as_their_bells_do() {
+        // R alone, so narrow that nothing else changes across it: the norms are those of two bells on a line.
+        let black = [0.0; 3];
+        let desc = HairDesc { beta_r: 0.002, intensity_tt: black, intensity_trt: black, ..HairDesc::default() };
+        let hair = Hair::new(View::new(&HairParams::new(&desc).expect("accepted"), 0.3), ORDER);
+        for k in [1.0, 0.797_884_6, 1.177_41] {
+            let got = hair.square_error(Kind::cauchy(k)).sqrt();
+            // Integrals over the line, in widths: of g^2, of c^2 and of g c.
+            let squares = [PI.sqrt(), 0.5 * PI * k];
+            let cross = k * PI * (0.5 * k * k).exp() * Real::erfc(k / 2.0_f64.sqrt());
+            let want = ((squares[0] + squares[1] - 2.0 * cross) / squares[0]).sqrt();
+            assert!((got - want).abs() < 2e-4, "{k}: {got} {want}");
+        }
+    }
+
+    #[test]
+    fn figures_do_not_depend_on_the_resolution() {
+        let mut worst = [0.0_f64; 10];
+        // Narrow and wide hair, glints and none, from the side and along the fibre.
+        for index in (0..Grid::FULL.len()).step_by(89) {
+            let kinds = [Kind::cauchy(1.0), Kind::cauchy(0.797_884_6), Kind::cauchy(1.3)];
+            let coarse = hair(index, ORDER).figures(&kinds, &blur(LATITUDES));
+            let fine = hair(index, 2 * ORDER).figures(&kinds, &blur(2 * LATITUDES));
+            for (coarse, fine) in coarse.iter().zip(&fine) {
+                for (place, (a, b)) in numbers(coarse).into_iter().zip(numbers(fine)).enumerate() {
+                    worst[place] = worst[place].max((a / b - 1.0).abs());
+                }
+            }
+        }
+        println!("largest changes on doubling the resolution: {worst:?}");
+        assert!(worst.iter().all(|change| *change < 1e-3), "{worst:?}");
+    }
+}

@@ -1,0 +1,116 @@
+//! The report of a study: one page, the answer first.
+
+mod charts;
+mod findings;
+mod looks;
+mod tables;
+mod view;
+
+use super::output::{Study, Times};
+use crate::difference::{Difference, SIGMA_DEG};
+use crate::machine::Machine;
+use crate::report::{Figure, Report, Section};
+use serde_json::Value;
+use view::View;
+
+impl Study {
+    /// The page. `claims`, if given, is what `claims.json` holds: its verdicts are shown with the commit they are of.
+    #[must_use]
+    pub fn report(&self, times: &Times, difference: &Difference, claims: Option<&Value>) -> Report {
+        let header = &self.header;
+        let view = View { grid: self.grid(), cells: &self.cells, lights: &header.lights, times, difference };
+        let quick = if header.quick { " --quick" } else { "" };
+        let mut page = Report::new("Hair scattering: is the all-Cauchy model worth it?").subtitle(format!(
+            "hairis study{quick}, seed {}: {} cells of hair and viewing angle, {} samplers of two models, {} lights",
+            header.seed,
+            header.cells,
+            header.samplers.len(),
+            header.lights.len()
+        ));
+        for finding in findings::findings(&view) {
+            page = page.finding(finding);
+        }
+        page = self.sections(page, &view, times, difference);
+        if let Some(table) = claims.and_then(tables::claims) {
+            page = page.section(Section::new("The paper's claims").table(table));
+        }
+        self.method(page, claims.is_some())
+    }
+
+    fn sections(&self, page: Report, view: &View<'_>, times: &Times, difference: &Difference) -> Report {
+        let with = |section: Section, figures: Vec<Figure>| figures.into_iter().fold(section, Section::figure);
+        let variance = with(
+            Section::new("Variance").paragraph(
+                "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. `ou` is the \
+                 published sampler, `uniform` draws from the whole sphere, and the samplers named `matched` follow each \
+                 model's own bells. The Cauchy model has the Gaussian one's widths (k = 1).",
+            ),
+            charts::variances(view),
+        );
+        let time = with(
+            Section::new("Efficiency").paragraph(
+                "What counts is the variance that is left after a given time. A sampler prepares each gather point, then \
+                 draws from it; a path tracer draws once, direct lighting often.",
+            ),
+            [charts::efficiencies(view), charts::gains(view)].concat(),
+        );
+        let spread = with(Section::new("How the gains spread"), charts::distributions(view));
+        let weights = with(Section::new("Effective samples and largest weights"), charts::weights(view));
+        let looks = Section::new("How different the models look").paragraph(format!(
+            "Differences are of S cos θᵢ over the whole sphere, the mean of red, green and blue. L1 is the integral of the \
+             magnitude over the Gaussian model's albedo: 30% says that light worth 30% of what the Gaussian model \
+             reflects is reflected elsewhere, is missing, or is new. L2 is the root of the integral of the square, over \
+             that of the Gaussian model. k is the factor on the widths of the Cauchy model: 1 (paper), 1.177 (half-width), \
+             0.798 (area), the best for the grid and the best for each cell, both in L2. The blur is by a von \
+             Mises-Fisher density of {SIGMA_DEG}°: what is left of a difference in a light that wide."
+        ));
+        let looks = with(looks.heading("The default hair"), looks::pictures());
+        let looks = with(looks.heading("Over the grid"), looks::charts(view));
+        let looks = difference.tables().into_iter().fold(looks, Section::table);
+        let mut tables = self.summary(times).into_iter().fold(Section::new("Tables"), Section::table);
+        tables = tables.table(tables::quality(view)).table(tables::times(view));
+        [variance, time, spread, weights, looks, tables].into_iter().fold(page, Report::section)
+    }
+
+    fn method(&self, mut page: Report, has_claims: bool) -> Report {
+        let header = &self.header;
+        page = page
+            .method(format!(
+                "Each of the {} cells is a hair (the widths of R, of TT and of the glints, the glints' distance and \
+                 strength) seen from an inclination. In each, every sampler of either model draws {} directions with \
+                 random numbers of its own; under lights that are not seen from everywhere {} directions of the light join \
+                 them, so that no small light has to be hit by luck. Contributions are the mean of red, green and blue.",
+                header.cells, header.samples, header.light_samples
+            ))
+            .method(
+                "Means over the grid are geometric unless it says otherwise; their standard errors are those of the \
+                 sampling, the grid being what it is. Cells where a V is known to no better than 25% are left out of \
+                 gains. Words such as less and more are used beyond two standard errors.",
+            )
+            .method(
+                "Differences of looks are quadrature in double precision and have no statistical error; their own is \
+                 below 0.1% of each figure.",
+            )
+            .method(
+                "The rows are in study.csv, efficiency.csv and difference.csv (each also as .parquet), the figures in \
+                 figures/ as SVG and PNG.",
+            );
+        if !has_claims {
+            page = page.method(
+                "`hairis claims` holds each of the paper's claims against figures; run with the same --out before \
+                 `hairis merge` or `hairis study`, its verdicts are part of this page.",
+            );
+        }
+        let machine = Machine::current();
+        page.fact("command", format!("hairis study{}", if header.quick { " --quick" } else { "" }))
+            .fact("seed", header.seed.to_string())
+            .fact(
+                "samples",
+                format!("{} a sampler and cell, {} a light and cell", header.samples, header.light_samples),
+            )
+            .fact("cells computed by", format!("version {}, commit {}", header.version, header.commit))
+            .fact("cells computed on", header.level.clone())
+            .fact("environment", format!("digest {}", header.environment))
+            .fact("times measured on", machine.summary())
+    }
+}

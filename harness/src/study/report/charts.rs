@@ -1,0 +1,246 @@
+//! The plots of a study: variance, efficiency, gains and weights.
+
+use super::super::sampler::weight_bound;
+use super::super::times::PER_POINT;
+use super::super::{Cell, Sampler};
+use super::view::{Estimator, View, default_matched, ess};
+use crate::efficiency::ModelKind;
+use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
+use crate::report::Figure;
+use crate::stats::Estimate;
+
+/// Samples a gather point of the figures that show one number of them: direct lighting.
+pub(super) const MANY: usize = 16;
+
+/// The light that everything sees.
+const CONSTANT: usize = 0;
+
+/// An axis of the grid that variances are shown over.
+struct Over {
+    slug: &'static str,
+    label: &'static str,
+    values: &'static [f32],
+    of: fn(&Cell) -> f32,
+}
+
+/// V of every sampler over the width of R, and over the inclination.
+pub(super) fn variances(of: &View<'_>) -> Vec<Figure> {
+    let axes = [
+        Over { slug: "width", label: "width of R, β_R (°)", values: of.grid.beta_r_deg, of: |cell| cell.beta_r_deg },
+        Over {
+            slug: "inclination",
+            label: "inclination of the viewer, θₒ (°)",
+            values: of.grid.theta_o_deg,
+            of: |cell| cell.theta_o_deg,
+        },
+    ];
+    let mut figures = Vec::new();
+    for over in &axes {
+        for model in ModelKind::ALL {
+            let title = format!("Variance over the {}, {} model", over.slug, model.name());
+            let y = Axis::log("relative variance of a sample, V");
+            let mut chart = LineChart::new(title, Axis::linear(over.label).from_zero(), y);
+            for sampler in Sampler::ALL {
+                let point = |value: &f32| {
+                    let v = of.mean_v((model, sampler), CONSTANT, |cell| (over.of)(cell) == *value)?;
+                    Some(Point::new(f64::from(*value), v.value).with_error(v.standard_error))
+                };
+                chart = chart.series(Series::new(sampler.name(), over.values.iter().filter_map(point)));
+            }
+            let caption = format!(
+                "Relative variance of a sample under {} light by sampler: geometric means over the other axes of the \
+                 grid. Bars are one standard error, mostly smaller than the marks. An error of 1% takes 10⁴ V samples.",
+                of.lights[CONSTANT]
+            );
+            figures.push(Figure::new(chart.svg(), caption).named(format!("v-by-{}-{}", over.slug, model.name())));
+        }
+    }
+    figures
+}
+
+fn bar(of: Option<Estimate>) -> Bar {
+    of.map_or(Bar::new(f64::NAN), |of| Bar::new(of.value).with_error(of.standard_error))
+}
+
+/// Efficiency by samples a gather point.
+pub(super) fn efficiencies(of: &View<'_>) -> Vec<Figure> {
+    let figure = |model: ModelKind| {
+        let title = format!("Efficiency under {} light, {} model", of.lights[CONSTANT], model.name());
+        let groups = PER_POINT.map(|n| format!("{n} a gather point"));
+        let mut chart = BarChart::new(title, Axis::log("1 / (V · µs)"), groups);
+        for sampler in Sampler::ALL {
+            let bars = PER_POINT.map(|n| bar(of.efficiency((model, sampler), CONSTANT, n)));
+            chart = chart.series(sampler.name(), bars);
+        }
+        let caption = "Geometric mean over the grid of 1 / (V · time of a sample), the set-up of a gather point spread \
+                       over 1, 4 or 16 samples; eight lanes, one thread, this machine. Whiskers are one standard error, \
+                       that of the times included. Twice the efficiency is half the time to the same error squared.";
+        Figure::new(chart.svg(), caption).named(format!("efficiency-{}", model.name()))
+    };
+    ModelKind::ALL.map(figure).into()
+}
+
+/// Gains in equal time, by light: over `ou`, then of the Cauchy model.
+pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    let lights = || of.lights.iter().map(String::as_str);
+    let bars = |base: Estimator, other: Estimator| -> Vec<Bar> {
+        (0..of.lights.len()).map(|light| bar(of.equal_time(base, other, light, MANY))).collect()
+    };
+    for model in ModelKind::ALL {
+        let title = format!("Less variance than ou in equal time, {} model", model.name());
+        let mut chart = BarChart::new(title, Axis::log("gain over ou in equal time (×)"), lights());
+        for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
+            chart = chart.series(sampler.name(), bars((model, Sampler::Ou), (model, sampler)));
+        }
+        let caption = format!(
+            "By what factor less variance than the published sampler has in the same time, by light, at {MANY} samples a \
+             gather point: geometric means over the grid. Above the dashed line the sampler beats ou. Whiskers are one \
+             standard error, that of the times included."
+        );
+        figures.push(Figure::new(chart.level(1.0).svg(), caption).named(format!("gain-by-light-{}", model.name())));
+    }
+    let mut chart = BarChart::new(
+        "Less variance on the Cauchy model in equal time",
+        Axis::log("Gaussian / Cauchy in equal time (×)"),
+        lights(),
+    );
+    for sampler in Sampler::ALL {
+        let pair = ModelKind::ALL.map(|model| (model, sampler));
+        chart = chart.series(sampler.name(), bars(pair[0], pair[1]));
+    }
+    let caption = format!(
+        "Variance on the Gaussian model over that on the Cauchy model with the same sampler in the same time, by light, at \
+         {MANY} samples a gather point: geometric means over the grid. Above the dashed line the Cauchy model is \
+         sampled better. Whiskers are one standard error, that of the times included."
+    );
+    figures.push(Figure::new(chart.level(1.0).svg(), caption).named("cauchy-gain-by-light"));
+    figures
+}
+
+/// The share of cells whose gain is at most x.
+fn distribution(name: &str, mut gains: Vec<f64>) -> Series {
+    gains.retain(|gain| gain.is_finite() && *gain > 0.0);
+    gains.sort_by(f64::total_cmp);
+    let n = gains.len() as f64;
+    // A few hundred points say as much as thousands.
+    let every = gains.len().div_ceil(300).max(1);
+    let points = gains.iter().enumerate().filter(|(i, _)| i % every == 0 || i + 1 == gains.len());
+    let points: Vec<(f64, f64)> = points.map(|(i, gain)| (*gain, 100.0 * (i as f64 + 0.5) / n)).collect();
+    Series::curve(name, points)
+}
+
+/// How gains spread over the cells.
+pub(super) fn distributions(of: &View<'_>) -> Vec<Figure> {
+    let ratios = |base: Estimator, other: Estimator, light: usize| -> Vec<f64> {
+        let ratio = |cell: Cell| of.v(cell.index, base, light).value / of.v(cell.index, other, light).value;
+        of.each_cell().map(ratio).collect()
+    };
+    let share = || Axis::linear("cells with at most as much (%)").range(0.0, 100.0).step(20.0);
+    let even = || Series::curve("as good", [(1.0, 0.0), (1.0, 100.0)]).styled(5, Dash::Dotted);
+    let mut figures = Vec::new();
+    for sampler in [Some(Sampler::Ou), default_matched()].into_iter().flatten() {
+        let title = format!("Variance, Gaussian over Cauchy, with {}", sampler.name());
+        let mut chart = LineChart::new(title, Axis::log("V Gaussian / V Cauchy"), share());
+        let pair = ModelKind::ALL.map(|model| (model, sampler));
+        for (light, name) in of.lights.iter().enumerate() {
+            chart = chart.series(distribution(name, ratios(pair[0], pair[1], light)));
+        }
+        let caption = format!(
+            "How the gain of the Cauchy model spreads over the {} cells of the grid with `{}`, by light: a line left of 1 \
+             (the upright) is a cell where the Cauchy model needs more samples. The time of a sample is not in it.",
+            of.cells.len(),
+            sampler.name()
+        );
+        let figure = Figure::new(chart.series(even()).svg(), caption);
+        figures.push(figure.named(format!("cauchy-gain-over-cells-{}", sampler.name())));
+    }
+    for model in ModelKind::ALL {
+        let title = format!("Variance of ou over that of the sampler, {} model", model.name());
+        let mut chart = LineChart::new(title, Axis::log("V ou / V sampler"), share());
+        for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
+            let gains = ratios((model, Sampler::Ou), (model, sampler), CONSTANT);
+            chart = chart.series(distribution(sampler.name(), gains));
+        }
+        let caption = format!(
+            "How the gain over the published sampler spreads over the {} cells of the grid under {} light: left of 1 (the \
+             upright) the sampler needs more samples than `ou`. The time of a sample is not in it.",
+            of.cells.len(),
+            of.lights[CONSTANT]
+        );
+        let figure = Figure::new(chart.series(even()).svg(), caption);
+        figures.push(figure.named(format!("gain-over-cells-{}", model.name())));
+    }
+    figures
+}
+
+/// Effective samples and largest weights.
+pub(super) fn weights(of: &View<'_>) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    for model in ModelKind::ALL {
+        let title = format!("Effective samples in 1000, {} model", model.name());
+        let y = Axis::linear("effective samples in 1000");
+        let mut chart = BarChart::new(title, y, of.lights.iter().map(String::as_str));
+        for sampler in Sampler::ALL {
+            let mean = |light| Some(of.mean_of((model, sampler), light, ess));
+            chart = chart.series(sampler.name(), (0..of.lights.len()).map(|light| bar(mean(light))));
+        }
+        let caption = "1000 / (1 + V): how many samples without variance are worth as much as 1000 of the sampler. Means \
+                       over the grid; whiskers are one standard error.";
+        figures.push(Figure::new(chart.svg(), caption).named(format!("effective-samples-{}", model.name())));
+    }
+    for model in ModelKind::ALL {
+        let title = format!("Largest weight, {} model", model.name());
+        let x = Axis::linear("inclination of the viewer, θₒ (°)").from_zero();
+        let mut chart = LineChart::new(title, x, Axis::log("largest weight / albedo"));
+        for sampler in Sampler::ALL {
+            let worst = |theta_o: &f32| {
+                let cells = of.each_cell().filter(|cell| cell.theta_o_deg == *theta_o);
+                let most = cells.map(|cell| {
+                    let found = of.measured(cell.index, (model, sampler), CONSTANT);
+                    found.max_weight / found.figures.mean.value
+                });
+                (f64::from(*theta_o), most.fold(0.0, f64::max))
+            };
+            chart = chart.series(Series::new(sampler.name(), of.grid.theta_o_deg.iter().map(worst)));
+        }
+        let caption = "The largest weight S cos θᵢ / pdf of any sample in the worst cell of each inclination, in units of \
+                       the albedo: what a firefly under constant light would be. It is the largest of those drawn, and \
+                       so has no error bar; more samples can only raise it.";
+        figures.push(Figure::new(chart.svg(), caption).named(format!("largest-weight-{}", model.name())));
+    }
+    figures.extend(bounds(of));
+    figures
+}
+
+/// Largest weights against their proven bounds; nothing if no sampler has one.
+fn bounds(of: &View<'_>) -> Option<Figure> {
+    let mut chart = LineChart::new(
+        "Largest weight against its proven bound",
+        Axis::log("proven bound of the weight"),
+        Axis::log("largest weight drawn"),
+    );
+    let mut first = None;
+    for model in ModelKind::ALL {
+        for sampler in Sampler::ALL {
+            let point = |cell: Cell| {
+                let cos_theta_o = f64::from(cell.theta_o_deg).to_radians().cos();
+                let bound = weight_bound(sampler, &cell.params().ok()?, cos_theta_o)?;
+                Some((bound, of.measured(cell.index, (model, sampler), CONSTANT).max_weight))
+            };
+            let mut points: Vec<(f64, f64)> = of.each_cell().filter_map(point).collect();
+            // Of cells of one bound the largest weight.
+            points.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+            points.dedup_by(|a, b| a.0 == b.0);
+            if let Some((bound, _)) = points.first() {
+                first.get_or_insert((*bound, *bound));
+                chart = chart.series(Series::marks(format!("{}, {}", model.name(), sampler.name()), points));
+            }
+        }
+    }
+    let line = Reference::Power { label: "the bound".to_owned(), slope: 1.0, through: first? };
+    let caption = "For samplers with a bound in closed form: the largest weight drawn against the bound, for each bound the \
+                   worst cell. A mark above the line would fail the run. Samplers that are not here have no such bound, or \
+                   keep its numbers to themselves.";
+    Some(Figure::new(chart.reference(line).svg(), caption).named("weight-bounds"))
+}

@@ -1,0 +1,220 @@
+//! The answer in sentences. Every word that judges follows from figures and their errors.
+
+use super::charts::MANY;
+use super::view::{Estimator, Sign, View, default_matched};
+use crate::difference::{Summary, Width, albedo_ratio};
+use crate::efficiency::ModelKind;
+use crate::stats::Estimate;
+use crate::study::Sampler;
+use crate::table::number;
+
+const GAUSSIAN: ModelKind = ModelKind::Gaussian;
+const CAUCHY: ModelKind = ModelKind::Cauchy;
+
+/// The sentences, in the order in which one would ask.
+pub(super) fn findings(of: &View<'_>) -> Vec<String> {
+    [worth(of), Some(which(of)), Some(looks(of)), Some(cost(of)), where_not(of)].into_iter().flatten().collect()
+}
+
+/// The samplers that are told apart in sentences: the published one, and the matched one that renderers take.
+fn told() -> impl Iterator<Item = Sampler> {
+    [Some(Sampler::Ou), default_matched()].into_iter().flatten()
+}
+
+/// `1.39×`, with its standard error if that shows.
+fn times(of: Estimate) -> String {
+    if of.standard_error > 0.005 * of.value {
+        number::ratio_with_error(of.value, of.standard_error)
+    } else {
+        number::ratio(of.value)
+    }
+}
+
+/// Names and gains by light, of those with a sign.
+fn lights(gains: &[(&str, Estimate)], sign: Sign) -> Option<String> {
+    let shown = |(name, gain): &(&str, Estimate)| match sign {
+        Sign::Below => format!("{name} ({})", times(Estimate { value: 1.0, standard_error: 0.0 }.ratio(gain))),
+        _ => format!("{name} ({})", times(*gain)),
+    };
+    let words: Vec<String> = gains.iter().filter(|(_, gain)| Sign::of(*gain) == sign).map(shown).collect();
+    (!words.is_empty()).then(|| listed(&words))
+}
+
+/// `a`, `a and b`, `a, b and c`.
+fn listed(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+    }
+}
+
+/// The gains of the Cauchy model in equal time, by light.
+fn cauchy_gains<'a>(of: &View<'a>, sampler: Sampler) -> Vec<(&'a str, Estimate)> {
+    let gain = |light| of.equal_time((GAUSSIAN, sampler), (CAUCHY, sampler), light, MANY);
+    of.lights.iter().zip(0..).filter_map(|(name, light)| Some((name.as_str(), gain(light)?))).collect()
+}
+
+/// Is the replacement worth it?
+fn worth(of: &View<'_>) -> Option<String> {
+    let sentence = |sampler: Sampler| {
+        let gains = cauchy_gains(of, sampler);
+        let [less, more, same] = [Sign::Above, Sign::Below, Sign::Unsure].map(|sign| lights(&gains, sign));
+        let parts: Vec<String> =
+            [("less variance under", less), ("more under", more), ("as much, within the errors, under", same)]
+                .into_iter()
+                .filter_map(|(what, lights)| Some(format!("{what} {}", lights?)))
+                .collect();
+        (!parts.is_empty()).then(|| format!("with `{}` it has {}", sampler.name(), parts.join(", ")))
+    };
+    let parts: Vec<String> = told().filter_map(sentence).collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "Is the Cauchy model worth it? Against the Gaussian model in equal time, {MANY} samples a gather point, means \
+             over the grid (a few cells can carry them: see how the gains spread): {}.",
+            parts.join("; ")
+        )
+    })
+}
+
+/// The samplers that are not told from the best of a model under a light, with the best one's gain over `ou`.
+fn best(of: &View<'_>, model: ModelKind, light: usize, per_point: usize) -> Option<(Vec<Sampler>, Estimate)> {
+    let gain = |sampler| {
+        let over_ou = of.equal_time((model, Sampler::Ou), (model, sampler), light, per_point)?;
+        Some((sampler, if sampler == Sampler::Ou { Estimate { value: 1.0, standard_error: 0.0 } } else { over_ou }))
+    };
+    let mut gains: Vec<(Sampler, Estimate)> = Sampler::ALL.into_iter().filter_map(gain).collect();
+    gains.sort_by(|a, b| b.1.value.total_cmp(&a.1.value));
+    let (_, most) = *gains.first()?;
+    let level: Vec<Sampler> = gains
+        .iter()
+        .filter(|(_, gain)| Sign::of(most.ratio(gain)) != Sign::Above)
+        .map(|(sampler, _)| *sampler)
+        .collect();
+    Some((Sampler::ALL.into_iter().filter(|sampler| level.contains(sampler)).collect(), most))
+}
+
+/// Which sampler?
+fn which(of: &View<'_>) -> String {
+    let of_model = |model: ModelKind| {
+        // Lights with the same best samplers share a part of the sentence.
+        let mut groups: Vec<(Vec<Sampler>, Vec<String>)> = Vec::new();
+        for (light, name) in of.lights.iter().enumerate() {
+            let Some((samplers, gain)) = best(of, model, light, MANY) else { continue };
+            let words =
+                if samplers.contains(&Sampler::Ou) { name.clone() } else { format!("{name} ({})", times(gain)) };
+            match groups.iter_mut().find(|(group, _)| *group == samplers) {
+                Some((_, lights)) => lights.push(words),
+                None => groups.push((samplers, vec![words])),
+            }
+        }
+        let part = |(samplers, lights): &(Vec<Sampler>, Vec<String>)| {
+            let names: Vec<String> = samplers.iter().map(|sampler| format!("`{}`", sampler.name())).collect();
+            format!("{} under {}", names.join(" or "), listed(lights))
+        };
+        format!("on the {} model {}", model.name(), groups.iter().map(part).collect::<Vec<_>>().join(", "))
+    };
+    format!(
+        "Which sampler? Least variance in equal time, {MANY} samples a gather point (in brackets how many times less than \
+         `ou`; \"or\": not told apart): {}.",
+        ModelKind::ALL.map(of_model).join("; ")
+    )
+}
+
+/// What does it change in looks?
+fn looks(of: &View<'_>) -> String {
+    let d = of.difference;
+    let of_figures = |width, figure| d.summary(width, figure);
+    let plain = of_figures(Width::Paper, |f| f.plain.l1);
+    let blurred = of_figures(Width::Paper, |f| f.blurred.l1);
+    let albedo = of_figures(Width::Paper, albedo_ratio);
+    let squares = [Width::Paper, Width::BestOfGrid].map(|width| of_figures(width, |f| f.plain.l2).geometric_mean);
+    let percent = number::percent;
+    format!(
+        "What does it change in looks? With the same widths the Cauchy model reflects light worth {} of the Gaussian \
+         model's albedo elsewhere, more or less (median of L1; worst {}), {} after a blur of 10° (worst {}); its albedo \
+         is {} to {} of the Gaussian one's. The one factor on the widths that fits the grid best in L2 is {} (L2 {} \
+         against {} for k = 1).",
+        percent(plain.median),
+        percent(plain.most),
+        percent(blurred.median),
+        percent(blurred.most),
+        percent(albedo.least),
+        percent(albedo.most),
+        d.factor(Width::BestOfGrid),
+        percent(squares[1]),
+        percent(squares[0]),
+    )
+}
+
+/// What does it cost?
+fn cost(of: &View<'_>) -> String {
+    let ns = |of_one: Estimator| {
+        let [many, one] = [MANY, 1].map(|n| of.ns(of_one, n));
+        format!("{} ns ({} ns)", number::plain(many.value, 3), number::plain(one.value, 3))
+    };
+    let part = |sampler: Sampler| {
+        let [gaussian, cauchy] = [GAUSSIAN, CAUCHY].map(|model| (model, sampler));
+        let ratio = of.ns(gaussian, MANY).ratio(&of.ns(cauchy, MANY));
+        let words = match Sign::of(ratio) {
+            Sign::Above => format!("the Cauchy model is {} as fast", times(ratio)),
+            Sign::Below => {
+                format!("the Gaussian model is {} as fast", times(of.ns(cauchy, MANY).ratio(&of.ns(gaussian, MANY))))
+            }
+            Sign::Unsure => "no difference is seen".to_owned(),
+        };
+        format!(
+            "`{}` {} on the Gaussian model and {} on the Cauchy one: {words}",
+            sampler.name(),
+            ns(gaussian),
+            ns(cauchy)
+        )
+    };
+    format!(
+        "What does it cost? Time of a sample on this machine, eight lanes, one thread, at {MANY} (1) samples a gather \
+         point: {}.",
+        told().map(part).collect::<Vec<_>>().join("; ")
+    )
+}
+
+/// In which conditions not?
+fn where_not(of: &View<'_>) -> Option<String> {
+    let mut parts = Vec::new();
+    for sampler in told() {
+        let pair = [GAUSSIAN, CAUCHY].map(|model| (model, sampler));
+        let mut words = Vec::new();
+        for (light, name) in of.lights.iter().enumerate() {
+            let worse = of.each_cell().filter(|cell| {
+                let [gaussian, cauchy] = pair.map(|of_one| of.v(cell.index, of_one, light));
+                Sign::of(gaussian.ratio(&cauchy)) == Sign::Below
+            });
+            match worse.count() {
+                0 => {}
+                count => words.push(format!(
+                    "{} of the cells under {name}",
+                    number::percent(count as f64 / of.cells.len() as f64)
+                )),
+            }
+        }
+        if !words.is_empty() {
+            parts.push(format!("with `{}` in {}", sampler.name(), listed(&words)));
+        }
+    }
+    let worst = |figure: fn(&crate::difference::Figures) -> f64| {
+        let of_width = |beta: f32| {
+            let rows = of.difference.of(Width::Paper).filter(move |row| row.cell.beta_r_deg == beta);
+            (beta, Summary::of(rows.map(|row| figure(&row.figures))).median)
+        };
+        of.grid.beta_r_deg.iter().map(|beta| of_width(*beta)).max_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let (beta, l1) = worst(|f| f.plain.l1)?;
+    let looks = format!("the looks change most at β_R = {beta}° (median L1 {})", number::percent(l1));
+    Some(if parts.is_empty() {
+        format!("Where not? No cell was found in which the Cauchy model needs more samples; {looks}.")
+    } else {
+        format!(
+            "Where not? The Cauchy model needs more samples, beyond two standard errors, {}; {looks}.",
+            parts.join("; ")
+        )
+    })
+}

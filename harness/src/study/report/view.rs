@@ -1,0 +1,144 @@
+//! What a report asks of a study: variances, gains and times by model, sampler and light.
+
+use super::super::cell::Measured;
+use super::super::rows::place;
+use super::super::summary::{Gain, gain, in_equal_time};
+use super::super::{Cell, Grid, Sampler};
+use crate::difference::Difference;
+use crate::efficiency::ModelKind;
+use crate::stats::Estimate;
+use crate::study::output::Times;
+
+/// A sampler of a model.
+pub(super) type Estimator = (ModelKind, Sampler);
+
+/// A finished study with what it is told together with.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) grid: Grid,
+    pub(super) cells: &'a [Vec<Measured>],
+    /// Names of the lights.
+    pub(super) lights: &'a [String],
+    pub(super) times: &'a Times,
+    pub(super) difference: &'a Difference,
+}
+
+/// How two figures compare, as far as their errors tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sign {
+    Above,
+    Below,
+    /// Within two standard errors.
+    Unsure,
+}
+
+impl Sign {
+    /// That of a ratio against 1.
+    pub(super) fn of(ratio: Estimate) -> Self {
+        match ratio.value - 1.0 {
+            d if d > 2.0 * ratio.standard_error => Self::Above,
+            d if d < -2.0 * ratio.standard_error => Self::Below,
+            _ => Self::Unsure,
+        }
+    }
+}
+
+/// The matched sampler a renderer takes unless it knows better; `None` where the study has none.
+pub(super) fn default_matched() -> Option<Sampler> {
+    Sampler::ALL.into_iter().find(|sampler| sampler.name() == "matched")
+}
+
+impl<'a> View<'a> {
+    pub(super) fn measured(&self, index: usize, (model, sampler): Estimator, light: usize) -> &'a Measured {
+        &self.cells[index][place(model, sampler, light, self.lights.len())]
+    }
+
+    pub(super) fn v(&self, index: usize, of: Estimator, light: usize) -> Estimate {
+        self.measured(index, of, light).figures.v
+    }
+
+    /// The cells, with their places.
+    pub(super) fn each_cell(&self) -> impl Iterator<Item = Cell> + '_ {
+        (0..self.cells.len()).map(|index| self.grid.cell(index))
+    }
+
+    /// V of `base` over V of `other` over the cells that are kept; `None` if none is sure.
+    pub(super) fn gain_where(
+        &self,
+        base: Estimator,
+        other: Estimator,
+        light: usize,
+        keep: impl Fn(&Cell) -> bool,
+    ) -> Option<Gain> {
+        let cells = self.each_cell().filter(|cell| keep(cell));
+        gain(cells.map(|cell| [self.v(cell.index, base, light), self.v(cell.index, other, light)]))
+    }
+
+    /// The same over all cells.
+    pub(super) fn gain(&self, base: Estimator, other: Estimator, light: usize) -> Option<Gain> {
+        self.gain_where(base, other, light, |_| true)
+    }
+
+    /// Geometric mean of V over the cells that are kept.
+    pub(super) fn mean_v(&self, of: Estimator, light: usize, keep: impl Fn(&Cell) -> bool) -> Option<Estimate> {
+        let one = Estimate { value: 1.0, standard_error: 0.0 };
+        let cells = self.each_cell().filter(|cell| keep(cell));
+        gain(cells.map(|cell| [self.v(cell.index, of, light), one])).map(|gain| gain.geometric_mean)
+    }
+
+    /// Time of a sample in ns, its gather point's set-up shared by `per_point`.
+    pub(super) fn ns(&self, (model, sampler): Estimator, per_point: usize) -> Estimate {
+        self.times.ns(model, sampler, per_point)
+    }
+
+    /// How many times the variance `base` has of `other` in equal time: geometric mean over the cells.
+    pub(super) fn equal_time(
+        &self,
+        base: Estimator,
+        other: Estimator,
+        light: usize,
+        per_point: usize,
+    ) -> Option<Estimate> {
+        let time = self.ns(base, per_point).ratio(&self.ns(other, per_point));
+        self.gain(base, other, light).map(|gain| in_equal_time(gain.geometric_mean, time))
+    }
+
+    /// Geometric mean over the cells of `1 / (V µs)`.
+    pub(super) fn efficiency(&self, of: Estimator, light: usize, per_point: usize) -> Option<Estimate> {
+        let v = self.mean_v(of, light, |_| true)?;
+        let ns = self.ns(of, per_point);
+        let value = 1e3 / (v.value * ns.value);
+        let relative = (v.standard_error / v.value).hypot(ns.standard_error / ns.value);
+        Some(Estimate { value, standard_error: value * relative })
+    }
+
+    /// Mean over the cells of a figure; cells where it is no number are left out.
+    pub(super) fn mean_of(&self, of: Estimator, light: usize, figure: impl Fn(&Measured) -> Estimate) -> Estimate {
+        let figures = (0..self.cells.len()).map(|index| figure(self.measured(index, of, light)));
+        let (mut n, mut sum, mut square) = (0.0, 0.0, 0.0);
+        for figure in figures.filter(|figure| figure.value.is_finite() && figure.standard_error.is_finite()) {
+            (n, sum, square) = (n + 1.0, sum + figure.value, square + figure.standard_error.powi(2));
+        }
+        Estimate { value: sum / n, standard_error: f64::sqrt(square) / n }
+    }
+}
+
+/// Effective samples in 1000.
+pub(super) fn ess(of: &Measured) -> Estimate {
+    let v = of.figures.v;
+    let value = 1e3 / (1.0 + v.value);
+    Estimate { value, standard_error: value * v.standard_error / (1.0 + v.value) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_need_two_standard_errors() {
+        let of = |value, standard_error| Sign::of(Estimate { value, standard_error });
+        assert_eq!([of(1.1, 0.04), of(1.1, 0.06), of(0.9, 0.04)], [Sign::Above, Sign::Unsure, Sign::Below]);
+        assert_eq!(of(f64::NAN, 0.1), Sign::Unsure, "no number tells nothing");
+        assert_eq!(of(2.0, f64::NAN), Sign::Unsure, "nor does one without an error");
+    }
+}
