@@ -176,13 +176,13 @@ macro_rules! for_bands {
     };
 }
 
-/// Both sides of R, TT and TRT: the areas as they are, and the origins.
+/// Both sides, and R, TT and TRT when they have passed them.
 #[inline(always)]
 fn sides<B: MatchedBell, L: Lanes, const N: usize>(
     shift: [L; 3],
     inv_beta: [L; 3],
     theta_o: [L; 2],
-) -> ([MatchedSide<L::Stored, N>; 2], [Pair<L>; 3], [L; 3]) {
+) -> ([MatchedSide<L::Stored, N>; 2], [Longitude<L>; 3]) {
     let mut r = Longitude::at_poles::<B>(shift[0], inv_beta[0]);
     let mut tt = Longitude::at_poles::<B>(shift[1], inv_beta[1]);
     let mut trt = Longitude::at_poles::<B>(shift[2], inv_beta[2]);
@@ -201,7 +201,7 @@ fn sides<B: MatchedBell, L: Lanes, const N: usize>(
     });
     lower.area = shared4([r.area.0, tt.area.0, trt.area.0]);
     upper.area = shared4([r.area.1, tt.area.1, trt.area.1]);
-    ([lower, upper], [r.area, tt.area, trt.area], [r.origin, tt.origin, trt.origin])
+    ([lower, upper], [r, tt, trt])
 }
 
 /// The gather point of a material seen from `wo`.
@@ -222,10 +222,11 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
         l += 1;
     }
 
-    let (sides, [r, tt, trt], origin) = sides::<B, L, N>(shift, inv_beta, theta_o);
+    let (sides, [r, tt, trt]) = sides::<B, L, N>(shift, inv_beta, theta_o);
+    let origin = [r.origin, tt.origin, trt.origin];
     // The glints share the longitude of TRT.
-    let trt = trt.0 + trt.1;
-    let total = [r.0 + r.1, tt.0 + tt.1, trt, trt];
+    let trt = trt.area.0 + trt.area.1;
+    let total = [r.area.0 + r.area.1, tt.area.0 + tt.area.1, trt, trt];
 
     // Energies to the scale of the largest area, which may be next to nothing where all lobes lie off the sphere.
     let capacity = [m.capacity[0].lanes(), m.capacity[1].lanes(), m.capacity[2].lanes(), m.capacity[3].lanes()];

@@ -97,10 +97,12 @@ impl<T: Real> MatchedTextbook<T> {
             let centre = half * book.theta_o - p.alpha[i];
             let cut = Cut::new(shape, (centre - quarter) / p.beta[i], (centre + quarter) / p.beta[i]);
             this.longitudinal[lobe] = cut;
-            for j in 0..bands {
-                let [from, to] = [j, j + 1].map(|j| cut.below(this.offset(lobe, sines[j].asin())));
-                this.areas[lobe][j + 1] = this.areas[lobe][j] + heights[j] * (to - from);
+            let below = |sine: T| cut.below(this.offset(lobe, sine.asin()));
+            let mut areas = [zero; MOST + 1];
+            for (j, (height, ends)) in heights.iter().zip(sines[..=bands].windows(2)).enumerate() {
+                areas[j + 1] = areas[j] + *height * (below(ends[1]) - below(ends[0]));
             }
+            this.areas[lobe] = areas;
             // Nothing is drawn from a bell that is 0 all over the sphere.
             let longitude = number(2.0) * p.beta[i] * if cut.area > zero { this.areas[lobe][bands] } else { zero };
             this.energies[lobe] = intensity[lobe] * azimuth[lobe] * longitude;

@@ -213,34 +213,31 @@ pub(super) fn weights(of: &View<'_>) -> Vec<Figure> {
     figures
 }
 
-/// Largest weights against their proven bounds; nothing if no sampler has one.
-fn bounds(of: &View<'_>) -> Option<Figure> {
-    let mut chart = LineChart::new(
-        "Largest weight against its proven bound",
-        Axis::log("proven bound of the weight"),
-        Axis::log("largest weight drawn"),
-    );
-    let mut first = None;
-    for model in ModelKind::ALL {
+/// Largest weights over their proven bounds, a chart for each model.
+fn bounds(of: &View<'_>) -> Vec<Figure> {
+    let chart = |model: ModelKind| {
+        let title = format!("Largest weight over its proven bound, {} model", model.name());
+        let mut chart = LineChart::new(title, Axis::linear("θₒ (°)"), Axis::linear("largest weight / bound"));
         for sampler in Sampler::ALL {
-            let point = |cell: Cell| {
-                let cos_theta_o = f64::from(cell.theta_o_deg).to_radians().cos();
-                let bound = weight_bound(sampler, &cell.params().ok()?, cos_theta_o)?;
-                Some((bound, of.measured(cell.index, (model, sampler), CONSTANT).max_weight))
+            let share = |cell: &Cell| {
+                let theta_o = f64::from(cell.theta_o_deg).to_radians();
+                let bound = weight_bound(model, sampler, &cell.params().ok()?, theta_o)?;
+                Some(of.measured(cell.index, (model, sampler), CONSTANT).max_weight / bound)
             };
-            let mut points: Vec<(f64, f64)> = of.each_cell().filter_map(point).collect();
-            // Of cells of one bound the largest weight.
-            points.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
-            points.dedup_by(|a, b| a.0 == b.0);
-            if let Some((bound, _)) = points.first() {
-                first.get_or_insert((*bound, *bound));
-                chart = chart.series(Series::marks(format!("{}, {}", model.name(), sampler.name()), points));
+            let worst = |theta_o: &f32| {
+                let cells = of.each_cell().filter(|cell| cell.theta_o_deg == *theta_o);
+                let most = cells.filter_map(|cell| share(&cell)).reduce(f64::max)?;
+                Some((f64::from(*theta_o), most))
+            };
+            let points: Vec<(f64, f64)> = of.grid.theta_o_deg.iter().filter_map(worst).collect();
+            if !points.is_empty() {
+                chart = chart.series(Series::new(sampler.name(), points));
             }
         }
-    }
-    let line = Reference::Power { label: "the bound".to_owned(), slope: 1.0, through: first? };
-    let caption = "For samplers with a bound in closed form: the largest weight drawn against the bound, for each bound the \
-                   worst cell. A mark above the line would fail the run. Samplers that are not here have no such bound, or \
-                   keep its numbers to themselves.";
-    Some(Figure::new(chart.reference(line).svg(), caption).named("weight-bounds"))
+        let line = Reference::Level { label: "the bound".to_owned(), y: 1.0 };
+        let caption = "For samplers with a bound in closed form: the largest weight drawn over the bound, in the worst cell of \
+                       each inclination. A point above 1 would fail the run.";
+        Figure::new(chart.reference(line).svg(), caption).named(format!("weight-bound-{}", model.name()))
+    };
+    ModelKind::ALL.map(chart).into()
 }
