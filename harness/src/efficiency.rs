@@ -106,6 +106,15 @@ impl ModelKind {
         }
     }
 
+    /// Name in titles and sentences.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Gaussian => "Gaussian",
+            Self::Cauchy => "Cauchy",
+        }
+    }
+
     /// Its bell in the textbook.
     pub(crate) const fn shape(self) -> Shape {
         match self {

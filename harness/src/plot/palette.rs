@@ -78,7 +78,7 @@ pub enum Dash {
 
 impl Dash {
     /// The dash of the series number `index`.
-    pub(super) const fn of(index: usize) -> Self {
+    pub(crate) const fn of(index: usize) -> Self {
         [Self::Solid, Self::Dashed, Self::DashDot, Self::Dotted, Self::Long][index % 5]
     }
 
@@ -107,7 +107,7 @@ pub(crate) enum Marker {
 
 impl Marker {
     /// The marker of the series number `index`.
-    pub(super) const fn of(index: usize) -> Self {
+    pub(crate) const fn of(index: usize) -> Self {
         [Self::Circle, Self::Square, Self::Triangle, Self::Diamond, Self::Cross, Self::Inverted][index % 6]
     }
 }

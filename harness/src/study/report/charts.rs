@@ -83,15 +83,19 @@ pub(super) fn efficiencies(of: &View<'_>) -> Vec<Figure> {
 /// Gains in equal time, by light: over `ou`, then of the Cauchy model.
 pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
     let mut figures = Vec::new();
-    let lights = || of.lights.iter().map(String::as_str);
     let bars = |base: Estimator, other: Estimator| -> Vec<Bar> {
         (0..of.lights.len()).map(|light| bar(of.equal_time(base, other, light, MANY))).collect()
     };
     for model in ModelKind::ALL {
-        let title = format!("Less variance than ou in equal time, {} model", model.name());
-        let mut chart = BarChart::new(title, Axis::log("gain over ou in equal time (×)"), lights());
-        for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
-            chart = chart.series(sampler.name(), bars((model, Sampler::Ou), (model, sampler)));
+        let title = format!("Less variance than ou in equal time, {} model", model.title());
+        let mut chart = BarChart::new(title, Axis::log("gain over ou in equal time (×)"), of.light_labels());
+        for sampler in Sampler::ALL {
+            // The published sampler is there for the others to be measured by, and for every chart to have one key.
+            let bars = match sampler {
+                Sampler::Ou => vec![Bar::new(1.0); of.lights.len()],
+                _ => bars((model, Sampler::Ou), (model, sampler)),
+            };
+            chart = chart.series(sampler.name(), bars);
         }
         let caption = format!(
             "By what factor less variance than the published sampler has in the same time, by light, at {MANY} samples a \
@@ -103,7 +107,7 @@ pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
     let mut chart = BarChart::new(
         "Less variance on the Cauchy model in equal time",
         Axis::log("Gaussian / Cauchy in equal time (×)"),
-        lights(),
+        of.light_labels(),
     );
     for sampler in Sampler::ALL {
         let pair = ModelKind::ALL.map(|model| (model, sampler));
@@ -116,6 +120,12 @@ pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
     );
     figures.push(Figure::new(chart.level(1.0).svg(), caption).named("cauchy-gain-by-light"));
     figures
+}
+
+/// A line in the colour that the sampler has in every chart.
+fn of_sampler(sampler: Sampler, series: Series) -> Series {
+    let place = Sampler::ALL.iter().position(|of| *of == sampler).unwrap_or_default();
+    series.styled(place, Dash::of(place))
 }
 
 /// The share of cells whose gain is at most x.
@@ -156,11 +166,11 @@ pub(super) fn distributions(of: &View<'_>) -> Vec<Figure> {
         figures.push(figure.named(format!("cauchy-gain-over-cells-{}", sampler.name())));
     }
     for model in ModelKind::ALL {
-        let title = format!("Variance of ou over that of the sampler, {} model", model.name());
+        let title = format!("Variance of ou over that of the sampler, {} model", model.title());
         let mut chart = LineChart::new(title, Axis::log("V ou / V sampler"), share());
         for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
             let gains = ratios((model, Sampler::Ou), (model, sampler), CONSTANT);
-            chart = chart.series(distribution(sampler.name(), gains));
+            chart = chart.series(of_sampler(sampler, distribution(sampler.name(), gains)));
         }
         let caption = format!(
             "How the gain over the published sampler spreads over the {} cells of the grid under {} light: left of 1 (the \
@@ -178,9 +188,9 @@ pub(super) fn distributions(of: &View<'_>) -> Vec<Figure> {
 pub(super) fn weights(of: &View<'_>) -> Vec<Figure> {
     let mut figures = Vec::new();
     for model in ModelKind::ALL {
-        let title = format!("Effective samples in 1000, {} model", model.name());
+        let title = format!("Effective samples in 1000, {} model", model.title());
         let y = Axis::linear("effective samples in 1000");
-        let mut chart = BarChart::new(title, y, of.lights.iter().map(String::as_str));
+        let mut chart = BarChart::new(title, y, of.light_labels());
         for sampler in Sampler::ALL {
             let mean = |light| Some(of.mean_of((model, sampler), light, ess));
             chart = chart.series(sampler.name(), (0..of.lights.len()).map(|light| bar(mean(light))));
@@ -190,7 +200,7 @@ pub(super) fn weights(of: &View<'_>) -> Vec<Figure> {
         figures.push(Figure::new(chart.svg(), caption).named(format!("effective-samples-{}", model.name())));
     }
     for model in ModelKind::ALL {
-        let title = format!("Largest weight, {} model", model.name());
+        let title = format!("Largest weight, {} model", model.title());
         let x = Axis::linear("inclination of the viewer, θₒ (°)").from_zero();
         let mut chart = LineChart::new(title, x, Axis::log("largest weight / albedo"));
         for sampler in Sampler::ALL {
@@ -216,7 +226,7 @@ pub(super) fn weights(of: &View<'_>) -> Vec<Figure> {
 /// Largest weights over their proven bounds, a chart for each model.
 fn bounds(of: &View<'_>) -> Vec<Figure> {
     let chart = |model: ModelKind| {
-        let title = format!("Largest weight over its proven bound, {} model", model.name());
+        let title = format!("Largest weight over its proven bound, {} model", model.title());
         let mut chart = LineChart::new(title, Axis::linear("θₒ (°)"), Axis::linear("largest weight / bound"));
         for sampler in Sampler::ALL {
             let share = |cell: &Cell| {
@@ -231,7 +241,7 @@ fn bounds(of: &View<'_>) -> Vec<Figure> {
             };
             let points: Vec<(f64, f64)> = of.grid.theta_o_deg.iter().filter_map(worst).collect();
             if !points.is_empty() {
-                chart = chart.series(Series::new(sampler.name(), points));
+                chart = chart.series(of_sampler(sampler, Series::new(sampler.name(), points)));
             }
         }
         let line = Reference::Level { label: "the bound".to_owned(), y: 1.0 };

@@ -112,7 +112,7 @@ fn which(of: &View<'_>) -> String {
             let names: Vec<String> = samplers.iter().map(|sampler| format!("`{}`", sampler.name())).collect();
             format!("{} under {}", names.join(" or "), listed(lights))
         };
-        format!("on the {} model {}", model.name(), groups.iter().map(part).collect::<Vec<_>>().join(", "))
+        format!("on the {} model {}", model.title(), groups.iter().map(part).collect::<Vec<_>>().join(", "))
     };
     format!(
         "Which sampler? Least variance in equal time, {MANY} samples a gather point (in brackets how many times less than \

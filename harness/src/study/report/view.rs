@@ -49,6 +49,11 @@ pub(super) fn default_matched() -> Option<Sampler> {
 }
 
 impl<'a> View<'a> {
+    /// Names of the lights, to be set under bars: a file's in words.
+    pub(super) fn light_labels(&self) -> impl Iterator<Item = String> + use<'_, 'a> {
+        self.lights.iter().map(|name| name.replace(['-', '_'], " "))
+    }
+
     pub(super) fn measured(&self, index: usize, (model, sampler): Estimator, light: usize) -> &'a Measured {
         &self.cells[index][place(model, sampler, light, self.lights.len())]
     }
