@@ -115,8 +115,9 @@ impl<B: MatchedBell, const BANDS: usize> Model for Matched<B, BANDS> {
     ) -> PerLobe<LobeEval<L>> {
         let (place, sound) = Place::of(&gather.point, wi);
         let shapes = place.shapes::<B, C>(&gather.point);
-        let height = gather.height::<L>(place.sin_theta_i) * gather.scale.lanes();
-        let density = times(times(shapes.value, [height; 4]), gather.lone_density::<B, L>());
+        let height = gather.height::<L>(place.sin_theta_i);
+        let [by_area, by_extent] = gather.lone_density::<B, L>();
+        let density = times(times(times(shapes.value, [height; 4]), by_area), by_extent);
         per_lobe(&gather.point, &place, sound, &shapes, density)
     }
 

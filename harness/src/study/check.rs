@@ -57,7 +57,7 @@ mod tests {
         let of = |value, standard_error| Estimate { value, standard_error };
         let row = Measured {
             figures: Figures { mean: of(3.0, 0.01), v: of(0.2, 0.01), kl: of(0.1, 0.01) },
-            max_weight: 5.0,
+            max_weight: 1.0,
             max_contribution: 2.0,
         };
         let mut cells = vec![vec![row; 5 * ModelKind::ALL.len() * Sampler::ALL.len()]; 2];

@@ -8,7 +8,8 @@ use crate::{Broadcast, HairLobes, HairParams, HairPoint, Lanes, Lobe, LobeMask, 
 use core::f32::consts::{FRAC_PI_4, PI};
 use wide::f32x8;
 
-/// Energies below this share of the largest are none: next to denormals their reciprocal would have no digits.
+/// Energies below this share of the largest are none, nor are areas below it: next to denormals their reciprocals would have
+/// no digits.
 const LEAST_ENERGY: f32 = 1e-36;
 
 /// Intensities below this share of the largest are none to the sampler.
@@ -299,21 +300,24 @@ impl<C, const N: usize> MatchedGather<C, N> {
         L::select(sin_theta_i.lt(L::splat(0.0)), lower, upper)
     }
 
-    /// Factor on `M N W` of a lobe drawn alone, but for `scale`.
+    /// Factors on `M N W` of a lobe drawn alone, to be applied one after the other: their product may be too large.
     #[inline(always)]
-    pub(super) fn lone_density<B: MatchedBell, L: Lanes>(&self) -> [L; 4]
+    pub(super) fn lone_density<B: MatchedBell, L: Lanes>(&self) -> [[L; 4]; 2]
     where
         C: Broadcast<L>,
     {
+        let one = L::splat(1.0);
         let azimuth_mass = [self.azimuth_mass[0].lanes(), self.azimuth_mass[1].lanes()];
-        let mut factor = extent::<B, L, C>(&self.point.lobes, azimuth_mass);
+        let mut by_extent = extent::<B, L, C>(&self.point.lobes, azimuth_mass);
+        let mut by_area = by_extent;
         let mut l = 0;
         while l < 4 {
-            let integral = factor[l] * (self.area[l].lanes() * self.scale.lanes());
-            factor[l] = L::keep(L::splat(LEAST_ENERGY).lt(integral), L::splat(1.0) / integral);
+            let area = self.area[l].lanes();
+            by_area[l] = L::keep(L::splat(LEAST_ENERGY).lt(area), one / area);
+            by_extent[l] = L::keep(L::splat(0.0).lt(by_extent[l]), one / by_extent[l]);
             l += 1;
         }
-        factor
+        [by_area, by_extent]
     }
 }
 
