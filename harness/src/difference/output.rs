@@ -3,6 +3,7 @@
 use super::{Difference, Figures, Row, Width};
 use crate::stats::percentile;
 use crate::study::columns::Columns;
+use crate::study::grid::columns_of;
 use crate::table::{Table, number};
 
 /// What is shown of a row, by name.
@@ -57,16 +58,8 @@ impl Difference {
         const NAMES: [&str; 8] =
             ["l1", "l2", "shape_l1", "shape_l2", "blurred_l1", "blurred_l2", "blurred_shape_l1", "blurred_shape_l2"];
         let rows = self.rows();
-        let axis = |axis: usize| rows.iter().map(move |row| f64::from(row.cell.values()[axis]));
         let figure = |of: fn(&Figures) -> f64| rows.iter().map(move |row| of(&row.figures));
-        let columns = Columns::new()
-            .whole("cell", rows.iter().map(|row| row.cell.index))
-            .number("beta_r_deg", axis(0))
-            .number("gamma_tt_deg", axis(1))
-            .number("gamma_g_deg", axis(2))
-            .number("phi_g_deg", axis(3))
-            .number("intensity_g", axis(4))
-            .number("theta_o_deg", axis(5))
+        let columns = columns_of(rows.iter().map(|row| &row.cell))
             .text("width", rows.iter().map(|row| row.width.name()))
             .number("k", figure(|f| f.k))
             .number("albedo_gaussian", figure(|f| f.albedo_gaussian))

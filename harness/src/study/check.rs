@@ -48,9 +48,10 @@ mod tests {
     use super::*;
     use crate::efficiency::ModelKind;
     use crate::stats::Estimate;
+    use crate::study::Grid;
     use crate::study::cell::Measured;
+    use crate::study::rows::{Bounds, rows};
     use crate::study::tally::Figures;
-    use crate::study::{Grid, rows::rows};
 
     #[test]
     fn weights_above_their_bound_and_means_apart_are_found() {
@@ -62,7 +63,8 @@ mod tests {
         };
         let mut cells = vec![vec![row; 5 * ModelKind::ALL.len() * Sampler::ALL.len()]; 2];
         let lights = ["constant", "smooth", "sun", "rectangle", "sky"].map(str::to_owned);
-        let found = |cells: &[Vec<Measured>]| failures(&rows(Grid::QUICK, cells, 5), &lights);
+        let bounds = Bounds::over(Grid::QUICK);
+        let found = |cells: &[Vec<Measured>]| failures(&rows(Grid::QUICK, cells, &bounds, 5), &lights);
         assert_eq!(found(&cells), [""; 0]);
         cells[0][0].max_weight = 1e3;
         cells[1][5].figures.mean.value = 3.1;

@@ -1,5 +1,6 @@
 //! The parameter grid.
 
+use super::columns::Columns;
 use crate::efficiency::with_beta;
 use hairis::{HairDesc, HairParams, ParamError};
 
@@ -116,6 +117,19 @@ impl Cell {
             ..*base.desc()
         })
     }
+}
+
+/// The columns that say what cell a row is of.
+pub(crate) fn columns_of<'a>(cells: impl Iterator<Item = &'a Cell> + Clone) -> Columns {
+    let axis = |axis: usize| cells.clone().map(move |cell| f64::from(cell.values()[axis]));
+    Columns::new()
+        .whole("cell", cells.clone().map(|cell| cell.index))
+        .number("beta_r_deg", axis(0))
+        .number("gamma_tt_deg", axis(1))
+        .number("gamma_g_deg", axis(2))
+        .number("phi_g_deg", axis(3))
+        .number("intensity_g", axis(4))
+        .number("theta_o_deg", axis(5))
 }
 
 #[cfg(test)]

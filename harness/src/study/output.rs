@@ -4,7 +4,7 @@ use super::Sampler;
 use super::cell::Measured;
 use super::columns::Columns;
 use super::part::{self, FORMAT, Finished, Header, Read};
-use super::rows::{self, Row, rows};
+use super::rows::{self, Bounds, Row, rows};
 use super::times::{self, PER_POINT, Time};
 use super::{Grid, Shard, check, grid_of, summary};
 use crate::difference::Difference;
@@ -23,6 +23,7 @@ use std::path::{Path, PathBuf};
 pub struct Study {
     pub(super) header: Header,
     pub(super) cells: Vec<Vec<Measured>>,
+    pub(super) bounds: Bounds,
 }
 
 /// Times of a sample, measured on this machine.
@@ -92,7 +93,8 @@ impl Study {
             return Err(Error::Missing(what));
         }
         let cells = found.into_iter().flatten().map(|(_, cell)| cell.measured()).collect();
-        Ok(Self { header: Header { shard: Shard::WHOLE.to_string(), ..header.clone() }, cells })
+        let bounds = Bounds::over(grid);
+        Ok(Self { header: Header { shard: Shard::WHOLE.to_string(), ..header.clone() }, cells, bounds })
     }
 
     /// Reads every part file in `dirs` and joins them.
@@ -112,7 +114,7 @@ impl Study {
     }
 
     fn rows(&self) -> Vec<Row<'_>> {
-        rows(self.grid(), &self.cells, self.header.lights.len())
+        rows(self.grid(), &self.cells, &self.bounds, self.header.lights.len())
     }
 
     /// The cells it is of.

@@ -18,7 +18,14 @@ impl Study {
     #[must_use]
     pub fn report(&self, times: &Times, difference: &Difference, claims: Option<&Value>) -> Report {
         let header = &self.header;
-        let view = View { grid: self.grid(), cells: &self.cells, lights: &header.lights, times, difference };
+        let view = View {
+            grid: self.grid(),
+            cells: &self.cells,
+            bounds: &self.bounds,
+            lights: &header.lights,
+            times,
+            difference,
+        };
         let quick = if header.quick { " --quick" } else { "" };
         let mut page = Report::new("Hair scattering: is the all-Cauchy model worth it?").subtitle(format!(
             "hairis study{quick}, seed {}: {} cells of hair and viewing angle, {} samplers of two models, {} lights",

@@ -3,9 +3,10 @@
 use super::Sampler;
 use super::cell::Measured;
 use super::columns::Columns;
-use super::grid::{Cell, Grid};
+use super::grid::{Cell, Grid, columns_of};
 use super::sampler::weight_bound;
 use crate::efficiency::ModelKind;
+use rayon::prelude::*;
 
 /// A row: what it is of, and what was found.
 pub(super) struct Row<'a> {
@@ -19,6 +20,29 @@ pub(super) struct Row<'a> {
     pub(super) weight_bound: f64,
 }
 
+/// The proven bounds on the weights, computed once: they depend on no light.
+#[derive(Clone, Debug)]
+pub(super) struct Bounds(Vec<f64>);
+
+impl Bounds {
+    /// Those of a grid.
+    pub(super) fn over(grid: Grid) -> Self {
+        let of_cell = |index: usize| {
+            let cell = grid.cell(index);
+            let (params, theta_o) = (cell.params().ok(), f64::from(cell.theta_o_deg).to_radians());
+            let all = ModelKind::ALL.into_iter().flat_map(|model| Sampler::ALL.map(|sampler| (model, sampler)));
+            let bound = move |(model, sampler)| weight_bound(model, sampler, params.as_ref()?, theta_o);
+            all.map(move |of| bound(of).unwrap_or(f64::NAN))
+        };
+        Self((0..grid.len()).into_par_iter().flat_map_iter(of_cell).collect())
+    }
+
+    /// That of a sampler in a cell; not a number where there is none.
+    pub(super) fn of(&self, cell: usize, model: ModelKind, sampler: Sampler) -> f64 {
+        self.0[cell * ModelKind::ALL.len() * Sampler::ALL.len() + place(model, sampler, 0, 1)]
+    }
+}
+
 /// Place of a row within its cell.
 pub(super) fn place(model: ModelKind, sampler: Sampler, light: usize, lights: usize) -> usize {
     let at = |found: Option<usize>| found.unwrap_or_default();
@@ -28,16 +52,13 @@ pub(super) fn place(model: ModelKind, sampler: Sampler, light: usize, lights: us
 }
 
 /// Every row, in order: cells outermost, then models, samplers and lights.
-pub(super) fn rows<'a>(grid: Grid, cells: &'a [Vec<Measured>], lights: usize) -> Vec<Row<'a>> {
+pub(super) fn rows<'a>(grid: Grid, cells: &'a [Vec<Measured>], bounds: &Bounds, lights: usize) -> Vec<Row<'a>> {
     let mut rows = Vec::new();
     for (index, measured) in cells.iter().enumerate() {
         let cell = grid.cell(index);
-        let params = cell.params().ok();
         for model in ModelKind::ALL {
             for sampler in Sampler::ALL {
-                let theta_o = f64::from(cell.theta_o_deg).to_radians();
-                let bound = params.as_ref().and_then(|params| weight_bound(model, sampler, params, theta_o));
-                let weight_bound = bound.unwrap_or(f64::NAN);
+                let weight_bound = bounds.of(index, model, sampler);
                 for light in 0..lights {
                     let measured = &measured[place(model, sampler, light, lights)];
                     rows.push(Row { cell, model, sampler, light, measured, weight_bound });
@@ -50,15 +71,7 @@ pub(super) fn rows<'a>(grid: Grid, cells: &'a [Vec<Measured>], lights: usize) ->
 
 /// The columns that say what a row is of.
 pub(super) fn keys(rows: &[Row<'_>], lights: &[String]) -> Columns {
-    let axis = |axis: usize| rows.iter().map(move |row| f64::from(row.cell.values()[axis]));
-    Columns::new()
-        .whole("cell", rows.iter().map(|row| row.cell.index))
-        .number("beta_r_deg", axis(0))
-        .number("gamma_tt_deg", axis(1))
-        .number("gamma_g_deg", axis(2))
-        .number("phi_g_deg", axis(3))
-        .number("intensity_g", axis(4))
-        .number("theta_o_deg", axis(5))
+    columns_of(rows.iter().map(|row| &row.cell))
         .text("model", rows.iter().map(|row| row.model.name()))
         .text("sampler", rows.iter().map(|row| row.sampler.name()))
         .text("light", rows.iter().map(|row| lights[row.light].clone()))

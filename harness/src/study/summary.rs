@@ -159,7 +159,7 @@ fn keys(title: &str) -> Table {
     Table::new(title).text("model").text("sampler").text("light")
 }
 
-fn shown(of: Estimate) -> String {
+pub(super) fn shown(of: Estimate) -> String {
     number::with_error(of.value, of.standard_error)
 }
 

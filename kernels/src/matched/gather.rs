@@ -3,7 +3,7 @@
 use super::MatchedBell;
 use super::bands::bands;
 use crate::hair::{prepare_point, selection, times};
-use crate::lanes::{pair::Pair, store3, store4};
+use crate::lanes::{lanes3, pair::Pair, store3, store4};
 use crate::{Broadcast, HairLobes, HairParams, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
 use core::f32::consts::{FRAC_PI_4, PI};
 use wide::f32x8;
@@ -216,13 +216,7 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
     let hair = &m.lobes;
     let point = prepare_point(hair, wo);
     let theta_o = [point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes()];
-    let (mut shift, mut inv_beta) = ([zero; 3], [zero; 3]);
-    let mut l = 0;
-    while l < 3 {
-        (shift[l], inv_beta[l]) = (point.shift[l].lanes(), hair.inv_beta[l].lanes());
-        l += 1;
-    }
-
+    let (shift, inv_beta) = (lanes3(&[point.shift[0], point.shift[1], point.shift[2]]), lanes3(&hair.inv_beta));
     let (sides, [r, tt, trt]) = sides::<B, L, N>(shift, inv_beta, theta_o);
     let origin = [r.origin, tt.origin, trt.origin];
     // The glints share the longitude of TRT.

@@ -57,7 +57,6 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let share = L::select(is_glint, one - turn.across, turn.across);
     let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON / 2.0)));
     let (mass, from) = (C::pick_pair(&gather.azimuth_mass, choice), C::pick_pair(&gather.azimuth_from, choice));
-
     let y = B::invert(C::pick_pair(&gather.azimuth_origin, choice), share.mul_add(mass, from));
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::pick_pair(&hair.half_gamma, choice), center);

@@ -98,9 +98,11 @@ impl<T: Real> MatchedTextbook<T> {
             let cut = Cut::new(shape, (centre - quarter) / p.beta[i], (centre + quarter) / p.beta[i]);
             this.longitudinal[lobe] = cut;
             let below = |sine: T| cut.below(this.offset(lobe, sine.asin()));
-            let mut areas = [zero; MOST + 1];
-            for (j, (height, ends)) in heights.iter().zip(sines[..=bands].windows(2)).enumerate() {
-                areas[j + 1] = areas[j] + *height * (below(ends[1]) - below(ends[0]));
+            let (mut areas, mut from) = ([zero; MOST + 1], below(sines[0]));
+            for (j, (height, end)) in heights.iter().zip(&sines[1..=bands]).enumerate() {
+                let to = below(*end);
+                areas[j + 1] = areas[j] + *height * (to - from);
+                from = to;
             }
             this.areas[lobe] = areas;
             // Nothing is drawn from a bell that is 0 all over the sphere.

@@ -1,9 +1,8 @@
 //! The plots of a study: variance, efficiency, gains and weights.
 
-use super::super::sampler::weight_bound;
 use super::super::times::PER_POINT;
 use super::super::{Cell, Sampler};
-use super::view::{Estimator, View, default_matched, ess};
+use super::view::{Estimator, TOLD, View, ess};
 use crate::efficiency::ModelKind;
 use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
 use crate::report::Figure;
@@ -37,7 +36,7 @@ pub(super) fn variances(of: &View<'_>) -> Vec<Figure> {
     let mut figures = Vec::new();
     for over in &axes {
         for model in ModelKind::ALL {
-            let title = format!("Variance over the {}, {} model", over.slug, model.name());
+            let title = format!("Variance over the {}, {} model", over.slug, model.title());
             let y = Axis::log("relative variance of a sample, V");
             let mut chart = LineChart::new(title, Axis::linear(over.label).from_zero(), y);
             for sampler in Sampler::ALL {
@@ -65,7 +64,7 @@ fn bar(of: Option<Estimate>) -> Bar {
 /// Efficiency by samples a gather point.
 pub(super) fn efficiencies(of: &View<'_>) -> Vec<Figure> {
     let figure = |model: ModelKind| {
-        let title = format!("Efficiency under {} light, {} model", of.lights[CONSTANT], model.name());
+        let title = format!("Efficiency under {} light, {} model", of.lights[CONSTANT], model.title());
         let groups = PER_POINT.map(|n| format!("{n} a gather point"));
         let mut chart = BarChart::new(title, Axis::log("1 / (V · µs)"), groups);
         for sampler in Sampler::ALL {
@@ -124,7 +123,7 @@ pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
 
 /// A line in the colour that the sampler has in every chart.
 fn of_sampler(sampler: Sampler, series: Series) -> Series {
-    let place = Sampler::ALL.iter().position(|of| *of == sampler).unwrap_or_default();
+    let place = sampler as usize;
     series.styled(place, Dash::of(place))
 }
 
@@ -149,7 +148,7 @@ pub(super) fn distributions(of: &View<'_>) -> Vec<Figure> {
     let share = || Axis::linear("cells with at most as much (%)").range(0.0, 100.0).step(20.0);
     let even = || Series::curve("as good", [(1.0, 0.0), (1.0, 100.0)]).styled(5, Dash::Dotted);
     let mut figures = Vec::new();
-    for sampler in [Some(Sampler::Ou), default_matched()].into_iter().flatten() {
+    for sampler in TOLD {
         let title = format!("Variance, Gaussian over Cauchy, with {}", sampler.name());
         let mut chart = LineChart::new(title, Axis::log("V Gaussian / V Cauchy"), share());
         let pair = ModelKind::ALL.map(|model| (model, sampler));
@@ -230,9 +229,9 @@ fn bounds(of: &View<'_>) -> Vec<Figure> {
         let mut chart = LineChart::new(title, Axis::linear("θₒ (°)"), Axis::linear("largest weight / bound"));
         for sampler in Sampler::ALL {
             let share = |cell: &Cell| {
-                let theta_o = f64::from(cell.theta_o_deg).to_radians();
-                let bound = weight_bound(model, sampler, &cell.params().ok()?, theta_o)?;
-                Some(of.measured(cell.index, (model, sampler), CONSTANT).max_weight / bound)
+                let share = of.measured(cell.index, (model, sampler), CONSTANT).max_weight
+                    / of.bounds.of(cell.index, model, sampler);
+                share.is_finite().then_some(share)
             };
             let worst = |theta_o: &f32| {
                 let cells = of.each_cell().filter(|cell| cell.theta_o_deg == *theta_o);

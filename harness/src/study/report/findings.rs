@@ -1,7 +1,7 @@
 //! The answer in sentences. Every word that judges follows from figures and their errors.
 
 use super::charts::MANY;
-use super::view::{Estimator, Sign, View, default_matched};
+use super::view::{Estimator, Sign, TOLD, View};
 use crate::difference::{Summary, Width, albedo_ratio};
 use crate::efficiency::ModelKind;
 use crate::stats::Estimate;
@@ -14,11 +14,6 @@ const CAUCHY: ModelKind = ModelKind::Cauchy;
 /// The sentences, in the order in which one would ask.
 pub(super) fn findings(of: &View<'_>) -> Vec<String> {
     [worth(of), Some(which(of)), Some(looks(of)), Some(cost(of)), where_not(of)].into_iter().flatten().collect()
-}
-
-/// The samplers that are told apart in sentences: the published one, and the matched one that renderers take.
-fn told() -> impl Iterator<Item = Sampler> {
-    [Some(Sampler::Ou), default_matched()].into_iter().flatten()
 }
 
 /// `1.39×`, with its standard error if that shows.
@@ -67,7 +62,7 @@ fn worth(of: &View<'_>) -> Option<String> {
                 .collect();
         (!parts.is_empty()).then(|| format!("with `{}` it has {}", sampler.name(), parts.join(", ")))
     };
-    let parts: Vec<String> = told().filter_map(sentence).collect();
+    let parts: Vec<String> = TOLD.into_iter().filter_map(sentence).collect();
     (!parts.is_empty()).then(|| {
         format!(
             "Is the Cauchy model worth it? Against the Gaussian model in equal time, {MANY} samples a gather point, means \
@@ -173,14 +168,14 @@ fn cost(of: &View<'_>) -> String {
     format!(
         "What does it cost? Time of a sample on this machine, eight lanes, one thread, at {MANY} (1) samples a gather \
          point: {}.",
-        told().map(part).collect::<Vec<_>>().join("; ")
+        TOLD.map(part).join("; ")
     )
 }
 
 /// In which conditions not?
 fn where_not(of: &View<'_>) -> Option<String> {
     let mut parts = Vec::new();
-    for sampler in told() {
+    for sampler in TOLD {
         let pair = [GAUSSIAN, CAUCHY].map(|model| (model, sampler));
         let mut words = Vec::new();
         for (light, name) in of.lights.iter().enumerate() {

@@ -1,16 +1,12 @@
 //! Tables that only the report has.
 
 use super::super::Sampler;
+use super::super::summary::shown;
 use super::super::times::PER_POINT;
 use super::view::{View, ess};
 use crate::efficiency::ModelKind;
-use crate::stats::Estimate;
 use crate::table::{Table, number};
 use serde_json::Value;
-
-fn shown(of: Estimate) -> String {
-    number::with_error(of.value, of.standard_error)
-}
 
 /// V, effective samples, divergence and largest weight of every sampler under every light.
 pub(super) fn quality(of: &View<'_>) -> Table {

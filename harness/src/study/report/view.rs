@@ -1,7 +1,7 @@
 //! What a report asks of a study: variances, gains and times by model, sampler and light.
 
 use super::super::cell::Measured;
-use super::super::rows::place;
+use super::super::rows::{Bounds, place};
 use super::super::summary::{Gain, gain, in_equal_time};
 use super::super::{Cell, Grid, Sampler};
 use crate::difference::Difference;
@@ -17,6 +17,7 @@ pub(super) type Estimator = (ModelKind, Sampler);
 pub(super) struct View<'a> {
     pub(super) grid: Grid,
     pub(super) cells: &'a [Vec<Measured>],
+    pub(super) bounds: &'a Bounds,
     /// Names of the lights.
     pub(super) lights: &'a [String],
     pub(super) times: &'a Times,
@@ -43,10 +44,9 @@ impl Sign {
     }
 }
 
-/// The matched sampler a renderer takes unless it knows better; `None` where the study has none.
-pub(super) fn default_matched() -> Option<Sampler> {
-    Sampler::ALL.into_iter().find(|sampler| sampler.name() == "matched")
-}
+/// The samplers that are told apart in sentences: the published one, and the matched one that a renderer takes unless it
+/// knows better.
+pub(super) const TOLD: [Sampler; 2] = [Sampler::Ou, Sampler::Matched];
 
 impl<'a> View<'a> {
     /// Names of the lights, to be set under bars: a file's in words.
@@ -67,21 +67,10 @@ impl<'a> View<'a> {
         (0..self.cells.len()).map(|index| self.grid.cell(index))
     }
 
-    /// V of `base` over V of `other` over the cells that are kept; `None` if none is sure.
-    pub(super) fn gain_where(
-        &self,
-        base: Estimator,
-        other: Estimator,
-        light: usize,
-        keep: impl Fn(&Cell) -> bool,
-    ) -> Option<Gain> {
-        let cells = self.each_cell().filter(|cell| keep(cell));
-        gain(cells.map(|cell| [self.v(cell.index, base, light), self.v(cell.index, other, light)]))
-    }
-
-    /// The same over all cells.
+    /// V of `base` over V of `other`; `None` if no cell is sure.
     pub(super) fn gain(&self, base: Estimator, other: Estimator, light: usize) -> Option<Gain> {
-        self.gain_where(base, other, light, |_| true)
+        let places = 0..self.cells.len();
+        gain(places.map(|index| [self.v(index, base, light), self.v(index, other, light)]))
     }
 
     /// Geometric mean of V over the cells that are kept.
