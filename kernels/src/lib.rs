@@ -89,7 +89,7 @@ pub use frame::{FiberFrame, FiberFrame8, Vec3x, Vec3x8};
 pub use hair::{GRAZING, Hair, HairGather, HairLobes, HairMaterial, HairPoint, HairSampler};
 pub use lanes::{Broadcast, Lanes, lanes3, store3, store4};
 pub use lobe::{Lobe, LobeMask, PerLobe};
-pub use matched::{Matched, MatchedBell, MatchedGather, MatchedMaterial, MatchedSide};
+pub use matched::{Matched, MatchedBell, MatchedGather, MatchedMaterial};
 pub use model::{Drawn, Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Model, Sample, Sample8};
 pub use params::{ArtistControls, Glints, HairDesc, HairParams, Highlight, MAX_WIDTH, MIN_WIDTH, Transmission};
 

@@ -6,7 +6,7 @@ mod gather;
 mod sampling;
 
 pub use bell::MatchedBell;
-pub use gather::{MatchedGather, MatchedMaterial, MatchedSide};
+pub use gather::{MatchedGather, MatchedMaterial};
 
 use crate::hair::{Place, Shapes, albedo, drawn, evaluated, mixture, per_lobe, times};
 use crate::model::{Drawn, Eval, Hit, LobeEval};
@@ -31,7 +31,7 @@ use wide::f32x8;
 /// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it; the weight is
 ///   good to 2e-6. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor is a lobe drawn whose energy is
 ///   below 1e-36 of the largest.
-/// - Domain: `BANDS` is 4, 6 or 12.
+/// - Domain: `BANDS` is 5, 9 or 25.
 /// - Source: ours; section 3.2 of Ou et al. 2012 is what it replaces.
 ///
 /// # What it buys, and what it costs
@@ -61,7 +61,7 @@ use wide::f32x8;
 /// assert_eq!(hair, matched); // one model, two samplers
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Matched<B, const BANDS: usize = 6>(pub B);
+pub struct Matched<B, const BANDS: usize = 9>(pub B);
 
 impl<B: MatchedBell, const BANDS: usize> Model for Matched<B, BANDS> {
     type Params = HairParams;

@@ -35,28 +35,26 @@ crate::lane_struct! {
     }
 }
 
-/// The bands on one side of the normal plane, from the pole to the plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MatchedSide<C, const N: usize> {
-    /// W in each band.
-    pub height: [C; N],
-    /// Integral of M up to a band's end towards the pole, for each lobe.
-    pub integral: [[C; 4]; N],
-    /// Integral of `M W` over the side.
-    pub area: [C; 4],
-}
-
-/// The constants of a gather point with a matched sampler of `N` bands a side.
+/// The constants of a gather point with a matched sampler of `N` bands.
 ///
-/// Arrays of four are in the order of [`Lobe`], of two TT and the glints; the side below the normal plane is first.
+/// Arrays of four are in the order of [`Lobe`], of two TT and the glints, of `N` from the lower pole to the upper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchedGather<C, const N: usize> {
     /// The lobes as seen from `wo`.
     pub point: HairPoint<C>,
     /// Origin of the integrals of each longitude.
     pub origin: [C; 4],
-    /// The bands of each side.
-    pub sides: [MatchedSide<C, N>; 2],
+    /// What W is taken for in each band: it ascends to the band in the middle.
+    pub height: [C; N],
+    /// One over it.
+    pub slope: [C; N],
+    /// In each band the integral of a lobe's M is this much more than `slope` times that of `M W` from the nearer pole. Above the
+    /// middle it is the negative integral.
+    pub offset: [[C; 4]; N],
+    /// The same in the middle, with the integral of `M W` from the upper pole.
+    pub offset_above: [C; 4],
+    /// Integral of `M W` from the lower pole up to somewhere in the middle.
+    pub below: [C; 4],
     /// Integral of `M W` over the sphere.
     pub area: [C; 4],
     /// Factor on `M N` of each lobe in the mixture density, but for W.
@@ -128,14 +126,15 @@ fn importance(params: &HairParams) -> [f32; 4] {
     all.map(|i| if i > largest * LEAST_IMPORTANCE { (i / largest) as f32 } else { 0.0 })
 }
 
-/// A longitude, from the lower pole and from the upper one towards the normal plane, side by side.
+/// A longitude, from the lower pole and from the upper one inwards, side by side.
 #[derive(Clone, Copy)]
 struct Longitude<L> {
     shift: L,
     inv_beta: L,
     origin: L,
-    /// Integral of M up to here, and that of `M W` from the pole.
+    /// Integral of M up to here, negative above: it ascends from either pole.
     integral: Pair<L>,
+    /// That of `M W` from the pole.
     area: Pair<L>,
 }
 
@@ -154,22 +153,39 @@ impl<L: Lanes> Longitude<L> {
     fn integral_to<B: MatchedBell>(&self, half_theta_i: f32) -> Pair<L> {
         let end = L::splat(half_theta_i);
         let x = Pair((self.shift - end) * self.inv_beta, (self.shift + end) * self.inv_beta);
-        B::integral(Pair(self.origin, self.origin), x)
+        let Pair(below, above) = B::integral(Pair(self.origin, self.origin), x);
+        Pair(below, -above)
     }
 
-    /// Goes on through a band.
+    /// Goes on through a band; what its line begins with.
     #[inline(always)]
-    fn pass<B: MatchedBell>(&mut self, half_theta_i: f32, height: Pair<L>) {
+    fn pass<B: MatchedBell>(&mut self, half_theta_i: f32, height: Pair<L>, slope: Pair<L>) -> Pair<L> {
+        let offset = self.offset(slope);
         let next = self.integral_to::<B>(half_theta_i);
         self.area = (next - self.integral).abs().mul_add(height, self.area);
         self.integral = next;
+        offset
+    }
+
+    /// The integral, less a slope times the area.
+    #[inline(always)]
+    fn offset(&self, slope: Pair<L>) -> Pair<L> {
+        (-slope).mul_add(self.area, self.integral)
+    }
+
+    /// Integral of `M W` up to somewhere in the middle, and over the sphere.
+    #[inline(always)]
+    fn join(&self, height: L) -> [L; 2] {
+        let (Pair(from, to), Pair(below, above)) = (self.integral, self.area);
+        let middle = (from + to).abs() * height;
+        [middle.mul_add(L::splat(0.5), below), (below + above) + middle]
     }
 }
 
-/// Runs a body for every band `j` of `N`: straight on, so that what it writes is written where it belongs.
+/// Runs a body for every band `j` of the `n` on a side: straight on, so that what it writes is written where it belongs.
 macro_rules! for_bands {
-    ($j:ident < $n:ident, $body:block) => { for_bands!(@$j $n $body 0 1 2 3 4 5 6 7 8 9 10 11) };
-    (@$j:ident $n:ident $body:block $($i:literal)*) => {
+    ($j:ident < $n:expr, $body:block) => { for_bands!(@$j ($n) $body 0 1 2 3 4 5 6 7 8 9 10 11) };
+    (@$j:ident $n:tt $body:block $($i:literal)*) => {
         $(if $i < $n {
             let $j = $i;
             $body
@@ -177,32 +193,63 @@ macro_rules! for_bands {
     };
 }
 
-/// Both sides, and R, TT and TRT when they have passed them.
+/// What [`MatchedGather`] keeps of the bands.
+struct Chain<L: Lanes, const N: usize> {
+    origin: [L; 3],
+    height: [L::Stored; N],
+    slope: [L::Stored; N],
+    offset: [[L::Stored; 4]; N],
+    offset_above: [L::Stored; 4],
+    below: [L; 3],
+    area: [L; 3],
+}
+
+/// Through all bands, from both poles to the middle.
 #[inline(always)]
-fn sides<B: MatchedBell, L: Lanes, const N: usize>(
-    shift: [L; 3],
-    inv_beta: [L; 3],
-    theta_o: [L; 2],
-) -> ([MatchedSide<L::Stored, N>; 2], [Longitude<L>; 3]) {
-    let mut r = Longitude::at_poles::<B>(shift[0], inv_beta[0]);
-    let mut tt = Longitude::at_poles::<B>(shift[1], inv_beta[1]);
-    let mut trt = Longitude::at_poles::<B>(shift[2], inv_beta[2]);
-    let none = L::splat(0.0).store();
-    let side = MatchedSide { height: [none; N], integral: [[none; 4]; N], area: [none; 4] };
-    let [mut lower, mut upper] = [side; 2];
-    for_bands!(j < N, {
-        let band = &const { bands::<N>() }[j];
-        lower.integral[j] = shared4([r.integral.0, tt.integral.0, trt.integral.0]);
-        upper.integral[j] = shared4([r.integral.1, tt.integral.1, trt.integral.1]);
-        let w = band.residual(theta_o);
-        (lower.height[j], upper.height[j]) = (w.0.store(), w.1.store());
-        r.pass::<B>(band.half_inner, w);
-        tt.pass::<B>(band.half_inner, w);
-        trt.pass::<B>(band.half_inner, w);
+fn chain<B: MatchedBell, L: Lanes, const N: usize>(shift: [L; 3], inv_beta: [L; 3], theta_o: [L; 2]) -> Chain<L, N> {
+    let none = L::splat(0.0);
+    let (mut r, mut tt, mut trt) = (
+        Longitude::at_poles::<B>(shift[0], inv_beta[0]),
+        Longitude::at_poles::<B>(shift[1], inv_beta[1]),
+        Longitude::at_poles::<B>(shift[2], inv_beta[2]),
+    );
+    let mut chain = Chain {
+        origin: [r.origin, tt.origin, trt.origin],
+        height: [none.store(); N],
+        slope: [none.store(); N],
+        offset: [[none.store(); 4]; N],
+        offset_above: [none.store(); 4],
+        below: [none; 3],
+        area: [none; 3],
+    };
+    let (mut height, mut slope) = (Pair(none, none), Pair::splat(f32::MAX));
+    for_bands!(j < N / 2, {
+        let band = &const { bands(N) }[j];
+        let above = N - 1 - j;
+        // Heights ascend inwards, though W may have its mode before the middle.
+        let cos_sq = band.cos_sq_theta_d(theta_o);
+        height = height.max(Pair::splat(band.cos_sq_theta_i()) / cos_sq);
+        slope = slope.min(cos_sq * Pair::splat(1.0 / band.cos_sq_theta_i()));
+        (chain.height[j], chain.height[above]) = (height.0.store(), height.1.store());
+        (chain.slope[j], chain.slope[above]) = (slope.0.store(), slope.1.store());
+        let r = r.pass::<B>(band.half_inner, height, slope);
+        let tt = tt.pass::<B>(band.half_inner, height, slope);
+        let trt = trt.pass::<B>(band.half_inner, height, slope);
+        chain.offset[j] = shared4([r.0, tt.0, trt.0]);
+        chain.offset[above] = shared4([r.1, tt.1, trt.1]);
     });
-    lower.area = shared4([r.area.0, tt.area.0, trt.area.0]);
-    upper.area = shared4([r.area.1, tt.area.1, trt.area.1]);
-    ([lower, upper], [r, tt, trt])
+    let cos_sq = const { bands(N) }[N / 2].cos_sq_theta_d(theta_o).0;
+    let height = height.0.max(height.1).max(L::splat(1.0) / cos_sq);
+    let slope = slope.0.min(slope.1).min(cos_sq);
+    (chain.height[N / 2], chain.slope[N / 2]) = (height.store(), slope.store());
+    let slope = Pair(slope, slope);
+    let offset = [r.offset(slope), tt.offset(slope), trt.offset(slope)];
+    chain.offset[N / 2] = shared4([offset[0].0, offset[1].0, offset[2].0]);
+    chain.offset_above = shared4([offset[0].1, offset[1].1, offset[2].1]);
+    let joined = [r.join(height), tt.join(height), trt.join(height)];
+    chain.below = [joined[0][0], joined[1][0], joined[2][0]];
+    chain.area = [joined[0][1], joined[1][1], joined[2][1]];
+    chain
 }
 
 /// The gather point of a material seen from `wo`.
@@ -217,11 +264,10 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
     let point = prepare_point(hair, wo);
     let theta_o = [point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes()];
     let (shift, inv_beta) = (lanes3(&[point.shift[0], point.shift[1], point.shift[2]]), lanes3(&hair.inv_beta));
-    let (sides, [r, tt, trt]) = sides::<B, L, N>(shift, inv_beta, theta_o);
-    let origin = [r.origin, tt.origin, trt.origin];
+    let chain = chain::<B, L, N>(shift, inv_beta, theta_o);
     // The glints share the longitude of TRT.
-    let trt = trt.area.0 + trt.area.1;
-    let total = [r.area.0 + r.area.1, tt.area.0 + tt.area.1, trt, trt];
+    let [r, tt, trt] = chain.area;
+    let total = [r, tt, trt, trt];
 
     // Energies to the scale of the largest area, which may be next to nothing where all lobes lie off the sphere.
     let capacity = [m.capacity[0].lanes(), m.capacity[1].lanes(), m.capacity[2].lanes(), m.capacity[3].lanes()];
@@ -249,8 +295,12 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
 
     MatchedGather {
         point,
-        origin: shared4(origin),
-        sides,
+        origin: shared4(chain.origin),
+        height: chain.height,
+        slope: chain.slope,
+        offset: chain.offset,
+        offset_above: chain.offset_above,
+        below: shared4(chain.below),
         area: store4(total),
         weight: store4(weight),
         scale: scale.store(),
@@ -282,16 +332,20 @@ impl<C, const N: usize> MatchedGather<C, N> {
         C: Broadcast<L>,
     {
         let across = sin_theta_i.abs();
-        let [below, above] = [&self.sides[0].height, &self.sides[1].height];
-        let (mut lower, mut upper) = (below[0].lanes(), above[0].lanes());
+        let below = sin_theta_i.lt(L::splat(0.0));
+        let mut height = L::select(below, self.height[0].lanes(), self.height[N - 1].lanes());
         let mut j = 1;
-        while j < N {
-            let inside = across.lt(L::splat(const { bands::<N>() }[j].outer));
-            lower = L::select(inside, below[j].lanes(), lower);
-            upper = L::select(inside, above[j].lanes(), upper);
+        while j <= N / 2 {
+            let inside = across.lt(L::splat(const { bands(N) }[j].outer));
+            let next = if j < N / 2 {
+                L::select(below, self.height[j].lanes(), self.height[N - 1 - j].lanes())
+            } else {
+                self.height[j].lanes()
+            };
+            height = L::select(inside, next, height);
             j += 1;
         }
-        L::select(sin_theta_i.lt(L::splat(0.0)), lower, upper)
+        height
     }
 
     /// Factors on `M N W` of a lobe drawn alone, to be applied one after the other: their product may be too large.
@@ -339,11 +393,11 @@ impl<const N: usize> MatchedGather<f32x8, N> {
         MatchedGather {
             point: self.point.lane(lane),
             origin: self.origin.map(at),
-            sides: self.sides.map(|side| MatchedSide {
-                height: side.height.map(at),
-                integral: side.integral.map(|band| band.map(at)),
-                area: side.area.map(at),
-            }),
+            height: self.height.map(at),
+            slope: self.slope.map(at),
+            offset: self.offset.map(|band| band.map(at)),
+            offset_above: self.offset_above.map(at),
+            below: self.below.map(at),
             area: self.area.map(at),
             weight: self.weight.map(at),
             scale: at(self.scale),

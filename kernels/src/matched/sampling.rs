@@ -6,7 +6,7 @@ use crate::lanes::lanes3;
 use crate::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// A quarter of the step between uniform numbers of 24 bits: the share of an angle that is left out at its ends, so that
+/// A quarter of the step between uniform numbers of 24 bits: the share of an integral that is left out at its ends, so that
 /// rounding takes no sample past them, and none to a pole or to where a Gaussian has no density left.
 const LEAST_SHARE: f32 = f32::EPSILON / 8.0;
 
@@ -21,32 +21,22 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let (point, hair) = (&gather.point, &gather.point.lobes);
     let choice = L::choose(xi[0], lanes3(&gather.bounds));
 
-    // Longitude: the number's share of the integral of M W, from the pole of its side, and the band it falls in.
-    let [below, above] = &gather.sides;
+    // Longitude: the number's share of the integral of M W, from the nearer pole. As a function of it the integral of M is the
+    // least of the bands' lines: outwards they are steeper. Above the middle it is the negative integral.
     let total = C::pick_three(&gather.area, choice);
-    let area = zero.max(xi[1].min(one)) * total;
-    let lower = area.lt(C::pick_three(&below.area, choice));
+    let area = xi[1] * total;
+    let lower = area.lt(C::pick_three(&gather.below, choice));
     let area = L::select(lower, area, total - area);
-    let [first, last] = [C::pick_three(&below.integral[0], choice), C::pick_three(&above.integral[0], choice)];
-    // The band's end towards the pole, W in it, and what lies beyond it.
-    let w = L::select(lower, below.height[0].lanes(), above.height[0].lanes());
-    let (mut from, mut height, mut beyond) = (L::select(lower, first, last), w, zero);
-    let (mut end, mut w, mut sum) = (from, height, zero);
+    let mut integral = line::<L, C, N>(gather, choice, lower, area, 0);
     let mut j = 1;
-    while j < N {
-        let [low, high] = [C::pick_three(&below.integral[j], choice), C::pick_three(&above.integral[j], choice)];
-        let next = L::select(lower, low, high);
-        sum = (next - end).abs().mul_add(w, sum);
-        (end, w) = (next, L::select(lower, below.height[j].lanes(), above.height[j].lanes()));
-        let past = sum.lt(area);
-        from = L::select(past, end, from);
-        height = L::select(past, w, height);
-        beyond = L::select(past, sum, beyond);
+    while j <= N / 2 {
+        integral = integral.min(line::<L, C, N>(gather, choice, lower, area, j));
         j += 1;
     }
-    let integral = from + L::negate(lower, beyond - area) / height;
-    let least = (last - first) * c(LEAST_SHARE);
-    let integral = (first + least).max(integral.min(last - least));
+    let [first, minus_last] = [C::pick_three(&gather.offset[0], choice), C::pick_three(&gather.offset[N - 1], choice)];
+    let least = (first + minus_last) * c(-LEAST_SHARE);
+    // The second operand wins over NaN.
+    let integral = L::select(lower, integral, -integral).max(first + least).min(-(minus_last + least));
     let x = B::invert(C::pick_three(&gather.origin, choice), integral);
     let half_theta_i = x.mul_sub(C::pick_three(&hair.beta, choice), C::pick_three(&point.shift, choice));
     let half_theta_i = c(-FRAC_PI_4).max(half_theta_i.min(c(FRAC_PI_4)));
@@ -63,4 +53,21 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let psi = zero.max(psi.min(c(FRAC_PI_2)));
     let (wi, place) = turned(point, choice, half_theta_i, turn, psi);
     (wi, choice, place)
+}
+
+/// The line of band `j` of a side at an area from its pole.
+#[inline(always)]
+fn line<L: Lanes, C: Broadcast<L>, const N: usize>(
+    gather: &MatchedGather<C, N>,
+    choice: L::Choice,
+    lower: L::Mask,
+    area: L,
+    j: usize,
+) -> L {
+    let middle = j == N / 2;
+    let above = if middle { &gather.offset_above } else { &gather.offset[N - 1 - j] };
+    let offset = L::select(lower, C::pick_three(&gather.offset[j], choice), C::pick_three(above, choice));
+    let slope = gather.slope[j].lanes();
+    let slope = if middle { slope } else { L::select(lower, slope, gather.slope[N - 1 - j].lanes()) };
+    slope.mul_add(area, offset)
 }

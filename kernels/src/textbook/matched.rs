@@ -4,15 +4,15 @@ use super::cut::Cut;
 use super::{Angles, Drawn, GRAZING, Parameters, Real, Shape, Textbook, cos_half, wrapped};
 use crate::{Lobe, LobeMask, PerLobe};
 
-/// Most bands, of both sides.
-const MOST: usize = 24;
+/// Most bands.
+const MOST: usize = 25;
 
-/// Sines of the inclinations where the bands of a side end, the pole and the normal plane left out.
+/// Sines of the inclinations where bands end, the pole left out, down to the band in the middle.
 const fn ends(bands: usize) -> &'static [f32] {
     match bands {
-        4 => &[0.96875, 0.875, 0.5],
-        6 => &[0.996, 0.986, 0.951, 0.829, 0.4],
-        _ => &[0.9983, 0.9969, 0.9943, 0.9897, 0.9811, 0.9655, 0.937, 0.885, 0.79, 0.617, 0.3],
+        5 => &[0.935, 0.598],
+        9 => &[0.979, 0.936, 0.803, 0.395],
+        _ => &[0.9956, 0.993, 0.9886, 0.9817, 0.9705, 0.9525, 0.9235, 0.8767, 0.8014, 0.68, 0.4844, 0.1694],
     }
 }
 
@@ -21,7 +21,7 @@ const fn ends(bands: usize) -> &'static [f32] {
 /// ```
 /// use hairis::{HairParams, textbook::{MatchedTextbook, Parameters, Shape}};
 /// let parameters = Parameters::<f64>::from(&HairParams::brown());
-/// let hair = MatchedTextbook::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0], 6);
+/// let hair = MatchedTextbook::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0], 9);
 /// let drawn = hair.sample([0.1, 0.4, 0.7]);
 /// assert!((hair.pdf(drawn.wi) / drawn.pdf - 1.0).abs() < 1e-9);
 /// ```
@@ -29,7 +29,7 @@ const fn ends(bands: usize) -> &'static [f32] {
 pub struct MatchedTextbook<T> {
     book: Textbook<T>,
     longitudinal: PerLobe<Cut<T>>,
-    /// Number of bands, from the lower pole to the upper, the sines they lie between, and W in each.
+    /// Number of bands, from the lower pole to the upper, the sines they lie between, and what W is taken for in each.
     bands: usize,
     sines: [T; MOST + 1],
     heights: [T; MOST],
@@ -50,7 +50,7 @@ fn w<T: Real>(theta_i: T, theta_o: T) -> T {
 }
 
 impl<T: Real> MatchedTextbook<T> {
-    /// What is constant for `parameters` and `wo`, with 4, 6 or 12 bands a side.
+    /// What is constant for `parameters` and `wo`, with 5, 9 or 25 bands.
     #[inline]
     #[must_use]
     pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3], bands: usize) -> Self {
@@ -61,7 +61,7 @@ impl<T: Real> MatchedTextbook<T> {
         let transmission = Cut::new(shape, zero, T::PI / p.gamma_tt);
         let glint = Cut::new(shape, -p.phi_g / p.gamma_g, (T::PI - p.phi_g) / p.gamma_g);
         let side = ends(bands);
-        let bands = 2 * side.len() + 2;
+        let bands = 2 * side.len() + 1;
         let (mut sines, mut heights) = ([zero; MOST + 1], [zero; MOST]);
         (sines[0], sines[bands]) = (-one, one);
         for (j, end) in side.iter().enumerate() {
@@ -69,6 +69,11 @@ impl<T: Real> MatchedTextbook<T> {
         }
         for (height, ends) in heights.iter_mut().zip(sines[..=bands].windows(2)) {
             *height = w((half * (ends[0] + ends[1])).asin(), book.theta_o);
+        }
+        // They ascend to the band in the middle.
+        for j in 1..=side.len() {
+            heights[j] = heights[j].max(heights[j - 1]);
+            heights[bands - 1 - j] = heights[bands - 1 - j].max(heights[bands - j]);
         }
         let mean = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / number(3.0);
         let trt = mean(p.intensity_trt);
@@ -118,7 +123,7 @@ impl<T: Real> MatchedTextbook<T> {
 
     /// The band of an inclination, by its sine.
     fn band(&self, sin_theta_i: T) -> usize {
-        // On the lower side an end belongs to the band below it, as does the plane to the band above.
+        // An end belongs to the band towards the pole.
         let below = |j: &usize| {
             if self.sines[*j] < T::default() { sin_theta_i <= self.sines[*j] } else { sin_theta_i < self.sines[*j] }
         };

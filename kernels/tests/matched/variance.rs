@@ -160,12 +160,12 @@ fn variance_falls_by_what_is_promised() {
     let (ou, few, usual, many) = samplers();
     let ou = over_grid(ou, published, &[]);
     let gains = [
-        gain("4 bands", &ou, &over_grid(few, matched::<4>, &jumps(4))),
-        gain("6 bands", &ou, &over_grid(usual, matched::<6>, &jumps(6))),
-        gain("12 bands", &ou, &over_grid(many, matched::<12>, &jumps(12))),
+        gain("5 bands", &ou, &over_grid(few, matched::<5>, &jumps(5))),
+        gain("9 bands", &ou, &over_grid(usual, matched::<9>, &jumps(9))),
+        gain("25 bands", &ou, &over_grid(many, matched::<25>, &jumps(25))),
     ];
-    let promised = [[5.0, 2.5], [10.0, 2.5], [20.0, 2.5]];
-    for (bands, (gain, promised)) in [4, 6, 12].into_iter().zip(gains.iter().zip(promised)) {
+    let promised = [[4.0, 2.0], [8.0, 2.5], [20.0, 2.5]];
+    for (bands, (gain, promised)) in [5, 9, 25].into_iter().zip(gains.iter().zip(promised)) {
         assert!(gain[0] >= promised[0] && gain[1] >= promised[1], "{bands} bands gain {gain:?}, not {promised:?}");
     }
 }
