@@ -193,7 +193,7 @@ macro_rules! for_bands {
     };
 }
 
-/// What [`MatchedGather`] keeps of the bands.
+/// What [`MatchedGather`] keeps of the bands; arrays of three are R, TT and TRT.
 struct Chain<L: Lanes, const N: usize> {
     origin: [L; 3],
     height: [L::Stored; N],

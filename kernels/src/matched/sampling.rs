@@ -2,7 +2,7 @@
 
 use super::{MatchedBell, MatchedGather};
 use crate::hair::{Place, Turn, turned};
-use crate::lanes::lanes3;
+use crate::lanes::{lanes3, pair::Pair};
 use crate::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -37,9 +37,6 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let least = (first + minus_last) * c(-LEAST_SHARE);
     // The second operand wins over NaN.
     let integral = L::select(lower, integral, -integral).max(first + least).min(-(minus_last + least));
-    let x = B::invert(C::pick_three(&gather.origin, choice), integral);
-    let half_theta_i = x.mul_sub(C::pick_three(&hair.beta, choice), C::pick_three(&point.shift, choice));
-    let half_theta_i = c(-FRAC_PI_4).max(half_theta_i.min(c(FRAC_PI_4)));
 
     // Azimuth: TT's runs from its centre outwards, that of a glint from phi = 0.
     let turn = Turn::of(xi[2]);
@@ -47,7 +44,12 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let share = L::select(is_glint, one - turn.across, turn.across);
     let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON / 2.0)));
     let (mass, from) = (C::pick_pair(&gather.azimuth_mass, choice), C::pick_pair(&gather.azimuth_from, choice));
-    let y = B::invert(C::pick_pair(&gather.azimuth_origin, choice), share.mul_add(mass, from));
+
+    // Side by side.
+    let origin = Pair(C::pick_three(&gather.origin, choice), C::pick_pair(&gather.azimuth_origin, choice));
+    let Pair(x, y) = B::invert(origin, Pair(integral, share.mul_add(mass, from)));
+    let half_theta_i = x.mul_sub(C::pick_three(&hair.beta, choice), C::pick_three(&point.shift, choice));
+    let half_theta_i = c(-FRAC_PI_4).max(half_theta_i.min(c(FRAC_PI_4)));
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::pick_pair(&hair.half_gamma, choice), center);
     let psi = zero.max(psi.min(c(FRAC_PI_2)));
