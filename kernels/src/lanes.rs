@@ -128,6 +128,12 @@ pub fn lanes3<L: Lanes, C: Broadcast<L>>(x: &[C; 3]) -> [L; 3] {
     [x[0].lanes(), x[1].lanes(), x[2].lanes()]
 }
 
+/// The four numbers of `x`, read as lanes.
+#[inline(always)]
+pub(crate) fn lanes4<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> [L; 4] {
+    [x[0].lanes(), x[1].lanes(), x[2].lanes(), x[3].lanes()]
+}
+
 /// The three lanes of `x` in the form they are kept in.
 #[inline(always)]
 pub fn store3<L: Lanes>(x: [L; 3]) -> [L::Stored; 3] {

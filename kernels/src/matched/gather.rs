@@ -3,7 +3,7 @@
 use super::MatchedBell;
 use super::bands::bands;
 use crate::hair::{prepare_point, selection, times};
-use crate::lanes::{lanes3, pair::Pair, store3, store4};
+use crate::lanes::{lanes3, lanes4, pair::Pair, store3, store4};
 use crate::{Broadcast, HairLobes, HairParams, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
 use core::f32::consts::{FRAC_PI_4, PI};
 use wide::f32x8;
@@ -15,6 +15,9 @@ const LEAST_ENERGY: f32 = 1e-36;
 /// Intensities below this share of the largest are none to the sampler.
 const LEAST_IMPORTANCE: f64 = 1e-25;
 
+/// A channel below this share of the largest has no say in the choice of lobes: the square of its reciprocal is a float.
+const LEAST_CHANNEL: f32 = 1e-18;
+
 crate::lane_struct! {
     /// The constants of a material with a matched sampler.
     ///
@@ -24,8 +27,10 @@ crate::lane_struct! {
         pub lobes: (HairLobes<C>),
         /// Intensity of each lobe, the mean of its RGB, to the scale of the largest.
         pub importance: [C; 4],
-        /// The same times what a lobe integrates to for each unit of its longitude's integral.
-        pub capacity: [C; 4],
+        /// Intensity of each lobe in each channel, to the same scale: the channels of R first.
+        pub intensity: [C; 12],
+        /// What a lobe integrates to, but for its colour, for each unit of its longitude's integral.
+        pub extent: [C; 4],
         /// Integral of the azimuth's bell over one side.
         pub azimuth_mass: [C; 2],
         /// Its integral up to where the side begins.
@@ -100,11 +105,12 @@ impl MatchedMaterial<f32> {
         let [tt, glint] = [from_to(0), from_to(1)];
         // Integrals ascend but for their rounding.
         let azimuth_mass = [tt, glint].map(|[from, to]| 0.0_f32.max(to - from));
-        let importance = importance(params);
+        let intensity = intensity(params);
         Self {
             lobes,
-            importance,
-            capacity: times(extent::<B, f32, f32>(&lobes, azimuth_mass), importance),
+            importance: intensity.map(|rgb| (rgb[0] + rgb[1] + rgb[2]) * (1.0 / 3.0)),
+            intensity: core::array::from_fn(|i| intensity[i / 3][i % 3]),
+            extent: extent::<B, f32, f32>(&lobes, azimuth_mass),
             azimuth_mass,
             azimuth_from: [tt[0], glint[0]],
             azimuth_origin,
@@ -112,18 +118,26 @@ impl MatchedMaterial<f32> {
     }
 }
 
-/// Intensity of each lobe to the scale of the largest.
+/// Intensity of each lobe in each channel, to the scale of the largest mean.
 ///
 /// In double precision: the product of two of the largest legal intensities overflows a float.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "shares of the largest, in [0, 1]")]
-fn importance(params: &HairParams) -> [f32; 4] {
+#[expect(clippy::cast_possible_truncation, reason = "at most 3 times the largest")]
+fn intensity(params: &HairParams) -> [[f32; 3]; 4] {
     let d = params.desc();
-    let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
-    let trt = mean(d.intensity_trt);
-    let all = [mean(d.intensity_r), mean(d.intensity_tt), trt, trt * f64::from(d.intensity_g)];
-    let largest = all.iter().fold(0.0, |a: f64, i| a.max(*i));
-    all.map(|i| if i > largest * LEAST_IMPORTANCE { (i / largest) as f32 } else { 0.0 })
+    let double = |rgb: [f32; 3], factor: f32| rgb.map(|c| f64::from(c) * f64::from(factor));
+    let all = [
+        double(d.intensity_r, 1.0),
+        double(d.intensity_tt, 1.0),
+        double(d.intensity_trt, 1.0),
+        double(d.intensity_trt, d.intensity_g),
+    ];
+    let mean = |rgb: &[f64; 3]| (rgb[0] + rgb[1] + rgb[2]) / 3.0;
+    let largest = all.iter().map(mean).fold(0.0, f64::max);
+    all.map(|rgb| {
+        let seen = mean(&rgb) > largest * LEAST_IMPORTANCE;
+        rgb.map(|c| if seen { (c / largest) as f32 } else { 0.0 })
+    })
 }
 
 /// A longitude, from the lower pole and from the upper one inwards, side by side.
@@ -254,7 +268,7 @@ fn chain<B: MatchedBell, L: Lanes, const N: usize>(shift: [L; 3], inv_beta: [L; 
 
 /// The gather point of a material seen from `wo`.
 #[inline(always)]
-pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
+pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize, const BY_CHANNEL: bool>(
     m: &MatchedMaterial<C>,
     wo: Vec3x<L>,
 ) -> MatchedGather<L::Stored, N> {
@@ -269,27 +283,35 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
     let [r, tt, trt] = chain.area;
     let total = [r, tt, trt, trt];
 
-    // Energies to the scale of the largest area, which may be next to nothing where all lobes lie off the sphere.
-    let capacity = [m.capacity[0].lanes(), m.capacity[1].lanes(), m.capacity[2].lanes(), m.capacity[3].lanes()];
+    // To the scale of the largest area, which may be next to nothing where all lobes lie off the sphere.
+    let mut importance = lanes4(&m.importance);
+    let mut size = lanes4(&m.extent);
     let mut largest = zero;
     let mut l = 0;
     while l < 4 {
-        largest = largest.max(L::keep(zero.lt(capacity[l]), total[l]));
+        largest = largest.max(L::keep(zero.lt(importance[l] * size[l]), total[l]));
         l += 1;
     }
     let scale = L::select(zero.lt(largest), c(1.0) / largest, zero);
-    let mut energy = [zero; 4];
     l = 0;
     while l < 4 {
-        let e = capacity[l] * (total[l] * scale);
-        energy[l] = L::keep(c(LEAST_ENERGY).lt(e), e);
+        size[l] = size[l] * (total[l] * scale);
+        l += 1;
+    }
+    if BY_CHANNEL {
+        importance = by_channel::<L, C>(size, &m.intensity);
+    }
+    let mut energy = times(importance, size);
+    l = 0;
+    while l < 4 {
+        energy[l] = L::keep(c(LEAST_ENERGY).lt(energy[l]), energy[l]);
         l += 1;
     }
     let (p, bounds, inv_total) = selection(energy);
     let mut weight = [zero; 4];
     l = 0;
     while l < 4 {
-        weight[l] = L::keep(zero.lt(energy[l]), m.importance[l].lanes() * inv_total);
+        weight[l] = L::keep(zero.lt(energy[l]), importance[l] * inv_total);
         l += 1;
     }
 
@@ -310,6 +332,36 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>
         azimuth_from: spread2::<L, C>(&m.azimuth_from),
         azimuth_origin: spread2::<L, C>(&m.azimuth_origin),
     }
+}
+
+/// The importance of lobes of these sizes that lets each have the root of the sum of its squared shares of the channels.
+#[inline(always)]
+fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [L; 4] {
+    let zero = L::splat(0.0);
+    let (mut total, mut most) = ([zero; 3], zero);
+    let mut c = 0;
+    while c < 3 {
+        let mut l = 0;
+        while l < 4 {
+            total[c] = intensity[3 * l + c].lanes().mul_add(size[l], total[c]);
+            l += 1;
+        }
+        most = most.max(total[c]);
+        c += 1;
+    }
+    let mut sum = [zero; 4];
+    c = 0;
+    while c < 3 {
+        let relative = L::keep((most * L::splat(LEAST_CHANNEL)).lt(total[c]), most / total[c]);
+        let mut l = 0;
+        while l < 4 {
+            let share = intensity[3 * l + c].lanes() * relative;
+            sum[l] = share.mul_add(share, sum[l]);
+            l += 1;
+        }
+        c += 1;
+    }
+    [sum[0].sqrt(), sum[1].sqrt(), sum[2].sqrt(), sum[3].sqrt()]
 }
 
 /// R, TT, TRT, and for the glints TRT again.

@@ -38,6 +38,8 @@ pub struct MatchedTextbook<T> {
     /// TT's azimuth from its centre to one side, and a glint's from `phi = 0` to pi.
     transmission: Cut<T>,
     glint: Cut<T>,
+    /// What each lobe integrates to, but for its colour, and with the mean of its channels.
+    extents: PerLobe<T>,
     energies: PerLobe<T>,
     probabilities: PerLobe<T>,
 }
@@ -47,6 +49,17 @@ fn w<T: Real>(theta_i: T, theta_o: T) -> T {
     let cos_theta_d = (T::from_f64(0.5) * (theta_o - theta_i)).cos();
     let ratio = theta_i.cos().max(T::default()) / cos_theta_d;
     if cos_theta_d > T::default() { ratio * ratio } else { T::default() }
+}
+
+/// The share of each in the sum; 0 where there is none.
+fn shares<T: Real>(of: &PerLobe<T>) -> PerLobe<T> {
+    let zero = T::default();
+    let total = Lobe::ALL.into_iter().fold(zero, |sum, lobe| sum + of[lobe]);
+    let mut shares = PerLobe::default();
+    for lobe in Lobe::ALL {
+        shares[lobe] = if total > zero { of[lobe] / total } else { zero };
+    }
+    shares
 }
 
 impl<T: Real> MatchedTextbook<T> {
@@ -94,6 +107,7 @@ impl<T: Real> MatchedTextbook<T> {
             areas: PerLobe([[zero; MOST + 1]; 4]),
             transmission,
             glint,
+            extents: PerLobe::default(),
             energies: PerLobe::default(),
             probabilities: PerLobe::default(),
         };
@@ -112,13 +126,35 @@ impl<T: Real> MatchedTextbook<T> {
             this.areas[lobe] = areas;
             // Nothing is drawn from a bell that is 0 all over the sphere.
             let longitude = number(2.0) * p.beta[i] * if cut.area > zero { this.areas[lobe][bands] } else { zero };
-            this.energies[lobe] = intensity[lobe] * azimuth[lobe] * longitude;
+            this.extents[lobe] = azimuth[lobe] * longitude;
+            this.energies[lobe] = intensity[lobe] * this.extents[lobe];
         }
-        let total = Lobe::ALL.into_iter().fold(zero, |sum, lobe| sum + this.energies[lobe]);
-        for lobe in Lobe::ALL {
-            this.probabilities[lobe] = if total > zero { this.energies[lobe] / total } else { zero };
-        }
+        this.probabilities = shares(&this.energies);
         this
+    }
+
+    /// The same with lobes chosen by their shares of each channel.
+    #[inline]
+    #[must_use]
+    pub fn by_channel(self) -> Self {
+        let p = &self.book.parameters;
+        let glint = p.intensity_trt.map(|i| i * p.intensity_g);
+        let intensity = PerLobe([p.intensity_r, p.intensity_tt, p.intensity_trt, glint]);
+        let mut sums = PerLobe([T::default(); 4]);
+        for channel in 0..3 {
+            let mut energies = PerLobe::default();
+            for lobe in Lobe::ALL {
+                energies[lobe] = intensity[lobe][channel] * self.extents[lobe];
+            }
+            let shares = shares(&energies);
+            for lobe in Lobe::ALL {
+                sums[lobe] = sums[lobe] + shares[lobe] * shares[lobe];
+            }
+        }
+        for lobe in Lobe::ALL {
+            sums[lobe] = sums[lobe].sqrt();
+        }
+        Self { probabilities: shares(&sums), ..self }
     }
 
     /// The band of an inclination, by its sine.
@@ -151,21 +187,24 @@ impl<T: Real> MatchedTextbook<T> {
         self.probabilities
     }
 
-    /// What no weight exceeds, the mean of its three channels, of the lobes in `mask`: the sum of their energies times the
-    /// largest ratio of W to what it is taken for in a band.
+    /// What no weight exceeds, the mean of its three channels, of the lobes in `mask`: the largest energy over a lobe's
+    /// probability, which is the sum of the energies unless lobes are chosen by channel, times the largest ratio of W to what
+    /// it is taken for in a band.
     #[inline]
     #[must_use]
     pub fn weight_bound(&self, mask: LobeMask) -> T {
-        let theta_o = self.book.theta_o;
-        let lobes = Lobe::ALL.into_iter().filter(|l| mask.contains(*l));
-        let sum = lobes.fold(T::default(), |sum, lobe| sum + self.energies[lobe]);
+        let (zero, theta_o) = (T::default(), self.book.theta_o);
+        let lobes = || Lobe::ALL.into_iter().filter(|l| mask.contains(*l) && self.probabilities[*l] > zero);
+        let chosen = lobes().fold(zero, |sum, lobe| sum + self.probabilities[lobe]);
+        let largest =
+            lobes().fold(zero, |most, lobe| most.max(self.energies[lobe] * chosen / self.probabilities[lobe]));
         // W has one mode, between the normal plane and the pole away from wo.
         let mode = self.mode();
-        let most = (0..self.bands).fold(T::default(), |most, j| {
+        let most = (0..self.bands).fold(zero, |most, j| {
             let [from, to] = [j, j + 1].map(|j| self.sines[j].asin());
             most.max(w(mode.max(from).min(to), theta_o) / self.heights[j])
         });
-        sum * most
+        largest * most
     }
 
     /// Where W is largest: `ln W` is concave, as W is at most 4.

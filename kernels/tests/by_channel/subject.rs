@@ -1,0 +1,25 @@
+//! The model under test: the published one with its matched sampler, lobes chosen by channel.
+
+use hairis::textbook::{MatchedTextbook, Parameters, Shape};
+use hairis::{Gaussian, Matched};
+
+/// The model.
+pub(crate) type Tested = Matched<Gaussian, 9, true>;
+/// Its twin.
+pub(crate) type Oracle = MatchedTextbook<f64>;
+
+/// Densities below this are compared absolutely: a Gaussian, and with it the density, is cut to 0 at `2^-115` of its peak.
+pub(crate) const PDF_FLOOR: f64 = 1e-20;
+
+/// Whether the density vanishes where the model does.
+pub(crate) const MATCHED: bool = true;
+
+/// Every form of the model, with its factor on the widths.
+pub(crate) fn subjects() -> Vec<(Tested, f32)> {
+    vec![(Matched(Gaussian), 1.0)]
+}
+
+/// The twin for these parameters at the gather point of `wo`.
+pub(crate) fn twin(parameters: &Parameters<f64>, wo: [f64; 3]) -> Oracle {
+    MatchedTextbook::prepare(parameters, Shape::Gaussian, wo, 9).by_channel()
+}
