@@ -242,7 +242,10 @@ fn check<M: Model<Params = HairParams>, T: Twin>(
             }
         }
     }
-    println!("{shape}: measured least p-value {least:.2e} of {} tests, level {level:.2e}, {least_at}", TESTS / (2 * SAMPLERS));
+    println!(
+        "{shape}: measured least p-value {least:.2e} of {} tests, level {level:.2e}, {least_at}",
+        TESTS / (2 * SAMPLERS)
+    );
 }
 
 #[test]
