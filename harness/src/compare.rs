@@ -8,10 +8,11 @@ pub use page::report;
 pub use tables::{Depth, tables};
 
 use crate::agreement::{self, AgreementConfig, AgreementResult};
-use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, ModelKind, SampleCosts};
+use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, ModelKind, SAMPLERS, SampleCosts};
 use crate::light::Environment;
 use crate::machine::Machine;
-use crate::speed::{self, Op, SpeedConfig, SpeedReport};
+use crate::speed::{self, SpeedConfig, SpeedReport};
+use crate::study::output::Times;
 use hairis::ParamError;
 use serde::Serialize;
 
@@ -87,16 +88,15 @@ impl Part {
 pub fn run(config: &CompareConfig<'_>, progress: &(dyn Fn(Part, f64) + Sync)) -> Result<Comparison, ParamError> {
     let timing = if config.quick { SpeedConfig::quick(config.seed) } else { SpeedConfig::full(config.seed) };
     let speed = speed::run(&timing, |done| progress(Part::Speed, done))?;
+    let costs = sample_costs(&Times::measure(config.seed, config.quick));
 
     let errors = if config.quick { AgreementConfig::quick(config.seed) } else { AgreementConfig::full(config.seed) };
     progress(Part::Agreement, 0.0);
     let agreement = agreement::run(&errors)?;
     progress(Part::Agreement, 1.0);
 
-    let variance = EfficiencyConfig {
-        costs: sample_costs(&speed),
-        ..EfficiencyConfig::new(config.seed, config.quick, config.environment)
-    };
+    let variance =
+        EfficiencyConfig { costs: Some(costs), ..EfficiencyConfig::new(config.seed, config.quick, config.environment) };
     let efficiency = efficiency::run(&variance, &|done, total| {
         #[expect(clippy::cast_precision_loss, reason = "counts of cells, below a thousand")]
         progress(Part::Efficiency, done as f64 / total as f64);
@@ -112,16 +112,12 @@ pub fn run(config: &CompareConfig<'_>, progress: &(dyn Fn(Part, f64) + Sync)) ->
 }
 
 /// Samples at a gather point over which its preparation is spread, as in direct lighting.
-const SAMPLES_A_POINT: f64 = 16.0;
+const SAMPLES_A_POINT: usize = 16;
 
-/// Time of a sample on eight lanes, set-up included: a uniform direction is free but for its evaluation.
-fn sample_costs(speed: &SpeedReport) -> Option<SampleCosts> {
-    let ns = |op, model: ModelKind| speed.row(op, model.name(), "eight lanes", speed.detected_level).map(|row| row.ns);
-    let costs = |model| {
-        let setup = ns(Op::Prepare, model)? / SAMPLES_A_POINT;
-        Some([ns(Op::EvalPdf, model)? + setup, ns(Op::Sample, model)? + setup])
-    };
-    Some(SampleCosts { gaussian: costs(ModelKind::Gaussian)?, cauchy: costs(ModelKind::Cauchy)? })
+/// Times of a sample on eight lanes, set-up included.
+fn sample_costs(times: &Times) -> SampleCosts {
+    let of = |model| SAMPLERS.map(|sampler| times.ns(model, sampler, SAMPLES_A_POINT).value);
+    SampleCosts { gaussian: of(ModelKind::Gaussian), cauchy: of(ModelKind::Cauchy) }
 }
 
 impl Comparison {

@@ -20,7 +20,7 @@
 //!
 //! # Another sampler
 //!
-//! is a variant of [`Sampler`], and an arm in each of the two functions at the head of `study/sampler.rs`.
+//! is a variant of [`Sampler`], with its arms in `sampler.rs`.
 
 mod cell;
 mod check;
@@ -30,14 +30,12 @@ pub mod output;
 pub mod part;
 mod report;
 mod rows;
-mod sampler;
 pub mod shard;
 mod summary;
 mod tally;
 mod times;
 
 pub use grid::{Cell, Grid};
-pub use sampler::Sampler;
 pub use shard::Shard;
 
 pub(crate) use summary::{gain, in_equal_time};
@@ -45,6 +43,7 @@ pub(crate) use summary::{gain, in_equal_time};
 use crate::efficiency::{ModelKind, sun};
 use crate::light::{Constant, Environment, Light, Rectangle, Smooth};
 use crate::machine::Machine;
+use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use hairis::{Level, ParamError};
 use part::{Finished, Header};

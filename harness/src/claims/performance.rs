@@ -2,8 +2,8 @@
 
 use super::claim::{Claim, Figure, Origin, Side, Threshold, Words};
 use crate::efficiency::ModelKind;
+use crate::sampler::Sampler;
 use crate::stats::Estimate;
-use crate::study::Sampler;
 use crate::study::output::Times;
 use crate::study::{Plan, gain, in_equal_time, variances};
 use crate::table::number;

@@ -4,8 +4,8 @@ use super::claim::{Claim, Figure, Side, Threshold, Words, geometric_mean, larges
 use super::hair::Found;
 use super::{Cells, hair_of};
 use crate::efficiency::ModelKind;
+use crate::sampler::Sampler;
 use crate::stats::Estimate;
-use crate::study::Sampler;
 use crate::study::{Budget, Cell, Grid, Plan, variances};
 use hairis::ParamError;
 

@@ -1,9 +1,9 @@
 //! The plots of a comparison.
 
 use super::Comparison;
-use crate::efficiency::{ModelKind, Sampler};
+use crate::efficiency::{ModelKind, SAMPLERS};
 use crate::figures;
-use crate::plot::{Axis, Bar, BarChart, LineChart, Point, Reference, Series};
+use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
 use crate::report::Figure;
 use crate::sequence::{SequenceKind, XiSource};
 use crate::speed::Op;
@@ -74,8 +74,8 @@ pub(super) fn widths(of: &Comparison) -> Vec<Figure> {
                 Axis::linear("β_R (°)").from_zero(),
                 Axis::log("relative variance of one sample V"),
             );
-            for model in ModelKind::ALL {
-                for sampler in Sampler::ALL {
+            for (dash, model) in ModelKind::ALL.into_iter().enumerate() {
+                for sampler in SAMPLERS {
                     let rows = of
                         .efficiency
                         .beta_sweep
@@ -83,7 +83,8 @@ pub(super) fn widths(of: &Comparison) -> Vec<Figure> {
                         .filter(|row| (row.model, row.sampler) == (model, sampler) && row.theta_o_deg == *theta_o);
                     let points = rows
                         .map(|row| Point::new(f64::from(row.beta_r_deg), row.v.value).with_error(row.v.standard_error));
-                    chart = chart.series(Series::new(format!("{}, {}", model.name(), sampler.name()), points));
+                    let series = Series::new(format!("{}, {}", model.name(), sampler.name()), points);
+                    chart = chart.series(series.styled(sampler.color(), Dash::of(dash)));
                 }
             }
             Figure::new(
@@ -112,8 +113,8 @@ pub(super) fn convergence(of: &Comparison) -> Vec<Figure> {
             let title = format!("Convergence, {} model, {light}", model.name());
             let mut chart = LineChart::new(title, Axis::log("samples N"), Axis::log("root mean square relative error"));
             let mut first = None;
-            for sampler in Sampler::ALL {
-                for sequence in SequenceKind::ALL {
+            for sampler in SAMPLERS {
+                for (dash, sequence) in SequenceKind::ALL.into_iter().enumerate() {
                     let points: Vec<Point> = of
                         .efficiency
                         .convergence
@@ -126,7 +127,8 @@ pub(super) fn convergence(of: &Comparison) -> Vec<Figure> {
                             Point::new(n, p.rms.value).with_error(p.rms.standard_error)
                         })
                         .collect();
-                    chart = chart.series(Series::new(format!("{}, {}", sampler.name(), sequence.name()), points));
+                    let series = Series::new(format!("{}, {}", sampler.name(), sequence.name()), points);
+                    chart = chart.series(series.styled(sampler.color(), Dash::of(dash)));
                 }
             }
             if let Some(through) = first {

@@ -2,7 +2,7 @@
 
 use super::Comparison;
 use crate::agreement::{Quantity, Region};
-use crate::efficiency::{ModelKind, Row, Sampler};
+use crate::efficiency::{MisRow, ModelKind, Row, SAMPLERS, Technique};
 use crate::sequence::SequenceKind;
 use crate::speed::Op;
 use crate::stats::Estimate;
@@ -36,7 +36,7 @@ pub fn tables(of: &Comparison, depth: Depth) -> Tables {
         efficiency.push(correlated(of));
         efficiency.extend([effective(of), samples(of), self::efficiency(of)]);
     }
-    efficiency.push(light_sampling(of));
+    efficiency.push(light_sampling(of, depth));
     let mut speed: Vec<Table> = ModelKind::ALL.iter().map(|model| speed(of, *model, depth)).collect();
     speed.push(threads(of));
     Tables { speed, agreement: vec![agreement(of, depth)], efficiency }
@@ -140,54 +140,49 @@ fn reference(of: &Comparison) -> Table {
         .number("recorded")
         .number("z");
     for row in &of.efficiency.reference_v {
-        let missing = String::new;
         table.push([
             row.model.name().to_owned(),
             row.sampler.name().to_owned(),
             number::plain(row.theta_o_deg, 3),
             estimate(&row.v),
             number::plain(row.quadrature, 4),
-            row.recorded.map_or_else(missing, |v| number::plain(v, 3)),
-            row.z_recorded.map_or_else(missing, |z| format!("{z:+.1}")),
+            row.recorded.map_or_else(String::new, |v| number::plain(v, 3)),
+            format!("{:+.1}", row.z_quadrature),
         ]);
     }
-    table.note("V is the variance of one sample over the squared mean; z is the distance from the recorded figure in standard errors.")
+    table.note("V is the variance of one sample over the squared mean; z is its distance from the quadrature in standard errors; recorded, where there is one, is another implementation's.")
 }
 
-/// The columns of the tables of variances.
-const ESTIMATORS: [(ModelKind, Sampler); 4] = [
-    (ModelKind::Gaussian, Sampler::Uniform),
-    (ModelKind::Gaussian, Sampler::Ou),
-    (ModelKind::Cauchy, Sampler::Uniform),
-    (ModelKind::Cauchy, Sampler::Ou),
-];
-
-/// A table with a row for each light and inclination, and a column for each of [`ESTIMATORS`].
+/// A table with a row for each light, inclination and model, and a column for each sampler.
 fn by_light(of: &Comparison, title: &str, sequences: &[SequenceKind], cell: impl Fn(&Row) -> String) -> Table {
     let mut table = Table::new(title).text("light").number("θₒ, °");
     if sequences.len() > 1 {
         table = table.text("numbers");
     }
-    for (model, sampler) in ESTIMATORS {
-        table = table.number(format!("{}, {}", model.name(), sampler.name()));
+    table = table.text("model");
+    for sampler in SAMPLERS {
+        table = table.number(sampler.name());
     }
     let rows = &of.efficiency.rows;
     for light in &of.efficiency.settings.lights {
         for theta_o in of.efficiency.settings.theta_o_deg {
             for sequence in sequences {
-                let mut cells = vec![light.clone(), number::plain(theta_o, 3)];
-                if sequences.len() > 1 {
-                    cells.push(sequence.name().to_owned());
+                for model in ModelKind::ALL {
+                    let mut cells = vec![light.clone(), number::plain(theta_o, 3)];
+                    if sequences.len() > 1 {
+                        cells.push(sequence.name().to_owned());
+                    }
+                    cells.push(model.name().to_owned());
+                    for sampler in SAMPLERS {
+                        let row = rows.iter().find(|row| {
+                            (row.model, row.sampler, row.sequence) == (model, sampler, *sequence)
+                                && row.light == *light
+                                && row.theta_o_deg == theta_o
+                        });
+                        cells.push(row.map_or_else(String::new, &cell));
+                    }
+                    table.push(cells);
                 }
-                for (model, sampler) in ESTIMATORS {
-                    let row = rows.iter().find(|row| {
-                        (row.model, row.sampler, row.sequence) == (model, sampler, *sequence)
-                            && row.light == *light
-                            && row.theta_o_deg == theta_o
-                    });
-                    cells.push(row.map_or_else(String::new, &cell));
-                }
-                table.push(cells);
             }
         }
     }
@@ -238,16 +233,18 @@ fn efficiency(of: &Comparison) -> Table {
         shown.map_or_else(String::new, |e| estimate(&e.scale(1e-6)))
     })
     .note(
-        "Time on eight lanes: an evaluation or a sample, and a sixteenth of the preparation; lights and the drawing of \
-         uniform directions are not charged. The error is that of V alone. Blank where V could not be measured.",
+        "Time of a sample on eight lanes, a sixteenth of the preparation included; lights are not charged. The error is \
+         that of V alone. Blank where V could not be measured.",
     )
 }
 
-fn light_sampling(of: &Comparison) -> Table {
-    let mut names: Vec<&'static str> = Vec::new();
-    for row in &of.efficiency.mis_rows {
-        if !names.contains(&row.name) {
-            names.push(row.name);
+/// The summary leaves out what the table of variances has: each sampler alone.
+fn light_sampling(of: &Comparison, depth: Depth) -> Table {
+    let shown = |row: &&MisRow| -> bool { depth == Depth::Full || !matches!(row.technique, Technique::Bsdf(_)) };
+    let mut names: Vec<&str> = Vec::new();
+    for row in of.efficiency.mis_rows.iter().filter(shown) {
+        if !names.contains(&row.name.as_str()) {
+            names.push(&row.name);
         }
     }
     let mut table = Table::new("Light sampling and multiple importance sampling: relative variance a sample")
@@ -271,20 +268,26 @@ fn light_sampling(of: &Comparison) -> Table {
                 .mis_rows
                 .iter()
                 .find(|row| (row.model, &row.light, row.theta_o_deg.to_bits()) == key && row.name == *name);
-            cells.push(row.map_or_else(String::new, |row| estimate(&row.v)));
+            cells.push(row.map_or_else(String::new, |row| match row.technique {
+                Technique::Bsdf(sampler) if !row.tested => {
+                    format!("≈ {}", number::plain(row.reference.predicted(sampler)[0], 3))
+                }
+                _ => estimate(&row.v),
+            }));
         }
         table.push(cells);
     }
-    table.note("Combined with the power heuristic; every column spends the same number of samples in all.")
+    let alone =
+        if depth == Depth::Full { " ≈ predicted, as above." } else { " Each sampler alone is in the table above." };
+    table.note(format!(
+        "Combined with the power heuristic; every column spends the same number of samples in all.{alone}"
+    ))
 }
 
 /// V of a row as the reference predicts it.
 fn predicted(row: &Row) -> f64 {
-    let [uniform, ou] = row.reference.v;
-    match row.sampler {
-        Sampler::Uniform => uniform,
-        Sampler::Ou => ou,
-    }
+    let [v, _] = row.reference.predicted(row.sampler);
+    v
 }
 
 fn estimate(of: &Estimate) -> String {

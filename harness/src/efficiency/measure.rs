@@ -1,8 +1,9 @@
 //! From contributions to figures: blocks of samples, moments, z-scores.
 
 use super::case::Case;
-use super::{MIN_EFFECTIVE, Reference, Sampler, intensity};
+use super::{MIN_EFFECTIVE, Reference, intensity};
 use crate::light::Light;
+use crate::sampler::Sampler;
 use crate::sequence::{SequenceKind, XiSource};
 use crate::stats::{Estimate, Moments};
 

@@ -1,33 +1,28 @@
 //! Light sampling, and multiple importance sampling with the power heuristic (section 4 of the paper).
 
-use super::Sampler;
+use super::SAMPLERS;
 use super::case::Case;
 use super::measure::{Tally, contribution, independent};
 use super::result::Technique;
 use crate::light::{Light, LightSample};
+use crate::sampler::Sampler;
 use crate::sequence::{Independent, XiSource};
 use crate::stats::Moments;
 use glam::DVec3;
 
 impl Technique {
     /// Every technique, in the order of reports.
-    pub const ALL: [Self; 5] = [
-        Self::Light,
-        Self::Bsdf(Sampler::Uniform),
-        Self::Bsdf(Sampler::Ou),
-        Self::Mis(Sampler::Uniform),
-        Self::Mis(Sampler::Ou),
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        [Self::Light].into_iter().chain(SAMPLERS.map(Self::Bsdf)).chain(SAMPLERS.map(Self::Mis))
+    }
 
     /// Name in reports.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub fn name(self) -> String {
         match self {
-            Self::Light => "light only",
-            Self::Bsdf(Sampler::Uniform) => "uniform only",
-            Self::Bsdf(Sampler::Ou) => "ou only",
-            Self::Mis(Sampler::Uniform) => "uniform + light",
-            Self::Mis(Sampler::Ou) => "ou + light",
+            Self::Light => "light only".to_owned(),
+            Self::Bsdf(sampler) => format!("{} only", sampler.name()),
+            Self::Mis(sampler) => format!("{} + light", sampler.name()),
         }
     }
 

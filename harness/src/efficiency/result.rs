@@ -1,6 +1,7 @@
 //! The tables, as plain data: what reports print and JSON keeps.
 
-use super::{Budget, ModelKind, SampleCosts, Sampler};
+use super::{Budget, EachSampler, ModelKind, SampleCosts, of_sampler};
+use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
 use crate::stats::Estimate;
 use serde::Serialize;
@@ -66,10 +67,18 @@ pub struct Reference {
     pub quadrature_error: f64,
     /// Where it comes from.
     pub method: ReferenceMethod,
-    /// V of one independent sample, `[uniform, ou]`: by quadrature, or for an environment by a stratified run from the light, good to about a percent.
-    pub v: [f64; 2],
-    /// Skewness of one independent sample, `[uniform, ou]`, from the same run; 0 for lights of one brightness, whose V tells all.
-    pub skewness: [f64; 2],
+    /// V of one independent sample, in the order of [`SAMPLERS`](super::SAMPLERS): by quadrature, or for an environment by a stratified run from the light, good to about a percent.
+    pub v: EachSampler<f64>,
+    /// Skewness of one independent sample, in the same order, from the same run; 0 for lights of one brightness, whose V tells all.
+    pub skewness: EachSampler<f64>,
+}
+
+impl Reference {
+    /// V and skewness of one independent sample; not numbers for a sampler that is not compared.
+    #[must_use]
+    pub fn predicted(&self, sampler: Sampler) -> [f64; 2] {
+        [&self.v, &self.skewness].map(|each| of_sampler(each, sampler).unwrap_or(f64::NAN))
+    }
 }
 
 /// V under constant light, three times.
@@ -157,7 +166,7 @@ pub struct MisRow {
     /// How the samples were drawn.
     pub technique: Technique,
     /// Its name in reports.
-    pub name: &'static str,
+    pub name: String,
     /// Name of the light.
     pub light: String,
     /// Inclination of the viewer, in degrees.

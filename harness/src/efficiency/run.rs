@@ -5,8 +5,8 @@ use super::cells::{self, Lit};
 use super::reference::{by_quadrature, of_environment};
 use super::result::{Check, EfficiencyResult, Settings, Technique};
 use super::{
-    BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG, Reference, SUN_DEG,
-    Sampler, THETA_O_DEG, with_beta,
+    BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG, Reference, SAMPLERS,
+    SUN_DEG, THETA_O_DEG, with_beta,
 };
 use crate::light::{Constant, Light, Rectangle, Smooth};
 use crate::sequence::SequenceKind;
@@ -73,17 +73,18 @@ pub fn run(
 
     let case_indices: Vec<usize> = (0..cases.len()).collect();
     let reference_cells = product(&case_indices, &[0, 1, 2, 3, 4]);
-    let estimators = product(&Sampler::ALL, &SequenceKind::ALL);
+    let estimators = product(&SAMPLERS, &SequenceKind::ALL);
     let row_cells = product(&reference_cells, &estimators);
-    let mis_cells = product(&product(&case_indices, &[SUN, AREA, ENVIRONMENT]), &Technique::ALL);
+    let techniques: Vec<Technique> = Technique::all().collect();
+    let mis_cells = product(&product(&case_indices, &[SUN, AREA, ENVIRONMENT]), &techniques);
     let sizes: Vec<usize> = (2..24).map(|k| 1_usize << k).take_while(|n| *n <= config.budget.convergence_n).collect();
     let convergence_cases: Vec<usize> =
         case_indices.iter().copied().filter(|&c| cases[c].theta_o_deg == CONVERGENCE_THETA_O_DEG).collect();
     let convergence_cells =
         |lights: &[usize]| product(&product(&product(&convergence_cases, lights), &estimators), &sizes);
     let sweep_indices: Vec<usize> = (0..sweep_cases.len()).collect();
-    let sweep_cells = product(&sweep_indices, &Sampler::ALL);
-    let v_cells = product(&case_indices, &Sampler::ALL);
+    let sweep_cells = product(&sweep_indices, &SAMPLERS);
+    let v_cells = product(&case_indices, &SAMPLERS);
 
     let total = reference_cells.len()
         + row_cells.len()

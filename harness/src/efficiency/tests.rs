@@ -37,7 +37,7 @@ fn small(map: &Environment) -> EfficiencyConfig<'_> {
 
 fn cases() -> impl Iterator<Item = (Case, Sampler)> {
     ModelKind::ALL.into_iter().flat_map(|model| {
-        Sampler::ALL.into_iter().flat_map(move |sampler| {
+        SAMPLERS.into_iter().flat_map(move |sampler| {
             THETA_O_DEG.map(|theta_o| (Case::new(model, &HairParams::default(), theta_o), sampler))
         })
     })
@@ -73,7 +73,7 @@ fn measured_variance_is_that_of_quadrature_and_of_the_table() {
         let tally = independent(&case, sampler, &Constant::white(), [21, k as u64], 400_000);
         let v = tally.moments.relative_variance();
         let exact = exact_variance(&case, sampler).intensity;
-        // 28 comparisons: 3.5 standard errors is 1.3% of false alarms over all of them.
+        // 36 comparisons: 3.5 standard errors is 1.7% of false alarms over all of them.
         assert!(
             v.z_score(exact).abs() < 3.5,
             "{:?} {sampler:?} {}: {v:?}, quadrature {exact}",
@@ -97,7 +97,7 @@ fn every_estimator_agrees_with_quadrature() {
         for (model, theta_o) in ModelKind::ALL.into_iter().zip(theta_o) {
             let case = Case::new(model, &HairParams::default(), theta_o);
             let reference = by_quadrature(&case, light);
-            for (t, technique) in Technique::ALL.into_iter().enumerate() {
+            for (t, technique) in Technique::all().enumerate() {
                 // 1e6 samples hit the sun about 480 times.
                 let n = if k == 3 { 1_000_000 } else { 200_000 };
                 let tally = mis::estimate(&case, technique, light, [31, (16 * k + t) as u64], n);
@@ -107,13 +107,13 @@ fn every_estimator_agrees_with_quadrature() {
                 if let Technique::Bsdf(sampler) = technique {
                     // The second moment by quadrature too, where hits are not rare.
                     let v = tally.moments.relative_variance();
-                    let exact = reference.v[usize::from(sampler == Sampler::Ou)];
+                    let exact = reference.predicted(sampler)[0];
                     assert!(v.z_score(exact).abs() < 4.5, "{} {}: {v:?}, {exact}", light.name(), technique.name());
                 }
             }
         }
     }
-    assert!(worst > 0.5, "forty z-scores below {worst} are no errors at all");
+    assert!(worst > 0.5, "fifty-six z-scores below {worst} are no errors at all");
 }
 
 #[test]
@@ -154,11 +154,11 @@ fn results_do_not_depend_on_the_number_of_threads() {
 #[test]
 fn a_small_run_has_every_row_and_passes_its_check() {
     let (result, calls) = small_run();
-    assert_eq!(result.reference_v.len(), 16);
-    assert_eq!(result.rows.len(), 240);
-    assert_eq!(result.mis_rows.len(), 120);
-    assert_eq!(result.convergence.len(), 180);
-    assert_eq!(result.beta_sweep.len(), 96);
+    assert_eq!(result.reference_v.len(), 24);
+    assert_eq!(result.rows.len(), 360);
+    assert_eq!(result.mis_rows.len(), 168);
+    assert_eq!(result.convergence.len(), 270);
+    assert_eq!(result.beta_sweep.len(), 144);
     let mut calls = calls.clone();
     calls.sort_unstable();
     assert!(calls.iter().enumerate().all(|(i, call)| *call == (i + 1, calls.len())), "progress skips");
@@ -168,13 +168,13 @@ fn a_small_run_has_every_row_and_passes_its_check() {
     let sun = |r: &&Row| r.light == "sun";
     assert!(result.rows.iter().filter(sun).all(|r| !r.tested), "{check:?}");
     assert!(result.rows.iter().filter(|r| r.light == "constant").all(|r| r.tested), "{check:?}");
-    assert!(check.tests > 450 && check.untested >= 48, "{} {}", check.tests, check.untested);
+    assert!(check.tests > 675 && check.untested >= 72, "{} {}", check.tests, check.untested);
     assert!((4.0..6.0).contains(&check.bound), "{}", check.bound);
 }
 
 #[test]
 fn efficiency_is_one_over_variance_and_time() {
-    let costs = SampleCosts { gaussian: [4.0, 8.0], cauchy: [3.0, 6.0] };
+    let costs = SampleCosts { gaussian: [4.0, 8.0, 16.0], cauchy: [3.0, 6.0, 12.0] };
     let v = Estimate { value: 0.2, standard_error: 0.01 };
     let e = measure::efficiency(&v, costs.ns(ModelKind::Cauchy, Sampler::Ou));
     assert!((e.value * 0.2 * 6e-9 - 1.0).abs() < 1e-12 && (e.standard_error / e.value - 0.05).abs() < 1e-12, "{e:?}");
@@ -205,7 +205,7 @@ fn black_hair_and_black_maps_are_no_failures() {
     serde_json::to_string(&result).expect("serialises");
     let case = Case::new(ModelKind::Gaussian, &HairParams::default(), 45.0);
     let reference = reference::of_environment(&case, &map, 8, 1, 0);
-    for technique in Technique::ALL {
+    for technique in Technique::all() {
         let tally = mis::estimate(&case, technique, &map, [61, 0], 1_000);
         assert_eq!(bias_z(&tally.moments, &reference), 0.0, "{}", technique.name());
     }
@@ -219,8 +219,8 @@ fn the_bias_score_is_normal_where_hits_are_rare() {
         standard_error: 0.0,
         quadrature_error: 0.0,
         method: ReferenceMethod::Quadrature,
-        v: [399.0; 2],
-        skewness: [0.0; 2],
+        v: [399.0; 3],
+        skewness: [0.0; 3],
     };
     let mut xi = Independent::new(51, 0);
     let mut plain = 0;
@@ -243,7 +243,7 @@ fn ten_hits_that_carry_a_fifth_of_the_mean_are_too_few() {
 }
 
 #[test]
-#[ignore = "slow: 150 s of processor time in release"]
+#[ignore = "slow: 100 s of processor time in release"]
 fn a_full_run_under_the_sky_passes_its_check() {
     let sky = crate::light::Sky::default().environment();
     let result = run(&EfficiencyConfig::new(2, false, &sky), &|_, _| ()).expect("valid");

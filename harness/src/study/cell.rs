@@ -1,13 +1,12 @@
 //! One cell of the grid: every sampler of every model under every light.
 
-use super::Sampler;
 use super::grid::Cell;
-use super::sampler::gather;
 use super::tally::{Figures, Tally, figures};
 use super::{Budget, Light5};
-use crate::efficiency::{ModelKind, PHI_O_DEG, Scatter};
+use crate::efficiency::{ModelKind, PHI_O_DEG};
 use crate::light::Light;
 use crate::quadrature::fibre_direction;
+use crate::sampler::{Sampler, Scatter, gather};
 use crate::sequence::{Independent, XiSource, stream_id};
 use hairis::{ParamError, Vec3x8};
 use wide::{f32x8, f64x8};
@@ -139,7 +138,7 @@ fn widened(x: f32x8) -> f64x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::efficiency::{quadrature, sun};
+    use crate::efficiency::{SAMPLERS, quadrature, sun};
     use crate::light::{Constant, Rectangle, Sky, Smooth};
     use crate::study::Grid;
 
@@ -163,9 +162,9 @@ mod tests {
             for (m, model) in ModelKind::ALL.into_iter().enumerate() {
                 for (l, light) in lights.iter().take(4).enumerate() {
                     let want = quadrature(model, &params, f64::from(theta_o), *light);
-                    for (s, v) in want.v.into_iter().enumerate() {
-                        let found = &measured[(m * samplers + s) * 5 + l];
-                        let place = format!("{beta_r} {theta_o} {model:?} {} {}: {found:?}", light.name(), s);
+                    for (sampler, v) in SAMPLERS.into_iter().zip(want.v) {
+                        let found = &measured[(m * samplers + sampler as usize) * 5 + l];
+                        let place = format!("{beta_r} {theta_o} {model:?} {} {sampler:?}: {found:?}", light.name());
                         let mean = found.figures.mean.z_score(want.value);
                         assert!(mean.abs() < 5.0, "{place}: mean {} is {mean} errors off", want.value);
                         let z = found.figures.v.z_score(v);

@@ -1,8 +1,8 @@
 //! What must hold of every row.
 
-use super::Sampler;
 use super::rows::Row;
 use crate::efficiency::{FALSE_ALARM, z_bound};
+use crate::sampler::Sampler;
 use crate::stats::sidak;
 
 /// Rounding of a weight in single precision, relative to its bound.

@@ -1,6 +1,5 @@
 //! A finished study, and its files.
 
-use super::Sampler;
 use super::cell::Measured;
 use super::columns::Columns;
 use super::part::{self, FORMAT, Finished, Header, Read};
@@ -12,6 +11,7 @@ use crate::efficiency::ModelKind;
 use crate::error::Error;
 use crate::files::whole;
 use crate::machine::Machine;
+use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::table::Table;
 use serde_json::json;

@@ -1,11 +1,10 @@
 //! The rows of a study, as columns.
 
-use super::Sampler;
 use super::cell::Measured;
 use super::columns::Columns;
 use super::grid::{Cell, Grid, columns_of};
-use super::sampler::weight_bound;
 use crate::efficiency::ModelKind;
+use crate::sampler::{Sampler, weight_bound};
 use rayon::prelude::*;
 
 /// A row: what it is of, and what was found.

@@ -1,10 +1,10 @@
 //! What a study comes to: gains over the published sampler and of the Cauchy model, as geometric means over the grid.
 
-use super::Sampler;
 use super::cell::Measured;
 use super::rows::place;
 use super::times::{PER_POINT, Time, ns};
 use crate::efficiency::ModelKind;
+use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::table::{Table, number};
 

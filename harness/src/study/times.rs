@@ -3,10 +3,9 @@
 //! Measured on one thread, with nothing else at work, on the default hair and eight gather points at a time, one a
 //! lane. Contenders take turns within a round, as in [`speed`](crate::speed).
 
-use super::Sampler;
 use super::columns::Columns;
-use super::sampler::{Directions, Visit, uniform_sample8, uniform8, visit};
 use crate::efficiency::ModelKind;
+use crate::sampler::{Directions, Sampler, Visit, uniform_sample8, uniform8, visit};
 use crate::sequence::{Independent, stream_id};
 use crate::speed::task::{Pass, task};
 use crate::speed::{quartiles, stretch};

@@ -1,11 +1,12 @@
 //! The plots of a study: variance, efficiency, gains and weights.
 
+use super::super::Cell;
 use super::super::times::PER_POINT;
-use super::super::{Cell, Sampler};
 use super::view::{Estimator, TOLD, View, ess};
 use crate::efficiency::ModelKind;
 use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
 use crate::report::Figure;
+use crate::sampler::Sampler;
 use crate::stats::Estimate;
 
 /// Samples a gather point of the figures that show one number of them: direct lighting.
@@ -123,8 +124,7 @@ pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
 
 /// A line in the colour that the sampler has in every chart.
 fn of_sampler(sampler: Sampler, series: Series) -> Series {
-    let place = sampler as usize;
-    series.styled(place, Dash::of(place))
+    series.styled(sampler.color(), Dash::of(sampler.color()))
 }
 
 /// The share of cells whose gain is at most x.

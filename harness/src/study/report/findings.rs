@@ -4,8 +4,8 @@ use super::charts::MANY;
 use super::view::{Estimator, Sign, TOLD, View};
 use crate::difference::{Summary, Width, albedo_ratio};
 use crate::efficiency::ModelKind;
+use crate::sampler::Sampler;
 use crate::stats::Estimate;
-use crate::study::Sampler;
 use crate::table::number;
 
 const GAUSSIAN: ModelKind = ModelKind::Gaussian;

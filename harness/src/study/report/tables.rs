@@ -1,10 +1,10 @@
 //! Tables that only the report has.
 
-use super::super::Sampler;
 use super::super::summary::shown;
 use super::super::times::PER_POINT;
 use super::view::{View, ess};
 use crate::efficiency::ModelKind;
+use crate::sampler::Sampler;
 use crate::table::{Table, number};
 use serde_json::Value;
 

@@ -3,9 +3,10 @@
 use super::super::cell::Measured;
 use super::super::rows::{Bounds, place};
 use super::super::summary::{Gain, gain, in_equal_time};
-use super::super::{Cell, Grid, Sampler};
+use super::super::{Cell, Grid};
 use crate::difference::Difference;
 use crate::efficiency::ModelKind;
+use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::study::output::Times;
 

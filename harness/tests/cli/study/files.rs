@@ -8,7 +8,7 @@ use std::fs::{self, File};
 
 /// Rows of a cell: two models, each sampler, five lights.
 fn rows_of_a_cell() -> usize {
-    2 * hairis_harness::study::Sampler::ALL.len() * 5
+    2 * hairis_harness::sampler::Sampler::ALL.len() * 5
 }
 
 fn csv(name: &str) -> Vec<Vec<String>> {

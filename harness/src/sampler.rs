@@ -1,26 +1,32 @@
-//! The samplers of each model. A new one is a variant of [`Sampler`] and its arms in [`visit`] and [`weight_bound`].
+//! The samplers of each model: what `compare` and `study` measure.
+//!
+//! A new one is a variant of [`Sampler`], with its arms in the methods and in `visit` and `weight_bound`.
 
-use crate::efficiency::{ModelKind, Scatter};
+use crate::efficiency::ModelKind;
 use crate::quadrature::fibre_direction;
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::textbook::{MatchedTextbook, Parameters};
-use hairis::{Bsdf, Eval8, Gaussian, Hair, HairParams, LobeMask, Matched, MatchedBell, Model, Sample8, Vec3x8};
+use hairis::{Bsdf, Eval8, Gather, Gaussian, Hair, HairParams, LobeMask, Matched, MatchedBell, Model, Sample8, Vec3x8};
 use hairis_variants::Cauchy;
+use serde::Serialize;
 use wide::f32x8;
 
 /// How directions are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Sampler {
     /// Uniformly over the sphere.
     Uniform,
     /// By the published sampler.
     Ou,
     /// By the sampler matched to the model with four bands a side: its cheapest.
+    #[serde(rename = "matched-4")]
     Matched4,
     /// With six, as by default.
     Matched,
     /// With twelve: its least variance.
+    #[serde(rename = "matched-12")]
     Matched12,
 }
 
@@ -40,15 +46,59 @@ impl Sampler {
         }
     }
 
+    /// Uniform numbers a sample takes.
+    #[must_use]
+    pub const fn dims(self) -> usize {
+        match self {
+            Self::Uniform => 2,
+            _ => 3,
+        }
+    }
+
+    /// Bands a side of a sampler that is matched to the model.
+    pub(crate) const fn bands(self) -> Option<usize> {
+        match self {
+            Self::Uniform | Self::Ou => None,
+            Self::Matched4 => Some(4),
+            Self::Matched => Some(6),
+            Self::Matched12 => Some(12),
+        }
+    }
+
     /// Place among the streams of random numbers.
-    pub(super) fn index(self) -> u64 {
+    pub(crate) const fn index(self) -> u64 {
         self as u64
+    }
+
+    /// Number of its colour, the same in every chart of every report.
+    pub(crate) const fn color(self) -> usize {
+        self as usize
+    }
+}
+
+/// A gather point of any model, eight directions at a time: one call through a table for eight samples costs nothing that
+/// shows.
+pub(crate) trait Scatter: Send + Sync {
+    fn sample8(&self, xi: &[f32x8; 3]) -> Sample8;
+    fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8;
+}
+
+impl<M: Model> Scatter for Gather<M>
+where
+    M::Gather<f32>: Send + Sync,
+{
+    fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
+        Self::sample8(self, xi)
+    }
+
+    fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
+        Self::eval_pdf8(self, wi)
     }
 }
 
 /// Where a sampler's directions come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Directions {
+pub(crate) enum Directions {
     /// From the model's own `sample`.
     Sampled,
     /// Uniformly from the sphere, whatever the model.
@@ -56,7 +106,7 @@ pub(super) enum Directions {
 }
 
 /// What is done with a sampler, whatever its type.
-pub(super) trait Visit {
+pub(crate) trait Visit {
     type Output;
 
     fn visit<M>(self, model: M, directions: Directions) -> Self::Output
@@ -66,7 +116,7 @@ pub(super) trait Visit {
 }
 
 /// Shows `visitor` the sampler of a model. Every sampler of a model has the model's `eval`.
-pub(super) fn visit<V: Visit>(model: ModelKind, sampler: Sampler, visitor: V) -> V::Output {
+pub(crate) fn visit<V: Visit>(model: ModelKind, sampler: Sampler, visitor: V) -> V::Output {
     match model {
         ModelKind::Gaussian => visit_bell(Gaussian, sampler, visitor),
         ModelKind::Cauchy => visit_bell(Cauchy::PAPER, sampler, visitor),
@@ -90,26 +140,21 @@ fn visit_bell<B: MatchedBell + 'static, V: Visit>(bell: B, sampler: Sampler, vis
 /// - `ou`: none in closed form. Its glints end at `|phi| = pi/2`; what is left of them behind is covered by whatever
 ///   other lobe is there.
 /// - `matched`: what all lobes integrate to, times the largest ratio of W to what it is taken for in a band.
-pub(super) fn weight_bound(model: ModelKind, sampler: Sampler, params: &HairParams, theta_o: f64) -> Option<f64> {
-    let bands = match sampler {
-        Sampler::Uniform => {
-            let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
-            let desc = params.desc();
-            let glints = 1.0 + f64::from(desc.intensity_g);
-            let peak = mean(desc.intensity_r) + mean(desc.intensity_tt) + mean(desc.intensity_trt) * glints;
-            return Some(4.0 * core::f64::consts::PI * peak / theta_o.cos());
-        }
-        Sampler::Ou => return None,
-        Sampler::Matched4 => 4,
-        Sampler::Matched => 6,
-        Sampler::Matched12 => 12,
-    };
+pub(crate) fn weight_bound(model: ModelKind, sampler: Sampler, params: &HairParams, theta_o: f64) -> Option<f64> {
+    if sampler == Sampler::Uniform {
+        let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
+        let desc = params.desc();
+        let glints = 1.0 + f64::from(desc.intensity_g);
+        let peak = mean(desc.intensity_r) + mean(desc.intensity_tt) + mean(desc.intensity_trt) * glints;
+        return Some(4.0 * core::f64::consts::PI * peak / theta_o.cos());
+    }
+    let bands = sampler.bands()?;
     let wo = fibre_direction(theta_o, 0.0).to_array();
     Some(MatchedTextbook::prepare(&Parameters::from(params), model.shape(), wo, bands).weight_bound(LobeMask::ALL))
 }
 
 /// The gather point of a sampler: this hair, seen from `wo`.
-pub(super) fn gather(model: ModelKind, sampler: Sampler, params: &HairParams, wo: Vec3) -> Box<dyn Scatter> {
+pub(crate) fn gather(model: ModelKind, sampler: Sampler, params: &HairParams, wo: Vec3) -> Box<dyn Scatter> {
     visit(model, sampler, Prepare { params, wo })
 }
 
@@ -138,7 +183,7 @@ impl Visit for Prepare<'_> {
 struct Uniform<G>(G);
 
 /// Density of a uniform direction, per steradian.
-const UNIFORM_PDF: f32 = 0.25 / PI;
+pub(crate) const UNIFORM_PDF: f32 = 0.25 / PI;
 
 impl<G: Scatter> Scatter for Uniform<G> {
     fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
@@ -153,7 +198,7 @@ impl<G: Scatter> Scatter for Uniform<G> {
 
 /// Eight directions uniform on the sphere, from the last two of three numbers.
 #[inline]
-pub(super) fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
+pub(crate) fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
     let one = f32x8::splat(1.0);
     let u = one - (xi[1] + xi[1]);
     // (1 - u)(1 + u) by its factors: no cancellation near the poles.
@@ -164,7 +209,7 @@ pub(super) fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
 
 /// The samples of uniform directions that evaluate to `eval`.
 #[inline]
-pub(super) fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
+pub(crate) fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
     let factor = (wi.y * wi.y + wi.z * wi.z).sqrt() * f32x8::splat(1.0 / UNIFORM_PDF);
     let [r, g, b] = eval.value;
     let weight = [r * factor, g * factor, b * factor];
