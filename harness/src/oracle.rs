@@ -12,7 +12,7 @@ pub enum Oracle {
 }
 
 impl Oracle {
-    /// What is constant for `parameters` and `wo`; with the matched sampler if `bands` says of how many bands a side.
+    /// What is constant for `parameters` and `wo`; with the matched sampler if `bands` says of how many bands.
     #[must_use]
     pub fn prepare(parameters: &Parameters<f64>, shape: Shape, wo: [f64; 3], bands: Option<usize>) -> Self {
         match bands {

@@ -20,19 +20,19 @@ pub enum Sampler {
     Uniform,
     /// By the published sampler.
     Ou,
-    /// By the sampler matched to the model with four bands a side: its cheapest.
-    #[serde(rename = "matched-4")]
-    Matched4,
-    /// With six, as by default.
+    /// By the sampler matched to the model with five bands: its cheapest.
+    #[serde(rename = "matched-5")]
+    Matched5,
+    /// With nine, as by default.
     Matched,
-    /// With twelve: its least variance.
-    #[serde(rename = "matched-12")]
-    Matched12,
+    /// With twenty-five: its least variance.
+    #[serde(rename = "matched-25")]
+    Matched25,
 }
 
 impl Sampler {
     /// Every sampler, in the order of reports.
-    pub const ALL: [Self; 5] = [Self::Uniform, Self::Ou, Self::Matched4, Self::Matched, Self::Matched12];
+    pub const ALL: [Self; 5] = [Self::Uniform, Self::Ou, Self::Matched5, Self::Matched, Self::Matched25];
 
     /// Name in reports and in rows.
     #[must_use]
@@ -40,9 +40,9 @@ impl Sampler {
         match self {
             Self::Uniform => "uniform",
             Self::Ou => "ou",
-            Self::Matched4 => "matched-4",
+            Self::Matched5 => "matched-5",
             Self::Matched => "matched",
-            Self::Matched12 => "matched-12",
+            Self::Matched25 => "matched-25",
         }
     }
 
@@ -55,13 +55,13 @@ impl Sampler {
         }
     }
 
-    /// Bands a side of a sampler that is matched to the model.
+    /// Bands of a sampler that is matched to the model.
     pub(crate) const fn bands(self) -> Option<usize> {
         match self {
             Self::Uniform | Self::Ou => None,
-            Self::Matched4 => Some(4),
-            Self::Matched => Some(6),
-            Self::Matched12 => Some(12),
+            Self::Matched5 => Some(5),
+            Self::Matched => Some(9),
+            Self::Matched25 => Some(25),
         }
     }
 
@@ -127,9 +127,9 @@ fn visit_bell<B: MatchedBell + 'static, V: Visit>(bell: B, sampler: Sampler, vis
     match sampler {
         Sampler::Uniform => visitor.visit(Hair(bell), Directions::Uniform),
         Sampler::Ou => visitor.visit(Hair(bell), Directions::Sampled),
-        Sampler::Matched4 => visitor.visit(Matched::<_, 4>(bell), Directions::Sampled),
+        Sampler::Matched5 => visitor.visit(Matched::<_, 5>(bell), Directions::Sampled),
         Sampler::Matched => visitor.visit(Matched::<_>(bell), Directions::Sampled),
-        Sampler::Matched12 => visitor.visit(Matched::<_, 12>(bell), Directions::Sampled),
+        Sampler::Matched25 => visitor.visit(Matched::<_, 25>(bell), Directions::Sampled),
     }
 }
 

@@ -228,7 +228,7 @@ fn check<M: Model<Params = HairParams>, T: Twin>(
                 }
                 let cells = Cells::new(&textbook, mask);
                 let at = format!("{shape} {name} {degrees} {lobe}");
-                let mass: f64 = cells.expected.iter().sum::<f65>() / f64::from(SAMPLES);
+                let mass: f64 = cells.expected.iter().sum::<f64>() / f64::from(SAMPLES);
                 assert!((mass - 1.0).abs() < 1e-9, "{at}: the density has a mass of {mass}");
                 let (result, observed) = cells.test(&gather.with_lobes(mask), wo, stream);
                 assert!(result.degrees_of_freedom > 60, "{at}: too few cells to tell anything, {result:?}");
