@@ -7,6 +7,12 @@
 //! to an error of 1%, the largest weight and contribution, and the Kullback-Leibler divergence of the density from the
 //! normalised integrand, with standard errors. [`Study::columns`](output::Study::columns) lists them.
 //!
+//! Beside the samplers stands `perfect`, which nobody can run: directions of a density proportional to the mean of RGB of
+//! `S cos theta_i`, what a sampler of the hair comes to that knows nothing of the light. What is then left of V is the
+//! light's. It is estimated from directions that are drawn anyway: its two integrals from those of `matched-12`, whose
+//! weights are bounded and vary least, and of the light; the albedo as the mean of the same weights, whose errors cancel
+//! against those of the integrals, so that V under constant light is 0.
+//!
 //! V and the divergence are integrals, and are estimated with directions of the sampler and, for lights that are not
 //! seen from everywhere, of the light: the figures are those of the sampler alone, but no small light has to be hit by
 //! luck. Drawing from the sampler alone, a V of 1000 is known to 10% after some hundred thousand samples, and its error
@@ -16,7 +22,9 @@
 //!
 //! The rows depend on the [`Plan`], on the build and on its instruction set, and on nothing else: each cell draws from
 //! streams of its own and is computed by one thread. Finished cells are kept in a part file, see [`part`], so that a run
-//! that was stopped goes on where it was, and so that many processes can share the work. Times are measured apart.
+//! that was stopped goes on where it was, and so that many processes can share the work. Times are measured apart, by
+//! whoever writes the tables: of a sample, and of a look-up of each light. The environment's needs its file, which
+//! `hairis merge` is given or goes without.
 //!
 //! # Another sampler
 //!
@@ -25,9 +33,11 @@
 mod cell;
 mod check;
 pub mod columns;
+mod equal_time;
 pub mod grid;
 pub mod output;
 pub mod part;
+mod perfect;
 mod report;
 mod rows;
 pub mod shard;
@@ -38,7 +48,8 @@ mod times;
 pub use grid::{Cell, Grid};
 pub use shard::Shard;
 
-pub(crate) use summary::{gain, in_equal_time};
+pub(crate) use equal_time::in_equal_time;
+pub(crate) use summary::gain;
 
 use crate::efficiency::{ModelKind, sun};
 use crate::light::{Constant, Environment, Light, Rectangle, Smooth};
@@ -113,7 +124,7 @@ impl Plan<'_> {
             seed: self.seed,
             samples: budget.samples,
             light_samples: budget.light_samples,
-            environment: format!("{:016x}", self.environment.digest()),
+            environment: part::digest(self.environment),
             models: ModelKind::ALL.iter().map(|model| model.name().to_owned()).collect(),
             samplers: Sampler::ALL.iter().map(|sampler| sampler.name().to_owned()).collect(),
             lights: self.with_lights(|lights| lights.iter().map(|light| light.name().to_owned()).collect()),
@@ -123,8 +134,13 @@ impl Plan<'_> {
     }
 
     fn with_lights<R>(&self, f: impl FnOnce(&Light5<'_>) -> R) -> R {
-        f(&[&Constant::white(), &Smooth::new(), &sun(), &Rectangle::figure_6a(), self.environment])
+        with_built_in_lights(|[constant, smooth, sun, area]| f(&[constant, smooth, sun, area, self.environment]))
     }
+}
+
+/// The lights that need no file; the environment follows them.
+fn with_built_in_lights<R>(f: impl FnOnce([&dyn Light; 4]) -> R) -> R {
+    f([&Constant::white(), &Smooth::new(), &sun(), &Rectangle::figure_6a()])
 }
 
 const fn grid_of(quick: bool) -> Grid {
@@ -143,8 +159,8 @@ where
     let (grid, budget) = (plan.grid(), plan.budget());
     plan.with_lights(|lights| {
         todo.par_iter().with_max_len(1).try_for_each(|&index| {
-            let measured = cell::measure(plan.seed, budget, lights, &grid.cell(index), &Sampler::ALL)?;
-            keep(Finished::of(index, &measured))
+            let found = cell::measure(plan.seed, budget, lights, &grid.cell(index), &Sampler::ALL)?;
+            keep(Finished::of(index, &found))
         })
     })
 }
@@ -161,6 +177,6 @@ pub(crate) fn variances(
     cell: &Cell,
     samplers: &[Sampler],
 ) -> Result<Vec<Estimate>, ParamError> {
-    let measured = plan.with_lights(|lights| cell::measure(plan.seed, budget, lights, cell, samplers))?;
-    Ok(measured.iter().map(|of| of.figures.v).collect())
+    let found = plan.with_lights(|lights| cell::measure(plan.seed, budget, lights, cell, samplers))?;
+    Ok(found.samplers.iter().map(|of| of.figures.v).collect())
 }

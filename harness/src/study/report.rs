@@ -50,14 +50,17 @@ impl Study {
             Section::new("Variance").paragraph(
                 "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. `ou` is the \
                  published sampler, `uniform` draws from the whole sphere, and the samplers named `matched` follow each \
-                 model's own bells. The Cauchy model has the Gaussian one's widths (k = 1).",
+                 model's own bells. The Cauchy model has the Gaussian one's widths (k = 1). `perfect` is no sampler: it is \
+                 what one would come to that draws in proportion to S cos θᵢ, the mean of red, green and blue, and knows \
+                 nothing of the light.",
             ),
-            charts::variances(view),
+            [charts::variances(view), charts::limits(view)].concat(),
         );
         let time = with(
             Section::new("Efficiency").paragraph(
                 "What counts is the variance that is left after a given time. A sampler prepares each gather point, then \
-                 draws from it; a path tracer draws once, direct lighting often.",
+                 draws from it; a path tracer draws once, direct lighting often. Every sample needs the light in its \
+                 direction: gains are given for the samplers' own times, and with a look-up of the light added.",
             ),
             [charts::efficiencies(view), charts::gains(view)].concat(),
         );
@@ -75,7 +78,7 @@ impl Study {
         let looks = with(looks.heading("Over the grid"), looks::charts(view));
         let looks = difference.tables().into_iter().fold(looks, Section::table);
         let mut tables = self.summary(times).into_iter().fold(Section::new("Tables"), Section::table);
-        tables = tables.table(tables::quality(view)).table(tables::times(view));
+        tables = tables.table(tables::quality(view)).table(tables::times(view)).table(tables::look_ups(view));
         [variance, time, spread, weights, looks, tables].into_iter().fold(page, Report::section)
     }
 
@@ -93,6 +96,11 @@ impl Study {
                 "Means over the grid are geometric unless it says otherwise; their standard errors are those of the \
                  sampling, the grid being what it is. Cells where a V is known to no better than 25% are left out of \
                  gains. Words such as less and more are used beyond two standard errors.",
+            )
+            .method(
+                "Perfect sampling is estimated from the directions of `matched-12`, whose weights vary least and are bounded, \
+                 and of the light; the albedo it needs is the mean of the same weights, not that of another source, so that \
+                 their errors cancel. A look-up is timed in directions of `ou`, in turns with the samplers.",
             )
             .method(
                 "Differences of looks are quadrature in double precision and have no statistical error; their own is \

@@ -1,8 +1,11 @@
-//! What a study comes to: gains over the published sampler and of the Cauchy model, as geometric means over the grid.
+//! What a study comes to: gains over the published sampler and of the Cauchy model, as geometric means over the grid, and
+//! in how many cells.
 
 use super::cell::Measured;
-use super::rows::place;
-use super::times::{PER_POINT, Time, ns};
+use super::equal_time::{Cells, NOTHING, in_equal_time, time_ratio};
+use super::output::Times;
+use super::rows::{Strategy, place};
+use super::times::PER_POINT;
 use crate::efficiency::ModelKind;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
@@ -21,18 +24,22 @@ pub(crate) struct Gain {
     pub(crate) unsure: usize,
 }
 
+/// The first V over the second; `None` if one of them is unsure.
+pub(super) fn sure_ratio([base, other]: [Estimate; 2]) -> Option<Estimate> {
+    let sure = |v: &Estimate| v.value > 0.0 && v.standard_error <= MAX_RELATIVE_ERROR * v.value;
+    (sure(&base) && sure(&other)).then(|| base.ratio(&other))
+}
+
 /// The first of two lists of V over the second, cell by cell.
 ///
 /// The standard error of the geometric mean is that of its figures, the grid being what it is. Both samplers are held
 /// against the same directions of the light: errors of the ratios are, if anything, less than said.
 pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
-    let sure = |v: &Estimate| v.value > 0.0 && v.standard_error <= MAX_RELATIVE_ERROR * v.value;
     let (mut ratios, mut unsure) = (Vec::new(), 0);
-    for [base, other] in pairs {
-        if sure(&base) && sure(&other) {
-            ratios.push(base.ratio(&other));
-        } else {
-            unsure += 1;
+    for pair in pairs {
+        match sure_ratio(pair) {
+            Some(ratio) => ratios.push(ratio),
+            None => unsure += 1,
         }
     }
     let by_value = |a: &&Estimate, b: &&Estimate| a.value.total_cmp(&b.value);
@@ -45,15 +52,8 @@ pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
     Some(Gain { geometric_mean: Estimate { value, standard_error: value * error }, least, most, unsure })
 }
 
-/// A ratio of variances times that of the times.
-pub(crate) fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
-    let value = variance.value * time.value;
-    let relative = (variance.standard_error / variance.value).hypot(time.standard_error / time.value);
-    Estimate { value, standard_error: value * relative }
-}
-
-/// A sampler of a model.
-type Estimator = (ModelKind, Sampler);
+/// A model, and how its directions are drawn.
+type Estimator = (ModelKind, Strategy);
 
 /// Two estimators held against each other, and the words that begin their row.
 struct Comparison {
@@ -66,28 +66,25 @@ struct Comparison {
 struct Figures<'a> {
     cells: &'a [Vec<Measured>],
     lights: &'a [String],
-    times: &'a [Time],
+    times: &'a Times,
 }
 
 /// The tables: the samplers of each model against `ou`, then the models against each other; variances, then variances in
 /// equal time.
-pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &[Time]) -> Vec<Table> {
+pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &Times) -> Vec<Table> {
     let figures = Figures { cells, lights, times };
-    let mut samplers = Vec::new();
-    for model in ModelKind::ALL {
-        for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
-            let words = [model.name(), sampler.name()];
-            samplers.push(Comparison { words, base: (model, Sampler::Ou), other: (model, sampler) });
-        }
-    }
-    let models: Vec<Comparison> = Sampler::ALL
-        .into_iter()
-        .map(|sampler| Comparison {
-            words: [ModelKind::Cauchy.name(), sampler.name()],
-            base: (ModelKind::Gaussian, sampler),
-            other: (ModelKind::Cauchy, sampler),
-        })
-        .collect();
+    let against = |base: (ModelKind, Sampler), (model, strategy): Estimator| Comparison {
+        words: [model.name(), strategy.name()],
+        base: (base.0, base.1.into()),
+        other: (model, strategy),
+    };
+    let over_ou = |strategies: &[Strategy]| -> Vec<Comparison> {
+        let others = strategies.iter().filter(|strategy| strategy.sampler() != Some(Sampler::Ou));
+        let of_model = |model| others.clone().map(move |of| against((model, Sampler::Ou), (model, *of)));
+        ModelKind::ALL.into_iter().flat_map(of_model).collect()
+    };
+    let (samplers, all) = (over_ou(&Sampler::ALL.map(Strategy::By)), over_ou(&Strategy::ALL));
+    let models = Sampler::ALL.map(|of| against((ModelKind::Gaussian, of), (ModelKind::Cauchy, of.into())));
     let percent = 100.0 * MAX_RELATIVE_ERROR;
     let left_out = format!(
         "{} cells. Left out: cells where the standard error of a V is above {percent}% of it, or nothing was seen of the \
@@ -97,41 +94,65 @@ pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &[Time])
     let timed = "Times of the default hair, eight lanes, one thread, on this machine; ±: one standard error, that of the \
                  times included.";
     let above = |who: &str| format!("Above 1, it needs fewer samples than {who}. {left_out}");
+    let perfect = "In equal time a sample pays until it takes so many times that of ou. perfect: directions in proportion to \
+                   S cos θᵢ, drawn without regard to the light, which is what ever better samplers of the hair come to.";
+    let counted = format!(
+        "Won and lost: by more than two standard errors, those of the variances and of the times. Of {} cells; those left \
+         out above are undecided.",
+        cells.len()
+    );
+    let look_up = "The time of a look-up of the light in its direction is added to that of every sample.";
+    let [alone, with] = [false, true];
     vec![
-        figures.variance("V of ou over V of the sampler, over the grid", &samplers).note(above("ou")),
-        figures.equal_time("The same in equal time, set-up included: geometric means", &samplers).note(timed),
+        figures.variance("V of ou over V of the sampler, over the grid", &all).note(above("ou")).note(perfect),
+        figures.equal_time("The same in equal time, set-up included: geometric means", &samplers, alone).note(timed),
+        figures.equal_time("The same with a look-up of the light: geometric means", &samplers, with).note(look_up),
+        figures.counts("Cells won / undecided / lost against ou in equal time", &samplers, alone).note(&counted),
+        figures.counts("Cells won / undecided / lost with a look-up of the light", &samplers, with).note(look_up),
         figures
             .variance("V on the Gaussian model over V on the Cauchy model, over the grid", &models)
             .note(above("on the Gaussian model")),
-        figures.equal_time("The same in equal time, set-up included: geometric means", &models).note(timed),
+        figures.equal_time("The same in equal time, set-up included: geometric means", &models, alone).note(timed),
     ]
 }
 
 impl Figures<'_> {
-    /// Gains under the light at `light`; `None` if no cell is sure.
-    fn gain(&self, of: &Comparison, light: usize) -> Option<Gain> {
-        let v = |cell: &[Measured], (model, sampler)| cell[place(model, sampler, light, self.lights.len())].figures.v;
-        gain(self.cells.iter().map(|cell| [v(cell, of.base), v(cell, of.other)]))
+    /// V of both sides in every cell.
+    fn pairs<'c>(&'c self, of: &'c Comparison, light: usize) -> impl Iterator<Item = [Estimate; 2]> + 'c {
+        let place = move |(model, strategy): Estimator| place(model, strategy, light, self.lights.len());
+        self.cells.iter().map(move |cell| [of.base, of.other].map(|of| cell[place(of)].figures.v))
+    }
+
+    /// Time of the one over that of the other, alone or with a look-up of the light.
+    fn time(&self, of: &Comparison, light: usize, per_point: usize, with_look_up: bool) -> Estimate {
+        let none = Estimate { value: f64::NAN, standard_error: f64::NAN };
+        let ns = |(model, strategy): Estimator| {
+            strategy.sampler().map_or(none, |sampler| self.times.ns(model, sampler, per_point))
+        };
+        let more = if with_look_up { self.times.look_up(light) } else { NOTHING };
+        time_ratio(ns(of.base), ns(of.other), more)
     }
 
     /// A row for every light of every comparison, its first three cells filled in.
-    fn each<'c>(&'c self, of: &'c [Comparison]) -> impl Iterator<Item = (Vec<String>, &'c Comparison, Option<Gain>)> {
+    fn each<'c>(&'c self, of: &'c [Comparison]) -> impl Iterator<Item = (Vec<String>, &'c Comparison, usize)> {
         of.iter().flat_map(move |of| {
             self.lights.iter().enumerate().map(move |(light, name)| {
                 let [first, second] = of.words.map(str::to_owned);
-                (vec![first, second, name.clone()], of, self.gain(of, light))
+                (vec![first, second, name.clone()], of, light)
             })
         })
     }
 
     fn variance(&self, title: &str, of: &[Comparison]) -> Table {
         let mut table = keys(title).number("geometric mean").number("least").number("most").number("left out");
-        for (mut row, _, gain) in self.each(of) {
-            match gain {
+        for (mut row, of, light) in self.each(of) {
+            match gain(self.pairs(of, light)) {
                 Some(gain) => {
                     row.extend([gain.geometric_mean, gain.least, gain.most].map(shown));
                     row.push(gain.unsure.to_string());
                 }
+                // Perfect sampling under constant light.
+                None if self.pairs(of, light).all(|[_, v]| v.value == 0.0) => row.push("no limit".to_owned()),
                 None => row.extend(["", "", "", "all"].map(str::to_owned)),
             }
             table.push(row);
@@ -139,19 +160,38 @@ impl Figures<'_> {
         table
     }
 
-    fn equal_time(&self, title: &str, of: &[Comparison]) -> Table {
+    /// A table of equal time, a column for each number of samples a point: what `cell` makes of a ratio of times.
+    fn timed(
+        &self,
+        title: &str,
+        of: &[Comparison],
+        with_look_up: bool,
+        cell: impl Fn(&Comparison, usize, Estimate) -> String,
+    ) -> Table {
         let table = keys(title);
         let mut table = PER_POINT.into_iter().fold(table, |table, n| table.number(format!("{n} a point")));
-        for (mut row, of, gain) in self.each(of) {
-            row.extend(gain.iter().flat_map(|gain| {
-                PER_POINT.map(|per_point| {
-                    let [base, other] = [of.base, of.other].map(|(m, s)| ns(self.times, m, s, per_point));
-                    shown(in_equal_time(gain.geometric_mean, base.ratio(&other)))
-                })
+        for (mut row, of, light) in self.each(of) {
+            row.extend(PER_POINT.map(|per_point| {
+                let time = self.time(of, light, per_point, with_look_up);
+                if time.value.is_nan() { "not timed".to_owned() } else { cell(of, light, time) }
             }));
             table.push(row);
         }
         table
+    }
+
+    fn equal_time(&self, title: &str, of: &[Comparison], with_look_up: bool) -> Table {
+        self.timed(title, of, with_look_up, |of, light, time| {
+            let gain = gain(self.pairs(of, light));
+            gain.map_or_else(String::new, |gain| shown(in_equal_time(gain.geometric_mean, time)))
+        })
+    }
+
+    fn counts(&self, title: &str, of: &[Comparison], with_look_up: bool) -> Table {
+        let cell = |of: &Comparison, light: usize, time: Estimate| {
+            Cells::count(self.pairs(of, light).map(sure_ratio), time).to_string()
+        };
+        self.timed(title, of, with_look_up, cell)
     }
 }
 

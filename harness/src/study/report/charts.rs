@@ -1,16 +1,14 @@
 //! The plots of a study: variance, efficiency, gains and weights.
 
 use super::super::Cell;
+use super::super::rows::Strategy;
 use super::super::times::PER_POINT;
-use super::view::{Estimator, TOLD, View, ess};
+use super::view::{Counted, Estimator, MANY, TOLD, View, ess};
 use crate::efficiency::ModelKind;
 use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
 use crate::report::Figure;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
-
-/// Samples a gather point of the figures that show one number of them: direct lighting.
-pub(super) const MANY: usize = 16;
 
 /// The light that everything sees.
 const CONSTANT: usize = 0;
@@ -80,30 +78,69 @@ pub(super) fn efficiencies(of: &View<'_>) -> Vec<Figure> {
     ModelKind::ALL.map(figure).into()
 }
 
-/// Gains in equal time, by light: over `ou`, then of the Cauchy model.
-pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
-    let mut figures = Vec::new();
-    let bars = |base: Estimator, other: Estimator| -> Vec<Bar> {
-        (0..of.lights.len()).map(|light| bar(of.equal_time(base, other, light, MANY))).collect()
+/// Gains in V by light, over `ou`, up to that of perfect sampling.
+pub(super) fn limits(of: &View<'_>) -> Vec<Figure> {
+    let figure = |model: ModelKind| {
+        let title = format!("Fewer samples than ou, {} model", model.title());
+        let mut chart = BarChart::new(title, Axis::log("V of ou / V (×)"), of.light_labels());
+        for strategy in Strategy::ALL {
+            let gain = |light| of.gain((model, Sampler::Ou), (model, strategy), light).map(|gain| gain.geometric_mean);
+            let bars: Vec<Bar> = match strategy {
+                Strategy::By(Sampler::Ou) => vec![Bar::new(1.0); of.lights.len()],
+                _ => (0..of.lights.len()).map(|light| bar(gain(light))).collect(),
+            };
+            chart = chart.series(strategy.name(), bars);
+        }
+        let caption = format!(
+            "By what factor fewer samples than the published sampler needs, by light: geometric means over the grid. That \
+             is also how many times its time a sample may take before it loses in equal time. `perfect` would draw in \
+             proportion to S cos θᵢ, blind to the light: better samplers of the hair come to it, and what is left is the \
+             light's. Under {} light nothing is left: no bar. Where a small light stands far out in the tails, tails wider \
+             than the hair's pass it. Whiskers are one standard error.",
+            of.lights[CONSTANT]
+        );
+        Figure::new(chart.level(1.0).svg(), caption).named(format!("fewer-samples-by-light-{}", model.name()))
     };
-    for model in ModelKind::ALL {
-        let title = format!("Less variance than ou in equal time, {} model", model.title());
+    ModelKind::ALL.map(figure).into()
+}
+
+/// Gains over `ou` in equal time by light, a chart for each model.
+fn gains_over_ou(of: &View<'_>, counted: Counted) -> Vec<Figure> {
+    let (words, slug, note) = match counted {
+        Counted::Sample => ("", "", ""),
+        Counted::LookUp => (
+            ", look-up included",
+            "-look-up",
+            " The time of a look-up of the light is added to that of every sample; a light whose look-up was not timed \
+             has no bars.",
+        ),
+    };
+    let figure = |model: ModelKind| {
+        let title = format!("Less variance than ou in equal time{words}, {} model", model.title());
         let mut chart = BarChart::new(title, Axis::log("gain over ou in equal time (×)"), of.light_labels());
         for sampler in Sampler::ALL {
+            let gain = |light| bar(of.equal_time((model, Sampler::Ou), (model, sampler), light, counted));
             // The published sampler is there for the others to be measured by, and for every chart to have one key.
-            let bars = match sampler {
+            let bars: Vec<Bar> = match sampler {
                 Sampler::Ou => vec![Bar::new(1.0); of.lights.len()],
-                _ => bars((model, Sampler::Ou), (model, sampler)),
+                _ => (0..of.lights.len()).map(gain).collect(),
             };
             chart = chart.series(sampler.name(), bars);
         }
         let caption = format!(
             "By what factor less variance than the published sampler has in the same time, by light, at {MANY} samples a \
-             gather point: geometric means over the grid. Above the dashed line the sampler beats ou. Whiskers are one \
-             standard error, that of the times included."
+             gather point: geometric means over the grid.{note} Above the dashed line the sampler beats ou. Whiskers are \
+             one standard error, that of the times included."
         );
-        figures.push(Figure::new(chart.level(1.0).svg(), caption).named(format!("gain-by-light-{}", model.name())));
-    }
+        Figure::new(chart.level(1.0).svg(), caption).named(format!("gain-by-light{slug}-{}", model.name()))
+    };
+    ModelKind::ALL.map(figure).into()
+}
+
+/// Gains in equal time, by light: over `ou`, without and with the look-up, then of the Cauchy model.
+pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
+    let mut figures = gains_over_ou(of, Counted::Sample);
+    figures.extend(gains_over_ou(of, Counted::LookUp));
     let mut chart = BarChart::new(
         "Less variance on the Cauchy model in equal time",
         Axis::log("Gaussian / Cauchy in equal time (×)"),
@@ -111,7 +148,8 @@ pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
     );
     for sampler in Sampler::ALL {
         let pair = ModelKind::ALL.map(|model| (model, sampler));
-        chart = chart.series(sampler.name(), bars(pair[0], pair[1]));
+        let gain = |light| bar(of.equal_time(pair[0], pair[1], light, Counted::Sample));
+        chart = chart.series(sampler.name(), (0..of.lights.len()).map(gain));
     }
     let caption = format!(
         "Variance on the Gaussian model over that on the Cauchy model with the same sampler in the same time, by light, at \
@@ -190,12 +228,13 @@ pub(super) fn weights(of: &View<'_>) -> Vec<Figure> {
         let title = format!("Effective samples in 1000, {} model", model.title());
         let y = Axis::linear("effective samples in 1000");
         let mut chart = BarChart::new(title, y, of.light_labels());
-        for sampler in Sampler::ALL {
-            let mean = |light| Some(of.mean_of((model, sampler), light, ess));
-            chart = chart.series(sampler.name(), (0..of.lights.len()).map(|light| bar(mean(light))));
+        for strategy in Strategy::ALL {
+            let mean = |light| Some(of.mean_of((model, strategy), light, ess));
+            chart = chart.series(strategy.name(), (0..of.lights.len()).map(|light| bar(mean(light))));
         }
-        let caption = "1000 / (1 + V): how many samples without variance are worth as much as 1000 of the sampler. Means \
-                       over the grid; whiskers are one standard error.";
+        let caption = "1000 / (1 + V): how many samples without variance are worth as much as 1000 of the sampler. \
+                       `perfect` would draw in proportion to S cos θᵢ, blind to the light. Means over the grid; whiskers \
+                       are one standard error.";
         figures.push(Figure::new(chart.svg(), caption).named(format!("effective-samples-{}", model.name())));
     }
     for model in ModelKind::ALL {

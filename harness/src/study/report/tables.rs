@@ -1,5 +1,6 @@
 //! Tables that only the report has.
 
+use super::super::rows::Strategy;
 use super::super::summary::shown;
 use super::super::times::PER_POINT;
 use super::view::{View, ess};
@@ -19,15 +20,15 @@ pub(super) fn quality(of: &View<'_>) -> Table {
         .number("divergence, nats")
         .number("largest contribution, means");
     for model in ModelKind::ALL {
-        for sampler in Sampler::ALL {
+        for strategy in Strategy::ALL {
             for (light, name) in of.lights.iter().enumerate() {
-                let one = (model, sampler);
+                let one = (model, strategy);
                 let most = (0..of.cells.len()).map(|index| of.measured(index, one, light).max_contribution);
                 table.push([
                     model.name().to_owned(),
-                    sampler.name().to_owned(),
+                    strategy.name().to_owned(),
                     name.clone(),
-                    of.mean_v(one, light, |_| true).map_or_else(String::new, shown),
+                    mean_v(of, one, light),
                     shown(of.mean_of(one, light, ess)),
                     shown(of.mean_of(one, light, |measured| measured.figures.kl)),
                     number::plain(most.fold(0.0, f64::max), 3),
@@ -41,6 +42,26 @@ pub(super) fn quality(of: &View<'_>) -> Table {
     )
 }
 
+/// The mean of V in words: 0 where it is 0 in every cell, which has no geometric mean.
+fn mean_v(of: &View<'_>, one: (ModelKind, Strategy), light: usize) -> String {
+    if (0..of.cells.len()).all(|index| of.v(index, one, light).value == 0.0) {
+        return "0".to_owned();
+    }
+    of.mean_v(one, light, |_| true).map_or_else(String::new, shown)
+}
+
+/// Times of a look-up.
+pub(super) fn look_ups(of: &View<'_>) -> Table {
+    let mut table = Table::new("Time of a look-up of the light in a direction, ns").text("light").number("ns");
+    for (light, name) in of.lights.iter().enumerate() {
+        table.push([name.clone(), of.look_up(light).map_or_else(|| "not timed".to_owned(), shown)]);
+    }
+    table.note(
+        "Radiance and the light's density in 65536 directions of ou, many gather points in turn; eight lanes, one thread, \
+         medians; ±: one standard error.",
+    )
+}
+
 /// Times of a sample.
 pub(super) fn times(of: &View<'_>) -> Table {
     let table = Table::new("Time of a sample, ns").text("model").text("sampler");
@@ -48,11 +69,17 @@ pub(super) fn times(of: &View<'_>) -> Table {
     for model in ModelKind::ALL {
         for sampler in Sampler::ALL {
             let mut cells = vec![model.name().to_owned(), sampler.name().to_owned()];
-            cells.extend(PER_POINT.map(|n| shown(of.ns((model, sampler), n))));
+            cells.extend(PER_POINT.map(|n| {
+                let [ns, ou] = [sampler, Sampler::Ou].map(|sampler| of.ns((model, sampler), n));
+                format!("{} ({})", shown(ns), number::ratio(ns.value / ou.value))
+            }));
             table.push(cells);
         }
     }
-    table.note("Set-up included, the default hair, eight lanes, one thread, medians; ±: one standard error.")
+    table.note(
+        "Set-up included, the default hair, eight lanes, one thread, medians; ±: one standard error. In brackets: over that \
+         of ou. A sampler pays in equal time while that is below V of ou over its own V.",
+    )
 }
 
 /// The verdicts in a `claims.json`; `None` if it holds none.
