@@ -9,7 +9,7 @@
 //!
 //! Beside the samplers stands `perfect`, which nobody can run: directions of a density proportional to the mean of RGB of
 //! `S cos theta_i`, what a sampler of the hair comes to that knows nothing of the light. What is then left of V is the
-//! light's. It is estimated from directions that are drawn anyway: its two integrals from those of `matched-12`, whose
+//! light's. It is estimated from directions that are drawn anyway: its two integrals from those of `matched-25`, whose
 //! weights are bounded and vary least, and of the light; the albedo as the mean of the same weights, whose errors cancel
 //! against those of the integrals, so that V under constant light is 0.
 //!

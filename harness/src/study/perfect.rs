@@ -21,7 +21,7 @@ use crate::stats::Estimate;
 use wide::f64x8;
 
 /// Whose directions it is estimated from: the sampler whose weights vary least.
-pub(super) const SOURCE: Sampler = Sampler::Matched12;
+pub(super) const SOURCE: Sampler = Sampler::Matched25;
 
 /// Numbers whose means are estimated together.
 const N: usize = 4;

@@ -98,7 +98,7 @@ impl Study {
                  gains. Words such as less and more are used beyond two standard errors.",
             )
             .method(
-                "Perfect sampling is estimated from the directions of `matched-12`, whose weights vary least and are bounded, \
+                "Perfect sampling is estimated from the directions of `matched-25`, whose weights vary least and are bounded, \
                  and of the light; the albedo it needs is the mean of the same weights, not that of another source, so that \
                  their errors cancel. A look-up is timed in directions of `ou`, in turns with the samplers.",
             )
