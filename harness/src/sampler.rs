@@ -23,7 +23,7 @@ pub enum Sampler {
     /// By the sampler matched to the model with five bands: its cheapest.
     #[serde(rename = "matched-5")]
     Matched5,
-    /// With nine, as by default.
+    /// With eleven, as by default.
     Matched,
     /// With twenty-five: its least variance.
     #[serde(rename = "matched-25")]
@@ -60,7 +60,7 @@ impl Sampler {
         match self {
             Self::Uniform | Self::Ou => None,
             Self::Matched5 => Some(5),
-            Self::Matched => Some(9),
+            Self::Matched => Some(11),
             Self::Matched25 => Some(25),
         }
     }
