@@ -70,7 +70,7 @@ pub struct Compare {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Folder for compare.json, report.html and figures/; made if missing
-    #[arg(long, value_name = "DIR", default_value = "out")]
+    #[arg(long, value_name = "DIR", default_value = "out/compare")]
     pub out: PathBuf,
     /// Environment light, latitude-longitude, as a .hdr or .exr file [default: a procedural sky]
     #[arg(long, value_name = "FILE")]
@@ -87,7 +87,7 @@ pub struct Study {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Folder for the results; made if missing. Shards may share it
-    #[arg(long, value_name = "DIR", default_value = "out")]
+    #[arg(long, value_name = "DIR", default_value = "out/study")]
     pub out: PathBuf,
     /// Environment light, latitude-longitude, as a .hdr or .exr file [default: a procedural sky]
     #[arg(long, value_name = "FILE")]
@@ -106,8 +106,8 @@ pub struct Claims {
     /// Seed of everything that is drawn; results but for the timings depend on it alone
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Folder for claims.json; made if missing
-    #[arg(long, value_name = "DIR", default_value = "out")]
+    /// Folder for claims.json; made if missing. A study that finishes in the same folder puts the verdicts into its report
+    #[arg(long, value_name = "DIR", default_value = "out/study")]
     pub out: PathBuf,
 }
 

@@ -125,3 +125,24 @@ fn folder(out: PathBuf) -> Result<PathBuf, Error> {
     }
     Ok(out)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser as _;
+
+    #[test]
+    fn no_command_overwrites_the_report_of_another() {
+        let out = |command| {
+            let run = Run::check(Args::try_parse_from(["hairis", command]).expect("no flag is required"));
+            match run.expect("the defaults are accepted") {
+                Run::Compare(Compare { out, .. }) | Run::Study(Study { out, .. }) | Run::Claims(Claims { out, .. }) => {
+                    out
+                }
+                run => panic!("{run:?} writes no report"),
+            }
+        };
+        assert_ne!(out("compare"), out("study"), "both write a report.html");
+        assert_eq!(out("claims"), out("study"), "the report of the study shows the verdicts");
+    }
+}

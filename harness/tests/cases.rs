@@ -1,10 +1,10 @@
 //! Random gather points and directions over realistic hair.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use hairis::HairDesc;
-use rand_chacha::ChaCha8Rng;
-use rand_core::{Rng, SeedableRng};
+use hairis_harness::sequence::Independent;
+use hairis_harness::subject::{direction, random_hair};
 
 /// Where `wi` was put.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,11 +42,11 @@ const FROM_AXIS: f64 = 1e-3;
 const CUT_BAND: f64 = 1e-6;
 
 /// Case after case, all of them from one seed.
-pub(crate) struct Cases(ChaCha8Rng);
+pub(crate) struct Cases(Independent);
 
 impl Cases {
     pub(crate) fn new(seed: u64) -> Self {
-        Self(ChaCha8Rng::seed_from_u64(seed))
+        Self(Independent::new(seed, 0))
     }
 
     /// The next case; the regions take turns.
@@ -64,23 +64,18 @@ impl Cases {
         }
     }
 
-    /// In `[0, 1)`.
-    pub(crate) fn unit(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
     /// Uniform numbers of 24 bits, exact in single precision; one in eight at an end of the interval.
     pub(crate) fn xi(&mut self) -> [f64; 3] {
         const STEP: f64 = 1.0 / 16_777_216.0;
-        [(); 3].map(|()| match self.0.next_u32() % 16 {
+        [(); 3].map(|()| match self.0.next_below(16) {
             0 => 0.0,
             1 => 1.0 - STEP,
-            _ => f64::from(self.0.next_u32() >> 8) * STEP,
+            _ => f64::from(self.0.next_f32()),
         })
     }
 
     fn between(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.unit()
+        lo + (hi - lo) * self.0.next_f64()
     }
 
     fn log_between(&mut self, lo: f64, hi: f64) -> f64 {
@@ -88,40 +83,28 @@ impl Cases {
     }
 
     fn chance(&mut self, probability: f64) -> bool {
-        self.unit() < probability
+        self.0.next_f64() < probability
     }
 
     fn sign(&mut self) -> f64 {
         if self.chance(0.5) { 1.0 } else { -1.0 }
     }
 
-    /// Widths of 1 to 30 degrees, shifts within 15, glints of 10 to 80; some colours, channels and glints are 0.
+    /// Random hair, some of whose colours, channels and glints are 0.
     fn desc(&mut self) -> HairDesc {
-        let [beta_r, beta_tt, beta_trt, gamma_tt, gamma_g] =
-            [(); 5].map(|()| single(self.log_between(1.0, 30.0).to_radians()));
-        let [alpha_r, alpha_tt, alpha_trt] = [(); 3].map(|()| single(self.between(-15.0, 15.0).to_radians()));
-        let [intensity_r, intensity_tt, intensity_trt] = [(); 3].map(|()| self.color());
-        let intensity_g = if self.chance(0.1) { 0.0 } else { single(self.log_between(0.1, 5.0)) };
-        HairDesc {
-            alpha_r,
-            alpha_tt,
-            alpha_trt,
-            beta_r,
-            beta_tt,
-            beta_trt,
-            gamma_tt,
-            gamma_g,
-            phi_g: single(self.between(10.0, 80.0).to_radians()),
-            intensity_r,
-            intensity_tt,
-            intensity_trt,
-            intensity_g,
+        let mut desc = *random_hair(&mut self.0).expect("within range").desc();
+        for color in [&mut desc.intensity_r, &mut desc.intensity_tt, &mut desc.intensity_trt] {
+            let black = self.chance(0.2);
+            for channel in color {
+                if black || self.chance(0.1) {
+                    *channel = 0.0;
+                }
+            }
         }
-    }
-
-    fn color(&mut self) -> [f32; 3] {
-        let black = self.chance(0.2);
-        [(); 3].map(|()| if black || self.chance(0.1) { 0.0 } else { single(self.unit()) })
+        if self.chance(0.1) {
+            desc.intensity_g = 0.0;
+        }
+        desc
     }
 
     fn directions(&mut self, region: Region, desc: &HairDesc) -> (Vec3, Vec3) {
@@ -134,18 +117,18 @@ impl Cases {
             Region::Peaks => {
                 let (alpha, beta) =
                     [(desc.alpha_r, desc.beta_r), (desc.alpha_tt, desc.beta_tt), (desc.alpha_trt, desc.beta_trt)]
-                        [self.0.next_u32() as usize % 3];
+                        [self.0.next_below(3)];
                 let theta_h = f64::from(alpha) + f64::from(beta) * self.between(-4.0, 4.0);
                 let theta_i = (2.0 * theta_h - sin_o.atan2(cos_o)).clamp(-FRAC_PI_2, FRAC_PI_2);
                 (cos_i, sin_i) = (theta_i.cos(), theta_i.sin());
-                phi = match self.0.next_u32() % 3 {
+                phi = match self.0.next_below(3) {
                     0 => PI - f64::from(desc.gamma_tt) * self.between(-4.0, 4.0),
                     1 => self.sign() * (f64::from(desc.phi_g) + f64::from(desc.gamma_g) * self.between(-4.0, 4.0)),
                     _ => phi,
                 };
             }
             Region::Grazing => {
-                let which = self.0.next_u32() % 3;
+                let which = self.0.next_below(3);
                 if which != 0 {
                     (cos_o, sin_o) = self.near_axis();
                 }
@@ -156,7 +139,7 @@ impl Cases {
             Region::Back => phi = self.sign() * (PI - self.log_between(1e-4, 1e-2)),
             Region::GlintCut => phi = self.sign() * (FRAC_PI_2 + self.sign() * self.log_between(1e-5, 1e-2)),
         }
-        (direction(cos_o, sin_o, phi_o), direction(cos_i, sin_i, (phi_o - phi) % TAU))
+        (direction(sin_o, cos_o, phi_o), direction(sin_i, cos_i, (phi_o - phi) % TAU))
     }
 
     /// Cosine and sine of the inclination of a direction uniform on the sphere.
@@ -176,13 +159,4 @@ impl Cases {
 pub(crate) fn angles(w: Vec3) -> (f64, f64) {
     let w = w.as_dvec3();
     (w.x.atan2(w.y.hypot(w.z)), w.z.atan2(w.y))
-}
-
-fn direction(cos_theta: f64, sin_theta: f64, phi: f64) -> Vec3 {
-    DVec3::new(sin_theta, cos_theta * phi.cos(), cos_theta * phi.sin()).as_vec3()
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "single precision is what is tested")]
-fn single(x: f64) -> f32 {
-    x as f32
 }
