@@ -281,6 +281,12 @@ pub(crate) fn quadrature(model: ModelKind, params: &HairParams, theta_o_deg: f64
     reference::by_quadrature(&case::Case::new(model, params, theta_o_deg), light)
 }
 
+/// V of perfect sampling of the model under such a light.
+#[cfg(test)]
+pub(crate) fn perfect_v(model: ModelKind, params: &HairParams, theta_o_deg: f64, light: &dyn Light) -> f64 {
+    reference::perfect_v(&case::Case::new(model, params, theta_o_deg), light)
+}
+
 /// The one number of a colour that figures are of: its mean.
 fn intensity(rgb: [f64; 3]) -> f64 {
     (rgb[0] + rgb[1] + rgb[2]) / 3.0

@@ -7,6 +7,12 @@
 //! to an error of 1%, the largest weight and contribution, and the Kullback-Leibler divergence of the density from the
 //! normalised integrand, with standard errors. [`Study::columns`](output::Study::columns) lists them.
 //!
+//! Beside the samplers stands `perfect`, which nobody can run: directions of a density proportional to the mean of RGB of
+//! `S cos theta_i`, what a sampler of the hair comes to that knows nothing of the light. What is then left of V is the
+//! light's. It is estimated from directions that are drawn anyway: its two integrals from those of `matched-12`, whose
+//! weights are bounded and vary least, and of the light; the albedo as the mean of the same weights, whose errors cancel
+//! against those of the integrals, so that V under constant light is 0.
+//!
 //! V and the divergence are integrals, and are estimated with directions of the sampler and, for lights that are not
 //! seen from everywhere, of the light: the figures are those of the sampler alone, but no small light has to be hit by
 //! luck. Drawing from the sampler alone, a V of 1000 is known to 10% after some hundred thousand samples, and its error
@@ -28,6 +34,7 @@ pub mod columns;
 pub mod grid;
 pub mod output;
 pub mod part;
+mod perfect;
 mod report;
 mod rows;
 pub mod shard;
@@ -143,8 +150,8 @@ where
     let (grid, budget) = (plan.grid(), plan.budget());
     plan.with_lights(|lights| {
         todo.par_iter().with_max_len(1).try_for_each(|&index| {
-            let measured = cell::measure(plan.seed, budget, lights, &grid.cell(index), &Sampler::ALL)?;
-            keep(Finished::of(index, &measured))
+            let found = cell::measure(plan.seed, budget, lights, &grid.cell(index), &Sampler::ALL)?;
+            keep(Finished::of(index, &found))
         })
     })
 }
@@ -161,6 +168,6 @@ pub(crate) fn variances(
     cell: &Cell,
     samplers: &[Sampler],
 ) -> Result<Vec<Estimate>, ParamError> {
-    let measured = plan.with_lights(|lights| cell::measure(plan.seed, budget, lights, cell, samplers))?;
-    Ok(measured.iter().map(|of| of.figures.v).collect())
+    let found = plan.with_lights(|lights| cell::measure(plan.seed, budget, lights, cell, samplers))?;
+    Ok(found.samplers.iter().map(|of| of.figures.v).collect())
 }

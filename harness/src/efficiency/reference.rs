@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::{Reference, ReferenceMethod, SAMPLERS, intensity, stream};
 use crate::light::{Environment, Light, luminance};
-use crate::quadrature::Tolerance;
+use crate::quadrature::{SphereIntegrator, Tolerance};
 use crate::sampler::Sampler;
 use crate::sequence::{Stratified, XiSource};
 use crate::stats::Moments;
@@ -27,6 +27,23 @@ fn mean_by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     }
 }
 
+/// Second moment of a contribution when directions have a density, by the light's own quadrature.
+fn second_moment(case: &Case, light: &dyn Light, sphere: &SphereIntegrator, density: &dyn Fn(DVec3) -> f64) -> f64 {
+    // The light multiplies by its radiance, channel by channel: the brightest channel carries the integrand, divided by it.
+    let square = |dir: DVec3| {
+        let radiance = light.radiance(dir);
+        let value = case.oracle_value(dir);
+        let y = intensity(core::array::from_fn(|c| radiance[c] * value[c]));
+        let brightest = (1..3).fold(0, |b, c| if radiance[c] > radiance[b] { c } else { b });
+        let mut carried = [0.0; 3];
+        if radiance[brightest] > 0.0 {
+            carried[brightest] = over(y * y, density(dir)) / radiance[brightest];
+        }
+        carried
+    };
+    light.integrate(&square, sphere).value.iter().sum()
+}
+
 /// Mean and variances by the light's own quadrature.
 pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     let mean = mean_by_quadrature(case, light);
@@ -36,22 +53,20 @@ pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
         // area light 6 s and change its figure by 2e-6. Lights that cover the sphere converge long before.
         let tolerance = Tolerance { max_panels: 2_000, ..*sphere.tolerance() };
         let sphere = sphere.with_tolerance(tolerance);
-        // The light multiplies by its radiance, channel by channel: the brightest channel carries the integrand, divided by it.
-        let square = |dir: DVec3| {
-            let radiance = light.radiance(dir);
-            let value = case.oracle_value(dir);
-            let y = intensity(core::array::from_fn(|c| radiance[c] * value[c]));
-            let brightest = (1..3).fold(0, |b, c| if radiance[c] > radiance[b] { c } else { b });
-            let mut carried = [0.0; 3];
-            if radiance[brightest] > 0.0 {
-                carried[brightest] = over(y * y, case.density(sampler, dir)) / radiance[brightest];
-            }
-            carried
-        };
-        let second: f64 = light.integrate(&square, &sphere).value.iter().sum();
+        let second = second_moment(case, light, &sphere, &|dir| case.density(sampler, dir));
         second / (mean.value * mean.value) - 1.0
     });
     Reference { v, ..mean }
+}
+
+/// V of directions whose density is proportional to the mean of RGB of `S cos theta_i`, by the light's own quadrature.
+#[cfg(test)]
+pub(super) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
+    let hair = |dir| intensity(case.oracle_value(dir));
+    let sphere = case.sphere(Sampler::Ou);
+    let albedo = sphere.integrate_direction(|dir| [hair(dir)]).value[0];
+    let second = second_moment(case, light, sphere, &|dir| hair(dir) / albedo);
+    second / mean_by_quadrature(case, light).value.powi(2) - 1.0
 }
 
 /// Mean and variances under an environment map: the mean by quadrature while the map has at most `max_texels`, all else by a stratified run over the oracle.

@@ -3,7 +3,7 @@
 use super::cell::Measured;
 use super::columns::Columns;
 use super::part::{self, FORMAT, Finished, Header, Read};
-use super::rows::{self, Bounds, Row, rows};
+use super::rows::{self, Bounds, Row, Strategy, rows};
 use super::times::{self, PER_POINT, Time};
 use super::{Grid, Shard, check, grid_of, summary};
 use crate::difference::Difference;
@@ -131,6 +131,9 @@ impl Study {
 
     /// The rows: what depends on the plan and the build alone.
     ///
+    /// The sampler `perfect` would draw with a density proportional to the mean of RGB of `S cos theta_i`: all of its
+    /// weights are the albedo.
+    ///
     /// | column | what it is |
     /// |---|---|
     /// | `cell` .. `light` | what the row is of; widths, `phi_g` and `theta_o` in degrees |
@@ -138,7 +141,7 @@ impl Study {
     /// | `v`, `v_se` | relative variance of one sample |
     /// | `ess_per_1000` | effective sample size of 1000 samples, `1000 / (1 + v)` |
     /// | `samples_for_1_percent` | samples to a relative error of 1%, `v / 1e-4` |
-    /// | `max_weight`, `weight_bound` | largest mean of RGB of a weight, whatever the light, and its proven bound where there is one |
+    /// | `max_weight`, `weight_bound` | largest mean of RGB of a weight, whatever the light, and its proven bound where there is one; of `perfect` the estimate of the albedo |
     /// | `max_contribution` | largest contribution, in means; under constant light the largest weight in means |
     /// | `kl`, `kl_se` | Kullback-Leibler divergence of the density from the normalised integrand, nats; under constant light that from `S cos theta_i` |
     #[must_use]
@@ -149,7 +152,7 @@ impl Study {
     /// The rows' efficiencies: what depends on the machine as well.
     ///
     /// For 1, 4 and 16 samples a gather point: the time of a sample in ns, `1 / (V seconds)`, and by what factor less
-    /// variance than `ou` it has in equal time.
+    /// variance than `ou` it has in equal time; of `perfect`, which has no time, none of it.
     #[must_use]
     pub fn efficiencies(&self, times: &Times) -> Columns {
         const NAMES: [[&str; 3]; 3] = [
@@ -162,14 +165,16 @@ impl Study {
             .number("v", rows.iter().map(|row| row.measured.figures.v.value))
             .number("v_se", rows.iter().map(|row| row.measured.figures.v.standard_error));
         for (per_point, names) in PER_POINT.into_iter().zip(NAMES) {
-            let ns = |model, sampler| times::ns(&times.0, model, sampler, per_point).value;
-            let cost = |row: &Row<'_>| row.measured.figures.v.value * ns(row.model, row.sampler);
+            let ns = |model, strategy: Strategy| {
+                strategy.sampler().map_or(f64::NAN, |sampler| times::ns(&times.0, model, sampler, per_point).value)
+            };
+            let cost = |row: &Row<'_>| row.measured.figures.v.value * ns(row.model, row.strategy);
             let ou = |row: &Row<'_>| {
                 let place = rows::place(row.model, Sampler::Ou, row.light, lights);
-                self.cells[row.cell.index][place].figures.v.value * ns(row.model, Sampler::Ou)
+                self.cells[row.cell.index][place].figures.v.value * ns(row.model, Sampler::Ou.into())
             };
             columns = columns
-                .number(names[0], rows.iter().map(|row| ns(row.model, row.sampler)))
+                .number(names[0], rows.iter().map(|row| ns(row.model, row.strategy)))
                 .number(names[1], rows.iter().map(|row| 1e9 / cost(row)))
                 .number(names[2], rows.iter().map(|row| ou(row) / cost(row)));
         }

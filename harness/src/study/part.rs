@@ -4,7 +4,7 @@
 //! the next run drops that line and computes its cell again.
 
 use super::Shard;
-use super::cell::Measured;
+use super::cell::{Found, Measured};
 use super::tally::Figures;
 use crate::error::Error;
 use crate::stats::Estimate;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 /// First word of every part file: the layout of its lines.
-pub const FORMAT: &str = "hairis-study-1";
+pub const FORMAT: &str = "hairis-study-2";
 
 /// What the cells of a part file are of. All of it must agree for cells to be of one study, but for the shard.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,10 +53,10 @@ pub struct Header {
 }
 
 impl Header {
-    /// Rows of a cell.
+    /// Rows of a cell: those of the samplers and of perfect sampling.
     #[must_use]
     pub fn rows(&self) -> usize {
-        self.models.len() * self.samplers.len() * self.lights.len()
+        self.models.len() * (self.samplers.len() + 1) * self.lights.len()
     }
 
     /// The first field in which `other` differs, with its value here and there, if one does; the shard may.
@@ -90,19 +90,19 @@ impl Header {
 pub struct Finished {
     /// Place of the cell in the grid.
     pub cell: usize,
-    /// Its rows: models outermost, then samplers, then lights.
+    /// Its rows: models outermost, then samplers, then lights; after them those of perfect sampling, models, then lights.
     pub rows: Vec<[Option<f64>; 8]>,
 }
 
 impl Finished {
-    pub(super) fn of(cell: usize, measured: &[Measured]) -> Self {
+    pub(super) fn of(cell: usize, found: &Found) -> Self {
         let row = |m: &Measured| {
             let Figures { mean, v, kl } = m.figures;
             let errors = [mean, v, kl].map(|of| [of.value, of.standard_error]);
             let [[a, b], [c, d], [e, f]] = errors;
             [a, b, c, d, e, f, m.max_weight, m.max_contribution].map(|x| x.is_finite().then_some(x))
         };
-        Self { cell, rows: measured.iter().map(row).collect() }
+        Self { cell, rows: found.samplers.iter().chain(&found.perfect).map(row).collect() }
     }
 
     pub(super) fn measured(&self) -> Vec<Measured> {
@@ -290,7 +290,8 @@ mod tests {
         let read = read(part.path()).expect("read");
         assert_eq!((read.header, &read.finished[..]), (header.clone(), &cells[..]));
         assert!(cells[0].measured()[0].figures.v.value.is_nan(), "what is no number stays none");
-        assert_eq!(Finished::of(3, &cells[0].measured()), cells[0]);
+        let found = Found { samplers: cells[0].measured(), perfect: Vec::new() };
+        assert_eq!(Finished::of(3, &found), cells[0]);
         let again = Part::open(dir.path(), &header);
         assert!(matches!(&again, Err(Error::Part { problem, .. }) if problem.contains("another process")), "{again:?}");
         drop(part);

@@ -50,9 +50,11 @@ impl Study {
             Section::new("Variance").paragraph(
                 "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. `ou` is the \
                  published sampler, `uniform` draws from the whole sphere, and the samplers named `matched` follow each \
-                 model's own bells. The Cauchy model has the Gaussian one's widths (k = 1).",
+                 model's own bells. The Cauchy model has the Gaussian one's widths (k = 1). `perfect` is no sampler: it is \
+                 what one would come to that draws in proportion to S cos θᵢ, the mean of red, green and blue, and knows \
+                 nothing of the light.",
             ),
-            charts::variances(view),
+            [charts::variances(view), charts::limits(view)].concat(),
         );
         let time = with(
             Section::new("Efficiency").paragraph(
@@ -93,6 +95,11 @@ impl Study {
                 "Means over the grid are geometric unless it says otherwise; their standard errors are those of the \
                  sampling, the grid being what it is. Cells where a V is known to no better than 25% are left out of \
                  gains. Words such as less and more are used beyond two standard errors.",
+            )
+            .method(
+                "Perfect sampling is estimated from the directions of `matched-12`, whose weights vary least and are bounded, \
+                 and of the light; the albedo it needs is the mean of the same weights, not that of another source, so that \
+                 their errors cancel.",
             )
             .method(
                 "Differences of looks are quadrature in double precision and have no statistical error; their own is \

@@ -7,11 +7,55 @@ use crate::efficiency::ModelKind;
 use crate::sampler::{Sampler, weight_bound};
 use rayon::prelude::*;
 
+/// How the directions of a row are drawn, or would be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Strategy {
+    /// By a sampler.
+    By(Sampler),
+    /// With the density that a sampler of the hair aims at: see [`perfect`](super::perfect).
+    Perfect,
+}
+
+impl Strategy {
+    /// Every one, in the order of reports.
+    pub(super) const ALL: [Self; Sampler::ALL.len() + 1] = {
+        let mut all = [Self::Perfect; Sampler::ALL.len() + 1];
+        let mut i = 0;
+        while i < Sampler::ALL.len() {
+            all[i] = Self::By(Sampler::ALL[i]);
+            i += 1;
+        }
+        all
+    };
+
+    /// Name in reports and in rows.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::By(sampler) => sampler.name(),
+            Self::Perfect => "perfect",
+        }
+    }
+
+    /// The sampler, if one draws them.
+    pub(super) const fn sampler(self) -> Option<Sampler> {
+        match self {
+            Self::By(sampler) => Some(sampler),
+            Self::Perfect => None,
+        }
+    }
+}
+
+impl From<Sampler> for Strategy {
+    fn from(sampler: Sampler) -> Self {
+        Self::By(sampler)
+    }
+}
+
 /// A row: what it is of, and what was found.
 pub(super) struct Row<'a> {
     pub(super) cell: Cell,
     pub(super) model: ModelKind,
-    pub(super) sampler: Sampler,
+    pub(super) strategy: Strategy,
     /// Place of the light.
     pub(super) light: usize,
     pub(super) measured: &'a Measured,
@@ -42,25 +86,29 @@ impl Bounds {
     }
 }
 
-/// Place of a row within its cell.
-pub(super) fn place(model: ModelKind, sampler: Sampler, light: usize, lights: usize) -> usize {
+/// Place of a row within its cell: perfect sampling comes after all samplers of all models.
+pub(super) fn place(model: ModelKind, strategy: impl Into<Strategy>, light: usize, lights: usize) -> usize {
     let at = |found: Option<usize>| found.unwrap_or_default();
     let model = at(ModelKind::ALL.iter().position(|of| *of == model));
-    let sampler = at(Sampler::ALL.iter().position(|of| *of == sampler));
-    (model * Sampler::ALL.len() + sampler) * lights + light
+    let samplers = Sampler::ALL.len();
+    let line = match strategy.into() {
+        Strategy::By(sampler) => model * samplers + at(Sampler::ALL.iter().position(|of| *of == sampler)),
+        Strategy::Perfect => ModelKind::ALL.len() * samplers + model,
+    };
+    line * lights + light
 }
 
-/// Every row, in order: cells outermost, then models, samplers and lights.
+/// Every row, in order: cells outermost, then models, samplers (perfect sampling last) and lights.
 pub(super) fn rows<'a>(grid: Grid, cells: &'a [Vec<Measured>], bounds: &Bounds, lights: usize) -> Vec<Row<'a>> {
     let mut rows = Vec::new();
     for (index, measured) in cells.iter().enumerate() {
         let cell = grid.cell(index);
         for model in ModelKind::ALL {
-            for sampler in Sampler::ALL {
-                let weight_bound = bounds.of(index, model, sampler);
+            for strategy in Strategy::ALL {
+                let weight_bound = strategy.sampler().map_or(f64::NAN, |sampler| bounds.of(index, model, sampler));
                 for light in 0..lights {
-                    let measured = &measured[place(model, sampler, light, lights)];
-                    rows.push(Row { cell, model, sampler, light, measured, weight_bound });
+                    let measured = &measured[place(model, strategy, light, lights)];
+                    rows.push(Row { cell, model, strategy, light, measured, weight_bound });
                 }
             }
         }
@@ -72,7 +120,7 @@ pub(super) fn rows<'a>(grid: Grid, cells: &'a [Vec<Measured>], bounds: &Bounds, 
 pub(super) fn keys(rows: &[Row<'_>], lights: &[String]) -> Columns {
     columns_of(rows.iter().map(|row| &row.cell))
         .text("model", rows.iter().map(|row| row.model.name()))
-        .text("sampler", rows.iter().map(|row| row.sampler.name()))
+        .text("sampler", rows.iter().map(|row| row.strategy.name()))
         .text("light", rows.iter().map(|row| lights[row.light].clone()))
 }
 

@@ -1,7 +1,7 @@
 //! What a study comes to: gains over the published sampler and of the Cauchy model, as geometric means over the grid.
 
 use super::cell::Measured;
-use super::rows::place;
+use super::rows::{Strategy, place};
 use super::times::{PER_POINT, Time, ns};
 use crate::efficiency::ModelKind;
 use crate::sampler::Sampler;
@@ -52,8 +52,8 @@ pub(crate) fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
     Estimate { value, standard_error: value * relative }
 }
 
-/// A sampler of a model.
-type Estimator = (ModelKind, Sampler);
+/// A model, and how its directions are drawn.
+type Estimator = (ModelKind, Strategy);
 
 /// Two estimators held against each other, and the words that begin their row.
 struct Comparison {
@@ -73,21 +73,18 @@ struct Figures<'a> {
 /// equal time.
 pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &[Time]) -> Vec<Table> {
     let figures = Figures { cells, lights, times };
-    let mut samplers = Vec::new();
-    for model in ModelKind::ALL {
-        for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
-            let words = [model.name(), sampler.name()];
-            samplers.push(Comparison { words, base: (model, Sampler::Ou), other: (model, sampler) });
-        }
-    }
-    let models: Vec<Comparison> = Sampler::ALL
-        .into_iter()
-        .map(|sampler| Comparison {
-            words: [ModelKind::Cauchy.name(), sampler.name()],
-            base: (ModelKind::Gaussian, sampler),
-            other: (ModelKind::Cauchy, sampler),
-        })
-        .collect();
+    let against = |base: (ModelKind, Sampler), (model, strategy): Estimator| Comparison {
+        words: [model.name(), strategy.name()],
+        base: (base.0, base.1.into()),
+        other: (model, strategy),
+    };
+    let over_ou = |strategies: &[Strategy]| -> Vec<Comparison> {
+        let others = strategies.iter().filter(|strategy| strategy.sampler() != Some(Sampler::Ou));
+        let of_model = |model| others.clone().map(move |of| against((model, Sampler::Ou), (model, *of)));
+        ModelKind::ALL.into_iter().flat_map(of_model).collect()
+    };
+    let (samplers, all) = (over_ou(&Sampler::ALL.map(Strategy::By)), over_ou(&Strategy::ALL));
+    let models = Sampler::ALL.map(|of| against((ModelKind::Gaussian, of), (ModelKind::Cauchy, of.into())));
     let percent = 100.0 * MAX_RELATIVE_ERROR;
     let left_out = format!(
         "{} cells. Left out: cells where the standard error of a V is above {percent}% of it, or nothing was seen of the \
@@ -97,8 +94,10 @@ pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &[Time])
     let timed = "Times of the default hair, eight lanes, one thread, on this machine; ±: one standard error, that of the \
                  times included.";
     let above = |who: &str| format!("Above 1, it needs fewer samples than {who}. {left_out}");
+    let perfect = "perfect: directions in proportion to S cos θᵢ, drawn without regard to the light, which is what ever better \
+                   samplers of the hair come to.";
     vec![
-        figures.variance("V of ou over V of the sampler, over the grid", &samplers).note(above("ou")),
+        figures.variance("V of ou over V of the sampler, over the grid", &all).note(above("ou")).note(perfect),
         figures.equal_time("The same in equal time, set-up included: geometric means", &samplers).note(timed),
         figures
             .variance("V on the Gaussian model over V on the Cauchy model, over the grid", &models)
@@ -108,30 +107,38 @@ pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &[Time])
 }
 
 impl Figures<'_> {
-    /// Gains under the light at `light`; `None` if no cell is sure.
-    fn gain(&self, of: &Comparison, light: usize) -> Option<Gain> {
-        let v = |cell: &[Measured], (model, sampler)| cell[place(model, sampler, light, self.lights.len())].figures.v;
-        gain(self.cells.iter().map(|cell| [v(cell, of.base), v(cell, of.other)]))
+    /// V of both sides in every cell.
+    fn pairs<'c>(&'c self, of: &'c Comparison, light: usize) -> impl Iterator<Item = [Estimate; 2]> + 'c {
+        let place = move |(model, strategy): Estimator| place(model, strategy, light, self.lights.len());
+        self.cells.iter().map(move |cell| [of.base, of.other].map(|of| cell[place(of)].figures.v))
+    }
+
+    /// Time of a sample; not a number if nobody draws it.
+    fn ns(&self, (model, strategy): Estimator, per_point: usize) -> Estimate {
+        let none = Estimate { value: f64::NAN, standard_error: f64::NAN };
+        strategy.sampler().map_or(none, |sampler| ns(self.times, model, sampler, per_point))
     }
 
     /// A row for every light of every comparison, its first three cells filled in.
-    fn each<'c>(&'c self, of: &'c [Comparison]) -> impl Iterator<Item = (Vec<String>, &'c Comparison, Option<Gain>)> {
+    fn each<'c>(&'c self, of: &'c [Comparison]) -> impl Iterator<Item = (Vec<String>, &'c Comparison, usize)> {
         of.iter().flat_map(move |of| {
             self.lights.iter().enumerate().map(move |(light, name)| {
                 let [first, second] = of.words.map(str::to_owned);
-                (vec![first, second, name.clone()], of, self.gain(of, light))
+                (vec![first, second, name.clone()], of, light)
             })
         })
     }
 
     fn variance(&self, title: &str, of: &[Comparison]) -> Table {
         let mut table = keys(title).number("geometric mean").number("least").number("most").number("left out");
-        for (mut row, _, gain) in self.each(of) {
-            match gain {
+        for (mut row, of, light) in self.each(of) {
+            match gain(self.pairs(of, light)) {
                 Some(gain) => {
                     row.extend([gain.geometric_mean, gain.least, gain.most].map(shown));
                     row.push(gain.unsure.to_string());
                 }
+                // Perfect sampling under constant light.
+                None if self.pairs(of, light).all(|[_, v]| v.value == 0.0) => row.push("no limit".to_owned()),
                 None => row.extend(["", "", "", "all"].map(str::to_owned)),
             }
             table.push(row);
@@ -142,10 +149,10 @@ impl Figures<'_> {
     fn equal_time(&self, title: &str, of: &[Comparison]) -> Table {
         let table = keys(title);
         let mut table = PER_POINT.into_iter().fold(table, |table, n| table.number(format!("{n} a point")));
-        for (mut row, of, gain) in self.each(of) {
-            row.extend(gain.iter().flat_map(|gain| {
+        for (mut row, of, light) in self.each(of) {
+            row.extend(gain(self.pairs(of, light)).iter().flat_map(|gain| {
                 PER_POINT.map(|per_point| {
-                    let [base, other] = [of.base, of.other].map(|(m, s)| ns(self.times, m, s, per_point));
+                    let [base, other] = [of.base, of.other].map(|of| self.ns(of, per_point));
                     shown(in_equal_time(gain.geometric_mean, base.ratio(&other)))
                 })
             }));

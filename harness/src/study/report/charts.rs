@@ -1,6 +1,7 @@
 //! The plots of a study: variance, efficiency, gains and weights.
 
 use super::super::Cell;
+use super::super::rows::Strategy;
 use super::super::times::PER_POINT;
 use super::view::{Estimator, TOLD, View, ess};
 use crate::efficiency::ModelKind;
@@ -76,6 +77,32 @@ pub(super) fn efficiencies(of: &View<'_>) -> Vec<Figure> {
                        over 1, 4 or 16 samples; eight lanes, one thread, this machine. Whiskers are one standard error, \
                        that of the times included. Twice the efficiency is half the time to the same error squared.";
         Figure::new(chart.svg(), caption).named(format!("efficiency-{}", model.name()))
+    };
+    ModelKind::ALL.map(figure).into()
+}
+
+/// Gains in V by light, over `ou`, up to that of perfect sampling.
+pub(super) fn limits(of: &View<'_>) -> Vec<Figure> {
+    let figure = |model: ModelKind| {
+        let title = format!("Fewer samples than ou, {} model", model.title());
+        let mut chart = BarChart::new(title, Axis::log("V of ou / V (×)"), of.light_labels());
+        for strategy in Strategy::ALL {
+            let gain = |light| of.gain((model, Sampler::Ou), (model, strategy), light).map(|gain| gain.geometric_mean);
+            let bars: Vec<Bar> = match strategy {
+                Strategy::By(Sampler::Ou) => vec![Bar::new(1.0); of.lights.len()],
+                _ => (0..of.lights.len()).map(|light| bar(gain(light))).collect(),
+            };
+            chart = chart.series(strategy.name(), bars);
+        }
+        let caption = format!(
+            "By what factor fewer samples than the published sampler needs, by light: geometric means over the grid. That \
+             is also how many times its time a sample may take before it loses in equal time. `perfect` would draw in \
+             proportion to S cos θᵢ, blind to the light: better samplers of the hair come to it, and what is left is the \
+             light's. Under {} light nothing is left: no bar. Where a small light stands far out in the tails, tails wider \
+             than the hair's pass it. Whiskers are one standard error.",
+            of.lights[CONSTANT]
+        );
+        Figure::new(chart.level(1.0).svg(), caption).named(format!("fewer-samples-by-light-{}", model.name()))
     };
     ModelKind::ALL.map(figure).into()
 }
@@ -190,12 +217,13 @@ pub(super) fn weights(of: &View<'_>) -> Vec<Figure> {
         let title = format!("Effective samples in 1000, {} model", model.title());
         let y = Axis::linear("effective samples in 1000");
         let mut chart = BarChart::new(title, y, of.light_labels());
-        for sampler in Sampler::ALL {
-            let mean = |light| Some(of.mean_of((model, sampler), light, ess));
-            chart = chart.series(sampler.name(), (0..of.lights.len()).map(|light| bar(mean(light))));
+        for strategy in Strategy::ALL {
+            let mean = |light| Some(of.mean_of((model, strategy), light, ess));
+            chart = chart.series(strategy.name(), (0..of.lights.len()).map(|light| bar(mean(light))));
         }
-        let caption = "1000 / (1 + V): how many samples without variance are worth as much as 1000 of the sampler. Means \
-                       over the grid; whiskers are one standard error.";
+        let caption = "1000 / (1 + V): how many samples without variance are worth as much as 1000 of the sampler. \
+                       `perfect` would draw in proportion to S cos θᵢ, blind to the light. Means over the grid; whiskers \
+                       are one standard error.";
         figures.push(Figure::new(chart.svg(), caption).named(format!("effective-samples-{}", model.name())));
     }
     for model in ModelKind::ALL {

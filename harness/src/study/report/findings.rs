@@ -1,5 +1,6 @@
 //! The answer in sentences. Every word that judges follows from figures and their errors.
 
+use super::super::rows::Strategy;
 use super::charts::MANY;
 use super::view::{Estimator, Sign, TOLD, View};
 use crate::difference::{Summary, Width, albedo_ratio};
@@ -111,9 +112,26 @@ fn which(of: &View<'_>) -> String {
     };
     format!(
         "Which sampler? Least variance in equal time, {MANY} samples a gather point (in brackets how many times less than \
-         `ou`; \"or\": not told apart): {}.",
-        ModelKind::ALL.map(of_model).join("; ")
+         `ou`; \"or\": not told apart): {}.{}",
+        ModelKind::ALL.map(of_model).join("; "),
+        limit(of).unwrap_or_default()
     )
+}
+
+/// How far sampling of the hair can go under the environment: V of `ou` over that of perfect sampling, and of `matched`.
+fn limit(of: &View<'_>) -> Option<String> {
+    let light = of.lights.len().checked_sub(1)?;
+    let gain = |model, strategy: Strategy| {
+        of.gain((model, Sampler::Ou), (model, strategy), light).map(|gain| times(gain.geometric_mean))
+    };
+    let [perfect, matched] = [Strategy::Perfect, Sampler::Matched.into()].map(|strategy| {
+        Some(format!("{} (Gaussian) and {} (Cauchy)", gain(GAUSSIAN, strategy)?, gain(CAUCHY, strategy)?))
+    });
+    Some(format!(
+        " How far can that go? V of `ou` over that of perfect sampling, which draws in proportion to S cos θᵢ, blind to \
+         the light, is {} under {}; over that of `matched` it is {}.",
+        perfect?, of.lights[light], matched?
+    ))
 }
 
 /// What does it change in looks?

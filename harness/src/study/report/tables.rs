@@ -1,5 +1,6 @@
 //! Tables that only the report has.
 
+use super::super::rows::Strategy;
 use super::super::summary::shown;
 use super::super::times::PER_POINT;
 use super::view::{View, ess};
@@ -19,15 +20,15 @@ pub(super) fn quality(of: &View<'_>) -> Table {
         .number("divergence, nats")
         .number("largest contribution, means");
     for model in ModelKind::ALL {
-        for sampler in Sampler::ALL {
+        for strategy in Strategy::ALL {
             for (light, name) in of.lights.iter().enumerate() {
-                let one = (model, sampler);
+                let one = (model, strategy);
                 let most = (0..of.cells.len()).map(|index| of.measured(index, one, light).max_contribution);
                 table.push([
                     model.name().to_owned(),
-                    sampler.name().to_owned(),
+                    strategy.name().to_owned(),
                     name.clone(),
-                    of.mean_v(one, light, |_| true).map_or_else(String::new, shown),
+                    mean_v(of, one, light),
                     shown(of.mean_of(one, light, ess)),
                     shown(of.mean_of(one, light, |measured| measured.figures.kl)),
                     number::plain(most.fold(0.0, f64::max), 3),
@@ -39,6 +40,14 @@ pub(super) fn quality(of: &View<'_>) -> Table {
         "V: geometric mean. Effective samples and divergence (Kullback-Leibler, of the sampler's density from the \
          normalised integrand): means. Largest contribution: of any cell, in units of its mean. ±: one standard error.",
     )
+}
+
+/// The mean of V in words: 0 where it is 0 in every cell, which has no geometric mean.
+fn mean_v(of: &View<'_>, one: (ModelKind, Strategy), light: usize) -> String {
+    if (0..of.cells.len()).all(|index| of.v(index, one, light).value == 0.0) {
+        return "0".to_owned();
+    }
+    of.mean_v(one, light, |_| true).map_or_else(String::new, shown)
 }
 
 /// Times of a sample.

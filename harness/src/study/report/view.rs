@@ -1,7 +1,7 @@
 //! What a report asks of a study: variances, gains and times by model, sampler and light.
 
 use super::super::cell::Measured;
-use super::super::rows::{Bounds, place};
+use super::super::rows::{Bounds, Strategy, place};
 use super::super::summary::{Gain, gain, in_equal_time};
 use super::super::{Cell, Grid};
 use crate::difference::Difference;
@@ -55,11 +55,16 @@ impl<'a> View<'a> {
         self.lights.iter().map(|name| name.replace(['-', '_'], " "))
     }
 
-    pub(super) fn measured(&self, index: usize, (model, sampler): Estimator, light: usize) -> &'a Measured {
-        &self.cells[index][place(model, sampler, light, self.lights.len())]
+    pub(super) fn measured(
+        &self,
+        index: usize,
+        (model, strategy): (ModelKind, impl Into<Strategy>),
+        light: usize,
+    ) -> &'a Measured {
+        &self.cells[index][place(model, strategy, light, self.lights.len())]
     }
 
-    pub(super) fn v(&self, index: usize, of: Estimator, light: usize) -> Estimate {
+    pub(super) fn v(&self, index: usize, of: (ModelKind, impl Into<Strategy>), light: usize) -> Estimate {
         self.measured(index, of, light).figures.v
     }
 
@@ -68,14 +73,33 @@ impl<'a> View<'a> {
         (0..self.cells.len()).map(|index| self.grid.cell(index))
     }
 
+    /// V of `base` and of `other` in every cell.
+    fn pairs<S: Into<Strategy> + Copy>(
+        &self,
+        base: Estimator,
+        other: (ModelKind, S),
+        light: usize,
+    ) -> impl Iterator<Item = [Estimate; 2]> {
+        (0..self.cells.len()).map(move |index| [self.v(index, base, light), self.v(index, other, light)])
+    }
+
     /// V of `base` over V of `other`; `None` if no cell is sure.
-    pub(super) fn gain(&self, base: Estimator, other: Estimator, light: usize) -> Option<Gain> {
-        let places = 0..self.cells.len();
-        gain(places.map(|index| [self.v(index, base, light), self.v(index, other, light)]))
+    pub(super) fn gain<S: Into<Strategy> + Copy>(
+        &self,
+        base: Estimator,
+        other: (ModelKind, S),
+        light: usize,
+    ) -> Option<Gain> {
+        gain(self.pairs(base, other, light))
     }
 
     /// Geometric mean of V over the cells that are kept.
-    pub(super) fn mean_v(&self, of: Estimator, light: usize, keep: impl Fn(&Cell) -> bool) -> Option<Estimate> {
+    pub(super) fn mean_v<S: Into<Strategy> + Copy>(
+        &self,
+        of: (ModelKind, S),
+        light: usize,
+        keep: impl Fn(&Cell) -> bool,
+    ) -> Option<Estimate> {
         let one = Estimate { value: 1.0, standard_error: 0.0 };
         let cells = self.each_cell().filter(|cell| keep(cell));
         gain(cells.map(|cell| [self.v(cell.index, of, light), one])).map(|gain| gain.geometric_mean)
@@ -108,7 +132,12 @@ impl<'a> View<'a> {
     }
 
     /// Mean over the cells of a figure; cells where it is no number are left out.
-    pub(super) fn mean_of(&self, of: Estimator, light: usize, figure: impl Fn(&Measured) -> Estimate) -> Estimate {
+    pub(super) fn mean_of<S: Into<Strategy> + Copy>(
+        &self,
+        of: (ModelKind, S),
+        light: usize,
+        figure: impl Fn(&Measured) -> Estimate,
+    ) -> Estimate {
         let figures = (0..self.cells.len()).map(|index| figure(self.measured(index, of, light)));
         let (mut n, mut sum, mut square) = (0.0, 0.0, 0.0);
         for figure in figures.filter(|figure| figure.value.is_finite() && figure.standard_error.is_finite()) {

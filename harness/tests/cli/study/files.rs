@@ -6,10 +6,10 @@ use parquet::record::Field;
 use serde_json::Value;
 use std::fs::{self, File};
 
-/// Rows of a cell: two models, each sampler, five lights.
-fn rows_of_a_cell() -> usize {
-    2 * hairis_harness::sampler::Sampler::ALL.len() * 5
-}
+/// The samplers that are drawn from.
+const SAMPLERS: usize = hairis_harness::sampler::Sampler::ALL.len();
+/// Rows of a cell: two models, each sampler and perfect sampling, five lights.
+const ROWS_OF_A_CELL: usize = 2 * (SAMPLERS + 1) * 5;
 
 fn csv(name: &str) -> Vec<Vec<String>> {
     let text = fs::read_to_string(reference().join(name)).unwrap();
@@ -19,7 +19,7 @@ fn csv(name: &str) -> Vec<Vec<String>> {
 #[test]
 fn the_rows_are_all_there() {
     let rows = csv("study.csv");
-    assert_eq!(rows.len(), 1 + CELLS * rows_of_a_cell());
+    assert_eq!(rows.len(), 1 + CELLS * ROWS_OF_A_CELL);
     assert!(rows.iter().all(|row| row.len() == rows[0].len()), "as many fields as names");
     let column = |name: &str| rows[0].iter().position(|of| of == name).unwrap();
     for row in &rows[1..] {
@@ -30,10 +30,12 @@ fn the_rows_are_all_there() {
         }
         let [v, percent, ess, contribution] = ["v", "samples_for_1_percent", "ess_per_1000", "max_contribution"]
             .map(|name| row[column(name)].parse::<f64>().unwrap());
-        assert!((percent / (1e4 * v) - 1.0).abs() < 1e-12 && (ess * (1.0 + v) / 1e3 - 1.0).abs() < 1e-12, "{row:?}");
-        assert!(contribution > 1.0, "{row:?}");
+        assert!((percent - 1e4 * v).abs() <= 1e-12 * percent && (ess * (1.0 + v) / 1e3 - 1.0).abs() < 1e-12, "{row:?}");
+        let is_even = row[column("sampler")] == "perfect" && row[column("light")] == "constant";
+        assert!(if is_even { contribution == 1.0 && v == 0.0 } else { contribution > 1.0 && v > 0.0 }, "{row:?}");
         let bounded = !row[column("weight_bound")].is_empty();
         assert!(bounded || row[column("sampler")] != "uniform", "{row:?}");
+        assert!(!bounded || row[column("sampler")] != "perfect", "{row:?}");
     }
 }
 
@@ -75,7 +77,7 @@ fn settings_and_times_are_complete() {
     assert_eq!(settings["study"]["cells"], CELLS);
     assert!(settings["times_measured_on"]["cpu"].is_string(), "{settings}");
     let times = csv("times.csv");
-    assert_eq!(times.len() - 1, 3 * rows_of_a_cell() / 5, "1, 4 and 16 samples a point");
+    assert_eq!(times.len() - 1, 3 * 2 * SAMPLERS, "1, 4 and 16 samples a point");
     assert!(times[1..].iter().all(|row| row[3].parse::<f64>().unwrap() > 0.0), "{times:?}");
     let left: Vec<_> = fs::read_dir(reference()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert!(left.iter().all(|name| !name.to_string_lossy().ends_with(".new")), "{left:?}");
@@ -87,6 +89,9 @@ fn the_report_stands_alone_and_has_every_part() {
     let answers = ["Is the Cauchy model worth it?", "Which sampler?", "change in looks?", "cost?", "Where not?"];
     for words in answers {
         assert_eq!(page.matches(words).count(), 1, "{words}");
+    }
+    for words in ["perfect sampling", "no limit"] {
+        assert!(page.contains(words), "{words}");
     }
     for words in ["How different the models look", "Method and machine", "standard error", "hairis claims"] {
         assert!(page.contains(words), "{words}");
