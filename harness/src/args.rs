@@ -120,6 +120,9 @@ pub struct Merge {
     /// Folders that hold the parts; one may hold several
     #[arg(value_name = "PART_DIR", required = true)]
     pub parts: Vec<PathBuf>,
+    /// Environment light of the parts, to time its look-up here [default: the procedural sky if it is theirs, else no times]
+    #[arg(long, value_name = "FILE")]
+    pub env: Option<PathBuf>,
 }
 
 /// The flags this process was started with; `None` if they asked for help or the version, which then is printed.

@@ -88,7 +88,7 @@ impl Part {
 pub fn run(config: &CompareConfig<'_>, progress: &(dyn Fn(Part, f64) + Sync)) -> Result<Comparison, ParamError> {
     let timing = if config.quick { SpeedConfig::quick(config.seed) } else { SpeedConfig::full(config.seed) };
     let speed = speed::run(&timing, |done| progress(Part::Speed, done))?;
-    let costs = sample_costs(&Times::measure(config.seed, config.quick));
+    let costs = sample_costs(&Times::measure(config.seed, config.quick, None));
 
     let errors = if config.quick { AgreementConfig::quick(config.seed) } else { AgreementConfig::full(config.seed) };
     progress(Part::Agreement, 0.0);

@@ -67,6 +67,8 @@ pub struct Merge {
     pub out: PathBuf,
     /// Folders that hold the parts.
     pub parts: Vec<PathBuf>,
+    /// Environment light of the parts, if it is at hand.
+    pub env: Option<PathBuf>,
 }
 
 /// A run of `hairis eval`.
@@ -111,7 +113,7 @@ impl Run {
                 };
                 Ok(Self::Study(Study { quick, seed, out, env, shard }))
             }
-            Command::Merge(args::Merge { out, parts }) => Ok(Self::Merge(Merge { out, parts })),
+            Command::Merge(args::Merge { out, parts, env }) => Ok(Self::Merge(Merge { out, parts, env })),
         }
     }
 }

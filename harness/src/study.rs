@@ -22,7 +22,9 @@
 //!
 //! The rows depend on the [`Plan`], on the build and on its instruction set, and on nothing else: each cell draws from
 //! streams of its own and is computed by one thread. Finished cells are kept in a part file, see [`part`], so that a run
-//! that was stopped goes on where it was, and so that many processes can share the work. Times are measured apart.
+//! that was stopped goes on where it was, and so that many processes can share the work. Times are measured apart, by
+//! whoever writes the tables: of a sample, and of a look-up of each light. The environment's needs its file, which
+//! `hairis merge` is given or goes without.
 //!
 //! # Another sampler
 //!
@@ -31,6 +33,7 @@
 mod cell;
 mod check;
 pub mod columns;
+mod equal_time;
 pub mod grid;
 pub mod output;
 pub mod part;
@@ -45,7 +48,8 @@ mod times;
 pub use grid::{Cell, Grid};
 pub use shard::Shard;
 
-pub(crate) use summary::{gain, in_equal_time};
+pub(crate) use equal_time::in_equal_time;
+pub(crate) use summary::gain;
 
 use crate::efficiency::{ModelKind, sun};
 use crate::light::{Constant, Environment, Light, Rectangle, Smooth};
@@ -120,7 +124,7 @@ impl Plan<'_> {
             seed: self.seed,
             samples: budget.samples,
             light_samples: budget.light_samples,
-            environment: format!("{:016x}", self.environment.digest()),
+            environment: part::digest(self.environment),
             models: ModelKind::ALL.iter().map(|model| model.name().to_owned()).collect(),
             samplers: Sampler::ALL.iter().map(|sampler| sampler.name().to_owned()).collect(),
             lights: self.with_lights(|lights| lights.iter().map(|light| light.name().to_owned()).collect()),
@@ -130,8 +134,13 @@ impl Plan<'_> {
     }
 
     fn with_lights<R>(&self, f: impl FnOnce(&Light5<'_>) -> R) -> R {
-        f(&[&Constant::white(), &Smooth::new(), &sun(), &Rectangle::figure_6a(), self.environment])
+        with_built_in_lights(|[constant, smooth, sun, area]| f(&[constant, smooth, sun, area, self.environment]))
     }
+}
+
+/// The lights that need no file; the environment follows them.
+fn with_built_in_lights<R>(f: impl FnOnce([&dyn Light; 4]) -> R) -> R {
+    f([&Constant::white(), &Smooth::new(), &sun(), &Rectangle::figure_6a()])
 }
 
 const fn grid_of(quick: bool) -> Grid {

@@ -106,7 +106,7 @@ fn is_below_one(ratio: Estimate) -> bool {
 
 /// The claim in equal time.
 fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
-    let times = Times::measure(plan.seed, plan.quick);
+    let times = Times::measure(plan.seed, plan.quick, None);
     let [gaussian, cauchy] = ModelKind::ALL.map(|model| times.ns(model, Sampler::Ou, PER_POINT));
     let faster = gaussian.ratio(&cauchy);
     let gains: Vec<Estimate> = means.iter().map(|mean| in_equal_time(*mean, faster)).collect();

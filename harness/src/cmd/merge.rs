@@ -1,6 +1,7 @@
 //! `hairis merge`: joins the parts of a study.
 
 use crate::cmd::study::finish;
+use crate::cmd::{environment, say};
 use crate::config::Merge;
 use crate::error::Error;
 use crate::study::output::Study;
@@ -8,12 +9,23 @@ use std::fs;
 
 /// Joins them, writes the same tables as one run, and prints the summary.
 ///
+/// The rows need no environment; the times, which are measured here, need it for its look-up. The parts tell which it is.
+///
 /// # Errors
 ///
-/// [`Error::Part`] and [`Error::Missing`] if the parts are not those of one study, all of them; [`Error::Output`] if
-/// its tables cannot be written; [`Error::Failed`] at the end, with all files written, if a check failed.
+/// [`Error::Part`] and [`Error::Missing`] if the parts are not those of one study, all of them; [`Error::Environment`] and
+/// [`Error::Usage`] if the environment cannot be read or is not theirs; [`Error::Output`] if the tables cannot be
+/// written; [`Error::Failed`] at the end, with all files written, if a check failed.
 pub fn run(config: &Merge) -> Result<(), Error> {
     let study = Study::read(&config.parts)?;
+    let (environment, name) = environment(config.env.as_deref())?;
+    let is_theirs = study.has_environment(&environment);
+    if !is_theirs && config.env.is_some() {
+        return Err(Error::Usage(format!("--env {name} is not the environment of the parts")));
+    }
+    if !is_theirs {
+        say("the look-up of the environment is not timed: --env FILE would");
+    }
     fs::create_dir_all(&config.out).map_err(|source| Error::Output { path: config.out.clone(), source })?;
-    finish(&study, &config.out)
+    finish(&study, is_theirs.then_some(&environment), &config.out)
 }

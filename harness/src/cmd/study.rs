@@ -4,6 +4,7 @@ use crate::cmd::{environment, print_tables, say};
 use crate::config::Study as Config;
 use crate::difference::Difference;
 use crate::error::Error;
+use crate::light::Environment;
 use crate::study::output::{Study, Times};
 use crate::study::part::{Part, read};
 use crate::study::{self, Plan, Shard};
@@ -44,7 +45,8 @@ pub fn run(config: &Config) -> Result<(), Error> {
     bar.finish_and_clear();
 
     if config.shard == Shard::WHOLE {
-        finish(&Study::join(&[(part.path().to_owned(), read(part.path())?)])?, &config.out)
+        let study = Study::join(&[(part.path().to_owned(), read(part.path())?)])?;
+        finish(&study, Some(&environment), &config.out)
     } else {
         say(&format!("wrote {}; `hairis merge` joins it with the others", part.path().display()));
         Ok(())
@@ -52,9 +54,9 @@ pub fn run(config: &Config) -> Result<(), Error> {
 }
 
 /// Measures times, computes how different the models look, writes the tables and prints the summary.
-pub(super) fn finish(study: &Study, out: &Path) -> Result<(), Error> {
+pub(super) fn finish(study: &Study, environment: Option<&Environment>, out: &Path) -> Result<(), Error> {
     let (seed, quick) = study.settings();
-    let times = Times::measure(seed, quick);
+    let times = Times::measure(seed, quick, environment);
     let difference = Difference::over(study.grid())?;
     study.write(out, &times, &difference)?;
     study.report(&times, &difference, claims(out).as_ref()).write(out, "study")?;

@@ -1,5 +1,6 @@
 //! What a contender does in a pass, and its answers in one form for all contenders.
 
+use crate::light::Seen8;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
@@ -39,11 +40,11 @@ struct Task<I, O, F> {
 }
 
 /// A pass that calls `call` with each of `inputs`.
-pub(crate) fn task<I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass>
+pub(crate) fn task<'a, I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass + 'a>
 where
-    I: Clone + 'static,
-    O: Output + 'static,
-    F: Fn(&I) -> O + 'static,
+    I: Clone + 'a,
+    O: Output + 'a,
+    F: Fn(&I) -> O + 'a,
 {
     Box::new(Task { inputs: inputs.to_vec(), call, output: PhantomData })
 }
@@ -127,6 +128,15 @@ impl Output for Eval8 {
     fn answers(&self, out: &mut Vec<Answer>) {
         for lane in 0..8 {
             self.lane(lane).answers(out);
+        }
+    }
+}
+
+impl Output for Seen8 {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        for lane in 0..8 {
+            let value = self.radiance.map(|c| c.to_array()[lane]);
+            out.push(Answer { wi: None, value, pdf: self.pdf.to_array()[lane] });
         }
     }
 }

@@ -2,14 +2,16 @@
 
 use super::cell::Measured;
 use super::columns::Columns;
+use super::equal_time::{NOTHING, in_equal_time, time_ratio};
 use super::part::{self, FORMAT, Finished, Header, Read};
 use super::rows::{self, Bounds, Row, Strategy, rows};
 use super::times::{self, PER_POINT, Time};
-use super::{Grid, Shard, check, grid_of, summary};
+use super::{Grid, Shard, check, grid_of, summary, with_built_in_lights};
 use crate::difference::Difference;
 use crate::efficiency::ModelKind;
 use crate::error::Error;
 use crate::files::whole;
+use crate::light::{Environment, Light};
 use crate::machine::Machine;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
@@ -17,6 +19,9 @@ use crate::table::Table;
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+
+/// What has not been measured.
+const NOT_KNOWN: Estimate = Estimate { value: f64::NAN, standard_error: f64::NAN };
 
 /// Every cell of a study, in the order of the grid.
 #[derive(Clone, Debug)]
@@ -26,20 +31,30 @@ pub struct Study {
     pub(super) bounds: Bounds,
 }
 
-/// Times of a sample, measured on this machine.
+/// Times of a sample and of a look-up of the light, measured on this machine.
 #[derive(Clone, Debug)]
 pub struct Times(Vec<Time>);
 
 impl Times {
-    /// Measures them, with nothing else at work: in about three seconds, or less than one if `quick`.
+    /// Measures them, with nothing else at work: in about three seconds, or less than one if `quick`. Without an
+    /// environment its look-up is not known.
     #[must_use]
-    pub fn measure(seed: u64, quick: bool) -> Self {
-        Self(times::measure(seed, if quick { 15 } else { 75 }))
+    pub fn measure(seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
+        with_built_in_lights(|built_in| {
+            let mut lights = built_in.to_vec();
+            lights.extend(environment.map(|map| map as &dyn Light));
+            Self(times::measure(seed, if quick { 15 } else { 75 }, &lights))
+        })
     }
 
     /// Median time of a sample in ns, for 1, 4 or 16 samples a gather point; not a number for others.
     pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
         times::ns(&self.0, model, sampler, per_point)
+    }
+
+    /// Median time of a look-up of the light at this place in ns; not a number if it was not measured.
+    pub(super) fn look_up(&self, light: usize) -> Estimate {
+        times::look_up(&self.0, light)
     }
 }
 
@@ -129,6 +144,12 @@ impl Study {
         (self.header.seed, self.header.quick)
     }
 
+    /// Whether the environment is the one among the lights.
+    #[must_use]
+    pub fn has_environment(&self, environment: &Environment) -> bool {
+        self.header.environment == part::digest(environment)
+    }
+
     /// The rows: what depends on the plan and the build alone.
     ///
     /// The sampler `perfect` would draw with a density proportional to the mean of RGB of `S cos theta_i`: all of its
@@ -151,32 +172,79 @@ impl Study {
 
     /// The rows' efficiencies: what depends on the machine as well.
     ///
-    /// For 1, 4 and 16 samples a gather point: the time of a sample in ns, `1 / (V seconds)`, and by what factor less
-    /// variance than `ou` it has in equal time; of `perfect`, which has no time, none of it.
+    /// | column | what it is |
+    /// |---|---|
+    /// | `cell` .. `light`, `v`, `v_se` | as in [`columns`](Self::columns) |
+    /// | `break_even`, `break_even_se` | V of `ou` over `v`: how many times the time of `ou` a sample may take before it loses in equal time |
+    /// | `look_up_ns`, `look_up_ns_se` | time of a look-up of the light in a direction, ns |
+    /// | `ns_at_N`, `efficiency_at_N` | time of a sample, ns, and `1 / (V seconds)`, for N of 1, 4 and 16 samples a gather point |
+    /// | `gain_at_N`, `gain_at_N_se` | by what factor less variance than `ou` it has in equal time |
+    /// | `look_up_efficiency_at_N` .. `look_up_gain_at_N_se` | the three with the look-up counted in every sample's time |
+    ///
+    /// Of `perfect`, which has no time, the first two lines alone, without a break-even where its V is 0. A look-up that was
+    /// not timed ([`Times::measure`]) leaves its columns empty.
     #[must_use]
     pub fn efficiencies(&self, times: &Times) -> Columns {
-        const NAMES: [[&str; 3]; 3] = [
-            ["ns_at_1", "efficiency_at_1", "gain_at_1"],
-            ["ns_at_4", "efficiency_at_4", "gain_at_4"],
-            ["ns_at_16", "efficiency_at_16", "gain_at_16"],
-        ];
+        macro_rules! names {
+            ($($n:literal),+) => {
+                [$([
+                    concat!("ns_at_", $n),
+                    concat!("efficiency_at_", $n),
+                    concat!("gain_at_", $n),
+                    concat!("gain_at_", $n, "_se"),
+                    concat!("look_up_efficiency_at_", $n),
+                    concat!("look_up_gain_at_", $n),
+                    concat!("look_up_gain_at_", $n, "_se"),
+                ]),+]
+            };
+        }
+        const NAMES: [[&str; 7]; 3] = names!(1, 4, 16);
         let (rows, lights) = (self.rows(), self.header.lights.len());
+        let v = |row: &Row<'_>| row.measured.figures.v;
+        let against_ou: Vec<Estimate> = rows
+            .iter()
+            .map(|row| match row.strategy {
+                Strategy::By(Sampler::Ou) => Estimate { value: 1.0, standard_error: 0.0 },
+                _ => {
+                    let place = rows::place(row.model, Sampler::Ou, row.light, lights);
+                    self.cells[row.cell.index][place].figures.v.ratio(&v(row))
+                }
+            })
+            .collect();
+        let look_ups: Vec<Estimate> = (0..lights).map(|light| times.look_up(light)).collect();
+        let look_up = |row: &Row<'_>| if row.strategy == Strategy::Perfect { NOT_KNOWN } else { look_ups[row.light] };
         let mut columns = rows::keys(&rows, &self.header.lights)
-            .number("v", rows.iter().map(|row| row.measured.figures.v.value))
-            .number("v_se", rows.iter().map(|row| row.measured.figures.v.standard_error));
+            .number("v", rows.iter().map(|row| v(row).value))
+            .number("v_se", rows.iter().map(|row| v(row).standard_error))
+            .number("break_even", against_ou.iter().map(|gain| gain.value))
+            .number("break_even_se", against_ou.iter().map(|gain| gain.standard_error))
+            .number("look_up_ns", rows.iter().map(|row| look_up(row).value))
+            .number("look_up_ns_se", rows.iter().map(|row| look_up(row).standard_error));
         for (per_point, names) in PER_POINT.into_iter().zip(NAMES) {
-            let ns = |model, strategy: Strategy| {
-                strategy.sampler().map_or(f64::NAN, |sampler| times::ns(&times.0, model, sampler, per_point).value)
+            let ns = |row: &Row<'_>| {
+                row.strategy.sampler().map_or(NOT_KNOWN, |sampler| times.ns(row.model, sampler, per_point))
             };
-            let cost = |row: &Row<'_>| row.measured.figures.v.value * ns(row.model, row.strategy);
-            let ou = |row: &Row<'_>| {
-                let place = rows::place(row.model, Sampler::Ou, row.light, lights);
-                self.cells[row.cell.index][place].figures.v.value * ns(row.model, Sampler::Ou.into())
+            let efficiency = |row: &Row<'_>, more: Estimate| 1e9 / (v(row).value * (ns(row).value + more.value));
+            let gain = |(row, gain): (&Row<'_>, &Estimate), more: Estimate| {
+                if row.strategy == Strategy::By(Sampler::Ou) {
+                    // Against itself: sure of being 1 wherever its time is known.
+                    return if more.value.is_nan() { NOT_KNOWN } else { *gain };
+                }
+                in_equal_time(*gain, time_ratio(times.ns(row.model, Sampler::Ou, per_point), ns(row), more))
             };
+            let gains = |with: bool| -> Vec<Estimate> {
+                let more = |row: &Row<'_>| if with { look_up(row) } else { NOTHING };
+                rows.iter().zip(&against_ou).map(|(row, of)| gain((row, of), more(row))).collect()
+            };
+            let [alone, with] = [gains(false), gains(true)];
             columns = columns
-                .number(names[0], rows.iter().map(|row| ns(row.model, row.strategy)))
-                .number(names[1], rows.iter().map(|row| 1e9 / cost(row)))
-                .number(names[2], rows.iter().map(|row| ou(row) / cost(row)));
+                .number(names[0], rows.iter().map(|row| ns(row).value))
+                .number(names[1], rows.iter().map(|row| efficiency(row, NOTHING)))
+                .number(names[2], alone.iter().map(|gain| gain.value))
+                .number(names[3], alone.iter().map(|gain| gain.standard_error))
+                .number(names[4], rows.iter().map(|row| efficiency(row, look_up(row))))
+                .number(names[5], with.iter().map(|gain| gain.value))
+                .number(names[6], with.iter().map(|gain| gain.standard_error));
         }
         columns
     }
@@ -190,7 +258,7 @@ impl Study {
     /// The tables that sum it up.
     #[must_use]
     pub fn summary(&self, times: &Times) -> Vec<Table> {
-        summary::tables(&self.cells, &self.header.lights, &times.0)
+        summary::tables(&self.cells, &self.header.lights, times)
     }
 
     /// Writes `study.csv` and `study.parquet` (the rows), `study.json` (the settings), `times.csv`, and `efficiency` and
@@ -211,7 +279,7 @@ impl Study {
         let (efficiencies, differences) = (self.efficiencies(times), difference.columns());
         whole(&dir.join("study.csv"), |out| rows.write_csv(out))?;
         whole(&dir.join("study.parquet"), |out| rows.write_parquet(&notes, out))?;
-        whole(&dir.join("times.csv"), |out| times::columns(&times.0).write_csv(out))?;
+        whole(&dir.join("times.csv"), |out| times::columns(&times.0, &self.header.lights).write_csv(out))?;
         whole(&dir.join("efficiency.csv"), |out| efficiencies.write_csv(out))?;
         whole(&dir.join("efficiency.parquet"), |out| efficiencies.write_parquet(&notes, out))?;
         whole(&dir.join("difference.csv"), |out| differences.write_csv(out))?;

@@ -7,6 +7,7 @@ use super::Shard;
 use super::cell::{Found, Measured};
 use super::tally::Figures;
 use crate::error::Error;
+use crate::light::Environment;
 use crate::stats::Estimate;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -50,6 +51,11 @@ pub struct Header {
     pub cells: usize,
     /// Which of them this part has.
     pub shard: String,
+}
+
+/// What a header says of an environment.
+pub(super) fn digest(environment: &Environment) -> String {
+    format!("{:016x}", environment.digest())
 }
 
 impl Header {

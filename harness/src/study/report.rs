@@ -59,7 +59,8 @@ impl Study {
         let time = with(
             Section::new("Efficiency").paragraph(
                 "What counts is the variance that is left after a given time. A sampler prepares each gather point, then \
-                 draws from it; a path tracer draws once, direct lighting often.",
+                 draws from it; a path tracer draws once, direct lighting often. Every sample needs the light in its \
+                 direction: gains are given for the samplers' own times, and with a look-up of the light added.",
             ),
             [charts::efficiencies(view), charts::gains(view)].concat(),
         );
@@ -77,7 +78,7 @@ impl Study {
         let looks = with(looks.heading("Over the grid"), looks::charts(view));
         let looks = difference.tables().into_iter().fold(looks, Section::table);
         let mut tables = self.summary(times).into_iter().fold(Section::new("Tables"), Section::table);
-        tables = tables.table(tables::quality(view)).table(tables::times(view));
+        tables = tables.table(tables::quality(view)).table(tables::times(view)).table(tables::look_ups(view));
         [variance, time, spread, weights, looks, tables].into_iter().fold(page, Report::section)
     }
 
@@ -99,7 +100,7 @@ impl Study {
             .method(
                 "Perfect sampling is estimated from the directions of `matched-12`, whose weights vary least and are bounded, \
                  and of the light; the albedo it needs is the mean of the same weights, not that of another source, so that \
-                 their errors cancel.",
+                 their errors cancel. A look-up is timed in directions of `ou`, in turns with the samplers.",
             )
             .method(
                 "Differences of looks are quadrature in double precision and have no statistical error; their own is \

@@ -1,8 +1,11 @@
-//! What a study comes to: gains over the published sampler and of the Cauchy model, as geometric means over the grid.
+//! What a study comes to: gains over the published sampler and of the Cauchy model, as geometric means over the grid, and
+//! in how many cells.
 
 use super::cell::Measured;
+use super::equal_time::{Cells, NOTHING, in_equal_time, time_ratio};
+use super::output::Times;
 use super::rows::{Strategy, place};
-use super::times::{PER_POINT, Time, ns};
+use super::times::PER_POINT;
 use crate::efficiency::ModelKind;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
@@ -21,18 +24,22 @@ pub(crate) struct Gain {
     pub(crate) unsure: usize,
 }
 
+/// The first V over the second; `None` if one of them is unsure.
+pub(super) fn sure_ratio([base, other]: [Estimate; 2]) -> Option<Estimate> {
+    let sure = |v: &Estimate| v.value > 0.0 && v.standard_error <= MAX_RELATIVE_ERROR * v.value;
+    (sure(&base) && sure(&other)).then(|| base.ratio(&other))
+}
+
 /// The first of two lists of V over the second, cell by cell.
 ///
 /// The standard error of the geometric mean is that of its figures, the grid being what it is. Both samplers are held
 /// against the same directions of the light: errors of the ratios are, if anything, less than said.
 pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
-    let sure = |v: &Estimate| v.value > 0.0 && v.standard_error <= MAX_RELATIVE_ERROR * v.value;
     let (mut ratios, mut unsure) = (Vec::new(), 0);
-    for [base, other] in pairs {
-        if sure(&base) && sure(&other) {
-            ratios.push(base.ratio(&other));
-        } else {
-            unsure += 1;
+    for pair in pairs {
+        match sure_ratio(pair) {
+            Some(ratio) => ratios.push(ratio),
+            None => unsure += 1,
         }
     }
     let by_value = |a: &&Estimate, b: &&Estimate| a.value.total_cmp(&b.value);
@@ -43,13 +50,6 @@ pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
     let error = ratios.iter().map(|ratio| (ratio.standard_error / ratio.value).powi(2)).sum::<f64>().sqrt() / n;
     let value = logarithm.exp();
     Some(Gain { geometric_mean: Estimate { value, standard_error: value * error }, least, most, unsure })
-}
-
-/// A ratio of variances times that of the times.
-pub(crate) fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
-    let value = variance.value * time.value;
-    let relative = (variance.standard_error / variance.value).hypot(time.standard_error / time.value);
-    Estimate { value, standard_error: value * relative }
 }
 
 /// A model, and how its directions are drawn.
@@ -66,12 +66,12 @@ struct Comparison {
 struct Figures<'a> {
     cells: &'a [Vec<Measured>],
     lights: &'a [String],
-    times: &'a [Time],
+    times: &'a Times,
 }
 
 /// The tables: the samplers of each model against `ou`, then the models against each other; variances, then variances in
 /// equal time.
-pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &[Time]) -> Vec<Table> {
+pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &Times) -> Vec<Table> {
     let figures = Figures { cells, lights, times };
     let against = |base: (ModelKind, Sampler), (model, strategy): Estimator| Comparison {
         words: [model.name(), strategy.name()],
@@ -94,15 +94,25 @@ pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &[Time])
     let timed = "Times of the default hair, eight lanes, one thread, on this machine; ±: one standard error, that of the \
                  times included.";
     let above = |who: &str| format!("Above 1, it needs fewer samples than {who}. {left_out}");
-    let perfect = "perfect: directions in proportion to S cos θᵢ, drawn without regard to the light, which is what ever better \
-                   samplers of the hair come to.";
+    let perfect = "In equal time a sample pays until it takes so many times that of ou. perfect: directions in proportion to \
+                   S cos θᵢ, drawn without regard to the light, which is what ever better samplers of the hair come to.";
+    let counted = format!(
+        "Won and lost: by more than two standard errors, those of the variances and of the times. Of {} cells; those left \
+         out above are undecided.",
+        cells.len()
+    );
+    let look_up = "The time of a look-up of the light in its direction is added to that of every sample.";
+    let [alone, with] = [false, true];
     vec![
         figures.variance("V of ou over V of the sampler, over the grid", &all).note(above("ou")).note(perfect),
-        figures.equal_time("The same in equal time, set-up included: geometric means", &samplers).note(timed),
+        figures.equal_time("The same in equal time, set-up included: geometric means", &samplers, alone).note(timed),
+        figures.equal_time("The same with a look-up of the light: geometric means", &samplers, with).note(look_up),
+        figures.counts("Cells won / undecided / lost against ou in equal time", &samplers, alone).note(&counted),
+        figures.counts("Cells won / undecided / lost with a look-up of the light", &samplers, with).note(look_up),
         figures
             .variance("V on the Gaussian model over V on the Cauchy model, over the grid", &models)
             .note(above("on the Gaussian model")),
-        figures.equal_time("The same in equal time, set-up included: geometric means", &models).note(timed),
+        figures.equal_time("The same in equal time, set-up included: geometric means", &models, alone).note(timed),
     ]
 }
 
@@ -113,10 +123,14 @@ impl Figures<'_> {
         self.cells.iter().map(move |cell| [of.base, of.other].map(|of| cell[place(of)].figures.v))
     }
 
-    /// Time of a sample; not a number if nobody draws it.
-    fn ns(&self, (model, strategy): Estimator, per_point: usize) -> Estimate {
+    /// Time of the one over that of the other, alone or with a look-up of the light.
+    fn time(&self, of: &Comparison, light: usize, per_point: usize, with_look_up: bool) -> Estimate {
         let none = Estimate { value: f64::NAN, standard_error: f64::NAN };
-        strategy.sampler().map_or(none, |sampler| ns(self.times, model, sampler, per_point))
+        let ns = |(model, strategy): Estimator| {
+            strategy.sampler().map_or(none, |sampler| self.times.ns(model, sampler, per_point))
+        };
+        let more = if with_look_up { self.times.look_up(light) } else { NOTHING };
+        time_ratio(ns(of.base), ns(of.other), more)
     }
 
     /// A row for every light of every comparison, its first three cells filled in.
@@ -146,19 +160,38 @@ impl Figures<'_> {
         table
     }
 
-    fn equal_time(&self, title: &str, of: &[Comparison]) -> Table {
+    /// A table of equal time, a column for each number of samples a point: what `cell` makes of a ratio of times.
+    fn timed(
+        &self,
+        title: &str,
+        of: &[Comparison],
+        with_look_up: bool,
+        cell: impl Fn(&Comparison, usize, Estimate) -> String,
+    ) -> Table {
         let table = keys(title);
         let mut table = PER_POINT.into_iter().fold(table, |table, n| table.number(format!("{n} a point")));
         for (mut row, of, light) in self.each(of) {
-            row.extend(gain(self.pairs(of, light)).iter().flat_map(|gain| {
-                PER_POINT.map(|per_point| {
-                    let [base, other] = [of.base, of.other].map(|of| self.ns(of, per_point));
-                    shown(in_equal_time(gain.geometric_mean, base.ratio(&other)))
-                })
+            row.extend(PER_POINT.map(|per_point| {
+                let time = self.time(of, light, per_point, with_look_up);
+                if time.value.is_nan() { "not timed".to_owned() } else { cell(of, light, time) }
             }));
             table.push(row);
         }
         table
+    }
+
+    fn equal_time(&self, title: &str, of: &[Comparison], with_look_up: bool) -> Table {
+        self.timed(title, of, with_look_up, |of, light, time| {
+            let gain = gain(self.pairs(of, light));
+            gain.map_or_else(String::new, |gain| shown(in_equal_time(gain.geometric_mean, time)))
+        })
+    }
+
+    fn counts(&self, title: &str, of: &[Comparison], with_look_up: bool) -> Table {
+        let cell = |of: &Comparison, light: usize, time: Estimate| {
+            Cells::count(self.pairs(of, light).map(sure_ratio), time).to_string()
+        };
+        self.timed(title, of, with_look_up, cell)
     }
 }
 

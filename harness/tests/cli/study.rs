@@ -149,9 +149,63 @@ fn parts_joined_are_the_same_as_one_run() {
     assert_same_rows(out.path(), "a part stopped and one twice");
 }
 
+/// How many look-ups of this light were timed in `dir`.
+fn look_ups(dir: &Path, environment: &str) -> usize {
+    let times = fs::read_to_string(dir.join("times.csv")).unwrap();
+    times.lines().filter(|line| line.starts_with(&format!(",,,{environment},"))).count()
+}
+
 #[test]
 fn a_whole_run_can_be_merged_too() {
     let out = TempDir::new().unwrap();
-    assert_eq!(merge(out.path(), &[reference()]).code, Some(0));
+    let run = merge(out.path(), &[reference()]);
+    assert_eq!(run.code, Some(0), "{:?}", run.err);
     assert_same_rows(out.path(), "one part");
+    assert_eq!(look_ups(out.path(), "clear sky"), 1, "the sky needs no file");
+    assert!(!run.err.iter().any(|line| line.contains("--env")), "{:?}", run.err);
+}
+
+#[test]
+fn a_look_up_is_timed_after_a_merge_if_the_environment_is_at_hand() {
+    let (dir, out) = (TempDir::new().unwrap(), TempDir::new().unwrap());
+    let [map, other] = ["map.hdr", "other.hdr"].map(|name| dir.path().join(name));
+    for (path, level) in [(&map, 128), (&other, 64)] {
+        let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
+        bytes.extend((0..8).flat_map(|texel| [level, level, 200, 120 + texel]));
+        fs::write(path, bytes).unwrap();
+    }
+    let env = |path: &Path| ["--env".to_owned(), path.to_str().unwrap().to_owned()];
+    let with = |args: [String; 2]| -> Run { study(dir.path(), "2", &args.each_ref().map(String::as_str)) };
+    assert_eq!(with(env(&map)).code, Some(0));
+    assert_eq!(look_ups(dir.path(), "map.hdr"), 1);
+
+    let run = merge(out.path(), &[dir.path()]);
+    assert_eq!(run.code, Some(0), "{:?}", run.err);
+    assert!(run.err[0].contains("not timed: --env FILE"), "{:?}", run.err);
+    assert_eq!(look_ups(out.path(), "map.hdr"), 0);
+    let efficiency = fs::read_to_string(out.path().join("efficiency.csv")).unwrap();
+    let fields = |line: &str| -> Vec<String> { line.split(',').map(str::to_owned).collect() };
+    let names = fields(efficiency.lines().next().unwrap());
+    for row in efficiency.lines().skip(1).map(fields) {
+        let of = |name: &str| &row[names.iter().position(|of| of == name).unwrap()];
+        let is_timed = of("light") != "map.hdr" && of("sampler") != "perfect";
+        assert_eq!(!of("look_up_ns").is_empty(), is_timed, "{row:?}");
+        assert_eq!(!of("look_up_gain_at_16").is_empty(), is_timed, "{row:?}");
+        assert_eq!(!of("gain_at_16").is_empty(), of("sampler") != "perfect", "{row:?}");
+    }
+
+    let merged = |path: &Path| {
+        let args = [out.path().to_str().unwrap().to_owned(), dir.path().to_str().unwrap().to_owned()];
+        let args: Vec<String> = ["merge".to_owned()].into_iter().chain(args).chain(env(path)).collect();
+        let args: Vec<&str> = args.iter().map(String::as_str).collect();
+        finish(command(&args).stdin(Stdio::null()).output().unwrap())
+    };
+    assert_refused(&merged(&other), "is not the environment of the parts");
+    assert_refused(&merged(Path::new("missing.hdr")), "missing.hdr");
+    let run = merged(&map);
+    assert_eq!(run.code, Some(0), "{:?}", run.err);
+    assert_eq!(look_ups(out.path(), "map.hdr"), 1);
+    for name in ["study.csv", "study.parquet"] {
+        assert_eq!(fs::read(out.path().join(name)).unwrap(), fs::read(dir.path().join(name)).unwrap(), "{name}");
+    }
 }

@@ -3,15 +3,12 @@
 use super::super::Cell;
 use super::super::rows::Strategy;
 use super::super::times::PER_POINT;
-use super::view::{Estimator, TOLD, View, ess};
+use super::view::{Counted, Estimator, MANY, TOLD, View, ess};
 use crate::efficiency::ModelKind;
 use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
 use crate::report::Figure;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
-
-/// Samples a gather point of the figures that show one number of them: direct lighting.
-pub(super) const MANY: usize = 16;
 
 /// The light that everything sees.
 const CONSTANT: usize = 0;
@@ -107,30 +104,43 @@ pub(super) fn limits(of: &View<'_>) -> Vec<Figure> {
     ModelKind::ALL.map(figure).into()
 }
 
-/// Gains in equal time, by light: over `ou`, then of the Cauchy model.
-pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
-    let mut figures = Vec::new();
-    let bars = |base: Estimator, other: Estimator| -> Vec<Bar> {
-        (0..of.lights.len()).map(|light| bar(of.equal_time(base, other, light, MANY))).collect()
+/// Gains over `ou` in equal time by light, a chart for each model.
+fn gains_over_ou(of: &View<'_>, counted: Counted) -> Vec<Figure> {
+    let (words, slug, note) = match counted {
+        Counted::Sample => ("", "", ""),
+        Counted::LookUp => (
+            ", look-up included",
+            "-look-up",
+            " The time of a look-up of the light is added to that of every sample; a light whose look-up was not timed \
+             has no bars.",
+        ),
     };
-    for model in ModelKind::ALL {
-        let title = format!("Less variance than ou in equal time, {} model", model.title());
+    let figure = |model: ModelKind| {
+        let title = format!("Less variance than ou in equal time{words}, {} model", model.title());
         let mut chart = BarChart::new(title, Axis::log("gain over ou in equal time (×)"), of.light_labels());
         for sampler in Sampler::ALL {
+            let gain = |light| bar(of.equal_time((model, Sampler::Ou), (model, sampler), light, counted));
             // The published sampler is there for the others to be measured by, and for every chart to have one key.
-            let bars = match sampler {
+            let bars: Vec<Bar> = match sampler {
                 Sampler::Ou => vec![Bar::new(1.0); of.lights.len()],
-                _ => bars((model, Sampler::Ou), (model, sampler)),
+                _ => (0..of.lights.len()).map(gain).collect(),
             };
             chart = chart.series(sampler.name(), bars);
         }
         let caption = format!(
             "By what factor less variance than the published sampler has in the same time, by light, at {MANY} samples a \
-             gather point: geometric means over the grid. Above the dashed line the sampler beats ou. Whiskers are one \
-             standard error, that of the times included."
+             gather point: geometric means over the grid.{note} Above the dashed line the sampler beats ou. Whiskers are \
+             one standard error, that of the times included."
         );
-        figures.push(Figure::new(chart.level(1.0).svg(), caption).named(format!("gain-by-light-{}", model.name())));
-    }
+        Figure::new(chart.level(1.0).svg(), caption).named(format!("gain-by-light{slug}-{}", model.name()))
+    };
+    ModelKind::ALL.map(figure).into()
+}
+
+/// Gains in equal time, by light: over `ou`, without and with the look-up, then of the Cauchy model.
+pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
+    let mut figures = gains_over_ou(of, Counted::Sample);
+    figures.extend(gains_over_ou(of, Counted::LookUp));
     let mut chart = BarChart::new(
         "Less variance on the Cauchy model in equal time",
         Axis::log("Gaussian / Cauchy in equal time (×)"),
@@ -138,7 +148,8 @@ pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
     );
     for sampler in Sampler::ALL {
         let pair = ModelKind::ALL.map(|model| (model, sampler));
-        chart = chart.series(sampler.name(), bars(pair[0], pair[1]));
+        let gain = |light| bar(of.equal_time(pair[0], pair[1], light, Counted::Sample));
+        chart = chart.series(sampler.name(), (0..of.lights.len()).map(gain));
     }
     let caption = format!(
         "Variance on the Gaussian model over that on the Cauchy model with the same sampler in the same time, by light, at \

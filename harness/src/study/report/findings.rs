@@ -1,8 +1,8 @@
 //! The answer in sentences. Every word that judges follows from figures and their errors.
 
+use super::super::equal_time::Sign;
 use super::super::rows::Strategy;
-use super::charts::MANY;
-use super::view::{Estimator, Sign, TOLD, View};
+use super::view::{Counted, Estimator, MANY, TOLD, View};
 use crate::difference::{Summary, Width, albedo_ratio};
 use crate::efficiency::ModelKind;
 use crate::sampler::Sampler;
@@ -47,7 +47,7 @@ fn listed(words: &[String]) -> String {
 
 /// The gains of the Cauchy model in equal time, by light.
 fn cauchy_gains<'a>(of: &View<'a>, sampler: Sampler) -> Vec<(&'a str, Estimate)> {
-    let gain = |light| of.equal_time((GAUSSIAN, sampler), (CAUCHY, sampler), light, MANY);
+    let gain = |light| of.equal_time((GAUSSIAN, sampler), (CAUCHY, sampler), light, Counted::Sample);
     of.lights.iter().zip(0..).filter_map(|(name, light)| Some((name.as_str(), gain(light)?))).collect()
 }
 
@@ -74,9 +74,9 @@ fn worth(of: &View<'_>) -> Option<String> {
 }
 
 /// The samplers that are not told from the best of a model under a light, with the best one's gain over `ou`.
-fn best(of: &View<'_>, model: ModelKind, light: usize, per_point: usize) -> Option<(Vec<Sampler>, Estimate)> {
+fn best(of: &View<'_>, model: ModelKind, light: usize, counted: Counted) -> Option<(Vec<Sampler>, Estimate)> {
     let gain = |sampler| {
-        let over_ou = of.equal_time((model, Sampler::Ou), (model, sampler), light, per_point)?;
+        let over_ou = of.equal_time((model, Sampler::Ou), (model, sampler), light, counted)?;
         Some((sampler, if sampler == Sampler::Ou { Estimate { value: 1.0, standard_error: 0.0 } } else { over_ou }))
     };
     let mut gains: Vec<(Sampler, Estimate)> = Sampler::ALL.into_iter().filter_map(gain).collect();
@@ -90,30 +90,53 @@ fn best(of: &View<'_>, model: ModelKind, light: usize, per_point: usize) -> Opti
     Some((Sampler::ALL.into_iter().filter(|sampler| level.contains(sampler)).collect(), most))
 }
 
+/// The best samplers of a model with the lights they are best under, in words; only where `told` of the light.
+fn best_by_light(
+    of: &View<'_>,
+    model: ModelKind,
+    counted: Counted,
+    told: impl Fn(usize, &[Sampler]) -> bool,
+) -> Option<String> {
+    // Lights with the same best samplers share a part of the sentence.
+    let mut groups: Vec<(Vec<Sampler>, Vec<String>)> = Vec::new();
+    for (light, name) in of.lights.iter().enumerate() {
+        let Some((samplers, gain)) = best(of, model, light, counted) else { continue };
+        if !told(light, &samplers) {
+            continue;
+        }
+        let words = if samplers.contains(&Sampler::Ou) { name.clone() } else { format!("{name} ({})", times(gain)) };
+        match groups.iter_mut().find(|(group, _)| *group == samplers) {
+            Some((_, lights)) => lights.push(words),
+            None => groups.push((samplers, vec![words])),
+        }
+    }
+    let part = |(samplers, lights): &(Vec<Sampler>, Vec<String>)| {
+        let names: Vec<String> = samplers.iter().map(|sampler| format!("`{}`", sampler.name())).collect();
+        format!("{} under {}", names.join(" or "), listed(lights))
+    };
+    let parts = groups.iter().map(part).collect::<Vec<_>>().join(", ");
+    (!groups.is_empty()).then(|| format!("on the {} model {parts}", model.title()))
+}
+
 /// Which sampler?
 fn which(of: &View<'_>) -> String {
-    let of_model = |model: ModelKind| {
-        // Lights with the same best samplers share a part of the sentence.
-        let mut groups: Vec<(Vec<Sampler>, Vec<String>)> = Vec::new();
-        for (light, name) in of.lights.iter().enumerate() {
-            let Some((samplers, gain)) = best(of, model, light, MANY) else { continue };
-            let words =
-                if samplers.contains(&Sampler::Ou) { name.clone() } else { format!("{name} ({})", times(gain)) };
-            match groups.iter_mut().find(|(group, _)| *group == samplers) {
-                Some((_, lights)) => lights.push(words),
-                None => groups.push((samplers, vec![words])),
-            }
-        }
-        let part = |(samplers, lights): &(Vec<Sampler>, Vec<String>)| {
-            let names: Vec<String> = samplers.iter().map(|sampler| format!("`{}`", sampler.name())).collect();
-            format!("{} under {}", names.join(" or "), listed(lights))
+    let words = |parts: Vec<String>| parts.join("; ");
+    let all = |model| best_by_light(of, model, Counted::Sample, |_, _| true);
+    // Only where the look-up changes the answer.
+    let changed = |model: ModelKind| {
+        let is_other = |light: usize, samplers: &[Sampler]| {
+            best(of, model, light, Counted::Sample).is_none_or(|(alone, _)| alone != samplers)
         };
-        format!("on the {} model {}", model.title(), groups.iter().map(part).collect::<Vec<_>>().join(", "))
+        best_by_light(of, model, Counted::LookUp, is_other)
     };
+    let alone = words(ModelKind::ALL.into_iter().filter_map(all).collect());
+    let with: Vec<String> = ModelKind::ALL.into_iter().filter_map(changed).collect();
+    let is_timed = (0..of.lights.len()).all(|light| of.look_up(light).is_some());
+    let given = if is_timed { "" } else { ", where it was timed" };
+    let with = if with.is_empty() { "the same".to_owned() } else { format!("{}; else the same", words(with)) };
     format!(
         "Which sampler? Least variance in equal time, {MANY} samples a gather point (in brackets how many times less than \
-         `ou`; \"or\": not told apart): {}.{}",
-        ModelKind::ALL.map(of_model).join("; "),
+         `ou`; \"or\": not told apart): {alone}. With a look-up of the light counted in{given}: {with}.{}",
         limit(of).unwrap_or_default()
     )
 }
@@ -183,9 +206,17 @@ fn cost(of: &View<'_>) -> String {
             ns(cauchy)
         )
     };
+    let look_ups: Vec<(&String, f64)> =
+        of.lights.iter().zip(0..).filter_map(|(name, light)| Some((name, of.look_up(light)?.value))).collect();
+    let by_time = |a: &&(&String, f64), b: &&(&String, f64)| a.1.total_cmp(&b.1);
+    let shown = |(name, ns): &(&String, f64)| format!("{} ns ({name})", number::plain(*ns, 2));
+    let ends = look_ups.iter().min_by(by_time).zip(look_ups.iter().max_by(by_time));
+    let look_up = ends.map_or_else(String::new, |(least, most)| {
+        format!(" A look-up of the light in its direction takes {} to {} more.", shown(least), shown(most))
+    });
     format!(
         "What does it cost? Time of a sample on this machine, eight lanes, one thread, at {MANY} (1) samples a gather \
-         point: {}.",
+         point: {}.{look_up}",
         TOLD.map(part).join("; ")
     )
 }

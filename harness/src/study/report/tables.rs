@@ -50,6 +50,18 @@ fn mean_v(of: &View<'_>, one: (ModelKind, Strategy), light: usize) -> String {
     of.mean_v(one, light, |_| true).map_or_else(String::new, shown)
 }
 
+/// Times of a look-up.
+pub(super) fn look_ups(of: &View<'_>) -> Table {
+    let mut table = Table::new("Time of a look-up of the light in a direction, ns").text("light").number("ns");
+    for (light, name) in of.lights.iter().enumerate() {
+        table.push([name.clone(), of.look_up(light).map_or_else(|| "not timed".to_owned(), shown)]);
+    }
+    table.note(
+        "Radiance and the light's density in 65536 directions of ou, many gather points in turn; eight lanes, one thread, \
+         medians; ±: one standard error.",
+    )
+}
+
 /// Times of a sample.
 pub(super) fn times(of: &View<'_>) -> Table {
     let table = Table::new("Time of a sample, ns").text("model").text("sampler");
@@ -57,11 +69,17 @@ pub(super) fn times(of: &View<'_>) -> Table {
     for model in ModelKind::ALL {
         for sampler in Sampler::ALL {
             let mut cells = vec![model.name().to_owned(), sampler.name().to_owned()];
-            cells.extend(PER_POINT.map(|n| shown(of.ns((model, sampler), n))));
+            cells.extend(PER_POINT.map(|n| {
+                let [ns, ou] = [sampler, Sampler::Ou].map(|sampler| of.ns((model, sampler), n));
+                format!("{} ({})", shown(ns), number::ratio(ns.value / ou.value))
+            }));
             table.push(cells);
         }
     }
-    table.note("Set-up included, the default hair, eight lanes, one thread, medians; ±: one standard error.")
+    table.note(
+        "Set-up included, the default hair, eight lanes, one thread, medians; ±: one standard error. In brackets: over that \
+         of ou. A sampler pays in equal time while that is below V of ou over its own V.",
+    )
 }
 
 /// The verdicts in a `claims.json`; `None` if it holds none.

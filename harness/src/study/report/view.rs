@@ -1,8 +1,9 @@
 //! What a report asks of a study: variances, gains and times by model, sampler and light.
 
 use super::super::cell::Measured;
+use super::super::equal_time::{NOTHING, in_equal_time, time_ratio};
 use super::super::rows::{Bounds, Strategy, place};
-use super::super::summary::{Gain, gain, in_equal_time};
+use super::super::summary::{Gain, gain};
 use super::super::{Cell, Grid};
 use crate::difference::Difference;
 use crate::efficiency::ModelKind;
@@ -25,24 +26,16 @@ pub(super) struct View<'a> {
     pub(super) difference: &'a Difference,
 }
 
-/// How two figures compare, as far as their errors tell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Sign {
-    Above,
-    Below,
-    /// Within two standard errors.
-    Unsure,
-}
+/// Samples a gather point of figures and sentences that give one number of them: direct lighting.
+pub(super) const MANY: usize = 16;
 
-impl Sign {
-    /// That of a ratio against 1.
-    pub(super) fn of(ratio: Estimate) -> Self {
-        match ratio.value - 1.0 {
-            d if d > 2.0 * ratio.standard_error => Self::Above,
-            d if d < -2.0 * ratio.standard_error => Self::Below,
-            _ => Self::Unsure,
-        }
-    }
+/// What counts as the time of a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Counted {
+    /// The sampler's alone.
+    Sample,
+    /// That and the look-up of the light.
+    LookUp,
 }
 
 /// The samplers that are told apart in sentences: the published one, and the matched one that a renderer takes unless it
@@ -110,15 +103,25 @@ impl<'a> View<'a> {
         self.times.ns(model, sampler, per_point)
     }
 
-    /// How many times the variance `base` has of `other` in equal time: geometric mean over the cells.
+    /// Time of a look-up of the light in ns; `None` if it was not timed.
+    pub(super) fn look_up(&self, light: usize) -> Option<Estimate> {
+        Some(self.times.look_up(light)).filter(|of| of.value.is_finite())
+    }
+
+    /// How many times the variance `base` has of `other` in equal time, [`MANY`] samples a gather point: geometric mean over
+    /// the cells.
     pub(super) fn equal_time(
         &self,
         base: Estimator,
         other: Estimator,
         light: usize,
-        per_point: usize,
+        counted: Counted,
     ) -> Option<Estimate> {
-        let time = self.ns(base, per_point).ratio(&self.ns(other, per_point));
+        let more = match counted {
+            Counted::Sample => NOTHING,
+            Counted::LookUp => self.look_up(light)?,
+        };
+        let time = time_ratio(self.ns(base, MANY), self.ns(other, MANY), more);
         self.gain(base, other, light).map(|gain| in_equal_time(gain.geometric_mean, time))
     }
 
@@ -152,17 +155,4 @@ pub(super) fn ess(of: &Measured) -> Estimate {
     let v = of.figures.v;
     let value = 1e3 / (1.0 + v.value);
     Estimate { value, standard_error: value * v.standard_error / (1.0 + v.value) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_need_two_standard_errors() {
-        let of = |value, standard_error| Sign::of(Estimate { value, standard_error });
-        assert_eq!([of(1.1, 0.04), of(1.1, 0.06), of(0.9, 0.04)], [Sign::Above, Sign::Unsure, Sign::Below]);
-        assert_eq!(of(f64::NAN, 0.1), Sign::Unsure, "no number tells nothing");
-        assert_eq!(of(2.0, f64::NAN), Sign::Unsure, "nor does one without an error");
-    }
 }

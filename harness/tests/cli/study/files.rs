@@ -4,6 +4,7 @@ use super::{CELLS, reference};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use serde_json::Value;
+use std::collections::HashMap;
 use std::fs::{self, File};
 
 /// The samplers that are drawn from.
@@ -36,6 +37,49 @@ fn the_rows_are_all_there() {
         let bounded = !row[column("weight_bound")].is_empty();
         assert!(bounded || row[column("sampler")] != "uniform", "{row:?}");
         assert!(!bounded || row[column("sampler")] != "perfect", "{row:?}");
+    }
+}
+
+/// The rows of a file, each as its values by name.
+fn named(name: &str) -> Vec<HashMap<String, String>> {
+    let rows = csv(name);
+    rows[1..].iter().map(|row| rows[0].iter().cloned().zip(row.iter().cloned()).collect()).collect()
+}
+
+#[test]
+fn efficiencies_follow_from_variances_and_times() {
+    let rows = named("efficiency.csv");
+    assert_eq!(rows.len(), CELLS * ROWS_OF_A_CELL);
+    let number = |row: &HashMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
+    let key = |row: &HashMap<String, String>| ["cell", "model", "light"].map(|name| row[name].clone());
+    let ou: HashMap<_, _> = rows.iter().filter(|row| row["sampler"] == "ou").map(|row| (key(row), row)).collect();
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+    for row in &rows {
+        let ou = ou[&key(row)];
+        let v = |row| number(row, "v");
+        if row["sampler"] == "perfect" {
+            assert!(row.keys().filter(|name| name.contains("_at_")).all(|name| row[name].is_empty()), "{row:?}");
+            let limit = row["break_even"].parse().ok();
+            assert!(limit.map_or(row["light"] == "constant", |limit| near(limit, v(ou) / v(row))), "{row:?}");
+            continue;
+        }
+        assert!(near(number(row, "break_even"), v(ou) / v(row)), "{row:?}");
+        for n in [1, 4, 16] {
+            let ns = |row| number(row, &format!("ns_at_{n}"));
+            let look_up = |row| ns(row) + number(row, "look_up_ns");
+            let gain = |name: &str| number(row, &format!("{name}_at_{n}"));
+            assert!(near(gain("efficiency"), 1e9 / (v(row) * ns(row))), "{n}: {row:?}");
+            assert!(near(gain("look_up_efficiency"), 1e9 / (v(row) * look_up(row))), "{n}: {row:?}");
+            assert!(near(gain("gain"), v(ou) * ns(ou) / (v(row) * ns(row))), "{n}: {row:?}");
+            assert!(near(gain("look_up_gain"), v(ou) * look_up(ou) / (v(row) * look_up(row))), "{n}: {row:?}");
+            // At least that of the variances.
+            let least =
+                if row["sampler"] == "ou" { 0.0 } else { number(row, "break_even_se") / number(row, "break_even") };
+            for name in ["gain", "look_up_gain"] {
+                let error = number(row, &format!("{name}_at_{n}_se")) / gain(name);
+                assert!(error >= least * 0.999_999 && error.is_finite(), "{name} {n}: {error} {row:?}");
+            }
+        }
     }
 }
 
@@ -77,8 +121,8 @@ fn settings_and_times_are_complete() {
     assert_eq!(settings["study"]["cells"], CELLS);
     assert!(settings["times_measured_on"]["cpu"].is_string(), "{settings}");
     let times = csv("times.csv");
-    assert_eq!(times.len() - 1, 3 * 2 * SAMPLERS, "1, 4 and 16 samples a point");
-    assert!(times[1..].iter().all(|row| row[3].parse::<f64>().unwrap() > 0.0), "{times:?}");
+    assert_eq!(times.len() - 1, 3 * 2 * SAMPLERS + 5, "1, 4 and 16 samples a point, and five lights");
+    assert!(times[1..].iter().all(|row| row[4].parse::<f64>().unwrap() > 0.0), "{times:?}");
     let left: Vec<_> = fs::read_dir(reference()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert!(left.iter().all(|name| !name.to_string_lossy().ends_with(".new")), "{left:?}");
 }
@@ -90,7 +134,7 @@ fn the_report_stands_alone_and_has_every_part() {
     for words in answers {
         assert_eq!(page.matches(words).count(), 1, "{words}");
     }
-    for words in ["perfect sampling", "no limit"] {
+    for words in ["perfect sampling", "look-up of the light", "won / undecided / lost"] {
         assert!(page.contains(words), "{words}");
     }
     for words in ["How different the models look", "Method and machine", "standard error", "hairis claims"] {

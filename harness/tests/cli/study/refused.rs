@@ -40,6 +40,7 @@ fn other_bad_flags_are_refused() {
         (&["merge"], "OUT_DIR"),
         (&["merge", "out"], "PART_DIR"),
         (&["merge", "out", ""], "PART_DIR"),
+        (&["merge", "out", ".", "--env"], "--env"),
     ] {
         assert_refused(&run(args, b""), words);
     }

@@ -1,0 +1,114 @@
+//! Variances in equal time: what less variance is worth where a sample takes longer, alone or with what follows it.
+
+use crate::stats::Estimate;
+use core::fmt;
+
+/// How two figures compare, as far as their errors tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sign {
+    Above,
+    Below,
+    /// Within two standard errors.
+    Unsure,
+}
+
+impl Sign {
+    /// That of a ratio against 1.
+    pub(super) fn of(ratio: Estimate) -> Self {
+        match ratio.value - 1.0 {
+            d if d > 2.0 * ratio.standard_error => Self::Above,
+            d if d < -2.0 * ratio.standard_error => Self::Below,
+            _ => Self::Unsure,
+        }
+    }
+}
+
+/// What follows a sample where its time alone counts.
+pub(super) const NOTHING: Estimate = Estimate { value: 0.0, standard_error: 0.0 };
+
+/// The time of `base` over that of `other` when each is followed by the same `more`.
+pub(super) fn time_ratio(base: Estimate, other: Estimate, more: Estimate) -> Estimate {
+    let [a, b] = [base, other].map(|of| of.value + more.value);
+    let value = a / b;
+    // An error of what follows moves both times, and the ratio by the difference.
+    let relative = (base.standard_error / a).hypot(other.standard_error / b);
+    let relative = relative.hypot(more.standard_error * (1.0 / a - 1.0 / b));
+    Estimate { value, standard_error: value * relative }
+}
+
+/// A ratio of variances times that of the times.
+pub(crate) fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
+    let value = variance.value * time.value;
+    let relative = (variance.standard_error / variance.value).hypot(time.standard_error / time.value);
+    Estimate { value, standard_error: value * relative }
+}
+
+/// Cells by what becomes of a sampler in equal time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Cells {
+    pub(super) won: usize,
+    pub(super) undecided: usize,
+    pub(super) lost: usize,
+}
+
+impl Cells {
+    /// Counts gains in V, those of cells that are unsure being `None`, against the ratio of the times.
+    pub(super) fn count(gains: impl Iterator<Item = Option<Estimate>>, time: Estimate) -> Self {
+        gains.fold(Self::default(), |mut cells, gain| {
+            match gain.map(|gain| Sign::of(in_equal_time(gain, time))) {
+                Some(Sign::Above) => cells.won += 1,
+                Some(Sign::Below) => cells.lost += 1,
+                Some(Sign::Unsure) | None => cells.undecided += 1,
+            }
+            cells
+        })
+    }
+}
+
+impl fmt::Display for Cells {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { won, undecided, lost } = self;
+        write!(f, "{won} / {undecided} / {lost}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(value: f64, standard_error: f64) -> Estimate {
+        Estimate { value, standard_error }
+    }
+
+    #[test]
+    fn words_need_two_standard_errors() {
+        let sign = |value, error| Sign::of(of(value, error));
+        assert_eq!([sign(1.1, 0.04), sign(1.1, 0.06), sign(0.9, 0.04)], [Sign::Above, Sign::Unsure, Sign::Below]);
+        assert_eq!(sign(f64::NAN, 0.1), Sign::Unsure, "no number tells nothing");
+        assert_eq!(sign(2.0, f64::NAN), Sign::Unsure, "nor does one without an error");
+    }
+
+    #[test]
+    fn what_follows_brings_times_together_and_its_error_nearly_cancels() {
+        let (base, other) = (of(10.0, 0.1), of(20.0, 0.1));
+        let alone = time_ratio(base, other, NOTHING);
+        assert_eq!(alone, base.ratio(&other));
+        let with = time_ratio(base, other, of(20.0, 0.0));
+        assert!((with.value - 0.75).abs() < 1e-15, "{with:?}");
+        assert!((with.standard_error / 0.75 - (0.1_f64 / 30.0).hypot(0.1 / 40.0)).abs() < 1e-15, "{with:?}");
+        // By what the ratio changes when the time that follows is one error longer.
+        let moved = time_ratio(base, other, of(20.001, 0.0)).value - with.value;
+        let error = time_ratio(of(10.0, 0.0), of(20.0, 0.0), of(20.0, 0.001)).standard_error;
+        assert!((error / moved.abs() - 1.0).abs() < 1e-4, "{error} {moved}");
+    }
+
+    #[test]
+    fn cells_are_won_and_lost_beyond_the_errors_of_variance_and_time() {
+        let gains = [Some(of(2.1, 0.01)), Some(of(1.9, 0.01)), Some(of(2.01, 0.01)), Some(of(2.1, 0.1)), None];
+        let cells = Cells::count(gains.into_iter(), of(0.5, 0.0));
+        assert_eq!(cells, Cells { won: 1, undecided: 3, lost: 1 });
+        assert_eq!(cells.to_string(), "1 / 3 / 1");
+        let vague = Cells::count(gains.into_iter(), of(0.5, 0.05));
+        assert_eq!(vague.undecided, 5, "times with errors of a tenth");
+    }
+}
