@@ -3,10 +3,12 @@
 mod bands;
 mod bell;
 mod gather;
+mod material;
 mod sampling;
 
 pub use bell::MatchedBell;
-pub use gather::{MatchedGather, MatchedMaterial};
+pub use gather::MatchedGather;
+pub use material::MatchedMaterial;
 
 use crate::hair::{Place, Shapes, albedo, drawn, evaluated, mixture, per_lobe, times};
 use crate::model::{Drawn, Eval, Hit, LobeEval};

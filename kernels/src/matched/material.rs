@@ -1,0 +1,92 @@
+//! What a matched sampler keeps of a material.
+
+use super::MatchedBell;
+use crate::{Broadcast, HairLobes, HairParams, Lanes};
+use core::f32::consts::PI;
+
+/// Intensities below this share of the largest are none to the sampler.
+const LEAST_IMPORTANCE: f64 = 1e-25;
+
+crate::lane_struct! {
+    /// The constants of a material with a matched sampler.
+    ///
+    /// Arrays of two are TT and the glints, of four in the order of [`Lobe`].
+    pub struct MatchedMaterial {
+        /// Its lobes.
+        pub lobes: (HairLobes<C>),
+        /// Intensity of each lobe, the mean of its RGB, to the scale of the largest.
+        pub importance: [C; 4],
+        /// Intensity of each lobe in each channel, to the same scale: the channels of R first.
+        pub intensity: [C; 12],
+        /// What a lobe integrates to, but for its colour, for each unit of its longitude's integral.
+        pub extent: [C; 4],
+        /// Integral of the azimuth's bell over one side.
+        pub azimuth_mass: [C; 2],
+        /// Its integral up to where the side begins.
+        pub azimuth_from: [C; 2],
+        /// The origin of both.
+        pub azimuth_origin: [C; 2],
+    }
+}
+
+/// What each lobe integrates to, but for its colour, for each unit of its longitude's integral.
+#[inline(always)]
+pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(hair: &HairLobes<C>, azimuth_mass: [L; 2]) -> [L; 4] {
+    // dtheta_i is two widths for each of x; the azimuth of R and TRT-g has an area of 4, and bells have two sides.
+    let unit = L::splat(2.0 * B::UNIT);
+    let [r, tt, trt] = [hair.beta[0].lanes() * unit, hair.beta[1].lanes() * unit, hair.beta[2].lanes() * unit];
+    let sides = L::splat(4.0 * B::UNIT);
+    let azimuth_tt = hair.half_gamma[0].lanes() * azimuth_mass[0] * sides;
+    let azimuth_g = hair.half_gamma[1].lanes() * azimuth_mass[1] * sides;
+    let four = L::splat(4.0);
+    [r * four, tt * azimuth_tt, trt * four, trt * azimuth_g]
+}
+
+impl MatchedMaterial<f32> {
+    /// The material of checked parameters.
+    #[inline]
+    #[must_use]
+    pub(super) fn of<B: MatchedBell>(bell: B, params: &HairParams) -> Self {
+        let lobes = HairLobes::of(bell, params);
+        let phi_g = params.desc().phi_g;
+        let [inv_gamma_tt, inv_gamma_g] = lobes.inv_half_gamma.map(|inv| 0.5 * inv);
+        let sides = [(0.0, PI * inv_gamma_tt), (-phi_g * inv_gamma_g, (PI - phi_g) * inv_gamma_g)];
+        let azimuth_origin = sides.map(|(lo, hi)| B::origin(lo, hi));
+        let from_to = |i: usize| [sides[i].0, sides[i].1].map(|x| B::integral(azimuth_origin[i], x));
+        let [tt, glint] = [from_to(0), from_to(1)];
+        // Integrals ascend but for their rounding.
+        let azimuth_mass = [tt, glint].map(|[from, to]| 0.0_f32.max(to - from));
+        let intensity = intensity(params);
+        Self {
+            lobes,
+            importance: intensity.map(|rgb| (rgb[0] + rgb[1] + rgb[2]) * (1.0 / 3.0)),
+            intensity: core::array::from_fn(|i| intensity[i / 3][i % 3]),
+            extent: extent::<B, f32, f32>(&lobes, azimuth_mass),
+            azimuth_mass,
+            azimuth_from: [tt[0], glint[0]],
+            azimuth_origin,
+        }
+    }
+}
+
+/// Intensity of each lobe in each channel, to the scale of the largest mean.
+///
+/// In double precision: the product of two of the largest legal intensities overflows a float.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "at most 3 times the largest")]
+fn intensity(params: &HairParams) -> [[f32; 3]; 4] {
+    let d = params.desc();
+    let double = |rgb: [f32; 3], factor: f32| rgb.map(|c| f64::from(c) * f64::from(factor));
+    let all = [
+        double(d.intensity_r, 1.0),
+        double(d.intensity_tt, 1.0),
+        double(d.intensity_trt, 1.0),
+        double(d.intensity_trt, d.intensity_g),
+    ];
+    let mean = |rgb: &[f64; 3]| (rgb[0] + rgb[1] + rgb[2]) / 3.0;
+    let largest = all.iter().map(mean).fold(0.0, f64::max);
+    all.map(|rgb| {
+        let seen = mean(&rgb) > largest * LEAST_IMPORTANCE;
+        rgb.map(|c| if seen { (c / largest) as f32 } else { 0.0 })
+    })
+}
