@@ -10,7 +10,7 @@ const LEAST_IMPORTANCE: f64 = 1e-25;
 crate::lane_struct! {
     /// The constants of a material with a matched sampler.
     ///
-    /// Arrays of two are TT and the glints, of four in the order of [`Lobe`].
+    /// Arrays of two are TT and the glints, of four in the order of [`Lobe`](crate::Lobe).
     pub struct MatchedMaterial {
         /// Its lobes.
         pub lobes: (HairLobes<C>),
