@@ -130,8 +130,15 @@ impl Comparison {
             });
         let far = self.agreement.iter().filter(|row| !row.passed).map(|row| {
             format!(
-                "agreement: {} {} {} {} {}: {:.2e} is beyond {:.0e}",
-                row.model, row.path, row.level, row.region, row.quantity, row.worst, row.bound
+                "agreement: {} {} {} {} {} {}: {:.2e} is beyond {:.0e}",
+                row.model,
+                row.sampler.name(),
+                row.path,
+                row.level,
+                row.region,
+                row.quantity,
+                row.worst,
+                row.bound
             )
         });
         let biased = self.efficiency.check.failures.iter().map(|what| format!("efficiency: {what}"));

@@ -1,6 +1,7 @@
 //! The textbook in double precision, with the sampler that a kernel is held against.
 
-use hairis::textbook::{MatchedTextbook, Parameters, Shape, Textbook};
+use hairis::Lobe;
+use hairis::textbook::{Drawn, MatchedTextbook, Parameters, Shape, Textbook};
 
 /// The textbook for one hair and one `wo`, with one of the samplers that have a twin in it.
 #[derive(Clone, Debug)]
@@ -36,6 +37,24 @@ impl Oracle {
         match self {
             Self::Published(book) => book.pdf(wi),
             Self::Matched(book) => book.pdf(wi),
+        }
+    }
+
+    /// The sample of three numbers of [0, 1).
+    #[must_use]
+    pub fn sample(&self, xi: [f64; 3]) -> Drawn<f64> {
+        match self {
+            Self::Published(book) => book.sample(xi),
+            Self::Matched(book) => book.sample(xi),
+        }
+    }
+
+    /// Probability of a smaller inclination, and of a smaller azimuth, of those drawn from `lobe`.
+    #[must_use]
+    pub fn cdf(&self, lobe: Lobe, theta_i: f64, phi: f64) -> [f64; 2] {
+        match self {
+            Self::Published(book) => [book.cdf_theta(lobe, theta_i), book.cdf_phi(lobe, phi)],
+            Self::Matched(book) => [book.cdf_theta(lobe, theta_i), book.cdf_phi(lobe, phi)],
         }
     }
 

@@ -1,10 +1,12 @@
 //! The models under comparison, each beside its textbook twin, and the hair and directions that comparisons draw.
 
+use crate::oracle::Oracle;
+use crate::sampler::Sampler;
 use crate::sequence::Independent;
 use core::f32::consts::PI;
 use glam::Vec3;
-use hairis::textbook::{Parameters, Real, Shape, Textbook};
-use hairis::{Bell, Gaussian, Hair, HairDesc, HairParams, Model, ParamError};
+use hairis::textbook::{Parameters, Real, Shape};
+use hairis::{Bell, Gaussian, Hair, HairDesc, HairParams, Matched, MatchedBell, Model, ParamError};
 use hairis_variants::Cauchy;
 
 /// A model that takes the published parameters, and what the textbook needs to be the same model.
@@ -12,6 +14,8 @@ use hairis_variants::Cauchy;
 pub struct Subject<M> {
     /// The model's name in tables and in JSON.
     pub name: &'static str,
+    /// The kernel's sampler.
+    pub sampler: Sampler,
     /// The kernel.
     pub model: M,
     /// The textbook's bell.
@@ -38,7 +42,17 @@ impl Subject<Hair<Cauchy>> {
 
 impl<B: Bell> Subject<Hair<B>> {
     fn of(name: &'static str, bell: B, shape: Shape) -> Self {
-        Self { name, model: Hair(bell), shape, width_factor: bell.width_factor() }
+        let width_factor = bell.width_factor();
+        Self { name, sampler: Sampler::Ou, model: Hair(bell), shape, width_factor }
+    }
+}
+
+impl<B: MatchedBell> Subject<Hair<B>> {
+    /// The same model with the sampler matched to it, the default one.
+    #[must_use]
+    pub fn matched(self) -> Subject<Matched<B>> {
+        let Self { name, model: Hair(bell), shape, width_factor, .. } = self;
+        Subject { name, sampler: Sampler::Matched, model: Matched(bell), shape, width_factor }
     }
 }
 
@@ -49,10 +63,10 @@ impl<M: Model<Params = HairParams>> Subject<M> {
         Parameters::from(hair).with_width_factor(T::from_f32(self.width_factor))
     }
 
-    /// The oracle: the textbook in `f64` for this hair seen from `wo`.
+    /// The oracle: the textbook in `f64` for this hair seen from `wo`, with the same sampler.
     #[must_use]
-    pub fn oracle(&self, hair: &HairParams, wo: Vec3) -> Textbook<f64> {
-        Textbook::prepare(&self.parameters(hair), self.shape, to_f64(wo))
+    pub fn oracle(&self, hair: &HairParams, wo: Vec3) -> Oracle {
+        Oracle::prepare(&self.parameters(hair), self.shape, to_f64(wo), self.sampler.bands())
     }
 }
 

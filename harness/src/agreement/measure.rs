@@ -2,10 +2,12 @@
 
 use super::packet::Packet;
 use super::{Quantity, Region};
+use crate::oracle::Oracle;
+use crate::sampler::Sampler;
 use crate::subject::{Subject, to_f64};
 use core::f64::consts::TAU;
 use glam::Vec3;
-use hairis::textbook::{Shape, Textbook};
+use hairis::textbook::Shape;
 use hairis::{Bsdf, Bsdf8, Eval, Gather, HairParams, Level, Lobe, Model, Sample, Vec3x8};
 use wide::f32x8;
 
@@ -102,6 +104,7 @@ pub(super) fn measure<M>(
         let exact = Exact {
             oracle: &packet.oracle[point],
             shape: subject.shape,
+            sampler: subject.sampler,
             place: Place { hair: packet.hair[point], wo: packet.wo[point], wi, xi: None },
         };
         if region.holds(exact.place.wo, wi) {
@@ -116,22 +119,23 @@ pub(super) fn measure<M>(
 
 /// The oracle at one place.
 struct Exact<'a> {
-    oracle: &'a Textbook<f64>,
+    oracle: &'a Oracle,
     shape: Shape,
+    sampler: Sampler,
     place: Place,
 }
 
 impl Exact<'_> {
     fn of_eval(&self, eval: &Eval, keep: &mut impl FnMut(Quantity, Measured)) {
         let value = self.compare(Quantity::Value, eval.value, |wi| self.oracle.eval(wi), self.floor());
-        keep(Quantity::Pdf, self.compare(Quantity::Pdf, [eval.pdf], |wi| [self.oracle.pdf(wi)], [0.0]));
+        keep(Quantity::Pdf, self.compare(Quantity::Pdf, [eval.pdf], |wi| [self.oracle.pdf(wi)], self.pdf_floor()));
         keep(Quantity::Value, value);
     }
 
     fn of_sample(&self, xi: [f32; 3], sample: &Sample, keep: &mut impl FnMut(Quantity, Measured)) {
         let over_pdf = |wi: [f64; 3]| wi[1].hypot(wi[2]) / self.oracle.pdf(wi);
         let (floor, scale) = (self.floor(), over_pdf(to_f64(self.place.wi)));
-        let pdf = self.compare(Quantity::SamplePdf, [sample.pdf], |wi| [self.oracle.pdf(wi)], [0.0]);
+        let pdf = self.compare(Quantity::SamplePdf, [sample.pdf], |wi| [self.oracle.pdf(wi)], self.pdf_floor());
         let value = self.compare(Quantity::SampleValue, sample.value, |wi| self.oracle.eval(wi), floor);
         let weight = |wi: [f64; 3]| self.oracle.eval(wi).map(|s| s * over_pdf(wi));
         let weight = self.compare(Quantity::SampleWeight, sample.weight, weight, floor.map(|f| f * scale));
@@ -153,7 +157,7 @@ impl Exact<'_> {
         let want = truth(wi);
         let worst = |slack: [f64; N]| (0..N).map(|c| relative(got[c], want[c], slack[c])).fold(0.0, f64::max);
         let error = worst(floor);
-        let bound = quantity.bound(self.shape);
+        let bound = quantity.bound(self.shape, self.sampler);
         let unexplained = error > bound && {
             let (low, high) = (truth(turned(wi, -ROUNDING)), truth(turned(wi, ROUNDING)));
             worst(core::array::from_fn(|c| floor[c] + (low[c] - want[c]).abs().max((high[c] - want[c]).abs()))) > bound
@@ -167,10 +171,10 @@ impl Exact<'_> {
         let wi = to_f64(self.place.wi);
         let turn = azimuth(to_f64(self.place.wo)) - azimuth(wi);
         let phi = turn - TAU * (turn / TAU).round();
-        let cdf = [self.oracle.cdf_theta(lobe, inclination(wi)), self.oracle.cdf_phi(lobe, phi)];
+        let cdf = self.oracle.cdf(lobe, inclination(wi), phi);
         let off = |k: usize| (cdf[k] - f64::from(xi[k + 1])).abs();
         let error = off(0).max(off(1).min((1.0 - off(1)).abs()));
-        Measured { error, unexplained: error > Quantity::SampleCdf.bound(self.shape), at: self.place }
+        Measured { error, unexplained: error > Quantity::SampleCdf.bound(self.shape, self.sampler), at: self.place }
     }
 
     /// How far a Gaussian value may be off by design: the kernel's bells end at `2^-114`, each of the four lobes.
@@ -185,6 +189,19 @@ impl Exact<'_> {
             let intensity = d.intensity_r[c] + d.intensity_tt[c] + d.intensity_trt[c] * (1.0 + d.intensity_g);
             f64::from(intensity) * FLOOR / (cos_theta_d * cos_theta_d)
         })
+    }
+
+    /// How far a density may be off by design: a matched one is S, as the mean of RGB, times what depends on the
+    /// inclination alone, and ends with it.
+    fn pdf_floor(&self) -> [f64; 1] {
+        if self.sampler.bands().is_none() || self.shape != Shape::Gaussian {
+            return [0.0];
+        }
+        let wi = to_f64(self.place.wi);
+        let (floor, value): (f64, f64) = (self.floor().iter().sum(), self.oracle.eval(wi).iter().sum());
+        // Where S is too small for a double, the density may end altogether.
+        let share = if value > 0.0 { floor / value } else { 1.0 };
+        [share * self.oracle.pdf(wi)]
     }
 }
 

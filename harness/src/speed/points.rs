@@ -91,7 +91,7 @@ where
             )
         });
     }
-    let points = wo.iter().flat_map(|wo| [subject.oracle(hair, *wo); N]).collect();
+    let points = wo.iter().flat_map(|wo| core::iter::repeat_n(subject.oracle(hair, *wo), N)).collect();
     (contenders, Truth::of_samples(points, &inputs.xi))
 }
 
