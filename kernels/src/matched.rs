@@ -37,9 +37,9 @@ use wide::f32x8;
 ///   its first component alone, so that every precision agrees.
 /// - Weights: bounded by the sum of the energies times the largest `W / h`, in closed form
 ///   (`textbook::MatchedTextbook::weight_bound`); the mean of a weight's RGB is `W / h` times that sum.
-/// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it; the weight is
-///   good to 2e-6. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor is a lobe drawn whose energy is
-///   below 1e-36 of the largest.
+/// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it; a weight is
+///   good to 2e-6, next to `|phi| = pi` to 2e-5. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor
+///   is a lobe drawn whose energy is below 1e-36 of the largest.
 /// - Domain: `BANDS` is 5, 11 or 25. By channel, a channel below 1e-18 of the brightest has no say.
 /// - Source: ours; section 3.2 of Ou et al. 2012 is what it replaces.
 ///
