@@ -36,7 +36,8 @@ use wide::f32x8;
 ///   but for `h / W`. It jumps where bands meet, by what W changes from band to band. Which band a direction is in is told from
 ///   its first component alone, so that every precision agrees.
 /// - Weights: bounded by the sum of the energies times the largest `W / h`, in closed form
-///   (`textbook::MatchedTextbook::weight_bound`); the mean of a weight's RGB is `W / h` times that sum.
+///   (`textbook::MatchedTextbook::weight_bound`); the mean of a weight's RGB is `W / h` times that sum. By channel in place of
+///   the sum: the largest energy over its lobe's probability.
 /// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it; a weight is
 ///   good to 2e-6, next to `|phi| = pi` to 2e-5. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor
 ///   is a lobe drawn whose energy is below 1e-36 of the largest.
