@@ -4,7 +4,7 @@ use super::MatchedBell;
 use super::bands::bands;
 use super::material::{MatchedMaterial, extent};
 use crate::hair::{prepare_point, selection, times};
-use crate::lanes::{lanes4, pair::Pair, store3, store4};
+use crate::lanes::{lanes3, lanes4, pair::Pair, store3, store4};
 use crate::{Broadcast, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
 use core::f32::consts::FRAC_PI_4;
 use wide::f32x8;
@@ -54,7 +54,63 @@ pub struct MatchedGather<C, const N: usize> {
     pub azimuth_origin: [C; 2],
 }
 
-/// Runs a body for every band `j` of the `n` on a side: straight on, as the bands are constants.
+/// A longitude, from the lower pole and from the upper one inwards, side by side.
+#[derive(Clone, Copy)]
+struct Longitude<L> {
+    shift: L,
+    inv_beta: L,
+    origin: L,
+    /// Integral of M up to here, negative above: it ascends from either pole.
+    integral: Pair<L>,
+    /// That of `M W` from the pole.
+    area: Pair<L>,
+}
+
+impl<L: Lanes> Longitude<L> {
+    /// At the poles.
+    #[inline(always)]
+    fn at_poles<B: MatchedBell>(shift: L, inv_beta: L) -> Self {
+        let (zero, quarter) = (L::splat(0.0), L::splat(FRAC_PI_4));
+        let origin = B::origin((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
+        let this = Self { shift, inv_beta, origin, integral: Pair(zero, zero), area: Pair(zero, zero) };
+        Self { integral: this.integral_to::<B>(FRAC_PI_4), ..this }
+    }
+
+    /// The integrals up to half an inclination on either side.
+    #[inline(always)]
+    fn integral_to<B: MatchedBell>(&self, half_theta_i: f32) -> Pair<L> {
+        let end = L::splat(half_theta_i);
+        let x = Pair((self.shift - end) * self.inv_beta, (self.shift + end) * self.inv_beta);
+        let Pair(below, above) = B::integral(Pair(self.origin, self.origin), x);
+        Pair(below, -above)
+    }
+
+    /// Goes on through a band; what its line begins with.
+    #[inline(always)]
+    fn pass<B: MatchedBell>(&mut self, half_theta_i: f32, height: Pair<L>, slope: Pair<L>) -> Pair<L> {
+        let offset = self.offset(slope);
+        let next = self.integral_to::<B>(half_theta_i);
+        self.area = (next - self.integral).abs().mul_add(height, self.area);
+        self.integral = next;
+        offset
+    }
+
+    /// The integral, less a slope times the area.
+    #[inline(always)]
+    fn offset(&self, slope: Pair<L>) -> Pair<L> {
+        (-slope).mul_add(self.area, self.integral)
+    }
+
+    /// Integral of `M W` up to somewhere in the middle, and over the sphere.
+    #[inline(always)]
+    fn join(&self, height: L) -> [L; 2] {
+        let (Pair(from, to), Pair(below, above)) = (self.integral, self.area);
+        let middle = (from + to).abs() * height;
+        [middle.mul_add(L::splat(0.5), below), (below + above) + middle]
+    }
+}
+
+/// Runs a body for every band `j` of the `n` on a side: straight on, so that what it writes is written where it belongs.
 macro_rules! for_bands {
     ($j:ident < $n:expr, $body:block) => { for_bands!(@$j ($n) $body 0 1 2 3 4 5 6 7 8 9 10 11) };
     (@$j:ident $n:tt $body:block $($i:literal)*) => {
@@ -65,87 +121,63 @@ macro_rules! for_bands {
     };
 }
 
-impl<C: Copy, const N: usize> MatchedGather<C, N> {
-    /// The heights of the bands as seen from an inclination.
-    #[inline(always)]
-    fn see<L: Lanes<Stored = C>>(&mut self, theta_o: [L; 2]) {
-        let (mut height, mut slope) = (Pair::splat(0.0), Pair::splat(f32::MAX));
-        for_bands!(j < N / 2, {
-            let band = &const { bands(N) }[j];
-            let above = N - 1 - j;
-            // Heights ascend inwards, though W may have its mode before the middle.
-            let cos_sq = band.cos_sq_theta_d(theta_o);
-            height = height.max(Pair::splat(band.cos_sq_theta_i()) / cos_sq);
-            slope = slope.min(cos_sq * Pair::splat(1.0 / band.cos_sq_theta_i()));
-            (self.height[j], self.height[above]) = (height.0.store(), height.1.store());
-            (self.slope[j], self.slope[above]) = (slope.0.store(), slope.1.store());
-        });
-        let cos_sq = const { bands(N) }[N / 2].cos_sq_theta_d(theta_o).0;
-        self.height[N / 2] = height.0.max(height.1).max(L::splat(1.0) / cos_sq).store();
-        self.slope[N / 2] = slope.0.min(slope.1).min(cos_sq).store();
-    }
-
-    /// Lobe `l`, through all bands from both poles to the middle, side by side. Integrals above are negative: they ascend from
-    /// either pole.
-    #[inline(always)]
-    fn add<B: MatchedBell, L: Lanes<Stored = C>>(&mut self, l: usize, shift: L, inv_beta: L)
-    where
-        C: Broadcast<L>,
-    {
-        let (zero, quarter) = (L::splat(0.0), L::splat(FRAC_PI_4));
-        let origin = B::origin((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
-        self.origin[l] = origin.store();
-        let lobe = Longitude { shift, inv_beta, origin };
-        // Integrals up to here of M, and from the pole of M W.
-        let (mut integral, mut area) = (lobe.integral::<B>(FRAC_PI_4), Pair(zero, zero));
-        for_bands!(j < N / 2, {
-            let above = N - 1 - j;
-            let slope = Pair(self.slope[j].lanes(), self.slope[above].lanes());
-            let offset = (-slope).mul_add(area, integral);
-            (self.offset[j][l], self.offset[above][l]) = (offset.0.store(), offset.1.store());
-            let next = lobe.integral::<B>(const { bands(N) }[j].half_inner);
-            area = (next - integral).abs().mul_add(Pair(self.height[j].lanes(), self.height[above].lanes()), area);
-            integral = next;
-        });
-        let slope: L = self.slope[N / 2].lanes();
-        let offset = (-Pair(slope, slope)).mul_add(area, integral);
-        (self.offset[N / 2][l], self.offset_above[l]) = (offset.0.store(), offset.1.store());
-        let middle = (integral.0 + integral.1).abs() * self.height[N / 2].lanes();
-        self.below[l] = middle.mul_add(L::splat(0.5), area.0).store();
-        self.area[l] = ((area.0 + area.1) + middle).store();
-    }
-
-    /// The glints have the longitude of TRT.
-    #[inline(always)]
-    fn share(&mut self) {
-        for_bands!(j < N / 2, {
-            let above = N - 1 - j;
-            (self.offset[j][3], self.offset[above][3]) = (self.offset[j][2], self.offset[above][2]);
-        });
-        self.offset[N / 2][3] = self.offset[N / 2][2];
-        self.offset_above[3] = self.offset_above[2];
-        self.origin[3] = self.origin[2];
-        self.below[3] = self.below[2];
-        self.area[3] = self.area[2];
-    }
+/// What [`MatchedGather`] keeps of the bands; arrays of three are R, TT and TRT.
+struct Chain<L: Lanes, const N: usize> {
+    origin: [L; 3],
+    height: [L::Stored; N],
+    slope: [L::Stored; N],
+    offset: [[L::Stored; 4]; N],
+    offset_above: [L::Stored; 4],
+    below: [L; 3],
+    area: [L; 3],
 }
 
-/// The longitude of a lobe.
-struct Longitude<L> {
-    shift: L,
-    inv_beta: L,
-    origin: L,
-}
-
-impl<L: Lanes> Longitude<L> {
-    /// The integral of M up to half an inclination below the normal plane, and less that of as much above it.
-    #[inline(always)]
-    fn integral<B: MatchedBell>(&self, half_theta_i: f32) -> Pair<L> {
-        let end = L::splat(half_theta_i);
-        let x = Pair((self.shift - end) * self.inv_beta, (self.shift + end) * self.inv_beta);
-        let Pair(below, above) = B::integral(Pair(self.origin, self.origin), x);
-        Pair(below, -above)
-    }
+/// Through all bands, from both poles to the middle.
+#[inline(always)]
+fn chain<B: MatchedBell, L: Lanes, const N: usize>(shift: [L; 3], inv_beta: [L; 3], theta_o: [L; 2]) -> Chain<L, N> {
+    let none = L::splat(0.0);
+    let (mut r, mut tt, mut trt) = (
+        Longitude::at_poles::<B>(shift[0], inv_beta[0]),
+        Longitude::at_poles::<B>(shift[1], inv_beta[1]),
+        Longitude::at_poles::<B>(shift[2], inv_beta[2]),
+    );
+    let mut chain = Chain {
+        origin: [r.origin, tt.origin, trt.origin],
+        height: [none.store(); N],
+        slope: [none.store(); N],
+        offset: [[none.store(); 4]; N],
+        offset_above: [none.store(); 4],
+        below: [none; 3],
+        area: [none; 3],
+    };
+    let (mut height, mut slope) = (Pair(none, none), Pair::splat(f32::MAX));
+    for_bands!(j < N / 2, {
+        let band = &const { bands(N) }[j];
+        let above = N - 1 - j;
+        // Heights ascend inwards, though W may have its mode before the middle.
+        let cos_sq = band.cos_sq_theta_d(theta_o);
+        height = height.max(Pair::splat(band.cos_sq_theta_i()) / cos_sq);
+        slope = slope.min(cos_sq * Pair::splat(1.0 / band.cos_sq_theta_i()));
+        (chain.height[j], chain.height[above]) = (height.0.store(), height.1.store());
+        (chain.slope[j], chain.slope[above]) = (slope.0.store(), slope.1.store());
+        let r = r.pass::<B>(band.half_inner, height, slope);
+        let tt = tt.pass::<B>(band.half_inner, height, slope);
+        let trt = trt.pass::<B>(band.half_inner, height, slope);
+        chain.offset[j] = shared4([r.0, tt.0, trt.0]);
+        chain.offset[above] = shared4([r.1, tt.1, trt.1]);
+    });
+    let cos_sq = const { bands(N) }[N / 2].cos_sq_theta_d(theta_o).0;
+    let height = height.0.max(height.1).max(L::splat(1.0) / cos_sq);
+    let slope = slope.0.min(slope.1).min(cos_sq);
+    (chain.height[N / 2], chain.slope[N / 2]) = (height.store(), slope.store());
+    let slope = Pair(slope, slope);
+    let offset = [r.offset(slope), tt.offset(slope), trt.offset(slope)];
+    chain.offset[N / 2] = shared4([offset[0].0, offset[1].0, offset[2].0]);
+    chain.offset_above = shared4([offset[0].1, offset[1].1, offset[2].1]);
+    let joined = [r.join(height), tt.join(height), trt.join(height)];
+    chain.below = [joined[0][0], joined[1][0], joined[2][0]];
+    chain.area = [joined[0][1], joined[1][1], joined[2][1]];
+    chain
 }
 
 /// The gather point of a material seen from `wo`.
@@ -159,38 +191,17 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize,
     let hair = &m.lobes;
     let point = prepare_point(hair, wo);
     let theta_o = [point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes()];
-    let none = zero.store();
-    let mut gather = MatchedGather {
-        point,
-        origin: [none; 4],
-        height: [none; N],
-        slope: [none; N],
-        offset: [[none; 4]; N],
-        offset_above: [none; 4],
-        below: [none; 4],
-        area: [none; 4],
-        weight: [none; 4],
-        scale: none,
-        selection: [none; 4],
-        bounds: [none; 3],
-        azimuth_mass: spread2::<L, C>(&m.azimuth_mass),
-        azimuth_from: spread2::<L, C>(&m.azimuth_from),
-        azimuth_origin: spread2::<L, C>(&m.azimuth_origin),
-    };
-    gather.see(theta_o);
-    let mut l = 0;
-    while l < 3 {
-        gather.add::<B, L>(l, gather.point.shift[l].lanes(), hair.inv_beta[l].lanes());
-        l += 1;
-    }
-    gather.share();
-    let total = lanes4(&gather.area);
+    let (shift, inv_beta) = (lanes3(&[point.shift[0], point.shift[1], point.shift[2]]), lanes3(&hair.inv_beta));
+    let chain = chain::<B, L, N>(shift, inv_beta, theta_o);
+    // The glints share the longitude of TRT.
+    let [r, tt, trt] = chain.area;
+    let total = [r, tt, trt, trt];
 
     // To the scale of the largest area, which may be next to nothing where all lobes lie off the sphere.
     let mut importance = lanes4(&m.importance);
     let mut size = lanes4(&m.extent);
     let mut largest = zero;
-    l = 0;
+    let mut l = 0;
     while l < 4 {
         largest = largest.max(L::keep(zero.lt(importance[l] * size[l]), total[l]));
         l += 1;
@@ -218,11 +229,23 @@ pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize,
         l += 1;
     }
 
-    gather.weight = store4(weight);
-    gather.scale = scale.store();
-    gather.selection = store4(p);
-    gather.bounds = store3(bounds);
-    gather
+    MatchedGather {
+        point,
+        origin: shared4(chain.origin),
+        height: chain.height,
+        slope: chain.slope,
+        offset: chain.offset,
+        offset_above: chain.offset_above,
+        below: shared4(chain.below),
+        area: store4(total),
+        weight: store4(weight),
+        scale: scale.store(),
+        selection: store4(p),
+        bounds: store3(bounds),
+        azimuth_mass: spread2::<L, C>(&m.azimuth_mass),
+        azimuth_from: spread2::<L, C>(&m.azimuth_from),
+        azimuth_origin: spread2::<L, C>(&m.azimuth_origin),
+    }
 }
 
 /// The importance of lobes of these sizes that lets each have the root of the sum of its squared shares of the channels.
@@ -253,6 +276,12 @@ fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [
         c += 1;
     }
     [sum[0].sqrt(), sum[1].sqrt(), sum[2].sqrt(), sum[3].sqrt()]
+}
+
+/// R, TT, TRT, and for the glints TRT again.
+#[inline(always)]
+fn shared4<L: Lanes>([r, tt, trt]: [L; 3]) -> [L::Stored; 4] {
+    store4([r, tt, trt, trt])
 }
 
 /// Two numbers of a material, a lane each.
