@@ -17,14 +17,14 @@ dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 
 # The programs.
-mkdir -p "$dir/root/tests"
+mkdir -p "$dir/files/tests"
 RUSTFLAGS='' cargo build -q --release --locked --target-dir "$target" -p hairis-benches --bin entry
-cp "$target/release/entry" "$dir/root/tests/"
+cp "$target/release/entry" "$dir/files/tests/"
 RUSTFLAGS='' cargo test -q --release --locked --target-dir "$target" -p hairis -p hairis-variants --all-features \
   --test main --test matched --no-run --message-format=json > "$dir/built"
 python3 - "$dir" <<'END'
 import json, re, shutil, sys
-tests = f"{sys.argv[1]}/root/tests"
+tests = f"{sys.argv[1]}/files/tests"
 for line in open(f"{sys.argv[1]}/built"):
     built = json.loads(line)
     if built.get("executable"):
@@ -35,11 +35,11 @@ code, roots = re.subn(rb"(\x62.\x7c\x48)\x51", lambda m: m[1] + b"\x28", open(f"
 assert roots, "no square root of 512 bits in the kernels' tests"
 open(f"{tests}/broken", "wb").write(code)
 END
-strip "$dir"/root/tests/*
-chmod +x "$dir"/root/tests/*
+strip "$dir"/files/tests/*
+chmod +x "$dir"/files/tests/*
 
 # What runs, here or there.
-cat > "$dir/root/tests/all" <<'END'
+cat > "$dir/files/tests/all" <<'END'
 cd "$(dirname "$0")"
 fail() { cat out; echo "FAIL: $*"; exit 1; }
 ./entry list > out && grep '/avx512$' out > entries || fail "the level found here is not AVX-512"
@@ -62,7 +62,7 @@ END
 has() { grep -qw "$1" /proc/cpuinfo; }
 if [ "${1:-}" != --bochs ] && has avx512f && has avx512vl && has avx512dq && has avx512bw; then
   echo "this CPU has AVX-512: no emulation"
-  sh "$dir/root/tests/all"
+  sh "$dir/files/tests/all"
   exit
 fi
 
@@ -77,11 +77,11 @@ chmod 777 "$dir/debs"
 for deb in "$dir"/debs/*.deb; do dpkg -x "$deb" "$dir/packages"; done
 
 # The disc: a boot loader, the kernel and its first files.
-mkdir -p "$dir/root/bin" "$dir/root/proc" "$dir/disc/isolinux"
+mkdir -p "$dir/files/bin" "$dir/files/proc" "$dir/disc/isolinux"
 busybox=$dir/packages/bin/busybox
-cp "$busybox" "$dir/root/bin/"
-ldd "$dir"/root/tests/{entry,*-main,*-matched} | grep -oE '/[^ :]+\.so[^ :]*' | sort -u | xargs cp -L --parents -t "$dir/root"
-cat > "$dir/root/init" <<'END'
+cp "$busybox" "$dir/files/bin/"
+ldd "$dir"/files/tests/{entry,*-main,*-matched} | grep -oE '/[^ :]+\.so[^ :]*' | sort -u | xargs cp -L --parents -t "$dir/files"
+cat > "$dir/files/init" <<'END'
 #!/bin/busybox sh
 /bin/busybox --install /bin
 mount -t proc none /proc
@@ -90,8 +90,8 @@ sh /tests/all
 stty echo # waits until the last line is out
 poweroff -f
 END
-chmod +x "$dir/root/init"
-(cd "$dir/root" && find . | "$busybox" cpio -o -H newc 2> /dev/null) > "$dir/disc/initrd"
+chmod +x "$dir/files/init"
+(cd "$dir/files" && find . | "$busybox" cpio -o -H newc 2> /dev/null) > "$dir/disc/initrd"
 cp "$dir"/packages/boot/vmlinuz-* "$dir/disc/vmlinuz"
 cp "$dir"/packages/usr/lib/{ISOLINUX/isolinux.bin,syslinux/modules/bios/ldlinux.c32} "$dir/disc/isolinux/"
 # Bochs 2.7 misstates the size of what XSAVEC and XSAVES write, on which Linux does without AVX: it is to use XSAVE. The
