@@ -2,10 +2,10 @@
 
 use super::{HairGather, HairPoint, Place};
 use crate::lanes::{lanes3, pair::Pair};
-use crate::math::{FRAC_PI_2_LOW, atan_unit, sin_cos_absolute, sin_cos_twice};
+use crate::math::{atan_unit, sin_cos_absolute, sin_cos_twice};
 use crate::truncated::TruncatedCauchy;
 use crate::{Broadcast, Lanes, Vec3x};
-use core::f32::consts::FRAC_PI_2;
+use core::f32::consts::FRAC_PI_4;
 
 /// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place.
 #[inline(always)]
@@ -73,7 +73,8 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     // R and TRT-g need no arcsine: sin(phi/2) = 2 xi - 1.
     let (sin_bell, cos_bell) = sin_cos_absolute(psi);
     let sin_psi = L::select(is_bell, sin_bell, across);
-    let cos_psi = L::select(is_bell, cos_bell, (one - across * across).sqrt());
+    // Next to 0 the cosine may be rounded to below it.
+    let cos_psi = L::select(is_bell, cos_bell.abs(), (one - across * across).sqrt());
 
     // The direction, from the double angle; phi_i = phi_o - phi. The sides of R and TRT-g are the other way round.
     let sin_psi_sq = sin_psi * sin_psi;
@@ -89,14 +90,15 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by;
     let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by;
 
-    // Half of |phi| or of pi - |phi|, whichever is smaller, from the sine and cosine that the direction was made of, and
-    // then turned by what rounding has turned the direction. Next to pi R and TRT-g vanish, and take all of its digits.
-    let (small, large) = (sin_psi.min(cos_psi).abs(), sin_psi.max(cos_psi));
+    // Half of |phi| or of pi - |phi|, whichever is smaller: psi itself, or from the sine and cosine that the direction was made
+    // of, and then turned by what rounding has turned the direction. Next to pi R and TRT-g vanish, and take all of its
+    // digits; so do glints, whose psi is then next to pi/2, where the cosine has few.
+    let (small, large) = (sin_psi.min(cos_psi), sin_psi.max(cos_psi));
     let (reach, large_sq) = (cos_theta_i * cos_o, large * large);
     let reciprocal = one / (reach * large_sq);
     let inv_reach = reciprocal * large_sq;
-    let rest = (c(FRAC_PI_2) - psi) + c(FRAC_PI_2_LOW);
-    let angle = L::select(is_bell, psi.min(rest), atan_unit((small * large) * (reciprocal * reach)));
+    let as_drawn = L::and(is_bell, psi.lt(c(FRAC_PI_4)));
+    let angle = L::select(as_drawn, psi, atan_unit((small * large) * (reciprocal * reach)));
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
     let turned = cross.mul_sub(cos_turn.abs(), dot.abs() * sin_turn) * (inv_reach * c(0.5));
