@@ -91,6 +91,21 @@ pub trait Lanes:
     /// `x` where the mask is set, 0 elsewhere.
     fn keep(mask: Self::Mask, x: Self) -> Self;
 
+    /// Both, and neither before both are there: no instruction, but compilers keep to it.
+    ///
+    /// Of two chains of results they like to write one behind the other, as that takes fewer registers. A CPU that looks a
+    /// hundred instructions ahead then waits for each in turn.
+    #[inline(always)]
+    fn abreast(a: Self, b: Self) -> (Self, Self) {
+        (a, b)
+    }
+    /// Of two packets side by side, [`abreast`](Self::abreast) of the two; any other as it is.
+    #[inline(always)]
+    #[must_use]
+    fn in_step(self) -> Self {
+        self
+    }
+
     /// The slot that `xi` falls in: how many of the ascending `bounds` are at most `xi`.
     fn choose(xi: Self, bounds: [Self; 3]) -> Self::Choice;
     /// Where the chosen slot is `slot`, 0 to 3.

@@ -63,7 +63,7 @@ pub fn gaussian<L: Lanes>(s: L) -> L {
 /// `atan t` for `|t| <= 1`.
 #[inline(always)]
 pub fn atan_unit<L: Lanes>(t: L) -> L {
-    let z = t * t;
+    let z = (t * t).in_step();
     let p = polynomial(
         z,
         [
@@ -132,7 +132,7 @@ pub fn sin_cos_twice<L: Lanes>(x: L) -> (L, L) {
 /// For inversion: an error of 2e-7 in the angle that a number is mapped to is one of 2e-7 in the number.
 #[inline(always)]
 pub fn sin_cos_absolute<L: Lanes>(x: L) -> (L, L) {
-    let z = x * x;
+    let z = (x * x).in_step();
     let p = polynomial(
         z,
         [-0.499_999_314_546_584_9, 0.041_663_989_424_705_51, -0.001_385_592_622_682_452_2, 2.319_435_589_015_484e-5],
@@ -168,7 +168,7 @@ const LOG2_MANTISSA: [f32; 9] = [
 #[inline(always)]
 pub fn log2<L: Lanes>(x: L) -> L {
     let (mantissa, exponent) = x.split_exponent();
-    let f = mantissa - L::splat(1.0);
+    let f = (mantissa - L::splat(1.0)).in_step();
     polynomial(f, LOG2_MANTISSA).mul_add(f, exponent)
 }
 
@@ -177,7 +177,7 @@ pub fn log2<L: Lanes>(x: L) -> L {
 #[inline(always)]
 pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
     let c = L::splat;
-    let t = c(1.0) / x.mul_add(c(0.3), c(1.0));
+    let t = (c(1.0) / x.mul_add(c(0.3), c(1.0))).in_step();
     let p = polynomial(
         t,
         [
@@ -202,7 +202,7 @@ pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
 pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let w = zero.max(zero - log2(c(4.0) * q * (one - q)));
+    let w = zero.max(zero - log2((c(4.0) * q * (one - q)).in_step())).in_step();
     let center = polynomial(
         w,
         [
@@ -216,7 +216,7 @@ pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
             3.315_518_361_835_722e-8,
         ],
     );
-    let root = w.max(c(7.0)).sqrt();
+    let root = w.max(c(7.0)).sqrt().in_step();
     let tail = polynomial(
         one / root,
         [

@@ -65,23 +65,23 @@ impl<L: Lanes> Place<L> {
         let inv_cos = inv_reach * cos_o;
         let front = c(0.0).lt(dot);
         let sin_cos = [tau * cos_half, cos_half];
-        let place = Self::new(half_theta_i, wi.x, cos_theta_i, inv_cos, atan_unit(tau), sin_cos, front);
+        let half = atan_unit(tau);
+        let place = Self::new(half_theta_i, wi.x, cos_theta_i, inv_cos, [half, complement(half)], sin_cos, front);
         (place, sound)
     }
 
-    /// The place of `theta_i` and of an azimuth, told by half of the smaller of `|phi|` and `pi - |phi|`, its sine and
-    /// its cosine.
+    /// The place of `theta_i` and of an azimuth, told by half of the smaller of `|phi|` and `pi - |phi|`, its complement, its
+    /// sine and its cosine.
     #[inline(always)]
     pub(super) fn new(
         half_theta_i: L,
         sin_theta_i: L,
         cos_theta_i: L,
         inv_cos_theta_i: L,
-        half: L,
+        [half, rest]: [L; 2],
         [sin_half, cos_half]: [L; 2],
         front: L::Mask,
     ) -> Self {
-        let rest = (L::splat(FRAC_PI_2) - half) + L::splat(FRAC_PI_2_LOW);
         let (half_phi, half_back) = L::swap(front, half, rest);
         Self {
             half_theta_i,
@@ -141,6 +141,12 @@ impl<L: Lanes> Place<L> {
             inv_cos_sq_theta_d: inv_r * d_r,
         }
     }
+}
+
+/// `pi/2` less an angle.
+#[inline(always)]
+pub(super) fn complement<L: Lanes>(angle: L) -> L {
+    (L::splat(FRAC_PI_2) - angle) + L::splat(FRAC_PI_2_LOW)
 }
 
 impl<L: Lanes> Shapes<L> {

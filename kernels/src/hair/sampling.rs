@@ -1,5 +1,6 @@
 //! The published sampler: a lobe by its energy, then longitude and azimuth by inversion (section 3.2 of the paper).
 
+use super::place::complement;
 use super::{HairGather, HairPoint, Place};
 use crate::lanes::{lanes3, pair::Pair};
 use crate::math::{atan_unit, sin_cos_absolute, sin_cos_twice};
@@ -66,6 +67,7 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     let is_tt = L::is_slot(choice, 1);
     let is_glint = L::is_slot(choice, 3);
     let is_bell = L::or(is_tt, is_glint);
+    let (half_theta_i, psi) = L::abreast(half_theta_i, psi);
     let (sin_theta_i, cos_theta_i) = sin_cos_twice(half_theta_i);
     // Rounding may take the last of a tail past the pole: no direction, and no density.
     let cos_theta_i = zero.max(cos_theta_i);
@@ -76,6 +78,13 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     // Next to 0 the cosine may be rounded to below it.
     let cos_psi = L::select(is_bell, cos_bell.abs(), (one - across * across).sqrt());
 
+    // Half of |phi| or of pi - |phi|, whichever is smaller: psi itself, or from the sine and cosine that the direction is made
+    // of. Next to pi R and TRT-g vanish, and take all of its digits; so do glints, whose psi is then next to pi/2, where the
+    // cosine has few. A division of its own: nothing here waits for the longitude.
+    let (small, large) = (sin_psi.min(cos_psi), sin_psi.max(cos_psi));
+    let as_drawn = L::and(is_bell, psi.lt(c(FRAC_PI_4)));
+    let angle = L::select(as_drawn, psi, atan_unit(small / large));
+
     // The direction, from the double angle; phi_i = phi_o - phi. The sides of R and TRT-g are the other way round.
     let sin_psi_sq = sin_psi * sin_psi;
     let sin_turn = (sin_psi + sin_psi) * cos_psi;
@@ -85,20 +94,13 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     // What the sine and the cosine are off the unit circle is taken from the length.
     let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;
     let [v_o, w_o, cos_o] = lanes3(&point.plane_o);
-    let by = cos_theta_i * point.inv_plane_o.lanes();
+    let by = point.inv_plane_o.lanes();
     let by = by - by * off_unit;
-    let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by;
-    let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by;
+    let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by * cos_theta_i;
+    let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by * cos_theta_i;
 
-    // Half of |phi| or of pi - |phi|, whichever is smaller: psi itself, or from the sine and cosine that the direction was made
-    // of, and then turned by what rounding has turned the direction. Next to pi R and TRT-g vanish, and take all of its
-    // digits; so do glints, whose psi is then next to pi/2, where the cosine has few.
-    let (small, large) = (sin_psi.min(cos_psi), sin_psi.max(cos_psi));
-    let (reach, large_sq) = (cos_theta_i * cos_o, large * large);
-    let reciprocal = one / (reach * large_sq);
-    let inv_reach = reciprocal * large_sq;
-    let as_drawn = L::and(is_bell, psi.lt(c(FRAC_PI_4)));
-    let angle = L::select(as_drawn, psi, atan_unit((small * large) * (reciprocal * reach)));
+    // The angle, turned by what rounding has turned the direction.
+    let inv_reach = one / (cos_theta_i * cos_o);
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
     let turned = cross.mul_sub(cos_turn.abs(), dot.abs() * sin_turn) * (inv_reach * c(0.5));
@@ -107,7 +109,7 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
         sin_theta_i,
         cos_theta_i,
         inv_reach * cos_o,
-        angle + turned,
+        [angle + turned, complement(angle) - turned],
         [turned.mul_add(large, small), large],
         zero.lt(dot),
     );

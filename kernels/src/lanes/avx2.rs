@@ -9,6 +9,7 @@ use super::{
     Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused, pick_by_select,
     pick_three_by_select, sealed::Sealed,
 };
+use core::arch::asm;
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
@@ -154,6 +155,11 @@ impl Lanes for Avx2 {
         Self(avx2!(_mm256_and_ps(mask, x.0)))
     }
     #[inline(always)]
+    fn abreast(a: Self, b: Self) -> (Self, Self) {
+        let (a, b) = avx2!(abreast(a.0, b.0));
+        (Self(a), Self(b))
+    }
+    #[inline(always)]
     fn choose(xi: Self, bounds: [Self; 3]) -> Slots {
         let at_least = avx2!([
             _mm256_cmp_ps::<_CMP_GE_OQ>(xi.0, bounds[0].0),
@@ -182,6 +188,17 @@ impl Lanes for Avx2 {
     fn slot_number(choice: Slots) -> Self {
         Self(avx2!(_mm256_cvtepi32_ps(choice.number)))
     }
+}
+
+/// Code that is none, and that a compiler takes for one instruction with two operands and two results.
+#[target_feature(enable = "avx")]
+#[inline]
+fn abreast(mut a: __m256, mut b: __m256) -> (__m256, __m256) {
+    // SAFETY: there is no code.
+    unsafe {
+        asm!("/* {0} {1} */", inout(ymm_reg) a, inout(ymm_reg) b, options(pure, nomem, nostack, preserves_flags));
+    }
+    (a, b)
 }
 
 impl Broadcast<Avx2> for f32 {

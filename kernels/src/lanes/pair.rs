@@ -120,6 +120,11 @@ impl<L: Lanes> Lanes for Pair<L> {
         Self(L::keep(mask.0, x.0), L::keep(mask.1, x.1))
     }
     #[inline(always)]
+    fn in_step(self) -> Self {
+        let (a, b) = L::abreast(self.0, self.1);
+        Self(a, b)
+    }
+    #[inline(always)]
     fn choose(xi: Self, [a, b, c]: [Self; 3]) -> Self::Choice {
         (L::choose(xi.0, [a.0, b.0, c.0]), L::choose(xi.1, [a.1, b.1, c.1]))
     }
