@@ -60,7 +60,7 @@ impl Sampler {
         match self {
             Self::Uniform | Self::Ou => None,
             Self::Matched5 => Some(5),
-            Self::Matched => Some(11),
+            Self::Matched => Some(9),
             Self::Matched25 => Some(25),
         }
     }

@@ -41,7 +41,7 @@ use wide::f32x8;
 /// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it; a weight is
 ///   good to 2e-6, next to `|phi| = pi` to 2e-5. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor
 ///   is a lobe drawn whose energy is below 1e-36 of the largest.
-/// - Domain: `BANDS` is 5, 11 or 25. By channel, a channel below 1e-18 of the brightest has no say.
+/// - Domain: `BANDS` is 5, 9 or 25. By channel, a channel below 1e-18 of the brightest has no say.
 /// - Source: ours; section 3.2 of Ou et al. 2012 is what it replaces.
 ///
 /// # What it buys, and what it costs
@@ -54,7 +54,7 @@ use wide::f32x8;
 /// |---|---|---|---|
 /// | published | .2469 | .1889 | |
 /// | `Matched<_, 5>` | .0412, 7.3 (2.3) | .0448, 4.4 (2.1) | 2.9 |
-/// | `Matched<_, 11>`, the default | .0161, 18 (4.3) | .0175, 11 (4.1) | 2.0 |
+/// | `Matched<_, 9>`, the default | .0206, 14 (3.7) | .0223, 8.8 (3.5) | 2.2 |
 /// | `Matched<_, 25>` | .0059, 56 (8.3) | .0065, 35 (8.2) | 2.0 |
 ///
 /// Any broad light gains. Of what a small light or a textured one adds to the variance no sampler of the hair takes anything
@@ -71,7 +71,7 @@ use wide::f32x8;
 /// assert_eq!(hair, matched); // one model, two samplers
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Matched<B, const BANDS: usize = 11, const BY_CHANNEL: bool = false>(pub B);
+pub struct Matched<B, const BANDS: usize = 9, const BY_CHANNEL: bool = false>(pub B);
 
 impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Matched<B, BANDS, BY_CHANNEL> {
     type Params = HairParams;

@@ -23,7 +23,7 @@ const MOST: usize = 12;
 /// efficiency figures; the distance of the last bounds how much of a lobe on the pole has a weight of its own.
 const ENDS: [&[[f32; 2]]; 3] = [
     &[[0.935, 0.60412954], [0.598, 0.32050172]],
-    &[[0.9846, 0.69753554], [0.9607, 0.64475647], [0.8994, 0.55919748], [0.7427, 0.41854674], [0.342, 0.17452221]],
+    &[[0.979, 0.68274841], [0.936, 0.60554465], [0.803, 0.46615599], [0.395, 0.20303393]],
     &[
         [0.9956, 0.73847671],
         [0.993, 0.72620268],
@@ -45,9 +45,9 @@ const ENDS: [&[[f32; 2]]; 3] = [
 pub(super) const fn bands(all: usize) -> [Band; MOST + 1] {
     let ends = match all {
         5 => ENDS[0],
-        11 => ENDS[1],
+        9 => ENDS[1],
         25 => ENDS[2],
-        _ => panic!("5, 11 or 25 bands"),
+        _ => panic!("5, 9 or 25 bands"),
     };
     let mut side = [Band { outer: 1.0, half_inner: 0.0, half_sin: 0.0, half_cos: 0.5 }; MOST + 1];
     let mut j = 0;
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn bands_fill_a_side_without_a_gap() {
-        for all in [5, 11, 25] {
+        for all in [5, 9, 25] {
             let side = &bands(all)[..=all / 2];
             assert_eq!(side[0].outer, 1.0, "{all}: from the pole");
             for (j, ends) in side.windows(2).enumerate() {

@@ -11,7 +11,7 @@ const MOST: usize = 25;
 const fn ends(bands: usize) -> &'static [f32] {
     match bands {
         5 => &[0.935, 0.598],
-        11 => &[0.9846, 0.9607, 0.8994, 0.7427, 0.342],
+        9 => &[0.979, 0.936, 0.803, 0.395],
         _ => &[0.9956, 0.993, 0.9886, 0.9817, 0.9705, 0.9525, 0.9235, 0.8767, 0.8014, 0.68, 0.4844, 0.1694],
     }
 }
@@ -21,7 +21,7 @@ const fn ends(bands: usize) -> &'static [f32] {
 /// ```
 /// use hairis::{HairParams, textbook::{MatchedTextbook, Parameters, Shape}};
 /// let parameters = Parameters::<f64>::from(&HairParams::brown());
-/// let hair = MatchedTextbook::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0], 11);
+/// let hair = MatchedTextbook::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0], 9);
 /// let drawn = hair.sample([0.1, 0.4, 0.7]);
 /// assert!((hair.pdf(drawn.wi) / drawn.pdf - 1.0).abs() < 1e-9);
 /// ```
@@ -63,7 +63,7 @@ fn shares<T: Real>(of: &PerLobe<T>) -> PerLobe<T> {
 }
 
 impl<T: Real> MatchedTextbook<T> {
-    /// What is constant for `parameters` and `wo`, with 5, 11 or 25 bands.
+    /// What is constant for `parameters` and `wo`, with 5, 9 or 25 bands.
     #[inline]
     #[must_use]
     pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3], bands: usize) -> Self {

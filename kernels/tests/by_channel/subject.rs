@@ -4,7 +4,7 @@ use hairis::textbook::{MatchedTextbook, Parameters, Shape};
 use hairis::{Gaussian, Matched};
 
 /// The model.
-pub(crate) type Tested = Matched<Gaussian, 11, true>;
+pub(crate) type Tested = Matched<Gaussian, 9, true>;
 /// Its twin.
 pub(crate) type Oracle = MatchedTextbook<f64>;
 
@@ -21,5 +21,5 @@ pub(crate) fn subjects() -> Vec<(Tested, f32)> {
 
 /// The twin for these parameters at the gather point of `wo`.
 pub(crate) fn twin(parameters: &Parameters<f64>, wo: [f64; 3]) -> Oracle {
-    MatchedTextbook::prepare(parameters, Shape::Gaussian, wo, 11).by_channel()
+    MatchedTextbook::prepare(parameters, Shape::Gaussian, wo, 9).by_channel()
 }

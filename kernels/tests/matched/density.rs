@@ -57,7 +57,7 @@ fn each_lobe_integrates_to_one() {
     {
         let mut worst = Worst::default();
         see(&mut worst, few, 5, kind, &THETA_O);
-        see(&mut worst, usual, 11, kind, &THETA_O);
+        see(&mut worst, usual, 9, kind, &THETA_O);
         see(&mut worst, many, 25, kind, &THETA_O);
         worst.check(&format!("{kind:?} integral of a lobe's density, off 1"), limit);
     }

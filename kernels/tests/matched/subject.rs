@@ -21,12 +21,12 @@ pub(crate) fn subjects() -> Vec<(Tested, f32)> {
     vec![(Matched(Gaussian), 1.0)]
 }
 
-/// The model with the published sampler, and with the matched ones of 5, 11 and 25 bands.
-pub(crate) fn samplers() -> (Hair<Gaussian>, Matched<Gaussian, 5>, Matched<Gaussian, 11>, Matched<Gaussian, 25>) {
+/// The model with the published sampler, and with the matched ones of 5, 9 and 25 bands.
+pub(crate) fn samplers() -> (Hair<Gaussian>, Matched<Gaussian, 5>, Matched<Gaussian, 9>, Matched<Gaussian, 25>) {
     (Hair(Gaussian), Matched(Gaussian), Matched(Gaussian), Matched(Gaussian))
 }
 
 /// The twin for these parameters at the gather point of `wo`.
 pub(crate) fn twin(parameters: &Parameters<f64>, wo: [f64; 3]) -> Oracle {
-    MatchedTextbook::prepare(parameters, SHAPE, wo, 11)
+    MatchedTextbook::prepare(parameters, SHAPE, wo, 9)
 }

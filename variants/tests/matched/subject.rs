@@ -26,12 +26,12 @@ pub(crate) fn subjects() -> Vec<(Tested, f32)> {
     ]
 }
 
-/// The model with the published sampler, and with the matched ones of 5, 11 and 25 bands.
-pub(crate) fn samplers() -> (Hair<Cauchy>, Matched<Cauchy, 5>, Matched<Cauchy, 11>, Matched<Cauchy, 25>) {
+/// The model with the published sampler, and with the matched ones of 5, 9 and 25 bands.
+pub(crate) fn samplers() -> (Hair<Cauchy>, Matched<Cauchy, 5>, Matched<Cauchy, 9>, Matched<Cauchy, 25>) {
     (Cauchy::PAPER.model(), Matched(Cauchy::PAPER), Matched(Cauchy::PAPER), Matched(Cauchy::PAPER))
 }
 
 /// The twin for these parameters at the gather point of `wo`.
 pub(crate) fn twin(parameters: &Parameters<f64>, wo: [f64; 3]) -> Oracle {
-    MatchedTextbook::prepare(parameters, SHAPE, wo, 11)
+    MatchedTextbook::prepare(parameters, SHAPE, wo, 9)
 }

@@ -211,7 +211,7 @@ fn textbook(request: &Request) -> Answer<f64> {
             }
         }
         Sampler::Matched => {
-            let hair = MatchedTextbook::prepare(&parameters, shape, wo, 11);
+            let hair = MatchedTextbook::prepare(&parameters, shape, wo, 9);
             match request.query {
                 Query::Wi(wi) => {
                     let wi = double(wi.to_array());
