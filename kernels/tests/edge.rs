@@ -56,6 +56,32 @@ fn ends_of_xi_give_sound_samples_of_every_lobe() {
     assert!(seen.iter().all(|n| *n > 2000), "hardly any sample was kept: {seen:?}");
 }
 
+/// Where R and TRT-g vanish, what is left of them is a difference of rounded numbers, and nothing else has their colours.
+#[test]
+fn nothing_is_negative_on_the_seam() {
+    let black = [0.0; 3];
+    let colours =
+        HairDesc { intensity_r: [0.0, 0.0, 1.0], intensity_tt: black, intensity_trt: [1.0, 1.0, 0.0], ..widths(0.3) };
+    let gather = |wo| material(&HairDesc { phi_g: 3.0, gamma_g: 0.35, ..colours }).prepare(wo);
+    let mut seen = 0;
+    for (y, z) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (0.6, 0.8), (1.0, 0.0), (0.3, -0.7)] {
+        for x in [0.0, 0.4, -2.0] {
+            let gather = gather(Vec3::new(x, y, z).normalize());
+            for xi_lobe in (0..32_u8).map(|i| f32::from(i) / 32.0) {
+                for (xi_theta, xi_phi) in
+                    [0.02, 0.3, 0.5, 0.81].into_iter().flat_map(|a| [0.0, 0.5, LAST].map(|b| (a, b)))
+                {
+                    for sample in samples(&gather, [xi_lobe, xi_theta, xi_phi]).into_iter().flatten() {
+                        assert_sound(&sample, "on the seam");
+                        seen += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(seen > 1000, "hardly any sample was kept: {seen}");
+}
+
 #[test]
 fn the_axis_scatters_nothing() {
     for desc in [widths(MIN_WIDTH), widths(0.1), widths(MAX_WIDTH)] {
@@ -231,6 +257,21 @@ fn an_azimuth_next_to_nothing_is_still_an_azimuth() {
         assert!((got.pdf / want.pdf - 1.0).abs() < 1e-4, "{wi}: {got:?} against {want:?}");
         for (got, want) in got.value.iter().zip(want.value) {
             assert!((got / want - 1.0).abs() < 0.2, "{wi}: {got} against {want}");
+        }
+    }
+}
+
+/// Nor have their squares digits, where they are denormals.
+#[test]
+fn a_direction_next_to_the_axis_is_still_a_direction() {
+    for off in [1e-15, 1e-18, 1e-19, 1e-20, 1e-21, 3e-22, 3e-23, 1e-38, f32::from_bits(1)] {
+        for wo in [Vec3::new(1.0, off, 0.0), Vec3::new(-1.0, -off, off), Vec3::new(1e3, 0.0, 1e3 * off)] {
+            let gather = material(&widths(0.3)).prepare(wo);
+            for xi in ENDS.iter().flat_map(|a| [[*a, 0.5, 0.3], [0.9, *a, 0.6], [0.1, 0.4, *a], [0.5, 0.4, *a]]) {
+                for sample in samples(&gather, xi).into_iter().flatten() {
+                    assert_sound(&sample, &format!("xi {xi:?} wo {wo:?}"));
+                }
+            }
         }
     }
 }

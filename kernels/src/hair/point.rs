@@ -101,8 +101,8 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
     let plane_sq = y.mul_add(y, z * z);
     let plane = plane_sq.sqrt();
     let len = x.mul_add(x, plane_sq).sqrt();
-    // On the axis the azimuth is 0 by convention.
-    let off_axis = zero.lt(plane);
+    // On the axis the azimuth is 0 by convention, and so it is where `plane_sq` is next to denormals and has no digits.
+    let off_axis = c(1e-18).lt(plane);
     let span_plane = L::select(off_axis, plane, one);
     let reciprocal = one / (len * span_plane);
     let (half_inv_len, inv_plane) = (c(0.5) * (reciprocal * span_plane), reciprocal * len);

@@ -52,8 +52,9 @@ impl<L: Lanes> Turn<L> {
 /// The direction at half a longitude and at an azimuth, and its place: of the angles it is made of, those that keep their
 /// digits in the direction are kept, not taken back from it.
 ///
-/// The azimuth is on the side of `turn`. `psi`, up to `pi/2`, is half of `|phi|` for the glints and half of `pi - |phi|`
-/// for TT; R and TRT-g take it from `turn` alone.
+/// The azimuth is on the side of `turn`. `psi` is half of `|phi|` for the glints and half of `pi - |phi|` for TT; R and TRT-g
+/// take it from `turn` alone. Where bells are narrow, rounding may take it a little out of `[0, pi/2]`: the magnitude of its
+/// cosine folds it at one end, and `turned` turns it back at the other.
 #[inline(always)]
 pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     point: &HairPoint<C>,
@@ -75,7 +76,6 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     // R and TRT-g need no arcsine: sin(phi/2) = 2 xi - 1.
     let (sin_bell, cos_bell) = sin_cos_absolute(psi);
     let sin_psi = L::select(is_bell, sin_bell, across);
-    // Next to 0 the cosine may be rounded to below it.
     let cos_psi = L::select(is_bell, cos_bell.abs(), (one - across * across).sqrt());
 
     // Half of |phi| or of pi - |phi|, whichever is smaller: psi itself, or from the sine and cosine that the direction is made
@@ -110,7 +110,8 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
         cos_theta_i,
         inv_reach * cos_o,
         [angle + turned, complement(angle) - turned],
-        [turned.mul_add(large, small), large],
+        // On the seam the two may cancel to below 0.
+        [zero.max(turned.mul_add(large, small)), large],
         zero.lt(dot),
     );
     (Vec3x::new(sin_theta_i, v, w), place)
