@@ -29,8 +29,9 @@ use wide::f32x8;
 /// needs no search.
 ///
 /// With `BY_CHANNEL` lobes are chosen by their shares of red, green and blue, `sqrt(sum_c (E_lc / sum_k E_kc)^2)`, and not by the
-/// mean of the three: that evens out the relative variances of the channels (SPEC 5.4), where the default serves their mean. For
-/// saturated colours: V of the blue of red hair falls to a quarter, and the mean's rises eight times (test `by_channel`).
+/// mean of the three: that evens out the relative variances of the channels, where the default serves their mean. For
+/// saturated colours: V of the blue of red hair falls from .41–.73 to .13–.20, and the mean's rises from .01–.03 to .11–.14
+/// (test `by_channel`).
 ///
 /// - Density: exact, as reported. With `h` the W of the band it is `h sum I M N / sum E`, over `cos theta_i`: the model itself
 ///   but for `h / W`. It jumps where bands meet, by what W changes from band to band. Which band a direction is in is told from
@@ -38,8 +39,9 @@ use wide::f32x8;
 /// - Weights: bounded by the sum of the energies times the largest `W / h`, in closed form
 ///   (`textbook::MatchedTextbook::weight_bound`); the mean of a weight's RGB is `W / h` times that sum. By channel in place of
 ///   the sum: the largest energy over its lobe's probability.
-/// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it; a weight is
-///   good to 2e-6, next to `|phi| = pi` to 2e-5. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor
+/// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it. What a sample
+///   reports holds for the direction it returns to 3e-5 and 1e-5. For widths of a degree and more, further than 1e-3 rad from
+///   the fibre's axis; errors grow as widths shrink. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor
 ///   is a lobe drawn whose energy is below 1e-36 of the largest.
 /// - Domain: `BANDS` is 5, 9 or 25. By channel, a channel below 1e-18 of the brightest has no say.
 /// - Source: ours; section 3.2 of Ou et al. 2012 is what it replaces.

@@ -10,7 +10,7 @@ mod sampling;
 #[path = "by_channel/subject.rs"]
 mod subject;
 mod support;
-#[expect(dead_code, reason = "the albedo and the density of a lobe are those of the other matched samplers")]
+#[expect(dead_code, reason = "albedo, seam, gains and densities of a lobe are those of the other matched samplers")]
 #[path = "matched/tolerance.rs"]
 mod tolerance;
 mod values;

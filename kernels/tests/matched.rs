@@ -13,6 +13,8 @@ mod parity;
 mod props;
 mod quadrature;
 mod sampling;
+#[path = "matched/seam.rs"]
+mod seam;
 #[path = "matched/subject.rs"]
 mod subject;
 mod support;

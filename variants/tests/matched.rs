@@ -21,6 +21,8 @@ mod props;
 mod quadrature;
 #[path = "../../kernels/tests/sampling.rs"]
 mod sampling;
+#[path = "../../kernels/tests/matched/seam.rs"]
+mod seam;
 #[path = "matched/subject.rs"]
 mod subject;
 #[path = "../../kernels/tests/support.rs"]

@@ -23,7 +23,8 @@ pub trait MatchedBell: Bell {
 
 /// The integral is a probability, below 0 where it is one of what lies above `x`: on intervals above the centre.
 ///
-/// - Accuracy: a point's integral is that asked for to 2e-7, and to 5e-5 of the probability beyond it.
+/// - Accuracy: a point's integral is that asked for to 2e-7, and to 2.1e-4 of the probability beyond it, to 5e-5
+///   where that is at least `2^-30`.
 impl MatchedBell for Gaussian {
     /// `sqrt(2 pi)`.
     const UNIT: f32 = 2.506_628_3;

@@ -9,8 +9,8 @@ use crate::{Broadcast, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
 use core::f32::consts::FRAC_PI_4;
 use wide::f32x8;
 
-/// Energies below this share of the largest are none, nor are areas below it: next to denormals their reciprocals would have
-/// no digits.
+/// Energies and areas below this are none: next to denormals their reciprocals would have no digits. Energies are to the scale
+/// of the brightest lobe and of the largest area.
 const LEAST_ENERGY: f32 = 1e-36;
 
 /// A channel below this share of the largest has no say in the choice of lobes: the square of its reciprocal is a float.

@@ -7,7 +7,8 @@ use crate::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// A quarter of the step between uniform numbers of 24 bits: the share of an integral that is left out at its ends, so that
-/// rounding takes no sample past them, and none to a pole or to where a Gaussian has no density left.
+/// where they have digits for it, on narrow bells and in far tails, rounding takes no sample past them, to a pole or to where a
+/// Gaussian has no density left. A wide bell may reach the pole; there is no sample of it there.
 const LEAST_SHARE: f32 = f32::EPSILON / 8.0;
 
 /// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place.

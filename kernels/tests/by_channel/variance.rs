@@ -59,6 +59,7 @@ fn coloured_hair_gains_over_its_channels() {
         }
         assert!(1.3 * (r + g + b) < red_m + green_m + blue_m, "the channels together");
         assert!(3.0 * b < blue_m, "the weakest channel");
+        assert!(mean < 12.0 * mean_m && mean < 0.15, "what it costs the mean");
     }
 }
 
