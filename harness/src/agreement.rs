@@ -100,22 +100,21 @@ impl Quantity {
     /// Of the published sampler a weight is a value over a density: its bound is the sum of theirs. A cdf moves by 20 times
     /// as much as the angle on the narrowest lobe, of a degree, and the angle of a rounded direction by 2e-7 rad.
     ///
-    /// A matched density is made of the model's own bells, and is allowed what S is. Next to `|phi|` = pi its glints, which
-    /// end at pi/2 as published, are drawn by a cosine good to 2e-7 rad; there TT, of a degree, falls by 57 times as much. The
-    /// largest seen of samples is 1.6e-5 (density, S) and 1.4e-5 (weight); of their cdf, 3.0e-5 on lobes that lie off the
-    /// sphere and fall from its pole (four seeds, in full).
+    /// A matched density is made of the model's own bells, and is allowed what S is; samples stay away from where S is known
+    /// worst. The largest seen of their density, S and weight is 2e-5 (Gaussian) and 9.8e-6 (Cauchy); of their cdf, 2.5e-5
+    /// on Gaussian lobes that lie off the sphere and fall from its pole, and 2.4e-6 on Cauchy ones (four seeds, in full).
     #[must_use]
     pub fn bound(self, shape: Shape, sampler: Sampler) -> f64 {
-        let value = match shape {
-            Shape::Gaussian => 1e-4,
-            Shape::Cauchy => 1e-5,
+        let (value, sample, cdf) = match shape {
+            Shape::Gaussian => (1e-4, 3e-5, 5e-5),
+            Shape::Cauchy => (1e-5, 1e-5, 1e-5),
         };
         let matched = sampler.bands().is_some();
         match self {
             Self::Value => value,
             Self::Pdf if matched => value,
-            Self::SamplePdf | Self::SampleValue | Self::SampleWeight if matched => 2e-5,
-            Self::SampleCdf if matched => 5e-5,
+            Self::SamplePdf | Self::SampleValue | Self::SampleWeight if matched => sample,
+            Self::SampleCdf if matched => cdf,
             Self::Pdf | Self::SamplePdf | Self::SampleCdf => 1e-5,
             Self::SampleValue => value,
             Self::SampleWeight => value + 1e-5,

@@ -15,7 +15,7 @@ pub struct Args {
 }
 
 const FORMAT: &str = r#"A request; angles are in radians, directions of unit length in the fibre's frame,
-and "sampler" may be left out:
+and "sampler" may be "ou" (as when it is left out), "matched", "matched-5" or "matched-25":
   {"model":"gaussian"|"cauchy", "sampler":"ou",
    "params":{"alpha":[R,TT,TRT], "beta":[R,TT,TRT], "gamma_tt":x, "gamma_g":x, "phi_g":x,
              "i_r":[r,g,b], "i_tt":[r,g,b], "i_trt":[r,g,b], "i_g":x},

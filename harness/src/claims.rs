@@ -33,10 +33,10 @@ mod uniform;
 pub use claim::{Claim, Figure, Origin, Role, Side, Threshold, Verdict};
 pub use tables::tables;
 
-use crate::efficiency::ModelKind;
 use crate::light::Sky;
 use crate::machine::Machine;
 use crate::study::{Cell, Grid, Plan};
+use crate::subject::ModelKind;
 use hair::{Found, Hair};
 use hairis::ParamError;
 use rayon::prelude::*;

@@ -8,11 +8,12 @@ pub use page::report;
 pub use tables::{Depth, tables};
 
 use crate::agreement::{self, AgreementConfig, AgreementResult};
-use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, ModelKind, SAMPLERS, SampleCosts};
+use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, SAMPLERS, SampleCosts};
 use crate::light::Environment;
 use crate::machine::Machine;
 use crate::speed::{self, SpeedConfig, SpeedReport};
 use crate::study::output::Times;
+use crate::subject::ModelKind;
 use hairis::ParamError;
 use serde::Serialize;
 

@@ -56,7 +56,7 @@ use crate::light::{Environment, Sun};
 use crate::quadrature::fibre_direction;
 use crate::sampler::Sampler;
 use crate::sequence::stream_id;
-use hairis::textbook::Shape;
+use crate::subject::ModelKind;
 use hairis::{HairDesc, HairParams, ParamError};
 use serde::Serialize;
 
@@ -82,54 +82,6 @@ pub const MIN_EFFECTIVE: f64 = 100.0;
 
 /// Chance that a run without any fault fails its [`Check`], over all its figures together.
 pub const FALSE_ALARM: f64 = 1e-3;
-
-/// The models compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ModelKind {
-    /// The published model.
-    Gaussian,
-    /// The all-Cauchy variant with the same widths.
-    Cauchy,
-}
-
-impl ModelKind {
-    /// Every model, in the order of reports.
-    pub const ALL: [Self; 2] = [Self::Gaussian, Self::Cauchy];
-
-    /// Name in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Gaussian => "gaussian",
-            Self::Cauchy => "cauchy",
-        }
-    }
-
-    /// Name in titles and sentences.
-    #[must_use]
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::Gaussian => "Gaussian",
-            Self::Cauchy => "Cauchy",
-        }
-    }
-
-    /// Its bell in the textbook.
-    pub(crate) const fn shape(self) -> Shape {
-        match self {
-            Self::Gaussian => Shape::Gaussian,
-            Self::Cauchy => Shape::Cauchy,
-        }
-    }
-
-    pub(crate) fn index(self) -> u64 {
-        match self {
-            Self::Gaussian => 0,
-            Self::Cauchy => 1,
-        }
-    }
-}
 
 /// The samplers compared, in the order of reports. "Stratified uniform" is the first with
 /// [`SequenceKind::Stratified`](crate::sequence::SequenceKind::Stratified) numbers.

@@ -14,7 +14,6 @@ mod files;
 pub mod light;
 pub mod machine;
 pub mod markup;
-pub mod oracle;
 pub mod plot;
 pub mod quadrature;
 pub mod report;

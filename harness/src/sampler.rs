@@ -2,8 +2,8 @@
 //!
 //! A new one is a variant of [`Sampler`], with its arms in the methods and in `visit` and `weight_bound`.
 
-use crate::efficiency::ModelKind;
 use crate::quadrature::fibre_direction;
+use crate::subject::ModelKind;
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::textbook::{MatchedTextbook, Parameters};
@@ -23,7 +23,7 @@ pub enum Sampler {
     /// By the sampler matched to the model with five bands: its cheapest.
     #[serde(rename = "matched-5")]
     Matched5,
-    /// With eleven, as by default.
+    /// With nine, as by default.
     Matched,
     /// With twenty-five: its least variance.
     #[serde(rename = "matched-25")]

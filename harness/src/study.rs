@@ -51,11 +51,12 @@ pub use shard::Shard;
 pub(crate) use equal_time::in_equal_time;
 pub(crate) use summary::gain;
 
-use crate::efficiency::{ModelKind, sun};
+use crate::efficiency::sun;
 use crate::light::{Constant, Environment, Light, Rectangle, Smooth};
 use crate::machine::Machine;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
+use crate::subject::ModelKind;
 use hairis::{Level, ParamError};
 use part::{Finished, Header};
 use rayon::prelude::*;

@@ -1,13 +1,61 @@
-//! The models under comparison, each beside its textbook twin, and the hair and directions that comparisons draw.
+//! The models under comparison by name, each beside its textbook twin, and the hair and directions that comparisons draw.
 
-use crate::oracle::Oracle;
 use crate::sampler::Sampler;
 use crate::sequence::Independent;
 use core::f32::consts::PI;
 use glam::Vec3;
-use hairis::textbook::{Parameters, Real, Shape};
+use hairis::textbook::{Oracle, Parameters, Real, Shape};
 use hairis::{Bell, Gaussian, Hair, HairDesc, HairParams, Matched, MatchedBell, Model, ParamError};
 use hairis_variants::Cauchy;
+use serde::Serialize;
+
+/// The models compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModelKind {
+    /// The published model.
+    Gaussian,
+    /// The all-Cauchy variant with the same widths.
+    Cauchy,
+}
+
+impl ModelKind {
+    /// Every model, in the order of reports.
+    pub const ALL: [Self; 2] = [Self::Gaussian, Self::Cauchy];
+
+    /// Name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gaussian => "gaussian",
+            Self::Cauchy => "cauchy",
+        }
+    }
+
+    /// Name in titles and sentences.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Gaussian => "Gaussian",
+            Self::Cauchy => "Cauchy",
+        }
+    }
+
+    /// Its bell in the textbook.
+    pub(crate) const fn shape(self) -> Shape {
+        match self {
+            Self::Gaussian => Shape::Gaussian,
+            Self::Cauchy => Shape::Cauchy,
+        }
+    }
+
+    pub(crate) fn index(self) -> u64 {
+        match self {
+            Self::Gaussian => 0,
+            Self::Cauchy => 1,
+        }
+    }
+}
 
 /// A model that takes the published parameters, and what the textbook needs to be the same model.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +113,7 @@ impl<M: Model<Params = HairParams>> Subject<M> {
 
     /// The oracle: the textbook in `f64` for this hair seen from `wo`, with the same sampler.
     #[must_use]
-    pub fn oracle(&self, hair: &HairParams, wo: Vec3) -> Oracle {
+    pub fn oracle(&self, hair: &HairParams, wo: Vec3) -> Oracle<f64> {
         Oracle::prepare(&self.parameters(hair), self.shape, to_f64(wo), self.sampler.bands())
     }
 }

@@ -14,6 +14,7 @@
 mod cauchy;
 mod cut;
 mod matched;
+mod oracle;
 mod parameters;
 mod real;
 mod sampler;
@@ -22,6 +23,7 @@ use crate::{Lobe, PerLobe};
 
 pub use cauchy::TruncatedCauchy;
 pub use matched::MatchedTextbook;
+pub use oracle::Oracle;
 pub use parameters::{Parameters, Shape};
 pub use real::Real;
 

@@ -2,12 +2,11 @@
 
 use super::packet::Packet;
 use super::{Quantity, Region};
-use crate::oracle::Oracle;
 use crate::sampler::Sampler;
 use crate::subject::{Subject, to_f64};
 use core::f64::consts::TAU;
 use glam::Vec3;
-use hairis::textbook::Shape;
+use hairis::textbook::{Oracle, Shape};
 use hairis::{Bsdf, Bsdf8, Eval, Gather, HairParams, Level, Lobe, Model, Sample, Vec3x8};
 use wide::f32x8;
 
@@ -119,7 +118,7 @@ pub(super) fn measure<M>(
 
 /// The oracle at one place.
 struct Exact<'a> {
-    oracle: &'a Oracle,
+    oracle: &'a Oracle<f64>,
     shape: Shape,
     sampler: Sampler,
     place: Place,

@@ -1,11 +1,11 @@
 //! Eight gather points, and directions and numbers that fall into a region.
 
 use super::Region;
-use crate::oracle::Oracle;
 use crate::sequence::{Independent, stream_id};
 use crate::subject::{Subject, direction, random_hair, uniform_direction};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::Vec3;
+use hairis::textbook::Oracle;
 use hairis::{HairParams, Model, ParamError};
 
 /// Between these angles from the axis, rad, a direction is near it.
@@ -26,7 +26,7 @@ pub(super) struct Packet {
     /// Eight for the first gather point.
     pub(super) wi_shared: [Vec3; 8],
     pub(super) xi: [[f32; 3]; 8],
-    pub(super) oracle: [Oracle; 8],
+    pub(super) oracle: [Oracle<f64>; 8],
 }
 
 impl Packet {

@@ -3,9 +3,9 @@
 use super::Cells;
 use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, geometric_mean, largest, smallest};
 use super::hair::{Found, Hair, whole_glint};
-use crate::efficiency::ModelKind;
 use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
 use crate::study::Grid;
+use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::textbook::Parameters;
 use hairis::{HairDesc, HairParams, ParamError};

@@ -1,9 +1,9 @@
 //! The discard of samples at grazing angles: the energy within 1e-5 rad of the fibre's axis, over the whole.
 
 use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, largest};
-use crate::efficiency::ModelKind;
 use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
 use crate::study::Grid;
+use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::textbook::{Parameters, Shape, Textbook};
 use hairis::{HairParams, Lobe};

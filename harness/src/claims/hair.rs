@@ -1,9 +1,10 @@
 //! One hair seen from one direction, by quadrature over the oracle: the published density beside the misprinted ones.
 
 use super::claim::Bounded;
-use crate::efficiency::{ModelKind, with_beta};
+use crate::efficiency::with_beta;
 use crate::quadrature::{Tolerance, bell_breakpoints, fibre_direction, integrate_rectangle};
 use crate::study::Grid;
+use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::textbook::{Parameters, Textbook, TruncatedCauchy};
 use hairis::{HairParams, Lobe, PerLobe};

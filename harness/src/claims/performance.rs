@@ -1,11 +1,11 @@
 //! The all-Cauchy model against the Gaussian one, each under the published sampler: the study's machinery, light by light.
 
 use super::claim::{Claim, Figure, Origin, Side, Threshold, Words};
-use crate::efficiency::ModelKind;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::study::output::Times;
 use crate::study::{Plan, gain, in_equal_time, variances};
+use crate::subject::ModelKind;
 use crate::table::number;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use hairis::ParamError;

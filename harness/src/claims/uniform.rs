@@ -3,10 +3,10 @@
 use super::claim::{Claim, Figure, Side, Threshold, Words, geometric_mean, largest, smallest};
 use super::hair::Found;
 use super::{Cells, hair_of};
-use crate::efficiency::ModelKind;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::study::{Budget, Cell, Grid, Plan, variances};
+use crate::subject::ModelKind;
 use hairis::ParamError;
 
 const WORDS: Words = Words {

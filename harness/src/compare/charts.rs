@@ -1,12 +1,13 @@
 //! The plots of a comparison.
 
 use super::Comparison;
-use crate::efficiency::{ModelKind, SAMPLERS};
+use crate::efficiency::SAMPLERS;
 use crate::figures;
 use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
 use crate::report::Figure;
 use crate::sequence::{SequenceKind, XiSource};
 use crate::speed::Op;
+use crate::subject::ModelKind;
 use hairis::HairParams;
 use hairis_variants::Cauchy;
 

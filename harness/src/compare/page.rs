@@ -1,10 +1,10 @@
 //! The report of a comparison.
 
 use super::{Comparison, Depth, charts, tables};
-use crate::efficiency::ModelKind;
 use crate::report::{Report, Section};
 use crate::sampler::Sampler;
 use crate::speed::Op;
+use crate::subject::ModelKind;
 use crate::table::number;
 
 /// The page.
@@ -32,7 +32,7 @@ pub fn report(of: &Comparison) -> Report {
 
     let mut efficiency = Section::new("Sample efficiency").paragraph(
         "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. Directions are drawn \
-         uniformly, by the published sampler (`ou`) and by the one that is matched to the model (`matched`, with eleven bands, \
+         uniformly, by the published sampler (`ou`) and by the one that is matched to the model (`matched`, with nine bands, \
          as by default). Estimates are tested against quadrature; a bias beyond its bound fails the run.",
     );
     for table in tables.efficiency {

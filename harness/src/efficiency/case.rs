@@ -1,14 +1,13 @@
 //! One model seen from one direction: the eight-lane gather point that is measured, and the double-precision oracle it is held against.
 
 use super::{ModelKind, PHI_O_DEG};
-use crate::oracle::Oracle;
 use crate::quadrature::{SphereIntegrator, Tolerance, fibre_direction};
 use crate::sampler::{Sampler, Scatter, UNIFORM_PDF, gather};
 use crate::sequence::{XiSource, to_unit_f32};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::{DVec3, Vec3};
 use hairis::HairParams;
-use hairis::textbook::Parameters;
+use hairis::textbook::{Oracle, Parameters};
 use hairis::wide::f32x8;
 
 /// A model with its parameters, seen from `wo`.
@@ -23,7 +22,7 @@ pub(super) struct Case {
 struct Estimator {
     scatter: Box<dyn Scatter>,
     /// S, and the density of every sampler but the uniform one.
-    oracle: Oracle,
+    oracle: Oracle<f64>,
     /// An integrator that knows where the lobes are, and where the density jumps.
     sphere: SphereIntegrator,
 }
@@ -44,7 +43,7 @@ impl Case {
         let (parameters, exact) = (Parameters::<f64>::from(params), wo.as_dvec3());
         let estimators = Sampler::ALL.map(|sampler| {
             let oracle = Oracle::prepare(&parameters, model.shape(), exact.to_array(), sampler.bands());
-            let sphere = oracle.jumps().into_iter().fold(integrator(&parameters, exact), SphereIntegrator::theta_break);
+            let sphere = oracle.jumps().fold(integrator(&parameters, exact), SphereIntegrator::theta_break);
             Estimator { scatter: gather(model, sampler, params, wo), oracle, sphere }
         });
         Self { model, theta_o_deg, estimators }

@@ -1,9 +1,9 @@
 //! Whether a contender's answers are right: a wrong kernel must not win.
 
 use super::task::Answer;
-use crate::oracle::Oracle;
 use crate::subject::to_f64;
 use glam::{DVec3, Vec3};
+use hairis::textbook::Oracle;
 
 /// Largest error of an answer that counts as right: relative for value and density, rad for a direction.
 ///
@@ -15,19 +15,19 @@ const NEGLIGIBLE: f64 = 1e-25;
 
 /// What is right for each direction of a pass, by the textbook in `f64`.
 pub(super) struct Truth {
-    points: Vec<Oracle>,
+    points: Vec<Oracle<f64>>,
     /// The direction given, or the one that a sample must come to; `None` if it must be discarded.
     wi: Vec<Option<[f64; 3]>>,
 }
 
 impl Truth {
     /// For directions that are given.
-    pub(super) fn of_directions(points: Vec<Oracle>, wi: &[Vec3]) -> Self {
+    pub(super) fn of_directions(points: Vec<Oracle<f64>>, wi: &[Vec3]) -> Self {
         Self { points, wi: wi.iter().map(|wi| Some(to_f64(*wi))).collect() }
     }
 
     /// For samples.
-    pub(super) fn of_samples(points: Vec<Oracle>, xi: &[[f32; 3]]) -> Self {
+    pub(super) fn of_samples(points: Vec<Oracle<f64>>, xi: &[[f32; 3]]) -> Self {
         let wi = points
             .iter()
             .zip(xi)
@@ -50,7 +50,7 @@ impl Truth {
     }
 }
 
-fn right(point: &Oracle, truth: &Option<[f64; 3]>, answer: &Answer) -> bool {
+fn right(point: &Oracle<f64>, truth: &Option<[f64; 3]>, answer: &Answer) -> bool {
     let Some(truth) = *truth else {
         return answer.pdf == 0.0;
     };

@@ -4,11 +4,12 @@ use super::grid::Cell;
 use super::perfect;
 use super::tally::{Figures, Tally, figures};
 use super::{Budget, Light5};
-use crate::efficiency::{ModelKind, PHI_O_DEG};
+use crate::efficiency::PHI_O_DEG;
 use crate::light::Light;
 use crate::quadrature::fibre_direction;
 use crate::sampler::{Sampler, Scatter, gather};
 use crate::sequence::{Independent, XiSource, stream_id};
+use crate::subject::ModelKind;
 use hairis::{ParamError, Vec3x8};
 use wide::{f32x8, f64x8};
 

@@ -48,12 +48,12 @@ pub(super) fn failures(rows: &[Row<'_>], lights: &[String]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::efficiency::ModelKind;
     use crate::stats::Estimate;
     use crate::study::Grid;
     use crate::study::cell::Measured;
     use crate::study::rows::{Bounds, rows};
     use crate::study::tally::Figures;
+    use crate::subject::ModelKind;
 
     #[test]
     fn weights_above_their_bound_and_means_apart_are_found() {

@@ -3,8 +3,8 @@
 use super::cell::Measured;
 use super::columns::Columns;
 use super::grid::{Cell, Grid, columns_of};
-use crate::efficiency::ModelKind;
 use crate::sampler::{Sampler, weight_bound};
+use crate::subject::ModelKind;
 use rayon::prelude::*;
 
 /// How the directions of a row are drawn, or would be.

@@ -6,9 +6,9 @@ use super::equal_time::{Cells, NOTHING, in_equal_time, time_ratio};
 use super::output::Times;
 use super::rows::{Strategy, place};
 use super::times::PER_POINT;
-use crate::efficiency::ModelKind;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
+use crate::subject::ModelKind;
 use crate::table::{Table, number};
 
 /// Relative standard error of V beyond which a cell is left out: the light was hardly seen.

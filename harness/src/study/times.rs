@@ -9,13 +9,13 @@
 //! whatever cache holds all of it.
 
 use super::columns::Columns;
-use crate::efficiency::ModelKind;
 use crate::light::Light;
 use crate::sampler::{Directions, Sampler, Visit, uniform_sample8, uniform8, visit};
 use crate::sequence::{Independent, stream_id};
 use crate::speed::task::{Pass, task};
 use crate::speed::{quartiles, stretch};
 use crate::stats::Estimate;
+use crate::subject::ModelKind;
 use crate::subject::uniform_direction;
 use core::hint::black_box;
 use hairis::{Bsdf, Gaussian, Hair, HairParams, Model, Sample8, Vec3x8};

@@ -30,7 +30,11 @@ fn bad_values() -> Vec<(Value, &'static str)> {
         (without("", "model"), "model: missing"),
         (with("/model", json!("phong")), "model: must be \"gaussian\" or \"cauchy\", got \"phong\""),
         (with("/model", json!(3)), "model: must be a string, got 3"),
-        (and("", "sampler", json!("best")), "sampler: must be \"ou\" or \"matched\", got \"best\""),
+        (and("", "sampler", json!("uniform")), "sampler: must be \"ou\" or "),
+        (
+            and("", "sampler", json!("best")),
+            "sampler: must be \"ou\" or \"matched-5\" or \"matched\" or \"matched-25\", got \"best\"",
+        ),
         (without("", "params"), "params: missing"),
         (with("/params", json!([])), "params: must be an object, got an array of 0"),
         (without("/params", "gamma_tt"), "params.gamma_tt: missing"),
@@ -121,6 +125,8 @@ fn limits_written_in_double_precision_are_accepted() {
         super::with_xi(good(), [0.999_999_999_999, 0.0, 0.999_999_999_999]),
         and("", "sampler", json!("ou")),
         and("", "sampler", json!("matched")),
+        and("", "sampler", json!("matched-5")),
+        and("", "sampler", json!("matched-25")),
     ];
     for path in PATHS {
         let run = eval(path, &requests);

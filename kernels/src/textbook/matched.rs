@@ -12,7 +12,8 @@ const fn ends(bands: usize) -> &'static [f32] {
     match bands {
         5 => &[0.935, 0.598],
         9 => &[0.979, 0.936, 0.803, 0.395],
-        _ => &[0.9956, 0.993, 0.9886, 0.9817, 0.9705, 0.9525, 0.9235, 0.8767, 0.8014, 0.68, 0.4844, 0.1694],
+        25 => &[0.9956, 0.993, 0.9886, 0.9817, 0.9705, 0.9525, 0.9235, 0.8767, 0.8014, 0.68, 0.4844, 0.1694],
+        _ => panic!("5, 9 or 25 bands"),
     }
 }
 
@@ -64,6 +65,10 @@ fn shares<T: Real>(of: &PerLobe<T>) -> PerLobe<T> {
 
 impl<T: Real> MatchedTextbook<T> {
     /// What is constant for `parameters` and `wo`, with 5, 9 or 25 bands.
+    ///
+    /// # Panics
+    ///
+    /// If there are others.
     #[inline]
     #[must_use]
     pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3], bands: usize) -> Self {

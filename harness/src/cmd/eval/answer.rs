@@ -1,15 +1,16 @@
 //! The answers, computed along the chosen path.
 
-use super::request::{Model, Query, Request, Sampler};
+use super::request::{Query, Request, SAMPLERS};
 use crate::config::Path;
+use crate::sampler::{Directions, Visit, visit};
+use crate::subject::{ModelKind, to_f64};
 use core::array::from_fn;
 use glam::Vec3;
-use hairis::textbook::{Drawn, MatchedTextbook, Parameters, Shape, Textbook};
+use hairis::textbook::{Oracle, Parameters};
 use hairis::{
-    Bsdf, Bsdf8, Eval, EvalSlices, Gather, Gaussian, Hair, HairParams, Lobe, LobeEval, LobeEval8, Matched, Model as _,
-    PerLobe, Sample, SampleSlices, Vec3x8,
+    Bsdf, Bsdf8, Eval, EvalSlices, Gather, Gaussian, Hair, HairParams, Lobe, LobeEval, LobeEval8, Model as _, PerLobe,
+    Sample, SampleSlices, Vec3x8,
 };
-use hairis_variants::Cauchy;
 use serde::Serialize;
 use wide::f32x8;
 
@@ -54,41 +55,36 @@ pub(super) fn answers(path: Path, requests: &[&Request]) -> Vec<Line> {
     }
     // The requests of each model and sampler together; the answers then go back to their places.
     let mut answers = Vec::with_capacity(requests.len());
-    for (model, sampler) in SUBJECTS {
+    for (model, sampler) in ModelKind::ALL.into_iter().flat_map(|model| SAMPLERS.map(|sampler| (model, sampler))) {
         let of = requests.iter().enumerate().filter(|(_, r)| (r.model, r.sampler) == (model, sampler));
         let (at, requests): (Vec<usize>, Vec<&Request>) = of.map(|(at, r)| (at, *r)).unzip();
-        let cauchy = Cauchy::PAPER;
-        answers.extend(at.into_iter().zip(match (model, sampler) {
-            (Model::Gaussian, Sampler::Ou) => along(path, Hair(Gaussian), &requests),
-            (Model::Gaussian, Sampler::Matched) => along(path, Matched::<_>(Gaussian), &requests),
-            (Model::Cauchy, Sampler::Ou) => along(path, cauchy.model(), &requests),
-            (Model::Cauchy, Sampler::Matched) => along(path, cauchy.matched(), &requests),
-        }));
+        answers.extend(at.into_iter().zip(visit(model, sampler, Along { path, requests: &requests })));
     }
     answers.sort_unstable_by_key(|(at, _)| *at);
     answers.into_iter().map(|(_, answer)| Line::Single(answer)).collect()
 }
 
-/// Everything a line may ask for.
-const SUBJECTS: [(Model, Sampler); 4] = [
-    (Model::Gaussian, Sampler::Ou),
-    (Model::Gaussian, Sampler::Matched),
-    (Model::Cauchy, Sampler::Ou),
-    (Model::Cauchy, Sampler::Matched),
-];
+/// The answers along a path that calls the kernels.
+struct Along<'a> {
+    path: Path,
+    requests: &'a [&'a Request],
+}
+
+impl Visit for Along<'_> {
+    type Output = Vec<Answer<f32>>;
+
+    fn visit<M: HairModel + 'static>(self, model: M, _: Directions) -> Self::Output {
+        match self.path {
+            Path::X8 => eight(model, self.requests),
+            Path::Batch => batch(model, self.requests),
+            Path::Scalar | Path::F64 => scalar(model, self.requests),
+        }
+    }
+}
 
 /// A model of hair, whichever way its directions are drawn.
 trait HairModel: hairis::Model<Params = HairParams> {}
 impl<M: hairis::Model<Params = HairParams>> HairModel for M {}
-
-/// The answers of one model along a path that calls the kernels.
-fn along<M: HairModel>(path: Path, model: M, requests: &[&Request]) -> Vec<Answer<f32>> {
-    match path {
-        Path::X8 => eight(model, requests),
-        Path::Batch => batch(model, requests),
-        Path::Scalar | Path::F64 => scalar(model, requests),
-    }
-}
 
 /// One direction a call.
 fn scalar<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
@@ -196,45 +192,24 @@ fn batch_densities<M: HairModel>(gather: &Gather<M>, wi: &[Vec3]) -> Vec<[f32; 4
 
 /// The formulas in double precision.
 fn textbook(request: &Request) -> Answer<f64> {
-    let shape = match request.model {
-        Model::Gaussian => Shape::Gaussian,
-        Model::Cauchy => Shape::Cauchy,
-    };
-    let double = |v: [f32; 3]| v.map(f64::from);
-    let (parameters, wo) = (Parameters::from(&request.params), double(request.wo.to_array()));
-    match request.sampler {
-        Sampler::Ou => {
-            let hair = Textbook::prepare(&parameters, shape, wo);
-            match request.query {
-                Query::Wi(wi) => doubled(hair.eval_pdf(double(wi.to_array())), hair.lobe_pdfs(double(wi.to_array()))),
-                Query::Xi(xi) => redoubled(hair.sample(double(xi)), |wi| hair.lobe_pdfs(wi)),
+    let parameters = Parameters::from(&request.params);
+    let hair = Oracle::prepare(&parameters, request.model.shape(), to_f64(request.wo), request.sampler.bands());
+    match request.query {
+        Query::Wi(wi) => {
+            let wi = to_f64(wi);
+            Answer::Value { s: hair.eval(wi), pdf: hair.pdf(wi), pdf_lobe: hair.lobe_pdfs(wi).0 }
+        }
+        Query::Xi(xi) => {
+            let drawn = hair.sample(xi.map(f64::from));
+            Answer::Sample {
+                wi: drawn.wi,
+                s: drawn.value,
+                pdf: drawn.pdf,
+                pdf_lobe: hair.lobe_pdfs(drawn.wi).0,
+                lobe: drawn.lobe.map(name),
+                weight: drawn.weight,
             }
         }
-        Sampler::Matched => {
-            let hair = MatchedTextbook::prepare(&parameters, shape, wo, 9);
-            match request.query {
-                Query::Wi(wi) => {
-                    let wi = double(wi.to_array());
-                    doubled((hair.eval(wi), hair.pdf(wi)), hair.lobe_pdfs(wi))
-                }
-                Query::Xi(xi) => redoubled(hair.sample(double(xi)), |wi| hair.lobe_pdfs(wi)),
-            }
-        }
-    }
-}
-
-fn doubled((s, pdf): ([f64; 3], f64), pdf_lobe: PerLobe<f64>) -> Answer<f64> {
-    Answer::Value { s, pdf, pdf_lobe: pdf_lobe.0 }
-}
-
-fn redoubled(drawn: Drawn<f64>, pdf_lobe: impl FnOnce([f64; 3]) -> PerLobe<f64>) -> Answer<f64> {
-    Answer::Sample {
-        wi: drawn.wi,
-        s: drawn.value,
-        pdf: drawn.pdf,
-        pdf_lobe: pdf_lobe(drawn.wi).0,
-        lobe: drawn.lobe.map(name),
-        weight: drawn.weight,
     }
 }
 

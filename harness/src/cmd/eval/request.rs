@@ -1,6 +1,8 @@
 //! One line of the input, checked.
 
 use super::json::{Json, shortened};
+use crate::sampler::Sampler;
+use crate::subject::ModelKind;
 use core::fmt;
 use glam::Vec3;
 use hairis::textbook::Parameters;
@@ -11,6 +13,9 @@ const LENGTH_TOLERANCE: f64 = 1e-3;
 /// How far from 1 the length of a unit vector of single precision may be: its digits are kept as they are, so that all
 /// paths answer for the same direction.
 const ROUNDED: f64 = 2e-7;
+
+/// The samplers of the kernels, as a line may name them.
+pub(super) const SAMPLERS: [Sampler; 4] = [Sampler::Ou, Sampler::Matched5, Sampler::Matched, Sampler::Matched25];
 
 /// Why a line was refused: the path of the field at fault, and what is wrong with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,22 +36,6 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// The models on offer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Model {
-    Gaussian,
-    Cauchy,
-}
-
-/// How directions are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Sampler {
-    /// As published.
-    Ou,
-    /// By the model's own bells.
-    Matched,
-}
-
 /// What is asked about a gather point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Query {
@@ -60,7 +49,7 @@ pub(super) enum Query {
 /// computed, not read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Request {
-    pub(super) model: Model,
+    pub(super) model: ModelKind,
     pub(super) sampler: Sampler,
     pub(super) params: HairParams,
     /// Unit.
@@ -73,17 +62,10 @@ impl Request {
     pub(super) fn parse(line: &str) -> Result<Self, Refusal> {
         let known = ["model", "sampler", "params", "wo", "wi", "xi"];
         let [model, sampler, params, wo, wi, xi] = Json::parse(line)?.fields("", known)?;
-        let model = match Json::text(model, "model")?.as_deref() {
-            Some("gaussian") => Model::Gaussian,
-            Some("cauchy") => Model::Cauchy,
-            None => return Err(Refusal::at("model", "missing")),
-            Some(other) => return Err(unknown("model", "\"gaussian\" or \"cauchy\"", other)),
-        };
-        let sampler = match Json::text(sampler, "sampler")?.as_deref() {
-            None | Some("ou") => Sampler::Ou,
-            Some("matched") => Sampler::Matched,
-            Some(other) => return Err(unknown("sampler", "\"ou\" or \"matched\"", other)),
-        };
+        let model = Json::text(model, "model")?.ok_or_else(|| Refusal::at("model", "missing"))?;
+        let model = named("model", &model, ModelKind::ALL, ModelKind::name)?;
+        let sampler = Json::text(sampler, "sampler")?
+            .map_or(Ok(Sampler::Ou), |sampler| named("sampler", &sampler, SAMPLERS, Sampler::name))?;
         let exact = parameters(params.ok_or_else(|| Refusal::at("params", "missing"))?)?;
         let params = checked(&exact)?;
         let wo = direction(wo, "wo")?;
@@ -97,8 +79,17 @@ impl Request {
     }
 }
 
-fn unknown(field: &str, expected: &str, got: &str) -> Refusal {
-    Refusal::at(field, format!("must be {expected}, got \"{}\"", shortened(got)))
+/// The one of `all` that has this name.
+fn named<T: Copy, const N: usize>(
+    field: &str,
+    name: &str,
+    all: [T; N],
+    name_of: fn(T) -> &'static str,
+) -> Result<T, Refusal> {
+    all.into_iter().find(|one| name_of(*one) == name).ok_or_else(|| {
+        let names = all.map(|one| format!("\"{}\"", name_of(one))).join(" or ");
+        Refusal::at(field, format!("must be {names}, got \"{}\"", shortened(name)))
+    })
 }
 
 /// The hair of `params`, every field required.

@@ -4,11 +4,11 @@ use super::super::Cell;
 use super::super::rows::Strategy;
 use super::super::times::PER_POINT;
 use super::view::{Counted, Estimator, MANY, TOLD, View, ess};
-use crate::efficiency::ModelKind;
 use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
 use crate::report::Figure;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
+use crate::subject::ModelKind;
 
 /// The light that everything sees.
 const CONSTANT: usize = 0;

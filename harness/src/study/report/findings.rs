@@ -4,9 +4,9 @@ use super::super::equal_time::Sign;
 use super::super::rows::Strategy;
 use super::view::{Counted, Estimator, MANY, TOLD, View};
 use crate::difference::{Summary, Width, albedo_ratio};
-use crate::efficiency::ModelKind;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
+use crate::subject::ModelKind;
 use crate::table::number;
 
 const GAUSSIAN: ModelKind = ModelKind::Gaussian;

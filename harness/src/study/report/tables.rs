@@ -4,8 +4,8 @@ use super::super::rows::Strategy;
 use super::super::summary::shown;
 use super::super::times::PER_POINT;
 use super::view::{View, ess};
-use crate::efficiency::ModelKind;
 use crate::sampler::Sampler;
+use crate::subject::ModelKind;
 use crate::table::{Table, number};
 use serde_json::Value;
 

@@ -6,10 +6,10 @@ use super::super::rows::{Bounds, Strategy, place};
 use super::super::summary::{Gain, gain};
 use super::super::{Cell, Grid};
 use crate::difference::Difference;
-use crate::efficiency::ModelKind;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::study::output::Times;
+use crate::subject::ModelKind;
 
 /// A sampler of a model.
 pub(super) type Estimator = (ModelKind, Sampler);
