@@ -31,13 +31,15 @@ def entry(name):
     model = next((MODELS[m] for m in MODELS if re.search(rf"\b{m}\b", name)), None)
     if model is None:
         return None
+    if "::Matched<" in name:
+        model += "-matched"
     found = re.search(r"dispatch::batch::(?:(avx\w+)::)?<.*batch::rows::(\w+), \d+>(::\{closure#\d\})?$", name)
     if found:
         # Without a level it is the portable one, or the code that cuts slices into packets, which is no loop.
         if not found[1] and not found[3]:
             return None
         return ROWS[found[2]], model, found[1] or "portable"
-    found = re.search(r"dispatch::(\w+)8::(avx\w+)::<hairis::hair::Hair<[\w:]+>, ([\w:]+)", name)
+    found = re.search(r"dispatch::(\w+)8::(avx\w+)::<hairis::\w+::(?:Hair|Matched)<[^>]+>, ([\w:]+)", name)
     if found:
         kind = {"prepare": ("shared", "mixed"), "eval": ("", "points"), "sample": ("", "points")}[found[1]]
         suffix = kind[0 if found[3] == "f32" else 1]

@@ -4,7 +4,7 @@ use crate::Name;
 use crate::task::{Answer, Task};
 use glam::Vec3;
 use hairis::HairParams;
-use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::textbook::{Oracle, Parameters, Shape};
 
 /// Largest error of an answer that counts as right, relative for value and density, rad for a direction: what the
 /// textbook in `f32`, which takes part, needs. The kernels' own bounds are tighter, and their tests hold them.
@@ -35,15 +35,15 @@ pub enum Given {
     Xi([f32; 3]),
 }
 
-/// Compares a pass with the textbook in `f64`.
+/// Compares a pass with the textbook in `f64` of this shape, and with the matched sampler if there are bands.
 ///
 /// # Panics
 ///
 /// If more than one answer in a hundred is wrong, or a call has none.
-pub fn check(name: &Name, task: &mut impl Task, shape: Shape, asked: impl Fn(usize) -> Asked) {
+pub fn check(name: &Name, task: &mut impl Task, oracle: (Shape, Option<usize>), asked: impl Fn(usize) -> Asked) {
     let answers = task.answers();
     assert!(answers.len() >= task.calls(), "{name}: {} answers to {} calls", answers.len(), task.calls());
-    let wrong: Vec<usize> = (0..answers.len()).filter(|i| !right(&asked(*i), shape, &answers[*i])).collect();
+    let wrong: Vec<usize> = (0..answers.len()).filter(|i| !right(&asked(*i), oracle, &answers[*i])).collect();
     assert!(
         wrong.len() * MOST_WRONG <= answers.len(),
         "{name}: {} of {} answers are wrong, the first for {:?}: {:?}",
@@ -54,9 +54,9 @@ pub fn check(name: &Name, task: &mut impl Task, shape: Shape, asked: impl Fn(usi
     );
 }
 
-fn right(asked: &Asked, shape: Shape, answer: &Answer) -> bool {
+fn right(asked: &Asked, (shape, bands): (Shape, Option<usize>), answer: &Answer) -> bool {
     let to_f64 = |v: Vec3| v.to_array().map(f64::from);
-    let point = Textbook::<f64>::prepare(&Parameters::from(&asked.hair), shape, to_f64(asked.wo));
+    let point = Oracle::<f64>::prepare(&Parameters::from(&asked.hair), shape, to_f64(asked.wo), bands);
     let truth = match asked.given {
         Given::Wi(wi) => to_f64(wi),
         Given::Xi(xi) => {
@@ -68,7 +68,7 @@ fn right(asked: &Asked, shape: Shape, answer: &Answer) -> bool {
         }
     };
     let wi = answer.wi.map_or(truth, to_f64);
-    let (value, pdf) = point.eval_pdf(wi);
+    let (value, pdf) = (point.eval(wi), point.pdf(wi));
     let close = |got: f32, want: f64| (f64::from(got) - want).abs() <= TOLERANCE * want + NEGLIGIBLE;
     let apart = wi.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
     apart <= TOLERANCE

@@ -7,7 +7,9 @@ use core::fmt;
 use core::hint::black_box;
 use glam::Vec3;
 use hairis::textbook::{Parameters, Shape, Textbook};
-use hairis::{Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Gaussian, Hair, HairParams, Level, Model, SampleSlices};
+use hairis::{
+    Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Gaussian, Hair, HairParams, Level, Matched, Model, SampleSlices,
+};
 use hairis_variants::Cauchy;
 
 /// What an entry point does.
@@ -46,7 +48,7 @@ pub struct Name {
     pub op: Op,
     /// The entry point: a function of `hairis`, with a suffix if it is measured in several ways.
     pub entry: &'static str,
-    /// `gaussian` or `cauchy`.
+    /// One of [`MODELS`].
     pub model: &'static str,
     /// `scalar`, `portable`, or the name of the level.
     pub level: &'static str,
@@ -68,6 +70,8 @@ pub trait Visitor {
     fn visit<T: Task>(&mut self, name: &Name, task: T);
 }
 
+/// The models, each with the published sampler and with the matched one.
+pub const MODELS: [&str; 4] = ["gaussian", "cauchy", "gaussian-matched", "cauchy-matched"];
 /// Name of the scalar baseline, the paper's formulas in `f32`.
 pub const TEXTBOOK: &str = "textbook";
 /// Directions in a short slice: less than a packet.
@@ -79,18 +83,21 @@ pub fn label(level: Level) -> &'static str {
     if level == Level::portable() { "portable" } else { level.name() }
 }
 
-/// Shows an operation's entry points to `visitor`, those of both models; the textbook comes first. Answers are checked
+/// Shows an operation's entry points to `visitor`, those of all [`MODELS`]; the textbook comes first. Answers are checked
 /// before.
 ///
 /// # Panics
 ///
 /// If an entry point that the visitor wants gives wrong answers.
 pub fn visit(op: Op, visitor: &mut impl Visitor) {
-    let inputs = Inputs::draw();
-    let gaussian = Of { op, model: Hair(Gaussian), name: "gaussian", shape: Shape::Gaussian, inputs: &inputs };
-    let cauchy = Of { op, model: Cauchy::PAPER.model(), name: "cauchy", shape: Shape::Cauchy, inputs: &inputs };
-    gaussian.visit(visitor);
-    cauchy.visit(visitor);
+    let inputs = &Inputs::draw();
+    let [g, c] = [Shape::Gaussian, Shape::Cauchy];
+    let [gaussian, cauchy, gaussian_matched, cauchy_matched] = MODELS;
+    let (published, matched) = (None, Some(9));
+    Of { op, model: Hair(Gaussian), name: gaussian, shape: g, bands: published, inputs }.visit(visitor);
+    Of { op, model: Cauchy::PAPER.model(), name: cauchy, shape: c, bands: published, inputs }.visit(visitor);
+    Of { op, model: Matched::<_>(Gaussian), name: gaussian_matched, shape: g, bands: matched, inputs }.visit(visitor);
+    Of { op, model: Cauchy::PAPER.matched(), name: cauchy_matched, shape: c, bands: matched, inputs }.visit(visitor);
 }
 
 /// The entry points of one operation of one model.
@@ -99,6 +106,8 @@ struct Of<'a, M> {
     model: M,
     name: &'static str,
     shape: Shape,
+    /// Those of its sampler; none if it is the published one.
+    bands: Option<usize>,
     inputs: &'a Inputs,
 }
 
@@ -112,7 +121,7 @@ impl<M: Model<Params = HairParams>> Of<'_, M> {
         }
     }
 
-    /// Shows one entry point, if it is wanted and its answers are right.
+    /// Shows one entry point, if it is wanted and its answers are right. The published sampler's baseline is everybody's.
     fn show<T: Task>(
         &self,
         visitor: &mut impl Visitor,
@@ -122,9 +131,10 @@ impl<M: Model<Params = HairParams>> Of<'_, M> {
         task: impl FnOnce() -> T,
     ) {
         let name = Name { op: self.op, entry, model: self.name, level };
-        if visitor.wants(&name) {
+        let baseline_of_its_own = entry == TEXTBOOK && self.bands.is_some();
+        if !baseline_of_its_own && visitor.wants(&name) {
             let mut task = task();
-            check(&name, &mut task, self.shape, asked);
+            check(&name, &mut task, (self.shape, self.bands), asked);
             visitor.visit(&name, task);
         }
     }
