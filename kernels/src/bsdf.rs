@@ -72,7 +72,7 @@ impl<M: Model> Bsdf<M> {
     #[inline]
     #[must_use]
     pub fn prepare(&self, hit: impl Into<Hit>) -> Gather<M> {
-        Gather { inner: M::prepare::<f32, f32>(&self.material, hit.into()) }
+        Gather { inner: M::prepare_one(&self.material, hit.into()) }
     }
 
     /// Eight gather points on this material, one a lane: a [`Hit8`], or eight `wo`.

@@ -5,12 +5,14 @@ mod bell;
 mod gather;
 mod material;
 mod sampling;
+mod sides;
 
 pub use bell::MatchedBell;
 pub use gather::MatchedGather;
 pub use material::MatchedMaterial;
 
 use crate::hair::{Place, Shapes, albedo, drawn, evaluated, mixture, per_lobe, times};
+use crate::lanes::pair::Pair;
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Vec3x};
 use core::fmt::Debug;
@@ -105,7 +107,12 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
     where
         L::Stored: Debug,
     {
-        gather::prepare::<B, L, C, BANDS, BY_CHANNEL>(material, hit.wo)
+        gather::prepare::<B, L, C, Pair<L>, 3, BANDS, BY_CHANNEL>(material, hit.wo)
+    }
+
+    #[inline(always)]
+    fn prepare_one(material: &MatchedMaterial<f32>, hit: Hit<f32>) -> MatchedGather<f32, BANDS> {
+        gather::prepare::<B, f32, f32, f32x8, 1, BANDS, BY_CHANNEL>(material, hit.wo)
     }
 
     #[inline(always)]

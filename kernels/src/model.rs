@@ -44,6 +44,12 @@ pub trait Model: Copy {
     where
         L::Stored: Debug;
 
+    /// The same for one hit. A model whose lobes take the same steps may put them into lanes here.
+    #[inline(always)]
+    fn prepare_one(material: &Self::Material<f32>, hit: Hit<f32>) -> Self::Gather<f32> {
+        Self::prepare::<f32, f32>(material, hit)
+    }
+
     /// The gather point with only the lobes of `lobes`: the others neither scatter nor are sampled.
     fn restrict<C: Lanes + Debug>(gather: &Self::Gather<C>, lobes: LobeMask) -> Self::Gather<C>;
 

@@ -1,7 +1,7 @@
 //! Bands of inclination, in each of which W is taken for constant.
 
+use super::sides::Sides;
 use crate::Lanes;
-use crate::lanes::pair::Pair;
 
 /// A band, and the one as far on the other side of the normal plane.
 #[derive(Clone, Copy)]
@@ -77,13 +77,15 @@ const fn cosine_of(sine: f64) -> f64 {
 }
 
 impl Band {
-    /// `cos^2 theta_d` in the middle of the band, below the normal plane and above it: W is `numerator` over it.
+    /// `cos^2 theta_d` in the middle of the band, below the normal plane and above it: W is `cos_sq_theta_i` over it.
     #[inline(always)]
-    pub(super) fn cos_sq_theta_d<L: Lanes>(&self, [half_sin_theta_o, half_cos_theta_o]: [L; 2]) -> Pair<L> {
-        let c = L::splat;
-        let (sin, cos) = (c(self.half_sin), half_cos_theta_o + c(self.half_cos));
-        let (below, above, cos_sq) = (half_sin_theta_o - sin, half_sin_theta_o + sin, cos * cos);
-        Pair(below.mul_add(below, cos_sq), above.mul_add(above, cos_sq))
+    pub(super) fn cos_sq_theta_d<L: Lanes, P: Sides<L, K>, const K: usize>(
+        &self,
+        [half_sin_theta_o, half_cos_theta_o]: [L; 2],
+    ) -> P {
+        let sin = P::of(half_sin_theta_o) + P::outwards(self.half_sin);
+        let cos = half_cos_theta_o + L::splat(self.half_cos);
+        sin.mul_add(sin, P::of(cos * cos))
     }
 
     /// `cos^2 theta_i` in the middle of the band.

@@ -3,8 +3,9 @@
 use super::MatchedBell;
 use super::bands::bands;
 use super::material::{MatchedMaterial, extent};
+use super::sides::Sides;
 use crate::hair::{prepare_point, selection, times};
-use crate::lanes::{lanes3, lanes4, pair::Pair, store3, store4};
+use crate::lanes::{lanes3, lanes4, store3, store4};
 use crate::{Broadcast, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
 use core::f32::consts::FRAC_PI_4;
 use wide::f32x8;
@@ -54,42 +55,48 @@ pub struct MatchedGather<C, const N: usize> {
     pub azimuth_origin: [C; 2],
 }
 
-/// A longitude, from the lower pole and from the upper one inwards, side by side.
+/// A longitude, from the lower pole and from the upper one inwards.
 #[derive(Clone, Copy)]
-struct Longitude<L> {
-    shift: L,
-    inv_beta: L,
-    origin: L,
+struct Longitude<P> {
+    shift: P,
+    inv_beta: P,
+    origin: P,
     /// Integral of M up to here, negative above: it ascends from either pole.
-    integral: Pair<L>,
+    integral: P,
     /// That of `M W` from the pole.
-    area: Pair<L>,
+    area: P,
 }
 
-impl<L: Lanes> Longitude<L> {
+impl<P: Lanes> Longitude<P> {
     /// At the poles.
     #[inline(always)]
-    fn at_poles<B: MatchedBell>(shift: L, inv_beta: L) -> Self {
-        let (zero, quarter) = (L::splat(0.0), L::splat(FRAC_PI_4));
+    fn at_poles<B: MatchedBell, L, const K: usize>(shift: P, inv_beta: P) -> Self
+    where
+        P: Sides<L, K>,
+    {
+        let (none, quarter) = (P::splat(0.0), P::splat(FRAC_PI_4));
         let origin = B::origin((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
-        let this = Self { shift, inv_beta, origin, integral: Pair(zero, zero), area: Pair(zero, zero) };
-        Self { integral: this.integral_to::<B>(FRAC_PI_4), ..this }
+        let this = Self { shift, inv_beta, origin, integral: none, area: none };
+        Self { integral: this.integral_to::<B, L, K>(FRAC_PI_4), ..this }
     }
 
     /// The integrals up to half an inclination on either side.
     #[inline(always)]
-    fn integral_to<B: MatchedBell>(&self, half_theta_i: f32) -> Pair<L> {
-        let end = L::splat(half_theta_i);
-        let x = Pair((self.shift - end) * self.inv_beta, (self.shift + end) * self.inv_beta);
-        let Pair(below, above) = B::integral(Pair(self.origin, self.origin), x);
-        Pair(below, -above)
+    fn integral_to<B: MatchedBell, L, const K: usize>(&self, half_theta_i: f32) -> P
+    where
+        P: Sides<L, K>,
+    {
+        B::integral(self.origin, (self.shift + P::outwards(half_theta_i)) * self.inv_beta).negate_above()
     }
 
     /// Goes on through a band; what its line begins with.
     #[inline(always)]
-    fn pass<B: MatchedBell>(&mut self, half_theta_i: f32, height: Pair<L>, slope: Pair<L>) -> Pair<L> {
-        let offset = self.offset(slope);
-        let next = self.integral_to::<B>(half_theta_i);
+    fn pass<B: MatchedBell, L, const K: usize>(&mut self, half_theta_i: f32, height: P, minus_slope: P) -> P
+    where
+        P: Sides<L, K>,
+    {
+        let offset = self.offset(minus_slope);
+        let next = self.integral_to::<B, L, K>(half_theta_i);
         self.area = (next - self.integral).abs().mul_add(height, self.area);
         self.integral = next;
         offset
@@ -97,22 +104,24 @@ impl<L: Lanes> Longitude<L> {
 
     /// The integral, less a slope times the area.
     #[inline(always)]
-    fn offset(&self, slope: Pair<L>) -> Pair<L> {
-        (-slope).mul_add(self.area, self.integral)
+    fn offset(&self, minus_slope: P) -> P {
+        minus_slope.mul_add(self.area, self.integral)
     }
 
     /// Integral of `M W` up to somewhere in the middle, and over the sphere.
     #[inline(always)]
-    fn join(&self, height: L) -> [L; 2] {
-        let (Pair(from, to), Pair(below, above)) = (self.integral, self.area);
-        let middle = (from + to).abs() * height;
-        [middle.mul_add(L::splat(0.5), below), (below + above) + middle]
+    fn join<L, const K: usize>(&self, height: P) -> [P; 2]
+    where
+        P: Sides<L, K>,
+    {
+        let middle = (self.integral + self.integral.swapped()).abs() * height;
+        [middle.mul_add(P::splat(0.5), self.area), (self.area + self.area.swapped()) + middle]
     }
 }
 
-/// Runs a body for every band `j` of the `n` on a side: straight on, so that what it writes is written where it belongs.
-macro_rules! for_bands {
-    ($j:ident < $n:expr, $body:block) => { for_bands!(@$j ($n) $body 0 1 2 3 4 5 6 7 8 9 10 11) };
+/// Runs a body for every `j` below `n`, up to twelve: straight on, so that what it writes is written where it belongs.
+macro_rules! for_each {
+    ($j:ident < $n:expr, $body:block) => { for_each!(@$j ($n) $body 0 1 2 3 4 5 6 7 8 9 10 11) };
     (@$j:ident $n:tt $body:block $($i:literal)*) => {
         $(if $i < $n {
             let $j = $i;
@@ -134,15 +143,24 @@ struct Chain<L: Lanes, const N: usize> {
 
 /// Through all bands, from both poles to the middle.
 #[inline(always)]
-fn chain<B: MatchedBell, L: Lanes, const N: usize>(shift: [L; 3], inv_beta: [L; 3], theta_o: [L; 2]) -> Chain<L, N> {
+fn chain<B: MatchedBell, L: Lanes, P: Sides<L, K>, const K: usize, const N: usize>(
+    shift: [L; 3],
+    inv_beta: [L; 3],
+    theta_o: [L; 2],
+) -> Chain<L, N> {
     let none = L::splat(0.0);
-    let (mut r, mut tt, mut trt) = (
-        Longitude::at_poles::<B>(shift[0], inv_beta[0]),
-        Longitude::at_poles::<B>(shift[1], inv_beta[1]),
-        Longitude::at_poles::<B>(shift[2], inv_beta[2]),
-    );
+    let (shift, inv_beta) = (P::of_lobes(shift), P::of_lobes(inv_beta));
+    let mut lobes = [Longitude::at_poles::<B, L, K>(shift[0], inv_beta[0]); K];
+    for_each!(k < K, {
+        lobes[k] = Longitude::at_poles::<B, L, K>(shift[k], inv_beta[k]);
+    });
+    let mut of_lobes = [P::splat(0.0); K];
+    for_each!(k < K, {
+        of_lobes[k] = lobes[k].origin;
+    });
+    let [origin, _] = P::lobes_apart(of_lobes);
     let mut chain = Chain {
-        origin: [r.origin, tt.origin, trt.origin],
+        origin,
         height: [none.store(); N],
         slope: [none.store(); N],
         offset: [[none.store(); 4]; N],
@@ -150,49 +168,59 @@ fn chain<B: MatchedBell, L: Lanes, const N: usize>(shift: [L; 3], inv_beta: [L; 
         below: [none; 3],
         area: [none; 3],
     };
-    let (mut height, mut slope) = (Pair(none, none), Pair::splat(f32::MAX));
-    for_bands!(j < N / 2, {
+    let (mut height, mut minus_slope) = (P::splat(0.0), P::splat(f32::MIN));
+    for_each!(j < N / 2, {
         let band = &const { bands(N) }[j];
-        let above = N - 1 - j;
         // Heights ascend inwards, though W may have its mode before the middle.
-        let cos_sq = band.cos_sq_theta_d(theta_o);
-        height = height.max(Pair::splat(band.cos_sq_theta_i()) / cos_sq);
-        slope = slope.min(cos_sq * Pair::splat(1.0 / band.cos_sq_theta_i()));
-        (chain.height[j], chain.height[above]) = (height.0.store(), height.1.store());
-        (chain.slope[j], chain.slope[above]) = (slope.0.store(), slope.1.store());
-        let r = r.pass::<B>(band.half_inner, height, slope);
-        let tt = tt.pass::<B>(band.half_inner, height, slope);
-        let trt = trt.pass::<B>(band.half_inner, height, slope);
-        chain.offset[j] = shared4([r.0, tt.0, trt.0]);
-        chain.offset[above] = shared4([r.1, tt.1, trt.1]);
+        let cos_sq: P = band.cos_sq_theta_d(theta_o);
+        height = height.max(P::splat(band.cos_sq_theta_i()) / cos_sq);
+        minus_slope = minus_slope.max(cos_sq * P::splat(-1.0 / band.cos_sq_theta_i()));
+        for_each!(k < K, {
+            of_lobes[k] = lobes[k].pass::<B, L, K>(band.half_inner, height, minus_slope);
+        });
+        for_each!(above < 2, {
+            let at = if above == 0 { j } else { N - 1 - j };
+            chain.height[at] = height.apart()[above].store();
+            chain.slope[at] = minus_slope.abs().apart()[above].store();
+            chain.offset[at] = shared4(P::lobes_apart(of_lobes)[above]);
+        });
     });
-    let cos_sq = const { bands(N) }[N / 2].cos_sq_theta_d(theta_o).0;
-    let height = height.0.max(height.1).max(L::splat(1.0) / cos_sq);
-    let slope = slope.0.min(slope.1).min(cos_sq);
-    (chain.height[N / 2], chain.slope[N / 2]) = (height.store(), slope.store());
-    let slope = Pair(slope, slope);
-    let offset = [r.offset(slope), tt.offset(slope), trt.offset(slope)];
-    chain.offset[N / 2] = shared4([offset[0].0, offset[1].0, offset[2].0]);
-    chain.offset_above = shared4([offset[0].1, offset[1].1, offset[2].1]);
-    let joined = [r.join(height), tt.join(height), trt.join(height)];
-    chain.below = [joined[0][0], joined[1][0], joined[2][0]];
-    chain.area = [joined[0][1], joined[1][1], joined[2][1]];
+    let cos_sq: P = const { bands(N) }[N / 2].cos_sq_theta_d(theta_o);
+    let height = height.max(height.swapped()).max(P::splat(1.0) / cos_sq);
+    let slope = minus_slope.max(minus_slope.swapped()).abs().min(cos_sq);
+    let minus_slope = slope.times_sign(P::splat(-1.0));
+    (chain.height[N / 2], chain.slope[N / 2]) = (height.apart()[0].store(), slope.apart()[0].store());
+    let mut area = of_lobes;
+    let mut below = of_lobes;
+    for_each!(k < K, {
+        of_lobes[k] = lobes[k].offset(minus_slope);
+        [below[k], area[k]] = lobes[k].join::<L, K>(height);
+    });
+    let [offset, offset_above] = P::lobes_apart(of_lobes);
+    (chain.offset[N / 2], chain.offset_above) = (shared4(offset), shared4(offset_above));
+    ([chain.below, _], [chain.area, _]) = (P::lobes_apart(below), P::lobes_apart(area));
     chain
 }
 
 /// The gather point of a material seen from `wo`.
 #[inline(always)]
-pub(super) fn prepare<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize, const BY_CHANNEL: bool>(
+pub(super) fn prepare<B, L, C, P, const K: usize, const N: usize, const BY_CHANNEL: bool>(
     m: &MatchedMaterial<C>,
     wo: Vec3x<L>,
-) -> MatchedGather<L::Stored, N> {
+) -> MatchedGather<L::Stored, N>
+where
+    B: MatchedBell,
+    L: Lanes,
+    C: Broadcast<L>,
+    P: Sides<L, K>,
+{
     let c = L::splat;
     let zero = c(0.0);
     let hair = &m.lobes;
     let point = prepare_point(hair, wo);
     let theta_o = [point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes()];
     let (shift, inv_beta) = (lanes3(&[point.shift[0], point.shift[1], point.shift[2]]), lanes3(&hair.inv_beta));
-    let chain = chain::<B, L, N>(shift, inv_beta, theta_o);
+    let chain = chain::<B, L, P, K, N>(shift, inv_beta, theta_o);
     // The glints share the longitude of TRT.
     let [r, tt, trt] = chain.area;
     let total = [r, tt, trt, trt];

@@ -38,7 +38,7 @@ pub(crate) const FRAME: f32 = 1e-6;
 pub(crate) const INTEGRAL: [f64; 3] = [3.1e-6, 5.4e-6, 4.5e-7]; // 2.4e-6, 4.1e-6, 3.5e-7
 
 // Samples of TT and of glints next to the seam, against the textbook at the direction they return: S, density, weight.
-pub(crate) const SEAM: [f64; 3] = [1.2e-6, 1.4e-6, 8e-7]; // 8.8e-7, 1.1e-6, 6e-7
+pub(crate) const SEAM: [f64; 3] = [2.4e-6, 2.6e-6, 8e-7]; // 1.8e-6, 2e-6, 6e-7
 
 // With 5, 9 and 25 bands, under constant light over the grid: V at most, its gain over the published sampler at least, as a
 // geometric mean and anywhere.

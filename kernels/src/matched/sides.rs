@@ -1,0 +1,90 @@
+//! Longitudes of the three lobes on both sides of the normal plane, in lanes.
+
+use crate::Lanes;
+use crate::lanes::pair::Pair;
+use wide::f32x8;
+
+/// Numbers of lobes below the normal plane and above it: `K` of these are those of R, TT and TRT.
+pub(super) trait Sides<L, const K: usize>: Lanes {
+    /// The same for all lobes, on both sides.
+    fn of(x: L) -> Self;
+    /// A number each for R, TT and TRT, the same on both sides.
+    fn of_lobes(x: [L; 3]) -> [Self; K];
+    /// `-x` below, `x` above.
+    fn outwards(x: f32) -> Self;
+    /// As it is below, negative above.
+    fn negate_above(self) -> Self;
+    /// The other side's.
+    fn swapped(self) -> Self;
+    /// Below and above, of what is the same for all lobes.
+    fn apart(self) -> [L; 2];
+    /// Those of R, TT and TRT below, and above.
+    fn lobes_apart(x: [Self; K]) -> [[L; 3]; 2];
+}
+
+/// Packets: a lobe at a time.
+impl<L: Lanes> Sides<L, 3> for Pair<L> {
+    #[inline(always)]
+    fn of(x: L) -> Self {
+        Self(x, x)
+    }
+    #[inline(always)]
+    fn of_lobes([r, tt, trt]: [L; 3]) -> [Self; 3] {
+        [Self(r, r), Self(tt, tt), Self(trt, trt)]
+    }
+    #[inline(always)]
+    fn outwards(x: f32) -> Self {
+        Self(L::splat(-x), L::splat(x))
+    }
+    #[inline(always)]
+    fn negate_above(self) -> Self {
+        Self(self.0, self.1.times_sign(L::splat(-1.0)))
+    }
+    #[inline(always)]
+    fn swapped(self) -> Self {
+        Self(self.1, self.0)
+    }
+    #[inline(always)]
+    fn apart(self) -> [L; 2] {
+        [self.0, self.1]
+    }
+    #[inline(always)]
+    fn lobes_apart([r, tt, trt]: [Self; 3]) -> [[L; 3]; 2] {
+        [[r.0, tt.0, trt.0], [r.1, tt.1, trt.1]]
+    }
+}
+
+/// One gather point: lanes 0 to 2 are the lobes below, 4 to 6 those above. One lane would do each after the other.
+impl Sides<f32, 1> for f32x8 {
+    #[inline(always)]
+    fn of(x: f32) -> Self {
+        <Self as Lanes>::splat(x)
+    }
+    #[inline(always)]
+    fn of_lobes([r, tt, trt]: [f32; 3]) -> [Self; 1] {
+        [Self::new([r, tt, trt, trt, r, tt, trt, trt])]
+    }
+    #[inline(always)]
+    fn outwards(x: f32) -> Self {
+        Self::new([-x, -x, -x, -x, x, x, x, x])
+    }
+    #[inline(always)]
+    fn negate_above(self) -> Self {
+        self.times_sign(<Self as Sides<f32, 1>>::outwards(-1.0))
+    }
+    #[inline(always)]
+    fn swapped(self) -> Self {
+        let [a, b, c, d, e, f, g, h] = self.to_array();
+        Self::new([e, f, g, h, a, b, c, d])
+    }
+    #[inline(always)]
+    fn apart(self) -> [f32; 2] {
+        let [below, .., above] = self.to_array();
+        [below, above]
+    }
+    #[inline(always)]
+    fn lobes_apart([x]: [Self; 1]) -> [[f32; 3]; 2] {
+        let [r, tt, trt, _, r_above, tt_above, trt_above, _] = x.to_array();
+        [[r, tt, trt], [r_above, tt_above, trt_above]]
+    }
+}
