@@ -91,8 +91,7 @@ pub trait Lanes:
     /// `x` where the mask is set, 0 elsewhere.
     fn keep(mask: Self::Mask, x: Self) -> Self;
 
-    /// Both. With AVX2, neither before both are there: no instruction, but compilers keep to it. Elsewhere, and of two
-    /// packets side by side, which are two chains already, it is nothing.
+    /// Both. With AVX2, neither before both are there: no instruction, but compilers keep to it. Elsewhere it is nothing.
     ///
     /// Of two chains of results they like to write one behind the other, as that takes fewer registers. A CPU that looks a
     /// hundred instructions ahead then waits for each in turn.

@@ -120,6 +120,12 @@ impl<L: Lanes> Lanes for Pair<L> {
         Self(L::keep(mask.0, x.0), L::keep(mask.1, x.1))
     }
     #[inline(always)]
+    fn abreast(a: Self, b: Self) -> (Self, Self) {
+        let (a0, b0) = L::abreast(a.0, b.0);
+        let (a1, b1) = L::abreast(a.1, b.1);
+        (Self(a0, a1), Self(b0, b1))
+    }
+    #[inline(always)]
     fn in_step(self) -> Self {
         let (a, b) = L::abreast(self.0, self.1);
         Self(a, b)
