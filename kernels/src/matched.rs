@@ -2,6 +2,7 @@
 
 mod bands;
 mod bell;
+mod chain;
 mod gather;
 mod material;
 mod sampling;

@@ -2,12 +2,12 @@
 
 use super::MatchedBell;
 use super::bands::bands;
+use super::chain::chain;
 use super::material::{MatchedMaterial, extent};
 use super::sides::Sides;
 use crate::hair::{prepare_point, selection, times};
 use crate::lanes::{lanes3, lanes4, store3, store4};
 use crate::{Broadcast, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
-use core::f32::consts::FRAC_PI_4;
 use wide::f32x8;
 
 /// Energies and areas below this are none: next to denormals their reciprocals would have no digits. Energies are to the scale
@@ -53,153 +53,6 @@ pub struct MatchedGather<C, const N: usize> {
     pub azimuth_from: [C; 2],
     /// The origin of both.
     pub azimuth_origin: [C; 2],
-}
-
-/// A longitude, from the lower pole and from the upper one inwards.
-#[derive(Clone, Copy)]
-struct Longitude<P> {
-    shift: P,
-    inv_beta: P,
-    origin: P,
-    /// Integral of M up to here, negative above: it ascends from either pole.
-    integral: P,
-    /// That of `M W` from the pole.
-    area: P,
-}
-
-impl<P: Lanes> Longitude<P> {
-    /// At the poles.
-    #[inline(always)]
-    fn at_poles<B: MatchedBell, L, const K: usize>(shift: P, inv_beta: P) -> Self
-    where
-        P: Sides<L, K>,
-    {
-        let (none, quarter) = (P::splat(0.0), P::splat(FRAC_PI_4));
-        let origin = B::origin((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
-        let this = Self { shift, inv_beta, origin, integral: none, area: none };
-        Self { integral: this.integral_to::<B, L, K>(FRAC_PI_4), ..this }
-    }
-
-    /// The integrals up to half an inclination on either side.
-    #[inline(always)]
-    fn integral_to<B: MatchedBell, L, const K: usize>(&self, half_theta_i: f32) -> P
-    where
-        P: Sides<L, K>,
-    {
-        B::integral(self.origin, (self.shift + P::outwards(half_theta_i)) * self.inv_beta).negate_above()
-    }
-
-    /// Goes on through a band; what its line begins with.
-    #[inline(always)]
-    fn pass<B: MatchedBell, L, const K: usize>(&mut self, half_theta_i: f32, height: P, minus_slope: P) -> P
-    where
-        P: Sides<L, K>,
-    {
-        let offset = self.offset(minus_slope);
-        let next = self.integral_to::<B, L, K>(half_theta_i);
-        self.area = (next - self.integral).abs().mul_add(height, self.area);
-        self.integral = next;
-        offset
-    }
-
-    /// The integral, less a slope times the area.
-    #[inline(always)]
-    fn offset(&self, minus_slope: P) -> P {
-        minus_slope.mul_add(self.area, self.integral)
-    }
-
-    /// Integral of `M W` up to somewhere in the middle, and over the sphere.
-    #[inline(always)]
-    fn join<L, const K: usize>(&self, height: P) -> [P; 2]
-    where
-        P: Sides<L, K>,
-    {
-        let middle = (self.integral + self.integral.swapped()).abs() * height;
-        [middle.mul_add(P::splat(0.5), self.area), (self.area + self.area.swapped()) + middle]
-    }
-}
-
-/// Runs a body for every `j` below `n`, up to twelve: straight on, so that what it writes is written where it belongs.
-macro_rules! for_each {
-    ($j:ident < $n:expr, $body:block) => { for_each!(@$j ($n) $body 0 1 2 3 4 5 6 7 8 9 10 11) };
-    (@$j:ident $n:tt $body:block $($i:literal)*) => {
-        $(if $i < $n {
-            let $j = $i;
-            $body
-        })*
-    };
-}
-
-/// What [`MatchedGather`] keeps of the bands; arrays of three are R, TT and TRT.
-struct Chain<L: Lanes, const N: usize> {
-    origin: [L; 3],
-    height: [L::Stored; N],
-    slope: [L::Stored; N],
-    offset: [[L::Stored; 4]; N],
-    offset_above: [L::Stored; 4],
-    below: [L; 3],
-    area: [L; 3],
-}
-
-/// Through all bands, from both poles to the middle.
-#[inline(always)]
-fn chain<B: MatchedBell, L: Lanes, P: Sides<L, K>, const K: usize, const N: usize>(
-    shift: [L; 3],
-    inv_beta: [L; 3],
-    theta_o: [L; 2],
-) -> Chain<L, N> {
-    let none = L::splat(0.0);
-    let (shift, inv_beta) = (P::of_lobes(shift), P::of_lobes(inv_beta));
-    let mut lobes = [Longitude::at_poles::<B, L, K>(shift[0], inv_beta[0]); K];
-    for_each!(k < K, {
-        lobes[k] = Longitude::at_poles::<B, L, K>(shift[k], inv_beta[k]);
-    });
-    let mut of_lobes = [P::splat(0.0); K];
-    for_each!(k < K, {
-        of_lobes[k] = lobes[k].origin;
-    });
-    let [origin, _] = P::lobes_apart(of_lobes);
-    let mut chain = Chain {
-        origin,
-        height: [none.store(); N],
-        slope: [none.store(); N],
-        offset: [[none.store(); 4]; N],
-        offset_above: [none.store(); 4],
-        below: [none; 3],
-        area: [none; 3],
-    };
-    let (mut height, mut minus_slope) = (P::splat(0.0), P::splat(f32::MIN));
-    for_each!(j < N / 2, {
-        let band = &const { bands(N) }[j];
-        // Heights ascend inwards, though W may have its mode before the middle.
-        let cos_sq: P = band.cos_sq_theta_d(theta_o);
-        height = height.max(P::splat(band.cos_sq_theta_i()) / cos_sq);
-        minus_slope = minus_slope.max(cos_sq * P::splat(-1.0 / band.cos_sq_theta_i()));
-        for_each!(k < K, {
-            of_lobes[k] = lobes[k].pass::<B, L, K>(band.half_inner, height, minus_slope);
-        });
-        for_each!(above < 2, {
-            let at = if above == 0 { j } else { N - 1 - j };
-            chain.height[at] = height.apart()[above].store();
-            chain.slope[at] = minus_slope.abs().apart()[above].store();
-            chain.offset[at] = shared4(P::lobes_apart(of_lobes)[above]);
-        });
-    });
-    let cos_sq: P = const { bands(N) }[N / 2].cos_sq_theta_d(theta_o);
-    let height = height.max(height.swapped()).max(P::splat(1.0) / cos_sq);
-    let slope = minus_slope.max(minus_slope.swapped()).abs().min(cos_sq);
-    let minus_slope = slope.times_sign(P::splat(-1.0));
-    (chain.height[N / 2], chain.slope[N / 2]) = (height.apart()[0].store(), slope.apart()[0].store());
-    let mut area = of_lobes;
-    let mut below = of_lobes;
-    for_each!(k < K, {
-        of_lobes[k] = lobes[k].offset(minus_slope);
-        [below[k], area[k]] = lobes[k].join::<L, K>(height);
-    });
-    let [offset, offset_above] = P::lobes_apart(of_lobes);
-    (chain.offset[N / 2], chain.offset_above) = (shared4(offset), shared4(offset_above));
-    ([chain.below, _], [chain.area, _]) = (P::lobes_apart(below), P::lobes_apart(area));
-    chain
 }
 
 /// The gather point of a material seen from `wo`.
@@ -308,7 +161,7 @@ fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [
 
 /// R, TT, TRT, and for the glints TRT again.
 #[inline(always)]
-fn shared4<L: Lanes>([r, tt, trt]: [L; 3]) -> [L::Stored; 4] {
+pub(super) fn shared4<L: Lanes>([r, tt, trt]: [L; 3]) -> [L::Stored; 4] {
     store4([r, tt, trt, trt])
 }
 
