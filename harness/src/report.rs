@@ -185,7 +185,9 @@ impl Report {
         page.push_str("</header>\n<main>\n");
         if !self.findings.is_empty() {
             page.push_str("<section id=\"findings\" class=\"findings\">\n<h2>Key findings</h2>\n");
-            list(&mut page, &self.findings);
+            page.push_str("<ul>\n");
+            self.findings.iter().for_each(|text| page.push_str(&format!("<li>{}</li>\n", answer(text))));
+            page.push_str("</ul>\n");
             page.push_str("</section>\n");
         }
         self.contents(&mut page);
@@ -294,7 +296,17 @@ fn list(page: &mut String, items: &[String]) {
     page.push_str("</ul>\n");
 }
 
-/// Escaped text with what stands between pairs of `` ` `` as code.
+/// A finding: the question that it begins with, if any, stands out.
+fn answer(text: &str) -> String {
+    match text.split_once("? ") {
+        Some((question, answer)) if !question.contains(['.', '`']) => {
+            format!("<strong>{}?</strong> {}", inline(question), inline(answer))
+        }
+        _ => inline(text),
+    }
+}
+
+/// Escaped text with what stands between pairs of `` ` `` as code; numbers stay with their unit.
 fn inline(text: &str) -> String {
     let mut html = String::new();
     let mut rest = text;
@@ -303,7 +315,7 @@ fn inline(text: &str) -> String {
         html.push_str(&format!("{}<code>{}</code>", escape(before), escape(code)));
         rest = after;
     }
-    html + &escape(rest)
+    (html + &escape(rest)).replace(" %", "\u{a0}%").replace(" ns", "\u{a0}ns")
 }
 
 #[cfg(test)]

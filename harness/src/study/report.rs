@@ -28,11 +28,12 @@ impl Study {
         };
         let quick = if header.quick { " --quick" } else { "" };
         let mut page = Report::new("Hair scattering: is the all-Cauchy model worth it?").subtitle(format!(
-            "hairis study{quick}, seed {}: {} cells of hair and viewing angle, {} samplers of two models, {} lights",
+            "hairis study{quick}, seed {}: {} cells of hair and viewing angle, {} samplers of two models, {} lights{}",
             header.seed,
             header.cells,
             header.samplers.len(),
-            header.lights.len()
+            header.lights.len(),
+            findings::map(&header.lights).map_or_else(String::new, |map| format!(", of which the map is {map}"))
         ));
         for finding in findings::findings(&view) {
             page = page.finding(finding);

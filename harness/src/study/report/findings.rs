@@ -8,6 +8,7 @@ use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::table::number;
+use std::path::Path;
 
 const GAUSSIAN: ModelKind = ModelKind::Gaussian;
 const CAUCHY: ModelKind = ModelKind::Cauchy;
@@ -36,6 +37,20 @@ fn lights(gains: &[(&str, Estimate)], sign: Sign) -> Option<String> {
     (!words.is_empty()).then(|| listed(&words))
 }
 
+/// A light in a sentence: a file is the map, which the subtitle names.
+fn said(light: &str) -> &str {
+    if is_file(light) { "the map" } else { light }
+}
+
+/// The light that is a file, if there is one.
+pub(super) fn map(lights: &[String]) -> Option<&str> {
+    lights.iter().map(String::as_str).find(|light| is_file(light))
+}
+
+fn is_file(light: &str) -> bool {
+    Path::new(light).extension().is_some()
+}
+
 /// `a`, `a and b`, `a, b and c`.
 fn listed(words: &[String]) -> String {
     match words {
@@ -48,7 +63,7 @@ fn listed(words: &[String]) -> String {
 /// The gains of the Cauchy model in equal time, by light.
 fn cauchy_gains<'a>(of: &View<'a>, sampler: Sampler) -> Vec<(&'a str, Estimate)> {
     let gain = |light| of.equal_time((GAUSSIAN, sampler), (CAUCHY, sampler), light, Counted::Sample);
-    of.lights.iter().zip(0..).filter_map(|(name, light)| Some((name.as_str(), gain(light)?))).collect()
+    of.lights.iter().zip(0..).filter_map(|(name, light)| Some((said(name), gain(light)?))).collect()
 }
 
 /// Is the replacement worth it?
@@ -104,7 +119,8 @@ fn best_by_light(
         if !told(light, &samplers) {
             continue;
         }
-        let words = if samplers.contains(&Sampler::Ou) { name.clone() } else { format!("{name} ({})", times(gain)) };
+        let name = said(name);
+        let words = if samplers.contains(&Sampler::Ou) { name.to_owned() } else { format!("{name} ({})", times(gain)) };
         match groups.iter_mut().find(|(group, _)| *group == samplers) {
             Some((_, lights)) => lights.push(words),
             None => groups.push((samplers, vec![words])),
@@ -153,7 +169,9 @@ fn limit(of: &View<'_>) -> Option<String> {
     Some(format!(
         " How far can that go? V of `ou` over that of perfect sampling, which draws in proportion to S cos θᵢ, blind to \
          the light, is {} under {}; over that of `matched` it is {}.",
-        perfect?, of.lights[light], matched?
+        perfect?,
+        said(&of.lights[light]),
+        matched?
     ))
 }
 
@@ -167,10 +185,10 @@ fn looks(of: &View<'_>) -> String {
     let squares = [Width::Paper, Width::BestOfGrid].map(|width| of_figures(width, |f| f.plain.l2).geometric_mean);
     let percent = number::percent;
     format!(
-        "What does it change in looks? With the same widths the Cauchy model reflects light worth {} of the Gaussian \
-         model's albedo elsewhere, more or less (median of L1; worst {}), {} after a blur of 10° (worst {}); its albedo \
-         is {} to {} of the Gaussian one's. The one factor on the widths that fits the grid best in L2 is {} (L2 {} \
-         against {} for k = 1).",
+        "What does it change in looks? With the same widths the models differ by {} of the Gaussian one's albedo, summed over \
+         all directions (median of L1; worst {}), and by {} after a blur of 10° (worst {}); the Cauchy model's albedo is {} to \
+         {} of the Gaussian one's. The one factor on the widths that fits the grid best in L2 is {} (L2 {} against {} for \
+         k = 1).",
         percent(plain.median),
         percent(plain.most),
         percent(blurred.median),
@@ -206,10 +224,10 @@ fn cost(of: &View<'_>) -> String {
             ns(cauchy)
         )
     };
-    let look_ups: Vec<(&String, f64)> =
-        of.lights.iter().zip(0..).filter_map(|(name, light)| Some((name, of.look_up(light)?.value))).collect();
-    let by_time = |a: &&(&String, f64), b: &&(&String, f64)| a.1.total_cmp(&b.1);
-    let shown = |(name, ns): &(&String, f64)| format!("{} ns ({name})", number::plain(*ns, 2));
+    let look_ups: Vec<(&str, f64)> =
+        of.lights.iter().zip(0..).filter_map(|(name, light)| Some((said(name), of.look_up(light)?.value))).collect();
+    let by_time = |a: &&(&str, f64), b: &&(&str, f64)| a.1.total_cmp(&b.1);
+    let shown = |(name, ns): &(&str, f64)| format!("{} ns ({name})", number::plain(*ns, 2));
     let ends = look_ups.iter().min_by(by_time).zip(look_ups.iter().max_by(by_time));
     let look_up = ends.map_or_else(String::new, |(least, most)| {
         format!(" A look-up of the light in its direction takes {} to {} more.", shown(least), shown(most))
@@ -235,8 +253,9 @@ fn where_not(of: &View<'_>) -> Option<String> {
             match worse.count() {
                 0 => {}
                 count => words.push(format!(
-                    "{} of the cells under {name}",
-                    number::percent(count as f64 / of.cells.len() as f64)
+                    "{} of the cells under {}",
+                    number::percent(count as f64 / of.cells.len() as f64),
+                    said(name)
                 )),
             }
         }
