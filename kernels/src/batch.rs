@@ -4,12 +4,10 @@
 //! on many CPUs: a load waits for an earlier store whose address has the same lower twelve bits. A few unused numbers
 //! between columns avoid it.
 
-pub(crate) mod rows;
-
-use crate::dispatch::{self, Level};
-use crate::{Gather, Model};
+use crate::packet::{AtGather, Pdf, Samples, Value, ValuePdf};
+use crate::simd::dispatch::clean_upper_halves;
+use crate::{Gather, Level, Model};
 use core::fmt;
-use rows::{EvalRow, PdfRow, SampleRow, ValueRow};
 
 /// Slices of one call whose lengths differ: which, how long it is, and how long the first is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,11 +85,11 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn eval_pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
-        dispatch::clean_upper_halves();
+        clean_upper_halves();
         let [r, g, b] = out.value;
         let mut out = [r, g, b, out.pdf];
         check_lengths(WI, wi, ["value.r", "value.g", "value.b", "pdf"], &out)?;
-        dispatch::batch::<M, EvalRow, 4>(level, &self.inner, wi, &mut out);
+        level.run_rows(AtGather::<M, ValuePdf>::new(&self.inner), wi, &mut out);
         Ok(())
     }
 
@@ -112,10 +110,10 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn eval_batch_at(&self, level: Level, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError> {
-        dispatch::clean_upper_halves();
+        clean_upper_halves();
         let mut out = value;
         check_lengths(WI, wi, VALUE, &out)?;
-        dispatch::batch::<M, ValueRow, 3>(level, &self.inner, wi, &mut out);
+        level.run_rows(AtGather::<M, Value>::new(&self.inner), wi, &mut out);
         Ok(())
     }
 
@@ -136,10 +134,10 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError> {
-        dispatch::clean_upper_halves();
+        clean_upper_halves();
         let mut out = [pdf];
         check_lengths(WI, wi, ["pdf"], &out)?;
-        dispatch::batch::<M, PdfRow, 1>(level, &self.inner, wi, &mut out);
+        level.run_rows(AtGather::<M, Pdf>::new(&self.inner), wi, &mut out);
         Ok(())
     }
 
@@ -160,14 +158,14 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     #[inline]
     pub fn sample_batch_at(&self, level: Level, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
-        dispatch::clean_upper_halves();
+        clean_upper_halves();
         let ([u, v, w], [r, g, b], [wr, wg, wb]) = (out.wi, out.value, out.weight);
         let mut out = [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot];
         let names = [
             "wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf", "weight.r", "weight.g", "weight.b", "slot",
         ];
         check_lengths(["xi.lobe", "xi.theta", "xi.phi"], xi, names, &out)?;
-        dispatch::batch::<M, SampleRow, 11>(level, &self.inner, xi, &mut out);
+        level.run_rows(AtGather::<M, Samples>::new(&self.inner), xi, &mut out);
         Ok(())
     }
 }

@@ -1,8 +1,8 @@
 //! The bell curves that the published model is built of: its extension point.
 
 use crate::Lanes;
-use crate::lanes::pair::Pair;
 use crate::math::gaussian;
+use crate::simd::pair::Pair;
 
 /// A bell of unit peak: every Gaussian of the published model, or what replaces it.
 ///

@@ -1,8 +1,8 @@
-//! What users hold: a material and a gather point of any model.
+//! Public handles: a material and a gather point of any model.
 
-use crate::dispatch::{self, Level};
 use crate::model::{Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Sample, Sample8};
-use crate::{LobeMask, Model, PerLobe, Vec3x, Vec3x8};
+use crate::packet::{EvalPdf, Lobes, Prepare, SampleWi};
+use crate::{LaneStruct, Level, LobeMask, Model, PerLobe, Vec3x, Vec3x8};
 use core::f32::consts::FRAC_PI_2;
 use core::fmt;
 use glam::Vec3;
@@ -86,7 +86,7 @@ impl<M: Model> Bsdf<M> {
     #[inline]
     #[must_use]
     pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8<M> {
-        dispatch::prepare8::<M, f32, _>(level, &self.material, hits)
+        level.run(Prepare::<M, f32, _> { material: &self.material, hits })
     }
 
     /// The largest directional albedo over all `wo` and the three channels: above 1 the hair gives back more light
@@ -134,7 +134,7 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn pack(materials: [&Bsdf<M>; 8]) -> Self {
-        Self { material: M::pack(materials.map(|m| &m.material)) }
+        Self { material: <M::Material<f32> as LaneStruct>::pack(materials.map(|m| &m.material)) }
     }
 
     /// Eight gather points, lane by lane: a [`Hit8`], or eight `wo`.
@@ -148,7 +148,7 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8<M> {
-        dispatch::prepare8::<M, f32x8, _>(level, &self.material, hits)
+        level.run(Prepare::<M, f32x8, _> { material: &self.material, hits })
     }
 }
 
@@ -186,7 +186,7 @@ impl<M: Model> Gather<M> {
         M::lobes::<f32, f32>(&self.inner, wi.into())
     }
 
-    /// A direction for three uniform numbers in `[0, 1)`: for the lobe, the longitude and the azimuth.
+    /// A direction for three uniform numbers in `[0, 1)`; the first chooses the lobe.
     ///
     /// `None` is a discarded sample: it counts, its contribution is 0, and it is not to be drawn again.
     #[inline]
@@ -206,14 +206,21 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
-        dispatch::eval8::<M, f32>(level, &self.inner, wi)
+        level.run(EvalPdf::<M, f32> { gather: &self.inner, wi })
     }
 
     /// As [`lobes`](Self::lobes), for eight directions.
     #[inline]
     #[must_use]
     pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        dispatch::lobes8::<M, f32>(Level::detect(), &self.inner, wi)
+        self.lobes8_at(Level::detect(), wi)
+    }
+
+    /// As [`lobes8`](Self::lobes8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn lobes8_at(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8> {
+        level.run(Lobes::<M, f32> { gather: &self.inner, wi })
     }
 
     /// As [`sample`](Self::sample), for eight triples of numbers.
@@ -227,7 +234,14 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn sample8_at(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
-        dispatch::sample8::<M, f32>(level, &self.inner, xi)
+        level.run(SampleWi::<M, f32> { gather: &self.inner, xi })
+    }
+
+    /// The constants of the model at this gather point.
+    #[inline]
+    #[must_use]
+    pub const fn constants(&self) -> &M::Gather<f32> {
+        &self.inner
     }
 
     /// The gather point with only some of its lobes: the others neither scatter nor are sampled.
@@ -257,14 +271,21 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
-        dispatch::eval8::<M, f32x8>(level, &self.inner, wi)
+        level.run(EvalPdf::<M, f32x8> { gather: &self.inner, wi })
     }
 
     /// Each lobe's value, colour and own density, each lane at its own gather point.
     #[inline]
     #[must_use]
     pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        dispatch::lobes8::<M, f32x8>(Level::detect(), &self.inner, wi)
+        self.lobes8_at(Level::detect(), wi)
+    }
+
+    /// As [`lobes8`](Self::lobes8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn lobes8_at(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8> {
+        level.run(Lobes::<M, f32x8> { gather: &self.inner, wi })
     }
 
     /// One direction for each gather point.
@@ -278,7 +299,14 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn sample8_at(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
-        dispatch::sample8::<M, f32x8>(level, &self.inner, xi)
+        level.run(SampleWi::<M, f32x8> { gather: &self.inner, xi })
+    }
+
+    /// The constants of the model at these gather points.
+    #[inline]
+    #[must_use]
+    pub const fn constants(&self) -> &M::Gather<f32x8> {
+        &self.inner
     }
 
     /// The gather point of one lane.
@@ -289,7 +317,7 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn lane(&self, lane: usize) -> Gather<M> {
-        Gather { inner: M::lane(&self.inner, lane) }
+        Gather { inner: <M::Gather<f32> as LaneStruct>::lane(&self.inner, lane) }
     }
 
     /// The gather points with only some of their lobes: the others neither scatter nor are sampled.

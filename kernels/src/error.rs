@@ -26,6 +26,8 @@ pub enum ParamError {
     WidthFactor(&'static str, f32),
     /// An artist's angle that is not finite or outside its range: the field, the value and the range, in degrees.
     Degrees(&'static str, f32, [f32; 2]),
+    /// A number outside the range of its field, or not finite: the field, the value, the least and the most.
+    Range(&'static str, f32, [f32; 2]),
     /// An artist's colour whose product with its intensity overflows: the field, the channel and the colour's value.
     Overflow(&'static str, usize, f32),
 }
@@ -43,6 +45,7 @@ impl ParamError {
             | Self::Scalar(field, _)
             | Self::WidthFactor(field, _)
             | Self::Degrees(field, _, _)
+            | Self::Range(field, _, _)
             | Self::Overflow(field, _, _) => field,
         }
     }
@@ -62,6 +65,9 @@ impl fmt::Display for ParamError {
             Self::WidthFactor(field, value) => write!(f, "{field} must be in [0.5, 4], got {value}"),
             Self::Degrees(field, value, [least, most]) => {
                 write!(f, "{field} must be an angle in [{least}, {most}] degrees, got {value}")
+            }
+            Self::Range(field, value, [least, most]) => {
+                write!(f, "{field} must be in [{least}, {most}], got {value}")
             }
             Self::Overflow(field, channel, value) => {
                 write!(f, "{field}[{channel}] times its intensity must be finite, got a color of {value}")

@@ -212,6 +212,31 @@ impl FiberFrame {
         self.u * v.x + self.v * v.y + self.w * v.z
     }
 
+    /// Offset across the fibre of a hit with this outward normal, seen from `wo`: [`Hit::h`](crate::Hit::h). Both are in
+    /// the world.
+    ///
+    /// `h = u . (n x wo) / cos theta_o`, with `n` the part of the normal across the fibre, at unit length
+    ///
+    /// - Domain: vectors of any length. Where either lies along the fibre, or is zero or not finite, the offset is 0.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use hairis::FiberFrame;
+    /// let frame = FiberFrame { u: Vec3::X, v: Vec3::Y, w: Vec3::Z };
+    /// assert_eq!(frame.offset(Vec3::Y, Vec3::Z), 1.0); // from v to w is a positive quarter turn
+    /// assert_eq!(frame.offset(Vec3::Y, Vec3::Y), 0.0); // wo in the plane of the normal: a hit on the axis
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn offset(&self, normal: Vec3, wo: Vec3) -> f32 {
+        let across = |vector: Vec3| {
+            let local = self.to_local(unit_or(vector, Vec3::ZERO));
+            unit_or(Vec3::new(0.0, local.y, local.z), Vec3::ZERO)
+        };
+        let (n, wo) = (across(normal), across(wo));
+        (n.y * wo.z - n.z * wo.y).clamp(-1.0, 1.0)
+    }
+
     /// World to fibre, for glam's aligned vectors.
     #[inline]
     #[must_use]

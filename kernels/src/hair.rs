@@ -17,9 +17,7 @@ pub(crate) use results::{drawn, evaluated, mixture, per_lobe};
 pub(crate) use sampling::{Turn, turned};
 
 use crate::model::{Drawn, Eval, Hit, LobeEval};
-use crate::{Bell, Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Vec3x};
-use core::fmt::Debug;
-use wide::f32x8;
+use crate::{Bell, Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3x};
 
 /// Cosine of the inclination below which a direction lies on the fibre's axis: value and density are 0 there, and a
 /// sample is discarded (section 3.3 of the paper).
@@ -38,8 +36,8 @@ pub struct Hair<B>(pub B);
 
 impl<B: Bell> Model for Hair<B> {
     type Params = HairParams;
-    type Material<C: Copy + Debug> = HairMaterial<C>;
-    type Gather<C: Copy + Debug> = HairGather<C>;
+    type Material<C: Scalar> = HairMaterial<C>;
+    type Gather<C: Scalar> = HairGather<C>;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "glint"];
 
@@ -48,38 +46,25 @@ impl<B: Bell> Model for Hair<B> {
         HairMaterial::of(self.0, params)
     }
 
-    #[inline]
-    fn pack(materials: [&HairMaterial<f32>; 8]) -> HairMaterial<f32x8> {
-        HairMaterial::pack(materials)
-    }
-
-    #[inline]
-    fn lane(gather: &HairGather<f32x8>, lane: usize) -> HairGather<f32> {
-        gather.lane(lane)
-    }
-
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L> + Debug>(material: &HairMaterial<C>, hit: Hit<L>) -> HairGather<L::Stored>
-    where
-        L::Stored: Debug,
-    {
+    fn prepare<L: Lanes, C: Broadcast<L>>(material: &HairMaterial<C>, hit: Hit<L>) -> HairGather<L::Stored> {
         gather::prepare(material, hit.wo)
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes + Debug>(gather: &HairGather<C>, lobes: LobeMask) -> HairGather<C> {
+    fn restrict<C: Lanes>(gather: &HairGather<C>, lobes: LobeMask) -> HairGather<C> {
         gather.restrict(lobes)
     }
 
     #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L> + Debug>(gather: &HairGather<C>, wi: Vec3x<L>) -> Eval<L> {
+    fn eval<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> Eval<L> {
         let (place, sound) = Place::of(&gather.point, wi);
         let shapes = place.shapes::<B, C>(&gather.point);
         evaluated(&gather.point, &place, sound, &shapes, mixture(shapes.density, &gather.weight))
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L> + Debug>(gather: &HairGather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
         let (place, sound) = Place::of(&gather.point, wi);
         let shapes = place.shapes::<B, C>(&gather.point);
         let density = [
@@ -92,14 +77,14 @@ impl<B: Bell> Model for Hair<B> {
     }
 
     #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L> + Debug>(gather: &HairGather<C>, xi: [L; 3]) -> Drawn<L> {
+    fn sample<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> Drawn<L> {
         let (wi, choice, place) = sampling::draw(gather, xi);
         let shapes = place.shapes::<B, C>(&gather.point);
         drawn(&gather.point, wi, choice, &place, &shapes, mixture(shapes.density, &gather.weight))
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L> + Debug>(gather: &HairGather<C>) -> PerLobe<[L; 3]> {
+    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>) -> PerLobe<[L; 3]> {
         albedo::albedo::<B, L, C>(&gather.point)
     }
 }

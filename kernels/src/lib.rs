@@ -2,7 +2,7 @@
 //!
 //! The model is that of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the importance sampler
 //! published there; its bells are Gaussians ([`Gaussian`]), and any [`Bell`] may take their place: the all-Cauchy
-//! variant lives in the crate `hairis-variants`. Any other scattering model is a [`Model`], written once over
+//! variant lives in the crate `hairis-variants`. Any other scattering model is a [`LobeModel`], written once over
 //! [`Lanes`]; scalar calls, eight lanes, run-time dispatch and slices come with it.
 //!
 //! ```
@@ -51,7 +51,7 @@
 //! | renderer | along the fibre | how its values translate |
 //! |---|---|---|
 //! | Cycles (Hair BSDF) | - | `alpha` is minus Offset, `beta` is Roughness U; its R stretches `phi` by Roughness V (use 1) and is cut at `|phi|` = 90 degrees, its TT at the back half; its value equals its pdf |
-//! | Mitsuba 3 (`hair`) | y | `scale_tilt` has the opposite sign of Marschner's `alpha_R`; its `eval` includes the cosine |
+//! | Mitsuba 3 (`hair`) | y | with y from root to tip `scale_tilt` is `alpha_R` of the published model (+5 degrees peak at `theta_i + theta_o` = +10), and minus the `tilt` of Chiang's; its `eval` includes the cosine |
 //! | pbrt-v4 | x | a model of its own (Chiang et al. 2016) |
 //!
 //! # What this crate does not do
@@ -64,18 +64,20 @@
 mod batch;
 mod bell;
 mod bsdf;
-mod dispatch;
+mod direction;
 mod error;
 mod frame;
 mod hair;
-mod lanes;
 mod lobe;
+mod lobe_model;
 mod matched;
 pub mod math;
 mod model;
+mod packet;
 mod params;
 mod quadrature;
 pub mod random;
+mod simd;
 #[cfg(feature = "textbook")]
 pub mod textbook;
 mod truncated;
@@ -83,15 +85,19 @@ mod truncated;
 pub use batch::{EvalSlices, LengthError, SampleSlices};
 pub use bell::{Bell, Gaussian};
 pub use bsdf::{Bsdf, Bsdf8, Gather, Gather8};
-pub use dispatch::Level;
+pub use direction::Direction;
 pub use error::ParamError;
 pub use frame::{FiberFrame, FiberFrame8, Vec3x, Vec3x8};
 pub use hair::{GRAZING, Hair, HairGather, HairLobes, HairMaterial, HairPoint, HairSampler};
-pub use lanes::{Broadcast, Lanes, lanes3, store3, store4};
 pub use lobe::{Lobe, LobeMask, PerLobe};
+pub use lobe_model::{LobeModel, Mixed, Mixture};
 pub use matched::{Matched, MatchedBell, MatchedGather, MatchedMaterial};
 pub use model::{Drawn, Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Model, Sample, Sample8};
 pub use params::{ArtistControls, Glints, HairDesc, HairParams, Highlight, MAX_WIDTH, MIN_WIDTH, Transmission};
+pub use simd::columns::Row;
+pub use simd::dispatch::{Constant, Kernel, Level};
+pub use simd::lanes::{Broadcast, LaneStruct, Lanes, Scalar, lanes3, lanes4, store3, store4};
+pub use simd::pair::Pair;
 
 #[doc(hidden)]
 pub use wide;

@@ -53,6 +53,22 @@ impl Lobe {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PerLobe<T>(pub [T; Lobe::COUNT]);
 
+impl<T: Copy> PerLobe<T> {
+    /// The values of the first `N` lobes, and `rest` in the slots after them.
+    #[inline(always)]
+    #[must_use]
+    pub fn padded<const N: usize>(values: [T; N], rest: T) -> Self {
+        const { assert!(N <= Lobe::COUNT, "a model has at most 4 lobes") };
+        let mut all = [rest; Lobe::COUNT];
+        let mut l = 0;
+        while l < N {
+            all[l] = values[l];
+            l += 1;
+        }
+        Self(all)
+    }
+}
+
 impl<T> Index<Lobe> for PerLobe<T> {
     type Output = T;
     #[inline(always)]

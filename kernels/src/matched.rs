@@ -13,10 +13,9 @@ pub use gather::MatchedGather;
 pub use material::MatchedMaterial;
 
 use crate::hair::{Place, Shapes, albedo, drawn, evaluated, mixture, per_lobe, times};
-use crate::lanes::pair::Pair;
 use crate::model::{Drawn, Eval, Hit, LobeEval};
-use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Vec3x};
-use core::fmt::Debug;
+use crate::simd::pair::Pair;
+use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3x};
 use wide::f32x8;
 
 /// The model of [`Hair`](crate::Hair), with the same parameters, values and albedo, and a sampler that follows them closer
@@ -81,8 +80,8 @@ pub struct Matched<B, const BANDS: usize = 9, const BY_CHANNEL: bool = false>(pu
 
 impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Matched<B, BANDS, BY_CHANNEL> {
     type Params = HairParams;
-    type Material<C: Copy + Debug> = MatchedMaterial<C>;
-    type Gather<C: Copy + Debug> = MatchedGather<C, BANDS>;
+    type Material<C: Scalar> = MatchedMaterial<C>;
+    type Gather<C: Scalar> = MatchedGather<C, BANDS>;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "glint"];
 
@@ -91,24 +90,11 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
         MatchedMaterial::of(self.0, params)
     }
 
-    #[inline]
-    fn pack(materials: [&MatchedMaterial<f32>; 8]) -> MatchedMaterial<f32x8> {
-        MatchedMaterial::pack(materials)
-    }
-
-    #[inline]
-    fn lane(gather: &MatchedGather<f32x8, BANDS>, lane: usize) -> MatchedGather<f32, BANDS> {
-        gather.lane(lane)
-    }
-
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L> + Debug>(
+    fn prepare<L: Lanes, C: Broadcast<L>>(
         material: &MatchedMaterial<C>,
         hit: Hit<L>,
-    ) -> MatchedGather<L::Stored, BANDS>
-    where
-        L::Stored: Debug,
-    {
+    ) -> MatchedGather<L::Stored, BANDS> {
         gather::prepare::<B, L, C, Pair<L>, 3, BANDS, BY_CHANNEL>(material, hit.wo)
     }
 
@@ -118,22 +104,19 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes + Debug>(gather: &MatchedGather<C, BANDS>, lobes: LobeMask) -> MatchedGather<C, BANDS> {
+    fn restrict<C: Lanes>(gather: &MatchedGather<C, BANDS>, lobes: LobeMask) -> MatchedGather<C, BANDS> {
         gather.restrict(lobes)
     }
 
     #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> Eval<L> {
+    fn eval<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> Eval<L> {
         let (place, sound) = Place::of(&gather.point, wi);
         let shapes = place.shapes::<B, C>(&gather.point);
         evaluated(&gather.point, &place, sound, &shapes, density(gather, &place, &shapes))
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L> + Debug>(
-        gather: &MatchedGather<C, BANDS>,
-        wi: Vec3x<L>,
-    ) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
         let (place, sound) = Place::of(&gather.point, wi);
         let shapes = place.shapes::<B, C>(&gather.point);
         let height = gather.height::<L>(place.sin_theta_i);
@@ -143,14 +126,14 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
     }
 
     #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, BANDS>, xi: [L; 3]) -> Drawn<L> {
+    fn sample<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, xi: [L; 3]) -> Drawn<L> {
         let (wi, choice, place) = sampling::draw::<B, L, C, BANDS>(gather, xi);
         let shapes = place.shapes::<B, C>(&gather.point);
         drawn(&gather.point, wi, choice, &place, &shapes, density(gather, &place, &shapes))
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L> + Debug>(gather: &MatchedGather<C, BANDS>) -> PerLobe<[L; 3]> {
+    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>) -> PerLobe<[L; 3]> {
         albedo::albedo::<B, L, C>(&gather.point)
     }
 }

@@ -3,18 +3,21 @@
 //! The general functions of `wide` branch on their data and cost two to four times as much. Each function here states
 //! its range, and the error measured on it by the tests (rows of `tests/tolerance.rs`). None branches.
 
+pub use crate::quadrature::GAUSS_LEGENDRE_32;
+
 use crate::Lanes;
-use crate::lanes::pair::Pair;
+use crate::simd::pair::Pair;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
 /// `pi/2 - FRAC_PI_2`, what the rounding of the constant leaves out.
-pub(crate) const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
+pub const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
 
-/// A polynomial, its even and odd halves apart: half the dependency chain of Horner's rule.
+/// A polynomial of up to nine coefficients, the constant first; its even and odd halves are apart: half the dependency chain
+/// of Horner's rule.
 ///
 /// Written out, not a loop: compilers that save space leave it one, over coefficients in memory.
 #[inline(always)]
-fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
+pub fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     let square = x * x;
     let mut even = L::splat(coefficients[(N - 1) & !1]);
     let mut odd = L::splat(coefficients[(N - 2) | 1]);
@@ -30,19 +33,22 @@ fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     odd.mul_add(x, even)
 }
 
+/// `log2(e) / 2`, negative: from a squared distance to the exponent of a Gaussian.
+const TO_EXPONENT: f32 = -0.5 * LOG2_E;
+/// Least exponent of [`gaussian`].
+const LEAST_EXPONENT: f32 = 115.0;
 /// `exp(-s/2)` for `s >= 0`, a Gaussian of the squared distance from its centre; exactly 0 from about `2^-115` down.
 ///
 /// That is far below any other term of a sum, and so far above the denormals that the products made of it seldom are
 /// one: denormals cost as much as the rest of the model. NaN gives 0.
 #[inline(always)]
 pub fn gaussian<L: Lanes>(s: L) -> L {
-    const TO_EXPONENT: f32 = -0.5 * LOG2_E;
     // Adding 2^23 rounds to an integer and leaves it in the low bits, biased as an exponent is. The bias is 12 short,
     // so that the exponent reaches 0, and with it the power, at -115 already; the polynomial makes up for it.
-    let magic = L::splat(8_388_608.0 + 115.0);
+    let magic = L::splat(8_388_608.0 + LEAST_EXPONENT);
     let to_exponent = L::splat(TO_EXPONENT);
     // The second operand of `min` wins over NaN.
-    let s = s.min(L::splat(115.0 / -TO_EXPONENT));
+    let s = s.min(L::splat(LEAST_EXPONENT / -TO_EXPONENT));
     let n = s.mul_add(to_exponent, magic);
     let f = s.mul_add(to_exponent, magic - n);
     const SCALE: f32 = 4096.0;
@@ -60,10 +66,36 @@ pub fn gaussian<L: Lanes>(s: L) -> L {
     p * n.bits_shl_23()
 }
 
+/// `1 - exp(-s/2)` for `s >= 0`, with its digits where it is small; exactly 1 where [`gaussian`] is 0. NaN gives 1.
+#[inline(always)]
+pub fn gaussian_complement<L: Lanes>(s: L) -> L {
+    let one = L::splat(1.0);
+    // The exponent without the bias of `gaussian`: as an integer, and as the power of two.
+    let magic = L::splat(8_388_608.0 + 127.0);
+    let to_exponent = L::splat(TO_EXPONENT);
+    let s = s.min(L::splat(LEAST_EXPONENT / -TO_EXPONENT));
+    let n = s.mul_add(to_exponent, magic);
+    let f = s.mul_add(to_exponent, magic - n);
+    let power = n.bits_shl_23();
+    // (2^f - 1) / f.
+    let p = polynomial(
+        f,
+        [
+            0.693_147_187_899_326,
+            0.240_226_496_352_892_84,
+            0.055_503_575_216_887_605,
+            0.009_618_263_217_921_846,
+            0.001_339_070_019_198_61,
+            0.000_153_952_528_257_223_89,
+        ],
+    );
+    p.mul_add(-(f * power), one - power)
+}
+
 /// `atan t` for `|t| <= 1`.
 #[inline(always)]
 pub fn atan_unit<L: Lanes>(t: L) -> L {
-    let z = (t * t).in_step();
+    let z = (t * t).interleaved();
     let p = polynomial(
         z,
         [
@@ -88,15 +120,20 @@ pub fn atan_unit<L: Lanes>(t: L) -> L {
 pub fn half_atan2<L: Lanes>(y: L, x: L, length: L) -> L {
     let c = L::splat;
     let across = y.abs();
-    let t = across.min(x) / (length + across.max(x));
+    let half = atan_eighth_turn(across.min(x) / (length + across.max(x)));
+    let rest = (c(FRAC_PI_4) - half) + c(0.5 * FRAC_PI_2_LOW);
+    L::select(x.lt(across), rest, half).times_sign(y)
+}
+
+/// `atan t` for `|t| <= tan(pi/8)`.
+#[inline(always)]
+pub fn atan_eighth_turn<L: Lanes>(t: L) -> L {
     let z = t * t;
     let p = polynomial(
         z,
         [-0.333_329_498_767_852_8, 0.199_777_275_323_867_8, -0.138_777_986_168_861_4, 0.080_539_561_808_109_28],
     );
-    let half = p.mul_add(z * t, t);
-    let rest = (c(FRAC_PI_4) - half) + c(0.5 * FRAC_PI_2_LOW);
-    L::select(x.lt(across), rest, half).times_sign(y)
+    p.mul_add(z * t, t)
 }
 
 /// `atan2(y, x)` for `y >= 0`: an angle in `[0, pi]`. Both zero give 0.
@@ -132,7 +169,7 @@ pub fn sin_cos_twice<L: Lanes>(x: L) -> (L, L) {
 /// For inversion: an error of 2e-7 in the angle that a number is mapped to is one of 2e-7 in the number.
 #[inline(always)]
 pub fn sin_cos_absolute<L: Lanes>(x: L) -> (L, L) {
-    let z = (x * x).in_step();
+    let z = (x * x).interleaved();
     let p = polynomial(
         z,
         [-0.499_999_314_546_584_9, 0.041_663_989_424_705_51, -0.001_385_592_622_682_452_2, 2.319_435_589_015_484e-5],
@@ -142,7 +179,7 @@ pub fn sin_cos_absolute<L: Lanes>(x: L) -> (L, L) {
 
 /// `sin x` for `|x| <= pi/2`.
 #[inline(always)]
-fn sin_half_turn<L: Lanes>(x: L) -> L {
+pub fn sin_half_turn<L: Lanes>(x: L) -> L {
     let z = x * x;
     let p = polynomial(
         z,
@@ -168,8 +205,25 @@ const LOG2_MANTISSA: [f32; 9] = [
 #[inline(always)]
 pub fn log2<L: Lanes>(x: L) -> L {
     let (mantissa, exponent) = x.split_exponent();
-    let f = (mantissa - L::splat(1.0)).in_step();
+    let f = (mantissa - L::splat(1.0)).interleaved();
     polynomial(f, LOG2_MANTISSA).mul_add(f, exponent)
+}
+
+/// Logarithm to the base 2 of `x` in `(0, 1]`, where `x - 1` is known with more digits than `x` has: `less_one` is that
+/// difference, and read where `x` is above `sqrt(1/2)`.
+#[inline(always)]
+pub fn log2_near_one<L: Lanes>(x: L, less_one: L) -> L {
+    let (mantissa, exponent) = x.split_exponent();
+    let f = (mantissa - L::splat(1.0)).interleaved();
+    // The exponent is 0 there.
+    let f = L::select(L::splat(-0.292_893_2).lt(less_one), less_one, f);
+    polynomial(f, LOG2_MANTISSA).mul_add(f, exponent)
+}
+
+/// `log2(1 + f)` for `f` in `(-1, 0]`, with the digits of `f`; finite or NaN for any other.
+#[inline(always)]
+pub fn log2_one_plus<L: Lanes>(f: L) -> L {
+    log2_near_one(L::splat(1.0) + f, f)
 }
 
 /// The probability of a standard normal number above `x`, over the density's shape there: `Q(x) exp(x^2 / 2)`, for
@@ -177,7 +231,7 @@ pub fn log2<L: Lanes>(x: L) -> L {
 #[inline(always)]
 pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
     let c = L::splat;
-    let t = (c(1.0) / x.mul_add(c(0.3), c(1.0))).in_step();
+    let t = (c(1.0) / x.mul_add(c(0.3), c(1.0))).interleaved();
     let p = polynomial(
         t,
         [
@@ -202,7 +256,7 @@ pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
 pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let w = zero.max(zero - log2((c(4.0) * q * (one - q)).in_step())).in_step();
+    let w = zero.max(zero - log2((c(4.0) * q * (one - q)).interleaved())).interleaved();
     let center = polynomial(
         w,
         [
@@ -216,7 +270,7 @@ pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
             3.315_518_361_835_722e-8,
         ],
     );
-    let root = w.max(c(7.0)).sqrt().in_step();
+    let root = w.max(c(7.0)).sqrt().interleaved();
     let tail = polynomial(
         one / root,
         [

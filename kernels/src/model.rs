@@ -1,16 +1,14 @@
-//! What any scattering model gives: the trait that models in other crates implement.
+//! Scattering models: the trait behind every handle, and its inputs and results.
 
-use crate::{Broadcast, Lanes, Lobe, LobeMask, PerLobe, Vec3x};
-use core::fmt::Debug;
+use crate::{Broadcast, LaneStruct, Lanes, Lobe, LobeMask, PerLobe, Scalar, Vec3x};
 use glam::{Vec3, Vec3A};
 use wide::f32x8;
 
 /// A scattering model, written once over [`Lanes`].
 ///
-/// Implement it on a small marker and hand it to [`Bsdf`](crate::Bsdf): scalar calls, eight lanes (eight directions at
-/// one gather point, or eight gather points), run-time dispatch and slices come with it. A model holds its constants
-/// in two structs of lanes, most simply declared with [`lane_struct!`](crate::lane_struct): those of a material, and
-/// those of one gather point (a material seen from one `wo`).
+/// [`Bsdf`](crate::Bsdf) makes scalar calls, eight lanes (eight directions at one gather point, or eight gather points),
+/// run-time dispatch and slices of it. Authors implement [`LobeModel`](crate::LobeModel), which needs less and gives a
+/// `Model`; this trait is for models that compute several lobes together, as the published one does.
 ///
 /// # What an implementation promises
 ///
@@ -23,9 +21,9 @@ pub trait Model: Copy {
     /// What users describe a material with, checked.
     type Params;
     /// Constants of a material: one number each (`C = f32`), or one a lane (`C = f32x8`).
-    type Material<C: Copy + Debug>: Copy + Debug;
+    type Material<C: Scalar>: LaneStruct<One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
     /// Constants of a gather point.
-    type Gather<C: Copy + Debug>: Copy + Debug;
+    type Gather<C: Scalar>: LaneStruct<One = Self::Gather<f32>, Eight = Self::Gather<f32x8>>;
 
     /// Names of the lobes, in slot order: at most [`Lobe::COUNT`].
     const LOBES: &'static [&'static str];
@@ -33,16 +31,8 @@ pub trait Model: Copy {
     /// The constants of a material.
     fn material(&self, params: &Self::Params) -> Self::Material<f32>;
 
-    /// Eight materials, one a lane.
-    fn pack(materials: [&Self::Material<f32>; 8]) -> Self::Material<f32x8>;
-
-    /// The gather point of one lane, 0 to 7.
-    fn lane(gather: &Self::Gather<f32x8>, lane: usize) -> Self::Gather<f32>;
-
     /// Everything that depends on the material and the hit alone (section 3.3 of the paper).
-    fn prepare<L: Lanes, C: Broadcast<L> + Debug>(material: &Self::Material<C>, hit: Hit<L>) -> Self::Gather<L::Stored>
-    where
-        L::Stored: Debug;
+    fn prepare<L: Lanes, C: Broadcast<L>>(material: &Self::Material<C>, hit: Hit<L>) -> Self::Gather<L::Stored>;
 
     /// The same for one hit. A model whose lobes take the same steps may put them into lanes here.
     #[inline(always)]
@@ -51,19 +41,19 @@ pub trait Model: Copy {
     }
 
     /// The gather point with only the lobes of `lobes`: the others neither scatter nor are sampled.
-    fn restrict<C: Lanes + Debug>(gather: &Self::Gather<C>, lobes: LobeMask) -> Self::Gather<C>;
+    fn restrict<C: Lanes>(gather: &Self::Gather<C>, lobes: LobeMask) -> Self::Gather<C>;
 
     /// Value and density of the direction `wi`.
-    fn eval<L: Lanes, C: Broadcast<L> + Debug>(gather: &Self::Gather<C>, wi: Vec3x<L>) -> Eval<L>;
+    fn eval<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>, wi: Vec3x<L>) -> Eval<L>;
 
     /// Each lobe's value, colour and own density at `wi`.
-    fn lobes<L: Lanes, C: Broadcast<L> + Debug>(gather: &Self::Gather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>>;
+    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>>;
 
-    /// A direction drawn with three uniform numbers in `[0, 1)`: for the lobe, the longitude and the azimuth.
-    fn sample<L: Lanes, C: Broadcast<L> + Debug>(gather: &Self::Gather<C>, xi: [L; 3]) -> Drawn<L>;
+    /// A direction drawn with three uniform numbers in `[0, 1)`. The first chooses the lobe, and may serve again.
+    fn sample<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>, xi: [L; 3]) -> Drawn<L>;
 
     /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
-    fn albedo<L: Lanes, C: Broadcast<L> + Debug>(gather: &Self::Gather<C>) -> PerLobe<[L; 3]>;
+    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>) -> PerLobe<[L; 3]>;
 }
 
 /// Where a ray meets a fibre: the direction it came from, and how far off the axis it met it.
@@ -71,8 +61,29 @@ pub trait Model: Copy {
 pub struct Hit<L = f32> {
     /// Towards the viewer, in the fibre's frame, unit.
     pub wo: Vec3x<L>,
-    /// Offset across the fibre, in `[-1, 1]` radii; models of the far field, such as the published one, ignore it.
+    /// Offset across the fibre, in radii in `[-1, 1]`: the sine of the angle about u from the outward normal of the hit,
+    /// taken in the normal plane, to `wo`. Positive where a quarter turn from v to w leads from the normal towards `wo`
+    /// ([`FiberFrame::offset`](crate::FiberFrame::offset)). Models of the far field, such as the published one, ignore it.
     pub h: L,
+}
+
+impl<L: Lanes> Hit<L> {
+    /// A hit off the axis; of eight lanes, one per lane.
+    ///
+    /// - Domain: `h` is clamped to `[-1, 1]`; NaN counts as 0.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use hairis::Hit;
+    /// assert_eq!(Hit::new(Vec3::Y, 1.5).h, 1.0);
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn new(wo: impl Into<Vec3x<L>>, h: L) -> Self {
+        let one = L::splat(1.0);
+        let number = L::or(h.lt(one), (-one).lt(h));
+        Self { wo: wo.into(), h: L::keep(number, (-one).max(one.min(h))) }
+    }
 }
 
 /// Eight hits, one a lane.
@@ -80,6 +91,9 @@ pub type Hit8 = Hit<f32x8>;
 
 impl From<Vec3> for Hit {
     /// A hit on the axis (`h` is 0).
+    ///
+    /// That is one of the hits that a near-field model, such as Chiang's, distinguishes, and not its far field: draw `h` per
+    /// hit, or give it by [`Hit::new`].
     #[inline(always)]
     fn from(wo: Vec3) -> Self {
         Self { wo: wo.into(), h: 0.0 }
@@ -102,6 +116,14 @@ impl From<&Vec3x<f32x8>> for Hit8 {
     }
 }
 
+impl From<&Self> for Hit8 {
+    /// The same hits: by reference, so that they are read by vector code alone.
+    #[inline(always)]
+    fn from(hits: &Self) -> Self {
+        *hits
+    }
+}
+
 /// Value and density of a direction, a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eval<L = f32> {
@@ -118,7 +140,7 @@ impl<L: Lanes> Eval<L> {
     /// The lanes in the form they are kept in.
     #[inline(always)]
     pub fn store(self) -> Eval<L::Stored> {
-        Eval { value: crate::lanes::store3(self.value), pdf: self.pdf.store() }
+        Eval { value: crate::simd::lanes::store3(self.value), pdf: self.pdf.store() }
     }
 }
 
@@ -150,10 +172,18 @@ pub struct LobeEval<L = f32> {
 pub type LobeEval8 = LobeEval<f32x8>;
 
 impl<L: Lanes> LobeEval<L> {
+    /// No lobe: all 0.
+    #[inline(always)]
+    #[must_use]
+    pub fn none() -> Self {
+        let zero = L::splat(0.0);
+        Self { value: zero, color: [zero; 3], pdf: zero }
+    }
+
     /// The lanes in the form they are kept in.
     #[inline(always)]
     pub fn store(self) -> LobeEval<L::Stored> {
-        LobeEval { value: self.value.store(), color: crate::lanes::store3(self.color), pdf: self.pdf.store() }
+        LobeEval { value: self.value.store(), color: crate::simd::lanes::store3(self.color), pdf: self.pdf.store() }
     }
 }
 
@@ -179,9 +209,9 @@ impl<L: Lanes> Drawn<L> {
     pub fn store(self) -> Drawn<L::Stored> {
         Drawn {
             wi: self.wi.store(),
-            value: crate::lanes::store3(self.value),
+            value: crate::simd::lanes::store3(self.value),
             pdf: self.pdf.store(),
-            weight: crate::lanes::store3(self.weight),
+            weight: crate::simd::lanes::store3(self.weight),
             slot: self.slot.store(),
         }
     }

@@ -1,7 +1,7 @@
 //! Gauss-Legendre quadrature on `[0, 1]`.
 
 /// Nodes and weights of the 32-point rule: exact for polynomials up to degree 63.
-pub(crate) const GAUSS_LEGENDRE_32: [(f32, f32); 32] = [
+pub const GAUSS_LEGENDRE_32: [(f32, f32); 32] = [
     (0.00136806907526, 0.00350930500474),
     (0.00719424422737, 0.00813719736545),
     (0.0176188722062, 0.0126960326546),

@@ -16,7 +16,9 @@ mod cut;
 mod matched;
 mod oracle;
 mod parameters;
+mod quadrature;
 mod real;
+mod reference;
 mod sampler;
 
 use crate::{Lobe, PerLobe};
@@ -25,7 +27,9 @@ pub use cauchy::TruncatedCauchy;
 pub use matched::MatchedTextbook;
 pub use oracle::Oracle;
 pub use parameters::{Parameters, Shape};
+pub use quadrature::integrate;
 pub use real::Real;
+pub use reference::{LobeAt, Reference};
 
 /// Directions closer than this to the fibre axis (in cosine of `theta_i`) are discarded: section 3.3.
 const GRAZING: f64 = 1e-5;
@@ -186,6 +190,11 @@ impl<T: Real> Textbook<T> {
     #[must_use]
     pub fn lobe_pdfs(&self, wi: [T; 3]) -> PerLobe<T> {
         self.angles(wi).map_or_else(PerLobe::default, |at| self.pdfs_at(&at))
+    }
+
+    /// Itself: what [`Reference`] reads of every form of the model.
+    fn book(&self) -> &Self {
+        self
     }
 
     /// `None` within 1e-5 rad of the axis.

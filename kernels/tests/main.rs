@@ -1,19 +1,14 @@
 //! Tests of the kernels: one binary, a module a subject.
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
 
-mod albedo;
-mod batch;
-mod edge;
-mod lobes;
+mod by_channel;
+mod family;
+mod frames;
 mod math;
 mod params;
-mod parity;
-mod props;
-mod quadrature;
-mod sampling;
-mod subject;
-mod support;
+mod rows;
 mod textbook;
 mod tolerance;
-mod values;
-mod weights;
+mod vector;
+
+use hairis_conformance::published::{quadrature, support};

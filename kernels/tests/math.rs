@@ -4,8 +4,8 @@ use crate::support::{Draws, Worst, narrow};
 use crate::tolerance as bound;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use hairis::math::{
-    atan_unit, atan2_upper, gaussian, half_atan2, log2, normal_tail_inverse, normal_tail_ratio, sin_cos_absolute,
-    sin_cos_twice,
+    atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_complement, half_atan2, log2, log2_one_plus,
+    normal_tail_inverse, normal_tail_ratio, sin_cos_absolute, sin_cos_twice,
 };
 use hairis::textbook::Real;
 use hairis::wide::f32x8;
@@ -56,6 +56,15 @@ fn atan2<L: Lanes>([y, x]: [L; 2]) -> L {
 }
 fn half<L: Lanes>([y, x]: [L; 2]) -> L {
     half_atan2(y, x, x.mul_add(x, y * y).sqrt())
+}
+fn complement<L: Lanes>([s, _]: [L; 2]) -> L {
+    gaussian_complement(s)
+}
+fn log_one_plus<L: Lanes>([f, _]: [L; 2]) -> L {
+    log2_one_plus(f)
+}
+fn atan_eighth<L: Lanes>([x, _]: [L; 2]) -> L {
+    atan_eighth_turn(x)
 }
 fn sin<L: Lanes>([x, _]: [L; 2]) -> L {
     sin_cos_twice(x).0
@@ -255,4 +264,43 @@ fn logarithm_and_normal_tails_are_accurate() {
     for x in [12.7, 1e3, 1e5, 1e30] {
         assert!(normal_tail_ratio(x) >= 0.0, "tail ratio of {x}");
     }
+}
+
+#[test]
+fn a_gaussian_s_complement_keeps_its_digits_where_it_is_small() {
+    let (mut worst, mut lanes) = (Worst::default(), Worst::default());
+    for s in scan(0.0, 170.0).chain(scan(0.0, 2.0)).chain(scan(0.0, 1e-6)) {
+        let got = both([s, 0.0], complement, complement, &mut lanes);
+        worst.see(ulp(got, -(-f64::from(s) / 2.0).exp_m1()), || format!("{s:e}"));
+    }
+    worst.check("COMPLEMENT", bound::COMPLEMENT);
+    lanes.check("COMPLEMENT_LANES", bound::MATH_LANES);
+    for s in [200.0, 1e30, f32::MAX, f32::INFINITY, f32::NAN] {
+        assert_eq!(gaussian_complement(s), 1.0, "1 - exp(-{s}/2)");
+    }
+    assert_eq!(gaussian_complement(0.0_f32), 0.0, "1 - exp(0)");
+}
+
+#[test]
+fn a_logarithm_next_to_one_keeps_the_digits_of_the_difference() {
+    let (mut worst, mut lanes) = (Worst::default(), Worst::default());
+    let least = -1.0 + f32::EPSILON / 2.0;
+    for f in scan(least, 0.0).chain(scan(-1e-6, 0.0)) {
+        let got = both([f, 0.0], log_one_plus, log_one_plus, &mut lanes);
+        worst.see(ulp(got, f64::from(f).ln_1p() / core::f64::consts::LN_2), || format!("{f:e}"));
+    }
+    worst.check("LOG2_ONE_PLUS", bound::LOG2_ONE_PLUS);
+    lanes.check("LOG2_ONE_PLUS_LANES", bound::MATH_LANES);
+    assert!(!log2_one_plus(-1.0_f32).is_infinite(), "the end of the range");
+}
+
+#[test]
+fn the_arc_tangent_of_an_eighth_of_a_turn_is_accurate() {
+    let (mut worst, mut lanes) = (Worst::default(), Worst::default());
+    let most = core::f32::consts::FRAC_PI_8.tan();
+    for x in scan(-most, most) {
+        worst.see(ulp(both([x, 0.0], atan_eighth, atan_eighth, &mut lanes), f64::from(x).atan()), || format!("{x:e}"));
+    }
+    worst.check("ATAN_EIGHTH", bound::ATAN_EIGHTH);
+    lanes.check("ATAN_EIGHTH_LANES", bound::MATH_LANES);
 }

@@ -1,6 +1,7 @@
 //! The textbook: normalisation, inversion, reciprocity, sampling, and its two precisions against each other.
 
 mod errata;
+mod reference;
 mod variance;
 
 use crate::quadrature::{panels, rule};

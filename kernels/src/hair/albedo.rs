@@ -1,7 +1,7 @@
 //! Directional albedo of the published model, by quadrature in the sampler's own coordinates.
 
 use super::HairPoint;
-use crate::lanes::lanes3;
+use crate::lanes3;
 use crate::math::sin_cos_twice;
 use crate::quadrature::GAUSS_LEGENDRE_32;
 use crate::truncated::TruncatedCauchy;

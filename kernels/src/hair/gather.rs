@@ -1,7 +1,7 @@
 //! What the published sampler keeps of a material, and of a material seen from one direction (section 3.3 of the paper).
 
 use super::point::{self, HairLobes, HairPoint, times};
-use crate::lanes::store4;
+use crate::store4;
 use crate::truncated::TruncatedCauchy;
 use crate::{Bell, Broadcast, HairParams, Lanes, Lobe, LobeMask, Vec3x};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};

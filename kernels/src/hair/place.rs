@@ -1,7 +1,7 @@
 //! A direction as the lobes see it, and what the lobes are there.
 
 use super::{GRAZING, HairPoint};
-use crate::lanes::lanes3;
+use crate::lanes3;
 use crate::math::{FRAC_PI_2_LOW, atan_unit, half_atan2};
 use crate::{Bell, Broadcast, Lanes, Vec3x};
 use core::f32::consts::FRAC_PI_2;

@@ -1,9 +1,9 @@
 //! The lobes of a material, and where a gather point sees them from: the same whichever sampler draws from them.
 
 use super::albedo::bell_area;
-use crate::lanes::{store3, store4};
 use crate::math::half_atan2;
 use crate::{Bell, Broadcast, HairParams, Lanes, Lobe, LobeMask, Vec3x};
+use crate::{store3, store4};
 use core::f32::consts::PI;
 
 crate::lane_struct! {

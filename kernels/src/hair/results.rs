@@ -1,7 +1,7 @@
 //! What a model gives for a direction and for a sample, once its density is known.
 
 use super::{GRAZING, HairPoint, Place, Shapes};
-use crate::lanes::lanes3;
+use crate::lanes3;
 use crate::model::{Drawn, Eval, LobeEval};
 use crate::{Broadcast, Lanes, PerLobe, Vec3x};
 
@@ -73,7 +73,7 @@ pub(crate) fn per_lobe<L: Lanes, C: Broadcast<L>>(
 pub(crate) fn drawn<L: Lanes, C: Broadcast<L>>(
     point: &HairPoint<C>,
     wi: Vec3x<L>,
-    choice: L::Choice,
+    choice: L::Index,
     place: &Place<L>,
     shapes: &Shapes<L>,
     density: L,
@@ -89,6 +89,6 @@ pub(crate) fn drawn<L: Lanes, C: Broadcast<L>>(
         value,
         pdf: (density * place.inv_cos_theta_i).min(limit),
         weight: min3([value[0] * by, value[1] * by, value[2] * by], limit),
-        slot: L::select(sound, L::slot_number(choice), L::splat(-1.0)),
+        slot: L::select(sound, L::index_number(choice), L::splat(-1.0)),
     }
 }

@@ -2,31 +2,32 @@
 
 use super::place::complement;
 use super::{HairGather, HairPoint, Place};
-use crate::lanes::{lanes3, pair::Pair};
+use crate::lanes3;
 use crate::math::{atan_unit, sin_cos_absolute, sin_cos_twice};
+use crate::simd::pair::Pair;
 use crate::truncated::TruncatedCauchy;
 use crate::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::FRAC_PI_4;
 
 /// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place.
 #[inline(always)]
-pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> (Vec3x<L>, L::Choice, Place<L>) {
+pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> (Vec3x<L>, L::Index, Place<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     let (point, hair, sampler) = (&gather.point, &gather.point.lobes, &gather.sampler);
-    let choice = L::choose(xi[0], lanes3(&sampler.bounds));
+    let choice = L::search(xi[0], lanes3(&sampler.bounds), 3);
 
     // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Side by side with the azimuth.
     let turn = Turn::of(xi[2]);
     let both = TruncatedCauchy {
-        sin_mid: Pair(C::pick_three(&gather.longitude_sin, choice), C::pick_pair(&sampler.azimuth_sin, choice)),
-        cos_mid: Pair(C::pick_three(&gather.longitude_cos, choice), C::pick_pair(&sampler.azimuth_cos, choice)),
-        span: Pair(C::pick_three(&gather.longitude_span, choice), C::pick_pair(&sampler.azimuth_span, choice)),
+        sin_mid: Pair(C::look_up_three(&gather.longitude_sin, choice), C::look_up_half(&sampler.azimuth_sin, choice)),
+        cos_mid: Pair(C::look_up_three(&gather.longitude_cos, choice), C::look_up_half(&sampler.azimuth_cos, choice)),
+        span: Pair(C::look_up_three(&gather.longitude_span, choice), C::look_up_half(&sampler.azimuth_span, choice)),
     };
     let Pair(x, y) = both.invert(Pair(zero.max(xi[1].min(one)), one - turn.across));
-    let half_theta_i = x.mul_sub(C::pick_three(&hair.beta, choice), C::pick_three(&point.shift, choice));
-    let center = L::keep(L::is_slot(choice, 3), hair.half_phi_g.lanes());
-    let psi = y.mul_add(C::pick_pair(&hair.half_gamma, choice), center);
+    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&point.shift, choice));
+    let center = L::keep(L::is_index(choice, 3), hair.half_phi_g.lanes());
+    let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
     let (wi, place) = turned(point, choice, half_theta_i, turn, psi);
     (wi, choice, place)
 }
@@ -58,17 +59,17 @@ impl<L: Lanes> Turn<L> {
 #[inline(always)]
 pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     point: &HairPoint<C>,
-    choice: L::Choice,
+    choice: L::Index,
     half_theta_i: L,
     Turn { side, across }: Turn<L>,
     psi: L,
 ) -> (Vec3x<L>, Place<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let is_tt = L::is_slot(choice, 1);
-    let is_glint = L::is_slot(choice, 3);
+    let is_tt = L::is_index(choice, 1);
+    let is_glint = L::is_index(choice, 3);
     let is_bell = L::or(is_tt, is_glint);
-    let (half_theta_i, psi) = L::abreast(half_theta_i, psi);
+    let (half_theta_i, psi) = L::interleave(half_theta_i, psi);
     let (sin_theta_i, cos_theta_i) = sin_cos_twice(half_theta_i);
     // Rounding may take the last of a tail past the pole: no direction, and no density.
     let cos_theta_i = zero.max(cos_theta_i);

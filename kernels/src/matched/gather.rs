@@ -6,8 +6,8 @@ use super::chain::chain;
 use super::material::{MatchedMaterial, extent};
 use super::sides::Sides;
 use crate::hair::{prepare_point, selection, times};
-use crate::lanes::{lanes3, lanes4, store3, store4};
-use crate::{Broadcast, HairPoint, Lanes, Lobe, LobeMask, Vec3x};
+use crate::{Broadcast, HairPoint, LaneStruct, Lanes, Lobe, LobeMask, Scalar, Vec3x};
+use crate::{lanes3, lanes4, store3, store4};
 use wide::f32x8;
 
 /// Energies and areas below this are none: next to denormals their reciprocals would have no digits. Energies are to the scale
@@ -254,5 +254,39 @@ impl<const N: usize> MatchedGather<f32x8, N> {
             azimuth_from: self.azimuth_from.map(at),
             azimuth_origin: self.azimuth_origin.map(at),
         }
+    }
+}
+
+impl<C: Scalar, const N: usize> LaneStruct for MatchedGather<C, N> {
+    type One = MatchedGather<f32, N>;
+    type Eight = MatchedGather<f32x8, N>;
+    #[inline]
+    fn pack(g: [&MatchedGather<f32, N>; 8]) -> MatchedGather<f32x8, N> {
+        macro_rules! n {
+            ($f:ident) => {
+                core::array::from_fn(|i| f32x8::new(g.map(|g| g.$f[i])))
+            };
+        }
+        MatchedGather {
+            point: HairPoint::pack(g.map(|g| &g.point)),
+            origin: n!(origin),
+            height: n!(height),
+            slope: n!(slope),
+            offset: core::array::from_fn(|i| core::array::from_fn(|j| f32x8::new(g.map(|g| g.offset[i][j])))),
+            offset_above: n!(offset_above),
+            below: n!(below),
+            area: n!(area),
+            weight: n!(weight),
+            scale: f32x8::new(g.map(|g| g.scale)),
+            selection: n!(selection),
+            bounds: n!(bounds),
+            azimuth_mass: n!(azimuth_mass),
+            azimuth_from: n!(azimuth_from),
+            azimuth_origin: n!(azimuth_origin),
+        }
+    }
+    #[inline]
+    fn lane(eight: &MatchedGather<f32x8, N>, lane: usize) -> MatchedGather<f32, N> {
+        eight.lane(lane)
     }
 }

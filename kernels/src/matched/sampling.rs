@@ -2,7 +2,8 @@
 
 use super::{MatchedBell, MatchedGather};
 use crate::hair::{Place, Turn, turned};
-use crate::lanes::{lanes3, pair::Pair};
+use crate::lanes3;
+use crate::simd::pair::Pair;
 use crate::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
@@ -16,17 +17,17 @@ const LEAST_SHARE: f32 = f32::EPSILON / 8.0;
 pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     gather: &MatchedGather<C, N>,
     xi: [L; 3],
-) -> (Vec3x<L>, L::Choice, Place<L>) {
+) -> (Vec3x<L>, L::Index, Place<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     let (point, hair) = (&gather.point, &gather.point.lobes);
-    let choice = L::choose(xi[0], lanes3(&gather.bounds));
+    let choice = L::search(xi[0], lanes3(&gather.bounds), 3);
 
     // Longitude: the number's share of the integral of M W, from the nearer pole. As a function of it the integral of M is the
     // least of the bands' lines: outwards they are steeper. Above the middle it is the negative integral.
-    let total = C::pick_three(&gather.area, choice);
+    let total = C::look_up_three(&gather.area, choice);
     let area = xi[1] * total;
-    let lower = area.lt(C::pick_three(&gather.below, choice));
+    let lower = area.lt(C::look_up_three(&gather.below, choice));
     let area = L::select(lower, area, total - area);
     let mut integral = line::<L, C, N>(gather, choice, lower, area, 0);
     let mut j = 1;
@@ -34,25 +35,26 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
         integral = integral.min(line::<L, C, N>(gather, choice, lower, area, j));
         j += 1;
     }
-    let [first, minus_last] = [C::pick_three(&gather.offset[0], choice), C::pick_three(&gather.offset[N - 1], choice)];
+    let [first, minus_last] =
+        [C::look_up_three(&gather.offset[0], choice), C::look_up_three(&gather.offset[N - 1], choice)];
     let least = (first + minus_last) * c(-LEAST_SHARE);
     // The second operand wins over NaN.
     let integral = L::select(lower, integral, -integral).max(first + least).min(-(minus_last + least));
 
     // Azimuth: TT's runs from its centre outwards, that of a glint from phi = 0.
     let turn = Turn::of(xi[2]);
-    let is_glint = L::is_slot(choice, 3);
+    let is_glint = L::is_index(choice, 3);
     let share = L::select(is_glint, one - turn.across, turn.across);
     let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON / 2.0)));
-    let (mass, from) = (C::pick_pair(&gather.azimuth_mass, choice), C::pick_pair(&gather.azimuth_from, choice));
+    let (mass, from) = (C::look_up_half(&gather.azimuth_mass, choice), C::look_up_half(&gather.azimuth_from, choice));
 
     // Side by side.
-    let origin = Pair(C::pick_three(&gather.origin, choice), C::pick_pair(&gather.azimuth_origin, choice));
+    let origin = Pair(C::look_up_three(&gather.origin, choice), C::look_up_half(&gather.azimuth_origin, choice));
     let Pair(x, y) = B::invert(origin, Pair(integral, share.mul_add(mass, from)));
-    let half_theta_i = x.mul_sub(C::pick_three(&hair.beta, choice), C::pick_three(&point.shift, choice));
+    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&point.shift, choice));
     let half_theta_i = c(-FRAC_PI_4).max(half_theta_i.min(c(FRAC_PI_4)));
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
-    let psi = y.mul_add(C::pick_pair(&hair.half_gamma, choice), center);
+    let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
     let psi = zero.max(psi.min(c(FRAC_PI_2)));
     let (wi, place) = turned(point, choice, half_theta_i, turn, psi);
     (wi, choice, place)
@@ -62,14 +64,14 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
 #[inline(always)]
 fn line<L: Lanes, C: Broadcast<L>, const N: usize>(
     gather: &MatchedGather<C, N>,
-    choice: L::Choice,
+    choice: L::Index,
     lower: L::Mask,
     area: L,
     j: usize,
 ) -> L {
     let middle = j == N / 2;
     let above = if middle { &gather.offset_above } else { &gather.offset[N - 1 - j] };
-    let offset = L::select(lower, C::pick_three(&gather.offset[j], choice), C::pick_three(above, choice));
+    let offset = L::select(lower, C::look_up_three(&gather.offset[j], choice), C::look_up_three(above, choice));
     let slope = gather.slope[j].lanes();
     let slope = if middle { slope } else { L::select(lower, slope, gather.slope[N - 1 - j].lanes()) };
     slope.mul_add(area, offset)

@@ -1,7 +1,7 @@
 //! Longitudes of the three lobes on both sides of the normal plane, in lanes.
 
 use crate::Lanes;
-use crate::lanes::pair::Pair;
+use crate::simd::pair::Pair;
 use wide::f32x8;
 
 /// Numbers of lobes below the normal plane and above it: `K` of these are those of R, TT and TRT.

@@ -237,6 +237,10 @@ impl<T: Real> MatchedTextbook<T> {
         self.book.eval(wi)
     }
 
+    pub(super) fn book(&self) -> &Textbook<T> {
+        &self.book
+    }
+
     /// As [`Textbook::lobe_values`].
     #[inline]
     #[must_use]

@@ -36,6 +36,13 @@ impl<T: Real> Oracle<T> {
         }
     }
 
+    pub(super) fn book(&self) -> &Textbook<T> {
+        match self {
+            Self::Published(book) => book,
+            Self::Matched(book) => book.book(),
+        }
+    }
+
     /// S, linear RGB: the same with every sampler.
     #[inline]
     #[must_use]

@@ -1,16 +1,9 @@
-//! The two number types the textbook is written for.
+//! The number types that the textbook is written for.
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-mod sealed {
-    /// Keeps [`Real`](super::Real) to `f32` and `f64`.
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
-}
-
-/// `f32` or `f64`, with the elementary functions of `libm` (sealed).
+/// A real number with elementary functions: `f32` or `f64` with those of `libm`, or a type of the caller's with others.
 ///
 /// ```
 /// use hairis::textbook::Real;
@@ -20,8 +13,7 @@ mod sealed {
 /// assert!(full_turn::<f64>().to_f64().cos() == 1.0);
 /// ```
 pub trait Real:
-    sealed::Sealed
-    + Copy
+    Copy
     + Debug
     + Default
     + PartialOrd
@@ -33,6 +25,8 @@ pub trait Real:
 {
     /// pi.
     const PI: Self;
+    /// Distance from 1 to the next larger number.
+    const EPSILON: Self;
     /// `value`, rounded for `f32`.
     #[must_use]
     fn from_f64(value: f64) -> Self;
@@ -67,6 +61,27 @@ pub trait Real:
     /// flag nobody reads, which would flatter whatever a baseline in `f32` is compared with.
     #[must_use]
     fn exp(self) -> Self;
+    /// `exp(self) - 1`, without cancellation near 0.
+    #[must_use]
+    fn exp_m1(self) -> Self;
+    /// Natural logarithm.
+    #[must_use]
+    fn ln(self) -> Self;
+    /// `ln(1 + self)`, without cancellation near 0.
+    #[must_use]
+    fn ln_1p(self) -> Self;
+    /// Natural logarithm of the gamma function, for `self > 0`.
+    #[must_use]
+    fn ln_gamma(self) -> Self;
+    /// `self` to the power `exponent`.
+    #[must_use]
+    fn powf(self, exponent: Self) -> Self;
+    /// Hyperbolic tangent.
+    #[must_use]
+    fn tanh(self) -> Self;
+    /// The nearest whole number; halves go away from 0.
+    #[must_use]
+    fn round(self) -> Self;
     /// Square root.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -86,9 +101,10 @@ pub trait Real:
 
 macro_rules! real {
     ($t:ident, $erfc:ident, $sin:ident, $cos:ident, $tan:ident, $asin:ident, $atan:ident, $atan2:ident, $exp:ident, $sqrt:ident,
-     $hypot:ident, $least_exponent:literal) => {
+     $hypot:ident, $exp_m1:ident, $ln:ident, $ln_1p:ident, $ln_gamma:ident, $powf:ident, $round:ident, $tanh:ident, $least_exponent:literal) => {
         impl Real for $t {
             const PI: Self = core::$t::consts::PI;
+            const EPSILON: Self = $t::EPSILON;
             #[inline]
             #[allow(
                 clippy::cast_possible_truncation,
@@ -139,6 +155,34 @@ macro_rules! real {
                 if self < $least_exponent { 0.0 } else { libm::$exp(self) }
             }
             #[inline]
+            fn exp_m1(self) -> Self {
+                libm::$exp_m1(self)
+            }
+            #[inline]
+            fn ln(self) -> Self {
+                libm::$ln(self)
+            }
+            #[inline]
+            fn ln_1p(self) -> Self {
+                libm::$ln_1p(self)
+            }
+            #[inline]
+            fn ln_gamma(self) -> Self {
+                libm::$ln_gamma(self)
+            }
+            #[inline]
+            fn tanh(self) -> Self {
+                libm::$tanh(self)
+            }
+            #[inline]
+            fn round(self) -> Self {
+                libm::$round(self)
+            }
+            #[inline]
+            fn powf(self, exponent: Self) -> Self {
+                libm::$powf(self, exponent)
+            }
+            #[inline]
             fn sqrt(self) -> Self {
                 libm::$sqrt(self)
             }
@@ -162,5 +206,10 @@ macro_rules! real {
     };
 }
 
-real!(f32, erfcf, sinf, cosf, tanf, asinf, atanf, atan2f, expf, sqrtf, hypotf, -87.3);
-real!(f64, erfc, sin, cos, tan, asin, atan, atan2, exp, sqrt, hypot, -708.3);
+real!(
+    f32, erfcf, sinf, cosf, tanf, asinf, atanf, atan2f, expf, sqrtf, hypotf, expm1f, logf, log1pf, lgammaf, powf,
+    roundf, tanhf, -87.3
+);
+real!(
+    f64, erfc, sin, cos, tan, asin, atan, atan2, exp, sqrt, hypot, expm1, log, log1p, lgamma, pow, round, tanh, -708.3
+);

@@ -2,9 +2,9 @@
 
 #![allow(unsafe_code, reason = "intrinsics of target features that the program is compiled for")]
 
-use super::{
+use super::lanes::{
     Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, UPPER, difference_fused, difference_split,
-    pick_by_select, pick_three_by_select, sealed::Sealed,
+    sealed::Sealed, select_of_four, select_of_three,
 };
 use wide::{f32x8, u32x8};
 
@@ -74,7 +74,7 @@ fn split(x: f32x8) -> [f32x8; 2] {
 impl Lanes for f32x8 {
     type Mask = f32x8;
     /// Where the chosen number is at least each of the three bounds.
-    type Choice = [f32x8; 3];
+    type Index = [f32x8; 3];
     type Stored = f32x8;
 
     #[inline(always)]
@@ -171,22 +171,26 @@ impl Lanes for f32x8 {
         mask & x
     }
     #[inline(always)]
-    fn choose(xi: Self, bounds: [Self; 3]) -> [f32x8; 3] {
-        [xi.simd_ge(bounds[0]), xi.simd_ge(bounds[1]), xi.simd_ge(bounds[2])]
+    fn search(x: Self, bounds: [Self; 3], count: usize) -> [f32x8; 3] {
+        [
+            if count > 0 { x.simd_ge(bounds[0]) } else { f32x8::ZERO },
+            if count > 1 { x.simd_ge(bounds[1]) } else { f32x8::ZERO },
+            if count > 2 { x.simd_ge(bounds[2]) } else { f32x8::ZERO },
+        ]
     }
     #[inline(always)]
-    fn is_slot(choice: [f32x8; 3], slot: usize) -> f32x8 {
-        match slot {
-            0 => !choice[0],
-            1 => choice[0] & !choice[1],
-            2 => choice[1] & !choice[2],
-            _ => choice[2],
+    fn is_index(index: [f32x8; 3], entry: usize) -> f32x8 {
+        match entry {
+            0 => !index[0],
+            1 => index[0] & !index[1],
+            2 => index[1] & !index[2],
+            _ => index[2],
         }
     }
     #[inline(always)]
-    fn slot_number(choice: [f32x8; 3]) -> Self {
+    fn index_number(index: [f32x8; 3]) -> Self {
         let one = splat(1.0);
-        (choice[0] & one) + (choice[1] & one) + (choice[2] & one)
+        (index[0] & one) + (index[1] & one) + (index[2] & one)
     }
 }
 
@@ -200,16 +204,16 @@ macro_rules! broadcast {
                 $lanes
             }
             #[inline(always)]
-            fn pick(table: &[$Stored; 4], choice: [f32x8; 3]) -> f32x8 {
-                pick_by_select([table[0].lanes(), table[1].lanes(), table[2].lanes(), table[3].lanes()], choice)
+            fn look_up(table: &[$Stored; 4], index: [f32x8; 3]) -> f32x8 {
+                select_of_four([table[0].lanes(), table[1].lanes(), table[2].lanes(), table[3].lanes()], index)
             }
             #[inline(always)]
-            fn pick_three(table: &[$Stored; 4], choice: [f32x8; 3]) -> f32x8 {
-                pick_three_by_select([table[0].lanes(), table[1].lanes(), table[2].lanes()], choice)
+            fn look_up_three(table: &[$Stored; 4], index: [f32x8; 3]) -> f32x8 {
+                select_of_three([table[0].lanes(), table[1].lanes(), table[2].lanes()], index)
             }
             #[inline(always)]
-            fn pick_pair(table: &[$Stored; 2], choice: [f32x8; 3]) -> f32x8 {
-                choice[1].select(table[1].lanes(), table[0].lanes())
+            fn look_up_half(table: &[$Stored; 2], index: [f32x8; 3]) -> f32x8 {
+                index[1].select(table[1].lanes(), table[0].lanes())
             }
         }
     )* };

@@ -5,9 +5,9 @@
 
 #![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
 
-use super::{
-    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused, pick_by_select,
-    pick_three_by_select, sealed::Sealed,
+use super::lanes::{
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused, sealed::Sealed,
+    select_of_four, select_of_three,
 };
 use core::arch::asm;
 #[cfg(target_arch = "x86")]
@@ -52,16 +52,16 @@ impl Neg for Avx2 {
 
 impl Sealed for Avx2 {}
 
-/// One of four slots a lane: its number, and where it is at least 1, 2 and 3. What a model does not use is not kept.
+/// An index from 0 to 3 per lane: its number, and where it is at least 1, 2 and 3. What is not used is not kept.
 #[derive(Clone, Copy, Debug)]
-pub struct Slots {
+pub struct Indices {
     number: __m256i,
     at_least: [__m256; 3],
 }
 
 impl Lanes for Avx2 {
     type Mask = __m256;
-    type Choice = Slots;
+    type Index = Indices;
     type Stored = f32x8;
 
     #[inline(always)]
@@ -155,29 +155,30 @@ impl Lanes for Avx2 {
         Self(avx2!(_mm256_and_ps(mask, x.0)))
     }
     #[inline(always)]
-    fn abreast(a: Self, b: Self) -> (Self, Self) {
-        let (a, b) = avx2!(abreast(a.0, b.0));
+    fn interleave(a: Self, b: Self) -> (Self, Self) {
+        let (a, b) = avx2!(interleave(a.0, b.0));
         (Self(a), Self(b))
     }
     #[inline(always)]
-    fn choose(xi: Self, bounds: [Self; 3]) -> Slots {
-        let at_least = avx2!([
-            _mm256_cmp_ps::<_CMP_GE_OQ>(xi.0, bounds[0].0),
-            _mm256_cmp_ps::<_CMP_GE_OQ>(xi.0, bounds[1].0),
-            _mm256_cmp_ps::<_CMP_GE_OQ>(xi.0, bounds[2].0),
-        ]);
-        // A set mask is -1 as an integer.
-        let number = avx2!({
+    fn search(x: Self, bounds: [Self; 3], count: usize) -> Indices {
+        avx2!({
+            let none = _mm256_setzero_ps();
+            let at_least = [
+                if count > 0 { _mm256_cmp_ps::<_CMP_GE_OQ>(x.0, bounds[0].0) } else { none },
+                if count > 1 { _mm256_cmp_ps::<_CMP_GE_OQ>(x.0, bounds[1].0) } else { none },
+                if count > 2 { _mm256_cmp_ps::<_CMP_GE_OQ>(x.0, bounds[2].0) } else { none },
+            ];
+            // A set mask is -1 as an integer.
             let [a, b, c] = [at_least[0], at_least[1], at_least[2]];
             let sum = _mm256_add_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b));
-            _mm256_sub_epi32(_mm256_setzero_si256(), _mm256_add_epi32(sum, _mm256_castps_si256(c)))
-        });
-        Slots { number, at_least }
+            let number = _mm256_sub_epi32(_mm256_setzero_si256(), _mm256_add_epi32(sum, _mm256_castps_si256(c)));
+            Indices { number, at_least }
+        })
     }
     #[inline(always)]
-    fn is_slot(choice: Slots, slot: usize) -> __m256 {
-        let [one, two, three] = choice.at_least;
-        avx2!(match slot {
+    fn is_index(index: Indices, entry: usize) -> __m256 {
+        let [one, two, three] = index.at_least;
+        avx2!(match entry {
             0 => _mm256_xor_ps(one, _mm256_castsi256_ps(_mm256_set1_epi32(-1))),
             1 => _mm256_andnot_ps(two, one),
             2 => _mm256_andnot_ps(three, two),
@@ -185,15 +186,15 @@ impl Lanes for Avx2 {
         })
     }
     #[inline(always)]
-    fn slot_number(choice: Slots) -> Self {
-        Self(avx2!(_mm256_cvtepi32_ps(choice.number)))
+    fn index_number(index: Indices) -> Self {
+        Self(avx2!(_mm256_cvtepi32_ps(index.number)))
     }
 }
 
 /// Code that is none, and that a compiler takes for one instruction with two operands and two results. Miri runs no assembly.
 #[target_feature(enable = "avx")]
 #[inline]
-fn abreast(mut a: __m256, mut b: __m256) -> (__m256, __m256) {
+fn interleave(mut a: __m256, mut b: __m256) -> (__m256, __m256) {
     #[cfg(not(miri))]
     // SAFETY: there is no code, and AVX, which the registers belong to, is there.
     unsafe {
@@ -209,22 +210,22 @@ impl Broadcast<Avx2> for f32 {
     }
     // One shuffle in place of three blends.
     #[inline(always)]
-    fn pick(table: &[f32; 4], choice: Slots) -> Avx2 {
+    fn look_up(table: &[f32; 4], index: Indices) -> Avx2 {
         Avx2(avx2!({
             let four = _mm_loadu_ps(table.as_ptr());
-            _mm256_permutevar_ps(_mm256_set_m128(four, four), choice.number)
+            _mm256_permutevar_ps(_mm256_set_m128(four, four), index.number)
         }))
     }
     #[inline(always)]
-    fn pick_three(table: &[f32; 4], choice: Slots) -> Avx2 {
-        Self::pick(table, choice)
+    fn look_up_three(table: &[f32; 4], index: Indices) -> Avx2 {
+        Self::look_up(table, index)
     }
     #[inline(always)]
-    fn pick_pair(table: &[f32; 2], choice: Slots) -> Avx2 {
+    fn look_up_half(table: &[f32; 2], index: Indices) -> Avx2 {
         Avx2(avx2!({
-            // Either entry in every second lane: the upper of a slot's two bits is which.
+            // Either entry in every second lane: the upper of an index's two bits is which.
             let two = _mm256_castpd_ps(_mm256_set1_pd(table.as_ptr().cast::<f64>().read_unaligned()));
-            _mm256_permutevar_ps(two, _mm256_srli_epi32::<1>(choice.number))
+            _mm256_permutevar_ps(two, _mm256_srli_epi32::<1>(index.number))
         }))
     }
 }
@@ -235,16 +236,16 @@ impl Broadcast<Avx2> for f32x8 {
         Avx2(avx2!(_mm256_loadu_ps(self.as_array().as_ptr())))
     }
     #[inline(always)]
-    fn pick(table: &[f32x8; 4], choice: Slots) -> Avx2 {
-        pick_by_select([table[0].lanes(), table[1].lanes(), table[2].lanes(), table[3].lanes()], choice.at_least)
+    fn look_up(table: &[f32x8; 4], index: Indices) -> Avx2 {
+        select_of_four([table[0].lanes(), table[1].lanes(), table[2].lanes(), table[3].lanes()], index.at_least)
     }
     #[inline(always)]
-    fn pick_three(table: &[f32x8; 4], choice: Slots) -> Avx2 {
-        pick_three_by_select([table[0].lanes(), table[1].lanes(), table[2].lanes()], choice.at_least)
+    fn look_up_three(table: &[f32x8; 4], index: Indices) -> Avx2 {
+        select_of_three([table[0].lanes(), table[1].lanes(), table[2].lanes()], index.at_least)
     }
     #[inline(always)]
-    fn pick_pair(table: &[f32x8; 2], choice: Slots) -> Avx2 {
-        Avx2::select(choice.at_least[1], table[1].lanes(), table[0].lanes())
+    fn look_up_half(table: &[f32x8; 2], index: Indices) -> Avx2 {
+        Avx2::select(index.at_least[1], table[1].lanes(), table[0].lanes())
     }
 }
 

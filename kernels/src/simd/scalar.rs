@@ -7,7 +7,9 @@
 
 use core::hint::select_unpredictable;
 
-use super::{Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, UPPER, difference_split, sealed::Sealed};
+use super::lanes::{
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, UPPER, difference_split, sealed::Sealed,
+};
 
 impl Sealed for f32 {}
 
@@ -36,7 +38,7 @@ fn sqrt(x: f32) -> f32 {
 
 impl Lanes for f32 {
     type Mask = bool;
-    type Choice = usize;
+    type Index = usize;
     type Stored = f32;
 
     #[inline(always)]
@@ -120,16 +122,18 @@ impl Lanes for f32 {
         select_unpredictable(mask, x, 0.0)
     }
     #[inline(always)]
-    fn choose(xi: Self, bounds: [Self; 3]) -> usize {
-        usize::from(xi >= bounds[0]) + usize::from(xi >= bounds[1]) + usize::from(xi >= bounds[2])
+    fn search(x: Self, bounds: [Self; 3], count: usize) -> usize {
+        usize::from(count > 0 && x >= bounds[0])
+            + usize::from(count > 1 && x >= bounds[1])
+            + usize::from(count > 2 && x >= bounds[2])
     }
     #[inline(always)]
-    fn is_slot(choice: usize, slot: usize) -> bool {
-        choice == slot
+    fn is_index(index: usize, entry: usize) -> bool {
+        index == entry
     }
     #[inline(always)]
-    fn slot_number(choice: usize) -> Self {
-        [0.0, 1.0, 2.0, 3.0][choice & 3]
+    fn index_number(index: usize) -> Self {
+        [0.0, 1.0, 2.0, 3.0][index & 3]
     }
 }
 
@@ -139,15 +143,15 @@ impl Broadcast<f32> for f32 {
         *self
     }
     #[inline(always)]
-    fn pick(table: &[f32; 4], choice: usize) -> f32 {
-        table[choice & 3]
+    fn look_up(table: &[f32; 4], index: usize) -> f32 {
+        table[index & 3]
     }
     #[inline(always)]
-    fn pick_three(table: &[f32; 4], choice: usize) -> f32 {
-        table[choice & 3]
+    fn look_up_three(table: &[f32; 4], index: usize) -> f32 {
+        table[index & 3]
     }
     #[inline(always)]
-    fn pick_pair(table: &[f32; 2], choice: usize) -> f32 {
-        table[choice >> 1 & 1]
+    fn look_up_half(table: &[f32; 2], index: usize) -> f32 {
+        table[index >> 1 & 1]
     }
 }

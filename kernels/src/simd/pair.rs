@@ -5,12 +5,20 @@
 //!
 //! Models put equal steps of one packet side by side in the same way, two or four of them.
 
-use super::{Broadcast, Lanes, Packet, sealed::Sealed};
+use super::lanes::{Broadcast, Lanes, Packet, sealed::Sealed};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// The lanes of two packets.
+/// Two packets, or two equal steps of one, as lanes: each instruction for one is followed by that for the other.
+///
+/// Constants are read once for both, and neither chain of results waits alone. Pairs nest.
+///
+/// ```
+/// use hairis::{Lanes, Pair, math};
+/// let Pair(sine, other) = math::sin_half_turn(Pair(0.5_f32, 1.0));
+/// assert!((sine - 0.5_f32.sin()).abs() < 1e-6 && (other - 1.0_f32.sin()).abs() < 1e-6);
+/// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Pair<L>(pub(crate) L, pub(crate) L);
+pub struct Pair<L>(pub L, pub L);
 
 impl<L: Lanes> Sealed for Pair<L> {}
 
@@ -37,8 +45,8 @@ impl<L: Lanes> Neg for Pair<L> {
 
 impl<L: Lanes> Lanes for Pair<L> {
     type Mask = (L::Mask, L::Mask);
-    type Choice = (L::Choice, L::Choice);
-    // Slices have one gather point: nothing is kept in pairs between calls.
+    type Index = (L::Index, L::Index);
+    // Only columns run in pairs: nothing is kept in them between calls.
     type Stored = Self;
 
     #[inline(always)]
@@ -120,27 +128,27 @@ impl<L: Lanes> Lanes for Pair<L> {
         Self(L::keep(mask.0, x.0), L::keep(mask.1, x.1))
     }
     #[inline(always)]
-    fn abreast(a: Self, b: Self) -> (Self, Self) {
-        let (a0, b0) = L::abreast(a.0, b.0);
-        let (a1, b1) = L::abreast(a.1, b.1);
+    fn interleave(a: Self, b: Self) -> (Self, Self) {
+        let (a0, b0) = L::interleave(a.0, b.0);
+        let (a1, b1) = L::interleave(a.1, b.1);
         (Self(a0, a1), Self(b0, b1))
     }
     #[inline(always)]
-    fn in_step(self) -> Self {
-        let (a, b) = L::abreast(self.0, self.1);
+    fn interleaved(self) -> Self {
+        let (a, b) = L::interleave(self.0, self.1);
         Self(a, b)
     }
     #[inline(always)]
-    fn choose(xi: Self, [a, b, c]: [Self; 3]) -> Self::Choice {
-        (L::choose(xi.0, [a.0, b.0, c.0]), L::choose(xi.1, [a.1, b.1, c.1]))
+    fn search(x: Self, [a, b, c]: [Self; 3], count: usize) -> Self::Index {
+        (L::search(x.0, [a.0, b.0, c.0], count), L::search(x.1, [a.1, b.1, c.1], count))
     }
     #[inline(always)]
-    fn is_slot(choice: Self::Choice, slot: usize) -> Self::Mask {
-        (L::is_slot(choice.0, slot), L::is_slot(choice.1, slot))
+    fn is_index(index: Self::Index, entry: usize) -> Self::Mask {
+        (L::is_index(index.0, entry), L::is_index(index.1, entry))
     }
     #[inline(always)]
-    fn slot_number(choice: Self::Choice) -> Self {
-        Self(L::slot_number(choice.0), L::slot_number(choice.1))
+    fn index_number(index: Self::Index) -> Self {
+        Self(L::index_number(index.0), L::index_number(index.1))
     }
 }
 
@@ -154,16 +162,16 @@ where
         Pair(lanes, lanes)
     }
     #[inline(always)]
-    fn pick(table: &[f32; 4], choice: (L::Choice, L::Choice)) -> Pair<L> {
-        Pair(<f32 as Broadcast<L>>::pick(table, choice.0), <f32 as Broadcast<L>>::pick(table, choice.1))
+    fn look_up(table: &[f32; 4], index: (L::Index, L::Index)) -> Pair<L> {
+        Pair(<f32 as Broadcast<L>>::look_up(table, index.0), <f32 as Broadcast<L>>::look_up(table, index.1))
     }
     #[inline(always)]
-    fn pick_three(table: &[f32; 4], choice: (L::Choice, L::Choice)) -> Pair<L> {
-        Pair(<f32 as Broadcast<L>>::pick_three(table, choice.0), <f32 as Broadcast<L>>::pick_three(table, choice.1))
+    fn look_up_three(table: &[f32; 4], index: (L::Index, L::Index)) -> Pair<L> {
+        Pair(<f32 as Broadcast<L>>::look_up_three(table, index.0), <f32 as Broadcast<L>>::look_up_three(table, index.1))
     }
     #[inline(always)]
-    fn pick_pair(table: &[f32; 2], choice: (L::Choice, L::Choice)) -> Pair<L> {
-        Pair(<f32 as Broadcast<L>>::pick_pair(table, choice.0), <f32 as Broadcast<L>>::pick_pair(table, choice.1))
+    fn look_up_half(table: &[f32; 2], index: (L::Index, L::Index)) -> Pair<L> {
+        Pair(<f32 as Broadcast<L>>::look_up_half(table, index.0), <f32 as Broadcast<L>>::look_up_half(table, index.1))
     }
 }
 
@@ -176,21 +184,21 @@ where
         *self
     }
     #[inline(always)]
-    fn pick(table: &[Self; 4], choice: (L::Choice, L::Choice)) -> Self {
+    fn look_up(table: &[Self; 4], index: (L::Index, L::Index)) -> Self {
         let [a, b, c, d] = table;
         let first = [a.0.store(), b.0.store(), c.0.store(), d.0.store()];
         let second = [a.1.store(), b.1.store(), c.1.store(), d.1.store()];
-        Self(L::Stored::pick(&first, choice.0), L::Stored::pick(&second, choice.1))
+        Self(L::Stored::look_up(&first, index.0), L::Stored::look_up(&second, index.1))
     }
     #[inline(always)]
-    fn pick_three(table: &[Self; 4], choice: (L::Choice, L::Choice)) -> Self {
-        Self::pick(table, choice)
+    fn look_up_three(table: &[Self; 4], index: (L::Index, L::Index)) -> Self {
+        Self::look_up(table, index)
     }
     #[inline(always)]
-    fn pick_pair(table: &[Self; 2], choice: (L::Choice, L::Choice)) -> Self {
+    fn look_up_half(table: &[Self; 2], index: (L::Index, L::Index)) -> Self {
         let [a, b] = table;
         let (first, second) = ([a.0.store(), b.0.store()], [a.1.store(), b.1.store()]);
-        Self(L::Stored::pick_pair(&first, choice.0), L::Stored::pick_pair(&second, choice.1))
+        Self(L::Stored::look_up_half(&first, index.0), L::Stored::look_up_half(&second, index.1))
     }
 }
 

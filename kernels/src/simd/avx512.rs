@@ -5,9 +5,9 @@
 
 #![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
 
-use super::{
-    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused, pick_by_select,
-    sealed::Sealed,
+use super::lanes::{
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused, sealed::Sealed,
+    select_of_four,
 };
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
@@ -50,17 +50,17 @@ impl Neg for Avx512 {
 
 impl Sealed for Avx512 {}
 
-/// One of four slots a lane: its number, and where it is at least 1, 2 and 3. What a model does not use is not kept.
+/// An index from 0 to 3 per lane: its number, and where it is at least 1, 2 and 3. What is not used is not kept.
 #[derive(Clone, Copy, Debug)]
-pub struct Slots {
+pub struct Indices {
     number: __m512i,
     at_least: [__mmask16; 3],
 }
 
 impl Lanes for Avx512 {
     type Mask = __mmask16;
-    type Choice = Slots;
-    // Slices have one gather point: nothing is kept in sixteen lanes between calls.
+    type Index = Indices;
+    // Only columns run in sixteen lanes: nothing is kept in them between calls.
     type Stored = Self;
 
     #[inline(always)]
@@ -150,11 +150,11 @@ impl Lanes for Avx512 {
         Self(avx512!(_mm512_maskz_mov_ps(mask, x.0)))
     }
     #[inline(always)]
-    fn choose(xi: Self, bounds: [Self; 3]) -> Slots {
+    fn search(x: Self, bounds: [Self; 3], count: usize) -> Indices {
         let at_least = avx512!([
-            _mm512_cmp_ps_mask::<_CMP_GE_OQ>(xi.0, bounds[0].0),
-            _mm512_cmp_ps_mask::<_CMP_GE_OQ>(xi.0, bounds[1].0),
-            _mm512_cmp_ps_mask::<_CMP_GE_OQ>(xi.0, bounds[2].0),
+            if count > 0 { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[0].0) } else { 0 },
+            if count > 1 { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[1].0) } else { 0 },
+            if count > 2 { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[2].0) } else { 0 },
         ]);
         let number = avx512!({
             let one = _mm512_set1_epi32(1);
@@ -162,12 +162,12 @@ impl Lanes for Avx512 {
             let second = _mm512_mask_add_epi32(first, at_least[1], first, one);
             _mm512_mask_add_epi32(second, at_least[2], second, one)
         });
-        Slots { number, at_least }
+        Indices { number, at_least }
     }
     #[inline(always)]
-    fn is_slot(choice: Slots, slot: usize) -> __mmask16 {
-        let [one, two, three] = choice.at_least;
-        match slot {
+    fn is_index(index: Indices, entry: usize) -> __mmask16 {
+        let [one, two, three] = index.at_least;
+        match entry {
             0 => !one,
             1 => one & !two,
             2 => two & !three,
@@ -175,8 +175,8 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
-    fn slot_number(choice: Slots) -> Self {
-        Self(avx512!(_mm512_cvtepi32_ps(choice.number)))
+    fn index_number(index: Indices) -> Self {
+        Self(avx512!(_mm512_cvtepi32_ps(index.number)))
     }
 }
 
@@ -187,19 +187,19 @@ impl Broadcast<Avx512> for f32 {
     }
     // One shuffle in place of three blends.
     #[inline(always)]
-    fn pick(table: &[f32; 4], choice: Slots) -> Avx512 {
-        Avx512(avx512!(_mm512_permutevar_ps(_mm512_broadcast_f32x4(_mm_loadu_ps(table.as_ptr())), choice.number)))
+    fn look_up(table: &[f32; 4], index: Indices) -> Avx512 {
+        Avx512(avx512!(_mm512_permutevar_ps(_mm512_broadcast_f32x4(_mm_loadu_ps(table.as_ptr())), index.number)))
     }
     #[inline(always)]
-    fn pick_three(table: &[f32; 4], choice: Slots) -> Avx512 {
-        Self::pick(table, choice)
+    fn look_up_three(table: &[f32; 4], index: Indices) -> Avx512 {
+        Self::look_up(table, index)
     }
     #[inline(always)]
-    fn pick_pair(table: &[f32; 2], choice: Slots) -> Avx512 {
+    fn look_up_half(table: &[f32; 2], index: Indices) -> Avx512 {
         Avx512(avx512!({
-            // Either entry in every second lane: the upper of a slot's two bits is which.
+            // Either entry in every second lane: the upper of an index's two bits is which.
             let two = _mm512_castpd_ps(_mm512_set1_pd(table.as_ptr().cast::<f64>().read_unaligned()));
-            _mm512_permutevar_ps(two, _mm512_srli_epi32::<1>(choice.number))
+            _mm512_permutevar_ps(two, _mm512_srli_epi32::<1>(index.number))
         }))
     }
 }
@@ -210,16 +210,16 @@ impl Broadcast<Self> for Avx512 {
         *self
     }
     #[inline(always)]
-    fn pick(table: &[Self; 4], choice: Slots) -> Self {
-        pick_by_select(*table, choice.at_least)
+    fn look_up(table: &[Self; 4], index: Indices) -> Self {
+        select_of_four(*table, index.at_least)
     }
     #[inline(always)]
-    fn pick_three(table: &[Self; 4], choice: Slots) -> Self {
-        pick_by_select(*table, choice.at_least)
+    fn look_up_three(table: &[Self; 4], index: Indices) -> Self {
+        select_of_four(*table, index.at_least)
     }
     #[inline(always)]
-    fn pick_pair(table: &[Self; 2], choice: Slots) -> Self {
-        Self::select(choice.at_least[1], table[1], table[0])
+    fn look_up_half(table: &[Self; 2], index: Indices) -> Self {
+        Self::select(index.at_least[1], table[1], table[0])
     }
 }
 

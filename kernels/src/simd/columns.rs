@@ -1,88 +1,52 @@
-//! What runs over slices: rows of numbers, in whole packets and then eight at a time.
+//! Rows of numbers over slices: in whole packets and then eight at a time.
 #![cfg_attr(
     not(any(target_arch = "x86", target_arch = "x86_64")),
     allow(dead_code, reason = "packets of other levels have more than eight lanes on these machines alone")
 )]
 
-use crate::dispatch::{self, Level};
-use crate::lanes::Packet;
-use crate::model::{Drawn, Eval8};
-use crate::{Broadcast, Lanes, Model, Vec3x};
-use core::fmt::Debug;
+use super::dispatch::{Kernel, Level};
+use super::lanes::{Broadcast, Lanes, Packet, lanes3};
 use core::{mem, slice};
 use wide::f32x8;
 
-/// What a batch computes of three numbers a lane: `N` numbers a lane.
-pub(crate) trait Row<const N: usize> {
-    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, input: [L; 3]) -> [L; N];
-    /// The same of eight lanes, by the entry point of packets.
-    fn eight<M: Model>(level: Level, gather: &M::Gather<f32>, input: &[f32x8; 3]) -> [f32x8; N];
-}
+/// Three numbers in, `N` numbers out, whatever the lanes: what [`Level::run_rows`] runs over columns.
+pub trait Row<const N: usize>: Copy {
+    /// The numbers of each lane. Mark it `#[inline(always)]`, and all it calls.
+    fn row<L: Lanes>(self, input: [L; 3]) -> [L; N]
+    where
+        f32: Broadcast<L>;
 
-/// Value and density of eight directions.
-#[inline(always)]
-fn eval8<M: Model>(level: Level, gather: &M::Gather<f32>, [x, y, z]: &[f32x8; 3]) -> Eval8 {
-    dispatch::eval8::<M, f32>(level, gather, &Vec3x::new(*x, *y, *z))
-}
-
-/// The value alone: what only the density needs is not computed.
-pub(crate) struct ValueRow;
-impl Row<3> for ValueRow {
+    /// The same of eight lanes, by [`Level::run`].
     #[inline(always)]
-    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, [x, y, z]: [L; 3]) -> [L; 3] {
-        M::eval::<L, C>(gather, Vec3x::new(x, y, z)).value
-    }
-    #[inline(always)]
-    fn eight<M: Model>(level: Level, gather: &M::Gather<f32>, input: &[f32x8; 3]) -> [f32x8; 3] {
-        eval8::<M>(level, gather, input).value
+    fn eight(self, level: Level, input: &[f32x8; 3]) -> [f32x8; N] {
+        level.run(Eight { row: self, input })
     }
 }
 
-/// The density alone.
-pub(crate) struct PdfRow;
-impl Row<1> for PdfRow {
-    #[inline(always)]
-    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, [x, y, z]: [L; 3]) -> [L; 1] {
-        [M::eval::<L, C>(gather, Vec3x::new(x, y, z)).pdf]
-    }
-    #[inline(always)]
-    fn eight<M: Model>(level: Level, gather: &M::Gather<f32>, input: &[f32x8; 3]) -> [f32x8; 1] {
-        [eval8::<M>(level, gather, input).pdf]
-    }
+/// One row of eight lanes.
+struct Eight<'a, R, const N: usize> {
+    row: R,
+    input: &'a [f32x8; 3],
 }
 
-pub(crate) struct EvalRow;
-impl Row<4> for EvalRow {
-    #[inline(always)]
-    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, [x, y, z]: [L; 3]) -> [L; 4] {
-        let eval = M::eval::<L, C>(gather, Vec3x::new(x, y, z));
-        let [r, g, b] = eval.value;
-        [r, g, b, eval.pdf]
-    }
-    #[inline(always)]
-    fn eight<M: Model>(level: Level, gather: &M::Gather<f32>, input: &[f32x8; 3]) -> [f32x8; 4] {
-        let eval = eval8::<M>(level, gather, input);
-        let [r, g, b] = eval.value;
-        [r, g, b, eval.pdf]
-    }
-}
+impl<R: Row<N>, const N: usize> Kernel for Eight<'_, R, N> {
+    type Constant = f32;
+    type Output = [f32x8; N];
 
-/// The numbers of a sample in the order of its slices.
-#[inline(always)]
-fn columns<L>(s: Drawn<L>) -> [L; 11] {
-    let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
-    [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
-}
-
-pub(crate) struct SampleRow;
-impl Row<11> for SampleRow {
     #[inline(always)]
-    fn row<M: Model, L: Lanes, C: Broadcast<L> + Debug>(gather: &M::Gather<C>, xi: [L; 3]) -> [L; 11] {
-        columns(M::sample::<L, C>(gather, xi))
-    }
-    #[inline(always)]
-    fn eight<M: Model>(level: Level, gather: &M::Gather<f32>, xi: &[f32x8; 3]) -> [f32x8; 11] {
-        columns(dispatch::sample8::<M, f32>(level, gather, xi))
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; N]
+    where
+        f32: Broadcast<L>,
+        f32x8: Broadcast<L>,
+    {
+        let row = self.row.row::<L>(lanes3(self.input));
+        let mut out = [f32x8::ZERO; N];
+        let mut i = 0;
+        while i < N {
+            out[i] = row[i].store();
+            i += 1;
+        }
+        out
     }
 }
 
@@ -92,11 +56,13 @@ impl Row<11> for SampleRow {
 /// Columns are cut to one length before the loop, so that it has no branch but its own: the compiler moves what leads to
 /// a result past the branch that decides on its being written, and with it all of one packet of a pair before the other.
 #[inline(always)]
-pub(crate) fn packets<M: Model, R: Row<N>, L: Packet<W>, C: Broadcast<L> + Debug, const N: usize, const W: usize>(
-    gather: &M::Gather<C>,
+pub(crate) fn packets<R: Row<N>, L: Packet<W>, const N: usize, const W: usize>(
+    row: R,
     [first, second, third]: [&[[f32; W]]; 3],
     outputs: &mut [&mut [[f32; W]]; N],
-) {
+) where
+    f32: Broadcast<L>,
+{
     let len = first.len();
     let (Some(second), Some(third)) = (second.get(..len), third.get(..len)) else { return };
     // No loops over columns: compilers that save space leave them, and the row in memory.
@@ -110,7 +76,7 @@ pub(crate) fn packets<M: Model, R: Row<N>, L: Packet<W>, C: Broadcast<L> + Debug
                 };
             )*
             for at in 0..len {
-                let row = R::row::<M, L, C>(gather, [L::read(&first[at]), L::read(&second[at]), L::read(&third[at])]);
+                let row = row.row::<L>([L::read(&first[at]), L::read(&second[at]), L::read(&third[at])]);
                 $(
                     if $index < N {
                         row[$index].write(&mut $column[at]);
@@ -163,9 +129,9 @@ pub(crate) fn in_packets<const N: usize, const W: usize>(
 ///
 /// Slices of less than eight rows are lanes 0 on.
 #[inline(always)]
-pub(crate) fn in_eights<M: Model, R: Row<N>, const N: usize>(
+pub(crate) fn in_eights<R: Row<N>, const N: usize>(
     level: Level,
-    gather: &M::Gather<f32>,
+    row: R,
     inputs: [&[f32]; 3],
     outputs: &mut [&mut [f32]; N],
     mut done: usize,
@@ -177,8 +143,8 @@ pub(crate) fn in_eights<M: Model, R: Row<N>, const N: usize>(
         for (to, column) in from.iter_mut().zip(&inputs) {
             copy(column.get(start..).unwrap_or_default(), to);
         }
-        let row = R::eight::<M>(level, gather, &from.map(f32x8::new));
-        for (lanes, column) in row.iter().zip(outputs.iter_mut()) {
+        let lanes = row.eight(level, &from.map(f32x8::new));
+        for (lanes, column) in lanes.iter().zip(outputs.iter_mut()) {
             copy(lanes.as_array(), column.get_mut(start..).unwrap_or_default());
         }
         done = start + 8;

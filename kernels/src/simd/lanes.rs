@@ -1,4 +1,4 @@
-//! The word in which every model is written: one lane (`f32`), or eight.
+//! SIMD vector trait in which every model is written: one lane (`f32`), or eight.
 //!
 //! A lane is one sample of one gather point, or one of eight gather points, as the caller has it: models never mix
 //! lanes. [`Lanes`] holds the arithmetic and nothing else, so that a model compiles to the same straight line of
@@ -7,14 +7,7 @@
 //! Comparisons are false for NaN. `min` and `max` give their second operand when either is NaN, which is what the
 //! machine does and what lets one `min` at the end of a model turn a NaN into its bound.
 
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-pub(crate) mod avx2;
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-pub(crate) mod avx512;
-pub(crate) mod pair;
-pub(crate) mod portable;
-mod scalar;
-
+use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 pub(crate) mod sealed {
@@ -22,20 +15,30 @@ pub(crate) mod sealed {
     pub trait Sealed {}
 }
 
+/// What a struct of lanes holds: one number, or one a lane. Sealed.
+pub trait Scalar: sealed::Sealed + Copy + Debug {}
+impl<T: sealed::Sealed + Copy + Debug> Scalar for T {}
+
+/// A struct of lanes, as [`lane_struct!`](crate::lane_struct) declares it: eight of one lane are one of eight.
+pub trait LaneStruct: Copy + Debug {
+    /// The struct of one lane.
+    type One;
+    /// The struct of eight.
+    type Eight;
+    /// Eight structs as one: lane `i` holds the numbers of `items[i]`.
+    fn pack(items: [&Self::One; 8]) -> Self::Eight;
+    /// The numbers of one lane, 0 to 7.
+    fn lane(eight: &Self::Eight, lane: usize) -> Self::One;
+}
+
 /// One number a lane, with the arithmetic that models are written in.
 pub trait Lanes:
-    sealed::Sealed
-    + Copy
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+    Scalar + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// One truth value a lane.
     type Mask: Copy;
-    /// One of four slots a lane, see [`choose`](Self::choose).
-    type Choice: Copy;
+    /// An index from 0 to 3 per lane, see [`search`](Self::search).
+    type Index: Copy;
     /// What the lanes are kept in between calls: `f32` for one, `wide::f32x8` for eight.
     type Stored: Broadcast<Self>;
 
@@ -96,37 +99,37 @@ pub trait Lanes:
     /// Of two chains of results they like to write one behind the other, as that takes fewer registers. A CPU that looks a
     /// hundred instructions ahead then waits for each in turn.
     #[inline(always)]
-    fn abreast(a: Self, b: Self) -> (Self, Self) {
+    fn interleave(a: Self, b: Self) -> (Self, Self) {
         (a, b)
     }
-    /// Of two packets side by side, [`abreast`](Self::abreast) of the two; any other as it is.
+    /// Of two packets side by side, [`interleave`](Self::interleave) of the two; any other as it is.
     #[inline(always)]
     #[must_use]
-    fn in_step(self) -> Self {
+    fn interleaved(self) -> Self {
         self
     }
 
-    /// The slot that `xi` falls in: how many of the ascending `bounds` are at most `xi`.
-    fn choose(xi: Self, bounds: [Self; 3]) -> Self::Choice;
-    /// Where the chosen slot is `slot`, 0 to 3.
-    fn is_slot(choice: Self::Choice, slot: usize) -> Self::Mask;
-    /// The slot as a number: 0, 1, 2 or 3.
-    fn slot_number(choice: Self::Choice) -> Self;
+    /// How many of the first `count` ascending `bounds` are at most `x`.
+    fn search(x: Self, bounds: [Self; 3], count: usize) -> Self::Index;
+    /// Where the index is `entry`, 0 to 3.
+    fn is_index(index: Self::Index, entry: usize) -> Self::Mask;
+    /// The index as a number: 0, 1, 2 or 3.
+    fn index_number(index: Self::Index) -> Self;
 }
 
 /// Storage that lanes are read from: one number for all of them, or one a lane.
 ///
 /// A model reads its constants through this trait, so that one source serves eight directions at one gather point
 /// (constants in `f32`) and eight gather points (constants in `f32x8`).
-pub trait Broadcast<L: Lanes>: Copy {
+pub trait Broadcast<L: Lanes>: Scalar {
     /// The number of each lane.
     fn lanes(&self) -> L;
-    /// The number of each lane in the slot that the lane has chosen.
-    fn pick(table: &[Self; 4], choice: L::Choice) -> L;
-    /// The same of a table whose entries for slots 2 and 3 are equal, for less.
-    fn pick_three(table: &[Self; 4], choice: L::Choice) -> L;
-    /// The first entry of a table for slots 0 and 1, the second for slots 2 and 3.
-    fn pick_pair(table: &[Self; 2], choice: L::Choice) -> L;
+    /// The entry of each lane's index.
+    fn look_up(table: &[Self; 4], index: L::Index) -> L;
+    /// The entry of each lane's index, of a table whose last two entries are equal: for less.
+    fn look_up_three(table: &[Self; 4], index: L::Index) -> L;
+    /// The entry of half of each lane's index: the first for 0 and 1, the second for 2 and 3.
+    fn look_up_half(table: &[Self; 2], index: L::Index) -> L;
 }
 
 /// `W` lanes that are read from as many numbers in a row, of any alignment, and written to them.
@@ -145,7 +148,7 @@ pub fn lanes3<L: Lanes, C: Broadcast<L>>(x: &[C; 3]) -> [L; 3] {
 
 /// The four numbers of `x`, read as lanes.
 #[inline(always)]
-pub(crate) fn lanes4<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> [L; 4] {
+pub fn lanes4<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> [L; 4] {
     [x[0].lanes(), x[1].lanes(), x[2].lanes(), x[3].lanes()]
 }
 
@@ -163,13 +166,13 @@ pub fn store4<L: Lanes>(x: [L; 4]) -> [L::Stored; 4] {
 
 /// What [`Lanes::split_exponent`] adds to the bits of a float, so that their exponent, biased, is that of the power of two
 /// at or below `sqrt(2)` times it: the bits of 1 less those of `sqrt(1/2)`.
-const ROUND_EXPONENT: u32 = 0x3f80_0000 - 0x3f35_04f3;
+pub(crate) const ROUND_EXPONENT: u32 = 0x3f80_0000 - 0x3f35_04f3;
 /// The bits of 1: an exponent of 0, biased.
-const ONE: u32 = 0x3f80_0000;
+pub(crate) const ONE: u32 = 0x3f80_0000;
 /// The bits of `2^23`: with an integer below it in the low bits they are the sum of both.
-const INTEGER: u32 = 0x4b00_0000;
+pub(crate) const INTEGER: u32 = 0x4b00_0000;
 /// `2^23`, and the bias of an exponent.
-const INTEGER_BIAS: f32 = 8_388_608.0 + 127.0;
+pub(crate) const INTEGER_BIAS: f32 = 8_388_608.0 + 127.0;
 
 /// [`Lanes::difference_of_products`] with a fused `mul_add`, after Kahan.
 #[inline(always)]
@@ -197,15 +200,15 @@ fn product_split<L: Lanes>(a: [L; 2], b: [L; 2]) -> [L; 2] {
 /// Bits of the sign, the exponent and the upper 11 of the fraction.
 pub(crate) const UPPER: u32 = 0xffff_f000;
 
-/// The entry of `table` for a choice given by where its number is at least 1, 2 and 3.
+/// The entry of `table` for an index given by where it is at least 1, 2 and 3.
 #[inline(always)]
-pub(crate) fn pick_by_select<L: Lanes>(table: [L; 4], [one, two, three]: [L::Mask; 3]) -> L {
+pub(crate) fn select_of_four<L: Lanes>(table: [L; 4], [one, two, three]: [L::Mask; 3]) -> L {
     L::select(two, L::select(three, table[3], table[2]), L::select(one, table[1], table[0]))
 }
 
 /// The same of a table whose last two entries are equal.
 #[inline(always)]
-pub(crate) fn pick_three_by_select<L: Lanes>(table: [L; 3], [one, two, _]: [L::Mask; 3]) -> L {
+pub(crate) fn select_of_three<L: Lanes>(table: [L; 3], [one, two, _]: [L::Mask; 3]) -> L {
     L::select(two, table[2], L::select(one, table[1], table[0]))
 }
 
@@ -233,12 +236,12 @@ pub(crate) fn pick_three_by_select<L: Lanes>(table: [L; 3], [one, two, _]: [L::M
 macro_rules! lane_struct {
     (
         $(#[$meta:meta])*
-        pub struct $name:ident { $($(#[$field_meta:meta])* pub $field:ident: $kind:tt,)* }
+        $vis:vis struct $name:ident { $($(#[$field_meta:meta])* $field_vis:vis $field:ident: $kind:tt,)* }
     ) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[allow(unused_parens, reason = "parentheses tell a nested struct from a number")]
-        pub struct $name<C> { $($(#[$field_meta])* pub $field: $kind,)* }
+        $vis struct $name<C> { $($(#[$field_meta])* $field_vis $field: $kind,)* }
 
         impl<C: Copy> $name<C> {
             /// The same numbers in the storage of `L`: one number for all lanes becomes one a lane.
@@ -249,6 +252,19 @@ macro_rules! lane_struct {
                 C: $crate::Broadcast<L>,
             {
                 $name { $($field: $crate::lane_struct!(@spread self, L, $field, $kind),)* }
+            }
+        }
+
+        impl<C: $crate::Scalar> $crate::LaneStruct for $name<C> {
+            type One = $name<f32>;
+            type Eight = $name<$crate::wide::f32x8>;
+            #[inline]
+            fn pack(items: [&$name<f32>; 8]) -> $name<$crate::wide::f32x8> {
+                $name::<f32>::pack(items)
+            }
+            #[inline]
+            fn lane(eight: &$name<$crate::wide::f32x8>, lane: usize) -> $name<f32> {
+                eight.lane(lane)
             }
         }
 

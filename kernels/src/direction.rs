@@ -1,0 +1,80 @@
+//! A direction in the frame of a fibre, with the sine and the cosine of its inclination.
+
+use crate::math::sin_cos_half_turn;
+use crate::{GRAZING, Lanes, Vec3x};
+use core::f32::consts::PI;
+
+/// A unit direction in the fibre's frame, as models are given it and as they sample it.
+#[derive(Clone, Copy, Debug)]
+pub struct Direction<L: Lanes> {
+    /// Its components.
+    pub vector: Vec3x<L>,
+    /// Sine of the inclination.
+    pub sin_theta: L,
+    /// Cosine of the inclination.
+    pub cos_theta: L,
+    /// Where it is a direction, and off the axis.
+    sound: L::Mask,
+}
+
+impl<L: Lanes> Direction<L> {
+    /// The direction of a vector that ought to be unit. Within [`GRAZING`] of the axis, and longer than 2, it is not
+    /// [sound](Self::is_sound).
+    #[inline(always)]
+    #[must_use]
+    pub fn new(vector: Vec3x<L>) -> Self {
+        let Vec3x { x, y, z } = vector;
+        let cos_sq = y.mul_add(y, z * z);
+        let cos_theta = cos_sq.sqrt();
+        // The comparison is false for the infinities of a sum that overflowed, and for NaN.
+        let sound = L::and(L::splat(GRAZING).lt(cos_theta), x.mul_add(x, cos_sq).lt(L::splat(4.0)));
+        Self { vector, sin_theta: x, cos_theta, sound }
+    }
+
+    /// The direction of any finite vector. Zero counts as v, in the normal plane; on the axis the cosine is 0.
+    #[inline(always)]
+    #[must_use]
+    pub fn normalized(vector: Vec3x<L>) -> Self {
+        let c = L::splat;
+        let (one, half) = (c(1.0), c(0.5));
+        let Vec3x { x, y, z } = vector;
+        // Scaled first, so that no square overflows or vanishes; one of about unit length keeps its digits.
+        let largest = x.abs().max(y.abs().max(z.abs()));
+        let by = L::select(c(1e12).lt(largest), c(1e-25), L::select(largest.lt(c(1e-12)), c(1e25), one));
+        let (x, y, z) = (x * by, y * by, z * by);
+        let length_sq = x.mul_add(x, y.mul_add(y, z * z));
+        let some = c(1e-30).lt(length_sq);
+        let unit = (length_sq - one).abs().lt(c(1e-5));
+        let by = L::select(unit, one, L::keep(some, one / length_sq.sqrt()));
+        let (x, y, z) = (x * by, L::select(some, y * by, one), z * by);
+        // What is left of the length beyond 1, taken off: a rounding each.
+        let plane_sq = y.mul_add(y, z * z);
+        let off = half - half * x.mul_add(x, plane_sq);
+        let cos = plane_sq.sqrt();
+        let vector = Vec3x::new(x.mul_add(off, x), y.mul_add(off, y), z.mul_add(off, z));
+        let (sin_theta, cos_theta) = (vector.x, cos.mul_add(off, cos));
+        Self { vector, sin_theta, cos_theta, sound: c(GRAZING).lt(cos_theta) }
+    }
+
+    /// The direction of an inclination and an azimuth, given as sine and cosine.
+    #[inline(always)]
+    #[must_use]
+    pub fn from_sin_cos([sin_theta, cos_theta]: [L; 2], [sin_phi, cos_phi]: [L; 2]) -> Self {
+        let vector = Vec3x::new(sin_theta, cos_theta * cos_phi, cos_theta * sin_phi);
+        Self { vector, sin_theta, cos_theta, sound: L::splat(GRAZING).lt(cos_theta) }
+    }
+
+    /// The direction of an inclination, at the azimuth `pi (2 xi - 1)`.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_uniform_azimuth(theta: [L; 2], xi: L) -> Self {
+        let (sin, cos) = sin_cos_half_turn((xi - L::splat(0.5)) * L::splat(PI));
+        Self::from_sin_cos(theta, [(sin + sin) * cos, cos.mul_sub(cos, sin * sin)])
+    }
+
+    /// Where it is a direction, further than [`GRAZING`] from the axis.
+    #[inline(always)]
+    pub fn is_sound(&self) -> L::Mask {
+        self.sound
+    }
+}

@@ -1,0 +1,338 @@
+//! Models given by their lobes alone: what all of them share is done here, once.
+
+mod mixture;
+
+pub use mixture::Mixture;
+
+use crate::lobe::LobeMask;
+use crate::model::{Drawn, Eval, Hit, LobeEval};
+use crate::{Broadcast, Direction, LaneStruct, Lanes, Lobe, Model, PerLobe, Scalar, Vec3x, lanes3};
+use wide::f32x8;
+
+/// A scattering model given by its lobes: what an author writes.
+///
+/// Every `LobeModel` is a [`Model`]. Guards, the choice of a lobe, the density of the mixture, discarded samples, weights,
+/// masks, packing and a quadrature of the albedo are provided; scalar calls, eight lanes, dispatch and slices follow.
+///
+/// # What an implementation promises
+///
+/// - `lobes`, `weights` and `sample_lobe` give no NaN for the directions and numbers they are given: both directions unit
+///   and further than [`GRAZING`](crate::GRAZING) from the axis (but `wo`, which may lie on it), `h` in `[-1, 1]`, `xi` in
+///   `[0, 1)`.
+/// - `sample_lobe` draws from the density that `lobes` reports, which is above 0 wherever the lobe scatters.
+/// - Every function over lanes is `#[inline(always)]`, and so is all it calls. Array `map` and closures over lanes are calls.
+///
+/// # Examples
+///
+/// A complete model of one lobe. One of two lobes, with a sampler of its own, is `examples/lambert_fiber.rs` of the package
+/// `hairis-variants`.
+///
+/// ```
+/// use core::f32::consts::FRAC_1_PI;
+/// use glam::Vec3;
+/// use hairis::{
+///     Broadcast, Bsdf, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Scalar, lane_struct, lanes3,
+/// };
+///
+/// /// A fibre that scatters evenly: `S cos theta_i = albedo / (4 pi)`, whatever the direction.
+/// #[derive(Clone, Copy)]
+/// struct Even;
+///
+/// lane_struct! {
+///     /// Material and gather point alike: the albedo, linear RGB.
+///     pub struct Albedo {
+///         /// Red, green and blue.
+///         pub rgb: [C; 3],
+///     }
+/// }
+///
+/// impl LobeModel for Even {
+///     type Params = [f32; 3];
+///     type Material<C: Scalar> = Albedo<C>;
+///     type Prepared<C: Scalar> = Albedo<C>;
+///
+///     const LOBES: &'static [&'static str] = &["even"];
+///
+///     fn material(&self, albedo: &[f32; 3]) -> Albedo<f32> {
+///         Albedo { rgb: *albedo }
+///     }
+///
+///     #[inline(always)]
+///     fn prepare<L: Lanes, C: Broadcast<L>>(material: &Albedo<C>, _hit: Hit<L>) -> Albedo<L::Stored> {
+///         material.spread::<L>()
+///     }
+///
+///     #[inline(always)]
+///     fn weights<L: Lanes, C: Broadcast<L>>(_gather: &Albedo<C>) -> PerLobe<L> {
+///         PerLobe::padded([L::splat(1.0)], L::splat(0.0))
+///     }
+///
+///     #[inline(always)]
+///     fn lobes<L: Lanes, C: Broadcast<L>>(gather: &Albedo<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>> {
+///         let pdf = L::splat(0.25 * FRAC_1_PI);
+///         let lobe = LobeEval { value: pdf / wi.cos_theta, color: lanes3(&gather.rgb), pdf };
+///         PerLobe::padded([lobe], LobeEval::none())
+///     }
+///
+///     #[inline(always)]
+///     fn sample_lobe<L: Lanes, C: Broadcast<L>>(_: &Albedo<C>, _: L::Index, xi: [L; 3]) -> Direction<L> {
+///         let (one, sin) = (L::splat(1.0), xi[1] + xi[1] - L::splat(1.0));
+///         Direction::with_uniform_azimuth([sin, ((one - sin) * (one + sin)).sqrt()], xi[2])
+///     }
+/// }
+///
+/// let gather = Bsdf::new(&Even, &[0.9, 0.5, 0.1]).prepare(Vec3::Y);
+/// let sample = gather.sample([0.2, 0.6, 0.3]).expect("not along the fibre");
+/// assert!((sample.weight[0] - 0.9).abs() < 1e-6 && (gather.albedo().0[0][2] - 0.1).abs() < 1e-6);
+/// ```
+pub trait LobeModel: Copy {
+    /// Parameters of a material, checked.
+    type Params;
+    /// Constants of a material, declared with [`lane_struct!`](crate::lane_struct).
+    type Material<C: Scalar>: LaneStruct<One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
+    /// Constants of a gather point.
+    type Prepared<C: Scalar>: LaneStruct<One = Self::Prepared<f32>, Eight = Self::Prepared<f32x8>>;
+
+    /// Names of the lobes, in slot order: 1 to 4.
+    const LOBES: &'static [&'static str];
+
+    /// The constants of a material.
+    fn material(&self, params: &Self::Params) -> Self::Material<f32>;
+
+    /// Everything that depends on the material and the hit alone. `wo` may have any length: see
+    /// [`Direction::normalized`].
+    fn prepare<L: Lanes, C: Broadcast<L>>(material: &Self::Material<C>, hit: Hit<L>) -> Self::Prepared<L::Stored>;
+
+    /// How often each lobe is to be chosen, to any scale; 0 for slots without a lobe.
+    fn weights<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> PerLobe<L>;
+
+    /// Each lobe's value, colour and own density at a direction.
+    fn lobes<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>>;
+
+    /// A direction of each lane's lobe. All three numbers are uniform: the first has chosen the lobe, and is stretched to
+    /// `[0, 1)` again.
+    fn sample_lobe<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>, lobe: L::Index, xi: [L; 3])
+    -> Direction<L>;
+
+    /// Directional albedo of each lobe, linear RGB.
+    ///
+    /// - Accuracy: 1024 lattice points per lobe, drawn by `sample_lobe`: 1e-5 where weights vary little. Give the closed
+    ///   form where there is one.
+    #[inline(always)]
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> PerLobe<[L; 3]> {
+        sampled_albedo::<Self, L, C>(prepared)
+    }
+}
+
+/// The constants of a gather point of a [`LobeModel`], and the mixture of its lobes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mixed<P, C> {
+    prepared: P,
+    mixture: Mixture<C>,
+}
+
+impl<P, C> Mixed<P, C> {
+    /// What the model itself keeps.
+    #[inline(always)]
+    #[must_use]
+    pub const fn prepared(&self) -> &P {
+        &self.prepared
+    }
+
+    /// Probabilities of the lobes.
+    #[inline(always)]
+    #[must_use]
+    pub const fn mixture(&self) -> &Mixture<C> {
+        &self.mixture
+    }
+}
+
+impl<C: Scalar, P: LaneStruct> LaneStruct for Mixed<P, C> {
+    type One = Mixed<P::One, f32>;
+    type Eight = Mixed<P::Eight, f32x8>;
+
+    #[inline]
+    fn pack(items: [&Self::One; 8]) -> Self::Eight {
+        Mixed { prepared: P::pack(items.map(|i| &i.prepared)), mixture: Mixture::pack(items.map(|i| &i.mixture)) }
+    }
+
+    #[inline]
+    fn lane(eight: &Self::Eight, lane: usize) -> Self::One {
+        Mixed { prepared: P::lane(&eight.prepared, lane), mixture: eight.mixture.lane(lane) }
+    }
+}
+
+/// The density below which a sample is discarded: next to denormals its weight would have no digits.
+const LEAST_DENSITY: f32 = 1e-30;
+/// The largest uniform number.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// The sums over the lobes; 0 where the direction is none.
+#[inline(always)]
+fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>, C>, wi: &Direction<L>) -> Eval<L> {
+    let (PerLobe(lobes), mixture) = (M::lobes(&gather.prepared, wi), &gather.mixture);
+    let value = lobes[0].value * mixture.kept[0].lanes();
+    let [r, g, b] = lobes[0].color;
+    let mut sum = [value * r, value * g, value * b, lobes[0].pdf * mixture.selection[0].lanes()];
+    // Written out: slots without a lobe cost nothing.
+    macro_rules! add {
+        ($($i:literal)*) => { $(
+            if $i < M::LOBES.len() {
+                let value = lobes[$i].value * mixture.kept[$i].lanes();
+                let [r, g, b] = lobes[$i].color;
+                sum = [
+                    value.mul_add(r, sum[0]),
+                    value.mul_add(g, sum[1]),
+                    value.mul_add(b, sum[2]),
+                    lobes[$i].pdf.mul_add(mixture.selection[$i].lanes(), sum[3]),
+                ];
+            }
+        )* };
+    }
+    add!(1 2 3);
+    let limit = limit::<L>(wi.is_sound());
+    let value = [within(sum[0], limit), within(sum[1], limit), within(sum[2], limit)];
+    Eval { value, pdf: within(sum[3], limit) }
+}
+
+/// The largest result where a lane is sound, 0 where it is not.
+#[inline(always)]
+fn limit<L: Lanes>(sound: L::Mask) -> L {
+    L::keep(sound, L::splat(f32::MAX))
+}
+
+/// `x` between 0 and `limit`; NaN is at the limit.
+#[inline(always)]
+fn within<L: Lanes>(x: L, limit: L) -> L {
+    L::splat(0.0).max(x.min(limit))
+}
+
+impl<M: LobeModel> Model for M {
+    type Params = M::Params;
+    type Material<C: Scalar> = M::Material<C>;
+    type Gather<C: Scalar> = Mixed<M::Prepared<C>, C>;
+
+    const LOBES: &'static [&'static str] = {
+        assert!(!M::LOBES.is_empty() && M::LOBES.len() <= Lobe::COUNT, "a model has 1 to 4 lobes");
+        M::LOBES
+    };
+
+    #[inline]
+    fn material(&self, params: &M::Params) -> M::Material<f32> {
+        LobeModel::material(self, params)
+    }
+
+    #[inline(always)]
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        material: &M::Material<C>,
+        hit: Hit<L>,
+    ) -> Mixed<M::Prepared<L::Stored>, L::Stored> {
+        let (one, infinity) = (L::splat(1.0), L::splat(f32::INFINITY));
+        let h = (-one).max(one.min(hit.h));
+        let prepared = <M as LobeModel>::prepare(material, Hit { h, ..hit });
+        // A wo that is no direction, NaN or infinite, sees nothing.
+        let Vec3x { x, y, z } = hit.wo;
+        let finite = L::and(L::and(x.abs().lt(infinity), y.abs().lt(infinity)), z.abs().lt(infinity));
+        let kept = L::keep(finite, one);
+        let mixture = Mixture::new(M::weights::<L, L::Stored>(&prepared).0, [kept; 4]).store();
+        Mixed { prepared, mixture }
+    }
+
+    #[inline(always)]
+    fn restrict<C: Lanes>(gather: &Mixed<M::Prepared<C>, C>, lobes: LobeMask) -> Mixed<M::Prepared<C>, C> {
+        let Mixture { selection, kept, .. } = gather.mixture;
+        let kept = [
+            kept[0] * C::splat(lobes.factor(Lobe::ALL[0])),
+            kept[1] * C::splat(lobes.factor(Lobe::ALL[1])),
+            kept[2] * C::splat(lobes.factor(Lobe::ALL[2])),
+            kept[3] * C::splat(lobes.factor(Lobe::ALL[3])),
+        ];
+        Mixed { mixture: Mixture::new(selection, kept), ..*gather }
+    }
+
+    #[inline(always)]
+    fn eval<L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>, C>, wi: Vec3x<L>) -> Eval<L> {
+        total::<M, L, C>(gather, &Direction::new(wi))
+    }
+
+    #[inline(always)]
+    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>, C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
+        let wi = Direction::new(wi);
+        let limit = limit::<L>(wi.is_sound());
+        let mut lobes = <M as LobeModel>::lobes(&gather.prepared, &wi);
+        let mut l = 0;
+        while l < M::LOBES.len() {
+            let kept: L = gather.mixture.kept[l].lanes();
+            lobes.0[l].value = within(lobes.0[l].value * kept, limit);
+            lobes.0[l].pdf = within(lobes.0[l].pdf * kept, limit);
+            l += 1;
+        }
+        lobes
+    }
+
+    #[inline(always)]
+    fn sample<L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>, C>, xi: [L; 3]) -> Drawn<L> {
+        let c = L::splat;
+        let (zero, most) = (c(0.0), c(BELOW_ONE));
+        let m = &gather.mixture;
+        let lobe = L::search(xi[0], lanes3(&m.bounds), M::LOBES.len() - 1);
+        // The first number once more. From the nearer end, where differences are exact: a rare lobe keeps the low bits.
+        let (start, start_less_one) = (C::look_up(&m.start, lobe), C::look_up(&m.start_less_one, lobe));
+        let into = L::select(xi[0].lt(c(0.5)), xi[0] - start, (xi[0] - c(1.0)) - start_less_one);
+        let again = into / C::look_up(&m.selection, lobe);
+        let xi = [zero.max(again.min(most)), zero.max(xi[1].min(most)), zero.max(xi[2].min(most))];
+        let wi = M::sample_lobe(&gather.prepared, lobe, xi);
+        let Eval { value, pdf } = total::<M, L, C>(gather, &wi);
+        let sound = L::and(wi.is_sound(), c(LEAST_DENSITY).lt(pdf));
+        let limit = limit::<L>(sound);
+        let by = wi.cos_theta / pdf;
+        let Vec3x { x, y, z } = wi.vector;
+        Drawn {
+            wi: Vec3x::new(L::keep(sound, x), L::keep(sound, y), L::keep(sound, z)),
+            value: [value[0].min(limit), value[1].min(limit), value[2].min(limit)],
+            pdf: pdf.min(limit),
+            weight: [(value[0] * by).min(limit), (value[1] * by).min(limit), (value[2] * by).min(limit)],
+            slot: L::select(sound, L::index_number(lobe), c(-1.0)),
+        }
+    }
+
+    #[inline(always)]
+    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>, C>) -> PerLobe<[L; 3]> {
+        let mut albedo = <M as LobeModel>::albedo::<L, C>(&gather.prepared);
+        let most = L::splat(f32::MAX);
+        let mut l = 0;
+        while l < Lobe::COUNT {
+            let kept: L = gather.mixture.kept[l].lanes();
+            let [r, g, b] = albedo.0[l];
+            albedo.0[l] = [(r * kept).min(most), (g * kept).min(most), (b * kept).min(most)];
+            l += 1;
+        }
+        albedo
+    }
+}
+
+/// Each lobe's albedo as the mean weight of its samples at the points of a lattice.
+#[inline(always)]
+fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>) -> PerLobe<[L; 3]> {
+    const STEPS: u16 = 1024;
+    let c = L::splat;
+    let mut albedo = [[c(0.0); 3]; Lobe::COUNT];
+    for (l, albedo) in albedo.iter_mut().enumerate().take(M::LOBES.len()) {
+        let lobe = L::search(c([0.0, 1.0, 2.0, 3.0][l]), [c(1.0), c(2.0), c(3.0)], 3);
+        let (mut sum, mut color) = (c(0.0), [c(0.0); 3]);
+        for step in 0..STEPS {
+            // The lattice of the plastic number.
+            let i = f32::from(step) + 0.5;
+            let fraction = |x: f32| c(x - libm::floorf(x));
+            let xi = [fraction(i * 0.569_840_3), fraction(i / f32::from(STEPS)), fraction(i * 0.754_877_7)];
+            let wi = M::sample_lobe(prepared, lobe, xi);
+            let at = M::lobes(prepared, &wi).0[l];
+            let sound = L::and(wi.is_sound(), c(LEAST_DENSITY).lt(at.pdf));
+            sum = sum + L::select(sound, at.value * wi.cos_theta / at.pdf, c(0.0));
+            color = at.color;
+        }
+        let mean = sum * c(1.0 / f32::from(STEPS));
+        *albedo = [color[0] * mean, color[1] * mean, color[2] * mean];
+    }
+    PerLobe(albedo)
+}

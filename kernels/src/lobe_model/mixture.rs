@@ -1,0 +1,72 @@
+//! With which probability each lobe is chosen.
+
+use crate::{Lanes, store3, store4};
+
+crate::lane_struct! {
+    /// How the lobes of a gather point are mixed.
+    pub struct Mixture {
+        /// Probability of each lobe.
+        pub selection: [C; 4],
+        /// Where the next lobe begins in `xi[0]`.
+        pub bounds: [C; 3],
+        /// Where each lobe begins in `xi[0]`, from 0 and from 1: the sums of the lobes before it, and of those from it on,
+        /// negative.
+        pub start: [C; 4],
+        /// As `start`, from 1.
+        pub start_less_one: [C; 4],
+        /// 1 for a lobe that scatters, 0 for one that does not.
+        pub kept: [C; 4],
+    }
+}
+
+impl<C: Lanes> Mixture<C> {
+    /// The mixture of lobes of these weights, those of `kept` alone.
+    ///
+    /// The last lobe with any weight reaches to 2: a rounded sum never lets `xi[0]` fall through to a lobe without. Without
+    /// any weight all probabilities are 0.
+    #[inline(always)]
+    pub(super) fn new(weights: [C; 4], kept: [C; 4]) -> Self {
+        let c = C::splat;
+        let (zero, one, two) = (c(0.0), c(1.0), c(2.0));
+        // Of four, none overflows their sum.
+        let most = c(f32::MAX / 8.0);
+        let e = [
+            weights[0].min(most) * kept[0],
+            weights[1].min(most) * kept[1],
+            weights[2].min(most) * kept[2],
+            weights[3].min(most) * kept[3],
+        ];
+        // A sum of denormals has no reciprocal: it is scaled first.
+        let total = (e[0] + e[1]) + (e[2] + e[3]);
+        let scale = C::select(total.lt(c(1e-19)), c(1e19), one);
+        let e = [e[0] * scale, e[1] * scale, e[2] * scale, e[3] * scale];
+        let total = total * scale;
+        let by = C::keep(zero.lt(total), one / total);
+        let p = [e[0] * by, e[1] * by, e[2] * by, e[3] * by];
+        let (first, last) = (p[0] + p[1], p[2] + p[3]);
+        let later = [p[1] + last, last, p[3]];
+        Self {
+            selection: p,
+            bounds: [
+                C::select(zero.lt(later[0]), p[0], two),
+                C::select(zero.lt(later[1]), first, two),
+                C::select(zero.lt(later[2]), first + p[2], two),
+            ],
+            start: [zero, p[0], first, first + p[2]],
+            start_less_one: [-one, -later[0], -later[1], -later[2]],
+            kept,
+        }
+    }
+
+    /// The mixture in the form it is kept in.
+    #[inline(always)]
+    pub(super) fn store(self) -> Mixture<C::Stored> {
+        Mixture {
+            selection: store4(self.selection),
+            bounds: store3(self.bounds),
+            start: store4(self.start),
+            start_less_one: store4(self.start_less_one),
+            kept: store4(self.kept),
+        }
+    }
+}

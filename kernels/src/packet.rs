@@ -1,0 +1,173 @@
+//! A model's functions as work for the vector layer: packets of eight, and rows of columns.
+
+use crate::model::{Drawn, Eval8, Hit8, LobeEval8, Sample8};
+use crate::{Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Level, Model, PerLobe, Row, Vec3x, Vec3x8, lanes3};
+use core::marker::PhantomData;
+use wide::f32x8;
+
+/// Eight gather points. The hits are made from what the caller has inside the kernel: what copies them is vector code.
+pub(crate) struct Prepare<'a, M: Model, C: Constant, H> {
+    pub(crate) material: &'a M::Material<C>,
+    pub(crate) hits: H,
+}
+
+impl<M: Model, C: Constant, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
+    type Constant = C;
+    type Output = Gather8<M>;
+    const MANY_REGISTERS: bool = false;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Gather8<M>
+    where
+        C: Broadcast<L>,
+        f32x8: Broadcast<L>,
+    {
+        let hits: Hit8 = self.hits.into();
+        let hit = Hit { wo: Vec3x::load(&hits.wo), h: hits.h.lanes() };
+        Gather8 { inner: M::prepare::<L, C>(self.material, hit) }
+    }
+}
+
+/// Declares the kernel of one of a model's functions at a gather point, of eight lanes each.
+macro_rules! at_gather {
+    ($(#[$meta:meta])* $name:ident($input:ident: &$Input:ty) -> $Output:ty, $M:ident $L:ident $gather:ident $body:expr) => {
+        $(#[$meta])*
+        pub(crate) struct $name<'a, M: Model, C: Constant> {
+            pub(crate) gather: &'a M::Gather<C>,
+            pub(crate) $input: &'a $Input,
+        }
+
+        impl<$M: Model, C: Constant> Kernel for $name<'_, $M, C> {
+            type Constant = C;
+            type Output = $Output;
+
+            #[inline(always)]
+            fn run<$L: Lanes<Stored = f32x8>>(self) -> $Output
+            where
+                C: Broadcast<$L>,
+                f32x8: Broadcast<$L>,
+            {
+                let Self { $gather, $input } = self;
+                $body
+            }
+        }
+    };
+}
+
+at_gather! {
+    /// Value and density of eight directions.
+    EvalPdf(wi: &Vec3x8) -> Eval8, M L gather M::eval::<L, C>(gather, Vec3x::load(wi)).store()
+}
+at_gather! {
+    /// Each lobe's value, colour and density at eight directions.
+    Lobes(wi: &Vec3x8) -> PerLobe<LobeEval8>, M L gather {
+        let [a, b, c, d] = M::lobes::<L, C>(gather, Vec3x::load(wi)).0;
+        PerLobe([a.store(), b.store(), c.store(), d.store()])
+    }
+}
+at_gather! {
+    /// Eight sampled directions.
+    SampleWi(xi: &[f32x8; 3]) -> Sample8, M L gather M::sample::<L, C>(gather, lanes3(xi)).store()
+}
+
+/// A row of a batch: the columns `K` of one gather point.
+pub(crate) struct AtGather<'a, M: Model, K> {
+    gather: &'a M::Gather<f32>,
+    columns: PhantomData<K>,
+}
+
+impl<'a, M: Model, K> AtGather<'a, M, K> {
+    #[inline(always)]
+    pub(crate) fn new(gather: &'a M::Gather<f32>) -> Self {
+        Self { gather, columns: PhantomData }
+    }
+
+    /// Value and density of eight directions.
+    #[inline(always)]
+    fn eval8(self, level: Level, [x, y, z]: &[f32x8; 3]) -> Eval8 {
+        level.run(EvalPdf::<M, f32> { gather: self.gather, wi: &Vec3x::new(*x, *y, *z) })
+    }
+}
+
+impl<M: Model, K> Clone for AtGather<'_, M, K> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<M: Model, K> Copy for AtGather<'_, M, K> {}
+
+/// Columns of S: what only the density needs is not computed.
+pub(crate) struct Value;
+impl<M: Model> Row<3> for AtGather<'_, M, Value> {
+    #[inline(always)]
+    fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 3]
+    where
+        f32: Broadcast<L>,
+    {
+        M::eval::<L, f32>(self.gather, Vec3x::new(x, y, z)).value
+    }
+    #[inline(always)]
+    fn eight(self, level: Level, input: &[f32x8; 3]) -> [f32x8; 3] {
+        self.eval8(level, input).value
+    }
+}
+
+/// The column of the density.
+pub(crate) struct Pdf;
+impl<M: Model> Row<1> for AtGather<'_, M, Pdf> {
+    #[inline(always)]
+    fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 1]
+    where
+        f32: Broadcast<L>,
+    {
+        [M::eval::<L, f32>(self.gather, Vec3x::new(x, y, z)).pdf]
+    }
+    #[inline(always)]
+    fn eight(self, level: Level, input: &[f32x8; 3]) -> [f32x8; 1] {
+        [self.eval8(level, input).pdf]
+    }
+}
+
+/// Columns of S and of the density.
+pub(crate) struct ValuePdf;
+impl<M: Model> Row<4> for AtGather<'_, M, ValuePdf> {
+    #[inline(always)]
+    fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 4]
+    where
+        f32: Broadcast<L>,
+    {
+        let eval = M::eval::<L, f32>(self.gather, Vec3x::new(x, y, z));
+        let [r, g, b] = eval.value;
+        [r, g, b, eval.pdf]
+    }
+    #[inline(always)]
+    fn eight(self, level: Level, input: &[f32x8; 3]) -> [f32x8; 4] {
+        let eval = self.eval8(level, input);
+        let [r, g, b] = eval.value;
+        [r, g, b, eval.pdf]
+    }
+}
+
+/// Columns of samples.
+pub(crate) struct Samples;
+impl<M: Model> Row<11> for AtGather<'_, M, Samples> {
+    #[inline(always)]
+    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11]
+    where
+        f32: Broadcast<L>,
+    {
+        columns(M::sample::<L, f32>(self.gather, xi))
+    }
+    #[inline(always)]
+    fn eight(self, level: Level, xi: &[f32x8; 3]) -> [f32x8; 11] {
+        columns(level.run(SampleWi::<M, f32> { gather: self.gather, xi }))
+    }
+}
+
+/// The numbers of a sample in the order of its slices.
+#[inline(always)]
+fn columns<L>(s: Drawn<L>) -> [L; 11] {
+    let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
+    [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
+}

@@ -1,0 +1,265 @@
+//! Which instruction set runs: the only place that picks a backend at run time.
+#![allow(unsafe_code, reason = "calls into functions of target features that a `Level` proves present")]
+
+use super::columns::{self, Row};
+use super::lanes::{Broadcast, Lanes, Scalar};
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+use super::{avx2::Avx2, avx512::Avx512, pair::Pair};
+use core::fmt;
+use wide::f32x8;
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+cpufeatures::new!(avx2_fma, "avx2", "fma");
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+cpufeatures::new!(avx512, "avx2", "fma", "avx512f", "avx512vl", "avx512dq", "avx512bw");
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+cpufeatures::new!(avx, "avx");
+
+/// Zeroes the upper halves of the vector registers, before code of a plain build.
+///
+/// A host may call with them dirty (code for AVX ought to end in `vzeroupper`, and some does not). Every legacy SSE
+/// instruction then merges with the upper half of its register, or the first one saves all of them, for 120 ns.
+#[inline(always)]
+pub(crate) fn clean_upper_halves() {
+    // A build for AVX has no legacy SSE instructions.
+    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(target_feature = "avx")))]
+    if avx::get() {
+        #[target_feature(enable = "avx")]
+        fn clean() {
+            #[cfg(target_arch = "x86")]
+            use core::arch::x86::_mm256_zeroupper;
+            #[cfg(target_arch = "x86_64")]
+            use core::arch::x86_64::_mm256_zeroupper;
+            _mm256_zeroupper();
+        }
+        // SAFETY: the CPU has AVX.
+        unsafe { clean() }
+    }
+}
+
+/// An instruction set that this CPU has: a value is the proof.
+///
+/// ```
+/// use hairis::Level;
+/// println!("eight lanes run on {}", Level::detect());
+/// assert!(Level::available().any(|level| level == Level::portable()));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Level(Kind);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Portable,
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    Avx2,
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    Avx512,
+}
+
+impl Level {
+    /// The best level of this CPU. The CPU is asked once; after that it is a load and a compare.
+    #[inline(always)]
+    #[must_use]
+    pub fn detect() -> Self {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            if avx512::get() {
+                return Self(Kind::Avx512);
+            }
+            if avx2_fma::get() {
+                return Self(Kind::Avx2);
+            }
+        }
+        Self::portable()
+    }
+
+    /// Eight lanes through `wide`: what the program was compiled for, on every CPU that runs it.
+    #[inline(always)]
+    #[must_use]
+    pub const fn portable() -> Self {
+        Self(Kind::Portable)
+    }
+
+    /// Every level of this CPU, the portable one first and the best one last.
+    #[inline]
+    pub fn available() -> impl Iterator<Item = Self> {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        let more = [avx2_fma::get().then_some(Self(Kind::Avx2)), avx512::get().then_some(Self(Kind::Avx512))];
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        let more: [Option<Self>; 0] = [];
+        core::iter::once(Self::portable()).chain(more.into_iter().flatten())
+    }
+
+    /// Name of the instruction set, for reports: `avx2+fma`, `avx512`, or what the program was compiled for.
+    #[inline]
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self.0 {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Kind::Avx2 => "avx2+fma",
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Kind::Avx512 => "avx512",
+            Kind::Portable => PORTABLE,
+        }
+    }
+
+    /// Whether `mul_add` rounds once on this level. Levels that agree in this give the same bits.
+    #[inline]
+    #[must_use]
+    pub const fn fuses(self) -> bool {
+        match self.0 {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Kind::Avx2 | Kind::Avx512 => true,
+            Kind::Portable => super::portable::FUSES,
+        }
+    }
+}
+
+/// What `wide` was compiled for.
+const PORTABLE: &str = if cfg!(all(target_feature = "avx", target_feature = "fma")) {
+    "wide (avx+fma)"
+} else if cfg!(target_feature = "avx") {
+    "wide (avx)"
+} else if cfg!(target_feature = "sse2") {
+    "wide (sse2)"
+} else if cfg!(all(target_arch = "aarch64", target_feature = "neon")) {
+    "wide (neon)"
+} else if cfg!(target_feature = "simd128") {
+    "wide (simd128)"
+} else {
+    "wide (scalar)"
+};
+
+impl fmt::Display for Level {
+    #[inline]
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Work on eight lanes, whatever their backend: what [`Level::run`] runs.
+///
+/// ```
+/// use hairis::wide::f32x8;
+/// use hairis::{Broadcast, Kernel, Lanes, Level, math};
+///
+/// /// The arc tangent of eight numbers in `[-1, 1]`.
+/// struct Atan<'a>(&'a f32x8);
+///
+/// impl Kernel for Atan<'_> {
+///     type Constant = f32x8;
+///     type Output = f32x8;
+///
+///     #[inline(always)]
+///     fn run<L: Lanes<Stored = f32x8>>(self) -> f32x8
+///     where
+///         f32x8: Broadcast<L>,
+///     {
+///         math::atan_unit::<L>(self.0.lanes()).store()
+///     }
+/// }
+///
+/// let angles = Level::detect().run(Atan(&f32x8::splat(1.0)));
+/// assert!((angles.to_array()[7] - core::f32::consts::FRAC_PI_4).abs() < 1e-6);
+/// ```
+pub trait Kernel {
+    /// Storage of the constants that it reads: `f32` for all lanes alike, `f32x8` for one number per lane.
+    type Constant: Constant;
+    /// Its result.
+    type Output;
+
+    /// Whether the registers of AVX-512 pay. With twice as many of them, evaluation and sampling gain 5 %; a kernel
+    /// that mostly writes loses 25 %.
+    const MANY_REGISTERS: bool = true;
+
+    /// Runs it on the lanes `L`. Mark it `#[inline(always)]`, and all it calls: the dispatched function then contains
+    /// no call.
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output
+    where
+        Self::Constant: Broadcast<L>,
+        f32x8: Broadcast<L>;
+}
+
+/// Storage that every backend reads: `f32` or `f32x8`. Sealed.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+pub trait Constant: Scalar + Broadcast<f32x8> + Broadcast<Avx2> {}
+/// Storage that every backend reads: `f32` or `f32x8`. Sealed.
+#[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+pub trait Constant: Scalar + Broadcast<f32x8> {}
+impl Constant for f32 {}
+impl Constant for f32x8 {}
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[target_feature(enable = "avx2,fma")]
+fn run_avx2<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<Avx2>()
+}
+
+// Packets of eight are of AVX2 here, too, compiled for twice the registers.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[target_feature(enable = "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw")]
+fn run_avx512<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<Avx2>()
+}
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[target_feature(enable = "avx2,fma")]
+fn rows_avx2<R: Row<N>, const N: usize>(row: R, inputs: [&[[f32; 16]]; 3], outputs: &mut [&mut [[f32; 16]]; N]) {
+    columns::packets::<R, Pair<Avx2>, N, 16>(row, inputs, outputs);
+}
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[target_feature(enable = "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw")]
+fn rows_avx512<R: Row<N>, const N: usize>(row: R, inputs: [&[[f32; 32]]; 3], outputs: &mut [&mut [[f32; 32]]; N]) {
+    columns::packets::<R, Pair<Avx512>, N, 32>(row, inputs, outputs);
+}
+
+impl Level {
+    /// Runs `kernel` on eight lanes of this instruction set.
+    #[inline(always)]
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self.0 {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            // SAFETY: a `Level` of this kind is made only where these features were found.
+            Kind::Avx512 if K::MANY_REGISTERS => unsafe { run_avx512(kernel) },
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            // SAFETY: as above.
+            Kind::Avx2 | Kind::Avx512 => unsafe { run_avx2(kernel) },
+            Kind::Portable => {
+                clean_upper_halves();
+                kernel.run::<f32x8>()
+            }
+        }
+    }
+
+    /// Runs `row` over columns: three numbers in, `N` out. All columns are to be of one length.
+    ///
+    /// Rows are computed in packets as wide as the instruction set has them, two at a time, and what is left eight at a
+    /// time. Columns that are too short leave the others unwritten.
+    #[inline]
+    pub fn run_rows<R: Row<N>, const N: usize>(self, row: R, inputs: [&[f32]; 3], outputs: &mut [&mut [f32]; N]) {
+        match self.0 {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Kind::Avx2 => {
+                let done = columns::in_packets(inputs, outputs, |inputs, outputs| {
+                    // SAFETY: a `Level` of this kind is made only where these features were found.
+                    unsafe { rows_avx2(row, inputs, outputs) }
+                });
+                columns::in_eights(self, row, inputs, outputs, done);
+            }
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Kind::Avx512 => {
+                let done = columns::in_packets(inputs, outputs, |inputs, outputs| {
+                    // SAFETY: as above.
+                    unsafe { rows_avx512(row, inputs, outputs) }
+                });
+                columns::in_eights(self, row, inputs, outputs, done);
+            }
+            Kind::Portable => {
+                columns::in_packets(inputs, outputs, |inputs, outputs| {
+                    columns::packets::<R, f32x8, N, 8>(row, inputs, outputs);
+                });
+            }
+        }
+    }
+}

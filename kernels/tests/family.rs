@@ -1,0 +1,62 @@
+//! The published model and its samplers: the suite that every model passes, and the tests against the textbook.
+
+use crate::rows::{MATCHED, PUBLISHED};
+use hairis::textbook::Shape;
+use hairis::{Gaussian, Hair, Matched};
+use hairis_conformance::published::{Family, Published, Rows};
+use hairis_conformance::{conformance, published};
+
+/// The published sampler.
+pub(crate) struct Ou;
+
+impl Published for Ou {
+    type Model = Hair<Gaussian>;
+    type Bell = Gaussian;
+    const SHAPE: Shape = Shape::Gaussian;
+    // `exp(-x^2/2) (1 + x^2)` at `x = 1`, `2 / sqrt(e)`.
+    const OVER_CAUCHY: f64 = 1.213_061_319_425_267;
+    // A Cauchy has no end.
+    const PDF_FLOOR: f64 = 0.0;
+    const ROWS: Rows = PUBLISHED;
+
+    fn bell() -> Gaussian {
+        Gaussian
+    }
+
+    fn forms() -> Vec<(Self::Model, f32)> {
+        vec![(Hair(Gaussian), 1.0)]
+    }
+}
+
+/// The matched sampler of so many bands.
+pub(crate) struct Bands<const BANDS: usize, const BY_CHANNEL: bool = false>;
+
+impl<const BANDS: usize, const BY_CHANNEL: bool> Published for Bands<BANDS, BY_CHANNEL> {
+    type Model = Matched<Gaussian, BANDS, BY_CHANNEL>;
+    type Bell = Gaussian;
+    const SHAPE: Shape = Shape::Gaussian;
+    const BANDS: Option<usize> = Some(BANDS);
+    const BY_CHANNEL: bool = BY_CHANNEL;
+    const OVER_CAUCHY: f64 = Ou::OVER_CAUCHY;
+    // A Gaussian, and with it the density, is cut to 0 at `2^-115` of its peak.
+    const PDF_FLOOR: f64 = 1e-20;
+    const ROWS: Rows = MATCHED;
+
+    fn bell() -> Gaussian {
+        Gaussian
+    }
+
+    fn forms() -> Vec<(Self::Model, f32)> {
+        vec![(Matched(Gaussian), 1.0)]
+    }
+}
+
+conformance!(hair, Family::<Ou>::new());
+conformance!(matched_5, Family::<Bands<5>>::new());
+conformance!(matched_9, Family::<Bands<9>>::new());
+conformance!(matched_25, Family::<Bands<25>>::new());
+conformance!(matched_by_channel, Family::<Bands<9, true>>::new());
+
+published!(ou, crate::family::Ou, published);
+published!(matched, crate::family::Bands<9>, matched);
+published!(by_channel, crate::family::Bands<9, true>, common);

@@ -1,0 +1,91 @@
+//! Bounds of the tests against the textbook, one row each, with the worst case measured above it: the larger of a default
+//! build and one for x86-64-v3, over all levels. To measure again: `cargo test --workspace -- --nocapture | grep measured`.
+
+use hairis_conformance::published::Rows;
+
+/// The published sampler.
+pub(crate) const PUBLISHED: Rows = Rows {
+    // 4.6e-5, 8.8e-6, 7.3e-5, 8.7e-6: the efficiency grid, and the presets
+    grid: [6e-5, 1e-5, 1e-4, 1e-5],
+    // 2.0e-4, 2.0e-5, 2.0e-4, 2.2e-5: every width 0.5 degrees
+    narrow: [2.5e-4, 2.5e-5, 2.5e-4, 2.8e-5],
+    // 7.7e-7, 5.6e-7, 1.9e-6, 9.1e-7: every width 60 degrees
+    wide: [1e-6, 7e-7, 2.4e-6, 1.1e-6],
+    // 3.5e-7
+    lobe_sum: 4.5e-7,
+    // 1.6e-5, 4.8e-6, 1.6e-5
+    grid_sample: [2.2e-5, 6.5e-6, 2.2e-5],
+    // 1.3e-4, 2.4e-5, 1.3e-4
+    narrow_sample: [1.7e-4, 3.2e-5, 1.7e-4],
+    // 7.8e-7, 6.1e-7, 8.6e-7
+    wide_sample: [1.1e-6, 8e-7, 1.2e-6],
+    // 3.7e-7
+    sample_length: 4.5e-7,
+    // 2.2e-6, 4.5e-7
+    grid_cdf: [3e-6, 6e-7],
+    // 5.3e-6, 4.3e-6
+    narrow_cdf: [7e-6, 6e-6],
+    // 2.9e-7, 9.8e-8
+    wide_cdf: [4e-7, 1.4e-7],
+    // 5.9e-7, 6.3e-7, 9.6e-7
+    levels: [8e-7, 8e-7, 1.3e-6],
+    // 1.8e-5; 0 where neither fuses
+    albedo_lanes: 2.3e-5,
+    // 1.0e-4, widths of 60 degrees seen along the axis
+    albedo: 1.3e-4,
+    // 2.5e-5
+    reciprocity: 3.2e-5,
+    // 1.2e-6
+    sample_eval: 1.6e-6,
+    // 1 + 3.3e-7
+    weight_bound: 1.0 + 6e-7,
+    integral: [0.0; 3],
+    seam: [0.0; 3],
+    gain: [[0.0; 3]; 3],
+    weight: [0.0; 3],
+};
+
+/// The matched samplers.
+pub(crate) const MATCHED: Rows = Rows {
+    // 1.5e-5, 1.4e-5, 4.3e-5, 4.3e-5
+    grid: [1.9e-5, 1.9e-5, 5.6e-5, 5.6e-5],
+    // 1e-4, 1e-4, 1.2e-4, 1.2e-4
+    narrow: [1.4e-4, 1.4e-4, 1.6e-4, 1.6e-4],
+    // 6.7e-7, 9e-7, 1.9e-6, 1.9e-6
+    wide: [8.8e-7, 1.2e-6, 2.5e-6, 2.5e-6],
+    // 3.7e-6
+    lobe_sum: 4.8e-6,
+    // 1.4e-5, 1.4e-5, 1e-6
+    grid_sample: [1.8e-5, 1.9e-5, 1.4e-6],
+    // 7.5e-5, 7.5e-5, 8.8e-7
+    narrow_sample: [9.8e-5, 9.8e-5, 1.2e-6],
+    // 6.5e-7, 7.6e-7, 8.9e-7
+    wide_sample: [8.5e-7, 1e-6, 1.2e-6],
+    // 2.6e-7
+    sample_length: 3.5e-7,
+    // 1.9e-5, 5.5e-7
+    grid_cdf: [2.5e-5, 7.2e-7],
+    // 1e-4, 4.6e-6
+    narrow_cdf: [1.4e-4, 6e-6],
+    // 5.5e-7, 1.4e-7
+    wide_cdf: [7.3e-7, 1.9e-7],
+    // 5.9e-7, 4.5e-7, 1.6e-6
+    levels: [7.7e-7, 5.9e-7, 2.2e-6],
+    // 8.4e-5; 0 where neither fuses
+    albedo_lanes: 1.1e-4,
+    // 1.0e-4
+    albedo: 1.4e-4,
+    // 2.5e-5
+    reciprocity: 3.3e-5,
+    // 2.9e-6
+    sample_eval: 3.8e-6,
+    weight_bound: 0.0,
+    // 4.2e-6, 7.4e-5, 7.5e-7
+    integral: [5.5e-6, 9.6e-5, 9.8e-7],
+    // 3.3e-6, 3.1e-6, 7.6e-7
+    seam: [4.3e-6, 4.1e-6, 1e-6],
+    // .0412, 7.27, 2.27; .0206, 14.0, 3.69; .0059, 55.6, 8.27
+    gain: [[0.0413, 7.2, 2.2], [0.0207, 13.9, 3.6], [0.006, 55.0, 8.1]],
+    // 7.2, 4.3, 2.44
+    weight: [7.6, 4.6, 2.6],
+};

@@ -1,0 +1,149 @@
+//! The vector layer by itself, and what hits are made of: work that no model does.
+
+use crate::support::Draws;
+use glam::Vec3;
+use hairis::wide::f32x8;
+use hairis::{Broadcast, Direction, FiberFrame, Hit, Kernel, Lanes, Level, Row, Vec3x};
+
+/// Where each of eight numbers falls among three bounds, and what tables hold there.
+struct Search<'a, C> {
+    x: &'a f32x8,
+    bounds: [f32; 3],
+    table: &'a [C; 4],
+    count: usize,
+}
+
+impl<C: hairis::Constant> Kernel for Search<'_, C> {
+    type Constant = C;
+    type Output = [f32x8; 4];
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 4]
+    where
+        C: Broadcast<L>,
+        f32x8: Broadcast<L>,
+    {
+        let [a, b, c] = self.bounds;
+        let index = L::search(self.x.lanes(), [L::splat(a), L::splat(b), L::splat(c)], self.count);
+        let [first, second, third, _] = *self.table;
+        let table = [first, second, third, third];
+        [
+            L::index_number(index).store(),
+            <C as Broadcast<L>>::look_up(self.table, index).store(),
+            <C as Broadcast<L>>::look_up_three(&table, index).store(),
+            <C as Broadcast<L>>::look_up_half(&[first, second], index).store(),
+        ]
+    }
+}
+
+#[test]
+fn search_counts_bounds_and_tables_answer_by_index() {
+    let numbers = [-1.0, 0.0, 0.1, 0.25, 0.5, 0.75, 0.9, f32::NAN];
+    let bounds = [0.1, 0.5, 0.9];
+    let one = [3.0_f32, 5.0, 7.0, 11.0];
+    let eight = one.map(|x| f32x8::new(core::array::from_fn(|lane| x + 100.0 * lane as f32)));
+    for level in Level::available() {
+        for count in 0..4 {
+            let x = f32x8::new(numbers);
+            let alike = level.run(Search { x: &x, bounds, table: &one, count });
+            let apart = level.run(Search { x: &x, bounds, table: &eight, count });
+            for (lane, x) in numbers.into_iter().enumerate() {
+                let index = bounds.iter().take(count).filter(|bound| x >= **bound).count();
+                let want = [index as f32, one[index], one[index.min(2)], one[index / 2]];
+                let place = format!("{level}, {x} among {count} bounds");
+                assert_eq!(alike.map(|a| a.to_array()[lane]), want, "{place}");
+                let offset = [0.0, 100.0, 100.0, 100.0].map(|step| step * lane as f32);
+                assert_eq!(apart.map(|a| a.to_array()[lane]), [0, 1, 2, 3].map(|k| want[k] + offset[k]), "{place}");
+            }
+        }
+    }
+}
+
+/// Sums and differences of three columns.
+#[derive(Clone, Copy)]
+struct Sums;
+
+impl Row<2> for Sums {
+    #[inline(always)]
+    fn row<L: Lanes>(self, [a, b, c]: [L; 3]) -> [L; 2]
+    where
+        f32: Broadcast<L>,
+    {
+        [a + b + c, a - b - c]
+    }
+}
+
+#[test]
+fn rows_of_any_length_are_computed_once_each_and_nothing_else_is_written() {
+    let mut draws = Draws(5);
+    let columns: [Vec<f32>; 3] = core::array::from_fn(|_| (0..100).map(|_| draws.xi()).collect());
+    for level in Level::available() {
+        for len in 0..=97 {
+            let [a, b, c] = [&columns[0][..len], &columns[1][1..][..len], &columns[2][2..][..len]];
+            let mut out = [vec![-1.0_f32; 110], vec![-1.0_f32; 110]];
+            let [first, second] = &mut out;
+            level.run_rows(Sums, [a, b, c], &mut [&mut first[3..][..len], &mut second[5..][..len]]);
+            for i in 0..len {
+                assert_eq!(out[0][3 + i], a[i] + b[i] + c[i], "{level}, row {i} of {len}");
+                assert_eq!(out[1][5 + i], a[i] - b[i] - c[i], "{level}, row {i} of {len}");
+            }
+            let rest = out[0].iter().enumerate().filter(|(i, _)| !(3..3 + len).contains(i));
+            assert!(rest.into_iter().all(|(_, x)| *x == -1.0), "{level}: written beyond {len} rows");
+        }
+    }
+}
+
+#[test]
+fn offsets_have_the_sign_of_the_turn_from_the_normal_to_wo() {
+    let mut draws = Draws(6);
+    for _ in 0..1000 {
+        let mut vector = || Vec3::new(draws.xi() - 0.5, draws.xi() - 0.5, draws.xi() - 0.5);
+        let (frame, normal, wo) = (FiberFrame::from_tangent(vector()), vector(), vector());
+        let h = frame.offset(normal, wo);
+        let across = |v: Vec3| (v - frame.u * v.dot(frame.u)).normalize();
+        let want = frame.u.dot(across(normal).cross(across(wo)));
+        assert!((h - want).abs() < 1e-5, "{frame:?}, normal {normal}, wo {wo}: {h}, not {want}");
+        assert!((frame.offset(normal * 1e30, wo * 1e-30) - want).abs() < 1e-5, "any length");
+        assert!((frame.offset(wo, normal) + want).abs() < 1e-5, "the other way round");
+    }
+    let frame = FiberFrame { u: Vec3::X, v: Vec3::Y, w: Vec3::Z };
+    for odd in [Vec3::ZERO, Vec3::X, Vec3::NAN, Vec3::INFINITY] {
+        assert_eq!((frame.offset(odd, Vec3::Y), frame.offset(Vec3::Y, odd)), (0.0, 0.0), "{odd}");
+    }
+}
+
+#[test]
+fn hits_clamp_their_offset() {
+    for (h, want) in
+        [(0.3, 0.3), (-1.0, -1.0), (7.0, 1.0), (-f32::INFINITY, -1.0), (f32::INFINITY, 1.0), (f32::NAN, 0.0)]
+    {
+        assert_eq!(Hit::new(Vec3::Y, h).h, want, "{h}");
+        let wo = hairis::Vec3x8::splat(Vec3::Y);
+        assert_eq!(Hit::new(wo, f32x8::splat(h)).h, f32x8::splat(want), "{h}, eight lanes");
+    }
+}
+
+#[test]
+fn any_finite_vector_has_a_direction() {
+    let mut draws = Draws(7);
+    for _ in 0..20_000 {
+        let scale = 10.0_f32.powf(76.0 * draws.xi() - 38.0);
+        let mut number = || (2.0 * draws.xi() - 1.0) * if draws.xi() < 0.3 { 1e-6 } else { 1.0 };
+        let v = [number(), number(), number()];
+        let truth = v.map(|x| f64::from(x * scale));
+        let length = truth.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if length < 1e-36 {
+            continue;
+        }
+        let Direction { vector, sin_theta, cos_theta, .. } = Direction::normalized(Vec3x::from(Vec3::from(v) * scale));
+        let got = [vector.x, vector.y, vector.z].map(f64::from);
+        for (got, want) in got.into_iter().zip(truth) {
+            assert!((got - want / length).abs() < 1.2e-7, "{v:?} times {scale}: {got}, not {}", want / length);
+        }
+        let cos = truth[1].hypot(truth[2]) / length;
+        assert!((f64::from(cos_theta) - cos).abs() < 1.2e-7 && sin_theta == vector.x, "{v:?} times {scale}");
+    }
+    let zero = Direction::normalized(Vec3x::<f32>::from(Vec3::ZERO));
+    assert_eq!((Vec3::from(zero.vector), zero.cos_theta), (Vec3::Y, 1.0), "zero counts as v");
+    assert_eq!(Direction::normalized(Vec3x::<f32>::from(Vec3::X)).cos_theta, 0.0, "along the fibre");
+}
