@@ -1,4 +1,4 @@
-//! A model of one's own, on the public traits alone: a fibre with a diffuse lobe and a specular cone.
+//! A model of one's own, given by its lobes: a fibre with a diffuse lobe and a specular cone.
 //!
 //! `S = kd / pi^2 + ks c(sin theta_i + sin theta_o) / (2 pi)`, with `c` the Cauchy density of width `w`. The first term
 //! returns `kd` of the light; the second peaks on the cone of mirror directions and returns at most `ks`. The diffuse
@@ -6,17 +6,16 @@
 //!
 //! Run it with `cargo run --release -p hairis-variants --example lambert_fiber`.
 
-use core::f32::consts::{FRAC_1_PI, PI};
-use core::fmt::Debug;
+use core::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 use hairis::math::{atan2_upper, sin_cos_half_turn};
 use hairis::wide::f32x8;
 use hairis::{
-    Broadcast, Bsdf, Bsdf8, Drawn, Eval, GRAZING, Hit, Lanes, Level, Lobe, LobeEval, LobeMask, Model, PerLobe, Vec3x,
-    Vec3x8, lanes3, store3,
+    Broadcast, Bsdf, Bsdf8, Direction, Hit, Lanes, Level, Lobe, LobeEval, LobeMask, LobeModel, Model, PerLobe, Scalar,
+    Vec3x8, lane_struct, lanes3,
 };
 
-/// The marker that the traits are implemented on.
+/// The marker that the trait is implemented on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LambertFiber;
 
@@ -24,7 +23,7 @@ pub(crate) struct LambertFiber;
 pub(crate) const DIFFUSE: Lobe = Lobe::slot(0);
 pub(crate) const CONE: Lobe = Lobe::slot(1);
 
-/// What a user describes a fibre with. A real model would check it, as `HairParams` does.
+/// Parameters of a fibre. A real model would check them, as `HairParams` does.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Params {
     pub(crate) kd: [f32; 3],
@@ -33,187 +32,78 @@ pub(crate) struct Params {
     pub(crate) width: f32,
 }
 
-hairis::lane_struct! {
+lane_struct! {
     /// What is constant for a material.
-    pub struct Material {
-        /// Colours, linear RGB.
-        pub kd: [C; 3],
-        /// As `kd`, of the cone.
-        pub ks: [C; 3],
-        /// Width of the cone.
-        pub width: C,
-        /// Probability of each lobe.
-        pub selection: [C; 2],
+    pub(crate) struct Material {
+        /// Colours, linear RGB: of the diffuse lobe and of the cone.
+        kd: [C; 3],
+        ks: [C; 3],
+        width: C,
+        /// How often each lobe is chosen, to any scale.
+        weights: [C; 2],
     }
 }
 
-hairis::lane_struct! {
+lane_struct! {
     /// What is constant for a gather point.
-    pub struct Point {
-        /// As in the material.
-        pub kd: [C; 3],
-        /// As in the material.
-        pub ks: [C; 3],
-        /// As in the material.
-        pub width: C,
-        /// As in the material.
-        pub selection: [C; 2],
-        /// Sine of `theta_o`.
-        pub sin_theta_o: C,
-        /// Angle under which a bell of this width sees the sphere, rad.
-        pub span: C,
+    pub(crate) struct Point {
+        material: (Material<C>),
+        sin_theta_o: C,
+        /// Angle that the cone's density is uniform over.
+        span: C,
     }
 }
 
-/// The lobes at a direction: their value and density, neither with its colour, and where there are any.
-#[inline(always)]
-fn shapes<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, wi: Vec3x<L>) -> ([LobeEval<L>; 2], L, L::Mask) {
-    let c = L::splat;
-    let width: L = gather.width.lanes();
-    let cos_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
-    let cos = cos_sq.sqrt();
-    let sound = L::and(c(GRAZING).lt(cos), wi.x.mul_add(wi.x, cos_sq).lt(c(4.0)));
-    let off = wi.x + gather.sin_theta_o.lanes();
-    let bell = width / off.mul_add(off, width * width);
-    let diffuse = LobeEval { value: c(FRAC_1_PI * FRAC_1_PI), color: lanes3(&gather.kd), pdf: c(0.25 * FRAC_1_PI) };
-    let cone = LobeEval {
-        value: bell * c(0.5 * FRAC_1_PI * FRAC_1_PI),
-        color: lanes3(&gather.ks),
-        pdf: bell * c(0.5 * FRAC_1_PI) / gather.span.lanes(),
-    };
-    ([diffuse, cone], cos, sound)
-}
-
-/// The sums over both lobes; 0 where a lane is not sound.
-#[inline(always)]
-fn total<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, lobes: [LobeEval<L>; 2], sound: L::Mask) -> Eval<L> {
-    let [diffuse, cone] = lobes;
-    let limit = L::select(sound, L::splat(f32::MAX), L::splat(0.0));
-    let mut value = [limit; 3];
-    let mut channel = 0;
-    while channel < 3 {
-        let sum = diffuse.value.mul_add(diffuse.color[channel], cone.value * cone.color[channel]);
-        value[channel] = sum.min(limit);
-        channel += 1;
-    }
-    let [p_diffuse, p_cone] = [gather.selection[0].lanes(), gather.selection[1].lanes()];
-    Eval { value, pdf: diffuse.pdf.mul_add(p_diffuse, cone.pdf * p_cone).min(limit) }
-}
-
-/// `sin theta_i` at which the cone's cdf is `xi`: `w tan(lo + xi span) - sin theta_o`, without a tangent.
-#[inline(always)]
-fn cone_sine<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, xi: L) -> L {
-    let (one, width, sin_theta_o) = (L::splat(1.0), gather.width.lanes(), gather.sin_theta_o.lanes());
-    let (s, c) = sin_cos_half_turn(xi * gather.span.lanes() * L::splat(0.5));
-    let (sin, cos) = ((s + s) * c, c * c - s * s);
-    let lo = sin_theta_o - one;
-    let x = width * lo.mul_add(cos, width * sin) / width.mul_add(cos, -(lo * sin));
-    (-one).max(one.min(x - sin_theta_o))
-}
-
-impl Model for LambertFiber {
+impl LobeModel for LambertFiber {
     type Params = Params;
-    type Material<C: Copy + Debug> = Material<C>;
-    type Gather<C: Copy + Debug> = Point<C>;
+    type Material<C: Scalar> = Material<C>;
+    type Prepared<C: Scalar> = Point<C>;
 
     const LOBES: &'static [&'static str] = &["diffuse", "cone"];
 
     fn material(&self, params: &Params) -> Material<f32> {
-        let (d, s) = (params.kd.iter().sum::<f32>(), params.ks.iter().sum::<f32>());
-        let share = |x: f32| if d + s > 0.0 { x / (d + s) } else { 0.0 };
-        Material { kd: params.kd, ks: params.ks, width: params.width, selection: [share(d), share(s)] }
-    }
-
-    fn pack(materials: [&Material<f32>; 8]) -> Material<f32x8> {
-        Material::pack(materials)
-    }
-
-    fn lane(gather: &Point<f32x8>, lane: usize) -> Point<f32> {
-        gather.lane(lane)
+        let Params { kd, ks, width } = *params;
+        Material { kd, ks, width, weights: [kd.iter().sum(), ks.iter().sum()] }
     }
 
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L> + Debug>(material: &Material<C>, hit: Hit<L>) -> Point<L::Stored>
-    where
-        L::Stored: Debug,
-    {
-        let (zero, one, tiny) = (L::splat(0.0), L::splat(1.0), L::splat(1e-30));
-        // Scaled first, so that no finite wo overflows; zero counts as one in the normal plane.
-        let largest = hit.wo.x.abs().max(hit.wo.y.abs().max(hit.wo.z.abs())).max(tiny);
-        let wo = Vec3x::new(hit.wo.x / largest, hit.wo.y / largest, hit.wo.z / largest);
-        let length = wo.dot(wo).sqrt();
-        let sin_theta_o = L::select(tiny.lt(length), wo.x / length, zero);
+    fn prepare<L: Lanes, C: Broadcast<L>>(material: &Material<C>, hit: Hit<L>) -> Point<L::Stored> {
+        let sin = Direction::normalized(hit.wo).sin_theta;
         let width = material.width.lanes();
-        let span = atan2_upper(width + width, width.mul_add(width, sin_theta_o.mul_add(sin_theta_o, -one)));
-        Point {
-            kd: store3(lanes3(&material.kd)),
-            ks: store3(lanes3(&material.ks)),
-            width: width.store(),
-            selection: [material.selection[0].lanes().store(), material.selection[1].lanes().store()],
-            sin_theta_o: sin_theta_o.store(),
-            span: span.store(),
-        }
+        let span = atan2_upper(width + width, width.mul_add(width, sin.mul_add(sin, -L::splat(1.0))));
+        Point { material: material.spread::<L>(), sin_theta_o: sin.store(), span: span.store() }
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes + Debug>(gather: &Point<C>, lobes: LobeMask) -> Point<C> {
-        let (d, s) = (C::splat(lobes.factor(DIFFUSE)), C::splat(lobes.factor(CONE)));
-        let [p_d, p_s] = [gather.selection[0] * d, gather.selection[1] * s];
-        let by = C::splat(1.0) / (p_d + p_s).max(C::splat(f32::MIN_POSITIVE));
-        let times = |x: [C; 3], by: C| [x[0] * by, x[1] * by, x[2] * by];
-        Point { kd: times(gather.kd, d), ks: times(gather.ks, s), selection: [p_d * by, p_s * by], ..*gather }
+    fn weights<L: Lanes, C: Broadcast<L>>(point: &Point<C>) -> PerLobe<L> {
+        let [diffuse, cone] = &point.material.weights;
+        PerLobe::padded([diffuse.lanes(), cone.lanes()], L::splat(0.0))
     }
 
     #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L> + Debug>(gather: &Point<C>, wi: Vec3x<L>) -> Eval<L> {
-        let (lobes, _, sound) = shapes(gather, wi);
-        total(gather, lobes, sound)
-    }
-
-    #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L> + Debug>(gather: &Point<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
-        let ([diffuse, cone], _, sound) = shapes(gather, wi);
-        let zero = L::splat(0.0);
-        let limit = L::select(sound, L::splat(f32::MAX), zero);
-        let none = LobeEval { value: zero, color: [zero; 3], pdf: zero };
-        let diffuse = LobeEval { value: diffuse.value.min(limit), pdf: diffuse.pdf.min(limit), ..diffuse };
-        let cone = LobeEval { value: cone.value.min(limit), pdf: cone.pdf.min(limit), ..cone };
-        PerLobe([diffuse, cone, none, none])
-    }
-
-    #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L> + Debug>(gather: &Point<C>, xi: [L; 3]) -> Drawn<L> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(point: &Point<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>> {
         let c = L::splat;
-        let (zero, one) = (c(0.0), c(1.0));
-        let is_diffuse = xi[0].lt(gather.selection[0].lanes());
-        let sin = L::select(is_diffuse, xi[1] + xi[1] - one, cone_sine(gather, xi[1]));
-        let cos = ((one - sin) * (one + sin)).sqrt();
-        // The azimuth is uniform: the double of an angle in [-pi/2, pi/2].
-        let (s, k) = sin_cos_half_turn((xi[2] - c(0.5)) * c(PI));
-        let wi = Vec3x::new(sin, cos * (k * k - s * s), cos * ((s + s) * k));
-        let (lobes, _, sound) = shapes(gather, wi);
-        let Eval { value, pdf } = total(gather, lobes, sound);
-        let sound = L::and(sound, zero.lt(pdf));
-        let by = L::select(sound, cos / pdf, zero);
-        let slot = L::select(is_diffuse, zero, one);
-        let weight = [value[0] * by, value[1] * by, value[2] * by];
-        Drawn { wi, value, pdf, weight, slot: L::select(sound, slot, -one) }
+        let width = point.material.width.lanes();
+        let off = wi.sin_theta + point.sin_theta_o.lanes();
+        let bell = width / off.mul_add(off, width * width) * c(0.5 * FRAC_1_PI);
+        let (kd, ks) = (lanes3(&point.material.kd), lanes3(&point.material.ks));
+        let diffuse = LobeEval { value: c(FRAC_1_PI * FRAC_1_PI), color: kd, pdf: c(0.25 * FRAC_1_PI) };
+        let cone = LobeEval { value: bell * c(FRAC_1_PI), color: ks, pdf: bell / point.span.lanes() };
+        PerLobe::padded([diffuse, cone], LobeEval::none())
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L> + Debug>(gather: &Point<C>) -> PerLobe<[L; 3]> {
-        const STEPS: u16 = 256;
-        let (kd, ks) = (lanes3(&gather.kd), lanes3(&gather.ks));
-        let zero = L::splat(0.0);
-        let mut sum = zero;
-        let mut step = 0;
-        while step < STEPS {
-            let sin = cone_sine(gather, L::splat((f32::from(step) + 0.5) / f32::from(STEPS)));
-            sum = sum + ((L::splat(1.0) - sin) * (L::splat(1.0) + sin)).sqrt();
-            step += 1;
-        }
-        let by = sum * gather.span.lanes() * L::splat(FRAC_1_PI / f32::from(STEPS));
-        PerLobe([kd, [ks[0] * by, ks[1] * by, ks[2] * by], [zero; 3], [zero; 3]])
+    fn sample_lobe<L: Lanes, C: Broadcast<L>>(point: &Point<C>, lobe: L::Index, xi: [L; 3]) -> Direction<L> {
+        let one = L::splat(1.0);
+        let (width, sin_theta_o) = (point.material.width.lanes(), point.sin_theta_o.lanes());
+        // The cone: width tan(lo + xi span) - sin theta_o, without a tangent.
+        let (s, c) = sin_cos_half_turn(xi[1] * point.span.lanes() * L::splat(0.5));
+        let (sin, cos) = ((s + s) * c, c * c - s * s);
+        let lo = sin_theta_o - one;
+        let x = width * lo.mul_add(cos, width * sin) / width.mul_add(cos, -(lo * sin));
+        let cone = (-one).max(one.min(x - sin_theta_o));
+        let sin = L::select(L::is_index(lobe, DIFFUSE.index()), xi[1] + xi[1] - one, cone);
+        Direction::with_uniform_azimuth([sin, ((one - sin) * (one + sin)).sqrt()], xi[2])
     }
 }
 
@@ -258,7 +148,7 @@ pub(crate) fn main() {
                 e.pdf,
                 s.wi,
                 s.weight[0],
-                LambertFiber::LOBES[s.lobe.index()]
+                <LambertFiber as Model>::LOBES[s.lobe.index()]
             );
             let close = |a: f32, b: f32| (a - b).abs() <= 2e-5 * a.abs().max(1e-3);
             assert!(close(e.value[0], scalar.value[0]) && close(e.pdf, scalar.pdf), "lane {lane}: {e:?} {scalar:?}");

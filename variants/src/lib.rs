@@ -1,16 +1,36 @@
 //! Scattering models on top of the public traits of [`hairis`].
 //!
-//! | model | what it changes | source | status |
-//! |---|---|---|---|
-//! | [`Cauchy`] in [`hairis::Hair`] | every Gaussian of the published model becomes a Cauchy | Ou et al. 2012, section 3.3 | complete |
+//! | model | what it is | conserves energy | reciprocal | source |
+//! |---|---|---|---|---|
+//! | [`Cauchy`] in [`hairis::Hair`] | the published model with every Gaussian a Cauchy | no | yes | Ou et al. 2012, section 3.3 |
+//! | [`KajiyaKay`] | a diffuse cylinder and one cone of highlights | `kd + ks` of its parameters | one of two forms | Kajiya & Kay 1989 |
+//! | [`Chiang`] | near field, absorption in place of colours | yes | no | Chiang et al. 2016; d'Eon et al. 2011 |
 //!
-//! A model of one's own touches no file of the kernels: `examples/lambert_fiber.rs` is one.
+//! A model of one's own touches no file of the kernels: `examples/lambert_fiber.rs` is one. A model of this crate also has
+//! [`Parameters`], an implementation of [`Registered`], and a line in `registry.rs`, the only list of models; then hosts may
+//! choose it at run time ([`ModelId`], [`AnyBsdf`]), and the harness and the benches include it.
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 
 mod cauchy;
+mod check;
+pub mod chiang;
+mod hair;
+pub mod kajiya_kay;
+mod parameters;
+#[cfg(feature = "textbook")]
+mod reference;
+mod registry;
 
 pub use cauchy::Cauchy;
+pub use chiang::{Chiang, ChiangDesc, ChiangParams};
+pub use kajiya_kay::{KajiyaKay, KajiyaKayDesc, KajiyaKayParams};
+pub use parameters::{Draw, Field, Kind, Parameters, Values};
+#[cfg(feature = "textbook")]
+pub use registry::{Accuracy, AnyReference};
+#[cfg(feature = "any")]
+pub use registry::{AnyBsdf, AnyBsdf8, AnyGather, AnyGather8};
+pub use registry::{ModelId, Registered, Visitor};
 
 /// The all-Cauchy variant of the published model, see [`Cauchy`].
 pub type AllCauchy = hairis::Hair<Cauchy>;

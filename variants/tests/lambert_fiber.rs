@@ -7,7 +7,51 @@ mod example;
 use crate::support::{Draws, direction, double, lanes_of, packet};
 use example::{CONE, DIFFUSE, LambertFiber, Params, pdf_integral};
 use glam::Vec3;
-use hairis::{Bsdf, Bsdf8, EvalSlices, Level, Lobe, LobeMask};
+use hairis::{Bsdf, Bsdf8, EvalSlices, Hit, Level, Lobe, LobeMask};
+use hairis_conformance::{Claims, Materials, Subject};
+
+/// The example under the suite that every model passes.
+struct Fibers;
+
+impl Subject for Fibers {
+    type Model = LambertFiber;
+
+    fn model(&self) -> LambertFiber {
+        LambertFiber
+    }
+
+    fn materials(&self) -> Materials<Self> {
+        let black = [0.0; 3];
+        vec![
+            ("everyday", FIBER),
+            ("narrow", Params { width: 0.01, ..FIBER }),
+            ("wide", Params { width: 1.0, ..FIBER }),
+            ("black", Params { kd: black, ks: black, width: 0.1 }),
+        ]
+    }
+
+    fn white(&self) -> Materials<Self> {
+        vec![("diffuse alone", Params { kd: [1.0; 3], ks: [0.0; 3], width: 0.1 })]
+    }
+
+    fn claims(&self) -> Claims {
+        // The provided albedo is a lattice's: of the diffuse lobe alone it is off by 1e-5.
+        Claims { reciprocal: Some(2e-6), furnace: Some(2e-5), albedo: 2e-3, ..Claims::default() }
+    }
+
+    /// Lobe by lobe the weight is `4 kd cos / (pi p)`, or `ks cos span / (pi p)`: `p` is the share of the lobe.
+    fn weight_bound(&self, params: &Params, _hit: &Hit, lobes: LobeMask) -> Option<f64> {
+        let sum = |color: [f32; 3]| color.iter().map(|x| f64::from(*x)).sum::<f64>();
+        let most = |color: [f32; 3]| f64::from(color.into_iter().fold(0.0, f32::max));
+        let lit = |lobe, color: [f32; 3]| if lobes.contains(lobe) { color } else { [0.0; 3] };
+        let (kd, ks) = (lit(DIFFUSE, params.kd), lit(CONE, params.ks));
+        let total = sum(kd) + sum(ks);
+        let ratio = |color, by: f64| if sum(color) > 0.0 { by * most(color) * total / sum(color) } else { 0.0 };
+        (total > 0.0).then(|| ratio(kd, 4.0 / core::f64::consts::PI).max(ratio(ks, 1.0)))
+    }
+}
+
+hairis_conformance::conformance!(suite, Fibers);
 
 const FIBER: Params = Params { kd: [0.4, 0.3, 0.2], ks: [0.5, 0.4, 0.6], width: 0.1 };
 

@@ -1,0 +1,133 @@
+//! Random samples fall where the density says.
+
+use crate::calls;
+use crate::failure::{Failure, Outcome};
+use crate::integral::Integral;
+use crate::mesh::{Mesh, Samples};
+use crate::probe::{Draws, columns, hits};
+use crate::statistics::chi_square_tail;
+use crate::subject::Subject;
+use hairis::{Bsdf, LobeMask};
+
+/// Chance that a sound model fails, over all its runs.
+const SIGNIFICANCE: f64 = 0.01;
+/// Cells of fewer expected samples are pooled; so are those of less than this share of all samples.
+const LEAST: f64 = 5.0;
+const SHARE: f64 = 1.0 / 256.0;
+
+/// Pearson's chi-square test of random samples against the integral of the density over cells of inclination and azimuth.
+///
+/// A run is a material at a hit. The significance is 0.01 over all of them (Sidak).
+///
+/// # Errors
+///
+/// If a run is less probable than that, with its worst cells.
+pub fn samples_follow_density<S: Subject>(subject: &S) -> Outcome {
+    const NAME: &str = "samples follow the density";
+    let (claims, materials) = (subject.claims(), subject.materials());
+    let runs = (materials.len() * hits().len()) as f64;
+    let least = 1.0 - (1.0 - SIGNIFICANCE).powf(1.0 / runs);
+    let mut draws = Draws(0x5eed);
+    let mut worst = 1.0_f64;
+    for (name, params) in &materials {
+        let bsdf = Bsdf::new(&subject.model(), params);
+        for hit in hits() {
+            let gather = calls::prepare(&bsdf, hit);
+            let mesh = Mesh::new(subject, params, &hit, &gather, LobeMask::ALL);
+            let [rows, width] = mesh.size();
+            let expected = Integral::density(&gather, &mesh).mass;
+            let mut observed = vec![0_u32; rows * width];
+            let mut live = 0_u32;
+            for ([theta, phi], _) in Samples::draw(&gather, columns(claims.samples, |_| draws.xi3())).live() {
+                let [i, j] = mesh.find([theta, phi]);
+                observed[i * width + j] += 1;
+                live += 1;
+            }
+            let count = f64::from(claims.samples);
+            if live == 0 && expected.iter().all(|mass| *mass == 0.0) {
+                continue;
+            }
+            let discarded = f64::from(claims.samples - live);
+            let cells = pooled(&expected, &observed, count, discarded, count * claims.integral);
+            let statistic: f64 = cells.iter().map(Cell::term).sum();
+            let p = chi_square_tail(statistic, cells.len().max(2) - 1);
+            worst = worst.min(p);
+            if p.is_nan() || p < least {
+                let mut cells = cells;
+                cells.sort_by(|a, b| b.term().total_cmp(&a.term()));
+                let table: Vec<String> = cells.iter().take(6).map(|cell| cell.describe(&mesh)).collect();
+                let message = format!(
+                    "chi-square {statistic:.0} of {} cells has probability {p:.1e}, allowed {least:.1e}: {name} {hit:?}; \
+                     the worst cells: {}",
+                    cells.len(),
+                    table.join("; ")
+                );
+                return Err(Failure::new(NAME, message));
+            }
+        }
+    }
+    println!("{NAME}: least probability {worst:.1e} of {runs} runs, allowed {least:.1e}");
+    Ok(())
+}
+
+/// Some rectangles of a row, from one to another.
+struct Cell {
+    from: usize,
+    to: usize,
+    expected: f64,
+    observed: f64,
+}
+
+impl Cell {
+    fn term(&self) -> f64 {
+        let difference = self.observed - self.expected;
+        if difference == 0.0 { 0.0 } else { difference * difference / self.expected }
+    }
+
+    fn describe(&self, mesh: &Mesh) -> String {
+        let width = mesh.size()[1];
+        let Self { from, to, expected, observed } = self;
+        let Some(theta) = mesh.theta.get(from / width) else {
+            return format!("{observed} for {expected:.1} discarded");
+        };
+        let (phi, theta_to, phi_to) = (mesh.phi[from % width], mesh.theta[to / width + 1], mesh.phi[to % width + 1]);
+        format!("{observed} for {expected:.1} from theta {theta:.4} phi {phi:.4} to {theta_to:.4} {phi_to:.4}")
+    }
+}
+
+/// Neighbouring rectangles together, until each has enough expected samples; discarded samples are the last cell, if there
+/// are more or less of them than is `uncertain`.
+fn pooled(mass: &[f64], observed: &[u32], count: f64, discarded: f64, uncertain: f64) -> Vec<Cell> {
+    let enough = (count * SHARE).max(LEAST);
+    let mut cells: Vec<Cell> = Vec::new();
+    let mut open: Option<Cell> = None;
+    for (n, (mass, observed)) in mass.iter().zip(observed).enumerate() {
+        let cell = open.get_or_insert(Cell { from: n, to: n, expected: 0.0, observed: 0.0 });
+        cell.to = n;
+        cell.expected += mass * count;
+        cell.observed += f64::from(*observed);
+        if cell.expected >= enough {
+            cells.extend(open.take());
+        }
+    }
+    if let Some(rest) = open {
+        match cells.last_mut() {
+            Some(last) => {
+                last.to = rest.to;
+                last.expected += rest.expected;
+                last.observed += rest.observed;
+            }
+            None => cells.push(rest),
+        }
+    }
+    let expected = (count * (1.0 - mass.iter().sum::<f64>())).max(0.0);
+    match cells.last_mut() {
+        // Too close to be told from the error of the integral, which has a test of its own.
+        Some(last) if (expected - discarded).abs() <= uncertain => {
+            last.expected += expected;
+            last.observed += discarded;
+        }
+        _ => cells.push(Cell { from: mass.len(), to: mass.len(), expected: expected.max(1e-9), observed: discarded }),
+    }
+    cells
+}

@@ -1,0 +1,67 @@
+//! Samples of Sobol points have the distribution of the density, to the evenness of the points: far sharper than random
+//! samples.
+
+use crate::calls;
+use crate::failure::{Outcome, Worst};
+use crate::integral::{Integral, parts};
+use crate::mesh::{Mesh, Samples};
+use crate::probe::{columns, hits, sobol};
+use crate::subject::Subject;
+use hairis::Bsdf;
+
+/// Points are less even in two dimensions than in one.
+const BOTH: f64 = 4.0;
+
+/// The cumulative distribution of samples of Sobol points is that of the density: in inclination, in azimuth, and
+/// in both, to four times the tolerance. Each lobe alone, and all together, so that a lobe drawn with the wrong probability shows, too.
+///
+/// # Errors
+///
+/// At the first hit where it is not.
+pub fn even_points_invert_density<S: Subject>(subject: &S) -> Outcome {
+    const NAME: &str = "even points invert the density";
+    let claims = subject.claims();
+    let points = columns(claims.points, sobol);
+    let mut worst = Worst::new(NAME, "the cdf of one angle", claims.inversion);
+    let mut joint = Worst::new(NAME, "the cdf of both angles", BOTH * claims.inversion);
+    for (name, params) in subject.materials() {
+        let bsdf = Bsdf::new(&subject.model(), &params);
+        for hit in hits() {
+            let all = calls::prepare(&bsdf, hit);
+            for mask in parts::<S::Model>() {
+                let gather = calls::with_lobes(&all, mask);
+                let mesh = Mesh::new(subject, &params, &hit, &gather, mask);
+                let [rows, width] = mesh.size();
+                // Drawn less expected.
+                let mut mass: Vec<f64> = Integral::density(&gather, &mesh).mass.iter().map(|mass| -mass).collect();
+                let share = 1.0 / f64::from(claims.points);
+                for (angles, _) in Samples::draw(&gather, points.clone()).live() {
+                    let [i, j] = mesh.find(angles);
+                    mass[i * width + j] += share;
+                }
+                // Sums over all rectangles up to a row and a column.
+                let mut above = vec![0.0; width];
+                for i in 0..rows {
+                    let mut left = 0.0;
+                    for j in 0..width {
+                        left += mass[i * width + j];
+                        above[j] += left;
+                        let at = || {
+                            format!(
+                                "up to theta {:.5} phi {:.5}, {name} {mask:?} {hit:?}",
+                                mesh.theta[i + 1],
+                                mesh.phi[j + 1]
+                            )
+                        };
+                        joint.see(above[j].abs(), at)?;
+                        if i + 1 == rows || j + 1 == width {
+                            worst.see(above[j].abs(), at)?;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    joint.report()?;
+    worst.report()
+}

@@ -1,0 +1,134 @@
+//! Conformance tests for scattering models written on [`hairis`]: one line instantiates them all.
+//!
+//! A model in a crate of its own takes this package as a dev-dependency and writes, in its tests:
+//!
+//! ```
+//! use hairis::{Gaussian, Hair, HairParams};
+//! use hairis_conformance::{Claims, Materials, Subject};
+//!
+//! struct Published;
+//!
+//! impl Subject for Published {
+//!     type Model = Hair<Gaussian>;
+//!
+//!     fn model(&self) -> Self::Model {
+//!         Hair(Gaussian)
+//!     }
+//!
+//!     fn materials(&self) -> Materials<Self> {
+//!         vec![("brown", HairParams::brown()), ("white", HairParams::white())]
+//!     }
+//!
+//!     fn claims(&self) -> Claims {
+//!         Claims { reciprocal: Some(1e-4), ..Claims::default() }
+//!     }
+//! }
+//!
+//! hairis_conformance::conformance!(published, Published);
+//! # hairis_conformance::integral::density_integrates_to_one(&Published).unwrap();
+//! ```
+//!
+//! The last line declares the module `published` with a `#[test]` for each property:
+//!
+//! | test | property |
+//! |---|---|
+//! | `results_are_finite` | every finite input gives finite results that are not negative |
+//! | `density_integrates_to_one` | each lobe's density, and that of all, integrates to the share of samples kept |
+//! | `samples_follow_density` | chi-square test of random samples |
+//! | `even_points_invert_density` | the cdf of samples of Sobol points is the integral of the density |
+//! | `samples_agree_with_eval` | a sample's value, density and weight are those of its direction |
+//! | `lanes_equal_scalar` | eight directions, hits and materials in lanes give the results of one lane |
+//! | `lanes_permute` | permuted lanes permute the results |
+//! | `levels_agree` | levels that fuse alike, packed and shared materials, give the same bits |
+//! | `lobes_and_albedo_equal_scalar` | the same of lobes and albedo; `h` matters only where it is claimed to |
+//! | `slices_equal_packets` | slices of every length and alignment give the bits of packets |
+//! | `lobes_sum_to_value` | values and densities of lobes alone and together |
+//! | `masks_select_lobes` | masked lobes neither scatter nor are sampled |
+//! | `albedo_is_the_integral` | `albedo` against quadrature |
+//! | `white_furnace` | white materials return all light, if claimed |
+//! | `weights_are_bounded` | weights are below the bound that the subject states, if any |
+//! | `eval_is_reciprocal` | S with its directions exchanged, if claimed |
+//! | `agrees_with_reference` | agreement with a twin in double precision, if there is one |
+//!
+//! All run on every level that the CPU has. Inputs are the same in every run. Each property is also a function that returns
+//! an [`Outcome`], whose [`Failure`] names material, directions, numbers, lane and level; `cargo test -- --nocapture` prints
+//! the worst case of each.
+//!
+//! # What passes unseen
+//!
+//! A density with a peak narrower than a degree where no sample falls may be missed by quadrature, unless
+//! [`Subject::edges`] names it. Relative accuracy within 1e-3 rad of the axis is left to the model's own tests.
+
+pub mod bounds;
+mod calls;
+pub mod chi_square;
+mod failure;
+pub mod integral;
+pub mod inversion;
+pub mod lanes;
+pub mod lobes;
+mod mesh;
+mod near;
+mod probe;
+#[doc(hidden)]
+#[expect(
+    clippy::must_use_candidate,
+    clippy::unwrap_used,
+    reason = "tests and their support: a panic is how a test fails"
+)]
+pub mod published;
+pub mod reference;
+pub mod sampling;
+pub mod slices;
+mod statistics;
+mod subject;
+pub mod totality;
+mod twin;
+
+pub use failure::{Failure, Outcome};
+pub use subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subject, Tolerance};
+pub use twin::Twin;
+
+/// Declares a module with a `#[test]` for each property of a [`Subject`].
+///
+/// The subject is an expression without surroundings: a unit struct, or a constant.
+#[macro_export]
+macro_rules! conformance {
+    ($name:ident, $subject:expr) => {
+        $crate::conformance!(
+            @$name, $subject,
+            totality results_are_finite,
+            integral density_integrates_to_one,
+            chi_square samples_follow_density,
+            inversion even_points_invert_density,
+            sampling samples_agree_with_eval,
+            lanes lanes_equal_scalar,
+            lanes lanes_permute,
+            lanes levels_agree,
+            lanes lobes_and_albedo_equal_scalar,
+            slices slices_equal_packets,
+            lobes lobes_sum_to_value,
+            lobes masks_select_lobes,
+            bounds albedo_is_the_integral,
+            bounds white_furnace,
+            bounds weights_are_bounded,
+            bounds eval_is_reciprocal,
+            reference agrees_with_reference,
+        );
+    };
+    (@$name:ident, $subject:expr, $($module:ident $property:ident,)*) => {
+        #[cfg(test)]
+        mod $name {
+            #[allow(unused_imports, reason = "the subject may be named by a path")]
+            use super::*;
+            $(
+                #[test]
+                fn $property() {
+                    if let Err(failure) = $crate::$module::$property(&$subject) {
+                        panic!("{failure}");
+                    }
+                }
+            )*
+        }
+    };
+}

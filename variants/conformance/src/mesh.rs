@@ -1,0 +1,146 @@
+//! Rectangles of inclination and azimuth that a density is integrated over.
+//!
+//! A narrow lobe is found where it is, through the quantiles of a few samples, and not by luck: without them quadrature
+//! on a sphere misses lobes below a degree. From there the mesh widens by a constant factor, so that tails are resolved,
+//! too. Only where the edges lie depends on the samples; what they enclose is integrated from the density alone.
+
+use crate::calls::{self, COLUMNS};
+use crate::probe::{angles, columns, slots, sobol};
+use crate::subject::{ParamsOf, Subject};
+use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::{Gather, Hit, Level, LobeMask, Model};
+
+/// Samples per lobe that edges are taken from.
+const SAMPLES: u32 = 4096;
+/// Neighbouring intervals differ in width by at most this factor.
+const GRADE: f64 = 2.5;
+/// Intervals are at most this share of the domain.
+const WIDEST: f64 = 1.0 / 8.0;
+/// Edges closer than this are one, rad.
+const CLOSEST: f64 = 1e-6;
+
+/// Edges of the rectangles, ascending, from end to end of the domain.
+pub(crate) struct Mesh {
+    pub(crate) theta: Vec<f64>,
+    pub(crate) phi: Vec<f64>,
+}
+
+impl Mesh {
+    /// A mesh for the density of a gather point: of all its lobes, or of those in `mask`.
+    pub(crate) fn new<S: Subject>(
+        subject: &S,
+        params: &ParamsOf<S>,
+        hit: &Hit,
+        gather: &Gather<S::Model>,
+        mask: LobeMask,
+    ) -> Self {
+        let [mut theta, mut phi] = subject.edges(params, hit);
+        for lobe in slots::<S::Model>().filter(|lobe| mask.contains(*lobe)) {
+            let alone = calls::with_lobes(gather, LobeMask::of(&[lobe]));
+            let samples = Samples::draw(&alone, columns(SAMPLES, sobol));
+            theta.extend(quantiles(samples.live().map(|([theta, _], _)| theta).collect()));
+            phi.extend(quantiles(samples.live().map(|([_, phi], _)| phi).collect()));
+        }
+        Self { theta: graded(theta, FRAC_PI_2), phi: graded(phi, PI) }
+    }
+
+    /// The rectangle that contains these angles, or the nearest one.
+    pub(crate) fn find(&self, [theta, phi]: [f64; 2]) -> [usize; 2] {
+        let at = |edges: &[f64], x: f64| edges[1..edges.len() - 1].partition_point(|edge| *edge <= x);
+        [at(&self.theta, theta), at(&self.phi, phi)]
+    }
+
+    /// Number of intervals of each angle.
+    pub(crate) fn size(&self) -> [usize; 2] {
+        [self.theta.len() - 1, self.phi.len() - 1]
+    }
+}
+
+/// Many samples of one gather point, by column.
+pub(crate) struct Samples {
+    columns: [Vec<f32>; COLUMNS],
+}
+
+impl Samples {
+    /// The samples that these numbers give.
+    pub(crate) fn draw<M: Model>(gather: &Gather<M>, xi: [Vec<f32>; 3]) -> Self {
+        let mut columns: [Vec<f32>; COLUMNS] = core::array::from_fn(|_| vec![0.0; xi[0].len()]);
+        let inputs = xi.each_ref().map(|column| &column[..]);
+        let written = calls::sample_slices(gather, Level::detect(), inputs, columns.each_mut().map(|c| &mut c[..]));
+        assert!(written.is_ok(), "slices of one length are accepted: {written:?}");
+        Self { columns }
+    }
+
+    /// Share of the samples that were not discarded.
+    pub(crate) fn kept(&self) -> f64 {
+        let [.., slot] = &self.columns;
+        slot.iter().filter(|slot| **slot >= 0.0).count() as f64 / slot.len() as f64
+    }
+
+    /// Angles and slot of each sample that was not discarded.
+    pub(crate) fn live(&self) -> impl Iterator<Item = ([f64; 2], f32)> {
+        let [u, v, w, .., slot] = &self.columns;
+        let live = (0..slot.len()).filter(|n| slot[*n] >= 0.0);
+        live.map(|n| (angles([u[n], v[n], w[n]].map(f64::from)), slot[n]))
+    }
+}
+
+/// Every twelfth of a distribution, and its tails.
+fn quantiles(mut sorted: Vec<f64>) -> Vec<f64> {
+    sorted.retain(|x| x.is_finite());
+    sorted.sort_by(f64::total_cmp);
+    let count = sorted.len();
+    if count == 0 {
+        return sorted;
+    }
+    let tails =
+        [1, 6, 30, 120].into_iter().flat_map(|per_mille| [per_mille, 1000 - per_mille]).map(|n| n * count / 1000);
+    (0..12).map(|n| n * count / 12).chain(tails).map(|n| sorted[n.min(count - 1)]).collect()
+}
+
+/// Sorts edges, adds the ends of the domain, and halves what is too wide, by itself or beside its neighbours.
+fn graded(mut edges: Vec<f64>, end: f64) -> Vec<f64> {
+    edges.retain(|x| x.abs() < end - CLOSEST);
+    edges.extend([-end, end]);
+    edges.sort_by(f64::total_cmp);
+    edges.dedup_by(|b, a| *b - *a < CLOSEST);
+    loop {
+        let width: Vec<f64> = edges.windows(2).map(|ends| ends[1] - ends[0]).collect();
+        let mut added = Vec::new();
+        for (n, ends) in edges.windows(2).enumerate() {
+            let before = n.checked_sub(1).map_or(f64::MAX, |n| width[n]);
+            let after = width.get(n + 1).copied().unwrap_or(f64::MAX);
+            if width[n] > GRADE * before.min(after).max(CLOSEST) {
+                // One step away from the narrower neighbour.
+                let step = 2.0 * before.min(after).max(CLOSEST);
+                added.push(if before <= after { ends[0] + step } else { ends[1] - step });
+            } else if width[n] > WIDEST * 2.0 * end {
+                added.push(0.5 * (ends[0] + ends[1]));
+            }
+        }
+        if added.is_empty() {
+            return edges;
+        }
+        edges.extend(added);
+        edges.sort_by(f64::total_cmp);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{GRADE, graded, quantiles};
+
+    #[test]
+    fn meshes_widen_step_by_step() {
+        let edges = graded(vec![0.3, 0.3001, 0.3002, 7.0, -1.0], 1.5);
+        assert!(edges[0] == -1.5 && edges[edges.len() - 1] == 1.5, "the ends: {edges:?}");
+        assert!(edges.contains(&0.3001) && edges.contains(&-1.0), "what was asked for: {edges:?}");
+        let widths: Vec<f64> = edges.windows(2).map(|ends| ends[1] - ends[0]).collect();
+        for pair in widths.windows(2) {
+            let ratio = pair[0] / pair[1];
+            assert!(ratio < 1.001 * GRADE && ratio > 0.999 / GRADE, "neighbours of ratio {ratio}");
+        }
+        assert!(edges.len() < 100, "{} edges", edges.len());
+        assert!(quantiles(vec![f64::NAN]).is_empty(), "no samples, no quantiles");
+    }
+}

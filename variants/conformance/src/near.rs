@@ -1,0 +1,103 @@
+//! How far rounded inputs move the results: what two evaluations of one formula may differ by.
+
+use crate::calls::{self, Direction};
+use crate::probe::{cos_theta, distance, narrow, rounded};
+use hairis::{Bsdf, Eval, Gather, Hit, Model, Sample};
+
+/// A rounding of an angle, or of a uniform number, as arithmetic in single precision adds up to.
+const ROUNDING: f64 = 4e-7;
+
+/// Values and densities below this are compared absolutely.
+const FLOOR: f64 = 1e-20;
+
+/// A gather point, and those of the hits that its hit may be taken for once it is rounded.
+pub(crate) struct Nearby<'a, M: Model> {
+    bsdf: &'a Bsdf<M>,
+    hit: Hit,
+    near_field: bool,
+    gather: Gather<M>,
+}
+
+impl<'a, M: Model> Nearby<'a, M> {
+    pub(crate) fn new(bsdf: &'a Bsdf<M>, hit: Hit, near_field: bool) -> Self {
+        Self { bsdf, hit, near_field, gather: calls::prepare(bsdf, hit) }
+    }
+
+    pub(crate) fn gather(&self) -> &Gather<M> {
+        &self.gather
+    }
+
+    /// The gather points of rounded hits.
+    fn gathers(&self) -> impl Iterator<Item = Gather<M>> {
+        let Hit { wo, h } = self.hit;
+        let moved = rounded(wo, ROUNDING).map(|wo| Hit { wo, h });
+        let by = if self.near_field { narrow(ROUNDING) } else { 0.0 };
+        let across = [h + by, h - by].map(|h| Hit { wo, h });
+        moved.into_iter().chain(across).map(|hit| calls::prepare(self.bsdf, hit))
+    }
+
+    /// The largest change of value and density as `wi` and the hit are rounded.
+    fn spread(&self, wi: Direction) -> [f64; 4] {
+        let numbers = |e: Eval| [e.value[0], e.value[1], e.value[2], e.pdf].map(f64::from);
+        let centre = numbers(calls::eval(&self.gather, wi));
+        let moved = rounded(wi, ROUNDING).map(|wi| calls::eval(&self.gather, wi));
+        let mut spread = [0.0; 4];
+        for e in moved.into_iter().chain(self.gathers().map(|gather| calls::eval(&gather, wi))) {
+            for ((most, x), c) in spread.iter_mut().zip(numbers(e)).zip(centre) {
+                *most = f64::max(*most, (x - c).abs());
+            }
+        }
+        spread
+    }
+
+    /// The largest relative error of value and density, less what rounding the directions changes.
+    pub(crate) fn error(&self, got: Eval, want: Eval, wi: Direction) -> f64 {
+        let numbers = |e: Eval| [e.value[0], e.value[1], e.value[2], e.pdf].map(f64::from);
+        let (got, want) = (numbers(got), numbers(want));
+        if got == want {
+            return 0.0;
+        }
+        let errors = got.into_iter().zip(want).zip(self.spread(wi));
+        let beyond = |((got, want), by): ((f64, f64), f64)| ((got - want).abs() - by).max(0.0) / want.abs().max(FLOOR);
+        // A maximum ignores NaN, which is never right.
+        if got.iter().any(|x| x.is_nan()) { f64::NAN } else { errors.map(beyond).fold(0.0, f64::max) }
+    }
+}
+
+/// Whether a sample is that of one lane, or could be with numbers and a hit that are rounded.
+pub(crate) fn sample_is_near<M: Model>(
+    got: Option<Sample>,
+    want: Option<Sample>,
+    nearby: &Nearby<'_, M>,
+    xi: [f32; 3],
+    direction: f64,
+) -> bool {
+    let near = |want: Option<Sample>, by: f64| match (got, want) {
+        (None, None) => true,
+        (Some(a), Some(b)) => a.lobe == b.lobe && distance(a.wi.into(), b.wi.into()) <= by,
+        // Next to the axis either may be discarded.
+        (Some(s), None) | (None, Some(s)) => cos_theta(s.wi.into()) < 1e-4,
+    };
+    if near(want, direction) {
+        return true;
+    }
+    let mut moved = Vec::new();
+    for axis in 0..3 {
+        for by in [-2.0, -1.0, -0.5, 0.5, 1.0, 2.0] {
+            let mut xi = xi;
+            xi[axis] = (xi[axis] + by * narrow(ROUNDING)).clamp(0.0, 1.0 - f32::EPSILON / 2.0);
+            moved.push(calls::sample(nearby.gather(), xi));
+        }
+    }
+    moved.extend(nearby.gathers().map(|gather| calls::sample(&gather, xi)));
+    // As far as rounding moves the sample of its lobe.
+    let reach = moved.iter().flatten().filter_map(|a| {
+        let of_lobe = |b: &Sample| b.lobe == a.lobe;
+        want.filter(of_lobe)
+            .or_else(|| moved.iter().flatten().copied().find(of_lobe))
+            .map(|b| distance(a.wi.into(), b.wi.into()))
+    });
+    let reach = reach.fold(direction, f64::max);
+    moved.push(want);
+    moved.into_iter().any(|m| near(m, reach))
+}

@@ -1,0 +1,209 @@
+//! Numbers, directions and hits to test at, and lanes out of them.
+
+use crate::calls::Direction;
+use core::f64::consts::PI;
+use hairis::wide::f32x8;
+use hairis::{Hit, Hit8, Lobe, LobeMask, Model, Vec3x, Vec3x8};
+
+/// The largest uniform number.
+pub(crate) const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// The nearest single-precision number.
+#[expect(clippy::cast_possible_truncation, reason = "rounding to a float is the purpose")]
+#[must_use]
+pub fn narrow(x: f64) -> f32 {
+    x as f32
+}
+
+/// Uniform numbers: splitmix64.
+#[derive(Clone, Debug)]
+pub struct Draws(pub u64);
+
+impl Draws {
+    /// 64 random bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A multiple of `2^-24` in `[0, 1)`.
+    pub fn xi(&mut self) -> f32 {
+        narrow((self.bits() >> 40) as f64 / 16_777_216.0)
+    }
+
+    /// Three of [`xi`](Self::xi).
+    pub fn xi3(&mut self) -> [f32; 3] {
+        [self.xi(), self.xi(), self.xi()]
+    }
+
+    /// Uniform in `[lo, hi)`.
+    pub fn between(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * (self.bits() >> 11) as f64 / 9_007_199_254_740_992.0
+    }
+
+    pub(crate) fn pick<'a, T>(&mut self, from: &'a [T]) -> &'a T {
+        let n = from.len() as u64;
+        let at = usize::try_from(self.bits() % n).unwrap_or(0);
+        &from[at]
+    }
+
+    /// Any direction, uniform in its angles: as many next to the axis as elsewhere.
+    pub(crate) fn direction(&mut self) -> Direction {
+        direction(self.between(-0.5 * PI, 0.5 * PI), self.between(-PI, PI))
+    }
+
+    /// A hit from any direction.
+    pub(crate) fn hit(&mut self) -> Hit {
+        Hit { wo: self.direction(), h: narrow(self.between(-1.0, 1.0)) }
+    }
+}
+
+/// The direction at these angles, rounded.
+pub(crate) fn direction(theta: f64, phi: f64) -> Direction {
+    let ((sin, cos), (sin_phi, cos_phi)) = (theta.sin_cos(), phi.sin_cos());
+    Vec3x::new(narrow(sin), narrow(cos * cos_phi), narrow(cos * sin_phi))
+}
+
+/// The vector in double precision.
+pub(crate) fn double(v: Direction) -> [f64; 3] {
+    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
+}
+
+/// Cosine of the inclination of a unit vector.
+pub(crate) fn cos_theta(v: Direction) -> f64 {
+    f64::from(v.y).hypot(f64::from(v.z))
+}
+
+/// Inclination and azimuth.
+pub(crate) fn angles([u, v, w]: [f64; 3]) -> [f64; 2] {
+    [u.atan2(v.hypot(w)), w.atan2(v)]
+}
+
+/// Distance between two vectors.
+pub(crate) fn distance(a: Direction, b: Direction) -> f64 {
+    let ([a0, a1, a2], [b0, b1, b2]) = (double(a), double(b));
+    ((a0 - b0).powi(2) + (a1 - b1).powi(2) + (a2 - b2).powi(2)).sqrt()
+}
+
+/// Error of `got` relative to `want`, or to `floor` where both are smaller.
+pub(crate) fn relative(got: f64, want: f64, floor: f64) -> f64 {
+    (got - want).abs() / want.abs().max(floor)
+}
+
+/// Directions that a direction may be taken for once its components are rounded: moved by `by` along each axis, across
+/// the fibre by as much less as the direction is shorter there.
+pub(crate) fn rounded(v: Direction, by: f64) -> [Direction; 6] {
+    let (along, across) = (narrow(by), narrow(by * cos_theta(v)));
+    let moved = |x: f32, y: f32, z: f32| Vec3x::new(v.x + x, v.y + y, v.z + z);
+    [
+        moved(along, 0.0, 0.0),
+        moved(-along, 0.0, 0.0),
+        moved(0.0, across, 0.0),
+        moved(0.0, -across, 0.0),
+        moved(0.0, 0.0, across),
+        moved(0.0, 0.0, -across),
+    ]
+}
+
+/// Hits for the properties that take an integral: normal, tilted both ways, and grazing at more than 80 degrees.
+pub(crate) fn hits() -> [Hit; 7] {
+    const THETA_O: [f64; 7] = [0.0, 25.0, -50.0, 70.0, -82.0, 87.0, 89.9];
+    const H: [f32; 7] = [0.0, 0.35, -0.8, 0.99, -0.6, 0.999, -0.1];
+    core::array::from_fn(|i| Hit { wo: direction(THETA_O[i].to_radians(), 0.9 * i as f64 - 2.5), h: H[i] })
+}
+
+/// The same, and `count` from anywhere.
+pub(crate) fn hits_and(count: usize, draws: &mut Draws) -> Vec<Hit> {
+    hits().into_iter().chain((0..count).map(|_| draws.hit())).collect()
+}
+
+/// The slots that a model names.
+pub(crate) fn slots<M: Model>() -> impl Iterator<Item = Lobe> {
+    Lobe::ALL.into_iter().take(M::LOBES.len())
+}
+
+/// Every subset of the slots, the empty one first and all of them last.
+pub(crate) fn masks() -> Vec<LobeMask> {
+    let subset = |bits: usize| {
+        let lobes: Vec<Lobe> = Lobe::ALL.into_iter().filter(|lobe| bits >> lobe.index() & 1 == 1).collect();
+        LobeMask::of(&lobes)
+    };
+    (0..16).map(subset).collect()
+}
+
+/// Eight vectors as lanes.
+pub(crate) fn packet(v: &[Direction; 8]) -> Vec3x8 {
+    Vec3x::new(f32x8::new(v.map(|v| v.x)), f32x8::new(v.map(|v| v.y)), f32x8::new(v.map(|v| v.z)))
+}
+
+/// Eight hits as lanes.
+pub(crate) fn hits8(hits: &[Hit; 8]) -> Hit8 {
+    Hit { wo: packet(&hits.map(|hit| hit.wo)), h: f32x8::new(hits.map(|hit| hit.h)) }
+}
+
+/// Eight triples of numbers as lanes.
+pub(crate) fn triples(xi: &[[f32; 3]; 8]) -> [f32x8; 3] {
+    core::array::from_fn(|axis| f32x8::new(xi.map(|xi| xi[axis])))
+}
+
+/// Sobol's direction numbers for the second and the third coordinate: polynomials `x + 1` and `x^2 + x + 1`.
+const DIRECTIONS: [[u32; 32]; 2] = {
+    let mut v = [[0; 32]; 2];
+    (v[0][0], v[1][0], v[1][1]) = (1 << 31, 1 << 31, 3 << 30);
+    let mut i = 1;
+    while i < 32 {
+        v[0][i] = v[0][i - 1] ^ (v[0][i - 1] >> 1);
+        if i > 1 {
+            v[1][i] = v[1][i - 1] ^ v[1][i - 2] ^ (v[1][i - 2] >> 2);
+        }
+        i += 1;
+    }
+    v
+};
+
+/// Point `n` of Sobol's three-dimensional sequence: of `2^m` points each of `2^m` equal intervals holds one, along every
+/// axis, and so does each of as many equal rectangles of any two but for a few.
+pub(crate) fn sobol(n: u32) -> [f32; 3] {
+    let sum = |directions: &[u32; 32]| {
+        let bits = directions.iter().enumerate().filter(|(bit, _)| n >> bit & 1 == 1);
+        bits.fold(0, |sum, (_, direction)| sum ^ direction)
+    };
+    [n.reverse_bits(), sum(&DIRECTIONS[0]), sum(&DIRECTIONS[1])].map(|x| (x >> 8) as f32 / 16_777_216.0)
+}
+
+/// `count` triples by component.
+pub(crate) fn columns(count: u32, mut xi: impl FnMut(u32) -> [f32; 3]) -> [Vec<f32>; 3] {
+    let mut columns = [const { Vec::new() }; 3];
+    for n in 0..count {
+        for (column, x) in columns.iter_mut().zip(xi(n)) {
+            column.push(x);
+        }
+    }
+    columns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sobol;
+
+    #[test]
+    fn sobol_points_are_a_net() {
+        const COUNT: usize = 1 << 10;
+        let points: Vec<[f32; 3]> = (0..1024).map(sobol).collect();
+        // Every elementary rectangle of the first two coordinates holds one point.
+        for rows in (0..=10).map(|power| 1 << power) {
+            let mut seen = vec![0; COUNT];
+            for [x, y, _] in &points {
+                let cell = |x: f32, n: usize| (1..n).filter(|i| *i as f32 <= x * n as f32).count();
+                seen[cell(*x, rows) * (COUNT / rows) + cell(*y, COUNT / rows)] += 1;
+            }
+            assert!(seen.iter().all(|n| *n == 1), "{rows} rows");
+        }
+        let mut third: Vec<f32> = points.iter().map(|[.., z]| *z).collect();
+        third.sort_by(f32::total_cmp);
+        assert!(third.iter().enumerate().all(|(n, z)| *z == n as f32 / COUNT as f32), "the third coordinate");
+    }
+}

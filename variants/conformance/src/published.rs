@@ -1,0 +1,141 @@
+//! Tests of the published model's family: any bell, the published sampler and the matched ones.
+//!
+//! They hold the kernels against the paper's formulas in double precision, with a row of bounds per model. Both the kernels
+//! and the variants run them; other models have no use for them.
+
+pub mod albedo;
+pub mod density;
+pub mod edge;
+pub mod fireflies;
+pub mod lobes;
+pub mod parity;
+pub mod props;
+pub mod quadrature;
+mod rows;
+pub mod sampling;
+pub mod seam;
+pub mod subject;
+pub mod support;
+mod twin;
+pub mod values;
+pub mod variance;
+pub mod weights;
+
+pub use rows::Rows;
+pub use subject::Family;
+pub use twin::Twin;
+
+use hairis::textbook::Shape;
+use hairis::{Hair, HairParams, Matched, MatchedBell, Model};
+
+/// A model of the family.
+pub trait Published: Sync {
+    /// The model.
+    type Model: Model<Params = HairParams>;
+    /// Its bell.
+    type Bell: MatchedBell;
+
+    /// The bell.
+    fn bell() -> Self::Bell;
+
+    /// Every form of the model, with its factor on the widths: the first is that of [`bell`](Self::bell).
+    fn forms() -> Vec<(Self::Model, f32)>;
+
+    /// The same bell in the textbook.
+    const SHAPE: Shape;
+    /// Number of bands of the matched sampler; `None` for the published one.
+    const BANDS: Option<usize> = None;
+    /// Whether the matched sampler chooses lobes by channel.
+    const BY_CHANNEL: bool = false;
+    /// The bell over the Cauchy value at its worst.
+    const OVER_CAUCHY: f64;
+    /// Densities below this are compared absolutely.
+    const PDF_FLOOR: f64;
+    /// Bounds.
+    const ROWS: Rows;
+}
+
+/// The published sampler, and the matched ones of 5, 9 and 25 bands.
+type Samplers<B> = (Hair<B>, Matched<B, 5>, Matched<B, 9>, Matched<B, 25>);
+
+/// The model with each of its samplers.
+fn samplers<S: Published>() -> Samplers<S::Bell> {
+    (Hair(S::bell()), Matched(S::bell()), Matched(S::bell()), Matched(S::bell()))
+}
+
+/// Declares a module with a `#[test]` for each test of a [`Published`] model: `common` ones, or those of the `published` or a
+/// `matched` sampler as well.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! published {
+    ($name:ident, $model:ty, common) => {
+        $crate::published!(@$name, $model,);
+    };
+    ($name:ident, $model:ty, published) => {
+        $crate::published!(
+            @$name, $model,
+            albedo {
+                albedo_is_the_integral max_albedo_bounds_a_scan_ten_times_as_fine
+                scaled_hair_returns_at_most_what_it_receives
+            }
+            weights { weights_are_below_their_bound the_bound_is_reached the_published_flaw_is_there }
+        );
+    };
+    ($name:ident, $model:ty, matched) => {
+        $crate::published!(
+            @$name, $model,
+            albedo {
+                albedo_is_the_integral max_albedo_bounds_a_scan_ten_times_as_fine
+                scaled_hair_returns_at_most_what_it_receives
+            }
+            density { each_lobe_integrates_to_one }
+            fireflies { weights_are_below_their_bound_and_close_to_the_mean }
+            seam { samples_next_to_the_seam_report_their_own_direction }
+            variance { variance_falls_by_what_is_promised }
+        );
+    };
+    (@$name:ident, $model:ty, $($more:tt)*) => {
+        $crate::published!(
+            @@$name, $model,
+            edge {
+                ends_of_xi_give_sound_samples_of_every_lobe nothing_is_negative_on_the_seam the_axis_scatters_nothing
+                a_direction_just_off_the_axis_has_a_density vectors_that_are_no_direction_give_zero the_seam_is_no_edge
+                a_zero_wo_counts_as_the_normal_plane lobes_without_energy_are_never_drawn
+                black_hair_scatters_and_samples_nothing grazing_samples_are_discarded
+                an_azimuth_next_to_nothing_is_still_an_azimuth a_direction_next_to_the_axis_is_still_a_direction
+                absurd_glints_of_a_faint_colour_do_not_overflow
+            }
+            lobes { lobes_add_up a_subset_scatters_and_samples_its_lobes_alone a_lobe_is_colored_by_its_parameters }
+            parity {
+                every_lane_position_equals_one_lane eight_gather_points_equal_one_each
+                one_gather_point_in_every_lane_equals_a_shared_one permuted_lanes_permute_the_results
+                levels_agree_with_one_lane levels_that_round_alike_give_the_same_bits
+                lobes_and_albedo_agree_with_one_lane a_hit_is_its_direction
+            }
+            props {
+                finite_inputs_give_finite_outputs nothing_panics_on_nan_and_infinity a_sample_agrees_with_eval_and_pdf
+                eval_is_reciprocal every_lobe_has_a_density_of_its_own
+            }
+            sampling { samples_on_the_grid samples_of_narrow_lobes samples_of_wide_lobes }
+            values { values_on_the_grid values_of_narrow_lobes values_of_wide_lobes }
+            $($more)*
+        );
+    };
+    (@@$name:ident, $model:ty, $($module:ident { $($test:ident)* })*) => {
+        #[cfg(test)]
+        mod $name {
+            /// The model under test.
+            type Tested = $model;
+            $(
+                mod $module {
+                    $(
+                        #[test]
+                        fn $test() {
+                            $crate::published::$module::$test::<super::Tested>();
+                        }
+                    )*
+                }
+            )*
+        }
+    };
+}

@@ -1,0 +1,73 @@
+//! Each lobe's density integrates to 1, and so does the mixture: quadrature over the kernels' own numbers.
+
+use super::quadrature::{integrate, panels};
+use super::support::{Kind, THETA_O, Worst, direction, double, materials, parameters};
+use super::{Published, samplers};
+use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::textbook::MatchedTextbook;
+use hairis::{Bsdf, HairParams, Lobe, Model};
+
+/// Integral over the sphere of the density of each lobe alone, of the others but for rounding a product of two.
+fn integrals<S: Published, M: Model<Params = HairParams>>(
+    model: M,
+    bands: usize,
+    params: &HairParams,
+    theta_o: f64,
+) -> [f64; 4] {
+    let wo = direction(theta_o, 0.4);
+    let p = parameters(params, 1.0);
+    let gather = Bsdf::new(&model, params).prepare(wo);
+    let twin = MatchedTextbook::prepare(&p, S::SHAPE, double(wo), bands);
+    Lobe::ALL.map(|lobe| {
+        let l = lobe.index().min(2);
+        let at = |theta: f64, phi: f64| {
+            let wi = direction(theta, 0.4 - phi);
+            f64::from(gather.lobes(wi)[lobe].pdf) * theta.cos()
+        };
+        let centre = 2.0 * p.alpha[l] - theta_o;
+        let (theta_0, phi_0) = (centre.clamp(-1.4, 1.4), [0.0, PI, 0.0, p.phi_g][lobe.index()]);
+        let inner = FRAC_PI_2 - 1e-5;
+        let mut ends = panels(-inner, inner, &[(centre, p.beta[l])]);
+        // The density jumps between bands: panels end there.
+        ends.extend(twin.bands().filter(|x| x.abs() < inner));
+        ends.sort_by(f64::total_cmp);
+        let phi = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt)]);
+        let largest = at(theta_0, phi_0);
+        if largest == 0.0 {
+            return f64::NAN;
+        }
+        // Directions closer to the axis are discarded: their part of the density.
+        let caps = twin.cdf_theta(lobe, -inner) + 1.0 - twin.cdf_theta(lobe, inner);
+        caps + integrate(&ends, |theta| at(theta, phi_0)) * 2.0 * integrate(&phi, |phi| at(theta_0, phi)) / largest
+    })
+}
+
+fn see<S: Published, M: Model<Params = HairParams>>(
+    worst: &mut Worst,
+    model: M,
+    bands: usize,
+    kind: Kind,
+    theta_o: &[f64],
+) {
+    for params in materials(kind).iter().step_by(if kind == Kind::Grid { 37 } else { 1 }) {
+        for degrees in theta_o {
+            let all = integrals::<S, M>(model, bands, params, degrees.to_radians());
+            for (lobe, integral) in Lobe::ALL.into_iter().zip(all).filter(|(_, x)| !x.is_nan()) {
+                worst.see((integral - 1.0).abs(), || format!("{bands} {lobe:?} {degrees} {integral} {params:?}"));
+            }
+        }
+    }
+}
+
+pub fn each_lobe_integrates_to_one<S: Published>() {
+    let (_, few, usual, many) = samplers::<S>();
+    for (kind, limit) in
+        [(Kind::Grid, S::ROWS.integral[0]), (Kind::Narrow, S::ROWS.integral[1]), (Kind::Wide, S::ROWS.integral[2])]
+    {
+        let mut worst = Worst::default();
+        see::<S, _>(&mut worst, few, 5, kind, &THETA_O);
+        see::<S, _>(&mut worst, usual, 9, kind, &THETA_O);
+        see::<S, _>(&mut worst, many, 25, kind, &THETA_O);
+        worst.check(&format!("{kind:?} integral of a lobe's density, off 1"), limit);
+    }
+}

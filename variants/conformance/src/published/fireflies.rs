@@ -1,0 +1,55 @@
+//! No fireflies: every weight is below its closed-form bound, and that is a small multiple of the mean over all everyday hair.
+
+use super::support::{Draws, Worst, direction, double, lanes_of, narrow, parameters};
+use super::{Published, samplers};
+use core::f64::consts::PI;
+use hairis::textbook::MatchedTextbook;
+use hairis::{Bsdf, HairDesc, HairParams, Lobe, LobeMask, Model};
+
+/// Hair with `beta_r` from 0.5 to 60 degrees and all else as wide as it is found, seen from up to 89.9 degrees.
+fn hair(draws: &mut Draws) -> (HairParams, f64) {
+    let degrees = draws.scale(0.5, 60.0);
+    let [beta_r, beta_tt, beta_trt] = [1.0, 0.5, 2.0].map(|k| narrow((k * degrees).to_radians()));
+    let mut angle = |lo: f64, hi: f64| narrow(draws.scale(lo, hi).to_radians());
+    let (gamma_tt, gamma_g, phi_g) = (angle(1.0, 60.0), angle(1.0, 40.0), angle(10.0, 80.0));
+    let intensity_g = narrow(draws.scale(0.1, 10.0));
+    let desc = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt, gamma_g, phi_g, intensity_g, ..HairDesc::default() };
+    let theta_o = draws.sign() * 89.9_f64.min(draws.between(0.0, 100.0));
+    (HairParams::new(&desc).unwrap(), theta_o.to_radians())
+}
+
+/// The largest weights over their bound, and the largest bounds over the mean.
+fn scan<S: Published, M: Model<Params = HairParams>>(model: M, bands: usize, worst: &mut [Worst; 2]) {
+    let mut draws = Draws(81);
+    for round in 0..16_000 {
+        let (params, theta_o) = hair(&mut draws);
+        let wo = direction(theta_o, draws.between(-PI, PI));
+        let mask = if round % 4 == 0 { LobeMask::of(&[Lobe::ALL[draws.below(4)]]) } else { LobeMask::ALL };
+        let gather = Bsdf::new(&model, &params).prepare(wo).with_lobes(mask);
+        let twin = MatchedTextbook::prepare(&parameters(&params, 1.0), S::SHAPE, double(wo), bands);
+        let limit = twin.weight_bound(mask);
+        if mask == LobeMask::ALL {
+            let mean: f64 = gather.albedo().0.iter().flatten().map(|x| f64::from(*x) / 3.0).sum();
+            worst[1].see(limit / mean, || format!("{bands} theta_o {theta_o} {params:?}"));
+        }
+        for _ in 0..4 {
+            let eight = gather.sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
+            for s in (0..8).filter_map(|lane| eight.lane(lane)) {
+                let weight = s.weight.iter().map(|x| f64::from(*x) / 3.0).sum::<f64>();
+                worst[0].see(weight / limit, || format!("{bands} theta_o {theta_o} {mask:?} {s:?} {params:?}"));
+            }
+        }
+    }
+}
+
+pub fn weights_are_below_their_bound_and_close_to_the_mean<S: Published>() {
+    let (_, few, usual, many) = samplers::<S>();
+    let mut worst: [[Worst; 2]; 3] = Default::default();
+    scan::<S, _>(few, 5, &mut worst[0]);
+    scan::<S, _>(usual, 9, &mut worst[1]);
+    scan::<S, _>(many, 25, &mut worst[2]);
+    for ((bands, limit), [bound, mean]) in [5, 9, 25].into_iter().zip(S::ROWS.weight).zip(&worst) {
+        bound.check(&format!("{bands} bands: largest weight over its bound"), 1.0 + 1e-4);
+        mean.check(&format!("{bands} bands: bound on weights over the mean"), limit);
+    }
+}

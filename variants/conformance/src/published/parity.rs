@@ -1,0 +1,235 @@
+//! One lane against eight, position by position, and the backends against each other: bit for bit wherever both round
+//! alike.
+
+use super::Published;
+use super::support::{Draws, Kind, Point, Worst, for_each_point, lanes_of, materials, packet, parameters};
+use glam::Vec3;
+use hairis::wide::f32x8;
+use hairis::{Bsdf, Bsdf8, Drawn, Eval, Gather8, Hit, Level, Lobe, Sample8};
+
+type Material<S> = Bsdf<<S as Published>::Model>;
+
+fn eval_bits(e: Eval) -> [u32; 4] {
+    [e.value[0], e.value[1], e.value[2], e.pdf].map(f32::to_bits)
+}
+
+/// Every number of one lane of a packet of samples.
+fn sample_lane(s: &Sample8, lane: usize) -> [f32; 11] {
+    let Drawn { wi, value: [r, g, b], pdf, weight: [wr, wg, wb], slot } = *s;
+    [wi.x, wi.y, wi.z, r, g, b, pdf, wr, wg, wb, slot].map(|x: f32x8| x.as_array()[lane])
+}
+
+fn sample_bits(s: &Sample8, lane: usize) -> [u32; 11] {
+    sample_lane(s, lane).map(f32::to_bits)
+}
+
+/// The levels that round as one lane does.
+fn unfused() -> impl Iterator<Item = Level> {
+    Level::available().filter(|level| !level.fuses())
+}
+
+/// Eight different hits and materials, and eight directions and triples of numbers.
+struct Mixed<S: Published> {
+    bsdf: [Material<S>; 8],
+    wo: [Vec3; 8],
+    wi: [Vec3; 8],
+    xi: [[f32; 3]; 8],
+}
+
+fn mixed<S: Published>(draws: &mut Draws) -> Mixed<S> {
+    let (model, factor) = S::forms()[0];
+    let params: [_; 8] = core::array::from_fn(|_| draws.params(1e3));
+    let wo: [_; 8] =
+        core::array::from_fn(|lane| draws.near_lobes(&parameters(&params[lane], factor), 0.0, 0.0).normalize());
+    let wi = core::array::from_fn(|lane| {
+        let (theta_o, phi_o) = (f64::from(wo[lane].x.asin()), f64::from(wo[lane].z.atan2(wo[lane].y)));
+        draws.near_lobes(&parameters(&params[lane], factor), theta_o, phi_o)
+    });
+    let xi = core::array::from_fn(|_| draws.xi3());
+    Mixed { bsdf: params.map(|p| Bsdf::new(&model, &p)), wo, wi, xi }
+}
+
+fn gathers<S: Published>(m: &Mixed<S>, level: Level) -> Gather8<S::Model> {
+    Bsdf8::pack(m.bsdf.each_ref()).prepare8_at(level, &packet(&m.wo))
+}
+
+pub fn every_lane_position_equals_one_lane<S: Published>() {
+    assert!(Level::available().next() == Some(Level::portable()), "the portable level runs everywhere");
+    for_each_point::<S>(Kind::Wide, |bsdf, _, point| {
+        let gather = bsdf.prepare(point.wo);
+        let mut draws = Draws(point.seed);
+        for eight in point.directions(32).chunks(8) {
+            let xi: [_; 8] = core::array::from_fn(|_| draws.xi3());
+            for level in unfused() {
+                let (evals, samples) =
+                    (gather.eval_pdf8_at(level, &packet(eight)), gather.sample8_at(level, &lanes_of(&xi)));
+                for (lane, wi) in eight.iter().enumerate() {
+                    let (one, wide) = (gather.eval_pdf(*wi), evals.lane(lane));
+                    assert_eq!(eval_bits(one), eval_bits(wide), "{level} lane {lane} wi {wi:?}: {one:?} {wide:?}");
+                    let (one, wide) = (gather.sample(xi[lane]), samples.lane(lane));
+                    assert_eq!(one, wide, "{level} lane {lane} xi {:?}", xi[lane]);
+                }
+            }
+        }
+    });
+}
+
+pub fn eight_gather_points_equal_one_each<S: Published>() {
+    let mut draws = Draws(11);
+    for _ in 0..2000 {
+        let m = mixed::<S>(&mut draws);
+        for level in unfused() {
+            let gather = gathers(&m, level);
+            let (evals, samples) =
+                (gather.eval_pdf8_at(level, &packet(&m.wi)), gather.sample8_at(level, &lanes_of(&m.xi)));
+            for lane in 0..8 {
+                let one = m.bsdf[lane].prepare(m.wo[lane]);
+                let at = || format!("{level} lane {lane} wo {:?} {:?}", m.wo[lane], m.bsdf[lane]);
+                assert_eq!(eval_bits(one.eval_pdf(m.wi[lane])), eval_bits(evals.lane(lane)), "{}", at());
+                assert_eq!(one.sample(m.xi[lane]), samples.lane(lane), "{}", at());
+                assert_eq!(format!("{one:?}"), format!("{:?}", gather.lane(lane)), "{}", at());
+            }
+        }
+    }
+}
+
+pub fn one_gather_point_in_every_lane_equals_a_shared_one<S: Published>() {
+    let (model, _) = S::forms()[0];
+    let mut draws = Draws(12);
+    let random: Vec<_> = (0..200).map(|_| draws.params(10.0)).collect();
+    for params in materials(Kind::Wide).into_iter().chain(random) {
+        let m = mixed::<S>(&mut draws);
+        let bsdf = Bsdf::new(&model, &params);
+        let wo = packet(&[m.wo[0]]);
+        for level in Level::available() {
+            let eight = Bsdf8::pack([&bsdf; 8]).prepare8_at(level, &wo);
+            let same = bsdf.prepare8_at(level, &wo);
+            assert_eq!(format!("{eight:?}"), format!("{same:?}"), "{level}: packed and shared material");
+            let shared = eight.lane(3);
+            let (a, b) = (eight.eval_pdf8_at(level, &packet(&m.wi)), shared.eval_pdf8_at(level, &packet(&m.wi)));
+            let (s, t) = (eight.sample8_at(level, &lanes_of(&m.xi)), shared.sample8_at(level, &lanes_of(&m.xi)));
+            for lane in 0..8 {
+                assert_eq!(eval_bits(a.lane(lane)), eval_bits(b.lane(lane)), "{level} lane {lane} {params:?}");
+                assert_eq!(sample_bits(&s, lane), sample_bits(&t, lane), "{level} lane {lane} {params:?}");
+            }
+        }
+    }
+}
+
+pub fn permuted_lanes_permute_the_results<S: Published>() {
+    let mut draws = Draws(13);
+    for _ in 0..500 {
+        let m = mixed::<S>(&mut draws);
+        let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
+        for last in (1..8).rev() {
+            order.swap(last, draws.below(last + 1));
+        }
+        let p = Mixed::<S> {
+            bsdf: order.map(|i| m.bsdf[i]),
+            wo: order.map(|i| m.wo[i]),
+            wi: order.map(|i| m.wi[i]),
+            xi: order.map(|i| m.xi[i]),
+        };
+        for level in Level::available() {
+            let (g, h) = (gathers(&m, level), gathers(&p, level));
+            let (a, b) = (g.eval_pdf8_at(level, &packet(&m.wi)), h.eval_pdf8_at(level, &packet(&p.wi)));
+            let (s, t) = (g.sample8_at(level, &lanes_of(&m.xi)), h.sample8_at(level, &lanes_of(&p.xi)));
+            for (to, from) in order.into_iter().enumerate() {
+                assert_eq!(eval_bits(a.lane(from)), eval_bits(b.lane(to)), "{level}: lane {from} moved to {to}");
+                assert_eq!(sample_bits(&s, from), sample_bits(&t, to), "{level}: lane {from} moved to {to}");
+            }
+        }
+    }
+}
+
+/// Directions where a lane is well conditioned: off the seam and off the axis.
+fn tame(point: &Point) -> Vec<Vec3> {
+    let mut all = point.directions(256);
+    all.retain(|wi| {
+        let [theta, phi] = super::support::angles(point.wo, *wi);
+        theta.cos() > 0.05 && phi < 3.1
+    });
+    all.truncate(all.len() & !7);
+    all
+}
+
+pub fn levels_agree_with_one_lane<S: Published>() {
+    let mut worst: [Worst; 3] = Default::default();
+    for_each_point::<S>(Kind::Wide, |bsdf, _, point| {
+        let gather = bsdf.prepare(point.wo);
+        let mut draws = Draws(point.seed + 7);
+        for eight in tame(point).chunks(8) {
+            let xi: [_; 8] = core::array::from_fn(|_| draws.xi3());
+            for level in Level::available() {
+                let (evals, samples) =
+                    (gather.eval_pdf8_at(level, &packet(eight)), gather.sample8_at(level, &lanes_of(&xi)));
+                for (lane, wi) in eight.iter().enumerate() {
+                    let at = || format!("{level} wo {:?} wi {wi:?} xi {:?}", point.wo, xi[lane]);
+                    let (a, b) = (gather.eval_pdf(*wi), evals.lane(lane));
+                    worst[0].see(super::support::relative(b.value[0], f64::from(a.value[0]), 1e-20), at);
+                    worst[1].see(super::support::relative(b.pdf, f64::from(a.pdf), 0.0), at);
+                    let (Some(a), Some(b)) = (gather.sample(xi[lane]), samples.lane(lane)) else { continue };
+                    assert_eq!(a.lobe, b.lobe, "{}", at());
+                    worst[2].see(f64::from((a.wi - b.wi).length()), at);
+                }
+            }
+        }
+    });
+    worst[0].check("S of a level against one lane", S::ROWS.levels[0]);
+    worst[1].check("pdf of a level against one lane", S::ROWS.levels[1]);
+    worst[2].check("direction of a level against one lane", S::ROWS.levels[2]);
+}
+
+pub fn levels_that_round_alike_give_the_same_bits<S: Published>() {
+    let levels: Vec<_> = Level::available().collect();
+    let mut draws = Draws(14);
+    for _ in 0..500 {
+        let m = mixed::<S>(&mut draws);
+        for pair in levels.windows(2).filter(|pair| pair[0].fuses() == pair[1].fuses()) {
+            let g = gathers(&m, pair[0]);
+            let h = gathers(&m, pair[1]);
+            assert_eq!(format!("{g:?}"), format!("{h:?}"), "prepared on {} and {}", pair[0], pair[1]);
+            let of = |level| (g.eval_pdf8_at(level, &packet(&m.wi)), g.sample8_at(level, &lanes_of(&m.xi)));
+            let ((a, s), (b, t)) = (of(pair[0]), of(pair[1]));
+            for lane in 0..8 {
+                assert_eq!(eval_bits(a.lane(lane)), eval_bits(b.lane(lane)), "{} {}", pair[0], pair[1]);
+                assert_eq!(sample_bits(&s, lane), sample_bits(&t, lane), "{} {}", pair[0], pair[1]);
+            }
+        }
+    }
+}
+
+pub fn lobes_and_albedo_agree_with_one_lane<S: Published>() {
+    let mut draws = Draws(15);
+    let mut worst = Worst::default();
+    for _ in 0..200 {
+        let m = mixed::<S>(&mut draws);
+        let gather = Bsdf8::pack(m.bsdf.each_ref()).prepare8(&packet(&m.wo));
+        let (lobes, albedo) = (gather.lobes8(&packet(&m.wi)), gather.albedo8());
+        for lane in 0..8 {
+            let one = gather.lane(lane);
+            let (alone, alone_albedo) = (one.lobes8(&packet(&[m.wi[lane]])), one.albedo());
+            for lobe in Lobe::ALL {
+                let (a, b) = (lobes[lobe], alone[lobe]);
+                let bits = |x: f32x8, lane: usize| x.as_array()[lane].to_bits();
+                assert_eq!(bits(a.value, lane), bits(b.value, 0), "value of {lobe:?} in lane {lane}");
+                assert_eq!(bits(a.pdf, lane), bits(b.pdf, 0), "pdf of {lobe:?} in lane {lane}");
+                for c in 0..3 {
+                    assert_eq!(bits(a.color[c], lane), bits(b.color[c], 0), "color of {lobe:?} in lane {lane}");
+                    let (wide, scalar) = (albedo[lobe][c].as_array()[lane], alone_albedo[lobe][c]);
+                    worst.see(super::support::relative(wide, f64::from(scalar), 1e-20), || format!("{lobe:?}"));
+                }
+            }
+        }
+    }
+    worst.check("albedo of eight against one", S::ROWS.albedo_lanes);
+}
+
+pub fn a_hit_is_its_direction<S: Published>() {
+    // The published model does not see the offset across the fibre.
+    let (model, _) = S::forms()[0];
+    let bsdf = Bsdf::new(&model, &hairis::HairParams::default());
+    let wo = Vec3::new(0.6, 0.8, 0.0);
+    let plain = format!("{:?}", bsdf.prepare(wo));
+    assert_eq!(plain, format!("{:?}", bsdf.prepare(Hit { wo: wo.into(), h: 0.7 })), "h must not matter");
+}

@@ -1,0 +1,194 @@
+//! What holds for every input: totality over all bit patterns, reciprocity, and samples that agree with eval and pdf.
+
+use super::Published;
+use super::support::{Draws, Worst, direction, lanes_of, materials, narrow, packet, relative};
+use super::support::{Kind, angles};
+use core::f64::consts::PI;
+use glam::Vec3;
+use hairis::wide::f32x8;
+use hairis::{Bsdf, Bsdf8, Gather8, HairParams, Level, Lobe};
+
+/// Cases of each property of random inputs.
+const CASES: u64 = 20_000;
+
+const SPECIAL: [f32; 14] =
+    [0.0, -0.0, 1.0, -1.0, 1e-5, 0.999_999_94, 2.0, f32::MAX, f32::MIN, f32::MIN_POSITIVE, 1e-45, -1e-45, 1e19, -1e-19];
+
+/// Any finite float, special ones and those of directions more often than chance.
+pub fn finite(draws: &mut Draws) -> f32 {
+    match draws.below(7) {
+        0..3 => narrow(draws.between(-1.0, 1.0)),
+        3 | 4 => SPECIAL[draws.below(SPECIAL.len())],
+        _ => loop {
+            let x = any_bits(draws);
+            if x.is_finite() {
+                return x;
+            }
+        },
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "half of the bits are enough")]
+fn any_bits(draws: &mut Draws) -> f32 {
+    f32::from_bits(draws.bits() as u32)
+}
+
+/// Any float at all.
+fn anything(draws: &mut Draws) -> f32 {
+    match draws.below(4) {
+        0 | 1 => finite(draws),
+        2 => any_bits(draws),
+        _ => [f32::NAN, f32::INFINITY, f32::NEG_INFINITY][draws.below(3)],
+    }
+}
+
+/// Three numbers.
+pub fn three(draws: &mut Draws, x: fn(&mut Draws) -> f32) -> [f32; 3] {
+    [x(draws), x(draws), x(draws)]
+}
+
+/// Legal parameters of any size.
+fn params(draws: &mut Draws) -> HairParams {
+    let brightest = if draws.below(3) == 0 { 10.0 } else { 3.4e38 };
+    draws.params(brightest)
+}
+
+/// Every number of a packet of eight, for `wi` and `xi` in every lane.
+fn numbers<S: Published>(gather: &Gather8<S::Model>, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
+    let first = |x: &f32x8| x.as_array()[0];
+    let e = gather.eval_pdf8_at(level, &packet(&[wi]));
+    let s = gather.sample8_at(level, &lanes_of(&[xi; 8]));
+    let mut positive: Vec<f32> =
+        e.value.iter().chain([&e.pdf, &s.pdf]).chain(&s.value).chain(&s.weight).map(first).collect();
+    for lobe in gather.lobes8(&packet(&[wi])).0 {
+        positive.extend([first(&lobe.value), first(&lobe.pdf)]);
+        positive.extend(lobe.color.iter().map(first));
+    }
+    (positive, [s.wi.x, s.wi.y, s.wi.z, s.slot].iter().map(first).collect())
+}
+
+/// Every number of one lane.
+fn scalar_numbers<S: Published>(bsdf: &Bsdf<S::Model>, wo: Vec3, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
+    let gather = bsdf.prepare(wo);
+    let e = gather.eval_pdf(wi);
+    let mut positive = [&e.value[..], &[e.pdf, gather.pdf(wi)], &gather.eval(wi)].concat();
+    for lobe in gather.lobes(wi).0 {
+        positive.extend([lobe.value, lobe.pdf]);
+    }
+    positive.extend(gather.albedo().0.as_flattened());
+    let mut any = vec![];
+    if let Some(s) = gather.sample(xi) {
+        positive.extend(s.value.iter().chain(&s.weight).chain([&s.pdf]));
+        any.extend(s.wi.to_array());
+    }
+    (positive, any)
+}
+
+pub fn finite_inputs_give_finite_outputs<S: Published>() {
+    let mut draws = Draws(54);
+    for _ in 0..CASES {
+        let params = params(&mut draws);
+        let [wo, wi] = [three(&mut draws, finite), three(&mut draws, finite)].map(Vec3::from_array);
+        // Uniform numbers are in [0, 1); all else is as wild as floats are.
+        let xi = three(&mut draws, finite).map(|x| x.abs().fract());
+        let bsdf = Bsdf::new(&S::forms()[0].0, &params);
+        let mut all = vec![scalar_numbers::<S>(&bsdf, wo, wi, xi)];
+        for level in Level::available() {
+            let gather = Bsdf8::pack([&bsdf; 8]).prepare8_at(level, &packet(&[wo]));
+            all.push(numbers::<S>(&gather, level, wi, xi));
+        }
+        for (positive, any) in all {
+            let at = || format!("wo {wo:?} wi {wi:?} xi {xi:?} {params:?}");
+            assert!(positive.iter().all(|x| x.is_finite() && *x >= 0.0), "{positive:?} {}", at());
+            assert!(any.iter().all(|x| x.is_finite()), "{any:?} {}", at());
+        }
+    }
+}
+
+pub fn nothing_panics_on_nan_and_infinity<S: Published>() {
+    let mut draws = Draws(55);
+    for _ in 0..CASES {
+        let params = params(&mut draws);
+        let [wo, wi] = [three(&mut draws, anything), three(&mut draws, anything)].map(Vec3::from_array);
+        let xi = three(&mut draws, anything);
+        let bsdf = Bsdf::new(&S::forms()[0].0, &params);
+        let (positive, _) = scalar_numbers::<S>(&bsdf, Vec3::Y, wi, [0.5; 3]);
+        assert!(positive.iter().all(|x| *x >= 0.0), "wi {wi:?} {params:?}: {positive:?}");
+        let _ = scalar_numbers::<S>(&bsdf, wo, wi, xi);
+        for level in Level::available() {
+            let gather = Bsdf8::pack([&bsdf; 8]).prepare8_at(level, &packet(&[wo]));
+            let _ = numbers::<S>(&gather, level, wi, xi);
+        }
+    }
+}
+
+pub fn a_sample_agrees_with_eval_and_pdf<S: Published>() {
+    let mut worst = Worst::default();
+    let mut draws = Draws(53);
+    for (model, factor) in S::forms() {
+        for _ in 0..10_000 {
+            let params = draws.params(10.0);
+            let d = params.desc();
+            let width =
+                [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g].into_iter().fold(4.0, f32::min) * factor;
+            // What the rounding of a direction moves a bell of that width by.
+            let scale = f64::from(width) / (f64::from(width) + 0.1);
+            let wo = direction(draws.between(-1.5, 1.5), draws.between(-PI, PI));
+            let gather = Bsdf::new(&model, &params).prepare(wo);
+            for _ in 0..8 {
+                let xi = draws.xi3();
+                let wide = Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(1));
+                for s in wide.chain([gather.sample(xi)]).flatten() {
+                    let [theta, phi] = angles(wo, s.wi);
+                    if theta.cos() < 1e-2 || PI - phi < 1e-2 || (phi - 0.5 * PI).abs() < 1e-3 {
+                        continue;
+                    }
+                    let e = gather.eval_pdf(s.wi);
+                    worst
+                        .see(relative(s.pdf, f64::from(e.pdf), 0.0) * scale, || format!("{s:?} {e:?} wo {wo:?} {d:?}"));
+                    let by = f64::from(s.value[1]) * theta.cos() / f64::from(s.pdf);
+                    let weight = relative(s.weight[1], by, 1e-20);
+                    assert!(weight < 1e-4, "weight is not value cos / pdf, off by {weight}: {s:?}");
+                }
+            }
+        }
+    }
+    worst.check("sample against pdf, times width / (width + 0.1)", S::ROWS.sample_eval);
+}
+
+pub fn eval_is_reciprocal<S: Published>() {
+    let mut worst = Worst::default();
+    let mut draws = Draws(51);
+    for (model, _) in S::forms() {
+        for params in materials(Kind::Wide).into_iter().chain(materials(Kind::Grid).into_iter().step_by(17)) {
+            let bsdf = Bsdf::new(&model, &params);
+            for _ in 0..2000 {
+                let mut any = || direction(draws.sign() * draws.between(0.0, 1.5), draws.between(-PI, PI));
+                let (a, b) = (any(), any());
+                if PI - angles(a, b)[1] < 1e-3 {
+                    continue;
+                }
+                let (there, back) = (bsdf.prepare(a).eval(b), bsdf.prepare(b).eval(a));
+                for c in 0..3 {
+                    worst.see(relative(there[c], f64::from(back[c]), 1e-12), || format!("{a:?} {b:?} {params:?}"));
+                }
+            }
+        }
+    }
+    worst.check("reciprocity", S::ROWS.reciprocity);
+}
+
+pub fn every_lobe_has_a_density_of_its_own<S: Published>() {
+    // The sum over lobes of probability times pdf is what `sample` draws from: none may go below 0 or be missing.
+    let (model, _) = S::forms()[0];
+    let gather = Bsdf::new(&model, &HairParams::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
+    let mut draws = Draws(52);
+    let mut seen = [0; 4];
+    for _ in 0..10_000 {
+        if let Some(s) = gather.sample(draws.xi3()) {
+            seen[s.lobe.index()] += 1;
+            assert!(gather.lobes(s.wi)[s.lobe].pdf > 0.0, "{s:?} has no density from its own lobe");
+        }
+    }
+    assert!(Lobe::ALL.into_iter().all(|lobe| seen[lobe.index()] > 50), "lobes seen: {seen:?}");
+}

@@ -1,0 +1,51 @@
+//! Bounds of one model.
+
+/// Every bound of the tests of one model of the family. Rows that a model's tests do not read may be 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Rows {
+    /// S and density against the textbook, relative, further than 1e-3 rad from the axis; then those of a lobe alone: on the
+    /// efficiency grid and the presets.
+    pub grid: [f64; 4],
+    /// The same, every width 0.5 degrees.
+    pub narrow: [f64; 4],
+    /// The same, every width 60 degrees.
+    pub wide: [f64; 4],
+    /// The sum of the lobes against the whole, relative.
+    pub lobe_sum: f64,
+    /// Samples against the textbook at the direction they return: S, density, weight, relative, off the seam and the axis.
+    pub grid_sample: [f64; 3],
+    /// The same, every width 0.5 degrees.
+    pub narrow_sample: [f64; 3],
+    /// The same, every width 60 degrees.
+    pub wide_sample: [f64; 3],
+    /// Length of a sampled direction, off 1.
+    pub sample_length: f64,
+    /// The cdf of the drawn angles against the numbers they were drawn with: theta, phi.
+    pub grid_cdf: [f64; 2],
+    /// The same, every width 0.5 degrees.
+    pub narrow_cdf: [f64; 2],
+    /// The same, every width 60 degrees.
+    pub wide_cdf: [f64; 2],
+    /// A level that fuses against one lane that does not, wide lobes off the seam and the axis: S, density, direction.
+    pub levels: [f64; 3],
+    /// Albedo of eight lanes against one.
+    pub albedo_lanes: f64,
+    /// Directional albedo of a lobe against quadrature, relative.
+    pub albedo: f64,
+    /// Reciprocity of S, relative, wide and grid materials.
+    pub reciprocity: f64,
+    /// Density of a sample against that of its direction, relative, times `width / (width + 0.1)` with the least width.
+    pub sample_eval: f64,
+    /// A weight over its proven bound: published sampler.
+    pub weight_bound: f64,
+    /// The integral of a lobe's density against 1: grid, narrow and wide materials; matched samplers.
+    pub integral: [f64; 3],
+    /// Samples of TT and of glints next to the seam, against the textbook at the direction they return: S, density, weight;
+    /// matched samplers.
+    pub seam: [f64; 3],
+    /// With 5, 9 and 25 bands, under constant light over the grid: V at most, its gain over the published sampler at least,
+    /// as a geometric mean and anywhere.
+    pub gain: [[f64; 3]; 3],
+    /// With so many bands, the bound on weights over their mean.
+    pub weight: [f64; 3],
+}

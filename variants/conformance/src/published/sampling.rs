@@ -1,0 +1,120 @@
+//! Samples against the textbook: cdf of the drawn angle, value, density and weight at the drawn direction.
+
+use super::support::{Draws, Kind, Point, Worst, angles, double, for_each_point, lanes_of, relative};
+use super::{Published, Twin};
+use core::f64::consts::PI;
+use hairis::{Level, Lobe, LobeMask, Sample};
+
+const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// Eight triples: uniform numbers, with the ends of their range in between.
+fn draw8(draws: &mut Draws) -> [[f32; 3]; 8] {
+    let mut one = || match draws.below(16) {
+        0 => 0.0,
+        1 => LAST,
+        2 => 0.5,
+        _ => draws.xi(),
+    };
+    core::array::from_fn(|_| [one(), one(), one()])
+}
+
+/// Distance on the circle of circumference 1, where a cdf of an azimuth may start anywhere.
+fn around(a: f64, b: f64) -> f64 {
+    let d = (a - b).abs();
+    d.min(1.0 - d)
+}
+
+/// `phi_o - phi_i` in (-pi, pi].
+fn phi(point: &Point, sample: &Sample) -> f64 {
+    let ([_, v_o, w_o], [_, v, w]) = (double(point.wo), double(sample.wi));
+    (v * w_o - w * v_o).atan2(v * v_o + w * w_o)
+}
+
+/// Errors of a sample at the direction it returned: S, density, weight, and the length of the direction.
+fn see<S: Published>(worst: &mut [Worst; 4], textbook: &Twin, point: &Point, sample: &Sample) {
+    let at = || format!("{sample:?} wo {:?} {:?}", point.wo, point.params);
+    let d = double(sample.wi);
+    worst[3].see((d.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs(), at);
+    let [theta, phi] = angles(point.wo, sample.wi);
+    if theta.cos() < 1e-3 || (phi - 0.5 * PI).abs() < 1e-6 {
+        return;
+    }
+    let (value, pdf) = (textbook.eval(d), textbook.pdf(d));
+    // On the seam R and TRT-g vanish, and the rounding of the direction is all that is left of them.
+    let seam = PI - phi < 1e-3;
+    if !(seam && S::BANDS.is_some()) {
+        worst[1].see(relative(sample.pdf, pdf, S::PDF_FLOOR), at);
+    }
+    if seam {
+        return;
+    }
+    for ((got, weight), want) in sample.value.into_iter().zip(sample.weight).zip(value) {
+        worst[0].see(relative(got, want, 1e-20), at);
+        worst[2].see(relative(weight, want * theta.cos() / pdf, 1e-20), at);
+    }
+}
+
+fn check<S: Published>(kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3], cdf: [f64; 2]) {
+    let mut worst: [Worst; 4] = Default::default();
+    let (mut theta, mut azimuth) = (Worst::default(), Worst::default());
+    for_each_point::<S>(kind, |bsdf, textbook, point| {
+        let gather = bsdf.prepare(point.wo);
+        let mut draws = Draws(point.seed);
+        for _ in 0..per_point {
+            let xi = draw8(&mut draws);
+            let wide: Vec<_> = Level::available().map(|level| gather.sample8_at(level, &lanes_of(&xi))).collect();
+            for (lane, xi) in xi.iter().enumerate() {
+                let all = wide.iter().map(|eight| eight.lane(lane)).chain([gather.sample(*xi)]);
+                for sample in all.flatten() {
+                    see::<S>(&mut worst, textbook, point, &sample);
+                    let chosen = textbook.sample(xi.map(f64::from)).lobe;
+                    let mut edge = 0.0;
+                    let edges = textbook.probabilities().0.map(|p| {
+                        edge += p;
+                        (edge - f64::from(xi[0])).abs()
+                    });
+                    // Within a rounding of the next lobe, or so close to the axis that either may discard.
+                    let grazing = chosen.is_none() && angles(point.wo, sample.wi)[0].cos() < 1e-3;
+                    // At the very end of a Gaussian either may find no density left.
+                    let end = chosen.is_none() && S::BANDS.is_some() && (xi[1] == 0.0 || xi[1] == LAST);
+                    let near = grazing || end || edges.iter().any(|d| *d < 1e-6);
+                    assert!(near || chosen == Some(sample.lobe), "{chosen:?} {sample:?} xi {xi:?} {point:?}");
+                }
+            }
+            // The cdf of what each lobe draws is the number it was drawn with.
+            for lobe in Lobe::ALL {
+                let alone = gather.with_lobes(LobeMask::of(&[lobe]));
+                let wide: Vec<_> = Level::available().map(|level| alone.sample8_at(level, &lanes_of(&xi))).collect();
+                for (lane, xi) in xi.iter().enumerate() {
+                    let all = wide.iter().map(|eight| eight.lane(lane)).chain([alone.sample(*xi)]);
+                    for sample in all.flatten() {
+                        let at = || format!("{lobe:?} xi {xi:?} {sample:?} wo {:?} {:?}", point.wo, point.params);
+                        assert_eq!(sample.lobe, lobe, "only this lobe may be drawn");
+                        let got = textbook.cdf_theta(lobe, angles(point.wo, sample.wi)[0]);
+                        theta.see((got - f64::from(xi[1])).abs(), at);
+                        let got = textbook.cdf_phi(lobe, phi(point, &sample));
+                        azimuth.see(around(got, f64::from(xi[2])), at);
+                    }
+                }
+            }
+        }
+    });
+    worst[0].check(&format!("{kind:?} S of a sample"), s);
+    worst[1].check(&format!("{kind:?} pdf of a sample"), pdf);
+    worst[2].check(&format!("{kind:?} weight of a sample"), weight);
+    worst[3].check(&format!("{kind:?} length of a sample"), S::ROWS.sample_length);
+    theta.check(&format!("{kind:?} cdf of theta"), cdf[0]);
+    azimuth.check(&format!("{kind:?} cdf of phi"), cdf[1]);
+}
+
+pub fn samples_on_the_grid<S: Published>() {
+    check::<S>(Kind::Grid, 3, S::ROWS.grid_sample, S::ROWS.grid_cdf);
+}
+
+pub fn samples_of_narrow_lobes<S: Published>() {
+    check::<S>(Kind::Narrow, 256, S::ROWS.narrow_sample, S::ROWS.narrow_cdf);
+}
+
+pub fn samples_of_wide_lobes<S: Published>() {
+    check::<S>(Kind::Wide, 256, S::ROWS.wide_sample, S::ROWS.wide_cdf);
+}

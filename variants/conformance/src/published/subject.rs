@@ -1,0 +1,168 @@
+//! The family as subjects of the suite.
+
+use super::support::{double, oracle, parameters};
+use super::{Published, Twin};
+use crate::probe::{angles, narrow};
+use crate::subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subject, Tolerance};
+use core::f64::consts::{FRAC_PI_2, PI};
+use core::marker::PhantomData;
+use glam::Vec3;
+use hairis::{HairDesc, HairParams, Hit, Lobe, LobeMask, MAX_WIDTH, MIN_WIDTH};
+
+/// A model of the family, under the general suite.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Family<P>(PhantomData<P>);
+
+impl<P> Family<P> {
+    /// The subject.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self(PhantomData)
+    }
+}
+
+fn widths(width: f32) -> HairDesc {
+    let (beta_r, beta_tt, beta_trt) = (width, width, width);
+    HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: width, gamma_g: width, ..HairDesc::default() }
+}
+
+fn material(desc: &HairDesc) -> HairParams {
+    HairParams::new(desc).unwrap()
+}
+
+fn vector(hit: &Hit) -> Vec3 {
+    hit.wo.into()
+}
+
+impl<P: Published> Subject for Family<P> {
+    type Model = P::Model;
+
+    fn model(&self) -> P::Model {
+        P::forms()[0].0
+    }
+
+    fn materials(&self) -> Materials<Self> {
+        let tilted = HairDesc { alpha_r: 0.2, alpha_tt: -0.15, alpha_trt: -0.35, phi_g: 0.7, ..widths(0.3) };
+        let black = HairDesc { intensity_r: [0.0; 3], intensity_tt: [0.0; 3], intensity_trt: [0.0; 3], ..widths(0.3) };
+        let narrow = widths(narrow(0.5_f64.to_radians()));
+        vec![
+            ("default", HairParams::default()),
+            ("brown", HairParams::brown()),
+            ("tilted", material(&tilted)),
+            ("half a degree", material(&narrow)),
+            ("sixty degrees", material(&HairDesc { intensity_g: 5.0, ..widths(1.047) })),
+            ("all colours black", material(&black)),
+        ]
+    }
+
+    fn extremes(&self) -> Materials<Self> {
+        let right = core::f32::consts::FRAC_PI_2;
+        let off = HairDesc {
+            alpha_r: right,
+            alpha_tt: -right,
+            alpha_trt: right,
+            phi_g: core::f32::consts::PI,
+            ..widths(0.01)
+        };
+        let bright = HairDesc {
+            intensity_r: [f32::MAX, 0.0, 1e-38],
+            intensity_tt: [0.0; 3],
+            intensity_trt: [1e30, 1e-30, 1.0],
+            ..widths(0.2)
+        };
+        vec![
+            ("least widths", material(&widths(MIN_WIDTH))),
+            ("largest widths", material(&widths(MAX_WIDTH))),
+            ("off the sphere", material(&off)),
+            ("any brightness", material(&bright)),
+        ]
+    }
+
+    fn claims(&self) -> Claims {
+        Claims {
+            reciprocal: Some(P::ROWS.reciprocity),
+            lanes: 5e-6,       // 3.3e-6
+            sample_eval: 1e-6, // 4.9e-7
+            weight: 1e-6,      // 4.8e-7
+            lobe_sum: 1e-6,    // 3.8e-7
+            // Lobes of half a degree at the poles.
+            discarded: 1e-2,  // 7.6e-3
+            inversion: 2e-4,  // 1.20e-4
+            integral: 1.4e-4, // 1.03e-4
+            // Lobes off the sphere, of 0.01 rad.
+            direction: 2e-5, // 1.2e-5
+            albedo: P::ROWS.albedo,
+            ..Claims::default()
+        }
+    }
+
+    fn edges(&self, params: &HairParams, hit: &Hit) -> [Vec<f64>; 2] {
+        let theta = match oracle::<P>(params, P::forms()[0].1, vector(hit)) {
+            Twin::Published(_) => Vec::new(),
+            Twin::Matched(book) => book.bands().collect(),
+        };
+        let [_, phi_o] = angles(double(vector(hit)));
+        let glint = f64::from(params.desc().phi_g);
+        let around = [0.0, PI, FRAC_PI_2, -FRAC_PI_2, glint, -glint].map(|phi| {
+            let phi = phi_o + phi;
+            phi - 2.0 * PI * (phi / (2.0 * PI)).round()
+        });
+        [theta, around.to_vec()]
+    }
+
+    /// The bound is on the mean of the channels.
+    fn weight_bound(&self, params: &HairParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
+        let twin = oracle::<P>(params, P::forms()[0].1, vector(hit));
+        matches!(twin, Twin::Matched(_)).then(|| 3.0 * twin.weight_bound(lobes))
+    }
+
+    fn reference(&self, params: &ParamsOf<Self>, hit: &Hit) -> Option<Box<dyn Reference>> {
+        let p = parameters(params, P::forms()[0].1);
+        let least = p.beta.into_iter().chain([p.gamma_tt, p.gamma_g]).fold(f64::MAX, f64::min);
+        let [value, pdf, lobe_value, lobe_pdf] = match least {
+            0.0..0.01 => P::ROWS.narrow,
+            0.01..1.0 => P::ROWS.grid,
+            _ => P::ROWS.wide,
+        };
+        let tolerance =
+            Tolerance { value, pdf, lobes: lobe_value.max(lobe_pdf), rounding: 5e-7, ..Tolerance::default() };
+        Some(Box::new(Beside {
+            twin: oracle::<P>(params, P::forms()[0].1, vector(hit)),
+            floor: P::PDF_FLOOR,
+            tolerance,
+        }))
+    }
+}
+
+/// A twin, and the densities below which it is compared absolutely.
+struct Beside {
+    twin: Twin,
+    floor: f64,
+    tolerance: Tolerance,
+}
+
+impl Reference for Beside {
+    fn eval(&self, wi: [f64; 3]) -> [f64; 3] {
+        self.twin.eval(wi)
+    }
+
+    fn pdf(&self, wi: [f64; 3]) -> f64 {
+        self.twin.pdf(wi)
+    }
+
+    fn lobes(&self, wi: [f64; 3]) -> Option<[[f64; 2]; 4]> {
+        let (values, pdfs) = (self.twin.lobe_values(wi), self.twin.lobe_pdfs(wi));
+        // Normalised, a lobe of the last few powers of two of a Gaussian would show its cut.
+        let whole = Lobe::ALL.into_iter().all(|lobe| values[lobe] >= self.floor);
+        whole.then(|| Lobe::ALL.map(|lobe| [values[lobe], pdfs[lobe]]))
+    }
+
+    fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
+        let drawn = self.twin.sample(xi);
+        drawn.lobe.map_or(ReferenceSample::Discarded, |lobe| ReferenceSample::Drawn(lobe.index(), drawn.wi))
+    }
+
+    fn tolerance(&self) -> Tolerance {
+        self.tolerance
+    }
+}

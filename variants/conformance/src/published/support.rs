@@ -1,0 +1,263 @@
+//! Shared by the tests: numbers, directions, materials, and the textbook set beside the kernels.
+
+pub use crate::probe::{Draws, narrow};
+
+use super::{Published, Twin};
+use core::f64::consts::{FRAC_PI_2, PI};
+use glam::Vec3;
+use hairis::textbook::Parameters;
+use hairis::wide::f32x8;
+use hairis::{Bsdf, HairDesc, HairParams, MAX_WIDTH, MIN_WIDTH, Vec3x8};
+
+pub const DEG: f64 = PI / 180.0;
+
+impl Draws {
+    /// Log-uniform.
+    pub fn scale(&mut self, lo: f64, hi: f64) -> f64 {
+        self.between(lo.ln(), hi.ln()).exp()
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        usize::try_from(self.bits() % n as u64).unwrap()
+    }
+
+    pub fn sign(&mut self) -> f64 {
+        if self.bits() & 1 == 0 { 1.0 } else { -1.0 }
+    }
+
+    /// A direction where something happens: anywhere, beside the peaks of the lobes, the seam, the plane of `wo`, the
+    /// glints, or close to the axis.
+    pub fn near_lobes(&mut self, p: &Parameters<f64>, theta_o: f64, phi_o: f64) -> Vec3 {
+        let lobe = self.below(3);
+        let theta = match self.below(4) {
+            0 => self.between(-FRAC_PI_2, FRAC_PI_2),
+            1 => 2.0 * p.alpha[lobe] - theta_o + self.between(-6.0, 6.0) * p.beta[lobe],
+            2 => 2.0 * p.alpha[lobe] - theta_o + self.between(-1.0, 1.0) * p.beta[lobe],
+            _ => self.sign() * (FRAC_PI_2 - self.scale(1e-3, 1.0)),
+        };
+        let inside = FRAC_PI_2 - 1e-3;
+        let phi = match self.below(5) {
+            0 => self.between(-PI, PI),
+            1 => PI + self.sign() * self.scale(1e-7, 1.0),
+            2 => self.sign() * self.scale(1e-7, 1.0),
+            3 => self.sign() * (p.phi_g + self.between(-6.0, 6.0) * p.gamma_g),
+            _ => PI + self.between(-6.0, 6.0) * p.gamma_tt,
+        };
+        direction(theta.clamp(-inside, inside), phi_o - phi)
+    }
+
+    /// Legal parameters from the whole range, its ends included more often than chance.
+    pub fn params(&mut self, brightest: f64) -> HairParams {
+        let mut width = || match self.below(8) {
+            0 => MIN_WIDTH,
+            1 => MAX_WIDTH,
+            _ => narrow(self.scale(1.001e-4, 3.1)),
+        };
+        let (beta_r, beta_tt, beta_trt, gamma_tt, gamma_g) = (width(), width(), width(), width(), width());
+        let right = core::f32::consts::FRAC_PI_2;
+        let mut shift = || match self.below(8) {
+            0 => right,
+            1 => -right,
+            2 => 0.0,
+            _ => narrow(self.between(-1.57, 1.57)),
+        };
+        let (alpha_r, alpha_tt, alpha_trt) = (shift(), shift(), shift());
+        let phi_g = match self.below(6) {
+            0 => 0.0,
+            1 => core::f32::consts::PI,
+            _ => narrow(self.between(0.0, PI)),
+        };
+        let dimmest = 1.0 / brightest;
+        let mut intensity = || match self.below(8) {
+            0 => 0.0,
+            1 => narrow(brightest),
+            _ => narrow(self.scale(dimmest, brightest)),
+        };
+        let mut rgb = || [intensity(), intensity(), intensity()];
+        let (intensity_r, intensity_tt, intensity_trt) = (rgb(), rgb(), rgb());
+        let intensity_g = intensity();
+        HairParams::new(&HairDesc {
+            alpha_r,
+            alpha_tt,
+            alpha_trt,
+            beta_r,
+            beta_tt,
+            beta_trt,
+            gamma_tt,
+            gamma_g,
+            phi_g,
+            intensity_r,
+            intensity_tt,
+            intensity_trt,
+            intensity_g,
+        })
+        .unwrap()
+    }
+}
+
+/// The direction at these angles, rounded.
+pub fn direction(theta: f64, phi: f64) -> Vec3 {
+    let (s, c) = theta.sin_cos();
+    Vec3::new(narrow(s), narrow(c * phi.cos()), narrow(c * phi.sin()))
+}
+
+/// The vector in double precision.
+pub fn double(v: Vec3) -> [f64; 3] {
+    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
+}
+
+/// Longitude, and azimuth relative to `wo` folded into `[0, pi]`.
+pub fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
+    let ([_, v_o, w_o], [u, v, w]) = (double(wo), double(wi));
+    let (dot, cross) = (v * v_o + w * w_o, v * w_o - w * v_o);
+    [u.atan2(v.hypot(w)), cross.atan2(dot).abs()]
+}
+
+/// The parameters the textbook needs for the kernels' widths: rounded where they round.
+pub fn parameters(params: &HairParams, factor: f32) -> Parameters<f64> {
+    let p = Parameters::<f64>::from(params);
+    let d = params.desc();
+    let by = |width: f32| f64::from((width * factor).max(5e-5));
+    Parameters {
+        beta: [by(d.beta_r), by(d.beta_tt), by(d.beta_trt)],
+        gamma_tt: by(d.gamma_tt),
+        gamma_g: by(d.gamma_g),
+        ..p
+    }
+}
+
+/// The textbook at the gather point of `wo`.
+pub fn oracle<S: Published>(params: &HairParams, factor: f32, wo: Vec3) -> Twin {
+    Twin::prepare::<S>(&parameters(params, factor), double(wo))
+}
+
+/// Error of `got` relative to `want`, or to `floor` where `want` is smaller.
+pub fn relative(got: f32, want: f64, floor: f64) -> f64 {
+    (f64::from(got) - want).abs() / want.abs().max(floor)
+}
+
+/// The largest error so far and where it was seen.
+#[derive(Debug, Default)]
+pub struct Worst {
+    pub error: f64,
+    at: String,
+}
+
+impl Worst {
+    pub fn see(&mut self, error: f64, at: impl FnOnce() -> String) {
+        // NaN is the worst of all.
+        if error.is_nan() || error > self.error {
+            *self = Self { error, at: at() };
+        }
+    }
+
+    /// Fails if the worst is above `bound`; prints it for the record (`cargo test -- --nocapture`).
+    #[track_caller]
+    pub fn check(&self, row: &str, bound: f64) {
+        println!("{row}: measured {:.8e}, bound {bound:.1e}, at {}", self.error, self.at);
+        assert!(self.error <= bound, "{row}: {:.3e} is above {bound:.1e} at {}", self.error, self.at);
+    }
+}
+
+/// The kinds of material that bounds are stated for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// The grid of the efficiency figures, and the presets.
+    Grid,
+    /// Every width 0.5 degrees.
+    Narrow,
+    /// Every width 60 degrees.
+    Wide,
+}
+
+/// The materials of one kind.
+pub fn materials(kind: Kind) -> Vec<HairParams> {
+    let uniform = |deg: f64| {
+        let width = narrow(deg * DEG);
+        let (beta_r, beta_tt, beta_trt) = (width, width, width);
+        let widths = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: width, gamma_g: width, ..HairDesc::default() };
+        let tilted = HairDesc { alpha_r: 0.2, alpha_tt: -0.15, alpha_trt: -0.35, phi_g: 0.7, ..widths };
+        [widths, tilted].map(|d| HairParams::new(&d).unwrap()).to_vec()
+    };
+    match kind {
+        Kind::Narrow => uniform(0.5),
+        Kind::Wide => uniform(60.0),
+        Kind::Grid => {
+            let mut all: Vec<_> = HairParams::presets().into_iter().map(|(_, params)| params).collect();
+            for beta in [2.5, 5.0, 7.5, 10.0, 15.0, 20.0] {
+                for gamma_tt in [5.0, 10.0, 25.0, 45.0] {
+                    for gamma_g in [5.0, 10.0, 20.0] {
+                        for phi_g in [20.0, 35.0, 45.0] {
+                            all.extend([0.5, 5.0].map(|i_g| grid_point(beta, gamma_tt, gamma_g, phi_g, i_g)));
+                        }
+                    }
+                }
+            }
+            all
+        }
+    }
+}
+
+/// A point of the grid of the efficiency figures, in degrees.
+pub fn grid_point(beta_r: f64, gamma_tt: f64, gamma_g: f64, phi_g: f64, intensity_g: f32) -> HairParams {
+    let [beta_r, beta_tt, beta_trt] = [1.0, 0.5, 2.0].map(|k| narrow(k * beta_r * DEG));
+    let [gamma_tt, gamma_g, phi_g] = [gamma_tt, gamma_g, phi_g].map(|x| narrow(x * DEG));
+    let desc = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt, gamma_g, phi_g, intensity_g, ..HairDesc::default() };
+    HairParams::new(&desc).unwrap()
+}
+
+/// Inclinations of `wo`, degrees: grazing on both sides, and tilted.
+pub const THETA_O: [f64; 12] = [0.0, 15.0, -30.0, 45.0, -60.0, 75.0, -80.0, 85.0, 89.0, -89.0, 89.9, -89.9];
+
+/// A material of one kind with its textbook, for every form of the model, material and inclination.
+pub fn for_each_point<S: Published>(kind: Kind, mut f: impl FnMut(&Bsdf<S::Model>, &Twin, &Point)) {
+    for (model, factor) in S::forms() {
+        for (index, params) in materials(kind).iter().enumerate() {
+            let bsdf = Bsdf::new(&model, params);
+            for (turn, theta_o) in THETA_O.into_iter().enumerate() {
+                let (theta_o, phi_o) = (theta_o * DEG, 0.7 * turn as f64 - 3.0);
+                let wo = direction(theta_o, phi_o);
+                let seed = (index * 100 + turn) as u64;
+                let p = parameters(params, factor);
+                let point = Point { params: *params, p, wo, theta_o, phi_o, seed };
+                f(&bsdf, &oracle::<S>(params, factor, wo), &point);
+            }
+        }
+    }
+}
+
+/// What [`for_each_point`] goes through.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    pub params: HairParams,
+    pub p: Parameters<f64>,
+    pub wo: Vec3,
+    pub theta_o: f64,
+    pub phi_o: f64,
+    pub seed: u64,
+}
+
+impl Point {
+    /// Directions to test at, the same at every run; none on the edge where the sampler cuts the glints.
+    pub fn directions(&self, count: usize) -> Vec<Vec3> {
+        let mut draws = Draws(self.seed);
+        let mut all = Vec::with_capacity(count);
+        while all.len() < count {
+            let wi = draws.near_lobes(&self.p, self.theta_o, self.phi_o);
+            if (angles(self.wo, wi)[1] - FRAC_PI_2).abs() > 1e-6 {
+                all.push(wi);
+            }
+        }
+        all
+    }
+}
+
+/// Eight lanes of a list, which is repeated where it is short.
+pub fn packet(v: &[Vec3]) -> Vec3x8 {
+    core::array::from_fn::<Vec3, 8, _>(|lane| v[lane % v.len()]).into()
+}
+
+/// Eight triples of uniform numbers as lanes.
+pub fn lanes_of(xi: &[[f32; 3]; 8]) -> [f32x8; 3] {
+    core::array::from_fn(|axis| f32x8::new(xi.map(|xi| xi[axis])))
+}

@@ -1,0 +1,64 @@
+//! The textbook with the sampler of the model under test.
+
+use super::Published;
+use hairis::textbook::{Drawn, MatchedTextbook, Parameters, Textbook};
+use hairis::{Lobe, LobeMask, PerLobe};
+
+/// The twin of a model, in double precision.
+#[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one at a time lives on the stack of a test")]
+pub enum Twin {
+    /// With the published sampler.
+    Published(Textbook<f64>),
+    /// With the matched one.
+    Matched(MatchedTextbook<f64>),
+}
+
+macro_rules! both {
+    ($($name:ident($($arg:ident: $type:ty),*) -> $out:ty;)*) => { $(
+        /// As in the textbook.
+        #[must_use]
+        pub fn $name(&self $(, $arg: $type)*) -> $out {
+            match self {
+                Self::Published(book) => book.$name($($arg),*),
+                Self::Matched(book) => book.$name($($arg),*),
+            }
+        }
+    )* };
+}
+
+impl Twin {
+    /// The twin for these parameters at the gather point of `wo`.
+    #[must_use]
+    pub fn prepare<S: Published>(parameters: &Parameters<f64>, wo: [f64; 3]) -> Self {
+        let Some(bands) = S::BANDS else {
+            return Self::Published(Textbook::prepare(parameters, S::SHAPE, wo));
+        };
+        let book = MatchedTextbook::prepare(parameters, S::SHAPE, wo, bands);
+        Self::Matched(if S::BY_CHANNEL { book.by_channel() } else { book })
+    }
+
+    both! {
+        eval(wi: [f64; 3]) -> [f64; 3];
+        pdf(wi: [f64; 3]) -> f64;
+        lobe_values(wi: [f64; 3]) -> PerLobe<f64>;
+        lobe_pdfs(wi: [f64; 3]) -> PerLobe<f64>;
+        probabilities() -> PerLobe<f64>;
+        sample(xi: [f64; 3]) -> Drawn<f64>;
+        cdf_theta(lobe: Lobe, theta_i: f64) -> f64;
+        cdf_phi(lobe: Lobe, phi: f64) -> f64;
+    }
+
+    /// The bound of the matched sampler's weights.
+    ///
+    /// # Panics
+    ///
+    /// With the published sampler: its bound is in the tests of weights.
+    #[must_use]
+    pub fn weight_bound(&self, mask: LobeMask) -> f64 {
+        match self {
+            Self::Published(_) => panic!("the published sampler has a bound of its own"),
+            Self::Matched(book) => book.weight_bound(mask),
+        }
+    }
+}

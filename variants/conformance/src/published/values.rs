@@ -1,0 +1,73 @@
+//! Values, densities and lobes against the textbook in double precision, one lane and eight, on every level.
+
+use super::Published;
+use super::support::{Kind, Worst, for_each_point, packet, relative};
+use hairis::{Eval, Level, Lobe};
+
+/// Below this share of 1 per steradian a Gaussian is compared absolutely: it is cut to 0 at `2^-115` of its peak.
+const FLOOR: f64 = 1e-20;
+
+/// Largest errors of S and of the density over the materials of a kind.
+fn scan<S: Published>(kind: Kind, per_point: usize) -> [Worst; 4] {
+    let mut worst: [Worst; 4] = Default::default();
+    for_each_point::<S>(kind, |bsdf, textbook, point| {
+        let gather = bsdf.prepare(point.wo);
+        for eight in point.directions(per_point).chunks(8) {
+            let wi = packet(eight);
+            let wide: Vec<_> =
+                Level::available().map(|level| (level, bsdf.prepare(point.wo).eval_pdf8_at(level, &wi))).collect();
+            let wide_lobes = gather.lobes8(&wi);
+            for (lane, wi) in eight.iter().enumerate() {
+                let d = super::support::double(*wi);
+                let (value, pdf) = (textbook.eval(d), textbook.pdf(d));
+                let (lobe_values, lobe_pdfs) = (textbook.lobe_values(d), textbook.lobe_pdfs(d));
+                let mut see = |got: Eval, level: &str| {
+                    let at = || format!("{level} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
+                    for (got, want) in got.value.into_iter().zip(value) {
+                        worst[0].see(relative(got, want, FLOOR), at);
+                    }
+                    worst[1].see(relative(got.pdf, pdf, S::PDF_FLOOR), at);
+                };
+                see(gather.eval_pdf(*wi), "scalar");
+                for (level, eval) in &wide {
+                    see(eval.lane(lane), level.name());
+                }
+                let scalar = gather.lobes(*wi);
+                for lobe in Lobe::ALL {
+                    let eight = &wide_lobes[lobe];
+                    let wide = [eight.value.as_array()[lane], eight.pdf.as_array()[lane]];
+                    // Normalised, a lobe of the last few powers of two of a Gaussian would show its cut.
+                    let cut = lobe_values[lobe] < S::PDF_FLOOR;
+                    for [value, pdf] in [[scalar[lobe].value, scalar[lobe].pdf], wide] {
+                        let at = || format!("{lobe:?} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
+                        worst[2].see(relative(value, lobe_values[lobe], FLOOR), at);
+                        if cut {
+                            continue;
+                        }
+                        worst[3].see(relative(pdf, lobe_pdfs[lobe], S::PDF_FLOOR.max(f64::MIN_POSITIVE)), at);
+                    }
+                }
+            }
+        }
+    });
+    worst
+}
+
+fn check<S: Published>(kind: Kind, per_point: usize, bounds: [f64; 4]) {
+    let names = ["S", "pdf", "S of a lobe", "pdf of a lobe"];
+    for ((name, worst), bound) in names.into_iter().zip(scan::<S>(kind, per_point)).zip(bounds) {
+        worst.check(&format!("{kind:?} {name}"), bound);
+    }
+}
+
+pub fn values_on_the_grid<S: Published>() {
+    check::<S>(Kind::Grid, 64, S::ROWS.grid);
+}
+
+pub fn values_of_narrow_lobes<S: Published>() {
+    check::<S>(Kind::Narrow, 4096, S::ROWS.narrow);
+}
+
+pub fn values_of_wide_lobes<S: Published>() {
+    check::<S>(Kind::Wide, 4096, S::ROWS.wide);
+}

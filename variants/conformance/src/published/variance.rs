@@ -1,0 +1,170 @@
+//! The relative variance V of one sample under constant light, of every sampler: quadrature of the kernels' own values
+//! and densities over the grid of the efficiency figures.
+
+use super::quadrature::{panels, rule};
+use super::support::{DEG, direction, double, grid_point, narrow, parameters};
+use super::{Published, samplers};
+use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::textbook::{MatchedTextbook, Textbook};
+use hairis::{Bsdf, Gather, HairParams, Lobe, Model, PerLobe};
+
+const PHI_O: f64 = 0.4;
+
+/// Probabilities of the lobes, by parameters and `theta_o`.
+type Shares = fn(&HairParams, f64) -> PerLobe<f64>;
+
+fn published<S: Published>(params: &HairParams, theta_o: f64) -> PerLobe<f64> {
+    Textbook::prepare(&parameters(params, 1.0), S::SHAPE, double(direction(theta_o, PHI_O))).probabilities()
+}
+
+fn matched<S: Published, const N: usize>(params: &HairParams, theta_o: f64) -> PerLobe<f64> {
+    MatchedTextbook::prepare(&parameters(params, 1.0), S::SHAPE, double(direction(theta_o, PHI_O)), N).probabilities()
+}
+
+/// Quadrature in one angle: its weights, and each lobe's value and density there, the other angle at a peak.
+struct Line {
+    weights: Vec<f64>,
+    value: [Vec<f64>; 4],
+    density: [Vec<f64>; 4],
+}
+
+/// `theta` and `phi` where a lobe is large.
+fn peak(params: &HairParams, theta_o: f64, lobe: Lobe) -> [f64; 2] {
+    let p = parameters(params, 1.0);
+    [(2.0 * p.alpha[lobe.index().min(2)] - theta_o).clamp(-1.3, 1.3), [0.0, PI, 0.0, p.phi_g][lobe.index()]]
+}
+
+fn line<M: Model>(gather: &Gather<M>, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 2]) -> Line {
+    let of = |lobe: Lobe, x: f64| {
+        let [theta, phi] = at(lobe, x);
+        let l = gather.lobes(direction(theta, PHI_O - phi))[lobe];
+        [f64::from(l.value) * theta.cos().powi(2), f64::from(l.pdf) * theta.cos()]
+    };
+    let column = |k: usize| Lobe::ALL.map(|lobe| points.iter().map(|(x, _)| of(lobe, *x)[k]).collect());
+    Line { weights: points.iter().map(|(_, w)| *w).collect(), value: column(0), density: column(1) }
+}
+
+/// The line in `theta_i`: values absolute, densities to an integral of 1; the density jumps at `jumps`.
+fn longitude<M: Model>(gather: &Gather<M>, params: &HairParams, theta_o: f64, jumps: &[f64]) -> Line {
+    let p = parameters(params, 1.0);
+    let bell = |l: usize| (2.0 * p.alpha[l] - theta_o, p.beta[l]);
+    let pole = FRAC_PI_2 - theta_o;
+    let mut ends = panels(-FRAC_PI_2 + 1e-5, FRAC_PI_2 - 1e-5, &[bell(0), bell(1), bell(2), (-FRAC_PI_2, pole)]);
+    ends.extend(jumps.iter().filter(|x| x.abs() < FRAC_PI_2 - 1e-5));
+    ends.sort_by(f64::total_cmp);
+    let mut line = line(gather, &rule(&ends), |lobe, theta| [theta, peak(params, theta_o, lobe)[1]]);
+    unit(&mut line.density, &line.weights);
+    line
+}
+
+/// The line in `phi`: values to a peak of 1, densities to an integral of 1.
+fn azimuth<M: Model>(gather: &Gather<M>, params: &HairParams, theta_o: f64) -> Line {
+    let p = parameters(params, 1.0);
+    let ends = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt), (FRAC_PI_2, 1.0)]);
+    let points: Vec<_> = rule(&ends).into_iter().map(|(x, w)| (x, 2.0 * w)).collect();
+    let mut line = line(gather, &points, |lobe, phi| [peak(params, theta_o, lobe)[0], phi]);
+    for lobe in Lobe::ALL {
+        let [theta, phi] = peak(params, theta_o, lobe);
+        let top = f64::from(gather.lobes(direction(theta, PHI_O - phi))[lobe].value) * theta.cos().powi(2);
+        line.value[lobe.index()].iter_mut().for_each(|x| *x /= top);
+    }
+    unit(&mut line.density, &line.weights);
+    line
+}
+
+fn unit(density: &mut [Vec<f64>; 4], weights: &[f64]) {
+    for column in density {
+        let sum: f64 = column.iter().zip(weights).map(|(x, w)| x * w).sum();
+        column.iter_mut().for_each(|x| *x /= sum);
+    }
+}
+
+/// V of the mean of RGB.
+fn v(long: &Line, round: &Line, params: &HairParams, shares: PerLobe<f64>) -> f64 {
+    let d = params.desc();
+    let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
+    let trt = mean(d.intensity_trt);
+    let intensity = [mean(d.intensity_r), mean(d.intensity_tt), trt, trt];
+    let (mut first, mut second) = (0.0, 0.0);
+    for (i, w_i) in long.weights.iter().enumerate() {
+        let f: [f64; 4] = core::array::from_fn(|l| intensity[l] * long.value[l][i]);
+        let p: [f64; 4] = core::array::from_fn(|l| shares.0[l] * long.density[l][i]);
+        for (j, w_j) in round.weights.iter().enumerate() {
+            let (mut value, mut density) = (0.0, 0.0);
+            for l in 0..4 {
+                value += f[l] * round.value[l][j];
+                density += p[l] * round.density[l][j];
+            }
+            first += w_i * w_j * value;
+            second += w_i * w_j * value * value / density.max(1e-300);
+        }
+    }
+    second / (first * first) - 1.0
+}
+
+/// The inclinations where the density of a sampler of so many bands jumps: the same for all hair.
+fn jumps<S: Published>(bands: usize) -> Vec<f64> {
+    let p = parameters(&HairParams::default(), 1.0);
+    MatchedTextbook::prepare(&p, S::SHAPE, [0.0, 1.0, 0.0], bands).bands().collect()
+}
+
+/// V at every point of the grid.
+fn over_grid<M: Model<Params = HairParams>>(model: M, shares: Shares, jumps: &[f64]) -> Vec<f64> {
+    let mut all = Vec::new();
+    for beta in [2.5, 5.0, 7.5, 10.0, 15.0, 20.0] {
+        for degrees in [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0] {
+            let theta_o = degrees * DEG;
+            let wo = direction(theta_o, PHI_O);
+            let mut long: Option<Line> = None;
+            for gamma_tt in [5.0, 10.0, 25.0, 45.0] {
+                for gamma_g in [5.0, 10.0, 20.0] {
+                    for phi_g in [20.0, 35.0, 45.0] {
+                        for intensity_g in [0.5, 5.0] {
+                            let params = grid_point(beta, gamma_tt, gamma_g, phi_g, intensity_g);
+                            let gather = Bsdf::new(&model, &params).prepare(wo);
+                            let mut line = longitude(&gather, &params, theta_o, jumps);
+                            // The strength of the glints is in their value; the rest is the same for all of these.
+                            if let Some(long) = &long {
+                                line = Line { density: long.density.clone(), ..line };
+                            }
+                            let round = azimuth(&gather, &params, theta_o);
+                            all.push(v(&line, &round, &params, shares(&params, theta_o)));
+                            long = Some(line);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    all
+}
+
+/// The mean of V, the geometric mean of its gain over the published sampler, and the least of it.
+fn gain<S: Published>(bands: usize, ou: &[f64], v: &[f64]) -> [f64; 3] {
+    let n = narrow(v.len() as f64);
+    let mean = |x: &[f64]| x.iter().sum::<f64>() / f64::from(n);
+    let logs: Vec<f64> = ou.iter().zip(v).map(|(ou, v)| (ou / v).ln()).collect();
+    let (geometric, least) = (mean(&logs).exp(), logs.iter().fold(f64::MAX, |a, x| a.min(*x)).exp());
+    let most = v.iter().fold(0.0, |a: f64, x| a.max(*x));
+    println!(
+        "{:?} {bands} bands: V {:.5} (at most {most:.5}; ou {:.4}), gain {geometric:.2}, at least {least:.2}, {} points",
+        S::SHAPE,
+        mean(v),
+        mean(ou),
+        v.len()
+    );
+    [mean(v), geometric, least]
+}
+
+pub fn variance_falls_by_what_is_promised<S: Published>() {
+    let (ou, few, usual, many) = samplers::<S>();
+    let ou = over_grid(ou, published::<S>, &[]);
+    let gains = [
+        gain::<S>(5, &ou, &over_grid(few, matched::<S, 5>, &jumps::<S>(5))),
+        gain::<S>(9, &ou, &over_grid(usual, matched::<S, 9>, &jumps::<S>(9))),
+        gain::<S>(25, &ou, &over_grid(many, matched::<S, 25>, &jumps::<S>(25))),
+    ];
+    for (got, [v, gain, least]) in gains.iter().zip(S::ROWS.gain) {
+        assert!(got[0] <= v && got[1] >= gain && got[2] >= least, "{got:?}, not {v}, {gain}, {least}");
+    }
+}

@@ -1,0 +1,131 @@
+//! The model agrees with its reference in double precision.
+
+use crate::calls::{self, Direction};
+use crate::failure::{Failure, Outcome, Worst};
+use crate::probe::{Draws, cos_theta, double, hits_and, packet, relative, rounded, triples};
+use crate::subject::{Reference, ReferenceSample, Subject, Tolerance};
+use hairis::{Bsdf, Eval, Level, Lobe, Sample};
+
+const NAME: &str = "the model agrees with its reference";
+
+/// Hits per material, and packets per hit.
+const HITS: usize = 40;
+const PACKETS: usize = 4;
+
+/// Error of `got`, less what moving the direction by the tolerated rounding changes, over the tolerance.
+fn excess(got: f64, at: impl Fn([f64; 3]) -> f64, wi: Direction, relative_to: f64, tolerance: &Tolerance) -> f64 {
+    let want = at(double(wi));
+    let plain = relative(got, want, tolerance.floor) / relative_to;
+    if plain <= 1.0 || plain.is_nan() {
+        return plain;
+    }
+    let by = rounded(wi, tolerance.rounding).map(|wi| (at(double(wi)) - want).abs()).into_iter().fold(0.0, f64::max);
+    ((got - want).abs() - by).max(0.0) / (want.abs().max(tolerance.floor) * relative_to)
+}
+
+/// Values, densities, lobes and samples are those of the [`Reference`], where the subject has one: on one lane and on every
+/// level, on its materials and on its random ones.
+///
+/// # Errors
+///
+/// At the first result that differs.
+pub fn agrees_with_reference<S: Subject>(subject: &S) -> Outcome {
+    let random = subject.random_materials().into_iter().map(|params| ("a random material", params));
+    let mut draws = Draws(0x4ef5);
+    let mut worst = ["S", "density", "lobe"].map(|what| Worst::new(NAME, what, 1.0));
+    let mut compared = 0_usize;
+    for (name, params) in subject.materials().into_iter().chain(random) {
+        let bsdf = Bsdf::new(&subject.model(), &params);
+        for hit in hits_and(HITS, &mut draws) {
+            let Some(reference) = subject.reference(&params, &hit) else { return Ok(()) };
+            let tolerance = reference.tolerance();
+            let gather = calls::prepare(&bsdf, hit);
+            for n in 0..PACKETS {
+                let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
+                let wi: [Direction; 8] = core::array::from_fn(|lane| {
+                    let any = draws.direction();
+                    let drawn = calls::sample(&gather, draws.xi3()).map_or(any, |s| s.wi.into());
+                    if (lane + n) % 2 == 0 { any } else { drawn }
+                });
+                let levels = Level::available().map(|level| {
+                    let (e, s) =
+                        (calls::eval8(&gather, level, &packet(&wi)), calls::sample8(&gather, level, &triples(&xi)));
+                    (e, s, level.name())
+                });
+                let levels: Vec<_> = levels.collect();
+                for lane in (0..8).filter(|lane| cos_theta(wi[*lane]) > 1e-3) {
+                    let lanes = levels.iter().map(|(e, s, level)| (e.lane(lane), s.lane(lane), *level));
+                    let one = (calls::eval(&gather, wi[lane]), calls::sample(&gather, xi[lane]), "one lane");
+                    for (e, s, level) in lanes.chain([one]) {
+                        let at = || format!("{name} {hit:?} {:?} xi {:?} on {level}", wi[lane], xi[lane]);
+                        see_eval(&mut worst, &*reference, e, wi[lane], &tolerance, &at)?;
+                        compare_sample(&*reference, s, xi[lane], &tolerance, &at)?;
+                        compared += 1;
+                    }
+                    let lobes = calls::lobes(&gather, wi[lane]);
+                    if reference.lobes(double(wi[lane])).is_none() {
+                        continue;
+                    }
+                    for lobe in Lobe::ALL {
+                        for (part, got) in [lobes[lobe].value, lobes[lobe].pdf].into_iter().enumerate() {
+                            let of = |d| reference.lobes(d).map_or(0.0, |all| all[lobe.index()][part]);
+                            let error = excess(f64::from(got), of, wi[lane], tolerance.lobes, &tolerance);
+                            worst[2].see(error, || format!("{lobe:?} {lobes:?}: {name} {hit:?} {:?}", wi[lane]))?;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    println!("{NAME}: {compared} results, errors over their tolerance:");
+    worst.into_iter().try_for_each(Worst::report)
+}
+
+fn see_eval(
+    [value, pdf, _]: &mut [Worst; 3],
+    reference: &dyn Reference,
+    got: Eval,
+    wi: Direction,
+    tolerance: &Tolerance,
+    at: &impl Fn() -> String,
+) -> Outcome {
+    let want =
+        || format!("{got:?}, reference {:?} {}: {}", reference.eval(double(wi)), reference.pdf(double(wi)), at());
+    for (c, x) in got.value.into_iter().enumerate() {
+        value.see(excess(f64::from(x), |d| reference.eval(d)[c], wi, tolerance.value, tolerance), want)?;
+    }
+    pdf.see(excess(f64::from(got.pdf), |d| reference.pdf(d), wi, tolerance.pdf, tolerance), want)
+}
+
+/// The sample has the lobe and the direction of the reference's, or of one with numbers that are rounded: at the boundary of
+/// two lobes, and next to the axis, either is right.
+fn compare_sample(
+    reference: &dyn Reference,
+    got: Option<Sample>,
+    xi: [f32; 3],
+    tolerance: &Tolerance,
+    at: &impl Fn() -> String,
+) -> Outcome {
+    let near = |want: ReferenceSample| match (want, got) {
+        (ReferenceSample::Unknown, _) | (ReferenceSample::Discarded, None) => true,
+        (ReferenceSample::Discarded, Some(s)) => cos_theta(s.wi.into()) < 1e-3,
+        (ReferenceSample::Drawn(_, [_, v, w]), None) => v.hypot(w) < 1e-3,
+        (ReferenceSample::Drawn(slot, wi), Some(s)) => {
+            let d = double(s.wi.into());
+            let off = d.into_iter().zip(wi).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+            slot == s.lobe.index() && off <= tolerance.direction
+        }
+    };
+    let xi = xi.map(f64::from);
+    let moved = (0..3).flat_map(|axis| {
+        [-1e-6, -2e-7, 2e-7, 1e-6].map(|by| {
+            let mut xi = xi;
+            xi[axis] = (xi[axis] + by).clamp(0.0, 1.0 - 1e-9);
+            xi
+        })
+    });
+    if near(reference.sample(xi)) || moved.into_iter().any(|xi| near(reference.sample(xi))) {
+        return Ok(());
+    }
+    Err(Failure::new(NAME, format!("sample {got:?}, reference {:?}: {}", reference.sample(xi), at())))
+}

@@ -1,0 +1,190 @@
+//! The model under test, and what it claims.
+
+use hairis::{Hit, LobeMask, Model};
+
+/// Parameters of the subject's model.
+pub type ParamsOf<S> = <<S as Subject>::Model as Model>::Params;
+
+/// Materials by name.
+pub type Materials<S> = Vec<(&'static str, ParamsOf<S>)>;
+
+/// A model under test: implement it on a unit struct and hand that to [`conformance!`](crate::conformance).
+///
+/// Two functions are required. Whatever else is left out, the model still has to be total, to sample the density it
+/// reports, and to give the same results on one lane, on eight and in slices.
+pub trait Subject: Sync {
+    /// The model.
+    type Model: Model;
+
+    /// The model's marker.
+    fn model(&self) -> Self::Model;
+
+    /// Everyday materials: every property is tested on them.
+    ///
+    /// Two to six of them, from narrow to wide lobes and of different colours. One without any energy is legal.
+    fn materials(&self) -> Materials<Self>;
+
+    /// Materials at the ends of the parameters' ranges: totality, masks, lanes and slices are tested on them as well.
+    fn extremes(&self) -> Materials<Self> {
+        Vec::new()
+    }
+
+    /// Materials without absorption, on which the furnace test runs if [`Claims::furnace`] asks for it.
+    fn white(&self) -> Materials<Self> {
+        Vec::new()
+    }
+
+    /// What the model claims, and its tolerances.
+    fn claims(&self) -> Claims {
+        Claims::default()
+    }
+
+    /// Where densities jump or have a kink: inclinations and azimuths of `wi`, rad.
+    ///
+    /// Quadrature refines where it has to, and starts from where samples fall. Edges that it is given make it faster and
+    /// more accurate. Values outside the domain are ignored.
+    fn edges(&self, params: &ParamsOf<Self>, hit: &Hit) -> [Vec<f64>; 2] {
+        let _ = (params, hit);
+        [Vec::new(), Vec::new()]
+    }
+
+    /// Largest weight of any channel of any sample with these lobes, if the model has a bound in closed form.
+    fn weight_bound(&self, params: &ParamsOf<Self>, hit: &Hit, lobes: LobeMask) -> Option<f64> {
+        let _ = (params, hit, lobes);
+        None
+    }
+
+    /// The model in double precision at this hit, if there is one.
+    fn reference(&self, params: &ParamsOf<Self>, hit: &Hit) -> Option<Box<dyn Reference>> {
+        let _ = (params, hit);
+        None
+    }
+
+    /// Further materials to compare with the [`reference`](Self::reference), for instance random ones.
+    fn random_materials(&self) -> Vec<ParamsOf<Self>> {
+        Vec::new()
+    }
+}
+
+/// What a model claims beyond the promises of [`Model`], and how accurately it keeps them.
+///
+/// Tolerances are relative unless stated otherwise. Start from the defaults, run the suite, and set each to no more than
+/// twice the worst case that `cargo test -- --nocapture` prints.
+#[derive(Clone, Debug)]
+pub struct Claims {
+    /// S is the same with `wo` and `wi` exchanged, to this error, beyond what rounding the directions changes.
+    pub reciprocal: Option<f64>,
+    /// White materials return all light: the sum of the lobes' albedos is 1, to this absolute error.
+    pub furnace: Option<f64>,
+    /// The model reads [`Hit::h`]; if not, results must not depend on it.
+    pub near_field: bool,
+    /// Levels that fuse as one lane does ([`Level::fuses`](hairis::Level::fuses)) give its bits.
+    pub same_bits: bool,
+    /// Levels that fuse otherwise give one lane's results to this error, beyond what rounding the directions changes.
+    pub lanes: f64,
+    /// Levels that fuse otherwise sample the direction of one lane to this distance, beyond what rounding the numbers changes.
+    pub direction: f64,
+    /// A sample's value and density are those of its direction, to this error, beyond what rounding the directions changes.
+    pub sample_eval: f64,
+    /// A sample's weight is `value cos theta_i / pdf`, to this error.
+    pub weight: f64,
+    /// The lobes sum to the value, to this error.
+    pub lobe_sum: f64,
+    /// Largest share of samples that may be discarded.
+    pub discarded: f64,
+    /// The density integrates to the share of samples that are not discarded, to this absolute error.
+    pub integral: f64,
+    /// The distribution of samples of Sobol points is the integral of the density, to this absolute error.
+    pub inversion: f64,
+    /// `albedo` is the integral of `S cos theta_i`, to this error.
+    pub albedo: f64,
+    /// Random samples per chi-square test.
+    pub samples: u32,
+    /// Sobol points that samples are drawn from: a power of two.
+    pub points: u32,
+}
+
+impl Default for Claims {
+    /// No claim beyond the promises of [`Model`], and tolerances for lobes of 0.01 rad and wider.
+    fn default() -> Self {
+        Self {
+            reciprocal: None,
+            furnace: None,
+            near_field: false,
+            same_bits: true,
+            lanes: 1e-5,
+            direction: 2e-6,
+            sample_eval: 1e-5,
+            weight: 1e-5,
+            lobe_sum: 1e-5,
+            discarded: 1e-3,
+            integral: 1e-4,
+            inversion: 1e-4,
+            albedo: 1e-3,
+            samples: 200_000,
+            points: 1 << 17,
+        }
+    }
+}
+
+/// A model in double precision at one hit: made by [`Subject::reference`].
+///
+/// Vectors are (u, v, w). Slots are those of [`Model::LOBES`].
+pub trait Reference {
+    /// S, linear RGB, without the cosine.
+    fn eval(&self, wi: [f64; 3]) -> [f64; 3];
+
+    /// Density of sampling `wi`, per steradian.
+    fn pdf(&self, wi: [f64; 3]) -> f64;
+
+    /// Value without the colour and density of each slot, if known.
+    fn lobes(&self, wi: [f64; 3]) -> Option<[[f64; 2]; 4]> {
+        let _ = wi;
+        None
+    }
+
+    /// The sample that these numbers give.
+    fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
+        let _ = xi;
+        ReferenceSample::Unknown
+    }
+
+    /// Agreement to expect.
+    fn tolerance(&self) -> Tolerance {
+        Tolerance::default()
+    }
+}
+
+/// A sample of a [`Reference`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ReferenceSample {
+    /// The reference does not sample: nothing is compared.
+    Unknown,
+    /// The sample was discarded.
+    Discarded,
+    /// The lobe's slot and the direction.
+    Drawn(usize, [f64; 3]),
+}
+
+/// How closely a model follows its [`Reference`] at directions further than 1e-3 rad from the axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Tolerance {
+    /// Relative error of S.
+    pub value: f64,
+    /// Relative error of the density.
+    pub pdf: f64,
+    /// Relative error of each lobe's value and density.
+    pub lobes: f64,
+    /// Values and densities below this are compared absolutely.
+    pub floor: f64,
+    /// Backward error in rad: results may also differ by what moving the direction by so much changes.
+    pub rounding: f64,
+    /// Largest distance between the sampled directions.
+    pub direction: f64,
+}
+
+impl Default for Tolerance {
+    fn default() -> Self {
+        Self { value: 1e-5, pdf: 1e-5, lobes: 1e-5, floor: 1e-20, rounding: 2.5e-7, direction: 1e-4 }
+    }
+}

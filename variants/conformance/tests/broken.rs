@@ -1,0 +1,367 @@
+//! A sound model of two lobes, and copies of it with one fault each: the only file of these tests that implements
+//! [`Model`].
+
+use core::f32::consts::{FRAC_1_PI, PI};
+use core::ops::Deref;
+use hairis::math::{atan2_upper, sin_cos_half_turn};
+use hairis::{
+    Broadcast, Drawn, Eval, GRAZING, Hit, LaneStruct, Lanes, Lobe, LobeEval, LobeMask, Model, PerLobe, Scalar, Vec3x,
+    lanes3, store3,
+};
+use hairis_conformance::{Claims, Materials, Subject};
+
+/// Faults of a model, by number: constants are all that a type may differ in.
+pub(crate) const SOUND: u8 = 0;
+pub(crate) const DENSITY_TOO_HIGH: u8 = 1;
+pub(crate) const WRONG_LANE: u8 = 2;
+pub(crate) const WRONG_PROBABILITY: u8 = 3;
+pub(crate) const NAN_AT_THE_POLE: u8 = 4;
+pub(crate) const NOT_RECIPROCAL: u8 = 5;
+pub(crate) const WIDE_SLICES_DIFFER: u8 = 6;
+pub(crate) const MASK_LEAKS: u8 = 7;
+pub(crate) const HEAVY_WEIGHT: u8 = 8;
+pub(crate) const SKEWED_LOBE: u8 = 9;
+pub(crate) const LOBE_MISSING: u8 = 10;
+pub(crate) const ALBEDO_TOO_LOW: u8 = 11;
+pub(crate) const DISCARDS: u8 = 12;
+pub(crate) const WEIGHT_WITHOUT_COSINE: u8 = 13;
+pub(crate) const LONG_DIRECTION: u8 = 14;
+pub(crate) const READS_H: u8 = 15;
+pub(crate) const PACKET_DIFFERS: u8 = 16;
+pub(crate) const WRONG_PACK: u8 = 17;
+pub(crate) const NEGATIVE: u8 = 18;
+pub(crate) const AZIMUTH_UNEVEN: u8 = 19;
+
+/// A fibre with a diffuse lobe, uniform on the sphere, and a cone of mirror directions.
+///
+/// `S = kd / pi^2 + ks c(sin theta_i + sin theta_o) / (2 pi)`, with `c` the Cauchy density of width `w`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fiber<const FAULT: u8>;
+
+const DIFFUSE: Lobe = Lobe::slot(0);
+const CONE: Lobe = Lobe::slot(1);
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Params {
+    pub(crate) kd: [f32; 3],
+    pub(crate) ks: [f32; 3],
+    /// Width of the cone in `sin theta`.
+    pub(crate) width: f32,
+}
+
+hairis::lane_struct! {
+    /// Constants of a material.
+    pub struct Material {
+        /// Colours, linear RGB.
+        pub kd: [C; 3],
+        /// As `kd`, of the cone.
+        pub ks: [C; 3],
+        /// Width of the cone.
+        pub width: C,
+        /// Probability of each lobe.
+        pub selection: [C; 2],
+    }
+}
+
+hairis::lane_struct! {
+    /// Constants of a gather point.
+    pub struct Point {
+        /// As in the material.
+        pub kd: [C; 3],
+        /// As in the material.
+        pub ks: [C; 3],
+        /// As in the material.
+        pub width: C,
+        /// As in the material.
+        pub selection: [C; 2],
+        /// Sine of `theta_o`.
+        pub sin_theta_o: C,
+        /// Angle under which a bell of this width sees the sphere, rad.
+        pub span: C,
+    }
+}
+
+/// Constants that are packed, and taken out of lanes, with a fault.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Faulty<const FAULT: u8, T>(T);
+
+impl<const FAULT: u8, T> Deref for Faulty<FAULT, T> {
+    type Target = T;
+    #[inline(always)]
+    fn deref(&self) -> &T {
+        &self.0
+    }
+}
+
+impl<const FAULT: u8, T: LaneStruct> LaneStruct for Faulty<FAULT, T> {
+    type One = Faulty<FAULT, T::One>;
+    type Eight = Faulty<FAULT, T::Eight>;
+
+    fn pack(mut items: [&Self::One; 8]) -> Self::Eight {
+        if FAULT == WRONG_PACK {
+            items[6] = items[5];
+        }
+        Faulty(T::pack(items.map(|item| &item.0)))
+    }
+
+    fn lane(eight: &Self::Eight, lane: usize) -> Self::One {
+        Faulty(T::lane(&eight.0, if FAULT == WRONG_LANE && lane == 3 { 4 } else { lane }))
+    }
+}
+
+/// Number of lanes.
+const fn width_of<L>() -> usize {
+    size_of::<L>() / size_of::<f32>()
+}
+
+/// The lobes at a direction, neither with its colour, its cosine, and whether there are any.
+#[inline(always)]
+fn shapes<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, wi: Vec3x<L>) -> ([LobeEval<L>; 2], L, L::Mask) {
+    let c = L::splat;
+    let width: L = gather.width.lanes();
+    let cos_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
+    let cos = cos_sq.sqrt();
+    let sound = L::and(c(GRAZING).lt(cos), wi.x.mul_add(wi.x, cos_sq).lt(c(4.0)));
+    let off = wi.x + gather.sin_theta_o.lanes();
+    let bell = width / off.mul_add(off, width * width);
+    let diffuse = LobeEval { value: c(FRAC_1_PI * FRAC_1_PI), color: lanes3(&gather.kd), pdf: c(0.25 * FRAC_1_PI) };
+    let cone = LobeEval {
+        value: bell * c(0.5 * FRAC_1_PI * FRAC_1_PI),
+        color: lanes3(&gather.ks),
+        pdf: bell * c(0.5 * FRAC_1_PI) / gather.span.lanes(),
+    };
+    ([diffuse, cone], cos, sound)
+}
+
+/// `sin theta_i` at which the cone's cdf is `xi`.
+#[inline(always)]
+fn cone_sine<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, xi: L) -> L {
+    let (one, width, sin_theta_o) = (L::splat(1.0), gather.width.lanes(), gather.sin_theta_o.lanes());
+    let (s, c) = sin_cos_half_turn(xi * gather.span.lanes() * L::splat(0.5));
+    let (sin, cos) = ((s + s) * c, c * c - s * s);
+    let lo = sin_theta_o - one;
+    let x = width * lo.mul_add(cos, width * sin) / width.mul_add(cos, -(lo * sin));
+    (-one).max(one.min(x - sin_theta_o))
+}
+
+impl<const FAULT: u8> Fiber<FAULT> {
+    /// The sums over both lobes; 0 where a lane is not sound.
+    #[inline(always)]
+    fn total<L: Lanes, C: Broadcast<L>>(
+        gather: &Point<C>,
+        lobes: [LobeEval<L>; 2],
+        wi: Vec3x<L>,
+        sound: L::Mask,
+    ) -> Eval<L> {
+        let c = L::splat;
+        let [diffuse, cone] = lobes;
+        let limit = L::select(sound, c(f32::MAX), c(0.0));
+        let mut value = [limit; 3];
+        let mut channel = 0;
+        while channel < 3 {
+            let mut sum = diffuse.value.mul_add(diffuse.color[channel], cone.value * cone.color[channel]);
+            if FAULT == NOT_RECIPROCAL {
+                sum = sum * wi.x.mul_add(c(0.01), c(1.0));
+            }
+            if FAULT == LOBE_MISSING {
+                sum = cone.value * cone.color[channel];
+            }
+            if FAULT == NEGATIVE {
+                sum = sum - c(1e-3);
+            }
+            value[channel] = sum.min(limit);
+            channel += 1;
+        }
+        let [p_diffuse, p_cone] = [gather.selection[0].lanes(), gather.selection[1].lanes()];
+        let mut pdf = diffuse.pdf.mul_add(p_diffuse, cone.pdf * p_cone).min(limit);
+        if FAULT == DENSITY_TOO_HIGH {
+            pdf = pdf * c(1.02);
+        }
+        if (FAULT == WIDE_SLICES_DIFFER && width_of::<L>() > 8) || (FAULT == PACKET_DIFFERS && width_of::<L>() > 1) {
+            pdf = pdf * c(1.0 + 4.0 * f32::EPSILON) + c(1e-4) * pdf;
+        }
+        if FAULT == NAN_AT_THE_POLE {
+            // 0 / 0 on the axis.
+            let cos_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
+            pdf = pdf * cos_sq / (wi.y * wi.y + wi.z * wi.z);
+        }
+        Eval { value, pdf }
+    }
+}
+
+impl<const FAULT: u8> Model for Fiber<FAULT> {
+    type Params = Params;
+    type Material<C: Scalar> = Faulty<FAULT, Material<C>>;
+    type Gather<C: Scalar> = Faulty<FAULT, Point<C>>;
+
+    const LOBES: &'static [&'static str] = &["diffuse", "cone"];
+
+    fn material(&self, params: &Params) -> Faulty<FAULT, Material<f32>> {
+        let (d, s) = (params.kd.iter().sum::<f32>(), params.ks.iter().sum::<f32>());
+        let share = |x: f32| if d + s > 0.0 { x / (d + s) } else { 0.0 };
+        Faulty(Material { kd: params.kd, ks: params.ks, width: params.width, selection: [share(d), share(s)] })
+    }
+
+    #[inline(always)]
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        material: &Faulty<FAULT, Material<C>>,
+        hit: Hit<L>,
+    ) -> Faulty<FAULT, Point<L::Stored>> {
+        let (zero, one, tiny) = (L::splat(0.0), L::splat(1.0), L::splat(1e-30));
+        let largest = hit.wo.x.abs().max(hit.wo.y.abs().max(hit.wo.z.abs())).max(tiny);
+        let wo = Vec3x::new(hit.wo.x / largest, hit.wo.y / largest, hit.wo.z / largest);
+        let length = wo.dot(wo).sqrt();
+        let mut sin_theta_o = L::select(tiny.lt(length), wo.x / length, zero);
+        if FAULT == READS_H {
+            let h = (-one).max(one.min(hit.h));
+            sin_theta_o = sin_theta_o * h.mul_add(L::splat(0.1), L::splat(0.9));
+        }
+        let width = material.width.lanes();
+        let span = atan2_upper(width + width, width.mul_add(width, sin_theta_o.mul_add(sin_theta_o, -one)));
+        Faulty(Point {
+            kd: store3(lanes3(&material.kd)),
+            ks: store3(lanes3(&material.ks)),
+            width: width.store(),
+            selection: [material.selection[0].lanes().store(), material.selection[1].lanes().store()],
+            sin_theta_o: sin_theta_o.store(),
+            span: span.store(),
+        })
+    }
+
+    #[inline(always)]
+    fn restrict<C: Lanes>(gather: &Faulty<FAULT, Point<C>>, lobes: LobeMask) -> Faulty<FAULT, Point<C>> {
+        let (d, s) = (C::splat(lobes.factor(DIFFUSE)), C::splat(lobes.factor(CONE)));
+        let [p_d, p_s] = [gather.selection[0] * d, gather.selection[1] * s];
+        let by = C::splat(1.0) / (p_d + p_s).max(C::splat(f32::MIN_POSITIVE));
+        let times = |x: [C; 3], by: C| [x[0] * by, x[1] * by, x[2] * by];
+        let kd = if FAULT == MASK_LEAKS { times(gather.kd, d.max(C::splat(1e-4))) } else { times(gather.kd, d) };
+        Faulty(Point { kd, ks: times(gather.ks, s), selection: [p_d * by, p_s * by], ..gather.0 })
+    }
+
+    #[inline(always)]
+    fn eval<L: Lanes, C: Broadcast<L>>(gather: &Faulty<FAULT, Point<C>>, wi: Vec3x<L>) -> Eval<L> {
+        let (lobes, _, sound) = shapes(gather, wi);
+        Self::total(gather, lobes, wi, sound)
+    }
+
+    #[inline(always)]
+    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &Faulty<FAULT, Point<C>>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
+        let ([diffuse, cone], _, sound) = shapes(gather, wi);
+        let zero = L::splat(0.0);
+        let limit = L::select(sound, L::splat(f32::MAX), zero);
+        let none = LobeEval { value: zero, color: [zero; 3], pdf: zero };
+        let diffuse = LobeEval { value: diffuse.value.min(limit), pdf: diffuse.pdf.min(limit), ..diffuse };
+        let cone = LobeEval { value: cone.value.min(limit), pdf: cone.pdf.min(limit), ..cone };
+        PerLobe([diffuse, cone, none, none])
+    }
+
+    #[inline(always)]
+    fn sample<L: Lanes, C: Broadcast<L>>(gather: &Faulty<FAULT, Point<C>>, xi: [L; 3]) -> Drawn<L> {
+        let c = L::splat;
+        let (zero, one) = (c(0.0), c(1.0));
+        let mut selection: L = gather.selection[0].lanes();
+        if FAULT == WRONG_PROBABILITY {
+            selection = selection * c(1.05);
+        }
+        let is_diffuse = xi[0].lt(selection);
+        let mut along = xi[1];
+        if FAULT == SKEWED_LOBE {
+            along = along * (one - along).mul_add(c(0.02), one);
+        }
+        let sin = L::select(is_diffuse, xi[1] + xi[1] - one, cone_sine(gather, along));
+        let cos = ((one - sin) * (one + sin)).sqrt();
+        let mut around = xi[2];
+        if FAULT == AZIMUTH_UNEVEN {
+            around = around * (one - around).mul_add(c(0.02), one);
+        }
+        // The azimuth is uniform: the double of an angle in [-pi/2, pi/2].
+        let (s, k) = sin_cos_half_turn((around - c(0.5)) * c(PI));
+        let mut wi = Vec3x::new(sin, cos * (k * k - s * s), cos * ((s + s) * k));
+        let (lobes, _, sound) = shapes(gather, wi);
+        let Eval { value, pdf } = Self::total(gather, lobes, wi, sound);
+        let mut sound = L::and(sound, zero.lt(pdf));
+        if FAULT == DISCARDS {
+            sound = L::and(sound, c(0.05).lt(xi[2]));
+        }
+        let mut by = L::select(sound, cos / pdf, zero);
+        if FAULT == WEIGHT_WITHOUT_COSINE {
+            by = L::select(sound, one / pdf, zero);
+        }
+        if FAULT == HEAVY_WEIGHT {
+            by = L::select(c(0.999).lt(xi[1]), by * c(20.0), by);
+        }
+        if FAULT == LONG_DIRECTION {
+            wi = wi.scale(c(1.0001));
+        }
+        let slot = L::select(is_diffuse, zero, one);
+        let weight = [value[0] * by, value[1] * by, value[2] * by];
+        // A discarded sample has nothing.
+        let kept = |x: L| L::select(sound, x, zero);
+        Drawn {
+            wi,
+            value: [kept(value[0]), kept(value[1]), kept(value[2])],
+            pdf: kept(pdf),
+            weight,
+            slot: L::select(sound, slot, -one),
+        }
+    }
+
+    #[inline(always)]
+    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &Faulty<FAULT, Point<C>>) -> PerLobe<[L; 3]> {
+        const STEPS: u16 = 256;
+        let (kd, ks) = (lanes3(&gather.kd), lanes3(&gather.ks));
+        let zero = L::splat(0.0);
+        let mut sum = zero;
+        let mut step = 0;
+        while step < STEPS {
+            let sin = cone_sine(gather, L::splat((f32::from(step) + 0.5) / f32::from(STEPS)));
+            sum = sum + ((L::splat(1.0) - sin) * (L::splat(1.0) + sin)).sqrt();
+            step += 1;
+        }
+        let loss = if FAULT == ALBEDO_TOO_LOW { 0.99 } else { 1.0 };
+        let by = sum * gather.span.lanes() * L::splat(loss * FRAC_1_PI / f32::from(STEPS));
+        PerLobe([kd, [ks[0] * by, ks[1] * by, ks[2] * by], [zero; 3], [zero; 3]])
+    }
+}
+
+/// The fibre with this fault, as its author would test it.
+pub(crate) struct Broken<const FAULT: u8>;
+
+impl<const FAULT: u8> Subject for Broken<FAULT> {
+    type Model = Fiber<FAULT>;
+
+    fn model(&self) -> Fiber<FAULT> {
+        Fiber
+    }
+
+    fn materials(&self) -> Materials<Self> {
+        vec![
+            ("everyday", Params { kd: [0.4, 0.3, 0.2], ks: [0.5, 0.4, 0.6], width: 0.1 }),
+            ("narrow", Params { kd: [0.1, 0.3, 0.2], ks: [0.5, 0.9, 0.0], width: 0.01 }),
+            ("black", Params { kd: [0.0; 3], ks: [0.0; 3], width: 0.1 }),
+        ]
+    }
+
+    fn extremes(&self) -> Materials<Self> {
+        vec![("cone alone", Params { kd: [0.0; 3], ks: [1e30, 0.0, 1e-30], width: 0.03 })]
+    }
+
+    fn white(&self) -> Materials<Self> {
+        vec![("diffuse alone", Params { kd: [1.0; 3], ks: [0.0; 3], width: 0.1 })]
+    }
+
+    fn claims(&self) -> Claims {
+        Claims { reciprocal: Some(2e-6), furnace: Some(1e-5), albedo: 2e-3, direction: 2e-5, ..Claims::default() }
+    }
+
+    /// Lobe by lobe the weight is `4 kd cos / (pi p)`, or `ks cos span / (pi p)`, where `span <= pi`: `p` is the lobe's share.
+    fn weight_bound(&self, params: &Params, _hit: &Hit, lobes: LobeMask) -> Option<f64> {
+        let sum = |color: [f32; 3]| color.iter().map(|x| f64::from(*x)).sum::<f64>();
+        let most = |color: [f32; 3]| f64::from(color.into_iter().fold(0.0, f32::max));
+        let lit = |lobe, color: [f32; 3]| if lobes.contains(lobe) { color } else { [0.0; 3] };
+        let (kd, ks) = (lit(DIFFUSE, params.kd), lit(CONE, params.ks));
+        let total = sum(kd) + sum(ks);
+        let ratio = |color, by: f64| if sum(color) > 0.0 { by * most(color) * total / sum(color) } else { 0.0 };
+        (total > 0.0).then(|| ratio(kd, 4.0 / core::f64::consts::PI).max(ratio(ks, 1.0)))
+    }
+}

@@ -1,0 +1,135 @@
+//! The fibre in double precision, right and wrong, beside the sound model.
+
+use crate::broken::{Broken, Fiber, Params, SOUND};
+use core::f64::consts::PI;
+use hairis::{Hit, Model};
+use hairis_conformance::reference::agrees_with_reference;
+use hairis_conformance::{Claims, Materials, Reference, ReferenceSample, Subject};
+
+/// Errors of a reference, relative: of the value, of the density, of a lobe; and in the number that a lobe is chosen by.
+#[derive(Clone, Copy, Default)]
+struct Errors {
+    value: f64,
+    pdf: f64,
+    lobe: f64,
+    choice: f64,
+}
+
+/// The formulas of the fibre.
+struct Formulas {
+    kd: [f64; 3],
+    ks: [f64; 3],
+    width: f64,
+    sin_theta_o: f64,
+    errors: Errors,
+}
+
+impl Formulas {
+    fn share(&self) -> f64 {
+        let (d, s) = (self.kd.iter().sum::<f64>(), self.ks.iter().sum::<f64>());
+        if d + s > 0.0 { d / (d + s) } else { 0.0 }
+    }
+
+    fn lit(&self) -> bool {
+        self.kd.iter().chain(&self.ks).any(|x| *x > 0.0)
+    }
+
+    /// Angle under which the cone's bell is seen from 0 to this sine.
+    fn angle(&self, sin: f64) -> f64 {
+        ((sin + self.sin_theta_o) / self.width).atan()
+    }
+}
+
+impl Reference for Formulas {
+    fn eval(&self, wi: [f64; 3]) -> [f64; 3] {
+        let [diffuse, cone] = self.both(wi);
+        [0, 1, 2].map(|c| (self.kd[c] * diffuse[0] + self.ks[c] * cone[0]) * (1.0 + self.errors.value))
+    }
+
+    fn pdf(&self, wi: [f64; 3]) -> f64 {
+        let [diffuse, cone] = self.both(wi);
+        let mixed = self.share() * diffuse[1] + (1.0 - self.share()) * cone[1];
+        if self.lit() { mixed * (1.0 + self.errors.pdf) } else { 0.0 }
+    }
+
+    fn lobes(&self, wi: [f64; 3]) -> Option<[[f64; 2]; 4]> {
+        let [diffuse, cone] = self.both(wi);
+        Some([diffuse, cone.map(|x| x * (1.0 + self.errors.lobe)), [0.0; 2], [0.0; 2]])
+    }
+
+    fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
+        if !self.lit() {
+            return ReferenceSample::Discarded;
+        }
+        let (lo, hi) = (self.angle(-1.0), self.angle(1.0));
+        let diffuse = xi[0] < self.share() + self.errors.choice;
+        let cone = self.width * (lo + xi[1] * (hi - lo)).tan() - self.sin_theta_o;
+        let sin = if diffuse { 2.0 * xi[1] - 1.0 } else { cone.clamp(-1.0, 1.0) };
+        let (cos, phi) = (((1.0 - sin) * (1.0 + sin)).sqrt(), 2.0 * PI * (xi[2] - 0.5));
+        let wi = [sin, cos * phi.cos(), cos * phi.sin()];
+        if cos < 1e-5 { ReferenceSample::Discarded } else { ReferenceSample::Drawn(usize::from(!diffuse), wi) }
+    }
+}
+
+impl Formulas {
+    /// Value and density of both lobes.
+    fn both(&self, [u, ..]: [f64; 3]) -> [[f64; 2]; 2] {
+        let off = u + self.sin_theta_o;
+        let bell = self.width / (off * off + self.width * self.width);
+        let span = self.angle(1.0) - self.angle(-1.0);
+        [[1.0 / (PI * PI), 0.25 / PI], [bell / (2.0 * PI * PI), bell / (2.0 * PI * span)]]
+    }
+}
+
+/// The sound fibre beside these formulas.
+struct Beside(Errors);
+
+impl Subject for Beside {
+    type Model = Fiber<SOUND>;
+
+    fn model(&self) -> Self::Model {
+        Fiber
+    }
+
+    fn materials(&self) -> Materials<Self> {
+        Broken::<SOUND>.materials()
+    }
+
+    fn claims(&self) -> Claims {
+        Broken::<SOUND>.claims()
+    }
+
+    fn random_materials(&self) -> Vec<Params> {
+        vec![Params { kd: [0.3, 0.0, 0.9], ks: [0.0, 0.7, 0.2], width: 0.4 }]
+    }
+
+    fn reference(&self, params: &<Self::Model as Model>::Params, hit: &Hit) -> Option<Box<dyn Reference>> {
+        let [u, v, w] = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
+        Some(Box::new(Formulas {
+            kd: params.kd.map(f64::from),
+            ks: params.ks.map(f64::from),
+            width: f64::from(params.width),
+            sin_theta_o: u / u.hypot(v).hypot(w),
+            errors: self.0,
+        }))
+    }
+}
+
+#[test]
+fn the_sound_model_agrees() {
+    agrees_with_reference(&Beside(Errors::default())).unwrap();
+}
+
+#[test]
+fn each_error_is_found() {
+    let none = Errors::default();
+    let cases = [
+        (Errors { value: 1e-4, ..none }, "S is off"),
+        (Errors { pdf: -1e-4, ..none }, "density is off"),
+        (Errors { lobe: 1e-4, ..none }, "lobe is off"),
+        (Errors { choice: 0.01, ..none }, "sample"),
+    ];
+    for (errors, why) in cases {
+        crate::assert_fails(agrees_with_reference(&Beside(errors)), why);
+    }
+}

@@ -1,0 +1,107 @@
+//! The model in the registry, and its parameters as fields.
+
+use super::{Chiang, ChiangDesc, ChiangParams, Shifts};
+use crate::{Field, Kind, Parameters, Registered, Values};
+use hairis::ParamError;
+
+#[cfg(feature = "textbook")]
+use super::{ChiangReference, Selection};
+#[cfg(feature = "textbook")]
+use crate::Accuracy;
+#[cfg(feature = "textbook")]
+use hairis::textbook::Real;
+
+const SHIFTS: [(&str, Shifts); 2] = [("d-eon", Shifts::DEon), ("small-angle", Shifts::SmallAngle)];
+
+impl Parameters for ChiangParams {
+    const FIELDS: &'static [Field] = &[
+        Field::new("beta_m", Kind::Number).log_uniform(0.1, 1.0).narrow(0.02),
+        Field::new("beta_n", Kind::Number).log_uniform(0.1, 1.0).narrow(0.02),
+        Field::new("tilt", Kind::Number).uniform(-5.0, 5.0).degrees().optional(),
+        Field::new("eta", Kind::Number).uniform(1.3, 1.7).optional(),
+        Field::new("sigma_a", Kind::Rgb).log_uniform(0.05, 5.0),
+        Field::new("melanin", Kind::Numbers(&["eumelanin", "pheomelanin"])).instead_of("sigma_a"),
+        Field::new("color", Kind::Rgb).instead_of("sigma_a"),
+        Field::new("shifts", Kind::Word(&[SHIFTS[0].0, SHIFTS[1].0])).optional(),
+    ];
+    const PRESETS: &'static [(&'static str, Self)] = &Self::presets();
+
+    #[inline]
+    fn values(&self) -> Values {
+        let d = self.desc();
+        let shifts = SHIFTS.iter().find(|(_, shifts)| *shifts == d.shifts).map_or(SHIFTS[0].0, |(word, _)| word);
+        Values::none(Self::FIELDS)
+            .with("beta_m", &[d.beta_m])
+            .with("beta_n", &[d.beta_n])
+            .with("tilt", &[d.tilt])
+            .with("eta", &[d.eta])
+            .with("sigma_a", &d.sigma_a)
+            .with_word("shifts", shifts)
+    }
+
+    #[inline]
+    fn from_values(values: &Values) -> Result<Self, ParamError> {
+        let number = |name| {
+            let [number] = values.get(name);
+            number
+        };
+        let word = values.word("shifts");
+        let desc = ChiangDesc {
+            beta_m: number("beta_m"),
+            beta_n: number("beta_n"),
+            tilt: number("tilt"),
+            eta: number("eta"),
+            sigma_a: values.get("sigma_a"),
+            shifts: SHIFTS.iter().find(|(one, _)| *one == word).map_or(Shifts::default(), |(_, shifts)| *shifts),
+        };
+        let desc = if values.has("melanin") {
+            let [eumelanin, pheomelanin] = values.get("melanin");
+            desc.with_melanin(eumelanin, pheomelanin)?
+        } else if values.has("color") {
+            desc.with_color(values.get("color"))?
+        } else {
+            desc
+        };
+        Self::new(&desc)
+    }
+}
+
+impl<const BY_CHANNEL: bool> Registered for Chiang<BY_CHANNEL> {
+    const NAME: &'static str = "chiang";
+    const CHOICE: Option<(&'static str, &'static str)> =
+        Some(("select", if BY_CHANNEL { "by-channel" } else { "mean" }));
+    const MODEL: Self = Self;
+    const NEAR_FIELD: bool = true;
+    const COLORS: Option<&'static str> = Some("attenuation");
+
+    #[cfg(feature = "textbook")]
+    type Reference<T: Real> = ChiangReference<T>;
+    // `5e-6 + 5e-7 / min(sqrt(v), s)`, the narrowest v and s those of roughnesses of .1.
+    #[cfg(feature = "textbook")]
+    const ACCURACY: Accuracy = Accuracy {
+        value: 2.6e-5,
+        pdf: 2.6e-5,
+        sample_value: 2.6e-5,
+        sample_pdf: 2.6e-5,
+        sample_weight: 1e-4,
+        cdf: 0.0,
+        slack_in_pdf: true,
+    };
+
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn reference<T: Real>(params: &ChiangParams, wo: [T; 3], h: T) -> ChiangReference<T> {
+        let selection = if BY_CHANNEL { Selection::ByChannel } else { Selection::Mean };
+        ChiangReference::prepare(&params.into(), selection, wo, h)
+    }
+
+    /// Errors grow with the exponent of a lobe: from `exp(-12)` of its peak down they are absolute.
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn slack(params: &ChiangParams, _wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
+        let (desc, [_, v, w]) = (params.desc(), wi);
+        let spread = libm::sqrt(core::f64::consts::TAU * f64::from(desc.longitudinal_variance()));
+        let peak = 0.25 / (spread * f64::from(desc.azimuthal_scale()));
+        [Self::ACCURACY.value * libm::exp(-12.0) * peak / libm::hypot(v, w); 3]
+    }
+}

@@ -1,0 +1,309 @@
+//! What the energy-conserving fibre keeps of a material, and of a material hit from one direction.
+
+use super::ChiangParams;
+use hairis::math::gaussian;
+use hairis::{Broadcast, Direction, Hit, Lanes, Pair, PerLobe, lane_struct, lanes3, store4};
+
+lane_struct! {
+    /// The widths of the lobes. Arrays of four are R, TT, TRT and the rest.
+    pub struct ChiangWidths {
+        /// Longitudinal variance v.
+        pub variance: [C; 4],
+        /// `4 / v`.
+        pub four_inv_variance: [C; 4],
+        /// `1 - exp(-2 / v)`.
+        pub cut: [C; 4],
+        /// Norm of `M N`: `1 / (v (1 - exp(-2 / v)) s K)`, and for the rest `2 pi` in place of `s K`.
+        pub norm: [C; 4],
+        /// Scale s of the azimuthal logistic, rad.
+        pub scale: C,
+        /// `2 / s`.
+        pub twice_inv_scale: C,
+        /// `K = tanh(pi / 2s)`: the part of the logistic within half a turn.
+        pub kept: C,
+    }
+}
+
+lane_struct! {
+    /// The constants of a material of the energy-conserving fibre.
+    pub struct ChiangMaterial {
+        /// Absorption per radius, linear RGB, doubled: the argument of a Gaussian, per length.
+        pub twice_sigma_a: [C; 3],
+        /// Index of refraction, doubled; its square; and its square less 1.
+        pub eta: [C; 3],
+        /// Sine of each lobe's shift of `theta_i + theta_o`.
+        pub sin_shift: [C; 4],
+        /// Cosine of each lobe's shift.
+        pub cos_shift: [C; 4],
+        /// The widths of the lobes.
+        pub widths: (ChiangWidths<C>),
+    }
+}
+
+lane_struct! {
+    /// The constants of a gather point of the energy-conserving fibre.
+    pub struct ChiangGather {
+        /// Sine of each lobe's cone, `theta' = theta_o - shift`.
+        pub sin_cone: [C; 4],
+        /// Its cosine.
+        pub cos_cone: [C; 4],
+        /// Sine of half of it.
+        pub sin_half_cone: [C; 4],
+        /// Cosine of half of it.
+        pub cos_half_cone: [C; 4],
+        /// `cos theta' / v`.
+        pub concentration: [C; 4],
+        /// `sqrt(v / cos theta')`.
+        pub spread: [C; 4],
+        /// Component along v of the unit vector at each lobe's azimuth.
+        pub azimuth_v: [C; 4],
+        /// Its component along w.
+        pub azimuth_w: [C; 4],
+        /// Attenuation of each lobe, linear RGB: the channels of R first.
+        pub attenuation: [C; 12],
+        /// Fresnel reflectance.
+        pub fresnel: C,
+        /// Length of one passage through the fibre, in radii.
+        pub path_length: C,
+        /// The widths of the lobes.
+        pub widths: (ChiangWidths<C>),
+    }
+}
+
+impl ChiangMaterial<f32> {
+    /// The material of checked parameters.
+    #[expect(clippy::cast_possible_truncation, reason = "constants of a material, computed in f64")]
+    #[inline]
+    #[must_use]
+    pub(super) fn new(params: &ChiangParams) -> Self {
+        let desc = params.desc();
+        let (v, s) = (f64::from(desc.longitudinal_variance()), f64::from(desc.azimuthal_scale()));
+        let kept = libm::tanh(core::f64::consts::FRAC_PI_2 / s);
+        let eta_sq = f64::from(desc.eta) * f64::from(desc.eta);
+        let variance = [v, 0.25 * v, 4.0 * v, 4.0 * v];
+        let cut = variance.map(|v| -libm::expm1(-2.0 / v));
+        let turn = [s * kept, s * kept, s * kept, core::f64::consts::TAU];
+        let shift = desc.shifts_rad().map(f64::from);
+        let widths = ChiangWidths {
+            variance: variance.map(|v| v as f32),
+            four_inv_variance: variance.map(|v| (4.0 / v) as f32),
+            cut: cut.map(|k| k as f32),
+            norm: core::array::from_fn(|p| (1.0 / (variance[p] * cut[p] * turn[p])) as f32),
+            scale: s as f32,
+            twice_inv_scale: (2.0 / s) as f32,
+            kept: kept as f32,
+        };
+        Self {
+            twice_sigma_a: desc.sigma_a.map(|sigma| (2.0 * sigma).min(f32::MAX)),
+            eta: [2.0 * desc.eta, eta_sq as f32, (eta_sq - 1.0) as f32],
+            sin_shift: shift.map(|x| libm::sin(x) as f32),
+            cos_shift: shift.map(|x| libm::cos(x) as f32),
+            widths,
+        }
+    }
+}
+
+/// R, TT, TRT and the rest side by side.
+pub(super) type Four<L> = Pair<Pair<L>>;
+
+/// The four numbers of a table, side by side.
+#[inline(always)]
+pub(super) fn four<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> Four<L> {
+    Pair(Pair(x[0].lanes(), x[1].lanes()), Pair(x[2].lanes(), x[3].lanes()))
+}
+
+/// The same number for all four.
+#[inline(always)]
+pub(super) fn same<L: Lanes>(x: L) -> Four<L> {
+    Pair(Pair(x, x), Pair(x, x))
+}
+
+/// The number of each.
+#[inline(always)]
+pub(super) fn apart<L: Lanes>(Pair(Pair(a, b), Pair(c, d)): Four<L>) -> [L; 4] {
+    [a, b, c, d]
+}
+
+/// Product of two complex numbers.
+#[inline(always)]
+fn product<L: Lanes>([a, b]: [L; 2], [c, d]: [L; 2]) -> [L; 2] {
+    [L::difference_of_products(a, c, b, d), L::difference_of_products(a, d, -b, c)]
+}
+
+/// Fresnel reflectance and transmittance of unpolarised light at the cosine `c`; `k` is `sqrt(eta^2 - 1 + c^2)`.
+///
+/// Neither is formed by a difference: the reflectance keeps its digits where the index is next to 1, and the transmittance
+/// where all light is reflected. `(c - k)(c + k)` is `1 - eta^2`.
+#[inline(always)]
+fn fresnel<L: Lanes>(c: L, k: L, eta_sq: L, eta_sq_less_one: L) -> [L; 2] {
+    let (one, tiny) = (L::splat(1.0), L::splat(1e-15));
+    let (across, along) = (c + k, eta_sq.mul_add(c, k));
+    // An index of 1 at the very edge reflects nothing.
+    let none = across.lt(tiny);
+    let inverse = one / (across.max(tiny) * along.max(tiny));
+    let (inv_across, inv_along) = (inverse * along, inverse * across);
+    let (t_s, t_p) = (inv_across * inv_across, inv_along * inv_along);
+    let r_s = eta_sq_less_one * t_s;
+    let r_p = eta_sq_less_one * t_p * (c * c).mul_sub(eta_sq + one, one);
+    let reflected = (L::splat(0.5) * r_s.mul_add(r_s, r_p * r_p)).min(one);
+    let passed = (c + c) * k * eta_sq.mul_add(t_p, t_s);
+    [L::select(none, L::splat(0.0), reflected), L::select(none, one, passed)]
+}
+
+/// The gather point of a material hit from `hit.wo` at `hit.h`.
+#[inline(always)]
+pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit<L>) -> ChiangGather<L::Stored> {
+    let c = L::splat;
+    let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
+    let Direction { vector, sin_theta: sin_o, cos_theta: cos_o, .. } = Direction::normalized(hit.wo);
+    let off_axis = c(1e-18).lt(cos_o);
+    let inv_cos_o = L::select(off_axis, one, zero) / L::select(off_axis, cos_o, one);
+    let azimuth_o = [L::select(off_axis, vector.y * inv_cos_o, one), vector.z * inv_cos_o];
+
+    // The angles about the fibre: of the hit, from its normal to wo, and of the ray inside.
+    let sin_gamma_o = hit.h;
+    let cos_gamma_o = zero.max((one - sin_gamma_o) * (one + sin_gamma_o)).sqrt();
+    let [twice_eta, eta_sq, eta_sq_less_one] = lanes3(&m.eta);
+    let inside_sq = cos_o.mul_add(cos_o, eta_sq_less_one);
+    // Along a fibre that does not refract, the ray inside is the one outside.
+    let straight = inside_sq.lt(c(1e-30));
+    let inv_inside = one / inside_sq.max(c(1e-30)).sqrt();
+    let sin_gamma_t = sin_gamma_o * L::select(straight, one, (cos_o * inv_inside).min(one));
+    // Of squares that are added: the difference from 1 loses the edge of a fibre that hardly refracts.
+    let cos_hit = cos_o * cos_gamma_o;
+    let k = cos_hit.mul_add(cos_hit, eta_sq_less_one).sqrt();
+    let cos_gamma_t = L::select(straight, cos_gamma_o, (k * inv_inside).min(one));
+
+    // Attenuation.
+    let path_length = twice_eta * cos_gamma_t * inv_inside;
+    let [f, passed] = fresnel(cos_hit, k, eta_sq, eta_sq_less_one);
+    let mut attenuation = [f.store(); 12];
+    let [mut rest, mut left] = [[zero; 3]; 2];
+    let mut channel = 0;
+    while channel < 3 {
+        let t = gaussian(m.twice_sigma_a[channel].lanes() * path_length);
+        let tt = passed * passed * t;
+        let trt = tt * (f * t);
+        rest[channel] = trt * (f * t);
+        // What a passage does not return to the inside; the product of three has a reciprocal.
+        left[channel] = f.mul_add(one - t, passed).max(c(1e-12));
+        attenuation[3 + channel] = tt.store();
+        attenuation[6 + channel] = trt.store();
+        channel += 1;
+    }
+    let (rg, inverse) = (left[0] * left[1], one / (left[0] * left[1] * left[2]));
+    attenuation[9] = (rest[0] * (inverse * left[2] * left[1])).store();
+    attenuation[10] = (rest[1] * (inverse * left[2] * left[0])).store();
+    attenuation[11] = (rest[2] * (inverse * rg)).store();
+
+    // Azimuths: wo's turned by -2 gamma_o, and for each passage by pi + 2 gamma_t.
+    let back = product([cos_gamma_o, -sin_gamma_o], [cos_gamma_o, -sin_gamma_o]);
+    let passage = product([cos_gamma_t, sin_gamma_t], [cos_gamma_t, sin_gamma_t]);
+    let passage = [-passage[0], -passage[1]];
+    let r = product(azimuth_o, back);
+    let tt = product(r, passage);
+    let trt = product(tt, passage);
+    let rest = product(trt, passage);
+    let [v, w] = [Pair(Pair(r[0], tt[0]), Pair(trt[0], rest[0])), Pair(Pair(r[1], tt[1]), Pair(trt[1], rest[1]))];
+    // Back to unit length, from which rounding has taken little.
+    let by = v.mul_add(v, w * w).mul_add(Four::splat(-0.5), Four::splat(1.5));
+
+    // Cones: theta_o less the shift; past the pole it folds back.
+    let (sin, cos) = (four(&m.sin_shift), four(&m.cos_shift));
+    let sin_cone = Four::difference_of_products(same(sin_o), cos, same(cos_o), sin);
+    let cos_cone = Four::difference_of_products(same(cos_o), cos, same(-sin_o), sin).abs();
+    // What rounding leaves of their length beyond 1 would count as an angle: it is taken off.
+    let off = same(half) - same(half) * sin_cone.mul_add(sin_cone, cos_cone * cos_cone);
+    let (sin_cone, cos_cone) = (sin_cone.mul_add(off, sin_cone), cos_cone.mul_add(off, cos_cone));
+    let cos_half_cone = cos_cone.mul_add(same(half), same(half)).sqrt();
+    let concentration = cos_cone * four(&m.widths.four_inv_variance) * same(c(0.25));
+    // 1 / sqrt of each, by one division.
+    let root = concentration.max(same(c(1e-8))).sqrt();
+    let [a, b, e, g] = apart(root);
+    let (ab, eg) = (a * b, e * g);
+    let inverse = one / (ab * eg);
+    let (inv_ab, inv_eg) = (inverse * eg, inverse * ab);
+    let spread = [inv_ab * b, inv_ab * a, inv_eg * g, inv_eg * e];
+
+    ChiangGather {
+        sin_cone: store4(apart(sin_cone)),
+        cos_cone: store4(apart(cos_cone)),
+        sin_half_cone: store4(apart(same(half) * sin_cone / cos_half_cone)),
+        cos_half_cone: store4(apart(cos_half_cone)),
+        concentration: store4(apart(concentration)),
+        spread: store4(spread),
+        azimuth_v: store4(apart(v * by)),
+        azimuth_w: store4(apart(w * by)),
+        attenuation,
+        fresnel: f.store(),
+        path_length: path_length.store(),
+        widths: m.widths.spread::<L>(),
+    }
+}
+
+impl<C> ChiangGather<C> {
+    /// Attenuation of lobe `p`, linear RGB.
+    #[inline(always)]
+    pub fn attenuation<L: Lanes>(&self, p: usize) -> [L; 3]
+    where
+        C: Broadcast<L>,
+    {
+        lanes3(&[self.attenuation[3 * p], self.attenuation[3 * p + 1], self.attenuation[3 * p + 2]])
+    }
+
+    /// Attenuation of the four lobes in one channel.
+    #[inline(always)]
+    fn channel<L: Lanes>(&self, c: usize) -> Four<L>
+    where
+        C: Broadcast<L>,
+    {
+        let a = &self.attenuation;
+        four(&[a[c], a[3 + c], a[6 + c], a[9 + c]])
+    }
+
+    /// The mean of each lobe's attenuation over the channels.
+    #[inline(always)]
+    pub(super) fn mean_shares<L: Lanes>(&self) -> PerLobe<L>
+    where
+        C: Broadcast<L>,
+    {
+        PerLobe(apart((self.channel(0) + self.channel(1) + self.channel(2)) * Four::splat(1.0 / 3.0)))
+    }
+
+    /// `sqrt(sum over the channels of (A_pc / mu_c)^2)`, `mu_c` the sum over the lobes.
+    #[inline(always)]
+    pub(super) fn shares_by_channel<L: Lanes>(&self) -> PerLobe<L>
+    where
+        C: Broadcast<L>,
+    {
+        let mut sum = Four::splat(0.0);
+        let mut c = 0;
+        while c < 3 {
+            let lobes = self.channel::<L>(c);
+            let [r, tt, trt, rest] = apart(lobes);
+            let total = (r + tt) + (trt + rest);
+            let share = lobes * same(L::keep(L::splat(f32::MIN_POSITIVE).lt(total), L::splat(1.0) / total));
+            sum = share.mul_add(share, sum);
+            c += 1;
+        }
+        PerLobe(apart(sum.sqrt()))
+    }
+}
+
+impl ChiangGather<f32> {
+    /// Fresnel reflectance F at the hit. With the [path length](Self::path_length) it gives a spectral host its
+    /// attenuations: for an absorption sigma, `T = exp(-sigma l)`, R has `F`, TT `(1 - F)^2 T`, TRT `(1 - F)^2 F T^2`, and the
+    /// rest `(1 - F)^2 F^2 T^3 / (1 - F T)`.
+    #[inline]
+    #[must_use]
+    pub const fn fresnel(&self) -> f32 {
+        self.fresnel
+    }
+
+    /// Length of one passage through the fibre, in radii.
+    #[inline]
+    #[must_use]
+    pub const fn path_length(&self) -> f32 {
+        self.path_length
+    }
+}

@@ -1,0 +1,79 @@
+//! Densities of the lobes at a direction.
+
+use super::ChiangGather;
+use super::gather::{Four, apart, four, same};
+use core::f32::consts::{FRAC_PI_2, PI};
+use hairis::math::{atan_eighth_turn, gaussian, polynomial};
+use hairis::{Broadcast, Direction, Lanes, Pair};
+
+/// Below this the scaled Bessel function is a series in `x^2`, above one in `1 / x`.
+pub(super) const SEAM: f32 = 5.5;
+/// `I0(x)` in powers of `x^2`, for `x` below the seam.
+pub(super) const SERIES: [f32; 8] = [
+    0.999_999_964_93,
+    0.250_000_247_14,
+    0.015_624_746_521,
+    4.341_184_831_1e-4,
+    6.766_766_700_5e-6,
+    6.908_044_545e-8,
+    4.144_287_593_5e-10,
+    3.643_167_776e-12,
+];
+/// `exp(-x) I0(x) sqrt(x)` in powers of `1 / x`, above it.
+pub(super) const TAIL: [f32; 6] =
+    [0.398_942_300_81, 0.049_868_737_73, 0.027_805_208_42, 0.037_460_558_19, -0.055_432_330_86, 0.535_620_729_8];
+
+/// Density `M N` of each lobe, per steradian, and `1 / cos theta_i`.
+///
+/// `M = exp(-2 sin^2((theta_i + theta') / 2) / v) I0e(x) / (v (1 - exp(-2 / v)))`, with `x = cos theta_i cos theta' / v` and
+/// `I0e(x) = exp(-x) I0(x)`, is d'Eon's term without its overflow. `N = e / (s (1 + e)^2 K)`, with `e = exp(-|delta| / s)`.
+/// One exponential is that of `M`, of the Bessel function's series and of `N` together: no product of two tails is denormal.
+#[inline(always)]
+pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi: &Direction<L>) -> ([L; 4], L) {
+    let c = L::splat;
+    let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
+    let (m, cos_i) = (&gather.widths, wi.cos_theta);
+
+    // Half of theta_i. What the rounding of wi leaves of its length beyond 1 would count as an angle: it is taken off.
+    let off = half - half * wi.sin_theta.mul_add(wi.sin_theta, cos_i * cos_i);
+    let cos_half_i = (cos_i.mul_add(off, cos_i)).mul_add(half, half).sqrt();
+    let sin_half_i = half * wi.sin_theta.mul_add(off, wi.sin_theta) / cos_half_i;
+    // 1 / sqrt(cos theta_i), which the tails of the Bessel functions share.
+    let inv_root_i = one / cos_i.sqrt();
+
+    // |delta| of R, TT and TRT from a quarter of the angle's tangent, by one division. The rest has no azimuth: TRT's is
+    // in its place, and costs nothing.
+    let [v, w] = [&gather.azimuth_v, &gather.azimuth_w];
+    let (v, w) = (four(&[v[0], v[1], v[2], v[2]]), four(&[w[0], w[1], w[2], w[2]]));
+    let (wi_v, wi_w) = (same(wi.vector.y), same(wi.vector.z));
+    let (cross, dot) = (v.mul_sub(wi_w, w * wi_v).abs(), v.mul_add(wi_v, w * wi_w));
+    let [a, b, d, _] = apart(same(cos_i) + cross.max(dot.abs()));
+    let (inverse, ab) = (one / (a * b * d), a * b);
+    let (inv_ab, inv_d) = (inverse * d, inverse * ab);
+    let inverse = Pair(Pair(inv_ab * b, inv_ab * a), Pair(inv_d, inv_d));
+    let angle = atan_eighth_turn(cross.min(dot.abs()) * inverse);
+    let angle = angle + angle;
+    let angle = Four::select(dot.abs().lt(cross), Four::splat(FRAC_PI_2) - angle, angle);
+    let delta = Four::select(dot.lt(Four::splat(0.0)), Four::splat(PI) - angle, angle);
+    let exponent = delta * same(m.twice_inv_scale.lanes());
+
+    // (1 + e)^-2, by one division.
+    let tail = Four::splat(1.0) + gaussian(exponent);
+    let [a, b, d, _] = apart(tail * tail);
+    let (inverse, ab) = (one / (a * b * d), a * b);
+    let (inv_ab, inv_d) = (inverse * d, inverse * ab);
+    let logistic = Pair(Pair(inv_ab * b, inv_ab * a), Pair(inv_d, one));
+    let Pair(first, Pair(trt, _)) = exponent;
+    let exponent = Pair(first, Pair(trt, zero));
+
+    let (cos_half, sin_half) = (four(&gather.cos_half_cone), four(&gather.sin_half_cone));
+    let sin = same(sin_half_i).mul_add(cos_half, same(cos_half_i) * sin_half);
+    let x = same(cos_i) * four(&gather.concentration);
+    let small = x.lt(Four::splat(SEAM));
+    // 1 / sqrt(x).
+    let root = same(inv_root_i) * four(&gather.spread);
+    let bessel = Four::select(small, polynomial(x * x, SERIES), polynomial(root * root, TAIL) * root);
+    let sum = (four(&m.four_inv_variance) * sin).mul_add(sin, exponent) + Four::keep(small, x + x);
+    let densities = gaussian(sum) * bessel * (logistic * four(&m.norm));
+    (apart(densities), inv_root_i * inv_root_i)
+}

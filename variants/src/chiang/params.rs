@@ -1,0 +1,303 @@
+//! Parameters of the energy-conserving fibre.
+
+use crate::check::{check, check_range, check_rgb, is_intensity};
+use core::f32::consts::{FRAC_PI_4, PI};
+use hairis::ParamError;
+
+/// Roughnesses accepted.
+const ROUGHNESSES: [f32; 2] = [1e-3, 1.0];
+/// Tilts of the cuticle accepted, rad.
+const TILTS: [f32; 2] = [-FRAC_PI_4, FRAC_PI_4];
+/// Indices of refraction accepted.
+const INDICES: [f32; 2] = [1.0, 4.0];
+/// Shares accepted: of melanin, of redness, and colours.
+const SHARES: [f32; 2] = [0.0, 1.0];
+
+/// How the lobes are shifted by the tilt of the cuticle's scales.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Shifts {
+    /// `theta_i + theta_o` is shifted by -2, +1 and +4 tilts for R, TT and TRT: d'Eon et al. 2011.
+    #[default]
+    DEon,
+    /// It is shifted by `2 p eta - 2` tilts: the limit of small angles for any index of refraction, equal to
+    /// [`DEon`](Self::DEon) at an index of 1.5.
+    SmallAngle,
+}
+
+/// What the choice of a lobe rests on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Selection {
+    /// The mean over the channels of each lobe's attenuation: the least variance of a grey result.
+    #[default]
+    Mean,
+    /// The lobe's shares of red, green and blue, `sqrt(sum_c (A_pc / sum_k A_kc)^2)`: evens out the channels.
+    ByChannel,
+}
+
+/// Parameters of the model of Chiang et al. 2016, not checked yet: fill in what differs from the default and hand it to
+/// [`ChiangParams::new`].
+///
+/// - Default: warm brown hair (eumelanin 1.3, pheomelanin .2), a `beta_m` and a `beta_n` of .3, a tilt of 2 degrees, an `eta` of 1.55.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChiangDesc {
+    /// Longitudinal roughness, in `[1e-3, 1]`; .3 is a width of 16.7 degrees, see [`width_deg`](Self::width_deg).
+    pub beta_m: f32,
+    /// Azimuthal roughness, in `[1e-3, 1]`.
+    pub beta_n: f32,
+    /// Tilt of the cuticle's scales, rad in `[-pi/4, pi/4]`. Positive moves the primary highlight towards the root.
+    pub tilt: f32,
+    /// Index of refraction, in `[1, 4]`.
+    pub eta: f32,
+    /// Absorption per fibre radius, linear RGB, each finite and at least 0.
+    pub sigma_a: [f32; 3],
+    /// How the lobes are shifted by the tilt.
+    pub shifts: Shifts,
+}
+
+impl ChiangDesc {
+    const DEFAULT: Self = Self::look(1.3, 0.2);
+
+    /// The default with this melanin, for constants.
+    const fn look(eumelanin: f32, pheomelanin: f32) -> Self {
+        Self {
+            beta_m: 0.3,
+            beta_n: 0.3,
+            tilt: 2.0 * PI / 180.0,
+            eta: 1.55,
+            sigma_a: melanin(eumelanin, pheomelanin),
+            shifts: Shifts::DEon,
+        }
+    }
+
+    /// The same fibre with the absorption of these concentrations of melanin.
+    ///
+    /// `sigma_a = eumelanin (.419 .697 1.37) + pheomelanin (.187 .4 1.05)`
+    ///
+    /// - Source: d'Eon et al. 2011. Blond hair has .3 and 0, brown 1.3 and 0, black 8 and 0, red .25 and 1.1.
+    ///
+    /// # Errors
+    ///
+    /// If a concentration is negative or not finite.
+    #[inline]
+    pub fn with_melanin(self, eumelanin: f32, pheomelanin: f32) -> Result<Self, ParamError> {
+        check(is_intensity(eumelanin), ParamError::Scalar("eumelanin", eumelanin))?;
+        check(is_intensity(pheomelanin), ParamError::Scalar("pheomelanin", pheomelanin))?;
+        Ok(Self { sigma_a: melanin(eumelanin, pheomelanin).map(|c| c.min(f32::MAX)), ..self })
+    }
+
+    /// The same fibre with an artist's melanin: how dark, and how red.
+    ///
+    /// `q = -ln max(1 - amount, 1e-4)`, eumelanin `q (1 - redness)`, pheomelanin `q redness`
+    ///
+    /// - Source: `deon_hair_absorption_from_melanin` of the `MaterialX` standard library.
+    /// - Domain: `amount` and `redness` in `[0, 1]`.
+    ///
+    /// # Errors
+    ///
+    /// If `amount` or `redness` is outside `[0, 1]`.
+    ///
+    /// ```
+    /// use hairis_variants::{ChiangDesc, ChiangParams};
+    /// let auburn = ChiangParams::new(&ChiangDesc::default().with_melanin_amount(0.7, 0.6)?)?;
+    /// assert!(auburn.desc().sigma_a[2] > auburn.desc().sigma_a[0]);
+    /// # Ok::<(), hairis::ParamError>(())
+    /// ```
+    #[inline]
+    pub fn with_melanin_amount(self, amount: f32, redness: f32) -> Result<Self, ParamError> {
+        check_range("amount", amount, SHARES)?;
+        check_range("redness", redness, SHARES)?;
+        let quantity = -libm::logf((1.0 - amount).max(1e-4));
+        self.with_melanin(quantity * (1.0 - redness), quantity * redness)
+    }
+
+    /// The same fibre with the absorption that gives a mass of such hair about this colour.
+    ///
+    /// `sigma_a = (ln color / (5.969 - .215 n + 2.532 n^2 - 10.73 n^3 + 5.574 n^4 + .245 n^5))^2`, `n` the `beta_n`
+    ///
+    /// - Source: Chiang et al. 2016, section 4. It inverts multiple scattering in a mass of hair, not the colour of one fibre.
+    /// - Domain: `color` linear RGB in `[0, 1]`; channels below 1e-3 count as 1e-3. Set `beta_n` before.
+    ///
+    /// # Errors
+    ///
+    /// If a channel is outside `[0, 1]`, or `beta_n` outside its range.
+    #[inline]
+    pub fn with_color(self, color: [f32; 3]) -> Result<Self, ParamError> {
+        check_range("beta_n", self.beta_n, ROUGHNESSES)?;
+        for value in color {
+            check_range("color", value, SHARES)?;
+        }
+        let by = 1.0 / color_denominator(self.beta_n);
+        let absorption = |c: f32| {
+            let log = libm::logf(c.max(1e-3)) * by;
+            log * log
+        };
+        Ok(Self { sigma_a: color.map(absorption), ..self })
+    }
+
+    /// The colour of a mass of such hair: the inverse of [`with_color`](Self::with_color).
+    #[inline]
+    #[must_use]
+    pub fn color(&self) -> [f32; 3] {
+        let scale = color_denominator(self.beta_n);
+        self.sigma_a.map(|sigma| libm::expf(-libm::sqrtf(sigma) * scale))
+    }
+
+    /// Longitudinal width of R, degrees: `sqrt(v)` of [`longitudinal_variance`](Self::longitudinal_variance).
+    #[inline]
+    #[must_use]
+    pub fn width_deg(&self) -> f32 {
+        libm::sqrtf(self.longitudinal_variance()) * 180.0 / PI
+    }
+
+    /// Longitudinal variance v of R: `(.726 m + .812 m^2 + 3.7 m^20)^2`, `m` the `beta_m`. TT has a quarter of it, TRT and
+    /// the rest four times as much.
+    ///
+    /// - Source: Chiang et al. 2016, section 4.
+    #[inline]
+    #[must_use]
+    pub fn longitudinal_variance(&self) -> f32 {
+        let m = f64::from(self.beta_m);
+        let root = m * (0.726 + m * (0.812 + 3.7 * libm::pow(m, 18.0)));
+        rounded(root * root)
+    }
+
+    /// Scale s of the azimuthal logistic, rad: `sqrt(pi / 8) (.265 n + 1.194 n^2 + 5.372 n^22)`, `n` the `beta_n`.
+    ///
+    /// - Source: Chiang et al. 2016, section 4.
+    #[inline]
+    #[must_use]
+    pub fn azimuthal_scale(&self) -> f32 {
+        let n = f64::from(self.beta_n);
+        rounded(libm::sqrt(core::f64::consts::PI / 8.0) * n * (0.265 + n * (1.194 + 5.372 * libm::pow(n, 20.0))))
+    }
+
+    /// Shifts of `theta_i + theta_o` for R, TT, TRT and the rest, rad.
+    #[inline]
+    #[must_use]
+    pub fn shifts_rad(&self) -> [f32; 4] {
+        let factors = match self.shifts {
+            Shifts::DEon => [-2.0, 1.0, 4.0, 0.0],
+            Shifts::SmallAngle => [-2.0, 2.0 * self.eta - 2.0, 4.0 * self.eta - 2.0, 0.0],
+        };
+        factors.map(|factor| factor * self.tilt)
+    }
+}
+
+impl Default for ChiangDesc {
+    #[inline]
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// Absorption of eumelanin and pheomelanin: d'Eon et al. 2011.
+const fn melanin(eumelanin: f32, pheomelanin: f32) -> [f32; 3] {
+    let (e, f) = (eumelanin, pheomelanin);
+    [0.419 * e + 0.187 * f, 0.697 * e + 0.4 * f, 1.37 * e + 1.05 * f]
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "rounding is what the call is for; no value here overflows")]
+#[inline]
+fn rounded(value: f64) -> f32 {
+    value as f32
+}
+
+/// Denominator of the absorption of a colour: Chiang et al. 2016, section 4.
+#[inline]
+fn color_denominator(n: f32) -> f32 {
+    5.969 + n * (-0.215 + n * (2.532 + n * (-10.73 + n * (5.574 + n * 0.245))))
+}
+
+/// Parameters of the energy-conserving fibre that passed their checks.
+///
+/// ```
+/// use hairis::ParamError;
+/// use hairis_variants::{ChiangDesc, ChiangParams};
+/// let refused = ChiangParams::new(&ChiangDesc { beta_m: 0.0, ..ChiangDesc::default() });
+/// assert_eq!(refused, Err(ParamError::Range("beta_m", 0.0, [1e-3, 1.0])));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChiangParams(ChiangDesc);
+
+impl ChiangParams {
+    /// Checks `desc`.
+    ///
+    /// # Errors
+    ///
+    /// The first field outside its range (see [`ChiangDesc`]), with its value; NaN and infinities never pass.
+    #[inline]
+    pub fn new(desc: &ChiangDesc) -> Result<Self, ParamError> {
+        check_range("beta_m", desc.beta_m, ROUGHNESSES)?;
+        check_range("beta_n", desc.beta_n, ROUGHNESSES)?;
+        check_range("tilt", desc.tilt, TILTS)?;
+        check_range("eta", desc.eta, INDICES)?;
+        check_rgb("sigma_a", desc.sigma_a)?;
+        Ok(Self(*desc))
+    }
+
+    /// The values that were checked.
+    #[inline]
+    #[must_use]
+    pub const fn desc(&self) -> &ChiangDesc {
+        &self.0
+    }
+}
+
+/// Presets: the default with the melanin of d'Eon et al. 2011 (white: ours).
+impl ChiangParams {
+    /// Blond: eumelanin .3.
+    #[inline]
+    #[must_use]
+    pub const fn blond() -> Self {
+        Self(ChiangDesc::look(0.3, 0.0))
+    }
+
+    /// Brown: eumelanin 1.3.
+    #[inline]
+    #[must_use]
+    pub const fn brown() -> Self {
+        Self(ChiangDesc::look(1.3, 0.0))
+    }
+
+    /// Red: eumelanin .25, pheomelanin 1.1.
+    #[inline]
+    #[must_use]
+    pub const fn red() -> Self {
+        Self(ChiangDesc::look(0.25, 1.1))
+    }
+
+    /// Black: eumelanin 8.
+    #[inline]
+    #[must_use]
+    pub const fn black() -> Self {
+        Self(ChiangDesc::look(8.0, 0.0))
+    }
+
+    /// White: eumelanin .02.
+    #[inline]
+    #[must_use]
+    pub const fn white() -> Self {
+        Self(ChiangDesc::look(0.02, 0.0))
+    }
+
+    /// Every preset with its name, for menus and test grids.
+    #[inline]
+    #[must_use]
+    pub const fn presets() -> [(&'static str, Self); 6] {
+        [
+            ("default", Self(ChiangDesc::DEFAULT)),
+            ("blond", Self::blond()),
+            ("brown", Self::brown()),
+            ("red", Self::red()),
+            ("black", Self::black()),
+            ("white", Self::white()),
+        ]
+    }
+}
+
+impl Default for ChiangParams {
+    #[inline]
+    fn default() -> Self {
+        Self(ChiangDesc::DEFAULT)
+    }
+}

@@ -1,0 +1,206 @@
+//! Kajiya and Kay's fibre: a diffuse cylinder and a cone of highlights.
+
+mod fields;
+mod params;
+#[cfg(feature = "textbook")]
+mod reference;
+
+pub use params::{Form, KajiyaKayDesc, KajiyaKayParams, cosine_integral};
+#[cfg(feature = "textbook")]
+pub use reference::{KajiyaKayConstants, KajiyaKayParameters, KajiyaKayReference, cosine_power_integral};
+
+use core::f32::consts::{FRAC_1_PI, FRAC_PI_2, LN_2, PI};
+use hairis::math::{
+    GAUSS_LEGENDRE_32, gaussian, gaussian_complement, half_atan2, log2_near_one, log2_one_plus, sin_cos_half_turn,
+};
+use hairis::{Broadcast, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Scalar, lane_struct, lanes3};
+
+/// The model of Kajiya & Kay 1989, normalised, in a reciprocal form and in that of the publication.
+///
+/// `S = kd / pi^2 + ks cos^p(theta_i + theta_o) / (2 pi B(p + 2))`; the published form has `B(p + 1) cos theta_i` in place of
+/// `B(p + 2)`. `B(n)` is the integral of `cos^n` over `[-pi/2, pi/2]`, and the cosine is 0 where it is negative.
+///
+/// - Lobes: "diffuse" in slot 0, "specular" in slot 1.
+/// - Sampling: densities are exact. The diffuse lobe's is proportional to `cos theta_i`; the specular one draws
+///   `theta_i + theta_o` in proportion to `cos^p`, and its sign by the rest of the cosines. Azimuths are uniform.
+/// - Weights: at most `kd` over the diffuse lobe's probability plus `ks (p + 2) / (p + 1)` over the specular one's.
+/// - Source: Kajiya & Kay 1989, with the errors of later texts mended: `ERRATA.md` of this package.
+/// - Accuracy: value and density to 1e-5 for exponents up to 1000, further than 1e-3 rad from the axis.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairis::Bsdf;
+/// use hairis_variants::{KajiyaKay, KajiyaKayParams};
+/// let hair = Bsdf::new(&KajiyaKay, &KajiyaKayParams::brown());
+/// let sample = hair.prepare(Vec3::new(0.6, 0.8, 0.0)).sample([0.5, 0.25, 0.75]).expect("not along the fibre");
+/// assert!(sample.weight.iter().all(|w| *w > 0.0));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct KajiyaKay;
+
+lane_struct! {
+    /// The constants of a material of Kajiya and Kay's model.
+    pub struct KajiyaKayMaterial {
+        /// Diffuse albedo, linear RGB.
+        pub kd: [C; 3],
+        /// Specular albedo, linear RGB.
+        pub ks: [C; 3],
+        /// Mean of the channels of both.
+        pub mean: [C; 2],
+        /// 1 for the reciprocal form, 0 for the published one.
+        pub reciprocal: C,
+        /// From `log2 cos^2` to the argument of a Gaussian that is `cos^p`: `-p ln 2`.
+        pub exponent: C,
+        /// From `log2 (1 - xi)` to that of one that is `(1 - xi)^(2/p)`.
+        pub inv_exponent: C,
+        /// The specular value at its peak.
+        pub peak: C,
+        /// The specular density but for its shape.
+        pub density: C,
+        /// Share of `sin^2 theta_o` in the estimate of the specular albedo.
+        pub grazing: C,
+    }
+}
+
+lane_struct! {
+    /// The constants of a gather point of Kajiya and Kay's model.
+    pub struct KajiyaKayGather {
+        /// Sine and cosine of `theta_o`.
+        pub theta_o: [C; 2],
+        /// Weights of the lobes.
+        pub weights: [C; 2],
+        /// The constants of the material.
+        pub material: (KajiyaKayMaterial<C>),
+    }
+}
+
+/// `cos theta` squared for the reciprocal form, `cos theta` for the published one.
+#[inline(always)]
+fn power<L: Lanes>(reciprocal: L::Mask, cos: L) -> L {
+    cos * L::select(reciprocal, cos, L::splat(1.0))
+}
+
+impl LobeModel for KajiyaKay {
+    type Params = KajiyaKayParams;
+    type Material<C: Scalar> = KajiyaKayMaterial<C>;
+    type Prepared<C: Scalar> = KajiyaKayGather<C>;
+
+    const LOBES: &'static [&'static str] = &["diffuse", "specular"];
+
+    #[expect(clippy::cast_possible_truncation, reason = "constants of a material, computed in f64")]
+    #[inline]
+    fn material(&self, params: &KajiyaKayParams) -> KajiyaKayMaterial<f32> {
+        let KajiyaKayDesc { kd, ks, exponent, form } = *params.desc();
+        let (p, reciprocal) = (f64::from(exponent), form == Form::Reciprocal);
+        let b = cosine_integral(p + 1.0);
+        let (m, narrowing) = if reciprocal { (2.0, 1.0) } else { (1.0, (p + 1.0) * b * b) };
+        KajiyaKayMaterial {
+            kd,
+            ks,
+            mean: [kd, ks].map(|[r, g, b]| r / 3.0 + g / 3.0 + b / 3.0),
+            reciprocal: f32::from(u8::from(reciprocal)),
+            exponent: -LN_2 * exponent,
+            inv_exponent: -4.0 * LN_2 / exponent,
+            peak: (0.5 / (core::f64::consts::PI * cosine_integral(p + m))) as f32,
+            density: (1.0 / (core::f64::consts::PI * cosine_integral(p))) as f32,
+            grazing: (1.0 / ((p + 1.0) * narrowing)) as f32,
+        }
+    }
+
+    #[inline(always)]
+    fn prepare<L: Lanes, C: Broadcast<L>>(m: &KajiyaKayMaterial<C>, hit: Hit<L>) -> KajiyaKayGather<L::Stored> {
+        let Direction { sin_theta, cos_theta, .. } = Direction::normalized(hit.wo);
+        let returned = cos_theta.mul_add(cos_theta, sin_theta * sin_theta * m.grazing.lanes());
+        let reciprocal = L::splat(0.5).lt(m.reciprocal.lanes());
+        let specular = m.mean[1].lanes() * L::select(reciprocal, returned, returned.sqrt());
+        KajiyaKayGather {
+            theta_o: [sin_theta.store(), cos_theta.store()],
+            weights: [m.mean[0].lanes().store(), specular.store()],
+            material: m.spread::<L>(),
+        }
+    }
+
+    #[inline(always)]
+    fn weights<L: Lanes, C: Broadcast<L>>(gather: &KajiyaKayGather<C>) -> PerLobe<L> {
+        PerLobe::padded([gather.weights[0].lanes(), gather.weights[1].lanes()], L::splat(0.0))
+    }
+
+    #[inline(always)]
+    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &KajiyaKayGather<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>> {
+        let (c, zero, one) = (L::splat, L::splat(0.0), L::splat(1.0));
+        let (m, [sin_o, cos_o]) = (&gather.material, [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()]);
+        let (sin_i, cos_i) = (wi.sin_theta, wi.cos_theta);
+        let reciprocal = c(0.5).lt(m.reciprocal.lanes());
+
+        // cos^p of the sum of the inclinations: by the sine where that is small, as p magnifies what the cosine has lost.
+        let sin = sin_i.mul_add(cos_o, cos_i * sin_o);
+        let cos = L::difference_of_products(cos_i, cos_o, sin_i, sin_o);
+        let bell = gaussian(log2_near_one(cos * cos, -(sin * sin)) * m.exponent.lanes());
+        let bell = L::keep(zero.lt(cos), bell);
+
+        // The density over both signs of the sum; one division for it and for 1 / cos theta_i.
+        let mirrored = zero.max(cos.mul_sub(cos_o, sin * sin_o));
+        let both = power(reciprocal, cos_i) + power(reciprocal, mirrored);
+        let inverse = one / (both * cos_i);
+        let value = bell * m.peak.lanes() * L::select(reciprocal, one, inverse * both);
+        let pdf = bell * m.density.lanes() * (inverse * cos_i) * L::select(reciprocal, cos_i, one);
+
+        let flat = c(FRAC_1_PI * FRAC_1_PI);
+        let diffuse = LobeEval { value: flat, color: lanes3(&m.kd), pdf: flat * cos_i };
+        let specular = LobeEval { value, color: lanes3(&m.ks), pdf };
+        PerLobe::padded([diffuse, specular], LobeEval::none())
+    }
+
+    #[inline(always)]
+    fn sample_lobe<L: Lanes, C: Broadcast<L>>(gather: &KajiyaKayGather<C>, lobe: L::Index, xi: [L; 3]) -> Direction<L> {
+        let (c, zero, one) = (L::splat, L::splat(0.0), L::splat(1.0));
+        let [sin_o, cos_o] = [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()];
+        let is_diffuse = L::is_index(lobe, 0);
+        let reciprocal = c(0.5).lt(gather.material.reciprocal.lanes());
+
+        // The polar method for a power of the cosine: 2 for the diffuse lobe, p for the specular one. `rest` is what the
+        // squared radius of a point in the disk leaves of 1.
+        let s = log2_one_plus(-xi[1]) * gather.material.inv_exponent.lanes();
+        let radius_sq = L::select(is_diffuse, xi[1], gaussian_complement(s));
+        let rest = L::select(is_diffuse, one - xi[1], gaussian(s));
+        let (sin_turn, cos_turn) = sin_cos_half_turn((c(0.5) - xi[0]) * c(PI));
+        let sin = radius_sq.sqrt() * sin_turn;
+        let cos = (radius_sq * cos_turn).mul_add(cos_turn, rest).sqrt();
+
+        // The sign of the sum, by the cosine that the power leaves out.
+        let minus = cos.mul_add(cos_o, sin * sin_o);
+        let plus = L::difference_of_products(cos, cos_o, sin, sin_o);
+        let (kept, turned) = (power(reciprocal, zero.max(minus)), power(reciprocal, zero.max(plus)));
+        let scaled = xi[2] * (kept + turned);
+        let keep = scaled.lt(kept);
+        let again = L::select(keep, scaled, scaled - kept) / L::select(keep, kept, turned).max(c(f32::MIN_POSITIVE));
+        let sum = L::select(keep, sin, -sin);
+        let sin_i = sum.mul_sub(cos_o, cos * sin_o);
+        let cos_i = zero.max(L::select(keep, minus, plus));
+
+        let theta = [L::select(is_diffuse, sin, sin_i), L::select(is_diffuse, cos, cos_i)];
+        Direction::with_uniform_azimuth(theta, L::select(is_diffuse, xi[2], again))
+    }
+
+    /// The diffuse lobe returns `kd`; the specular one by 32 nodes over the sum `x` of the inclinations, out to where `cos^p x`
+    /// is 1e-9 and the light is on the sphere. To 1e-6 of `ks`.
+    #[inline(always)]
+    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &KajiyaKayGather<C>) -> PerLobe<[L; 3]> {
+        let (c, zero, half_turn) = (L::splat, L::splat(0.0), L::splat(FRAC_PI_2));
+        let (m, [sin_o, cos_o]) = (&gather.material, [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()]);
+        let reciprocal = c(0.5).lt(m.reciprocal.lanes());
+        let theta_o = half_atan2(sin_o, cos_o, c(1.0)) * c(2.0);
+        let reach = half_turn.min(c(6.5) * (c(-LN_2) / m.exponent.lanes()).sqrt());
+        let (lo, hi) = ((theta_o - half_turn).max(-reach), (theta_o + half_turn).min(reach));
+        let mut sum = zero;
+        for (x, weight) in GAUSS_LEGENDRE_32 {
+            let (sin, cos) = sin_cos_half_turn((hi - lo).mul_add(c(x), lo));
+            let bell = gaussian(log2_near_one(cos * cos, -(sin * sin)) * m.exponent.lanes());
+            let cos_i = zero.max(cos.mul_add(cos_o, sin * sin_o));
+            sum = (bell * power(reciprocal, cos_i)).mul_add(c(weight), sum);
+        }
+        let returned = sum * (hi - lo) * m.peak.lanes() * c(2.0 * PI);
+        let (kd, [r, g, b]) = (lanes3(&m.kd), lanes3(&m.ks));
+        PerLobe::padded([kd, [r * returned, g * returned, b * returned]], [zero; 3])
+    }
+}

@@ -1,0 +1,209 @@
+//! Parameters of Kajiya and Kay's model.
+
+use crate::check::{check, check_range, check_rgb, is_intensity};
+use core::f32::consts::{LN_2, PI};
+use hairis::ParamError;
+
+/// Exponents accepted.
+const EXPONENTS: [f32; 2] = [1.0, 1e4];
+/// Half widths of the highlight accepted, degrees: those of the exponents.
+const WIDTHS: [f32; 2] = [0.675, 60.0];
+
+/// How the highlight depends on the light's inclination.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Form {
+    /// `S` is a function of `theta_i + theta_o` alone: reciprocal. The light's irradiance falls as `cos theta_i`.
+    #[default]
+    Reciprocal,
+    /// `S` has `1 / cos theta_i`, so that the highlight is as bright under grazing light as in the publication. Not reciprocal.
+    Published,
+}
+
+/// Parameters of the model of Kajiya & Kay 1989, not checked yet: fill in what differs from the default and hand it to
+/// [`KajiyaKayParams::new`].
+///
+/// - Units: `kd` and `ks` are linear RGB albedos at `theta_o = 0`, so that `kd + ks <= 1` never gains energy. The constants of
+///   the publication have no normalisation: `kd` is `pi^2` times the published one, `ks` is `2 pi B(exponent + 1)` times it,
+///   with `B(n)` the integral of `cos^n` over `[-pi/2, pi/2]`.
+/// - Default: grey `kd` .3 and `ks` .2, exponent 80.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KajiyaKayDesc {
+    /// Diffuse albedo, linear RGB, each finite and at least 0.
+    pub kd: [f32; 3],
+    /// Specular albedo at `theta_o = 0`, linear RGB, each finite and at least 0.
+    pub ks: [f32; 3],
+    /// Exponent of the highlight, in `[1, 1e4]`.
+    pub exponent: f32,
+    /// Form of the highlight.
+    pub form: Form,
+}
+
+impl KajiyaKayDesc {
+    const DEFAULT: Self = Self { kd: [0.3; 3], ks: [0.2; 3], exponent: 80.0, form: Form::Reciprocal };
+
+    /// The same fibre with a highlight of this half width at half height in `theta_i + theta_o`.
+    ///
+    /// `exponent = -ln 2 / ln cos width`
+    ///
+    /// # Errors
+    ///
+    /// If `width_deg` is outside `[0.675, 60]` degrees.
+    ///
+    /// ```
+    /// use hairis_variants::KajiyaKayDesc;
+    /// let glossy = KajiyaKayDesc::default().with_width_deg(7.531)?;
+    /// assert!((glossy.exponent - 80.0).abs() < 0.1 && (glossy.width_deg() - 7.531).abs() < 1e-4);
+    /// # Ok::<(), hairis::ParamError>(())
+    /// ```
+    #[inline]
+    pub fn with_width_deg(self, width_deg: f32) -> Result<Self, ParamError> {
+        let [least, most] = WIDTHS;
+        check((least..=most).contains(&width_deg), ParamError::Degrees("width_deg", width_deg, WIDTHS))?;
+        // ln cos w = ln(1 - 2 sin^2(w/2)): a narrow highlight loses nothing.
+        let sin = libm::sinf(0.5 * width_deg * PI / 180.0);
+        let exponent = -LN_2 / libm::log1pf(-2.0 * sin * sin);
+        Ok(Self { exponent: exponent.clamp(EXPONENTS[0], EXPONENTS[1]), ..self })
+    }
+
+    /// Half width of the highlight at half height in `theta_i + theta_o`, degrees: `acos(2^(-1 / exponent))`.
+    #[inline]
+    #[must_use]
+    pub fn width_deg(&self) -> f32 {
+        // 1 - 2^(-1/p) = 2 sin^2(w/2).
+        let drop = -libm::expm1f(-LN_2 / self.exponent);
+        2.0 * libm::asinf(libm::sqrtf(0.5 * drop)) * 180.0 / PI
+    }
+}
+
+/// Integral of `cos^n` over `[-pi/2, pi/2]`, for `n` above -1: `sqrt(pi) gamma(n/2 + 1/2) / gamma(n/2 + 1)`.
+///
+/// ```
+/// use hairis_variants::kajiya_kay::cosine_integral;
+/// assert!((cosine_integral(1.0) - 2.0).abs() < 1e-12);
+/// ```
+#[inline]
+#[must_use]
+pub fn cosine_integral(n: f64) -> f64 {
+    let log = libm::lgamma(0.5 * n + 0.5) - libm::lgamma(0.5 * n + 1.0);
+    libm::sqrt(core::f64::consts::PI) * libm::exp(log)
+}
+
+impl Default for KajiyaKayDesc {
+    #[inline]
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// Parameters of Kajiya and Kay's model that passed their checks.
+///
+/// ```
+/// use hairis::ParamError;
+/// use hairis_variants::{KajiyaKayDesc, KajiyaKayParams};
+/// let refused = KajiyaKayParams::new(&KajiyaKayDesc { exponent: 0.5, ..KajiyaKayDesc::default() });
+/// assert_eq!(refused, Err(ParamError::Range("exponent", 0.5, [1.0, 1e4])));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KajiyaKayParams(KajiyaKayDesc);
+
+const BLOND: KajiyaKayParams = look([0.5, 0.36, 0.2], [0.16, 0.14, 0.11], 60.0);
+const BROWN: KajiyaKayParams = look([0.14, 0.08, 0.045], [0.12, 0.11, 0.1], 80.0);
+const RED: KajiyaKayParams = look([0.26, 0.085, 0.035], [0.13, 0.1, 0.08], 70.0);
+const BLACK: KajiyaKayParams = look([0.015, 0.012, 0.01], [0.09, 0.09, 0.09], 120.0);
+const WHITE: KajiyaKayParams = look([0.68, 0.66, 0.63], [0.18, 0.18, 0.18], 40.0);
+
+const fn look(kd: [f32; 3], ks: [f32; 3], exponent: f32) -> KajiyaKayParams {
+    KajiyaKayParams(KajiyaKayDesc { kd, ks, exponent, form: Form::Reciprocal })
+}
+
+/// Presets. The looks are ours; `kd + ks` is below 1 in every channel, so that no preset gains energy.
+impl KajiyaKayParams {
+    /// Checks `desc`.
+    ///
+    /// # Errors
+    ///
+    /// The first field outside its range (see [`KajiyaKayDesc`]), with its value; NaN and infinities never pass. `kd + ks` above
+    /// 1 is legal, and gains energy.
+    #[inline]
+    pub fn new(desc: &KajiyaKayDesc) -> Result<Self, ParamError> {
+        check_rgb("kd", desc.kd)?;
+        check_rgb("ks", desc.ks)?;
+        check_range("exponent", desc.exponent, EXPONENTS)?;
+        Ok(Self(*desc))
+    }
+
+    /// The values that were checked.
+    #[inline]
+    #[must_use]
+    pub const fn desc(&self) -> &KajiyaKayDesc {
+        &self.0
+    }
+
+    /// The same fibre with both albedos multiplied by `factor`.
+    ///
+    /// # Errors
+    ///
+    /// If `factor` is negative or not finite, or a product overflows.
+    #[inline]
+    pub fn scaled(&self, factor: f32) -> Result<Self, ParamError> {
+        check(is_intensity(factor), ParamError::Scalar("factor", factor))?;
+        let times = |rgb: [f32; 3]| rgb.map(|c| c * factor);
+        Self::new(&KajiyaKayDesc { kd: times(self.0.kd), ks: times(self.0.ks), ..self.0 })
+    }
+
+    /// Blond: a highlight of 8.7 degrees.
+    #[inline]
+    #[must_use]
+    pub const fn blond() -> Self {
+        BLOND
+    }
+
+    /// Brown: a highlight of 7.5 degrees.
+    #[inline]
+    #[must_use]
+    pub const fn brown() -> Self {
+        BROWN
+    }
+
+    /// Red: a highlight of 8.0 degrees.
+    #[inline]
+    #[must_use]
+    pub const fn red() -> Self {
+        RED
+    }
+
+    /// Black: a highlight of 6.2 degrees on hardly any diffuse light.
+    #[inline]
+    #[must_use]
+    pub const fn black() -> Self {
+        BLACK
+    }
+
+    /// White: a highlight of 10.6 degrees.
+    #[inline]
+    #[must_use]
+    pub const fn white() -> Self {
+        WHITE
+    }
+
+    /// Every preset with its name, for menus and test grids.
+    #[inline]
+    #[must_use]
+    pub const fn presets() -> [(&'static str, Self); 6] {
+        [
+            ("default", Self(KajiyaKayDesc::DEFAULT)),
+            ("blond", BLOND),
+            ("brown", BROWN),
+            ("red", RED),
+            ("black", BLACK),
+            ("white", WHITE),
+        ]
+    }
+}
+
+impl Default for KajiyaKayParams {
+    #[inline]
+    fn default() -> Self {
+        Self(KajiyaKayDesc::DEFAULT)
+    }
+}

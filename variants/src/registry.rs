@@ -1,0 +1,330 @@
+//! The only list of models.
+//!
+//! A new model is a line of [`models!`] below, and beside its [`Model`] an implementation of [`Registered`], with
+//! [`Parameters`] for its parameters: hosts that choose a model at run time, the harness and the benches then have it.
+
+#[cfg(any(feature = "any", feature = "textbook"))]
+mod any;
+#[cfg(feature = "textbook")]
+mod textbook;
+
+use crate::{AllCauchy, Cauchy, Chiang, Field, KajiyaKay, Parameters, Values};
+use hairis::{Gaussian, Hair, Matched, Model};
+
+#[cfg(any(feature = "any", feature = "textbook"))]
+use hairis::{ParamError, PerLobe};
+#[cfg(feature = "any")]
+use {
+    glam::Vec3,
+    hairis::wide::f32x8,
+    hairis::{
+        Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level, LobeEval, LobeEval8,
+        LobeMask, Sample, Sample8, SampleSlices, Vec3x8,
+    },
+};
+
+#[cfg(feature = "textbook")]
+use core::fmt::Debug;
+#[cfg(feature = "textbook")]
+use hairis::{
+    Lobe,
+    textbook::{Drawn, LobeAt, Real, Reference},
+};
+
+/// A model of the list: its names, and the formulas it is held against.
+///
+/// Types that differ in how they sample have one [`NAME`](Self::NAME), and each its own [`CHOICE`](Self::CHOICE).
+pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
+    /// Name of the model.
+    const NAME: &'static str;
+    /// Field and word that select this among the entries of one name; the first entry of a name is its default.
+    const CHOICE: Option<(&'static str, &'static str)> = None;
+    /// The model as it is registered.
+    const MODEL: Self;
+    /// Whether it reads [`Hit::h`](hairis::Hit::h).
+    const NEAR_FIELD: bool = false;
+    /// Name under which reports show the colours of the lobes, if they are worth it.
+    const COLORS: Option<&'static str> = None;
+
+    /// The formulas at one gather point.
+    #[cfg(feature = "textbook")]
+    type Reference<T: Real>: Reference<T> + Copy + Debug;
+    /// The accuracy that comparisons with the formulas require.
+    #[cfg(feature = "textbook")]
+    const ACCURACY: Accuracy;
+
+    /// The formulas for these parameters, seen from `wo` at the offset `h`.
+    #[cfg(feature = "textbook")]
+    fn reference<T: Real>(params: &Self::Params, wo: [T; 3], h: T) -> Self::Reference<T>;
+
+    /// Absolute error allowed of S beside the relative one, by channel: 0 unless the model cuts its tails.
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn slack(params: &Self::Params, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
+        let _ = (params, wo, wi);
+        [0.0; 3]
+    }
+
+    /// Probability of a smaller inclination, and of a smaller azimuth `phi_o - phi_i`, of a sample of `lobe`, where the
+    /// formulas have them: what `xi[1]` and `xi[2]` were.
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn cdf(reference: &Self::Reference<f64>, lobe: Lobe, theta_i: f64, phi: f64) -> Option<[f64; 2]> {
+        let _ = (reference, lobe, theta_i, phi);
+        None
+    }
+}
+
+/// Largest errors against the formulas in `f64`: relative, of a cdf absolute.
+///
+/// - Domain: directions further than 1e-3 rad from the axis, random materials of [`Field::draw`].
+#[cfg(feature = "textbook")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// S at a given direction.
+    pub value: f64,
+    /// Density of a given direction.
+    pub pdf: f64,
+    /// S that a sample reports, at its direction.
+    pub sample_value: f64,
+    /// Density that a sample reports.
+    pub sample_pdf: f64,
+    /// Weight that a sample reports.
+    pub sample_weight: f64,
+    /// Distance of [`Registered::cdf`] from the numbers of a sample.
+    pub cdf: f64,
+    /// Whether the density has the [`slack`](Registered::slack) of S, as a share of it.
+    pub slack_in_pdf: bool,
+}
+
+/// Work on a model of the list as a type: see [`ModelId::visit`].
+pub trait Visitor {
+    /// Result of the work.
+    type Output;
+
+    /// Does the work on the model `M`, which is [`ModelId::of::<M>()`](ModelId::of).
+    fn visit<M: Registered>(self) -> Self::Output;
+}
+
+macro_rules! models {
+    ($($(#[$doc:meta])* $variant:ident: $model:ty;)*) => {
+        /// A model of the list.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
+        pub enum ModelId {
+            $($(#[$doc])* $variant),*
+        }
+
+        impl ModelId {
+            /// Every model, in the order of reports.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// Calls `visitor` with the model's type.
+            #[inline]
+            pub fn visit<V: Visitor>(self, visitor: V) -> V::Output {
+                match self {
+                    $(Self::$variant => visitor.visit::<$model>()),*
+                }
+            }
+
+            /// Name of the model; entries that differ in how they sample share it.
+            #[inline]
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => <$model as Registered>::NAME),*
+                }
+            }
+
+            /// Field and word that select this among the entries of its name, if it has several.
+            #[inline]
+            #[must_use]
+            pub const fn choice(self) -> Option<(&'static str, &'static str)> {
+                match self {
+                    $(Self::$variant => <$model as Registered>::CHOICE),*
+                }
+            }
+
+            /// Names of the lobes, in slot order.
+            #[inline]
+            #[must_use]
+            pub const fn lobes(self) -> &'static [&'static str] {
+                match self {
+                    $(Self::$variant => <$model as Model>::LOBES),*
+                }
+            }
+
+            /// Whether it reads [`Hit::h`](hairis::Hit::h).
+            #[inline]
+            #[must_use]
+            pub const fn is_near_field(self) -> bool {
+                match self {
+                    $(Self::$variant => <$model as Registered>::NEAR_FIELD),*
+                }
+            }
+
+            /// Name under which reports show the colours of the lobes, if they do.
+            #[inline]
+            #[must_use]
+            pub const fn colors(self) -> Option<&'static str> {
+                match self {
+                    $(Self::$variant => <$model as Registered>::COLORS),*
+                }
+            }
+
+            /// Fields of the parameters.
+            #[inline]
+            #[must_use]
+            pub const fn fields(self) -> &'static [Field] {
+                match self {
+                    $(Self::$variant => <<$model as Model>::Params as Parameters>::FIELDS),*
+                }
+            }
+
+            /// Values of the default parameters.
+            #[inline]
+            #[must_use]
+            pub fn defaults(self) -> Values {
+                match self {
+                    $(Self::$variant => <$model as Model>::Params::default().values()),*
+                }
+            }
+
+            /// Named parameters.
+            #[inline]
+            pub fn presets(self) -> impl Iterator<Item = (&'static str, Values)> {
+                let preset = move |index: usize| match self {
+                    $(Self::$variant => <<$model as Model>::Params as Parameters>::PRESETS
+                        .get(index)
+                        .map(|(name, params)| (*name, params.values()))),*
+                };
+                (0..).map_while(preset)
+            }
+        }
+
+        #[cfg(feature = "any")]
+        impl ModelId {
+            /// The material of these values.
+            ///
+            /// # Errors
+            ///
+            /// If a value is out of its range.
+            ///
+            /// ```
+            /// use hairis_variants::ModelId;
+            /// let id = ModelId::find("gaussian", Some("matched")).expect("a model of the list");
+            /// let (_, red) = id.presets().find(|(name, _)| *name == "red").expect("a preset");
+            /// let gather = id.bsdf(&red)?.prepare(glam::Vec3::new(0.6, 0.0, 0.8));
+            /// let sample = gather.sample([0.3, 0.6, 0.9]).expect("not along the fibre");
+            /// assert!(sample.weight[0] > 0.0 && sample.lobe.index() < id.lobes().len());
+            /// # Ok::<(), hairis::ParamError>(())
+            /// ```
+            #[inline(never)]
+            pub fn bsdf(self, values: &Values) -> Result<AnyBsdf, ParamError> {
+                Ok(match self {
+                    $(Self::$variant => {
+                        AnyBsdf::$variant(Bsdf::new(&<$model>::MODEL, &Parameters::from_values(values)?))
+                    }),*
+                })
+            }
+        }
+
+        #[cfg(feature = "any")]
+        any::handles! { [$($variant: $model;)*] [$($variant)*] }
+
+        #[cfg(feature = "textbook")]
+        textbook::formulas! { [$($variant: $model;)*] [$($variant)*] }
+    };
+}
+
+models! {
+    /// The published model with the published sampler.
+    Gaussian: Hair<Gaussian>;
+    /// The published model, sampler matched with five bands.
+    GaussianMatched5: Matched<Gaussian, 5>;
+    /// The published model, sampler matched with nine bands.
+    GaussianMatched: Matched<Gaussian>;
+    /// The published model, sampler matched with twenty-five bands.
+    GaussianMatched25: Matched<Gaussian, 25>;
+    /// The all-Cauchy variant with the published sampler.
+    Cauchy: AllCauchy;
+    /// The all-Cauchy variant, sampler matched with five bands.
+    CauchyMatched5: Matched<Cauchy, 5>;
+    /// The all-Cauchy variant, sampler matched with nine bands.
+    CauchyMatched: Matched<Cauchy>;
+    /// The all-Cauchy variant, sampler matched with twenty-five bands.
+    CauchyMatched25: Matched<Cauchy, 25>;
+    /// Kajiya and Kay's model.
+    KajiyaKay: KajiyaKay;
+    /// The energy-conserving fibre, lobes chosen by their mean over the channels.
+    Chiang: Chiang;
+    /// The energy-conserving fibre, lobes chosen by their share in each channel.
+    ChiangByChannel: Chiang<true>;
+}
+
+impl ModelId {
+    /// The first entry of each name.
+    #[inline]
+    pub fn defaults_of_names() -> impl Iterator<Item = Self> {
+        Self::ALL.iter().copied().filter(|id| id.is_default())
+    }
+
+    /// Whether this is the first entry of its name.
+    #[inline]
+    #[must_use]
+    pub const fn is_default(self) -> bool {
+        matches!(Self::find(self.name(), None), Some(first) if first as usize == self as usize)
+    }
+
+    /// The entry of this name, with this word of its [`choice`](Self::choice); without a word, the first of the name.
+    ///
+    /// ```
+    /// use hairis_variants::ModelId;
+    /// assert_eq!(ModelId::find("cauchy", None), Some(ModelId::Cauchy));
+    /// assert_eq!(ModelId::find("cauchy", Some("matched-5")), Some(ModelId::CauchyMatched5));
+    /// ```
+    #[inline]
+    #[must_use]
+    pub const fn find(name: &str, word: Option<&str>) -> Option<Self> {
+        let mut place = 0;
+        while place < Self::ALL.len() {
+            let id = Self::ALL[place];
+            let is_chosen = match (word, id.choice()) {
+                (None, _) => true,
+                (Some(word), Some((_, one))) => same(word, one),
+                (Some(_), None) => false,
+            };
+            if is_chosen && same(name, id.name()) {
+                return Some(id);
+            }
+            place += 1;
+        }
+        None
+    }
+
+    /// The entry of a type, at compile time: `if const { ModelId::of::<M>().is_default() }` leaves no code of other models.
+    ///
+    /// # Panics
+    ///
+    /// If the type is none of the list.
+    #[inline]
+    #[must_use]
+    pub const fn of<M: Registered>() -> Self {
+        let word = match M::CHOICE {
+            Some((_, word)) => Some(word),
+            None => None,
+        };
+        Self::find(M::NAME, word).expect("a model of the list")
+    }
+}
+
+/// Whether two names are equal, at compile time too.
+#[inline]
+const fn same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut place = 0;
+    while place < a.len() && place < b.len() && a[place] == b[place] {
+        place += 1;
+    }
+    place == a.len() && place == b.len()
+}

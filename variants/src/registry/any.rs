@@ -1,0 +1,369 @@
+//! Public handles of a model that is chosen at run time.
+//!
+//! Methods that reach a kernel are never inlined: each model is compiled once, here, and the choice costs a call and a
+//! jump. Scalar methods take a `Vec3`; a `Vec3x` by value would cost 8 to 15 ns.
+
+/// Methods that do the same with each model; after `=>`, the enum that the result goes into.
+macro_rules! each {
+    ($variants:tt $($(#[$attribute:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),*) -> $out:ty $(=> $into:ident)?;)*) => {
+        $(
+            $(#[$attribute])*
+            $vis fn $name(&self $(, $arg: $type)*) -> $out {
+                any::each!(@match $variants self $name ($($arg),*) $($into)?)
+            }
+        )*
+    };
+    (@match [$($variant:ident)*] $self:ident $name:ident $args:tt) => {
+        match $self {
+            $(Self::$variant(one) => one.$name $args),*
+        }
+    };
+    (@match [$($variant:ident)*] $self:ident $name:ident $args:tt $into:ident) => {
+        match $self {
+            $(Self::$variant(one) => $into::$variant(one.$name $args)),*
+        }
+    };
+}
+pub(super) use each;
+
+/// The enum of a handle, and its conversions.
+#[cfg(feature = "any")]
+macro_rules! handle {
+    ($(#[$doc:meta])* $any:ident $handle:ident [$($variant:ident: $model:ty;)*]) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        #[non_exhaustive]
+        pub enum $any {
+            $(
+                #[allow(missing_docs, reason = "named as the model")]
+                $variant($handle<$model>)
+            ),*
+        }
+
+        $(impl From<$handle<$model>> for $any {
+            #[inline]
+            fn from(handle: $handle<$model>) -> Self {
+                Self::$variant(handle)
+            }
+        })*
+
+        impl $any {
+            /// The model.
+            #[inline]
+            #[must_use]
+            pub const fn model(&self) -> ModelId {
+                match self {
+                    $(Self::$variant(_) => ModelId::$variant),*
+                }
+            }
+        }
+    };
+}
+#[cfg(feature = "any")]
+pub(super) use handle;
+
+/// The handles of all models.
+#[cfg(feature = "any")]
+macro_rules! handles {
+    ($models:tt $variants:tt) => {
+        any::handle! {
+            /// A material of any model of the list: see [`Bsdf`].
+            ///
+            /// ```
+            /// use hairis::{Bsdf, HairParams, Level};
+            /// use hairis_variants::{AnyBsdf, Cauchy};
+            /// let red: AnyBsdf = Bsdf::new(&Cauchy::PAPER.matched(), &HairParams::red()).into();
+            /// let sample = red.prepare(glam::Vec3::Y).sample([0.5, 0.25, 0.75]).expect("not along the fibre");
+            /// assert!(sample.pdf > 0.0);
+            /// ```
+            AnyBsdf Bsdf $models
+        }
+        any::handle! {
+            /// Eight materials of one model, one a lane: see [`Bsdf8`].
+            AnyBsdf8 Bsdf8 $models
+        }
+        any::handle! {
+            /// A gather point of any model: see [`Gather`].
+            AnyGather Gather $models
+        }
+        any::handle! {
+            /// Eight gather points of one model, one a lane: see [`Gather8`].
+            AnyGather8 Gather8 $models
+        }
+
+        impl AnyBsdf {
+            /// The gather point of a hit: a [`Hit`], or `wo` alone.
+            #[inline]
+            #[must_use]
+            pub fn prepare(&self, hit: impl Into<Hit>) -> AnyGather {
+                let hit = hit.into();
+                self.prepare_hit(hit.wo.into(), hit.h)
+            }
+
+            #[inline(never)]
+            fn prepare_hit(&self, wo: Vec3, h: f32) -> AnyGather {
+                let hit = Hit { wo: wo.into(), h };
+                any::each!(@match $variants self prepare (hit) AnyGather)
+            }
+
+            /// Eight gather points on this material, one a lane: a [`Hit8`], or eight `wo`.
+            #[inline]
+            #[must_use]
+            pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyGather8 {
+                self.prepare8_at(Level::detect(), hits)
+            }
+
+            /// As [`prepare8`](Self::prepare8), on a given instruction set.
+            #[inline]
+            #[must_use]
+            pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> AnyGather8 {
+                self.prepare_hits(level, &hits.into())
+            }
+
+            any::each! { $variants
+                /// The largest directional albedo: see [`Bsdf::max_albedo`].
+                #[inline(never)]
+                #[must_use]
+                pub fn max_albedo() -> f32;
+                /// The factor that keeps the directional albedo at most 1: see [`Bsdf::conserving_scale`].
+                #[inline(never)]
+                #[must_use]
+                pub fn conserving_scale() -> f32;
+            }
+
+            #[inline(never)]
+            fn prepare_hits(&self, level: Level, hits: &Hit8) -> AnyGather8 {
+                any::each!(@match $variants self prepare8_at (level, *hits) AnyGather8)
+            }
+        }
+
+        impl AnyBsdf8 {
+            any::pack! { $variants }
+
+            /// Eight gather points, lane by lane: a [`Hit8`], or eight `wo`.
+            #[inline]
+            #[must_use]
+            pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyGather8 {
+                self.prepare8_at(Level::detect(), hits)
+            }
+
+            /// As [`prepare8`](Self::prepare8), on a given instruction set.
+            #[inline]
+            #[must_use]
+            pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> AnyGather8 {
+                self.prepare_hits(level, &hits.into())
+            }
+
+            #[inline(never)]
+            fn prepare_hits(&self, level: Level, hits: &Hit8) -> AnyGather8 {
+                any::each!(@match $variants self prepare8_at (level, *hits) AnyGather8)
+            }
+        }
+
+        impl AnyGather {
+            /// S at `wi`, without the cosine: see [`Gather::eval`].
+            #[inline]
+            #[must_use]
+            pub fn eval(&self, wi: Vec3) -> [f32; 3] {
+                self.eval_pdf(wi).value
+            }
+
+            /// Density of sampling `wi`, per steradian.
+            #[inline]
+            #[must_use]
+            pub fn pdf(&self, wi: Vec3) -> f32 {
+                self.eval_pdf(wi).pdf
+            }
+
+            /// As [`eval_pdf`](Self::eval_pdf), for eight directions.
+            #[inline]
+            #[must_use]
+            pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
+                self.eval_pdf8_at(Level::detect(), wi)
+            }
+
+            /// As [`sample`](Self::sample), for eight triples of numbers.
+            #[inline]
+            #[must_use]
+            pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
+                self.sample8_at(Level::detect(), xi)
+            }
+
+            /// Value and density of many directions: see [`Gather::eval_pdf_batch`].
+            ///
+            /// # Errors
+            ///
+            /// If the slices differ in length; nothing is written then.
+            #[inline]
+            pub fn eval_pdf_batch(&self, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
+                self.eval_pdf_batch_at(Level::detect(), wi, out)
+            }
+
+            /// Value of many directions: see [`Gather::eval_batch`].
+            ///
+            /// # Errors
+            ///
+            /// If the slices differ in length; nothing is written then.
+            #[inline]
+            pub fn eval_batch(&self, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError> {
+                self.eval_batch_at(Level::detect(), wi, value)
+            }
+
+            /// Density of many directions: see [`Gather::pdf_batch`].
+            ///
+            /// # Errors
+            ///
+            /// If the slices differ in length; nothing is written then.
+            #[inline]
+            pub fn pdf_batch(&self, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError> {
+                self.pdf_batch_at(Level::detect(), wi, pdf)
+            }
+
+            /// Many samples: see [`Gather::sample_batch`].
+            ///
+            /// # Errors
+            ///
+            /// If the slices differ in length; nothing is written then.
+            #[inline]
+            pub fn sample_batch(&self, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
+                self.sample_batch_at(Level::detect(), xi, out)
+            }
+
+            any::each! { $variants
+                /// Value and density at `wi`.
+                #[inline(never)]
+                #[must_use]
+                pub fn eval_pdf(wi: Vec3) -> Eval;
+                /// Each lobe's value, colour and own density.
+                #[inline(never)]
+                #[must_use]
+                pub fn lobes(wi: Vec3) -> PerLobe<LobeEval>;
+                /// A direction for three uniform numbers in `[0, 1)`; `None` if it is discarded: see [`Gather::sample`].
+                #[inline(never)]
+                #[must_use]
+                pub fn sample(xi: [f32; 3]) -> Option<Sample>;
+                /// As [`eval_pdf8`](Self::eval_pdf8), on a given instruction set.
+                #[inline(never)]
+                #[must_use]
+                pub fn eval_pdf8_at(level: Level, wi: &Vec3x8) -> Eval8;
+                /// As [`lobes`](Self::lobes), for eight directions.
+                #[inline(never)]
+                #[must_use]
+                pub fn lobes8(wi: &Vec3x8) -> PerLobe<LobeEval8>;
+                /// As [`sample8`](Self::sample8), on a given instruction set.
+                #[inline(never)]
+                #[must_use]
+                pub fn sample8_at(level: Level, xi: &[f32x8; 3]) -> Sample8;
+                /// The gather point with only some of its lobes.
+                #[inline(never)]
+                #[must_use]
+                pub fn with_lobes(lobes: LobeMask) -> Self => Self;
+                /// Directional albedo of each lobe, linear RGB.
+                #[inline(never)]
+                #[must_use]
+                pub fn albedo() -> PerLobe<[f32; 3]>;
+                /// As [`eval_pdf_batch`](Self::eval_pdf_batch), on a given instruction set.
+                ///
+                /// # Errors
+                ///
+                /// If the slices differ in length; nothing is written then.
+                #[inline(never)]
+                pub fn eval_pdf_batch_at(level: Level, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError>;
+                /// As [`eval_batch`](Self::eval_batch), on a given instruction set.
+                ///
+                /// # Errors
+                ///
+                /// If the slices differ in length; nothing is written then.
+                #[inline(never)]
+                pub fn eval_batch_at(level: Level, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError>;
+                /// As [`pdf_batch`](Self::pdf_batch), on a given instruction set.
+                ///
+                /// # Errors
+                ///
+                /// If the slices differ in length; nothing is written then.
+                #[inline(never)]
+                pub fn pdf_batch_at(level: Level, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError>;
+                /// As [`sample_batch`](Self::sample_batch), on a given instruction set.
+                ///
+                /// # Errors
+                ///
+                /// If the slices differ in length; nothing is written then.
+                #[inline(never)]
+                pub fn sample_batch_at(level: Level, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError>;
+            }
+        }
+
+        impl AnyGather8 {
+            /// Value and density at `wi`, each lane at its own gather point.
+            #[inline]
+            #[must_use]
+            pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
+                self.eval_pdf8_at(Level::detect(), wi)
+            }
+
+            /// One direction for each gather point.
+            #[inline]
+            #[must_use]
+            pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
+                self.sample8_at(Level::detect(), xi)
+            }
+
+            any::each! { $variants
+                /// As [`eval_pdf8`](Self::eval_pdf8), on a given instruction set.
+                #[inline(never)]
+                #[must_use]
+                pub fn eval_pdf8_at(level: Level, wi: &Vec3x8) -> Eval8;
+                /// Each lobe's value, colour and own density, each lane at its own gather point.
+                #[inline(never)]
+                #[must_use]
+                pub fn lobes8(wi: &Vec3x8) -> PerLobe<LobeEval8>;
+                /// As [`sample8`](Self::sample8), on a given instruction set.
+                #[inline(never)]
+                #[must_use]
+                pub fn sample8_at(level: Level, xi: &[f32x8; 3]) -> Sample8;
+                /// The gather points with only some of their lobes.
+                #[inline(never)]
+                #[must_use]
+                pub fn with_lobes(lobes: LobeMask) -> Self => Self;
+                /// Directional albedo of each lobe, linear RGB, each lane at its own gather point.
+                #[inline(never)]
+                #[must_use]
+                pub fn albedo8() -> PerLobe<[f32x8; 3]>;
+                /// The gather point of one lane.
+                ///
+                /// # Panics
+                ///
+                /// If `lane` is above 7.
+                #[inline(never)]
+                #[must_use]
+                pub fn lane(lane: usize) -> AnyGather => AnyGather;
+            }
+        }
+    };
+}
+#[cfg(feature = "any")]
+pub(super) use handles;
+
+/// [`AnyBsdf8`](super::AnyBsdf8) of eight materials.
+#[cfg(feature = "any")]
+macro_rules! pack {
+    ([$($variant:ident)*]) => {
+        /// Eight materials, one a lane; `None` unless all are of one model.
+        #[inline(never)]
+        #[must_use]
+        pub fn pack(materials: [&AnyBsdf; 8]) -> Option<Self> {
+            match materials[0] {
+                $(AnyBsdf::$variant(first) => {
+                    let mut same = [first; 8];
+                    for (one, material) in same.iter_mut().zip(materials) {
+                        let AnyBsdf::$variant(material) = material else { return None };
+                        *one = material;
+                    }
+                    Some(Self::$variant(Bsdf8::pack(same)))
+                }),*
+            }
+        }
+    };
+}
+#[cfg(feature = "any")]
+pub(super) use pack;

@@ -1,0 +1,60 @@
+//! The all-Cauchy variant and its samplers: the suite that every model passes, and the tests against the textbook.
+
+use crate::rows::{MATCHED, PUBLISHED};
+use hairis::textbook::Shape;
+use hairis::{Hair, Matched};
+use hairis_conformance::published::{Family, Published, Rows};
+use hairis_conformance::{conformance, published};
+use hairis_variants::Cauchy;
+
+/// The published sampler, which follows this model exactly.
+pub(crate) struct Ou;
+
+impl Published for Ou {
+    type Model = Hair<Cauchy>;
+    type Bell = Cauchy;
+    const SHAPE: Shape = Shape::Cauchy;
+    const OVER_CAUCHY: f64 = 1.0;
+    // A Cauchy has no end.
+    const PDF_FLOOR: f64 = 0.0;
+    const ROWS: Rows = PUBLISHED;
+
+    fn bell() -> Cauchy {
+        Cauchy::PAPER
+    }
+
+    fn forms() -> Vec<(Self::Model, f32)> {
+        vec![(Cauchy::PAPER.model(), 1.0), (Cauchy::HALF_WIDTH.model(), 1.177_41), (Cauchy::AREA.model(), 0.797_884_6)]
+    }
+}
+
+/// The matched sampler.
+pub(crate) struct Bands;
+
+impl Published for Bands {
+    type Model = Matched<Cauchy>;
+    type Bell = Cauchy;
+    const SHAPE: Shape = Shape::Cauchy;
+    const BANDS: Option<usize> = Some(9);
+    const OVER_CAUCHY: f64 = 1.0;
+    const PDF_FLOOR: f64 = 0.0;
+    const ROWS: Rows = MATCHED;
+
+    fn bell() -> Cauchy {
+        Cauchy::PAPER
+    }
+
+    fn forms() -> Vec<(Self::Model, f32)> {
+        vec![
+            (Cauchy::PAPER.matched(), 1.0),
+            (Cauchy::HALF_WIDTH.matched(), 1.177_41),
+            (Cauchy::AREA.matched(), 0.797_884_6),
+        ]
+    }
+}
+
+conformance!(hair, Family::<Ou>::new());
+conformance!(matched_9, Family::<Bands>::new());
+
+published!(ou, crate::family::Ou, published);
+published!(matched, crate::family::Bands, matched);

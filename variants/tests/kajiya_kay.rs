@@ -1,0 +1,104 @@
+//! Kajiya and Kay's model under the suite that every model passes, in both forms.
+
+use crate::support::Draws;
+use hairis::{Hit, Lobe, LobeMask};
+use hairis_conformance::{Claims, Materials, Reference, Subject, Tolerance, Twin, conformance};
+use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams, KajiyaKayReference, cosine_integral};
+use hairis_variants::{KajiyaKay, kajiya_kay};
+
+/// The model in one of its forms.
+struct Fibers(Form);
+
+const DIFFUSE: Lobe = Lobe::slot(0);
+
+fn params(desc: KajiyaKayDesc) -> KajiyaKayParams {
+    KajiyaKayParams::new(&desc).unwrap()
+}
+
+fn book(params: &KajiyaKayParams, hit: &Hit) -> KajiyaKayReference<f64> {
+    let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
+    KajiyaKayReference::prepare(&kajiya_kay::KajiyaKayParameters::from(params), wo)
+}
+
+impl Fibers {
+    fn desc(&self, exponent: f32) -> KajiyaKayDesc {
+        KajiyaKayDesc { kd: [0.4, 0.3, 0.2], ks: [0.1, 0.3, 0.5], exponent, form: self.0 }
+    }
+}
+
+impl Subject for Fibers {
+    type Model = KajiyaKay;
+
+    fn model(&self) -> KajiyaKay {
+        KajiyaKay
+    }
+
+    fn materials(&self) -> Materials<Self> {
+        let form = self.0;
+        let black = [0.0; 3];
+        vec![
+            ("everyday", params(self.desc(80.0))),
+            ("broad", params(self.desc(1.0))),
+            ("narrow", params(self.desc(1000.0))),
+            ("brown", params(KajiyaKayDesc { form, ..*KajiyaKayParams::brown().desc() })),
+            ("black", params(KajiyaKayDesc { kd: black, ks: black, ..self.desc(20.0) })),
+        ]
+    }
+
+    fn extremes(&self) -> Materials<Self> {
+        let (dark, bright) = ([0.0; 3], [1e30, 0.0, 1e-39]);
+        vec![
+            ("narrowest", params(self.desc(1e4))),
+            ("specular alone", params(KajiyaKayDesc { kd: dark, ..self.desc(3.0) })),
+            ("brightest", params(KajiyaKayDesc { kd: bright, ks: bright, ..self.desc(300.0) })),
+            ("next to nothing", params(KajiyaKayDesc { kd: [1e-39; 3], ks: [1e-42; 3], ..self.desc(30.0) })),
+        ]
+    }
+
+    fn white(&self) -> Materials<Self> {
+        vec![("diffuse alone", params(KajiyaKayDesc { kd: [1.0; 3], ks: [0.0; 3], ..self.desc(80.0) }))]
+    }
+
+    fn claims(&self) -> Claims {
+        // Inversion: 3.7e-4 with 2^17 points, 1.5e-4 with 2^20: the sign of the sum is a jump across all three numbers,
+        // which a lattice meets with an error that shrinks with its points only.
+        let reciprocal = (self.0 == Form::Reciprocal).then_some(2e-6);
+        Claims { reciprocal, furnace: Some(1e-6), albedo: 1e-5, inversion: 7e-4, ..Claims::default() }
+    }
+
+    /// Where the highlight, and the density of its other side, end.
+    fn edges(&self, _params: &KajiyaKayParams, hit: &Hit) -> [Vec<f64>; 2] {
+        let [u, v, w] = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
+        let (theta_o, right) = (u.atan2(v.hypot(w)), core::f64::consts::FRAC_PI_2);
+        [vec![right - theta_o, -right - theta_o, right - 2.0 * theta_o, -right - 2.0 * theta_o], Vec::new()]
+    }
+
+    fn weight_bound(&self, params: &KajiyaKayParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
+        let (desc, p) = (params.desc(), f64::from(params.desc().exponent));
+        let m = if self.0 == Form::Reciprocal { 2.0 } else { 1.0 };
+        let all = book(params, hit).probabilities().0;
+        let [d, s] = [DIFFUSE, Lobe::slot(1)].map(|lobe| all[lobe.index()] * f64::from(lobes.factor(lobe)));
+        let most = |color: [f32; 3]| f64::from(color.into_iter().fold(0.0, f32::max));
+        let part = |color, by: f64, share: f64| if share > 0.0 { by * most(color) * (d + s) / share } else { 0.0 };
+        let ratio = cosine_integral(p) / cosine_integral(p + m);
+        (d + s > 0.0).then(|| part(desc.kd, 1.0, d).max(part(desc.ks, ratio, s)))
+    }
+
+    fn reference(&self, params: &KajiyaKayParams, hit: &Hit) -> Option<Box<dyn Reference>> {
+        // Errors grow with the exponent of the bell: below 1e-12 they are compared absolutely.
+        let tolerance = Tolerance { floor: 1e-12, ..Tolerance::default() };
+        Some(Box::new(Twin { book: book(params, hit), tolerance }))
+    }
+
+    fn random_materials(&self) -> Vec<KajiyaKayParams> {
+        let mut draws = Draws(0x6b61);
+        let one = |_| {
+            let desc = self.desc(crate::support::narrow(draws.scale(1.0, 1000.0)));
+            params(KajiyaKayDesc { kd: draws.xi3(), ks: draws.xi3(), ..desc })
+        };
+        (0..40).map(one).collect()
+    }
+}
+
+conformance!(reciprocal, Fibers(Form::Reciprocal));
+conformance!(published, Fibers(Form::Published));
