@@ -8,8 +8,19 @@ import re
 import subprocess
 import sys
 
-ROWS = {"EvalRow": "eval_pdf_batch", "ValueRow": "eval_batch", "PdfRow": "pdf_batch", "SampleRow": "sample_batch"}
-MODELS = {"Gaussian": "gaussian", "Cauchy": "cauchy"}
+ROWS = {"ValuePdf": "eval_pdf_batch", "Value": "eval_batch", "Pdf": "pdf_batch", "Samples": "sample_batch"}
+PACKETS = {
+    "Prepare": ("prepare8", "shared", "mixed"),
+    "EvalPdf": ("eval_pdf8", "", "points"),
+    "SampleWi": ("sample8", "", "points"),
+}
+MODELS = {
+    "Chiang<true>": "chiang-by-channel",
+    "Chiang": "chiang",
+    "KajiyaKay": "kajiya-kay",
+    "Gaussian": "gaussian",
+    "Cauchy": "cauchy",
+}
 
 
 def tool(*words):
@@ -28,23 +39,22 @@ def symbols(program):
 
 def entry(name):
     """Entry point, model and level of a function, or None."""
-    model = next((MODELS[m] for m in MODELS if re.search(rf"\b{m}\b", name)), None)
+    model = next((MODELS[m] for m in MODELS if re.search(rf"\b{m}(?![\w<])", name)), None)
     if model is None:
         return None
     if "::Matched<" in name:
         model += "-matched"
-    found = re.search(r"dispatch::batch::(?:(avx\w+)::)?<.*batch::rows::(\w+), \d+>(::\{closure#\d\})?$", name)
+    found = re.search(r"dispatch::(?:rows_(avx\w+)|Level>::run_rows)::<.*packet::(\w+)>, \d+>(::\{closure#\d\})?$", name)
     if found:
         # Without a level it is the portable one, or the code that cuts slices into packets, which is no loop.
         if not found[1] and not found[3]:
             return None
         return ROWS[found[2]], model, found[1] or "portable"
-    found = re.search(r"dispatch::(\w+)8::(avx\w+)::<hairis::\w+::(?:Hair|Matched)<[^>]+>, ([\w:]+)", name)
-    if found:
-        kind = {"prepare": ("shared", "mixed"), "eval": ("", "points"), "sample": ("", "points")}[found[1]]
-        suffix = kind[0 if found[3] == "f32" else 1]
-        base = {"prepare": "prepare8", "eval": "eval_pdf8", "sample": "sample8"}[found[1]]
-        return (f"{base}-{suffix}" if suffix else base), model, found[2]
+    found = re.search(r"dispatch::run_(avx\w+)::<hairis::packet::(\w+)<.*?, (f32|wide::[\w:]+)(?:, .*)?>>$", name)
+    if found and found[2] in PACKETS:
+        base, shared, own = PACKETS[found[2]]
+        suffix = shared if found[3] == "f32" else own
+        return (f"{base}-{suffix}" if suffix else base), model, found[1]
     found = re.search(r"outlined::(scalar|portable)_(\w+?)(?:_(shared|mixed|points))?::<", name)
     if found and "batch" not in found[2]:
         return (f"{found[2]}-{found[3]}" if found[3] else found[2]), model, found[1]

@@ -1,7 +1,6 @@
 //! The elementary functions of `hairis::math` against those of `libm`: one lane, and packets and slices on every level.
 //!
-//! Each is evaluated through the public entry points by a model that does nothing else: what reading a direction and
-//! writing a value and a density take is in the figures.
+//! Each runs through the dispatch of the kernels: what reading arguments and writing results take is in the figures.
 //!
 //! `cargo bench -p hairis-benches --bench math`, with `-- math/atan_unit` for one group. Throughput is in arguments.
 
@@ -11,10 +10,10 @@ mod timing;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
 use glam::Vec3;
-use hairis::{Bsdf, EvalSlices, Level};
+use hairis::Level;
 use hairis_benches::entries::label;
 use hairis_benches::inputs::{DIRECTIONS, Inputs, packets};
-use hairis_benches::math::{AsModel, Atan2Upper, AtanUnit, Bell, Function, SinCosAbsolute, SinCosTwice};
+use hairis_benches::math::{Atan2Upper, AtanUnit, Bell, Columns, Eight, Function, SinCosAbsolute, SinCosTwice};
 use hairis_benches::task::{Each, Slices, Task};
 
 /// Largest error that counts as right, relative to the value or, where that is below 1, absolute: that of the function
@@ -24,7 +23,6 @@ const TOLERANCE: f64 = 1e-6;
 fn function<F: Function>(c: &mut Criterion) {
     let [x, y] = F::RANGE.map(|[lo, hi]| move |xi: f32| lo + (hi - lo) * xi);
     let arguments: Vec<Vec3> = Inputs::draw().xi.iter().map(|xi| Vec3::new(x(xi[0]), y(xi[1]), 0.0)).collect();
-    let gather = Bsdf::new(&AsModel(F::default()), &()).prepare(Vec3::Y);
     let group = &mut c.benchmark_group(format!("math/{}", F::NAME));
     let arrays: Vec<[f32; 3]> = arguments.iter().map(|v| v.to_array()).collect();
 
@@ -39,13 +37,18 @@ fn function<F: Function>(c: &mut Criterion) {
         &arguments,
         "one lane",
         "scalar",
-        Each::new(1, arguments.clone(), move |v| gather.eval_pdf(*v)),
+        Each::new(1, arguments.clone(), |v| {
+            let [first, second] = F::lanes(v.x, v.y);
+            ([first, second, 0.0], 0.0)
+        }),
     );
     for level in Level::available() {
-        let eight = Each::new(8, packets(&arguments), move |v| gather.eval_pdf8_at(level, v));
+        let pairs = packets(&arguments).iter().map(|v| [v.x, v.y]).collect();
+        let eight = Each::new(8, pairs, move |arguments| level.run(Eight { arguments, function: F::default() }));
         show::<F, _>(group, &arguments, "x8", label(level), eight);
-        let slices = Slices::new(DIRECTIONS, &arrays, move |v, [r, g, b, pdf]: [&mut [f32]; 4]| {
-            gather.eval_pdf_batch_at(level, v, EvalSlices { value: [r, g, b], pdf })
+        let slices = Slices::new(DIRECTIONS, &arrays, move |v, mut out: [&mut [f32]; 3]| {
+            level.run_rows(Columns(F::default()), v, &mut out);
+            Ok(())
         });
         show::<F, _>(group, &arguments, "slices", label(level), slices);
     }

@@ -9,7 +9,7 @@ use hairis_benches::{Name, Op, Task, Visitor, entries};
 /// Adds all entry points of an operation, a group for each model: scalar code and every level side by side.
 pub(crate) fn bench(c: &mut Criterion, op: Op) {
     println!("{op}: compiled for {}, eight lanes run on {}", Level::portable(), Level::detect());
-    for model in entries::MODELS {
+    for (model, _) in entries::MODELS.iter() {
         let mut group = c.benchmark_group(format!("{op}/{model}"));
         entries::visit(op, &mut Timing { group: &mut group, model });
         group.finish();

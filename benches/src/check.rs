@@ -3,8 +3,8 @@
 use crate::Name;
 use crate::task::{Answer, Task};
 use glam::Vec3;
-use hairis::HairParams;
-use hairis::textbook::{Oracle, Parameters, Shape};
+use hairis::textbook::Reference;
+use hairis_variants::{ModelId, Values};
 
 /// Largest error of an answer that counts as right, relative for value and density, rad for a direction: what the
 /// textbook in `f32`, which takes part, needs. The kernels' own bounds are tighter, and their tests hold them.
@@ -18,8 +18,8 @@ const MOST_WRONG: usize = 100;
 /// What was asked for one direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked {
-    /// The hair.
-    pub hair: HairParams,
+    /// The parameters.
+    pub values: Values,
     /// Towards the viewer.
     pub wo: Vec3,
     /// What for.
@@ -35,15 +35,15 @@ pub enum Given {
     Xi([f32; 3]),
 }
 
-/// Compares a pass with the textbook in `f64` of this shape, and with the matched sampler if there are bands.
+/// Compares a pass with the formulas of the model in `f64`.
 ///
 /// # Panics
 ///
 /// If more than one answer in a hundred is wrong, or a call has none.
-pub fn check(name: &Name, task: &mut impl Task, oracle: (Shape, Option<usize>), asked: impl Fn(usize) -> Asked) {
+pub fn check(name: &Name, task: &mut impl Task, model: ModelId, asked: impl Fn(usize) -> Asked) {
     let answers = task.answers();
     assert!(answers.len() >= task.calls(), "{name}: {} answers to {} calls", answers.len(), task.calls());
-    let wrong: Vec<usize> = (0..answers.len()).filter(|i| !right(&asked(*i), oracle, &answers[*i])).collect();
+    let wrong: Vec<usize> = (0..answers.len()).filter(|i| !right(&asked(*i), model, &answers[*i])).collect();
     assert!(
         wrong.len() * MOST_WRONG <= answers.len(),
         "{name}: {} of {} answers are wrong, the first for {:?}: {:?}",
@@ -54,9 +54,9 @@ pub fn check(name: &Name, task: &mut impl Task, oracle: (Shape, Option<usize>), 
     );
 }
 
-fn right(asked: &Asked, (shape, bands): (Shape, Option<usize>), answer: &Answer) -> bool {
+fn right(asked: &Asked, model: ModelId, answer: &Answer) -> bool {
     let to_f64 = |v: Vec3| v.to_array().map(f64::from);
-    let point = Oracle::<f64>::prepare(&Parameters::from(&asked.hair), shape, to_f64(asked.wo), bands);
+    let point = model.reference::<f64>(&asked.values, to_f64(asked.wo), 0.0).expect("checked parameters");
     let truth = match asked.given {
         Given::Wi(wi) => to_f64(wi),
         Given::Xi(xi) => {

@@ -1,16 +1,16 @@
 //! The entry points.
 
 use crate::check::{Asked, Given, check};
-use crate::inputs::{DIRECTIONS, Inputs, hair, materials, packets, xi_packets};
-use crate::task::{Each, PROBE, Slices, Task};
+use crate::inputs::{DIRECTIONS, Inputs, materials, packets, params, xi_packets};
+use crate::task::{Each, PROBE, Point, Slices, Task};
 use core::fmt;
 use core::hint::black_box;
+use core::marker::PhantomData;
 use glam::Vec3;
-use hairis::textbook::{Parameters, Shape, Textbook};
-use hairis::{
-    Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Gaussian, Hair, HairParams, Level, Matched, Model, SampleSlices,
-};
-use hairis_variants::Cauchy;
+use hairis::textbook::Reference;
+use hairis::{Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Level, SampleSlices};
+use hairis_variants::{ModelId, Parameters, Registered};
+use std::sync::LazyLock;
 
 /// What an entry point does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,8 +70,21 @@ pub trait Visitor {
     fn visit<T: Task>(&mut self, name: &Name, task: T);
 }
 
-/// The models, each with the published sampler and with the matched one.
-pub const MODELS: [&str; 4] = ["gaussian", "cauchy", "gaussian-matched", "cauchy-matched"];
+/// The models that take part, by the names of their entry points: `gaussian`, and `gaussian-matched` for another sampler.
+pub static MODELS: LazyLock<Vec<(String, ModelId)>> = LazyLock::new(|| {
+    let name = |id: ModelId| match id.choice() {
+        Some((_, word)) if !id.is_default() => (format!("{}-{word}", id.name()), id),
+        _ => (id.name().to_owned(), id),
+    };
+    ModelId::ALL.iter().copied().filter(|id| takes_part(*id)).map(name).collect()
+});
+
+/// Whether a model takes part: not where it differs from another in its number of bands alone.
+const fn takes_part(id: ModelId) -> bool {
+    use ModelId::{CauchyMatched5, CauchyMatched25, GaussianMatched5, GaussianMatched25};
+    !matches!(id, GaussianMatched5 | GaussianMatched25 | CauchyMatched5 | CauchyMatched25)
+}
+
 /// Name of the scalar baseline, the paper's formulas in `f32`.
 pub const TEXTBOOK: &str = "textbook";
 /// Directions in a short slice: less than a packet.
@@ -91,27 +104,41 @@ pub fn label(level: Level) -> &'static str {
 /// If an entry point that the visitor wants gives wrong answers.
 pub fn visit(op: Op, visitor: &mut impl Visitor) {
     let inputs = &Inputs::draw();
-    let [g, c] = [Shape::Gaussian, Shape::Cauchy];
-    let [gaussian, cauchy, gaussian_matched, cauchy_matched] = MODELS;
-    let (published, matched) = (None, Some(9));
-    Of { op, model: Hair(Gaussian), name: gaussian, shape: g, bands: published, inputs }.visit(visitor);
-    Of { op, model: Cauchy::PAPER.model(), name: cauchy, shape: c, bands: published, inputs }.visit(visitor);
-    Of { op, model: Matched::<_>(Gaussian), name: gaussian_matched, shape: g, bands: matched, inputs }.visit(visitor);
-    Of { op, model: Cauchy::PAPER.matched(), name: cauchy_matched, shape: c, bands: matched, inputs }.visit(visitor);
+    for (name, id) in MODELS.iter() {
+        id.visit(OfModel { op, name, inputs, visitor });
+    }
+}
+
+/// Shows the entry points of one operation of a model.
+struct OfModel<'a, V> {
+    op: Op,
+    name: &'static str,
+    inputs: &'a Inputs,
+    visitor: &'a mut V,
+}
+
+impl<V: Visitor> hairis_variants::Visitor for OfModel<'_, V> {
+    type Output = ();
+
+    fn visit<M: Registered>(self) {
+        // At compile time: what takes no part is not compiled.
+        if const { takes_part(ModelId::of::<M>()) } {
+            let Self { op, name, inputs, visitor } = self;
+            Of::<M> { op, id: ModelId::of::<M>(), name, inputs, model: PhantomData }.visit(visitor);
+        }
+    }
 }
 
 /// The entry points of one operation of one model.
 struct Of<'a, M> {
     op: Op,
-    model: M,
+    id: ModelId,
     name: &'static str,
-    shape: Shape,
-    /// Those of its sampler; none if it is the published one.
-    bands: Option<usize>,
     inputs: &'a Inputs,
+    model: PhantomData<M>,
 }
 
-impl<M: Model<Params = HairParams>> Of<'_, M> {
+impl<M: Registered> Of<'_, M> {
     fn visit(&self, visitor: &mut impl Visitor) {
         match self.op {
             Op::Prepare => self.prepare(visitor),
@@ -131,24 +158,25 @@ impl<M: Model<Params = HairParams>> Of<'_, M> {
         task: impl FnOnce() -> T,
     ) {
         let name = Name { op: self.op, entry, model: self.name, level };
-        let baseline_of_its_own = entry == TEXTBOOK && self.bands.is_some();
+        let baseline_of_its_own = entry == TEXTBOOK && !self.id.is_default();
         if !baseline_of_its_own && visitor.wants(&name) {
             let mut task = task();
-            check(&name, &mut task, (self.shape, self.bands), asked);
+            check(&name, &mut task, self.id, asked);
             visitor.visit(&name, task);
         }
     }
 
-    fn parameters(&self) -> Parameters<f32> {
-        Parameters::from(&HairParams::default())
+    /// The formulas for the default parameters, seen from `wo`.
+    fn textbook(wo: [f32; 3]) -> M::Reference<f32> {
+        M::reference(&M::Params::default(), wo, 0.0)
     }
 
     fn bsdf(&self) -> Bsdf<M> {
-        Bsdf::new(&self.model, &HairParams::default())
+        Bsdf::new(&M::MODEL, &M::Params::default())
     }
 
     fn mixed(&self) -> Bsdf8<M> {
-        Bsdf8::pack(materials(&self.model).each_ref())
+        Bsdf8::pack(materials::<M>().each_ref())
     }
 
     /// The one gather point of evaluations and samples.
@@ -163,22 +191,22 @@ impl<M: Model<Params = HairParams>> Of<'_, M> {
 
     /// The question at [`gather`](Self::gather).
     fn at_one(&self, given: Given) -> Asked {
-        Asked { hair: HairParams::default(), wo: self.inputs.wo[0], given }
+        Asked { values: M::Params::default().values(), wo: self.inputs.wo[0], given }
     }
 
     /// The question at a lane of [`gather8`](Self::gather8).
     fn at_lane(&self, i: usize, given: Given) -> Asked {
-        Asked { hair: hair()[i % 8], wo: self.inputs.wo[i % 8], given }
+        Asked { values: params::<M>()[i % 8].values(), wo: self.inputs.wo[i % 8], given }
     }
 
     /// The question at a gather point of its own, on one head of hair.
     fn shared(&self, i: usize, given: Given) -> Asked {
-        Asked { hair: HairParams::default(), wo: self.inputs.wo[i], given }
+        Asked { values: M::Params::default().values(), wo: self.inputs.wo[i], given }
     }
 
     /// The same on eight heads of hair.
     fn mixed_hair(&self, i: usize, given: Given) -> Asked {
-        Asked { hair: hair()[i % 8], wo: self.inputs.wo[i], given }
+        Asked { values: params::<M>()[i % 8].values(), wo: self.inputs.wo[i], given }
     }
 
     fn prepare(&self, visitor: &mut impl Visitor) {
@@ -186,8 +214,7 @@ impl<M: Model<Params = HairParams>> Of<'_, M> {
         let shared = |i| self.shared(i, Given::Wi(PROBE));
         let mixed = |i| self.mixed_hair(i, Given::Wi(PROBE));
         self.show(visitor, TEXTBOOK, "scalar", shared, || {
-            let (parameters, shape) = (self.parameters(), self.shape);
-            Each::new(1, arrays(&inputs.wo), move |wo| Textbook::prepare(&parameters, shape, *wo))
+            Each::new(1, arrays(&inputs.wo), move |wo| Point(Self::textbook(*wo)))
         });
         self.show(visitor, "prepare", "scalar", shared, || {
             let bsdf = self.bsdf();
@@ -210,7 +237,7 @@ impl<M: Model<Params = HairParams>> Of<'_, M> {
         let one = |i| self.at_one(Given::Wi(inputs.wi[i]));
         let lane = |i| self.at_lane(i, Given::Wi(inputs.wi[i]));
         self.show(visitor, TEXTBOOK, "scalar", one, || {
-            let textbook = Textbook::prepare(&self.parameters(), self.shape, inputs.wo[0].to_array());
+            let textbook = Self::textbook(inputs.wo[0].to_array());
             Each::new(1, arrays(&inputs.wi), move |wi| textbook.eval_pdf(*wi))
         });
         self.show(visitor, "eval_pdf", "scalar", one, || {
@@ -254,7 +281,7 @@ impl<M: Model<Params = HairParams>> Of<'_, M> {
         let one = |i| self.at_one(Given::Xi(inputs.xi[i]));
         let lane = |i| self.at_lane(i, Given::Xi(inputs.xi[i]));
         self.show(visitor, TEXTBOOK, "scalar", one, || {
-            let textbook = Textbook::prepare(&self.parameters(), self.shape, inputs.wo[0].to_array());
+            let textbook = Self::textbook(inputs.wo[0].to_array());
             Each::new(1, inputs.xi.clone(), move |xi| textbook.sample(*xi))
         });
         self.show(visitor, "sample", "scalar", one, || {
@@ -297,9 +324,9 @@ impl<M: Model<Params = HairParams>> Of<'_, M> {
         let one = |i| self.shared(i / 8, Given::Xi(inputs.xi[8 * (packets_at_one - 1) + i % 8]));
         let eight = |i| self.mixed_hair(i, Given::Xi(inputs.xi[8 * (samples - 1) + i % 8]));
         self.show(visitor, TEXTBOOK, "scalar", scalar, || {
-            let (parameters, shape, xi) = (self.parameters(), self.shape, xi.to_vec());
+            let xi = xi.to_vec();
             Each::new(samples, arrays(&inputs.wo), move |wo| {
-                let textbook = Textbook::prepare(&parameters, shape, *wo);
+                let textbook = Self::textbook(*wo);
                 last(&xi, |xi| textbook.sample(*xi))
             })
         });

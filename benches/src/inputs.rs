@@ -3,7 +3,8 @@
 use core::array::from_fn;
 use core::f32::consts::TAU;
 use glam::Vec3;
-use hairis::{Bsdf, HairParams, Model, Vec3x8};
+use hairis::{Bsdf, Vec3x8};
+use hairis_variants::{Parameters, Registered};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use wide::f32x8;
@@ -55,17 +56,17 @@ pub fn xi_packets(xi: &[[f32; 3]]) -> Vec<[f32x8; 3]> {
     eights.iter().map(|eight| from_fn(|k| f32x8::new(eight.map(|xi| xi[k])))).collect()
 }
 
-/// One head of hair a lane: the presets in turn.
+/// Parameters of the eight lanes: the presets in turn.
 #[must_use]
-pub fn hair() -> [HairParams; 8] {
-    let presets = HairParams::presets();
+pub fn params<M: Registered>() -> [M::Params; 8] {
+    let presets = M::Params::PRESETS;
     from_fn(|lane| presets[lane % presets.len()].1)
 }
 
-/// The materials of [`hair`].
+/// The materials of [`params`].
 #[must_use]
-pub fn materials<M: Model<Params = HairParams>>(model: &M) -> [Bsdf<M>; 8] {
-    hair().map(|params| Bsdf::new(model, &params))
+pub fn materials<M: Registered>() -> [Bsdf<M>; 8] {
+    params::<M>().map(|params| Bsdf::new(&M::MODEL, &params))
 }
 
 /// A column of [`DIRECTIONS`] numbers for slices, at an address chosen by its number.

@@ -1,4 +1,4 @@
-//! What is measured, once for all who measure: the entry points of both models, with both their samplers, on fixed inputs, with the answers
+//! What is measured, once for all who measure: the entry points of the models, on fixed inputs, with the answers
 //! they must give.
 //!
 //! [`entries::visit`] hands every entry point on every level to a [`Visitor`]: the Criterion benches time them, the

@@ -1,7 +1,8 @@
-//! The elementary functions on every level: each is evaluated by a model of its own, as a user's would.
+//! The elementary functions on every level, as kernels and as rows of columns.
 
 use core::fmt::Debug;
-use hairis::{Broadcast, Drawn, Eval, Hit, Lanes, LobeEval, LobeMask, Model, PerLobe, Vec3x, math};
+use hairis::wide::f32x8;
+use hairis::{Broadcast, Kernel, Lanes, Row, math};
 
 /// A function of two numbers with two results, on the kernel's lanes and on `libm`.
 pub trait Function: Copy + Default + Debug {
@@ -62,60 +63,41 @@ functions! {
     libm::sincosf(x).into(); x.sin_cos().into();
 }
 
-/// A function as a model: its arguments are the first two components of `wi`, its results the first two channels.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct AsModel<F>(pub F);
-
-/// Neither materials nor gather points have constants.
+/// A function on eight pairs of arguments.
 #[derive(Clone, Copy, Debug)]
-pub struct Nothing;
+pub struct Eight<'a, F: Function> {
+    /// First and second argument.
+    pub arguments: &'a [f32x8; 2],
+    /// The function.
+    pub function: F,
+}
 
-impl<F: Function> Model for AsModel<F> {
-    type Params = ();
-    type Material<C: Copy + Debug> = Nothing;
-    type Gather<C: Copy + Debug> = Nothing;
+impl<F: Function> Kernel for Eight<'_, F> {
+    type Constant = f32x8;
+    type Output = [f32x8; 2];
 
-    const LOBES: &'static [&'static str] = &[F::NAME];
-
-    fn material(&self, (): &()) -> Nothing {
-        Nothing
-    }
-    fn pack(_: [&Nothing; 8]) -> Nothing {
-        Nothing
-    }
-    fn lane(_: &Nothing, _: usize) -> Nothing {
-        Nothing
-    }
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L> + Debug>(_: &Nothing, _: Hit<L>) -> Nothing
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 2]
     where
-        L::Stored: Debug,
+        f32x8: Broadcast<L>,
     {
-        Nothing
+        let [x, y] = self.arguments;
+        let [first, second] = F::lanes::<L>(x.lanes(), y.lanes());
+        [first.store(), second.store()]
     }
+}
+
+/// A function over columns of first and second arguments; the third is handed through.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns<F: Function>(pub F);
+
+impl<F: Function> Row<3> for Columns<F> {
     #[inline(always)]
-    fn restrict<C: Lanes + Debug>(_: &Nothing, _: LobeMask) -> Nothing {
-        Nothing
-    }
-    #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L> + Debug>(_: &Nothing, wi: Vec3x<L>) -> Eval<L> {
-        let zero = L::splat(0.0);
-        let [first, second] = F::lanes(wi.x, wi.y);
-        Eval { value: [first, second, zero], pdf: zero }
-    }
-    #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L> + Debug>(_: &Nothing, _: Vec3x<L>) -> PerLobe<LobeEval<L>> {
-        let zero = L::splat(0.0);
-        PerLobe([LobeEval { value: zero, color: [zero; 3], pdf: zero }; 4])
-    }
-    #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L> + Debug>(_: &Nothing, _: [L; 3]) -> Drawn<L> {
-        let zero = L::splat(0.0);
-        let none = [zero; 3];
-        Drawn { wi: Vec3x::new(zero, zero, zero), value: none, pdf: zero, weight: none, slot: -L::splat(1.0) }
-    }
-    #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L> + Debug>(_: &Nothing) -> PerLobe<[L; 3]> {
-        PerLobe([[L::splat(0.0); 3]; 4])
+    fn row<L: Lanes>(self, [x, y, zero]: [L; 3]) -> [L; 3]
+    where
+        f32: Broadcast<L>,
+    {
+        let [first, second] = F::lanes(x, y);
+        [first, second, zero]
     }
 }

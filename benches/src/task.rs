@@ -5,8 +5,9 @@ use core::array::from_fn;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
-use hairis::textbook::{self, Textbook};
-use hairis::{Eval, Eval8, Gather, Gather8, HairParams, LengthError, Model, Sample, Sample8, Vec3x8};
+use hairis::textbook::{self, Reference};
+use hairis::wide::f32x8;
+use hairis::{Eval, Eval8, Gather, Gather8, LengthError, Model, Sample, Sample8, Vec3x8};
 
 /// Where gather points are evaluated to check how they were prepared: no lobe of it is negligible.
 pub const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
@@ -146,6 +147,14 @@ impl Output for ([f32; 3], f32) {
     }
 }
 
+/// A function of eight arguments: no density.
+impl Output for [f32x8; 2] {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        let [first, second] = self.map(f32x8::to_array);
+        out.extend((0..8).map(|i| Answer { wi: None, value: Some([first[i], second[i], 0.0]), pdf: None }));
+    }
+}
+
 impl Output for Eval {
     fn answers(&self, out: &mut Vec<Answer>) {
         out.push(Answer { wi: None, value: Some(self.value), pdf: Some(self.pdf) });
@@ -183,19 +192,23 @@ impl Output for Sample8 {
     }
 }
 
-impl Output for Textbook<f32> {
+/// A gather point of the formulas.
+#[derive(Debug)]
+pub struct Point<R>(pub R);
+
+impl<R: Reference<f32>> Output for Point<R> {
     fn answers(&self, out: &mut Vec<Answer>) {
-        self.eval_pdf(PROBE.to_array()).answers(out);
+        self.0.eval_pdf(PROBE.to_array()).answers(out);
     }
 }
 
-impl<M: Model<Params = HairParams>> Output for Gather<M> {
+impl<M: Model> Output for Gather<M> {
     fn answers(&self, out: &mut Vec<Answer>) {
         self.eval_pdf(PROBE).answers(out);
     }
 }
 
-impl<M: Model<Params = HairParams>> Output for Gather8<M> {
+impl<M: Model> Output for Gather8<M> {
     fn answers(&self, out: &mut Vec<Answer>) {
         self.eval_pdf8(&Vec3x8::splat(PROBE)).answers(out);
     }

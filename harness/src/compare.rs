@@ -133,7 +133,7 @@ impl Comparison {
             format!(
                 "agreement: {} {} {} {} {} {}: {:.2e} is beyond {:.0e}",
                 row.model,
-                row.sampler.name(),
+                row.sampler.unwrap_or_default(),
                 row.path,
                 row.level,
                 row.region,

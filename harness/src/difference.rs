@@ -158,7 +158,8 @@ fn hair(cell: &Cell) -> Result<Hair, ParamError> {
 mod tests {
     use super::*;
     use crate::quadrature::{SphereIntegrator, Tolerance, fibre_direction};
-    use crate::subject::Subject;
+    use crate::subject::ModelKind;
+    use hairis::textbook::{Parameters, Textbook};
 
     #[test]
     fn the_best_factors_are_the_best_in_their_norm() {
@@ -181,9 +182,9 @@ mod tests {
         let cell = Grid::QUICK.cell(17);
         let (params, theta_o) = (cell.params().expect("accepted"), f64::from(cell.theta_o_deg).to_radians());
         let found = hair(&cell).expect("accepted").figures(&[Kind::cauchy(1.0)], &Blur::new(0.2, 32, 32))[0];
-        let wo = fibre_direction(theta_o, 0.0).as_vec3();
-        let gaussian = Subject::gaussian().oracle(&params, wo);
-        let cauchy = Subject::cauchy().oracle(&params, wo);
+        let wo = fibre_direction(theta_o, 0.0).as_vec3().as_dvec3().to_array();
+        let [gaussian, cauchy] =
+            ModelKind::ALL.map(|model| Textbook::<f64>::prepare(&Parameters::from(&params), model.shape(), wo));
         let scale = found.albedo_gaussian / found.albedo_cauchy;
         let desc = params.desc();
         let mut sphere =

@@ -10,7 +10,8 @@ use crate::report::Figure;
 use core::f32::consts::TAU as TAU_F32;
 use core::f64::consts::{PI, SQRT_2};
 use glam::Vec3;
-use hairis::{Bsdf, Gather, Gaussian, Hair, HairParams, Lobe, LobeMask, Model};
+use hairis::{Bsdf, Gaussian, Hair, HairParams, Lobe, LobeMask};
+use hairis_variants::{AnyBsdf, AnyGather};
 
 /// Widths of the bells shown, degrees.
 const WIDTHS: [f64; 3] = [5.0, 10.0, 20.0];
@@ -88,7 +89,7 @@ fn angles(w: Vec3) -> (f64, f64) {
 }
 
 /// `S cos theta_i`, the mean of the channels.
-fn reflected<M: Model>(gather: &Gather<M>, theta: f64, phi: f64) -> f64 {
+fn reflected(gather: &AnyGather, theta: f64, phi: f64) -> f64 {
     let [r, g, b] = gather.eval(direction(theta, phi)).map(f64::from);
     (r + g + b) / 3.0 * theta.cos()
 }
@@ -100,13 +101,12 @@ fn reflected<M: Model>(gather: &Gather<M>, theta: f64, phi: f64) -> f64 {
 #[must_use]
 pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: impl Iterator<Item = [f32; 3]> + Clone) -> Figure {
     const CELLS: (u16, u16) = (80, 160);
-    let gather = Bsdf::new(&Hair(Gaussian), params).prepare(direction(theta_o, 0.0));
+    let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params)).prepare(direction(theta_o, 0.0));
     let count = xi.clone().count();
     let uniform = xi.clone().map(|[_, a, b]| angles(uniform_direction(a, b)));
     let mut map = ScatterMap::new("Sample distributions over S cos θᵢ", Projection::EqualArea);
-    let background = |gather: &Gather<Hair<Gaussian>>| {
-        Grid::sample(Projection::EqualArea, CELLS, |theta, phi| reflected(gather, theta, phi))
-    };
+    let background =
+        |gather: &AnyGather| Grid::sample(Projection::EqualArea, CELLS, |theta, phi| reflected(gather, theta, phi));
     map = map.panel(Panel::new("(a) uniform", uniform).with_density(background(&gather)));
     let lobes = [
         ("(b) all lobes", LobeMask::ALL),
@@ -230,7 +230,7 @@ mod tests {
             .series("uniform", [0.706, 0.931, 2.268].map(bar))
             .series("ou", [0.209, 0.189, 0.290].map(bar))
             .series("matched", [0.018, 0.009, 0.006].map(bar));
-        let gather = Bsdf::new(&Hair(Gaussian), &default_hair()).prepare(direction(0.35, 0.0));
+        let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), &default_hair())).prepare(direction(0.35, 0.0));
         let grid = Grid::sample(Projection::EqualAngle, (90, 180), |theta, phi| reflected(&gather, theta, phi));
         let heat =
             HeatMap::new("S cos θᵢ of the default hair, θₒ = 20°", Axis::linear("S cos θᵢ (1/sr)"), grid.clone());

@@ -1,14 +1,14 @@
 //! The samplers of each model: what `compare` and `study` measure.
 //!
-//! A new one is a variant of [`Sampler`], with its arms in the methods and in `visit` and `weight_bound`.
+//! A new one is a variant of [`Sampler`], with its arms in the methods and in `weight_bound`.
 
 use crate::quadrature::fibre_direction;
 use crate::subject::ModelKind;
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::textbook::{MatchedTextbook, Parameters};
-use hairis::{Bsdf, Eval8, Gather, Gaussian, Hair, HairParams, LobeMask, Matched, MatchedBell, Model, Sample8, Vec3x8};
-use hairis_variants::Cauchy;
+use hairis::{Eval8, HairParams, LobeMask, Sample8, Vec3x8};
+use hairis_variants::{AnyBsdf, AnyGather, ModelId, Parameters as _};
 use serde::Serialize;
 use wide::f32x8;
 
@@ -76,63 +76,6 @@ impl Sampler {
     }
 }
 
-/// A gather point of any model, eight directions at a time: one call through a table for eight samples costs nothing that
-/// shows.
-pub(crate) trait Scatter: Send + Sync {
-    fn sample8(&self, xi: &[f32x8; 3]) -> Sample8;
-    fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8;
-}
-
-impl<M: Model> Scatter for Gather<M>
-where
-    M::Gather<f32>: Send + Sync,
-{
-    fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
-        Self::sample8(self, xi)
-    }
-
-    fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
-        Self::eval_pdf8(self, wi)
-    }
-}
-
-/// Where a sampler's directions come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Directions {
-    /// From the model's own `sample`.
-    Sampled,
-    /// Uniformly from the sphere, whatever the model.
-    Uniform,
-}
-
-/// What is done with a sampler, whatever its type.
-pub(crate) trait Visit {
-    type Output;
-
-    fn visit<M>(self, model: M, directions: Directions) -> Self::Output
-    where
-        M: Model<Params = HairParams> + 'static,
-        M::Gather<f32>: Send + Sync;
-}
-
-/// Shows `visitor` the sampler of a model. Every sampler of a model has the model's `eval`.
-pub(crate) fn visit<V: Visit>(model: ModelKind, sampler: Sampler, visitor: V) -> V::Output {
-    match model {
-        ModelKind::Gaussian => visit_bell(Gaussian, sampler, visitor),
-        ModelKind::Cauchy => visit_bell(Cauchy::PAPER, sampler, visitor),
-    }
-}
-
-fn visit_bell<B: MatchedBell + 'static, V: Visit>(bell: B, sampler: Sampler, visitor: V) -> V::Output {
-    match sampler {
-        Sampler::Uniform => visitor.visit(Hair(bell), Directions::Uniform),
-        Sampler::Ou => visitor.visit(Hair(bell), Directions::Sampled),
-        Sampler::Matched5 => visitor.visit(Matched::<_, 5>(bell), Directions::Sampled),
-        Sampler::Matched => visitor.visit(Matched::<_>(bell), Directions::Sampled),
-        Sampler::Matched25 => visitor.visit(Matched::<_, 25>(bell), Directions::Sampled),
-    }
-}
-
 /// A proven bound on the mean of RGB of every weight `S cos theta_i / pdf` seen from `theta_o`, where there is one.
 ///
 /// - `uniform`: the lobes have peaks of 1, and `cos theta_i / cos^2 theta_d` is at most `1 / cos theta_o`, which it
@@ -153,47 +96,46 @@ pub(crate) fn weight_bound(model: ModelKind, sampler: Sampler, params: &HairPara
     Some(MatchedTextbook::prepare(&Parameters::from(params), model.shape(), wo, bands).weight_bound(LobeMask::ALL))
 }
 
-/// The gather point of a sampler: this hair, seen from `wo`.
-pub(crate) fn gather(model: ModelKind, sampler: Sampler, params: &HairParams, wo: Vec3) -> Box<dyn Scatter> {
-    visit(model, sampler, Prepare { params, wo })
-}
-
-struct Prepare<'a> {
-    params: &'a HairParams,
-    wo: Vec3,
-}
-
-impl Visit for Prepare<'_> {
-    type Output = Box<dyn Scatter>;
-
-    fn visit<M>(self, model: M, directions: Directions) -> Box<dyn Scatter>
-    where
-        M: Model<Params = HairParams> + 'static,
-        M::Gather<f32>: Send + Sync,
-    {
-        let gather = Bsdf::new(&model, self.params).prepare(self.wo);
-        match directions {
-            Directions::Sampled => Box::new(gather),
-            Directions::Uniform => Box::new(Uniform(gather)),
-        }
-    }
-}
-
-/// A gather point whose directions are drawn uniformly.
-struct Uniform<G>(G);
-
 /// Density of a uniform direction, per steradian.
 pub(crate) const UNIFORM_PDF: f32 = 0.25 / PI;
 
-impl<G: Scatter> Scatter for Uniform<G> {
-    fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
-        let wi = uniform8(xi);
-        uniform_sample8(wi, self.0.eval_pdf8(&wi))
+/// A gather point with one of the samplers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scatter {
+    gather: AnyGather,
+    is_uniform: bool,
+}
+
+impl Scatter {
+    /// This hair, seen from `wo`.
+    pub(crate) fn new(model: ModelKind, sampler: Sampler, params: &HairParams, wo: Vec3) -> Self {
+        Self { gather: bsdf(model, sampler, params).prepare(wo), is_uniform: sampler == Sampler::Uniform }
     }
 
-    fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
-        Eval8 { pdf: f32x8::splat(UNIFORM_PDF), ..self.0.eval_pdf8(wi) }
+    pub(crate) fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
+        if self.is_uniform {
+            let wi = uniform8(xi);
+            uniform_sample8(wi, self.gather.eval_pdf8(&wi))
+        } else {
+            self.gather.sample8(xi)
+        }
     }
+
+    pub(crate) fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
+        let eval = self.gather.eval_pdf8(wi);
+        if self.is_uniform { Eval8 { pdf: f32x8::splat(UNIFORM_PDF), ..eval } } else { eval }
+    }
+}
+
+/// The material of this hair, with the model's sampler, if it is one of the model.
+///
+/// # Panics
+///
+/// Never: every sampler of the models is registered, and their parameters are those of hair.
+pub(crate) fn bsdf(model: ModelKind, sampler: Sampler, params: &HairParams) -> AnyBsdf {
+    let word = (sampler != Sampler::Uniform).then(|| sampler.name());
+    let id = ModelId::find(model.name(), word).expect("a registered sampler");
+    id.bsdf(&params.values()).expect("parameters of hair")
 }
 
 /// Eight directions uniform on the sphere, from the last two of three numbers.
@@ -250,7 +192,7 @@ mod tests {
         let mut from = Independent::new(1, 1);
         for model in ModelKind::ALL {
             for sampler in Sampler::ALL {
-                let gather = gather(model, sampler, &params, wo);
+                let gather = Scatter::new(model, sampler, &params, wo);
                 for _ in 0..200 {
                     let sample = gather.sample8(&numbers(&mut from));
                     let eval = gather.eval_pdf8(&sample.wi);
@@ -282,7 +224,7 @@ mod tests {
             for model in ModelKind::ALL {
                 for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
                     let bound = weight_bound(model, sampler, &params, theta_o).expect("there is one");
-                    let gather = gather(model, sampler, &params, wo);
+                    let gather = Scatter::new(model, sampler, &params, wo);
                     let mut most = 0.0_f32;
                     for _ in 0..20_000 {
                         let weight = gather.sample8(&numbers(&mut from)).weight;

@@ -15,11 +15,11 @@ pub(crate) mod task;
 mod threads;
 
 use crate::stats::percentile;
-use crate::subject::Subject;
-use cells::{Cell, cells};
+use cells::{Cell, Cells};
 use core::fmt;
 use core::hint::black_box;
 use hairis::{Level, ParamError};
+use hairis_variants::ModelId;
 use inputs::{DIRECTIONS, Inputs};
 use serde::Serialize;
 use std::time::Instant;
@@ -190,17 +190,18 @@ impl SpeedReport {
     }
 }
 
-/// Measures all operations on both models. `progress` is told the share done, from 0 to 1, after every round.
+/// Measures all operations on every model, with its first sampler. `progress` is told the share done, from 0 to 1, after every round.
 ///
 /// Nothing else should run on the machine meanwhile, and not on other threads of this program.
 ///
 /// # Errors
 ///
-/// Never: the hair that is drawn is within the ranges accepted.
+/// Never: the parameters that are drawn are within the ranges accepted.
 pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedReport, ParamError> {
-    let inputs = Inputs::draw(config.seed)?;
-    let mut all = cells(&Subject::gaussian(), &inputs);
-    all.extend(cells(&Subject::cauchy(), &inputs));
+    let mut all = Vec::new();
+    for model in ModelId::defaults_of_names() {
+        all.extend(model.visit(Cells(config.seed))?);
+    }
     let mut timings: Vec<Timing> = all.iter().map(Timing::calibrate).collect();
 
     let start = Instant::now();
@@ -214,8 +215,11 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
             timing.round(round);
         }
     }
-    let mut threads = threads::run(&Subject::gaussian(), &inputs);
-    threads.extend(threads::run(&Subject::cauchy(), &inputs));
+    let inputs = Inputs::draw(config.seed)?;
+    let mut threads = Vec::new();
+    for model in ModelId::defaults_of_names() {
+        threads.extend(threads::run(model, &inputs)?);
+    }
     Ok(SpeedReport {
         config: *config,
         directions: DIRECTIONS,
@@ -333,7 +337,11 @@ mod tests {
         // Slices take part where a gather point is given: evaluation and sampling. Eight lanes at one gather point take
         // part where it has several samples.
         let levels = Level::available().count();
-        assert_eq!(report.rows.len(), 2 * (Op::ALL.len() * (2 + levels) + 6 * levels), "a row is missing");
+        assert_eq!(
+            report.rows.len(),
+            ModelId::defaults_of_names().count() * (Op::ALL.len() * (2 + levels) + 6 * levels),
+            "a row is missing"
+        );
         assert!(last >= 1.0, "progress ended at {last}");
         for row in &report.rows {
             assert!(row.passed, "wrong answers: {row:?}");
@@ -347,8 +355,7 @@ mod tests {
 
     #[test]
     fn one_wrong_lane_in_eight_fails() {
-        let inputs = Inputs::draw(1).expect("hair within range");
-        for cell in cells(&Subject::gaussian(), &inputs) {
+        for cell in ModelId::Gaussian.visit(Cells(1)).expect("hair within range") {
             let mut answers = cell.contenders[1].task.answers();
             assert!(cell.truth.wrong_share(&answers) <= MAX_WRONG, "{}: right answers", cell.op);
             for answer in answers.iter_mut().step_by(8) {

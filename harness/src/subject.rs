@@ -1,12 +1,10 @@
-//! The models under comparison by name, each beside its textbook twin, and the hair and directions that comparisons draw.
+//! The two models of hair that the experiments compare, and the parameters and directions that comparisons draw.
 
-use crate::sampler::Sampler;
 use crate::sequence::Independent;
-use core::f32::consts::PI;
 use glam::Vec3;
-use hairis::textbook::{Oracle, Parameters, Real, Shape};
-use hairis::{Bell, Gaussian, Hair, HairDesc, HairParams, Matched, MatchedBell, Model, ParamError};
-use hairis_variants::Cauchy;
+use hairis::textbook::Shape;
+use hairis::{HairParams, ParamError};
+use hairis_variants::{Draw, Field, Kind, ModelId, Parameters as _, Values};
 use serde::Serialize;
 
 /// The models compared.
@@ -25,10 +23,15 @@ impl ModelKind {
 
     /// Name in reports.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
+        self.id().name()
+    }
+
+    /// The model with the published sampler.
+    pub(crate) const fn id(self) -> ModelId {
         match self {
-            Self::Gaussian => "gaussian",
-            Self::Cauchy => "cauchy",
+            Self::Gaussian => ModelId::Gaussian,
+            Self::Cauchy => ModelId::Cauchy,
         }
     }
 
@@ -57,67 +60,6 @@ impl ModelKind {
     }
 }
 
-/// A model that takes the published parameters, and what the textbook needs to be the same model.
-#[derive(Clone, Copy, Debug)]
-pub struct Subject<M> {
-    /// The model's name in tables and in JSON.
-    pub name: &'static str,
-    /// The kernel's sampler.
-    pub sampler: Sampler,
-    /// The kernel.
-    pub model: M,
-    /// The textbook's bell.
-    pub shape: Shape,
-    /// Factor on every width, the kernel's own.
-    pub width_factor: f32,
-}
-
-impl Subject<Hair<Gaussian>> {
-    /// The published model.
-    #[must_use]
-    pub fn gaussian() -> Self {
-        Self::of("gaussian", Gaussian, Shape::Gaussian)
-    }
-}
-
-impl Subject<Hair<Cauchy>> {
-    /// The all-Cauchy variant with the Gaussian model's own widths.
-    #[must_use]
-    pub fn cauchy() -> Self {
-        Self::of("cauchy", Cauchy::PAPER, Shape::Cauchy)
-    }
-}
-
-impl<B: Bell> Subject<Hair<B>> {
-    fn of(name: &'static str, bell: B, shape: Shape) -> Self {
-        let width_factor = bell.width_factor();
-        Self { name, sampler: Sampler::Ou, model: Hair(bell), shape, width_factor }
-    }
-}
-
-impl<B: MatchedBell> Subject<Hair<B>> {
-    /// The same model with the sampler matched to it, the default one.
-    #[must_use]
-    pub fn matched(self) -> Subject<Matched<B>> {
-        let Self { name, model: Hair(bell), shape, width_factor, .. } = self;
-        Subject { name, sampler: Sampler::Matched, model: Matched(bell), shape, width_factor }
-    }
-}
-
-impl<M: Model<Params = HairParams>> Subject<M> {
-    /// The textbook's parameters for this hair, exact in `f64`.
-    #[must_use]
-    pub fn parameters<T: Real>(&self, hair: &HairParams) -> Parameters<T> {
-        Parameters::from(hair).with_width_factor(T::from_f32(self.width_factor))
-    }
-
-    /// The oracle: the textbook in `f64` for this hair seen from `wo`, with the same sampler.
-    #[must_use]
-    pub fn oracle(&self, hair: &HairParams, wo: Vec3) -> Oracle<f64> {
-        Oracle::prepare(&self.parameters(hair), self.shape, to_f64(wo), self.sampler.bands())
-    }
-}
-
 /// The components in double precision.
 #[must_use]
 pub fn to_f64(v: Vec3) -> [f64; 3] {
@@ -140,6 +82,38 @@ pub fn uniform_direction(xi: &mut Independent) -> Vec3 {
     direction(sin_theta, (1.0 - sin_theta * sin_theta).sqrt(), phi)
 }
 
+/// Random values of every field that has a range, and a random word of every field of words; the others stay.
+#[must_use]
+pub fn random(mut values: Values, xi: &mut Independent) -> Values {
+    for late in [false, true] {
+        for field in values.fields().iter().filter(|field| field.late == late) {
+            let mut number = || match (field.kind, field.draw) {
+                #[expect(clippy::cast_precision_loss, reason = "a few words")]
+                (Kind::Word(words), _) => Some((xi.next_f32() * words.len() as f32).floor()),
+                (_, Some(Draw { least, most, unit, log: false })) => {
+                    Some((least + (most - least) * xi.next_f32()) * unit)
+                }
+                (_, Some(Draw { least, most, unit, .. })) => Some(least * (most / least).powf(xi.next_f32()) * unit),
+                _ => None,
+            };
+            let numbers: Option<Vec<f32>> = (0..field.kind.width()).map(|_| number()).collect();
+            values = numbers.map_or(values, |numbers| values.with(field.name, &numbers));
+        }
+    }
+    values
+}
+
+/// The values as `hairis eval` reads them.
+pub(crate) fn values_json(values: &Values) -> serde_json::Value {
+    let json = |field: &Field| match field.kind {
+        Kind::Number => serde_json::json!(values.numbers(field.name)[0]),
+        Kind::Word(_) => serde_json::json!(values.word(field.name)),
+        _ => serde_json::json!(values.numbers(field.name)),
+    };
+    let given = values.fields().iter().filter(|field| values.has(field.name));
+    given.map(|field| (field.name.to_owned(), json(field))).collect()
+}
+
 /// Hair drawn over the range of the everyday: widths log-uniform in 1 to 30 degrees, shifts uniform within 15 degrees,
 /// glints at 10 to 80 degrees and of strength 0.1 to 10 (log-uniform), colours uniform in `[0, 1)`.
 ///
@@ -147,28 +121,7 @@ pub fn uniform_direction(xi: &mut Independent) -> Vec3 {
 ///
 /// Never: every range lies within those accepted.
 pub fn random_hair(xi: &mut Independent) -> Result<HairParams, ParamError> {
-    const DEG: f32 = PI / 180.0;
-    let mut shift = || (30.0 * xi.next_f32() - 15.0) * DEG;
-    let [alpha_r, alpha_tt, alpha_trt] = [shift(), shift(), shift()];
-    let mut width = || 30.0_f32.powf(xi.next_f32()) * DEG;
-    let [beta_r, beta_tt, beta_trt, gamma_tt, gamma_g] = [width(), width(), width(), width(), width()];
-    let mut color = || [xi.next_f32(), xi.next_f32(), xi.next_f32()];
-    let [intensity_r, intensity_tt, intensity_trt] = [color(), color(), color()];
-    HairParams::new(&HairDesc {
-        alpha_r,
-        alpha_tt,
-        alpha_trt,
-        beta_r,
-        beta_tt,
-        beta_trt,
-        gamma_tt,
-        gamma_g,
-        phi_g: (10.0 + 70.0 * xi.next_f32()) * DEG,
-        intensity_r,
-        intensity_tt,
-        intensity_trt,
-        intensity_g: 0.1 * 100.0_f32.powf(xi.next_f32()),
-    })
+    HairParams::from_values(&random(HairParams::default().values(), xi))
 }
 
 #[cfg(test)]

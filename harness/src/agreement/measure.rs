@@ -2,19 +2,16 @@
 
 use super::packet::Packet;
 use super::{Quantity, Region};
-use crate::sampler::Sampler;
-use crate::subject::{Subject, to_f64};
+use crate::subject::to_f64;
 use core::f64::consts::TAU;
 use glam::Vec3;
-use hairis::textbook::{Oracle, Shape};
-use hairis::{Bsdf, Bsdf8, Eval, Gather, HairParams, Level, Lobe, Model, Sample, Vec3x8};
+use hairis::textbook::Reference;
+use hairis::{Eval, Hit, Level, Lobe, ParamError, Sample, Vec3x8};
+use hairis_variants::{Accuracy, AnyBsdf8, AnyReference, ModelId, Values};
 use wide::f32x8;
 
 /// What rounding may do to an azimuth, rad: a few units in the last place of a component near 1.
 const ROUNDING: f64 = 1.0 / 4_194_304.0;
-
-/// Below this the kernels' Gaussians are 0, which they reach between `2^-114` and `2^-115`.
-const FLOOR: f64 = 1.0 / (1_u128 << 114) as f64;
 
 /// Who computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,36 +60,40 @@ pub(super) struct Measured {
 /// A lane of a packet: the gather point, and the direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    pub(super) hair: HairParams,
+    pub(super) values: Values,
     pub(super) wo: Vec3,
+    pub(super) h: f32,
     pub(super) wi: Vec3,
     /// What `wi` was drawn with, if it was.
     pub(super) xi: Option<[f32; 3]>,
 }
 
 /// Calls `keep` with every error of the packet.
-pub(super) fn measure<M>(
-    subject: &Subject<M>,
+pub(super) fn measure(
+    model: ModelId,
     region: Region,
     packet: &Packet,
     way: Way,
     keep: &mut impl FnMut(Quantity, Measured),
-) where
-    M: Model<Params = HairParams>,
-{
-    let bsdfs = packet.hair.map(|hair| Bsdf::new(&subject.model, &hair));
+) -> Result<(), ParamError> {
+    let materials = packet.values.iter().map(|values| model.bsdf(values)).collect::<Result<Vec<_>, _>>()?;
+    let hit = |k: usize| Hit { wo: packet.wo[k].into(), h: packet.h[k] };
     let xi: [f32x8; 3] = core::array::from_fn(|k| f32x8::new(packet.xi.map(|xi| xi[k])));
-    let answers = |k: usize, gather: &Gather<M>| (gather.eval_pdf(packet.wi[k]), gather.sample(packet.xi[k]));
     let answers: [(Eval, Option<Sample>); 8] = match way {
-        Way::One => core::array::from_fn(|k| answers(k, &bsdfs[k].prepare(packet.wo[k]))),
+        Way::One => core::array::from_fn(|k| {
+            let gather = materials[k].prepare(hit(k));
+            (gather.eval_pdf(packet.wi[k]), gather.sample(packet.xi[k]))
+        }),
         Way::Shared(level) => {
-            let gather = bsdfs[0].prepare(packet.wo[0]);
+            let gather = materials[0].prepare(hit(0));
             let eval = gather.eval_pdf8_at(level, &Vec3x8::from(packet.wi_shared));
             let sample = gather.sample8_at(level, &xi);
             core::array::from_fn(|k| (eval.lane(k), sample.lane(k)))
         }
         Way::Points(level) => {
-            let gather = Bsdf8::pack(bsdfs.each_ref()).prepare8_at(level, &Vec3x8::from(packet.wo));
+            let hits = Hit { wo: Vec3x8::from(packet.wo), h: f32x8::new(packet.h) };
+            let materials = AnyBsdf8::pack(core::array::from_fn(|k| &materials[k])).expect("eight of one model");
+            let gather = materials.prepare8_at(level, hits);
             let eval = gather.eval_pdf8_at(level, &Vec3x8::from(packet.wi));
             let sample = gather.sample8_at(level, &xi);
             core::array::from_fn(|k| (eval.lane(k), sample.lane(k)))
@@ -100,48 +101,53 @@ pub(super) fn measure<M>(
     };
     for (k, (eval, sample)) in answers.iter().enumerate() {
         let (point, wi) = if matches!(way, Way::Shared(_)) { (0, packet.wi_shared[k]) } else { (k, packet.wi[k]) };
-        let exact = Exact {
-            oracle: &packet.oracle[point],
-            shape: subject.shape,
-            sampler: subject.sampler,
-            place: Place { hair: packet.hair[point], wo: packet.wo[point], wi, xi: None },
-        };
-        if region.holds(exact.place.wo, wi) {
-            exact.of_eval(eval, keep);
+        let place = Place { values: packet.values[point], wo: packet.wo[point], h: packet.h[point], wi, xi: None };
+        let exact = |place| Exact { model, accuracy: model.accuracy(), truth: &packet.truth[point], place };
+        if region.holds(place.wo, wi) {
+            exact(place).of_eval(eval, keep)?;
         }
-        if let Some(sample) = sample.filter(|sample| region.holds(exact.place.wo, sample.wi)) {
-            let place = Place { wi: sample.wi, xi: Some(packet.xi[k]), ..exact.place };
-            Exact { place, ..exact }.of_sample(packet.xi[k], &sample, keep);
+        if let Some(sample) = sample.filter(|sample| region.holds(place.wo, sample.wi)) {
+            exact(Place { wi: sample.wi, xi: Some(packet.xi[k]), ..place }).of_sample(packet.xi[k], &sample, keep)?;
         }
     }
+    Ok(())
 }
 
-/// The oracle at one place.
+/// The formulas at one place.
 struct Exact<'a> {
-    oracle: &'a Oracle<f64>,
-    shape: Shape,
-    sampler: Sampler,
+    model: ModelId,
+    accuracy: Accuracy,
+    truth: &'a AnyReference<f64>,
     place: Place,
 }
 
 impl Exact<'_> {
-    fn of_eval(&self, eval: &Eval, keep: &mut impl FnMut(Quantity, Measured)) {
-        let value = self.compare(Quantity::Value, eval.value, |wi| self.oracle.eval(wi), self.floor());
-        keep(Quantity::Pdf, self.compare(Quantity::Pdf, [eval.pdf], |wi| [self.oracle.pdf(wi)], self.pdf_floor()));
-        keep(Quantity::Value, value);
+    fn of_eval(&self, eval: &Eval, keep: &mut impl FnMut(Quantity, Measured)) -> Result<(), ParamError> {
+        let slack = self.slack()?;
+        keep(Quantity::Pdf, self.compare(Quantity::Pdf, [eval.pdf], |wi| [self.truth.pdf(wi)], self.pdf_slack(slack)));
+        keep(Quantity::Value, self.compare(Quantity::Value, eval.value, |wi| self.truth.eval(wi), slack));
+        Ok(())
     }
 
-    fn of_sample(&self, xi: [f32; 3], sample: &Sample, keep: &mut impl FnMut(Quantity, Measured)) {
-        let over_pdf = |wi: [f64; 3]| wi[1].hypot(wi[2]) / self.oracle.pdf(wi);
-        let (floor, scale) = (self.floor(), over_pdf(to_f64(self.place.wi)));
-        let pdf = self.compare(Quantity::SamplePdf, [sample.pdf], |wi| [self.oracle.pdf(wi)], self.pdf_floor());
-        let value = self.compare(Quantity::SampleValue, sample.value, |wi| self.oracle.eval(wi), floor);
-        let weight = |wi: [f64; 3]| self.oracle.eval(wi).map(|s| s * over_pdf(wi));
-        let weight = self.compare(Quantity::SampleWeight, sample.weight, weight, floor.map(|f| f * scale));
+    fn of_sample(
+        &self,
+        xi: [f32; 3],
+        sample: &Sample,
+        keep: &mut impl FnMut(Quantity, Measured),
+    ) -> Result<(), ParamError> {
+        let over_pdf = |wi: [f64; 3]| wi[1].hypot(wi[2]) / self.truth.pdf(wi);
+        let (slack, scale) = (self.slack()?, over_pdf(to_f64(self.place.wi)));
+        let pdf = self.compare(Quantity::SamplePdf, [sample.pdf], |wi| [self.truth.pdf(wi)], self.pdf_slack(slack));
+        let value = self.compare(Quantity::SampleValue, sample.value, |wi| self.truth.eval(wi), slack);
+        let weight = |wi: [f64; 3]| self.truth.eval(wi).map(|s| s * over_pdf(wi));
+        let weight = self.compare(Quantity::SampleWeight, sample.weight, weight, slack.map(|s| s * scale));
         keep(Quantity::SamplePdf, pdf);
         keep(Quantity::SampleValue, value);
         keep(Quantity::SampleWeight, weight);
-        keep(Quantity::SampleCdf, self.cdf(xi, sample.lobe));
+        if let Some(cdf) = self.cdf(xi, sample.lobe) {
+            keep(Quantity::SampleCdf, cdf);
+        }
+        Ok(())
     }
 
     /// The error of `got` against `truth` at the direction.
@@ -150,57 +156,47 @@ impl Exact<'_> {
         quantity: Quantity,
         got: [f32; N],
         truth: impl Fn([f64; 3]) -> [f64; N],
-        floor: [f64; N],
+        slack: [f64; N],
     ) -> Measured {
         let wi = to_f64(self.place.wi);
         let want = truth(wi);
         let worst = |slack: [f64; N]| (0..N).map(|c| relative(got[c], want[c], slack[c])).fold(0.0, f64::max);
-        let error = worst(floor);
-        let bound = quantity.bound(self.shape, self.sampler);
+        let error = worst(slack);
+        let bound = quantity.bound(&self.accuracy);
         let unexplained = error > bound && {
             let (low, high) = (truth(turned(wi, -ROUNDING)), truth(turned(wi, ROUNDING)));
-            worst(core::array::from_fn(|c| floor[c] + (low[c] - want[c]).abs().max((high[c] - want[c]).abs()))) > bound
+            worst(core::array::from_fn(|c| slack[c] + (low[c] - want[c]).abs().max((high[c] - want[c]).abs()))) > bound
         };
         Measured { error, unexplained, at: self.place }
     }
 
     /// How far the cdf of the lobe at the direction is from the numbers it was drawn with, on the circle of length 1:
     /// both ends of the cosines' cdf are the same direction.
-    fn cdf(&self, xi: [f32; 3], lobe: Lobe) -> Measured {
+    fn cdf(&self, xi: [f32; 3], lobe: Lobe) -> Option<Measured> {
         let wi = to_f64(self.place.wi);
         let turn = azimuth(to_f64(self.place.wo)) - azimuth(wi);
         let phi = turn - TAU * (turn / TAU).round();
-        let cdf = self.oracle.cdf(lobe, inclination(wi), phi);
+        let cdf = self.truth.cdf(lobe, inclination(wi), phi)?;
         let off = |k: usize| (cdf[k] - f64::from(xi[k + 1])).abs();
         let error = off(0).max(off(1).min((1.0 - off(1)).abs()));
-        Measured { error, unexplained: error > Quantity::SampleCdf.bound(self.shape, self.sampler), at: self.place }
+        Some(Measured { error, unexplained: error > self.accuracy.cdf, at: self.place })
     }
 
-    /// How far a Gaussian value may be off by design: the kernel's bells end at `2^-114`, each of the four lobes.
-    fn floor(&self) -> [f64; 3] {
-        if self.shape != Shape::Gaussian {
-            return [0.0; 3];
-        }
-        let [theta_o, theta_i] = [self.place.wo, self.place.wi].map(|v| inclination(to_f64(v)));
-        let cos_theta_d = (0.5 * (theta_o - theta_i)).cos();
-        let d = self.place.hair.desc();
-        core::array::from_fn(|c| {
-            let intensity = d.intensity_r[c] + d.intensity_tt[c] + d.intensity_trt[c] * (1.0 + d.intensity_g);
-            f64::from(intensity) * FLOOR / (cos_theta_d * cos_theta_d)
-        })
+    /// How far a value may be off by design.
+    fn slack(&self) -> Result<[f64; 3], ParamError> {
+        self.model.slack(&self.place.values, to_f64(self.place.wo), to_f64(self.place.wi))
     }
 
-    /// How far a density may be off by design: a matched one is S, as the mean of RGB, times what depends on the
-    /// inclination alone, and ends with it.
-    fn pdf_floor(&self) -> [f64; 1] {
-        if self.sampler.bands().is_none() || self.shape != Shape::Gaussian {
+    /// How far a density may be off by design: one made of S, as the mean of RGB, ends with it.
+    fn pdf_slack(&self, slack: [f64; 3]) -> [f64; 1] {
+        if !self.accuracy.slack_in_pdf || slack == [0.0; 3] {
             return [0.0];
         }
         let wi = to_f64(self.place.wi);
-        let (floor, value): (f64, f64) = (self.floor().iter().sum(), self.oracle.eval(wi).iter().sum());
+        let (slack, value): (f64, f64) = (slack.iter().sum(), self.truth.eval(wi).iter().sum());
         // Where S is too small for a double, the density may end altogether.
-        let share = if value > 0.0 { floor / value } else { 1.0 };
-        [share * self.oracle.pdf(wi)]
+        let share = if value > 0.0 { slack / value } else { 1.0 };
+        [share * self.truth.pdf(wi)]
     }
 }
 

@@ -2,11 +2,11 @@
 
 use super::Region;
 use crate::sequence::{Independent, stream_id};
-use crate::subject::{Subject, direction, random_hair, uniform_direction};
+use crate::subject::{direction, random, to_f64, uniform_direction};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::Vec3;
-use hairis::textbook::Oracle;
-use hairis::{HairParams, Model, ParamError};
+use hairis::ParamError;
+use hairis_variants::{AnyReference, ModelId, Values};
 
 /// Between these angles from the axis, rad, a direction is near it.
 pub(super) const AXIS: [f64; 2] = [1e-3, 1e-2];
@@ -17,29 +17,39 @@ const CUT: f64 = 1e-6;
 /// Within this of pi, rad, the textbook itself has lost the digits of `cos(phi / 2)`: a double at pi is good to 4e-16.
 const SEAM: f64 = 1e-9;
 
-/// Eight heads of hair seen from eight directions, with the directions and the numbers to ask about.
+/// Formulas of these values, seen from `wo` at the offset `h`.
+pub(super) type Formulas<'a> = dyn Fn(&Values, Vec3, f32) -> Result<AnyReference<f64>, ParamError> + Sync + 'a;
+
+/// The formulas of a model.
+pub(super) fn formulas(model: ModelId) -> impl Fn(&Values, Vec3, f32) -> Result<AnyReference<f64>, ParamError> {
+    move |values, wo, h| model.reference(values, to_f64(wo), f64::from(h))
+}
+
+/// Eight materials seen from eight directions, with the directions and the numbers to ask about.
 pub(super) struct Packet {
-    pub(super) hair: [HairParams; 8],
+    pub(super) values: [Values; 8],
     pub(super) wo: [Vec3; 8],
+    /// Offsets across the fibre; 0 for a model of the far field.
+    pub(super) h: [f32; 8],
     /// One for each gather point.
     pub(super) wi: [Vec3; 8],
     /// Eight for the first gather point.
     pub(super) wi_shared: [Vec3; 8],
     pub(super) xi: [[f32; 3]; 8],
-    pub(super) oracle: [Oracle<f64>; 8],
+    pub(super) truth: Vec<AnyReference<f64>>,
 }
 
 impl Packet {
     /// Packet `index` of a run; the same whatever other packets are drawn.
-    pub(super) fn draw<M>(subject: &Subject<M>, region: Region, seed: u64, index: u64) -> Result<Self, ParamError>
-    where
-        M: Model<Params = HairParams>,
-    {
+    pub(super) fn draw(
+        model: ModelId,
+        formulas: &Formulas<'_>,
+        region: Region,
+        seed: u64,
+        index: u64,
+    ) -> Result<Self, ParamError> {
         let mut from = Independent::new(seed, stream_id(&[0xa9ee, region as u64, index]));
-        let mut hair = [HairParams::default(); 8];
-        for one in &mut hair {
-            *one = random_hair(&mut from)?;
-        }
+        let values = [(); 8].map(|()| random(model.defaults(), &mut from));
         let wo = core::array::from_fn(|_| match region {
             // Half of them see the fibre along its axis, too.
             Region::Axis if from.next_f64() < 0.5 => near_axis(&mut from),
@@ -48,8 +58,9 @@ impl Packet {
         let wi = wo.map(|wo| region.direction(wo, &mut from));
         let wi_shared = core::array::from_fn(|_| region.direction(wo[0], &mut from));
         let xi = core::array::from_fn(|_| region.numbers(&mut from));
-        let oracle = core::array::from_fn(|k| subject.oracle(&hair[k], wo[k]));
-        Ok(Self { hair, wo, wi, wi_shared, xi, oracle })
+        let h = [(); 8].map(|()| if model.is_near_field() { 2.0 * from.next_f32() - 1.0 } else { 0.0 });
+        let truth = (0..8).map(|k| formulas(&values[k], wo[k], h[k])).collect::<Result<_, _>>()?;
+        Ok(Self { values, wo, h, wi, wi_shared, xi, truth })
     }
 }
 

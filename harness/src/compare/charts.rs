@@ -9,7 +9,7 @@ use crate::sequence::{SequenceKind, XiSource};
 use crate::speed::Op;
 use crate::subject::ModelKind;
 use hairis::HairParams;
-use hairis_variants::Cauchy;
+use hairis_variants::{Cauchy, ModelId};
 
 /// Points of each panel of the sample distributions.
 const POINTS: usize = 2000;
@@ -34,7 +34,7 @@ pub(super) fn distributions(of: &Comparison) -> Figure {
 /// Speed against the textbook.
 pub(super) fn speed(of: &Comparison) -> Figure {
     let ops = [Op::Prepare, Op::EvalPdf, Op::Sample, Op::PointsMixed];
-    let groups = ModelKind::ALL.iter().flat_map(|m| ops.map(|op| format!("{}: {}", m.name(), op.label())));
+    let groups = ModelId::defaults_of_names().flat_map(|m| ops.map(|op| format!("{}: {}", m.name(), op.label())));
     let mut chart = BarChart::new("Speed against the textbook in f32", Axis::log("times as fast (×)"), groups);
     let mut contenders: Vec<(&str, &str)> = Vec::new();
     for row in of.speed.rows.iter().filter(|row| row.contender != "textbook") {
@@ -43,7 +43,7 @@ pub(super) fn speed(of: &Comparison) -> Figure {
         }
     }
     for (contender, level) in contenders {
-        let bars = ModelKind::ALL.iter().flat_map(|model| {
+        let bars = ModelId::defaults_of_names().flat_map(|model| {
             ops.map(|op| {
                 let row = of.speed.row(op, model.name(), contender, level);
                 row.map_or(Bar::new(f64::NAN), |row| {

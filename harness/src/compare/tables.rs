@@ -8,6 +8,7 @@ use crate::speed::Op;
 use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::table::{Table, number};
+use hairis_variants::ModelId;
 
 /// How much a set of tables holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,12 +39,12 @@ pub fn tables(of: &Comparison, depth: Depth) -> Tables {
         efficiency.extend([effective(of), samples(of), self::efficiency(of)]);
     }
     efficiency.push(light_sampling(of, depth));
-    let mut speed: Vec<Table> = ModelKind::ALL.iter().map(|model| speed(of, *model, depth)).collect();
+    let mut speed: Vec<Table> = ModelId::defaults_of_names().map(|model| speed(of, model, depth)).collect();
     speed.push(threads(of));
     Tables { speed, agreement: vec![agreement(of, depth)], efficiency }
 }
 
-fn speed(of: &Comparison, model: ModelKind, depth: Depth) -> Table {
+fn speed(of: &Comparison, model: ModelId, depth: Depth) -> Table {
     let title = format!("Time a direction, {} model", model.name());
     let mut table = Table::new(title)
         .text("operation")
@@ -120,7 +121,8 @@ fn agreement(of: &Comparison, depth: Depth) -> Table {
             (row.model, row.sampler, row.path, row.level, row.region) == key
         };
         let (model, sampler, path, level, region) = key;
-        let mut cells: Vec<String> = [model, sampler.name(), path, level, region.label()].map(str::to_owned).into();
+        let mut cells: Vec<String> =
+            [model, sampler.unwrap_or_default(), path, level, region.label()].map(str::to_owned).into();
         for quantity in shown {
             let row = of.agreement.iter().filter(same).find(|row| row.quantity == quantity);
             cells.push(row.map_or_else(String::new, |row| format!("{:.1e} ({:.1e})", row.worst, row.p999)));

@@ -2,7 +2,7 @@
 
 use super::{ModelKind, PHI_O_DEG};
 use crate::quadrature::{SphereIntegrator, Tolerance, fibre_direction};
-use crate::sampler::{Sampler, Scatter, UNIFORM_PDF, gather};
+use crate::sampler::{Sampler, Scatter, UNIFORM_PDF};
 use crate::sequence::{XiSource, to_unit_f32};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::{DVec3, Vec3};
@@ -20,7 +20,7 @@ pub(super) struct Case {
 
 /// One sampler of the case.
 struct Estimator {
-    scatter: Box<dyn Scatter>,
+    scatter: Scatter,
     /// S, and the density of every sampler but the uniform one.
     oracle: Oracle<f64>,
     /// An integrator that knows where the lobes are, and where the density jumps.
@@ -44,7 +44,7 @@ impl Case {
         let estimators = Sampler::ALL.map(|sampler| {
             let oracle = Oracle::prepare(&parameters, model.shape(), exact.to_array(), sampler.bands());
             let sphere = oracle.jumps().fold(integrator(&parameters, exact), SphereIntegrator::theta_break);
-            Estimator { scatter: gather(model, sampler, params, wo), oracle, sphere }
+            Estimator { scatter: Scatter::new(model, sampler, params, wo), oracle, sphere }
         });
         Self { model, theta_o_deg, estimators }
     }

@@ -7,7 +7,7 @@ use crate::report::Figure;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::{Bell, Bsdf, Gaussian, Hair, HairParams};
-use hairis_variants::Cauchy;
+use hairis_variants::{AnyBsdf, Cauchy};
 
 /// Rows and columns of a map.
 const CELLS: (u16, u16) = (60, 120);
@@ -15,8 +15,8 @@ const CELLS: (u16, u16) = (60, 120);
 /// S of the published model or of a variant, the mean of RGB.
 type Scatter = Box<dyn Fn(Vec3) -> f64>;
 
-fn scatter<B: Bell + 'static>(bell: B, params: &HairParams, theta_o: f64) -> Scatter {
-    let gather = Bsdf::new(&Hair(bell), params).prepare(direction(theta_o, 0.0));
+fn scatter(bsdf: impl Into<AnyBsdf>, theta_o: f64) -> Scatter {
+    let gather = bsdf.into().prepare(direction(theta_o, 0.0));
     Box::new(move |wi| gather.eval(wi).into_iter().map(f64::from).sum::<f64>() / 3.0)
 }
 
@@ -28,8 +28,10 @@ fn scatter<B: Bell + 'static>(bell: B, params: &HairParams, theta_o: f64) -> Sca
 #[must_use]
 pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> Figure {
     const STEPS: i32 = 1440;
-    let mut models = vec![("Gaussian (published)".to_owned(), scatter(Gaussian, params, theta_o))];
-    models.extend(variants.iter().map(|(name, bell)| ((*name).to_owned(), scatter(*bell, params, theta_o))));
+    let mut models = vec![("Gaussian (published)".to_owned(), scatter(Bsdf::new(&Hair(Gaussian), params), theta_o))];
+    models.extend(
+        variants.iter().map(|(name, bell)| ((*name).to_owned(), scatter(Bsdf::new(&bell.model(), params), theta_o))),
+    );
     let turn = || (0..=STEPS).map(|i| 2.0 * PI * f64::from(i) / f64::from(STEPS));
     // 90° is the fibre's tip, 0° the side of the viewer.
     let along = |angle: f64| {
@@ -63,7 +65,8 @@ pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> 
 #[must_use]
 pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Figure; 3] {
     const DECADES: f64 = 1e3;
-    let (a, b) = (scatter(Gaussian, params, theta_o), scatter(cauchy, params, theta_o));
+    let (a, b) =
+        (scatter(Bsdf::new(&Hair(Gaussian), params), theta_o), scatter(Bsdf::new(&cauchy.model(), params), theta_o));
     let map =
         |s: &dyn Fn(Vec3) -> f64| Grid::sample(Projection::EqualAngle, CELLS, |theta, phi| s(direction(theta, phi)));
     let (gaussian, other, more) = (map(&a), map(&b), map(&|wi| b(wi) - a(wi)));

@@ -3,11 +3,13 @@
 use super::Op;
 use super::check::Truth;
 use super::inputs::{DIRECTIONS, Inputs, arrays, packets, xi_packets};
-use super::task::{PROBE, Pass, task};
+use super::task::{PROBE, Pass, Point, task};
 use super::{points, slices};
-use crate::subject::Subject;
-use hairis::textbook::Textbook;
-use hairis::{Bsdf, HairParams, Level, Model};
+use crate::subject::to_f64;
+use glam::Vec3;
+use hairis::textbook::Reference;
+use hairis::{Bsdf, Level, ParamError};
+use hairis_variants::{AnyReference, ModelId, Parameters, Registered, Visitor};
 
 /// Name of the contender that all others are compared with; the first of every cell.
 pub(super) const TEXTBOOK: &str = "textbook";
@@ -39,29 +41,40 @@ pub(super) struct Cell {
     pub(super) truth: Truth,
 }
 
-/// All operations of one model.
-pub(super) fn cells<M>(subject: &Subject<M>, inputs: &Inputs) -> Vec<Cell>
-where
-    M: Model<Params = HairParams> + 'static,
-{
-    Op::ALL
-        .into_iter()
-        .map(|op| {
+/// All operations of one model, on inputs of this seed; none unless it is the first of its name.
+pub(super) struct Cells(pub(super) u64);
+
+impl Visitor for Cells {
+    type Output = Result<Vec<Cell>, ParamError>;
+
+    fn visit<M: Registered>(self) -> Self::Output {
+        // At compile time: what is not timed is not compiled.
+        if const { !ModelId::of::<M>().is_default() } {
+            return Ok(Vec::new());
+        }
+        let (id, inputs) = (ModelId::of::<M>(), Inputs::draw(self.0)?);
+        let timed = |op| {
             let (contenders, truth) = match op {
-                Op::Prepare => prepare(subject, inputs),
-                Op::EvalPdf => eval_pdf(subject, &inputs.hair[0], inputs),
-                Op::EvalPdfTails => eval_pdf(subject, &inputs.narrow, inputs),
-                Op::Sample => sample(subject, &inputs.hair[0], inputs),
-                Op::SampleTails => sample(subject, &inputs.narrow, inputs),
-                Op::PointsShared => points::shared::<_, 1, 1>(subject, inputs),
-                Op::PointsOf4 => points::shared::<_, 4, 1>(subject, inputs),
-                Op::PointsOf16 => points::shared::<_, 16, 2>(subject, inputs),
-                Op::PointsMixed => points::mixed(subject, inputs, false),
-                Op::PointsPacked => points::mixed(subject, inputs, true),
+                Op::Prepare => prepare::<M>(id, &inputs)?,
+                Op::EvalPdf => eval_pdf::<M>(id, &inputs.params[0], &inputs)?,
+                Op::EvalPdfTails => eval_pdf::<M>(id, &inputs.narrow, &inputs)?,
+                Op::Sample => sample::<M>(id, &inputs.params[0], &inputs)?,
+                Op::SampleTails => sample::<M>(id, &inputs.narrow, &inputs)?,
+                Op::PointsShared => points::shared::<M, 1, 1>(id, &inputs)?,
+                Op::PointsOf4 => points::shared::<M, 4, 1>(id, &inputs)?,
+                Op::PointsOf16 => points::shared::<M, 16, 2>(id, &inputs)?,
+                Op::PointsMixed => points::mixed::<M>(id, &inputs, false)?,
+                Op::PointsPacked => points::mixed::<M>(id, &inputs, true)?,
             };
-            Cell { op, model: subject.name, contenders, truth }
-        })
-        .collect()
+            Ok(Cell { op, model: id.name(), contenders, truth })
+        };
+        Op::ALL.into_iter().map(timed).collect()
+    }
+}
+
+/// The formulas in `f64` for these parameters, seen from each of `wo`.
+pub(super) fn truth<P: Parameters>(id: ModelId, params: &P, wo: &[Vec3]) -> Result<Vec<AnyReference<f64>>, ParamError> {
+    wo.iter().map(|wo| id.reference(&params.values(), to_f64(*wo), 0.0)).collect()
 }
 
 pub(super) fn scalar(name: &'static str, task: Box<dyn Pass>) -> Contender {
@@ -78,30 +91,26 @@ pub(super) fn with_levels(
     contenders
 }
 
-fn prepare<M>(subject: &Subject<M>, inputs: &Inputs) -> (Vec<Contender>, Truth)
-where
-    M: Model<Params = HairParams> + 'static,
-{
-    let hair = &inputs.hair[0];
-    let (parameters, shape) = (subject.parameters::<f32>(hair), subject.shape);
-    let bsdf = Bsdf::new(&subject.model, hair);
+fn prepare<M: Registered>(id: ModelId, inputs: &Inputs<M::Params>) -> Result<(Vec<Contender>, Truth), ParamError> {
+    let params = inputs.params[0];
+    let bsdf = Bsdf::new(&M::MODEL, &params);
     let contenders = vec![
-        scalar(TEXTBOOK, task(&arrays(&inputs.wo), move |wo| Textbook::prepare(&parameters, shape, *wo))),
+        scalar(TEXTBOOK, task(&arrays(&inputs.wo), move |wo| Point(M::reference::<f32>(&params, *wo, 0.0)))),
         scalar(ONE, task(&inputs.wo, move |wo| bsdf.prepare(*wo))),
     ];
     let contenders =
         with_levels(contenders, EIGHT, |level| task(&packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo)));
-    let points = inputs.wo.iter().map(|wo| subject.oracle(hair, *wo)).collect();
-    (contenders, Truth::of_directions(points, &[PROBE; DIRECTIONS]))
+    Ok((contenders, Truth::of_directions(truth(id, &params, &inputs.wo)?, &[PROBE; DIRECTIONS])))
 }
 
-fn eval_pdf<M>(subject: &Subject<M>, hair: &HairParams, inputs: &Inputs) -> (Vec<Contender>, Truth)
-where
-    M: Model<Params = HairParams> + 'static,
-{
+fn eval_pdf<M: Registered>(
+    id: ModelId,
+    params: &M::Params,
+    inputs: &Inputs<M::Params>,
+) -> Result<(Vec<Contender>, Truth), ParamError> {
     let wo = inputs.wo[0];
-    let textbook = Textbook::prepare(&subject.parameters::<f32>(hair), subject.shape, wo.to_array());
-    let gather = Bsdf::new(&subject.model, hair).prepare(wo);
+    let textbook = M::reference::<f32>(params, wo.to_array(), 0.0);
+    let gather = Bsdf::new(&M::MODEL, params).prepare(wo);
     let contenders = vec![
         scalar(TEXTBOOK, task(&arrays(&inputs.wi), move |wi| textbook.eval_pdf(*wi))),
         scalar(ONE, task(&inputs.wi, move |wi| gather.eval_pdf(*wi))),
@@ -109,16 +118,17 @@ where
     let contenders =
         with_levels(contenders, EIGHT, |level| task(&packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi)));
     let contenders = with_levels(contenders, SLICES, |level| slices::eval_pdf(gather, level, &inputs.wi));
-    (contenders, Truth::of_directions(vec![subject.oracle(hair, wo); DIRECTIONS], &inputs.wi))
+    Ok((contenders, Truth::of_directions(truth(id, params, &[wo; DIRECTIONS])?, &inputs.wi)))
 }
 
-fn sample<M>(subject: &Subject<M>, hair: &HairParams, inputs: &Inputs) -> (Vec<Contender>, Truth)
-where
-    M: Model<Params = HairParams> + 'static,
-{
+fn sample<M: Registered>(
+    id: ModelId,
+    params: &M::Params,
+    inputs: &Inputs<M::Params>,
+) -> Result<(Vec<Contender>, Truth), ParamError> {
     let wo = inputs.wo[0];
-    let textbook = Textbook::prepare(&subject.parameters::<f32>(hair), subject.shape, wo.to_array());
-    let gather = Bsdf::new(&subject.model, hair).prepare(wo);
+    let textbook = M::reference::<f32>(params, wo.to_array(), 0.0);
+    let gather = Bsdf::new(&M::MODEL, params).prepare(wo);
     let contenders = vec![
         scalar(TEXTBOOK, task(&inputs.xi, move |xi| textbook.sample(*xi))),
         scalar(ONE, task(&inputs.xi, move |xi| gather.sample(*xi))),
@@ -126,5 +136,5 @@ where
     let contenders =
         with_levels(contenders, EIGHT, |level| task(&xi_packets(&inputs.xi), move |xi| gather.sample8_at(level, xi)));
     let contenders = with_levels(contenders, SLICES, |level| slices::sample(gather, level, &inputs.xi));
-    (contenders, Truth::of_samples(vec![subject.oracle(hair, wo); DIRECTIONS], &inputs.xi))
+    Ok((contenders, Truth::of_samples(truth(id, params, &[wo; DIRECTIONS])?, &inputs.xi)))
 }

@@ -3,7 +3,8 @@
 use super::task::Answer;
 use crate::subject::to_f64;
 use glam::{DVec3, Vec3};
-use hairis::textbook::Oracle;
+use hairis::textbook::Reference;
+use hairis_variants::AnyReference;
 
 /// Largest error of an answer that counts as right: relative for value and density, rad for a direction.
 ///
@@ -15,19 +16,19 @@ const NEGLIGIBLE: f64 = 1e-25;
 
 /// What is right for each direction of a pass, by the textbook in `f64`.
 pub(super) struct Truth {
-    points: Vec<Oracle<f64>>,
+    points: Vec<AnyReference<f64>>,
     /// The direction given, or the one that a sample must come to; `None` if it must be discarded.
     wi: Vec<Option<[f64; 3]>>,
 }
 
 impl Truth {
     /// For directions that are given.
-    pub(super) fn of_directions(points: Vec<Oracle<f64>>, wi: &[Vec3]) -> Self {
+    pub(super) fn of_directions(points: Vec<AnyReference<f64>>, wi: &[Vec3]) -> Self {
         Self { points, wi: wi.iter().map(|wi| Some(to_f64(*wi))).collect() }
     }
 
     /// For samples.
-    pub(super) fn of_samples(points: Vec<Oracle<f64>>, xi: &[[f32; 3]]) -> Self {
+    pub(super) fn of_samples(points: Vec<AnyReference<f64>>, xi: &[[f32; 3]]) -> Self {
         let wi = points
             .iter()
             .zip(xi)
@@ -50,7 +51,7 @@ impl Truth {
     }
 }
 
-fn right(point: &Oracle<f64>, truth: &Option<[f64; 3]>, answer: &Answer) -> bool {
+fn right(point: &AnyReference<f64>, truth: &Option<[f64; 3]>, answer: &Answer) -> bool {
     let Some(truth) = *truth else {
         return answer.pdf == 0.0;
     };

@@ -1,9 +1,10 @@
 //! The arguments of all calls, drawn before anything is timed.
 
 use crate::sequence::{Independent, stream_id};
-use crate::subject::{random_hair, uniform_direction};
+use crate::subject::{random, uniform_direction};
 use glam::Vec3;
-use hairis::{HairDesc, HairParams, ParamError, Vec3x8};
+use hairis::{ParamError, Vec3x8};
+use hairis_variants::Parameters;
 use wide::f32x8;
 
 /// Directions a pass. With their numbers `xi` they take 21 KB.
@@ -12,41 +13,34 @@ use wide::f32x8;
 /// which costs slices up to 40 %.
 pub(super) const DIRECTIONS: usize = 896;
 
-/// Half a degree, rad.
-const NARROW: f32 = 0.008_726_646;
-
-/// Directions and numbers, all lanes different, and eight heads of hair.
-pub(super) struct Inputs {
+/// Directions and numbers, all lanes different, and eight sets of parameters.
+pub(super) struct Inputs<P> {
     pub(super) wi: Vec<Vec3>,
     pub(super) wo: Vec<Vec3>,
     pub(super) xi: Vec<[f32; 3]>,
-    pub(super) hair: [HairParams; 8],
-    /// The default hair with every width half a degree: almost all directions lie in the far tails of every lobe, where
+    pub(super) params: [P; 8],
+    /// The default with lobes so narrow, half a degree on hair, that almost all directions lie in their far tails, where
     /// numbers would be denormal if they were let.
-    pub(super) narrow: HairParams,
+    pub(super) narrow: P,
 }
 
-impl Inputs {
-    /// Uniform directions and numbers; the first hair is the default, the other seven are drawn.
+impl<P: Parameters> Inputs<P> {
+    /// Uniform directions and numbers; the first parameters are the default, the other seven are drawn.
     pub(super) fn draw(seed: u64) -> Result<Self, ParamError> {
         let mut from = Independent::new(seed, stream_id(&[0x5eed]));
-        let mut hair = [HairParams::default(); 8];
-        for one in &mut hair[1..] {
-            *one = random_hair(&mut from)?;
+        let (mut params, default) = ([P::default(); 8], P::default().values());
+        for one in &mut params[1..] {
+            *one = P::from_values(&random(default, &mut from))?;
         }
+        let narrow = P::FIELDS.iter().filter_map(|field| Some((field, field.narrow?)));
+        let narrow =
+            narrow.fold(default, |values, (field, narrow)| values.with(field.name, &vec![narrow; field.kind.width()]));
         Ok(Self {
             wi: (0..DIRECTIONS).map(|_| uniform_direction(&mut from)).collect(),
             wo: (0..DIRECTIONS).map(|_| uniform_direction(&mut from)).collect(),
             xi: (0..DIRECTIONS).map(|_| [from.next_f32(), from.next_f32(), from.next_f32()]).collect(),
-            hair,
-            narrow: HairParams::new(&HairDesc {
-                beta_r: NARROW,
-                beta_tt: NARROW,
-                beta_trt: NARROW,
-                gamma_tt: NARROW,
-                gamma_g: NARROW,
-                ..*HairParams::default().desc()
-            })?,
+            params,
+            narrow: P::from_values(&narrow)?,
         })
     }
 }

@@ -1,14 +1,14 @@
 //! Gather points of their own: preparing one, and a few samples of it.
 
-use super::cells::{Contender, EIGHT, EIGHT_AT_ONE, ONE, TEXTBOOK, scalar, with_levels};
+use super::cells::{Contender, EIGHT, EIGHT_AT_ONE, ONE, TEXTBOOK, scalar, truth, with_levels};
 use super::check::Truth;
 use super::inputs::{Inputs, arrays, packets, pairs, xi_packets};
 use super::task::{Answer, Output, several, task};
-use crate::subject::Subject;
 use glam::Vec3;
-use hairis::textbook::Textbook;
+use hairis::textbook::Reference;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, HairParams, Model, Sample8};
+use hairis::{Bsdf, Bsdf8, ParamError, Sample8};
+use hairis_variants::{ModelId, Registered};
 
 /// The first `N` samples of a packet.
 struct Leading<const N: usize>(Sample8);
@@ -23,16 +23,12 @@ impl<const N: usize> Output for Leading<N> {
 
 /// A gather point and `N` samples of it, all on the same hair: each lane at its own point, or a point's samples in `P`
 /// packets, the last of which may have lanes to spare.
-pub(super) fn shared<M, const N: usize, const P: usize>(
-    subject: &Subject<M>,
-    inputs: &Inputs,
-) -> (Vec<Contender>, Truth)
-where
-    M: Model<Params = HairParams> + 'static,
-{
-    let hair = &inputs.hair[0];
-    let (parameters, shape) = (subject.parameters::<f32>(hair), subject.shape);
-    let bsdf = Bsdf::new(&subject.model, hair);
+pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
+    id: ModelId,
+    inputs: &Inputs<M::Params>,
+) -> Result<(Vec<Contender>, Truth), ParamError> {
+    let params = inputs.params[0];
+    let bsdf = Bsdf::new(&M::MODEL, &params);
     let (rows, _) = inputs.xi.as_chunks::<N>();
     let wo = &inputs.wo[..rows.len()];
     let contenders = vec![
@@ -42,7 +38,7 @@ where
                 &pairs(&arrays(wo), rows),
                 |i| i,
                 move |(wo, xi), keep| {
-                    let point = Textbook::prepare(&parameters, shape, *wo);
+                    let point = M::reference::<f32>(&params, *wo, 0.0);
                     xi.iter().for_each(|xi| keep(&point.sample(*xi)));
                 },
             ),
@@ -91,28 +87,28 @@ where
             )
         });
     }
-    let points = wo.iter().flat_map(|wo| core::iter::repeat_n(subject.oracle(hair, *wo), N)).collect();
-    (contenders, Truth::of_samples(points, &inputs.xi))
+    let points = truth(id, &params, wo)?.into_iter().flat_map(|point| core::iter::repeat_n(point, N)).collect();
+    Ok((contenders, Truth::of_samples(points, &inputs.xi)))
 }
 
 /// A gather point and one sample of it, each lane on hair of its own; packed beforehand, or once a packet.
-pub(super) fn mixed<M>(subject: &Subject<M>, inputs: &Inputs, pack_each: bool) -> (Vec<Contender>, Truth)
-where
-    M: Model<Params = HairParams> + 'static,
-{
-    let parameters = inputs.hair.map(|hair| subject.parameters::<f32>(&hair));
-    let shape = subject.shape;
-    let bsdfs = inputs.hair.map(|hair| Bsdf::new(&subject.model, &hair));
+pub(super) fn mixed<M: Registered>(
+    id: ModelId,
+    inputs: &Inputs<M::Params>,
+    pack_each: bool,
+) -> Result<(Vec<Contender>, Truth), ParamError> {
+    let params = inputs.params;
+    let bsdfs = params.map(|params| Bsdf::new(&M::MODEL, &params));
     let numbered: Vec<(usize, Vec3)> = inputs.wo.iter().enumerate().map(|(i, wo)| (i % 8, *wo)).collect();
     let arrays: Vec<(usize, [f32; 3])> = numbered.iter().map(|(i, wo)| (*i, wo.to_array())).collect();
     let contenders = vec![
         scalar(
             TEXTBOOK,
-            task(&pairs(&arrays, &inputs.xi), move |((hair, wo), xi)| {
-                Textbook::prepare(&parameters[*hair], shape, *wo).sample(*xi)
+            task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
+                M::reference::<f32>(&params[*i], *wo, 0.0).sample(*xi)
             }),
         ),
-        scalar(ONE, task(&pairs(&numbered, &inputs.xi), move |((hair, wo), xi)| bsdfs[*hair].prepare(*wo).sample(*xi))),
+        scalar(ONE, task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| bsdfs[*i].prepare(*wo).sample(*xi))),
     ];
     let eights = pairs(&packets(&inputs.wo), &xi_packets(&inputs.xi));
     let packed = Bsdf8::pack(bsdfs.each_ref());
@@ -123,6 +119,6 @@ where
             task(&eights, move |(wo, xi)| packed.prepare8_at(level, wo).sample8_at(level, xi))
         }
     });
-    let points = numbered.iter().map(|(i, wo)| subject.oracle(&inputs.hair[*i], *wo)).collect();
-    (contenders, Truth::of_samples(points, &inputs.xi))
+    let points = numbered.iter().map(|(i, wo)| truth(id, &params[*i], &[*wo])).collect::<Result<Vec<_>, _>>()?.concat();
+    Ok((contenders, Truth::of_samples(points, &inputs.xi)))
 }

@@ -4,7 +4,7 @@ use super::task::{Answer, Pass};
 use core::cell::RefCell;
 use core::hint::black_box;
 use glam::Vec3;
-use hairis::{EvalSlices, Gather, HairParams, LengthError, Level, Model, SampleSlices};
+use hairis::{EvalSlices, Gather, LengthError, Level, Model, SampleSlices};
 
 /// A function from three columns to `N`.
 struct Slices<F, const N: usize> {
@@ -16,7 +16,7 @@ struct Slices<F, const N: usize> {
 /// A pass of [`Gather::eval_pdf_batch_at`].
 pub(super) fn eval_pdf<M>(gather: Gather<M>, level: Level, wi: &[Vec3]) -> Box<dyn Pass>
 where
-    M: Model<Params = HairParams> + 'static,
+    M: Model + 'static,
 {
     let inputs = columns(wi, |wi| wi.to_array());
     pass(inputs, move |wi, [r, g, b, pdf]: [&mut [f32]; 4]| {
@@ -27,7 +27,7 @@ where
 /// A pass of [`Gather::sample_batch_at`].
 pub(super) fn sample<M>(gather: Gather<M>, level: Level, xi: &[[f32; 3]]) -> Box<dyn Pass>
 where
-    M: Model<Params = HairParams> + 'static,
+    M: Model + 'static,
 {
     let inputs = columns(xi, |xi| *xi);
     pass(inputs, move |xi, [r, g, b, pdf, u, v, w, weight_r, weight_g, weight_b, slot]: [&mut [f32]; 11]| {

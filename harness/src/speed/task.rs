@@ -4,8 +4,8 @@ use crate::light::Seen8;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
-use hairis::textbook::{self, Textbook};
-use hairis::{Eval, Eval8, Gather, Gather8, HairParams, Model, Sample, Sample8, Vec3x8};
+use hairis::textbook::{Drawn, Reference};
+use hairis::{Eval, Eval8, Gather, Gather8, Model, Sample, Sample8, Vec3x8};
 
 /// Where gather points are evaluated to check how they were prepared: no lobe of it is negligible.
 pub(super) const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
@@ -141,7 +141,7 @@ impl Output for Seen8 {
     }
 }
 
-impl Output for textbook::Drawn<f32> {
+impl Output for Drawn<f32> {
     fn answers(&self, out: &mut Vec<Answer>) {
         out.push(Answer { wi: Some(self.wi.into()), value: self.value, pdf: self.pdf });
     }
@@ -164,20 +164,22 @@ impl Output for Sample8 {
     }
 }
 
-impl Output for Textbook<f32> {
+/// A gather point of the formulas.
+pub(super) struct Point<R>(pub(super) R);
+
+impl<R: Reference<f32>> Output for Point<R> {
     fn answers(&self, out: &mut Vec<Answer>) {
-        let probe = PROBE.to_array();
-        (self.eval(probe), self.pdf(probe)).answers(out);
+        self.0.eval_pdf(PROBE.to_array()).answers(out);
     }
 }
 
-impl<M: Model<Params = HairParams>> Output for Gather<M> {
+impl<M: Model> Output for Gather<M> {
     fn answers(&self, out: &mut Vec<Answer>) {
         self.eval_pdf(PROBE).answers(out);
     }
 }
 
-impl<M: Model<Params = HairParams>> Output for Gather8<M> {
+impl<M: Model> Output for Gather8<M> {
     fn answers(&self, out: &mut Vec<Answer>) {
         self.eval_pdf8(&Vec3x8::splat(PROBE)).answers(out);
     }

@@ -2,9 +2,9 @@
 
 use super::inputs::Inputs;
 use super::{Op, quartiles};
-use crate::subject::Subject;
 use core::hint::black_box;
-use hairis::{Bsdf, EvalSlices, Gather, HairParams, Level, Model, SampleSlices};
+use hairis::{EvalSlices, HairParams, Level, ParamError, SampleSlices};
+use hairis_variants::ModelId;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Serialize;
@@ -61,19 +61,15 @@ fn thread_counts() -> Vec<usize> {
 }
 
 /// Measures evaluation and sampling of one model on every number of threads.
-pub(super) fn run<M>(subject: &Subject<M>, inputs: &Inputs) -> Vec<ThreadsResult>
-where
-    M: Model<Params = HairParams> + 'static,
-    Gather<M>: Sync,
-{
+pub(super) fn run(model: ModelId, inputs: &Inputs<HairParams>) -> Result<Vec<ThreadsResult>, ParamError> {
     let counts = thread_counts();
     // Where the system refuses threads there is nothing to report.
     let Ok(pools) =
         counts.iter().map(|n| ThreadPoolBuilder::new().num_threads(*n).build()).collect::<Result<Vec<_>, _>>()
     else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
-    let gather = Bsdf::new(&subject.model, &inputs.hair[0]).prepare(inputs.wo[0]);
+    let gather = model.bsdf(&model.defaults())?.prepare(inputs.wo[0]);
     let wi: Vec<[f32; 3]> = inputs.wi.iter().map(|wi| wi.to_array()).collect();
     let eval = time(&pools, &wi, |chunk: &mut Chunk<4>| {
         let [r, g, b, pdf] = chunk.out.each_mut().map(Vec::as_mut_slice);
@@ -89,14 +85,14 @@ where
         let of = |(threads, times): (&usize, &Vec<f64>)| {
             let ratios: Vec<f64> = ns[0].iter().zip(times).map(|(one, many)| one / many).collect();
             let ([_, ns, _], [speedup_q1, speedup, speedup_q3]) = (quartiles(times), quartiles(&ratios));
-            let (model, level) = (subject.name, Level::detect().name());
+            let (model, level) = (model.name(), Level::detect().name());
             ThreadsResult { op, model, level, threads: *threads, millions: 1e3 / ns, speedup, speedup_q1, speedup_q3 }
         };
         counts.iter().zip(&ns).map(of).collect::<Vec<_>>()
     };
     let mut all = rows(Op::EvalPdf, eval);
     all.extend(rows(Op::Sample, sample));
-    all
+    Ok(all)
 }
 
 /// Time a direction of each pool in each round, ns; the pools take turns.
@@ -129,7 +125,7 @@ mod tests {
         let counts = thread_counts();
         assert!(counts[0] == 1 && counts.windows(2).all(|pair| pair[0] < pair[1]), "{counts:?}");
         let inputs = Inputs::draw(1).expect("hair within range");
-        let rows = run(&Subject::gaussian(), &inputs);
+        let rows = run(ModelId::Gaussian, &inputs).expect("the default is legal");
         assert_eq!(rows.len(), 2 * counts.len(), "a row is missing");
         for row in &rows {
             assert!(row.millions > 0.0 && row.speedup > 0.0 && row.speedup_q1 <= row.speedup_q3, "{row:?}");

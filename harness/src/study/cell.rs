@@ -7,7 +7,7 @@ use super::{Budget, Light5};
 use crate::efficiency::PHI_O_DEG;
 use crate::light::Light;
 use crate::quadrature::fibre_direction;
-use crate::sampler::{Sampler, Scatter, gather};
+use crate::sampler::{Sampler, Scatter};
 use crate::sequence::{Independent, XiSource, stream_id};
 use crate::subject::ModelKind;
 use hairis::{ParamError, Vec3x8};
@@ -72,13 +72,13 @@ pub(super) fn measure(
     let mut found = Found { samplers: Vec::new(), perfect: Vec::new() };
     for model in ModelKind::ALL {
         for &sampler in samplers {
-            let scatter = gather(model, sampler, &params, wo);
+            let scatter = Scatter::new(model, sampler, &params, wo);
             let mut from = stream(&[1, model.index(), sampler.index()]);
             let mut perfect = (sampler == perfect::SOURCE).then_some([[perfect::Tally::default(); 2]; 5]);
-            let (tallies, max_weight) = by_sampler(&*scatter, &mut from, budget, lights, perfect.as_mut());
+            let (tallies, max_weight) = by_sampler(&scatter, &mut from, budget, lights, perfect.as_mut());
             for (light, (tally, draws)) in tallies.into_iter().zip(&draws).enumerate() {
                 let of_light = perfect.as_mut().map(|perfect| &mut perfect[light][1]);
-                let strata = [tally, by_light(&*scatter, draws, budget, of_light)];
+                let strata = [tally, by_light(&scatter, draws, budget, of_light)];
                 let figures = figures(&strata);
                 let max_contribution = strata[0].largest().max(strata[1].largest()) / figures.mean.value;
                 found.samplers.push(Measured { figures, max_weight, max_contribution });
@@ -97,7 +97,7 @@ const fn is_drawn(place: u64) -> bool {
 
 /// Tallies of a sampler's directions, a light each, and the largest weight; perfect sampling's first strata on the side.
 fn by_sampler(
-    scatter: &dyn Scatter,
+    scatter: &Scatter,
     from: &mut Independent,
     budget: Budget,
     lights: &Light5<'_>,
@@ -130,12 +130,7 @@ fn by_sampler(
 }
 
 /// The tally of a light's directions; perfect sampling's on the side.
-fn by_light(
-    scatter: &dyn Scatter,
-    draws: &[LightDraw],
-    budget: Budget,
-    mut perfect: Option<&mut perfect::Tally>,
-) -> Tally {
+fn by_light(scatter: &Scatter, draws: &[LightDraw], budget: Budget, mut perfect: Option<&mut perfect::Tally>) -> Tally {
     let mut tally = Tally::default();
     let ratio = widened(budget.ratio());
     for draw in draws {

@@ -10,7 +10,7 @@
 
 use super::columns::Columns;
 use crate::light::Light;
-use crate::sampler::{Directions, Sampler, Visit, uniform_sample8, uniform8, visit};
+use crate::sampler::{Sampler, bsdf, uniform_sample8, uniform8};
 use crate::sequence::{Independent, stream_id};
 use crate::speed::task::{Pass, task};
 use crate::speed::{quartiles, stretch};
@@ -18,7 +18,7 @@ use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::subject::uniform_direction;
 use core::hint::black_box;
-use hairis::{Bsdf, Gaussian, Hair, HairParams, Model, Sample8, Vec3x8};
+use hairis::{HairParams, Sample8, Vec3x8};
 use wide::f32x8;
 
 /// Samples of a gather point over which its set-up is spread: a path tracer's, and two of direct lighting.
@@ -92,7 +92,7 @@ pub(super) fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<Ti
             for per_point in PER_POINT {
                 contenders.push(Contender {
                     of: Timed::Sample { model, sampler, per_point },
-                    pass: visit(model, sampler, MakePass { points: &points, per_point }),
+                    pass: pass(model, sampler, &points, per_point),
                     directions: 8 * PACKETS * per_point,
                     passes: 16 / u32::try_from(per_point).unwrap_or(16),
                     ns: Vec::with_capacity(rounds),
@@ -130,7 +130,7 @@ pub(super) fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<Ti
 
 /// Directions of the published sampler on the default hair, sixteen a gather point.
 fn directions(from: &mut Independent) -> Vec<Vec3x8> {
-    let bsdf = Bsdf::new(&Hair(Gaussian), &HairParams::default());
+    let bsdf = bsdf(ModelKind::Gaussian, Sampler::Ou, &HairParams::default());
     let of_packet = |_| {
         let points = Points::draw(from);
         let gather = bsdf.prepare8(&points.wo);
@@ -157,33 +157,22 @@ impl Points {
     }
 }
 
-struct MakePass<'a> {
-    points: &'a [Points],
-    per_point: usize,
-}
-
-impl Visit for MakePass<'_> {
-    type Output = Box<dyn Pass>;
-
-    fn visit<M>(self, model: M, directions: Directions) -> Box<dyn Pass>
-    where
-        M: Model<Params = HairParams> + 'static,
-        M::Gather<f32>: Send + Sync,
-    {
-        let (bsdf, per_point) = (Bsdf::new(&model, &HairParams::default()), self.per_point);
-        match directions {
-            Directions::Sampled => task(self.points, move |points| {
-                let gather = bsdf.prepare8(&points.wo);
-                each(&points.xi[..per_point], |xi| gather.sample8(xi))
-            }),
-            Directions::Uniform => task(self.points, move |points| {
-                let gather = bsdf.prepare8(&points.wo);
-                each(&points.xi[..per_point], |xi| {
-                    let wi = uniform8(xi);
-                    uniform_sample8(wi, gather.eval_pdf8(&wi))
-                })
-            }),
-        }
+/// A pass over `points`, `per_point` samples each.
+fn pass<'a>(model: ModelKind, sampler: Sampler, points: &[Points], per_point: usize) -> Box<dyn Pass + 'a> {
+    let bsdf = bsdf(model, sampler, &HairParams::default());
+    if sampler == Sampler::Uniform {
+        task(points, move |points| {
+            let gather = bsdf.prepare8(&points.wo);
+            each(&points.xi[..per_point], |xi| {
+                let wi = uniform8(xi);
+                uniform_sample8(wi, gather.eval_pdf8(&wi))
+            })
+        })
+    } else {
+        task(points, move |points| {
+            let gather = bsdf.prepare8(&points.wo);
+            each(&points.xi[..per_point], |xi| gather.sample8(xi))
+        })
     }
 }
 

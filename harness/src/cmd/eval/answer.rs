@@ -1,21 +1,16 @@
 //! The answers, computed along the chosen path.
 
-use super::request::{Query, Request, SAMPLERS};
+use super::request::{Query, Request};
 use crate::config::Path;
-use crate::sampler::{Directions, Visit, visit};
-use crate::subject::{ModelKind, to_f64};
+use crate::subject::to_f64;
 use core::array::from_fn;
 use glam::Vec3;
-use hairis::textbook::{Oracle, Parameters};
-use hairis::{
-    Bsdf, Bsdf8, Eval, EvalSlices, Gather, Gaussian, Hair, HairParams, Lobe, LobeEval, LobeEval8, Model as _, PerLobe,
-    Sample, SampleSlices, Vec3x8,
-};
+use hairis::textbook::Reference;
+use hairis::{Eval, EvalSlices, Hit, Lobe, LobeEval8, PerLobe, Sample, SampleSlices, Vec3x8};
+use hairis_variants::{AnyBsdf8, AnyGather, ModelId};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use wide::f32x8;
-
-/// Names of the lobes in the output.
-const LOBES: &[&str] = Hair::<Gaussian>::LOBES;
 
 /// One line of the output. Numbers are printed as short as reading them back in the same precision allows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,12 +26,22 @@ pub(super) enum Line {
 
 /// The answer to a request.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Answer<T> {
+    #[serde(flatten)]
+    what: What<T>,
+    /// Colours of the lobes, under the name that the model reports them by.
+    #[serde(flatten)]
+    colors: BTreeMap<&'static str, Vec<[T; 3]>>,
+}
+
+/// The answer to one of the two questions. `pdf_lobe` has a number per lobe of the model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub(super) enum Answer<T> {
+enum What<T> {
     /// To a direction.
-    Value { s: [T; 3], pdf: T, pdf_lobe: [T; 4] },
+    Value { s: [T; 3], pdf: T, pdf_lobe: Vec<T> },
     /// To uniform numbers. A discarded sample has no lobe, and 0 everywhere else.
-    Sample { wi: [T; 3], s: [T; 3], pdf: T, pdf_lobe: [T; 4], lobe: Option<&'static str>, weight: [T; 3] },
+    Sample { wi: [T; 3], s: [T; 3], pdf: T, pdf_lobe: Vec<T>, lobe: Option<&'static str>, weight: [T; 3] },
 }
 
 /// How many lines a path takes at once.
@@ -53,59 +58,42 @@ pub(super) fn answers(path: Path, requests: &[&Request]) -> Vec<Line> {
     if path == Path::F64 {
         return requests.iter().map(|request| Line::Double(textbook(request))).collect();
     }
-    // The requests of each model and sampler together; the answers then go back to their places.
+    // The requests of each model together; the answers then go back to their places.
     let mut answers = Vec::with_capacity(requests.len());
-    for (model, sampler) in ModelKind::ALL.into_iter().flat_map(|model| SAMPLERS.map(|sampler| (model, sampler))) {
-        let of = requests.iter().enumerate().filter(|(_, r)| (r.model, r.sampler) == (model, sampler));
-        let (at, requests): (Vec<usize>, Vec<&Request>) = of.map(|(at, r)| (at, *r)).unzip();
-        answers.extend(at.into_iter().zip(visit(model, sampler, Along { path, requests: &requests })));
+    for model in ModelId::ALL {
+        let of_model = requests.iter().enumerate().filter(|(_, request)| request.model == *model);
+        let (at, requests): (Vec<usize>, Vec<&Request>) = of_model.map(|(at, request)| (at, *request)).unzip();
+        let found = match path {
+            Path::X8 => eight(&requests),
+            Path::Batch => batch(&requests),
+            Path::Scalar | Path::F64 => requests.iter().map(|request| scalar(request)).collect(),
+        };
+        answers.extend(at.into_iter().zip(found));
     }
     answers.sort_unstable_by_key(|(at, _)| *at);
     answers.into_iter().map(|(_, answer)| Line::Single(answer)).collect()
 }
 
-/// The answers along a path that calls the kernels.
-struct Along<'a> {
-    path: Path,
-    requests: &'a [&'a Request],
-}
-
-impl Visit for Along<'_> {
-    type Output = Vec<Answer<f32>>;
-
-    fn visit<M: HairModel + 'static>(self, model: M, _: Directions) -> Self::Output {
-        match self.path {
-            Path::X8 => eight(model, self.requests),
-            Path::Batch => batch(model, self.requests),
-            Path::Scalar | Path::F64 => scalar(model, self.requests),
-        }
+/// One direction a call.
+fn scalar(request: &Request) -> Answer<f32> {
+    let gather = gather(request);
+    let densities = |wi| gather.lobes(wi).0.map(|lobe| lobe.pdf);
+    let colors = || gather.lobes(request.wo).0.map(|lobe| lobe.color);
+    match request.query {
+        Query::Wi(wi) => valued(request, gather.eval_pdf(wi), densities(wi), colors),
+        Query::Xi(xi) => sampled(request, gather.sample(xi), densities, colors),
     }
 }
 
-/// A model of hair, whichever way its directions are drawn.
-trait HairModel: hairis::Model<Params = HairParams> {}
-impl<M: hairis::Model<Params = HairParams>> HairModel for M {}
-
-/// One direction a call.
-fn scalar<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
-    let one = |request: &&Request| {
-        let gather = gather(hair, request);
-        match request.query {
-            Query::Wi(wi) => valued(gather.eval_pdf(wi), densities(&gather.lobes(wi))),
-            Query::Xi(xi) => sampled(gather.sample(xi), |wi| densities(&gather.lobes(wi))),
-        }
-    };
-    requests.iter().map(one).collect()
-}
-
-/// Eight lines a call: every lane has its own material, gather point and query. Lanes to spare repeat the last line.
-fn eight<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
+/// Eight lines a call, all of one model: every lane has its own material, gather point and query. Lanes to spare repeat the
+/// last line.
+fn eight(requests: &[&Request]) -> Vec<Answer<f32>> {
     let mut answers = Vec::with_capacity(requests.len());
     for group in requests.chunks(8) {
         let lane = |i: usize| group[i.min(group.len() - 1)];
-        let materials: [Bsdf<M>; 8] = from_fn(|i| Bsdf::new(&hair, &lane(i).params));
+        let materials = AnyBsdf8::pack(from_fn(|i| &lane(i).bsdf)).expect("requests of one model");
         let wo = Vec3x8::from(from_fn(|i| lane(i).wo));
-        let gathers = Bsdf8::pack(materials.each_ref()).prepare8(&wo);
+        let gathers = materials.prepare8(Hit { wo, h: f32x8::new(from_fn(|i| lane(i).h)) });
         // A lane whose line has no xi samples all the same, and its sample is not looked at.
         let xi: [[f32; 3]; 8] = from_fn(|i| match lane(i).query {
             Query::Wi(_) => [0.5; 3],
@@ -117,9 +105,13 @@ fn eight<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
             Query::Xi(_) => samples.wi.lane(i),
         }));
         let (evals, lobes) = (gathers.eval_pdf8(&wi), gathers.lobes8(&wi));
-        answers.extend(group.iter().enumerate().map(|(i, request)| match request.query {
-            Query::Wi(_) => valued(evals.lane(i), densities_of_lane(&lobes, i)),
-            Query::Xi(_) => sampled(samples.lane(i), |_| densities_of_lane(&lobes, i)),
+        let at_wo = gathers.lobes8(&wo);
+        answers.extend(group.iter().enumerate().map(|(i, request)| {
+            let colors = || at_wo.0.map(|lobe| lobe.color.map(|c| c.as_array()[i]));
+            match request.query {
+                Query::Wi(_) => valued(request, evals.lane(i), densities_of_lane(&lobes, i), colors),
+                Query::Xi(_) => sampled(request, samples.lane(i), |_| densities_of_lane(&lobes, i), colors),
+            }
         }));
     }
     answers
@@ -127,10 +119,10 @@ fn eight<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
 
 /// Slices in, slices out: a call for all directions, and one for all samples, of neighbouring lines that share a gather
 /// point.
-fn batch<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
+fn batch(requests: &[&Request]) -> Vec<Answer<f32>> {
     let mut answers = Vec::with_capacity(requests.len());
-    for run in requests.chunk_by(|a, b| a.params == b.params && a.wo == b.wo) {
-        let gather = gather(hair, run[0]);
+    for run in requests.chunk_by(|a, b| (a.wo, a.h) == (b.wo, b.h) && a.values == b.values) {
+        let gather = gather(run[0]);
         let mut wi = Vec::new();
         let mut xi = Vec::new();
         for request in run {
@@ -139,8 +131,8 @@ fn batch<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
                 Query::Xi(numbers) => xi.push(numbers),
             }
         }
-        let mut values = batch_values(&gather, &wi).into_iter();
-        let mut samples = batch_samples(&gather, &xi).into_iter();
+        let mut values = batch_values(run[0], &gather, &wi).into_iter();
+        let mut samples = batch_samples(run[0], &gather, &xi).into_iter();
         answers.extend(run.iter().filter_map(|request| match request.query {
             Query::Wi(_) => values.next(),
             Query::Xi(_) => samples.next(),
@@ -151,18 +143,19 @@ fn batch<M: HairModel>(hair: M, requests: &[&Request]) -> Vec<Answer<f32>> {
 
 const ONE_LENGTH: &str = "slices that were made of one length";
 
-fn batch_values<M: HairModel>(gather: &Gather<M>, wi: &[Vec3]) -> Vec<Answer<f32>> {
+fn batch_values(request: &Request, gather: &AnyGather, wi: &[Vec3]) -> Vec<Answer<f32>> {
     let len = wi.len();
     let [u, v, w]: [Vec<f32>; 3] = from_fn(|row| wi.iter().map(|wi| wi[row]).collect());
     let (mut value, mut pdf) = ([vec![0.0; len], vec![0.0; len], vec![0.0; len]], vec![0.0; len]);
     let out = EvalSlices { value: value.each_mut().map(Vec::as_mut_slice), pdf: &mut pdf };
     gather.eval_pdf_batch([&u, &v, &w], out).expect(ONE_LENGTH);
     let lobes = batch_densities(gather, wi);
-    let answer = |i: usize| valued(Eval { value: from_fn(|c| value[c][i]), pdf: pdf[i] }, lobes[i]);
+    let colors = || gather.lobes(request.wo).0.map(|lobe| lobe.color);
+    let answer = |i: usize| valued(request, Eval { value: from_fn(|c| value[c][i]), pdf: pdf[i] }, lobes[i], colors);
     (0..len).map(answer).collect()
 }
 
-fn batch_samples<M: HairModel>(gather: &Gather<M>, xi: &[[f32; 3]]) -> Vec<Answer<f32>> {
+fn batch_samples(request: &Request, gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<Answer<f32>> {
     let len = xi.len();
     let [lobe, theta, phi]: [Vec<f32>; 3] = from_fn(|row| xi.iter().map(|xi| xi[row]).collect());
     let mut vectors: [[Vec<f32>; 3]; 3] = from_fn(|_| from_fn(|_| vec![0.0; len]));
@@ -173,16 +166,17 @@ fn batch_samples<M: HairModel>(gather: &Gather<M>, xi: &[[f32; 3]]) -> Vec<Answe
     let at = |vector: usize, i: usize| -> [f32; 3] { from_fn(|row| vectors[vector][row][i]) };
     let wi: Vec<Vec3> = (0..len).map(|i| at(0, i).into()).collect();
     let lobes = batch_densities(gather, &wi);
+    let colors = || gather.lobes(request.wo).0.map(|lobe| lobe.color);
     let answer = |i: usize| {
         let lobe = Lobe::ALL.into_iter().zip(0_u8..).find(|(_, number)| f32::from(*number) == slot[i]);
         let sample = lobe.map(|(lobe, _)| Sample { wi: wi[i], value: at(1, i), pdf: pdf[i], weight: at(2, i), lobe });
-        sampled(sample, |_| lobes[i])
+        sampled(request, sample, |_| lobes[i], colors)
     };
     (0..len).map(answer).collect()
 }
 
 /// Densities of the lobes: they have no slices of their own, so eight directions a call.
-fn batch_densities<M: HairModel>(gather: &Gather<M>, wi: &[Vec3]) -> Vec<[f32; 4]> {
+fn batch_densities(gather: &AnyGather, wi: &[Vec3]) -> Vec<[f32; 4]> {
     let eight = |wi: &[Vec3]| {
         let lobes = gather.lobes8(&Vec3x8::from(from_fn(|i| wi[i.min(wi.len() - 1)])));
         (0..wi.len()).map(|i| densities_of_lane(&lobes, i)).collect::<Vec<_>>()
@@ -192,59 +186,77 @@ fn batch_densities<M: HairModel>(gather: &Gather<M>, wi: &[Vec3]) -> Vec<[f32; 4
 
 /// The formulas in double precision.
 fn textbook(request: &Request) -> Answer<f64> {
-    let parameters = Parameters::from(&request.params);
-    let hair = Oracle::prepare(&parameters, request.model.shape(), to_f64(request.wo), request.sampler.bands());
-    match request.query {
+    let Request { model, values, wo, h, query, .. } = request;
+    let point = model.reference(values, to_f64(*wo), f64::from(*h)).expect("checked when it was read");
+    let densities = |wi| pdf_lobe(*model, point.lobes(wi).0.map(|lobe| lobe.pdf));
+    let what = match query {
         Query::Wi(wi) => {
-            let wi = to_f64(wi);
-            Answer::Value { s: hair.eval(wi), pdf: hair.pdf(wi), pdf_lobe: hair.lobe_pdfs(wi).0 }
+            let wi = to_f64(*wi);
+            What::Value { s: point.eval(wi), pdf: point.pdf(wi), pdf_lobe: densities(wi) }
         }
         Query::Xi(xi) => {
-            let drawn = hair.sample(xi.map(f64::from));
-            Answer::Sample {
+            let drawn = point.sample(xi.map(f64::from));
+            What::Sample {
                 wi: drawn.wi,
                 s: drawn.value,
                 pdf: drawn.pdf,
-                pdf_lobe: hair.lobe_pdfs(drawn.wi).0,
-                lobe: drawn.lobe.map(name),
+                pdf_lobe: densities(drawn.wi),
+                lobe: drawn.lobe.map(|lobe| name(*model, lobe)),
                 weight: drawn.weight,
             }
         }
-    }
+    };
+    Answer { what, colors: colors(*model, || point.lobes(to_f64(*wo)).0.map(|lobe| lobe.color)) }
 }
 
-fn gather<M: HairModel>(hair: M, request: &Request) -> Gather<M> {
-    Bsdf::new(&hair, &request.params).prepare(request.wo)
+fn gather(request: &Request) -> AnyGather {
+    request.bsdf.prepare(Hit { wo: request.wo.into(), h: request.h })
 }
 
-fn valued(eval: Eval, pdf_lobe: [f32; 4]) -> Answer<f32> {
-    Answer::Value { s: eval.value, pdf: eval.pdf, pdf_lobe }
+fn valued(request: &Request, eval: Eval, densities: [f32; 4], color: impl FnOnce() -> [[f32; 3]; 4]) -> Answer<f32> {
+    let pdf_lobe = pdf_lobe(request.model, densities);
+    let what = What::Value { s: eval.value, pdf: eval.pdf, pdf_lobe };
+    Answer { what, colors: colors(request.model, color) }
 }
 
-fn sampled(sample: Option<Sample>, pdf_lobe: impl FnOnce(Vec3) -> [f32; 4]) -> Answer<f32> {
-    match sample {
+fn sampled(
+    request: &Request,
+    sample: Option<Sample>,
+    densities: impl FnOnce(Vec3) -> [f32; 4],
+    color: impl FnOnce() -> [[f32; 3]; 4],
+) -> Answer<f32> {
+    let zero = [0.0; 3];
+    let what = match sample {
         None => {
-            Answer::Sample { wi: [0.0; 3], s: [0.0; 3], pdf: 0.0, pdf_lobe: [0.0; 4], lobe: None, weight: [0.0; 3] }
+            let pdf_lobe = pdf_lobe(request.model, [0.0; 4]);
+            What::Sample { wi: zero, s: zero, pdf: 0.0, pdf_lobe, lobe: None, weight: zero }
         }
-        Some(s) => Answer::Sample {
+        Some(s) => What::Sample {
             wi: s.wi.into(),
             s: s.value,
             pdf: s.pdf,
-            pdf_lobe: pdf_lobe(s.wi),
-            lobe: Some(name(s.lobe)),
+            pdf_lobe: pdf_lobe(request.model, densities(s.wi)),
+            lobe: Some(name(request.model, s.lobe)),
             weight: s.weight,
         },
-    }
+    };
+    Answer { what, colors: colors(request.model, color) }
 }
 
-fn densities(lobes: &PerLobe<LobeEval>) -> [f32; 4] {
-    lobes.0.map(|lobe| lobe.pdf)
+/// The densities of the model's own lobes.
+fn pdf_lobe<T: Copy>(model: ModelId, densities: [T; 4]) -> Vec<T> {
+    densities[..model.lobes().len()].to_vec()
+}
+
+/// The colours of the model's own lobes, if it reports them.
+fn colors<T>(model: ModelId, all: impl FnOnce() -> [[T; 3]; 4]) -> BTreeMap<&'static str, Vec<[T; 3]>> {
+    model.colors().map(|name| (name, all().into_iter().take(model.lobes().len()).collect())).into_iter().collect()
 }
 
 fn densities_of_lane(lobes: &PerLobe<LobeEval8>, lane: usize) -> [f32; 4] {
     lobes.0.map(|lobe| lobe.pdf.as_array()[lane])
 }
 
-fn name(lobe: Lobe) -> &'static str {
-    LOBES[lobe.index()]
+fn name(model: ModelId, lobe: Lobe) -> &'static str {
+    model.lobes()[lobe.index()]
 }

@@ -39,12 +39,12 @@ impl Json {
     /// The fields of an object in the order of `known`, `None` for one that is not there.
     ///
     /// `path` is the object's own, empty for that of the line.
-    pub(super) fn fields<const N: usize>(self, path: &str, known: [&str; N]) -> Result<[Option<Self>; N], Refusal> {
+    pub(super) fn fields(self, path: &str, known: &[&str]) -> Result<Vec<Option<Self>>, Refusal> {
         let Self::Object(entries) = self else {
             let field = if path.is_empty() { "line" } else { path };
             return Err(Refusal::at(field, format!("must be an object, got {self}")));
         };
-        let mut found = [const { None }; N];
+        let mut found = vec![None; known.len()];
         for (name, value) in entries {
             let Some(slot) = known.iter().position(|known| *known == name) else {
                 let expected = known.join(", ");
@@ -55,6 +55,15 @@ impl Json {
             }
         }
         Ok(found)
+    }
+
+    /// The text of the object's field `name`, if there is one.
+    pub(super) fn peek(&self, name: &str) -> Option<&str> {
+        let Self::Object(entries) = self else { return None };
+        entries.iter().find_map(|(field, value)| match value {
+            Self::Text(text) if field == name => Some(&**text),
+            _ => None,
+        })
     }
 
     /// The text of a field that may be missing.
@@ -77,17 +86,21 @@ impl Json {
 
     /// The three numbers of a field.
     pub(super) fn three(json: Option<Self>, field: &str) -> Result<[f64; 3], Refusal> {
+        let numbers = Self::numbers(json, field, 3)?;
+        Ok([numbers[0], numbers[1], numbers[2]])
+    }
+
+    /// The `len` numbers of a field.
+    pub(super) fn numbers(json: Option<Self>, field: &str, len: usize) -> Result<Vec<f64>, Refusal> {
         let items = match json {
             None => return Err(Refusal::at(field, "missing")),
             Some(Self::Array(items)) => items,
-            Some(other) => return Err(Refusal::at(field, format!("must be an array of 3 numbers, got {other}"))),
+            Some(other) => return Err(Refusal::at(field, format!("must be an array of {len} numbers, got {other}"))),
         };
-        let len = items.len();
-        let Ok([a, b, c]) = <[Self; 3]>::try_from(items) else {
-            return Err(Refusal::at(field, format!("must have 3 numbers, got {len}")));
-        };
-        let item = |json, i| Self::number(Some(json), &format!("{field}[{i}]"));
-        Ok([item(a, 0)?, item(b, 1)?, item(c, 2)?])
+        if items.len() != len {
+            return Err(Refusal::at(field, format!("must have {len} numbers, got {}", items.len())));
+        }
+        items.into_iter().zip(0..).map(|(json, i)| Self::number(Some(json), &format!("{field}[{i}]"))).collect()
     }
 }
 

@@ -1,21 +1,16 @@
 //! One line of the input, checked.
 
 use super::json::{Json, shortened};
-use crate::sampler::Sampler;
-use crate::subject::ModelKind;
 use core::fmt;
 use glam::Vec3;
-use hairis::textbook::Parameters;
-use hairis::{HairDesc, HairParams, ParamError};
+use hairis::ParamError;
+use hairis_variants::{AnyBsdf, Field, Kind, ModelId, Values};
 
 /// How far from 1 the length of a direction may be; it is normalised then.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 /// How far from 1 the length of a unit vector of single precision may be: its digits are kept as they are, so that all
 /// paths answer for the same direction.
 const ROUNDED: f64 = 2e-7;
-
-/// The samplers of the kernels, as a line may name them.
-pub(super) const SAMPLERS: [Sampler; 4] = [Sampler::Ou, Sampler::Matched5, Sampler::Matched, Sampler::Matched25];
 
 /// Why a line was refused: the path of the field at fault, and what is wrong with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,117 +42,147 @@ pub(super) enum Query {
 
 /// A line of the input, rounded to single precision: every path is asked the same question, and what they differ by is
 /// computed, not read.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Request {
-    pub(super) model: ModelKind,
-    pub(super) sampler: Sampler,
-    pub(super) params: HairParams,
+    pub(super) model: ModelId,
+    pub(super) values: Values,
+    pub(super) bsdf: AnyBsdf,
     /// Unit.
     pub(super) wo: Vec3,
+    /// Offset across the fibre; 0 for a model of the far field.
+    pub(super) h: f32,
     pub(super) query: Query,
 }
 
 impl Request {
     /// Reads a line.
     pub(super) fn parse(line: &str) -> Result<Self, Refusal> {
-        let known = ["model", "sampler", "params", "wo", "wi", "xi"];
-        let [model, sampler, params, wo, wi, xi] = Json::parse(line)?.fields("", known)?;
-        let model = Json::text(model, "model")?.ok_or_else(|| Refusal::at("model", "missing"))?;
-        let model = named("model", &model, ModelKind::ALL, ModelKind::name)?;
-        let sampler = Json::text(sampler, "sampler")?
-            .map_or(Ok(Sampler::Ou), |sampler| named("sampler", &sampler, SAMPLERS, Sampler::name))?;
-        let exact = parameters(params.ok_or_else(|| Refusal::at("params", "missing"))?)?;
-        let params = checked(&exact)?;
-        let wo = direction(wo, "wo")?;
-        let query = match (wi, xi) {
+        let line = Json::parse(line)?;
+        // The fields of a line are those of its model; of the first, where the name is not that of any.
+        let first = line.peek("model").and_then(|name| ModelId::find(name, None)).unwrap_or(ModelId::ALL[0]);
+        let choice = first.choice().map(|(field, _)| field);
+        let h = first.is_near_field().then_some("h");
+        let known: Vec<&str> = ["model"].into_iter().chain(choice).chain(["params"]).chain(h).collect();
+        let mut found = line.fields("", &[&known, &["wo", "wi", "xi"][..]].concat())?.into_iter();
+        let mut next = |is_there: bool| if is_there { found.next().flatten() } else { None };
+
+        let name = Json::text(next(true), "model")?.ok_or_else(|| Refusal::at("model", "missing"))?;
+        named("model", &name, &ModelId::defaults_of_names().map(ModelId::name).collect::<Vec<_>>())?;
+        let word = match (choice, next(choice.is_some())) {
+            (Some(field), json @ Some(_)) => Json::text(json, field)?.map(|word| (field, word)),
+            _ => None,
+        };
+        let model = word.map_or(Ok(first), |(field, word)| chosen(first.name(), field, &word))?;
+        let params = next(true).ok_or_else(|| Refusal::at("params", "missing"))?;
+        let (values, exact) = read(model.defaults(), params)?;
+        let bsdf = model.bsdf(&values).map_err(|error| refused(model.fields(), &error, &exact))?;
+        let h = match next(h.is_some()) {
+            None => 0.0,
+            json => single(Json::number(json, "h")?).clamp(-1.0, 1.0),
+        };
+        let wo = direction(next(true), "wo")?;
+        let query = match (next(true), next(true)) {
             (Some(wi), None) => Query::Wi(direction(Some(wi), "wi")?),
             (None, Some(xi)) => Query::Xi(uniform(Some(xi), "xi")?),
             (None, None) => return Err(Refusal::at("wi", "missing, and so is xi: one of them is needed")),
             (Some(_), Some(_)) => return Err(Refusal::at("wi", "given together with xi: only one of them may be")),
         };
-        Ok(Self { model, sampler, params, wo, query })
+        Ok(Self { model, values, bsdf, wo, h, query })
     }
 }
 
-/// The one of `all` that has this name.
-fn named<T: Copy, const N: usize>(
-    field: &str,
-    name: &str,
-    all: [T; N],
-    name_of: fn(T) -> &'static str,
-) -> Result<T, Refusal> {
-    all.into_iter().find(|one| name_of(*one) == name).ok_or_else(|| {
-        let names = all.map(|one| format!("\"{}\"", name_of(one))).join(" or ");
-        Refusal::at(field, format!("must be {names}, got \"{}\"", shortened(name)))
+/// The model of this name and of this word in the field of its choice.
+fn chosen(name: &str, field: &str, word: &str) -> Result<ModelId, Refusal> {
+    let of_name = ModelId::ALL.iter().filter(|id| id.name() == name);
+    named(field, word, &of_name.filter_map(|id| id.choice()).map(|(_, word)| word).collect::<Vec<_>>())?;
+    ModelId::find(name, Some(word)).ok_or_else(|| Refusal::at(field, "not of this model"))
+}
+
+/// The place of `name` in `names`.
+fn named(field: &str, name: &str, names: &[&str]) -> Result<usize, Refusal> {
+    names.iter().position(|one| *one == name).ok_or_else(|| {
+        let names: Vec<String> = names.iter().map(|one| format!("\"{one}\"")).collect();
+        Refusal::at(field, format!("must be {}, got \"{}\"", names.join(" or "), shortened(name)))
     })
 }
 
-/// The hair of `params`, every field required.
-fn parameters(params: Json) -> Result<Parameters<f64>, Refusal> {
-    let known = ["alpha", "beta", "gamma_tt", "gamma_g", "phi_g", "i_r", "i_tt", "i_trt", "i_g"];
-    let [alpha, beta, gamma_tt, gamma_g, phi_g, i_r, i_tt, i_trt, i_g] = params.fields("params", known)?;
-    Ok(Parameters {
-        alpha: Json::three(alpha, "params.alpha")?,
-        beta: Json::three(beta, "params.beta")?,
-        gamma_tt: Json::number(gamma_tt, "params.gamma_tt")?,
-        gamma_g: Json::number(gamma_g, "params.gamma_g")?,
-        phi_g: Json::number(phi_g, "params.phi_g")?,
-        intensity_r: Json::three(i_r, "params.i_r")?,
-        intensity_tt: Json::three(i_tt, "params.i_tt")?,
-        intensity_trt: Json::three(i_trt, "params.i_trt")?,
-        intensity_g: Json::number(i_g, "params.i_g")?,
-    })
+/// The values that `params` gives in place of the defaults, rounded, and as they are in the input.
+fn read(mut values: Values, params: Json) -> Result<(Values, Vec<Vec<f64>>), Refusal> {
+    let fields = values.fields();
+    let names: Vec<&str> = fields.iter().map(|field| field.name).collect();
+    let given = params.fields("params", &names)?;
+    for field in fields.iter().filter(|field| field.instead_of.is_none()) {
+        one_of_group(field.name, fields, &given)?;
+    }
+    let mut exact = vec![Vec::new(); fields.len()];
+    for ((field, json), exact) in fields.iter().zip(given).zip(&mut exact) {
+        if json.is_none() && (field.optional || in_group(field, fields)) {
+            continue;
+        }
+        *exact = numbers(field, json)?;
+        let rounded: Vec<f32> = exact.iter().map(|x| single(*x)).collect();
+        let replaced = field.instead_of.into_iter().fold(values, |values, other| values.without(other));
+        values = replaced.with(field.name, &rounded);
+    }
+    Ok((values, exact))
 }
 
-/// The parameters in single precision, within their ranges: a width of pi is one whichever precision it is written in.
-fn checked(exact: &Parameters<f64>) -> Result<HairParams, Refusal> {
-    let [alpha_r, alpha_tt, alpha_trt] = exact.alpha.map(single);
-    let [beta_r, beta_tt, beta_trt] = exact.beta.map(single);
-    let desc = HairDesc {
-        alpha_r,
-        alpha_tt,
-        alpha_trt,
-        beta_r,
-        beta_tt,
-        beta_trt,
-        gamma_tt: single(exact.gamma_tt),
-        gamma_g: single(exact.gamma_g),
-        phi_g: single(exact.phi_g),
-        intensity_r: exact.intensity_r.map(single),
-        intensity_tt: exact.intensity_tt.map(single),
-        intensity_trt: exact.intensity_trt.map(single),
-        intensity_g: single(exact.intensity_g),
-    };
-    HairParams::new(&desc).map_err(|error| refused(&error, exact))
+/// Whether `field` stands for another, or another for it.
+fn in_group(field: &Field, fields: &[Field]) -> bool {
+    field.instead_of.is_some() || fields.iter().any(|other| other.instead_of == Some(field.name))
+}
+
+/// Refuses the group of `head` if not exactly one of its fields is given; a field alone may be missing for now.
+fn one_of_group(head: &str, fields: &[Field], given: &[Option<Json>]) -> Result<(), Refusal> {
+    let group = fields.iter().zip(given).filter(|(field, _)| field.name == head || field.instead_of == Some(head));
+    let (found, missing): (Vec<_>, Vec<_>) = group.partition(|(_, json)| json.is_some());
+    let names =
+        |of: &[(&Field, &Option<Json>)]| of.iter().map(|(field, _)| field.name).collect::<Vec<_>>().join(" and ");
+    let path = format!("params.{}", found.first().map_or(head, |(field, _)| field.name));
+    match (found.len(), missing.len()) {
+        (0, 2..) => {
+            let others = names(&missing[1..]);
+            Err(Refusal::at(&path, format!("missing, and so are {others}: one of them is needed")))
+        }
+        (2.., _) => {
+            let others = names(&found[1..]);
+            Err(Refusal::at(&path, format!("given together with {others}: only one of them may be")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The numbers of a field of `params`, that of a word its place.
+fn numbers(field: &Field, json: Option<Json>) -> Result<Vec<f64>, Refusal> {
+    let path = format!("params.{}", field.name);
+    match field.kind {
+        Kind::Number => Ok(vec![Json::number(json, &path)?]),
+        Kind::Word(words) => {
+            let word = Json::text(json, &path)?.ok_or_else(|| Refusal::at(&path, "missing"))?;
+            #[expect(clippy::cast_precision_loss, reason = "a few words")]
+            named(&path, &word, words).map(|place| vec![place as f64])
+        }
+        kind => Json::numbers(json, &path, kind.width()),
+    }
 }
 
 /// A refusal in the words of [`ParamError`], with the field's name and value as they are in the input.
-fn refused(error: &ParamError, exact: &Parameters<f64>) -> Refusal {
-    let (field, value) = match (error.field(), error) {
-        ("alpha_r", _) => ("alpha[0]".to_owned(), exact.alpha[0]),
-        ("alpha_tt", _) => ("alpha[1]".to_owned(), exact.alpha[1]),
-        ("alpha_trt", _) => ("alpha[2]".to_owned(), exact.alpha[2]),
-        ("beta_r", _) => ("beta[0]".to_owned(), exact.beta[0]),
-        ("beta_tt", _) => ("beta[1]".to_owned(), exact.beta[1]),
-        ("beta_trt", _) => ("beta[2]".to_owned(), exact.beta[2]),
-        ("gamma_tt", _) => ("gamma_tt".to_owned(), exact.gamma_tt),
-        ("gamma_g", _) => ("gamma_g".to_owned(), exact.gamma_g),
-        ("phi_g", _) => ("phi_g".to_owned(), exact.phi_g),
-        ("intensity_r", ParamError::Intensity(_, c, _)) => (format!("i_r[{c}]"), exact.intensity_r[*c]),
-        ("intensity_tt", ParamError::Intensity(_, c, _)) => (format!("i_tt[{c}]"), exact.intensity_tt[*c]),
-        ("intensity_trt", ParamError::Intensity(_, c, _)) => (format!("i_trt[{c}]"), exact.intensity_trt[*c]),
-        ("intensity_g", _) => ("i_g".to_owned(), exact.intensity_g),
-        _ => return Refusal::at("params", error.to_string()),
-    };
+fn refused(fields: &[Field], error: &ParamError, exact: &[Vec<f64>]) -> Refusal {
     let text = error.to_string();
-    let rule = text.split_once(" must ").and_then(|(_, rest)| rest.rsplit_once(", got ")).map(|(rule, _)| rule);
-    let problem = match rule {
-        // Finite in the input, but too large for single precision.
-        Some(_) if single(value).is_infinite() => format!("too large for single precision, got {value:e}"),
-        Some(rule) => format!("must {rule}, got {value}"),
-        None => text,
+    let rule = text.split_once(" must ").and_then(|(_, rest)| rest.rsplit_once(", got "));
+    let (Some((field, number)), Some((rule, value))) = (Field::refused(fields, error), rule) else {
+        return Refusal::at("params", text);
     };
-    Refusal::at(&format!("params.{field}"), problem)
+    let is_list = field.kind.width() > 1;
+    let item = number.filter(|_| is_list).map_or_else(String::new, |number| format!("[{number}]"));
+    let numbers = fields.iter().position(|one| one.name == field.name).map_or(&[][..], |place| &exact[place]);
+    let problem = match if is_list { number.and_then(|number| numbers.get(number)) } else { numbers.first() } {
+        // Finite in the input, but too large for single precision.
+        Some(value) if single(*value).is_infinite() => format!("too large for single precision, got {value:e}"),
+        Some(value) => format!("must {rule}, got {value}"),
+        None => format!("must {rule}, got {value}"),
+    };
+    Refusal::at(&format!("params.{}{item}", field.name), problem)
 }
 
 /// A direction, normalised.
@@ -199,4 +224,60 @@ fn single3([u, v, w]: [f64; 3]) -> Vec3 {
 fn single_xi(xi: [f64; 3]) -> [f32; 3] {
     const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
     xi.map(|x| single(x).min(LARGEST))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hairis_variants::{ChiangParams, KajiyaKayParams, Parameters};
+
+    /// The parameters that a text gives, or the refusal.
+    fn params<P: Parameters>(text: &str) -> Result<P, String> {
+        let json = Json::parse(text).map_err(|refusal| refusal.to_string())?;
+        let (values, exact) = read(P::default().values(), json).map_err(|refusal| refusal.to_string())?;
+        P::from_values(&values).map_err(|error| refused(P::FIELDS, &error, &exact).to_string())
+    }
+
+    #[test]
+    fn words_and_fields_that_may_be_missing() {
+        let read = params::<KajiyaKayParams>(r#"{"kd":[0.1,0.2,0.3],"ks":[0,0,0],"exponent":9,"form":"published"}"#);
+        let read = read.expect("legal").values();
+        assert_eq!((read.word("form"), read.numbers("exponent")), ("published", &[9.0][..]));
+        let read = params::<KajiyaKayParams>(r#"{"kd":[0.1,0.2,0.3],"ks":[0,0,0],"exponent":9}"#).expect("legal");
+        assert_eq!(read.values().word("form"), "reciprocal");
+        for (text, problem) in [
+            (r#"{"ks":[0,0,0],"exponent":9}"#, "params.kd: missing"),
+            (
+                r#"{"kd":[0,0,0],"ks":[0,0,0],"exponent":9,"form":"new"}"#,
+                "params.form: must be \"reciprocal\" or \"published\", got \"new\"",
+            ),
+            (r#"{"kd":[0,-1,0],"ks":[0,0,0],"exponent":9}"#, "params.kd[1]: must be finite and at least 0, got -1"),
+            (r#"{"kd":[0,0,0],"ks":[0,0,0],"exponent":0.1}"#, "params.exponent: must be in [1, 10000], got 0.1"),
+        ] {
+            assert_eq!(params::<KajiyaKayParams>(text), Err(problem.to_owned()), "{text}");
+        }
+    }
+
+    #[test]
+    fn one_field_of_a_group() {
+        let read = |rest: &str| params::<ChiangParams>(&format!(r#"{{"beta_m":0.3,"beta_n":0.3{rest}}}"#));
+        assert_eq!(read(r#","melanin":[0.3,0]"#), Ok(ChiangParams::blond()));
+        assert_eq!(
+            read(r#","tilt":0,"eta":1.5,"sigma_a":[0,1,2]"#).map(|read| read.desc().sigma_a),
+            Ok([0.0, 1.0, 2.0])
+        );
+        assert!(read(r#","color":[0.5,0.4,0.3]"#).is_ok(), "a colour");
+        for (rest, problem) in [
+            ("", "params.sigma_a: missing, and so are melanin and color: one of them is needed"),
+            (
+                r#","melanin":[0,0],"color":[0,0,0]"#,
+                "params.melanin: given together with color: only one of them may be",
+            ),
+            (r#","melanin":[0,-1]"#, "params.melanin[1]: must be finite and at least 0, got -1"),
+            (r#","color":[0,1.5,0]"#, "params.color: must be in [0, 1], got 1.5"),
+            (r#","sigma_a":[0,0,0],"eta":0.5"#, "params.eta: must be in [1, 4], got 0.5"),
+        ] {
+            assert_eq!(read(rest), Err(problem.to_owned()), "{rest}");
+        }
+    }
 }
