@@ -15,14 +15,21 @@ table=benches/records/instructions.csv
 fewer=2 more=6 # passes
 
 command -v valgrind > /dev/null || { apt-get update -qq && apt-get install -qqy valgrind; }
-program=${CARGO_TARGET_DIR:-target}/release/entry
-if [ "${1:-}" = --count ]; then
-  program=$2
-else
-  RUSTFLAGS='' cargo build -q --release --locked -p hairis-benches --bin entry
-fi
+target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
+if [ "${1:-}" = --count ]; then
+  source=$2
+else
+  # The build of .ci/sizes.sh, which finds the counts in `counts` and does not count again.
+  RUSTFLAGS='-Csymbol-mangling-version=v0' cargo build -q --release --locked -p hairis-benches --bin entry \
+    --config 'profile.release.opt-level=3' --target-dir "$target/opt-3"
+  source=$target/opt-3/release/entry
+fi
+counts=$source.counts
+# Without its debug information, which valgrind would read at each of hundreds of starts.
+program=$dir/entry
+strip -o "$program" "$source"
 
 # sums OUTPUT: instructions of the program itself, and of everything else.
 sums() {
@@ -64,6 +71,7 @@ valgrind -q --tool=none "$program" list > "$dir/names"
 names=$(grep -vE '^path-|/textbook/' "$dir/names")
 xargs -P "$(nproc)" -I NAME bash -euo pipefail -c 'count NAME' <<< "$names"
 rows=$(while read -r name; do cat "$dir/${name//\//_}.row"; done <<< "$names")
+echo "$rows" > "$counts"
 [ "$(wc -l <<< "$rows")" -ge 42 ] || echo "this CPU has no AVX2: its level was not counted" >&2
 
 case ${1:-} in
