@@ -1,4 +1,4 @@
-//! The harness of `hairis`: what its binary does, as a library so that tests can call it.
+//! The harness of `hairis`: the functions of its binary, as a library so that tests can call them.
 
 pub mod agreement;
 pub mod args;
@@ -25,7 +25,7 @@ pub mod study;
 pub mod subject;
 pub mod table;
 
-/// The example of the README, held to what it says.
+/// Example of the workspace README.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 #[derive(Debug)]

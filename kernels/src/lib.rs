@@ -1,26 +1,26 @@
 //! Hair scattering, evaluated and sampled eight lanes at a time, without std and without an allocator.
 //!
-//! The model is that of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the importance sampler
-//! published there; its bells are Gaussians ([`Gaussian`]), and any [`Bell`] may take their place: the all-Cauchy
-//! variant lives in the crate `hairis-variants`. Any other scattering model is a [`LobeModel`], written once over
-//! [`Lanes`]; scalar calls, eight lanes, run-time dispatch and slices come with it.
+//! [`Hair`] is the model of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the importance sampler published there.
+//! [`Matched`] is the same model with a sampler of lower variance. Their bells are Gaussians ([`Gaussian`]) or any other
+//! [`Bell`]; the all-Cauchy variant is in the crate `hairis-variants`. Other scattering models implement [`LobeModel`], once
+//! over [`Lanes`]; scalar calls, eight lanes, run-time dispatch and slices follow.
 //!
 //! ```
 //! use glam::Vec3;
 //! use hairis::{Bsdf, FiberFrame, Gaussian, Hair, HairParams};
 //!
-//! let hair = Bsdf::new(&Hair(Gaussian), &HairParams::brown()); // once a material
-//! let frame = FiberFrame::from_tangent(Vec3::new(0.1, 0.9, 0.2)); // once a hit, root to tip
+//! let hair = Bsdf::new(&Hair(Gaussian), &HairParams::brown()); // once per material
+//! let frame = FiberFrame::from_tangent(Vec3::new(0.1, 0.9, 0.2)); // once per hit, root to tip
 //! let gather = hair.prepare(frame.to_local(Vec3::new(0.6, 0.0, 0.8))); // towards the viewer
 //!
-//! let sample = gather.sample([0.3, 0.6, 0.9]).expect("not along the fibre"); // once a path
+//! let sample = gather.sample([0.3, 0.6, 0.9]).expect("not along the fibre"); // once per path
 //! let towards_light = frame.to_world(sample.wi);
 //! assert!(towards_light.is_normalized() && sample.weight[0] > 0.0);
 //! ```
 //!
 //! # From parameters to a sample
 //!
-//! | step | once a | call |
+//! | step | once per | call |
 //! |---|---|---|
 //! | describe | material | [`HairDesc`] and [`HairParams::new`], a preset, or [`HairParams::from_artist`] |
 //! | build | material | [`Bsdf::new`]; eight different ones: [`Bsdf8::pack`] |
@@ -40,7 +40,7 @@
 //!   of a [`Gather8`]. Lanes never mix.
 //! - **Totality.** Parameters are checked once, by [`HairParams::new`]. After that nothing fails: for every finite
 //!   input, results are finite and not negative. Directions within [`GRAZING`] of the axis have value and density 0,
-//!   and a sample there is discarded; it counts, and it is not to be drawn again.
+//!   and a sample there is discarded. It counts; do not draw it again.
 //! - **Energy.** The model is reciprocal but does not conserve energy. Before path tracing, scale the material by
 //!   [`Bsdf::conserving_scale`] through [`HairParams::scaled`].
 //! - **Bits.** Results depend on whether a level fuses multiply and add ([`Level::fuses`]), in the last bits, and on
@@ -56,8 +56,8 @@
 //!
 //! # What this crate does not do
 //!
-//! It traces no rays, reads no files, and draws no random numbers but through [`random`]. Multiple scattering is the
-//! path tracer's. Spectral hosts take the lobes without their colours from [`Gather::lobes`].
+//! It traces no rays, reads no files, and draws no random numbers except through [`random`]. Multiple scattering is the
+//! path tracer's task. Spectral hosts take the lobes without their colours from [`Gather::lobes`].
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 
@@ -101,3 +101,9 @@ pub use simd::pair::Pair;
 
 #[doc(hidden)]
 pub use wide;
+
+/// Examples of the package's README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+#[derive(Debug)]
+pub struct Readme;

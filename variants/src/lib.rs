@@ -1,13 +1,13 @@
 //! Scattering models on top of the public traits of [`hairis`].
 //!
-//! | model | what it is | conserves energy | reciprocal | source |
+//! | model | content | conserves energy | reciprocal | source |
 //! |---|---|---|---|---|
 //! | [`Cauchy`] in [`hairis::Hair`] | the published model with every Gaussian a Cauchy | no | yes | Ou et al. 2012, section 3.3 |
 //! | [`KajiyaKay`] | a diffuse cylinder and one cone of highlights | `kd + ks` of its parameters | one of two forms | Kajiya & Kay 1989 |
 //! | [`Chiang`] | near field, absorption in place of colours | yes | no | Chiang et al. 2016; d'Eon et al. 2011 |
 //!
-//! A model of one's own touches no file of the kernels: `examples/lambert_fiber.rs` is one. A model of this crate also has
-//! [`Parameters`], an implementation of [`Registered`], and a line in `registry.rs`, the only list of models; then hosts may
+//! A model of your own needs no change in the kernels: `examples/lambert_fiber.rs` is one. A model of this crate also has
+//! [`Parameters`], an implementation of [`Registered`], and a line in `registry.rs`, the only list of models. Hosts can then
 //! choose it at run time ([`ModelId`], [`AnyBsdf`]), and the harness and the benches include it.
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
@@ -35,5 +35,11 @@ pub use registry::{ModelId, Registered, Visitor};
 /// The all-Cauchy variant of the published model, see [`Cauchy`].
 pub type AllCauchy = hairis::Hair<Cauchy>;
 
-/// The all-Cauchy variant with the sampler that follows it closer, see [`hairis::Matched`].
+/// The all-Cauchy variant with the matched sampler, see [`hairis::Matched`].
 pub type MatchedCauchy = hairis::Matched<Cauchy>;
+
+/// Examples of the package's README.
+#[cfg(all(doctest, feature = "any"))]
+#[doc = include_str!("../README.md")]
+#[derive(Debug)]
+pub struct Readme;
