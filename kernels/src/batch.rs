@@ -1,4 +1,4 @@
-//! Slices in, slices out: structures of arrays of any length and alignment.
+//! Slice calls: structures of arrays of any length and alignment.
 //!
 //! Slices whose addresses differ by a multiple of 4 KiB, as those of columns a power of two long do, cost up to 40 % more
 //! on many CPUs: a load waits for an earlier store whose address has the same lower twelve bits. A few unused numbers
@@ -30,7 +30,7 @@ impl fmt::Display for LengthError {
 
 impl core::error::Error for LengthError {}
 
-/// Where [`Gather::eval_pdf_batch`] writes: one entry a direction.
+/// Output of [`Gather::eval_pdf_batch`]: one entry per direction.
 #[derive(Debug)]
 pub struct EvalSlices<'a> {
     /// S, red, green and blue, per steradian.
@@ -39,7 +39,7 @@ pub struct EvalSlices<'a> {
     pub pdf: &'a mut [f32],
 }
 
-/// Where [`Gather::sample_batch`] writes: one entry a sample, all 0 but the direction for a discarded one.
+/// Output of [`Gather::sample_batch`]: one entry per sample, all 0 but the direction for a discarded one.
 #[derive(Debug)]
 pub struct SampleSlices<'a> {
     /// Towards the light, in the fibre's frame: u, v, w.

@@ -6,9 +6,9 @@ use crate::simd::pair::Pair;
 
 /// A bell of unit peak: every Gaussian of the published model, or what replaces it.
 ///
-/// A bell is given `s = (x / width)^2`, the square of the distance from its centre in widths, and the Cauchy value
-/// `1 / (1 + s)` there, which the published sampler's pdf has paid for already. It is written once over [`Lanes`]; to
-/// be as fast as ours, mark both functions `#[inline(always)]` and pass no closures on.
+/// Its arguments are `s = (x / width)^2`, the squared distance from its centre in widths, and the Cauchy value
+/// `1 / (1 + s)`, which the density of the published sampler needs anyway. It is written once over [`Lanes`]. For full
+/// speed mark all functions `#[inline(always)]` and pass no closures on.
 ///
 /// ```
 /// use hairis::{Bell, Bsdf, Hair, HairParams, Lanes};
@@ -42,7 +42,7 @@ pub trait Bell: Copy {
     }
 
     /// The bells of the four lobes at one direction: [`one`](Self::one) of R, [`two`](Self::two) of TT, `one` of TRT, `two` of
-    /// the glints, whose arguments these are. To be given where the four together cost less than one after another.
+    /// the glints, with these arguments. Override it where the four together cost less than one after another.
     #[inline(always)]
     fn four<L: Lanes>(r: [L; 2], tt: [L; 5], trt: [L; 2], glint: [L; 5]) -> [L; 4] {
         [
@@ -53,7 +53,7 @@ pub trait Bell: Copy {
         ]
     }
 
-    /// A factor on every width of the material, finite and at least 0.5; it is read once a material.
+    /// A factor on every width of the material, finite and at least 0.5; it is read once per material.
     #[inline]
     fn width_factor(&self) -> f32 {
         1.0

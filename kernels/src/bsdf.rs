@@ -8,7 +8,7 @@ use core::fmt;
 use glam::Vec3;
 use wide::f32x8;
 
-/// A material: a model with its parameters, made once a material and prepared once a gather point.
+/// A material: a model with its parameters, made once per material and prepared once per gather point.
 ///
 /// ```
 /// use glam::Vec3;
@@ -22,18 +22,18 @@ pub struct Bsdf<M: Model> {
     material: M::Material<f32>,
 }
 
-/// Eight materials, one a lane: for eight gather points on different hair.
+/// Eight materials, one per lane: for eight gather points on different hair.
 pub struct Bsdf8<M: Model> {
     material: M::Material<f32x8>,
 }
 
-/// A gather point: a material seen from one direction. Evaluate and sample it as often as it takes, one direction or
+/// A prepared shading point: a material seen from one direction. Evaluate and sample it any number of times, one direction or
 /// eight at a time.
 pub struct Gather<M: Model> {
     pub(crate) inner: M::Gather<f32>,
 }
 
-/// Eight gather points, one a lane.
+/// Eight gather points, one per lane.
 pub struct Gather8<M: Model> {
     pub(crate) inner: M::Gather<f32x8>,
 }
@@ -75,7 +75,7 @@ impl<M: Model> Bsdf<M> {
         Gather { inner: M::prepare_one(&self.material, hit.into()) }
     }
 
-    /// Eight gather points on this material, one a lane: a [`Hit8`], or eight `wo`.
+    /// Eight gather points on this material, one per lane: a [`Hit8`], or eight `wo`.
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Gather8<M> {
@@ -119,8 +119,8 @@ impl<M: Model> Bsdf<M> {
 
     /// The factor on all intensities that keeps the directional albedo at most 1 whatever `wo`: 1 if it is already.
     ///
-    /// One factor for all directions, so that the model stays reciprocal; path tracing needs it. Intensities whose
-    /// albedo no float holds (above 1e37) are beyond it.
+    /// One factor for all directions, so that the model stays reciprocal; path tracing needs it. It does not help with
+    /// intensities whose albedo overflows (above 1e37).
     #[must_use]
     #[inline]
     pub fn conserving_scale(&self) -> f32 {
@@ -130,7 +130,7 @@ impl<M: Model> Bsdf<M> {
 }
 
 impl<M: Model> Bsdf8<M> {
-    /// Eight materials, one a lane.
+    /// Eight materials, one per lane.
     #[inline]
     #[must_use]
     pub fn pack(materials: [&Bsdf<M>; 8]) -> Self {
@@ -172,7 +172,7 @@ impl<M: Model> Gather<M> {
         self.eval_pdf(wi).pdf
     }
 
-    /// Both at once, for little more than either.
+    /// Value and density at `wi`, for little more than the cost of either.
     #[inline]
     #[must_use]
     pub fn eval_pdf(&self, wi: impl Into<Vec3x<f32>>) -> Eval {
@@ -188,7 +188,7 @@ impl<M: Model> Gather<M> {
 
     /// A direction for three uniform numbers in `[0, 1)`; the first chooses the lobe.
     ///
-    /// `None` is a discarded sample: it counts, its contribution is 0, and it is not to be drawn again.
+    /// `None` is a discarded sample. It counts, with a contribution of 0; do not draw it again.
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: [f32; 3]) -> Option<Sample> {

@@ -4,7 +4,7 @@ use crate::math::sin_cos_half_turn;
 use crate::{GRAZING, Lanes, Vec3x};
 use core::f32::consts::PI;
 
-/// A unit direction in the fibre's frame, as models are given it and as they sample it.
+/// A unit direction in the fibre's frame: the argument and the sample of a model.
 #[derive(Clone, Copy, Debug)]
 pub struct Direction<L: Lanes> {
     /// Its components.
@@ -13,12 +13,12 @@ pub struct Direction<L: Lanes> {
     pub sin_theta: L,
     /// Cosine of the inclination.
     pub cos_theta: L,
-    /// Where it is a direction, and off the axis.
+    /// Mask of the lanes that hold a direction off the axis.
     sound: L::Mask,
 }
 
 impl<L: Lanes> Direction<L> {
-    /// The direction of a vector that ought to be unit. Within [`GRAZING`] of the axis, and longer than 2, it is not
+    /// The direction of a unit vector. Within [`GRAZING`] of the axis, and longer than 2, it is not
     /// [sound](Self::is_sound).
     #[inline(always)]
     #[must_use]
@@ -47,7 +47,7 @@ impl<L: Lanes> Direction<L> {
         let unit = (length_sq - one).abs().lt(c(1e-5));
         let by = L::select(unit, one, L::keep(some, one / length_sq.sqrt()));
         let (x, y, z) = (x * by, L::select(some, y * by, one), z * by);
-        // What is left of the length beyond 1, taken off: a rounding each.
+        // Correct the length by its remaining difference from 1: one rounding per component.
         let plane_sq = y.mul_add(y, z * z);
         let off = half - half * x.mul_add(x, plane_sq);
         let cos = plane_sq.sqrt();
@@ -72,7 +72,7 @@ impl<L: Lanes> Direction<L> {
         Self::from_sin_cos(theta, [(sin + sin) * cos, cos.mul_sub(cos, sin * sin)])
     }
 
-    /// Where it is a direction, further than [`GRAZING`] from the axis.
+    /// Mask of the lanes that hold a direction further than [`GRAZING`] from the axis.
     #[inline(always)]
     pub fn is_sound(&self) -> L::Mask {
         self.sound

@@ -1,4 +1,4 @@
-//! Why hair parameters were refused.
+//! Errors of hair parameters.
 
 use core::fmt;
 

@@ -7,7 +7,7 @@ use crate::Lanes;
 use glam::{Vec3, Vec3A};
 use wide::f32x8;
 
-/// Three numbers a lane. In a fibre's frame: `x` along the fibre (u), `y` and `z` in its normal plane (v, w).
+/// Vector of three numbers per lane. In a fibre's frame: `x` along the fibre (u), `y` and `z` in its normal plane (v, w).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec3x<L> {
     /// Along u, or the world's x.
@@ -38,7 +38,7 @@ impl<L: Lanes> Vec3x<L> {
         self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
     }
 
-    /// The vector times a number a lane.
+    /// The vector times a number per lane.
     #[inline(always)]
     #[must_use]
     pub fn scale(self, by: L) -> Self {
@@ -52,13 +52,13 @@ impl<L: Lanes> Vec3x<L> {
         Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
     }
 
-    /// The vector in the form it is kept in.
+    /// The vector in its storage form.
     #[inline(always)]
     pub fn store(self) -> Vec3x<L::Stored> {
         Vec3x::new(self.x.store(), self.y.store(), self.z.store())
     }
 
-    /// The vector read as lanes.
+    /// The stored vector as lanes.
     #[inline(always)]
     pub(crate) fn load<C: crate::Broadcast<L>>(stored: &Vec3x<C>) -> Self {
         Self::new(stored.x.lanes(), stored.y.lanes(), stored.z.lanes())
@@ -164,8 +164,8 @@ pub struct FiberFrame {
 impl FiberFrame {
     /// The frame of a fibre with this tangent (root to tip, of any length).
     ///
-    /// `v` and `w` depend on the tangent alone, and continuously but where its z changes sign. The published model sees
-    /// differences of azimuth only, so that their choice does not show.
+    /// `v` and `w` depend on the tangent alone, continuously except where its z changes sign. The published model depends on
+    /// differences of azimuth only, so their choice does not matter to it.
     ///
     /// - Domain: a tangent that is zero or not finite counts as +x.
     #[inline]
@@ -178,7 +178,7 @@ impl FiberFrame {
 
     /// The frame whose `v` (azimuth 0) is the part of `normal` across the fibre.
     ///
-    /// - Domain: a normal that is zero, not finite or along the tangent counts for nothing: as
+    /// - Domain: a normal that is zero, not finite or along the tangent is ignored: as
     ///   [`from_tangent`](Self::from_tangent).
     #[inline]
     #[must_use]
@@ -259,7 +259,7 @@ fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     if largest > 0.0 && v.is_finite() { (v / largest).normalize() } else { fallback }
 }
 
-/// A frame a lane: one frame for eight directions ([`splat`](Self::splat)), or the frames of eight gather points.
+/// One frame per lane: the same for eight directions ([`splat`](Self::splat)), or those of eight gather points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiberFrame8 {
     /// Along each fibre.

@@ -1,11 +1,11 @@
-//! The four lobes of a model: the only file that knows their order.
+//! The four lobes of a model. Their order is defined in this file alone.
 
 use core::ops::{Index, IndexMut};
 
 /// One lobe of a scattering model: a slot from 0 to 3.
 ///
 /// The constants name the lobes of the published model. A model with other lobes names its own slots, for
-/// instance `const DIFFUSE: Lobe = Lobe::slot(0)`, and says so in its [`Model::LOBES`](crate::Model::LOBES).
+/// instance `const DIFFUSE: Lobe = Lobe::slot(0)`, and lists them in its [`Model::LOBES`](crate::Model::LOBES).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Lobe(u8);
 
@@ -42,14 +42,14 @@ impl Lobe {
         self.0 as usize
     }
 
-    /// The lobe a slot number kept in a float lane stands for; `None` for the -1 of a discarded sample.
+    /// The lobe of a slot number stored as a float; `None` for the -1 of a discarded sample.
     #[inline]
     pub(crate) fn from_number(number: f32) -> Option<Self> {
         Self::ALL.into_iter().find(|lobe| f32::from(lobe.0) == number)
     }
 }
 
-/// One value a lobe.
+/// One value per lobe.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PerLobe<T>(pub [T; Lobe::COUNT]);
 

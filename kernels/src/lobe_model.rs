@@ -1,4 +1,4 @@
-//! Models given by their lobes alone: what all of them share is done here, once.
+//! Models given by their lobes alone, and the code that all of them share.
 
 mod mixture;
 
@@ -9,7 +9,7 @@ use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::{Broadcast, Direction, LaneStruct, Lanes, Lobe, Model, PerLobe, Scalar, Vec3x, lanes3};
 use wide::f32x8;
 
-/// A scattering model given by its lobes: what an author writes.
+/// A scattering model given by its lobes: the trait to implement for a new model.
 ///
 /// Every `LobeModel` is a [`Model`]. Guards, the choice of a lobe, the density of the mixture, discarded samples, weights,
 /// masks, packing and a quadrature of the albedo are provided; scalar calls, eight lanes, dispatch and slices follow.
@@ -103,7 +103,7 @@ pub trait LobeModel: Copy {
     /// [`Direction::normalized`].
     fn prepare<L: Lanes, C: Broadcast<L>>(material: &Self::Material<C>, hit: Hit<L>) -> Self::Prepared<L::Stored>;
 
-    /// How often each lobe is to be chosen, to any scale; 0 for slots without a lobe.
+    /// Sampling weight of each lobe, to any common scale; 0 for slots without a lobe.
     fn weights<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> PerLobe<L>;
 
     /// Each lobe's value, colour and own density at a direction.
@@ -132,7 +132,7 @@ pub struct Mixed<P, C> {
 }
 
 impl<P, C> Mixed<P, C> {
-    /// What the model itself keeps.
+    /// The model's own constants.
     #[inline(always)]
     #[must_use]
     pub const fn prepared(&self) -> &P {
@@ -230,7 +230,7 @@ impl<M: LobeModel> Model for M {
         let (one, infinity) = (L::splat(1.0), L::splat(f32::INFINITY));
         let h = (-one).max(one.min(hit.h));
         let prepared = <M as LobeModel>::prepare(material, Hit { h, ..hit });
-        // A wo that is no direction, NaN or infinite, sees nothing.
+        // A wo that is no direction, NaN or infinite: no lobe scatters.
         let Vec3x { x, y, z } = hit.wo;
         let finite = L::and(L::and(x.abs().lt(infinity), y.abs().lt(infinity)), z.abs().lt(infinity));
         let kept = L::keep(finite, one);
@@ -276,7 +276,7 @@ impl<M: LobeModel> Model for M {
         let (zero, most) = (c(0.0), c(BELOW_ONE));
         let m = &gather.mixture;
         let lobe = L::search(xi[0], lanes3(&m.bounds), M::LOBES.len() - 1);
-        // The first number once more. From the nearer end, where differences are exact: a rare lobe keeps the low bits.
+        // Stretch the first number again, from the nearer end, where differences are exact: a rare lobe keeps the low bits.
         let (start, start_less_one) = (C::look_up(&m.start, lobe), C::look_up(&m.start_less_one, lobe));
         let into = L::select(xi[0].lt(c(0.5)), xi[0] - start, (xi[0] - c(1.0)) - start_less_one);
         let again = into / C::look_up(&m.selection, lobe);

@@ -1,4 +1,4 @@
-//! Lower-variance samplers of the published model: the bells themselves, times what they leave out.
+//! Lower-variance samplers of the published model, which follow its bells and its angular factor W.
 
 mod bands;
 mod bell;
@@ -22,38 +22,38 @@ use wide::f32x8;
 /// than the published one.
 ///
 /// Each lobe is drawn from its own bells, cut to the sphere: truncated Gaussians on the Gaussian model, truncated Cauchys
-/// on the all-Cauchy one, and the glints on the whole circle. What the bells leave out of `S cos theta_i` is
-/// `W = (cos theta_i / cos theta_d)^2`, at most 4 and the same for all lobes: it is taken for constant in bands of inclination, of
-/// which there are `BANDS`, narrower towards the poles, where it falls to 0. Lobes are chosen by what they then integrate to.
+/// on the all-Cauchy one, and the glints on the whole circle. The remaining factor of `S cos theta_i` is
+/// `W = (cos theta_i / cos theta_d)^2`, at most 4 and the same for all lobes. It is approximated by a constant in each of `BANDS`
+/// bands of inclination, narrower towards the poles, where W falls to 0. Lobes are chosen by their integrals with that constant.
 ///
-/// From the poles to the band in the middle what W is taken for does not fall. So the integral of a lobe's bell, as a function
-/// of what is drawn uniformly, that of its product with W from the nearer pole, is the least of the bands' lines: inversion
-/// needs no search.
+/// From the poles to the band in the middle these constants ascend. The integral of a lobe's bell, as a function of the integral
+/// of its product with W from the nearer pole (which is drawn uniformly), is then the least of one line per band: inversion needs
+/// no search.
 ///
-/// With `BY_CHANNEL` lobes are chosen by their shares of red, green and blue, `sqrt(sum_c (E_lc / sum_k E_kc)^2)`, and not by the
-/// mean of the three: that evens out the relative variances of the channels, where the default serves their mean. For
-/// saturated colours: V of the blue of red hair falls from .41–.73 to .13–.20, and the mean's rises from .01–.03 to .11–.14
-/// (test `by_channel`).
+/// With `BY_CHANNEL` lobes are chosen by their shares of red, green and blue, `sqrt(sum_c (E_lc / sum_k E_kc)^2)`, instead of the
+/// mean of the three. This evens out the relative variances of the channels; the default minimises that of their mean. Use it for
+/// saturated colours: V of the blue of red hair falls from .41–.73 to .13–.20, and that of the mean rises from .01–.03 to
+/// .11–.14 (test `by_channel`).
 ///
-/// - Density: exact, as reported. With `h` the W of the band it is `h sum I M N / sum E`, over `cos theta_i`: the model itself
-///   but for `h / W`. It jumps where bands meet, by what W changes from band to band. Which band a direction is in is told from
-///   its first component alone, so that every precision agrees.
+/// - Density: exact, as reported. With `h` the constant of the band it is `h sum I M N / sum E`, over `cos theta_i`: the model
+///   itself times `h / W`. It jumps where bands meet. The band of a direction follows from its first component alone, so that
+///   every precision agrees.
 /// - Weights: bounded by the sum of the energies times the largest `W / h`, in closed form
 ///   (`textbook::MatchedTextbook::weight_bound`); the mean of a weight's RGB is `W / h` times that sum. By channel in place of
 ///   the sum: the largest energy over its lobe's probability.
 /// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it. What a sample
 ///   reports holds for the direction it returns to 3e-5 and 1e-5. For widths of a degree and more, further than 1e-3 rad from
 ///   the fibre's axis; errors grow as widths shrink. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor
-///   is a lobe drawn whose energy is below 1e-36 of the largest.
-/// - Domain: `BANDS` is 5, 9 or 25. By channel, a channel below 1e-18 of the brightest has no say.
-/// - Source: ours; section 3.2 of Ou et al. 2012 is what it replaces.
+///   is a lobe sampled whose energy is below 1e-36 of the largest.
+/// - Domain: `BANDS` is 5, 9 or 25. By channel, a channel below 1e-18 of the brightest is ignored.
+/// - Source: ours; it replaces section 3.2 of Ou et al. 2012.
 ///
-/// # What it buys, and what it costs
+/// # Gain and cost
 ///
-/// Under constant light, over the 3024 points of a grid of everyday hair (test `matched::variance`): V, the relative
-/// variance of one sample, its mean; and the gain, that of the published sampler over it, its geometric mean and its least. No
-/// weight is above so many times the mean, for `beta_r` from 0.5 to 60 degrees and `theta_o` up to 89.9 (test
-/// `matched::fireflies`: the bound; narrow hair hardly ever comes near it).
+/// Under constant light, over the 3024 cells of a grid of everyday hair (test `matched::variance`): the mean of V, the relative
+/// variance of one sample; and the gain, V of the published sampler over it, as geometric mean (and least). The largest weight is
+/// a bound relative to the mean, for `beta_r` from 0.5 to 60 degrees and `theta_o` up to 89.9 (test `matched::fireflies`);
+/// weights of narrow hair hardly ever come near it.
 ///
 /// | sampler | Gaussian: V, gain | all-Cauchy: V, gain | largest weight, Gaussian, all-Cauchy |
 /// |---|---|---|---|
@@ -62,9 +62,9 @@ use wide::f32x8;
 /// | `Matched<_, 9>`, the default | .0206, 14 (3.7) | .0223, 8.8 (3.5) | 4.3, 3.1 |
 /// | `Matched<_, 25>` | .0059, 56 (8.3) | .0065, 35 (8.2) | 2.4, 2.4 |
 ///
-/// Any broad light gains. Of what a small light or a textured one adds to the variance no sampler of the hair takes anything
-/// away, and in the far tails of a Gaussian lobe, where such a light may stand, the published Cauchy puts more samples: draw
-/// those lights, and combine. The README has times, and which sampler to use when.
+/// Any broad light gains. No sampler of the hair reduces the variance that a small or a textured light adds. In the far tails of
+/// a Gaussian lobe, where such a light may stand, the published sampler puts more samples. Sample those lights, and combine. The
+/// README of the package has times, and which sampler to use when.
 ///
 /// ```
 /// use glam::Vec3;

@@ -9,7 +9,7 @@ use crate::Lanes;
 use crate::simd::pair::Pair;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
-/// `pi/2 - FRAC_PI_2`, what the rounding of the constant leaves out.
+/// `pi/2 - FRAC_PI_2`, the rounding error of the constant.
 pub const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
 
 /// A polynomial of up to nine coefficients, the constant first; its even and odd halves are apart: half the dependency chain

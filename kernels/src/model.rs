@@ -18,9 +18,9 @@ use wide::f32x8;
 /// - Every function over lanes is `#[inline(always)]`, and so is all it calls: the dispatched entry points then
 ///   contain no call, and the model runs at the speed of ours. Array `map` and closures over lanes are calls.
 pub trait Model: Copy {
-    /// What users describe a material with, checked.
+    /// Checked parameters of a material.
     type Params;
-    /// Constants of a material: one number each (`C = f32`), or one a lane (`C = f32x8`).
+    /// Constants of a material: one number each (`C = f32`), or one per lane (`C = f32x8`).
     type Material<C: Scalar>: LaneStruct<One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
     /// Constants of a gather point.
     type Gather<C: Scalar>: LaneStruct<One = Self::Gather<f32>, Eight = Self::Gather<f32x8>>;
@@ -56,7 +56,7 @@ pub trait Model: Copy {
     fn albedo<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>) -> PerLobe<[L; 3]>;
 }
 
-/// Where a ray meets a fibre: the direction it came from, and how far off the axis it met it.
+/// The hit of a ray on a fibre: the direction it came from, and its offset from the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<L = f32> {
     /// Towards the viewer, in the fibre's frame, unit.
@@ -86,7 +86,7 @@ impl<L: Lanes> Hit<L> {
     }
 }
 
-/// Eight hits, one a lane.
+/// Eight hits, one per lane.
 pub type Hit8 = Hit<f32x8>;
 
 impl From<Vec3> for Hit {
@@ -124,7 +124,7 @@ impl From<&Self> for Hit8 {
     }
 }
 
-/// Value and density of a direction, a lane.
+/// Value and density of a direction, per lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eval<L = f32> {
     /// The scattering function S, without the cosine, linear RGB, per steradian.
@@ -137,7 +137,7 @@ pub struct Eval<L = f32> {
 pub type Eval8 = Eval<f32x8>;
 
 impl<L: Lanes> Eval<L> {
-    /// The lanes in the form they are kept in.
+    /// The lanes in their storage form.
     #[inline(always)]
     pub fn store(self) -> Eval<L::Stored> {
         Eval { value: crate::simd::lanes::store3(self.value), pdf: self.pdf.store() }
@@ -157,7 +157,7 @@ impl Eval8 {
     }
 }
 
-/// One lobe at one direction, a lane.
+/// One lobe at one direction, per lane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LobeEval<L = f32> {
     /// The lobe's part of S without its colour, per steradian: a spectral host applies its own.
@@ -180,14 +180,14 @@ impl<L: Lanes> LobeEval<L> {
         Self { value: zero, color: [zero; 3], pdf: zero }
     }
 
-    /// The lanes in the form they are kept in.
+    /// The lanes in their storage form.
     #[inline(always)]
     pub fn store(self) -> LobeEval<L::Stored> {
         LobeEval { value: self.value.store(), color: crate::simd::lanes::store3(self.color), pdf: self.pdf.store() }
     }
 }
 
-/// A sampled direction, a lane; value, pdf and weight 0 and slot -1 where it was discarded. What models return; users
+/// A sampled direction, per lane; value, pdf and weight 0 and slot -1 where it was discarded. What models return; users
 /// see [`Sample`] and [`Sample8`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawn<L> {
@@ -204,7 +204,7 @@ pub struct Drawn<L> {
 }
 
 impl<L: Lanes> Drawn<L> {
-    /// The lanes in the form they are kept in.
+    /// The lanes in their storage form.
     #[inline(always)]
     pub fn store(self) -> Drawn<L::Stored> {
         Drawn {

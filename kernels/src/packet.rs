@@ -1,11 +1,11 @@
-//! A model's functions as work for the vector layer: packets of eight, and rows of columns.
+//! Functions of a model as kernels of the vector layer: packets of eight, and rows of columns.
 
 use crate::model::{Drawn, Eval8, Hit8, LobeEval8, Sample8};
 use crate::{Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Level, Model, PerLobe, Row, Vec3x, Vec3x8, lanes3};
 use core::marker::PhantomData;
 use wide::f32x8;
 
-/// Eight gather points. The hits are made from what the caller has inside the kernel: what copies them is vector code.
+/// Eight gather points. The caller's arguments are converted to hits inside the kernel, by vector code.
 pub(crate) struct Prepare<'a, M: Model, C: Constant, H> {
     pub(crate) material: &'a M::Material<C>,
     pub(crate) hits: H,
@@ -97,7 +97,7 @@ impl<M: Model, K> Clone for AtGather<'_, M, K> {
 }
 impl<M: Model, K> Copy for AtGather<'_, M, K> {}
 
-/// Columns of S: what only the density needs is not computed.
+/// Columns of S. Terms that only the density needs are not computed.
 pub(crate) struct Value;
 impl<M: Model> Row<3> for AtGather<'_, M, Value> {
     #[inline(always)]

@@ -1,4 +1,4 @@
-//! What describes a head of hair: validated widths, shifts and intensities.
+//! Parameters of hair: validated widths, shifts and intensities.
 
 use crate::ParamError;
 use core::f32::consts::{FRAC_PI_2, PI};
@@ -13,7 +13,7 @@ pub const MIN_WIDTH: f32 = 1e-4;
 /// Largest width accepted, rad.
 pub const MAX_WIDTH: f32 = PI;
 
-/// The parameters of the published model, not checked yet: fill in what differs from the default and hand it to
+/// The parameters of the published model, not checked yet: set the fields that differ from the default and pass it to
 /// [`HairParams::new`].
 ///
 /// - Source: Ou et al. 2012, section 3.1 and table 2 (after Sadeghi et al. 2010).

@@ -1,4 +1,4 @@
-//! Uniform numbers out of a random-number generator. The kernels take plain numbers, so that any sequence fits.
+//! Uniform numbers from a random-number generator. The kernels take plain numbers, so any sequence works.
 
 use rand_core::Rng;
 use wide::f32x8;
@@ -10,7 +10,7 @@ pub fn xi<R: Rng + ?Sized>(rng: &mut R) -> [f32; 3] {
     [unit(rng), unit(rng), unit(rng)]
 }
 
-/// Three uniform numbers a lane, for eight samples: lane 0 draws its three first.
+/// Three uniform numbers per lane, for eight samples: lane 0 draws its three first.
 #[inline]
 #[must_use]
 pub fn xi8<R: Rng + ?Sized>(rng: &mut R) -> [f32x8; 3] {

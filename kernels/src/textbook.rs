@@ -74,7 +74,7 @@ pub struct Textbook<T> {
     probabilities: PerLobe<T>,
 }
 
-/// What the value and the density need of a pair of directions.
+/// Angles of a pair of directions, for value and density.
 #[derive(Clone, Copy)]
 struct Angles<T> {
     theta_i: T,
@@ -175,8 +175,7 @@ impl<T: Real> Textbook<T> {
         self.angles(wi).map_or_else(T::default, |at| self.mixture(&self.pdfs_at(&at)))
     }
 
-    /// [`eval`](Self::eval) and [`pdf`](Self::pdf) at once: the angles are taken from `wi` once, as anyone would who
-    /// needs both.
+    /// [`eval`](Self::eval) and [`pdf`](Self::pdf) at once: the angles are computed from `wi` once.
     #[inline]
     #[must_use]
     pub fn eval_pdf(&self, wi: [T; 3]) -> ([T; 3], T) {

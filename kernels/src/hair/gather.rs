@@ -1,4 +1,4 @@
-//! What the published sampler keeps of a material, and of a material seen from one direction (section 3.3 of the paper).
+//! Constants of the published sampler: per material, and per material and direction (section 3.3 of the paper).
 
 use super::point::{self, HairLobes, HairPoint, times};
 use crate::store4;
@@ -16,7 +16,7 @@ crate::lane_struct! {
         pub azimuth_cos: [C; 2],
         /// Angle from end to end, rad; below 0 for TT, whose cdf runs towards its centre.
         pub azimuth_span: [C; 2],
-        /// The azimuthal density but for its shape, per rad.
+        /// Normalisation of the azimuthal density, per rad.
         pub azimuth_density: [C; 2],
         /// Probability of choosing each lobe: its share of the energy.
         pub selection: [C; 4],
@@ -30,7 +30,7 @@ crate::lane_struct! {
     pub struct HairMaterial {
         /// Its lobes.
         pub lobes: (HairLobes<C>),
-        /// What the sampler knows of them.
+        /// The sampler's constants of these lobes.
         pub sampler: (HairSampler<C>),
     }
 }
@@ -121,7 +121,7 @@ fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -
     energy.map(|e| if largest > 0.0 { (e / largest) as f32 } else { 0.0 })
 }
 
-/// The longitude of a lobe, whose `theta_o / 2 - alpha` is `shift`.
+/// Truncated Cauchy of a lobe's longitude, with `shift = theta_o / 2 - alpha`.
 #[inline(always)]
 fn longitude<L: Lanes, C: Broadcast<L>>(shift: L, beta: C) -> TruncatedCauchy<L> {
     let quarter = L::splat(FRAC_PI_4);

@@ -1,4 +1,4 @@
-//! A direction as the lobes see it, and what the lobes are there.
+//! Angles of a direction relative to the gather point, and the lobe terms there.
 
 use super::{GRAZING, HairPoint};
 use crate::lanes3;
@@ -6,7 +6,7 @@ use crate::math::{FRAC_PI_2_LOW, atan_unit, half_atan2};
 use crate::{Bell, Broadcast, Lanes, Vec3x};
 use core::f32::consts::FRAC_PI_2;
 
-/// A direction as the lobes see it.
+/// Angles of a direction relative to the gather point.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<L: Lanes> {
     /// Half of `theta_i`.
@@ -24,7 +24,7 @@ pub(crate) struct Place<L: Lanes> {
     front: L::Mask,
 }
 
-/// What the lobes are at a place.
+/// Lobe terms at these angles.
 #[derive(Clone, Copy)]
 pub(crate) struct Shapes<L> {
     /// `M N`, with unit peaks: no colour, no strength.
@@ -37,7 +37,7 @@ pub(crate) struct Shapes<L> {
 }
 
 impl<L: Lanes> Place<L> {
-    /// The place of `wi` as seen from a gather point, and where it is one: a direction off the axis.
+    /// The angles of `wi` relative to a gather point, and the mask of lanes where `wi` is a direction off the axis.
     #[inline(always)]
     pub(crate) fn of<C: Broadcast<L>>(point: &HairPoint<C>, wi: Vec3x<L>) -> (Self, L::Mask) {
         let c = L::splat;
@@ -70,8 +70,8 @@ impl<L: Lanes> Place<L> {
         (place, sound)
     }
 
-    /// The place of `theta_i` and of an azimuth, told by half of the smaller of `|phi|` and `pi - |phi|`, its complement, its
-    /// sine and its cosine.
+    /// The angles of `theta_i` and of an azimuth. The azimuth is given by half of the smaller of `|phi|` and `pi - |phi|`, its
+    /// complement, its sine and its cosine.
     #[inline(always)]
     pub(super) fn new(
         half_theta_i: L,
@@ -95,7 +95,7 @@ impl<L: Lanes> Place<L> {
         }
     }
 
-    /// The lobes here.
+    /// The lobe terms at these angles.
     #[inline(always)]
     pub(crate) fn shapes<B: Bell, C: Broadcast<L>>(&self, point: &HairPoint<C>) -> Shapes<L> {
         let c = L::splat;
@@ -143,7 +143,7 @@ impl<L: Lanes> Place<L> {
     }
 }
 
-/// `pi/2` less an angle.
+/// `pi/2` minus an angle.
 #[inline(always)]
 pub(super) fn complement<L: Lanes>(angle: L) -> L {
     (L::splat(FRAC_PI_2) - angle) + L::splat(FRAC_PI_2_LOW)

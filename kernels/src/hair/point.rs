@@ -1,4 +1,4 @@
-//! The lobes of a material, and where a gather point sees them from: the same whichever sampler draws from them.
+//! Lobes of a material, and the view terms of a gather point: shared by all samplers of the published model.
 
 use super::albedo::bell_area;
 use crate::math::half_atan2;
@@ -7,7 +7,7 @@ use crate::{store3, store4};
 use core::f32::consts::PI;
 
 crate::lane_struct! {
-    /// The lobes of a material: what its value is made of, and every sampler reads.
+    /// The lobes of a material: the constants of its value, which every sampler reads.
     ///
     /// Arrays of two are TT and the glints, of three R, TT, TRT; arrays of four are in the order of [`Lobe`](crate::Lobe).
     pub struct HairLobes {
@@ -38,7 +38,7 @@ crate::lane_struct! {
 }
 
 crate::lane_struct! {
-    /// What every sampler reads of a gather point: the lobes of its material, and `wo`.
+    /// View terms of a gather point, which every sampler reads: the lobes of its material, and `wo`.
     pub struct HairPoint {
         /// Half the sine of `theta_o`.
         pub half_sin_theta_o: C,
@@ -107,7 +107,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
     let reciprocal = one / (len * span_plane);
     let (half_inv_len, inv_plane) = (c(0.5) * (reciprocal * span_plane), reciprocal * len);
     let half_theta_o = half_atan2(x, plane, len);
-    // Products of components this small would leave the range of a float; their last digit is none of the bounds'.
+    // Products of components this small would underflow; the stated bounds do not cover their last digit.
     let near_axis = plane.lt(c(1e-4));
     let cos_phi_o = L::select(off_axis, y * inv_plane, one);
     let sin_phi_o = z * inv_plane;

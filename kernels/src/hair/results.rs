@@ -1,4 +1,4 @@
-//! What a model gives for a direction and for a sample, once its density is known.
+//! Results for a direction and for a sample, from the lobe terms and the density.
 
 use super::{GRAZING, HairPoint, Place, Shapes};
 use crate::lanes3;
@@ -20,7 +20,7 @@ fn min3<L: Lanes>(x: [L; 3], limit: L) -> [L; 3] {
     [x[0].min(limit), x[1].min(limit), x[2].min(limit)]
 }
 
-/// The density of a mixture of lobes from what each lobe's is but for its weight.
+/// The density of a mixture of lobes, from the shape of each lobe's density and its weight.
 #[inline(always)]
 pub(crate) fn mixture<L: Lanes, C: Broadcast<L>>(lobes: [L; 4], weight: &[C; 4]) -> L {
     let back = lobes[1].mul_add(weight[1].lanes(), lobes[3] * weight[3].lanes());

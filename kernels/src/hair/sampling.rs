@@ -17,7 +17,7 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let (point, hair, sampler) = (&gather.point, &gather.point.lobes, &gather.sampler);
     let choice = L::search(xi[0], lanes3(&sampler.bounds), 3);
 
-    // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Side by side with the azimuth.
+    // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Interleaved with the azimuth.
     let turn = Turn::of(xi[2]);
     let both = TruncatedCauchy {
         sin_mid: Pair(C::look_up_three(&gather.longitude_sin, choice), C::look_up_half(&sampler.azimuth_sin, choice)),
@@ -50,8 +50,8 @@ impl<L: Lanes> Turn<L> {
     }
 }
 
-/// The direction at half a longitude and at an azimuth, and its place: of the angles it is made of, those that keep their
-/// digits in the direction are kept, not taken back from it.
+/// The direction at half a longitude and at an azimuth, and its angles. Angles that keep their digits in the direction are
+/// reused, not recomputed from it.
 ///
 /// The azimuth is on the side of `turn`. `psi` is half of `|phi|` for the glints and half of `pi - |phi|` for TT; R and TRT-g
 /// take it from `turn` alone. Where bells are narrow, rounding may take it a little out of `[0, pi/2]`: the magnitude of its
@@ -92,7 +92,7 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     let cos_turn = cos_psi.mul_sub(cos_psi, sin_psi_sq);
     let sin_phi = sin_turn.times_sign(L::negate(is_bell, side));
     let cos_phi = L::negate(is_tt, cos_turn);
-    // What the sine and the cosine are off the unit circle is taken from the length.
+    // The length absorbs the distance of sine and cosine from the unit circle.
     let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;
     let [v_o, w_o, cos_o] = lanes3(&point.plane_o);
     let by = point.inv_plane_o.lanes();
@@ -100,7 +100,7 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by * cos_theta_i;
     let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by * cos_theta_i;
 
-    // The angle, turned by what rounding has turned the direction.
+    // The angle, rotated by the rounding error of the direction.
     let inv_reach = one / (cos_theta_i * cos_o);
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();

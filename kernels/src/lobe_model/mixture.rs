@@ -1,9 +1,9 @@
-//! With which probability each lobe is chosen.
+//! Probabilities of the lobes.
 
 use crate::{Lanes, store3, store4};
 
 crate::lane_struct! {
-    /// How the lobes of a gather point are mixed.
+    /// Probabilities of the lobes of a gather point, and the choice of one.
     pub struct Mixture {
         /// Probability of each lobe.
         pub selection: [C; 4],
@@ -28,7 +28,7 @@ impl<C: Lanes> Mixture<C> {
     pub(super) fn new(weights: [C; 4], kept: [C; 4]) -> Self {
         let c = C::splat;
         let (zero, one, two) = (c(0.0), c(1.0), c(2.0));
-        // Of four, none overflows their sum.
+        // Scaled so that the sum of four does not overflow.
         let most = c(f32::MAX / 8.0);
         let e = [
             weights[0].min(most) * kept[0],
@@ -58,7 +58,7 @@ impl<C: Lanes> Mixture<C> {
         }
     }
 
-    /// The mixture in the form it is kept in.
+    /// The mixture in its storage form.
     #[inline(always)]
     pub(super) fn store(self) -> Mixture<C::Stored> {
         Mixture {

@@ -1,4 +1,4 @@
-//! Bands of inclination, in each of which W is taken for constant.
+//! Bands of inclination, in each of which W is approximated by a constant.
 
 use super::sides::Sides;
 use crate::Lanes;
@@ -40,7 +40,7 @@ const ENDS: [&[[f32; 2]]; 3] = [
     ],
 ];
 
-/// Of `all` bands those on one side, from the pole inwards, and then the one in the middle; what follows has no meaning.
+/// The bands on one side of `all`, from the pole inwards, and then the one in the middle. Entries after it have no meaning.
 #[expect(clippy::cast_possible_truncation, reason = "rounding is the purpose")]
 pub(super) const fn bands(all: usize) -> [Band; MOST + 1] {
     let ends = match all {

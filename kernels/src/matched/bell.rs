@@ -5,7 +5,7 @@ use crate::{Bell, Gaussian, Lanes};
 
 /// A [`Bell`] that [`Matched`](crate::Matched) draws from: one whose integral is known, and its inverse.
 ///
-/// The integral up to a point is told from an origin of the bell's own choice, so that differences keep their digits on
+/// The integral up to a point counts from an origin that the bell chooses, so that differences keep their digits on
 /// intervals far from its centre. As for [`Bell`], mark all functions `#[inline(always)]`.
 pub trait MatchedBell: Bell {
     /// The area that an integral of 1 stands for.
@@ -21,15 +21,15 @@ pub trait MatchedBell: Bell {
     fn invert<L: Lanes>(origin: L, sum: L) -> L;
 }
 
-/// The integral is a probability, below 0 where it is one of what lies above `x`: on intervals above the centre.
+/// The integral is a probability. On intervals above the centre it is minus the probability above `x`.
 ///
-/// - Accuracy: a point's integral is that asked for to 2e-7, and to 2.1e-4 of the probability beyond it, to 5e-5
-///   where that is at least `2^-30`.
+/// - Accuracy: the integral of an inverted point is within 2e-7 of the given one, and within 2.1e-4 of the probability beyond
+///   it (5e-5 where that is at least `2^-30`).
 impl MatchedBell for Gaussian {
     /// `sqrt(2 pi)`.
     const UNIT: f32 = 2.506_628_3;
 
-    /// What probabilities of more than half are told from: 1, or 0 on an interval above the centre.
+    /// Origin of probabilities above a half: 1, or 0 on an interval above the centre.
     #[inline(always)]
     fn origin<L: Lanes>(lo: L, _hi: L) -> L {
         L::keep(lo.lt(L::splat(0.0)), L::splat(1.0))

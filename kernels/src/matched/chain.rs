@@ -1,4 +1,4 @@
-//! The integrals of the lobes' longitudes through the bands.
+//! Cumulative integrals of the lobes' longitudes over the bands.
 
 use super::MatchedBell;
 use super::bands::bands;
@@ -7,7 +7,7 @@ use super::sides::Sides;
 use crate::Lanes;
 use core::f32::consts::FRAC_PI_4;
 
-/// A longitude, from the lower pole and from the upper one inwards.
+/// Cumulative integrals of a longitude, from the lower pole and from the upper one inwards.
 #[derive(Clone, Copy)]
 struct Longitude<P> {
     shift: P,
@@ -15,7 +15,7 @@ struct Longitude<P> {
     origin: P,
     /// Integral of M up to here, negative above: it ascends from either pole.
     integral: P,
-    /// That of `M W` from the pole.
+    /// Integral of `M W` from the pole.
     area: P,
 }
 
@@ -41,7 +41,7 @@ impl<P: Lanes> Longitude<P> {
         B::integral(self.origin, (self.shift + P::outwards(half_theta_i)) * self.inv_beta).negate_above()
     }
 
-    /// Goes on through a band; what its line begins with.
+    /// Advances through a band. Returns the offset of its line.
     #[inline(always)]
     fn pass<B: MatchedBell, L, const K: usize>(&mut self, half_theta_i: f32, height: P, minus_slope: P) -> P
     where
@@ -60,7 +60,7 @@ impl<P: Lanes> Longitude<P> {
         minus_slope.mul_add(self.area, self.integral)
     }
 
-    /// Integral of `M W` up to somewhere in the middle, and over the sphere.
+    /// Integral of `M W` up to a point in the middle band, and over the sphere.
     #[inline(always)]
     fn join<L, const K: usize>(&self, height: P) -> [P; 2]
     where
@@ -71,7 +71,7 @@ impl<P: Lanes> Longitude<P> {
     }
 }
 
-/// Runs a body for every `j` below `n`, up to twelve: straight on, so that what it writes is written where it belongs.
+/// Runs a body for every `j` below `n`, up to twelve, unrolled: its writes have constant indices.
 macro_rules! for_each {
     ($j:ident < $n:expr, $body:block) => { for_each!(@$j ($n) $body 0 1 2 3 4 5 6 7 8 9 10 11) };
     (@$j:ident $n:tt $body:block $($i:literal)*) => {
@@ -82,7 +82,7 @@ macro_rules! for_each {
     };
 }
 
-/// What [`MatchedGather`] keeps of the bands; arrays of three are R, TT and TRT.
+/// Constants of the bands in [`MatchedGather`]; arrays of three are R, TT and TRT.
 pub(super) struct Chain<L: Lanes, const N: usize> {
     pub(super) origin: [L; 3],
     pub(super) height: [L::Stored; N],
@@ -93,7 +93,7 @@ pub(super) struct Chain<L: Lanes, const N: usize> {
     pub(super) area: [L; 3],
 }
 
-/// Through all bands, from both poles to the middle.
+/// Integrates over all bands, from both poles to the middle.
 #[inline(always)]
 pub(super) fn chain<B: MatchedBell, L: Lanes, P: Sides<L, K>, const K: usize, const N: usize>(
     shift: [L; 3],

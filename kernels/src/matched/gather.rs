@@ -1,4 +1,4 @@
-//! What a matched sampler keeps of a material seen from one direction.
+//! Constants of a matched sampler per material and direction.
 
 use super::MatchedBell;
 use super::bands::bands;
@@ -10,11 +10,11 @@ use crate::{Broadcast, HairPoint, LaneStruct, Lanes, Lobe, LobeMask, Scalar, Vec
 use crate::{lanes3, lanes4, store3, store4};
 use wide::f32x8;
 
-/// Energies and areas below this are none: next to denormals their reciprocals would have no digits. Energies are to the scale
+/// Energies and areas below this count as 0: next to denormals their reciprocals would have no digits. Energies are to the scale
 /// of the brightest lobe and of the largest area.
 const LEAST_ENERGY: f32 = 1e-36;
 
-/// A channel below this share of the largest has no say in the choice of lobes: the square of its reciprocal is a float.
+/// A channel below this share of the largest is ignored in the choice of lobes: the square of its reciprocal is a float.
 const LEAST_CHANNEL: f32 = 1e-18;
 
 /// The constants of a gather point with a matched sampler of `N` bands.
@@ -26,22 +26,22 @@ pub struct MatchedGather<C, const N: usize> {
     pub point: HairPoint<C>,
     /// Origin of the integrals of each longitude.
     pub origin: [C; 4],
-    /// What W is taken for in each band: it ascends to the band in the middle.
+    /// The constant for W in each band; ascends to the band in the middle.
     pub height: [C; N],
     /// One over it.
     pub slope: [C; N],
-    /// In each band the integral of a lobe's M is this much more than `slope` times that of `M W` from the nearer pole. Above the
+    /// In each band the integral of a lobe's M exceeds `slope` times that of `M W` from the nearer pole by this much. Above the
     /// middle it is the negative integral.
     pub offset: [[C; 4]; N],
     /// The same in the middle, with the integral of `M W` from the upper pole.
     pub offset_above: [C; 4],
-    /// Integral of `M W` from the lower pole up to somewhere in the middle.
+    /// Integral of `M W` from the lower pole up to a point in the middle band.
     pub below: [C; 4],
     /// Integral of `M W` over the sphere.
     pub area: [C; 4],
     /// Factor on `M N` of each lobe in the mixture density, but for W.
     pub weight: [C; 4],
-    /// What areas are multiplied with, so that the largest is 1.
+    /// Factor on areas that makes the largest 1.
     pub scale: C,
     /// Probability of choosing each lobe.
     pub selection: [C; 4],
@@ -129,7 +129,7 @@ where
     }
 }
 
-/// The importance of lobes of these sizes that lets each have the root of the sum of its squared shares of the channels.
+/// Sampling weights of lobes of these sizes: the root of the sum of the squared shares of the channels.
 #[inline(always)]
 fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [L; 4] {
     let zero = L::splat(0.0);
@@ -165,7 +165,7 @@ pub(super) fn shared4<L: Lanes>([r, tt, trt]: [L; 3]) -> [L::Stored; 4] {
     store4([r, tt, trt, trt])
 }
 
-/// Two numbers of a material, a lane each.
+/// Two numbers of a material, one per lane.
 #[inline(always)]
 fn spread2<L: Lanes, C: Broadcast<L>>(x: &[C; 2]) -> [L::Stored; 2] {
     [x[0].lanes().store(), x[1].lanes().store()]

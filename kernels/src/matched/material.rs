@@ -1,10 +1,10 @@
-//! What a matched sampler keeps of a material.
+//! Constants of a matched sampler per material.
 
 use super::MatchedBell;
 use crate::{Broadcast, HairLobes, HairParams, Lanes};
 use core::f32::consts::PI;
 
-/// Intensities below this share of the largest are none to the sampler.
+/// The sampler takes intensities below this share of the largest for 0.
 const LEAST_IMPORTANCE: f64 = 1e-25;
 
 crate::lane_struct! {
@@ -18,7 +18,7 @@ crate::lane_struct! {
         pub importance: [C; 4],
         /// Intensity of each lobe in each channel, to the same scale: the channels of R first.
         pub intensity: [C; 12],
-        /// What a lobe integrates to, but for its colour, for each unit of its longitude's integral.
+        /// Integral of a lobe without its colour, per unit of its longitude's integral.
         pub extent: [C; 4],
         /// Integral of the azimuth's bell over one side.
         pub azimuth_mass: [C; 2],
@@ -29,7 +29,7 @@ crate::lane_struct! {
     }
 }
 
-/// What each lobe integrates to, but for its colour, for each unit of its longitude's integral.
+/// Integral of each lobe without its colour, per unit of its longitude's integral.
 #[inline(always)]
 pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(hair: &HairLobes<C>, azimuth_mass: [L; 2]) -> [L; 4] {
     // dtheta_i is two widths for each of x; the azimuth of R and TRT-g has an area of 4, and bells have two sides.

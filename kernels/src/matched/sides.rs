@@ -18,7 +18,7 @@ pub(super) trait Sides<L, const K: usize>: Lanes {
     fn swapped(self) -> Self;
     /// Below and above, of what is the same for all lobes.
     fn apart(self) -> [L; 2];
-    /// Those of R, TT and TRT below, and above.
+    /// R, TT and TRT below the normal plane, and above it.
     fn lobes_apart(x: [Self; K]) -> [[L; 3]; 2];
 }
 

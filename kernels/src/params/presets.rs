@@ -3,7 +3,7 @@
 use super::{HairDesc, HairParams};
 use core::f32::consts::PI;
 
-/// What tells one preset from another, in degrees; the other shifts and widths follow from R (Marschner et al. 2003,
+/// Values that differ between presets, in degrees; the other shifts and widths follow from R (Marschner et al. 2003,
 /// table 1): `alpha_tt = -alpha_r / 2`, `alpha_trt = -3 alpha_r / 2`, `beta_tt = beta_r / 2`, `beta_trt = 2 beta_r`.
 struct Look {
     alpha_r: f32,
@@ -11,7 +11,7 @@ struct Look {
     gamma_tt: f32,
     gamma_g: f32,
     phi_g: f32,
-    /// What one passage through the fibre leaves of red, green and blue.
+    /// Transmittance of one passage through the fibre: red, green and blue.
     pigment: [f32; 3],
     reflected: f32,
     /// Intensity of TT before the pigment, which it passes once.
@@ -44,7 +44,7 @@ impl Look {
     }
 }
 
-/// Shared by the presets; each names what differs from it.
+/// Base of the presets; each states its differences.
 const BASE: Look = Look {
     alpha_r: -7.5,
     beta_r: 7.5,

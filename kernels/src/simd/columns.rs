@@ -9,7 +9,7 @@ use super::lanes::{Broadcast, Lanes, Packet, lanes3};
 use core::{mem, slice};
 use wide::f32x8;
 
-/// Three numbers in, `N` numbers out, whatever the lanes: what [`Level::run_rows`] runs over columns.
+/// Work of [`Level::run_rows`] over columns: three numbers in, `N` numbers out, whatever the lanes.
 pub trait Row<const N: usize>: Copy {
     /// The numbers of each lane. Mark it `#[inline(always)]`, and all it calls.
     fn row<L: Lanes>(self, input: [L; 3]) -> [L; N]
@@ -53,7 +53,7 @@ impl<R: Row<N>, const N: usize> Kernel for Eight<'_, R, N> {
 /// The loop of a batch over whole packets. Every column has as many packets as the first; were one shorter, none would
 /// be written, for want of a branch that panics.
 ///
-/// Columns are cut to one length before the loop, so that it has no branch but its own: the compiler moves what leads to
+/// Columns are cut to one length before the loop, so that it has no other branch: the compiler moves the computation of
 /// a result past the branch that decides on its being written, and with it all of one packet of a pair before the other.
 #[inline(always)]
 pub(crate) fn packets<R: Row<N>, L: Packet<W>, const N: usize, const W: usize>(
@@ -89,11 +89,11 @@ pub(crate) fn packets<R: Row<N>, L: Packet<W>, const N: usize, const W: usize>(
     run!(a 0 b 1 c 2 d 3 e 4 f 5 g 6 h 7 i 8 j 9 k 10);
 }
 
-/// Cuts slices into whole packets, on which `run` is called, and says how many rows are done then.
+/// Calls `run` on the whole packets of the slices. Returns the number of rows done.
 ///
-/// What is left is less than a packet. If it is more than eight rows, or a packet is no more than eight, the last rows of
-/// the slices are a packet once more: a row is the same wherever it is computed. Slices of less than a packet of eight are
-/// its first lanes.
+/// The rest is less than a packet. If it is more than eight rows, or a packet is no more than eight, the last packet of
+/// rows is computed once more: a row is the same wherever it is computed. Slices of less than a packet of eight fill its
+/// first lanes.
 #[inline(always)]
 pub(crate) fn in_packets<const N: usize, const W: usize>(
     inputs: [&[f32]; 3],
@@ -125,7 +125,7 @@ pub(crate) fn in_packets<const N: usize, const W: usize>(
     len
 }
 
-/// Rows from `done` on, eight at a time; the last eight of the slices take in some that are done already.
+/// Rows from `done` on, eight at a time; the last eight of the slices include some that are done already.
 ///
 /// Slices of less than eight rows are lanes 0 on.
 #[inline(always)]

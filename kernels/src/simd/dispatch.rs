@@ -1,4 +1,4 @@
-//! Which instruction set runs: the only place that picks a backend at run time.
+//! Run-time dispatch: the only place that picks a backend.
 #![allow(unsafe_code, reason = "calls into functions of target features that a `Level` proves present")]
 
 use super::columns::{self, Row};
@@ -57,7 +57,7 @@ enum Kind {
 }
 
 impl Level {
-    /// The best level of this CPU. The CPU is asked once; after that it is a load and a compare.
+    /// The best level of this CPU. Detected once; later calls are a load and a compare.
     #[inline(always)]
     #[must_use]
     pub fn detect() -> Self {
@@ -73,7 +73,7 @@ impl Level {
         Self::portable()
     }
 
-    /// Eight lanes through `wide`: what the program was compiled for, on every CPU that runs it.
+    /// Eight lanes through `wide`, in the instruction set that the program was compiled for.
     #[inline(always)]
     #[must_use]
     pub const fn portable() -> Self {
@@ -115,7 +115,7 @@ impl Level {
     }
 }
 
-/// What `wide` was compiled for.
+/// The instruction set that `wide` was compiled for.
 const PORTABLE: &str = if cfg!(all(target_feature = "avx", target_feature = "fma")) {
     "wide (avx+fma)"
 } else if cfg!(target_feature = "avx") {
@@ -137,7 +137,7 @@ impl fmt::Display for Level {
     }
 }
 
-/// Work on eight lanes, whatever their backend: what [`Level::run`] runs.
+/// Work of [`Level::run`] on eight lanes, whatever their backend.
 ///
 /// ```
 /// use hairis::wide::f32x8;
@@ -168,7 +168,7 @@ pub trait Kernel {
     /// Its result.
     type Output;
 
-    /// Whether the registers of AVX-512 pay. With twice as many of them, evaluation and sampling gain 5 %; a kernel
+    /// Whether to compile for the registers of AVX-512. With twice as many, evaluation and sampling gain 5 %; a kernel
     /// that mostly writes loses 25 %.
     const MANY_REGISTERS: bool = true;
 
@@ -234,7 +234,7 @@ impl Level {
 
     /// Runs `row` over columns: three numbers in, `N` out. All columns are to be of one length.
     ///
-    /// Rows are computed in packets as wide as the instruction set has them, two at a time, and what is left eight at a
+    /// Rows are computed in packets as wide as the instruction set has them, two at a time, and the rest eight at a
     /// time. Columns that are too short leave the others unwritten.
     #[inline]
     pub fn run_rows<R: Row<N>, const N: usize>(self, row: R, inputs: [&[f32]; 3], outputs: &mut [&mut [f32]; N]) {

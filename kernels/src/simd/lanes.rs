@@ -15,7 +15,7 @@ pub(crate) mod sealed {
     pub trait Sealed {}
 }
 
-/// What a struct of lanes holds: one number, or one a lane. Sealed.
+/// Entry of a struct of lanes: one number, or one per lane. Sealed.
 pub trait Scalar: sealed::Sealed + Copy + Debug {}
 impl<T: sealed::Sealed + Copy + Debug> Scalar for T {}
 
@@ -31,20 +31,20 @@ pub trait LaneStruct: Copy + Debug {
     fn lane(eight: &Self::Eight, lane: usize) -> Self::One;
 }
 
-/// One number a lane, with the arithmetic that models are written in.
+/// One number per lane, with the arithmetic that models are written in.
 pub trait Lanes:
     Scalar + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// One truth value a lane.
+    /// One truth value per lane.
     type Mask: Copy;
     /// An index from 0 to 3 per lane, see [`search`](Self::search).
     type Index: Copy;
-    /// What the lanes are kept in between calls: `f32` for one, `wide::f32x8` for eight.
+    /// Storage of the lanes between calls: `f32` for one, `wide::f32x8` for eight.
     type Stored: Broadcast<Self>;
 
     /// The same number in every lane.
     fn splat(x: f32) -> Self;
-    /// The lanes in the form they are kept in.
+    /// The lanes in their storage form.
     fn store(self) -> Self::Stored;
     /// `self * a + b`, rounded once where the backend fuses and twice where it does not.
     #[must_use]
@@ -54,8 +54,8 @@ pub trait Lanes:
     fn mul_sub(self, a: Self, b: Self) -> Self;
     /// `a * b - c * d`, to within two units in the last place however much it cancels.
     ///
-    /// Backends that fuse keep what the rounding of a product leaves out; others split the factors. The difference of
-    /// two plain products loses all that the cancellation takes.
+    /// Backends that fuse recover the rounding error of a product; others split the factors. The difference of two plain
+    /// products loses every digit that cancels.
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
     /// Square root, correctly rounded.
     #[must_use]
@@ -94,15 +94,16 @@ pub trait Lanes:
     /// `x` where the mask is set, 0 elsewhere.
     fn keep(mask: Self::Mask, x: Self) -> Self;
 
-    /// Both. With AVX2, neither before both are there: no instruction, but compilers keep to it. Elsewhere it is nothing.
+    /// Returns both. With AVX2 a barrier for the compiler, without an instruction: neither is used before both are computed.
+    /// Elsewhere no operation.
     ///
-    /// Of two chains of results they like to write one behind the other, as that takes fewer registers. A CPU that looks a
+    /// Compilers tend to emit two dependency chains one after the other, which takes fewer registers. A CPU that looks a
     /// hundred instructions ahead then waits for each in turn.
     #[inline(always)]
     fn interleave(a: Self, b: Self) -> (Self, Self) {
         (a, b)
     }
-    /// Of two packets side by side, [`interleave`](Self::interleave) of the two; any other as it is.
+    /// [`interleave`](Self::interleave) of the two halves of a pair; others are returned unchanged.
     #[inline(always)]
     #[must_use]
     fn interleaved(self) -> Self {
@@ -117,7 +118,7 @@ pub trait Lanes:
     fn index_number(index: Self::Index) -> Self;
 }
 
-/// Storage that lanes are read from: one number for all of them, or one a lane.
+/// Storage of lanes: one number for all of them, or one per lane.
 ///
 /// A model reads its constants through this trait, so that one source serves eight directions at one gather point
 /// (constants in `f32`) and eight gather points (constants in `f32x8`).
@@ -152,19 +153,19 @@ pub fn lanes4<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> [L; 4] {
     [x[0].lanes(), x[1].lanes(), x[2].lanes(), x[3].lanes()]
 }
 
-/// The three lanes of `x` in the form they are kept in.
+/// The three lanes of `x` in their storage form.
 #[inline(always)]
 pub fn store3<L: Lanes>(x: [L; 3]) -> [L::Stored; 3] {
     [x[0].store(), x[1].store(), x[2].store()]
 }
 
-/// The four lanes of `x` in the form they are kept in.
+/// The four lanes of `x` in their storage form.
 #[inline(always)]
 pub fn store4<L: Lanes>(x: [L; 4]) -> [L::Stored; 4] {
     [x[0].store(), x[1].store(), x[2].store(), x[3].store()]
 }
 
-/// What [`Lanes::split_exponent`] adds to the bits of a float, so that their exponent, biased, is that of the power of two
+/// Offset that [`Lanes::split_exponent`] adds to the bits of a float, so that their biased exponent is that of the power of two
 /// at or below `sqrt(2)` times it: the bits of 1 less those of `sqrt(1/2)`.
 pub(crate) const ROUND_EXPONENT: u32 = 0x3f80_0000 - 0x3f35_04f3;
 /// The bits of 1: an exponent of 0, biased.
@@ -189,7 +190,7 @@ pub(crate) fn difference_split<L: Lanes>(a: [L; 2], b: [L; 2], c: [L; 2], d: [L;
     (left[0] - right[0]) + (left[1] - right[1])
 }
 
-/// A product, and what its rounding leaves out: exact, as the products of halves are.
+/// A product and its rounding error: exact, as the products of halves are.
 #[inline(always)]
 fn product_split<L: Lanes>(a: [L; 2], b: [L; 2]) -> [L; 2] {
     let product = (a[0] + a[1]) * (b[0] + b[1]);
@@ -219,7 +220,7 @@ pub(crate) fn select_of_three<L: Lanes>(table: [L; 3], [one, two, _]: [L::Mask; 
 ///
 /// ```
 /// hairis::lane_struct! {
-///     /// What is constant for one gather point.
+///     /// Constants of one gather point.
 ///     pub struct Constants {
 ///         /// Exponent of the highlight.
 ///         pub exponent: C,
@@ -244,7 +245,7 @@ macro_rules! lane_struct {
         $vis struct $name<C> { $($(#[$field_meta])* $field_vis $field: $kind,)* }
 
         impl<C: Copy> $name<C> {
-            /// The same numbers in the storage of `L`: one number for all lanes becomes one a lane.
+            /// The same numbers in the storage of `L`: one number for all lanes becomes one per lane.
             #[inline(always)]
             #[must_use]
             pub fn spread<L: $crate::Lanes>(&self) -> $name<L::Stored>

@@ -1,9 +1,9 @@
-//! Two packets side by side: where one waits for its last result, the other has work.
+//! Two interleaved packets: while one waits for a result, the other computes.
 //!
-//! A sample is a chain of some two hundred cycles, of which a CPU finds no more than the next few hundred instructions
-//! to do meanwhile: with two chains in every stretch of instructions it waits a quarter less.
+//! A sample is a dependency chain of some two hundred cycles; a CPU looks no more than a few hundred instructions ahead
+//! for other work. With two chains interleaved it waits a quarter less.
 //!
-//! Models put equal steps of one packet side by side in the same way, two or four of them.
+//! Models interleave equal steps of one packet in the same way, two or four of them.
 
 use super::lanes::{Broadcast, Lanes, Packet, sealed::Sealed};
 use core::ops::{Add, Div, Mul, Neg, Sub};

@@ -106,7 +106,7 @@ impl Lanes for f32x8 {
     fn abs(self) -> Self {
         self & MAGNITUDE
     }
-    // `fast_min` is the machine's own: only x86 promises what it does with NaN.
+    // `fast_min` is the machine's own: its result for NaN is specified on x86 alone.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {

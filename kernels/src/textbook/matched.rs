@@ -1,4 +1,4 @@
-//! The matched sampler, formula by formula: what [`Matched`](crate::Matched) computes, without its economies.
+//! Formulas of the matched sampler [`Matched`](crate::Matched), line by line.
 
 use super::cut::Cut;
 use super::{Angles, Drawn, GRAZING, Parameters, Real, Shape, Textbook, cos_half, wrapped};
@@ -30,7 +30,7 @@ const fn ends(bands: usize) -> &'static [f32] {
 pub struct MatchedTextbook<T> {
     book: Textbook<T>,
     longitudinal: PerLobe<Cut<T>>,
-    /// Number of bands, from the lower pole to the upper, the sines they lie between, and what W is taken for in each.
+    /// Number of bands, from the lower pole to the upper, their sines, and the constant for W in each.
     bands: usize,
     sines: [T; MOST + 1],
     heights: [T; MOST],
@@ -39,7 +39,7 @@ pub struct MatchedTextbook<T> {
     /// TT's azimuth from its centre to one side, and a glint's from `phi = 0` to pi.
     transmission: Cut<T>,
     glint: Cut<T>,
-    /// What each lobe integrates to, but for its colour, and with the mean of its channels.
+    /// Integral of each lobe without its colour, and with the mean of its channels.
     extents: PerLobe<T>,
     energies: PerLobe<T>,
     probabilities: PerLobe<T>,
@@ -64,11 +64,11 @@ fn shares<T: Real>(of: &PerLobe<T>) -> PerLobe<T> {
 }
 
 impl<T: Real> MatchedTextbook<T> {
-    /// What is constant for `parameters` and `wo`, with 5, 9 or 25 bands.
+    /// Computes the constants of `parameters` and `wo`, with 5, 9 or 25 bands.
     ///
     /// # Panics
     ///
-    /// If there are others.
+    /// If `bands` is none of these.
     #[inline]
     #[must_use]
     pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3], bands: usize) -> Self {
@@ -185,16 +185,17 @@ impl<T: Real> MatchedTextbook<T> {
         (T::from_f64(0.5) * (theta_i + self.book.theta_o) - p.alpha[i]) / p.beta[i]
     }
 
-    /// The probability of each lobe: its share of what all integrate to, by the mean of their channels.
+    /// The probability of each lobe: its share of the integrals of all, by the mean of their channels.
     #[inline]
     #[must_use]
     pub fn probabilities(&self) -> PerLobe<T> {
         self.probabilities
     }
 
-    /// What no weight exceeds, the mean of its three channels, of the lobes in `mask`: the largest energy over a lobe's
-    /// probability, which is the sum of the energies unless lobes are chosen by channel, times the largest ratio of W to what
-    /// it is taken for in a band.
+    /// Bound on every weight of the lobes in `mask`, mean of three channels.
+    ///
+    /// The largest energy over a lobe's probability, times the largest ratio of W to its constant in a band. The first factor
+    /// is the sum of the energies unless lobes are chosen by channel.
     #[inline]
     #[must_use]
     pub fn weight_bound(&self, mask: LobeMask) -> T {
@@ -224,7 +225,7 @@ impl<T: Real> MatchedTextbook<T> {
         number(0.5) * (lo + hi)
     }
 
-    /// The inclinations between which W is taken for constant, both poles included.
+    /// The inclinations at the ends of the bands, both poles included.
     #[inline]
     pub fn bands(&self) -> impl Iterator<Item = T> + '_ {
         self.sines[..=self.bands].iter().map(|sine| sine.asin())
@@ -313,7 +314,7 @@ impl<T: Real> MatchedTextbook<T> {
         let area = xi * areas[self.bands];
         let j = (1..self.bands).find(|j| area < areas[*j]).unwrap_or(self.bands) - 1;
         let from = cut.below(self.offset(lobe, self.sines[j].asin()));
-        // There is no direction on a pole: as the kernels, keep from it.
+        // There is no direction on a pole: keep off it, as the kernels do.
         let least = T::from_f64(f64::from(f32::EPSILON) / 8.0);
         let share = (from + (area - areas[j]) / self.heights[j]) / cut.area;
         self.theta_i(lobe, cut.sample(share.max(least).min(T::from_f64(1.0) - least)))

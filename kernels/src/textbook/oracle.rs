@@ -1,10 +1,9 @@
-//! The textbook with whichever sampler a kernel has.
+//! The textbook with any of the samplers of the kernels.
 
 use super::{Drawn, MatchedTextbook, Parameters, Real, Shape, Textbook};
 use crate::{Lobe, PerLobe};
 
-/// The model for one set of parameters and one `wo`, with one of the samplers that the kernels have: what a kernel is held
-/// against.
+/// The model for one set of parameters and one `wo`, with one of the samplers of the kernels: the reference for a kernel.
 ///
 /// ```
 /// use hairis::{Gaussian, Bsdf, HairParams, Matched, textbook::{Oracle, Parameters, Shape}};
@@ -22,7 +21,7 @@ pub enum Oracle<T> {
 }
 
 impl<T: Real> Oracle<T> {
-    /// What is constant for `parameters` and `wo`; with the matched sampler if `bands` says of how many bands.
+    /// Computes the constants of `parameters` and `wo`. `bands` selects the matched sampler of so many bands.
     ///
     /// # Panics
     ///

@@ -33,7 +33,7 @@ impl Shape {
     }
 }
 
-/// What [`Textbook::prepare`](super::Textbook::prepare) reads: a [`HairDesc`](crate::HairDesc) in either precision.
+/// Parameters of [`Textbook::prepare`](super::Textbook::prepare): a [`HairDesc`](crate::HairDesc) in either precision.
 /// Arrays are R, TT, TRT, or linear RGB. Nothing is checked: make it from [`HairParams`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T> {

@@ -9,7 +9,7 @@ const RULE: [(f64, f64); 4] = [
     (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
 ];
-/// Halvings of a panel at most: rounding in `f32` may ask for any number.
+/// Limit on the halvings of a panel: rounding in `f32` might cause any number.
 const DEPTH: u32 = 8;
 
 /// The integral of `f` over `[lo, hi]`, by Gauss-Legendre panels that double in width away from `peak` and are halved where two
@@ -29,7 +29,7 @@ pub fn integrate<T: Real>([lo, hi]: [T; 2], peak: T, width: T, f: impl Fn(T) -> 
     one_side(middle, width, hi - middle, &f) + one_side(middle, -width, middle - lo, &f)
 }
 
-/// The integral over `reach` from `peak`, towards the side that the sign of `width` tells.
+/// The integral over `reach` from `peak`, towards the side given by the sign of `width`.
 fn one_side<T: Real>(peak: T, width: T, reach: T, f: &impl Fn(T) -> T) -> T {
     let (zero, two) = (T::default(), T::from_f64(2.0));
     let (mut sum, mut from, mut panel) = (zero, zero, width.abs().max(reach * T::from_f64(1e-6)));
@@ -42,7 +42,7 @@ fn one_side<T: Real>(peak: T, width: T, reach: T, f: &impl Fn(T) -> T) -> T {
     sum
 }
 
-/// The integral over a panel of which the rule says `whole`.
+/// The integral over a panel whose first estimate is `whole`.
 fn halved<T: Real>(f: &impl Fn(T) -> T, lo: T, hi: T, whole: T, depth: u32) -> T {
     let middle = T::from_f64(0.5) * (lo + hi);
     let (left, right) = (rule(f, lo, middle), rule(f, middle, hi));

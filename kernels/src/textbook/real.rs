@@ -58,7 +58,7 @@ pub trait Real:
     #[must_use]
     fn atan2(self, x: Self) -> Self;
     /// Exponential; 0 where the result would be denormal. `libm` spends five times the usual time there on raising a
-    /// flag nobody reads, which would flatter whatever a baseline in `f32` is compared with.
+    /// flag that is never read, which would make a baseline in `f32` look slower than it is.
     #[must_use]
     fn exp(self) -> Self;
     /// `exp(self) - 1`, without cancellation near 0.

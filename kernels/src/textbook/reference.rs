@@ -14,7 +14,7 @@ pub struct LobeAt<T> {
     pub pdf: T,
 }
 
-/// A model's formulas at one shading point, in either precision: what conformance tests and reports compare with.
+/// A model's formulas at one shading point, in either precision: the reference of conformance tests and reports.
 ///
 /// ```
 /// use hairis::{HairParams, textbook::{Parameters, Reference, Shape, Textbook}};
