@@ -1,4 +1,4 @@
-//! A model of one's own, given by its lobes: a fibre with a diffuse lobe and a specular cone.
+//! Example of a model given by its lobes: a fibre with a diffuse lobe and a specular cone.
 //!
 //! `S = kd / pi^2 + ks c(sin theta_i + sin theta_o) / (2 pi)`, with `c` the Cauchy density of width `w`. The first term
 //! returns `kd` of the light; the second peaks on the cone of mirror directions and returns at most `ks`. The diffuse
@@ -33,19 +33,19 @@ pub(crate) struct Params {
 }
 
 lane_struct! {
-    /// What is constant for a material.
+    /// Constants of a material.
     pub(crate) struct Material {
         /// Colours, linear RGB: of the diffuse lobe and of the cone.
         kd: [C; 3],
         ks: [C; 3],
         width: C,
-        /// How often each lobe is chosen, to any scale.
+        /// Sampling weight of each lobe, to any common scale.
         weights: [C; 2],
     }
 }
 
 lane_struct! {
-    /// What is constant for a gather point.
+    /// Constants of a gather point.
     pub(crate) struct Point {
         material: (Material<C>),
         sin_theta_o: C,

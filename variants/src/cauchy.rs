@@ -23,7 +23,7 @@ pub struct Cauchy {
 }
 
 impl Cauchy {
-    /// The Gaussian model's own widths: the paper's words, and within 0.5% of the least-squares best factor.
+    /// The Gaussian model's own widths: as in the paper, and within 0.5% of the least-squares best factor.
     pub const PAPER: Self = Self { width_factor: 1.0 };
     /// Both bells are half as high at the same distance: a factor of `sqrt(2 ln 2)`.
     pub const HALF_WIDTH: Self = Self { width_factor: 1.177_410_0 };
@@ -51,7 +51,7 @@ impl Cauchy {
         Hair(self)
     }
 
-    /// The model made of this bell, with the sampler that follows it closer than the published one.
+    /// The model made of this bell, with the matched sampler.
     #[inline]
     #[must_use]
     pub const fn matched(self) -> Matched<Self> {
@@ -86,7 +86,7 @@ impl Bell for Cauchy {
 
 /// The integral is an angle, from the point of the interval that is nearest to the centre.
 ///
-/// - Accuracy: a point's integral is that asked for to 3e-7 rad.
+/// - Accuracy: the integral of an inverted point is within 3e-7 rad of the given one.
 impl MatchedBell for Cauchy {
     const UNIT: f32 = 1.0;
 

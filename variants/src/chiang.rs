@@ -22,7 +22,7 @@ use hairis::{Broadcast, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Sca
 /// `S = sum of A_p M_p N_p / cos theta_i` over R, TT, TRT and the rest: attenuations `A_p` of Fresnel's equations and of
 /// absorption, longitudinal terms `M_p` of d'Eon et al. 2011, azimuthal terms `N_p` that are trimmed logistics.
 ///
-/// - Lobes: "r", "tt", "trt" and "trrt+", what is left after them, in slots 0 to 3.
+/// - Lobes: "r", "tt", "trt" and "trrt+", which is all further paths, in slots 0 to 3.
 /// - Near field: it reads [`Hit::h`]. A host without `h` draws it uniformly per hit; `h = 0` is not the far field.
 /// - Energy: `S cos theta_i` integrates to `sum of A_p` for every `wo`, `h`, roughness and tilt: 1 without absorption. It is
 ///   not reciprocal, as `A_p` depends on `theta_o` alone: light tracing has to use the adjoint.

@@ -34,7 +34,7 @@ pub(crate) fn grazing<T: Real>() -> T {
     T::from_f32(hairis::GRAZING)
 }
 
-/// The sample that counts and contributes nothing.
+/// A discarded sample: it counts, with a contribution of 0.
 pub(crate) fn discarded<T: Real>() -> Drawn<T> {
     let zero = T::default();
     Drawn { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None }
@@ -86,7 +86,7 @@ pub(crate) fn mix<T: Real>(lobes: &PerLobe<LobeAt<T>>, probabilities: &PerLobe<T
     (value, pdf)
 }
 
-/// The sample of `lobe` at this inclination and azimuth, with what [`mix`] says of it.
+/// The sample of `lobe` at this inclination and azimuth, with the value and density of [`mix`].
 pub(crate) fn drawn<T: Real>(
     lobe: Lobe,
     [sin_theta_i, cos_theta_i]: [T; 2],
@@ -105,7 +105,7 @@ pub(crate) fn drawn<T: Real>(
     }
 }
 
-/// What follows from `eval_pdf`, and the common interface by the functions of the same names.
+/// Methods that follow from `eval_pdf`, and the common interface by the functions of the same names.
 macro_rules! implement {
     ($name:ident) => {
         impl<T: Real> $name<T> {

@@ -1,7 +1,7 @@
 //! The only list of models.
 //!
 //! A new model is a line of [`models!`] below, and beside its [`Model`] an implementation of [`Registered`], with
-//! [`Parameters`] for its parameters: hosts that choose a model at run time, the harness and the benches then have it.
+//! [`Parameters`] for its parameters. Run-time handles, the harness and the benches then include it.
 
 #[cfg(any(feature = "any", feature = "textbook"))]
 mod any;
@@ -31,9 +31,9 @@ use hairis::{
     textbook::{Drawn, LobeAt, Real, Reference},
 };
 
-/// A model of the list: its names, and the formulas it is held against.
+/// A model of the list: its names, and the formulas it is compared with.
 ///
-/// Types that differ in how they sample have one [`NAME`](Self::NAME), and each its own [`CHOICE`](Self::CHOICE).
+/// Types of one model with different samplers share a [`NAME`](Self::NAME); each has its own [`CHOICE`](Self::CHOICE).
 pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     /// Name of the model.
     const NAME: &'static str;
@@ -43,7 +43,7 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     const MODEL: Self;
     /// Whether it reads [`Hit::h`](hairis::Hit::h).
     const NEAR_FIELD: bool = false;
-    /// Name under which reports show the colours of the lobes, if they are worth it.
+    /// Name of the lobes' colours in reports; `None` if they are not reported.
     const COLORS: Option<&'static str> = None;
 
     /// The formulas at one gather point.
@@ -66,7 +66,7 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     }
 
     /// Probability of a smaller inclination, and of a smaller azimuth `phi_o - phi_i`, of a sample of `lobe`, where the
-    /// formulas have them: what `xi[1]` and `xi[2]` were.
+    /// formulas have them: the `xi[1]` and `xi[2]` of the sample.
     #[cfg(feature = "textbook")]
     #[inline]
     fn cdf(reference: &Self::Reference<f64>, lobe: Lobe, theta_i: f64, phi: f64) -> Option<[f64; 2]> {
@@ -127,7 +127,7 @@ macro_rules! models {
                 }
             }
 
-            /// Name of the model; entries that differ in how they sample share it.
+            /// Name of the model; entries that differ in their sampler alone share it.
             #[inline]
             #[must_use]
             pub const fn name(self) -> &'static str {
@@ -163,7 +163,7 @@ macro_rules! models {
                 }
             }
 
-            /// Name under which reports show the colours of the lobes, if they do.
+            /// Name of the lobes' colours in reports, if they are reported.
             #[inline]
             #[must_use]
             pub const fn colors(self) -> Option<&'static str> {

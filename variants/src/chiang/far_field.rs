@@ -4,9 +4,9 @@ use super::{Chiang, ChiangDesc};
 use hairis::wide::f32x8;
 use hairis::{Bsdf, Eval, Gather8, Hit, LobeMask, PerLobe, Sample, Vec3x, Vec3x8};
 
-/// Gauss-Legendre nodes of the offset `h` over `[-1, 1]`, eight per packet: made once, for every material and hit.
+/// Gauss-Legendre nodes of the offset `h` over `[-1, 1]`, eight per packet: build it once, for all materials and hits.
 ///
-/// - Number: [`ChiangDesc::far_field_nodes`] says how many a roughness needs. With `8 PACKETS` of 8, 16, 32 and 64 the sum of
+/// - Number: [`ChiangDesc::far_field_nodes`] gives the number that a roughness needs. With `8 PACKETS` of 8, 16, 32 and 64 the sum of
 ///   `A N` is off by (mean over the azimuth) .8%, .1%, 0 and 0 at a `beta_n` of .5; 6%, .5%, 0 and 0 at .3; 26%, 4%, .3% and 0
 ///   at .2; 90%, 43%, 10% and 1% at .1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +63,7 @@ impl ChiangDesc {
     }
 }
 
-/// A gather point seen from afar: `wo` alone is known, and all `h` are alike.
+/// A gather point in the far field: `wo` is given, and `h` is uniform.
 ///
 /// Value and density are means over the nodes. Energy is that of the near field, whatever the nodes.
 ///

@@ -1,4 +1,4 @@
-//! What the energy-conserving fibre keeps of a material, and of a material hit from one direction.
+//! Constants of the energy-conserving fibre: per material, and per material and hit.
 
 use super::ChiangParams;
 use hairis::math::gaussian;
@@ -103,10 +103,10 @@ impl ChiangMaterial<f32> {
     }
 }
 
-/// R, TT, TRT and the rest side by side.
+/// Packet of the four lobes: R, TT, TRT and the rest.
 pub(super) type Four<L> = Pair<Pair<L>>;
 
-/// The four numbers of a table, side by side.
+/// The four numbers of a table as one packet.
 #[inline(always)]
 pub(super) fn four<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> Four<L> {
     Pair(Pair(x[0].lanes(), x[1].lanes()), Pair(x[2].lanes(), x[3].lanes()))
@@ -185,7 +185,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
         let tt = passed * passed * t;
         let trt = tt * (f * t);
         rest[channel] = trt * (f * t);
-        // What a passage does not return to the inside; the product of three has a reciprocal.
+        // Loss of a passage: the light that does not return to the inside. The product of three has a reciprocal.
         left[channel] = f.mul_add(one - t, passed).max(c(1e-12));
         attenuation[3 + channel] = tt.store();
         attenuation[6 + channel] = trt.store();
@@ -212,7 +212,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
     let (sin, cos) = (four(&m.sin_shift), four(&m.cos_shift));
     let sin_cone = Four::difference_of_products(same(sin_o), cos, same(cos_o), sin);
     let cos_cone = Four::difference_of_products(same(cos_o), cos, same(-sin_o), sin).abs();
-    // What rounding leaves of their length beyond 1 would count as an angle: it is taken off.
+    // Remove the rounding error of their length, which would count as an angle.
     let off = same(half) - same(half) * sin_cone.mul_add(sin_cone, cos_cone * cos_cone);
     let (sin_cone, cos_cone) = (sin_cone.mul_add(off, sin_cone), cos_cone.mul_add(off, cos_cone));
     let cos_half_cone = cos_cone.mul_add(same(half), same(half)).sqrt();

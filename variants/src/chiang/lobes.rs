@@ -34,7 +34,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
     let (m, cos_i) = (&gather.widths, wi.cos_theta);
 
-    // Half of theta_i. What the rounding of wi leaves of its length beyond 1 would count as an angle: it is taken off.
+    // Half of theta_i. Remove the rounding error of the length of wi, which would count as an angle.
     let off = half - half * wi.sin_theta.mul_add(wi.sin_theta, cos_i * cos_i);
     let cos_half_i = (cos_i.mul_add(off, cos_i)).mul_add(half, half).sqrt();
     let sin_half_i = half * wi.sin_theta.mul_add(off, wi.sin_theta) / cos_half_i;

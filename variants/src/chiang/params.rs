@@ -13,7 +13,7 @@ const INDICES: [f32; 2] = [1.0, 4.0];
 /// Shares accepted: of melanin, of redness, and colours.
 const SHARES: [f32; 2] = [0.0, 1.0];
 
-/// How the lobes are shifted by the tilt of the cuticle's scales.
+/// Formula of the lobes' shifts by the tilt of the cuticle's scales.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Shifts {
     /// `theta_i + theta_o` is shifted by -2, +1 and +4 tilts for R, TT and TRT: d'Eon et al. 2011.
@@ -24,7 +24,7 @@ pub enum Shifts {
     SmallAngle,
 }
 
-/// What the choice of a lobe rests on.
+/// Criterion for the choice of a lobe.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Selection {
     /// The mean over the channels of each lobe's attenuation: the least variance of a grey result.
@@ -34,7 +34,7 @@ pub enum Selection {
     ByChannel,
 }
 
-/// Parameters of the model of Chiang et al. 2016, not checked yet: fill in what differs from the default and hand it to
+/// Parameters of the model of Chiang et al. 2016, not checked yet: set the fields that differ from the default and pass it to
 /// [`ChiangParams::new`].
 ///
 /// - Default: warm brown hair (eumelanin 1.3, pheomelanin .2), a `beta_m` and a `beta_n` of .3, a tilt of 2 degrees, an `eta` of 1.55.

@@ -49,7 +49,7 @@ pub struct ChiangReference<T> {
     probabilities: PerLobe<T>,
 }
 
-/// What is constant for a material: variances, the logistic, and the shifts.
+/// Constants of a material: variances, the logistic, and the shifts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChiangConstants<T> {
     eta: T,
@@ -119,7 +119,7 @@ impl<T: Real> ChiangConstants<T> {
 }
 
 impl<T: Real> ChiangReference<T> {
-    /// Computes what is constant for `parameters`, `wo` and the offset `h`; for many hits, see [`ChiangConstants`].
+    /// Computes the constants of `parameters`, `wo` and the offset `h`; for many hits, see [`ChiangConstants`].
     #[inline]
     #[must_use]
     pub fn prepare(parameters: &ChiangParameters<T>, selection: Selection, wo: [T; 3], h: T) -> Self {
@@ -234,14 +234,14 @@ impl<T: Real> ChiangReference<T> {
         drawn(lobe, inclination, self.phi_o + phi, mix(&lobes, &self.probabilities))
     }
 
-    /// Sine and cosine of the `theta_i` that a lobe draws: d'Eon et al. 2013.
+    /// Sampled sine and cosine of `theta_i` of a lobe: d'Eon et al. 2013.
     #[inline]
     #[must_use]
     pub fn sample_inclination(&self, lobe: Lobe, xi_cone: T, xi_turn: T) -> [T; 2] {
         self.cones[lobe].direction(self.cones[lobe].sample(xi_cone), xi_turn)
     }
 
-    /// One less the cosine of the angle from its cone that a lobe draws, in `[0, 2]`.
+    /// Sampled `1 - cos` of the angle from a lobe's cone, in `[0, 2]`.
     #[inline]
     #[must_use]
     pub fn sample_cone(&self, lobe: Lobe, xi: T) -> T {
@@ -255,7 +255,7 @@ impl<T: Real> ChiangReference<T> {
         self.cones[lobe].cdf(delta)
     }
 
-    /// Azimuth from its centre that a lobe draws, in `[-pi, pi]`.
+    /// Sampled azimuth from a lobe's centre, in `[-pi, pi]`.
     #[inline]
     #[must_use]
     pub fn sample_azimuth(&self, lobe: Lobe, xi: T) -> T {

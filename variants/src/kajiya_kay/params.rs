@@ -9,7 +9,7 @@ const EXPONENTS: [f32; 2] = [1.0, 1e4];
 /// Half widths of the highlight accepted, degrees: those of the exponents.
 const WIDTHS: [f32; 2] = [0.675, 60.0];
 
-/// How the highlight depends on the light's inclination.
+/// Dependence of the highlight on the light's inclination.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Form {
     /// `S` is a function of `theta_i + theta_o` alone: reciprocal. The light's irradiance falls as `cos theta_i`.
@@ -19,7 +19,7 @@ pub enum Form {
     Published,
 }
 
-/// Parameters of the model of Kajiya & Kay 1989, not checked yet: fill in what differs from the default and hand it to
+/// Parameters of the model of Kajiya & Kay 1989, not checked yet: set the fields that differ from the default and pass it to
 /// [`KajiyaKayParams::new`].
 ///
 /// - Units: `kd` and `ks` are linear RGB albedos at `theta_o = 0`, so that `kd + ks <= 1` never gains energy. The constants of

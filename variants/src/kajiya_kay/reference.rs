@@ -81,7 +81,7 @@ fn positive_power<T: Real>(cos: T, form: Form) -> T {
     }
 }
 
-/// What is constant for a material: the norms, which cost four logarithms of the gamma function.
+/// Constants of a material: the norms, which cost four logarithms of the gamma function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KajiyaKayConstants<T> {
     parameters: KajiyaKayParameters<T>,
@@ -119,7 +119,7 @@ impl<T: Real> KajiyaKayConstants<T> {
         }
     }
 
-    /// Computes what is constant for `wo`. Lobes are chosen by `kd`, and by `ks` times the share of it that comes back, but for
+    /// Computes the constants of `wo`. Lobes are chosen by `kd`, and by `ks` times the share of it that is reflected, without
     /// the highlight's tail beyond the poles.
     #[inline]
     #[must_use]
@@ -142,7 +142,7 @@ impl<T: Real> KajiyaKayConstants<T> {
 }
 
 impl<T: Real> KajiyaKayReference<T> {
-    /// Computes what is constant for `parameters` and `wo`; for many `wo`, see [`KajiyaKayConstants`].
+    /// Computes the constants of `parameters` and `wo`; for many `wo`, see [`KajiyaKayConstants`].
     #[inline]
     #[must_use]
     pub fn prepare(parameters: &KajiyaKayParameters<T>, wo: [T; 3]) -> Self {
@@ -210,7 +210,7 @@ impl<T: Real> KajiyaKayReference<T> {
         drawn(lobe, inclination, phi_i, mix(&self.lobes_at(inclination), &self.probabilities))
     }
 
-    /// Sine and cosine of the `theta_i` that the highlight draws, and what is left of `xi_sign` for the azimuth: the angle of
+    /// Sampled sine and cosine of `theta_i` of the highlight, and the remainder of `xi_sign` for the azimuth: the angle of
     /// [`sample_angle`](Self::sample_angle), or its negative, less `theta_o`.
     #[inline]
     #[must_use]

@@ -1,6 +1,6 @@
 //! Public handles of a model that is chosen at run time.
 //!
-//! Methods that reach a kernel are never inlined: each model is compiled once, here, and the choice costs a call and a
+//! Methods that run a kernel are never inlined: each model is compiled once, here, and the choice costs one call and one
 //! jump. Scalar methods take a `Vec3`; a `Vec3x` by value would cost 8 to 15 ns.
 
 /// Methods that do the same with each model; after `=>`, the enum that the result goes into.
@@ -79,7 +79,7 @@ macro_rules! handles {
             AnyBsdf Bsdf $models
         }
         any::handle! {
-            /// Eight materials of one model, one a lane: see [`Bsdf8`].
+            /// Eight materials of one model, one per lane: see [`Bsdf8`].
             AnyBsdf8 Bsdf8 $models
         }
         any::handle! {
@@ -87,7 +87,7 @@ macro_rules! handles {
             AnyGather Gather $models
         }
         any::handle! {
-            /// Eight gather points of one model, one a lane: see [`Gather8`].
+            /// Eight gather points of one model, one per lane: see [`Gather8`].
             AnyGather8 Gather8 $models
         }
 
@@ -106,7 +106,7 @@ macro_rules! handles {
                 any::each!(@match $variants self prepare (hit) AnyGather)
             }
 
-            /// Eight gather points on this material, one a lane: a [`Hit8`], or eight `wo`.
+            /// Eight gather points on this material, one per lane: a [`Hit8`], or eight `wo`.
             #[inline]
             #[must_use]
             pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyGather8 {
@@ -348,7 +348,7 @@ pub(super) use handles;
 #[cfg(feature = "any")]
 macro_rules! pack {
     ([$($variant:ident)*]) => {
-        /// Eight materials, one a lane; `None` unless all are of one model.
+        /// Eight materials, one per lane; `None` unless all are of one model.
         #[inline(never)]
         #[must_use]
         pub fn pack(materials: [&AnyBsdf; 8]) -> Option<Self> {

@@ -6,7 +6,7 @@ use hairis::textbook::Real;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Logistic<T> {
     scale: T,
-    /// What the uncut logistic has below `-pi`, and within `[-pi, pi]`.
+    /// Mass of the uncut logistic below `-pi`, and within `[-pi, pi]`.
     below: T,
     within: T,
 }

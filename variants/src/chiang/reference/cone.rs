@@ -32,7 +32,7 @@ impl<T: Real> Cone<T> {
         exponent.exp() * bessel_i0_scaled(cos_theta_i * self.cos / v) / (v * -(-two / v).exp_m1())
     }
 
-    /// One less the cosine of the angle from the cone's mantle: density `exp(-delta / v)` on `[0, 2]`.
+    /// `1 - cos` of the angle from the cone's mantle: density `exp(-delta / v)` on `[0, 2]`.
     pub(super) fn sample(&self, xi: T) -> T {
         let (two, v) = (T::from_f64(2.0), self.variance);
         (-v * (xi * (-two / v).exp_m1()).ln_1p()).min(two)
