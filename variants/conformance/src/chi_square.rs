@@ -1,4 +1,4 @@
-//! Random samples fall where the density says.
+//! Random samples follow the density (chi-square test).
 
 use crate::calls;
 use crate::failure::{Failure, Outcome};
@@ -122,7 +122,7 @@ fn pooled(mass: &[f64], observed: &[u32], count: f64, discarded: f64, uncertain:
     }
     let expected = (count * (1.0 - mass.iter().sum::<f64>())).max(0.0);
     match cells.last_mut() {
-        // Too close to be told from the error of the integral, which has a test of its own.
+        // Below the error of the integral, which has a test of its own.
         Some(last) if (expected - discarded).abs() <= uncertain => {
             last.expected += expected;
             last.observed += discarded;

@@ -1,8 +1,8 @@
-//! Why a property does not hold.
+//! Failures of properties.
 
 use core::fmt;
 
-/// Why a property does not hold: what was asked for, where, and what came.
+/// Failure of a property: the query, its place, the result and the expectation.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Failure {
     /// Name of the property.

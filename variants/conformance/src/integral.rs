@@ -90,7 +90,7 @@ impl Integral {
         let area = theta * phi;
         let [by_theta, by_phi] = [coarse_theta, coarse_phi].map(|coarse| area * (fine - coarse).abs());
         let error = by_theta.max(by_phi);
-        // NaN is not divided: the sum tells.
+        // NaN is not divided: the sum is NaN then.
         if error > ERROR && rectangle.depth < DEPTH {
             let halves = |[lo, hi]: [f64; 2]| [[lo, 0.5 * (lo + hi)], [0.5 * (lo + hi), hi]];
             let depth = rectangle.depth + 1;

@@ -54,7 +54,7 @@
 //! an [`Outcome`], whose [`Failure`] names material, directions, numbers, lane and level; `cargo test -- --nocapture` prints
 //! the worst case of each.
 //!
-//! # What passes unseen
+//! # Limits
 //!
 //! A density with a peak narrower than a degree where no sample falls may be missed by quadrature, unless
 //! [`Subject::edges`] names it. Relative accuracy within 1e-3 rad of the axis is left to the model's own tests.

@@ -1,4 +1,4 @@
-//! How far rounded inputs move the results: what two evaluations of one formula may differ by.
+//! Effect of rounded inputs on results: the difference allowed between two evaluations of one formula.
 
 use crate::calls::{self, Direction};
 use crate::probe::{cos_theta, distance, narrow, rounded};

@@ -80,7 +80,7 @@ pub fn slices_equal_packets<S: Subject>(subject: &S) -> Outcome {
     Ok(())
 }
 
-/// What packets give for some rows.
+/// Results of packets for some rows.
 struct Expected {
     inputs: [[Vec<f32>; 3]; 2],
     evals: Vec<[u32; 4]>,

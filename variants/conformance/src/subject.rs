@@ -1,4 +1,4 @@
-//! The model under test, and what it claims.
+//! The model under test, and its claims.
 
 use hairis::{Hit, LobeMask, Model};
 
@@ -8,7 +8,7 @@ pub type ParamsOf<S> = <<S as Subject>::Model as Model>::Params;
 /// Materials by name.
 pub type Materials<S> = Vec<(&'static str, ParamsOf<S>)>;
 
-/// A model under test: implement it on a unit struct and hand that to [`conformance!`](crate::conformance).
+/// A model under test: implement it on a unit struct and pass that to [`conformance!`](crate::conformance).
 ///
 /// Two functions are required. Whatever else is left out, the model still has to be total, to sample the density it
 /// reports, and to give the same results on one lane, on eight and in slices.
@@ -29,12 +29,12 @@ pub trait Subject: Sync {
         Vec::new()
     }
 
-    /// Materials without absorption, on which the furnace test runs if [`Claims::furnace`] asks for it.
+    /// Materials without absorption, on which the furnace test runs if [`Claims::furnace`] is set.
     fn white(&self) -> Materials<Self> {
         Vec::new()
     }
 
-    /// What the model claims, and its tolerances.
+    /// Claims of the model, and its tolerances.
     fn claims(&self) -> Claims {
         Claims::default()
     }
@@ -66,7 +66,7 @@ pub trait Subject: Sync {
     }
 }
 
-/// What a model claims beyond the promises of [`Model`], and how accurately it keeps them.
+/// Claims of a model beyond the promises of [`Model`], and their tolerances.
 ///
 /// Tolerances are relative unless stated otherwise. Start from the defaults, run the suite, and set each to no more than
 /// twice the worst case that `cargo test -- --nocapture` prints.

@@ -83,7 +83,7 @@ fn sound_lobe(lobe: &LobeEval) -> bool {
     [&lobe.color[..], &[lobe.value, lobe.pdf]].concat().into_iter().all(sound)
 }
 
-/// Why a lane of a sample is not what it has to be.
+/// Reason why a lane of a sample is not valid.
 fn fault<M: Model>(s: &Sample8, lane: usize, mask: LobeMask) -> Option<&'static str> {
     let at = |x: &hairis::wide::f32x8| x.as_array()[lane];
     let (value, pdf, weight, slot) = (s.value.each_ref().map(at), at(&s.pdf), s.weight.each_ref().map(at), at(&s.slot));

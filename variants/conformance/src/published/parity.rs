@@ -226,7 +226,7 @@ pub fn lobes_and_albedo_agree_with_one_lane<S: Published>() {
 }
 
 pub fn a_hit_is_its_direction<S: Published>() {
-    // The published model does not see the offset across the fibre.
+    // The published model ignores the offset across the fibre.
     let (model, _) = S::forms()[0];
     let bsdf = Bsdf::new(&model, &hairis::HairParams::default());
     let wo = Vec3::new(0.6, 0.8, 0.0);

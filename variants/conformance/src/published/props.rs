@@ -1,4 +1,4 @@
-//! What holds for every input: totality over all bit patterns, reciprocity, and samples that agree with eval and pdf.
+//! Properties of every input: totality over all bit patterns, reciprocity, and samples that agree with eval and pdf.
 
 use super::Published;
 use super::support::{Draws, Worst, direction, lanes_of, materials, narrow, packet, relative};

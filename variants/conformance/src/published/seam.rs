@@ -1,4 +1,4 @@
-//! Next to `|phi|` = pi, where glints may end: what a sample reports is of the direction it returns, however narrow TT is there.
+//! Next to `|phi|` = pi, where glints may end: samples report value and density of the direction they return, however narrow TT is.
 
 use super::Published;
 use super::support::{Worst, direction, double, lanes_of, oracle, relative};

@@ -226,7 +226,7 @@ pub fn for_each_point<S: Published>(kind: Kind, mut f: impl FnMut(&Bsdf<S::Model
     }
 }
 
-/// What [`for_each_point`] goes through.
+/// One point of [`for_each_point`].
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     pub params: HairParams,

@@ -21,7 +21,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::{Bsdf, HairDesc, HairParams, Level, Lobe, LobeMask, Sample};
 
-/// `A - B`: the angle a bell of width `b` sees the interval `[lo, hi]` under.
+/// `A - B`: the angle that the interval `[lo, hi]` subtends at a bell of width `b`.
 fn span(lo: f64, hi: f64, b: f64) -> f64 {
     (b * (hi - lo)).atan2(b * b + lo * hi)
 }
