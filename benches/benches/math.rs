@@ -1,6 +1,6 @@
 //! The elementary functions of `hairis::math` against those of `libm`: one lane, and packets and slices on every level.
 //!
-//! Each runs through the dispatch of the kernels: what reading arguments and writing results take is in the figures.
+//! Each runs through the dispatch of the kernels: figures include reading arguments and writing results.
 //!
 //! `cargo bench -p hairis-benches --bench math`, with `-- math/atan_unit` for one group. Throughput is in arguments.
 
@@ -16,7 +16,7 @@ use hairis_benches::inputs::{DIRECTIONS, Inputs, packets};
 use hairis_benches::math::{Atan2Upper, AtanUnit, Bell, Columns, Eight, Function, SinCosAbsolute, SinCosTwice};
 use hairis_benches::task::{Each, Slices, Task};
 
-/// Largest error that counts as right, relative to the value or, where that is below 1, absolute: that of the function
+/// Largest error that counts as correct, relative to the value or, where that is below 1, absolute: that of the function
 /// whose error is absolute is 2e-7.
 const TOLERANCE: f64 = 1e-6;
 
@@ -54,7 +54,7 @@ fn function<F: Function>(c: &mut Criterion) {
     }
 }
 
-/// Times one way to evaluate a function, after a look at its answers.
+/// Checks the answers of one implementation of a function, then times it.
 fn show<F: Function, T: Task>(
     group: &mut BenchmarkGroup<'_, WallTime>,
     arguments: &[Vec3],

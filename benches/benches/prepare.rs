@@ -1,4 +1,4 @@
-//! What a path tracer pays once a hit: a gather point alone, and a gather point with 1, 4 and 16 samples of it, whether
+//! Cost of a hit in a path tracer: a gather point alone, and a gather point with 1, 4 and 16 samples of it, whether
 //! the lanes of a packet are eight directions at one gather point or eight gather points.
 //!
 //! `cargo bench -p hairis-benches --bench prepare`, with `-- path-4/gaussian` for one group. Throughput is in gather

@@ -6,7 +6,7 @@ use criterion::{BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput
 use hairis::Level;
 use hairis_benches::{Name, Op, Task, Visitor, entries};
 
-/// Adds all entry points of an operation, a group for each model: scalar code and every level side by side.
+/// Adds all entry points of an operation, one group per model: scalar code and every level.
 pub(crate) fn bench(c: &mut Criterion, op: Op) {
     println!("{op}: compiled for {}, eight lanes run on {}", Level::portable(), Level::detect());
     for (model, _) in entries::MODELS.iter() {

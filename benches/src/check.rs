@@ -1,4 +1,4 @@
-//! Whether the answers are right: a wrong kernel has no speed.
+//! Checks of the answers: a wrong kernel has no speed.
 
 use crate::Name;
 use crate::task::{Answer, Task};
@@ -6,8 +6,8 @@ use glam::Vec3;
 use hairis::textbook::Reference;
 use hairis_variants::{ModelId, Values};
 
-/// Largest error of an answer that counts as right, relative for value and density, rad for a direction: what the
-/// textbook in `f32`, which takes part, needs. The kernels' own bounds are tighter, and their tests hold them.
+/// Largest error of an answer that counts as correct: relative for value and density, rad for a direction. The textbook in
+/// `f32`, which takes part, needs this much. The kernels' own bounds are tighter; their tests check them.
 const TOLERANCE: f64 = 1e-3;
 /// Values below this count as 0: the kernels' Gaussians end at `2^-115`, those of the `f32` textbook at denormals.
 const NEGLIGIBLE: f64 = 1e-25;
@@ -15,18 +15,18 @@ const NEGLIGIBLE: f64 = 1e-25;
 /// textbook loses digits near the axis. A wrong lane is one in eight.
 const MOST_WRONG: usize = 100;
 
-/// What was asked for one direction.
+/// Query for one direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked {
     /// The parameters.
     pub values: Values,
     /// Towards the viewer.
     pub wo: Vec3,
-    /// What for.
+    /// The query.
     pub given: Given,
 }
 
-/// A question about a gather point.
+/// Query about a gather point.
 #[derive(Clone, Copy, Debug)]
 pub enum Given {
     /// Value and density of this direction.

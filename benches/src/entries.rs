@@ -12,7 +12,7 @@ use hairis::{Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Level, SampleSlices};
 use hairis_variants::{ModelId, Parameters, Registered};
 use std::sync::LazyLock;
 
-/// What an entry point does.
+/// Operation of an entry point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Op {
     /// Everything constant for one gather point.
@@ -26,7 +26,7 @@ pub enum Op {
 }
 
 impl Op {
-    /// All of them: a path takes 1, 4 or 16 samples a gather point.
+    /// All of them: a path takes 1, 4 or 16 samples per gather point.
     pub const ALL: [Self; 6] = [Self::Prepare, Self::Eval, Self::Sample, Self::Path(1), Self::Path(4), Self::Path(16)];
 }
 
@@ -41,10 +41,10 @@ impl fmt::Display for Op {
     }
 }
 
-/// Which entry point, of which model, on which instruction set.
+/// Identity of an entry point: function, model and instruction set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Name {
-    /// What it does.
+    /// Its operation.
     pub op: Op,
     /// The entry point: a function of `hairis`, with a suffix if it is measured in several ways.
     pub entry: &'static str,
@@ -55,14 +55,14 @@ pub struct Name {
 }
 
 impl fmt::Display for Name {
-    /// A word: `eval/eval_pdf8/gaussian/avx2+fma`.
+    /// Path of the bench: `eval/eval_pdf8/gaussian/avx2+fma`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { op, entry, model, level } = self;
         write!(f, "{op}/{entry}/{model}/{level}")
     }
 }
 
-/// One who measures.
+/// Measurement of entry points.
 pub trait Visitor {
     /// Whether an entry point is to be measured at all.
     fn wants(&self, name: &Name) -> bool;
@@ -79,7 +79,7 @@ pub static MODELS: LazyLock<Vec<(String, ModelId)>> = LazyLock::new(|| {
     ModelId::ALL.iter().copied().filter(|id| takes_part(*id)).map(name).collect()
 });
 
-/// Whether a model takes part: not where it differs from another in its number of bands alone.
+/// Whether a model is measured. Models that differ in the number of bands alone are not.
 const fn takes_part(id: ModelId) -> bool {
     use ModelId::{CauchyMatched5, CauchyMatched25, GaussianMatched5, GaussianMatched25};
     !matches!(id, GaussianMatched5 | GaussianMatched25 | CauchyMatched5 | CauchyMatched25)
@@ -90,18 +90,18 @@ pub const TEXTBOOK: &str = "textbook";
 /// Directions in a short slice: less than a packet.
 const SHORT: usize = 5;
 
-/// A level in one word, the same on every machine and in every build.
+/// Short name of a level, the same on every machine and in every build.
 #[must_use]
 pub fn label(level: Level) -> &'static str {
     if level == Level::portable() { "portable" } else { level.name() }
 }
 
-/// Shows an operation's entry points to `visitor`, those of all [`MODELS`]; the textbook comes first. Answers are checked
+/// Passes an operation's entry points of all [`MODELS`] to `visitor`; the textbook comes first. Answers are checked
 /// before.
 ///
 /// # Panics
 ///
-/// If an entry point that the visitor wants gives wrong answers.
+/// If an entry point that the visitor selects gives wrong answers.
 pub fn visit(op: Op, visitor: &mut impl Visitor) {
     let inputs = &Inputs::draw();
     for (name, id) in MODELS.iter() {
@@ -109,7 +109,7 @@ pub fn visit(op: Op, visitor: &mut impl Visitor) {
     }
 }
 
-/// Shows the entry points of one operation of a model.
+/// Passes the entry points of one operation of a model.
 struct OfModel<'a, V> {
     op: Op,
     name: &'static str,
@@ -121,7 +121,7 @@ impl<V: Visitor> hairis_variants::Visitor for OfModel<'_, V> {
     type Output = ();
 
     fn visit<M: Registered>(self) {
-        // At compile time: what takes no part is not compiled.
+        // At compile time: models that are not measured are not compiled.
         if const { takes_part(ModelId::of::<M>()) } {
             let Self { op, name, inputs, visitor } = self;
             Of::<M> { op, id: ModelId::of::<M>(), name, inputs, model: PhantomData }.visit(visitor);
@@ -148,7 +148,7 @@ impl<M: Registered> Of<'_, M> {
         }
     }
 
-    /// Shows one entry point, if it is wanted and its answers are right. The published sampler's baseline is everybody's.
+    /// Passes one entry point, if it is selected and its answers are correct. All samplers share the published one's baseline.
     fn show<T: Task>(
         &self,
         visitor: &mut impl Visitor,
@@ -189,17 +189,17 @@ impl<M: Registered> Of<'_, M> {
         self.mixed().prepare8_at(level, &packets(&self.inputs.wo[..8])[0])
     }
 
-    /// The question at [`gather`](Self::gather).
+    /// The query at [`gather`](Self::gather).
     fn at_one(&self, given: Given) -> Asked {
         Asked { values: M::Params::default().values(), wo: self.inputs.wo[0], given }
     }
 
-    /// The question at a lane of [`gather8`](Self::gather8).
+    /// The query at a lane of [`gather8`](Self::gather8).
     fn at_lane(&self, i: usize, given: Given) -> Asked {
         Asked { values: params::<M>()[i % 8].values(), wo: self.inputs.wo[i % 8], given }
     }
 
-    /// The question at a gather point of its own, on one head of hair.
+    /// The query at a gather point of its own, on one material.
     fn shared(&self, i: usize, given: Given) -> Asked {
         Asked { values: M::Params::default().values(), wo: self.inputs.wo[i], given }
     }
@@ -338,7 +338,7 @@ impl<M: Registered> Of<'_, M> {
             })
         });
         for level in Level::available() {
-            // Eight directions at one gather point; of the last packet only so many lanes count as are asked for.
+            // Eight directions at one gather point; of the last packet only the requested lanes count.
             self.show(visitor, "prepare-sample8", label(level), one, || {
                 let (bsdf, xi) = (self.bsdf(), eights[..packets_at_one].to_vec());
                 Each::new(samples, inputs.wo.clone(), move |wo| {
@@ -358,7 +358,7 @@ impl<M: Registered> Of<'_, M> {
     }
 }
 
-/// What the last call gives; the results of the others are left in memory and thrown away.
+/// The results of the last call; those of the others are left in memory and dropped.
 #[inline(always)]
 fn last<X, O>(inputs: &[X], call: impl Fn(&X) -> O) -> O {
     let [before @ .., input] = inputs else { unreachable!("there is at least one sample") };

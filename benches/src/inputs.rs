@@ -36,7 +36,7 @@ impl Inputs {
 
 fn on_sphere(height: f32, turn: f32) -> Vec3 {
     let u = 2.0 * height - 1.0;
-    // Of the crate, not of the system: the same bits everywhere.
+    // From the crate, not from the system: the same bits everywhere.
     let (sin, cos) = libm::sincosf(turn * TAU);
     let plane = libm::sqrtf(1.0 - u * u);
     Vec3::new(u, plane * cos, plane * sin)
@@ -49,7 +49,7 @@ pub fn packets(v: &[Vec3]) -> Vec<Vec3x8> {
     eights.iter().map(|eight| (*eight).into()).collect()
 }
 
-/// Eight triples of numbers a packet.
+/// Eight triples of numbers per packet.
 #[must_use]
 pub fn xi_packets(xi: &[[f32; 3]]) -> Vec<[f32x8; 3]> {
     let (eights, _) = xi.as_chunks::<8>();
@@ -71,10 +71,10 @@ pub fn materials<M: Registered>() -> [Bsdf<M>; 8] {
 
 /// A column of [`DIRECTIONS`] numbers for slices, at an address chosen by its number.
 ///
-/// Columns that lie a multiple of 4096 bytes apart, as those of 1024 floats do when they are allocated together, hold
-/// each other up: a load waits for an earlier store to an address equal to its own modulo 4096, be it in another
-/// column, which made an evaluation 40% slower here. That is a trap for hosts, and no property of the kernel: columns
-/// of the benches begin 256 bytes apart modulo 4096, which sixteen of them can, each on a line of the cache.
+/// Columns a multiple of 4096 bytes apart, as those of 1024 floats allocated together, delay each other: a load waits for
+/// an earlier store to an address equal to its own modulo 4096, even in another column. That made an evaluation 40% slower
+/// here. It is a pitfall for hosts and no property of the kernel: columns of the benches begin 256 bytes apart modulo
+/// 4096, which works for sixteen of them, each on a cache line.
 #[derive(Clone, Debug)]
 pub struct Column {
     numbers: Vec<f32>,

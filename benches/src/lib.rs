@@ -1,7 +1,6 @@
-//! What is measured, once for all who measure: the entry points of the models, on fixed inputs, with the answers
-//! they must give.
+//! Entry points of the models on fixed inputs, with the expected answers. All measurements share them.
 //!
-//! [`entries::visit`] hands every entry point on every level to a [`Visitor`]: the Criterion benches time them, the
+//! [`entries::visit`] passes every entry point on every level to a [`Visitor`]: the Criterion benches time them, the
 //! program `entry` runs one of them for callgrind and for timing by hand.
 
 pub mod check;

@@ -87,7 +87,7 @@ impl<F: Function> Kernel for Eight<'_, F> {
     }
 }
 
-/// A function over columns of first and second arguments; the third is handed through.
+/// A function over columns of first and second arguments; the third is passed through.
 #[derive(Clone, Copy, Debug)]
 pub struct Columns<F: Function>(pub F);
 

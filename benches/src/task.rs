@@ -9,27 +9,27 @@ use hairis::textbook::{self, Reference};
 use hairis::wide::f32x8;
 use hairis::{Eval, Eval8, Gather, Gather8, LengthError, Model, Sample, Sample8, Vec3x8};
 
-/// Where gather points are evaluated to check how they were prepared: no lobe of it is negligible.
+/// Direction at which prepared gather points are evaluated to check them: no lobe is negligible there.
 pub const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
 
-/// What an entry point says of one direction.
+/// Answer of an entry point for one direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Answer {
-    /// The direction it drew; `None` if it was given one, zero if it discarded the sample.
+    /// The sampled direction; `None` for evaluations, zero for a discarded sample.
     pub wi: Option<Vec3>,
-    /// S, unless it was not asked for.
+    /// S, if the entry point computes it.
     pub value: Option<[f32; 3]>,
-    /// Density, unless it was not asked for.
+    /// Density, if the entry point computes it.
     pub pdf: Option<f32>,
 }
 
 /// An entry point and the arguments of all its calls.
 pub trait Task {
-    /// Calls in a pass.
+    /// Calls per pass.
     fn calls(&self) -> usize;
-    /// Directions that a call answers for.
+    /// Directions per call.
     fn directions(&self) -> usize;
-    /// One call, its result left in memory and thrown away.
+    /// One call; its result is left in memory and dropped.
     fn call(&mut self, index: usize);
     /// The answers of a pass, in the order of the directions.
     fn answers(&mut self) -> Vec<Answer>;
@@ -64,7 +64,7 @@ impl<I, O: Output, F: Fn(&I) -> O> Task for Each<I, O, F> {
     fn directions(&self) -> usize {
         self.directions
     }
-    // References are hidden from the optimiser, not values, so that nobody pays for a copy; and calls stay apart, so
+    // References are hidden from the optimiser, not values, so that no copy is timed; and calls stay apart, so
     // that no loop over one lane is made into one over four.
     #[inline(always)]
     fn call(&mut self, index: usize) {

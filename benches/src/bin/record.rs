@@ -1,7 +1,7 @@
-//! Turns what Criterion has left in a folder into a record: `record FOLDER`.
+//! Turns a folder of Criterion results into a record: `record FOLDER`.
 //!
-//! Prints a CSV: first, as comments, the CPU, the compiler, the commit and the levels; then a row a bench, with the time
-//! of a direction (for `prepare` of a gather point, for `math` of an argument) in ns: the median over Criterion's
+//! Prints a CSV: first, as comments, the CPU, the compiler, the commit and the levels; then one row per bench, with the time
+//! per direction (`prepare`: per gather point; `math`: per argument) in ns: the median over Criterion's
 //! samples, the bounds of its 95% confidence interval, and the median absolute deviation of a sample.
 
 use core::error::Error;
@@ -53,7 +53,7 @@ fn record(folder: &Path) -> Result<String, Box<dyn Error>> {
     Ok(text)
 }
 
-/// Finds all benches in a folder: what to sort them by, and their rows.
+/// All benches in a folder: sort keys and rows.
 fn benches(folder: &Path, rows: &mut Vec<([String; 3], String)>) -> Result<(), Box<dyn Error>> {
     for entry in fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))? {
         let path = entry?.path();
@@ -103,7 +103,7 @@ fn output(program: &str, words: &[&str]) -> Result<String, Box<dyn Error>> {
     Ok(String::from_utf8(done.stdout)?)
 }
 
-/// What the system calls the CPU; names alone are often empty words on rented machines, hence the numbers.
+/// Name of the CPU with its numbers: names alone are often meaningless on rented machines.
 fn cpu() -> String {
     let Ok(info) = fs::read_to_string("/proc/cpuinfo") else {
         return env::consts::ARCH.to_owned();

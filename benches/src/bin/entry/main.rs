@@ -1,13 +1,13 @@
 //! One entry point at a time, for callgrind and for timing by hand.
 //!
 //! - `entry list`: the names of all entry points on every level of this CPU.
-//! - `entry run NAME PASSES`: passes over the inputs and nothing else: what they cost is what a run with more of them
-//!   costs more.
-//! - `entry time NAME SECONDS`: ns a direction, the median of stretches of a millisecond.
+//! - `entry run NAME PASSES`: passes over the inputs and nothing else: their cost is the difference of two runs with
+//!   different numbers of passes.
+//! - `entry time NAME SECONDS`: ns per direction, the median of stretches of a millisecond.
 //!
-//! - `entry keep`: nothing; it keeps the functions whose size `.ci/sizes.sh` reports.
+//! - `entry keep`: runs nothing; keeps the functions whose size `.ci/sizes.sh` reports in the program.
 //!
-//! Names end in `*` for all that begin so. `run` prints how many calls a pass makes.
+//! A name that ends in `*` selects all with that prefix. `run` prints the number of calls per pass.
 
 mod outlined;
 

@@ -10,7 +10,7 @@ use hairis::{
 };
 use hairis_variants::Cauchy;
 
-/// Declares one function an entry point, and `of`, which names them all.
+/// Declares one function per entry point, and `of`, which lists them.
 macro_rules! outlined {
     ($($name:ident($($arg:ident: $type:ty),*) -> $out:ty { $body:expr })*) => {
         $(
