@@ -1,4 +1,4 @@
-//! Captures what a report says of its own build: compiler, commit and optimisation level. Without git or without a repository the commit is "unknown".
+//! Captures the build for reports: compiler, commit and optimisation level. Without git or without a repository the commit is "unknown".
 
 use std::path::Path;
 use std::process::Command;
@@ -8,10 +8,10 @@ fn main() {
     set("RUSTC", &run(&rustc, &["--version"]).unwrap_or_else(unknown));
     set("OPT_LEVEL", &std::env::var("OPT_LEVEL").unwrap_or_else(|_| unknown()));
 
-    // Only a repository that tracks this very file is ours: an unpacked copy may lie inside somebody else's.
+    // Only a repository that tracks this very file counts: an unpacked copy may lie inside another one.
     let ours = run("git", &["ls-files", "--error-unmatch", "build.rs"]).is_some();
     let commit = ours.then(|| run("git", &["rev-parse", "HEAD"])).flatten();
-    // No optional locks: a refreshed index would change under the user's hands.
+    // No optional locks: a build must not refresh the user's index.
     let status =
         ours.then(|| run("git", &["--no-optional-locks", "status", "--porcelain", "--untracked-files=no"])).flatten();
     set("COMMIT", &commit.unwrap_or_else(unknown));
@@ -46,7 +46,7 @@ fn unknown() -> String {
     "unknown".into()
 }
 
-/// What a command prints, trimmed; `None` when it is missing or fails.
+/// Output of a command, trimmed; `None` when it is missing or fails.
 fn run(program: &str, args: &[&str]) -> Option<String> {
     let output = Command::new(program).args(args).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())

@@ -1,15 +1,15 @@
-//! Whether the kernels compute what the paper says: one lane and eight lanes of every instruction set against the
+//! Agreement of kernels and formulas: one lane and eight lanes of every instruction set against the
 //! textbook in `f64`, on random hair, in the three regions where digits are lost.
 //!
 //! - Bounds: those of the registry, [`ModelId::accuracy`], of directions further than 1e-3 rad from the axis: 1e-5 for the
 //!   published density, 1e-5 for a Cauchy and 1e-4 for a Gaussian value, relative. The worst of all must hold them.
 //! - Samples: density, value and weight are compared with those of the direction that was returned; the direction
-//!   through the lobe's cdf, which must give back the numbers it was drawn with.
+//!   through the lobe's cdf, which must return the numbers it was sampled with.
 //! - Left out: `|phi|` within 1e-6 rad of pi/2, where the glints' density jumps (ERRATA E3) and a rounded azimuth may
 //!   fall on either side; and within 1e-9 rad of pi, where the textbook itself has no digits left.
-//! - Next to `|phi|` = pi the R and TRT-g lobes vanish as `cos(phi / 2)`, and no rounded azimuth tells how far off it is:
-//!   of the errors beyond a bound, those that turning `wi` by 2^-22 rad does not explain are counted apart.
-//! - Gaussian values may be off by `2^-114` per lobe before anything counts: see [`ModelId::slack`].
+//! - Next to `|phi|` = pi the R and TRT-g lobes vanish as `cos(phi / 2)`, which a rounded azimuth does not determine: of the
+//!   errors beyond a bound, those that rotating `wi` by 2^-22 rad does not explain are counted apart.
+//! - Absolute errors of Gaussian values up to `2^-114` per lobe are allowed: see [`ModelId::slack`].
 
 mod measure;
 mod packet;
@@ -25,7 +25,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Where directions lie.
+/// Region of directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Region {
@@ -58,7 +58,7 @@ impl fmt::Display for Region {
     }
 }
 
-/// What is compared.
+/// Compared quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
@@ -72,7 +72,7 @@ pub enum Quantity {
     SampleValue,
     /// Weight that a sample reports.
     SampleWeight,
-    /// Distance between the cdf of the sample's direction and the numbers it was drawn with.
+    /// Distance between the cdf of the sample's direction and the numbers it was sampled with.
     SampleCdf,
 }
 
@@ -114,10 +114,10 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// How much to compare.
+/// Size of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct AgreementConfig {
-    /// Packets of eight directions a region and model.
+    /// Packets of eight directions per region and model.
     pub packets: u32,
     /// Seed of the hair, the directions and the numbers.
     pub seed: u64,
@@ -137,7 +137,7 @@ impl AgreementConfig {
     }
 }
 
-/// The errors of one quantity, computed in one way, in one region: a row of the table.
+/// The errors of one quantity on one code path in one region: a row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgreementResult {
     /// The model.
@@ -150,7 +150,7 @@ pub struct AgreementResult {
     pub level: &'static str,
     /// Where the directions lie.
     pub region: Region,
-    /// What is compared.
+    /// Compared quantity.
     pub quantity: Quantity,
     /// Number of directions.
     pub count: usize,
@@ -175,7 +175,7 @@ pub struct AgreementResult {
 pub struct WorstCase {
     /// The model.
     pub model: &'static str,
-    /// The sampler, or what else the model is chosen by.
+    /// The word that selects among models of one name, such as the sampler.
     #[serde(flatten)]
     pub choice: BTreeMap<&'static str, &'static str>,
     /// Parameters.
@@ -281,7 +281,7 @@ impl Column {
     }
 
     fn keep_worst(&mut self, other: Option<Measured>) {
-        // One that rounding does not explain says more than a larger one that it does.
+        // An error that rounding does not explain matters more than a larger one that it does.
         let rank = |m: &Option<Measured>| m.map_or((false, -1.0), |m| (m.unexplained, m.error));
         if rank(&other) > rank(&self.worst) {
             self.worst = other;

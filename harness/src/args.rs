@@ -1,15 +1,15 @@
-//! The raw flags. What clap cannot check, [`config`](crate::config) does.
+//! The raw flags. [`config`](crate::config) checks the rest, beyond clap.
 
 use crate::config::Path;
 use crate::error::Error;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 
-/// Hair scattering: evaluate it line by line, and compare how it is computed.
+/// Hair scattering: evaluate it line by line, and compare implementations, models and samplers.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "hairis", version, arg_required_else_help = false)]
 pub struct Args {
-    /// What to do.
+    /// The subcommand.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -37,25 +37,25 @@ DIR/cells-I-of-N.jsonl: the same command goes on from there.";
 /// The subcommands, each with its flags.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
-    /// Evaluate JSON Lines: one request a line on standard input, one answer a line on standard output
+    /// Evaluate JSON Lines: one request per line on standard input, one answer per line on standard output
     #[command(after_help = FORMAT)]
     Eval(Eval),
-    /// Compare scalar with eight lanes and the Gaussian model with the all-Cauchy one: speed, agreement, variance
+    /// Compare scalar code with eight lanes and the Gaussian model with the all-Cauchy one: speed, agreement, variance
     Compare(Compare),
-    /// Measure every sampler of both models under every light over the whole parameter grid; a run that was stopped
-    /// goes on
+    /// Measure every sampler of both models under every light over the whole parameter grid; an interrupted run
+    /// continues
     #[command(after_help = STUDY)]
     Study(Study),
-    /// Hold each of the paper's claims against figures: what holds, what holds within limits and what is false
+    /// Compare each claim of the paper with figures: true, true within limits, or false
     Claims(Claims),
-    /// Join the parts of a study that ran in shards, into the same tables as one run
+    /// Join the parts of a study that ran in shards into the same tables as one run
     Merge(Merge),
 }
 
 /// Flags of `hairis eval`.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct Eval {
-    /// The code that answers
+    /// The code path that computes the answers
     #[arg(long, value_enum, default_value_t = Path::X8)]
     pub path: Path,
 }
@@ -92,7 +92,7 @@ pub struct Study {
     /// Environment light, latitude-longitude, as a .hdr or .exr file [default: a procedural sky]
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
-    /// Compute part I of N only, I from 1 to N, for `hairis merge` to join
+    /// Compute only part I of N (I from 1 to N), for `hairis merge` to join
     #[arg(long, value_name = "I/N")]
     pub shard: Option<String>,
 }
@@ -106,7 +106,7 @@ pub struct Claims {
     /// Seed of everything that is drawn; results but for the timings depend on it alone
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Folder for claims.json; made if missing. A study that finishes in the same folder puts the verdicts into its report
+    /// Folder for claims.json; made if missing. A study that finishes in the same folder shows the verdicts in its report
     #[arg(long, value_name = "DIR", default_value = "out/study")]
     pub out: PathBuf,
 }
@@ -120,22 +120,22 @@ pub struct Merge {
     /// Folders that hold the parts; one may hold several
     #[arg(value_name = "PART_DIR", required = true)]
     pub parts: Vec<PathBuf>,
-    /// Environment light of the parts, to time its look-up here [default: the procedural sky if it is theirs, else no times]
+    /// Environment light of the parts, to time its look-up [default: the procedural sky if the parts used it, else no times]
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
 }
 
-/// The flags this process was started with; `None` if they asked for help or the version, which then is printed.
+/// Parses the flags of this process; `None` after printing the help or the version.
 ///
 /// # Errors
 ///
-/// [`Error::Usage`], in one line, if they make no sense.
+/// [`Error::Usage`], in one line, if they are not valid.
 pub fn parse() -> Result<Option<Args>, Error> {
     match Args::try_parse() {
         Ok(args) => Ok(Some(args)),
         Err(error) if error.use_stderr() => Err(Error::Usage(one_line(&error.to_string()))),
         Err(help) => {
-            // A reader that left, as in `hairis --help | head -1`, has read what it wanted.
+            // Ignore a closed pipe, as in `hairis --help | head -1`.
             let _ = help.print();
             Ok(None)
         }

@@ -1,18 +1,18 @@
-//! The paper's claims, each with its figures and a verdict that they decide.
+//! The paper's claims, each with its figures and the verdict that follows from them.
 //!
 //! - `energy`: the estimated energies are within 1%.
 //! - `tails`: wider tails do not increase variance.
 //! - `uniform`: always better than uniform sampling.
 //! - `grazing`: discarding samples at grazing angles does no harm.
 //! - `performance`: the all-Cauchy model is sampled better, light by light.
-//! - `bounds`, `glint`: what the misprints cost, and the interval of the glint.
+//! - `bounds`, `glint`: the cost of the misprints, and the interval of the glint.
 //!
-//! # How a verdict comes about
+//! # Verdicts
 //!
-//! A [`Claim`] has a [`Threshold`], stated beside it, and two figures that are held against it: the worst of all the cases
-//! the claim is made for, and the worst within stated limits. If the first keeps the threshold, the claim holds; if only
-//! the second does, it holds within those limits; else it is false. A figure keeps it if it does so with two of its
-//! standard errors to spare, or with the error of the quadrature. Nothing else enters ([`Claim::verdict`]).
+//! A [`Claim`] has a [`Threshold`], stated beside it, and two figures: the worst of all the cases the claim is made for, and
+//! the worst within stated limits. If the first keeps the threshold, the claim holds. If only the second does, it holds
+//! within those limits. Otherwise it is false. A figure keeps the threshold if it does so by two of its standard errors, or
+//! by the error of the quadrature. Nothing else decides ([`Claim::verdict`]).
 //!
 //! # Determinism
 //!
@@ -42,7 +42,7 @@ use hairis::ParamError;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// What to compute.
+/// Settings of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClaimsConfig {
     /// Seed of everything that is drawn.
@@ -51,18 +51,18 @@ pub struct ClaimsConfig {
     pub quick: bool,
 }
 
-/// Everything that was found; `claims.json` is this.
+/// All results; the content of `claims.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Claims {
     /// The command's settings.
     pub settings: Settings,
-    /// Where it ran, and what ran.
+    /// Machine and build.
     pub machine: Machine,
-    /// The claims, in the order of the paper's sections but for the misprints, which come last.
+    /// The claims, in the order of the paper's sections; misprints come last.
     pub claims: Vec<Claim>,
 }
 
-/// What the figures depend on.
+/// Settings that the figures depend on.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Settings {
     /// Seed of everything that was drawn.
@@ -77,10 +77,10 @@ pub struct Settings {
     pub lights: [&'static str; 5],
 }
 
-/// What quadrature finds of every cell and model.
+/// Results of quadrature for every cell and model.
 type Cells = [(Cell, ModelKind, Found)];
 
-/// Computes the claims. `progress` is told the share that is done, from 0 to 1, from the workers and in no order.
+/// Computes the claims. Workers call `progress` with the share that is done, from 0 to 1, in no order.
 ///
 /// # Errors
 ///
@@ -111,7 +111,7 @@ fn hair_of(cell: &Cell, model: ModelKind) -> Result<Hair, ParamError> {
     Ok(Hair::new(model, &cell.params()?, f64::from(cell.theta_o_deg).to_radians()))
 }
 
-/// Integrates every cell of `grid` on all cores. `done` is told how many cells are.
+/// Integrates every cell of `grid` on all cores. `done` is called with the number of finished cells.
 fn by_quadrature(grid: Grid, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<(Cell, ModelKind, Found)>, ParamError> {
     let finished = core::sync::atomic::AtomicUsize::new(0);
     let of_cell = |index: usize| {

@@ -1,4 +1,4 @@
-//! The subcommands, one a file.
+//! The subcommands, one per file.
 
 pub mod claims;
 pub mod compare;
@@ -13,11 +13,11 @@ use crate::table::Table;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Does what a checked run asks for.
+/// Executes a checked run.
 ///
 /// # Errors
 ///
-/// Whatever stopped it, or what it found wrong: see [`Error`].
+/// [`Error`] if it was stopped, or if a check failed.
 pub fn run(run: &Run) -> Result<(), Error> {
     match run {
         Run::Eval(config) => eval::run(config),
@@ -28,7 +28,7 @@ pub fn run(run: &Run) -> Result<(), Error> {
     }
 }
 
-/// The environment in a file, or the procedural sky if there is none, and what reports call it.
+/// The environment in a file, or the procedural sky if there is none, and its name in reports.
 fn environment(path: Option<&Path>) -> Result<(Environment, String), Error> {
     match path {
         Some(path) => Ok((Environment::load(path).map_err(Error::Environment)?, path.display().to_string())),
@@ -36,7 +36,7 @@ fn environment(path: Option<&Path>) -> Result<(Environment, String), Error> {
     }
 }
 
-/// Tables on standard output. A reader that left has read what it wanted.
+/// Prints tables on standard output. Ignores a closed pipe.
 fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>) -> io::Result<()> {
     let mut out = io::stdout().lock();
     for table in tables {
@@ -48,7 +48,7 @@ fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>) -> io::Result<()> {
     Ok(())
 }
 
-/// A line on standard error. Nobody is left to hear that it is closed.
+/// Prints a line on standard error. Ignores write errors.
 fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }

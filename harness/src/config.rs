@@ -6,7 +6,7 @@ use crate::study::Shard;
 use clap::ValueEnum;
 use std::path::PathBuf;
 
-/// What to do, with everything checked that can be before the work starts.
+/// A run, checked as far as possible before the work starts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Run {
     /// `hairis eval`.
@@ -67,32 +67,32 @@ pub struct Merge {
     pub out: PathBuf,
     /// Folders that hold the parts.
     pub parts: Vec<PathBuf>,
-    /// Environment light of the parts, if it is at hand.
+    /// Environment light of the parts, if it is available.
     pub env: Option<PathBuf>,
 }
 
 /// A run of `hairis eval`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Eval {
-    /// The code that answers.
+    /// The code path that computes the answers.
     pub path: Path,
 }
 
-/// One of the ways to compute the same numbers. All give the same fields.
+/// Code path. All give the same fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Path {
-    /// One direction a call, in single precision
+    /// One direction per call, in single precision
     Scalar,
-    /// Eight lines a call, in single precision: eight materials and gather points, one a lane
+    /// Eight lines per call, in single precision: eight materials and gather points, one per lane
     X8,
-    /// Slices in, slices out, in single precision: neighbouring lines on the same hair with the same wo are one call
+    /// Slices, in single precision: neighbouring lines on the same hair with the same wo share a call
     Batch,
     /// The paper's formulas line by line, in double precision, on input rounded as for the others
     F64,
 }
 
 impl Run {
-    /// The run that `args` ask for.
+    /// Checks `args`.
     ///
     /// # Errors
     ///

@@ -1,24 +1,24 @@
-//! How different the all-Cauchy model looks from the Gaussian one, over the study's grid.
+//! Difference in look between the all-Cauchy model and the Gaussian one, over the study's grid.
 //!
 //! # What is measured
 //!
 //! For each cell of the [`Grid`] and each factor on the Cauchy model's widths ([`Width`]): the albedo of either model, and
-//! how far apart their `S cos theta_i` (the mean of RGB, per steradian of `wi`) are over the sphere, in L1 and in L2, each
+//! the distance of their `S cos theta_i` (the mean of RGB, per steradian of `wi`) over the sphere, in L1 and in L2, each
 //! relative to the Gaussian model's own norm
 //! - as they are,
 //! - with the Cauchy model scaled to the albedo of the Gaussian one: the shape alone,
-//! - either after a blur of [`SIGMA_DEG`]: as seen in a light that wide, or by an eye that cannot tell finer detail. The blur
+//! - either after a blur of [`SIGMA_DEG`]: the view in a light that wide, or without finer detail. The blur
 //!   is the von Mises-Fisher density of `kappa = 1 / sigma^2`, the Gaussian of the sphere.
 //!
-//! An L1 of 0.3 says that light worth 30% of what the Gaussian model reflects is reflected elsewhere, or not at all, or is
-//! new; of models of one albedo half of it is moved.
+//! An L1 of 0.3 means a difference of 30% of the light that the Gaussian model reflects: reflected elsewhere, not at all, or
+//! in addition. With equal albedos half of it is moved.
 //!
-//! # How
+//! # Method
 //!
-//! By quadrature in double precision of the textbook's bells; nothing is drawn. S is a sum of three products of a function
+//! Quadrature in double precision of the textbook's bells; nothing is sampled. S is a sum of three products of a function
 //! of `theta_i` and one of `phi`, so that albedos and L2 norms are products of integrals on a line. L1 is a sum over the
-//! product of both rules, and the blur goes through spherical harmonics up to a degree beyond which nothing is left of
-//! any. Tests hold the figures to 1e-3 of those of twice the resolution, and the blur to its integral.
+//! product of both rules. The blur uses spherical harmonics up to a degree beyond which the coefficients vanish. Tests
+//! compare the figures to 1e-3 with those of twice the resolution, and the blur with its integral.
 
 mod best;
 mod blur;
@@ -44,10 +44,10 @@ const ORDER: usize = 8;
 /// Latitudes, and longitudes of half a sphere, at which blurred functions are compared.
 const LATITUDES: usize = 96;
 
-/// How the widths of the Cauchy model are chosen: each is a factor `k` on those of the Gaussian one.
+/// Choice of the widths of the Cauchy model: a factor `k` on those of the Gaussian one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
-    /// The same widths, the paper's words: [`Cauchy::PAPER`].
+    /// The same widths, as in the paper: [`Cauchy::PAPER`].
     Paper,
     /// Bells as high at half their peak: [`Cauchy::HALF_WIDTH`].
     HalfWidth,
@@ -81,9 +81,9 @@ impl Width {
 pub struct Row {
     /// The hair, and the inclination it is seen from.
     pub cell: Cell,
-    /// How the factor was chosen.
+    /// Choice of the factor.
     pub width: Width,
-    /// What was found.
+    /// The measured differences.
     pub figures: Figures,
 }
 

@@ -1,23 +1,23 @@
-//! How many samples the published and the matched sampler save: variance, bias and convergence of both models under five lights.
+//! Sample efficiency of the published and the matched sampler: variance, bias and convergence of both models under five lights.
 //!
 //! # What is measured
 //!
 //! The estimators of direct lighting, `L S cos theta_i / pdf` as one number (the mean of its RGB), of both models through the eight-lane path. `V` is the
 //! relative variance of one sample: a mean of `N` independent samples has a relative error of `sqrt(V / N)`.
 //!
-//! - One number out of three: every figure is of the mean of RGB, the intensity the sampler weighs its lobes by. The recorded table of "luminance V"
-//!   means it too. Quadrature tells the two apart (test `the_recorded_figures_are_of_the_mean_of_rgb`): `ou` on the Gaussian model at `theta_o = 45` has V = 0.1890
+//! - One number out of three: every figure is of the mean of RGB, the intensity by which the sampler weights its lobes. So is the recorded table of
+//!   "luminance V", as quadrature shows (test `the_recorded_figures_are_of_the_mean_of_rgb`): `ou` on the Gaussian model at `theta_o = 45` has V = 0.1890
 //!   for the mean of RGB, 0.1923 for the luminance of Rec. 709, and the table has 0.189. All twelve figures agree with the mean of RGB to 6e-4.
-//! - Samples that hang together (stratified, Halton) have no variance of their own. For them `V = N Var(mean) / mean^2` with `Var(mean)` the variance of the mean
+//! - Correlated samples (stratified, Halton) have no variance of their own. For them `V = N Var(mean) / mean^2` with `Var(mean)` the variance of the mean
 //!   of `N` samples over `R` independent randomisations, so that V / N is again the squared relative error, but at that `N` alone: each row states its `N`.
 //!   For independent numbers `N` is 1 and `R` the number of samples, the same formula.
 //! - Standard errors of V are those of [`Moments::relative_variance`](crate::stats::Moments::relative_variance).
 //! - The effective sample size of 1000 samples is `1000 / (1 + V)`: Kish's for independent numbers, the same function of V elsewhere.
-//! - Every mean is held against a reference, see [`Reference`], and gives a bias z-score. Contributions of rare hits are skewed, which would spoil the tails of
-//!   a plain z: it is put through Hall's transformation (1992, On the removal of skewness by transformation). [`Check`] collects them.
-//! - A run that expects to see a small light a few times only is no test: it misses it and is sure of the wrong mean. What it may expect is known beforehand, from
-//!   the V of [`Reference::v`]: a z-score enters the check when the samples are worth at least [`MIN_EFFECTIVE`] of them, `n / (1 + V)`, and
-//!   the hits that carry the skewness are expected to be as many, `n / skewness^2`. The rest
+//! - Every mean is compared with a reference, see [`Reference`], and gives a bias z-score. Contributions of rare hits are skewed, which distorts the tails of
+//!   a plain z: Hall's transformation (1992, On the removal of skewness by transformation) removes the skewness. [`Check`] collects the scores.
+//! - A run that is expected to hit a small light a few times only is no test: it misses it and underestimates both mean and error. The expectation follows from
+//!   the V of [`Reference::v`]: a z-score enters the check if the effective number of samples, `n / (1 + V)`, and the expected number of hits that carry
+//!   the skewness, `n / skewness^2`, are at least [`MIN_EFFECTIVE`]. The rest
 //!   are printed and marked, and so are their V: those of the reference are the better figures there.
 //!
 //! # The scene
@@ -118,18 +118,18 @@ impl SampleCosts {
     }
 }
 
-/// How much to compute. [`full`](Self::full) and [`quick`](Self::quick) are those of the command line.
+/// Numbers of samples. [`full`](Self::full) and [`quick`](Self::quick) are those of the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Budget {
-    /// Independent samples a row.
+    /// Independent samples per row.
     pub independent: usize,
     /// Samples `N` of one randomisation of correlated numbers.
     pub correlated: usize,
-    /// Randomisations `R` of correlated numbers a row.
+    /// Randomisations `R` of correlated numbers per row.
     pub randomisations: usize,
     /// Pairs (or samples, for techniques alone) a row of multiple importance sampling.
     pub mis: usize,
-    /// Independent samples a row of the sweep.
+    /// Independent samples per row of the sweep.
     pub sweep: usize,
     /// Randomisations a point of the convergence table.
     pub convergence: usize,
@@ -175,12 +175,12 @@ impl Budget {
     }
 }
 
-/// What to compare.
+/// Settings of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct EfficiencyConfig<'a> {
     /// Seed of every stream.
     pub seed: u64,
-    /// How much to compute.
+    /// Numbers of samples.
     pub budget: Budget,
     /// The environment among the lights: a file's, or [`Sky`](crate::light::Sky)'s.
     pub environment: &'a Environment,
@@ -212,7 +212,7 @@ impl<'a> EfficiencyConfig<'a> {
     }
 }
 
-/// The hair of the sweep: `base` with `beta_r` and the two widths tied to it, in degrees.
+/// The hair of the sweep: `base` with `beta_r` and the two dependent widths, in degrees.
 ///
 /// # Errors
 /// When a width leaves its range.
@@ -239,7 +239,7 @@ pub(crate) fn perfect_v(model: ModelKind, params: &HairParams, theta_o_deg: f64,
     reference::perfect_v(&case::Case::new(model, params, theta_o_deg), light)
 }
 
-/// The one number of a colour that figures are of: its mean.
+/// The mean of a colour, on which all figures are based.
 fn intensity(rgb: [f64; 3]) -> f64 {
     (rgb[0] + rgb[1] + rgb[2]) / 3.0
 }

@@ -1,4 +1,4 @@
-//! Why a run of `hairis` ends with an exit code other than 0.
+//! Errors that end a run of `hairis` with an exit code other than 0.
 
 use crate::light::LightError;
 use core::fmt;
@@ -6,14 +6,14 @@ use hairis::ParamError;
 use std::io;
 use std::path::PathBuf;
 
-/// Why a run failed; it is printed once, by `main`, in one line.
+/// Failure of a run; `main` prints it once, in one line.
 #[derive(Debug)]
 pub enum Error {
-    /// The command line makes no sense.
+    /// The command line is not valid.
     Usage(String),
     /// Standard input could not be read.
     Read(io::Error),
-    /// Standard output could not be written, for another reason than that its reader left.
+    /// Standard output could not be written, except for a closed pipe.
     Write(io::Error),
     /// The environment light could not be used.
     Environment(LightError),
@@ -31,9 +31,9 @@ pub enum Error {
         /// Why.
         problem: String,
     },
-    /// Parts of a study were joined, but not all: what is missing.
+    /// Parts of a study were joined, but some are missing: their names.
     Missing(String),
-    /// Hair that the program itself made was refused: a fault of the program.
+    /// Hair that the program itself made was refused: a bug.
     Params(ParamError),
     /// Checks failed; each has been named on standard error.
     Failed(usize),

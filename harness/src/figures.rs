@@ -1,5 +1,4 @@
-//! The figures that need nothing but the kernels: the paper's figures 4 and 5, and the scattering function around the
-//! fibre.
+//! Figures from the kernels alone: the paper's figures 4 and 5, and the scattering function around the fibre.
 
 mod looks;
 

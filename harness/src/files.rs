@@ -1,4 +1,4 @@
-//! Files that are there as a whole or not at all.
+//! Atomic writes: a file exists as a whole or not at all.
 
 use crate::error::Error;
 use std::fs::{self, File};

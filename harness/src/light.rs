@@ -43,7 +43,7 @@ pub struct LightSample {
     pub pdf: f64,
 }
 
-/// What a light is in eight directions, one a lane, in single precision.
+/// Radiance and density of a light in eight directions, one per lane, in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen8 {
     /// Radiance from there, linear RGB.
@@ -68,7 +68,7 @@ pub trait Light: Sync + Send {
     /// Density of [`sample`](Self::sample) at `dir`, per steradian; integrates to 1 over the sphere.
     fn pdf(&self, dir: DVec3) -> f64;
 
-    /// [`radiance`](Self::radiance) and [`pdf`](Self::pdf) in eight directions, one a lane: unit vectors of single precision.
+    /// [`radiance`](Self::radiance) and [`pdf`](Self::pdf) in eight directions, one per lane: unit vectors of single precision.
     ///
     /// - Accuracy: that of `f32`; a direction within a few 1e-7 rad of an edge may be taken for one on the other side.
     fn see8(&self, dir: &Vec3x8) -> Seen8 {

@@ -1,8 +1,8 @@
-//! What a report prints beside each figure: the machine it ran on and the build that ran.
+//! Machine and build, printed beside each figure of a report.
 
 use serde::Serialize;
 
-/// The machine and the build. Nothing here is measured; all of it is what the system and the compiler say.
+/// The machine and the build, as reported by the system and the compiler. Nothing here is measured.
 ///
 /// # Examples
 /// ```
@@ -11,7 +11,7 @@ use serde::Serialize;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Machine {
-    /// Model name of the processor, or its architecture when the system does not tell.
+    /// Model name of the processor, or its architecture if the system does not report it.
     pub cpu: String,
     /// Logical cores this process may use.
     pub logical_cores: usize,

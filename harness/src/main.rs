@@ -10,7 +10,7 @@ fn main() -> ExitCode {
     match run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // The one place that prints an error. Nobody is left to hear that standard error is closed.
+            // The one place that prints an error. Ignore write errors.
             let _ = writeln!(std::io::stderr(), "hairis: {error}");
             ExitCode::from(error.exit_code())
         }

@@ -1,4 +1,4 @@
-//! The report: one HTML page that needs nothing else, not even a script.
+//! The report: one self-contained HTML page, without scripts.
 
 use crate::error::Error;
 use crate::files::whole;
@@ -58,7 +58,7 @@ pub struct Figure {
     pub name: String,
     /// A complete `<svg>` element, as those of [`crate::plot`]: it goes into the page as it is.
     pub svg: String,
-    /// What it shows, as text.
+    /// Caption.
     pub caption: String,
     /// The numbers it was drawn from.
     pub data: Option<Table>,

@@ -1,6 +1,6 @@
-//! The samplers of each model: what `compare` and `study` measure.
+//! The samplers of each model that `compare` and `study` measure.
 //!
-//! A new one is a variant of [`Sampler`], with its arms in the methods and in `weight_bound`.
+//! To add one, add a variant of [`Sampler`] with its arms in the methods and in `weight_bound`.
 
 use crate::quadrature::fibre_direction;
 use crate::subject::ModelKind;
@@ -12,7 +12,7 @@ use hairis_variants::{AnyBsdf, AnyGather, ModelId, Parameters as _};
 use serde::Serialize;
 use wide::f32x8;
 
-/// How directions are drawn.
+/// Sampler of directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sampler {
@@ -46,7 +46,7 @@ impl Sampler {
         }
     }
 
-    /// Uniform numbers a sample takes.
+    /// Uniform numbers per sample.
     #[must_use]
     pub const fn dims(self) -> usize {
         match self {
@@ -80,9 +80,8 @@ impl Sampler {
 ///
 /// - `uniform`: the lobes have peaks of 1, and `cos theta_i / cos^2 theta_d` is at most `1 / cos theta_o`, which it
 ///   reaches at `theta_i = -theta_o`.
-/// - `ou`: none in closed form. Its glints end at `|phi| = pi/2`; what is left of them behind is covered by whatever
-///   other lobe is there.
-/// - `matched`: what all lobes integrate to, times the largest ratio of W to what it is taken for in a band.
+/// - `ou`: none in closed form. Its glints end at `|phi| = pi/2`; other lobes sample their tails beyond it.
+/// - `matched`: the integral of all lobes, times the largest ratio of W to its constant in a band.
 pub(crate) fn weight_bound(model: ModelKind, sampler: Sampler, params: &HairParams, theta_o: f64) -> Option<f64> {
     if sampler == Sampler::Uniform {
         let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;

@@ -1,6 +1,6 @@
 //! Sources of the uniform numbers `xi` that estimators consume: independent, Halton, stratified.
 //!
-//! Every source is set by `(seed, stream)`: one seed a run, one stream a cell of the comparison (see [`stream_id`]), so a figure does not depend on which
+//! Every source is set by `(seed, stream)`: one seed per run, one stream per cell of the comparison (see [`stream_id`]), so a figure does not depend on which
 //! thread computed it or on what ran before. Numbers are in [0, 1); after [`to_unit_f32`] in [0, 1 - 2^-24]. Neither is ever exactly 1.
 
 mod halton;
@@ -20,7 +20,7 @@ pub const MAX_XI_F32: f32 = 1.0 - f32::EPSILON / 2.0;
 pub trait XiSource {
     /// Fills `point` with the coordinates of the next point, each in [0, 1).
     ///
-    /// - Shape: one coordinate an element. An independent source takes any length; the others document theirs.
+    /// - Shape: one coordinate per element. An independent source takes any length; the others document theirs.
     ///
     /// # Panics
     /// When the source has fewer dimensions than `point` has elements.
@@ -140,7 +140,7 @@ impl XiSource for Independent {
     }
 }
 
-/// The kinds of source a comparison may ask for.
+/// The kinds of source of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SequenceKind {

@@ -1,8 +1,8 @@
-//! How long each operation takes: the textbook's scalar code, the kernel on one lane, and on eight lanes of every
+//! Time of each operation: the textbook's scalar code, the kernel on one lane, and on eight lanes of every
 //! instruction set of this CPU, interleaved in one run.
 //!
-//! A round times every contender of every operation once, so that all of them see the same machine; a ratio is formed
-//! within a round, and what is reported is the median over the rounds with its quartiles. Directions and numbers are
+//! A round times every contender of every operation once, under the same state of the machine; a ratio is formed
+//! within a round, and the report has the median over the rounds with its quartiles. Directions and numbers are
 //! drawn beforehand and stay in the second-level cache. The answers of every contender are compared with the textbook
 //! in `f64` after the timing.
 
@@ -36,7 +36,7 @@ const MIN_STRETCH: f64 = 5e4;
 /// and the `f32` textbook loses digits near the axis; a wrong lane is an eighth.
 const MAX_WRONG: f64 = 0.01;
 
-/// What is timed.
+/// Timed operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Op {
@@ -52,11 +52,11 @@ pub enum Op {
     SampleTails,
     /// A gather point of its own for each direction, and one sample with its value: all on one head of hair.
     PointsShared,
-    /// The same with four samples a gather point.
+    /// The same with four samples per gather point.
     PointsOf4,
     /// With sixteen.
     PointsOf16,
-    /// With one, on eight heads of hair, one a lane, packed once.
+    /// With one, on eight heads of hair, one per lane, packed once.
     PointsMixed,
     /// The same, packed anew for each eight gather points.
     PointsPacked,
@@ -77,7 +77,7 @@ impl Op {
         Self::PointsPacked,
     ];
 
-    /// What the operation is, for tables.
+    /// Name of the operation in tables.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -101,7 +101,7 @@ impl fmt::Display for Op {
     }
 }
 
-/// How long to measure, and with which inputs.
+/// Duration and inputs of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SpeedConfig {
     /// Time for all rounds together, s. At least fifteen rounds are made even if they take longer.
@@ -160,13 +160,13 @@ pub struct SpeedResult {
 /// The table, and what it was measured with.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SpeedReport {
-    /// As asked for.
+    /// The requested settings.
     pub config: SpeedConfig,
     /// Directions a pass.
     pub directions: usize,
-    /// What the program was compiled for.
+    /// Instruction set that the program was compiled for.
     pub compiled_level: &'static str,
-    /// What eight lanes run on when nobody says otherwise.
+    /// Default instruction set of eight lanes.
     pub detected_level: &'static str,
     /// By model, operation and contender; the textbook leads each block.
     pub rows: Vec<SpeedResult>,
@@ -190,7 +190,7 @@ impl SpeedReport {
     }
 }
 
-/// Measures all operations on every model, with its first sampler. `progress` is told the share done, from 0 to 1, after every round.
+/// Measures all operations on every model, with its first sampler. `progress` is called with the share done, from 0 to 1, after every round.
 ///
 /// Nothing else should run on the machine meanwhile, and not on other threads of this program.
 ///
@@ -230,7 +230,7 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
     })
 }
 
-/// The timings of one cell: a column a contender, an entry a round, ns a direction.
+/// The timings of one cell: one column per contender, one entry per round, ns per direction.
 struct Timing<'a> {
     cell: &'a Cell,
     passes: Vec<u32>,
@@ -249,7 +249,7 @@ impl<'a> Timing<'a> {
         Self { cell, passes: passes.collect(), ns: vec![Vec::new(); cell.contenders.len()] }
     }
 
-    /// Times every contender once; who goes first changes from round to round.
+    /// Times every contender once, in an order that changes from round to round.
     fn round(&mut self, round: usize) {
         let count = self.cell.contenders.len();
         for k in 0..count {
@@ -334,8 +334,8 @@ mod tests {
     fn every_contender_is_timed_and_right() {
         let mut last = 0.0;
         let report = run(&SpeedConfig { seconds: 0.0, seed: 1 }, |done| last = done).expect("hair within range");
-        // Slices take part where a gather point is given: evaluation and sampling. Eight lanes at one gather point take
-        // part where it has several samples.
+        // Slices are timed where a gather point is given: evaluation and sampling. Eight lanes at one gather point are
+        // timed where it has several samples.
         let levels = Level::available().count();
         assert_eq!(
             report.rows.len(),

@@ -1,4 +1,4 @@
-//! Statistics of estimators and of timings: what turns a column of numbers into a figure with an error bar.
+//! Statistics of estimators and of timings: figures with error bars from columns of numbers.
 //!
 //! - [`Moments`]: running central moments up to the fourth, mergeable; mean, variance and relative variance with their standard errors.
 //! - [`Spread`]: median, quartiles and median absolute deviation of timing samples.

@@ -3,32 +3,32 @@
 //! # What is measured
 //!
 //! For each cell of the [`Grid`], model, [`Sampler`] and light: the mean of `L S cos theta_i / pdf` (the mean of its RGB,
-//! as in [`efficiency`](crate::efficiency)), its relative variance V a sample, the effective sample size, the samples
+//! as in [`efficiency`](crate::efficiency)), its relative variance V per sample, the effective sample size, the samples
 //! to an error of 1%, the largest weight and contribution, and the Kullback-Leibler divergence of the density from the
 //! normalised integrand, with standard errors. [`Study::columns`](output::Study::columns) lists them.
 //!
-//! Beside the samplers stands `perfect`, which nobody can run: directions of a density proportional to the mean of RGB of
-//! `S cos theta_i`, what a sampler of the hair comes to that knows nothing of the light. What is then left of V is the
-//! light's. It is estimated from directions that are drawn anyway: its two integrals from those of `matched-25`, whose
+//! The sampler `perfect` is not runnable: directions of a density proportional to the mean of RGB of `S cos theta_i`, the
+//! limit of samplers of the hair that ignore the light. The V that is left belongs to the light.
+//! It is estimated from directions that are drawn anyway: its two integrals from those of `matched-25`, whose
 //! weights are bounded and vary least, and of the light; the albedo as the mean of the same weights, whose errors cancel
 //! against those of the integrals, so that V under constant light is 0.
 //!
-//! V and the divergence are integrals, and are estimated with directions of the sampler and, for lights that are not
-//! seen from everywhere, of the light: the figures are those of the sampler alone, but no small light has to be hit by
-//! luck. Drawing from the sampler alone, a V of 1000 is known to 10% after some hundred thousand samples, and its error
-//! is thought smaller than it is.
+//! V and the divergence are integrals. They are estimated with directions of the sampler and, for lights that do not cover
+//! the sphere, of the light: the figures are those of the sampler alone, but no small light has to be hit by luck. With
+//! directions of the sampler alone, a V of 1000 has an error of 10% after some hundred thousand samples, and that error is
+//! underestimated.
 //!
 //! # Determinism
 //!
 //! The rows depend on the [`Plan`], on the build and on its instruction set, and on nothing else: each cell draws from
 //! streams of its own and is computed by one thread. Finished cells are kept in a part file, see [`part`], so that a run
 //! that was stopped goes on where it was, and so that many processes can share the work. Times are measured apart, by
-//! whoever writes the tables: of a sample, and of a look-up of each light. The environment's needs its file, which
-//! `hairis merge` is given or goes without.
+//! the process that writes the tables: of a sample, and of a look-up of each light. The environment's needs its file, which
+//! `hairis merge` takes as an option.
 //!
-//! # Another sampler
+//! # Adding a sampler
 //!
-//! is a variant of [`Sampler`], with its arms in `sampler.rs`.
+//! Add a variant of [`Sampler`], with its arms in `sampler.rs`.
 
 mod cell;
 mod check;
@@ -82,7 +82,7 @@ impl Budget {
     }
 }
 
-/// What to compute.
+/// Settings of a study.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'a> {
     /// Seed of every stream.
@@ -100,7 +100,7 @@ impl Plan<'_> {
         grid_of(self.quick)
     }
 
-    /// How many samples each takes.
+    /// Numbers of samples per cell.
     #[must_use]
     pub const fn budget(&self) -> Budget {
         if self.quick {

@@ -1,4 +1,4 @@
-//! The errors of one packet, by way of computing and quantity.
+//! The errors of one packet, by code path and quantity.
 
 use super::packet::Packet;
 use super::{Quantity, Region};
@@ -10,13 +10,13 @@ use hairis::{Eval, Hit, Level, Lobe, ParamError, Sample, Vec3x8};
 use hairis_variants::{Accuracy, AnyBsdf8, AnyReference, ModelId, Values};
 use wide::f32x8;
 
-/// What rounding may do to an azimuth, rad: a few units in the last place of a component near 1.
+/// Rounding error of an azimuth, rad: a few units in the last place of a component near 1.
 const ROUNDING: f64 = 1.0 / 4_194_304.0;
 
-/// Who computed.
+/// Code path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
-    /// One direction a call.
+    /// One direction per call.
     One,
     /// Eight directions at one gather point.
     Shared(Level),
@@ -25,7 +25,7 @@ pub(super) enum Way {
 }
 
 impl Way {
-    /// Every way on this CPU.
+    /// Every code path on this CPU.
     pub(super) fn all() -> Vec<Self> {
         let mut all = vec![Self::One];
         all.extend(Level::available().flat_map(|level| [Self::Shared(level), Self::Points(level)]));
@@ -48,7 +48,7 @@ impl Way {
     }
 }
 
-/// One error, and where it was made.
+/// One error, and its place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measured {
     pub(super) error: f64,
@@ -64,7 +64,7 @@ pub(super) struct Place {
     pub(super) wo: Vec3,
     pub(super) h: f32,
     pub(super) wi: Vec3,
-    /// What `wi` was drawn with, if it was.
+    /// The numbers `wi` was sampled with, if any.
     pub(super) xi: Option<[f32; 3]>,
 }
 
@@ -170,8 +170,8 @@ impl Exact<'_> {
         Measured { error, unexplained, at: self.place }
     }
 
-    /// How far the cdf of the lobe at the direction is from the numbers it was drawn with, on the circle of length 1:
-    /// both ends of the cosines' cdf are the same direction.
+    /// Distance of the lobe's cdf at the direction from the numbers it was sampled with, on the circle of length 1: both
+    /// ends of the cosines' cdf are the same direction.
     fn cdf(&self, xi: [f32; 3], lobe: Lobe) -> Option<Measured> {
         let wi = to_f64(self.place.wi);
         let turn = azimuth(to_f64(self.place.wo)) - azimuth(wi);
@@ -182,12 +182,12 @@ impl Exact<'_> {
         Some(Measured { error, unexplained: error > self.accuracy.cdf, at: self.place })
     }
 
-    /// How far a value may be off by design.
+    /// Absolute error of a value that the model allows by design.
     fn slack(&self) -> Result<[f64; 3], ParamError> {
         self.model.slack(&self.place.values, to_f64(self.place.wo), to_f64(self.place.wi))
     }
 
-    /// How far a density may be off by design: one made of S, as the mean of RGB, ends with it.
+    /// The same of a density. One proportional to S, as the mean of RGB, vanishes with it.
     fn pdf_slack(&self, slack: [f64; 3]) -> [f64; 1] {
         if !self.accuracy.slack_in_pdf || slack == [0.0; 3] {
             return [0.0];

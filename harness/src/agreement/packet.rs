@@ -25,7 +25,7 @@ pub(super) fn formulas(model: ModelId) -> impl Fn(&Values, Vec3, f32) -> Result<
     move |values, wo, h| model.reference(values, to_f64(wo), f64::from(h))
 }
 
-/// Eight materials seen from eight directions, with the directions and the numbers to ask about.
+/// Eight materials seen from eight directions, with the directions and the numbers to evaluate and sample.
 pub(super) struct Packet {
     pub(super) values: [Values; 8],
     pub(super) wo: [Vec3; 8],
@@ -51,7 +51,7 @@ impl Packet {
         let mut from = Independent::new(seed, stream_id(&[0xa9ee, region as u64, index]));
         let values = [(); 8].map(|()| random(model.defaults(), &mut from));
         let wo = core::array::from_fn(|_| match region {
-            // Half of them see the fibre along its axis, too.
+            // Half of the viewers look along the fibre's axis, too.
             Region::Axis if from.next_f64() < 0.5 => near_axis(&mut from),
             _ => uniform_direction(&mut from),
         });

@@ -17,7 +17,7 @@ const THRESHOLD: Threshold = Threshold {
     limits: "the lobe of the parameter grid that loses least",
 };
 
-/// Of what is computed in closed form: the rounding of double precision.
+/// Error of closed forms: the rounding of double precision.
 const ROUNDING: f64 = 1e-14;
 
 fn exact(value: f64) -> Bounded {

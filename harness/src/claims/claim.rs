@@ -1,4 +1,4 @@
-//! What a claim is: words of the paper, figures, and a verdict that the figures decide.
+//! Claims: words of the paper, figures, and the verdict that follows from the figures.
 
 use crate::stats::Estimate;
 use serde::Serialize;
@@ -6,7 +6,7 @@ use serde::Serialize;
 /// Standard errors that a sampled figure must keep from the threshold.
 const ERRORS: f64 = 2.0;
 
-/// Where a figure comes from, and so what its error is.
+/// Origin of a figure, and the meaning of its error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Origin {
@@ -33,7 +33,7 @@ impl Origin {
     }
 }
 
-/// What a figure is to the verdict.
+/// Role of a figure in the verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Role {
@@ -41,24 +41,24 @@ pub enum Role {
     Everywhere,
     /// The same within the limits of the [`Threshold`].
     WithinLimits,
-    /// It explains, and decides nothing.
+    /// Explains; does not decide.
     Further,
 }
 
-/// A number, how well it is known, and what it is.
+/// A number with its error and its meaning.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
-    /// What it is of.
+    /// Its meaning.
     pub name: String,
     /// The number.
     pub value: f64,
     /// Its standard error or, by quadrature, a bound estimate of its error; in the unit of the value.
     pub error: f64,
-    /// Its unit; what is relative or a share has none.
+    /// Its unit; empty for ratios and shares.
     pub unit: &'static str,
-    /// Where it comes from.
+    /// Its origin.
     pub origin: Origin,
-    /// What it is to the verdict.
+    /// Its role in the verdict.
     pub role: Role,
 }
 
@@ -92,7 +92,7 @@ impl Figure {
         Self { origin, ..self }
     }
 
-    /// How far the true value may be from the figure.
+    /// Bound on the distance of the true value from the figure.
     fn margin(&self) -> f64 {
         match self.origin {
             Origin::Sampled | Origin::Timed => ERRORS * self.error,
@@ -101,7 +101,7 @@ impl Figure {
     }
 }
 
-/// On which side of the bound a claim is kept.
+/// Side of the bound on which a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
@@ -111,16 +111,16 @@ pub enum Side {
     AtLeast,
 }
 
-/// What the figures of a claim are held against.
+/// Threshold for the figures of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Threshold {
-    /// What the bound is of.
+    /// The bounded quantity.
     pub of: &'static str,
-    /// The side of it on which the claim is kept.
+    /// The side of it on which the claim holds.
     pub side: Side,
     /// The bound, in the unit of the figures with a [`Role`] in the verdict.
     pub bound: f64,
-    /// Within which limits the second of those figures is the worst, in words.
+    /// Limits within which the second of those figures is the worst, in words.
     pub limits: &'static str,
 }
 
@@ -136,7 +136,7 @@ impl Threshold {
     }
 }
 
-/// What is left of a claim.
+/// Verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Verdict {
     /// The worst of all cases keeps the threshold.
@@ -170,7 +170,7 @@ pub(super) struct Words {
     pub(super) source: &'static str,
 }
 
-/// A claim of the paper, and what is left of it.
+/// A claim of the paper, and its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
     /// Name of the claim, for scripts.
@@ -181,16 +181,16 @@ pub struct Claim {
     pub source: &'static str,
     /// The worst of all cases, the worst within the limits of the threshold, and further figures.
     pub figures: Vec<Figure>,
-    /// What the first two are held against.
+    /// The threshold of the first two.
     pub threshold: Threshold,
-    /// What follows from that.
+    /// The verdict.
     pub verdict: Verdict,
-    /// What was found, in a sentence.
+    /// Summary in a sentence.
     pub sentence: String,
 }
 
 impl Claim {
-    /// The claim with the verdict that its first two figures come to: nothing else decides it.
+    /// The claim with the verdict that follows from its first two figures.
     pub(super) fn judge(
         words: Words,
         threshold: Threshold,

@@ -59,7 +59,7 @@ fn measure(plan: &Plan<'_>, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Pairs>,
     (0..grid.len()).into_par_iter().with_max_len(1).map(cell).collect()
 }
 
-/// The claims: one a light, then one of all lights in equal time.
+/// The claims: one per light, then one of all lights in equal time.
 pub(super) fn claims(plan: &Plan<'_>, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Claim>, ParamError> {
     let cells = measure(plan, done)?;
     let mut claims = Vec::new();

@@ -31,7 +31,7 @@ fn of_claim(claim: &Claim) -> Table {
     table.note(threshold(claim)).note(format!("{}: {}", claim.verdict.name(), claim.sentence))
 }
 
-/// What the claim is held against, in words.
+/// The threshold in words.
 fn threshold(claim: &Claim) -> String {
     let of = &claim.threshold;
     format!(

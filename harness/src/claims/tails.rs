@@ -1,4 +1,4 @@
-//! Wider tails: what sampling a Gaussian factor by a Cauchy distribution of the same width costs.
+//! Wider tails: the cost of sampling a Gaussian factor by a Cauchy distribution of the same width.
 
 use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, largest, smallest};
 use super::hair::{Longitudinal, longitudinal_grid};

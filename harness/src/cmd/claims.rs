@@ -12,7 +12,7 @@ use std::fs::{self, File};
 ///
 /// # Errors
 ///
-/// [`Error::Output`] before any work is done, if the folder cannot be written. A claim that does not hold is no error.
+/// [`Error::Output`] before any work is done, if the folder cannot be written. A false claim is no error.
 pub fn run(config: &Claims) -> Result<(), Error> {
     fs::create_dir_all(&config.out).map_err(|source| output(&config.out, source))?;
     let path = config.out.join("claims.json");

@@ -40,7 +40,7 @@ pub fn run(config: &Compare) -> Result<(), Error> {
     for failure in &failures {
         said.push_str(&format!("failed: {failure}\n"));
     }
-    // Nobody is left to hear that standard error is closed.
+    // Ignore write errors.
     let _ = io::stderr().write_all(said.as_bytes());
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
 }
@@ -53,7 +53,7 @@ pub(super) fn write(path: &Path, text: &str) -> Result<(), Error> {
     fs::write(path, text).map_err(|source| output(path, source))
 }
 
-/// What a JSON file holds.
+/// Content of a JSON file.
 pub(super) fn json(results: &impl Serialize) -> Result<String, Error> {
     let mut text = serde_json::to_string_pretty(results).map_err(|source| Error::Write(source.into()))?;
     text.push('\n');
@@ -66,7 +66,7 @@ fn print(comparison: &Comparison) -> io::Result<()> {
     print_tables(tables.speed.iter().chain(&tables.agreement).chain(&tables.efficiency))
 }
 
-/// One bar a part, on standard error; nothing where that is no terminal.
+/// Progress bars, one per part, on standard error; nothing where that is no terminal.
 struct Bar(Mutex<(ProgressBar, Option<Part>)>);
 
 impl Bar {

@@ -49,7 +49,7 @@ pub fn stream<R: Read, W: Write>(path: config::Path, input: BufReader<R>, mut ou
         read += block.len() as u64;
         refused += block.iter().filter(|line| line.is_err()).count() as u64;
         let written = write_block(path, &block, &mut output).and_then(|()| {
-            // Whoever waits for these answers before writing on must get them now.
+            // Flush now: the caller may wait for these answers before it writes on.
             if more && lines.ready() { Ok(()) } else { output.flush() }
         });
         match written {
@@ -73,7 +73,7 @@ fn fill<R: Read>(block: &mut Vec<Result<Request, Refusal>>, len: usize, lines: &
     }
 }
 
-/// Answers a block, a line each.
+/// Answers a block, one line per request.
 fn write_block(path: config::Path, block: &[Result<Request, Refusal>], output: &mut impl Write) -> io::Result<()> {
     let requests: Vec<&Request> = block.iter().flatten().collect();
     let mut answers = answers(path, &requests).into_iter();

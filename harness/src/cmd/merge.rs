@@ -9,7 +9,7 @@ use std::fs;
 
 /// Joins them, writes the same tables as one run, and prints the summary.
 ///
-/// The rows need no environment; the times, which are measured here, need it for its look-up. The parts tell which it is.
+/// The rows need no environment; the times, which are measured here, need it for its look-up. The parts contain its digest.
 ///
 /// # Errors
 ///

@@ -12,7 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
 use std::path::Path;
 
-/// Runs the study, from where it was stopped if it was.
+/// Runs the study. Continues an interrupted one.
 ///
 /// # Errors
 ///
@@ -69,12 +69,12 @@ pub(super) fn finish(study: &Study, environment: Option<&Environment>, out: &Pat
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
 }
 
-/// What `hairis claims` left in `out`, if anything.
+/// Result of `hairis claims` in `out`, if any.
 fn claims(out: &Path) -> Option<serde_json::Value> {
     serde_json::from_slice(&fs::read(out.join("claims.json")).ok()?).ok()
 }
 
-/// A bar over the cells that are left, on standard error; nothing where that is no terminal.
+/// Progress bar over the remaining cells, on standard error; nothing where that is no terminal.
 fn bar(cells: usize) -> ProgressBar {
     let bar = ProgressBar::new(cells as u64);
     if let Ok(style) = ProgressStyle::with_template("cells {pos:>4} of {len} {wide_bar} {elapsed} (left {eta})") {

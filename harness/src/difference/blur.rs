@@ -29,7 +29,7 @@ pub(super) const REST: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Harmonics(Vec<f64>);
 
-/// The blur, and the directions at which blurred functions are looked at.
+/// The blur, and the directions at which blurred functions are evaluated.
 #[derive(Debug)]
 pub(super) struct Blur {
     /// The factor on each degree.
@@ -98,7 +98,7 @@ fn factors(kappa: f64, last: usize) -> Vec<f64> {
 }
 
 impl Blur {
-    /// A blur of deviation `sigma` (rad), looked at from `latitudes` by `longitudes` directions of half a sphere.
+    /// A blur of deviation `sigma` (rad), evaluated at `latitudes` by `longitudes` directions of half a sphere.
     pub(super) fn new(sigma: f64, latitudes: usize, longitudes: usize) -> Self {
         let rule = GaussLegendre::new(latitudes);
         let weight = 2.0 * PI / longitudes as f64;

@@ -1,10 +1,10 @@
-//! One cell: how far a Cauchy model is from the Gaussian one.
+//! One cell: the distance of a Cauchy model from the Gaussian one.
 
 use super::blur::Blur;
 use super::lobes::{Kind, Rule, TERMS, Values, View};
 
-/// What is found of a Cauchy model beside the Gaussian one of the same hair. Differences are of `S cos theta_i`, the mean
-/// of RGB, over the sphere, relative to the same norm of the Gaussian model alone.
+/// Differences between a Cauchy model and the Gaussian one of the same hair: of `S cos theta_i`, the mean of RGB, over
+/// the sphere, relative to the same norm of the Gaussian model alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figures {
     /// Factor on the widths.
@@ -61,7 +61,7 @@ impl Hair {
 
     fn square_of(&self, other: &Values, scale: f64) -> f64 {
         let (cross, square) = (self.rule.product(&self.gaussian, other), self.rule.product(other, other));
-        // Rounding may leave less than nothing of models that are the same.
+        // For equal models rounding may make the difference negative.
         ((self.square - 2.0 * scale * cross + scale * scale * square) / self.square).max(0.0)
     }
 
@@ -102,7 +102,7 @@ impl Hair {
         let models: Vec<Values> = kinds.map(|kind| self.fine.values(&self.view, *kind)).collect();
         let mut sums = vec![[0.0; 2]; models.len() - 1];
         let columns = self.fine.around.0.len();
-        // A row of the map a model.
+        // One row of the map per model.
         let mut rows = vec![vec![0.0; columns]; models.len()];
         for (place, [_, weight]) in self.fine.along.0.iter().enumerate() {
             for (row, model) in rows.iter_mut().zip(&models) {

@@ -6,7 +6,7 @@ use crate::study::columns::Columns;
 use crate::study::grid::columns_of;
 use crate::table::{Table, number};
 
-/// What is shown of a row, by name.
+/// Figures of a row, by name.
 type Shown = (&'static str, fn(&Figures) -> f64);
 
 /// The relative differences.
@@ -31,7 +31,7 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    /// That of positive numbers; not numbers if there are none.
+    /// Summary of positive numbers; NaN if there are none.
     pub(crate) fn of(values: impl Iterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.collect();
         values.sort_by(f64::total_cmp);
@@ -44,10 +44,10 @@ impl Summary {
 impl Difference {
     /// The rows as columns.
     ///
-    /// | column | what it is |
+    /// | column | content |
     /// |---|---|
     /// | `cell` .. `theta_o_deg` | the cell, as in the study's rows; widths, `phi_g` and `theta_o` in degrees |
-    /// | `width`, `k` | how the Cauchy model's widths were chosen ([`Width::name`]), and their factor |
+    /// | `width`, `k` | choice of the Cauchy model's widths ([`Width::name`]), and their factor |
     /// | `albedo_gaussian`, `albedo_cauchy` | integral of `S cos theta_i` over the sphere, mean of RGB |
     /// | `albedo_ratio` | that of the Cauchy model over that of the Gaussian one |
     /// | `l1`, `l2` | norm of the difference of `S cos theta_i` over the Gaussian model's own norm |

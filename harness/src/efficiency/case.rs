@@ -1,4 +1,4 @@
-//! One model seen from one direction: the eight-lane gather point that is measured, and the double-precision oracle it is held against.
+//! One model seen from one direction: the measured eight-lane gather point, and its double-precision oracle.
 
 use super::{ModelKind, PHI_O_DEG};
 use crate::quadrature::{SphereIntegrator, Tolerance, fibre_direction};
@@ -23,7 +23,7 @@ struct Estimator {
     scatter: Scatter,
     /// S, and the density of every sampler but the uniform one.
     oracle: Oracle<f64>,
-    /// An integrator that knows where the lobes are, and where the density jumps.
+    /// An integrator with breakpoints at the lobes, and at the jumps of the density.
     sphere: SphereIntegrator,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Draws {
 impl Case {
     pub(super) fn new(model: ModelKind, params: &HairParams, theta_o_deg: f64) -> Self {
         let wo = fibre_direction(theta_o_deg.to_radians(), PHI_O_DEG.to_radians()).as_vec3();
-        // The oracle sees the same rounded direction.
+        // The oracle gets the same rounded direction.
         let (parameters, exact) = (Parameters::<f64>::from(params), wo.as_dvec3());
         let estimators = Sampler::ALL.map(|sampler| {
             let oracle = Oracle::prepare(&parameters, model.shape(), exact.to_array(), sampler.bands());
@@ -53,7 +53,7 @@ impl Case {
         &self.estimators[sampler as usize]
     }
 
-    /// An integrator for what has the density of `sampler` in it.
+    /// An integrator for integrands with the density of `sampler`.
     pub(super) fn sphere(&self, sampler: Sampler) -> &SphereIntegrator {
         &self.of(sampler).sphere
     }

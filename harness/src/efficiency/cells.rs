@@ -100,7 +100,7 @@ pub(super) fn mis_row(config: &EfficiencyConfig<'_>, case: &Case, technique: Tec
         mean: tally.moments.mean_estimate(),
         reference: *lit.reference,
         z: bias_z(&tally.moments, lit.reference),
-        // Samples from the light see it however small it is.
+        // Samples from the light hit it however small it is.
         tested: match technique {
             Technique::Bsdf(sampler) => measure::is_tested(n, lit.reference.predicted(sampler)),
             _ => true,

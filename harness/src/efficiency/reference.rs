@@ -1,4 +1,4 @@
-//! What the estimates are held against: integrals by quadrature over the oracle, and the variance they predict.
+//! References of the estimates: integrals by quadrature over the oracle, and the variance they predict.
 
 use super::case::Case;
 use super::{Reference, ReferenceMethod, SAMPLERS, intensity, stream};
@@ -86,7 +86,7 @@ pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, 
             let y = intensity(core::array::from_fn(|c| s.radiance[c] * value[c]));
             sum += over(y, s.pdf);
             for ((square, cube), sampler) in squares.iter_mut().zip(&mut cubes).zip(SAMPLERS) {
-                // What one sample of the sampler gives in this direction.
+                // Contribution of one sample of the sampler in this direction.
                 let contribution = over(y, case.density(sampler, s.dir));
                 *square += over(y * contribution, s.pdf);
                 *cube += over(y * contribution * contribution, s.pdf);

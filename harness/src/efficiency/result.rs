@@ -9,7 +9,7 @@ use serde::Serialize;
 /// Every table of the comparison of sample efficiency.
 #[derive(Clone, Debug, Serialize)]
 pub struct EfficiencyResult {
-    /// What was computed.
+    /// Numbers of samples.
     pub settings: Settings,
     /// Under constant light: measured V against quadrature and against the recorded figures.
     pub reference_v: Vec<ReferenceV>,
@@ -25,7 +25,7 @@ pub struct EfficiencyResult {
     pub check: Check,
 }
 
-/// What the figures depend on, besides the hair and the environment.
+/// Settings that the figures depend on, besides the hair and the environment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Settings {
     /// Seed of every stream.
@@ -242,9 +242,9 @@ pub struct SweepRow {
 /// All z-scores against one bound.
 #[derive(Clone, Debug, Serialize)]
 pub struct Check {
-    /// Number of figures held against a reference.
+    /// Number of figures compared with a reference.
     pub tests: usize,
-    /// Number of figures with too few effective samples to be held against it.
+    /// Number of figures with too few effective samples for a comparison.
     pub untested: usize,
     /// Chance of a false alarm over all of them.
     pub false_alarm: f64,

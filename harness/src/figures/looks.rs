@@ -1,4 +1,4 @@
-//! What the two models look like around a fibre: sections, and maps of the sphere.
+//! Looks of the two models around a fibre: sections, and maps of the sphere.
 
 use super::direction;
 use crate::difference::{SIGMA_DEG, blurred_difference};
@@ -73,7 +73,7 @@ pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Figure; 3] {
     let most = [&gaussian, &other].iter().filter_map(|grid| grid.range()).map(|(_, high)| high).fold(0.0, f64::max);
     let degrees = theta_o.to_degrees();
     let value = || Axis::log("S (1/sr)").range(most / DECADES, most);
-    // What is below the range takes its first colour.
+    // Values below the range take its first colour.
     let shown = |grid: Grid| grid.map(|s| s.max(most / DECADES));
     let heat = |title: &str, grid| HeatMap::new(format!("{title}, θₒ = {degrees:.0}°"), value(), shown(grid)).svg();
     let seen = format!("seen from θₒ = {degrees:.0}° at azimuth 0: the mean of RGB, logarithmic over three decades");

@@ -9,10 +9,10 @@ use hairis::Vec3x8;
 use serde::Serialize;
 use wide::f32x8;
 
-/// The radiance that stands for an infinite pixel: the largest half float, the most an `OpenEXR` half could have held.
+/// The radiance that replaces an infinite pixel: the largest half float of `OpenEXR`.
 const INFINITE_PIXEL: f32 = 65_504.0;
 
-/// Channels of an environment that were not radiances, and what became of them.
+/// Repaired channels of an environment, by kind of repair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PixelRepairs {
     /// NaN channels, set to 0.
@@ -117,7 +117,7 @@ impl Environment {
         self.repairs
     }
 
-    /// One line for each thing about the map that a report should not keep quiet: a shape other than 2:1, repaired channels, no light at all.
+    /// Warnings about the map for reports, one line each: a shape other than 2:1, repaired channels, no light at all.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
@@ -158,7 +158,7 @@ impl Environment {
         sum
     }
 
-    /// A number that tells maps apart: a hash of the size and of every pixel, not of the name.
+    /// Digest of the map: a hash of the size and of every pixel, not of the name.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let start = mix(mix(self.width as u64) ^ self.height as u64);
@@ -248,7 +248,7 @@ impl Light for Environment {
                 self.edges[j] + down * (self.edges[j + 1] - self.edges[j]),
             )
         };
-        // Looked up again: on an edge between texels rounding may land next door, and value and density must speak of one texel.
+        // Looked up again: on an edge between texels rounding may land in the next one, and value and density must be of one texel.
         let texel = self.texel(dir);
         LightSample { dir, radiance: self.radiance_of(texel), pdf: self.density_of(texel) }
     }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// Texels beyond which a map is refused, 8192 x 4096: its tables would take a gigabyte.
 const MAX_TEXELS: u64 = 1 << 25;
 
-/// Why an environment map was refused: the file and the reason.
+/// Refusal of an environment map: the file and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LightError {

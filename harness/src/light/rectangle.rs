@@ -6,7 +6,7 @@ use glam::DVec3;
 use hairis::Vec3x8;
 use wide::f32x8;
 
-/// How a [`Rectangle`] draws its points.
+/// Sampling of the points of a [`Rectangle`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RectangleSampling {
     /// Uniformly over the area, as production renderers of 2012 did: the density per steradian is `distance^2 / (area cos)`.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use hairis::Vec3x8;
 use wide::f32x8;
 
-/// Axis of the gradient: above, ahead and to the side, so that no symmetry of the fibre hides a mistake. Unit to rounding after normalisation.
+/// Axis of the gradient: above, ahead and to the side, so that no symmetry of the fibre hides an error. Unit to rounding after normalisation.
 const AXIS: DVec3 = DVec3::new(0.36, 0.80, 0.48);
 
 /// Mean radiance of each channel.

@@ -40,14 +40,14 @@ const GAUSS: [f64; 8] = [
     0.417_959_183_673_469_387_755_102_040_816_327,
 ];
 
-/// When an adaptive integral may stop.
+/// Tolerance of an adaptive integral.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tolerance {
     /// Absolute error allowed in each component, in the unit of the integral.
     pub absolute: f64,
     /// Error allowed in each component relative to the largest component of the integral.
     pub relative: f64,
-    /// Panels (or cells) at which it stops regardless; the result then says it did not converge.
+    /// Limit on panels (or cells); at it the result is marked as not converged.
     pub max_panels: usize,
 }
 
@@ -66,7 +66,7 @@ impl Tolerance {
     }
 }
 
-/// An integral and what is known of its error.
+/// An integral and its error estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Integral<const N: usize> {
     /// The integral, one component an element.
@@ -115,7 +115,7 @@ impl<const N: usize> Ord for Panel<N> {
 
 /// Breakpoints that announce a bell: its centre, and 3 and 12 widths either side, in the unit of the arguments.
 ///
-/// Panels beside them shrink fast enough that the bell is seen however narrow it is; the centre alone is not enough for a Gaussian.
+/// Panels beside them shrink fast enough to resolve the bell however narrow it is; the centre alone is not enough for a Gaussian.
 #[must_use]
 pub fn bell_breakpoints(centre: f64, width: f64) -> [f64; 5] {
     [-12.0, -3.0, 0.0, 3.0, 12.0].map(|k| centre + k * width)
@@ -253,7 +253,7 @@ fn adapt<const N: usize>(
     let mut running = total(&heap, &done);
     loop {
         if met(&running, tolerance) {
-            // The running sums drift by rounding; only fresh sums may say that the work is over.
+            // The running sums drift by rounding; only fresh sums decide on convergence.
             running = total(&heap, &done);
             if met(&running, tolerance) {
                 break;

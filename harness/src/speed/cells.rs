@@ -1,4 +1,4 @@
-//! The operations, and who takes part in each.
+//! The operations, and the contenders of each.
 
 use super::Op;
 use super::check::Truth;
@@ -13,18 +13,18 @@ use hairis_variants::{AnyReference, ModelId, Parameters, Registered, Visitor};
 
 /// Name of the contender that all others are compared with; the first of every cell.
 pub(super) const TEXTBOOK: &str = "textbook";
-/// The kernel, one direction a call.
+/// The kernel, one direction per call.
 pub(super) const ONE: &str = "one lane";
-/// The kernel, eight directions a call.
+/// The kernel, eight directions per call.
 pub(super) const EIGHT: &str = "eight lanes";
 
-/// The kernel, eight directions at one gather point a call, where [`EIGHT`] has eight gather points.
+/// The kernel, eight directions at one gather point per call, where [`EIGHT`] has eight gather points.
 pub(super) const EIGHT_AT_ONE: &str = "eight lanes, one point";
 
 /// The kernel, all directions in one call.
 const SLICES: &str = "slices";
 
-/// One who takes part.
+/// Contender.
 pub(super) struct Contender {
     pub(super) name: &'static str,
     /// Instruction set of its lanes.
@@ -48,7 +48,7 @@ impl Visitor for Cells {
     type Output = Result<Vec<Cell>, ParamError>;
 
     fn visit<M: Registered>(self) -> Self::Output {
-        // At compile time: what is not timed is not compiled.
+        // At compile time: models that are not timed are not compiled.
         if const { !ModelId::of::<M>().is_default() } {
             return Ok(Vec::new());
         }

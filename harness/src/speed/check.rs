@@ -1,4 +1,4 @@
-//! Whether a contender's answers are right: a wrong kernel must not win.
+//! Check of a contender's answers: a wrong kernel must not win.
 
 use super::task::Answer;
 use crate::subject::to_f64;
@@ -6,15 +6,15 @@ use glam::{DVec3, Vec3};
 use hairis::textbook::Reference;
 use hairis_variants::AnyReference;
 
-/// Largest error of an answer that counts as right: relative for value and density, rad for a direction.
+/// Largest error of an answer that counts as correct: relative for value and density, rad for a direction.
 ///
-/// The `f32` textbook, which takes part, needs it; `agreement` holds the kernels to tighter bounds.
+/// The `f32` textbook, which is timed as well, needs it; `agreement` checks the kernels to tighter bounds.
 pub(super) const TOLERANCE: f64 = 1e-3;
 
 /// Values below this count as 0: the kernels' Gaussians end at `2^-115`, those of the `f32` textbook at denormals.
 const NEGLIGIBLE: f64 = 1e-25;
 
-/// What is right for each direction of a pass, by the textbook in `f64`.
+/// Correct answers for the directions of a pass, by the textbook in `f64`.
 pub(super) struct Truth {
     points: Vec<AnyReference<f64>>,
     /// The direction given, or the one that a sample must come to; `None` if it must be discarded.

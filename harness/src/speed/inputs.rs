@@ -7,7 +7,7 @@ use hairis::{ParamError, Vec3x8};
 use hairis_variants::Parameters;
 use wide::f32x8;
 
-/// Directions a pass. With their numbers `xi` they take 21 KB.
+/// Directions per pass. With their numbers `xi` they take 21 KB.
 ///
 /// Packets of gather points with 16 samples each, and no power of two: columns of 4096 bytes one after the other make loads wait for stores they have nothing to do with,
 /// which costs slices up to 40 %.
@@ -56,7 +56,7 @@ pub(super) fn packets(v: &[Vec3]) -> Vec<Vec3x8> {
     eights.iter().map(|eight| (*eight).into()).collect()
 }
 
-/// Eight triples of numbers a packet.
+/// Eight triples of numbers per packet.
 pub(super) fn xi_packets(xi: &[[f32; 3]]) -> Vec<[f32x8; 3]> {
     let (eights, _) = xi.as_chunks::<8>();
     eights.iter().map(|eight| core::array::from_fn(|k| f32x8::new(eight.map(|xi| xi[k])))).collect()

@@ -91,7 +91,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
     Ok((contenders, Truth::of_samples(points, &inputs.xi)))
 }
 
-/// A gather point and one sample of it, each lane on hair of its own; packed beforehand, or once a packet.
+/// A gather point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
 pub(super) fn mixed<M: Registered>(
     id: ModelId,
     inputs: &Inputs<M::Params>,

@@ -1,4 +1,4 @@
-//! Contenders that are handed whole slices: one call a pass.
+//! Contenders that take whole slices: one call per pass.
 
 use super::task::{Answer, Pass};
 use core::cell::RefCell;

@@ -1,4 +1,4 @@
-//! What a contender does in a pass, and its answers in one form for all contenders.
+//! Work of a contender in a pass, and its answers in one form for all contenders.
 
 use crate::light::Seen8;
 use core::hint::black_box;
@@ -7,10 +7,10 @@ use glam::Vec3;
 use hairis::textbook::{Drawn, Reference};
 use hairis::{Eval, Eval8, Gather, Gather8, Model, Sample, Sample8, Vec3x8};
 
-/// Where gather points are evaluated to check how they were prepared: no lobe of it is negligible.
+/// Direction at which prepared gather points are evaluated to check them: no lobe is negligible there.
 pub(super) const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
 
-/// What a contender says of one direction.
+/// Answer of a contender for one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Answer {
     /// The direction it drew; `None` if it was given one, zero if it discarded the sample.
@@ -26,7 +26,7 @@ pub(crate) trait Output {
 
 /// Work over all the inputs of a run.
 pub(crate) trait Pass {
-    /// Calls once an input; nothing is kept.
+    /// One call per input; results are dropped.
     fn pass(&self);
     /// The same calls, their results kept, in the order of the directions.
     fn answers(&self) -> Vec<Answer>;
@@ -51,7 +51,7 @@ where
 
 impl<I, O: Output, F: Fn(&I) -> O> Pass for Task<I, O, F> {
     // One loop for all contenders: each call reads its input from memory and leaves its result there. References are
-    // hidden from the optimiser, not values, so that nobody pays for a copy; and calls stay apart, so that no loop over
+    // hidden from the optimiser, not values, so that no copy is timed; and calls stay apart, so that no loop over
     // one lane is made into one over four.
     #[inline(never)]
     fn pass(&self) {

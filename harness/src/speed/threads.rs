@@ -1,4 +1,4 @@
-//! How throughput grows with the number of threads: slices worked off in chunks through rayon.
+//! Throughput by number of threads: slices in chunks through rayon.
 
 use super::inputs::Inputs;
 use super::{Op, quartiles};
@@ -12,7 +12,7 @@ use std::time::Instant;
 
 /// Directions in a chunk: as many as the inputs, over and over, so that a chunk stays in its core's cache.
 const REPEATS: usize = 9;
-/// Chunks a pass: enough for every core to finish at about the same time.
+/// Chunks per pass: enough for every core to finish at about the same time.
 const CHUNKS_A_THREAD: usize = 16;
 /// Passes that are timed on each number of threads.
 const ROUNDS: usize = 15;
@@ -95,7 +95,7 @@ pub(super) fn run(model: ModelId, inputs: &Inputs<HairParams>) -> Result<Vec<Thr
     Ok(all)
 }
 
-/// Time a direction of each pool in each round, ns; the pools take turns.
+/// Time per direction of each pool in each round, ns; the pools take turns.
 fn time<const N: usize>(pools: &[ThreadPool], rows: &[[f32; 3]], work: impl Fn(&mut Chunk<N>) + Sync) -> Vec<Vec<f64>> {
     let most = pools.iter().map(ThreadPool::current_num_threads).max().unwrap_or(1);
     let mut chunks: Vec<Chunk<N>> = (0..CHUNKS_A_THREAD * most).map(|_| Chunk::new(rows)).collect();

@@ -12,7 +12,7 @@ pub struct ChiSquare {
     pub degrees_of_freedom: usize,
     /// Probability of a statistic at least this large when the density is right.
     pub p_value: f64,
-    /// How many cells had an expected count below the limit and went into the pool.
+    /// Number of cells with an expected count below the limit, which were pooled.
     pub pooled: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Running central moments and what follows from them: mean, variance, relative variance, each with a standard error.
+//! Running central moments: mean, variance, relative variance, each with a standard error.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct Estimate {
     /// The figure.
     pub value: f64,
-    /// Its standard error; NaN when there were too few samples to say.
+    /// Its standard error; NaN for too few samples.
     pub standard_error: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Order statistics of timing samples: a timing has a long right tail, so the median and its neighbours speak for it, not the mean.
+//! Order statistics of timing samples: timings have a long right tail, so the median and the quartiles describe them, not the mean.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! What must hold of every row.
+//! Checks of every row.
 
 use super::rows::{Row, Strategy};
 use crate::efficiency::{FALSE_ALARM, z_bound};

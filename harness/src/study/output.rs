@@ -47,7 +47,7 @@ impl Times {
         })
     }
 
-    /// Median time of a sample in ns, for 1, 4 or 16 samples a gather point; not a number for others.
+    /// Median time of a sample in ns, for 1, 4 or 16 samples per gather point; not a number for others.
     pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
         times::ns(&self.0, model, sampler, per_point)
     }
@@ -177,7 +177,7 @@ impl Study {
     /// | `cell` .. `light`, `v`, `v_se` | as in [`columns`](Self::columns) |
     /// | `break_even`, `break_even_se` | V of `ou` over `v`: how many times the time of `ou` a sample may take before it loses in equal time |
     /// | `look_up_ns`, `look_up_ns_se` | time of a look-up of the light in a direction, ns |
-    /// | `ns_at_N`, `efficiency_at_N` | time of a sample, ns, and `1 / (V seconds)`, for N of 1, 4 and 16 samples a gather point |
+    /// | `ns_at_N`, `efficiency_at_N` | time of a sample, ns, and `1 / (V seconds)`, for N of 1, 4 and 16 samples per gather point |
     /// | `gain_at_N`, `gain_at_N_se` | by what factor less variance than `ou` it has in equal time |
     /// | `look_up_efficiency_at_N` .. `look_up_gain_at_N_se` | the three with the look-up counted in every sample's time |
     ///
@@ -227,7 +227,7 @@ impl Study {
             let efficiency = |row: &Row<'_>, more: Estimate| 1e9 / (v(row).value * (ns(row).value + more.value));
             let gain = |(row, gain): (&Row<'_>, &Estimate), more: Estimate| {
                 if row.strategy == Strategy::By(Sampler::Ou) {
-                    // Against itself: sure of being 1 wherever its time is known.
+                    // Against itself: exactly 1 wherever its time is known.
                     return if more.value.is_nan() { NOT_KNOWN } else { *gain };
                 }
                 in_equal_time(*gain, time_ratio(times.ns(row.model, Sampler::Ou, per_point), ns(row), more))
@@ -249,7 +249,7 @@ impl Study {
         columns
     }
 
-    /// What is wrong with the figures: weights beyond their proven bound, and samplers whose means disagree.
+    /// Errors in the figures: weights beyond their proven bound, and samplers whose means disagree.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
         check::failures(&self.rows(), &self.header.lights)
@@ -288,7 +288,7 @@ impl Study {
     }
 }
 
-/// What is missing of a study of `of` parts, in words; `None` if nothing is.
+/// Missing parts of a study of `of` parts, in words; `None` if it is complete.
 fn missing(of: usize, shards: &[Shard], has: impl Fn(usize) -> bool, cells: usize) -> Option<String> {
     let mut absent = Vec::new();
     let mut unfinished = Vec::new();

@@ -1,4 +1,4 @@
-//! The part file: finished cells, one a line, under a line that says what they are of.
+//! The part file: finished cells, one per line, after a header line.
 //!
 //! It is only ever appended to, a whole line at a time. A process that is killed leaves at most its last line torn:
 //! the next run drops that line and computes its cell again.
@@ -19,7 +19,7 @@ use std::sync::Mutex;
 /// First word of every part file: the layout of its lines.
 pub const FORMAT: &str = "hairis-study-2";
 
-/// What the cells of a part file are of. All of it must agree for cells to be of one study, but for the shard.
+/// Header of a part file. Parts of one study agree in all of it except the shard.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Header {
@@ -53,7 +53,7 @@ pub struct Header {
     pub shard: String,
 }
 
-/// What a header says of an environment.
+/// Digest of an environment in a header.
 pub(super) fn digest(environment: &Environment) -> String {
     format!("{:016x}", environment.digest())
 }
@@ -202,7 +202,7 @@ fn refuse(path: &Path, problem: impl Into<String>) -> Error {
 #[derive(Debug)]
 pub struct Part {
     path: PathBuf,
-    /// `None` once a line may be torn: nothing must follow it.
+    /// `None` once a line might be torn: nothing must follow it.
     file: Mutex<Option<File>>,
 }
 

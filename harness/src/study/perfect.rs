@@ -1,18 +1,18 @@
-//! What perfect sampling of the hair would give: directions of a density proportional to the mean of RGB of
-//! `S cos theta_i`, drawn without any knowledge of the light.
+//! Perfect sampling of the hair: directions of a density proportional to the mean of RGB of `S cos theta_i`, regardless of
+//! the light.
 //!
 //! With `f` that mean, `F` its integral over the sphere and `g` the mean of RGB of `L S cos theta_i`, such a direction
-//! contributes `F g / f`, of second moment `F` times the integral of `g^2 / f`. Nobody draws it: the integrals are
-//! estimated from the directions of [`SOURCE`] and of the light, which are there anyway. In these, with `w = f / p` and
+//! contributes `F g / f`, of second moment `F` times the integral of `g^2 / f`. Such directions are never drawn: the integrals are
+//! estimated from the directions of [`SOURCE`] and of the light, which exist anyway. In these, with `w = f / p` and
 //! `r = g / f`, the integrands are `w r` and `w r^2`. `r` is at most the light's radiance, and `w` at most its proven
 //! bound, so that no direction counts for much.
 //!
-//! `F` is the mean of the same weights `w`, not the albedo of a quadrature: what one lot of directions has too many of
-//! is then in all three integrals, and cancels. Under constant light nothing else is left, and V is 0 to rounding. Its
-//! own error is a hundredth of a percent, and enters those of V and of the divergence with its covariances.
+//! `F` is the mean of the same weights `w`, not the albedo of a quadrature: errors of the set of directions are then common
+//! to all three integrals, and cancel. Under constant light they cancel entirely, and V is 0 to rounding. The error of `F`
+//! is a hundredth of a percent, and enters those of V and of the divergence with its covariances.
 //!
-//! It is a limit, and no bound: a sampler that follows the hair ever more closely comes to these figures; one that
-//! happens to favour where the light is bright can pass them, as tails that are wider than the hair's do under a small sun.
+//! It is a limit, not a bound: samplers that follow the hair ever more closely approach these figures; one that happens to
+//! favour bright parts of the light can be better, as tails wider than the hair's are under a small sun.
 
 use super::cell::Measured;
 use super::tally::Figures;
@@ -20,7 +20,7 @@ use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use wide::f64x8;
 
-/// Whose directions it is estimated from: the sampler whose weights vary least.
+/// Source of the directions: the sampler whose weights vary least.
 pub(super) const SOURCE: Sampler = Sampler::Matched25;
 
 /// Numbers whose means are estimated together.

@@ -7,12 +7,12 @@ use crate::sampler::{Sampler, weight_bound};
 use crate::subject::ModelKind;
 use rayon::prelude::*;
 
-/// How the directions of a row are drawn, or would be.
+/// Sampling strategy of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Strategy {
     /// By a sampler.
     By(Sampler),
-    /// With the density that a sampler of the hair aims at: see [`perfect`](super::perfect).
+    /// Perfect sampling of the hair: see [`perfect`](super::perfect).
     Perfect,
 }
 
@@ -51,7 +51,7 @@ impl From<Sampler> for Strategy {
     }
 }
 
-/// A row: what it is of, and what was found.
+/// A row: its identity and its figures.
 pub(super) struct Row<'a> {
     pub(super) cell: Cell,
     pub(super) model: ModelKind,
@@ -68,7 +68,7 @@ pub(super) struct Row<'a> {
 pub(super) struct Bounds(Vec<f64>);
 
 impl Bounds {
-    /// Those of a grid.
+    /// The bounds of a grid.
     pub(super) fn over(grid: Grid) -> Self {
         let of_cell = |index: usize| {
             let cell = grid.cell(index);
@@ -80,7 +80,7 @@ impl Bounds {
         Self((0..grid.len()).into_par_iter().flat_map_iter(of_cell).collect())
     }
 
-    /// That of a sampler in a cell; not a number where there is none.
+    /// The bound of a sampler in a cell; NaN where there is none.
     pub(super) fn of(&self, cell: usize, model: ModelKind, sampler: Sampler) -> f64 {
         self.0[cell * ModelKind::ALL.len() * Sampler::ALL.len() + place(model, sampler, 0, 1)]
     }
@@ -116,7 +116,7 @@ pub(super) fn rows<'a>(grid: Grid, cells: &'a [Vec<Measured>], bounds: &Bounds, 
     rows
 }
 
-/// The columns that say what a row is of.
+/// The columns that identify a row.
 pub(super) fn keys(rows: &[Row<'_>], lights: &[String]) -> Columns {
     columns_of(rows.iter().map(|row| &row.cell))
         .text("model", rows.iter().map(|row| row.model.name()))

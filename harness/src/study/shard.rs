@@ -1,4 +1,4 @@
-//! Which cells a process computes, when several share a study.
+//! Shards: the cells that a process computes when several share a study.
 
 use core::fmt;
 use core::str::FromStr;
@@ -19,13 +19,13 @@ impl Shard {
         (1..=of).map(move |index| Self { index, of })
     }
 
-    /// Which part it is, from 1.
+    /// Number of the part, from 1.
     #[must_use]
     pub const fn index(self) -> usize {
         self.index
     }
 
-    /// How many parts there are.
+    /// Number of parts.
     #[must_use]
     pub const fn of(self) -> usize {
         self.of

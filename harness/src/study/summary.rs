@@ -1,4 +1,4 @@
-//! What a study comes to: gains over the published sampler and of the Cauchy model, as geometric means over the grid, and
+//! Summary of a study: gains over the published sampler and of the Cauchy model, as geometric means over the grid, and
 //! in how many cells.
 
 use super::cell::Measured;
@@ -11,7 +11,7 @@ use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::table::{Table, number};
 
-/// Relative standard error of V beyond which a cell is left out: the light was hardly seen.
+/// Relative standard error of V beyond which a cell is left out: the light was hardly hit.
 const MAX_RELATIVE_ERROR: f64 = 0.25;
 
 /// Ratios of V over the cells of a grid.
@@ -32,8 +32,8 @@ pub(super) fn sure_ratio([base, other]: [Estimate; 2]) -> Option<Estimate> {
 
 /// The first of two lists of V over the second, cell by cell.
 ///
-/// The standard error of the geometric mean is that of its figures, the grid being what it is. Both samplers are held
-/// against the same directions of the light: errors of the ratios are, if anything, less than said.
+/// The standard error of the geometric mean is that of its figures, for this grid. Both samplers use the same directions of
+/// the light: errors of the ratios are, if anything, overestimated.
 pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
     let (mut ratios, mut unsure) = (Vec::new(), 0);
     for pair in pairs {
@@ -55,14 +55,14 @@ pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
 /// A model, and how its directions are drawn.
 type Estimator = (ModelKind, Strategy);
 
-/// Two estimators held against each other, and the words that begin their row.
+/// Two compared estimators, and the label of their row.
 struct Comparison {
     words: [&'static str; 2],
     base: Estimator,
     other: Estimator,
 }
 
-/// What a summary is made of.
+/// Inputs of a summary.
 struct Figures<'a> {
     cells: &'a [Vec<Measured>],
     lights: &'a [String],
@@ -160,7 +160,7 @@ impl Figures<'_> {
         table
     }
 
-    /// A table of equal time, a column for each number of samples a point: what `cell` makes of a ratio of times.
+    /// A table of equal time, a column for each number of samples per point: what `cell` makes of a ratio of times.
     fn timed(
         &self,
         title: &str,

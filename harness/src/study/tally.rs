@@ -1,8 +1,8 @@
 //! Estimates of one sampler under one light: mean, relative variance and divergence from weighted contributions.
 //!
 //! The contribution of a direction is `y = L S cos theta_i / p`, with `p` the sampler's density. Its moments
-//! `E_p[y]`, `E_p[y^2]` and `E_p[y ln y]` are integrals over the sphere, and directions of any density tell them. Those
-//! of the sampler alone would need millions to see a small sun often enough, so directions drawn from the light
+//! `E_p[y]`, `E_p[y^2]` and `E_p[y ln y]` are integrals over the sphere, and directions of any density estimate them. Those
+//! of the sampler alone would need millions to hit a small sun often enough, so directions drawn from the light
 //! (density `q`) join them by the balance heuristic: with `n` of the one and `c n` of the other, a direction counts
 //! `p / (p + c q)` among the sampler's and `c p / (p + c q)` among the light's.
 
@@ -18,7 +18,7 @@ pub(super) struct Tally {
     largest: f64x8,
 }
 
-/// What a study finds of a sampler under a light.
+/// Figures of a sampler under a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Figures {
     /// `E_p[y]`: the integral of `L S cos theta_i`.

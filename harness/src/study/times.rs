@@ -30,7 +30,7 @@ const PACKETS: usize = 64;
 /// Packets of eight gather points whose sixteen samples each are the directions of the look-ups, 2^16 in all.
 const LOOK_UP_PACKETS: usize = 512;
 
-/// What was timed.
+/// Timed operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Timed {
     /// A sample.
@@ -61,12 +61,12 @@ fn median(times: &[Time], of: Timed) -> Estimate {
     times.iter().find(|time| time.of == of).map_or(none, found)
 }
 
-/// That of a sample.
+/// Time of a sample.
 pub(super) fn ns(times: &[Time], model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
     median(times, Timed::Sample { model, sampler, per_point })
 }
 
-/// That of a look-up of the light at this place.
+/// Time of a look-up of the light at this place.
 pub(super) fn look_up(times: &[Time], light: usize) -> Estimate {
     median(times, Timed::LookUp(light))
 }

@@ -12,7 +12,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use wide::f32x8;
 
-/// One line of the output. Numbers are printed as short as reading them back in the same precision allows.
+/// One line of the output. Numbers have as few digits as reading them back in the same precision allows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(super) enum Line {
@@ -20,7 +20,7 @@ pub(super) enum Line {
     Single(Answer<f32>),
     /// An answer in double precision.
     Double(Answer<f64>),
-    /// To a line that was refused.
+    /// Answer to a refused line.
     Refused { error: String },
 }
 
@@ -29,12 +29,12 @@ pub(super) enum Line {
 pub(super) struct Answer<T> {
     #[serde(flatten)]
     what: What<T>,
-    /// Colours of the lobes, under the name that the model reports them by.
+    /// Colours of the lobes, under the name that the model gives them.
     #[serde(flatten)]
     colors: BTreeMap<&'static str, Vec<[T; 3]>>,
 }
 
-/// The answer to one of the two questions. `pdf_lobe` has a number per lobe of the model.
+/// The answer to one of the two queries. `pdf_lobe` has one number per lobe of the model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 enum What<T> {
@@ -44,7 +44,7 @@ enum What<T> {
     Sample { wi: [T; 3], s: [T; 3], pdf: T, pdf_lobe: Vec<T>, lobe: Option<&'static str>, weight: [T; 3] },
 }
 
-/// How many lines a path takes at once.
+/// Number of lines that a path takes at once.
 pub(super) const fn block_len(path: Path) -> usize {
     match path {
         Path::Scalar | Path::F64 => 1,
@@ -74,7 +74,7 @@ pub(super) fn answers(path: Path, requests: &[&Request]) -> Vec<Line> {
     answers.into_iter().map(|(_, answer)| Line::Single(answer)).collect()
 }
 
-/// One direction a call.
+/// One direction per call.
 fn scalar(request: &Request) -> Answer<f32> {
     let gather = gather(request);
     let densities = |wi| gather.lobes(wi).0.map(|lobe| lobe.pdf);
@@ -85,7 +85,7 @@ fn scalar(request: &Request) -> Answer<f32> {
     }
 }
 
-/// Eight lines a call, all of one model: every lane has its own material, gather point and query. Lanes to spare repeat the
+/// Eight lines per call, all of one model: every lane has its own material, gather point and query. Spare lanes repeat the
 /// last line.
 fn eight(requests: &[&Request]) -> Vec<Answer<f32>> {
     let mut answers = Vec::with_capacity(requests.len());
@@ -94,7 +94,7 @@ fn eight(requests: &[&Request]) -> Vec<Answer<f32>> {
         let materials = AnyBsdf8::pack(from_fn(|i| &lane(i).bsdf)).expect("requests of one model");
         let wo = Vec3x8::from(from_fn(|i| lane(i).wo));
         let gathers = materials.prepare8(Hit { wo, h: f32x8::new(from_fn(|i| lane(i).h)) });
-        // A lane whose line has no xi samples all the same, and its sample is not looked at.
+        // A lane whose line has no xi samples as well; its sample is ignored.
         let xi: [[f32; 3]; 8] = from_fn(|i| match lane(i).query {
             Query::Wi(_) => [0.5; 3],
             Query::Xi(xi) => xi,
@@ -117,7 +117,7 @@ fn eight(requests: &[&Request]) -> Vec<Answer<f32>> {
     answers
 }
 
-/// Slices in, slices out: a call for all directions, and one for all samples, of neighbouring lines that share a gather
+/// Slices: one call for all directions, and one for all samples, of neighbouring lines that share a gather
 /// point.
 fn batch(requests: &[&Request]) -> Vec<Answer<f32>> {
     let mut answers = Vec::with_capacity(requests.len());
@@ -175,7 +175,7 @@ fn batch_samples(request: &Request, gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<
     (0..len).map(answer).collect()
 }
 
-/// Densities of the lobes: they have no slices of their own, so eight directions a call.
+/// Densities of the lobes: they have no slice call, so eight directions per call.
 fn batch_densities(gather: &AnyGather, wi: &[Vec3]) -> Vec<[f32; 4]> {
     let eight = |wi: &[Vec3]| {
         let lobes = gather.lobes8(&Vec3x8::from(from_fn(|i| wi[i.min(wi.len() - 1)])));
@@ -248,7 +248,7 @@ fn pdf_lobe<T: Copy>(model: ModelId, densities: [T; 4]) -> Vec<T> {
     densities[..model.lobes().len()].to_vec()
 }
 
-/// The colours of the model's own lobes, if it reports them.
+/// The colours of the model's own lobes, if they are reported.
 fn colors<T>(model: ModelId, all: impl FnOnce() -> [[T; 3]; 4]) -> BTreeMap<&'static str, Vec<[T; 3]>> {
     model.colors().map(|name| (name, all().into_iter().take(model.lobes().len()).collect())).into_iter().collect()
 }

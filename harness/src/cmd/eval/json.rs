@@ -1,11 +1,11 @@
-//! JSON that knows where it went wrong.
+//! JSON with the path of an error.
 
 use super::request::Refusal;
 use core::fmt;
 use serde::Deserializer as _;
 use serde::de::{DeserializeSeed, MapAccess, SeqAccess, Visitor};
 
-/// A JSON value. Objects keep the order and the repetitions of their fields, for [`Json::fields`] to see.
+/// A JSON value. Objects keep the order and the repetitions of their fields, for [`Json::fields`] to check.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Json {
     Null,
@@ -105,7 +105,7 @@ impl Json {
 }
 
 impl fmt::Display for Json {
-    /// What a refusal says it got: short, whatever the value.
+    /// The value as refusals show it, shortened.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Null => f.write_str("null"),

@@ -22,7 +22,7 @@ impl<R: Read> Lines<R> {
         self.input.buffer().contains(&b'\n')
     }
 
-    /// The next line without its end, or why it is refused; `None` at the end of the input. A last line needs no end.
+    /// The next line without its end, or its refusal; `None` at the end of the input. A last line needs no end.
     pub(super) fn next(&mut self) -> io::Result<Option<Result<&str, Refusal>>> {
         self.line.clear();
         // One byte more than the longest line, for its end.

@@ -6,13 +6,13 @@ use glam::Vec3;
 use hairis::ParamError;
 use hairis_variants::{AnyBsdf, Field, Kind, ModelId, Values};
 
-/// How far from 1 the length of a direction may be; it is normalised then.
+/// Tolerance of the length of a direction; it is normalised then.
 const LENGTH_TOLERANCE: f64 = 1e-3;
-/// How far from 1 the length of a unit vector of single precision may be: its digits are kept as they are, so that all
-/// paths answer for the same direction.
+/// Tolerance of the length of a unit vector in single precision. Such a vector is not normalised, so that all paths answer
+/// for the same direction.
 const ROUNDED: f64 = 2e-7;
 
-/// Why a line was refused: the path of the field at fault, and what is wrong with it.
+/// Refusal of a line: the path of the field at fault, and the problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Refusal {
     field: String,
@@ -31,7 +31,7 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// What is asked about a gather point.
+/// Query about a gather point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Query {
     /// The value and the densities at a unit direction.
@@ -40,8 +40,7 @@ pub(super) enum Query {
     Xi([f32; 3]),
 }
 
-/// A line of the input, rounded to single precision: every path is asked the same question, and what they differ by is
-/// computed, not read.
+/// A line of the input, rounded to single precision: every path computes from the same input.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Request {
     pub(super) model: ModelId,
@@ -127,7 +126,7 @@ fn read(mut values: Values, params: Json) -> Result<(Values, Vec<Vec<f64>>), Ref
     Ok((values, exact))
 }
 
-/// Whether `field` stands for another, or another for it.
+/// Whether `field` replaces another, or another replaces it.
 fn in_group(field: &Field, fields: &[Field]) -> bool {
     field.instead_of.is_some() || fields.iter().any(|other| other.instead_of == Some(field.name))
 }
@@ -152,7 +151,7 @@ fn one_of_group(head: &str, fields: &[Field], given: &[Option<Json>]) -> Result<
     }
 }
 
-/// The numbers of a field of `params`, that of a word its place.
+/// The numbers of a field of `params`; for a word its index.
 fn numbers(field: &Field, json: Option<Json>) -> Result<Vec<f64>, Refusal> {
     let path = format!("params.{}", field.name);
     match field.kind {
@@ -166,7 +165,7 @@ fn numbers(field: &Field, json: Option<Json>) -> Result<Vec<f64>, Refusal> {
     }
 }
 
-/// A refusal in the words of [`ParamError`], with the field's name and value as they are in the input.
+/// A refusal with the text of [`ParamError`], and the field's name and value as they are in the input.
 fn refused(fields: &[Field], error: &ParamError, exact: &[Vec<f64>]) -> Refusal {
     let text = error.to_string();
     let rule = text.split_once(" must ").and_then(|(_, rest)| rest.rsplit_once(", got "));
