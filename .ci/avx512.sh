@@ -1,15 +1,15 @@
 #!/bin/bash
-# The AVX-512 level's tests, on any machine. Where the CPU has no AVX-512 they run in Bochs, which emulates one that has
-# (valgrind and QEMU know no such instructions): without it this level is compiled, and run by users first.
+# Promise: the AVX-512 level is tested on any machine. Where the CPU has no AVX-512, the tests run in Bochs, which emulates
+# one (valgrind and QEMU do not): otherwise users would be the first to run this level.
 #
 #   .ci/avx512.sh           in Bochs, unless this CPU has AVX-512
 #   .ci/avx512.sh --bochs   in Bochs in any case
 #
-# A Linux kernel boots there with nothing but the programs, and runs some 50 million instructions a second. So of the
-# tests those that take one level after the other: slices against packets, packets of this level against AVX2's and
-# against one lane; and every entry point's answers against the paper's formulas in f64, as the benches check them. At
-# the end one test must fail on a copy whose 512-bit square roots are taken out. All that takes 100 s of CPU time, after
-# the build. Needs the Rust toolchain, python3, and Debian's packages, of which only Bochs and xorriso are installed.
+# A Linux kernel boots there with the programs alone, at some 50 million instructions per second. It runs the tests that
+# iterate over levels: slices against packets, packets of this level against AVX2's and against one lane. It compares the
+# answers of every entry point with the paper's formulas in f64, as the benches do. At the end one test must fail on a copy
+# without 512-bit square roots. All that takes 100 s of CPU time, after the build. Needs the Rust toolchain, python3, and
+# Debian's packages, of which only Bochs and xorriso are installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
@@ -38,7 +38,7 @@ END
 strip "$dir"/files/tests/*
 chmod +x "$dir"/files/tests/*
 
-# What runs, here or there.
+# The tests, run here or in Bochs.
 cat > "$dir/files/tests/all" <<'END'
 cd "$(dirname "$0")"
 fail() { cat out; echo "FAIL: $*"; exit 1; }
@@ -106,7 +106,7 @@ END
 xorriso -as mkisofs -quiet -o "$dir/disc.iso" -b isolinux/isolinux.bin -c isolinux/boot.cat -no-emul-boot \
   -boot-load-size 4 -boot-info-table "$dir/disc" > "$dir/xorriso" 2>&1 || { cat "$dir/xorriso"; exit 1; }
 
-# The machine. Power off ends Bochs, in its words by a panic. Debian's Bochs has a debugger, which waits to be told "c".
+# The machine. Power off ends Bochs, which reports it as a panic. Debian's Bochs has a debugger, which waits for "c".
 cat > "$dir/bochsrc" <<END
 config_interface: textconfig
 display_library: term
@@ -124,7 +124,7 @@ error: action=report
 END
 echo c > "$dir/commands"
 start=$SECONDS
-# Bochs wants a terminal to draw its screen on.
+# Bochs needs a terminal for its screen.
 TERM=vt100 script -qec "timeout -s KILL 1200 bochs-bin -q -f '$dir/bochsrc' -rc '$dir/commands'" /dev/null \
   < /dev/null > "$dir/screen" 2>&1 || true
 touch "$dir/serial"

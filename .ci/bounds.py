@@ -34,7 +34,7 @@ def main_loop(lines):
 
 
 def simulate(lines, cpu, iterations):
-    # Jumps and returns are nothing to the simulation; the padding after a function is no part of it.
+    # Leave out jumps and returns, which are not simulated, and the padding after a function.
     text = "\n".join(t for _, t in lines if not re.match(r"(j\w+|ret|int3|nop\w*|call)\b", t))
     words = ["llvm-mca", f"-mcpu={cpu}", f"-iterations={iterations}", "-instruction-info=false"]
     out = subprocess.run(words, input=text, check=True, capture_output=True, text=True).stdout

@@ -1,6 +1,6 @@
 #!/bin/bash
-# The dispatched entry points contain no call: every model is inlined into them whole. One call to a function that was
-# not inlined costs more than twice the kernel's time.
+# Promise: the dispatched entry points contain no call; every model is inlined into them whole. One call to a function
+# that was not inlined costs more than twice the kernel's time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v objdump >/dev/null || { apt-get update -qq && apt-get install -qqy binutils; }

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Entry points called with the upper halves of the vector registers dirty take no longer than otherwise.
+# Promise: entry points called with the upper halves of the vector registers dirty take no longer than otherwise.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")/dirty

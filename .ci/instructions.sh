@@ -1,14 +1,14 @@
 #!/bin/bash
-# Instructions per call of every entry point, both models, on every level that valgrind's CPU has (it knows AVX2 and not
-# AVX-512), against the committed table: one that grows by more than 3% fails.
+# Promise: no entry point takes over 3% more instructions per call than the committed table. Counts both models on every
+# level that valgrind emulates (AVX2, not AVX-512).
 #
 #   .ci/instructions.sh                  compare with the table
-#   .ci/instructions.sh --write          make the table anew, after a change that is worth its instructions
+#   .ci/instructions.sh --write          rewrite the table, after a change that is worth its instructions
 #   .ci/instructions.sh --count PROGRAM  count for another build of the program `entry`; compares with nothing
 #
-# The program is run under callgrind with two numbers of passes; the difference is what a pass costs. Only the program's
-# own instructions count: what the system's libraries do depends on their version and on the CPU, so that of calls into
-# them (memcpy and the like) the table holds only whether there are any. The counts depend on the compiler alone.
+# The program runs under callgrind with two numbers of passes; the difference is the cost of a pass. Only the program's own
+# instructions count: those of the system's libraries depend on their version and on the CPU. Of calls into them (memcpy
+# and the like) the table records only whether there are any. The counts depend on the compiler alone.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 table=benches/records/instructions.csv

@@ -1,5 +1,5 @@
 #!/bin/bash
-# The main job on real input, as a user runs it: the short comparison, and what bad input gets.
+# Promise: the command hairis runs on real input as a user runs it, and refuses bad input in one line.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 cargo build --release --locked -p hairis-harness
@@ -7,13 +7,14 @@ hairis=$(realpath "${CARGO_TARGET_DIR:-target}")/release/hairis
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 
+# Promise: compare writes its page, its JSON and its tables.
 "$hairis" compare --quick --out "$dir/out" > "$dir/tables.txt"
 for file in "$dir/out/compare.json" "$dir/out/report.html" "$dir/tables.txt"; do
   [ -s "$file" ] || { echo "FAIL $file is missing or empty"; exit 1; }
 done
 python3 -m json.tool "$dir/out/compare.json" > /dev/null
 
-# The study: two parts are the same as one run.
+# Promise: a study in two parts has the same bytes as one run.
 "$hairis" study --quick --out "$dir/study" > "$dir/tables.txt" 2> /dev/null
 for shard in 1/2 2/2; do "$hairis" study --quick --shard "$shard" --out "$dir/parts" 2> /dev/null; done
 "$hairis" merge "$dir/joined" "$dir/parts" > /dev/null 2>&1
@@ -21,7 +22,7 @@ for file in study.csv study.parquet; do
   [ -s "$dir/study/$file" ] && cmp "$dir/study/$file" "$dir/joined/$file" || { echo "FAIL $file"; exit 1; }
 done
 
-# The claims: each with a verdict.
+# Promise: each claim has a verdict.
 "$hairis" claims --quick --out "$dir/claims" > "$dir/tables.txt" 2> /dev/null
 python3 - "$dir/claims/claims.json" <<'END'
 import json, sys
@@ -29,6 +30,7 @@ claims = json.load(open(sys.argv[1]))["claims"]
 assert claims and all(c["verdict"] in ("holds", "holds within limits", "false") for c in claims), claims
 END
 
+# Promise: bad input gets exit code 2 and one line that names the problem.
 refused() { # refused WORDS ARGUMENT...: exit code 2 and one line that says WORDS
   local words=$1 code=0; shift
   "$hairis" "$@" > /dev/null 2> "$dir/error" < /dev/null || code=$?
@@ -46,6 +48,7 @@ refused 'shard' study --shard 5/4
 refused 'seed 1' study --quick --seed 2 --out "$dir/study"
 refused 'no part' merge "$dir/joined" "$dir/joined"
 
+# Promise: eval answers a request.
 answer=$(echo '{"model":"cauchy","params":{"alpha":[-0.13,0.065,0.2],"beta":[0.13,0.065,0.26],"gamma_tt":0.17,"gamma_g":0.17,
 "phi_g":0.6,"i_r":[0.3,0.3,0.3],"i_tt":[0.8,0.6,0.4],"i_trt":[0.7,0.5,0.3],"i_g":0.5},"wo":[0,1,0],"wi":[0.6,0.8,0]}' |
   tr -d '\n' | "$hairis" eval)

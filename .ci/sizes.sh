@@ -1,11 +1,10 @@
 #!/bin/bash
-# What opt-levels "s" and "z" do to the entry points, against 3: bytes of code, calls (of AVX2 and AVX-512 none is
-# allowed), instructions per call and, asked for, time.
+# Promise: opt-levels "s" and "z" add no calls to AVX2 and AVX-512 code, and "s" takes at most 1.5 times the time of 3.
+# Reports bytes of code, calls and instructions per call of the entry points.
 #
-#   .ci/sizes.sh           checks; no entry point may take more than 1.55 times the instructions at "s". What is promised
-#                          is 1.5 times the time, which --time shows: an instruction more costs less than its share of it
+#   .ci/sizes.sh           checks; fails above 1.55 times the instructions at "s", which stays below 1.5 times the time
 #   .ci/sizes.sh --write   writes the table to benches/records/sizes.csv as well
-#   .ci/sizes.sh --time    the time of every entry point at "s" and "z" against 3, the programs in turns
+#   .ci/sizes.sh --time    time of every entry point at "s" and "z" against 3, programs interleaved
 set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v objdump > /dev/null || { apt-get update -qq && apt-get install -qqy binutils; }

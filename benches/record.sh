@@ -1,5 +1,5 @@
 #!/bin/bash
-# Makes a record of the benches: benches/records/<cpu>/<date>.csv, a quarter of an hour. Nothing else should run meanwhile.
+# Writes a record of the benches to benches/records/<cpu>/<date>.csv, in a quarter of an hour on an otherwise idle machine.
 # Arguments go to `cargo bench`: benches/record.sh --bench eval
 set -euo pipefail
 cd "$(dirname "$0")/.."

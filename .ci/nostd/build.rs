@@ -1,4 +1,4 @@
-//! No start files, no default libraries: what the program needs, it brings.
+//! No start files, no default libraries: the program contains all that it needs.
 
 fn main() {
     for arg in ["-nostartfiles", "-nodefaultlibs", "-nostdlib", "-static", "-no-pie"] {

@@ -1,12 +1,12 @@
-//! What an entry point costs a host that calls it with the upper halves of the vector registers dirty.
+//! Cost of entry points for a host that calls them with the upper halves of the vector registers dirty.
 //!
-//! Code for AVX ought to end in `vzeroupper`; hosts were met that do not (a just-in-time compiler was one). Until then
-//! every legacy SSE instruction has to merge its result with the upper half of the register, and waits for whoever wrote
-//! that last; CPUs before Skylake save and restore all upper halves instead, once. Before each call the program either
+//! Code for AVX should end in `vzeroupper`; some hosts' code does not (a just-in-time compiler was one). Until then every
+//! legacy SSE instruction merges its result with the upper half of the register, and waits for the last write to that
+//! half; CPUs before Skylake save and restore all upper halves instead, once. Before each call the program either
 //! dirties all sixteen registers, or does the same and cleans up. Packets and slices must take no more than
-//! [`MOST`] times as long; scalar code, which is legacy SSE in a plain build, is shown and not judged.
+//! [`MOST`] times as long; scalar code, which is legacy SSE in a plain build, is reported without a bound.
 //!
-//! `hairis-dirty [START]`: only the entry points whose names begin so.
+//! `hairis-dirty [START]`: only the entry points whose names begin with START.
 
 use hairis_benches::{Name, Op, Task, Visitor, entries};
 use std::process::ExitCode;
@@ -87,7 +87,7 @@ fn stretch<T: Task>(task: &mut T, passes: u32, clean: bool) -> f64 {
             task.call(index);
         }
     }
-    // What is timed next begins clean.
+    // The next stretch begins clean.
     write_registers(true);
     start.elapsed().as_secs_f64()
 }

@@ -1,4 +1,4 @@
-//! What std and libc would have brought: an entry point, two system calls, and the memory functions that the compiler
+//! Replacements for std and libc: an entry point, two system calls, and the memory functions that the compiler
 //! calls by name.
 
 use core::arch::{asm, global_asm};
