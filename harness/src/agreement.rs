@@ -148,7 +148,7 @@ pub struct AgreementResult {
     pub path: &'static str,
     /// Instruction set of the lanes; `scalar` for one lane.
     pub level: &'static str,
-    /// Where the directions lie.
+    /// Region of the directions.
     pub region: Region,
     /// Compared quantity.
     pub quantity: Quantity,

@@ -14,25 +14,25 @@ pub struct Args {
     pub command: Command,
 }
 
-const FORMAT: &str = r#"A request; angles are in radians, directions of unit length in the fibre's frame,
-and "sampler" may be "ou" (as when it is left out), "matched", "matched-5" or "matched-25":
-  {"model":"gaussian"|"cauchy", "sampler":"ou",
+const FORMAT: &str = r#"A request. Angles are in radians, directions of unit length in the frame of the fibre:
+  {"model":"gaussian"|"cauchy", "sampler":"ou"|"matched"|"matched-5"|"matched-25" (default "ou"),
    "params":{"alpha":[R,TT,TRT], "beta":[R,TT,TRT], "gamma_tt":x, "gamma_g":x, "phi_g":x,
              "i_r":[r,g,b], "i_tt":[r,g,b], "i_trt":[r,g,b], "i_g":x},
    "wo":[u,v,w], "wi":[u,v,w]}     or "xi":[lobe,theta,phi] in place of "wi"
+The other models, "kajiya-kay" and "chiang", have fields of their own: see harness/README.md.
 
 The answer to "wi", and to "xi" (lobe null: discarded, and 0 for the rest):
   {"s":[r,g,b], "pdf":x, "pdf_lobe":[R,TT,TRT-g,glint]}
   {"wi":[u,v,w], "s":[r,g,b], "pdf":x, "pdf_lobe":[R,TT,TRT-g,glint],
    "lobe":"r"|"tt"|"trt"|"glint"|null, "weight":[r,g,b]}
 
-A line that is refused, a blank one included, is answered by {"error":"field: problem"};
-the rest still runs, and the exit code is 2."#;
+The answer to a refused line, a blank one included, is {"error":"field: problem"}. The other lines still
+run, and the exit code is 2."#;
 
-const STUDY: &str = "Writes into DIR: report.html, and its plots in figures/; study.csv and study.parquet, the rows, which depend on the seed
+const STUDY: &str = "Files in DIR: report.html, and its plots in figures/; study.csv and study.parquet, the rows, which depend on the seed
 and the build alone; difference.csv and difference.parquet, how different the models look; study.json, the settings;
 times.csv, efficiency.csv and efficiency.parquet, which depend on the machine as well. Finished cells are kept in
-DIR/cells-I-of-N.jsonl: the same command goes on from there.";
+DIR/cells-I-of-N.jsonl: the same command continues from there.";
 
 /// The subcommands, each with its flags.
 #[derive(Clone, Debug, Subcommand)]

@@ -19,16 +19,16 @@ pub enum Error {
     Environment(LightError),
     /// A file or folder of results could not be written.
     Output {
-        /// Which.
+        /// The file or folder.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// A part of a study, or a folder of them, could not be used.
     Part {
-        /// Which.
+        /// The file or folder.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         problem: String,
     },
     /// Parts of a study were joined, but some are missing: their names.
@@ -39,9 +39,9 @@ pub enum Error {
     Failed(usize),
     /// Some lines of the input were refused; each was answered by an error of its own.
     Malformed {
-        /// How many.
+        /// Number of refused lines.
         lines: u64,
-        /// How many lines there were.
+        /// Number of lines in all.
         of: u64,
     },
 }

@@ -110,7 +110,7 @@ impl Plan<'_> {
         }
     }
 
-    /// What a part file of `shard` says of itself.
+    /// Header of the part file of `shard`.
     #[must_use]
     pub fn header(&self, shard: Shard) -> Header {
         let machine = Machine::current();
@@ -148,7 +148,7 @@ const fn grid_of(quick: bool) -> Grid {
     if quick { Grid::QUICK } else { Grid::FULL }
 }
 
-/// Computes the cells at `todo` on all cores and hands each to `keep`, from the workers, in no order.
+/// Computes the cells at `todo` on all cores. Workers pass each to `keep`, in no order.
 ///
 /// # Errors
 ///

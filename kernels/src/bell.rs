@@ -79,7 +79,7 @@ impl Bell for Gaussian {
         Self::one(s + t, s)
     }
 
-    // Step by step side by side: each constant is read once for all four, and no chain waits alone.
+    // Interleaved step by step: each constant is read once for all four, and no dependency chain waits alone.
     #[inline(always)]
     fn four<L: Lanes>(r: [L; 2], tt: [L; 5], trt: [L; 2], glint: [L; 5]) -> [L; 4] {
         let Pair(Pair(r, tt), Pair(trt, glint)) =

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Why a set of hair parameters was refused: the field at fault and its value.
+/// Refusal of hair parameters: the field at fault and its value.
 ///
 /// ```
 /// use hairis::{HairDesc, HairParams, ParamError};

@@ -11,7 +11,7 @@ const WORDS: Words = Words {
 };
 
 const THRESHOLD: Threshold = Threshold {
-    of: "share of the samples of a lobe that are no inclinations",
+    of: "share of the samples of a lobe with |θ_i| > 90°",
     side: Side::AtMost,
     bound: 1e-6,
     limits: "the lobe of the parameter grid that loses least",

@@ -108,7 +108,7 @@ fn up_to(hair: &Hair, gap: f64) -> [Bounded; 2] {
     hair.second_moments(&ends).map(|of| of.plus(-1.0))
 }
 
-/// What azimuths from `10 gap` to `gap` away from pi add to V.
+/// Contribution to V of azimuths from `10 gap` to `gap` away from pi.
 fn decade(hair: &Hair, gap: f64) -> [Bounded; 2] {
     hair.second_moments(&[PI - 10.0 * gap, PI - gap])
 }

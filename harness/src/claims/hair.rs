@@ -23,7 +23,7 @@ pub(super) struct Longitudinal {
 }
 
 impl Longitudinal {
-    /// That of R, TT or TRT, by place.
+    /// The longitudinal term of R, TT or TRT, by slot.
     pub(super) fn of(p: &Parameters<f64>, lobe: usize, theta_o: f64) -> Self {
         Self { alpha: p.alpha[lobe], beta: p.beta[lobe], theta_o }
     }
@@ -73,7 +73,7 @@ pub(super) struct Hair {
     theta_o: f64,
 }
 
-/// What is found of a hair, all under constant light and of the mean of RGB.
+/// Figures of a hair, all under constant light and of the mean of RGB.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     /// V of uniform directions.
@@ -109,7 +109,7 @@ impl Hair {
         masses
     }
 
-    /// What is integrated, by place: y, the mean of RGB of `S cos theta_i`; its square over each density; and y times the
+    /// Integrals, by index: y, the mean of RGB of `S cos theta_i`; its square over each density; and y times the
     /// published density over the one whose glint does not end.
     fn integrals(&self, phi: &[f64]) -> [Bounded; 6] {
         let (masses, shares) = (self.masses(), self.oracle.probabilities());
@@ -154,7 +154,7 @@ impl Hair {
         }
     }
 
-    /// What azimuths between `ends`, in [0, pi], add to `E[y^2] / E[y]^2`: of the published sampler, and with glints drawn
+    /// Contribution of azimuths between `ends`, in [0, pi], to `E[y^2] / E[y]^2`: of the published sampler, and with glints drawn
     /// from [0, pi].
     pub(super) fn second_moments(&self, ends: &[f64]) -> [Bounded; 2] {
         let bounds = |x: &f64| ends.first().is_some_and(|lo| lo <= x) && ends.last().is_some_and(|hi| x <= hi);

@@ -88,8 +88,12 @@ pub(super) fn claims(plan: &Plan<'_>, done: &(dyn Fn(usize) + Sync)) -> Result<V
             ],
             vec![
                 Figure::sampled(format!("V on Gaussian over V on Cauchy, {name}, most of the grid"), most, ""),
-                Figure::count("cells where the Gaussian model surely needs fewer samples", worse, "cells"),
-                Figure::count("cells left out: V unsure by more than a quarter", unsure, "cells"),
+                Figure::count(
+                    "cells where the Gaussian model needs fewer samples, by two standard errors",
+                    worse,
+                    "cells",
+                ),
+                Figure::count("cells left out: error of V above a quarter", unsure, "cells"),
             ],
             sentence,
         ));

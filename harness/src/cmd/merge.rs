@@ -21,10 +21,10 @@ pub fn run(config: &Merge) -> Result<(), Error> {
     let (environment, name) = environment(config.env.as_deref())?;
     let is_theirs = study.has_environment(&environment);
     if !is_theirs && config.env.is_some() {
-        return Err(Error::Usage(format!("--env {name} is not the environment of the parts")));
+        return Err(Error::Usage(format!("--env must be the environment of the parts, got {name}")));
     }
     if !is_theirs {
-        say("the look-up of the environment is not timed: --env FILE would");
+        say("the look-up of the environment is not timed; pass --env FILE to time it");
     }
     fs::create_dir_all(&config.out).map_err(|source| Error::Output { path: config.out.clone(), source })?;
     finish(&study, is_theirs.then_some(&environment), &config.out)

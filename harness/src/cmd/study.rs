@@ -34,7 +34,7 @@ pub fn run(config: &Config) -> Result<(), Error> {
     }
     let todo: Vec<usize> = owned().filter(|index| !done[*index]).collect();
     if !finished.is_empty() && !todo.is_empty() {
-        say(&format!("{}: goes on after {} of {} cells", part.path().display(), finished.len(), owned().count()));
+        say(&format!("{}: continues after {} of {} cells", part.path().display(), finished.len(), owned().count()));
     }
     let bar = bar(todo.len());
     study::run(&plan, &todo, |cell| {

@@ -207,7 +207,7 @@ pub(super) fn recorded_v(model: ModelKind, sampler: Sampler, theta_o_deg: f64) -
         (ModelKind::Gaussian, Sampler::Ou) => [0.209, 0.189, 0.290],
         (ModelKind::Cauchy, Sampler::Uniform) => [0.592, 0.832, 1.967],
         (ModelKind::Cauchy, Sampler::Ou) => [0.150, 0.159, 0.232],
-        // That implementation has no others.
+        // The recorded implementation has no other samplers.
         _ => return None,
     };
     [0.0, 45.0, 75.0].iter().position(|t| *t == theta_o_deg).map(|i| figures[i])

@@ -46,7 +46,7 @@ pub struct Settings {
     pub costs: Option<SampleCosts>,
 }
 
-/// Where a reference comes from.
+/// Origin of a reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ReferenceMethod {
@@ -65,11 +65,11 @@ pub struct Reference {
     pub standard_error: f64,
     /// Bound estimate of the quadrature's error, absolute.
     pub quadrature_error: f64,
-    /// Where it comes from.
+    /// Its origin.
     pub method: ReferenceMethod,
     /// V of one independent sample, in the order of [`SAMPLERS`](super::SAMPLERS): by quadrature, or for an environment by a stratified run from the light, good to about a percent.
     pub v: EachSampler<f64>,
-    /// Skewness of one independent sample, in the same order, from the same run; 0 for lights of one brightness, whose V tells all.
+    /// Skewness of one independent sample, in the same order, from the same run; 0 for lights of one brightness, whose V suffices.
     pub skewness: EachSampler<f64>,
 }
 
@@ -119,7 +119,7 @@ pub struct Row {
     pub theta_o_deg: f64,
     /// Samples `N` of the means whose variance V is defined by: 1 for independent numbers.
     pub n: usize,
-    /// How many such means there were.
+    /// Number of such means.
     pub randomisations: usize,
     /// Relative variance per sample.
     pub v: Estimate,
@@ -135,7 +135,7 @@ pub struct Row {
     pub max_contribution: f64,
     /// The mean of all samples.
     pub mean: Estimate,
-    /// What it ought to be.
+    /// Its expected value.
     pub reference: Reference,
     /// Bias in standard errors, corrected for skewness.
     pub z: f64,
@@ -143,7 +143,7 @@ pub struct Row {
     pub tested: bool,
 }
 
-/// How the samples of a row of multiple importance sampling were drawn.
+/// Technique of a row of multiple importance sampling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Technique {
@@ -163,7 +163,7 @@ pub enum Technique {
 pub struct MisRow {
     /// The model.
     pub model: ModelKind,
-    /// How the samples were drawn.
+    /// Technique.
     pub technique: Technique,
     /// Its name in reports.
     pub name: String,
@@ -183,7 +183,7 @@ pub struct MisRow {
     pub max_contribution: f64,
     /// The mean of all contributions.
     pub mean: Estimate,
-    /// What it ought to be.
+    /// Its expected value.
     pub reference: Reference,
     /// Bias in standard errors, corrected for skewness.
     pub z: f64,

@@ -69,7 +69,7 @@ impl<I, O: Output, F: Fn(&I) -> O> Pass for Task<I, O, F> {
     }
 }
 
-/// A function of one argument with several results, each handed on as it comes.
+/// A function of one argument with several results, each passed on as it comes.
 struct Several<I, O, F> {
     inputs: Vec<I>,
     call: F,

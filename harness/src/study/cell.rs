@@ -13,7 +13,7 @@ use crate::subject::ModelKind;
 use hairis::{ParamError, Vec3x8};
 use wide::{f32x8, f64x8};
 
-/// What was found of one sampler of one model under one light.
+/// Figures of one sampler of one model under one light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Measured {
     pub(super) figures: Figures,
@@ -23,12 +23,12 @@ pub(super) struct Measured {
     pub(super) max_contribution: f64,
 }
 
-/// What was found in a cell.
+/// Figures of a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Found {
     /// Of the samplers: models outermost, then samplers, then lights.
     pub(super) samplers: Vec<Measured>,
-    /// Of perfect sampling: models, then lights. Empty if the sampler it is estimated from was not asked for.
+    /// Of perfect sampling: models, then lights. Empty if the sampler it is estimated from was not measured.
     pub(super) perfect: Vec<Measured>,
 }
 
@@ -40,7 +40,7 @@ struct LightDraw {
     wi: Vec3x8,
     /// A third of `cos theta_i`, all a mean of RGB needs besides S.
     cosine: f64x8,
-    /// That times the radiance.
+    /// `cosine` times the radiance.
     factor: [f64x8; 3],
     /// The light's density, per steradian.
     pdf: f64x8,
@@ -158,7 +158,7 @@ impl LightDraw {
             wi: samples.map(|sample| sample.dir.as_vec3()).into(),
             cosine: f64x8::new(cosines.map(|cosine| cosine / 3.0)),
             factor: core::array::from_fn(|c| f64x8::new(core::array::from_fn(|lane| factor(lane, c)))),
-            // What cannot be drawn is dark, and counts nothing either way.
+            // Directions that cannot be drawn are dark, and contribute nothing either way.
             pdf: f64x8::new(samples.map(|sample| sample.pdf.max(f64::MIN_POSITIVE))),
         }
     }

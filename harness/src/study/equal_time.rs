@@ -1,9 +1,9 @@
-//! Variances in equal time: what less variance is worth where a sample takes longer, alone or with what follows it.
+//! Variances in equal time: the gain of a sampler whose samples take longer, alone or with the work that follows them.
 
 use crate::stats::Estimate;
 use core::fmt;
 
-/// How two figures compare, as far as their errors tell.
+/// Comparison of two figures, beyond their errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sign {
     Above,
@@ -13,7 +13,7 @@ pub(super) enum Sign {
 }
 
 impl Sign {
-    /// That of a ratio against 1.
+    /// Comparison of a ratio with 1.
     pub(super) fn of(ratio: Estimate) -> Self {
         match ratio.value - 1.0 {
             d if d > 2.0 * ratio.standard_error => Self::Above,
@@ -23,7 +23,7 @@ impl Sign {
     }
 }
 
-/// What follows a sample where its time alone counts.
+/// No work after a sample: its time alone counts.
 pub(super) const NOTHING: Estimate = Estimate { value: 0.0, standard_error: 0.0 };
 
 /// The time of `base` over that of `other` when each is followed by the same `more`.

@@ -20,7 +20,7 @@ use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// What has not been measured.
+/// A figure that has not been measured.
 const NOT_KNOWN: Estimate = Estimate { value: f64::NAN, standard_error: f64::NAN };
 
 /// Every cell of a study, in the order of the grid.
@@ -77,7 +77,10 @@ impl Study {
             && header.samplers.iter().map(String::as_str).eq(Sampler::ALL.map(Sampler::name))
             && header.cells == grid.len();
         if !known {
-            return Err(refuse(path, format!("is of version {} with another grid or other samplers", header.version)));
+            return Err(refuse(
+                path,
+                format!("is of version {}, whose grid or samplers differ from those of this program", header.version),
+            ));
         }
         let of = header.shard().map_err(|problem| refuse(path, problem))?.of();
         let mut found: Vec<Option<(&Path, &Finished)>> = vec![None; header.cells];
@@ -85,7 +88,7 @@ impl Study {
         for (path, part) in parts {
             if let Some([field, this, that]) = part.header.difference(header) {
                 let first = parts[0].0.display();
-                return Err(refuse(path, format!("is of a run with {field} {this}, but {first} has {that}")));
+                return Err(refuse(path, format!("belongs to a run with {field} {this}, but {first} has {that}")));
             }
             let shard = part.header.shard().map_err(|problem| refuse(path, problem))?;
             if shard.of() != of {
@@ -98,7 +101,7 @@ impl Study {
             for cell in &part.finished {
                 match found[cell.cell] {
                     Some((other, before)) if before != cell => {
-                        return Err(refuse(path, format!("has another cell {} than {}", cell.cell, other.display())));
+                        return Err(refuse(path, format!("differs in cell {} from {}", cell.cell, other.display())));
                     }
                     _ => found[cell.cell] = Some((path, cell)),
                 }

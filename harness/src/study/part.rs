@@ -49,7 +49,7 @@ pub struct Header {
     pub lights: Vec<String>,
     /// Cells of the grid.
     pub cells: usize,
-    /// Which of them this part has.
+    /// The part, as `I/N`.
     pub shard: String,
 }
 
@@ -154,7 +154,7 @@ pub fn find(dir: &Path) -> Result<Vec<PathBuf>, Error> {
         }
     }
     if found.is_empty() {
-        return Err(refuse(dir, "holds no part of a study (cells-I-of-N.jsonl)"));
+        return Err(refuse(dir, "contains no part of a study (cells-I-of-N.jsonl)"));
     }
     found.sort();
     Ok(found)
@@ -167,7 +167,7 @@ pub fn find(dir: &Path) -> Result<Vec<PathBuf>, Error> {
 /// [`Error::Part`] if it cannot be read, is none, or is damaged elsewhere than at its end.
 pub fn read(path: &Path) -> Result<Read, Error> {
     let bytes = fs::read(path).map_err(|source| refuse(path, format!("cannot read: {source}")))?;
-    parse(path, &bytes)?.ok_or_else(|| refuse(path, "is no part of a study: it has no first line"))
+    parse(path, &bytes)?.ok_or_else(|| refuse(path, "is no part of a study: its header line is missing"))
 }
 
 /// The part in `bytes`; `None` if not even its first line is whole.
@@ -229,7 +229,9 @@ impl Part {
                 if let Some([field, was, is]) = read.header.difference(header) {
                     return Err(refuse(
                         &path,
-                        format!("is of a run with {field} {was}, this one has {is}: take another --out, or delete it"),
+                        format!(
+                            "belongs to a run with {field} {was}, expected {is}; pass another --out or delete the file"
+                        ),
                     ));
                 }
                 (read.whole, read.finished)

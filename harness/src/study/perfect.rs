@@ -26,7 +26,7 @@ pub(super) const SOURCE: Sampler = Sampler::Matched25;
 /// Numbers whose means are estimated together.
 const N: usize = 4;
 
-/// Sums over the directions of one stratum, the sampler's or the light's: the lanes side by side.
+/// Sums over the directions of one stratum, the sampler's or the light's, one per lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
     /// Of the weight that counts for F, and of `m w r`, `m w r^2` and `m w r ln r`.

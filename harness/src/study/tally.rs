@@ -9,7 +9,7 @@
 use crate::stats::Estimate;
 use wide::f64x8;
 
-/// Sums over the directions of one stratum, the sampler's or the light's: the lanes side by side.
+/// Sums over the directions of one stratum, the sampler's or the light's, one per lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
     /// Of a, b, c, aa, ab, bb, ac, cc, where a is `m y`, b is `m y^2` and c is `m y ln y`.

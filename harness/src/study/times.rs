@@ -1,8 +1,8 @@
-//! How long a sample takes, set-up included, and a look-up of the light in its direction: what turns variances into
+//! Times of a sample, set-up included, and of a look-up of the light in its direction. They turn variances into
 //! efficiencies.
 //!
-//! Measured on one thread, with nothing else at work, on the default hair and eight gather points at a time, one a
-//! lane. Contenders take turns within a round, as in [`speed`](crate::speed).
+//! Measured on one thread, with nothing else at work, on the default hair and eight gather points at a time, one per
+//! lane. Contenders alternate within a round, as in [`speed`](crate::speed).
 //!
 //! A look-up is [`Light::see8`] in directions of the published sampler, the light's density of them included, as multiple
 //! importance sampling needs it. They are so many, and spread so far, that an environment is read as by a render: from

@@ -58,7 +58,7 @@ fn bad_values() -> Vec<(Value, &'static str)> {
         (with("/wi", json!([0.0, 0.998, 0.0])), "wi: must be a unit vector (to 0.001), got length 0.998"),
         (with("/wi", json!([1e200, 1e200, 0.0])), "wi: must be a unit vector"),
         (with("/wi", json!([0, 1, 0, 0])), "wi: must have 3 numbers, got 4"),
-        (without("", "wi"), "wi: missing, and so is xi"),
+        (without("", "wi"), "wi: missing; give wi or xi"),
         (and("", "xi", json!([0, 0, 0])), "wi: given together with xi"),
         (super::with_xi(good(), [0.0, 1.0, 0.0]), "xi[1]: must be in [0, 1), got 1"),
         (super::with_xi(good(), [0.0, 0.0, -1e-9]), "xi[2]: must be in [0, 1), got -0.000000001"),

@@ -115,7 +115,7 @@ fn a_killed_run_goes_on() {
     assert!(lines() < CELLS + 1 && !dir.path().join("study.csv").exists(), "killed too late to show anything");
     let run = study(dir.path(), "2", &[]);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
-    assert!(run.err[0].contains("goes on after"), "{:?}", run.err);
+    assert!(run.err[0].contains("continues after"), "{:?}", run.err);
     assert_same_rows(dir.path(), "killed three times");
 }
 
@@ -200,7 +200,7 @@ fn a_look_up_is_timed_after_a_merge_if_the_environment_is_at_hand() {
         let args: Vec<&str> = args.iter().map(String::as_str).collect();
         finish(command(&args).stdin(Stdio::null()).output().unwrap())
     };
-    assert_refused(&merged(&other), "is not the environment of the parts");
+    assert_refused(&merged(&other), "--env must be the environment of the parts");
     assert_refused(&merged(Path::new("missing.hdr")), "missing.hdr");
     let run = merged(&map);
     assert_eq!(run.code, Some(0), "{:?}", run.err);

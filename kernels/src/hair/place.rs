@@ -20,7 +20,7 @@ pub(crate) struct Place<L: Lanes> {
     half_back: L,
     /// `cos(phi / 2)`.
     cos_half_phi: L,
-    /// Where `|phi| < pi/2`.
+    /// Mask of `|phi| < pi/2`.
     front: L::Mask,
 }
 

@@ -18,7 +18,7 @@ pub(super) struct Band {
 /// Most bands on one side of the one in the middle.
 const MOST: usize = 12;
 
-/// Where bands end, the poles left out: sine of the inclination, and half of it. By the distance of the sine from 1 they shrink
+/// Ends of the bands, without the poles: sine of the inclination, and half of it. By the distance of the sine from 1 they shrink
 /// by a constant factor towards the pole, as W does there. Factor and first end minimise the variance over the grid of the
 /// efficiency figures; the distance of the last bounds how much of a lobe on the pole has a weight of its own.
 const ENDS: [&[[f32; 2]]; 3] = [

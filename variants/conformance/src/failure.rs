@@ -34,7 +34,7 @@ impl core::error::Error for Failure {}
 /// Whether a property holds.
 pub type Outcome = Result<(), Failure>;
 
-/// The largest error seen of one quantity, held against its tolerance when it is seen.
+/// The largest error seen of one quantity, compared with its tolerance at once.
 pub(crate) struct Worst {
     property: &'static str,
     what: &'static str,

@@ -166,7 +166,7 @@ pub enum ReferenceSample {
     Drawn(usize, [f64; 3]),
 }
 
-/// How closely a model follows its [`Reference`] at directions further than 1e-3 rad from the axis.
+/// Tolerances against the [`Reference`] at directions further than 1e-3 rad from the axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
     /// Relative error of S.

@@ -50,7 +50,7 @@ pub struct ChiangDesc {
     pub eta: f32,
     /// Absorption per fibre radius, linear RGB, each finite and at least 0.
     pub sigma_a: [f32; 3],
-    /// How the lobes are shifted by the tilt.
+    /// Formula of the lobes' shifts.
     pub shifts: Shifts,
 }
 

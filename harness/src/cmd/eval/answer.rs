@@ -141,7 +141,7 @@ fn batch(requests: &[&Request]) -> Vec<Answer<f32>> {
     answers
 }
 
-const ONE_LENGTH: &str = "slices that were made of one length";
+const ONE_LENGTH: &str = "slices of one length";
 
 fn batch_values(request: &Request, gather: &AnyGather, wi: &[Vec3]) -> Vec<Answer<f32>> {
     let len = wi.len();

@@ -83,8 +83,8 @@ impl Request {
         let query = match (next(true), next(true)) {
             (Some(wi), None) => Query::Wi(direction(Some(wi), "wi")?),
             (None, Some(xi)) => Query::Xi(uniform(Some(xi), "xi")?),
-            (None, None) => return Err(Refusal::at("wi", "missing, and so is xi: one of them is needed")),
-            (Some(_), Some(_)) => return Err(Refusal::at("wi", "given together with xi: only one of them may be")),
+            (None, None) => return Err(Refusal::at("wi", "missing; give wi or xi")),
+            (Some(_), Some(_)) => return Err(Refusal::at("wi", "given together with xi; give one of them")),
         };
         Ok(Self { model, values, bsdf, wo, h, query })
     }
@@ -135,17 +135,16 @@ fn in_group(field: &Field, fields: &[Field]) -> bool {
 fn one_of_group(head: &str, fields: &[Field], given: &[Option<Json>]) -> Result<(), Refusal> {
     let group = fields.iter().zip(given).filter(|(field, _)| field.name == head || field.instead_of == Some(head));
     let (found, missing): (Vec<_>, Vec<_>) = group.partition(|(_, json)| json.is_some());
-    let names =
-        |of: &[(&Field, &Option<Json>)]| of.iter().map(|(field, _)| field.name).collect::<Vec<_>>().join(" and ");
+    let names = |of: &[(&Field, &Option<Json>)]| of.iter().map(|(field, _)| field.name).collect::<Vec<_>>().join(", ");
     let path = format!("params.{}", found.first().map_or(head, |(field, _)| field.name));
     match (found.len(), missing.len()) {
         (0, 2..) => {
             let others = names(&missing[1..]);
-            Err(Refusal::at(&path, format!("missing, and so are {others}: one of them is needed")))
+            Err(Refusal::at(&path, format!("missing; give one of {head}, {others}")))
         }
         (2.., _) => {
             let others = names(&found[1..]);
-            Err(Refusal::at(&path, format!("given together with {others}: only one of them may be")))
+            Err(Refusal::at(&path, format!("given together with {others}; give one of them")))
         }
         _ => Ok(()),
     }
@@ -267,11 +266,8 @@ mod tests {
         );
         assert!(read(r#","color":[0.5,0.4,0.3]"#).is_ok(), "a colour");
         for (rest, problem) in [
-            ("", "params.sigma_a: missing, and so are melanin and color: one of them is needed"),
-            (
-                r#","melanin":[0,0],"color":[0,0,0]"#,
-                "params.melanin: given together with color: only one of them may be",
-            ),
+            ("", "params.sigma_a: missing; give one of sigma_a, melanin, color"),
+            (r#","melanin":[0,0],"color":[0,0,0]"#, "params.melanin: given together with color; give one of them"),
             (r#","melanin":[0,-1]"#, "params.melanin[1]: must be finite and at least 0, got -1"),
             (r#","color":[0,1.5,0]"#, "params.color: must be in [0, 1], got 1.5"),
             (r#","sigma_a":[0,0,0],"eta":0.5"#, "params.eta: must be in [1, 4], got 0.5"),

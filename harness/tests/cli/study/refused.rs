@@ -57,10 +57,10 @@ fn copied() -> TempDir {
 fn cells_of_another_run_are_refused() {
     let dir = copied();
     let before = fs::read(dir.path().join(WHOLE)).unwrap();
-    let words = "cells-1-of-1.jsonl: is of a run with seed 1, this one has 2: take another --out, or delete it";
+    let words = "cells-1-of-1.jsonl: belongs to a run with seed 1, expected 2; pass another --out or delete the file";
     assert_refused(&study(dir.path(), "1", &["--seed", "2"]), words);
     let path = dir.path().to_str().unwrap();
-    assert_refused(&run(&["study", "--out", path], b""), "is of a run with quick true, this one has false");
+    assert_refused(&run(&["study", "--out", path], b""), "belongs to a run with quick true, expected false");
     assert_eq!(fs::read(dir.path().join(WHOLE)).unwrap(), before, "a refused file is left alone");
 
     // An older program, another instruction set.
@@ -69,7 +69,7 @@ fn cells_of_another_run_are_refused() {
         let (head, rest) = text.split_once(&format!("\"{field}\":\"")).unwrap();
         let (_, tail) = rest.split_once('"').unwrap();
         fs::write(dir.path().join(WHOLE), format!("{head}\"{field}\":\"other\"{tail}")).unwrap();
-        assert_refused(&study(dir.path(), "1", &[]), &format!("is of a run with {field} \"other\""));
+        assert_refused(&study(dir.path(), "1", &[]), &format!("belongs to a run with {field} \"other\""));
     }
 }
 
@@ -116,9 +116,9 @@ fn parts_that_do_not_belong_together_are_refused() {
     };
     let (first, other_seed, other_split) = (shard("1", "1/24"), shard("2", "2/24"), shard("1", "3/30"));
     let merged = |a: &TempDir, b: &TempDir| merge(out.path(), &[a.path(), b.path()]);
-    assert_refused(&merged(&first, &other_seed), "cells-2-of-24.jsonl: is of a run with seed 2, but");
+    assert_refused(&merged(&first, &other_seed), "cells-2-of-24.jsonl: belongs to a run with seed 2, but");
     assert_refused(&merged(&first, &other_split), "cells-3-of-30.jsonl: is one of 30 parts, but");
-    assert_refused(&merge(out.path(), &[out.path()]), "holds no part of a study");
+    assert_refused(&merge(out.path(), &[out.path()]), "contains no part of a study");
     assert_refused(&merge(out.path(), &[Path::new("/nonexistent")]), "/nonexistent: cannot read");
 
     // The same cell with other figures.
@@ -127,7 +127,7 @@ fn parts_that_do_not_belong_together_are_refused() {
     let text = fs::read_to_string(first.path().join(name)).unwrap();
     let at = text.rfind("1.").unwrap();
     fs::write(twin.path().join(name), format!("{}2.{}", &text[..at], &text[at + 2..])).unwrap();
-    assert_refused(&merged(&first, &twin), "has another cell");
+    assert_refused(&merged(&first, &twin), "differs in cell");
 }
 
 #[test]

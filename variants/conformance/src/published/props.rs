@@ -131,7 +131,7 @@ pub fn a_sample_agrees_with_eval_and_pdf<S: Published>() {
             let d = params.desc();
             let width =
                 [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g].into_iter().fold(4.0, f32::min) * factor;
-            // What the rounding of a direction moves a bell of that width by.
+            // Effect of a rounded direction on a bell of that width.
             let scale = f64::from(width) / (f64::from(width) + 0.1);
             let wo = direction(draws.between(-1.5, 1.5), draws.between(-PI, PI));
             let gather = Bsdf::new(&model, &params).prepare(wo);

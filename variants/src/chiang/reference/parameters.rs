@@ -17,7 +17,7 @@ pub struct ChiangParameters<T> {
     pub eta: T,
     /// Absorption per fibre radius, linear RGB.
     pub sigma_a: [T; 3],
-    /// How the lobes are shifted by the tilt.
+    /// Formula of the lobes' shifts.
     pub shifts: Shifts,
 }
 
