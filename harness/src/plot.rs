@@ -8,12 +8,12 @@
 mod axis;
 mod bar;
 mod canvas;
-mod compact;
 mod frame;
 mod grid;
 mod heat;
 mod line;
 mod palette;
+#[cfg(feature = "png")]
 mod png;
 mod polar;
 mod scatter;
@@ -24,6 +24,7 @@ pub use grid::{Grid, Projection};
 pub use heat::HeatMap;
 pub use line::{LineChart, Point, Reference, Series};
 pub use palette::Dash;
+#[cfg(feature = "png")]
 pub use png::png;
 pub use polar::{PolarChart, PolarPanel, PolarSeries};
 pub use scatter::{Panel, ScatterMap};

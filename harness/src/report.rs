@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::files::whole;
 use crate::markup::escape;
+#[cfg(feature = "png")]
 use crate::plot::png;
 use crate::table::Table;
 use rayon::prelude::*;
@@ -12,14 +13,15 @@ use std::path::Path;
 
 const STYLE: &str = include_str!("report/style.css");
 
-/// A page under construction.
+/// A page under construction: verdicts and one plot, then findings, then sections of plots with their tables folded away,
+/// then the method.
 ///
 /// Texts are plain: everything in them is escaped, and what stands between `` ` `` marks is set as code.
 ///
 /// ```
 /// use hairis_harness::report::{Report, Section};
 /// let html = Report::new("Comparison")
-///     .finding("Eight lanes are `7.1×` as fast as one.")
+///     .verdict("Speed", "Eight lanes are `7.1×` as fast as one.")
 ///     .section(Section::new("Speed").paragraph("Measured on an idle machine."))
 ///     .fact("CPU", "Example <9000>")
 ///     .html();
@@ -29,9 +31,11 @@ const STYLE: &str = include_str!("report/style.css");
 pub struct Report {
     title: String,
     subtitle: String,
+    verdicts: Vec<[String; 2]>,
+    summary: Option<Figure>,
     findings: Vec<String>,
     sections: Vec<Section>,
-    facts: Vec<(String, String)>,
+    facts: Vec<[String; 2]>,
     method: Vec<String>,
 }
 
@@ -46,7 +50,6 @@ pub struct Section {
 enum Block {
     Heading(String),
     Paragraph(String),
-    List(Vec<String>),
     Table(Table),
     Figure(Figure),
 }
@@ -103,12 +106,6 @@ impl Section {
         self.with(Block::Paragraph(text.into()))
     }
 
-    /// Adds a list.
-    #[must_use]
-    pub fn list<S: Into<String>>(self, items: impl IntoIterator<Item = S>) -> Self {
-        self.with(Block::List(items.into_iter().map(Into::into).collect()))
-    }
-
     /// Adds a table.
     #[must_use]
     pub fn table(self, table: Table) -> Self {
@@ -141,7 +138,20 @@ impl Report {
         self
     }
 
-    /// Adds a key finding; they come first.
+    /// Adds the verdict on a use case; they come first.
+    #[must_use]
+    pub fn verdict(mut self, case: impl Into<String>, sentence: impl Into<String>) -> Self {
+        self.verdicts.push([case.into(), sentence.into()]);
+        self
+    }
+
+    /// Sets the plot beside the verdicts.
+    #[must_use]
+    pub fn summary(self, figure: Figure) -> Self {
+        Self { summary: Some(figure), ..self }
+    }
+
+    /// Adds a finding; they follow the verdicts.
     #[must_use]
     pub fn finding(mut self, text: impl Into<String>) -> Self {
         self.findings.push(text.into());
@@ -165,7 +175,7 @@ impl Report {
     /// Adds a fact to "Method and machine": the CPU, the seed, the commit.
     #[must_use]
     pub fn fact(mut self, name: impl Into<String>, value: impl Into<String>) -> Self {
-        self.facts.push((name.into(), value.into()));
+        self.facts.push([name.into(), value.into()]);
         self
     }
 
@@ -177,21 +187,23 @@ impl Report {
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n\
-             </head>\n<body>\n<header>\n<h1>{title}</h1>\n"
+             </head>\n<body>\n<header>\n<h1>{title}</h1>\n<p class=\"subtitle\">{}</p>\n</header>\n<main>\n",
+            inline(&self.subtitle)
         );
-        if !self.subtitle.is_empty() {
-            page.push_str(&format!("<p class=\"subtitle\">{}</p>\n", inline(&self.subtitle)));
-        }
-        page.push_str("</header>\n<main>\n");
-        if !self.findings.is_empty() {
-            page.push_str("<section id=\"findings\" class=\"findings\">\n<h2>Key findings</h2>\n");
-            page.push_str("<ul>\n");
-            self.findings.iter().for_each(|text| page.push_str(&format!("<li>{}</li>\n", answer(text))));
-            page.push_str("</ul>\n");
+        let mut figures = 0;
+        if !self.verdicts.is_empty() {
+            let item =
+                |[case, sentence]: &[String; 2]| format!("<dt>{}</dt><dd>{}</dd>\n", inline(case), inline(sentence));
+            let items: String = self.verdicts.iter().map(item).collect();
+            page.push_str(&format!("<section id=\"verdicts\" class=\"verdicts\">\n<dl>\n{items}</dl>\n"));
+            self.summary.iter().for_each(|figure| figure.write(&mut page, &mut figures));
             page.push_str("</section>\n");
         }
         self.contents(&mut page);
-        let mut figures = 0;
+        if !self.findings.is_empty() {
+            let items: String = self.findings.iter().map(|text| format!("<li>{}</li>\n", answer(text))).collect();
+            page.push_str(&format!("<section id=\"findings\">\n<h2>In figures</h2>\n<ul>\n{items}</ul>\n</section>\n"));
+        }
         for (i, section) in self.sections.iter().enumerate() {
             page.push_str(&format!("<section id=\"section-{}\">\n<h2>{}</h2>\n", i + 1, inline(&section.title)));
             section.blocks.iter().for_each(|block| block.write(&mut page, &mut figures));
@@ -200,14 +212,9 @@ impl Report {
         if self.has_method() {
             page.push_str("<section id=\"method\">\n<h2>Method and machine</h2>\n");
             self.method.iter().for_each(|text| paragraph(&mut page, text));
-            if !self.facts.is_empty() {
-                page.push_str("<dl>\n");
-                for (name, value) in &self.facts {
-                    page.push_str(&format!("<dt>{}</dt><dd>{}</dd>\n", inline(name), inline(value)));
-                }
-                page.push_str("</dl>\n");
-            }
-            page.push_str("</section>\n");
+            let fact = |[name, value]: &[String; 2]| format!("<dt>{}</dt><dd>{}</dd>\n", inline(name), inline(value));
+            let facts: String = self.facts.iter().map(fact).collect();
+            page.push_str(&format!("<dl>\n{facts}</dl>\n</section>\n"));
         }
         page.push_str("</main>\n</body>\n</html>\n");
         page
@@ -217,11 +224,11 @@ impl Report {
     pub fn figures(&self) -> impl Iterator<Item = (usize, &Figure)> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
         let figures = blocks.filter_map(|block| if let Block::Figure(figure) = block { Some(figure) } else { None });
-        (1..).zip(figures)
+        (1..).zip(self.summary.iter().chain(figures))
     }
 
-    /// Writes the page to `report.html` in `dir`, and every figure to `figures/NAME-NUMBER-....svg` and `.png`, each as a
-    /// whole or not at all.
+    /// Writes the page to `report.html` in `dir`, and every figure to `figures/NAME-NUMBER-....svg`, with feature `png` to
+    /// `.png` too, each as a whole or not at all.
     ///
     /// # Errors
     ///
@@ -235,7 +242,9 @@ impl Report {
             let hyphen = if figure.name.is_empty() { "" } else { "-" };
             let stem = format!("{name}-{number:02}{hyphen}{}", figure.name);
             whole(&folder.join(format!("{stem}.svg")), |out| out.write_all(figure.svg.as_bytes()))?;
-            whole(&folder.join(format!("{stem}.png")), |out| out.write_all(&png(&figure.svg)?))
+            #[cfg(feature = "png")]
+            whole(&folder.join(format!("{stem}.png")), |out| out.write_all(&png(&figure.svg)?))?;
+            Ok(())
         })
     }
 
@@ -247,7 +256,7 @@ impl Report {
         if self.sections.is_empty() && !self.has_method() {
             return;
         }
-        page.push_str("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ol>\n");
+        page.push_str("<nav aria-label=\"Contents\">\n<ol>\n");
         for (i, section) in self.sections.iter().enumerate() {
             page.push_str(&format!("<li><a href=\"#section-{}\">{}</a></li>\n", i + 1, inline(&section.title)));
         }
@@ -263,37 +272,33 @@ impl Block {
         match self {
             Self::Heading(text) => page.push_str(&format!("<h3>{}</h3>\n", inline(text))),
             Self::Paragraph(text) => paragraph(page, text),
-            Self::List(items) => list(page, items),
-            Self::Table(table) => page.push_str(&table.to_html()),
-            Self::Figure(figure) => {
-                *figures += 1;
-                page.push_str(&format!(
-                    "<figure id=\"figure-{figures}\">\n<div class=\"plot\" role=\"region\" tabindex=\"0\" \
-                     aria-label=\"Figure {figures}\">\n{}</div>\n\
-                     <figcaption><strong>Figure {figures}.</strong> {}</figcaption>\n",
-                    figure.svg,
-                    inline(&figure.caption)
-                ));
-                if let Some(data) = &figure.data {
-                    let html = data.to_html();
-                    page.push_str(&format!("<details><summary>Its numbers</summary>\n{html}</details>\n"));
-                }
-                page.push_str("</figure>\n");
+            Self::Table(table) => {
+                let title = escape(table.title());
+                page.push_str(&format!("<details><summary>{title}</summary>\n{}</details>\n", table.to_html()));
             }
+            Self::Figure(figure) => figure.write(page, figures),
         }
+    }
+}
+
+impl Figure {
+    fn write(&self, page: &mut String, figures: &mut usize) {
+        *figures += 1;
+        page.push_str(&format!(
+            "<figure id=\"figure-{figures}\">\n<div class=\"plot\">\n{}</div>\n\
+             <figcaption><strong>Figure {figures}.</strong> {}</figcaption>\n",
+            self.svg,
+            inline(&self.caption)
+        ));
+        if let Some(data) = &self.data {
+            page.push_str(&format!("<details><summary>Its numbers</summary>\n{}</details>\n", data.to_html()));
+        }
+        page.push_str("</figure>\n");
     }
 }
 
 fn paragraph(page: &mut String, text: &str) {
     page.push_str(&format!("<p>{}</p>\n", inline(text)));
-}
-
-fn list(page: &mut String, items: &[String]) {
-    page.push_str("<ul>\n");
-    for item in items {
-        page.push_str(&format!("<li>{}</li>\n", inline(item)));
-    }
-    page.push_str("</ul>\n");
 }
 
 /// A finding: the question that it begins with, if any, stands out.
@@ -329,10 +334,12 @@ mod tests {
     fn full(text: &str) -> Report {
         let chart = LineChart::new(text, Axis::linear(text), Axis::log(text)).series(Series::curve(text, [(1.0, 2.0)]));
         let table = || Table::new(text).text(text).number(text).row([text, text]).note(text);
-        let section = Section::new(text).heading(text).paragraph(text).list([text]).table(table());
+        let section = Section::new(text).heading(text).paragraph(text).table(table());
         let section =
             section.figure(Figure::new(chart.svg(), text)).figure(Figure::new(chart.svg(), text).with_data(table()));
-        Report::new(text).subtitle(text).finding(text).section(section).method(text).fact(text, text)
+        let summary = Figure::new(chart.svg(), text).named("summary");
+        let report = Report::new(text).subtitle(text).verdict(text, text).summary(summary).finding(text);
+        report.section(section).method(text).fact(text, text)
     }
 
     #[test]
@@ -370,11 +377,11 @@ mod tests {
         report.write(dir.path(), "example").expect("written");
         let read = |name: &str| fs::read(dir.path().join(name)).expect("there");
         assert_eq!(read("report.html"), report.html().as_bytes());
-        assert_eq!(read("figures/example-03-last.svg"), chart.svg().as_bytes());
-        for name in ["example-01.png", "example-02.png", "example-03-last.png"] {
-            assert!(read(&format!("figures/{name}")).starts_with(b"\x89PNG"), "{name}");
-        }
-        assert_eq!(fs::read_dir(dir.path().join("figures")).expect("a folder").count(), 6);
+        assert_eq!(read("figures/example-04-last.svg"), chart.svg().as_bytes());
+        let has_png = cfg!(feature = "png");
+        assert!(!has_png || read("figures/example-02.png").starts_with(b"\x89PNG"), "a PNG beside each SVG");
+        let files = fs::read_dir(dir.path().join("figures")).expect("a folder").count();
+        assert_eq!(files, if has_png { 8 } else { 4 });
     }
 
     #[test]

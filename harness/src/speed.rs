@@ -328,42 +328,26 @@ pub(crate) fn quartiles(samples: &[f64]) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::check::Truth;
+    use super::inputs::packets;
     use super::*;
-
-    #[test]
-    fn every_contender_is_timed_and_right() {
-        let mut last = 0.0;
-        let report = run(&SpeedConfig { seconds: 0.0, seed: 1 }, |done| last = done).expect("hair within range");
-        // Slices are timed where a gather point is given: evaluation and sampling. Eight lanes at one gather point are
-        // timed where it has several samples.
-        let levels = Level::available().count();
-        assert_eq!(
-            report.rows.len(),
-            ModelId::defaults_of_names().count() * (Op::ALL.len() * (2 + levels) + 6 * levels),
-            "a row is missing"
-        );
-        assert!(last >= 1.0, "progress ended at {last}");
-        for row in &report.rows {
-            assert!(row.passed, "wrong answers: {row:?}");
-            assert!(row.rounds == MIN_ROUNDS && row.ns > 0.0 && row.ns_q1 <= row.ns && row.ns <= row.ns_q3, "{row:?}");
-            assert!(row.contender != cells::TEXTBOOK || row.ratio == 1.0, "the textbook against itself: {row:?}");
-        }
-        assert!(report.passed(), "all rows passed");
-        let row = report.row(Op::Sample, "cauchy", "eight lanes", Level::portable().name());
-        assert!(row.is_some(), "the portable level is always there");
-    }
+    use hairis::HairParams;
+    use hairis_variants::Parameters as _;
 
     #[test]
     fn one_wrong_lane_in_eight_fails() {
-        for cell in ModelId::Gaussian.visit(Cells(1)).expect("hair within range") {
-            let mut answers = cell.contenders[1].task.answers();
-            assert!(cell.truth.wrong_share(&answers) <= MAX_WRONG, "{}: right answers", cell.op);
-            for answer in answers.iter_mut().step_by(8) {
-                answer.pdf *= 1.01;
-            }
-            assert!(cell.truth.wrong_share(&answers) >= 0.12, "{}: a wrong density passed", cell.op);
-            answers.truncate(DIRECTIONS - 1);
-            assert_eq!(cell.truth.wrong_share(&answers), 1.0, "{}: an answer is missing", cell.op);
+        let inputs = Inputs::<HairParams>::draw(1).expect("hair within range");
+        let (hair, wo) = (inputs.params[0], inputs.wo[0]);
+        let gather = ModelId::Gaussian.bsdf(&hair.values()).expect("accepted").prepare(wo);
+        let points = cells::truth(ModelId::Gaussian, &hair, &[wo; DIRECTIONS]).expect("accepted");
+        let truth = Truth::of_directions(points, &inputs.wi);
+        let mut answers = task::task(&packets(&inputs.wi), move |wi| gather.eval_pdf8(wi)).answers();
+        assert!(truth.wrong_share(&answers) <= MAX_WRONG, "right answers");
+        for answer in answers.iter_mut().step_by(8) {
+            answer.pdf *= 1.01;
         }
+        assert!(truth.wrong_share(&answers) >= 0.12, "a wrong density passed");
+        answers.truncate(DIRECTIONS - 1);
+        assert_eq!(truth.wrong_share(&answers), 1.0, "an answer is missing");
     }
 }

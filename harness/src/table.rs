@@ -158,7 +158,7 @@ impl Table {
         let mut html = String::from("<div class=\"table-box\" role=\"region\" tabindex=\"0\" aria-label=\"");
         html.push_str(&markup::escape(&self.title));
         html.push_str("\"><table>\n");
-        html.push_str(&format!("<caption>{}</caption>\n<thead><tr>", markup::escape(&self.title)));
+        html.push_str("<thead><tr>");
         for (header, align) in &self.headers {
             html.push_str(&format!("<th scope=\"col\"{}>{}</th>", class(*align), markup::escape(header)));
         }

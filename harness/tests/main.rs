@@ -6,3 +6,4 @@ mod cases;
 mod chi2;
 mod claims;
 mod cli;
+mod speed;

@@ -62,7 +62,8 @@ pub(super) fn finish(study: &Study, environment: Option<&Environment>, out: &Pat
     study.report(&times, &difference, claims(out).as_ref()).write(out, "study")?;
     print_tables(study.summary(&times).iter().chain(&difference.tables())).map_err(Error::Write)?;
     let [rows, others @ ..] = ["study", "efficiency", "difference"].map(|name| out.join(name).display().to_string());
-    say(&format!("wrote {rows}.csv, .parquet and .json, and {} as .csv and .parquet", others.join(" and ")));
+    let parquet = if cfg!(feature = "parquet") { " and .parquet" } else { "" };
+    say(&format!("wrote {rows}.csv{parquet}, {} as .csv{parquet}, and {rows}.json", others.join(" and ")));
     say(&format!("wrote {} and figures/", out.join("report.html").display()));
     let failures = study.failures();
     failures.iter().for_each(|failure| say(&format!("failed: {failure}")));

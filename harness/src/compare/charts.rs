@@ -1,10 +1,12 @@
 //! The plots of a comparison.
 
 use super::Comparison;
+use super::page::v_ratio;
 use crate::efficiency::SAMPLERS;
 use crate::figures;
 use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
 use crate::report::Figure;
+use crate::sampler::Sampler;
 use crate::sequence::{SequenceKind, XiSource};
 use crate::speed::Op;
 use crate::subject::ModelKind;
@@ -22,6 +24,27 @@ pub(super) fn models() -> Vec<Figure> {
         figures::unit_bells(),
         figures::polar(&params, 20_f64.to_radians(), &[("Cauchy (same widths)", Cauchy::PAPER)]),
     ]
+}
+
+/// The verdicts in one plot: ratios of variances by light.
+pub(super) fn summary(of: &Comparison) -> Figure {
+    let lights = &of.efficiency.settings.lights;
+    let labels = lights.iter().map(|light| light.replace(['-', '_'], " "));
+    let ou = (ModelKind::Gaussian, Sampler::Ou);
+    let bars = |other| {
+        let bar = move |light: &String| Bar::new(v_ratio(of, light, ou, other).unwrap_or(f64::NAN));
+        lights.iter().map(bar)
+    };
+    let chart = BarChart::new("Fewer samples than ou on the Gaussian model", Axis::log("V / V (×)"), labels)
+        .narrow()
+        .series("Cauchy, ou", bars((ModelKind::Cauchy, Sampler::Ou)))
+        .series("Gaussian, matched", bars((ModelKind::Gaussian, Sampler::Matched)))
+        .series("Cauchy, matched", bars((ModelKind::Cauchy, Sampler::Matched)));
+    let caption = format!(
+        "By what factor the number of samples falls (above 1) or grows (below), by light; default hair seen from {}°.",
+        super::page::THETA_O_DEG
+    );
+    Figure::new(chart.level(1.0).svg(), caption).named("summary")
 }
 
 /// Where samples go: the paper's figure 5.

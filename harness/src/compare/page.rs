@@ -1,8 +1,10 @@
 //! The report of a comparison.
 
 use super::{Comparison, Depth, charts, tables};
+use crate::efficiency::Row;
 use crate::report::{Report, Section};
 use crate::sampler::Sampler;
+use crate::sequence::SequenceKind;
 use crate::speed::Op;
 use crate::subject::ModelKind;
 use crate::table::number;
@@ -17,6 +19,10 @@ pub fn report(of: &Comparison) -> Report {
         of.settings.seed,
         of.settings.environment
     ));
+    for [case, sentence] in verdicts(of) {
+        page = page.verdict(case, sentence);
+    }
+    page = page.summary(charts::summary(of));
     for finding in findings(of) {
         page = page.finding(finding);
     }
@@ -35,9 +41,6 @@ pub fn report(of: &Comparison) -> Report {
          uniformly, by the published sampler (`ou`) and by the one that is matched to the model (`matched`, with nine bands, \
          as by default). Estimates are tested against quadrature; a bias beyond its bound fails the run.",
     );
-    for table in tables.efficiency {
-        efficiency = efficiency.table(table);
-    }
     efficiency = efficiency.heading("Against the width of the highlights");
     for figure in charts::widths(of) {
         efficiency = efficiency.figure(figure);
@@ -45,6 +48,9 @@ pub fn report(of: &Comparison) -> Report {
     efficiency = efficiency.heading("Against the number of samples");
     for figure in charts::convergence(of) {
         efficiency = efficiency.figure(figure);
+    }
+    for table in tables.efficiency {
+        efficiency = efficiency.table(table);
     }
 
     let mut speed = Section::new("Speed").figure(charts::speed(of));
@@ -59,7 +65,7 @@ pub fn report(of: &Comparison) -> Report {
         agreement = agreement.table(table);
     }
 
-    page = page.section(efficiency).section(models).section(speed).section(agreement);
+    page = page.section(speed).section(efficiency).section(models).section(agreement);
     let check = &of.efficiency.check;
     let (tests, bound) = (check.tests, check.bound);
     page = page
@@ -85,6 +91,66 @@ pub fn report(of: &Comparison) -> Report {
         page = page.fact("environment note", note.clone());
     }
     page
+}
+
+/// A verdict for each use case: the case and the sentence.
+fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
+    let level = of.speed.detected_level;
+    let ratio = |op, model: ModelKind| of.speed.row(op, model.name(), "eight lanes", level).map(|row| row.ratio);
+    let mut verdicts = Vec::new();
+    let speeds = [ratio(Op::EvalPdf, ModelKind::Gaussian), ratio(Op::Sample, ModelKind::Gaussian)];
+    if let [Some(eval), Some(sample)] = speeds.map(|ratio| ratio.map(number::ratio)) {
+        let sentence =
+            format!("Eight lanes on {level} evaluate {eval} and sample {sample} as fast as scalar formulas.");
+        verdicts.push(["Speed".to_owned(), sentence]);
+    }
+    for light in &of.efficiency.settings.lights {
+        let change = |ratio: Option<f64>| ratio.map_or("an unknown number of".to_owned(), change);
+        let cauchy = v_ratio(of, light, (ModelKind::Gaussian, Sampler::Ou), (ModelKind::Cauchy, Sampler::Ou));
+        let matched = v_ratio(of, light, (ModelKind::Gaussian, Sampler::Ou), (ModelKind::Gaussian, Sampler::Matched));
+        verdicts.push([
+            format!("Under {light}"),
+            format!("Cauchy takes {} samples; `matched` in place of `ou` takes {}.", change(cauchy), change(matched)),
+        ]);
+    }
+    let worst = of.agreement.iter().map(|row| row.worst / row.bound).fold(0.0, f64::max);
+    let failed = of.failures().len();
+    let checks = if failed == 0 { "all checks pass".to_owned() } else { format!("{failed} checks failed") };
+    let sentence = format!("Largest error: {} of its bound; {checks}.", number::percent(worst));
+    verdicts.push(["Accuracy".to_owned(), sentence]);
+    verdicts
+}
+
+/// What a ratio of variances means for the number of samples.
+fn change(ratio: f64) -> String {
+    match ratio {
+        ratio if ratio >= 2.0 => format!("{} fewer", number::ratio(ratio)),
+        ratio if ratio >= 1.0 => format!("{} fewer", number::percent(1.0 - 1.0 / ratio)),
+        ratio if ratio > 0.5 => format!("{} more", number::percent(1.0 / ratio - 1.0)),
+        ratio => format!("{} as many", number::ratio(1.0 / ratio)),
+    }
+}
+
+/// Inclination of the viewer in the verdicts, degrees.
+pub(super) const THETA_O_DEG: f64 = 45.0;
+
+/// V of one estimator over V of another, seen from [`THETA_O_DEG`]: as measured where it can be, else as predicted.
+pub(super) fn v_ratio(
+    of: &Comparison,
+    light: &str,
+    base: (ModelKind, Sampler),
+    other: (ModelKind, Sampler),
+) -> Option<f64> {
+    let v = |estimator| {
+        let is = |row: &&Row| {
+            (row.model, row.sampler) == estimator
+                && (row.sequence, row.theta_o_deg) == (SequenceKind::Independent, THETA_O_DEG)
+                && row.light == light
+        };
+        let row = of.efficiency.rows.iter().find(is)?;
+        Some(if row.tested { row.v.value } else { row.reference.predicted(row.sampler)[0] })
+    };
+    Some(v(base)? / v(other)?)
 }
 
 /// Where a sampler of the BSDF does worse than uniform directions.

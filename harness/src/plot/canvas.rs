@@ -1,17 +1,11 @@
-//! The sheet that charts draw on: plotters' SVG backend at ten times the size, so that its whole numbers are tenths of
-//! a pixel, and what makes an SVG small and accessible.
+//! SVG sheet that charts draw on. Coordinates are written in tenths of a pixel, as whole numbers; consecutive marks of one
+//! style become one path.
 
-use super::palette::{Dash, Marker};
-use crate::markup;
-use core::fmt::Write as _;
-use plotters::prelude::{DrawingBackend, RGBColor, SVGBackend, ShapeStyle};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, FontDesc, FontFamily, FontStyle, FontTransform, TextStyle};
+use super::palette::{Color, Dash, Marker};
+use crate::markup::escape;
 
-/// Units of the backend a pixel.
+/// Units of the drawing per pixel.
 const FINE: f64 = 10.0;
-/// What plotters divides font sizes by.
-const PLOTTERS_EM: f64 = 1.24;
 
 /// Where a text hangs from its point.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +23,7 @@ pub(crate) struct Type {
     pub(crate) bold: bool,
     /// Reads from the bottom to the top.
     pub(crate) upright: bool,
-    pub(crate) color: RGBColor,
+    pub(crate) color: Color,
 }
 
 impl Type {
@@ -41,13 +35,13 @@ impl Type {
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pen {
-    pub(crate) color: RGBColor,
+    pub(crate) color: Color,
     pub(crate) width: f64,
     pub(crate) alpha: f64,
 }
 
 impl Pen {
-    pub(crate) const fn new(color: RGBColor, width: f64) -> Self {
+    pub(crate) const fn new(color: Color, width: f64) -> Self {
         Self { color, width, alpha: 1.0 }
     }
 
@@ -55,16 +49,21 @@ impl Pen {
         Self { alpha, ..self }
     }
 
-    fn shape(self, filled: bool) -> ShapeStyle {
-        ShapeStyle { color: self.color.mix(self.alpha), filled, stroke_width: fine(self.width).unsigned_abs() }
+    fn style(self) -> String {
+        let Self { color, width, alpha } = self;
+        format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"{}\"{}", fine(width), opacity(alpha))
     }
 }
 
 /// A place on the sheet, pixels from its top left.
 pub(crate) type Place = (f64, f64);
 
-pub(crate) struct Canvas<'a> {
-    backend: SVGBackend<'a>,
+/// The drawing so far, and the path that is being gathered: its style and its data.
+#[derive(Default)]
+pub(crate) struct Canvas {
+    svg: String,
+    style: String,
+    path: String,
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "sheets are far smaller than 2^31 and `as` saturates")]
@@ -72,8 +71,13 @@ fn fine(pixels: f64) -> i32 {
     (pixels * FINE).round() as i32
 }
 
-fn at((x, y): Place) -> (i32, i32) {
-    (fine(x), fine(y))
+fn opacity(alpha: f64) -> String {
+    if alpha < 1.0 { format!(" opacity=\"{alpha}\"") } else { String::new() }
+}
+
+fn path_data(points: &[Place]) -> String {
+    let points: Vec<String> = points.iter().map(|(x, y)| format!("{},{}", fine(*x), fine(*y))).collect();
+    format!("M{}", points.join(" "))
 }
 
 /// An SVG of `width` by `height` pixels with an accessible name and description, drawn by `paint`.
@@ -83,102 +87,122 @@ pub(crate) fn sheet(
     (width, height): (f64, f64),
     title: &str,
     description: &str,
-    paint: impl FnOnce(&mut Canvas<'_>),
+    paint: impl FnOnce(&mut Canvas),
 ) -> String {
-    let mut raw = String::new();
-    let size = (fine(width).unsigned_abs(), fine(height).unsigned_abs());
-    let mut canvas = Canvas { backend: SVGBackend::with_string(&mut raw, size) };
+    let (title, description, right, bottom) = (escape(title), escape(description), fine(width), fine(height));
+    let head = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{title}\" width=\"{width:.0}\" \
+         height=\"{height:.0}\" viewBox=\"0 0 {right} {bottom}\" font-family=\"sans-serif\" stroke-linejoin=\"round\">\n\
+         <title>{title}</title>\n<desc>{description}</desc>\n",
+    );
+    let mut canvas = Canvas { svg: head, ..Canvas::default() };
     canvas.block((0.0, 0.0), (width, height), super::palette::PAPER, 1.0);
     paint(&mut canvas);
-    drop(canvas); // ends the document
-    let body = raw.split_once('>').map_or("", |(_, body)| body).trim_start();
-    let (title, description) = (markup::escape(title), markup::escape(description));
-    let mut svg = String::new();
-    // Writing to a string does not fail.
-    let _ = write!(
-        svg,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{title}\" width=\"{width:.0}\" \
-         height=\"{height:.0}\" viewBox=\"0 0 {} {}\" stroke-linejoin=\"round\">\n<title>{title}</title>\n\
-         <desc>{description}</desc>\n",
-        size.0, size.1
-    );
-    super::compact::append(&mut svg, body);
-    svg
+    canvas.flush();
+    canvas.svg + "</svg>\n"
 }
 
-impl Canvas<'_> {
-    // The backend writes to a string, which does not fail; its results are dropped below.
+impl Canvas {
+    /// Adds to the path of this style.
+    fn add(&mut self, style: String, data: &str) {
+        if style != self.style {
+            self.flush();
+            self.style = style;
+        }
+        self.path.push_str(data);
+    }
+
+    fn flush(&mut self) {
+        if !self.path.is_empty() {
+            self.svg.push_str(&format!("<path {} d=\"{}\"/>\n", self.style, self.path));
+        }
+        self.path.clear();
+    }
 
     pub(crate) fn line(&mut self, points: &[Place], pen: Pen, dash: Dash) {
-        match dash.pattern() {
-            [] => self.stroke(points, pen),
-            pattern => dashes(points, pattern, |part| self.stroke(part, pen)),
+        if points.len() < 2 {
+            return;
         }
+        let pattern: Vec<String> = dash.pattern().iter().map(|length| fine(*length).to_string()).collect();
+        let dashes =
+            if pattern.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", pattern.join(" ")) };
+        // Crossing lines that let paper through would not darken each other within one path.
+        if pen.alpha < 1.0 {
+            self.flush();
+        }
+        self.add(pen.style() + &dashes, &path_data(points));
     }
 
-    fn stroke(&mut self, points: &[Place], pen: Pen) {
-        if points.len() > 1 {
-            let _ = self.backend.draw_path(points.iter().copied().map(at), &pen.shape(false));
-        }
-    }
-
-    pub(crate) fn polygon(&mut self, points: &[Place], color: RGBColor, alpha: f64) {
+    pub(crate) fn polygon(&mut self, points: &[Place], color: Color, alpha: f64) {
         if points.len() > 2 {
-            let _ = self.backend.fill_polygon(points.iter().copied().map(at), &color.mix(alpha));
+            self.add(format!("fill=\"{color}\"{}", opacity(alpha)), &(path_data(points) + "z"));
         }
     }
 
-    pub(crate) fn block(&mut self, (x0, y0): Place, (x1, y1): Place, color: RGBColor, alpha: f64) {
-        let (low, high) = (at((x0.min(x1), y0.min(y1))), at((x0.max(x1), y0.max(y1))));
-        if low != high {
-            let _ = self.backend.draw_rect(low, high, &color.mix(alpha), true);
+    pub(crate) fn block(&mut self, (x0, y0): Place, (x1, y1): Place, color: Color, alpha: f64) {
+        let (left, right) = (fine(x0.min(x1)), fine(x0.max(x1)));
+        let (top, bottom) = (fine(y0.min(y1)), fine(y0.max(y1)));
+        let (width, height) = (right - left, bottom - top);
+        if width > 0 || height > 0 {
+            let data = format!("M{left} {top}h{width}v{height}h-{width}z");
+            self.add(format!("fill=\"{color}\"{}", opacity(alpha)), &data);
         }
     }
 
     pub(crate) fn frame(&mut self, (x0, y0): Place, (x1, y1): Place, pen: Pen) {
-        self.stroke(&[(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], pen);
+        self.line(&[(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], pen, Dash::Solid);
     }
 
-    pub(crate) fn dot(&mut self, center: Place, radius: f64, color: RGBColor, alpha: f64) {
-        let _ = self.backend.draw_circle(at(center), fine(radius).unsigned_abs(), &color.mix(alpha), true);
+    pub(crate) fn dot(&mut self, (x, y): Place, radius: f64, color: Color, alpha: f64) {
+        // A line of no length with round ends is a disc.
+        let width = fine(2.0 * radius);
+        let style = format!("stroke=\"{color}\" stroke-width=\"{width}\" stroke-linecap=\"round\"{}", opacity(alpha));
+        self.add(style, &format!("M{} {}h0", fine(x), fine(y)));
     }
 
-    pub(crate) fn ring(&mut self, center: Place, radius: f64, pen: Pen) {
-        let _ = self.backend.draw_circle(at(center), fine(radius).unsigned_abs(), &pen.shape(false), false);
+    pub(crate) fn ring(&mut self, (x, y): Place, radius: f64, pen: Pen) {
+        let (x, y, r) = (fine(x), fine(y), fine(radius));
+        self.add(pen.style(), &format!("M{} {y}a{r} {r} 0 1 0 {} 0a{r} {r} 0 1 0 -{} 0z", x - r, 2 * r, 2 * r));
     }
 
-    pub(crate) fn marker(&mut self, (x, y): Place, marker: Marker, size: f64, color: RGBColor) {
-        let corner = |dx: f64, dy: f64| (x + dx * size, y + dy * size);
-        let filled = match marker {
+    pub(crate) fn marker(&mut self, (x, y): Place, marker: Marker, size: f64, color: Color) {
+        let corners: &[Place] = match marker {
             Marker::Circle => return self.dot((x, y), size, color, 1.0),
-            Marker::Square => vec![corner(-0.9, -0.9), corner(0.9, -0.9), corner(0.9, 0.9), corner(-0.9, 0.9)],
-            Marker::Triangle => vec![corner(0.0, -1.2), corner(1.1, 0.8), corner(-1.1, 0.8)],
-            Marker::Diamond => vec![corner(0.0, -1.3), corner(1.3, 0.0), corner(0.0, 1.3), corner(-1.3, 0.0)],
-            Marker::Inverted => vec![corner(0.0, 1.2), corner(1.1, -0.8), corner(-1.1, -0.8)],
-            Marker::Cross => {
-                let pen = Pen::new(color, size * 0.55);
-                self.stroke(&[corner(-1.0, -1.0), corner(1.0, 1.0)], pen);
-                return self.stroke(&[corner(-1.0, 1.0), corner(1.0, -1.0)], pen);
-            }
+            Marker::Square => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
+            Marker::Triangle => &[(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)],
+            Marker::Diamond => &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
+            Marker::Inverted => &[(0.0, 1.2), (1.1, -0.8), (-1.1, -0.8)],
+            Marker::Cross => &[(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)],
         };
-        self.polygon(&filled, color, 1.0);
+        let corners: Vec<Place> = corners.iter().map(|(dx, dy)| (x + dx * size, y + dy * size)).collect();
+        if marker == Marker::Cross {
+            for stroke in corners.chunks(2) {
+                self.line(stroke, Pen::new(color, size * 0.55), Dash::Solid);
+            }
+        } else {
+            self.polygon(&corners, color, 1.0);
+        }
     }
 
     /// A text whose middle height is at `place`.
-    pub(crate) fn text(&mut self, text: &str, place: Place, set: Type) {
-        let style = if set.bold { FontStyle::Bold } else { FontStyle::Normal };
-        let font = FontDesc::new(FontFamily::SansSerif, set.size * FINE * PLOTTERS_EM, style);
-        let turn = if set.upright { FontTransform::Rotate270 } else { FontTransform::None };
-        let hang = match set.hang {
-            Hang::Left => HPos::Left,
-            Hang::Center => HPos::Center,
-            Hang::Right => HPos::Right,
+    pub(crate) fn text(&mut self, text: &str, (x, y): Place, set: Type) {
+        self.flush();
+        let anchor = match set.hang {
+            Hang::Left => "",
+            Hang::Center => " text-anchor=\"middle\"",
+            Hang::Right => " text-anchor=\"end\"",
         };
-        // The em of 0.35 to the base line is set here: `ex`, which plotters uses, is not known to every renderer.
-        let drop = 0.11 * set.size;
-        let place = if set.upright { (place.0 + drop, place.1) } else { (place.0, place.1 + drop) };
-        let style = TextStyle::from(font).color(&set.color).transform(turn).pos(Pos::new(hang, VPos::Center));
-        let _ = self.backend.draw_text(&markup::clean(text), &style, at(place));
+        // From the middle of the letters to their base line.
+        let drop = 0.35 * set.size;
+        let (x, y) = if set.upright { (fine(x + drop), fine(y)) } else { (fine(x), fine(y + drop)) };
+        let turn = if set.upright { format!(" transform=\"rotate(270, {x}, {y})\"") } else { String::new() };
+        let weight = if set.bold { " font-weight=\"bold\"" } else { "" };
+        self.svg.push_str(&format!(
+            "<text x=\"{x}\" y=\"{y}\"{anchor} font-size=\"{}\"{weight} fill=\"{}\"{turn}>{}</text>\n",
+            fine(set.size),
+            set.color,
+            escape(text)
+        ));
     }
 }
 
@@ -207,34 +231,4 @@ pub(crate) fn wrap(text: &str, width: f64, size: f64) -> Vec<String> {
         }
     }
     lines
-}
-
-/// Cuts a path into the parts that `pattern` (pixels on, off, on, off ...) draws.
-fn dashes(points: &[Place], pattern: &[f64], mut draw: impl FnMut(&[Place])) {
-    let mut phase = 0;
-    let mut left = pattern[0];
-    let mut part: Vec<Place> = points.first().copied().into_iter().collect();
-    for pair in points.windows(2) {
-        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
-        let length = (x1 - x0).hypot(y1 - y0);
-        let mut done = 0.0;
-        while length - done > left {
-            done += left;
-            let here = (x0 + (x1 - x0) * done / length, y0 + (y1 - y0) * done / length);
-            if phase % 2 == 0 {
-                part.push(here);
-                draw(&part);
-            }
-            part = vec![here];
-            phase = (phase + 1) % pattern.len();
-            left = pattern[phase];
-        }
-        left -= length - done;
-        if phase % 2 == 0 {
-            part.push((x1, y1));
-        }
-    }
-    if phase % 2 == 0 {
-        draw(&part);
-    }
 }

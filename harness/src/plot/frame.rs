@@ -2,11 +2,10 @@
 
 use super::axis::{Axis, Fitted};
 use super::canvas::{Canvas, Hang, Pen, Place, Type, text_width, wrap};
-use super::palette::{Dash, FAINT_GRID, FAINT_INK, GRID, INK, Marker};
-use plotters::prelude::RGBColor;
+use super::palette::{Color, Dash, FAINT_GRID, FAINT_INK, GRID, INK, Marker};
 
 /// Width of a chart, pixels.
-pub(super) const WIDTH: f64 = 720.0;
+pub(super) const WIDTH: f64 = 640.0;
 /// Size of titles, axis labels and legends; tick labels.
 const TITLE: f64 = 17.0;
 pub(super) const LABEL: f64 = 15.0;
@@ -16,7 +15,7 @@ const LEGEND_LINE: f64 = 23.0;
 /// What a legend shows beside a name.
 #[derive(Clone, Copy)]
 pub(super) struct Key {
-    pub(super) color: RGBColor,
+    pub(super) color: Color,
     /// A line in this dash.
     pub(super) line: Option<Dash>,
     pub(super) marker: Option<Marker>,
@@ -25,7 +24,7 @@ pub(super) struct Key {
 }
 
 /// Draws the title and returns the height it takes.
-pub(super) fn title(canvas: &mut Canvas<'_>, text: &str, width: f64) -> f64 {
+pub(super) fn title(canvas: &mut Canvas, text: &str, width: f64) -> f64 {
     let lines = wrap(text, width - 24.0, TITLE * 1.05);
     let mut y = 8.0;
     for line in &lines {
@@ -66,7 +65,7 @@ pub(super) fn legend_height(names: &[&str], width: f64) -> f64 {
 }
 
 /// Draws a legend from `place` (its top left) in rows no wider than `width`.
-pub(super) fn legend(canvas: &mut Canvas<'_>, names: &[&str], keys: &[Key], place: Place, width: f64) {
+pub(super) fn legend(canvas: &mut Canvas, names: &[&str], keys: &[Key], place: Place, width: f64) {
     let places = legend_places(names, width);
     for ((name, key), (x, y)) in names.iter().zip(keys).zip(places) {
         let (x, y) = (place.0 + x, place.1 + y + LEGEND_LINE / 2.0);
@@ -84,7 +83,7 @@ pub(super) fn legend(canvas: &mut Canvas<'_>, names: &[&str], keys: &[Key], plac
 }
 
 /// A bar: filled, framed, and hatched differently for each series so that it survives grey printing.
-pub(super) fn swatch(canvas: &mut Canvas<'_>, (x0, y0): Place, (x1, y1): Place, color: RGBColor, index: usize) {
+pub(super) fn swatch(canvas: &mut Canvas, (x0, y0): Place, (x1, y1): Place, color: Color, index: usize) {
     let (top, bottom) = (y0.min(y1), y0.max(y1));
     canvas.block((x0, top), (x1, bottom), color, if index == 0 { 1.0 } else { 0.55 });
     let hatch = Pen::new(color, 1.4);
@@ -114,7 +113,7 @@ pub(super) fn swatch(canvas: &mut Canvas<'_>, (x0, y0): Place, (x1, y1): Place, 
 }
 
 /// The axes of a plot whose corners are the ends of `x` and `y`.
-pub(super) fn axes(canvas: &mut Canvas<'_>, labels: (&Axis, &Axis), x: &Fitted, y: &Fitted) {
+pub(super) fn axes(canvas: &mut Canvas, labels: (&Axis, &Axis), x: &Fitted, y: &Fitted) {
     vertical(canvas, labels.1, x, y);
     for tick in x.ticks() {
         let at = x.pixel(tick.value);
@@ -134,7 +133,7 @@ pub(super) fn axes(canvas: &mut Canvas<'_>, labels: (&Axis, &Axis), x: &Fitted, 
 }
 
 /// The vertical axis alone, with its grid lines across the plot.
-pub(super) fn vertical(canvas: &mut Canvas<'_>, axis: &Axis, x: &Fitted, y: &Fitted) {
+pub(super) fn vertical(canvas: &mut Canvas, axis: &Axis, x: &Fitted, y: &Fitted) {
     for tick in y.ticks() {
         let at = y.pixel(tick.value);
         let color = if tick.label.is_some() { GRID } else { FAINT_GRID };

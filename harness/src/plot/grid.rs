@@ -4,9 +4,8 @@ use super::axis::{Axis, Fitted};
 use super::canvas::Pen;
 use super::canvas::{Canvas, Hang, Place, Type};
 use super::frame;
-use super::palette::{Dash, FAINT_INK, INK};
+use super::palette::{Color, Dash, FAINT_INK, INK};
 use core::f64::consts::{FRAC_PI_2, PI};
-use plotters::prelude::RGBColor;
 
 /// How the sphere is laid out: the azimuth to the right, the inclination upwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,11 +94,11 @@ impl Map {
     /// Fills the cells of `grid` with the colours of `color`, which maps 0 .. 1, drawn in `levels` steps.
     pub(super) fn fill(
         &self,
-        canvas: &mut Canvas<'_>,
+        canvas: &mut Canvas,
         grid: &Grid,
         levels: u16,
         share: impl Fn(f64) -> f64,
-        color: impl Fn(f64) -> RGBColor,
+        color: impl Fn(f64) -> Color,
     ) {
         let rows = grid.values.len() / grid.columns.max(1);
         let real = |n: usize| f64::from(u32::try_from(n).unwrap_or(u32::MAX));
@@ -127,7 +126,7 @@ impl Map {
     }
 
     /// The frame, the labels in degrees, and the names of the axes where asked for.
-    pub(super) fn axes(&self, canvas: &mut Canvas<'_>, size: f64, names: (Option<&str>, Option<&str>)) {
+    pub(super) fn axes(&self, canvas: &mut Canvas, size: f64, names: (Option<&str>, Option<&str>)) {
         let set = |hang| Type { color: FAINT_INK, ..Type::new(size, hang) };
         let tick = Pen::new(INK, 1.0);
         let grid = Pen::new(FAINT_INK, 0.6).faded(0.35);
@@ -163,13 +162,7 @@ fn degrees(angle: i32) -> String {
 }
 
 /// A vertical bar of colours with its labels, to the right of a map.
-pub(super) fn color_bar(
-    canvas: &mut Canvas<'_>,
-    axis: &Axis,
-    fitted: &Fitted,
-    x: f64,
-    color: impl Fn(f64) -> RGBColor,
-) {
+pub(super) fn color_bar(canvas: &mut Canvas, axis: &Axis, fitted: &Fitted, x: f64, color: impl Fn(f64) -> Color) {
     let steps = 64;
     let height = (fitted.start - fitted.end) / f64::from(steps);
     for i in 0..steps {

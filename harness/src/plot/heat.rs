@@ -18,7 +18,6 @@ use super::palette::{scale_color, signed_color};
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeatMap {
     title: String,
-    description: String,
     value: Axis,
     grid: Grid,
     signed: bool,
@@ -28,7 +27,7 @@ impl HeatMap {
     /// A map of `grid`; `value` says what its numbers are and how colours spread over them.
     #[must_use]
     pub fn new(title: impl Into<String>, value: Axis, grid: Grid) -> Self {
-        Self { title: title.into(), description: String::new(), value, grid, signed: false }
+        Self { title: title.into(), value, grid, signed: false }
     }
 
     /// Colours by sign: white is 0, and both ends are as far from it as the values go.
@@ -37,13 +36,6 @@ impl HeatMap {
         let most = self.grid.range().map_or(0.0, |(low, high)| high.max(-low));
         self.value = self.value.or_range(-most, most);
         self.signed = true;
-        self
-    }
-
-    /// What the map shows, for those who cannot see it; by default the range of its values.
-    #[must_use]
-    pub fn description(mut self, text: impl Into<String>) -> Self {
-        self.description = text.into();
         self
     }
 
@@ -61,13 +53,9 @@ impl HeatMap {
             }
             _ => self.value.fit(values, high.1, low.1),
         };
-        let description = if self.description.is_empty() {
-            let number = |v| crate::table::number::plain(v, 3);
-            let (low, high) = (number(fitted.low), number(fitted.high));
-            format!("{} over the sphere, from {low} to {high}.", self.value.label)
-        } else {
-            self.description.clone()
-        };
+        let number = |v| crate::table::number::plain(v, 3);
+        let (least, most) = (number(fitted.low), number(fitted.high));
+        let description = format!("{} over the sphere, from {least} to {most}.", self.value.label);
         sheet((frame::WIDTH, high.1 + 48.0), &self.title, &description, |canvas| {
             frame::title(canvas, &self.title, frame::WIDTH);
             let color = if self.signed { signed_color } else { scale_color };

@@ -40,21 +40,12 @@ impl From<(f64, f64)> for Point {
     }
 }
 
-/// How the intervals of a series are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Spread {
-    Bars,
-    Band,
-}
-
 /// A named line of a [`LineChart`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     name: String,
     points: Vec<Point>,
     markers: bool,
-    line: bool,
-    spread: Spread,
     group: Option<(usize, Dash)>,
 }
 
@@ -63,26 +54,13 @@ impl Series {
     #[must_use]
     pub fn new<P: Into<Point>>(name: impl Into<String>, points: impl IntoIterator<Item = P>) -> Self {
         let points = points.into_iter().map(Into::into).collect();
-        Self { name: name.into(), points, markers: true, line: true, spread: Spread::Bars, group: None }
+        Self { name: name.into(), points, markers: true, group: None }
     }
 
     /// A line without markers, for functions.
     #[must_use]
     pub fn curve<P: Into<Point>>(name: impl Into<String>, points: impl IntoIterator<Item = P>) -> Self {
         Self { markers: false, ..Self::new(name, points) }
-    }
-
-    /// Markers without a line.
-    #[must_use]
-    pub fn marks<P: Into<Point>>(name: impl Into<String>, points: impl IntoIterator<Item = P>) -> Self {
-        Self { line: false, ..Self::new(name, points) }
-    }
-
-    /// Draws the intervals as a band in place of bars.
-    #[must_use]
-    pub fn band(mut self) -> Self {
-        self.spread = Spread::Band;
-        self
     }
 
     /// The colour number and the dash, in place of the next ones: for series that belong together.
@@ -143,20 +121,17 @@ impl Reference {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineChart {
     title: String,
-    description: String,
     x: Axis,
     y: Axis,
     series: Vec<Series>,
     references: Vec<Reference>,
-    height: f64,
 }
 
 impl LineChart {
     /// A chart without series.
     #[must_use]
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
-        let (title, description) = (title.into(), String::new());
-        Self { title, description, x, y, series: Vec::new(), references: Vec::new(), height: 400.0 }
+        Self { title: title.into(), x, y, series: Vec::new(), references: Vec::new() }
     }
 
     /// Adds a series.
@@ -173,25 +148,14 @@ impl LineChart {
         self
     }
 
-    /// What the chart shows, for those who cannot see it; by default its axes and the names of its series.
-    #[must_use]
-    pub fn description(mut self, text: impl Into<String>) -> Self {
-        self.description = text.into();
-        self
-    }
-
     /// The chart as SVG.
     #[must_use]
     pub fn svg(&self) -> String {
         let mut names: Vec<&str> = self.series.iter().map(|s| s.name.as_str()).collect();
         names.extend(self.references.iter().map(Reference::label));
-        let description = if self.description.is_empty() {
-            format!("{} against {}: {}.", self.y.label, self.x.label, names.join(", "))
-        } else {
-            self.description.clone()
-        };
+        let description = format!("{} against {}: {}.", self.y.label, self.x.label, names.join(", "));
         let top = frame::title_height(&self.title, frame::WIDTH);
-        let bottom = top + self.height;
+        let bottom = top + 400.0;
         let shown = |p: &&Point| self.x.shows(p.x) && self.y.shows(p.y);
         let points = || self.series.iter().flat_map(|s| &s.points).filter(shown);
         let levels = self.references.iter().filter_map(|r| match r {
@@ -230,7 +194,7 @@ impl LineChart {
         })
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, series: &Series, index: usize, x: &Fitted, y: &Fitted) {
+    fn draw(&self, canvas: &mut Canvas, series: &Series, index: usize, x: &Fitted, y: &Fitted) {
         let Key { color, line, marker, .. } = key(series, index);
         let place = |p: &Point| (x.pixel(p.x), y.pixel(p.y));
         let shown = |p: &Point| self.x.shows(p.x) && self.y.shows(p.y);
@@ -241,18 +205,12 @@ impl LineChart {
                 let high = if p.high.is_finite() { bound(p.high) } else { y.within(p.y) };
                 (bound(if p.low.is_nan() { p.y } else { p.low }), high)
             };
-            if series.spread == Spread::Band {
-                let upper = run.iter().map(|p| (x.within(p.x), spread(p).1));
-                let lower = run.iter().rev().map(|p| (x.within(p.x), spread(p).0));
-                canvas.polygon(&upper.chain(lower).collect::<Vec<_>>(), color, 0.22);
-            } else {
-                let inside = |p: &&Point| (x.low..=x.high).contains(&p.x) && p.high > p.low;
-                for p in run.iter().filter(inside) {
-                    let ((low, high), at, pen) = (spread(p), x.pixel(p.x), Pen::new(color, 1.5));
-                    canvas.line(&[(at, low), (at, high)], pen, Dash::Solid);
-                    for end in [low, high] {
-                        canvas.line(&[(at - 4.0, end), (at + 4.0, end)], pen, Dash::Solid);
-                    }
+            let inside = |p: &&Point| (x.low..=x.high).contains(&p.x) && p.high > p.low;
+            for p in run.iter().filter(inside) {
+                let ((low, high), at, pen) = (spread(p), x.pixel(p.x), Pen::new(color, 1.5));
+                canvas.line(&[(at, low), (at, high)], pen, Dash::Solid);
+                for end in [low, high] {
+                    canvas.line(&[(at - 4.0, end), (at + 4.0, end)], pen, Dash::Solid);
                 }
             }
             if let Some(dash) = line {
@@ -270,7 +228,7 @@ impl LineChart {
 fn key(series: &Series, index: usize) -> Key {
     let (number, dash) = series.group.unwrap_or((index, Dash::of(index)));
     let marker = series.markers.then(|| Marker::of(index));
-    Key { color: series_color(number), line: series.line.then_some(dash), marker, swatch: None }
+    Key { color: series_color(number), line: Some(dash), marker, swatch: None }
 }
 
 /// The value a share `t` of the way along the axis.
@@ -282,7 +240,7 @@ fn value_at(axis: &Fitted, t: f64, scale: super::Scale) -> f64 {
 }
 
 /// Draws the part of a path that lies in the plot.
-fn clipped(canvas: &mut Canvas<'_>, path: &[Place], pen: Pen, dash: Dash, x: &Fitted, y: &Fitted) {
+fn clipped(canvas: &mut Canvas, path: &[Place], pen: Pen, dash: Dash, x: &Fitted, y: &Fitted) {
     let (low, high) = ((x.start, y.end), (x.end, y.start));
     let mut part: Vec<Place> = Vec::new();
     for pair in path.windows(2) {

@@ -1,63 +1,90 @@
 //! Colours, dashes and markers: told apart by people who see colours differently, and on paper without colours.
 
-use plotters::prelude::{ColorMap, RGBColor, ViridisRGB};
+use core::fmt;
+
+/// A colour of sRGB.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Color(u8, u8, u8);
+
+impl fmt::Display for Color {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{:02X}{:02X}{:02X}", self.0, self.1, self.2)
+    }
+}
+
+impl Color {
+    /// From this colour at 0 to `end` at 1.
+    fn mix(self, end: Self, t: f64) -> Self {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
+        let channel = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * t).round() as u8;
+        Self(channel(self.0, end.0), channel(self.1, end.1), channel(self.2, end.2))
+    }
+}
 
 /// Text and axes.
-pub(super) const INK: RGBColor = RGBColor(34, 34, 34);
+pub(super) const INK: Color = Color(34, 34, 34);
 /// Tick labels and notes.
-pub(super) const FAINT_INK: RGBColor = RGBColor(85, 85, 85);
+pub(super) const FAINT_INK: Color = Color(85, 85, 85);
 /// Grid lines.
-pub(super) const GRID: RGBColor = RGBColor(222, 222, 222);
+pub(super) const GRID: Color = Color(222, 222, 222);
 /// Grid lines between the labelled ones.
-pub(super) const FAINT_GRID: RGBColor = RGBColor(240, 240, 240);
+pub(super) const FAINT_GRID: Color = Color(240, 240, 240);
 /// The sheet itself: always white, so that a plot stays readable on a dark page.
-pub(super) const PAPER: RGBColor = RGBColor(255, 255, 255);
+pub(super) const PAPER: Color = Color(255, 255, 255);
 
 /// The colours of Okabe and Ito (2008), darkest contrasts first; the yellow, too pale for lines on white, is last.
-const SERIES: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(86, 180, 233),
-    RGBColor(34, 34, 34),
-    RGBColor(230, 159, 0),
+const SERIES: [Color; 7] = [
+    Color(0, 114, 178),
+    Color(213, 94, 0),
+    Color(0, 158, 115),
+    Color(204, 121, 167),
+    Color(86, 180, 233),
+    Color(34, 34, 34),
+    Color(230, 159, 0),
 ];
 
 /// The colour of the series number `index`.
-pub(super) fn series_color(index: usize) -> RGBColor {
+pub(super) fn series_color(index: usize) -> Color {
     SERIES[index % SERIES.len()]
 }
 
+/// Marks one direction on a map.
+pub(super) const MARK: Color = Color(170, 0, 60);
+
+/// Matplotlib's viridis at nine equal steps.
+const VIRIDIS: [Color; 9] = [
+    Color(68, 1, 84),
+    Color(71, 44, 122),
+    Color(59, 81, 139),
+    Color(44, 113, 142),
+    Color(33, 144, 141),
+    Color(39, 173, 129),
+    Color(92, 200, 99),
+    Color(170, 220, 50),
+    Color(253, 231, 37),
+];
+
+fn share(t: f64) -> f64 {
+    if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 }
+}
+
 /// Perceptually uniform (viridis), dark to bright as `t` goes from 0 to 1.
-pub(super) fn scale_color(t: f64) -> RGBColor {
-    let t = if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 };
-    ViridisRGB.get_color(t)
+pub(super) fn scale_color(t: f64) -> Color {
+    let t = 8.0 * share(t);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 7")]
+    let step = t.min(7.0) as usize;
+    VIRIDIS[step].mix(VIRIDIS[step + 1], t - step as f64)
 }
 
 /// Blue below 0.5, white there, vermilion above: both ends as dark, and apart for everyone.
-pub(super) fn signed_color(t: f64) -> RGBColor {
-    let t = if t.is_finite() { 2.0 * t.clamp(0.0, 1.0) - 1.0 } else { 0.0 };
-    let end = if t < 0.0 { SERIES[0] } else { SERIES[1] };
-    let mix = |full: u8| -> u8 {
-        let value = 255.0 + (f64::from(full) - 255.0) * t.abs();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
-        let byte = value as u8;
-        byte
-    };
-    RGBColor(mix(end.0), mix(end.1), mix(end.2))
+pub(super) fn signed_color(t: f64) -> Color {
+    let t = if t.is_finite() { 2.0 * share(t) - 1.0 } else { 0.0 };
+    PAPER.mix(SERIES[usize::from(t >= 0.0)], t.abs())
 }
 
 /// A pale background that dark dots stand out from: white to a soft ochre.
-pub(super) fn soft_color(t: f64) -> RGBColor {
-    let t = if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 };
-    let mix = |full: f64| -> u8 {
-        let value = 255.0 + (full - 255.0) * t;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
-        let byte = value as u8;
-        byte
-    };
-    RGBColor(mix(240.0), mix(178.0), mix(70.0))
+pub(super) fn soft_color(t: f64) -> Color {
+    PAPER.mix(Color(240, 178, 70), share(t))
 }
 
 /// How a line is broken.

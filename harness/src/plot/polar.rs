@@ -113,7 +113,7 @@ impl PolarChart {
 }
 
 impl PolarPanel {
-    fn draw(&self, canvas: &mut Canvas<'_>, center: Place, radius: f64) {
+    fn draw(&self, canvas: &mut Canvas, center: Place, radius: f64) {
         let usable = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
         let values = self.series.iter().flat_map(|s| &s.points).filter(|p| usable(p)).map(|p| p.1.max(0.0));
         let most = values.fold(0.0, f64::max);

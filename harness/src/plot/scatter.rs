@@ -3,8 +3,7 @@
 use super::canvas::{Hang, Type, sheet};
 use super::frame;
 use super::grid::{Grid, Map, Projection};
-use super::palette::{INK, Marker, series_color, soft_color};
-use plotters::prelude::RGBColor;
+use super::palette::{INK, MARK, Marker, series_color, soft_color};
 
 /// One map of a [`ScatterMap`].
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +39,6 @@ impl Panel {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatterMap {
     title: String,
-    description: String,
     projection: Projection,
     panels: Vec<Panel>,
     mark: Option<(String, f64, f64)>,
@@ -50,7 +48,7 @@ impl ScatterMap {
     /// A figure without maps.
     #[must_use]
     pub fn new(title: impl Into<String>, projection: Projection) -> Self {
-        Self { title: title.into(), description: String::new(), projection, panels: Vec::new(), mark: None }
+        Self { title: title.into(), projection, panels: Vec::new(), mark: None }
     }
 
     /// Adds a map.
@@ -64,13 +62,6 @@ impl ScatterMap {
     #[must_use]
     pub fn mark(mut self, name: impl Into<String>, theta: f64, phi: f64) -> Self {
         self.mark = Some((name.into(), theta, phi));
-        self
-    }
-
-    /// What the figure shows, for those who cannot see it; by default the names of its maps.
-    #[must_use]
-    pub fn description(mut self, text: impl Into<String>) -> Self {
-        self.description = text.into();
         self
     }
 
@@ -93,12 +84,8 @@ impl ScatterMap {
         let top = frame::title_height(&self.title, WIDTH);
         let bottom = top + f64::from(u32::try_from(rows).unwrap_or(1)) * step.1 + 18.0;
         let note = if self.mark.is_some() { 22.0 } else { 0.0 };
-        let description = if self.description.is_empty() {
-            let names: Vec<&str> = self.panels.iter().map(|p| p.title.as_str()).collect();
-            format!("Directions on maps of the sphere: {}.", names.join("; "))
-        } else {
-            self.description.clone()
-        };
+        let names: Vec<&str> = self.panels.iter().map(|p| p.title.as_str()).collect();
+        let description = format!("Directions on maps of the sphere: {}.", names.join("; "));
         sheet((WIDTH, bottom + note), &self.title, &description, |canvas| {
             frame::title(canvas, &self.title, WIDTH);
             let (mut row, mut column) = (0_u32, 0_u32);
@@ -118,7 +105,7 @@ impl ScatterMap {
                     canvas.dot(map.place(*theta, *phi), 0.9, series_color(0), 0.85);
                 }
                 if let Some((_, theta, phi)) = self.mark.as_ref().filter(|(_, a, b)| a.is_finite() && b.is_finite()) {
-                    canvas.marker(map.place(*theta, *phi), Marker::Cross, 5.0, RGBColor(170, 0, 60));
+                    canvas.marker(map.place(*theta, *phi), Marker::Cross, 5.0, MARK);
                 }
                 let middle = (low.0 + 0.5 * width, low.1 - 12.0);
                 canvas.text(&panel.title, middle, Type { bold: true, ..Type::new(frame::TICK, Hang::Center) });
@@ -129,7 +116,7 @@ impl ScatterMap {
             }
             if let Some((name, ..)) = &self.mark {
                 let y = bottom + 4.0;
-                canvas.marker((LEFT + 6.0, y), Marker::Cross, 5.0, RGBColor(170, 0, 60));
+                canvas.marker((LEFT + 6.0, y), Marker::Cross, 5.0, MARK);
                 canvas.text(name, (LEFT + 18.0, y), Type { color: INK, ..Type::new(frame::TICK, Hang::Left) });
             }
         })

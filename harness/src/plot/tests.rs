@@ -23,7 +23,7 @@ fn line_charts_take_any_data() {
         for y in [Axis::linear("y"), Axis::log("y"), Axis::log("y").range(1.0, 10.0)] {
             for n in [0, 1, 2, 9, 40, 81] {
                 let series = Series::new("a", pairs().take(n));
-                let chart = LineChart::new("t", x.clone(), y.clone()).series(series.clone()).series(series.band());
+                let chart = LineChart::new("t", x.clone(), y.clone()).series(series.clone()).series(series);
                 check(&chart.clone().reference(reference()).svg(), &format!("{x:?} {y:?} {n}"));
                 let level = Reference::Level { label: "l".into(), y: ODD[n % 9] };
                 check(&chart.reference(level).svg(), &format!("{x:?} {y:?} {n} with a level"));
@@ -37,7 +37,7 @@ fn line_charts_take_any_data() {
 fn other_charts_take_any_data() {
     for y in [Axis::linear("y"), Axis::log("y")] {
         let chart = BarChart::new("t", y, "abcdefghi".chars());
-        let chart = chart.description("d").level(f64::NAN);
+        let chart = chart.level(f64::NAN);
         check(&chart.clone().svg(), "no bars");
         let bars = ODD.map(|v| Bar::new(v).with_error(1.0 - v));
         check(&chart.series("a", bars).series("b", bars.into_iter().take(2)).svg(), "odd bars");

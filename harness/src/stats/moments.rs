@@ -186,25 +186,6 @@ impl FromIterator<f64> for Moments {
     }
 }
 
-/// Kish's effective sample size `(sum w)^2 / sum w^2` of importance weights.
-///
-/// - Units: samples, between 0 (no samples, or all weights 0) and the number of weights.
-/// - Domain: weights of either sign; a NaN gives NaN.
-#[must_use]
-pub fn effective_sample_size(weights: &[f64]) -> f64 {
-    let largest = weights.iter().fold(0.0_f64, |a, w| a.max(w.abs()));
-    if largest == 0.0 && !weights.iter().any(|w| w.is_nan()) {
-        return 0.0;
-    }
-    let (mut sum, mut sum_sq) = (0.0, 0.0);
-    for w in weights {
-        let w = w / largest;
-        sum += w;
-        sum_sq += w * w;
-    }
-    sum * sum / sum_sq
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -297,15 +278,5 @@ mod tests {
         assert_eq!(a.scale(-2.0), Estimate { value: -12.0, standard_error: 0.6 });
         assert_eq!(Estimate { value: 1.0, standard_error: 0.0 }.z_score(1.0), 0.0);
         assert_eq!(a.z_score(5.4), (6.0 - 5.4) / 0.3);
-    }
-
-    #[test]
-    fn effective_sample_size_has_its_limits() {
-        assert_eq!(effective_sample_size(&[]), 0.0);
-        assert_eq!(effective_sample_size(&[0.0, 0.0]), 0.0);
-        assert_eq!(effective_sample_size(&[2.5; 40]), 40.0);
-        assert_eq!(effective_sample_size(&[1e200, 0.0, 0.0]), 1.0);
-        assert!((effective_sample_size(&[1.0, 3.0]) - 1.6).abs() < 1e-15);
-        assert!(effective_sample_size(&[0.0, f64::NAN]).is_nan());
     }
 }

@@ -1,5 +1,6 @@
-//! A table by columns, written as CSV and as Apache Parquet: the same content, the same bytes each time.
+//! A table by columns, written as CSV and, with feature `parquet`, as Apache Parquet: the same content, the same bytes each time.
 
+#[cfg(feature = "parquet")]
 mod parquet;
 
 use std::borrow::Cow;
@@ -122,6 +123,7 @@ impl Columns {
     /// # Errors
     ///
     /// What `out` gave.
+    #[cfg(feature = "parquet")]
     pub fn write_parquet(&self, notes: &[(String, String)], out: impl Write + Send) -> io::Result<()> {
         parquet::write(self, notes, out)
     }
@@ -148,6 +150,7 @@ mod tests {
         assert_eq!(text, want);
     }
 
+    #[cfg(feature = "parquet")]
     #[test]
     fn parquet_is_the_same_bytes_each_time() {
         let bytes = || {

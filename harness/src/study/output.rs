@@ -264,30 +264,34 @@ impl Study {
         summary::tables(&self.cells, &self.header.lights, times)
     }
 
-    /// Writes `study.csv` and `study.parquet` (the rows), `study.json` (the settings), `times.csv`, and `efficiency` and
-    /// `difference` (how far apart the models are) as `.csv` and `.parquet` into `dir`, each as a whole or not at all.
+    /// Writes `study.csv` (the rows), `efficiency.csv`, `difference.csv` (how far apart the models are), `times.csv` and
+    /// `study.json` (the settings) into `dir`, with feature `parquet` the first three as `.parquet` too, each as a whole or not
+    /// at all.
     ///
     /// # Errors
     ///
     /// [`Error::Output`] for the first that cannot be written.
     pub fn write(&self, dir: &Path, times: &Times, difference: &Difference) -> Result<(), Error> {
-        let notes: Vec<(String, String)> = match serde_json::to_value(&self.header) {
-            Ok(serde_json::Value::Object(fields)) => {
-                fields.into_iter().map(|(k, v)| (format!("hairis.{k}"), v.to_string())).collect()
-            }
-            _ => Vec::new(),
-        };
         let machine = json!({ "study": self.header, "times_measured_on": Machine::current() });
         let rows = self.columns();
         let (efficiencies, differences) = (self.efficiencies(times), difference.columns());
-        whole(&dir.join("study.csv"), |out| rows.write_csv(out))?;
-        whole(&dir.join("study.parquet"), |out| rows.write_parquet(&notes, out))?;
         whole(&dir.join("times.csv"), |out| times::columns(&times.0, &self.header.lights).write_csv(out))?;
-        whole(&dir.join("efficiency.csv"), |out| efficiencies.write_csv(out))?;
-        whole(&dir.join("efficiency.parquet"), |out| efficiencies.write_parquet(&notes, out))?;
-        whole(&dir.join("difference.csv"), |out| differences.write_csv(out))?;
-        whole(&dir.join("difference.parquet"), |out| differences.write_parquet(&notes, out))?;
+        for (name, columns) in [("study", &rows), ("efficiency", &efficiencies), ("difference", &differences)] {
+            whole(&dir.join(format!("{name}.csv")), |out| columns.write_csv(out))?;
+            #[cfg(feature = "parquet")]
+            whole(&dir.join(format!("{name}.parquet")), |out| columns.write_parquet(&self.notes(), out))?;
+        }
         whole(&dir.join("study.json"), |out| writeln!(out, "{machine:#}"))
+    }
+}
+
+#[cfg(feature = "parquet")]
+impl Study {
+    /// The header, as metadata.
+    fn notes(&self) -> Vec<(String, String)> {
+        let header = serde_json::to_value(&self.header).unwrap_or_default();
+        let fields = header.as_object().into_iter().flatten();
+        fields.map(|(key, value)| (format!("hairis.{key}"), value.to_string())).collect()
     }
 }
 

@@ -35,6 +35,10 @@ impl Study {
             header.lights.len(),
             findings::map(&header.lights).map_or_else(String::new, |map| format!(", of which the map is {map}"))
         ));
+        for [case, sentence] in findings::verdicts(&view) {
+            page = page.verdict(case, sentence);
+        }
+        page = page.summary(charts::summary(&view));
         for finding in findings::findings(&view) {
             page = page.finding(finding);
         }
@@ -94,8 +98,8 @@ impl Study {
                 header.cells, header.samples, header.light_samples
             ))
             .method(
-                "Means over the grid are geometric unless it says otherwise; their standard errors are those of the \
-                 sampling, the grid being what it is. Cells where a V is known to no better than 25% are left out of \
+                "Gains are medians over the grid, and other means geometric, unless it says otherwise; their standard errors \
+                 are those of the sampling, the grid being what it is; that of a median is that of its cell. Cells where a V is known to no better than 25% are left out of \
                  gains. Words such as less and more are used beyond two standard errors.",
             )
             .method(
@@ -108,8 +112,7 @@ impl Study {
                  below 0.1% of each figure.",
             )
             .method(
-                "The rows are in study.csv, efficiency.csv and difference.csv (each also as .parquet), the figures in \
-                 figures/ as SVG and PNG.",
+                "The rows are in study.csv, efficiency.csv and difference.csv, the figures in figures/.",
             );
         if !has_claims {
             page = page.method(

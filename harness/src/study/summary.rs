@@ -2,7 +2,7 @@
 //! in how many cells.
 
 use super::cell::Measured;
-use super::equal_time::{Cells, NOTHING, in_equal_time, time_ratio};
+use super::equal_time::{Cells, NOTHING, Sign, in_equal_time, time_ratio};
 use super::output::Times;
 use super::rows::{Strategy, place};
 use super::times::PER_POINT;
@@ -18,6 +18,12 @@ const MAX_RELATIVE_ERROR: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Gain {
     pub(crate) geometric_mean: Estimate,
+    /// The middle cell, with its own standard error: that of the median is smaller.
+    pub(crate) median: Estimate,
+    /// First and third quartile.
+    pub(crate) quartiles: [f64; 2],
+    /// Shares of the cells that are above 1 and below it by more than two standard errors.
+    pub(crate) shares: [f64; 2],
     pub(crate) least: Estimate,
     pub(crate) most: Estimate,
     /// Cells left out.
@@ -42,14 +48,23 @@ pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
             None => unsure += 1,
         }
     }
-    let by_value = |a: &&Estimate, b: &&Estimate| a.value.total_cmp(&b.value);
-    let least = *ratios.iter().min_by(by_value)?;
-    let most = *ratios.iter().max_by(by_value)?;
+    ratios.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let (least, most) = (*ratios.first()?, *ratios.last()?);
     let n = ratios.len() as f64;
+    let at = |quarter: usize| ratios[(ratios.len() - 1) * quarter / 4];
+    let share = |sign| ratios.iter().filter(|ratio| Sign::of(**ratio) == sign).count() as f64 / (n + unsure as f64);
     let logarithm = ratios.iter().map(|ratio| ratio.value.ln()).sum::<f64>() / n;
     let error = ratios.iter().map(|ratio| (ratio.standard_error / ratio.value).powi(2)).sum::<f64>().sqrt() / n;
     let value = logarithm.exp();
-    Some(Gain { geometric_mean: Estimate { value, standard_error: value * error }, least, most, unsure })
+    Some(Gain {
+        geometric_mean: Estimate { value, standard_error: value * error },
+        median: at(2),
+        quartiles: [at(1), at(3)].map(|ratio| ratio.value),
+        shares: [Sign::Above, Sign::Below].map(share),
+        least,
+        most,
+        unsure,
+    })
 }
 
 /// A model, and how its directions are drawn.
@@ -105,14 +120,14 @@ pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &Times) 
     let [alone, with] = [false, true];
     vec![
         figures.variance("V of ou over V of the sampler, over the grid", &all).note(above("ou")).note(perfect),
-        figures.equal_time("The same in equal time, set-up included: geometric means", &samplers, alone).note(timed),
-        figures.equal_time("The same with a look-up of the light: geometric means", &samplers, with).note(look_up),
+        figures.equal_time("The same in equal time, set-up included: medians", &samplers, alone).note(timed),
+        figures.equal_time("The same with a look-up of the light: medians", &samplers, with).note(look_up),
         figures.counts("Cells won / undecided / lost against ou in equal time", &samplers, alone).note(&counted),
         figures.counts("Cells won / undecided / lost with a look-up of the light", &samplers, with).note(look_up),
         figures
             .variance("V on the Gaussian model over V on the Cauchy model, over the grid", &models)
             .note(above("on the Gaussian model")),
-        figures.equal_time("The same in equal time, set-up included: geometric means", &models, alone).note(timed),
+        figures.equal_time("The same in equal time, set-up included: medians", &models, alone).note(timed),
     ]
 }
 
@@ -144,16 +159,23 @@ impl Figures<'_> {
     }
 
     fn variance(&self, title: &str, of: &[Comparison]) -> Table {
-        let mut table = keys(title).number("geometric mean").number("least").number("most").number("left out");
+        let mut table = keys(title)
+            .number("median")
+            .number("cells above 1 / below 1")
+            .number("geometric mean")
+            .number("least")
+            .number("most")
+            .number("left out");
         for (mut row, of, light) in self.each(of) {
             match gain(self.pairs(of, light)) {
                 Some(gain) => {
+                    row.extend([shown(gain.median), gain.shares.map(number::percent).join(" / ")]);
                     row.extend([gain.geometric_mean, gain.least, gain.most].map(shown));
                     row.push(gain.unsure.to_string());
                 }
                 // Perfect sampling under constant light.
                 None if self.pairs(of, light).all(|[_, v]| v.value == 0.0) => row.push("no limit".to_owned()),
-                None => row.extend(["", "", "", "all"].map(str::to_owned)),
+                None => row.extend(["", "", "", "", "", "all"].map(str::to_owned)),
             }
             table.push(row);
         }
@@ -183,7 +205,7 @@ impl Figures<'_> {
     fn equal_time(&self, title: &str, of: &[Comparison], with_look_up: bool) -> Table {
         self.timed(title, of, with_look_up, |of, light, time| {
             let gain = gain(self.pairs(of, light));
-            gain.map_or_else(String::new, |gain| shown(in_equal_time(gain.geometric_mean, time)))
+            gain.map_or_else(String::new, |gain| shown(in_equal_time(gain.median, time)))
         })
     }
 
@@ -224,6 +246,7 @@ mod tests {
         assert!((gain.geometric_mean.value - 4.0).abs() < 1e-12);
         assert!((gain.geometric_mean.standard_error - 4.0 * 0.01 / 2.0_f64.sqrt()).abs() < 1e-12);
         assert_eq!((gain.least.value, gain.most.value, gain.unsure), (2.0, 8.0, 2));
+        assert_eq!((gain.median.value, gain.quartiles, gain.shares), (2.0, [2.0, 2.0], [0.5, 0.0]));
         assert_eq!(super::gain([[nan, nan]].into_iter()), None, "nothing is sure");
     }
 }

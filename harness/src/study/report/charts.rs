@@ -2,6 +2,7 @@
 
 use super::super::Cell;
 use super::super::rows::Strategy;
+use super::super::summary::Gain;
 use super::super::times::PER_POINT;
 use super::view::{Counted, Estimator, MANY, TOLD, View, ess};
 use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
@@ -78,83 +79,95 @@ pub(super) fn efficiencies(of: &View<'_>) -> Vec<Figure> {
     ModelKind::ALL.map(figure).into()
 }
 
-/// Gains in V by light, over `ou`, up to that of perfect sampling.
-pub(super) fn limits(of: &View<'_>) -> Vec<Figure> {
-    let figure = |model: ModelKind| {
-        let title = format!("Fewer samples than ou, {} model", model.title());
-        let mut chart = BarChart::new(title, Axis::log("V of ou / V (×)"), of.light_labels());
-        for strategy in Strategy::ALL {
-            let gain = |light| of.gain((model, Sampler::Ou), (model, strategy), light).map(|gain| gain.geometric_mean);
-            let bars: Vec<Bar> = match strategy {
-                Strategy::By(Sampler::Ou) => vec![Bar::new(1.0); of.lights.len()],
-                _ => (0..of.lights.len()).map(|light| bar(gain(light))).collect(),
-            };
-            chart = chart.series(strategy.name(), bars);
+/// A bar of a median, with the quartiles of its cells.
+fn median_bar(of: Option<Gain>, time: Option<Estimate>) -> Bar {
+    match (of, time) {
+        (Some(gain), Some(time)) => {
+            let [low, high] = gain.quartiles.map(|ratio| ratio * time.value);
+            Bar::new(gain.median.value * time.value).with_interval(low, high)
         }
-        let caption = format!(
-            "By what factor fewer samples than the published sampler needs, by light: geometric means over the grid. That \
-             is also how many times its time a sample may take before it loses in equal time. `perfect` would draw in \
-             proportion to S cos θᵢ, blind to the light: better samplers of the hair come to it, and what is left is the \
-             light's. Under {} light nothing is left: no bar. Where a small light stands far out in the tails, tails wider \
-             than the hair's pass it. Whiskers are one standard error.",
-            of.lights[CONSTANT]
-        );
-        Figure::new(chart.level(1.0).svg(), caption).named(format!("fewer-samples-by-light-{}", model.name()))
+        _ => Bar::new(f64::NAN),
+    }
+}
+
+/// Bars of V of one estimator over V of another, by light.
+fn by_light(of: &View<'_>, base: Estimator, other: (ModelKind, Strategy), time: Timing) -> Vec<Bar> {
+    let bar = |light| {
+        let ratio = match (time, other.1.sampler()) {
+            (None, _) => Some(Estimate { value: 1.0, standard_error: 0.0 }),
+            (Some(counted), Some(sampler)) => of.time_ratio(base, (other.0, sampler), light, counted),
+            (Some(_), None) => None,
+        };
+        median_bar(of.gain(base, other, light), ratio)
+    };
+    (0..of.lights.len()).map(bar).collect()
+}
+
+/// What a gain counts of the time; `None` for samples alone.
+type Timing = Option<Counted>;
+
+/// The verdicts in one plot: the Cauchy model against the Gaussian one, by light.
+pub(super) fn summary(of: &View<'_>) -> Figure {
+    let title = "Samples: Gaussian model over Cauchy model";
+    let mut chart = BarChart::new(title, Axis::log("V Gaussian / V Cauchy"), of.light_labels()).narrow();
+    for sampler in TOLD {
+        let bars = by_light(of, (ModelKind::Gaussian, sampler), (ModelKind::Cauchy, sampler.into()), None);
+        chart = chart.series(sampler.name(), bars);
+    }
+    let caption = "By what factor the Cauchy model needs fewer samples (above 1) or more (below), by light: medians over the \
+                   grid, whiskers from the first to the third quartile.";
+    Figure::new(chart.level(1.0).svg(), caption).named("summary")
+}
+
+/// Gains over `ou` by light, a chart for each model: in samples, up to that of perfect sampling, or in equal time.
+fn over_ou(of: &View<'_>, time: Timing, strategies: &[Strategy], words: [&str; 4]) -> Vec<Figure> {
+    let [title, axis, slug, caption] = words;
+    let figure = |model: ModelKind| {
+        let mut chart = BarChart::new(format!("{title}, {} model", model.title()), Axis::log(axis), of.light_labels());
+        for strategy in strategies.iter().filter(|strategy| strategy.sampler() != Some(Sampler::Ou)) {
+            chart = chart.series(strategy.name(), by_light(of, (model, Sampler::Ou), (model, *strategy), time));
+        }
+        let caption = format!("{caption} Medians over the grid; whiskers go from the first to the third quartile.");
+        Figure::new(chart.level(1.0).svg(), caption).named(format!("{slug}-{}", model.name()))
     };
     ModelKind::ALL.map(figure).into()
 }
 
-/// Gains over `ou` in equal time by light, a chart for each model.
-fn gains_over_ou(of: &View<'_>, counted: Counted) -> Vec<Figure> {
-    let (words, slug, note) = match counted {
-        Counted::Sample => ("", "", ""),
-        Counted::LookUp => (
-            ", look-up included",
-            "-look-up",
-            " The time of a look-up of the light is added to that of every sample; a light whose look-up was not timed \
-             has no bars.",
-        ),
-    };
-    let figure = |model: ModelKind| {
-        let title = format!("Less variance than ou in equal time{words}, {} model", model.title());
-        let mut chart = BarChart::new(title, Axis::log("gain over ou in equal time (×)"), of.light_labels());
-        for sampler in Sampler::ALL {
-            let gain = |light| bar(of.equal_time((model, Sampler::Ou), (model, sampler), light, counted));
-            // The published sampler is there for the others to be measured by, and for every chart to have one key.
-            let bars: Vec<Bar> = match sampler {
-                Sampler::Ou => vec![Bar::new(1.0); of.lights.len()],
-                _ => (0..of.lights.len()).map(gain).collect(),
-            };
-            chart = chart.series(sampler.name(), bars);
-        }
-        let caption = format!(
-            "By what factor less variance than the published sampler has in the same time, by light, at {MANY} samples a \
-             gather point: geometric means over the grid.{note} Above the dashed line the sampler beats ou. Whiskers are \
-             one standard error, that of the times included."
-        );
-        Figure::new(chart.level(1.0).svg(), caption).named(format!("gain-by-light{slug}-{}", model.name()))
-    };
-    ModelKind::ALL.map(figure).into()
+/// Gains in V by light, over `ou`, up to that of perfect sampling.
+pub(super) fn limits(of: &View<'_>) -> Vec<Figure> {
+    let caption = "By what factor fewer samples than the published sampler needs, by light. That is also how many times its \
+                   time a sample may take before it loses in equal time. `perfect` draws in proportion to S cos θᵢ, blind to \
+                   the light. Under constant light nothing is left of its variance: no bar.";
+    let words = ["Fewer samples than ou", "V of ou / V (×)", "fewer-samples-by-light", caption];
+    over_ou(of, None, &Strategy::ALL, words)
 }
 
 /// Gains in equal time, by light: over `ou`, without and with the look-up, then of the Cauchy model.
 pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
-    let mut figures = gains_over_ou(of, Counted::Sample);
-    figures.extend(gains_over_ou(of, Counted::LookUp));
+    let samplers = Sampler::ALL.map(Strategy::By);
+    let axis = "gain over ou in equal time (×)";
+    let caption = format!(
+        "By what factor less variance than the published sampler has in the same time, by light, at {MANY} samples per \
+         gather point."
+    );
+    let with = format!("{caption} The time of a look-up of the light is added; one that was not timed has no bars.");
+    let title = "Less variance than ou in equal time";
+    let mut figures = over_ou(of, Some(Counted::Sample), &samplers, [title, axis, "gain-by-light", &caption]);
+    let title = "Less variance than ou in equal time, look-up included";
+    figures.extend(over_ou(of, Some(Counted::LookUp), &samplers, [title, axis, "gain-by-light-look-up", &with]));
     let mut chart = BarChart::new(
         "Less variance on the Cauchy model in equal time",
         Axis::log("Gaussian / Cauchy in equal time (×)"),
         of.light_labels(),
     );
     for sampler in Sampler::ALL {
-        let pair = ModelKind::ALL.map(|model| (model, sampler));
-        let gain = |light| bar(of.equal_time(pair[0], pair[1], light, Counted::Sample));
-        chart = chart.series(sampler.name(), (0..of.lights.len()).map(gain));
+        let pair = [(ModelKind::Gaussian, sampler), (ModelKind::Cauchy, sampler)];
+        let bars = by_light(of, pair[0], (pair[1].0, sampler.into()), Some(Counted::Sample));
+        chart = chart.series(sampler.name(), bars);
     }
     let caption = format!(
         "Variance on the Gaussian model over that on the Cauchy model with the same sampler in the same time, by light, at \
-         {MANY} samples a gather point: geometric means over the grid. Above the dashed line the Cauchy model is \
-         sampled better. Whiskers are one standard error, that of the times included."
+         {MANY} samples per gather point. Medians over the grid; whiskers go from the first to the third quartile."
     );
     figures.push(Figure::new(chart.level(1.0).svg(), caption).named("cauchy-gain-by-light"));
     figures

@@ -81,8 +81,8 @@ fn worth(of: &View<'_>) -> Option<String> {
     let parts: Vec<String> = TOLD.into_iter().filter_map(sentence).collect();
     (!parts.is_empty()).then(|| {
         format!(
-            "Is the Cauchy model worth it? Against the Gaussian model in equal time, {MANY} samples a gather point, means \
-             over the grid (a few cells can carry them: see how the gains spread): {}.",
+            "Is the Cauchy model worth it? Against the Gaussian model in equal time, {MANY} samples per gather point, \
+             medians over the grid: {}.",
             parts.join("; ")
         )
     })
@@ -157,11 +157,42 @@ fn which(of: &View<'_>) -> String {
     )
 }
 
+/// A verdict for each light, and one on the looks: the case and the sentence.
+pub(super) fn verdicts(of: &View<'_>) -> Vec<[String; 2]> {
+    let words = |sampler: Sampler, light: usize| {
+        let gain = of.gain((GAUSSIAN, sampler), (CAUCHY, sampler), light)?;
+        let less = 1.0 - 1.0 / gain.median.value;
+        let change = match Sign::of(gain.median) {
+            Sign::Above => format!("{} fewer samples", number::percent(less)),
+            Sign::Below if less < -1.0 => format!("{} as many samples", number::ratio(1.0 - less)),
+            Sign::Below => format!("{} more samples", number::percent(-less)),
+            Sign::Unsure => "as many samples".to_owned(),
+        };
+        let [fewer, more] = gain.shares.map(|share| format!("{:.0} %", 100.0 * share));
+        Some(format!("{change} with `{}` (fewer in {fewer} of the cells, more in {more})", sampler.name()))
+    };
+    let mut verdicts = Vec::new();
+    for (light, name) in of.lights.iter().enumerate() {
+        let parts: Vec<String> = TOLD.into_iter().filter_map(|sampler| words(sampler, light)).collect();
+        if !parts.is_empty() {
+            verdicts.push([format!("Under {}", said(name)), format!("Cauchy takes {}.", listed(&parts))]);
+        }
+    }
+    let [plain, blurred] =
+        [of.difference.summary(Width::Paper, |f| f.plain.l1), of.difference.summary(Width::Paper, |f| f.blurred.l1)];
+    let percent = number::percent;
+    verdicts.push([
+        "Looks".to_owned(),
+        format!("Cauchy looks {} different ({} blurred by 10°).", percent(plain.median), percent(blurred.median)),
+    ]);
+    verdicts
+}
+
 /// How far sampling of the hair can go under the environment: V of `ou` over that of perfect sampling, and of `matched`.
 fn limit(of: &View<'_>) -> Option<String> {
     let light = of.lights.len().checked_sub(1)?;
     let gain = |model, strategy: Strategy| {
-        of.gain((model, Sampler::Ou), (model, strategy), light).map(|gain| times(gain.geometric_mean))
+        of.gain((model, Sampler::Ou), (model, strategy), light).map(|gain| times(gain.median))
     };
     let [perfect, matched] = [Strategy::Perfect, Sampler::Matched.into()].map(|strategy| {
         Some(format!("{} (Gaussian) and {} (Cauchy)", gain(GAUSSIAN, strategy)?, gain(CAUCHY, strategy)?))

@@ -108,9 +108,21 @@ impl<'a> View<'a> {
         Some(self.times.look_up(light)).filter(|of| of.value.is_finite())
     }
 
-    /// How many times the variance `base` has of `other` in equal time, [`MANY`] samples a gather point: geometric mean over
+    /// How many times the variance `base` has of `other` in equal time, [`MANY`] samples a gather point: median over
     /// the cells.
     pub(super) fn equal_time(
+        &self,
+        base: Estimator,
+        other: Estimator,
+        light: usize,
+        counted: Counted,
+    ) -> Option<Estimate> {
+        let time = self.time_ratio(base, other, light, counted)?;
+        self.gain(base, other, light).map(|gain| in_equal_time(gain.median, time))
+    }
+
+    /// Time of a sample of `base` over that of one of `other`, at [`MANY`] samples per gather point.
+    pub(super) fn time_ratio(
         &self,
         base: Estimator,
         other: Estimator,
@@ -121,8 +133,7 @@ impl<'a> View<'a> {
             Counted::Sample => NOTHING,
             Counted::LookUp => self.look_up(light)?,
         };
-        let time = time_ratio(self.ns(base, MANY), self.ns(other, MANY), more);
-        self.gain(base, other, light).map(|gain| in_equal_time(gain.geometric_mean, time))
+        Some(time_ratio(self.ns(base, MANY), self.ns(other, MANY), more))
     }
 
     /// Geometric mean over the cells of `1 / (V µs)`.

@@ -1,0 +1,25 @@
+//! Timings: here, and not beside the code, so that what is timed is compiled once.
+
+use hairis::Level;
+use hairis_harness::speed::{Op, SpeedConfig, run};
+use hairis_variants::ModelId;
+
+#[test]
+fn every_contender_is_timed_and_right() {
+    let mut last = 0.0;
+    let report = run(&SpeedConfig { seconds: 0.0, seed: 1 }, |done| last = done).expect("hair within range");
+    // Slices take part where a gather point is given: evaluation and sampling. Eight lanes at one gather point take
+    // part where it has several samples.
+    let levels = Level::available().count();
+    let models = ModelId::defaults_of_names().count();
+    assert_eq!(report.rows.len(), models * (Op::ALL.len() * (2 + levels) + 6 * levels), "a row is missing");
+    assert!(last >= 1.0, "progress ended at {last}");
+    for row in &report.rows {
+        assert!(row.passed, "wrong answers: {row:?}");
+        assert!(row.rounds == 15 && row.ns > 0.0 && row.ns_q1 <= row.ns && row.ns <= row.ns_q3, "{row:?}");
+        assert!(row.contender != "textbook" || row.ratio == 1.0, "the textbook against itself: {row:?}");
+    }
+    assert!(report.passed(), "all rows passed");
+    let row = report.row(Op::Sample, "cauchy", "eight lanes", Level::portable().name());
+    assert!(row.is_some(), "the portable level is always there");
+}
