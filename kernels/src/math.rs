@@ -66,14 +66,16 @@ pub fn gaussian<L: Lanes>(s: L) -> L {
     p * n.bits_shl_23()
 }
 
-/// `1 - exp(-s/2)` for `s >= 0`, with its digits where it is small; exactly 1 where [`gaussian`] is 0. NaN gives 1.
+/// [`gaussian`], and `1` less it with its digits where that is small; exactly 0 and 1 from about `2^-115` down. NaN gives 0
+/// and 1.
 #[inline(always)]
-pub fn gaussian_complement<L: Lanes>(s: L) -> L {
+pub fn gaussian_and_complement<L: Lanes>(s: L) -> (L, L) {
     let one = L::splat(1.0);
     // The exponent without the bias of `gaussian`: as an integer, and as the power of two.
     let magic = L::splat(8_388_608.0 + 127.0);
-    let to_exponent = L::splat(TO_EXPONENT);
-    let s = s.min(L::splat(LEAST_EXPONENT / -TO_EXPONENT));
+    let (to_exponent, last) = (L::splat(TO_EXPONENT), L::splat(LEAST_EXPONENT / -TO_EXPONENT));
+    let some = s.lt(last);
+    let s = s.min(last);
     let n = s.mul_add(to_exponent, magic);
     let f = s.mul_add(to_exponent, magic - n);
     let power = n.bits_shl_23();
@@ -89,7 +91,8 @@ pub fn gaussian_complement<L: Lanes>(s: L) -> L {
             0.000_153_952_528_257_223_89,
         ],
     );
-    p.mul_add(-(f * power), one - power)
+    let rest = f * power;
+    (L::keep(some, p.mul_add(rest, power)), p.mul_add(-rest, one - power))
 }
 
 /// `atan t` for `|t| <= 1`.

@@ -4,7 +4,7 @@ use crate::support::{Draws, Worst, narrow};
 use crate::tolerance as bound;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use hairis::math::{
-    atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_complement, half_atan2, log2, log2_one_plus,
+    atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_and_complement, half_atan2, log2, log2_one_plus,
     normal_tail_inverse, normal_tail_ratio, sin_cos_absolute, sin_cos_twice,
 };
 use hairis::textbook::Real;
@@ -58,7 +58,7 @@ fn half<L: Lanes>([y, x]: [L; 2]) -> L {
     half_atan2(y, x, x.mul_add(x, y * y).sqrt())
 }
 fn complement<L: Lanes>([s, _]: [L; 2]) -> L {
-    gaussian_complement(s)
+    gaussian_and_complement(s).1
 }
 fn log_one_plus<L: Lanes>([f, _]: [L; 2]) -> L {
     log2_one_plus(f)
@@ -269,16 +269,20 @@ fn logarithm_and_normal_tails_are_accurate() {
 #[test]
 fn a_gaussian_s_complement_keeps_its_digits_where_it_is_small() {
     let (mut worst, mut lanes) = (Worst::default(), Worst::default());
+    let mut beside = Worst::default();
     for s in scan(0.0, 170.0).chain(scan(0.0, 2.0)).chain(scan(0.0, 1e-6)) {
         let got = both([s, 0.0], complement, complement, &mut lanes);
         worst.see(ulp(got, -(-f64::from(s) / 2.0).exp_m1()), || format!("{s:e}"));
+        let exp = if s < 157.0 { (-f64::from(s) / 2.0).exp() } else { continue };
+        beside.see(ulp(gaussian_and_complement(s).0, exp) / (1.0 + f64::from(s) / 2.0), || format!("{s:e}"));
     }
+    beside.check("GAUSSIAN", bound::GAUSSIAN);
     worst.check("COMPLEMENT", bound::COMPLEMENT);
     lanes.check("COMPLEMENT_LANES", bound::MATH_LANES);
     for s in [200.0, 1e30, f32::MAX, f32::INFINITY, f32::NAN] {
-        assert_eq!(gaussian_complement(s), 1.0, "1 - exp(-{s}/2)");
+        assert_eq!(gaussian_and_complement(s), (0.0, 1.0), "exp(-{s}/2)");
     }
-    assert_eq!(gaussian_complement(0.0_f32), 0.0, "1 - exp(0)");
+    assert_eq!(gaussian_and_complement(0.0_f32), (1.0, 0.0), "exp(0)");
 }
 
 #[test]

@@ -70,8 +70,10 @@ impl<const BY_CHANNEL: bool> Subject for Fibers<BY_CHANNEL> {
     }
 
     fn claims(&self) -> Claims {
-        // Inversion: 2.4e-4 with 2^17 points, below 1e-4 with 2^20: the error is the lattice's.
-        Claims { furnace: Some(1e-6), near_field: true, albedo: 1e-5, inversion: 5e-4, ..Claims::default() }
+        // The inclination takes two numbers. Of n even points in a square a curve crosses n^(1/2) of the rectangles that hold
+        // one each: they are left to chance, n^(1/4) of n. 2.4e-4 was seen with 2^17 points, below 1e-4 with 2^20.
+        let inversion = 2.0 * f64::from(Claims::default().points).powf(-0.75);
+        Claims { furnace: Some(1e-6), near_field: true, albedo: 1e-5, inversion, ..Claims::default() }
     }
 
     /// The cones, and the kinks of the azimuthal terms.
@@ -98,8 +100,8 @@ impl<const BY_CHANNEL: bool> Subject for Fibers<BY_CHANNEL> {
     fn reference(&self, params: &ChiangParams, hit: &Hit) -> Option<Box<dyn Reference>> {
         let desc = params.desc();
         let width = (0.5 * f64::from(desc.longitudinal_variance()).sqrt()).min(f64::from(desc.azimuthal_scale()));
-        // A narrow lobe magnifies the rounding of the directions: 1.06 times 5e-6 + 1e-6 / width was seen, of TT in its tail.
-        let bound = 5e-6 + 1.5e-6 / width;
+        // An angle is off by 1.2e-7 and less, and a lobe as steep as it is narrow: see tests/accuracy.rs.
+        let bound = 5e-6 + 5e-7 / width;
         // From exp(-12) of a lobe's peak down the error grows with the exponent.
         let tau = core::f64::consts::TAU;
         let peak =
@@ -107,8 +109,7 @@ impl<const BY_CHANNEL: bool> Subject for Fibers<BY_CHANNEL> {
         let [_, v, w] = double(hit);
         // Next to the axis the lobes are as much higher as the circle about it is smaller.
         let floor = (-12.0_f64).exp() * 0.5 * peak.max(0.1) / v.hypot(w).max(1e-3);
-        // Next to the ends of a logistic's tail a rounding of the number turns the azimuth the further.
-        let direction = 1e-2;
+        let direction = 1e-5;
         let tolerance = Tolerance { value: bound, pdf: bound, lobes: bound, floor, direction, ..Tolerance::default() };
         Some(Box::new(Twin { book: Self::book(params, hit), tolerance }))
     }

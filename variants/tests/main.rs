@@ -1,6 +1,7 @@
 //! Tests of the variants: one binary.
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
 
+mod accuracy;
 mod cauchy;
 mod chiang;
 mod family;

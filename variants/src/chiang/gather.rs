@@ -1,7 +1,7 @@
 //! Constants of the energy-conserving fibre: per material, and per material and hit.
 
 use super::ChiangParams;
-use hairis::math::gaussian;
+use hairis::math::gaussian_and_complement;
 use hairis::{Broadcast, Direction, Hit, Lanes, Pair, PerLobe, lane_struct, lanes3, store4};
 
 lane_struct! {
@@ -9,16 +9,16 @@ lane_struct! {
     pub struct ChiangWidths {
         /// Longitudinal variance v.
         pub variance: [C; 4],
-        /// `4 / v`.
-        pub four_inv_variance: [C; 4],
+        /// `1 / v`.
+        pub inv_variance: [C; 4],
         /// `1 - exp(-2 / v)`.
         pub cut: [C; 4],
         /// Norm of `M N`: `1 / (v (1 - exp(-2 / v)) s K)`, and for the rest `2 pi` in place of `s K`.
         pub norm: [C; 4],
         /// Scale s of the azimuthal logistic, rad.
         pub scale: C,
-        /// `2 / s`.
-        pub twice_inv_scale: C,
+        /// `4 / s`.
+        pub four_inv_scale: C,
         /// `K = tanh(pi / 2s)`: the part of the logistic within half a turn.
         pub kept: C,
     }
@@ -47,10 +47,6 @@ lane_struct! {
         pub sin_cone: [C; 4],
         /// Its cosine.
         pub cos_cone: [C; 4],
-        /// Sine of half of it.
-        pub sin_half_cone: [C; 4],
-        /// Cosine of half of it.
-        pub cos_half_cone: [C; 4],
         /// `cos theta' / v`.
         pub concentration: [C; 4],
         /// `sqrt(v / cos theta')`.
@@ -77,20 +73,20 @@ impl ChiangMaterial<f32> {
     #[must_use]
     pub(super) fn new(params: &ChiangParams) -> Self {
         let desc = params.desc();
-        let (v, s) = (f64::from(desc.longitudinal_variance()), f64::from(desc.azimuthal_scale()));
+        let (v, s) = (desc.variance(), desc.scale());
         let kept = libm::tanh(core::f64::consts::FRAC_PI_2 / s);
         let eta_sq = f64::from(desc.eta) * f64::from(desc.eta);
         let variance = [v, 0.25 * v, 4.0 * v, 4.0 * v];
         let cut = variance.map(|v| -libm::expm1(-2.0 / v));
         let turn = [s * kept, s * kept, s * kept, core::f64::consts::TAU];
-        let shift = desc.shifts_rad().map(f64::from);
+        let shift = desc.shifts();
         let widths = ChiangWidths {
             variance: variance.map(|v| v as f32),
-            four_inv_variance: variance.map(|v| (4.0 / v) as f32),
+            inv_variance: variance.map(|v| (1.0 / v) as f32),
             cut: cut.map(|k| k as f32),
             norm: core::array::from_fn(|p| (1.0 / (variance[p] * cut[p] * turn[p])) as f32),
             scale: s as f32,
-            twice_inv_scale: (2.0 / s) as f32,
+            four_inv_scale: (4.0 / s) as f32,
             kept: kept as f32,
         };
         Self {
@@ -154,7 +150,7 @@ fn fresnel<L: Lanes>(c: L, k: L, eta_sq: L, eta_sq_less_one: L) -> [L; 2] {
 #[inline(always)]
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit<L>) -> ChiangGather<L::Stored> {
     let c = L::splat;
-    let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
+    let (zero, one) = (c(0.0), c(1.0));
     let Direction { vector, sin_theta: sin_o, cos_theta: cos_o, .. } = Direction::normalized(hit.wo);
     let off_axis = c(1e-18).lt(cos_o);
     let inv_cos_o = L::select(off_axis, one, zero) / L::select(off_axis, cos_o, one);
@@ -181,12 +177,12 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
     let [mut rest, mut left] = [[zero; 3]; 2];
     let mut channel = 0;
     while channel < 3 {
-        let t = gaussian(m.twice_sigma_a[channel].lanes() * path_length);
+        let (t, absorbed) = gaussian_and_complement(m.twice_sigma_a[channel].lanes() * path_length);
         let tt = passed * passed * t;
         let trt = tt * (f * t);
         rest[channel] = trt * (f * t);
         // Loss of a passage: the light that does not return to the inside. The product of three has a reciprocal.
-        left[channel] = f.mul_add(one - t, passed).max(c(1e-12));
+        left[channel] = f.mul_add(absorbed, passed).max(c(1e-12));
         attenuation[3 + channel] = tt.store();
         attenuation[6 + channel] = trt.store();
         channel += 1;
@@ -212,11 +208,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
     let (sin, cos) = (four(&m.sin_shift), four(&m.cos_shift));
     let sin_cone = Four::difference_of_products(same(sin_o), cos, same(cos_o), sin);
     let cos_cone = Four::difference_of_products(same(cos_o), cos, same(-sin_o), sin).abs();
-    // Remove the rounding error of their length, which would count as an angle.
-    let off = same(half) - same(half) * sin_cone.mul_add(sin_cone, cos_cone * cos_cone);
-    let (sin_cone, cos_cone) = (sin_cone.mul_add(off, sin_cone), cos_cone.mul_add(off, cos_cone));
-    let cos_half_cone = cos_cone.mul_add(same(half), same(half)).sqrt();
-    let concentration = cos_cone * four(&m.widths.four_inv_variance) * same(c(0.25));
+    let concentration = cos_cone * four(&m.widths.inv_variance);
     // 1 / sqrt of each, by one division.
     let root = concentration.max(same(c(1e-8))).sqrt();
     let [a, b, e, g] = apart(root);
@@ -228,8 +220,6 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
     ChiangGather {
         sin_cone: store4(apart(sin_cone)),
         cos_cone: store4(apart(cos_cone)),
-        sin_half_cone: store4(apart(same(half) * sin_cone / cos_half_cone)),
-        cos_half_cone: store4(apart(cos_half_cone)),
         concentration: store4(apart(concentration)),
         spread: store4(spread),
         azimuth_v: store4(apart(v * by)),

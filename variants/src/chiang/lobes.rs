@@ -2,7 +2,7 @@
 
 use super::ChiangGather;
 use super::gather::{Four, apart, four, same};
-use core::f32::consts::{FRAC_PI_2, PI};
+use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 use hairis::math::{atan_eighth_turn, gaussian, polynomial};
 use hairis::{Broadcast, Direction, Lanes, Pair};
 
@@ -31,17 +31,13 @@ pub(super) const TAIL: [f32; 6] =
 #[inline(always)]
 pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi: &Direction<L>) -> ([L; 4], L) {
     let c = L::splat;
-    let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
+    let (zero, one) = (c(0.0), c(1.0));
     let (m, cos_i) = (&gather.widths, wi.cos_theta);
 
-    // Half of theta_i. Remove the rounding error of the length of wi, which would count as an angle.
-    let off = half - half * wi.sin_theta.mul_add(wi.sin_theta, cos_i * cos_i);
-    let cos_half_i = (cos_i.mul_add(off, cos_i)).mul_add(half, half).sqrt();
-    let sin_half_i = half * wi.sin_theta.mul_add(off, wi.sin_theta) / cos_half_i;
     // 1 / sqrt(cos theta_i), which the tails of the Bessel functions share.
     let inv_root_i = one / cos_i.sqrt();
 
-    // |delta| of R, TT and TRT from a quarter of the angle's tangent, by one division. The rest has no azimuth: TRT's is
+    // |delta| / 2 of R, TT and TRT from the tangent of half of it or of what it lacks of an eighth turn, by one division. The rest has no azimuth: TRT's is
     // in its place, and costs nothing.
     let [v, w] = [&gather.azimuth_v, &gather.azimuth_w];
     let (v, w) = (four(&[v[0], v[1], v[2], v[2]]), four(&[w[0], w[1], w[2], w[2]]));
@@ -52,10 +48,9 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     let (inv_ab, inv_d) = (inverse * d, inverse * ab);
     let inverse = Pair(Pair(inv_ab * b, inv_ab * a), Pair(inv_d, inv_d));
     let angle = atan_eighth_turn(cross.min(dot.abs()) * inverse);
-    let angle = angle + angle;
-    let angle = Four::select(dot.abs().lt(cross), Four::splat(FRAC_PI_2) - angle, angle);
-    let delta = Four::select(dot.lt(Four::splat(0.0)), Four::splat(PI) - angle, angle);
-    let exponent = delta * same(m.twice_inv_scale.lanes());
+    let half = Four::select(dot.abs().lt(cross), Four::splat(FRAC_PI_4) - angle, angle);
+    let half = Four::select(dot.lt(Four::splat(0.0)), Four::splat(FRAC_PI_2) - half, half);
+    let exponent = half * same(m.four_inv_scale.lanes());
 
     // (1 + e)^-2, by one division.
     let tail = Four::splat(1.0) + gaussian(exponent);
@@ -66,14 +61,16 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     let Pair(first, Pair(trt, _)) = exponent;
     let exponent = Pair(first, Pair(trt, zero));
 
-    let (cos_half, sin_half) = (four(&gather.cos_half_cone), four(&gather.sin_half_cone));
-    let sin = same(sin_half_i).mul_add(cos_half, same(cos_half_i) * sin_half);
+    // The chord between theta_i and -theta' on the unit circle, squared: 4 sin^2 of half their angle. Of no half angles: their
+    // roundings would count twice, and those of the cosines vanish at the poles with them.
+    let (across, along) = (same(cos_i) - four(&gather.cos_cone), same(wi.sin_theta) + four(&gather.sin_cone));
+    let chord_sq = across.mul_add(across, along * along);
     let x = same(cos_i) * four(&gather.concentration);
     let small = x.lt(Four::splat(SEAM));
     // 1 / sqrt(x).
     let root = same(inv_root_i) * four(&gather.spread);
     let bessel = Four::select(small, polynomial(x * x, SERIES), polynomial(root * root, TAIL) * root);
-    let sum = (four(&m.four_inv_variance) * sin).mul_add(sin, exponent) + Four::keep(small, x + x);
+    let sum = chord_sq.mul_add(four(&m.inv_variance), exponent) + Four::keep(small, x + x);
     let densities = gaussian(sum) * bessel * (logistic * four(&m.norm));
     (apart(densities), inv_root_i * inv_root_i)
 }

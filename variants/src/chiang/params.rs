@@ -156,9 +156,15 @@ impl ChiangDesc {
     #[inline]
     #[must_use]
     pub fn longitudinal_variance(&self) -> f32 {
+        rounded(self.variance())
+    }
+
+    /// The same before it is rounded, which narrow lobes magnify in their tails.
+    #[inline]
+    pub(super) fn variance(&self) -> f64 {
         let m = f64::from(self.beta_m);
         let root = m * (0.726 + m * (0.812 + 3.7 * libm::pow(m, 18.0)));
-        rounded(root * root)
+        root * root
     }
 
     /// Scale s of the azimuthal logistic, rad: `sqrt(pi / 8) (.265 n + 1.194 n^2 + 5.372 n^22)`, `n` the `beta_n`.
@@ -167,19 +173,32 @@ impl ChiangDesc {
     #[inline]
     #[must_use]
     pub fn azimuthal_scale(&self) -> f32 {
+        rounded(self.scale())
+    }
+
+    /// The same before it is rounded.
+    #[inline]
+    pub(super) fn scale(&self) -> f64 {
         let n = f64::from(self.beta_n);
-        rounded(libm::sqrt(core::f64::consts::PI / 8.0) * n * (0.265 + n * (1.194 + 5.372 * libm::pow(n, 20.0))))
+        libm::sqrt(core::f64::consts::PI / 8.0) * n * (0.265 + n * (1.194 + 5.372 * libm::pow(n, 20.0)))
     }
 
     /// Shifts of `theta_i + theta_o` for R, TT, TRT and the rest, rad.
     #[inline]
     #[must_use]
     pub fn shifts_rad(&self) -> [f32; 4] {
+        self.shifts().map(rounded)
+    }
+
+    /// The same before they are rounded.
+    #[inline]
+    pub(super) fn shifts(&self) -> [f64; 4] {
+        let (eta, tilt) = (f64::from(self.eta), f64::from(self.tilt));
         let factors = match self.shifts {
             Shifts::DEon => [-2.0, 1.0, 4.0, 0.0],
-            Shifts::SmallAngle => [-2.0, 2.0 * self.eta - 2.0, 4.0 * self.eta - 2.0, 0.0],
+            Shifts::SmallAngle => [-2.0, 2.0 * eta - 2.0, 4.0 * eta - 2.0, 0.0],
         };
-        factors.map(|factor| factor * self.tilt)
+        factors.map(|factor| factor * tilt)
     }
 }
 

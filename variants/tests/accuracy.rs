@@ -1,0 +1,276 @@
+//! Kajiya and Kay's fibre and the energy-conserving one against their formulas in `f64` at 10,000 random hits each, with
+//! grazing directions, offsets at both edges and narrow lobes: every bound is derived, and stated beside it.
+//!
+//! A direction that is an angle `d` off changes a lobe by `|d ln M / d theta| d`. The highlights are bells, of exponent E in
+//! their tails: the derivative of `exp(-E)`, `E = x^2 / 2v`, is `sqrt(2E / v)`. The exponent's own rounding adds a few `E eps`.
+
+use crate::support::{Draws, direction, narrow, packet};
+use core::f64::consts::{FRAC_PI_2, PI};
+use glam::Vec3;
+use hairis::textbook::LobeAt;
+use hairis::{Bsdf, Eval, Gather, Hit, Level, Lobe, LobeEval, Model, PerLobe, Sample};
+use hairis_variants::KajiyaKay;
+use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, Selection, Shifts};
+use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams, KajiyaKayReference};
+
+const CASES: usize = 10_000;
+/// Below this lobes approach the end of `gaussian`, from where on they are 0.
+const LEAST: f64 = 1e-22;
+/// Rounding of an angle made of a few operations, rad.
+const ANGLE: f64 = 1.2e-7;
+
+/// An inclination: a quarter of them within a tenth of the axis, down to 1e-3 rad from it.
+fn inclination(draws: &mut Draws) -> f64 {
+    let grazing = draws.sign() * (FRAC_PI_2 - draws.scale(1.1e-3, 0.1));
+    if draws.below(4) == 0 { grazing } else { draws.between(-FRAC_PI_2 + 1.1e-3, FRAC_PI_2 - 1.1e-3) }
+}
+
+fn hit(draws: &mut Draws) -> Hit {
+    let wo = direction(inclination(draws), draws.between(-PI, PI));
+    let h = match draws.below(8) {
+        0 => 1.0,
+        1 => -1.0,
+        2 => narrow(draws.sign() * (1.0 - draws.scale(1e-7, 1e-2))),
+        _ => narrow(draws.between(-1.0, 1.0)),
+    };
+    Hit { wo: wo.into(), h }
+}
+
+/// Eight directions: half of them samples, half from anywhere, grazing ones included.
+fn directions<M: Model>(gather: &Gather<M>, draws: &mut Draws) -> ([[f32; 3]; 8], [Option<Sample>; 8], [Vec3; 8]) {
+    let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
+    let samples = xi.map(|xi| gather.sample(xi));
+    let any: [Vec3; 8] = core::array::from_fn(|_| direction(inclination(draws), draws.between(-PI, PI)));
+    (xi, samples, core::array::from_fn(|k| samples[k].filter(|_| k % 2 == 0).map_or(any[k], |s| s.wi)))
+}
+
+fn double(v: Vec3) -> [f64; 3] {
+    v.to_array().map(f64::from)
+}
+
+/// The largest of some errors over their bounds, and where it was.
+struct Largest(&'static str, f64, String);
+
+impl Largest {
+    fn new(what: &'static str) -> Self {
+        Self(what, 0.0, String::new())
+    }
+
+    fn see(&mut self, error: f64, bound: f64, at: impl FnOnce() -> String) {
+        let ratio = error.abs() / bound;
+        assert!(!ratio.is_nan(), "{}: {error} of {bound}", self.0);
+        if ratio > self.1 {
+            (self.1, self.2) = (ratio, at());
+        }
+    }
+
+    fn check(self) {
+        println!("{}: measured {:.3} of the bound: {}", self.0, self.1, self.2);
+        assert!(self.1 <= 1.0, "{}: {:.3} times the bound: {}", self.0, self.1, self.2);
+    }
+}
+
+/// The errors of a model.
+struct Errors {
+    lobes: Largest,
+    sums: Largest,
+    weights: Largest,
+}
+
+impl Errors {
+    fn new() -> Self {
+        Self { lobes: Largest::new("a lobe"), sums: Largest::new("S or density"), weights: Largest::new("a weight") }
+    }
+
+    /// Each lobe to its bound; S and density to the bounds of the lobes they are the sum of.
+    fn see_eval(
+        &mut self,
+        (lobes, evals): (PerLobe<LobeEval>, [Eval; 2]),
+        (book, want): (PerLobe<LobeAt<f64>>, ([f64; 3], f64)),
+        (bounds, shares): ([f64; 4], PerLobe<f64>),
+        at: &impl Fn() -> String,
+    ) {
+        let mut allowed = [LEAST; 4];
+        for lobe in Lobe::ALL {
+            let (got, want, bound) = (&lobes[lobe], &book[lobe], bounds[lobe.index()]);
+            if want.pdf > LEAST {
+                self.lobes.see(f64::from(got.pdf) / want.pdf - 1.0, bound, || format!("density of {lobe:?}: {}", at()));
+                self.lobes.see(f64::from(got.value) / want.value - 1.0, bound, || format!("S of {lobe:?}: {}", at()));
+            }
+            for c in 0..3 {
+                allowed[c] += want.value * want.color[c] * bound;
+            }
+            allowed[3] += want.pdf * shares[lobe] * bound;
+        }
+        for got in evals {
+            for c in 0..3 {
+                self.sums.see(f64::from(got.value[c]) - want.0[c], allowed[c], || format!("S, channel {c}: {}", at()));
+            }
+            self.sums.see(f64::from(got.pdf) - want.1, allowed[3], || format!("density: {}", at()));
+        }
+    }
+
+    /// Weights of samples further than 1e-3 rad from the axis to 1e-4.
+    fn see_weight(&mut self, sample: &Sample, (value, pdf): ([f64; 3], f64), at: &impl Fn() -> String) {
+        let cos = f64::from(sample.wi.y).hypot(f64::from(sample.wi.z));
+        for (got, value) in sample.weight.into_iter().zip(value) {
+            if cos > 1e-3 && value > LEAST {
+                self.weights.see(f64::from(got) * pdf / (value * cos) - 1.0, 1e-4, at);
+            }
+        }
+    }
+
+    fn check(self) {
+        self.lobes.check();
+        self.sums.check();
+        self.weights.check();
+    }
+}
+
+/// What one lane says, and what eight do.
+fn evals<M: Model>(gather: &Gather<M>, wi: &[Vec3; 8]) -> [[Eval; 2]; 8] {
+    let eight = gather.eval_pdf8_at(Level::detect(), &packet(wi));
+    core::array::from_fn(|k| [gather.eval_pdf(wi[k]), eight.lane(k)])
+}
+
+/// Roughnesses from one end to the other, each end more often than chance.
+fn roughness(draws: &mut Draws) -> f32 {
+    match draws.below(8) {
+        0 => 1e-3,
+        1 => 1.0,
+        _ => narrow(draws.scale(1e-3, 1.0)),
+    }
+}
+
+#[test]
+fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
+    let mut draws = Draws(0x12c1);
+    let mut errors = Errors::new();
+    let (mut attenuation, mut drawn) = (Largest::new("an attenuation"), Largest::new("a sample"));
+    for case in 0..CASES {
+        let desc = ChiangDesc {
+            beta_m: roughness(&mut draws),
+            beta_n: roughness(&mut draws),
+            tilt: narrow(draws.between(-0.35, 0.35)),
+            eta: if case % 2 == 0 { 1.55 } else { narrow(draws.between(1.0, 4.0)) },
+            sigma_a: draws.xi3().map(|x| 6.0 * x * x),
+            shifts: if case % 16 == 0 { Shifts::SmallAngle } else { Shifts::DEon },
+        };
+        let params = ChiangParams::new(&desc).unwrap();
+        let hit = hit(&mut draws);
+        let gather = Bsdf::new(&Chiang::MEAN, &params).prepare(hit);
+        let p = ChiangParameters::<f64>::from(&params);
+        let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
+        let book = ChiangReference::prepare(&p, Selection::Mean, wo, f64::from(hit.h));
+
+        // A passage multiplies by exp(-sigma_a l), whose exponent is rounded; up to three of them.
+        for lobe in Lobe::ALL {
+            for c in 0..3 {
+                let (got, want) = (f64::from(gather.albedo()[lobe][c]), book.albedo()[lobe][c]);
+                let depth = lobe.index() as f64 * p.sigma_a[c] * book.path_length();
+                if want > LEAST {
+                    attenuation.see(got / want - 1.0, 2e-6 + 3e-7 * depth, || format!("{lobe:?} {desc:?} {hit:?}"));
+                }
+            }
+        }
+        // Peaks are as steep as they are narrow; beyond exp(-12) of the peak errors grow with the exponent.
+        let (v, width) = (p.variances(), p.variances()[Lobe::TT].sqrt().min(p.scale()));
+        let shares = book.probabilities();
+        let (xi, samples, wi) = directions(&gather, &mut draws);
+        for (k, evals) in evals(&gather, &wi).into_iter().enumerate() {
+            let d = double(wi[k]);
+            let theta_i = d[0].atan2(d[1].hypot(d[2]));
+            let bounds = Lobe::ALL.map(|lobe| {
+                let half = (0.5 * (theta_i - book.cone(lobe))).sin();
+                (5e-6 + 5e-7 / width) * (2.0 * half * half / v[lobe] / 12.0).max(1.0)
+            });
+            let at = || format!("{:?} {desc:?} {hit:?}", wi[k]);
+            errors.see_eval((gather.lobes(wi[k]), evals), (book.lobes(d), book.eval_pdf(d)), (bounds, shares), &at);
+            let Some(sample) = &samples[k] else { continue };
+            errors.see_weight(sample, book.eval_pdf(double(sample.wi)), &at);
+            see_sample(&mut drawn, &book, (wo, xi[k], sample), &at);
+        }
+    }
+    errors.check();
+    attenuation.check();
+    drawn.check();
+}
+
+/// A sample is that of numbers that are rounded: of its lobe's share of the first, by 2e-7 over the share, as the share itself
+/// is; of the second, by 1.2e-7. Its azimuth's distribution says which number it is of; its inclination is smooth.
+fn see_sample(
+    worst: &mut Largest,
+    book: &ChiangReference<f64>,
+    (wo, xi, sample): ([f64; 3], [f32; 3], &Sample),
+    at: &impl Fn() -> String,
+) {
+    let (lobe, shares, [u, v, w]) = (sample.lobe, book.probabilities(), double(sample.wi));
+    let before: f64 = shares.0[..lobe.index()].iter().sum();
+    let number = (f64::from(xi[0]) - before) / shares[lobe];
+    let turn = w.atan2(v) - wo[2].atan2(wo[1]) - book.centre(lobe);
+    let of_azimuth = book.cdf_azimuth(lobe, turn - 2.0 * PI * (turn / (2.0 * PI)).round());
+    // Both ends of a turn are the same azimuth.
+    let off = (of_azimuth - number).abs();
+    let cos = v.hypot(w);
+    let rounding = 2e-7 / shares[lobe] + 4e-7 + 0.3 * ANGLE / (cos.min(wo[1].hypot(wo[2])));
+    worst.see(off.min((1.0 - off).abs()), rounding + book.azimuthal(lobe, turn + book.centre(lobe)) * 1e-6, || {
+        format!("azimuth of {sample:?} xi {xi:?}: {}", at())
+    });
+    let [second, third] = [xi[1], xi[2]].map(f64::from);
+    let inclination = |by: f64| book.sample_inclination(lobe, (second + by).clamp(0.0, 1.0 - 1e-9), third);
+    let [sin, cos_i] = inclination(0.0);
+    let reach = [-1.2e-7, 1.2e-7].map(|by| (inclination(by)[0] - sin).hypot(inclination(by)[1] - cos_i));
+    let off = (u - sin).hypot(cos - cos_i);
+    worst.see(off, 6e-7 + reach[0].max(reach[1]), || format!("inclination of {sample:?} xi {xi:?}: {}", at()));
+}
+
+#[test]
+fn kajiya_and_kay_s_fibre_is_as_accurate_as_its_exponent_allows() {
+    for form in [Form::Reciprocal, Form::Published] {
+        let mut draws = Draws(0x12cc);
+        let mut errors = Errors::new();
+        let mut plain = Largest::new("S or density, to 1e-5");
+        for case in 0..CASES / 2 {
+            // The exponent's logarithm is uniform; a tenth of them are beyond 1000.
+            let exponent = if case % 10 == 0 { draws.scale(1e3, 1e4) } else { draws.scale(1.0, 1e3) };
+            let kd = draws.xi3().map(|x| 0.02 + x);
+            let desc = KajiyaKayDesc { kd, ks: draws.xi3(), exponent: narrow(exponent).clamp(1.0, 1e4), form };
+            let params = KajiyaKayParams::new(&desc).unwrap();
+            let hit = hit(&mut draws);
+            let gather = Bsdf::new(&KajiyaKay, &params).prepare(hit);
+            let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
+            let book = KajiyaKayReference::prepare(&(&params).into(), wo);
+            let theta_o = wo[0].atan2(wo[1].hypot(wo[2]));
+            let (_, samples, wi) = directions(&gather, &mut draws);
+            for (k, evals) in evals(&gather, &wi).into_iter().enumerate() {
+                let d = double(wi[k]);
+                let sum = theta_o + d[0].atan2(d[1].hypot(d[2]));
+                // cos^p changes by p tan(sum) per radian; its logarithm is rounded; the density has 1 / cos theta_i.
+                let p = f64::from(desc.exponent);
+                let specular = 3e-6 + p * sum.tan().abs() * 2.0 * ANGLE - 4e-7 * p * sum.cos().max(1e-300).ln();
+                let at = || format!("{:?} {desc:?} {hit:?}", wi[k]);
+                let want = book.eval_pdf(d);
+                let bounds = [1e-6, specular, 1.0, 1.0];
+                errors.see_eval(
+                    (gather.lobes(wi[k]), evals),
+                    (book.lobes(d), want),
+                    (bounds, book.probabilities()),
+                    &at,
+                );
+                if exponent <= 1000.0 {
+                    for got in evals {
+                        for c in 0..3 {
+                            plain.see(f64::from(got.value[c]) / want.0[c] - 1.0, 1e-5, at);
+                        }
+                        plain.see(f64::from(got.pdf) / want.1 - 1.0, 1e-5, at);
+                    }
+                }
+                if let Some(sample) = &samples[k] {
+                    errors.see_weight(sample, book.eval_pdf(double(sample.wi)), &at);
+                }
+            }
+        }
+        errors.check();
+        plain.check();
+    }
+}
