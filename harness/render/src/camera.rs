@@ -1,0 +1,78 @@
+//! A pinhole camera.
+
+use crate::tree::Ray;
+use glam::Vec3;
+
+/// Where the picture is taken from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    eye: Vec3,
+    forward: Vec3,
+    right: Vec3,
+    up: Vec3,
+    /// Tangent of half the vertical angle of view.
+    slope: f32,
+    size: [u32; 2],
+}
+
+impl Camera {
+    /// A camera at `eye` that looks at `at`, with a vertical angle of view in degrees, for pictures of `size` pixels.
+    /// Up in the picture is the world's y; for a camera that looks along y, it is the world's z.
+    #[must_use]
+    pub fn new(eye: Vec3, at: Vec3, view_deg: f32, size: [u32; 2]) -> Self {
+        let forward = (at - eye).normalize_or(Vec3::NEG_Z);
+        let right = forward.cross(Vec3::Y).try_normalize().unwrap_or_else(|| forward.cross(Vec3::Z).normalize());
+        Self { eye, forward, right, up: right.cross(forward), slope: (0.5 * view_deg.to_radians()).tan(), size }
+    }
+
+    /// Width and height of the picture in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The camera mirrored in the plane x = 0: it sees a mirrored scene as a mirrored picture.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
+        let (eye, forward, up) = (mirror(self.eye), mirror(self.forward), mirror(self.up));
+        Self { eye, forward, up, right: -mirror(self.right), ..*self }
+    }
+
+    /// The ray through a point of the picture, in pixels from its upper left corner.
+    #[inline]
+    #[must_use]
+    pub fn ray(&self, x: f32, y: f32) -> Ray {
+        let [width, height] = self.size.map(|side| side as f32);
+        let across = (2.0 * x - width) / height * self.slope;
+        let upwards = (1.0 - 2.0 * y / height) * self.slope;
+        Ray::new(self.eye, (self.forward + across * self.right + upwards * self.up).normalize())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_go_through_the_corners_of_the_view() {
+        let camera = Camera::new(Vec3::new(0.0, 0.0, 10.0), Vec3::ZERO, 90.0, [200, 100]);
+        assert!((camera.ray(100.0, 50.0).direction - Vec3::NEG_Z).length() < 1e-6);
+        let corner = camera.ray(0.0, 0.0).direction;
+        assert!((corner - Vec3::new(-2.0, 1.0, -1.0).normalize()).length() < 1e-6, "{corner}");
+    }
+
+    #[test]
+    fn a_mirrored_camera_sees_the_mirror_image() {
+        let camera = Camera::new(Vec3::new(3.0, 1.0, 10.0), Vec3::new(1.0, 0.0, 0.0), 40.0, [64, 48]);
+        let (ray, other) = (camera.ray(10.0, 7.0), camera.mirrored().ray(54.0, 7.0));
+        let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
+        assert!((mirror(ray.direction) - other.direction).length() < 1e-6 && mirror(ray.origin) == other.origin);
+    }
+
+    #[test]
+    fn looking_straight_down_is_possible() {
+        let ray = Camera::new(Vec3::Y, Vec3::ZERO, 40.0, [10, 10]).ray(3.0, 3.0);
+        assert!(ray.direction.is_normalized());
+    }
+}

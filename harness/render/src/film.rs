@@ -1,0 +1,204 @@
+//! What a picture is made of: sums over samples, tile by tile.
+
+use glam::Vec3;
+use hairis_harness::light::luminance;
+
+/// Side of a tile in pixels.
+pub const TILE: u32 = 32;
+
+/// Part of a picture in pixels: columns `x` to `x + width`, rows `y` to `y + height`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column.
+    pub x: u32,
+    /// First row.
+    pub y: u32,
+    /// Count of columns.
+    pub width: u32,
+    /// Count of rows.
+    pub height: u32,
+}
+
+impl Crop {
+    /// The whole of a picture.
+    #[must_use]
+    pub fn whole([width, height]: [u32; 2]) -> Self {
+        Self { x: 0, y: 0, width, height }
+    }
+
+    /// Pixels, row by row.
+    pub fn pixels(self) -> impl Iterator<Item = [u32; 2]> {
+        (self.y..self.y + self.height).flat_map(move |y| (self.x..self.x + self.width).map(move |x| [x, y]))
+    }
+
+    /// Count of pixels.
+    #[must_use]
+    pub fn len(self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// Whether there are no pixels.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        self.len() == 0
+    }
+
+    /// Tiles of at most [`TILE`] pixels a side.
+    fn tiles(self) -> impl Iterator<Item = Self> {
+        let step = TILE as usize;
+        (self.y..self.y + self.height).step_by(step).flat_map(move |y| {
+            (self.x..self.x + self.width).step_by(step).map(move |x| Self {
+                x,
+                y,
+                width: TILE.min(self.x + self.width - x),
+                height: TILE.min(self.y + self.height - y),
+            })
+        })
+    }
+}
+
+/// Sums over the samples of a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sums {
+    /// Radiance, linear RGB.
+    pub radiance: [f64; 3],
+    /// Square of the luminance.
+    pub luminance_sq: f64,
+}
+
+impl Sums {
+    /// Adds a sample.
+    #[inline]
+    pub fn add(&mut self, radiance: Vec3) {
+        let rgb = radiance.to_array().map(f64::from);
+        for (sum, channel) in self.radiance.iter_mut().zip(rgb) {
+            *sum += channel;
+        }
+        self.luminance_sq += luminance(rgb).powi(2);
+    }
+}
+
+/// A tile: its place, and the sums of its pixels row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tile {
+    /// Which pixels.
+    pub place: Crop,
+    /// Their sums.
+    pub sums: Vec<Sums>,
+    /// Count of samples of each pixel.
+    pub samples: u32,
+    /// Time that a thread worked on it, in seconds.
+    pub seconds: f64,
+}
+
+/// The sums of a picture. Tiles share nothing, so that threads may work on them in any order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    crop: Crop,
+    /// The tiles, row by row.
+    pub tiles: Vec<Tile>,
+}
+
+impl Film {
+    /// No samples yet.
+    #[must_use]
+    pub fn new(crop: Crop) -> Self {
+        let tile = |place: Crop| Tile { place, sums: vec![Sums::default(); place.len()], samples: 0, seconds: 0.0 };
+        Self { crop, tiles: crop.tiles().map(tile).collect() }
+    }
+
+    /// The part of the picture that it covers.
+    #[must_use]
+    pub fn crop(&self) -> Crop {
+        self.crop
+    }
+
+    /// Time that threads worked on it, in seconds.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.tiles.iter().map(|tile| tile.seconds).sum()
+    }
+
+    /// Means over the samples.
+    #[must_use]
+    pub fn picture(&self) -> Picture {
+        let mut picture = Picture::black([self.crop.width, self.crop.height]);
+        for tile in &self.tiles {
+            let by = 1.0 / f64::from(tile.samples.max(1));
+            for ([x, y], sums) in tile.place.pixels().zip(&tile.sums) {
+                let place = (y - self.crop.y) as usize * self.crop.width as usize + (x - self.crop.x) as usize;
+                picture.pixels[place] = sums.radiance.map(|sum| sum * by);
+            }
+        }
+        picture
+    }
+}
+
+/// A picture: linear RGB, row by row from the upper left corner.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Radiance.
+    pub pixels: Vec<[f64; 3]>,
+}
+
+impl Picture {
+    /// A black picture.
+    #[must_use]
+    pub fn black(size: [u32; 2]) -> Self {
+        Self { size, pixels: vec![[0.0; 3]; Crop::whole(size).len()] }
+    }
+
+    /// Mean radiance.
+    #[must_use]
+    pub fn mean(&self) -> [f64; 3] {
+        let by = 1.0 / self.pixels.len().max(1) as f64;
+        core::array::from_fn(|c| self.pixels.iter().map(|pixel| pixel[c]).sum::<f64>() * by)
+    }
+
+    /// The radiance of a pixel.
+    ///
+    /// # Panics
+    ///
+    /// If it lies outside.
+    #[must_use]
+    pub fn at(&self, x: u32, y: u32) -> [f64; 3] {
+        assert!(x < self.size[0] && y < self.size[1], "the pixel lies outside");
+        self.pixels[y as usize * self.size[0] as usize + x as usize]
+    }
+
+    /// Luminance of every pixel.
+    #[must_use]
+    pub fn luminances(&self) -> Vec<f64> {
+        self.pixels.iter().map(|pixel| luminance(*pixel)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_a_crop_once() {
+        let crop = Crop { x: 5, y: 3, width: 70, height: 33 };
+        let film = Film::new(crop);
+        assert_eq!(film.tiles.len(), 6);
+        let mut pixels: Vec<[u32; 2]> = film.tiles.iter().flat_map(|tile| tile.place.pixels()).collect();
+        pixels.sort_unstable();
+        let mut expected: Vec<[u32; 2]> = crop.pixels().collect();
+        expected.sort_unstable();
+        assert_eq!(pixels, expected);
+    }
+
+    #[test]
+    fn a_picture_is_the_mean_of_samples() {
+        let mut film = Film::new(Crop::whole([40, 2]));
+        let tile = &mut film.tiles[1];
+        tile.samples = 2;
+        tile.sums[9].add(Vec3::new(1.0, 2.0, 3.0));
+        tile.sums[9].add(Vec3::new(3.0, 2.0, 1.0));
+        assert_eq!(film.picture().at(33, 1), [2.0; 3]);
+        assert_eq!(film.picture().mean(), [2.0 / 80.0; 3]);
+    }
+}

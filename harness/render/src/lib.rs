@@ -1,0 +1,15 @@
+//! A hair renderer that measures: what scattering models and their samplers are worth on images.
+//!
+//! - [`geometry`]: strands, and what makes them.
+//! - [`tree`]: which segment a ray meets first.
+//!
+//! # Conventions
+//!
+//! - **Unit.** Centimetres.
+//! - **Strands.** Polylines from root to tip with a radius per node. A segment is the truncated cone between two nodes. It
+//!   is numbered by its node on the root side, so that the tips' numbers belong to no segment.
+//! - **Hits.** A ray meets a segment where it passes nearer to the axis than the radius there: the ribbon through the axis
+//!   that faces the ray. Its distance is measured at the axis. The published model is far-field, and sees a fibre as a line.
+
+pub mod geometry;
+pub mod tree;

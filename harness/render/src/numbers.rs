@@ -1,0 +1,127 @@
+//! Uniform numbers for camera rays and paths: functions of seed, pixel, sample and place on the path alone.
+
+use clap::ValueEnum;
+use hairis_harness::sequence::{HALTON_BASES, Halton, mix, to_unit_f32};
+
+/// Where the uniform numbers of a path come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Sequence {
+    /// Independent numbers
+    Independent,
+    /// Scrambled Halton points, as the paper draws its samples: 16 dimensions, independent numbers beyond
+    Halton,
+    /// Owen-scrambled Sobol' points, four dimensions at a time
+    Sobol,
+}
+
+/// Numbers of one path, four at a time.
+///
+/// Groups are independent of each other; samples of one group, pixel and seed are points of one sequence.
+///
+/// ```
+/// use hairis_render::numbers::{Numbers, Sequence};
+/// let below = |sample| Numbers::new(Sequence::Sobol, 1, 7, sample).four()[2] < 0.5;
+/// assert_eq!((0..64).filter(|sample| below(*sample)).count(), 32);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Numbers {
+    sequence: Sequence,
+    key: u64,
+    sample: u32,
+    group: u32,
+}
+
+/// Points of a Sobol' sequence before it is scrambled anew: what the crate allows.
+const SOBOL_POINTS: u32 = 1 << 16;
+
+impl Numbers {
+    /// The numbers of a sample of a pixel.
+    #[inline]
+    #[must_use]
+    pub fn new(sequence: Sequence, seed: u64, pixel: u64, sample: u32) -> Self {
+        Self { sequence, key: mix(mix(seed) ^ pixel), sample, group: 0 }
+    }
+
+    /// The next four numbers, each in `[0, 1 - 2^-24]`.
+    #[inline]
+    pub fn four(&mut self) -> [f32; 4] {
+        let group = self.group;
+        self.group += 1;
+        match self.sequence {
+            Sequence::Sobol => {
+                let turn = u64::from(self.sample / SOBOL_POINTS) << 32 | u64::from(group);
+                sobol_burley::sample_4d(self.sample % SOBOL_POINTS, 0, half(mix(self.key ^ mix(turn))))
+            }
+            Sequence::Halton if group as usize * 4 < HALTON_BASES.len() => {
+                let halton = Halton::new(HALTON_BASES.len(), self.key, 0);
+                let number = |dimension| {
+                    to_unit_f32(halton.coordinate(group as usize * 4 + dimension, u64::from(self.sample)))
+                };
+                core::array::from_fn(number)
+            }
+            Sequence::Independent | Sequence::Halton => {
+                let first = mix(self.key ^ mix(u64::from(self.sample) << 32 | u64::from(group)));
+                let second = mix(first);
+                [half(first >> 32), half(first), half(second >> 32), half(second)].map(unit)
+            }
+        }
+    }
+}
+
+/// The lower 32 bits.
+#[inline]
+fn half(bits: u64) -> u32 {
+    (bits & 0xffff_ffff) as u32
+}
+
+/// The upper 24 bits as a number in `[0, 1)`.
+#[inline]
+fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hairis_harness::stats::chi_square;
+
+    const ALL: [Sequence; 3] = [Sequence::Independent, Sequence::Halton, Sequence::Sobol];
+
+    #[test]
+    fn every_pair_of_every_group_is_uniform() {
+        for sequence in ALL {
+            for group in 0..5 {
+                for (a, b) in [(0, 1), (1, 2), (2, 3), (0, 3)] {
+                    let mut cells = [0_u64; 64];
+                    for pixel in 0..64 {
+                        for sample in 0..100 {
+                            let mut numbers = Numbers::new(sequence, 3, pixel, sample);
+                            let four = (0..=group).map(|_| numbers.four()).last().expect("a group");
+                            assert!(four.iter().all(|x| (0.0..1.0).contains(x)), "{four:?}");
+                            let cell = |x: f32| (0..8).rev().find(|i| x * 8.0 >= *i as f32).unwrap_or(0);
+                            cells[cell(four[a]) * 8 + cell(four[b])] += 1;
+                        }
+                    }
+                    let p = chi_square(&cells, &[100.0; 64], 5.0).p_value;
+                    assert!(p > 1e-4, "{sequence:?}, group {group}, dimensions {a} and {b}: p {p}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn samples_pixels_seeds_and_groups_differ() {
+        for sequence in ALL {
+            let four = |seed, pixel, sample| Numbers::new(sequence, seed, pixel, sample).four();
+            assert_eq!(four(1, 2, 3), four(1, 2, 3));
+            let others = [four(2, 2, 3), four(1, 3, 3), four(1, 2, 4)];
+            assert!(others.iter().all(|other| *other != four(1, 2, 3)), "{sequence:?}");
+            let mut numbers = Numbers::new(sequence, 1, 2, 3);
+            assert_ne!(numbers.four(), numbers.four(), "{sequence:?}");
+        }
+        assert_ne!(
+            Numbers::new(Sequence::Sobol, 1, 2, 0).four(),
+            Numbers::new(Sequence::Sobol, 1, 2, SOBOL_POINTS).four()
+        );
+    }
+}
