@@ -143,7 +143,8 @@ pub fn parse() -> Result<Option<Args>, Error> {
 }
 
 /// The first paragraph of clap's message, in one line; the usage that follows it is left to `--help`.
-fn one_line(message: &str) -> String {
+#[must_use]
+pub fn one_line(message: &str) -> String {
     let first = message.split("\n\n").next().unwrap_or(message);
     let words: Vec<&str> = first.split_whitespace().collect();
     let line = words.join(" ");

@@ -10,7 +10,7 @@ pub mod difference;
 pub mod efficiency;
 pub mod error;
 pub mod figures;
-mod files;
+pub mod files;
 pub mod light;
 pub mod machine;
 pub mod markup;

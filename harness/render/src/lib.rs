@@ -11,5 +11,13 @@
 //! - **Hits.** A ray meets a segment where it passes nearer to the axis than the radius there: the ribbon through the axis
 //!   that faces the ray. Its distance is measured at the axis. The published model is far-field, and sees a fibre as a line.
 
+pub mod camera;
+pub mod film;
+pub mod frames;
 pub mod geometry;
+pub mod lights;
+pub mod material;
+pub mod numbers;
+pub mod scene;
+pub mod transport;
 pub mod tree;

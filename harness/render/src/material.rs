@@ -74,7 +74,9 @@ impl Hair {
     pub fn mean_and_worst_albedo(&self) -> [f32; 2] {
         const STEPS: u16 = 90;
         let offsets: &[f32] = match self {
-            Self::Model(bsdf, ..) if bsdf.model().is_near_field() => &[-0.9, -0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7, 0.9],
+            Self::Model(bsdf, ..) if bsdf.model().is_near_field() => {
+                &[-0.9, -0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7, 0.9]
+            }
             _ => &[0.0],
         };
         let (mut sum, mut weights, mut worst) = ([0.0; 3], 0.0, 0.0_f32);
@@ -131,7 +133,13 @@ impl Prepared {
         let wi = Vec3x8::from(core::array::from_fn::<Vec3, 8, _>(|lane| uniform_direction([xi[1][lane], xi[2][lane]])));
         let Eval8 { value, .. } = self.eval8(&wi);
         let by = cosine(&wi) * f32x8::splat(4.0 * PI);
-        Sample8 { wi, value, pdf: f32x8::splat(0.25 / PI), weight: value.map(|channel| channel * by), slot: f32x8::ZERO }
+        Sample8 {
+            wi,
+            value,
+            pdf: f32x8::splat(0.25 / PI),
+            weight: value.map(|channel| channel * by),
+            slot: f32x8::ZERO,
+        }
     }
 }
 

@@ -54,9 +54,8 @@ impl Numbers {
             }
             Sequence::Halton if group as usize * 4 < HALTON_BASES.len() => {
                 let halton = Halton::new(HALTON_BASES.len(), self.key, 0);
-                let number = |dimension| {
-                    to_unit_f32(halton.coordinate(group as usize * 4 + dimension, u64::from(self.sample)))
-                };
+                let number =
+                    |dimension| to_unit_f32(halton.coordinate(group as usize * 4 + dimension, u64::from(self.sample)));
                 core::array::from_fn(number)
             }
             Sequence::Independent | Sequence::Halton => {

@@ -62,7 +62,11 @@ impl Halton {
     }
 
     /// Coordinate `dim` of the point at `index`, in [0, 1).
-    fn coordinate(&self, dim: usize, index: u64) -> f64 {
+    ///
+    /// # Panics
+    /// When `dim` is not below the number of [`HALTON_BASES`].
+    #[must_use]
+    pub fn coordinate(&self, dim: usize, index: u64) -> f64 {
         let base = HALTON_BASES[dim];
         let b = u64::from(base);
         let mut hash = mix(self.key ^ mix(dim as u64));

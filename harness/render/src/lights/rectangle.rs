@@ -210,7 +210,8 @@ mod tests {
         for _ in 0..60_000 {
             let sample = lamp.sample(origin, xi.next_xi_f32()).expect("in front");
             let place = origin + sample.distance * sample.direction - lamp.corner;
-            let cell = |edge: Vec3| (0..6_usize).rev().find(|k| place.dot(edge) / edge.length_squared() * 6.0 >= *k as f32);
+            let cell =
+                |edge: Vec3| (0..6_usize).rev().find(|k| place.dot(edge) / edge.length_squared() * 6.0 >= *k as f32);
             counts[6 * cell(lamp.edges[0]).unwrap_or(0) + cell(lamp.edges[1]).unwrap_or(0)] += 1;
             // Rounding may put a sample of the rim outside.
             let on_rim = [lamp.edges[0], lamp.edges[1]].iter().any(|edge| {

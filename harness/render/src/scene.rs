@@ -1,0 +1,170 @@
+//! What is rendered: hair, a head, walls and lights, and a camera.
+
+use crate::camera::Camera;
+use crate::geometry::Strands;
+use crate::lights::{LightSample, Rectangle, Seen, Sky};
+use crate::material::Hair;
+use crate::tree::{self, Ray, Tree};
+use glam::Vec3;
+
+/// An ellipsoid along the axes that reflects as Lambert's law says, seen from outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Head {
+    /// Half lengths of its axes.
+    pub radii: Vec3,
+    /// Share of the light that it reflects.
+    pub albedo: Vec3,
+}
+
+impl Head {
+    /// Distance along a ray, if it meets the head from outside beyond `t_min`.
+    #[inline]
+    #[must_use]
+    pub fn meet(&self, origin: Vec3, direction: Vec3, t_min: f32) -> Option<f32> {
+        let (origin, direction) = (origin / self.radii, direction / self.radii);
+        let (a, b) = (direction.length_squared(), origin.dot(direction));
+        let discriminant = b * b - a * (origin.length_squared() - 1.0);
+        let t = (-b - discriminant.max(0.0).sqrt()) / a;
+        (discriminant >= 0.0 && t > t_min).then_some(t)
+    }
+
+    /// Unit normal at a point of the surface.
+    #[inline]
+    #[must_use]
+    pub fn normal(&self, point: Vec3) -> Vec3 {
+        (point / (self.radii * self.radii)).normalize()
+    }
+}
+
+/// What a ray meets first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Met {
+    /// Nothing: the sky.
+    Nothing,
+    /// A fibre.
+    Hair(tree::Hit),
+    /// A surface that reflects, at this point, seen from the side of this normal, with this albedo.
+    Surface(Vec3, Vec3, Vec3),
+    /// A light: its place among the rectangles, and the distance.
+    Light(usize),
+}
+
+/// A scene. Made by [`scenes`](crate::scenes), or by hand.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The fibres.
+    pub strands: Strands,
+    /// Where they are.
+    pub tree: Tree,
+    /// What they are made of.
+    pub hair: Hair,
+    /// The head that they grow on.
+    pub head: Option<Head>,
+    /// Walls and lights.
+    pub rectangles: Vec<Rectangle>,
+    /// Light from infinitely far away.
+    pub sky: Sky,
+    /// Where the picture is taken from.
+    pub camera: Camera,
+    /// Rays that leave a surface start this far above it, in centimetres.
+    pub gap: f32,
+}
+
+impl Scene {
+    /// What a ray meets first.
+    #[inline]
+    #[must_use]
+    pub fn closest(&self, ray: &Ray) -> Met {
+        let mut ray = *ray;
+        let mut met = Met::Nothing;
+        if let Some(head) = &self.head
+            && let Some(t) = head.meet(ray.origin, ray.direction, 0.0).filter(|t| *t < ray.t_max)
+        {
+            ray.t_max = t;
+            let point = ray.origin + t * ray.direction;
+            met = Met::Surface(point, head.normal(point), head.albedo);
+        }
+        for (index, rectangle) in self.rectangles.iter().enumerate() {
+            let Some(t) = rectangle.meet(ray.origin, ray.direction, 0.0).filter(|t| *t < ray.t_max) else { continue };
+            ray.t_max = t;
+            met = if rectangle.emission == Vec3::ZERO {
+                let towards = rectangle.normal().dot(ray.direction) < 0.0;
+                let normal = if towards { rectangle.normal() } else { -rectangle.normal() };
+                Met::Surface(ray.origin + t * ray.direction, normal, rectangle.albedo)
+            } else {
+                Met::Light(index)
+            };
+        }
+        self.tree.closest(&ray).map_or(met, Met::Hair)
+    }
+
+    /// Whether a ray to a light is blocked.
+    #[inline]
+    #[must_use]
+    pub fn blocked(&self, ray: &Ray) -> bool {
+        let t_max = ray.t_max * (1.0 - 1e-4);
+        let short = |t: f32| t < t_max;
+        self.head.is_some_and(|head| head.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
+            || self.rectangles.iter().any(|one| one.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
+            || self.tree.occluded(ray)
+    }
+
+    /// Places of the rectangles that emit.
+    fn lamps(&self) -> impl Iterator<Item = usize> {
+        self.rectangles.iter().enumerate().filter(|(_, one)| one.emission != Vec3::ZERO).map(|(index, _)| index)
+    }
+
+    /// Probability of each light: all are equally likely.
+    fn share(&self) -> f32 {
+        let lights = self.lamps().count() + usize::from(!self.sky.is_black());
+        1.0 / lights.max(1) as f32
+    }
+
+    /// A direction towards a light, from two numbers for the direction and one for the choice.
+    #[inline]
+    #[must_use]
+    pub fn sample_light(&self, origin: Vec3, [x, y, choice]: [f32; 3]) -> Option<LightSample> {
+        let share = self.share();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small count; the cast saturates"
+        )]
+        let index = (choice / share) as usize;
+        let sample = match self.lamps().nth(index) {
+            Some(lamp) => self.rectangles[lamp].sample(origin, [x, y]),
+            None => self.sky.sample([x, y]),
+        }?;
+        Some(LightSample { pdf: sample.pdf * share, ..sample })
+    }
+
+    /// What a ray sees that met no hair and no surface.
+    #[inline]
+    #[must_use]
+    pub fn see(&self, ray: &Ray, met: &Met) -> Option<Seen> {
+        let seen = match met {
+            Met::Hair(_) | Met::Surface(..) => return None,
+            Met::Nothing => self.sky.see(ray.direction),
+            Met::Light(index) => {
+                let lamp = &self.rectangles[*index];
+                Seen { radiance: lamp.emission, pdf: lamp.pdf(ray.origin) }
+            }
+        };
+        (seen.pdf > 0.0).then_some(Seen { pdf: seen.pdf * self.share(), ..seen })
+    }
+
+    /// The lamp that a ray would meet if there were nothing else, or the sky: what it sees, and how far away.
+    #[inline]
+    #[must_use]
+    pub fn light_along(&self, origin: Vec3, direction: Vec3) -> Option<(Seen, f32)> {
+        let mut ray = Ray::new(origin, direction);
+        let mut met = Met::Nothing;
+        for index in self.lamps() {
+            if let Some(t) = self.rectangles[index].meet(origin, direction, 0.0).filter(|t| *t < ray.t_max) {
+                ray.t_max = t;
+                met = Met::Light(index);
+            }
+        }
+        Some((self.see(&ray, &met)?, ray.t_max))
+    }
+}

@@ -1,0 +1,153 @@
+//! Light transport: from a scene to the sums of a film.
+
+mod clock;
+mod gather;
+mod path;
+mod wave;
+
+pub use clock::seconds_of_thread;
+
+use crate::film::{Crop, Film, Tile};
+use crate::numbers::Sequence;
+use crate::scene::Scene;
+use clap::ValueEnum;
+use rayon::prelude::*;
+
+/// How light is estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Integrator {
+    /// Direct light, with samples of light and BSDF at a fixed gather point per camera ray
+    Gather,
+    /// Direct light, one light and one BSDF sample per camera ray
+    Direct,
+    /// Paths
+    Path,
+}
+
+/// Which samples count where light and BSDF samples both find a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Mis {
+    /// Samples of the lights alone
+    Light,
+    /// Samples of the BSDF alone
+    Bsdf,
+    /// Both, weighted by the power heuristic
+    Both,
+}
+
+impl Mis {
+    /// Weight of a sample of density `pdf` that the other strategy would have drawn with density `other`: squared, and
+    /// over the sum of squares.
+    #[inline]
+    fn power(pdf: f32, other: f32) -> f32 {
+        let ratio = f64::from(other) / f64::from(pdf);
+        #[expect(clippy::cast_possible_truncation, reason = "a weight between 0 and 1")]
+        let weight = (1.0 / (1.0 + ratio * ratio)) as f32;
+        weight
+    }
+
+    /// Weight of a sample of a light.
+    #[inline]
+    fn of_light(self, pdf: f32, bsdf: f32) -> f32 {
+        match self {
+            Self::Light => 1.0,
+            Self::Bsdf => 0.0,
+            Self::Both => Self::power(pdf, bsdf),
+        }
+    }
+
+    /// Weight of a sample of the BSDF that met a light.
+    #[inline]
+    fn of_bsdf(self, pdf: f32, light: f32) -> f32 {
+        match self {
+            Self::Light => 0.0,
+            Self::Bsdf => 1.0,
+            Self::Both => Self::power(pdf, light),
+        }
+    }
+}
+
+/// How a picture is made of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// How light is estimated.
+    pub integrator: Integrator,
+    /// Where uniform numbers come from.
+    pub sequence: Sequence,
+    /// Seed of the samples.
+    pub seed: u64,
+    /// Which samples count.
+    pub mis: Mis,
+    /// Most scatterings of a path.
+    pub depth: u32,
+    /// Whether long paths end at random, their survivors weighted.
+    pub roulette: bool,
+    /// Whether a path that comes from hair goes on where it meets hair.
+    pub multiple: bool,
+    /// Camera rays of a pixel for [`Integrator::Gather`].
+    pub rays: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            integrator: Integrator::Path,
+            sequence: Sequence::Sobol,
+            seed: 1,
+            mis: Mis::Both,
+            depth: 64,
+            roulette: true,
+            multiple: true,
+            rays: 1,
+        }
+    }
+}
+
+/// Samples of a pixel in one wave.
+const PASS: u32 = 4;
+
+/// Adds samples to a film until every pixel has `samples`. `progress` is called with the share that is done.
+///
+/// The film has the same bits for any number of threads, and whether samples are added at once or bit by bit; but a film
+/// of [`Integrator::Gather`] is made at once.
+pub fn render(scene: &Scene, settings: &Settings, film: &mut Film, samples: u32, progress: &(dyn Fn(f64) + Sync)) {
+    let total = film.tiles.len().max(1);
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    film.tiles.par_iter_mut().for_each(|tile| {
+        let start = seconds_of_thread();
+        match settings.integrator {
+            Integrator::Gather => gather::tile(scene, settings, tile, samples),
+            Integrator::Direct | Integrator::Path => paths(scene, settings, tile, samples),
+        }
+        tile.seconds += seconds_of_thread() - start;
+        let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        progress(done as f64 / total as f64);
+    });
+}
+
+/// The picture of a part of a scene.
+#[must_use]
+pub fn film(scene: &Scene, settings: &Settings, crop: Crop, samples: u32) -> Film {
+    let mut film = Film::new(crop);
+    render(scene, settings, &mut film, samples, &|_| ());
+    film
+}
+
+/// Adds paths to a tile, a few samples of all its pixels at a time.
+fn paths(scene: &Scene, settings: &Settings, tile: &mut Tile, samples: u32) {
+    let mut wave = wave::Wave::default();
+    while tile.samples < samples {
+        let pass = PASS.min(samples - tile.samples);
+        wave.start(scene, settings, tile.place, tile.samples..tile.samples + pass);
+        path::run(scene, settings, &mut wave);
+        for (sums, radiances) in tile.sums.iter_mut().zip(wave.radiances().chunks_exact(pass as usize)) {
+            radiances.iter().for_each(|radiance| sums.add(*radiance));
+        }
+        tile.samples += pass;
+    }
+}
+
+/// Key of a pixel for uniform numbers: the same in every crop.
+fn key([x, y]: [u32; 2]) -> u64 {
+    u64::from(y) << 32 | u64::from(x)
+}

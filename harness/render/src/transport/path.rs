@@ -1,0 +1,186 @@
+//! Paths, and direct light as their shortest.
+
+use super::wave::{Path, Shadow, Wave};
+use super::{Integrator, Mis, Settings};
+use crate::frames::frames8;
+use crate::lights::LightSample;
+use crate::material::cosine;
+use crate::scene::{Met, Scene};
+use crate::tree::{self, Ray, Skip};
+use core::f32::consts::{PI, TAU};
+use glam::Vec3;
+use hairis::wide::f32x8;
+use hairis::{Hit8, Vec3x8};
+
+/// Scatterings before paths may end at random.
+const FIRST_ROULETTE: u32 = 4;
+/// Largest probability with which a path goes on.
+const MOST_SURVIVAL: f32 = 0.95;
+
+/// Follows all paths of a wave to their ends.
+pub(super) fn run(scene: &Scene, settings: &Settings, wave: &mut Wave) {
+    let depth = if settings.integrator == Integrator::Direct { 1 } else { settings.depth };
+    for scatterings in 0.. {
+        trace(scene, settings, wave, scatterings == 0);
+        if scatterings == depth {
+            break;
+        }
+        wave.shadows.clear();
+        surfaces(scene, settings, wave);
+        hair(scene, settings, wave);
+        for k in 0..wave.shadows.len() {
+            let shadow = wave.shadows[k];
+            if !scene.blocked(&shadow.ray) {
+                wave.add(shadow.slot, shadow.radiance);
+            }
+        }
+        end_some(wave, settings.roulette && scatterings >= FIRST_ROULETTE);
+        if wave.paths.is_empty() {
+            break;
+        }
+    }
+}
+
+/// Finds what every ray meets, and counts the light that it sees.
+fn trace(scene: &Scene, settings: &Settings, wave: &mut Wave, is_first: bool) {
+    wave.met.clear();
+    wave.met.extend(wave.paths.iter().map(|path| scene.closest(&path.ray)));
+    for k in 0..wave.paths.len() {
+        let path = wave.paths[k];
+        let Some(seen) = scene.see(&path.ray, &wave.met[k]) else { continue };
+        let weight = if is_first { 1.0 } else { settings.mis.of_bsdf(path.pdf, seen.pdf) };
+        wave.add(path.slot, path.throughput * seen.radiance * weight);
+    }
+}
+
+/// Scatters at surfaces; puts the hits of hair into the queue, and ends the paths that go no further.
+fn surfaces(scene: &Scene, settings: &Settings, wave: &mut Wave) {
+    wave.hits.clear();
+    for (k, (path, met)) in (0..).zip(wave.paths.iter_mut().zip(&wave.met)) {
+        match met {
+            Met::Hair(_) if path.from_hair && !settings.multiple => path.alive = false,
+            Met::Hair(hit) => wave.hits.push((k, *hit)),
+            Met::Surface(point, normal, albedo) => {
+                let origin = *point + scene.gap * *normal;
+                wave.shadows.extend(reflect(scene, settings, path, origin, *normal, *albedo));
+            }
+            Met::Nothing | Met::Light(_) => path.alive = false,
+        }
+    }
+}
+
+/// Scatters at a surface as Lambert's law says: the light that it receives, and the path's next ray.
+fn reflect(
+    scene: &Scene,
+    settings: &Settings,
+    path: &mut Path,
+    origin: Vec3,
+    normal: Vec3,
+    albedo: Vec3,
+) -> Option<Shadow> {
+    path.throughput *= albedo;
+    let [x, y, choice, _] = path.numbers.four();
+    let light = (settings.mis != Mis::Bsdf).then(|| scene.sample_light(origin, [x, y, choice])).flatten();
+    let shadow = light.and_then(|light| {
+        let pdf = light.direction.dot(normal) / PI;
+        let weight = settings.mis.of_light(light.pdf, pdf) * pdf / light.pdf;
+        let ray = Ray { t_max: light.distance, ..Ray::new(origin, light.direction) };
+        let radiance = path.throughput * light.radiance * weight;
+        (pdf > 0.0).then_some(Shadow { ray, radiance, slot: path.slot })
+    });
+    let [x, y, _, roulette] = path.numbers.four();
+    let (sin, cos) = (TAU * y).sin_cos();
+    let (a, b) = normal.any_orthonormal_pair();
+    let direction = (x.sqrt() * (cos * a + sin * b) + (1.0 - x).sqrt() * normal).normalize();
+    path.pdf = direction.dot(normal) / PI;
+    path.alive = path.pdf > 0.0;
+    path.ray = Ray::new(origin, direction);
+    path.from_hair = false;
+    path.roulette = roulette;
+    shadow
+}
+
+/// Scatters at hair, eight hits at a time. Lanes of the last packet that have no hit repeat its first.
+fn hair(scene: &Scene, settings: &Settings, wave: &mut Wave) {
+    let Wave { paths, hits, shadows, .. } = wave;
+    for packet in hits.chunks(8) {
+        let lanes = |lane: usize| packet.get(lane).unwrap_or(&packet[0]);
+        let at = |lane: usize| (&paths[lanes(lane).0 as usize], lanes(lane).1);
+        let wo: [Vec3; 8] = core::array::from_fn(|lane| -at(lane).0.ray.direction);
+        let tangents: [Vec3; 8] = core::array::from_fn(|lane| scene.strands.tangent(at(lane).1.segment, at(lane).1.s));
+        let wo = Vec3x8::from(wo);
+        let frames = frames8(&tangents.into(), &wo);
+        let h = f32x8::new(core::array::from_fn(|lane| at(lane).1.h));
+        let prepared = scene.hair.prepare8(&Hit8::new(frames.to_local(&wo), h));
+
+        // Uniform numbers, and directions towards lights.
+        let origins: [Vec3; 8] = core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
+        let mut lights = [None; 8];
+        let mut xi = [[0.0; 8]; 3];
+        for (lane, (index, _)) in packet.iter().enumerate() {
+            let path = &mut paths[*index as usize];
+            let [x, y, choice, _] = path.numbers.four();
+            if settings.mis != Mis::Bsdf {
+                lights[lane] = scene.sample_light(origins[lane], [x, y, choice]);
+            }
+            let [lobe, theta, phi, roulette] = path.numbers.four();
+            (xi[0][lane], xi[1][lane], xi[2][lane], path.roulette) = (lobe, theta, phi, roulette);
+        }
+
+        // What the lights add.
+        if settings.mis != Mis::Bsdf {
+            let towards = |light: &Option<LightSample>| light.map_or(Vec3::Y, |light| light.direction);
+            let wi = frames.to_local(&Vec3x8::from(core::array::from_fn::<Vec3, 8, _>(|lane| towards(&lights[lane]))));
+            let (eval, cos) = (prepared.eval8(&wi), cosine(&wi).to_array());
+            for (lane, (index, hit)) in packet.iter().enumerate() {
+                let Some(light) = lights[lane] else { continue };
+                let path = &paths[*index as usize];
+                let eval = eval.lane(lane);
+                let weight = settings.mis.of_light(light.pdf, eval.pdf) * cos[lane] / light.pdf;
+                let radiance = path.throughput * light.radiance * Vec3::from_array(eval.value) * weight;
+                if radiance.max_element() > 0.0 {
+                    let ray = leave(scene, hit, origins[lane], light.direction, cos[lane]);
+                    let ray = Ray { t_max: light.distance, ..ray };
+                    shadows.push(Shadow { ray, radiance, slot: path.slot });
+                }
+            }
+        }
+
+        // The paths' next rays.
+        let sample = prepared.sample8(&xi);
+        let (directions, cos) = (frames.to_world(&sample.wi), cosine(&sample.wi).to_array());
+        for (lane, (index, hit)) in packet.iter().enumerate() {
+            let path = &mut paths[*index as usize];
+            let at = |lanes: &f32x8| lanes.as_array()[lane];
+            path.pdf = at(&sample.pdf);
+            path.alive = path.pdf > 0.0;
+            path.throughput *= Vec3::from_array([0, 1, 2].map(|c| at(&sample.weight[c])));
+            path.ray = leave(scene, hit, origins[lane], directions.lane(lane).normalize_or(Vec3::Y), cos[lane]);
+            path.from_hair = true;
+        }
+    }
+}
+
+/// A ray from the axis of a fibre, in a direction of inclination `cos_theta`.
+#[inline]
+pub(super) fn leave(scene: &Scene, hit: &tree::Hit, origin: Vec3, direction: Vec3, cos_theta: f32) -> Ray {
+    let radius = scene.strands.radius(hit.segment, hit.s);
+    Ray { skip: Some(Skip::leaving(hit.strand, radius, cos_theta)), ..Ray::new(origin, direction) }
+}
+
+/// Removes paths that have ended, and with `roulette` ends some of the others, each with a probability that grows as its
+/// throughput falls.
+fn end_some(wave: &mut Wave, roulette: bool) {
+    wave.paths.retain_mut(|path| {
+        let most = path.throughput.max_element();
+        if !path.alive || most.is_nan() || most <= 0.0 {
+            return false;
+        }
+        if roulette {
+            let survival = most.min(MOST_SURVIVAL);
+            path.throughput /= survival;
+            return path.roulette < survival;
+        }
+        true
+    });
+}

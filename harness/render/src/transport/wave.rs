@@ -1,0 +1,86 @@
+//! The paths of a tile that are followed side by side.
+
+use super::{Settings, key};
+use crate::film::Crop;
+use crate::numbers::Numbers;
+use crate::scene::{Met, Scene};
+use crate::tree::{self, Ray};
+use core::ops::Range;
+use glam::Vec3;
+
+/// A path on its way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path {
+    pub(super) ray: Ray,
+    /// What a unit of radiance along the ray adds to the sample.
+    pub(super) throughput: Vec3,
+    /// Density with which the ray's direction was drawn, per steradian.
+    pub(super) pdf: f32,
+    /// Place of the sample in the wave.
+    pub(super) slot: u32,
+    pub(super) numbers: Numbers,
+    /// Whether the ray comes from hair.
+    pub(super) from_hair: bool,
+    /// Number that decides whether the path goes on.
+    pub(super) roulette: f32,
+    pub(super) alive: bool,
+}
+
+/// A ray to a light, and what the light adds to a sample if nothing is between.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shadow {
+    pub(super) ray: Ray,
+    pub(super) radiance: Vec3,
+    pub(super) slot: u32,
+}
+
+/// Paths and queues of a tile; reused from wave to wave.
+#[derive(Debug, Default)]
+pub(super) struct Wave {
+    pub(super) paths: Vec<Path>,
+    pub(super) met: Vec<Met>,
+    /// Paths that met hair, and where.
+    pub(super) hits: Vec<(u32, tree::Hit)>,
+    pub(super) shadows: Vec<Shadow>,
+    radiances: Vec<Vec3>,
+}
+
+impl Wave {
+    /// Camera rays of some samples of every pixel.
+    pub(super) fn start(&mut self, scene: &Scene, settings: &Settings, place: Crop, samples: Range<u32>) {
+        self.paths.clear();
+        for pixel in place.pixels() {
+            for sample in samples.clone() {
+                let mut numbers = Numbers::new(settings.sequence, settings.seed, key(pixel), sample);
+                let [x, y, ..] = numbers.four();
+                let ray = scene.camera.ray(pixel[0] as f32 + x, pixel[1] as f32 + y);
+                let slot = self.paths.len();
+                #[expect(clippy::cast_possible_truncation, reason = "a tile has a few thousand samples")]
+                let slot = slot as u32;
+                self.paths.push(Path {
+                    ray,
+                    throughput: Vec3::ONE,
+                    pdf: 0.0,
+                    slot,
+                    numbers,
+                    from_hair: false,
+                    roulette: 0.0,
+                    alive: true,
+                });
+            }
+        }
+        self.radiances.clear();
+        self.radiances.resize(self.paths.len(), Vec3::ZERO);
+    }
+
+    /// Adds light to a sample.
+    #[inline]
+    pub(super) fn add(&mut self, slot: u32, radiance: Vec3) {
+        self.radiances[slot as usize] += radiance;
+    }
+
+    /// The samples: those of a pixel side by side.
+    pub(super) fn radiances(&self) -> &[Vec3] {
+        &self.radiances
+    }
+}
