@@ -1,7 +1,11 @@
 //! Strands, and what makes them.
 
 mod bounds;
+mod groom;
+mod spline;
 mod strands;
 
 pub use bounds::Bounds;
+pub use groom::{Groom, HEAD, Kind};
+pub use spline::{Basis, Flattening};
 pub use strands::{Builder, GeometryError, Strands};

@@ -1,49 +1,112 @@
-//! Which segment a ray meets first. Knows strands and rays, and no light.
+//! Which segment a ray meets first: a tree of boxes, eight to a node, over blocks of eight segments.
+//!
+//! It knows strands and rays, and no light. Lanes are eight boxes or eight segments that one ray is tested against, and
+//! [`hairis::Level`] finds their instruction set at run time; hits depend on [`hairis::Level::fuses`] in their last bits,
+//! and on nothing else of the machine.
 
+mod block;
+mod build;
+mod node;
 mod ray;
-mod segment;
+mod split;
+#[cfg(test)]
+mod tests;
+mod traverse;
 
 pub use ray::{Hit, Ray, Skip};
+pub use traverse::Visits;
 
 use crate::geometry::Strands;
+use block::Block;
 use core::fmt;
-use segment::Segment;
+use hairis::Level;
+use node::Node;
+use traverse::{Any, Closest};
+
+/// Scenes are at most this many times as large as the radius of their thinnest strand: distances are computed to about
+/// 2^-22 of the scene, which is then below 3 % of a radius.
+const LARGEST_SCALE: f32 = 1e5;
 
 /// Finds the segments that rays meet.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairis_render::geometry::Strands;
+/// use hairis_render::tree::{Ray, Tree};
+/// let mut builder = Strands::builder();
+/// builder.push([(Vec3::NEG_X, 0.01), (Vec3::X, 0.01)])?;
+/// let tree = Tree::build(&builder.finish())?;
+/// let hit = tree.closest(&Ray::new(Vec3::new(0.0, 3.0, 0.005), Vec3::NEG_Y)).expect("within the radius");
+/// assert!((hit.t - 3.0).abs() < 1e-5 && (hit.h.abs() - 0.5).abs() < 1e-4);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Tree {
-    segments: Vec<Segment>,
+    nodes: Vec<Node>,
+    blocks: Vec<Block>,
+    level: Level,
 }
 
 impl Tree {
-    /// Builds the tree.
+    /// Builds the tree. It is the same for any number of threads.
     ///
     /// # Errors
     ///
     /// If the scene is too large for its radii, see [`TreeError`].
     pub fn build(strands: &Strands) -> Result<Self, TreeError> {
-        let segments = strands.numbers().map(|(strand, number)| Segment::new(strands, strand, number)).collect();
-        Ok(Self { segments })
+        let size = strands.bounds().size().length();
+        let thickest = |strand| strands.nodes_of(strand).map(|k| strands.node_radius(k)).fold(0.0, f32::max);
+        let radius = (0..).take(strands.strands()).map(thickest).filter(|&r| r > 0.0).fold(f32::INFINITY, f32::min);
+        if size > LARGEST_SCALE * radius {
+            return Err(TreeError::Scale { size, radius });
+        }
+        let (nodes, blocks) = build::build(strands);
+        Ok(Self { nodes, blocks, level: Level::detect() })
     }
 
-    /// The nearest segment that the ray meets. Of equally near ones, that of the lowest number.
+    /// The tree, searched with another instruction set.
+    #[must_use]
+    pub fn at(self, level: Level) -> Self {
+        Self { level, ..self }
+    }
+
+    /// The nearest segment that the ray meets. Of equally near ones it is the one with the lowest number, so that images do
+    /// not depend on the shape of the tree.
+    #[inline]
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
-        let nearer =
-            |best: Option<Hit>, hit: Hit| if best.is_some_and(|best| best.t <= hit.t) { best } else { Some(hit) };
-        self.segments.iter().filter_map(|segment| segment.meet(ray)).fold(None, nearer)
+        self.level.run(Closest { tree: self, ray, visits: &mut () })
     }
 
     /// Whether the ray meets any segment.
+    #[inline]
     #[must_use]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.segments.iter().any(|segment| segment.meet(ray).is_some())
+        self.level.run(Any { tree: self, ray, visits: &mut () })
+    }
+
+    /// [`closest`](Self::closest), with the nodes and blocks that it looks at added to `visits`.
+    #[must_use]
+    pub fn closest_counted(&self, ray: &Ray, visits: &mut Visits) -> Option<Hit> {
+        self.level.run(Closest { tree: self, ray, visits })
+    }
+
+    /// [`occluded`](Self::occluded), with the nodes and blocks that it looks at added to `visits`.
+    #[must_use]
+    pub fn occluded_counted(&self, ray: &Ray, visits: &mut Visits) -> bool {
+        self.level.run(Any { tree: self, ray, visits })
+    }
+
+    /// How many nodes and blocks it has.
+    #[must_use]
+    pub fn size(&self) -> Visits {
+        Visits { nodes: self.nodes.len() as u64, blocks: self.blocks.len() as u64 }
     }
 
     /// Its size in bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
-        size_of_val(self.segments.as_slice())
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice())
     }
 }
 
@@ -63,12 +126,11 @@ pub enum TreeError {
 impl fmt::Display for TreeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Scale { size, radius } => {
-                write!(
-                    f,
-                    "a scene must be at most 1e5 times as large as its thinnest strand, got {size} cm and {radius} cm"
-                )
-            }
+            Self::Scale { size, radius } => write!(
+                f,
+                "a scene must be at most {LARGEST_SCALE} times as large as the radius of its thinnest strand, got {size} \
+                 cm and {radius} cm"
+            ),
         }
     }
 }

@@ -113,6 +113,16 @@ impl Strands {
         self.nodes[k].radius + s * (self.nodes[k + 1].radius - self.nodes[k].radius)
     }
 
+    /// The radius at a node.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such node.
+    #[must_use]
+    pub fn node_radius(&self, node: u32) -> f32 {
+        self.nodes[node as usize].radius
+    }
+
     /// The shading tangent at `s`, from root to tip, unit: interpolated between those of the nodes, which are means of
     /// the directions of the segments that meet there.
     ///
@@ -230,6 +240,28 @@ pub enum GeometryError {
         /// What it was.
         radius: f32,
     },
+    /// A setting of a groom was not finite, or out of its range.
+    Setting {
+        /// Which.
+        name: &'static str,
+        /// What it was.
+        value: f32,
+        /// The least that it may be.
+        least: f32,
+        /// The most that it may be.
+        most: f32,
+    },
+    /// A number of things of a groom was out of its range.
+    Count {
+        /// Of what.
+        name: &'static str,
+        /// What it was.
+        value: usize,
+        /// The least that it may be.
+        least: usize,
+        /// The most that it may be.
+        most: usize,
+    },
     /// There were more nodes than can be numbered.
     TooMany,
 }
@@ -242,6 +274,12 @@ impl fmt::Display for GeometryError {
             }
             Self::Radius { node, radius } => {
                 write!(f, "radius must be in [0, {FARTHEST}] cm, got {radius} at node {node}")
+            }
+            Self::Setting { name, value, least, most } => {
+                write!(f, "`{name}` must be in [{least}, {most}], got {value}")
+            }
+            Self::Count { name, value, least, most } => {
+                write!(f, "`{name}` must be from {least} to {most}, got {value}")
             }
             Self::TooMany => write!(f, "strands must have fewer than {MOST_NODES} nodes in all"),
         }

@@ -1,6 +1,7 @@
 //! Rays and hits.
 
 use glam::Vec3;
+use hairis::Lanes;
 
 /// A ray: hits are at distances between 0 and `t_max`, both excluded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,4 +61,37 @@ pub struct Hit {
     /// Offset across the fibre in radii, in `[-1, 1]`: positive on the side of the axis (root to tip) cross the ray's
     /// direction. It is `hairis::Hit::h`.
     pub h: f32,
+}
+
+/// A ray as lanes need it: the same in all of them.
+#[derive(Clone, Copy)]
+pub(super) struct Spread<L> {
+    pub(super) origin: [L; 3],
+    pub(super) direction: [L; 3],
+    /// One over the direction, finite also where that is 0.
+    pub(super) inverse: [L; 3],
+    pub(super) origin_inverse: [L; 3],
+    /// Along which axes the ray goes down, as 0 or 1.
+    pub(super) negative: [usize; 3],
+}
+
+impl<L: Lanes> Spread<L> {
+    #[inline(always)]
+    pub(super) fn new(ray: &Ray) -> Self {
+        let (o, d) = (ray.origin, ray.direction);
+        let inverse = [reciprocal(d.x), reciprocal(d.y), reciprocal(d.z)];
+        Self {
+            origin: [L::splat(o.x), L::splat(o.y), L::splat(o.z)],
+            direction: [L::splat(d.x), L::splat(d.y), L::splat(d.z)],
+            inverse: [L::splat(inverse[0]), L::splat(inverse[1]), L::splat(inverse[2])],
+            origin_inverse: [L::splat(o.x * inverse[0]), L::splat(o.y * inverse[1]), L::splat(o.z * inverse[2])],
+            negative: [usize::from(inverse[0] < 0.0), usize::from(inverse[1] < 0.0), usize::from(inverse[2] < 0.0)],
+        }
+    }
+}
+
+/// `1 / x`, at most 1e18 in magnitude, so that no product with it is NaN.
+#[inline(always)]
+fn reciprocal(x: f32) -> f32 {
+    if x.abs() < 1e-18 { 1e18_f32.copysign(x) } else { 1.0 / x }
 }

@@ -1,0 +1,127 @@
+//! Hair on a head: roots on an ellipsoid, clumps, curls.
+
+use super::random::{Random, Stream};
+use super::{Groom, HEAD};
+use core::f32::consts::TAU;
+use glam::Vec3;
+
+/// The part of the height of the ellipsoid that has hair, from above.
+const COVERED: f32 = 0.625;
+/// Strands stay outside the ellipsoid times this.
+const CLEARANCE: f32 = 1.02;
+/// How far guides are longer than strands.
+const GUIDE_LENGTH: f32 = 1.05;
+/// pi (3 - sqrt 5): successive roots are this far apart in azimuth, which spreads them evenly.
+const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
+
+/// Clumps, ready for strands to be grown.
+#[derive(Clone, Debug)]
+pub(super) struct Head {
+    groom: Groom,
+    clumps: Vec<Clump>,
+}
+
+#[derive(Clone, Debug)]
+struct Clump {
+    /// The root on the unit sphere.
+    root: Vec3,
+    guide: Vec<Vec3>,
+    phase: f32,
+    curl_length: f32,
+}
+
+impl Head {
+    pub(super) fn new(groom: Groom) -> Self {
+        let clump = |index| {
+            let mut random = Random::new(groom.seed, Stream::Clump(index));
+            let root = root(index, groom.clumps, &mut random);
+            Clump {
+                root,
+                guide: fall(&groom, root, GUIDE_LENGTH * groom.length, 0.03, &mut random),
+                phase: random.phase(),
+                curl_length: groom.curl_length * (1.0 + 0.15 * random.normal_cut()),
+            }
+        };
+        Self { groom, clumps: (0..groom.clumps).map(clump).collect() }
+    }
+
+    /// The nodes of a strand.
+    pub(super) fn strand(&self, strand: usize) -> Vec<Vec3> {
+        let groom = &self.groom;
+        let mut random = Random::new(groom.seed, Stream::Strand(strand));
+        let root = root(strand, groom.strands, &mut random);
+        let length = groom.length * (1.0 + groom.length_spread * random.normal_cut());
+        let mut nodes = fall(groom, root, length, 0.06 + groom.frizz, &mut random);
+        let clump = self.nearest(root);
+        let phase = clump.phase + 0.5 * random.normal();
+        let curl_radius = groom.curl_radius * (1.0 + 0.2 * random.normal_cut());
+        let step = length / (groom.nodes - 1) as f32;
+        for k in 1..nodes.len() {
+            let s = k as f32 / (groom.nodes - 1) as f32;
+            let guide = clump.guide[k];
+            let (side, other) = (guide - clump.guide[k - 1]).normalize().any_orthonormal_pair();
+            let angle = phase + TAU * k as f32 * step / clump.curl_length;
+            let curl = curl_radius * (4.0 * s).min(1.0);
+            let frizz = Vec3::new(random.normal(), random.normal(), random.normal());
+            nodes[k] = nodes[k].lerp(guide, groom.clump * libm::powf(s, 0.7))
+                + curl * (libm::cosf(angle) * side + libm::sinf(angle) * other)
+                + 0.5 * groom.frizz * s * frizz;
+        }
+        nodes
+    }
+
+    /// The clump with the nearest root. Roots go down in y with their number, so that few have to be looked at.
+    fn nearest(&self, root: Vec3) -> &Clump {
+        let below = self.clumps.partition_point(|clump| clump.root.y > root.y);
+        let (upper, lower) = self.clumps.split_at(below);
+        let mut best = (f32::INFINITY, &self.clumps[0]);
+        let ways: [&mut dyn Iterator<Item = &Clump>; 2] = [&mut upper.iter().rev(), &mut lower.iter()];
+        for clumps in ways {
+            for clump in clumps {
+                let distance = root.distance_squared(clump.root);
+                if distance < best.0 {
+                    best = (distance, clump);
+                }
+                if (root.y - clump.root.y) * (root.y - clump.root.y) > best.0 {
+                    break;
+                }
+            }
+        }
+        best.1
+    }
+}
+
+/// A root on the unit sphere: `index` of `count` on a golden spiral, jittered.
+fn root(index: usize, count: usize, random: &mut Random) -> Vec3 {
+    let y = 1.0 - 2.0 * COVERED * (index as f32 + random.uniform()) / count as f32;
+    #[expect(clippy::cast_possible_truncation, reason = "rounded to the nearest")]
+    let azimuth = (GOLDEN_ANGLE * index as f64 % core::f64::consts::TAU) as f32;
+    let across = (1.0 - y * y).max(0.0).sqrt();
+    Vec3::new(across * libm::cosf(azimuth), y, across * libm::sinf(azimuth))
+}
+
+/// Nodes of a strand that leaves the head along its normal and bends down, round the head.
+fn fall(groom: &Groom, root: Vec3, length: f32, waviness: f32, random: &mut Random) -> Vec<Vec3> {
+    let step = length / (groom.nodes - 1) as f32;
+    let aside = 0.015 * Vec3::new(-root.z, 0.0, root.x);
+    let phases = Vec3::new(random.phase(), random.phase(), random.phase());
+    let mut position = root * HEAD;
+    let mut direction = (root / HEAD).normalize();
+    let mut nodes = vec![position];
+    for k in 1..groom.nodes {
+        let s = k as f32 * step;
+        let wave = (phases + s * Vec3::new(1.7, 2.3, 2.9)).to_array().map(libm::sinf);
+        let pull = groom.gravity * Vec3::NEG_Y + aside + waviness * Vec3::from_array(wave);
+        direction = (direction + step * pull).normalize();
+        position += step * direction;
+        let shell = CLEARANCE * HEAD;
+        let inside = position / shell;
+        if inside.length_squared() < 1.0 {
+            let pushed = inside.normalize() * shell;
+            direction = (direction + (pushed - position) / step).normalize();
+            position = pushed;
+        }
+        nodes.push(position);
+    }
+    nodes
+}

@@ -1,0 +1,50 @@
+//! Random numbers of a strand or a clump.
+
+use core::f32::consts::TAU;
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+
+/// What a sequence of numbers is for: no two share numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Stream {
+    /// A strand, by number.
+    Strand(usize),
+    /// A clump, by number.
+    Clump(usize),
+}
+
+/// Random numbers of one strand or clump: they depend on the seed and its number alone.
+#[derive(Clone, Debug)]
+pub(super) struct Random(ChaCha8Rng);
+
+impl Random {
+    pub(super) fn new(seed: u64, stream: Stream) -> Self {
+        let mut numbers = ChaCha8Rng::seed_from_u64(seed);
+        numbers.set_stream(match stream {
+            Stream::Strand(strand) => 2 * strand as u64,
+            Stream::Clump(clump) => 2 * clump as u64 + 1,
+        });
+        Self(numbers)
+    }
+
+    /// Uniform over `[0, 1)`.
+    pub(super) fn uniform(&mut self) -> f32 {
+        (self.0.next_u32() >> 8) as f32 / (1 << 24) as f32
+    }
+
+    /// A phase, uniform over `[0, 2 pi)`.
+    pub(super) fn phase(&mut self) -> f32 {
+        TAU * self.uniform()
+    }
+
+    /// Normal with deviation 1, by Box and Muller.
+    pub(super) fn normal(&mut self) -> f32 {
+        let radius = (-2.0 * libm::logf(1.0 - self.uniform())).sqrt();
+        radius * libm::cosf(self.phase())
+    }
+
+    /// [`normal`](Self::normal), cut at two deviations.
+    pub(super) fn normal_cut(&mut self) -> f32 {
+        self.normal().clamp(-2.0, 2.0)
+    }
+}

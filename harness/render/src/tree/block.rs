@@ -1,0 +1,105 @@
+//! Eight segments, and which of them a ray meets.
+
+use super::ray::{Hit, Ray, Spread};
+use crate::geometry::Strands;
+use glam::Vec3;
+use hairis::wide::f32x8;
+use hairis::{Broadcast, Lanes};
+
+/// Eight segments, lane by lane. Free lanes start at NaN, which nothing meets.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Block {
+    start: [f32x8; 3],
+    edge: [f32x8; 3],
+    radius: f32x8,
+    /// How much larger the radius is at the other end.
+    widening: f32x8,
+    number: [u32; 8],
+    strand: [u32; 8],
+}
+
+impl Block {
+    /// The segments of at most eight numbers.
+    pub(super) fn new(strands: &Strands, numbers: impl IntoIterator<Item = (u32, u32)>) -> Self {
+        let (mut start, mut edge) = ([[f32::NAN; 8]; 3], [[0.0; 8]; 3]);
+        let (mut radius, mut widening) = ([0.0; 8], [0.0; 8]);
+        let (mut number, mut strand) = ([u32::MAX; 8], [u32::MAX; 8]);
+        for (lane, (of, k)) in numbers.into_iter().enumerate() {
+            let from = strands.position(k, 0.0);
+            let along = strands.position(k, 1.0) - from;
+            for axis in 0..3 {
+                start[axis][lane] = from[axis];
+                edge[axis][lane] = along[axis];
+            }
+            radius[lane] = strands.radius(k, 0.0);
+            widening[lane] = strands.radius(k, 1.0) - radius[lane];
+            (number[lane], strand[lane]) = (k, of);
+        }
+        let [start, edge] = [start, edge].map(|vectors| vectors.map(f32x8::new));
+        Self { start, edge, radius: f32x8::new(radius), widening: f32x8::new(widening), number, strand }
+    }
+
+    /// Where the ray passes nearer to an axis than the radius there, before `limit`: lanes as bits, distances, and places
+    /// along the segments.
+    #[inline(always)]
+    pub(super) fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2])
+    where
+        f32x8: Broadcast<L>,
+    {
+        let [dx, dy, dz] = ray.direction;
+        let from = [
+            self.start[0].lanes() - ray.origin[0],
+            self.start[1].lanes() - ray.origin[1],
+            self.start[2].lanes() - ray.origin[2],
+        ];
+        let edge: [L; 3] = [self.edge[0].lanes(), self.edge[1].lanes(), self.edge[2].lanes()];
+        let from_along = from[0].mul_add(dx, from[1].mul_add(dy, from[2] * dz));
+        let edge_along = edge[0].mul_add(dx, edge[1].mul_add(dy, edge[2] * dz));
+        // Start and edge without their parts along the ray, the first with its sign turned.
+        let start = [from_along.mul_sub(dx, from[0]), from_along.mul_sub(dy, from[1]), from_along.mul_sub(dz, from[2])];
+        let edge = [edge[0] - edge_along * dx, edge[1] - edge_along * dy, edge[2] - edge_along * dz];
+        // The place nearest to the ray.
+        let edge_sq = edge[0].mul_add(edge[0], edge[1].mul_add(edge[1], edge[2] * edge[2]));
+        let start_edge = start[0].mul_add(edge[0], start[1].mul_add(edge[1], start[2] * edge[2]));
+        let s = (start_edge / edge_sq.max(L::splat(1e-30))).max(L::splat(0.0)).min(L::splat(1.0));
+        let axis = [s.mul_sub(edge[0], start[0]), s.mul_sub(edge[1], start[1]), s.mul_sub(edge[2], start[2])];
+        let distance_sq = axis[0].mul_add(axis[0], axis[1].mul_add(axis[1], axis[2] * axis[2]));
+        let radius = s.mul_add(self.widening.lanes(), self.radius.lanes());
+        let t = s.mul_add(edge_along, from_along);
+        let within = L::and(L::splat(0.0).lt(t), t.lt(L::splat(limit)));
+        let met = L::and(distance_sq.lt(radius * radius), within);
+        (bits::<L>(met), [t.store(), s.store()])
+    }
+
+    /// Whether the segment is of a strand that the ray leaves, and at a distance that it ignores.
+    #[inline(always)]
+    pub(super) fn skipped(&self, lane: usize, t: f32, ray: &Ray) -> bool {
+        ray.skip.is_some_and(|skip| skip.strand == self.strand[lane] && t < skip.before)
+    }
+
+    /// Number of the segment.
+    #[inline(always)]
+    pub(super) fn number(&self, lane: usize) -> u32 {
+        self.number[lane]
+    }
+
+    /// All of a hit, of which distance and place are known.
+    #[inline]
+    pub(super) fn hit(&self, lane: usize, ray: &Ray, t: f32, s: f32) -> Hit {
+        let vector = |of: &[f32x8; 3]| Vec3::from(of.map(|lanes| lanes.as_array()[lane]));
+        let edge = vector(&self.edge);
+        let radius = self.radius.as_array()[lane] + s * self.widening.as_array()[lane];
+        let from_axis = ray.origin - (vector(&self.start) + s * edge);
+        // A ray along the axis has no side.
+        let side = edge.cross(ray.direction).normalize_or_zero();
+        let h = (from_axis.dot(side) / radius).clamp(-1.0, 1.0);
+        Hit { t, segment: self.number[lane], strand: self.strand[lane], s, h }
+    }
+}
+
+/// Lanes of a mask as bits.
+#[inline(always)]
+pub(super) fn bits<L: Lanes<Stored = f32x8>>(mask: L::Mask) -> u32 {
+    L::keep(mask, L::splat(-1.0)).store().to_bitmask()
+}

@@ -1,0 +1,1 @@
+//! The tree against every segment one by one.

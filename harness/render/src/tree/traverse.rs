@@ -1,0 +1,154 @@
+//! The search through the tree: near boxes first.
+
+use super::Tree;
+use super::build::DEEPEST;
+use super::node::Child;
+use super::ray::{Hit, Ray, Spread};
+use hairis::wide::f32x8;
+use hairis::{Broadcast, Kernel, Lanes};
+
+/// Numbers of nodes and blocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Visits {
+    /// Nodes: eight boxes each.
+    pub nodes: u64,
+    /// Blocks: eight segments each.
+    pub blocks: u64,
+}
+
+/// Counts what a search looks at, or does not.
+pub(super) trait Count {
+    fn node(&mut self);
+    fn block(&mut self);
+}
+
+impl Count for () {
+    #[inline(always)]
+    fn node(&mut self) {}
+    #[inline(always)]
+    fn block(&mut self) {}
+}
+
+impl Count for Visits {
+    #[inline(always)]
+    fn node(&mut self) {
+        self.nodes += 1;
+    }
+    #[inline(always)]
+    fn block(&mut self) {
+        self.blocks += 1;
+    }
+}
+
+/// The nearest hit of a ray.
+pub(super) struct Closest<'a, C> {
+    pub(super) tree: &'a Tree,
+    pub(super) ray: &'a Ray,
+    pub(super) visits: &'a mut C,
+}
+
+/// Whether a ray meets anything.
+pub(super) struct Any<'a, C> {
+    pub(super) tree: &'a Tree,
+    pub(super) ray: &'a Ray,
+    pub(super) visits: &'a mut C,
+}
+
+impl<C: Count> Kernel for Closest<'_, C> {
+    type Constant = f32x8;
+    type Output = Option<Hit>;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Option<Hit>
+    where
+        f32x8: Broadcast<L>,
+    {
+        search::<L, C, false>(self.tree, self.ray, self.visits)
+    }
+}
+
+impl<C: Count> Kernel for Any<'_, C> {
+    type Constant = f32x8;
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> bool
+    where
+        f32x8: Broadcast<L>,
+    {
+        search::<L, C, true>(self.tree, self.ray, self.visits).is_some()
+    }
+}
+
+/// The nearest hit so far.
+#[derive(Clone, Copy)]
+struct Best {
+    t: f32,
+    s: f32,
+    block: usize,
+    lane: usize,
+    number: u32,
+}
+
+/// Seven siblings wait at each level, and the root.
+const STACK: usize = 7 * DEEPEST + 1;
+
+/// The nearest hit, or with `ANY` the first that is found, of which only that it is there is known.
+#[inline(always)]
+fn search<L: Lanes<Stored = f32x8>, C: Count, const ANY: bool>(tree: &Tree, ray: &Ray, visits: &mut C) -> Option<Hit>
+where
+    f32x8: Broadcast<L>,
+{
+    let spread = Spread::<L>::new(ray);
+    // No segment has a number below 0: what is at `t_max` itself is not met.
+    let mut best = Best { t: ray.t_max, s: 0.0, block: usize::MAX, lane: 0, number: 0 };
+    let mut stack = [(Child::ROOT, 0.0_f32); STACK];
+    let mut waiting = 1;
+    while waiting > 0 {
+        waiting -= 1;
+        let (child, near) = stack[waiting];
+        if near > best.t {
+            continue;
+        }
+        if child.is_block() {
+            visits.block();
+            let block = &tree.blocks[child.index()];
+            // Segments as near as the best one may have lower numbers.
+            let limit = if ANY { best.t } else { best.t.next_up() };
+            let (mut met, [t, s]) = block.meet(&spread, limit);
+            while met != 0 {
+                let lane = met.trailing_zeros() as usize;
+                met &= met - 1;
+                let (t, number) = (t.as_array()[lane], block.number(lane));
+                let nearer = t < best.t || (t == best.t && number < best.number);
+                if nearer && !block.skipped(lane, t, ray) {
+                    best = Best { t, s: s.as_array()[lane], block: child.index(), lane, number };
+                    if ANY {
+                        met = 0;
+                        waiting = 0;
+                    }
+                }
+            }
+        } else {
+            visits.node();
+            let node = &tree.nodes[child.index()];
+            let (mut passed, near) = node.pass(&spread, best.t);
+            let first = waiting;
+            while passed != 0 {
+                let lane = passed.trailing_zeros() as usize;
+                passed &= passed - 1;
+                let near = near.as_array()[lane];
+                // Inserted so that the nearest is on top.
+                let mut place = waiting;
+                while !ANY && place > first && stack[place - 1].1 < near {
+                    stack[place] = stack[place - 1];
+                    place -= 1;
+                }
+                stack[place] = (node.child(lane), near);
+                waiting += 1;
+            }
+        }
+    }
+    let block = tree.blocks.get(best.block)?;
+    Some(block.hit(best.lane, ray, best.t, best.s))
+}
