@@ -11,13 +11,20 @@
 //! - **Hits.** A ray meets a segment where it passes nearer to the axis than the radius there: the ribbon through the axis
 //!   that faces the ray. Its distance is measured at the axis. The published model is far-field, and sees a fibre as a line.
 
+pub mod args;
 pub mod camera;
+pub mod cmd;
+mod figures;
 pub mod film;
 pub mod frames;
 pub mod geometry;
+pub mod hair;
 pub mod lights;
 pub mod material;
 pub mod numbers;
+pub mod picture;
+pub mod protocol;
 pub mod scene;
+pub mod scenes;
 pub mod transport;
 pub mod tree;

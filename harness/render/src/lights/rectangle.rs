@@ -43,19 +43,25 @@ struct View {
 }
 
 impl Rectangle {
-    /// A light with a corner, two edges at a right angle, and a radiance. It shines to the side of `edge_a x edge_b`, or
-    /// to the other if that is where the origin is.
+    /// A light with a corner, two edges at a right angle, and a radiance. It shines to the side of the origin.
     #[must_use]
     pub fn light(corner: Vec3, edge_a: Vec3, edge_b: Vec3, emission: Vec3) -> Self {
         Self { emission, ..Self::wall(corner, edge_a, edge_b, Vec3::ZERO) }
     }
 
-    /// A wall that reflects; its normal looks to the side of the origin.
+    /// A wall that reflects. Its normal is on the side of the origin.
     #[must_use]
     pub fn wall(corner: Vec3, edge_a: Vec3, edge_b: Vec3, albedo: Vec3) -> Self {
         let normal = edge_a.cross(edge_b).normalize();
         let normal = if normal.dot(corner) > 0.0 { -normal } else { normal };
         Self { corner, edges: [edge_a, edge_b], normal, emission: Vec3::ZERO, albedo }
+    }
+
+    /// The same rectangle, its normal on the side of a point.
+    #[must_use]
+    pub fn facing(self, point: Vec3) -> Self {
+        let normal = if self.normal.dot(point - self.corner) < 0.0 { -self.normal } else { self.normal };
+        Self { normal, ..self }
     }
 
     /// Unit normal, on the side that emits.

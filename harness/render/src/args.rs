@@ -1,0 +1,210 @@
+//! The raw flags, and what clap cannot check.
+
+use crate::film::Crop;
+use crate::hair::Energy;
+use crate::numbers::Sequence;
+use crate::scenes::Name;
+use crate::transport::{Integrator, Mis};
+use clap::{Parser, Subcommand};
+use core::str::FromStr;
+use hairis_harness::args::one_line;
+use hairis_harness::error::Error;
+use std::path::PathBuf;
+
+/// Renders hair to measure scattering models and their samplers on images.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "hairis-render", version, arg_required_else_help = false)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The subcommands, each with its flags.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene: an EXR file and a PNG preview
+    Render(Render),
+    /// Compare samplers on all scenes, at equal samples and at equal time: one page
+    Figures(Figures),
+}
+
+/// Flags of `hairis-render render`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Render {
+    /// The scene
+    #[arg(value_enum)]
+    pub scene: Name,
+    /// Preset of the hair [default: that of the scene]
+    #[arg(long, value_name = "PRESET")]
+    pub hair: Option<String>,
+    /// Scattering model
+    #[arg(long, value_name = "NAME", default_value = "gaussian")]
+    pub model: String,
+    /// How directions are drawn: uniform, published, or a word of the model's
+    #[arg(long, value_name = "WORD")]
+    pub sampler: Option<String>,
+    /// How light is estimated [default: that of the scene]
+    #[arg(long, value_enum)]
+    pub integrator: Option<Integrator>,
+    /// Samples of a pixel [default: that of the scene]
+    #[arg(long, value_name = "N", conflicts_with = "time")]
+    pub spp: Option<u32>,
+    /// Seconds after which no further pass begins, in place of a count of samples
+    #[arg(long, value_name = "S")]
+    pub time: Option<f64>,
+    /// Where uniform numbers come from
+    #[arg(long, value_enum, default_value_t = Sequence::Sobol)]
+    pub xi: Sequence,
+    /// Which samples count where both find a light
+    #[arg(long, value_enum, default_value_t = Mis::Both)]
+    pub mis: Mis,
+    /// Most scatterings of a path
+    #[arg(long, value_name = "N", default_value_t = 64)]
+    pub depth: u32,
+    /// End paths that come from hair where they meet hair
+    #[arg(long)]
+    pub no_multiple: bool,
+    /// Camera rays of a pixel for --integrator gather
+    #[arg(long, value_name = "K", default_value_t = 1)]
+    pub aa: u32,
+    /// Whether hair scatters as the model says [default: raw]
+    #[arg(long, value_enum)]
+    pub energy: Option<Energy>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "512x512")]
+    pub size: Size,
+    /// The part of the picture to render
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub crop: Option<CropArg>,
+    /// Strands of the procedural hair
+    #[arg(long, value_name = "N", default_value_t = 30_000)]
+    pub strands: usize,
+    /// Hair from a file in place of the scene's
+    #[arg(long, value_name = "FILE.hair|.tfx")]
+    pub import: Option<PathBuf>,
+    /// Environment map in place of the scene's light, latitude-longitude, .hdr or .exr
+    #[arg(long, value_name = "FILE")]
+    pub env: Option<PathBuf>,
+    /// Seed of the samples
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Factor on radiance in the preview [default: by the picture's brightness]
+    #[arg(long, value_name = "X")]
+    pub exposure: Option<f64>,
+    /// The EXR file; the preview lies beside it [default: out/render/SCENE.exr]
+    #[arg(long, value_name = "FILE.exr")]
+    pub out: Option<PathBuf>,
+}
+
+/// Flags of `hairis-render figures`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Figures {
+    /// Small pictures, in less than three minutes
+    #[arg(long)]
+    pub quick: bool,
+    /// Environment maps, each a scene of its own [default: a clear sky]
+    #[arg(long, value_name = "FILE")]
+    pub env: Vec<PathBuf>,
+    /// Seed of the samples
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Only these scenes
+    #[arg(long, value_enum, value_name = "SCENE")]
+    pub scene: Vec<Name>,
+    /// Folder for report.html and the pictures; made if missing
+    #[arg(long, value_name = "DIR", default_value = "out/figures")]
+    pub out: PathBuf,
+}
+
+/// Width and height in pixels: 1 to 16384 each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size(pub [u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let sides = text.split('x').map(|side| side.parse().ok().filter(|side| (1..=16384).contains(side)));
+        match sides.collect::<Option<Vec<u32>>>().as_deref() {
+            Some(&[width, height]) => Ok(Self([width, height])),
+            _ => Err("must be WxH, each from 1 to 16384".to_owned()),
+        }
+    }
+}
+
+/// A part of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CropArg(pub Crop);
+
+impl FromStr for CropArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split(',').map(|number| number.parse().ok()).collect::<Option<Vec<u32>>>().as_deref() {
+            Some(&[x, y, width, height]) if width > 0 && height > 0 => Ok(Self(Crop { x, y, width, height })),
+            _ => Err("must be X,Y,W,H, with W and H above 0".to_owned()),
+        }
+    }
+}
+
+impl Render {
+    /// The part of the picture to render.
+    ///
+    /// # Errors
+    ///
+    /// If it does not lie within the picture.
+    pub fn part(&self) -> Result<Crop, Error> {
+        let Size([width, height]) = self.size;
+        let Some(CropArg(crop)) = self.crop else { return Ok(Crop::whole([width, height])) };
+        let within = |from: u32, count: u32, all: u32| from.checked_add(count).is_some_and(|end| end <= all);
+        if within(crop.x, crop.width, width) && within(crop.y, crop.height, height) {
+            return Ok(crop);
+        }
+        Err(Error::Usage(format!("--crop must lie within {width}x{height}")))
+    }
+
+    /// Checks what depends on one flag alone.
+    ///
+    /// # Errors
+    ///
+    /// If a count or a number is out of its range.
+    pub fn check(&self) -> Result<(), Error> {
+        let refuse = |flag: &str, range: &str, got: &dyn core::fmt::Display| {
+            Err(Error::Usage(format!("{flag} must be {range}, got {got}")))
+        };
+        if let Some(spp) = self.spp.filter(|spp| !(1..=1 << 20).contains(spp)) {
+            return refuse("--spp", "from 1 to 1048576", &spp);
+        }
+        if let Some(time) = self.time.filter(|time| !(*time > 0.0 && time.is_finite())) {
+            return refuse("--time", "a number of seconds above 0", &time);
+        }
+        if let Some(exposure) = self.exposure.filter(|exposure| !(*exposure > 0.0 && exposure.is_finite())) {
+            return refuse("--exposure", "a number above 0", &exposure);
+        }
+        if !(1..=4096).contains(&self.aa) {
+            return refuse("--aa", "from 1 to 4096", &self.aa);
+        }
+        if !(1..=10_000).contains(&self.depth) {
+            return refuse("--depth", "from 1 to 10000", &self.depth);
+        }
+        Ok(())
+    }
+}
+
+/// The flags this process was started with; `None` if they asked for help or the version, which then is printed.
+///
+/// # Errors
+///
+/// [`Error::Usage`], in one line, if they make no sense.
+pub fn parse() -> Result<Option<Args>, Error> {
+    match Args::try_parse() {
+        Ok(args) => Ok(Some(args)),
+        Err(error) if error.use_stderr() => Err(Error::Usage(one_line(&error.to_string()))),
+        Err(help) => {
+            // Ignore write errors, as in `hairis-render --help | head -1`.
+            let _ = help.print();
+            Ok(None)
+        }
+    }
+}

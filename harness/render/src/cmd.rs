@@ -1,0 +1,20 @@
+//! The subcommands.
+
+mod render;
+
+pub(crate) use render::environment;
+
+use crate::args::{Args, Command};
+use hairis_harness::error::Error;
+
+/// Runs a subcommand.
+///
+/// # Errors
+///
+/// Those of the subcommand.
+pub fn run(args: Args) -> Result<(), Error> {
+    match args.command {
+        Command::Render(flags) => render::run(&flags),
+        Command::Figures(flags) => crate::figures::run(&flags),
+    }
+}

@@ -1,0 +1,76 @@
+//! `hairis-render figures`: samplers side by side, as pictures and as numbers, on one page.
+
+mod measure;
+mod page;
+mod panel;
+mod verdict;
+
+use crate::args::Figures;
+use crate::cmd::environment;
+use crate::scenes::Name;
+use hairis_harness::error::Error;
+use indicatif::{ProgressBar, ProgressStyle};
+use measure::{Measured, Plan};
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::Path;
+
+/// The scenes that are compared, without maps of the caller's.
+const SCENES: [Name; 6] = [Name::Area, Name::AreaSoft, Name::AreaHead, Name::Env, Name::Box, Name::Head];
+/// Those of a quick run.
+const QUICK: [Name; 4] = [Name::Area, Name::AreaHead, Name::Box, Name::Head];
+
+/// Compares samplers on every scene, and writes `report.html` with an EXR file of each picture beside it.
+///
+/// # Errors
+///
+/// If a map cannot be read or a file cannot be written; before anything is rendered.
+pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
+    let maps = flags.env.iter().map(|path| environment(path)).collect::<Result<Vec<_>, _>>()?;
+    prepare(&flags.out)?;
+    let plan = if flags.quick { Plan::QUICK } else { Plan::FULL };
+    let chosen: &[Name] = match (flags.scene.as_slice(), flags.quick) {
+        ([], true) => &QUICK,
+        ([], false) => &SCENES,
+        (scenes, _) => scenes,
+    };
+    let mut scenes = Vec::new();
+    for name in chosen {
+        if *name == Name::Env && !maps.is_empty() {
+            scenes.extend(maps.iter().map(|map| (*name, Some(map.clone()))));
+        } else {
+            scenes.push((*name, None));
+        }
+    }
+    let bar = ProgressBar::new(plan.steps(scenes.len()) as u64);
+    if let Ok(style) = ProgressStyle::with_template("{msg:>30} {wide_bar} {percent:>3}% {elapsed} (left {eta})") {
+        bar.set_style(style);
+    }
+    let step = |what: &str| {
+        bar.set_message(what.to_owned());
+        bar.inc(1);
+    };
+    let mut all = Vec::new();
+    for (name, map) in scenes {
+        let measured = Measured::render(name, map, &plan, flags.seed, &step)?;
+        measured.write_pictures(&flags.out)?;
+        all.push(measured);
+        // After every scene, so that a run that is stopped leaves a page.
+        page::write(&all, &plan, flags, &flags.out)?;
+    }
+    bar.finish_and_clear();
+    let mut lines = String::new();
+    for measured in &all {
+        lines.push_str(&format!("{}: {}\n", measured.title(), verdict::sentence(measured)));
+    }
+    lines.push_str(&format!("wrote {}\n", flags.out.join("report.html").display()));
+    io::stdout().write_all(lines.as_bytes()).map_err(Error::Write)
+}
+
+/// Makes the folder, and sees that files can be written into it.
+fn prepare(out: &Path) -> Result<(), Error> {
+    let refuse = |source| Error::Output { path: out.to_owned(), source };
+    fs::create_dir_all(out).map_err(refuse)?;
+    let probe = out.join("report.html.new");
+    fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)).map_err(refuse)
+}

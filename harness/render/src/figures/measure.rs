@@ -1,0 +1,153 @@
+//! What is measured on a scene.
+
+use crate::hair::{Choice, Energy, PUBLISHED, UNIFORM};
+use crate::picture;
+use crate::protocol::{Reference, Runs};
+use crate::scene::Scene;
+use crate::scenes::{self, Name, Parts};
+use crate::transport::{Integrator, Settings};
+use hairis_harness::error::Error;
+use hairis_harness::light::Environment;
+use std::path::Path;
+
+/// The sampler that references are made with, and that others are compared with.
+pub(super) const BEST: &str = "matched";
+/// The samplers, in the order of the page.
+pub(super) const SAMPLERS: [&str; 3] = [UNIFORM, PUBLISHED, BEST];
+
+/// How much is rendered.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plan {
+    /// Width and height of pictures in pixels.
+    pub(super) side: u32,
+    /// Strands of hair.
+    pub(super) strands: usize,
+    /// Samples of gather points, and of paths.
+    pub(super) samples: [&'static [u32]; 2],
+    /// Samples of each half of the reference, of gather points and of paths.
+    pub(super) reference: [u32; 2],
+    /// Pictures for each error.
+    pub(super) runs: u32,
+}
+
+impl Plan {
+    /// A first look.
+    pub(super) const QUICK: Self =
+        Self { side: 80, strands: 8_000, samples: [&[4, 16, 64], &[4, 16]], reference: [1024, 256], runs: 4 };
+    /// What is published.
+    pub(super) const FULL: Self = Self {
+        side: 192,
+        strands: 30_000,
+        samples: [&[4, 16, 64, 256], &[4, 16, 64]],
+        reference: [8192, 2048],
+        runs: 8,
+    };
+
+    /// Steps of progress for a count of scenes.
+    pub(super) fn steps(&self, scenes: usize) -> usize {
+        scenes * (2 + SAMPLERS.len() * (self.samples[0].len() + 1))
+    }
+}
+
+/// One sampler on a scene.
+#[derive(Debug)]
+pub(super) struct BySampler {
+    /// Its name.
+    pub(super) name: &'static str,
+    /// Renders by ascending count of samples.
+    pub(super) runs: Vec<Runs>,
+    /// A picture that takes as long as the quickest sampler's at most samples.
+    pub(super) equal_time: Runs,
+}
+
+/// A scene with all its samplers.
+#[derive(Debug)]
+pub(super) struct Measured {
+    /// The scene.
+    pub(super) name: Name,
+    /// The map, if it is the caller's.
+    map: Option<String>,
+    /// How light is estimated.
+    pub(super) integrator: Integrator,
+    /// The preset of the hair.
+    pub(super) preset: &'static str,
+    /// What pictures are compared with.
+    pub(super) reference: Reference,
+    /// The samplers, in the order of [`SAMPLERS`].
+    pub(super) samplers: Vec<BySampler>,
+}
+
+impl Measured {
+    /// Renders everything.
+    pub(super) fn render(
+        name: Name,
+        map: Option<Environment>,
+        plan: &Plan,
+        seed: u64,
+        step: &dyn Fn(&str),
+    ) -> Result<Self, Error> {
+        let defaults = name.defaults();
+        let title = map.as_ref().map(|map| hairis_harness::light::Light::name(map).to_owned());
+        let hair = |sampler| Choice::find("gaussian", sampler, defaults.preset)?.hair(Energy::Raw);
+        let strands = scenes::grow(name, plan.strands)?;
+        let parts = Parts { strands, imported: false, hair: hair(BEST)?, env: map, size: [plan.side; 2] };
+        step(&format!("{}: tree", name.word()));
+        let mut scene: Scene = scenes::build(name, parts)?;
+        let settings =
+            Settings { integrator: defaults.integrator, multiple: defaults.multiple, seed, ..Settings::default() };
+        let kind = usize::from(defaults.integrator != Integrator::Gather);
+        step(&format!("{}: reference", name.word()));
+        let reference = Reference::render(&scene, &settings, plan.reference[kind]);
+        let mut all = Vec::new();
+        for sampler in SAMPLERS {
+            scene.hair = hair(sampler)?;
+            let run = |samples: &u32| {
+                step(&format!("{}: {sampler}, {samples} samples", name.word()));
+                Runs::render(&scene, &settings, &reference, *samples, plan.runs)
+            };
+            all.push((sampler, plan.samples[kind].iter().map(run).collect::<Vec<Runs>>()));
+        }
+        // The middle count: the largest is kept for the numbers.
+        let shown = shown(plan.samples[kind].len());
+        let least = all.iter().map(|(_, runs)| runs[shown].seconds).fold(f64::INFINITY, f64::min);
+        let mut samplers = Vec::new();
+        for (sampler, runs) in all {
+            scene.hair = hair(sampler)?;
+            step(&format!("{}: {sampler}, equal time", name.word()));
+            let samples = runs[shown].samples_in(least);
+            let equal_time = Runs::render(&scene, &settings, &reference, samples, plan.runs);
+            samplers.push(BySampler { name: sampler, runs, equal_time });
+        }
+        let (integrator, preset) = (defaults.integrator, defaults.preset);
+        Ok(Self { name, map: title, integrator, preset, reference, samplers })
+    }
+
+    /// Name of the scene on the page.
+    pub(super) fn title(&self) -> String {
+        let word = self.name.word();
+        self.map.as_ref().map_or_else(|| word.to_owned(), |map| format!("{word} ({map})"))
+    }
+
+    /// Place of the count of samples that pictures show.
+    pub(super) fn shown(&self) -> usize {
+        shown(self.samplers[0].runs.len())
+    }
+
+    /// Writes the pictures as files.
+    pub(super) fn write_pictures(&self, out: &Path) -> Result<(), Error> {
+        let exposure = picture::exposure(&self.reference.picture);
+        let stem = self.title().replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+        let file = |what: &str| out.join(format!("{stem}-{what}.exr"));
+        picture::write(&self.reference.picture, &file("reference"), exposure)?;
+        for sampler in &self.samplers {
+            let runs = &sampler.runs[self.shown()];
+            picture::write(&runs.picture, &file(&format!("{}-{}", sampler.name, runs.samples)), exposure)?;
+        }
+        Ok(())
+    }
+}
+
+/// Place of the count of samples that pictures show: the second.
+fn shown(counts: usize) -> usize {
+    1.min(counts - 1)
+}

@@ -1,0 +1,179 @@
+//! The page.
+
+use super::measure::{BySampler, Measured, Plan};
+use super::panel::{Column, panel};
+use super::verdict::{gain, sentence};
+use crate::args::Figures;
+use crate::picture::exposure;
+use crate::protocol::{Runs, slope};
+use crate::transport::Integrator;
+use hairis_harness::error::Error;
+use hairis_harness::files::whole;
+use hairis_harness::machine::Machine;
+use hairis_harness::plot::{Axis, LineChart, Point, Reference as Line, Series};
+use hairis_harness::report::{Figure, Report, Section};
+use hairis_harness::stats::Estimate;
+use hairis_harness::table::{Table, number};
+use std::io::Write as _;
+use std::path::Path;
+
+/// Writes `report.html`.
+pub(super) fn write(all: &[Measured], plan: &Plan, flags: &Figures, out: &Path) -> Result<(), Error> {
+    let path = out.join("report.html");
+    let page = page(all, plan, flags).map_err(|source| Error::Output { path: path.clone(), source })?;
+    whole(&path, |out| out.write_all(page.html().as_bytes()))
+}
+
+fn page(all: &[Measured], plan: &Plan, flags: &Figures) -> std::io::Result<Report> {
+    let machine = Machine::current();
+    let mut report = Report::new("What samplers are worth on pictures of hair").subtitle(machine.summary());
+    for measured in all {
+        report = report.finding(format!("`{}`: {}", measured.title(), sentence(measured)));
+    }
+    report = report.section(Section::new("Summary").table(summary(all)));
+    for measured in all {
+        report = report.section(section(measured)?);
+    }
+    let Plan { side, strands, runs, .. } = plan;
+    Ok(report
+        .method(format!(
+            "Pictures of {side} by {side} pixels, procedural hair of {strands} strands, published model, sampled by \
+             Owen-scrambled Sobol' points; light and BSDF samples are combined by the power heuristic. Each error is the mean \
+             over {runs} pictures of different seeds, with a standard error by the jackknife."
+        ))
+        .method(
+            "Scenes of direct light have one fixed gather point per pixel, and as many light as BSDF samples there; all pictures, \
+             and the reference, share the camera rays. In scenes of paths, each sample has a camera ray of its own.",
+        )
+        .method(
+            "relMSE is the mean of (a − b)² / (b² + (0.1 mean)²) in luminance; the noise of the reference, known from two \
+             halves of it, is subtracted. Uniform sampling has few pixels of very large error, so that its relMSE is uncertain: \
+             the trimmed one leaves out the worst 0.1 % of the pixels. Time is that of the threads, the least of all pictures.",
+        )
+        .fact("Machine", machine.summary())
+        .fact("Seed", flags.seed.to_string()))
+}
+
+/// How many times as large relMSE times time is, scene by scene.
+fn summary(all: &[Measured]) -> Table {
+    let mut table = Table::new("relMSE × time, relative to matched").text("scene").text("light").number("samples");
+    let Some(first) = all.first() else { return table };
+    for sampler in first.samplers.iter().rev().skip(1).rev() {
+        table = table.number(sampler.name).number(format!("{}, trimmed", sampler.name));
+    }
+    for measured in all {
+        let shown = measured.shown();
+        let Some(best) = measured.samplers.last() else { continue };
+        let mut row = vec![measured.title(), kind(measured).to_owned(), best.runs[shown].samples.to_string()];
+        for sampler in measured.samplers.iter().rev().skip(1).rev() {
+            row.push(ratio(gain(measured, sampler)));
+            row.push(ratio(sampler.runs[shown].ratio(&best.runs[shown], |errors| errors.trimmed, true)));
+        }
+        table.push(row);
+    }
+    table
+}
+
+fn kind(measured: &Measured) -> &'static str {
+    match measured.integrator {
+        Integrator::Gather => "direct, at gather points",
+        Integrator::Direct => "direct",
+        Integrator::Path => "paths",
+    }
+}
+
+fn ratio(estimate: Estimate) -> String {
+    number::ratio_with_error(estimate.value, estimate.standard_error)
+}
+
+fn estimate(estimate: Estimate) -> String {
+    number::with_error(estimate.value, estimate.standard_error)
+}
+
+fn section(measured: &Measured) -> std::io::Result<Section> {
+    let title = measured.title();
+    let shown = measured.shown();
+    let equal_samples = panel_of(measured, |sampler| &sampler.runs[shown])?;
+    let equal_time = panel_of(measured, |sampler| &sampler.equal_time)?;
+    let samples = measured.samplers[0].runs[shown].samples;
+    let caption = "Below: the part that varies most, 4 times as large; and the relative error of each pixel, blue too dark, red too \
+                   bright, on one scale on this page (full colour at 100 %).";
+    Ok(Section::new(title.clone())
+        .paragraph(format!("Light: {}; hair: `{}`.", kind(measured), measured.preset))
+        .paragraph(format!("In `{title}` {}", sentence(measured)))
+        .figure(Figure::new(equal_samples, format!("Equal samples: {samples} per pixel. {caption}")))
+        .figure(Figure::new(equal_time, format!("Equal time. {caption}")))
+        .figure(Figure::new(convergence(measured), "relMSE against samples; bars are one standard error."))
+        .table(table(measured)))
+}
+
+fn panel_of<'a>(measured: &'a Measured, pick: impl Fn(&'a BySampler) -> &'a Runs) -> std::io::Result<String> {
+    let reference = &measured.reference;
+    let mut columns = vec![Column {
+        title: "reference".to_owned(),
+        remark: String::new(),
+        picture: &reference.picture,
+        errors: None,
+    }];
+    for sampler in &measured.samplers {
+        let runs = pick(sampler);
+        let error = runs.mean(|errors| errors.relative).value;
+        columns.push(Column {
+            title: sampler.name.to_owned(),
+            remark: format!("{} samples, relMSE {}", runs.samples, number::plain(error, 3)),
+            picture: &runs.picture,
+            errors: Some(reference.signed(&runs.picture)),
+        });
+    }
+    panel(&columns, exposure(&reference.picture))
+}
+
+fn convergence(measured: &Measured) -> String {
+    let mut chart = LineChart::new("Convergence", Axis::log("samples per pixel"), Axis::log("relMSE"));
+    for sampler in &measured.samplers {
+        let point = |runs: &Runs| {
+            let error = runs.mean(|errors| errors.relative);
+            Point::new(f64::from(runs.samples), error.value).with_error(error.standard_error)
+        };
+        chart = chart.series(Series::new(sampler.name, sampler.runs.iter().map(point)));
+    }
+    if let Some(runs) = measured.samplers.last().and_then(|sampler| sampler.runs.first()) {
+        let through = (f64::from(runs.samples), runs.mean(|errors| errors.relative).value);
+        chart = chart.reference(Line::Power { label: "slope −1".to_owned(), slope: -1.0, through });
+    }
+    chart.svg()
+}
+
+fn table(measured: &Measured) -> Table {
+    let mut table = Table::new("Errors")
+        .text("sampler")
+        .number("samples")
+        .number("relMSE")
+        .number("trimmed")
+        .number("RMSE")
+        .number("time (s)")
+        .number("relMSE × time, relative to matched")
+        .number("slope");
+    for sampler in &measured.samplers {
+        for (place, runs) in sampler.runs.iter().enumerate() {
+            let best = measured.samplers.last().map_or(runs, |best| &best.runs[place]);
+            let below = if runs.is_below_reference() { " (below the reference)" } else { "" };
+            let points: Vec<(f64, f64)> = sampler.runs[..=place]
+                .iter()
+                .map(|runs| (f64::from(runs.samples), runs.mean(|errors| errors.relative).value))
+                .collect();
+            table.push([
+                sampler.name.to_owned(),
+                runs.samples.to_string(),
+                estimate(runs.mean(|errors| errors.relative)) + below,
+                estimate(runs.mean(|errors| errors.trimmed)),
+                number::plain(runs.mean(|errors| errors.square).value.max(0.0).sqrt(), 3),
+                number::plain(runs.seconds, 3),
+                ratio(runs.ratio(best, |errors| errors.relative, true)),
+                if place == 0 { String::new() } else { number::plain(slope(&points), 3) },
+            ]);
+        }
+    }
+    table
+        .note("Slope: of log relMSE against log samples, from the first count to this one; −1 for independent samples.")
+}

@@ -1,0 +1,143 @@
+//! Hair by name: model, sampler and preset.
+
+use crate::material::{Hair, Sampling};
+use hairis_harness::error::Error;
+use hairis_variants::{ModelId, Values};
+
+/// The word for directions that are uniform over the sphere.
+pub const UNIFORM: &str = "uniform";
+/// The word for the first sampler of a model, which for the published model is the published one.
+pub const PUBLISHED: &str = "published";
+/// A preset beside those of the models: the published model's default set with the narrow lobes of glossy hair.
+pub const GLOSSY: &str = "glossy";
+
+/// Largest mean albedo with which paths converge as they are.
+pub const MOST_MEAN_ALBEDO: f32 = 0.98;
+
+/// Whether hair scatters what the model says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Energy {
+    /// As the model says
+    Raw,
+    /// Scaled so that no direction gives back more light than it receives
+    Scaled,
+}
+
+/// Hair as a command line names it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// The entry of the registry.
+    pub id: ModelId,
+    /// How directions are drawn.
+    pub sampling: Sampling,
+    /// Its parameters.
+    pub values: Values,
+}
+
+impl Choice {
+    /// Finds a model, a sampler and a preset by their names.
+    ///
+    /// # Errors
+    ///
+    /// A line that names the one that there is not, and what there is.
+    pub fn find(model: &str, sampler: &str, preset: &str) -> Result<Self, Error> {
+        let Some(first) = ModelId::find(model, None) else {
+            let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
+            return Err(Error::Usage(format!("--model must be one of {}, got {model}", names.join(", "))));
+        };
+        let (id, sampling) = match sampler {
+            UNIFORM => (first, Sampling::Uniform),
+            PUBLISHED => (first, Sampling::Own),
+            word => match ModelId::find(model, Some(word)) {
+                Some(id) => (id, Sampling::Own),
+                None => {
+                    let words = samplers(model).join(", ");
+                    return Err(Error::Usage(format!("--sampler of {model} must be one of {words}, got {word}")));
+                }
+            },
+        };
+        let Some(values) = preset_of(id, preset) else {
+            let mut names: Vec<&str> = id.presets().map(|(name, _)| name).collect();
+            names.extend(preset_of(id, GLOSSY).map(|_| GLOSSY));
+            return Err(Error::Usage(format!("--hair of {model} must be one of {}, got {preset}", names.join(", "))));
+        };
+        Ok(Self { id, sampling, values })
+    }
+
+    /// The material.
+    ///
+    /// # Errors
+    ///
+    /// If a value is out of its range.
+    pub fn hair(&self, energy: Energy) -> Result<Hair, Error> {
+        let bsdf = self.id.bsdf(&self.values)?;
+        let factor = match energy {
+            Energy::Raw => 1.0,
+            Energy::Scaled => bsdf.conserving_scale(),
+        };
+        Ok(Hair::Model(bsdf, self.sampling, factor))
+    }
+
+    /// Name of the sampler in reports.
+    #[must_use]
+    pub fn sampler(&self) -> &'static str {
+        match (self.sampling, self.id.choice()) {
+            (Sampling::Uniform, _) => UNIFORM,
+            (Sampling::Own, Some((_, word))) if !self.id.is_default() => word,
+            (Sampling::Own, _) => PUBLISHED,
+        }
+    }
+}
+
+/// Words for the samplers of a model.
+#[must_use]
+pub fn samplers(model: &str) -> Vec<&'static str> {
+    let own = ModelId::ALL.iter().filter(|id| id.name() == model);
+    let words = own.filter_map(|id| id.choice().map(|(_, word)| word));
+    [UNIFORM, PUBLISHED].into_iter().chain(words).collect()
+}
+
+/// The parameters of a preset.
+fn preset_of(id: ModelId, name: &str) -> Option<Values> {
+    if name != GLOSSY {
+        return id.presets().find(|(preset, _)| *preset == name).map(|(_, values)| values);
+    }
+    let published = ModelId::find("gaussian", None)?;
+    if !core::ptr::eq(id.fields(), published.fields()) {
+        return None;
+    }
+    let deg = |angle: f32| angle.to_radians();
+    let values = id.defaults().with("beta", &[deg(2.5), deg(1.25), deg(5.0)]).with("gamma_tt", &[deg(5.0)]);
+    Some(values.with("gamma_g", &[deg(5.0)]).with("i_g", &[5.0]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_model_sampler_and_preset_is_found() {
+        for id in ModelId::ALL {
+            for sampler in samplers(id.name()) {
+                for (preset, values) in id.presets() {
+                    let choice = Choice::find(id.name(), sampler, preset).expect("listed");
+                    assert_eq!((choice.id.name(), choice.values), (id.name(), values));
+                    choice.hair(Energy::Scaled).expect("in range");
+                }
+            }
+        }
+        assert!(Choice::find("cauchy", "matched", GLOSSY).is_ok());
+    }
+
+    #[test]
+    fn what_there_is_not_is_named() {
+        let message = |model, sampler, preset| Choice::find(model, sampler, preset).expect_err("refused").to_string();
+        assert!(
+            message("phong", UNIFORM, "blond").contains("kajiya-kay")
+                && message("phong", UNIFORM, "blond").contains("phong")
+        );
+        assert!(message("gaussian", "best", "blond").contains("matched-25"));
+        assert!(message("gaussian", UNIFORM, "green").contains("glossy"));
+        assert!(!message("chiang", UNIFORM, "glossy").contains("black, glossy"), "chiang has no glossy preset");
+    }
+}

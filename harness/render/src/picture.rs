@@ -1,0 +1,101 @@
+//! Pictures as files: `OpenEXR` for measuring, PNG for looking.
+
+use crate::film::Picture;
+use hairis_harness::error::Error;
+use hairis_harness::files::whole;
+use hairis_harness::light::luminance;
+use hairis_harness::stats::percentile;
+use image::{ExtendedColorType, ImageEncoder as _, ImageFormat, Rgb32FImage, RgbImage};
+use std::io::{self, Cursor, Write as _};
+use std::path::Path;
+
+/// Share of the pixels that are not black whose luminance a preview shows below [`BRIGHT`].
+const MOST: f64 = 0.95;
+/// Display luminance, of 1, of the pixel at that share.
+const BRIGHT: f64 = 0.7;
+
+/// The factor on radiance that makes a preview neither dark nor white.
+#[must_use]
+pub fn exposure(picture: &Picture) -> f64 {
+    let mut luminances: Vec<f64> = picture.luminances().into_iter().filter(|l| *l > 1e-6).collect();
+    luminances.sort_by(f64::total_cmp);
+    if luminances.is_empty() { 1.0 } else { BRIGHT / percentile(&luminances, MOST).max(1e-12) }
+}
+
+/// The picture as a screen shows it, sRGB: linear in the shadows, and lights rolled off towards white.
+#[must_use]
+pub fn preview(picture: &Picture, exposure: f64) -> RgbImage {
+    RgbImage::from_fn(picture.size[0], picture.size[1], |x, y| {
+        let rgb = picture.at(x, y).map(|channel| (channel * exposure).max(0.0));
+        // Beyond 0.6 the curve bends, and reaches 1 at 4.
+        let l = luminance(rgb).max(1e-12);
+        let rolled = if l < 0.6 { l } else { 0.6 + 0.4 * (1.0 - (-(l - 0.6) / 0.6).exp()) };
+        image::Rgb(rgb.map(|channel| srgb(channel * rolled / l)))
+    })
+}
+
+/// A linear value in `[0, 1]` as the byte that a screen shows.
+#[must_use]
+pub fn srgb(linear: f64) -> u8 {
+    let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
+    let byte = (255.0 * encoded.clamp(0.0, 1.0)).round() as u8;
+    byte
+}
+
+/// A PNG file in memory.
+///
+/// # Errors
+///
+/// Never, but that the encoder says so.
+pub fn png(image: &RgbImage) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    image::codecs::png::PngEncoder::new(&mut bytes)
+        .write_image(image.as_raw(), image.width(), image.height(), ExtendedColorType::Rgb8)
+        .map_err(io::Error::other)?;
+    Ok(bytes)
+}
+
+/// Writes a picture as `OpenEXR`, single precision, and beside it a PNG preview, each as a whole.
+///
+/// # Errors
+///
+/// If a file cannot be written.
+pub fn write(picture: &Picture, path: &Path, exposure: f64) -> Result<(), Error> {
+    let [width, height] = picture.size;
+    #[expect(clippy::cast_possible_truncation, reason = "files hold single precision")]
+    let image = Rgb32FImage::from_fn(width, height, |x, y| image::Rgb(picture.at(x, y).map(|channel| channel as f32)));
+    let mut bytes = Cursor::new(Vec::new());
+    let encoded = image.write_to(&mut bytes, ImageFormat::OpenExr).map_err(io::Error::other);
+    whole(path, |out| encoded.and_then(|()| out.write_all(bytes.get_ref())))?;
+    whole(&path.with_extension("png"), |out| out.write_all(&png(&preview(picture, exposure))?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_hold_the_picture() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let mut picture = Picture::black([5, 3]);
+        picture.pixels[7] = [0.25, 1.5, 1e-3];
+        let path = folder.path().join("a.exr");
+        write(&picture, &path, 1.0).expect("written");
+        let read = image::open(&path).expect("an image").to_rgb32f();
+        assert_eq!(read.get_pixel(2, 1).0, [0.25, 1.5, 1e-3]);
+        assert_eq!(read.get_pixel(1, 2).0, [0.0; 3]);
+        let seen = image::open(path.with_extension("png")).expect("an image").to_rgb8();
+        assert_eq!(seen.get_pixel(0, 0).0, [0; 3]);
+        assert!(seen.get_pixel(2, 1).0[1] > 200, "{:?}", seen.get_pixel(2, 1));
+    }
+
+    #[test]
+    fn exposure_brings_pictures_to_one_level() {
+        let mut picture = Picture::black([10, 10]);
+        picture.pixels.iter_mut().take(50).for_each(|pixel| *pixel = [2e-3; 3]);
+        assert!((exposure(&picture) * 2e-3 - BRIGHT).abs() < 1e-6, "{}", exposure(&picture));
+        assert_eq!(exposure(&Picture::black([2, 2])), 1.0);
+        assert_eq!((srgb(0.0), srgb(1.0), srgb(f64::NAN), srgb(0.214)), (0, 255, 0, 127));
+    }
+}

@@ -1,0 +1,177 @@
+//! Scenes by name: the set-ups of the paper's figures, and two that test transport.
+
+use crate::camera::Camera;
+use crate::geometry::{Flattening, Groom, HEAD, Kind, Strands};
+use crate::lights::{Rectangle, Sky};
+use crate::material::Hair;
+use crate::scene::{Head, Scene};
+use crate::transport::Integrator;
+use crate::tree::Tree;
+use clap::ValueEnum;
+use glam::Vec3;
+use hairis_harness::error::Error;
+use hairis_harness::light::{self, Environment};
+
+/// The scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Name {
+    /// A patch of parallel strands under a large light along them, glossy hair: Figure 6A
+    Area,
+    /// The same with the model's default hair
+    AreaSoft,
+    /// A head under an area light, direct light: Figure 7A
+    AreaHead,
+    /// A head under an environment map, or a clear sky: Figures 6B and 7B
+    Env,
+    /// A head in a Cornell box, hair that scatters light once: Figure 6C
+    BoxSingle,
+    /// The same with multiple scattering: Figure 6D
+    Box,
+    /// A head under an area light, with multiple scattering: Figure 1
+    Head,
+    /// One strand in a white sphere
+    FurnaceOne,
+    /// A patch that absorbs nothing in a white sphere
+    FurnaceIso,
+}
+
+/// What a scene is rendered with unless told otherwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Defaults {
+    /// How light is estimated.
+    pub integrator: Integrator,
+    /// The preset of the hair.
+    pub preset: &'static str,
+    /// Samples of a pixel.
+    pub samples: u32,
+    /// Whether hair passes light on to hair.
+    pub multiple: bool,
+}
+
+impl Name {
+    /// The name on the command line.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Area => "area",
+            Self::AreaSoft => "area-soft",
+            Self::AreaHead => "area-head",
+            Self::Env => "env",
+            Self::BoxSingle => "box-single",
+            Self::Box => "box",
+            Self::Head => "head",
+            Self::FurnaceOne => "furnace-one",
+            Self::FurnaceIso => "furnace-iso",
+        }
+    }
+
+    /// What it is rendered with unless told otherwise.
+    #[must_use]
+    pub fn defaults(self) -> Defaults {
+        let gather = |preset| Defaults { integrator: Integrator::Gather, preset, samples: 64, multiple: true };
+        let paths = Defaults { integrator: Integrator::Path, preset: "blond", samples: 64, multiple: true };
+        match self {
+            Self::Area => gather(crate::hair::GLOSSY),
+            Self::AreaSoft => gather("default"),
+            Self::AreaHead | Self::Env => gather("blond"),
+            Self::BoxSingle => Defaults { multiple: false, ..paths },
+            Self::Box | Self::Head | Self::FurnaceOne | Self::FurnaceIso => paths,
+        }
+    }
+
+    /// The hair that grows in it.
+    #[must_use]
+    pub fn kind(self) -> Kind {
+        match self {
+            Self::Area | Self::AreaSoft | Self::FurnaceIso => Kind::Patch,
+            Self::AreaHead | Self::Env => Kind::Straight,
+            Self::BoxSingle | Self::Box | Self::Head => Kind::Wavy,
+            Self::FurnaceOne => Kind::Single,
+        }
+    }
+}
+
+/// Grows the hair of a scene, of `count` strands if the kind has many.
+///
+/// # Errors
+///
+/// If there are too many.
+pub fn grow(name: Name, count: usize) -> Result<Strands, Error> {
+    let groom = Groom::new(name.kind(), count);
+    let groom = if groom.kind == Kind::Single { Groom { length: 400.0, radius: 10.0, ..groom } } else { groom };
+    groom.grow(&Flattening::default()).map_err(|problem| Error::Usage(problem.to_string()))
+}
+
+/// What a scene is made of beside its name.
+#[derive(Debug)]
+pub struct Parts {
+    /// The fibres.
+    pub strands: Strands,
+    /// Whether they were read from a file: there is no head then, and camera and lights go by their extent.
+    pub imported: bool,
+    /// What they are made of.
+    pub hair: Hair,
+    /// An environment map in place of the scene's light.
+    pub env: Option<Environment>,
+    /// Width and height of the picture in pixels.
+    pub size: [u32; 2],
+}
+
+/// Builds a scene.
+///
+/// # Errors
+///
+/// If the strands are too thin for their extent.
+pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
+    let Parts { strands, imported, hair, env, size } = parts;
+    let tree = Tree::build(&strands).map_err(|problem| Error::Usage(problem.to_string()))?;
+    let bounds = strands.bounds();
+    let extent = bounds.size().length().max(1e-3);
+    // Set-ups are for a head at the origin, 26 cm wide with its hair.
+    let (scale, centre) = if imported { (extent / 40.0, bounds.centre()) } else { (1.0, Vec3::ZERO) };
+    let at = |x: f32, y: f32, z: f32| centre + scale * Vec3::new(x, y, z);
+    let lamp = |corner: Vec3, a: Vec3, b: Vec3, radiance: f32| {
+        Rectangle::light(corner, scale * a, scale * b, Vec3::splat(radiance)).facing(centre)
+    };
+    let (x, z) = (Vec3::X, Vec3::Z);
+    let mut sky = Sky::Black;
+    let mut rectangles = Vec::new();
+    match name {
+        Name::Area | Name::AreaSoft => rectangles.push(lamp(at(-100.0, 22.0, -25.0), 200.0 * x, 50.0 * z, 1.0)),
+        Name::AreaHead | Name::Head => rectangles.push(lamp(at(-20.0, 30.0, -10.0), 40.0 * x, 40.0 * z, 6.0)),
+        Name::Env => sky = Sky::Map(Box::new(light::Sky::default().environment())),
+        Name::BoxSingle | Name::Box => rectangles = cornell_box(centre, scale),
+        Name::FurnaceOne | Name::FurnaceIso => sky = Sky::White,
+    }
+    if let Some(env) = env {
+        sky = Sky::Map(Box::new(env));
+        rectangles.clear();
+    }
+    let camera = match name {
+        _ if imported => Camera::new(at(34.0, 9.0, 28.0), centre, 42.0, size),
+        Name::Area | Name::AreaSoft => Camera::new(at(6.0, 14.0, 26.0), centre, 36.0, size),
+        Name::BoxSingle | Name::Box => Camera::new(at(0.0, 3.0, 85.0), at(0.0, -1.0, 0.0), 42.0, size),
+        Name::FurnaceOne => Camera::new(at(0.0, 0.0, 100.0), centre, 8.0, size),
+        Name::FurnaceIso => Camera::new(at(6.0, 14.0, 26.0), centre, 30.0, size),
+        Name::AreaHead | Name::Env | Name::Head => Camera::new(at(0.0, 3.0, 60.0), at(0.0, -1.0, 0.0), 36.0, size),
+    };
+    let on_head = !imported && matches!(name.kind(), Kind::Straight | Kind::Wavy);
+    let head = on_head.then_some(Head { radii: 0.995 * HEAD, albedo: Vec3::new(0.45, 0.32, 0.25) });
+    Ok(Scene { strands, tree, hair, head, rectangles, sky, camera, gap: 1e-3 * scale })
+}
+
+/// A box of 60 cm with a light below its ceiling, open towards the camera.
+fn cornell_box(centre: Vec3, scale: f32) -> Vec<Rectangle> {
+    let at = |x: f32, y: f32, z: f32| centre + scale * Vec3::new(x, y, z);
+    let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| 60.0 * scale * axis);
+    let (white, red, green) = (Vec3::splat(0.73), Vec3::new(0.65, 0.05, 0.05), Vec3::new(0.12, 0.45, 0.15));
+    let lo = at(-30.0, -30.0, -30.0);
+    vec![
+        Rectangle::wall(lo, x, z, white),
+        Rectangle::wall(lo, x, y, white),
+        Rectangle::wall(lo + y, x, z, white),
+        Rectangle::wall(lo, y, z, red),
+        Rectangle::wall(lo + x, y, z, green),
+        Rectangle::light(at(-12.0, 29.95, -12.0), 0.4 * x, 0.4 * z, Vec3::splat(14.0)).facing(centre),
+    ]
+}
