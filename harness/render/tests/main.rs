@@ -1,3 +1,4 @@
 //! Tests of the renderer.
 
+mod groom;
 mod segments;

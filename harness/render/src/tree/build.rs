@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use super::node::{Child, Node};
-use super::split::{Extent, Primitive, split};
+use super::split::{Extent, Primitive, middle, split};
 use crate::geometry::{Bounds, Strands};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -76,7 +76,7 @@ fn divide(primitives: &mut [Primitive], extent: Extent, by_cost: bool) -> Vec<&m
         let largest = large.max_by(|(_, a), (_, b)| weight(a).total_cmp(&weight(b)));
         let Some((index, _)) = largest else { break };
         let (part, extent) = parts.remove(index);
-        let middle = if by_cost { split(part, &extent) } else { part.len() / 2 };
+        let middle = if by_cost { split(part, &extent) } else { middle(part.len()) };
         let (lower, upper) = part.split_at_mut(middle);
         let (lower_extent, upper_extent) = (Extent::of(lower), Extent::of(upper));
         parts.insert(index, (upper, upper_extent));

@@ -141,14 +141,19 @@ impl Scale {
     }
 }
 
-/// Orders `primitives` in two parts, and gives the length of the first, which is neither 0 nor all.
+/// Orders `primitives`, more than eight, in two parts, and gives the length of the first, which is neither 0 nor all.
 pub(super) fn split(primitives: &mut [Primitive], extent: &Extent) -> usize {
     let scale = Scale::of(extent);
     let bins = Bins::of(primitives, &scale);
     match bins.cheapest(primitives.len() <= COUNT_BLOCKS) {
         Some((axis, bin)) => partition(primitives, |primitive| scale.bins(primitive)[axis] < bin),
-        None => primitives.len() / 2,
+        None => middle(primitives.len()),
     }
+}
+
+/// The middle of more than eight segments, such that the first half fills its blocks.
+pub(super) fn middle(segments: usize) -> usize {
+    (segments / 2).next_multiple_of(8)
 }
 
 /// Puts those that are lower first, and gives their number.
