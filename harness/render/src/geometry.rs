@@ -7,5 +7,6 @@ mod strands;
 
 pub use bounds::Bounds;
 pub use groom::{Groom, HEAD, Kind};
-pub use spline::{Basis, Flattening};
+pub use spline::Flattening;
+pub(crate) use spline::{Basis, Spline};
 pub use strands::{Builder, GeometryError, Strands};

@@ -1,6 +1,7 @@
 //! A hair renderer that measures: what scattering models and their samplers are worth on images.
 //!
 //! - [`geometry`]: strands, and what makes them.
+//! - [`formats`]: files of hair.
 //! - [`tree`]: which segment a ray meets first.
 //!
 //! # Conventions
@@ -16,6 +17,7 @@ pub mod camera;
 pub mod cmd;
 mod figures;
 pub mod film;
+pub mod formats;
 pub mod frames;
 pub mod geometry;
 pub mod hair;

@@ -1,4 +1,5 @@
 //! Tests of the renderer.
 
 mod groom;
+mod import;
 mod segments;

@@ -88,6 +88,9 @@ pub struct Groom {
 /// Semi-axes of the head, an ellipsoid about the origin, in centimetres.
 pub const HEAD: Vec3 = Vec3::new(7.5, 10.0, 8.8);
 
+/// [`Groom::taper`] of hair.
+const TAPER: f32 = 0.6;
+
 impl Groom {
     /// The settings of a kind. The radius is such that any number of strands covers as much as 100,000 hairs 80 um thick.
     #[must_use]
@@ -98,8 +101,8 @@ impl Groom {
             strands,
             length: 14.0,
             length_spread: 0.15,
-            radius: 0.004 * (100_000.0 / strands.max(1) as f32).sqrt(),
-            taper: 0.6,
+            radius: Self::covering_radius(strands),
+            taper: TAPER,
             clumps: strands / 60 + 1,
             clump: 0.5,
             curl_radius: 0.0,
@@ -126,6 +129,17 @@ impl Groom {
             Kind::Patch => Self { length: 18.0, frizz: 0.03, nodes: 12, ..straight },
             Kind::Single => Self { length: 10.0, radius: 0.1, taper: 0.0, frizz: 0.0, nodes: 2, ..straight },
         }
+    }
+
+    /// The radius at which this many strands cover as much as 100,000 hairs 80 um thick.
+    #[must_use]
+    pub fn covering_radius(strands: usize) -> f32 {
+        0.004 * (100_000.0 / strands.max(1) as f32).sqrt()
+    }
+
+    /// The radius at a part `s` of a strand, from root to tip, with the taper that grooms have.
+    pub(crate) fn tapered(radius: f32, s: f32) -> f32 {
+        radius * (1.0 - TAPER * s * s * s)
     }
 
     /// Grows the hair and flattens it to segments.

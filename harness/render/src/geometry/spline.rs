@@ -4,7 +4,7 @@ use glam::Vec3;
 
 /// How nodes make a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Basis {
+pub(crate) enum Basis {
     /// Uniform cubic B-spline with doubled ends: smooth to the second derivative, near its nodes.
     BSpline,
     /// Uniform Catmull-Rom spline: through its nodes, smooth to the first derivative.
@@ -63,22 +63,26 @@ pub struct Flattening {
     pub centimetres: f32,
     /// By how much the curve may turn along a segment, in rad.
     pub turn: f32,
+    /// Spans between two nodes are halved this many times at most: nodes that coincide may turn by any angle.
+    pub halvings: i32,
 }
 
 impl Default for Flattening {
     fn default() -> Self {
-        Self { radii: 3.0, centimetres: 0.02, turn: 15_f32.to_radians() }
+        Self { radii: 3.0, centimetres: 0.02, turn: 15_f32.to_radians(), halvings: 8 }
     }
 }
 
-/// Spans are halved this many times at most: nodes that coincide may turn by any angle.
-const HALVINGS: i32 = 8;
-
 impl Flattening {
+    /// The same, with no more halvings than this.
+    pub(crate) fn at_most(self, halvings: i32) -> Self {
+        Self { halvings: self.halvings.min(halvings), ..self }
+    }
+
     /// Appends the curve as nodes of a polyline. `radius` is that at a part of the curve, from 0 at the root to 1.
     pub(crate) fn append(&self, spline: &Spline, radius: impl Fn(f32) -> f32, nodes: &mut Vec<(Vec3, f32)>) {
         let tolerance = (self.radii * radius(0.0)).min(self.centimetres);
-        let shortest = 0.5_f32.powi(HALVINGS);
+        let shortest = 0.5_f32.powi(self.halvings);
         let part = |span: usize, x: f32| (span as f32 + x) / spline.spans() as f32;
         nodes.push((spline.at(0, 0.0).0, radius(0.0)));
         for span in 0..spline.spans() {
@@ -146,9 +150,9 @@ mod tests {
         let nodes = helix();
         let spline = Spline::new(&nodes, Basis::BSpline).expect("twenty nodes");
         for (flattening, worst) in [
-            (Flattening { radii: 1.0, centimetres: 1.0, turn: 9.0 }, 0.01),
-            (Flattening { radii: 1.0, centimetres: 0.001, turn: 9.0 }, 0.001),
-            (Flattening { radii: 99.0, centimetres: 1.0, turn: 0.1 }, 0.1),
+            (Flattening { radii: 1.0, centimetres: 1.0, turn: 9.0, halvings: 8 }, 0.01),
+            (Flattening { radii: 1.0, centimetres: 0.001, turn: 9.0, halvings: 8 }, 0.001),
+            (Flattening { radii: 99.0, centimetres: 1.0, turn: 0.1, halvings: 8 }, 0.1),
         ] {
             let mut polyline = Vec::new();
             flattening.append(&spline, |_| 0.01, &mut polyline);

@@ -113,6 +113,22 @@ impl Strands {
         self.nodes[k].radius + s * (self.nodes[k + 1].radius - self.nodes[k].radius)
     }
 
+    /// The place of a node.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such node.
+    #[must_use]
+    pub fn node_position(&self, node: u32) -> Vec3 {
+        self.nodes[node as usize].position
+    }
+
+    /// The largest radius; 0 without strands.
+    #[must_use]
+    pub fn thickest(&self) -> f32 {
+        self.nodes.iter().map(|node| node.radius).fold(0.0, f32::max)
+    }
+
     /// The radius at a node.
     ///
     /// # Panics
@@ -133,7 +149,9 @@ impl Strands {
     #[must_use]
     pub fn tangent(&self, segment: u32, s: f32) -> Vec3 {
         let k = segment as usize;
-        (self.tangents[k] + s * (self.tangents[k + 1] - self.tangents[k])).normalize()
+        let tangent = self.tangents[k] + s * (self.tangents[k + 1] - self.tangents[k]);
+        // Where a strand turns back at both ends, the tangents of the nodes may cancel.
+        tangent.try_normalize().unwrap_or_else(|| (self.nodes[k + 1].position - self.nodes[k].position).normalize())
     }
 }
 
@@ -172,7 +190,7 @@ impl Builder {
                 return Err(error);
             }
             let last = self.nodes[start..].last();
-            if last.is_some_and(|last| last.position.distance(position) < SHORTEST) {
+            if last.is_some_and(|last| Self::coincide(last.position, position)) {
                 dropped += 1;
             } else {
                 self.nodes.push(Node { position, radius });
@@ -186,6 +204,11 @@ impl Builder {
             self.last.push(u32::try_from(self.nodes.len()).map_err(|_| GeometryError::TooMany)?);
         }
         Ok(())
+    }
+
+    /// Whether two nodes in a row count as one.
+    pub(crate) fn coincide(a: Vec3, b: Vec3) -> bool {
+        a.distance(b) < SHORTEST
     }
 
     /// How many nodes lay on the node before them.

@@ -1,0 +1,48 @@
+//! Numbers out of a file, little endian.
+
+use super::{Problem, Wrong};
+use glam::Vec3;
+
+/// A file.
+#[derive(Clone, Copy)]
+pub(super) struct Bytes<'a>(pub(super) &'a [u8]);
+
+impl<'a> Bytes<'a> {
+    /// Its length.
+    pub(super) fn len(self) -> u64 {
+        self.0.len() as u64
+    }
+
+    /// Refuses a file that is shorter than its header.
+    pub(super) fn header(self, needed: u64) -> Result<(), Wrong> {
+        let got = self.len();
+        if got < needed { Err((got, Problem::Header { needed, got })) } else { Ok(()) }
+    }
+
+    /// The bytes at `offset`; 0 beyond the end, which callers have checked.
+    fn some<const N: usize>(self, offset: u64) -> [u8; N] {
+        let start = usize::try_from(offset).unwrap_or(usize::MAX);
+        self.0.get(start..).and_then(|bytes| bytes.first_chunk()).copied().unwrap_or([0; N])
+    }
+
+    pub(super) fn u16(self, offset: u64) -> u16 {
+        u16::from_le_bytes(self.some(offset))
+    }
+
+    pub(super) fn u32(self, offset: u64) -> u32 {
+        u32::from_le_bytes(self.some(offset))
+    }
+
+    pub(super) fn f32(self, offset: u64) -> f32 {
+        f32::from_le_bytes(self.some(offset))
+    }
+
+    /// A place, refused if it is not finite or farther than 1e6 units along an axis.
+    pub(super) fn position(self, offset: u64) -> Result<Vec3, Wrong> {
+        let component = |axis: u64| {
+            let value = self.f32(offset + 4 * axis);
+            if value.abs() <= 1e6 { Ok(value) } else { Err((offset + 4 * axis, Problem::Coordinate { value })) }
+        };
+        Ok(Vec3::new(component(0)?, component(1)?, component(2)?))
+    }
+}

@@ -1,0 +1,111 @@
+//! cyHair (`.hair`), after Cem Yuksel's `cyHairFile.h`.
+//!
+//! A header of 128 bytes: `HAIR`, then strands, points, flags and default segments as u32, default thickness, transparency
+//! and colour as f32, and 88 bytes of text. Then, where flagged: segments per strand as u16, three f32 per point, and per
+//! point a thickness, a transparency, and three f32 of colour. The format's page has up to 65,536 segments per strand; u16
+//! holds 65,535. Thickness is a diameter.
+
+use super::bytes::Bytes;
+use super::{LONGEST_FILE, Problem, Raw, RawStrand, Wrong};
+
+const HEADER: u64 = 128;
+/// Where the header has the default thickness.
+pub(super) const THICKNESS_AT: u64 = 20;
+const SEGMENTS: u32 = 1;
+const POINTS: u32 = 2;
+const THICKNESS: u32 = 4;
+const TRANSPARENCY: u32 = 8;
+const COLOURS: u32 = 16;
+
+/// The file, checked.
+pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
+    bytes.header(HEADER)?;
+    let signature = bytes.u32(0).to_le_bytes();
+    if &signature != b"HAIR" {
+        return Err((0, Problem::Signature { expected: "\"HAIR\"", got: signature }));
+    }
+    let [strands, points, flags, default_segments] = [4, 8, 12, 16].map(|offset| bytes.u32(offset));
+    if strands == 0 {
+        return Err((4, Problem::Count { expected: "there must be a strand", got: strands }));
+    }
+    if flags & POINTS == 0 {
+        return Err((12, Problem::Flags { expected: "have points (2)", got: flags }));
+    }
+    if flags > 31 {
+        return Err((12, Problem::Flags { expected: "be at most 31", got: flags }));
+    }
+    if flags & SEGMENTS == 0 && default_segments == 0 {
+        let expected = "there must be segments per strand, or a default of at least 1";
+        return Err((16, Problem::Count { expected, got: default_segments }));
+    }
+
+    // Where arrays begin, and the file's length.
+    let mut end = u128::from(HEADER);
+    let mut array = |flag: u32, bytes: u32, count: u32| {
+        let start = end;
+        if flags & flag != 0 {
+            end += u128::from(bytes) * u128::from(count);
+        }
+        start
+    };
+    let starts = [
+        array(SEGMENTS, 2, strands),
+        array(POINTS, 12, points),
+        array(THICKNESS, 4, points),
+        array(TRANSPARENCY, 4, points),
+        array(COLOURS, 12, points),
+    ];
+    let expected = match u64::try_from(end) {
+        Ok(end) if end <= LONGEST_FILE => end,
+        _ => return Err((4, Problem::TooLarge { bytes: end, most: LONGEST_FILE })),
+    };
+    if bytes.len() != expected {
+        return Err((bytes.len().min(expected), Problem::Length { expected, got: bytes.len() }));
+    }
+    let [segments_at, points_at, thickness_at, ..] = starts.map(|start| start as u64);
+
+    let has = move |flag: u32| flags & flag != 0;
+    let segments_of = move |strand: u32| {
+        let own = || u64::from(bytes.u16(segments_at + 2 * u64::from(strand)));
+        if has(SEGMENTS) { own() } else { u64::from(default_segments) }
+    };
+    let needed = if has(SEGMENTS) {
+        (0..strands).map(|strand| segments_of(strand) + 1).sum()
+    } else {
+        u64::from(strands) * (u64::from(default_segments) + 1)
+    };
+    if needed != u64::from(points) {
+        return Err((8, Problem::Points { needed, got: u64::from(points) }));
+    }
+    for point in 0..u64::from(points) {
+        bytes.position(points_at + 12 * point)?;
+    }
+    let thickness_of = move |point: u64| {
+        let offset = if has(THICKNESS) { thickness_at + 4 * point } else { THICKNESS_AT };
+        (offset, bytes.f32(offset))
+    };
+    for (offset, value) in (0..if has(THICKNESS) { u64::from(points) } else { 1 }).map(thickness_of) {
+        if !(0.0..=1e6).contains(&value) {
+            return Err((offset, Problem::Thickness { value }));
+        }
+    }
+
+    let mut first = 0;
+    let strands_of_file = (0..strands).map(move |strand| {
+        let range = first..first + segments_of(strand) + 1;
+        first = range.end;
+        let node = move |point: u64| {
+            let position = bytes.position(points_at + 12 * point).unwrap_or_default();
+            (position, 0.5 * thickness_of(point).1)
+        };
+        RawStrand { offset: points_at + 12 * range.start, nodes: Box::new(range.map(node)) }
+    });
+    let unused = [(TRANSPARENCY, "transparency"), (COLOURS, "colours")];
+    Ok(Raw {
+        scale: 1.0,
+        strands: Box::new(strands_of_file),
+        count: strands as usize,
+        radii: true,
+        unused: unused.into_iter().filter(|&(flag, _)| has(flag)).map(|(_, name)| name).collect(),
+    })
+}

@@ -1,0 +1,153 @@
+//! Why a file of hair was refused.
+
+use crate::geometry::GeometryError;
+use core::fmt;
+use std::io;
+use std::path::PathBuf;
+
+/// A file of hair was refused: one line with its name, the byte that shows the problem, and the numbers that disagree.
+#[derive(Debug)]
+pub struct ImportError {
+    /// The file.
+    pub path: PathBuf,
+    /// The byte, counted from 0, if the problem is in one.
+    pub offset: Option<u64>,
+    /// What is wrong.
+    pub problem: Problem,
+}
+
+/// What is wrong with a file of hair.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Problem {
+    /// Its name ends in neither `.hair` nor `.tfx`.
+    Ending,
+    /// It cannot be read.
+    Read(io::Error),
+    /// It is longer than any that is read.
+    TooLong {
+        /// The most bytes.
+        most: u64,
+    },
+    /// An option is not finite, not above 0, or out of all reason.
+    Option {
+        /// Which.
+        name: &'static str,
+        /// What it was.
+        value: f32,
+    },
+    /// It is shorter than its header.
+    Header {
+        /// Bytes of a header.
+        needed: u64,
+        /// Bytes of the file.
+        got: u64,
+    },
+    /// It does not begin as files of its format do.
+    Signature {
+        /// How they begin.
+        expected: &'static str,
+        /// The first four bytes.
+        got: [u8; 4],
+    },
+    /// It has no points, or arrays that the format does not know.
+    Flags {
+        /// What flags must be.
+        expected: &'static str,
+        /// What they are.
+        got: u32,
+    },
+    /// A number of things is out of its range.
+    Count {
+        /// Of what, and its range.
+        expected: &'static str,
+        /// What it was.
+        got: u32,
+    },
+    /// The points that strands need, and those that there are, differ.
+    Points {
+        /// Segments and one more per strand.
+        needed: u64,
+        /// Points according to the header.
+        got: u64,
+    },
+    /// The arrays take more than the file may be long.
+    TooLarge {
+        /// Their bytes.
+        bytes: u128,
+        /// The most bytes.
+        most: u64,
+    },
+    /// The file is shorter or longer than what its header says.
+    Length {
+        /// According to the header.
+        expected: u64,
+        /// Of the file.
+        got: u64,
+    },
+    /// A section begins inside the header.
+    Section {
+        /// Bytes of the header.
+        header: u64,
+        /// Where it begins.
+        got: u64,
+    },
+    /// A coordinate is not finite, or too far away.
+    Coordinate {
+        /// What it was.
+        value: f32,
+    },
+    /// A thickness is negative or not finite.
+    Thickness {
+        /// What it was.
+        value: f32,
+    },
+    /// Thickness is 0 everywhere.
+    NoRadius,
+    /// Scaled, a strand is too large.
+    Geometry(GeometryError),
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ending => f.write_str("the name of a file of hair must end in .hair (cyHair) or .tfx (TressFX)"),
+            Self::Read(source) => write!(f, "cannot be read: {source}"),
+            Self::TooLong { most } => write!(f, "a file of hair must have at most {most} bytes"),
+            Self::Option { name, value } => write!(f, "`{name}` must be in [1e-6, 1e6], got {value}"),
+            Self::Header { needed, got } => write!(f, "the header has {needed} bytes, got {got}"),
+            Self::Signature { expected, got } => {
+                write!(f, "must begin with {expected}, got \"{}\"", got.escape_ascii())
+            }
+            Self::Flags { expected, got } => write!(f, "flags must {expected}, got {got}"),
+            Self::Count { expected, got } => write!(f, "{expected}, got {got}"),
+            Self::Points { needed, got } => write!(f, "strands need {needed} points, got {got}"),
+            Self::TooLarge { bytes, most } => write!(f, "arrays must have at most {most} bytes, got {bytes}"),
+            Self::Length { expected, got } => write!(f, "the file must have {expected} bytes, got {got}"),
+            Self::Section { header, got } => write!(f, "sections must begin after byte {header}, got {got}"),
+            Self::Coordinate { value } => write!(f, "coordinates must be finite and at most 1e6, got {value}"),
+            Self::Thickness { value } => write!(f, "thickness must be finite and at least 0, got {value}"),
+            Self::NoRadius => f.write_str("thickness must be above 0 somewhere, got 0 everywhere; give a radius"),
+            Self::Geometry(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl fmt::Display for ImportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.offset {
+            Some(offset) => write!(f, "{}: byte {offset}: {}", self.path.display(), self.problem),
+            None => write!(f, "{}: {}", self.path.display(), self.problem),
+        }
+    }
+}
+
+impl core::error::Error for ImportError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match &self.problem {
+            Problem::Read(source) => Some(source),
+            Problem::Geometry(source) => Some(source),
+            _ => None,
+        }
+    }
+}

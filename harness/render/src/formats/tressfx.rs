@@ -1,0 +1,76 @@
+//! TressFX (`.tfx`), version 4, after AMD's `TressFXFileFormat.h`.
+//!
+//! A header of 160 bytes: version as f32, strands, nodes per strand, then where sections begin, or 0: positions (four f32
+//! per node, the fourth a mass), texture coordinates per strand and per node (two f32), thickness per strand (f32), colours
+//! per node (four f32); 32 reserved numbers. Metres.
+
+use super::bytes::Bytes;
+use super::{LONGEST_FILE, Problem, Raw, RawStrand, Wrong};
+
+const HEADER: u64 = 160;
+const VERSION: f32 = 4.0;
+
+/// The file, checked.
+pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
+    bytes.header(HEADER)?;
+    if bytes.f32(0) != VERSION {
+        let got = bytes.u32(0).to_le_bytes();
+        return Err((0, Problem::Signature { expected: "version 4 as a float, \"\\x00\\x00\\x80@\"", got }));
+    }
+    let (strands, nodes) = (bytes.u32(4), bytes.u32(8));
+    if strands == 0 {
+        return Err((4, Problem::Count { expected: "there must be a strand", got: strands }));
+    }
+    if !(4..=64).contains(&nodes) || !nodes.is_power_of_two() {
+        return Err((
+            8,
+            Problem::Count { expected: "nodes per strand must be a power of two from 4 to 64", got: nodes },
+        ));
+    }
+    let of_nodes = u128::from(strands) * u128::from(nodes);
+    let of_strands = u128::from(strands);
+    // Where the header has the beginning of a section, and the section's bytes.
+    let sections =
+        [(12, 16 * of_nodes), (16, 8 * of_strands), (20, 8 * of_nodes), (24, 4 * of_strands), (28, 16 * of_nodes)];
+    let mut expected = u128::from(HEADER);
+    for (offset, size) in sections {
+        let start = bytes.u32(offset);
+        if start == 0 && offset != 12 {
+            continue;
+        }
+        if u64::from(start) < HEADER {
+            return Err((offset, Problem::Section { header: HEADER, got: u64::from(start) }));
+        }
+        expected = expected.max(u128::from(start) + size);
+    }
+    let expected = match u64::try_from(expected) {
+        Ok(expected) if expected <= LONGEST_FILE => expected,
+        _ => return Err((4, Problem::TooLarge { bytes: expected, most: LONGEST_FILE })),
+    };
+    if bytes.len() != expected {
+        return Err((bytes.len().min(expected), Problem::Length { expected, got: bytes.len() }));
+    }
+    let start = u64::from(bytes.u32(12));
+    let (strands, nodes) = (u64::from(strands), u64::from(nodes));
+    for node in 0..strands * nodes {
+        bytes.position(start + 16 * node)?;
+    }
+    let strand = move |strand: u64| {
+        let offset = start + 16 * strand * nodes;
+        let node = move |k: u64| (bytes.position(offset + 16 * k).unwrap_or_default(), 0.0);
+        RawStrand { offset, nodes: Box::new((0..nodes).map(node)) }
+    };
+    let unused = [
+        (16, "texture coordinates of strands"),
+        (20, "texture coordinates of nodes"),
+        (24, "thickness"),
+        (28, "colours"),
+    ];
+    Ok(Raw {
+        scale: 100.0,
+        strands: Box::new((0..strands).map(strand)),
+        count: usize::try_from(strands).unwrap_or(usize::MAX),
+        radii: false,
+        unused: unused.into_iter().filter(|&(offset, _)| bytes.u32(offset) != 0).map(|(_, name)| name).collect(),
+    })
+}
