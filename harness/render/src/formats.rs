@@ -73,7 +73,7 @@ pub struct Imported {
     pub remarks: Vec<String>,
 }
 
-/// Reads a file of hair, `.hair` (cyHair) or `.tfx` (TressFX), by the ending of its name.
+/// Reads a file of hair, `.hair` (cyHair) or `.tfx` (`TressFX`), by the ending of its name.
 ///
 /// # Errors
 ///

@@ -28,7 +28,7 @@ fn hair() -> Vec<u8> {
     file
 }
 
-/// A TressFX file: two strands of four nodes.
+/// A `TressFX` file: two strands of four nodes.
 fn tfx() -> Vec<u8> {
     let mut file = 4_f32.to_le_bytes().to_vec();
     for number in [2_u32, 4, 160] {
@@ -196,14 +196,15 @@ fn wrong_files_are_refused_with_the_byte_and_both_numbers() {
 fn no_bytes_make_it_panic_or_grow() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let mut index = |below: usize| random.next_u32() as usize % below;
+    let byte = |number: usize| u8::try_from(number).expect("below 256");
     let mut accepted = 0;
     for i in 0..40_000 {
         let (name, mut file) = if i % 2 == 0 { ("a.hair", hair()) } else { ("a.tfx", tfx()) };
         match i / 2 % 4 {
-            0 => file = (0..index(300)).map(|_| index(256) as u8).collect(),
+            0 => file = (0..index(300)).map(|_| byte(index(256))).collect(),
             1 => {
                 let start = file.len().min(12 + 4 * index(40));
-                file[start..].iter_mut().for_each(|byte| *byte = index(256) as u8);
+                file[start..].iter_mut().for_each(|place| *place = byte(index(256)));
             }
             2 => {
                 for _ in 0..=index(3) {

@@ -2,4 +2,5 @@
 
 mod groom;
 mod import;
+mod rays;
 mod segments;

@@ -1,6 +1,6 @@
 //! Numbers out of a file, little endian.
 
-use super::{Problem, Wrong};
+use super::{LONGEST_FILE, Problem, Wrong};
 use glam::Vec3;
 
 /// A file.
@@ -17,6 +17,18 @@ impl<'a> Bytes<'a> {
     pub(super) fn header(self, needed: u64) -> Result<(), Wrong> {
         let got = self.len();
         if got < needed { Err((got, Problem::Header { needed, got })) } else { Ok(()) }
+    }
+
+    /// Refuses a file of another length than its header says, and any that is longer than what is read.
+    pub(super) fn length(self, expected: u64) -> Result<(), Wrong> {
+        let got = self.len();
+        if expected > LONGEST_FILE {
+            Err((4, Problem::TooLarge { bytes: expected, most: LONGEST_FILE }))
+        } else if got != expected {
+            Err((got.min(expected), Problem::Length { expected, got }))
+        } else {
+            Ok(())
+        }
     }
 
     /// The bytes at `offset`; 0 beyond the end, which callers have checked.

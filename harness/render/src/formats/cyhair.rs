@@ -6,7 +6,7 @@
 //! holds 65,535. Thickness is a diameter.
 
 use super::bytes::Bytes;
-use super::{LONGEST_FILE, Problem, Raw, RawStrand, Wrong};
+use super::{Problem, Raw, RawStrand, Wrong};
 
 const HEADER: u64 = 128;
 /// Where the header has the default thickness.
@@ -40,29 +40,23 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
     }
 
     // Where arrays begin, and the file's length.
-    let mut end = u128::from(HEADER);
-    let mut array = |flag: u32, bytes: u32, count: u32| {
+    let mut end = HEADER;
+    let mut array = |flag: u32, bytes: u64, count: u32| {
         let start = end;
         if flags & flag != 0 {
-            end += u128::from(bytes) * u128::from(count);
+            // At most 2^37 in all.
+            end += bytes * u64::from(count);
         }
         start
     };
-    let starts = [
+    let [segments_at, points_at, thickness_at, ..] = [
         array(SEGMENTS, 2, strands),
         array(POINTS, 12, points),
         array(THICKNESS, 4, points),
         array(TRANSPARENCY, 4, points),
         array(COLOURS, 12, points),
     ];
-    let expected = match u64::try_from(end) {
-        Ok(end) if end <= LONGEST_FILE => end,
-        _ => return Err((4, Problem::TooLarge { bytes: end, most: LONGEST_FILE })),
-    };
-    if bytes.len() != expected {
-        return Err((bytes.len().min(expected), Problem::Length { expected, got: bytes.len() }));
-    }
-    let [segments_at, points_at, thickness_at, ..] = starts.map(|start| start as u64);
+    bytes.length(end)?;
 
     let has = move |flag: u32| flags & flag != 0;
     let segments_of = move |strand: u32| {

@@ -74,7 +74,7 @@ pub enum Problem {
     /// The arrays take more than the file may be long.
     TooLarge {
         /// Their bytes.
-        bytes: u128,
+        bytes: u64,
         /// The most bytes.
         most: u64,
     },

@@ -1,11 +1,11 @@
-//! TressFX (`.tfx`), version 4, after AMD's `TressFXFileFormat.h`.
+//! `TressFX` (`.tfx`), version 4, after AMD's `TressFXFileFormat.h`.
 //!
 //! A header of 160 bytes: version as f32, strands, nodes per strand, then where sections begin, or 0: positions (four f32
 //! per node, the fourth a mass), texture coordinates per strand and per node (two f32), thickness per strand (f32), colours
 //! per node (four f32); 32 reserved numbers. Metres.
 
 use super::bytes::Bytes;
-use super::{LONGEST_FILE, Problem, Raw, RawStrand, Wrong};
+use super::{Problem, Raw, RawStrand, Wrong};
 
 const HEADER: u64 = 160;
 const VERSION: f32 = 4.0;
@@ -27,12 +27,13 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
             Problem::Count { expected: "nodes per strand must be a power of two from 4 to 64", got: nodes },
         ));
     }
-    let of_nodes = u128::from(strands) * u128::from(nodes);
-    let of_strands = u128::from(strands);
+    // At most 2^38: no section ends beyond 2^42.
+    let of_nodes = u64::from(strands) * u64::from(nodes);
+    let of_strands = u64::from(strands);
     // Where the header has the beginning of a section, and the section's bytes.
     let sections =
         [(12, 16 * of_nodes), (16, 8 * of_strands), (20, 8 * of_nodes), (24, 4 * of_strands), (28, 16 * of_nodes)];
-    let mut expected = u128::from(HEADER);
+    let mut end = HEADER;
     for (offset, size) in sections {
         let start = bytes.u32(offset);
         if start == 0 && offset != 12 {
@@ -41,15 +42,9 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
         if u64::from(start) < HEADER {
             return Err((offset, Problem::Section { header: HEADER, got: u64::from(start) }));
         }
-        expected = expected.max(u128::from(start) + size);
+        end = end.max(u64::from(start) + size);
     }
-    let expected = match u64::try_from(expected) {
-        Ok(expected) if expected <= LONGEST_FILE => expected,
-        _ => return Err((4, Problem::TooLarge { bytes: expected, most: LONGEST_FILE })),
-    };
-    if bytes.len() != expected {
-        return Err((bytes.len().min(expected), Problem::Length { expected, got: bytes.len() }));
-    }
+    bytes.length(end)?;
     let start = u64::from(bytes.u32(12));
     let (strands, nodes) = (u64::from(strands), u64::from(nodes));
     for node in 0..strands * nodes {

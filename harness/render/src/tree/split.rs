@@ -78,9 +78,8 @@ impl Bins {
         }
         let mut bins = Self::EMPTY;
         for primitive in primitives {
-            let places = scale.bins(primitive);
-            for axis in 0..3 {
-                let bin = &mut bins.0[axis][places[axis]];
+            for (bins, place) in bins.0.iter_mut().zip(scale.bins(primitive)) {
+                let bin = &mut bins[place];
                 *bin = bin.and(&Bin { bounds: primitive.bounds, count: 1 });
             }
         }

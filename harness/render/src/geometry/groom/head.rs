@@ -56,14 +56,14 @@ impl Head {
         let phase = clump.phase + 0.5 * random.normal();
         let curl_radius = groom.curl_radius * (1.0 + 0.2 * random.normal_cut());
         let step = length / (groom.nodes - 1) as f32;
-        for k in 1..nodes.len() {
+        for (k, node) in nodes.iter_mut().enumerate().skip(1) {
             let s = k as f32 / (groom.nodes - 1) as f32;
             let guide = clump.guide[k];
             let (side, other) = (guide - clump.guide[k - 1]).normalize().any_orthonormal_pair();
             let angle = phase + TAU * k as f32 * step / clump.curl_length;
             let curl = curl_radius * (4.0 * s).min(1.0);
             let frizz = Vec3::new(random.normal(), random.normal(), random.normal());
-            nodes[k] = nodes[k].lerp(guide, groom.clump * libm::powf(s, 0.7))
+            *node = node.lerp(guide, groom.clump * libm::powf(s, 0.7))
                 + curl * (libm::cosf(angle) * side + libm::sinf(angle) * other)
                 + 0.5 * groom.frizz * s * frizz;
         }
