@@ -28,7 +28,10 @@ fn without(pointer: &str, name: &str) -> Value {
 fn bad_values() -> Vec<(Value, &'static str)> {
     vec![
         (without("", "model"), "model: missing"),
-        (with("/model", json!("phong")), "model: must be \"gaussian\" or \"cauchy\", got \"phong\""),
+        (
+            with("/model", json!("phong")),
+            "model: must be \"gaussian\" or \"cauchy\" or \"kajiya-kay\" or \"chiang\", got \"phong\"",
+        ),
         (with("/model", json!(3)), "model: must be a string, got 3"),
         (and("", "sampler", json!("uniform")), "sampler: must be \"ou\" or "),
         (
