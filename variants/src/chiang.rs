@@ -78,7 +78,7 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
 
     #[inline(always)]
     fn weights<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>) -> PerLobe<L> {
-        if BY_CHANNEL { gather.shares_by_channel() } else { gather.mean_shares() }
+        if BY_CHANNEL { gather::shares_by_channel(gather) } else { gather::mean_shares(gather) }
     }
 
     #[inline(always)]
@@ -87,7 +87,7 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
         let mut lobes = [LobeEval::none(); 4];
         let mut p = 0;
         while p < 4 {
-            lobes[p] = LobeEval { value: pdf[p] * inv_cos, color: gather.attenuation(p), pdf: pdf[p] };
+            lobes[p] = LobeEval { value: pdf[p] * inv_cos, color: gather::attenuation(gather, p), pdf: pdf[p] };
             p += 1;
         }
         PerLobe(lobes)
@@ -101,6 +101,7 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
     /// Closed form: the attenuations.
     #[inline(always)]
     fn albedo<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>) -> PerLobe<[L; 3]> {
-        PerLobe([gather.attenuation(0), gather.attenuation(1), gather.attenuation(2), gather.attenuation(3)])
+        let of = gather::attenuation;
+        PerLobe([of(gather, 0), of(gather, 1), of(gather, 2), of(gather, 3)])
     }
 }

@@ -174,23 +174,17 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
     let path_length = twice_eta * cos_gamma_t * inv_inside;
     let [f, passed] = fresnel(cos_hit, k, eta_sq, eta_sq_less_one);
     let mut attenuation = [f.store(); 12];
-    let [mut rest, mut left] = [[zero; 3]; 2];
     let mut channel = 0;
     while channel < 3 {
         let (t, absorbed) = gaussian_and_complement(m.twice_sigma_a[channel].lanes() * path_length);
         let tt = passed * passed * t;
         let trt = tt * (f * t);
-        rest[channel] = trt * (f * t);
-        // Loss of a passage: the light that does not return to the inside. The product of three has a reciprocal.
-        left[channel] = f.mul_add(absorbed, passed).max(c(1e-12));
         attenuation[3 + channel] = tt.store();
         attenuation[6 + channel] = trt.store();
+        // Over the loss of a passage, `1 - F T`: the light that does not return to the inside.
+        attenuation[9 + channel] = (trt * (f * t) / f.mul_add(absorbed, passed).max(c(1e-30))).store();
         channel += 1;
     }
-    let (rg, inverse) = (left[0] * left[1], one / (left[0] * left[1] * left[2]));
-    attenuation[9] = (rest[0] * (inverse * left[2] * left[1])).store();
-    attenuation[10] = (rest[1] * (inverse * left[2] * left[0])).store();
-    attenuation[11] = (rest[2] * (inverse * rg)).store();
 
     // Azimuths: wo's turned by -2 gamma_o, and for each passage by pi + 2 gamma_t.
     let back = product([cos_gamma_o, -sin_gamma_o], [cos_gamma_o, -sin_gamma_o]);
@@ -209,19 +203,12 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
     let sin_cone = Four::difference_of_products(same(sin_o), cos, same(cos_o), sin);
     let cos_cone = Four::difference_of_products(same(cos_o), cos, same(-sin_o), sin).abs();
     let concentration = cos_cone * four(&m.widths.inv_variance);
-    // 1 / sqrt of each, by one division.
-    let root = concentration.max(same(c(1e-8))).sqrt();
-    let [a, b, e, g] = apart(root);
-    let (ab, eg) = (a * b, e * g);
-    let inverse = one / (ab * eg);
-    let (inv_ab, inv_eg) = (inverse * eg, inverse * ab);
-    let spread = [inv_ab * b, inv_ab * a, inv_eg * g, inv_eg * e];
 
     ChiangGather {
         sin_cone: store4(apart(sin_cone)),
         cos_cone: store4(apart(cos_cone)),
         concentration: store4(apart(concentration)),
-        spread: store4(spread),
+        spread: store4(apart(same(one) / concentration.max(same(c(1e-8))).sqrt())),
         azimuth_v: store4(apart(v * by)),
         azimuth_w: store4(apart(w * by)),
         attenuation,
@@ -231,53 +218,39 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
     }
 }
 
-impl<C> ChiangGather<C> {
-    /// Attenuation of lobe `p`, linear RGB.
-    #[inline(always)]
-    pub fn attenuation<L: Lanes>(&self, p: usize) -> [L; 3]
-    where
-        C: Broadcast<L>,
-    {
-        lanes3(&[self.attenuation[3 * p], self.attenuation[3 * p + 1], self.attenuation[3 * p + 2]])
-    }
+/// Attenuation of lobe `p`, linear RGB.
+#[inline(always)]
+pub(super) fn attenuation<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, p: usize) -> [L; 3] {
+    lanes3(&[gather.attenuation[3 * p], gather.attenuation[3 * p + 1], gather.attenuation[3 * p + 2]])
+}
 
-    /// Attenuation of the four lobes in one channel.
-    #[inline(always)]
-    fn channel<L: Lanes>(&self, c: usize) -> Four<L>
-    where
-        C: Broadcast<L>,
-    {
-        let a = &self.attenuation;
-        four(&[a[c], a[3 + c], a[6 + c], a[9 + c]])
-    }
+/// Attenuation of the four lobes in one channel.
+#[inline(always)]
+fn channel<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, c: usize) -> Four<L> {
+    let a = &gather.attenuation;
+    four(&[a[c], a[3 + c], a[6 + c], a[9 + c]])
+}
 
-    /// The mean of each lobe's attenuation over the channels.
-    #[inline(always)]
-    pub(super) fn mean_shares<L: Lanes>(&self) -> PerLobe<L>
-    where
-        C: Broadcast<L>,
-    {
-        PerLobe(apart((self.channel(0) + self.channel(1) + self.channel(2)) * Four::splat(1.0 / 3.0)))
-    }
+/// The mean of each lobe's attenuation over the channels.
+#[inline(always)]
+pub(super) fn mean_shares<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>) -> PerLobe<L> {
+    PerLobe(apart((channel(gather, 0) + channel(gather, 1) + channel(gather, 2)) * Four::splat(1.0 / 3.0)))
+}
 
-    /// `sqrt(sum over the channels of (A_pc / mu_c)^2)`, `mu_c` the sum over the lobes.
-    #[inline(always)]
-    pub(super) fn shares_by_channel<L: Lanes>(&self) -> PerLobe<L>
-    where
-        C: Broadcast<L>,
-    {
-        let mut sum = Four::splat(0.0);
-        let mut c = 0;
-        while c < 3 {
-            let lobes = self.channel::<L>(c);
-            let [r, tt, trt, rest] = apart(lobes);
-            let total = (r + tt) + (trt + rest);
-            let share = lobes * same(L::keep(L::splat(f32::MIN_POSITIVE).lt(total), L::splat(1.0) / total));
-            sum = share.mul_add(share, sum);
-            c += 1;
-        }
-        PerLobe(apart(sum.sqrt()))
+/// `sqrt(sum over the channels of (A_pc / mu_c)^2)`, `mu_c` the sum over the lobes.
+#[inline(always)]
+pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>) -> PerLobe<L> {
+    let mut sum = Four::splat(0.0);
+    let mut c = 0;
+    while c < 3 {
+        let lobes: Four<L> = channel(gather, c);
+        let [r, tt, trt, rest] = apart(lobes);
+        let total = (r + tt) + (trt + rest);
+        let share = lobes * same(L::keep(L::splat(f32::MIN_POSITIVE).lt(total), L::splat(1.0) / total));
+        sum = share.mul_add(share, sum);
+        c += 1;
     }
+    PerLobe(apart(sum.sqrt()))
 }
 
 impl ChiangGather<f32> {

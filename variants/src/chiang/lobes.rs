@@ -37,17 +37,13 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     // 1 / sqrt(cos theta_i), which the tails of the Bessel functions share.
     let inv_root_i = one / cos_i.sqrt();
 
-    // |delta| / 2 of R, TT and TRT from the tangent of half of it or of what it lacks of an eighth turn, by one division. The rest has no azimuth: TRT's is
-    // in its place, and costs nothing.
+    // |delta| / 2 of R, TT and TRT, from the tangent of half of it or of what it lacks of an eighth turn. The rest has no
+    // azimuth: TRT's is in its place, and costs nothing.
     let [v, w] = [&gather.azimuth_v, &gather.azimuth_w];
     let (v, w) = (four(&[v[0], v[1], v[2], v[2]]), four(&[w[0], w[1], w[2], w[2]]));
     let (wi_v, wi_w) = (same(wi.vector.y), same(wi.vector.z));
     let (cross, dot) = (v.mul_sub(wi_w, w * wi_v).abs(), v.mul_add(wi_v, w * wi_w));
-    let [a, b, d, _] = apart(same(cos_i) + cross.max(dot.abs()));
-    let (inverse, ab) = (one / (a * b * d), a * b);
-    let (inv_ab, inv_d) = (inverse * d, inverse * ab);
-    let inverse = Pair(Pair(inv_ab * b, inv_ab * a), Pair(inv_d, inv_d));
-    let angle = atan_eighth_turn(cross.min(dot.abs()) * inverse);
+    let angle = atan_eighth_turn(cross.min(dot.abs()) / (same(cos_i) + cross.max(dot.abs())));
     let half = Four::select(dot.abs().lt(cross), Four::splat(FRAC_PI_4) - angle, angle);
     let half = Four::select(dot.lt(Four::splat(0.0)), Four::splat(FRAC_PI_2) - half, half);
     let exponent = half * same(m.four_inv_scale.lanes());
