@@ -214,7 +214,8 @@ impl<M: Registered> Of<'_, M> {
         let shared = |i| self.shared(i, Given::Wi(PROBE));
         let mixed = |i| self.mixed_hair(i, Given::Wi(PROBE));
         self.show(visitor, TEXTBOOK, "scalar", shared, || {
-            Each::new(1, arrays(&inputs.wo), move |wo| Point(Self::textbook(*wo)))
+            let formulas = M::formulas::<f32>(&M::Params::default());
+            Each::new(1, arrays(&inputs.wo), move |wo| Point(M::reference_at(&formulas, *wo, 0.0)))
         });
         self.show(visitor, "prepare", "scalar", shared, || {
             let bsdf = self.bsdf();
@@ -324,9 +325,9 @@ impl<M: Registered> Of<'_, M> {
         let one = |i| self.shared(i / 8, Given::Xi(inputs.xi[8 * (packets_at_one - 1) + i % 8]));
         let eight = |i| self.mixed_hair(i, Given::Xi(inputs.xi[8 * (samples - 1) + i % 8]));
         self.show(visitor, TEXTBOOK, "scalar", scalar, || {
-            let xi = xi.to_vec();
+            let (formulas, xi) = (M::formulas::<f32>(&M::Params::default()), xi.to_vec());
             Each::new(samples, arrays(&inputs.wo), move |wo| {
-                let textbook = Self::textbook(*wo);
+                let textbook = M::reference_at(&formulas, *wo, 0.0);
                 last(&xi, |xi| textbook.sample(*xi))
             })
         });

@@ -114,6 +114,8 @@ impl<B: RegisteredBell> Registered for Hair<B> {
     const MODEL: Self = Self(B::BELL);
 
     #[cfg(feature = "textbook")]
+    type Formulas<T: Real> = textbook::Parameters<T>;
+    #[cfg(feature = "textbook")]
     type Reference<T: Real> = Textbook<T>;
     #[cfg(feature = "textbook")]
     const ACCURACY: Accuracy = {
@@ -132,8 +134,14 @@ impl<B: RegisteredBell> Registered for Hair<B> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn reference<T: Real>(params: &HairParams, wo: [T; 3], _h: T) -> Textbook<T> {
-        Textbook::prepare(&textbook::Parameters::from(params), B::SHAPE, wo)
+    fn formulas<T: Real>(params: &HairParams) -> textbook::Parameters<T> {
+        textbook::Parameters::from(params)
+    }
+
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn reference_at<T: Real>(formulas: &textbook::Parameters<T>, wo: [T; 3], _h: T) -> Textbook<T> {
+        Textbook::prepare(formulas, B::SHAPE, wo)
     }
 
     #[cfg(feature = "textbook")]
@@ -166,6 +174,8 @@ impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
     const MODEL: Self = Self(B::BELL);
 
     #[cfg(feature = "textbook")]
+    type Formulas<T: Real> = textbook::Parameters<T>;
+    #[cfg(feature = "textbook")]
     type Reference<T: Real> = MatchedTextbook<T>;
     #[cfg(feature = "textbook")]
     const ACCURACY: Accuracy = {
@@ -183,8 +193,14 @@ impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn reference<T: Real>(params: &HairParams, wo: [T; 3], _h: T) -> MatchedTextbook<T> {
-        MatchedTextbook::prepare(&textbook::Parameters::from(params), B::SHAPE, wo, BANDS)
+    fn formulas<T: Real>(params: &HairParams) -> textbook::Parameters<T> {
+        textbook::Parameters::from(params)
+    }
+
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn reference_at<T: Real>(formulas: &textbook::Parameters<T>, wo: [T; 3], _h: T) -> MatchedTextbook<T> {
+        MatchedTextbook::prepare(formulas, B::SHAPE, wo, BANDS)
     }
 
     #[cfg(feature = "textbook")]

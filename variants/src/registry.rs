@@ -46,6 +46,9 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     /// Name of the lobes' colours in reports; `None` if they are not reported.
     const COLORS: Option<&'static str> = None;
 
+    /// What the formulas have in common for all gather points of a material.
+    #[cfg(feature = "textbook")]
+    type Formulas<T: Real>: Copy + Debug;
     /// The formulas at one gather point.
     #[cfg(feature = "textbook")]
     type Reference<T: Real>: Reference<T> + Copy + Debug;
@@ -53,9 +56,21 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     #[cfg(feature = "textbook")]
     const ACCURACY: Accuracy;
 
-    /// The formulas for these parameters, seen from `wo` at the offset `h`.
+    /// The formulas for these parameters.
     #[cfg(feature = "textbook")]
-    fn reference<T: Real>(params: &Self::Params, wo: [T; 3], h: T) -> Self::Reference<T>;
+    fn formulas<T: Real>(params: &Self::Params) -> Self::Formulas<T>;
+
+    /// The formulas seen from `wo` at the offset `h`.
+    #[cfg(feature = "textbook")]
+    fn reference_at<T: Real>(formulas: &Self::Formulas<T>, wo: [T; 3], h: T) -> Self::Reference<T>;
+
+    /// The formulas for these parameters, seen from `wo` at the offset `h`; for many hits, see
+    /// [`formulas`](Self::formulas).
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn reference<T: Real>(params: &Self::Params, wo: [T; 3], h: T) -> Self::Reference<T> {
+        Self::reference_at(&Self::formulas(params), wo, h)
+    }
 
     /// Absolute error allowed of S beside the relative one, by channel: 0 unless the model cuts its tails.
     #[cfg(feature = "textbook")]

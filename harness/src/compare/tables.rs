@@ -8,7 +8,7 @@ use crate::speed::Op;
 use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::table::{Table, number};
-use hairis_variants::ModelId;
+use hairis_variants::{Accuracy, ModelId};
 
 /// How much a set of tables holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +70,7 @@ fn speed(of: &Comparison, model: ModelId, depth: Depth) -> Table {
     }
     table.note(format!(
         "{}. Medians over rounds in which all contenders run in turn; the ratio is formed within each round. The \
-         textbook is the paper's formulas in f32 on the libm crate.",
+         textbook is the model's formulas in f32 on the libm crate, a material's constants formed once.",
         of.machine.summary()
     ))
 }
@@ -129,11 +129,28 @@ fn agreement(of: &Comparison, depth: Depth) -> Table {
         }
         table.push(cells);
     }
-    table.note(
-        "Bounds: density 1e-5; S 1e-4 (Gaussian) and 1e-5 (Cauchy); of the matched sampler, density as S, on the Gaussian model \
-         samples 3e-5 and their cdf 5e-5, on the Cauchy one 1e-5; further than 1e-3 rad from the fibre's axis. The cdf is the distance from the number a sample was \
-         drawn with, elsewhere within 1e-5.",
-    )
+    table.note(format!(
+        "Bounds, further than 1e-3 rad from the fibre's axis: {}. The cdf is the distance from the number a sample was drawn \
+         with.",
+        bounds()
+    ))
+}
+
+/// The bounds of every model; those that share them are named together.
+fn bounds() -> String {
+    let mut groups: Vec<(String, Accuracy)> = Vec::new();
+    for id in ModelId::ALL {
+        let name = id.choice().map_or_else(|| id.name().to_owned(), |(_, word)| format!("{} {word}", id.name()));
+        match groups.iter_mut().find(|(_, accuracy)| *accuracy == id.accuracy()) {
+            Some((names, _)) => names.extend([", ", name.as_str()]),
+            None => groups.push((name, id.accuracy())),
+        }
+    }
+    let line = |(names, a): &(String, Accuracy)| {
+        let cdf = if a.cdf > 0.0 { format!(", cdf {:e}", a.cdf) } else { String::new() };
+        format!("{names}: density {:e}, S {:e}, density of a sample {:e}{cdf}", a.pdf, a.value, a.sample_pdf)
+    };
+    groups.iter().map(line).collect::<Vec<_>>().join("; ")
 }
 
 fn reference(of: &Comparison) -> Table {

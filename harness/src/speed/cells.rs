@@ -93,9 +93,9 @@ pub(super) fn with_levels(
 
 fn prepare<M: Registered>(id: ModelId, inputs: &Inputs<M::Params>) -> Result<(Vec<Contender>, Truth), ParamError> {
     let params = inputs.params[0];
-    let bsdf = Bsdf::new(&M::MODEL, &params);
+    let (bsdf, formulas) = (Bsdf::new(&M::MODEL, &params), M::formulas::<f32>(&params));
     let contenders = vec![
-        scalar(TEXTBOOK, task(&arrays(&inputs.wo), move |wo| Point(M::reference::<f32>(&params, *wo, 0.0)))),
+        scalar(TEXTBOOK, task(&arrays(&inputs.wo), move |wo| Point(M::reference_at(&formulas, *wo, 0.0)))),
         scalar(ONE, task(&inputs.wo, move |wo| bsdf.prepare(*wo))),
     ];
     let contenders =

@@ -28,7 +28,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
     inputs: &Inputs<M::Params>,
 ) -> Result<(Vec<Contender>, Truth), ParamError> {
     let params = inputs.params[0];
-    let bsdf = Bsdf::new(&M::MODEL, &params);
+    let (bsdf, formulas) = (Bsdf::new(&M::MODEL, &params), M::formulas::<f32>(&params));
     let (rows, _) = inputs.xi.as_chunks::<N>();
     let wo = &inputs.wo[..rows.len()];
     let contenders = vec![
@@ -38,7 +38,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
                 &pairs(&arrays(wo), rows),
                 |i| i,
                 move |(wo, xi), keep| {
-                    let point = M::reference::<f32>(&params, *wo, 0.0);
+                    let point = M::reference_at(&formulas, *wo, 0.0);
                     xi.iter().for_each(|xi| keep(&point.sample(*xi)));
                 },
             ),
@@ -99,13 +99,14 @@ pub(super) fn mixed<M: Registered>(
 ) -> Result<(Vec<Contender>, Truth), ParamError> {
     let params = inputs.params;
     let bsdfs = params.map(|params| Bsdf::new(&M::MODEL, &params));
+    let formulas = params.map(|params| M::formulas::<f32>(&params));
     let numbered: Vec<(usize, Vec3)> = inputs.wo.iter().enumerate().map(|(i, wo)| (i % 8, *wo)).collect();
     let arrays: Vec<(usize, [f32; 3])> = numbered.iter().map(|(i, wo)| (*i, wo.to_array())).collect();
     let contenders = vec![
         scalar(
             TEXTBOOK,
             task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
-                M::reference::<f32>(&params[*i], *wo, 0.0).sample(*xi)
+                M::reference_at(&formulas[*i], *wo, 0.0).sample(*xi)
             }),
         ),
         scalar(ONE, task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| bsdfs[*i].prepare(*wo).sample(*xi))),

@@ -5,7 +5,7 @@ use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
 
 #[cfg(feature = "textbook")]
-use super::{ChiangReference, Selection};
+use super::{ChiangConstants, ChiangReference, Selection};
 #[cfg(feature = "textbook")]
 use crate::Accuracy;
 #[cfg(feature = "textbook")]
@@ -75,6 +75,8 @@ impl<const BY_CHANNEL: bool> Registered for Chiang<BY_CHANNEL> {
     const COLORS: Option<&'static str> = Some("attenuation");
 
     #[cfg(feature = "textbook")]
+    type Formulas<T: Real> = ChiangConstants<T>;
+    #[cfg(feature = "textbook")]
     type Reference<T: Real> = ChiangReference<T>;
     // `5e-6 + 5e-7 / min(sqrt(v), s)`, the narrowest v and s those of roughnesses of .1.
     #[cfg(feature = "textbook")]
@@ -90,9 +92,14 @@ impl<const BY_CHANNEL: bool> Registered for Chiang<BY_CHANNEL> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn reference<T: Real>(params: &ChiangParams, wo: [T; 3], h: T) -> ChiangReference<T> {
-        let selection = if BY_CHANNEL { Selection::ByChannel } else { Selection::Mean };
-        ChiangReference::prepare(&params.into(), selection, wo, h)
+    fn formulas<T: Real>(params: &ChiangParams) -> ChiangConstants<T> {
+        ChiangConstants::new(&params.into(), if BY_CHANNEL { Selection::ByChannel } else { Selection::Mean })
+    }
+
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn reference_at<T: Real>(formulas: &ChiangConstants<T>, wo: [T; 3], h: T) -> ChiangReference<T> {
+        formulas.prepare(wo, h)
     }
 
     /// Errors grow with the exponent of a lobe: from `exp(-12)` of its peak down they are absolute.

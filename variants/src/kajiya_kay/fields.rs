@@ -5,7 +5,7 @@ use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
 
 #[cfg(feature = "textbook")]
-use super::KajiyaKayReference;
+use super::{KajiyaKayConstants, KajiyaKayReference};
 #[cfg(feature = "textbook")]
 use crate::Accuracy;
 #[cfg(feature = "textbook")]
@@ -47,6 +47,8 @@ impl Registered for KajiyaKay {
     const MODEL: Self = Self;
 
     #[cfg(feature = "textbook")]
+    type Formulas<T: Real> = KajiyaKayConstants<T>;
+    #[cfg(feature = "textbook")]
     type Reference<T: Real> = KajiyaKayReference<T>;
     // For exponents up to 1000.
     #[cfg(feature = "textbook")]
@@ -62,8 +64,14 @@ impl Registered for KajiyaKay {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn reference<T: Real>(params: &KajiyaKayParams, wo: [T; 3], _h: T) -> KajiyaKayReference<T> {
-        KajiyaKayReference::prepare(&params.into(), wo)
+    fn formulas<T: Real>(params: &KajiyaKayParams) -> KajiyaKayConstants<T> {
+        KajiyaKayConstants::new(&params.into())
+    }
+
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn reference_at<T: Real>(formulas: &KajiyaKayConstants<T>, wo: [T; 3], _h: T) -> KajiyaKayReference<T> {
+        formulas.prepare(wo)
     }
 
     /// Errors grow with the exponent of the bell: from 1e-12 of its peak down they are absolute.

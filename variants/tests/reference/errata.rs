@@ -266,3 +266,38 @@ fn elsewhere_i0_is_cut_short() {
     println!("energy of TT elsewhere: {mass:.4}");
     assert!(mass < 0.995, "energy is lost: {mass}");
 }
+
+#[test]
+fn elsewhere_tilt_follows_sampling() {
+    // A cone drawn without tilt and turned by the shift afterwards, with the density of before the turn: a ring about the
+    // fibre has become shorter, or longer, and the density is off by the ratio of both cosines.
+    let (theta_o, tilt) = (60.0 * DEG, 2.0);
+    let p = clear(0.05, 0.3, tilt);
+    let [straight, tilted] = [&clear(0.05, 0.3, 0.0), &p].map(|p| prepare(p, theta_o, 0.0));
+    let (shift, rule) = (-2.0 * tilt * DEG, inclinations(&p, &tilted, FRAC_PI_2));
+    let theirs = sum(&rule, |t| straight.longitudinal(Lobe::R, t - shift) * t.cos());
+    let ours = sum(&rule, |t| tilted.longitudinal(Lobe::R, t) * t.cos());
+    let cosines = (-theta_o + shift).cos() / theta_o.cos();
+    println!("mass of R with the tilt after sampling: {theirs:.4}, ratio of cosines {cosines:.4}");
+    assert!((ours - 1.0).abs() < 1e-12, "ours integrates to 1: {ours}");
+    assert!((theirs / cosines - 1.0).abs() < 0.01, "the density after the turn: {theirs}, {cosines}");
+    assert!((1.0 / theirs - 1.14).abs() < 0.01, "drawn over claimed: {}", 1.0 / theirs);
+}
+
+#[test]
+fn elsewhere_an_inverse_pi_too_many() {
+    // sum of A M N / pi, as a specification had it: M and N are normalised already.
+    let p = clear(0.3, 0.3, 2.0);
+    let fiber = prepare(&p, 0.4, 0.3);
+    let (theta, phi) = (inclinations(&p, &fiber, FRAC_PI_2), super::chiang::azimuths(&p, &fiber));
+    let returned: f64 = Lobe::ALL
+        .into_iter()
+        .map(|lobe| {
+            let m = sum(&theta, |t| fiber.longitudinal(lobe, t) * t.cos());
+            fiber.albedo()[lobe][0] * m * sum(&phi, |phi| fiber.azimuthal(lobe, phi))
+        })
+        .sum();
+    assert!((returned - 1.0).abs() < 1e-11, "clear hair returns all light: {returned}");
+    let printed = returned / PI;
+    assert!((printed - 0.318).abs() < 1e-3, "with 1 / pi it keeps two thirds: {printed}");
+}
