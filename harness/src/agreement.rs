@@ -316,7 +316,7 @@ mod tests {
     use super::*;
     use hairis_variants::Values;
 
-    const SMALL: AgreementConfig = AgreementConfig { packets: 100, seed: 11 };
+    const SMALL: AgreementConfig = AgreementConfig { packets: 200, seed: 11 };
 
     #[test]
     fn kernels_agree_wherever_the_azimuth_can_tell() {

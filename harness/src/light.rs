@@ -92,6 +92,18 @@ pub trait Light: Sync + Send {
     }
 }
 
+/// A light's name in a sentence.
+pub(crate) fn in_words(name: &str) -> &str {
+    match name {
+        "constant" => "constant light",
+        "smooth" => "smooth light",
+        "sun" => "a 5° sun",
+        "rectangle" => "a large area light",
+        "clear sky" | "sky" => "a procedural sky",
+        _ => name,
+    }
+}
+
 /// The nearest number of single precision.
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
 const fn rounded(x: f64) -> f32 {

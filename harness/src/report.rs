@@ -54,7 +54,7 @@ enum Block {
     Figure(Figure),
 }
 
-/// A drawing with its caption and, folded away, its numbers.
+/// A drawing with its caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Name of its files, without the end; empty for none.
@@ -63,27 +63,19 @@ pub struct Figure {
     pub svg: String,
     /// Caption.
     pub caption: String,
-    /// The numbers it was drawn from.
-    pub data: Option<Table>,
 }
 
 impl Figure {
     /// A drawing with its caption.
     #[must_use]
     pub fn new(svg: impl Into<String>, caption: impl Into<String>) -> Self {
-        Self { name: String::new(), svg: svg.into(), caption: caption.into(), data: None }
+        Self { name: String::new(), svg: svg.into(), caption: caption.into() }
     }
 
     /// Names its files: letters, digits and hyphens.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self { name: name.into(), ..self }
-    }
-
-    /// Adds the numbers it was drawn from.
-    #[must_use]
-    pub fn with_data(self, data: Table) -> Self {
-        Self { data: Some(data), ..self }
     }
 }
 
@@ -290,9 +282,6 @@ impl Figure {
             self.svg,
             inline(&self.caption)
         ));
-        if let Some(data) = &self.data {
-            page.push_str(&format!("<details><summary>Its numbers</summary>\n{}</details>\n", data.to_html()));
-        }
         page.push_str("</figure>\n");
     }
 }
@@ -335,8 +324,7 @@ mod tests {
         let chart = LineChart::new(text, Axis::linear(text), Axis::log(text)).series(Series::curve(text, [(1.0, 2.0)]));
         let table = || Table::new(text).text(text).number(text).row([text, text]).note(text);
         let section = Section::new(text).heading(text).paragraph(text).table(table());
-        let section =
-            section.figure(Figure::new(chart.svg(), text)).figure(Figure::new(chart.svg(), text).with_data(table()));
+        let section = section.figure(Figure::new(chart.svg(), text)).figure(Figure::new(chart.svg(), text));
         let summary = Figure::new(chart.svg(), text).named("summary");
         let report = Report::new(text).subtitle(text).verdict(text, text).summary(summary).finding(text);
         report.section(section).method(text).fact(text, text)

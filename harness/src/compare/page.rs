@@ -2,6 +2,7 @@
 
 use super::{Comparison, Depth, charts, tables};
 use crate::efficiency::Row;
+use crate::light::in_words;
 use crate::report::{Report, Section};
 use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
@@ -53,7 +54,7 @@ pub fn report(of: &Comparison) -> Report {
         efficiency = efficiency.table(table);
     }
 
-    let mut speed = Section::new("Speed").figure(charts::speed(of));
+    let mut speed = charts::speeds(of).into_iter().fold(Section::new("Speed"), Section::figure);
     for table in tables.speed {
         speed = speed.table(table);
     }
@@ -101,7 +102,7 @@ fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
     let speeds = [ratio(Op::EvalPdf, ModelKind::Gaussian), ratio(Op::Sample, ModelKind::Gaussian)];
     if let [Some(eval), Some(sample)] = speeds.map(|ratio| ratio.map(number::ratio)) {
         let sentence =
-            format!("Eight lanes on {level} evaluate {eval} and sample {sample} as fast as scalar formulas.");
+            format!("Eight lanes on {level} evaluate {eval} and sample {sample} as fast as the scalar formulas.");
         verdicts.push(["Speed".to_owned(), sentence]);
     }
     for light in &of.efficiency.settings.lights {
@@ -109,7 +110,7 @@ fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
         let cauchy = v_ratio(of, light, (ModelKind::Gaussian, Sampler::Ou), (ModelKind::Cauchy, Sampler::Ou));
         let matched = v_ratio(of, light, (ModelKind::Gaussian, Sampler::Ou), (ModelKind::Gaussian, Sampler::Matched));
         verdicts.push([
-            format!("Under {light}"),
+            format!("Under {}", in_words(light)),
             format!("Cauchy takes {} samples; `matched` in place of `ou` takes {}.", change(cauchy), change(matched)),
         ]);
     }

@@ -4,6 +4,7 @@ use super::super::equal_time::Sign;
 use super::super::rows::Strategy;
 use super::view::{Counted, Estimator, MANY, TOLD, View};
 use crate::difference::{Summary, Width, albedo_ratio};
+use crate::light::in_words;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::subject::ModelKind;
@@ -175,7 +176,7 @@ pub(super) fn verdicts(of: &View<'_>) -> Vec<[String; 2]> {
     for (light, name) in of.lights.iter().enumerate() {
         let parts: Vec<String> = TOLD.into_iter().filter_map(|sampler| words(sampler, light)).collect();
         if !parts.is_empty() {
-            verdicts.push([format!("Under {}", said(name)), format!("Cauchy takes {}.", listed(&parts))]);
+            verdicts.push([format!("Under {}", in_words(said(name))), format!("Cauchy takes {}.", listed(&parts))]);
         }
     }
     let [plain, blurred] =
