@@ -111,11 +111,12 @@ pub(super) fn summary(of: &View<'_>) -> Figure {
     let title = "Samples: Gaussian model over Cauchy model";
     let mut chart = BarChart::new(title, Axis::log("V Gaussian / V Cauchy"), of.light_labels()).narrow();
     for sampler in TOLD {
-        let bars = by_light(of, (ModelKind::Gaussian, sampler), (ModelKind::Cauchy, sampler.into()), None);
-        chart = chart.series(sampler.name(), bars);
+        let gain = |light| of.gain((ModelKind::Gaussian, sampler), (ModelKind::Cauchy, sampler), light);
+        let bar = |light| Bar::new(gain(light).map_or(f64::NAN, |gain| gain.median.value));
+        chart = chart.series(sampler.name(), (0..of.lights.len()).map(bar));
     }
     let caption = "By what factor the Cauchy model needs fewer samples (above 1) or more (below), by light: medians over the \
-                   grid, whiskers from the first to the third quartile.";
+                   grid. The spread over its cells is shown below.";
     Figure::new(chart.level(1.0).svg(), caption).named("summary")
 }
 
