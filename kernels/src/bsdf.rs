@@ -1,7 +1,7 @@
 //! Public handles: a material and a gather point of any model.
 
 use crate::model::{Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Sample, Sample8};
-use crate::packet::{EvalPdf, Lobes, Prepare, SampleWi};
+use crate::packet::{Albedo, EvalPdf, Lobes, Prepare, SampleWi};
 use crate::{LaneStruct, Level, LobeMask, Model, PerLobe, Vec3x, Vec3x8};
 use core::f32::consts::FRAC_PI_2;
 use core::fmt;
@@ -331,6 +331,13 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn albedo8(&self) -> PerLobe<[f32x8; 3]> {
-        M::albedo::<f32x8, f32x8>(&self.inner)
+        self.albedo8_at(Level::detect())
+    }
+
+    /// As [`albedo8`](Self::albedo8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn albedo8_at(&self, level: Level) -> PerLobe<[f32x8; 3]> {
+        level.run(Albedo::<M> { gather: &self.inner })
     }
 }

@@ -4,6 +4,7 @@
 //! normal plane. The azimuth of `v` is 0 and that of `w` is pi/2.
 
 use crate::Lanes;
+use crate::simd::unfused::Unfused;
 use glam::{Vec3, Vec3A};
 use wide::f32x8;
 
@@ -282,7 +283,9 @@ impl FiberFrame8 {
     #[inline]
     #[must_use]
     pub fn to_local(&self, v: &Vec3x8) -> Vec3x8 {
-        Vec3x::new(v.dot(self.u), v.dot(self.v), v.dot(self.w))
+        let unfused = |v: &Vec3x8| Vec3x::new(Unfused(v.x), Unfused(v.y), Unfused(v.z));
+        let v = unfused(v);
+        Vec3x::new(v.dot(unfused(&self.u)).0, v.dot(unfused(&self.v)).0, v.dot(unfused(&self.w)).0)
     }
 
     /// Fibre to world, each lane out of its own frame.

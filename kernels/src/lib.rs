@@ -44,7 +44,8 @@
 //! - **Energy.** The model is reciprocal but does not conserve energy. Before path tracing, scale the material by
 //!   [`Bsdf::conserving_scale`] through [`HairParams::scaled`].
 //! - **Bits.** Results depend on whether a level fuses multiply and add ([`Level::fuses`]), in the last bits, and on
-//!   nothing else of the machine.
+//!   nothing else of the machine or the build. What takes no level, scalar calls and frames, never fuses. This needs IEEE
+//!   single precision: x87 arithmetic (`i586`) rounds otherwise.
 //!
 //! # Signs and frames elsewhere
 //!

@@ -317,25 +317,35 @@ fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(prepared: &M::Prepare
     const STEPS: u16 = 1024;
     let c = L::splat;
     let mut albedo = [[c(0.0); 3]; Lobe::COUNT];
-    for (l, albedo) in albedo.iter_mut().enumerate().take(M::LOBES.len()) {
+    let mut l = 0;
+    while l < M::LOBES.len() {
         let lobe = L::search(c([0.0, 1.0, 2.0, 3.0][l]), [c(1.0), c(2.0), c(3.0)], 3);
         let (mut sum, mut color) = (c(0.0), [c(0.0); 3]);
-        for step in 0..STEPS {
+        let mut step = 0;
+        while step < STEPS {
             // The lattice of the plastic number. Along the second number it is a rule of midpoints, which loses digits to
             // square roots at the ends: `3 u^2 - 2 u^3`, of slope 0 there, has none. The slopes sum to 1 + 1 / (2 STEPS^2).
-            let i = f32::from(step) + 0.5;
-            let fraction = |x: f32| c(x - libm::floorf(x));
-            let u = i / f32::from(STEPS);
+            let u = (f32::from(step) + 0.5) / f32::from(STEPS);
             let slope = 6.0 * u * (1.0 - u);
-            let xi = [fraction(i * 0.569_840_3), c(u * u * (3.0 - 2.0 * u)), fraction(i * 0.754_877_7)];
+            let xi = [c(lattice(step, 0x91e1_0da5)), c(u * u * (3.0 - 2.0 * u)), c(lattice(step, 0xc13f_a9a9))];
             let wi = M::sample_lobe(prepared, lobe, xi);
             let at = M::lobes(prepared, &wi).0[l];
             let sound = L::and(wi.is_sound(), c(LEAST_DENSITY).lt(at.pdf));
             sum = sum + L::select(sound, at.value * wi.cos_theta / at.pdf * c(slope), c(0.0));
             color = at.color;
+            step += 1;
         }
         let mean = sum * c(1.0 / (f32::from(STEPS) + 0.5 / f32::from(STEPS)));
-        *albedo = [color[0] * mean, color[1] * mean, color[2] * mean];
+        albedo[l] = [color[0] * mean, color[1] * mean, color[2] * mean];
+        l += 1;
     }
     PerLobe(albedo)
+}
+
+/// The fractional part of `(step + 1/2) ratio / 2^32`. In integers: a call of `floor` would be one of every step.
+#[inline(always)]
+#[expect(clippy::cast_precision_loss, reason = "24 bits fit a float exactly")]
+fn lattice(step: u16, ratio: u32) -> f32 {
+    let fraction = u32::from(step).wrapping_mul(ratio).wrapping_add(ratio / 2);
+    (fraction >> 8) as f32 * (1.0 / 16_777_216.0)
 }

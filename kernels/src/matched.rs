@@ -15,8 +15,8 @@ pub use material::MatchedMaterial;
 use crate::hair::{Place, Shapes, albedo, drawn, evaluated, mixture, per_lobe, times};
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::simd::pair::Pair;
+use crate::simd::unfused::Unfused;
 use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3x};
-use wide::f32x8;
 
 /// The model of [`Hair`](crate::Hair), with the same parameters, values and albedo, and a sampler that follows them closer
 /// than the published one.
@@ -100,7 +100,7 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
 
     #[inline(always)]
     fn prepare_one(material: &MatchedMaterial<f32>, hit: Hit<f32>) -> MatchedGather<f32, BANDS> {
-        gather::prepare::<B, f32, f32, f32x8, 1, BANDS, BY_CHANNEL>(material, hit.wo)
+        gather::prepare::<B, f32, f32, Unfused, 1, BANDS, BY_CHANNEL>(material, hit.wo)
     }
 
     #[inline(always)]

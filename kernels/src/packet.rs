@@ -1,7 +1,9 @@
 //! Functions of a model as kernels of the vector layer: packets of eight, and rows of columns.
 
 use crate::model::{Drawn, Eval8, Hit8, LobeEval8, Sample8};
-use crate::{Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Level, Model, PerLobe, Row, Vec3x, Vec3x8, lanes3};
+use crate::{
+    Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Level, Model, PerLobe, Row, Vec3x, Vec3x8, lanes3, store3,
+};
 use core::marker::PhantomData;
 use wide::f32x8;
 
@@ -68,6 +70,26 @@ at_gather! {
 at_gather! {
     /// Eight sampled directions.
     SampleWi(xi: &[f32x8; 3]) -> Sample8, M L gather M::sample::<L, C>(gather, lanes3(xi)).store()
+}
+
+/// The directional albedos of eight gather points.
+pub(crate) struct Albedo<'a, M: Model> {
+    pub(crate) gather: &'a M::Gather<f32x8>,
+}
+
+impl<M: Model> Kernel for Albedo<'_, M> {
+    type Constant = f32x8;
+    type Output = PerLobe<[f32x8; 3]>;
+    const MANY_REGISTERS: bool = false;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> PerLobe<[f32x8; 3]>
+    where
+        f32x8: Broadcast<L>,
+    {
+        let [a, b, c, d] = M::albedo::<L, f32x8>(self.gather).0;
+        PerLobe([store3(a), store3(b), store3(c), store3(d)])
+    }
 }
 
 /// A row of a batch: the columns `K` of one gather point.

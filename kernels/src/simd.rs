@@ -11,3 +11,4 @@ pub(crate) mod lanes;
 pub(crate) mod pair;
 mod portable;
 mod scalar;
+pub(crate) mod unfused;

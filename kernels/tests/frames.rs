@@ -3,7 +3,7 @@
 use crate::support::Draws;
 use crate::tolerance as bound;
 use glam::Vec3;
-use hairis::FiberFrame;
+use hairis::{FiberFrame, FiberFrame8};
 use hairis_conformance::published::props::{finite, three};
 
 #[test]
@@ -22,6 +22,24 @@ fn frames_are_orthonormal_and_right_handed() {
             assert!(along, "u is not along {tangent:?}");
             let x = Vec3::new(0.3, -0.5, 0.8);
             assert!((frame.to_world(frame.to_local(x)) - x).length() < 1e-6, "there and back in {frame:?}");
+        }
+    }
+}
+
+#[test]
+fn eight_lanes_round_as_sums_do_in_every_build() {
+    let mut draws = Draws(57);
+    for _ in 0..2000 {
+        let frames: [FiberFrame; 8] =
+            core::array::from_fn(|_| FiberFrame::from_tangent(Vec3::from_array(three(&mut draws, finite))));
+        let vectors: [Vec3; 8] = core::array::from_fn(|_| Vec3::new(draws.xi(), draws.xi(), draws.xi()));
+        let eight = FiberFrame8::from(frames);
+        let (local, world) = (eight.to_local(&vectors.into()), eight.to_world(&vectors.into()));
+        for lane in 0..8 {
+            let (FiberFrame { u, v, w }, x) = (frames[lane], vectors[lane]);
+            let dot = |axis: Vec3| x.x * axis.x + (x.y * axis.y + x.z * axis.z);
+            assert_eq!(local.lane(lane), Vec3::new(dot(u), dot(v), dot(w)), "{x} in {:?}", frames[lane]);
+            assert_eq!(world.lane(lane), frames[lane].to_world(x), "{x} out of {:?}", frames[lane]);
         }
     }
 }

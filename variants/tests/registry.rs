@@ -99,6 +99,9 @@ impl Visitor for Compare {
                 same(&chosen.eval_pdf8_at(level, &packet(&wi)), &one.eval_pdf8_at(level, &packet(&wi)));
                 same(&chosen.sample8_at(level, &lanes_of(&xi)), &one.sample8_at(level, &lanes_of(&xi)));
             }
+            for level in Level::available() {
+                same(&chosen.lobes8_at(level, &packet(&wi)), &one.lobes8_at(level, &packet(&wi)));
+            }
             same(&chosen.lobes8(&packet(&wi)), &one.lobes8(&packet(&wi)));
         }
         let columns = [wi.map(|wi| wi.x), wi.map(|wi| wi.y), wi.map(|wi| wi.z)];
@@ -116,6 +119,11 @@ impl Visitor for Compare {
         same(&chosen.eval_pdf8(&packet(&wi)), &eight.eval_pdf8(&packet(&wi)));
         same(&chosen.sample8(&lanes_of(&xi)), &eight.sample8(&lanes_of(&xi)));
         same(&chosen.lobes8(&packet(&wi)), &eight.lobes8(&packet(&wi)));
+        same(&chosen.albedo8(), &eight.albedo8());
+        for level in Level::available() {
+            same(&chosen.lobes8_at(level, &packet(&wi)), &eight.lobes8_at(level, &packet(&wi)));
+            same(&chosen.albedo8_at(level), &eight.albedo8_at(level));
+        }
         same(&chosen.lane(3).eval_pdf(wi[3]), &eight.lane(3).eval_pdf(wi[3]));
         same(&any[1].conserving_scale(), &bsdfs[1].conserving_scale());
     }

@@ -2,6 +2,7 @@
 
 use crate::Lanes;
 use crate::simd::pair::Pair;
+use crate::simd::unfused::Unfused;
 use wide::f32x8;
 
 /// Numbers of lobes below the normal plane and above it: `K` of these are those of R, TT and TRT.
@@ -54,19 +55,20 @@ impl<L: Lanes> Sides<L, 3> for Pair<L> {
     }
 }
 
-/// One gather point: lanes 0 to 2 are the lobes below, 4 to 6 those above. One lane would do each after the other.
-impl Sides<f32, 1> for f32x8 {
+/// One gather point: lanes 0 to 2 are the lobes below, 4 to 6 those above. One lane would do each after the other, and gives
+/// the same bits: these lanes do not fuse either.
+impl Sides<f32, 1> for Unfused {
     #[inline(always)]
     fn of(x: f32) -> Self {
         <Self as Lanes>::splat(x)
     }
     #[inline(always)]
     fn of_lobes([r, tt, trt]: [f32; 3]) -> [Self; 1] {
-        [Self::new([r, tt, trt, trt, r, tt, trt, trt])]
+        [Self(f32x8::new([r, tt, trt, trt, r, tt, trt, trt]))]
     }
     #[inline(always)]
     fn outwards(x: f32) -> Self {
-        Self::new([-x, -x, -x, -x, x, x, x, x])
+        Self(f32x8::new([-x, -x, -x, -x, x, x, x, x]))
     }
     #[inline(always)]
     fn negate_above(self) -> Self {
@@ -74,17 +76,17 @@ impl Sides<f32, 1> for f32x8 {
     }
     #[inline(always)]
     fn swapped(self) -> Self {
-        let [a, b, c, d, e, f, g, h] = self.to_array();
-        Self::new([e, f, g, h, a, b, c, d])
+        let [a, b, c, d, e, f, g, h] = self.0.to_array();
+        Self(f32x8::new([e, f, g, h, a, b, c, d]))
     }
     #[inline(always)]
     fn apart(self) -> [f32; 2] {
-        let [below, .., above] = self.to_array();
+        let [below, .., above] = self.0.to_array();
         [below, above]
     }
     #[inline(always)]
     fn lobes_apart([x]: [Self; 1]) -> [[f32; 3]; 2] {
-        let [r, tt, trt, _, r_above, tt_above, trt_above, _] = x.to_array();
+        let [r, tt, trt, _, r_above, tt_above, trt_above, _] = x.0.to_array();
         [[r, tt, trt], [r_above, tt_above, trt_above]]
     }
 }

@@ -65,7 +65,7 @@ fn splat(x: f32) -> f32x8 {
 
 /// The upper half of the digits, and the rest.
 #[inline(always)]
-fn split(x: f32x8) -> [f32x8; 2] {
+pub(super) fn split(x: f32x8) -> [f32x8; 2] {
     const MASK: u32x8 = u32x8::new([UPPER; 8]);
     let upper = f32x8::from_bits(x.to_bits() & MASK);
     [upper, x - upper]

@@ -34,7 +34,7 @@ calls! {
     with_lobes(gather: &Gather<M>, lobes: LobeMask) -> Gather<M> = gather.with_lobes(lobes);
     with_lobes_each(gather: &Gather8<M>, lobes: LobeMask) -> Gather8<M> = gather.with_lobes(lobes);
     albedo(gather: &Gather<M>) -> PerLobe<[f32; 3]> = gather.albedo();
-    albedo_each(gather: &Gather8<M>) -> PerLobe<[f32x8; 3]> = gather.albedo8();
+    albedo_each(gather: &Gather8<M>, level: Level) -> PerLobe<[f32x8; 3]> = gather.albedo8_at(level);
 }
 
 /// Value and density of many directions.

@@ -244,7 +244,7 @@ pub fn lobes_and_albedo_equal_scalar<S: Subject>(subject: &S) -> Outcome {
     each_mixed(subject, 0x10be, ROUNDS / 4, |m, _, _| {
         let each = m.prepare(level);
         let wi = packet(&m.wi);
-        let (lobes, albedo) = (calls::lobes_each(&each, &wi), calls::albedo_each(&each));
+        let (lobes, albedo) = (calls::lobes_each(&each, &wi), calls::albedo_each(&each, level));
         for lane in 0..8 {
             let at = || m.at(lane, level);
             let one = each.lane(lane);

@@ -182,6 +182,13 @@ macro_rules! handles {
                 self.eval_pdf8_at(Level::detect(), wi)
             }
 
+            /// As [`lobes`](Self::lobes), for eight directions.
+            #[inline]
+            #[must_use]
+            pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
+                self.lobes8_at(Level::detect(), wi)
+            }
+
             /// As [`sample`](Self::sample), for eight triples of numbers.
             #[inline]
             #[must_use]
@@ -246,10 +253,10 @@ macro_rules! handles {
                 #[inline(never)]
                 #[must_use]
                 pub fn eval_pdf8_at(level: Level, wi: &Vec3x8) -> Eval8;
-                /// As [`lobes`](Self::lobes), for eight directions.
+                /// As [`lobes8`](Self::lobes8), on a given instruction set.
                 #[inline(never)]
                 #[must_use]
-                pub fn lobes8(wi: &Vec3x8) -> PerLobe<LobeEval8>;
+                pub fn lobes8_at(level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8>;
                 /// As [`sample8`](Self::sample8), on a given instruction set.
                 #[inline(never)]
                 #[must_use]
@@ -301,6 +308,20 @@ macro_rules! handles {
                 self.eval_pdf8_at(Level::detect(), wi)
             }
 
+            /// Each lobe's value, colour and own density, each lane at its own gather point.
+            #[inline]
+            #[must_use]
+            pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
+                self.lobes8_at(Level::detect(), wi)
+            }
+
+            /// Directional albedo of each lobe, linear RGB, each lane at its own gather point.
+            #[inline]
+            #[must_use]
+            pub fn albedo8(&self) -> PerLobe<[f32x8; 3]> {
+                self.albedo8_at(Level::detect())
+            }
+
             /// One direction for each gather point.
             #[inline]
             #[must_use]
@@ -313,10 +334,10 @@ macro_rules! handles {
                 #[inline(never)]
                 #[must_use]
                 pub fn eval_pdf8_at(level: Level, wi: &Vec3x8) -> Eval8;
-                /// Each lobe's value, colour and own density, each lane at its own gather point.
+                /// As [`lobes8`](Self::lobes8), on a given instruction set.
                 #[inline(never)]
                 #[must_use]
-                pub fn lobes8(wi: &Vec3x8) -> PerLobe<LobeEval8>;
+                pub fn lobes8_at(level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8>;
                 /// As [`sample8`](Self::sample8), on a given instruction set.
                 #[inline(never)]
                 #[must_use]
@@ -325,10 +346,10 @@ macro_rules! handles {
                 #[inline(never)]
                 #[must_use]
                 pub fn with_lobes(lobes: LobeMask) -> Self => Self;
-                /// Directional albedo of each lobe, linear RGB, each lane at its own gather point.
+                /// As [`albedo8`](Self::albedo8), on a given instruction set.
                 #[inline(never)]
                 #[must_use]
-                pub fn albedo8() -> PerLobe<[f32x8; 3]>;
+                pub fn albedo8_at(level: Level) -> PerLobe<[f32x8; 3]>;
                 /// The gather point of one lane.
                 ///
                 /// # Panics

@@ -5,7 +5,7 @@ use super::Published;
 use super::support::{Draws, Kind, Point, Worst, for_each_point, lanes_of, materials, packet, parameters};
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, Drawn, Eval, Gather8, Hit, Level, Lobe, Sample8};
+use hairis::{Bsdf, Bsdf8, Drawn, Eval, Gather8, Hit, Level, Lobe, Model, PerLobe, Sample8};
 
 type Material<S> = Bsdf<<S as Published>::Model>;
 
@@ -90,6 +90,19 @@ pub fn eight_gather_points_equal_one_each<S: Published>() {
                 assert_eq!(format!("{one:?}"), format!("{:?}", gather.lane(lane)), "{}", at());
             }
         }
+    }
+}
+
+/// Also in builds whose every level fuses.
+pub fn one_lane_never_fuses<S: Published>() {
+    let (model, _) = S::forms()[0];
+    let mut draws = Draws(16);
+    for _ in 0..2000 {
+        let (params, wo) = (draws.params(1e3), draws.direction());
+        let (material, hit) = (model.material(&params), Hit { wo, h: 0.0 });
+        let one = <S::Model as Model>::prepare_one(&material, hit);
+        let lane = <S::Model as Model>::prepare::<f32, f32>(&material, hit);
+        assert_eq!(format!("{one:?}"), format!("{lane:?}"), "{hit:?} {params:?}");
     }
 }
 
@@ -180,6 +193,12 @@ pub fn levels_agree_with_one_lane<S: Published>() {
     worst[2].check("direction of a level against one lane", S::ROWS.levels[2]);
 }
 
+/// The bits of each lane's albedos.
+fn albedo_bits(albedo: &PerLobe<[f32x8; 3]>) -> [Vec<u32>; 8] {
+    let all = albedo.0.as_flattened();
+    core::array::from_fn(|lane| all.iter().map(|x| x.as_array()[lane].to_bits()).collect())
+}
+
 pub fn levels_that_round_alike_give_the_same_bits<S: Published>() {
     let levels: Vec<_> = Level::available().collect();
     let mut draws = Draws(14);
@@ -189,6 +208,8 @@ pub fn levels_that_round_alike_give_the_same_bits<S: Published>() {
             let g = gathers(&m, pair[0]);
             let h = gathers(&m, pair[1]);
             assert_eq!(format!("{g:?}"), format!("{h:?}"), "prepared on {} and {}", pair[0], pair[1]);
+            let albedos = [pair[0], pair[1]].map(|level| albedo_bits(&g.albedo8_at(level)));
+            assert_eq!(albedos[0], albedos[1], "albedos on {} and {}", pair[0], pair[1]);
             let of = |level| (g.eval_pdf8_at(level, &packet(&m.wi)), g.sample8_at(level, &lanes_of(&m.xi)));
             let ((a, s), (b, t)) = (of(pair[0]), of(pair[1]));
             for lane in 0..8 {
@@ -206,6 +227,12 @@ pub fn lobes_and_albedo_agree_with_one_lane<S: Published>() {
         let m = mixed::<S>(&mut draws);
         let gather = Bsdf8::pack(m.bsdf.each_ref()).prepare8(&packet(&m.wo));
         let (lobes, albedo) = (gather.lobes8(&packet(&m.wi)), gather.albedo8());
+        for level in unfused() {
+            for (lane, bits) in albedo_bits(&gather.albedo8_at(level)).into_iter().enumerate() {
+                let one: Vec<u32> = gather.lane(lane).albedo().0.as_flattened().iter().map(|x| x.to_bits()).collect();
+                assert_eq!(bits, one, "albedo of lane {lane} on {level}");
+            }
+        }
         for lane in 0..8 {
             let one = gather.lane(lane);
             let (alone, alone_albedo) = (one.lobes8(&packet(&[m.wi[lane]])), one.albedo());
