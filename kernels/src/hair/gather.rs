@@ -55,7 +55,8 @@ crate::lane_struct! {
     }
 }
 
-/// The probability of each lobe from its energy, where the next one begins, and one over the sum of the energies.
+/// The probability of each lobe from its energy, where the next one begins, and one over the sum of the energies. An energy
+/// is 0 or no less than 1e-36.
 ///
 /// The last lobe with any energy reaches to 2: a rounded sum never lets `xi_lobe` fall through to a lobe without.
 /// Without any energy all probabilities are 0, and so is the last number.
@@ -100,11 +101,14 @@ impl HairMaterial<f32> {
     }
 }
 
+/// The least share of the largest energy that a lobe has if it has any: alone, it is still drawn.
+const LEAST_SHARE: f64 = 1e-30;
+
 /// Energy of each lobe as section 3.2.3 of the paper estimates it, to the scale of the largest.
 ///
 /// In double precision: the product of two of the largest legal intensities overflows a float.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "shares of the largest, in [0, 1]")]
+#[expect(clippy::cast_possible_truncation, reason = "shares of the largest, 0 or in [1e-30, 1]")]
 fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -> [f32; 4] {
     use core::f64::consts::PI;
     let d = params.desc();
@@ -118,7 +122,7 @@ fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -
         4.0 * PI * f64::from(beta[2]) * f64::from(gamma_g) * i_trt * f64::from(d.intensity_g),
     ];
     let largest = energy.iter().fold(0.0, |a: f64, e| a.max(*e));
-    energy.map(|e| if largest > 0.0 { (e / largest) as f32 } else { 0.0 })
+    energy.map(|e| if e > 0.0 { (e / largest).max(LEAST_SHARE) as f32 } else { 0.0 })
 }
 
 /// Truncated Cauchy of a lobe's longitude, with `shift = theta_o / 2 - alpha`.

@@ -14,6 +14,9 @@ use wide::f32x8;
 /// of the brightest lobe and of the largest area.
 const LEAST_ENERGY: f32 = 1e-36;
 
+/// Least area above 0: a Gaussian is cut at `2^-115` of its peak, and W is at least .004 in a band. Its reciprocal is a float.
+const LEAST_AREA: f32 = 3e-39;
+
 /// A channel below this share of the largest is ignored in the choice of lobes: the square of its reciprocal is a float.
 const LEAST_CHANNEL: f32 = 1e-18;
 
@@ -208,7 +211,7 @@ impl<C, const N: usize> MatchedGather<C, N> {
         let mut l = 0;
         while l < 4 {
             let area = self.area[l].lanes();
-            by_area[l] = L::keep(L::splat(LEAST_ENERGY).lt(area), one / area);
+            by_area[l] = L::keep(L::splat(0.0).lt(area), one / area.max(L::splat(LEAST_AREA)));
             by_extent[l] = L::keep(L::splat(0.0).lt(by_extent[l]), one / by_extent[l]);
             l += 1;
         }

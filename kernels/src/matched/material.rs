@@ -4,8 +4,8 @@ use super::MatchedBell;
 use crate::{Broadcast, HairLobes, HairParams, Lanes};
 use core::f32::consts::PI;
 
-/// The sampler takes intensities below this share of the largest for 0.
-const LEAST_IMPORTANCE: f64 = 1e-25;
+/// Least share of the largest intensity, for the sampler, of a lobe that has any: alone, it is still drawn.
+const LEAST_IMPORTANCE: f64 = 1e-15;
 
 crate::lane_struct! {
     /// The constants of a material with a matched sampler.
@@ -86,7 +86,8 @@ fn intensity(params: &HairParams) -> [[f32; 3]; 4] {
     let mean = |rgb: &[f64; 3]| (rgb[0] + rgb[1] + rgb[2]) / 3.0;
     let largest = all.iter().map(mean).fold(0.0, f64::max);
     all.map(|rgb| {
-        let seen = mean(&rgb) > largest * LEAST_IMPORTANCE;
-        rgb.map(|c| if seen { (c / largest) as f32 } else { 0.0 })
+        let (own, least) = (mean(&rgb), largest * LEAST_IMPORTANCE);
+        let by = if own < least { LEAST_IMPORTANCE / own } else { 1.0 / largest };
+        rgb.map(|c| if own > 0.0 { (c * by) as f32 } else { 0.0 })
     })
 }

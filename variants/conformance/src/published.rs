@@ -6,6 +6,7 @@
 pub mod albedo;
 pub mod density;
 pub mod edge;
+pub mod faint;
 pub mod fireflies;
 pub mod lobes;
 pub mod parity;
@@ -104,6 +105,9 @@ macro_rules! published {
                 black_hair_scatters_and_samples_nothing grazing_samples_are_discarded
                 an_azimuth_next_to_nothing_is_still_an_azimuth a_direction_next_to_the_axis_is_still_a_direction
                 absurd_glints_of_a_faint_colour_do_not_overflow
+            }
+            faint {
+                a_faint_lobe_alone_is_sampled_as_a_bright_one a_lobe_off_the_sphere_has_the_density_it_is_drawn_with
             }
             lobes { lobes_add_up a_subset_scatters_and_samples_its_lobes_alone a_lobe_is_colored_by_its_parameters }
             parity {

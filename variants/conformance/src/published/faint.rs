@@ -1,0 +1,91 @@
+//! Lobes next to nothing: faint ones, and those that lie off the sphere.
+
+use super::Published;
+use super::support::{Draws, lanes_of, packet};
+use core::f32::consts::FRAC_PI_2;
+use glam::Vec3;
+use hairis::{Bsdf, Gather, HairDesc, HairParams, Level, Lobe, LobeMask, Sample};
+
+fn gather<S: Published>(desc: &HairDesc, wo: Vec3) -> Gather<S::Model> {
+    Bsdf::new(&S::forms()[0].0, &HairParams::new(desc).unwrap()).prepare(wo)
+}
+
+/// The sample of one lane, and of every level.
+fn samples<S: Published>(gather: &Gather<S::Model>, xi: [f32; 3]) -> Vec<Option<Sample>> {
+    let wide = Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
+    wide.chain([gather.sample(xi)]).collect()
+}
+
+fn near(got: f32, want: f32, by: f32) -> bool {
+    (got / want - 1.0).abs() < by
+}
+
+/// A share of the energy below the normal numbers has no reciprocal.
+pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one<S: Published>() {
+    let mut draws = Draws(61);
+    let only = LobeMask::of(&[Lobe::TT]);
+    for wo in [Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.96, 0.0, 0.28)] {
+        let usual = gather::<S>(&HairDesc::default(), wo).with_lobes(only);
+        for intensity in [1e-10, 1e-30, 1e-37, 1e-39, 1e-42, 1e-45] {
+            let desc = HairDesc { intensity_tt: [intensity; 3], ..HairDesc::default() };
+            let faint = gather::<S>(&desc, wo).with_lobes(only);
+            for _ in 0..200 {
+                let xi = draws.xi3();
+                for (faint, usual) in samples::<S>(&faint, xi).into_iter().zip(samples::<S>(&usual, xi)) {
+                    let (Some(faint), Some(usual)) = (faint, usual) else {
+                        panic!("{faint:?} {usual:?} at {intensity}")
+                    };
+                    let at = || format!("{faint:?}, as bright as usual {usual:?}, at {intensity} xi {xi:?}");
+                    assert_eq!((faint.lobe, faint.wi), (usual.lobe, usual.wi), "{}", at());
+                    assert!(near(faint.pdf, usual.pdf, 1e-5), "{}", at());
+                }
+                let wi = usual.sample(xi).unwrap().wi;
+                for level in Level::available() {
+                    let eight = |gather: &Gather<S::Model>| gather.eval_pdf8_at(level, &packet(&[wi])).lane(3);
+                    for (got, want) in [(eight(&faint), eight(&usual)), (faint.eval_pdf(wi), usual.eval_pdf(wi))] {
+                        assert!(near(got.pdf, want.pdf, 1e-5), "{got:?}, as bright as usual {want:?}, {level} {wi}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// All of a lobe's density is in its far tail, and its integral is next to nothing: less than a reciprocal of the squares.
+pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with<S: Published>() {
+    let black = [0.0; 3];
+    let mut seen = 0;
+    for (alpha_trt, beta_trt) in
+        [(-FRAC_PI_2, 0.063), (-FRAC_PI_2, 0.0628), (-FRAC_PI_2, 0.07), (-1.3, 0.05), (1.4, 0.1)]
+    {
+        let desc = HairDesc {
+            intensity_r: black,
+            intensity_tt: black,
+            intensity_g: 0.0,
+            alpha_trt,
+            beta_trt,
+            ..HairDesc::default()
+        };
+        let gather = gather::<S>(&desc, Vec3::Y);
+        for wi in [
+            Vec3::new(-1.0, 1e-3, 0.0),
+            Vec3::new(-1.0, 1e-4, 1e-4),
+            Vec3::new(1.0, 1e-2, 0.0),
+            Vec3::new(0.9, 0.1, 0.4),
+        ] {
+            let wi = wi.normalize();
+            let eight = |level| {
+                (
+                    gather.eval_pdf8_at(level, &packet(&[wi])).lane(2).pdf,
+                    gather.lobes8_at(level, &packet(&[wi]))[Lobe::TRT].pdf.to_array()[2],
+                )
+            };
+            for (pdf, lobe) in Level::available().map(eight).chain([(gather.pdf(wi), gather.lobes(wi)[Lobe::TRT].pdf)])
+            {
+                assert!(lobe == pdf || near(lobe, pdf, 1e-4), "{lobe} where {pdf} is drawn: {wi} {desc:?}");
+                seen += usize::from(pdf > 0.0);
+            }
+        }
+    }
+    assert!(seen > 20, "hardly any density: {seen}");
+}
