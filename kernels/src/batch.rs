@@ -39,7 +39,7 @@ pub struct EvalSlices<'a> {
     pub pdf: &'a mut [f32],
 }
 
-/// Output of [`Gather::sample_batch`]: one entry per sample, all 0 but the direction for a discarded one.
+/// Output of [`Gather::sample_batch`]: one entry per sample, all 0 but the direction and the slot for a discarded one.
 #[derive(Debug)]
 pub struct SampleSlices<'a> {
     /// Towards the light, in the fibre's frame: u, v, w.

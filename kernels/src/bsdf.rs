@@ -68,7 +68,7 @@ impl<M: Model> Bsdf<M> {
     /// The gather point of a hit: a [`Hit`], or `wo` alone.
     ///
     /// - Domain: `wo` in the fibre's frame, of any length; zero counts as the normal plane. Along the fibre its
-    ///   azimuth counts as 0.
+    ///   azimuth counts as 0. NaN and infinite ones see black.
     #[inline]
     #[must_use]
     pub fn prepare(&self, hit: impl Into<Hit>) -> Gather<M> {
@@ -156,7 +156,7 @@ impl<M: Model> Gather<M> {
     /// S at `wi`, without the cosine, linear RGB, per steradian. Every scalar call takes a `Vec3`, a `Vec3A` or a
     /// [`Vec3x`].
     ///
-    /// - Domain: any finite `wi`; 0 within 1e-5 rad of the fibre's axis and for a vector longer than 2.
+    /// - Domain: any `wi`; 0 within 1e-5 rad of the fibre's axis, for a vector longer than 2, and where a component is NaN.
     #[inline]
     #[must_use]
     pub fn eval(&self, wi: impl Into<Vec3x<f32>>) -> [f32; 3] {
@@ -188,7 +188,8 @@ impl<M: Model> Gather<M> {
 
     /// A direction for three uniform numbers in `[0, 1)`; the first chooses the lobe.
     ///
-    /// `None` is a discarded sample. It counts, with a contribution of 0; do not draw it again.
+    /// `None` is a discarded sample. It counts, with a contribution of 0; do not draw it again. NaN or infinity among the
+    /// numbers gives one.
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: [f32; 3]) -> Option<Sample> {

@@ -11,8 +11,8 @@ use wide::f32x8;
 
 /// A scattering model given by its lobes: the trait to implement for a new model.
 ///
-/// Every `LobeModel` is a [`Model`]. Guards, the choice of a lobe, the density of the mixture, discarded samples, weights,
-/// masks, packing and a quadrature of the albedo are provided; scalar calls, eight lanes, dispatch and slices follow.
+/// Every `LobeModel` is a [`Model`]. Guards, inputs that are not finite, the choice of a lobe, the density of the mixture,
+/// discarded samples, weights, masks, packing and a quadrature of the albedo are provided; scalar calls, eight lanes, dispatch and slices follow.
 ///
 /// # What an implementation promises
 ///
@@ -228,11 +228,11 @@ impl<M: LobeModel> Model for M {
         hit: Hit<L>,
     ) -> Mixed<M::Prepared<L::Stored>, L::Stored> {
         let (one, infinity) = (L::splat(1.0), L::splat(f32::INFINITY));
-        let h = (-one).max(one.min(hit.h));
-        let prepared = <M as LobeModel>::prepare(material, Hit { h, ..hit });
-        // A wo that is no direction, NaN or infinite: no lobe scatters.
+        // No lobe scatters towards a wo that is NaN or infinite, and the model is given another.
         let Vec3x { x, y, z } = hit.wo;
         let finite = L::and(L::and(x.abs().lt(infinity), y.abs().lt(infinity)), z.abs().lt(infinity));
+        let wo = Vec3x::new(L::keep(finite, x), L::select(finite, y, one), L::keep(finite, z));
+        let prepared = <M as LobeModel>::prepare(material, Hit::new(wo, hit.h));
         let kept = L::keep(finite, one);
         let mixture = Mixture::new(M::weights::<L, L::Stored>(&prepared).0, [kept; 4]).store();
         Mixed { prepared, mixture }
@@ -280,10 +280,11 @@ impl<M: LobeModel> Model for M {
         let (start, start_less_one) = (C::look_up(&m.start, lobe), C::look_up(&m.start_less_one, lobe));
         let into = L::select(xi[0].lt(c(0.5)), xi[0] - start, (xi[0] - c(1.0)) - start_less_one);
         let again = into / C::look_up(&m.selection, lobe);
+        let numbers = (xi[0] + xi[1] + xi[2]).abs().lt(c(f32::INFINITY));
         let xi = [zero.max(again.min(most)), zero.max(xi[1].min(most)), zero.max(xi[2].min(most))];
         let wi = M::sample_lobe(&gather.prepared, lobe, xi);
         let Eval { value, pdf } = total::<M, L, C>(gather, &wi);
-        let sound = L::and(wi.is_sound(), c(LEAST_DENSITY).lt(pdf));
+        let sound = L::and(L::and(wi.is_sound(), c(LEAST_DENSITY).lt(pdf)), numbers);
         let limit = limit::<L>(sound);
         let by = wi.cos_theta / pdf;
         let Vec3x { x, y, z } = wi.vector;

@@ -13,8 +13,12 @@ use wide::f32x8;
 /// # What an implementation promises
 ///
 /// - Functions are total: for every finite input the results are finite and at least 0, and nothing panics.
+/// - An input that is not finite is black: a `wo` with NaN or an infinity makes every value, density and albedo 0 and every
+///   sample discarded, a `wi` its own value and density 0, one among the uniform numbers its own sample discarded.
 /// - `sample` draws from the density that `eval` reports. A discarded sample has slot -1 and no value, pdf or weight; a
 ///   model does not draw again.
+/// - `prepare_one` gives the bits of `prepare` of one lane, in every build. `restrict` does not use `mul_add`: it runs in lanes
+///   that may or may not fuse.
 /// - Every function over lanes is `#[inline(always)]`, and so is all it calls: the dispatched entry points then
 ///   contain no call, and the model runs at the speed of ours. Array `map` and closures over lanes are calls.
 pub trait Model: Copy {

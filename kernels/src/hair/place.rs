@@ -44,9 +44,6 @@ impl<L: Lanes> Place<L> {
         let one = c(1.0);
         let plane_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
         let cos_theta_i = plane_sq.sqrt();
-        // Longer than 2 is no direction; the comparison is false for the infinities of a sum that overflowed.
-        let sound = L::and(c(GRAZING).lt(cos_theta_i), wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)));
-
         // Azimuth relative to wo, folded: tau is the tangent of half of |phi| or of pi - |phi|, at most 1.
         // R and TRT-g vanish with it at phi = pi: it takes the digits of wo as they are, and a sum that does not cancel.
         let [v_o, w_o, cos_o] = lanes3(&point.plane_o);
@@ -63,6 +60,9 @@ impl<L: Lanes> Place<L> {
         let inv_reach = reciprocal * far;
         let cos_half = (far * inv_reach * c(0.5)).sqrt();
         let inv_cos = inv_reach * cos_o;
+        // Off the axis, seen from a wo that is a direction: else the length of its part across the fibre is NaN. Longer than
+        // 2 is no direction; the comparison is false for the infinities of a sum that overflowed.
+        let sound = L::and(inv_cos.lt(c(1.0 / GRAZING)), wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)));
         let front = c(0.0).lt(dot);
         let sin_cos = [tau * cos_half, cos_half];
         let half = atan_unit(tau);

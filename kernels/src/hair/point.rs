@@ -90,14 +90,16 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     // The digits of a wo of about unit length are kept as they are; any other is scaled by its largest component, so
-    // that no finite wo overflows or vanishes. Zero counts as v.
-    let largest = wo.x.abs().max(wo.y.abs().max(wo.z.abs()));
-    let some = c(1e-30).lt(largest);
+    // that no finite wo overflows or vanishes. Zero counts as v. Of any other, the component that is NaN, or infinite and
+    // then scaled by 0, is NaN after that.
+    let least = c(1e-30);
+    let largest = wo.x.abs().max(wo.z.abs().max(wo.y.abs()));
     let usual = L::and(c(0.25).lt(largest), largest.lt(c(4.0)));
-    let by = L::select(usual, one, one / largest);
-    let x = L::select(some, wo.x * by, zero);
-    let y = L::select(some, wo.y * by, one);
-    let z = L::select(some, wo.z * by, zero);
+    let none = largest.lt(least);
+    let by = L::select(usual, one, L::select(none, zero, one / largest.max(least)));
+    let x = wo.x * by;
+    let y = L::select(none, one, wo.y * by);
+    let z = wo.z * by;
     let plane_sq = y.mul_add(y, z * z);
     let plane = plane_sq.sqrt();
     let len = x.mul_add(x, plane_sq).sqrt();
@@ -124,7 +126,8 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
         plane_o: store3([
             L::select(near_axis, cos_phi_o, y),
             L::select(near_axis, sin_phi_o, z),
-            L::select(near_axis, one, plane),
+            // NaN if any component is: no direction is sound then, see `Place::of`, and every sample is next to the axis.
+            L::select(near_axis, one, plane) + (len - len),
         ]),
         inv_plane_o: L::select(near_axis, one, inv_plane).store(),
         shift: store4([r, tt, trt, trt]),

@@ -25,7 +25,9 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
         span: Pair(C::look_up_three(&gather.longitude_span, choice), C::look_up_half(&sampler.azimuth_span, choice)),
     };
     let Pair(x, y) = both.invert(Pair(zero.max(xi[1].min(one)), one - turn.across));
-    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&point.shift, choice));
+    // NaN if any number is, or infinite: a sample without an inclination is discarded.
+    let shift = (xi[0] + xi[1] + xi[2]).mul_add(zero, C::look_up_three(&point.shift, choice));
+    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), shift);
     let center = L::keep(L::is_index(choice, 3), hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
     let (wi, place) = turned(point, choice, half_theta_i, turn, psi);

@@ -51,7 +51,9 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     // Side by side.
     let origin = Pair(C::look_up_three(&gather.origin, choice), C::look_up_half(&gather.azimuth_origin, choice));
     let Pair(x, y) = B::invert(origin, Pair(integral, share.mul_add(mass, from)));
-    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&point.shift, choice));
+    // NaN if any number is, or infinite. The second operand wins over it: the sample is on the pole, and discarded there.
+    let shift = (xi[0] + xi[1] + xi[2]).mul_add(zero, C::look_up_three(&point.shift, choice));
+    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), shift);
     let half_theta_i = c(-FRAC_PI_4).max(half_theta_i.min(c(FRAC_PI_4)));
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);

@@ -33,6 +33,7 @@
 //! | test | property |
 //! |---|---|
 //! | `results_are_finite` | every finite input gives finite results that are not negative |
+//! | `inputs_that_are_no_numbers_are_black` | NaN and infinite directions and numbers give 0, and discarded samples |
 //! | `density_integrates_to_one` | each lobe's density, and that of all, integrates to the share of samples kept |
 //! | `samples_follow_density` | chi-square test of random samples |
 //! | `even_points_invert_density` | the cdf of samples of Sobol points is the integral of the density |
@@ -69,6 +70,7 @@ pub mod lanes;
 pub mod lobes;
 mod mesh;
 mod near;
+pub mod not_numbers;
 mod probe;
 #[doc(hidden)]
 #[expect(
@@ -98,6 +100,7 @@ macro_rules! conformance {
         $crate::conformance!(
             @$name, $subject,
             totality results_are_finite,
+            not_numbers inputs_that_are_no_numbers_are_black,
             integral density_integrates_to_one,
             chi_square samples_follow_density,
             inversion even_points_invert_density,

@@ -31,6 +31,7 @@ pub(crate) const PACKET_DIFFERS: u8 = 16;
 pub(crate) const WRONG_PACK: u8 = 17;
 pub(crate) const NEGATIVE: u8 = 18;
 pub(crate) const AZIMUTH_UNEVEN: u8 = 19;
+pub(crate) const NAN_IS_A_NUMBER: u8 = 20;
 
 /// A fibre with a diffuse lobe, uniform on the sphere, and a cone of mirror directions.
 ///
@@ -123,6 +124,8 @@ fn shapes<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, wi: Vec3x<L>) -> ([LobeE
     let cos = cos_sq.sqrt();
     let sound = L::and(c(GRAZING).lt(cos), wi.x.mul_add(wi.x, cos_sq).lt(c(4.0)));
     let off = wi.x + gather.sin_theta_o.lanes();
+    // NaN where wo is no direction.
+    let sound = L::and(sound, off.abs().lt(c(4.0)));
     let bell = width / off.mul_add(off, width * width);
     let diffuse = LobeEval { value: c(FRAC_1_PI * FRAC_1_PI), color: lanes3(&gather.kd), pdf: c(0.25 * FRAC_1_PI) };
     let cone = LobeEval {
@@ -216,6 +219,9 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
             let h = (-one).max(one.min(hit.h));
             sin_theta_o = sin_theta_o * h.mul_add(L::splat(0.1), L::splat(0.9));
         }
+        if FAULT != NAN_IS_A_NUMBER {
+            sin_theta_o = sin_theta_o + (hit.wo.x * zero + hit.wo.y * zero + hit.wo.z * zero);
+        }
         let width = material.width.lanes();
         let span = atan2_upper(width + width, width.mul_add(width, sin_theta_o.mul_add(sin_theta_o, -one)));
         Faulty(Point {
@@ -280,6 +286,9 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
         let (lobes, _, sound) = shapes(gather, wi);
         let Eval { value, pdf } = Self::total(gather, lobes, wi, sound);
         let mut sound = L::and(sound, zero.lt(pdf));
+        if FAULT != NAN_IS_A_NUMBER {
+            sound = L::and(sound, (xi[0] + xi[1] + xi[2]).abs().lt(c(f32::INFINITY)));
+        }
         if FAULT == DISCARDS {
             sound = L::and(sound, c(0.05).lt(xi[2]));
         }
@@ -319,7 +328,9 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
             step += 1;
         }
         let loss = if FAULT == ALBEDO_TOO_LOW { 0.99 } else { 1.0 };
-        let by = sum * gather.span.lanes() * L::splat(loss * FRAC_1_PI / f32::from(STEPS));
+        let seen = gather.sin_theta_o.lanes().lt(L::splat(2.0));
+        let kd = [L::keep(seen, kd[0]), L::keep(seen, kd[1]), L::keep(seen, kd[2])];
+        let by = L::keep(seen, sum * gather.span.lanes() * L::splat(loss * FRAC_1_PI / f32::from(STEPS)));
         PerLobe([kd, [ks[0] * by, ks[1] * by, ks[2] * by], [zero; 3], [zero; 3]])
     }
 }

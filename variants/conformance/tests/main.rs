@@ -6,8 +6,8 @@ mod reference;
 
 use broken::*;
 use hairis_conformance::{
-    Claims, Materials, Outcome, Subject, bounds, chi_square, integral, inversion, lanes, lobes, sampling, slices,
-    totality,
+    Claims, Materials, Outcome, Subject, bounds, chi_square, integral, inversion, lanes, lobes, not_numbers, sampling,
+    slices, totality,
 };
 
 hairis_conformance::conformance!(sound, crate::Broken::<{ crate::SOUND }>);
@@ -25,6 +25,11 @@ fn totality_finds_results_that_are_no_numbers_or_negative() {
     assert_fails(totality::results_are_finite(&Broken::<NAN_AT_THE_POLE>), "density");
     assert_fails(totality::results_are_finite(&Broken::<NEGATIVE>), "value");
     assert_fails(totality::results_are_finite(&Broken::<LONG_DIRECTION>), "unit vector");
+}
+
+#[test]
+fn totality_finds_a_direction_that_is_none() {
+    assert_fails(not_numbers::inputs_that_are_no_numbers_are_black(&Broken::<NAN_IS_A_NUMBER>), "eight hits");
 }
 
 #[test]

@@ -1,0 +1,168 @@
+//! NaN and infinite inputs give nothing: no value, no density, and samples that are discarded.
+
+use crate::calls::{self, Direction};
+use crate::failure::{Failure, Outcome};
+use crate::probe::{Draws, hits8, packet, triples};
+use crate::subject::Subject;
+use hairis::wide::f32x8;
+use hairis::{Bsdf, Bsdf8, Eval, Gather, Gather8, Hit, Level, Model, Sample8};
+
+const NAME: &str = "inputs that are no numbers are black";
+
+/// Inputs per material.
+const ROUNDS: usize = 200;
+
+/// Rows of a slice: whole packets of every level, and some more.
+const ROWS: usize = 71;
+
+/// NaN or an infinity.
+fn odd(draws: &mut Draws) -> f32 {
+    *draws.pick(&[f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY])
+}
+
+/// A vector of which one component at least is no number; the others are of a direction, tiny, huge or 0.
+fn vector(draws: &mut Draws) -> Direction {
+    let Direction { x, y, z } = draws.direction();
+    let by = *draws.pick(&[1.0, 0.0, 1e-35, 1e37]);
+    let mut v = [x * by, y * by, z * by];
+    for _ in 0..*draws.pick(&[1, 1, 1, 2, 3]) {
+        v[*draws.pick(&[0, 1, 2])] = odd(draws);
+    }
+    Direction::new(v[0], v[1], v[2])
+}
+
+/// Three numbers of which one at least is none.
+fn numbers(draws: &mut Draws) -> [f32; 3] {
+    let mut xi = draws.xi3();
+    for _ in 0..*draws.pick(&[1, 1, 1, 2, 3]) {
+        xi[*draws.pick(&[0, 1, 2])] = odd(draws);
+    }
+    xi
+}
+
+fn black(e: Eval) -> bool {
+    e.value == [0.0; 3] && e.pdf == 0.0
+}
+
+/// Whether every lane is discarded, and has nothing.
+fn discarded(s: &Sample8) -> bool {
+    let numbers = [&s.pdf].into_iter().chain(&s.value).chain(&s.weight);
+    numbers.into_iter().all(|x| x.to_array() == [0.0; 8]) && s.slot.to_array() == [-1.0; 8] && s.live() == 0
+}
+
+fn no_lobes(lobes: &[[f32x8; 2]]) -> bool {
+    lobes.as_flattened().iter().all(|x| x.to_array() == [0.0; 8])
+}
+
+/// What is not nothing at these directions, or of these numbers.
+fn at_one<M: Model>(gather: &Gather<M>, wi: Option<Direction>, xi: Option<[f32; 3]>) -> Option<String> {
+    if let Some(wi) = wi {
+        let e = calls::eval(gather, wi);
+        let lobes = calls::lobes(gather, wi);
+        if !black(e) || lobes.0.iter().any(|lobe| lobe.value != 0.0 || lobe.pdf != 0.0) {
+            return Some(format!("{e:?} {lobes:?}, one lane"));
+        }
+    }
+    let sample = xi.and_then(|xi| calls::sample(gather, xi));
+    if sample.is_some() {
+        return Some(format!("{sample:?}, one lane"));
+    }
+    for level in Level::available() {
+        if let Some(wi) = wi {
+            let (e, lobes) = (calls::eval8(gather, level, &packet(&[wi; 8])), calls::lobes8(gather, &packet(&[wi; 8])));
+            if !(0..8).all(|lane| black(e.lane(lane))) || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf])) {
+                return Some(format!("{e:?} {lobes:?}, {level}"));
+            }
+            let mut out = [const { [1.0; ROWS] }; 4];
+            let written =
+                calls::eval_slices(gather, level, [&[wi.x; ROWS], &[wi.y; ROWS], &[wi.z; ROWS]], slices(&mut out));
+            if written.is_err() || out.as_flattened().iter().any(|x| *x != 0.0) {
+                return Some(format!("{out:?}, slices on {level}"));
+            }
+        }
+        if let Some(xi) = xi {
+            let s = calls::sample8(gather, level, &triples(&[xi; 8]));
+            if !discarded(&s) {
+                return Some(format!("{s:?}, {level}"));
+            }
+            let mut out = [const { [1.0; ROWS] }; calls::COLUMNS];
+            let written =
+                calls::sample_slices(gather, level, [&[xi[0]; ROWS], &[xi[1]; ROWS], &[xi[2]; ROWS]], slices(&mut out));
+            let nothing =
+                out[3..10].as_flattened().iter().all(|x| *x == 0.0) && out[10].iter().all(|slot| *slot == -1.0);
+            if written.is_err() || !nothing {
+                return Some(format!("{out:?}, slices on {level}"));
+            }
+        }
+    }
+    None
+}
+
+fn slices<const N: usize>(out: &mut [[f32; ROWS]; N]) -> [&mut [f32]; N] {
+    out.each_mut().map(|column| &mut column[..])
+}
+
+/// What is not nothing at eight gather points.
+fn at_each<M: Model>(
+    each: &Gather8<M>,
+    level: Level,
+    wi: Option<[Direction; 8]>,
+    xi: Option<[[f32; 3]; 8]>,
+) -> Option<String> {
+    if let Some(wi) = wi {
+        let (e, lobes) = (calls::eval_each(each, level, &packet(&wi)), calls::lobes_each(each, &packet(&wi)));
+        if !(0..8).all(|lane| black(e.lane(lane))) || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf])) {
+            return Some(format!("{e:?} {lobes:?}, eight hits on {level}"));
+        }
+    }
+    let sample = xi.map(|xi| calls::sample_each(each, level, &triples(&xi)));
+    sample.filter(|s| !discarded(s)).map(|s| format!("{s:?}, eight hits on {level}"))
+}
+
+/// A `wo` of which a component is NaN or infinite sees nothing, such a `wi` receives nothing, and samples of numbers of which
+/// one is NaN or infinite are discarded: on one lane, on eight, in slices, at one hit and at eight, on every level.
+///
+/// # Errors
+///
+/// At the first input where something is not 0, or a sample is kept.
+pub fn inputs_that_are_no_numbers_are_black<S: Subject>(subject: &S) -> Outcome {
+    let mut draws = Draws(0x7a7a);
+    for (name, params) in subject.materials().into_iter().chain(subject.extremes()) {
+        let bsdf = Bsdf::new(&subject.model(), &params);
+        for _ in 0..ROUNDS {
+            let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
+            let odd_hits = hits.map(|hit| Hit { wo: vector(&mut draws), ..hit });
+            let wi: [Direction; 8] = core::array::from_fn(|_| draws.direction());
+            let odd_wi: [Direction; 8] = core::array::from_fn(|_| vector(&mut draws));
+            let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
+            let odd_xi: [[f32; 3]; 8] = core::array::from_fn(|_| numbers(&mut draws));
+            let seen = calls::prepare(&bsdf, hits[0]);
+            let unseen = calls::prepare(&bsdf, odd_hits[0]);
+            let mut faults = vec![
+                at_one(&unseen, Some(wi[0]), Some(xi[0])),
+                at_one(&unseen, Some(odd_wi[0]), Some(odd_xi[0])),
+                at_one(&seen, Some(odd_wi[0]), Some(odd_xi[0])),
+            ];
+            let albedo = calls::albedo(&unseen);
+            if albedo.0 != [[0.0; 3]; 4] {
+                faults.push(Some(format!("albedo {albedo:?}")));
+            }
+            for level in Level::available() {
+                let packed = Bsdf8::pack([&bsdf; 8]);
+                let unseen = calls::prepare_packed(&packed, level, hits8(&odd_hits));
+                faults.push(at_each(&unseen, level, Some(wi), Some(xi)));
+                let seen = calls::prepare8(&bsdf, level, hits8(&hits));
+                faults.push(at_each(&seen, level, Some(odd_wi), Some(odd_xi)));
+                let albedo = calls::albedo_each(&unseen, level);
+                if albedo.0.as_flattened().iter().any(|x| x.to_array() != [0.0; 8]) {
+                    faults.push(Some(format!("albedos {albedo:?}, {level}")));
+                }
+            }
+            if let Some(fault) = faults.into_iter().flatten().next() {
+                let inputs = format!("{odd_hits:?} {hits:?} {odd_wi:?} {wi:?} {odd_xi:?} {xi:?}");
+                return Err(Failure::new(NAME, format!("{name}: {fault}, of {inputs}")));
+            }
+        }
+    }
+    Ok(())
+}
