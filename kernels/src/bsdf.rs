@@ -92,29 +92,48 @@ impl<M: Model> Bsdf<M> {
     /// The largest directional albedo over all `wo` and the three channels: above 1 the hair gives back more light
     /// than it receives.
     ///
-    /// Found on 180 inclinations and between its neighbours on as many again; it is an upper bound by a margin of
-    /// 1e-3, tested against a scan ten times as fine.
+    /// Found on 294 inclinations, ever closer towards the poles, and between the neighbours of the best; it is an upper bound
+    /// by a margin of 1e-3, and tested against integrals in double precision on materials of every width.
     #[must_use]
     #[inline(never)]
     pub fn max_albedo(&self) -> f32 {
-        const STEPS: u16 = 180;
-        let (mut best, mut at) = (0.0, 0.0);
-        let mut scan = |from: f32, to: f32| {
-            for i in 0..=STEPS {
-                let theta = from + (to - from) * f32::from(i) / f32::from(STEPS);
-                let wo = Vec3::new(libm::sinf(theta), libm::cosf(theta), 0.0);
-                let albedo = self.prepare(wo).albedo();
-                let most = (0..3).map(|c| albedo.0.iter().map(|lobe| lobe[c]).sum()).fold(0.0, f32::max);
-                if most > best {
-                    (best, at) = (most, theta);
+        let at = |side: f32, step: f32| {
+            let from_pole = angle_from_pole(step);
+            let wo = Vec3::new(side * libm::cosf(from_pole), libm::sinf(from_pole), 0.0);
+            let PerLobe(lobes) = self.prepare(wo).albedo();
+            let sums = [0, 1, 2].map(|c| lobes.iter().map(|lobe| lobe[c]).sum::<f32>());
+            sums.into_iter().fold(0.0, f32::max).min(f32::MAX)
+        };
+        let (mut most, mut peak, mut where_to_look) = (0.0_f32, 0.0, (1.0, 0.0));
+        for side in [-1.0, 1.0] {
+            let mut last = [at(side, 0.0); 2];
+            for step in 1..=INCLINATIONS {
+                let (step, [before, here]) = (f32::from(step), last);
+                let next = at(side, step);
+                // As high as the parabola through the three rises.
+                let bend = 2.0 * here - before - next;
+                let rise = if bend > 0.0 { (before - next) * (before - next) / (8.0 * bend) } else { 0.0 };
+                let estimate = if here >= before && here >= next { here + rise } else { next };
+                if estimate > peak {
+                    (peak, where_to_look) = (estimate, (side, if estimate == next { step } else { step - 1.0 }));
+                }
+                most = most.max(here).max(next);
+                last = [here, next];
+            }
+        }
+        let (side, mut centre) = where_to_look;
+        let mut here = at(side, centre);
+        let mut reach = 0.5;
+        for _ in 0..6 {
+            for step in [(centre - reach).max(0.0), centre + reach] {
+                let value = at(side, step);
+                if value > here {
+                    (here, centre) = (value, step);
                 }
             }
-            at
-        };
-        let step = 2.0 * FRAC_PI_2 / f32::from(STEPS);
-        let coarse = scan(-FRAC_PI_2, FRAC_PI_2);
-        scan((coarse - step).max(-FRAC_PI_2), (coarse + step).min(FRAC_PI_2));
-        (best * 1.001).min(f32::MAX)
+            reach *= 0.5;
+        }
+        (most.max(here) * 1.001).min(f32::MAX)
     }
 
     /// The factor on all intensities that keeps the directional albedo at most 1 whatever `wo`: 1 if it is already.
@@ -127,6 +146,18 @@ impl<M: Model> Bsdf<M> {
         let most = self.max_albedo();
         if most > 1.0 { 1.0 / most } else { 1.0 }
     }
+}
+
+/// Inclinations per side of the normal plane on which [`Bsdf::max_albedo`] looks, the pole left out.
+const INCLINATIONS: u16 = 147;
+
+/// Their angles from the pole: albedos change on any scale there, and slowly elsewhere.
+#[inline]
+fn angle_from_pole(step: f32) -> f32 {
+    const LEAST: f32 = 1e-5;
+    const EVEN_FROM: f32 = 104.0;
+    let grown = LEAST * libm::expf(0.1 * (step.clamp(1.0, EVEN_FROM) - 1.0));
+    (grown * step.min(1.0) + 0.1 * grown * (step - EVEN_FROM).max(0.0)).min(FRAC_PI_2)
 }
 
 impl<M: Model> Bsdf8<M> {
@@ -253,6 +284,8 @@ impl<M: Model> Gather<M> {
     }
 
     /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
+    ///
+    /// - Accuracy, of the published model: 1e-4 relative for lobes of any width, seen from further than 1e-5 rad from the axis.
     #[inline]
     #[must_use]
     pub fn albedo(&self) -> PerLobe<[f32; 3]> {

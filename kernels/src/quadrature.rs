@@ -1,4 +1,4 @@
-//! Gauss-Legendre quadrature on `[0, 1]`.
+//! Quadrature on `[0, 1]`.
 
 /// Nodes and weights of the 32-point rule: exact for polynomials up to degree 63.
 pub const GAUSS_LEGENDRE_32: [(f32, f32); 32] = [
@@ -35,3 +35,29 @@ pub const GAUSS_LEGENDRE_32: [(f32, f32); 32] = [
     (0.992805755773, 0.00813719736545),
     (0.998631930925, 0.00350930500474),
 ];
+
+/// Nodes of [`GRADED`].
+const NODES: usize = 40;
+
+/// A rule whose nodes crowd towards both ends, as `v^5 / (v^5 + (1 - v)^5)` does for even `v`: each node, 1 less it, and its
+/// weight.
+///
+/// For integrands that change on any scale next to an end: the nodes next to it are 3e-10 away.
+pub(crate) const GRADED: [[f32; 3]; NODES] = graded();
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "rounding to a float is the purpose")]
+const fn graded() -> [[f32; 3]; NODES] {
+    let mut nodes = [[0.0; 3]; NODES];
+    let mut k = 0;
+    while k < NODES {
+        let v = (k as f64 + 0.5) / NODES as f64;
+        let rest = 1.0 - v;
+        let (up, down) = (v * v * v * v * v, rest * rest * rest * rest * rest);
+        let sum = up + down;
+        let both = v * rest;
+        let slope = 5.0 * (both * both * both * both) / (sum * sum);
+        nodes[k] = [(up / sum) as f32, (down / sum) as f32, (slope / NODES as f64) as f32];
+        k += 1;
+    }
+    nodes
+}

@@ -29,11 +29,13 @@ pub(crate) const PUBLISHED: Rows = Rows {
     wide_cdf: [4e-7, 1.4e-7],
     // 5.9e-7, 6.3e-7, 9.6e-7
     levels: [8e-7, 8e-7, 1.3e-6],
-    // 1.8e-5; 0 where neither fuses
-    albedo_lanes: 2.3e-5,
-    // 1.0e-4, widths of 60 degrees seen along the axis
-    albedo: 1.3e-4,
+    // 2.0e-6; 0 where neither fuses
+    albedo_lanes: 2.6e-6,
+    // 3.0e-6
+    albedo: 4e-6,
     // 2.5e-5
+    // 5.3e-5
+    albedo_any: 7e-5,
     reciprocity: 3.2e-5,
     // 1.2e-6
     sample_eval: 1.6e-6,
@@ -41,6 +43,8 @@ pub(crate) const PUBLISHED: Rows = Rows {
     weight_bound: 1.0 + 6e-7,
     integral: [0.0; 3],
     seam: [0.0; 3],
+    tail_sample: [0.0; 4],
+    off_sphere_sample: [0.0; 3],
     gain: [[0.0; 3]; 3],
     weight: [0.0; 3],
 };
@@ -71,11 +75,13 @@ pub(crate) const MATCHED: Rows = Rows {
     wide_cdf: [7.3e-7, 1.9e-7],
     // 5.9e-7, 4.5e-7, 1.6e-6
     levels: [7.7e-7, 5.9e-7, 2.2e-6],
-    // 8.4e-5; 0 where neither fuses
-    albedo_lanes: 1.1e-4,
-    // 1.0e-4
-    albedo: 1.4e-4,
+    // 2.0e-6; 0 where neither fuses
+    albedo_lanes: 2.6e-6,
+    // 3.0e-6
+    albedo: 4e-6,
     // 2.5e-5
+    // 5.3e-5
+    albedo_any: 7e-5,
     reciprocity: 3.3e-5,
     // 2.9e-6
     sample_eval: 3.8e-6,
@@ -84,6 +90,10 @@ pub(crate) const MATCHED: Rows = Rows {
     integral: [5.5e-6, 9.6e-5, 9.8e-7],
     // 3.3e-6, 3.1e-6, 7.6e-7
     seam: [4.3e-6, 4.1e-6, 1e-6],
+    // 3.9e-5, 3.9e-5, 4.3e-6, 2.1e-5
+    tail_sample: [5e-5, 5e-5, 5.6e-6, 2.7e-5],
+    // 4.5e-5, 2.4e-5, 2.6e-5
+    off_sphere_sample: [5.9e-5, 3.1e-5, 3.4e-5],
     // .0412, 7.27, 2.27; .0206, 14.0, 3.69; .0059, 55.6, 8.27
     gain: [[0.0413, 7.2, 2.2], [0.0207, 13.9, 3.6], [0.006, 55.0, 8.1]],
     // 7.2, 4.3, 2.44

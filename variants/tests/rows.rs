@@ -29,11 +29,13 @@ pub(crate) const PUBLISHED: Rows = Rows {
     wide_cdf: [4e-7, 1.4e-7],
     // 5.1e-7, 4.7e-7, 9.6e-7
     levels: [7e-7, 6e-7, 1.3e-6],
-    // 8.4e-5; 0 where neither fuses
-    albedo_lanes: 1.1e-4,
-    // 4.1e-3, in the tails of lobes of 0.5 degrees; 32 nodes do not resolve W there
-    albedo: 5.2e-3,
+    // 3.9e-7; 0 where neither fuses
+    albedo_lanes: 5.2e-7,
+    // 2.2e-6
+    albedo: 2.9e-6,
     // 8.6e-6
+    // 4.3e-5
+    albedo_any: 5.6e-5,
     reciprocity: 1.1e-5,
     // 1.7e-6
     sample_eval: 2.2e-6,
@@ -41,6 +43,8 @@ pub(crate) const PUBLISHED: Rows = Rows {
     weight_bound: 1.0 + 3.3e-6,
     integral: [0.0; 3],
     seam: [0.0; 3],
+    tail_sample: [0.0; 4],
+    off_sphere_sample: [0.0; 3],
     gain: [[0.0; 3]; 3],
     weight: [0.0; 3],
 };
@@ -71,11 +75,13 @@ pub(crate) const MATCHED: Rows = Rows {
     wide_cdf: [3.5e-7, 1.3e-7],
     // 6e-7, 5.2e-7, 1.6e-6
     levels: [7.8e-7, 6.8e-7, 2.1e-6],
-    // 8.4e-5; 0 where neither fuses
-    albedo_lanes: 1.1e-4,
-    // 4.1e-3
-    albedo: 5.4e-3,
+    // 3.9e-7; 0 where neither fuses
+    albedo_lanes: 5.2e-7,
+    // 2.2e-6
+    albedo: 2.9e-6,
     // 8.6e-6
+    // 4.3e-5
+    albedo_any: 5.6e-5,
     reciprocity: 1.2e-5,
     // 3.7e-6, a glint of 0.04 degrees
     sample_eval: 4.8e-6,
@@ -84,6 +90,10 @@ pub(crate) const MATCHED: Rows = Rows {
     integral: [3.1e-6, 5.4e-6, 4.5e-7],
     // 1.8e-6, 2e-6, 6e-7
     seam: [2.4e-6, 2.6e-6, 8e-7],
+    // 6.8e-6, 7.0e-6, 1.3e-6, 4.7e-6
+    tail_sample: [9e-6, 9.2e-6, 1.7e-6, 6.1e-6],
+    // 3.8e-6, 2.5e-6, 2.0e-6
+    off_sphere_sample: [5e-6, 3.3e-6, 2.7e-6],
     // .0448, 4.36, 2.10; .0223, 8.78, 3.47; .0065, 34.7, 8.16
     gain: [[0.045, 4.3, 2.0], [0.0224, 8.7, 3.4], [0.0065, 34.3, 8.0]],
     // 4.5, 3.1, 2.43

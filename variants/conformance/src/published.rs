@@ -76,7 +76,8 @@ macro_rules! published {
         $crate::published!(
             @$name, $model,
             albedo {
-                albedo_is_the_integral max_albedo_bounds_a_scan_ten_times_as_fine
+                albedo_is_the_integral albedo_of_any_width_is_the_integral max_albedo_bounds_a_scan_ten_times_as_fine
+                max_albedo_bounds_lobes_of_any_width
                 scaled_hair_returns_at_most_what_it_receives
             }
             weights { weights_are_below_their_bound the_bound_is_reached the_published_flaw_is_there }
@@ -86,7 +87,8 @@ macro_rules! published {
         $crate::published!(
             @$name, $model,
             albedo {
-                albedo_is_the_integral max_albedo_bounds_a_scan_ten_times_as_fine
+                albedo_is_the_integral albedo_of_any_width_is_the_integral max_albedo_bounds_a_scan_ten_times_as_fine
+                max_albedo_bounds_lobes_of_any_width
                 scaled_hair_returns_at_most_what_it_receives
             }
             density { each_lobe_integrates_to_one }

@@ -1,10 +1,12 @@
 //! The directional albedo against quadrature of the textbook, and the scale that keeps it at most 1.
 
 use super::quadrature::{integrate, panels};
-use super::support::{Draws, Kind, Point, Worst, direction, for_each_point};
+use super::support::{Draws, Kind, Point, Worst, direction, for_each_point, narrow, parameters};
 use super::{Published, Twin};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::{Bsdf, HairParams, Lobe, Model, PerLobe};
+use glam::Vec3;
+use hairis::textbook::Parameters;
+use hairis::{Bsdf, HairDesc, HairParams, Lobe, Model, PerLobe};
 
 /// Integral of each lobe's value times the cosine: a product of two line integrals, as the lobes are products.
 fn integrals(textbook: &Twin, point: &Point) -> PerLobe<f64> {
@@ -59,6 +61,102 @@ pub fn albedo_is_the_integral<S: Published>() {
         });
     }
     worst.check("albedo against quadrature", S::ROWS.albedo);
+}
+
+/// Materials of any widths and shifts, and those where quadrature and scans have gone wrong.
+fn any_widths() -> Vec<HairParams> {
+    let mut draws = Draws(33);
+    let black = [0.0; 3];
+    let small = HairDesc { alpha_r: -1.494, alpha_tt: -1.494, alpha_trt: -1.494, ..HairDesc::default() };
+    let small = HairDesc { beta_r: 0.0847, beta_tt: 0.0847, beta_trt: 0.0847, ..small };
+    let bright = HairDesc { alpha_tt: 1.356_512_9, beta_tt: 3.96e-4, intensity_tt: [7318.0; 3], ..HairDesc::default() };
+    let bright = HairDesc { intensity_r: black, intensity_trt: black, ..bright };
+    let grazing = HairDesc { alpha_trt: 0.0, beta_trt: 1e-4, gamma_tt: 1e-4, gamma_g: 1e-4, ..HairDesc::default() };
+    let grazing = HairDesc { intensity_trt: [3283.0, 1565.0, 5134.0], intensity_g: 0.848, phi_g: 0.0, ..grazing };
+    let grazing = HairDesc { intensity_r: black, intensity_tt: black, ..grazing };
+    let known = [small, bright, grazing].map(|desc| HairParams::new(&desc).unwrap());
+    known.into_iter().chain((0..60).map(|_| draws.params(1e4))).collect()
+}
+
+/// Distances of `wo` from a pole, ever closer and on it, and the side of the pole.
+fn any_inclinations() -> impl Iterator<Item = (f64, f64)> {
+    let near = (0..24).map(|i| 0.5 * f64::exp(-0.62 * f64::from(i)));
+    near.chain((0..12).map(|i| FRAC_PI_2 - 0.09 * f64::from(i))).chain([0.0]).flat_map(|off| [(off, 1.0), (off, -1.0)])
+}
+
+/// The direction so far from a pole, rounded, and its inclination.
+fn off_pole((off, side): (f64, f64)) -> (Vec3, f64) {
+    let wo = Vec3::new(narrow(side * off.cos()), narrow(off.sin()), 0.0);
+    (wo, f64::from(wo.x).atan2(f64::from(wo.y)))
+}
+
+/// The albedo of each lobe but for its colour, from the formulas of its two factors: as exact for lobes of any width, seen from
+/// any inclination.
+fn exact<S: Published>(p: &Parameters<f64>, theta_o: f64) -> PerLobe<f64> {
+    let to_pole = FRAC_PI_2 - theta_o.abs();
+    let longitude = [0, 1, 2].map(|l| {
+        let centre = 2.0 * p.alpha[l] - theta_o;
+        let poles = [-FRAC_PI_2, FRAC_PI_2].map(|pole| [(pole, to_pole.max(1e-9)), (pole, 1e-9)]);
+        let bells = [&[(centre, 2.0 * p.beta[l])], poles.as_flattened()].concat();
+        integrate(&panels(-FRAC_PI_2, FRAC_PI_2, &bells), |theta_i| {
+            let bell = S::SHAPE.bell(p.beta[l], 0.5 * (theta_i + theta_o) - p.alpha[l]);
+            let cos_theta_d = (0.5 * (theta_i - theta_o)).cos();
+            bell * (theta_i.cos() / cos_theta_d.max(1e-300)).powi(2)
+        })
+    });
+    let azimuth = |centre: f64, width: f64| {
+        2.0 * integrate(&panels(0.0, PI, &[(centre, width)]), |phi| S::SHAPE.bell(width, phi - centre))
+    };
+    let [r, tt, trt] = longitude;
+    PerLobe([4.0 * r, azimuth(PI, p.gamma_tt) * tt, 4.0 * trt, azimuth(p.phi_g, p.gamma_g) * p.intensity_g * trt])
+}
+
+pub fn albedo_of_any_width_is_the_integral<S: Published>() {
+    let mut worst = Worst::default();
+    for (model, factor) in S::forms() {
+        for params in any_widths() {
+            let (bsdf, p) = (Bsdf::new(&model, &params), parameters(&params, factor));
+            for at in any_inclinations().chain([(FRAC_PI_2 - 1.495, -1.0)]).filter(|(off, _)| *off > 1e-5) {
+                let (wo, theta_o) = off_pole(at);
+                let (got, want) = (bsdf.prepare(wo).albedo(), exact::<S>(&p, theta_o));
+                let d = params.desc();
+                let colors = PerLobe([d.intensity_r, d.intensity_tt, d.intensity_trt, d.intensity_trt]);
+                for lobe in Lobe::ALL.into_iter().filter(|lobe| colors[*lobe][0] > 0.0) {
+                    let got = f64::from(got[lobe][0]) / f64::from(colors[lobe][0]);
+                    // A lobe that lies off the sphere returns next to nothing.
+                    worst.see((got - want[lobe]).abs() / want[lobe].max(1e-9), || {
+                        format!("{lobe:?} got {got} want {} theta_o {theta_o} {d:?}", want[lobe])
+                    });
+                }
+            }
+        }
+    }
+    worst.check("albedo of any width against quadrature", S::ROWS.albedo_any);
+}
+
+pub fn max_albedo_bounds_lobes_of_any_width<S: Published>() {
+    let (mut above, mut scaled) = (Worst::default(), Worst::default());
+    for (model, factor) in S::forms() {
+        for params in any_widths() {
+            let p = parameters(&params, factor);
+            let d = params.desc();
+            let most = f64::from(Bsdf::new(&model, &params).max_albedo());
+            let mut seen = 0.0_f64;
+            for at in any_inclinations() {
+                let PerLobe([r, tt, trt, glint]) = exact::<S>(&p, off_pole(at).1);
+                for c in 0..3 {
+                    let [i_r, i_tt, i_trt] = [d.intensity_r[c], d.intensity_tt[c], d.intensity_trt[c]].map(f64::from);
+                    seen = seen.max(r * i_r + tt * i_tt + (trt + glint) * i_trt);
+                }
+            }
+            if seen > 1e-30 {
+                above.see(seen / most, || format!("{seen} of {most}: {params:?}"));
+                scaled.see(most / seen, || format!("{most} for {seen}: {params:?}"));
+            }
+        }
+    }
+    above.check("albedo over max_albedo", 1.0);
+    scaled.check("max_albedo over the largest seen", 1.02);
 }
 
 /// The largest albedo on a scan of `steps` inclinations.

@@ -32,6 +32,8 @@ pub struct Rows {
     pub albedo_lanes: f64,
     /// Directional albedo of a lobe against quadrature, relative.
     pub albedo: f64,
+    /// Directional albedo of a lobe of any width, seen from further than 1e-5 rad from the axis, relative to at least 1e-9.
+    pub albedo_any: f64,
     /// Reciprocity of S, relative, wide and grid materials.
     pub reciprocity: f64,
     /// Density of a sample against that of its direction, relative, times `width / (width + 0.1)` with the least width.
@@ -43,6 +45,11 @@ pub struct Rows {
     /// Samples of TT and of glints next to the seam, against the textbook at the direction they return: S, density, weight;
     /// matched samplers.
     pub seam: [f64; 3],
+    /// Samples at the ends of the uniform numbers, widths of a degree and more, against the textbook at the direction they
+    /// return: S, density, weight off the seam, density next to it; matched samplers.
+    pub tail_sample: [f64; 4],
+    /// The same off the seam, where no lobe has its centre on the sphere.
+    pub off_sphere_sample: [f64; 3],
     /// With 5, 9 and 25 bands, under constant light over the grid: V at most, its gain over the published sampler at least,
     /// as a geometric mean and anywhere.
     pub gain: [[f64; 3]; 3],
