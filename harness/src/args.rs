@@ -29,7 +29,8 @@ The answer to "wi", and to "xi" (lobe null: discarded, and 0 for the rest):
 The answer to a refused line, a blank one included, is {"error":"field: problem"}. The other lines still
 run, and the exit code is 2."#;
 
-const STUDY: &str = "Files in DIR: report.html, and its plots in figures/; study.csv, the rows, which depend on the seed and the build
+const STUDY: &str =
+    "Files in DIR: report.html, and its plots in figures/; study.csv, the rows, which depend on the seed and the build
 alone; difference.csv, how different the models look; study.json, the settings; times.csv and efficiency.csv, which
 depend on the machine as well. With the features `parquet` and `png` of the build: the tables as .parquet, the plots as
 .png. Finished cells are kept in DIR/cells-I-of-N.jsonl: the same command continues from there.";
