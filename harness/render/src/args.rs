@@ -1,6 +1,7 @@
 //! The raw flags, and what clap cannot check.
 
 use crate::film::Crop;
+use crate::formats::Up;
 use crate::hair::Energy;
 use crate::numbers::Sequence;
 use crate::scenes::Name;
@@ -9,6 +10,7 @@ use clap::{Parser, Subcommand};
 use core::str::FromStr;
 use hairis_harness::args::one_line;
 use hairis_harness::error::Error;
+use hairis_harness::study::Shard;
 use std::path::PathBuf;
 
 /// Renders hair to measure scattering models and their samplers on images.
@@ -23,8 +25,10 @@ pub struct Args {
 /// The subcommands, each with its flags.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
-    /// Render a scene: an EXR file and a PNG preview
+    /// Render a scene: an EXR file and a PNG preview; a run that was stopped goes on
     Render(Render),
+    /// Join the parts of a picture that was rendered in shards, into the same file as one run
+    Merge(Merge),
     /// Compare samplers on all scenes, at equal samples and at equal time: one page
     Figures(Figures),
 }
@@ -83,18 +87,47 @@ pub struct Render {
     /// Hair from a file in place of the scene's
     #[arg(long, value_name = "FILE.hair|.tfx")]
     pub import: Option<PathBuf>,
+    /// Centimetres per unit of the file of hair [default: 1 for .hair, 100 for .tfx]
+    #[arg(long, value_name = "X", requires = "import")]
+    pub scale: Option<f32>,
+    /// Radius at the roots in centimetres in place of the file's
+    #[arg(long, value_name = "CM", requires = "import")]
+    pub radius: Option<f32>,
+    /// The axis of the file of hair that points up
+    #[arg(long, value_enum, requires = "import", default_value_t = UpArg::Y)]
+    pub up: UpArg,
+    /// Write the hair as Mitsuba's text, too
+    #[arg(long, value_name = "FILE.txt")]
+    pub export: Option<PathBuf>,
     /// Environment map in place of the scene's light, latitude-longitude, .hdr or .exr
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
+    /// Degrees by which the camera goes around the hair, to the right
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub turn: f32,
     /// Seed of the samples
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Factor on radiance in the preview [default: by the picture's brightness]
     #[arg(long, value_name = "X")]
     pub exposure: Option<f64>,
+    /// Render shard I of N only, I from 1 to N, into a .part file for `hairis-render merge` to join
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
     /// The EXR file; the preview lies beside it [default: out/render/SCENE.exr]
     #[arg(long, value_name = "FILE.exr")]
     pub out: Option<PathBuf>,
+}
+
+/// Arguments of `hairis-render merge`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Merge {
+    /// The EXR file; a preview lies beside it
+    #[arg(value_name = "OUT.exr")]
+    pub out: PathBuf,
+    /// Parts that shards have left
+    #[arg(value_name = "PART", required = true)]
+    pub parts: Vec<PathBuf>,
 }
 
 /// Flags of `hairis-render figures`.
@@ -115,6 +148,27 @@ pub struct Figures {
     /// Folder for report.html and the pictures; made if missing
     #[arg(long, value_name = "DIR", default_value = "out/figures")]
     pub out: PathBuf,
+}
+
+/// An axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum UpArg {
+    /// The first
+    X,
+    /// The second
+    Y,
+    /// The third
+    Z,
+}
+
+impl From<UpArg> for Up {
+    fn from(axis: UpArg) -> Self {
+        match axis {
+            UpArg::X => Self::X,
+            UpArg::Y => Self::Y,
+            UpArg::Z => Self::Z,
+        }
+    }
 }
 
 /// Width and height in pixels: 1 to 16384 each.
@@ -181,6 +235,9 @@ impl Render {
         }
         if let Some(exposure) = self.exposure.filter(|exposure| !(*exposure > 0.0 && exposure.is_finite())) {
             return refuse("--exposure", "a number above 0", &exposure);
+        }
+        if !self.turn.is_finite() {
+            return refuse("--turn", "a number of degrees", &self.turn);
         }
         if !(1..=4096).contains(&self.aa) {
             return refuse("--aa", "from 1 to 4096", &self.aa);

@@ -1,7 +1,7 @@
 //! A pinhole camera.
 
 use crate::tree::Ray;
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 /// Where the picture is taken from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,14 @@ impl Camera {
         let forward = (at - eye).normalize_or(Vec3::NEG_Z);
         let right = forward.cross(Vec3::Y).try_normalize().unwrap_or_else(|| forward.cross(Vec3::Z).normalize());
         Self { eye, forward, right, up: right.cross(forward), slope: (0.5 * view_deg.to_radians()).tan(), size }
+    }
+
+    /// The camera after a turn about the vertical axis through a point, in degrees: from +z towards +x.
+    #[must_use]
+    pub fn turned(&self, about: Vec3, degrees: f32) -> Self {
+        let turn = |v: Vec3| Quat::from_rotation_y(degrees.to_radians()) * v;
+        let eye = about + turn(self.eye - about);
+        Self { eye, forward: turn(self.forward), right: turn(self.right), up: turn(self.up), ..*self }
     }
 
     /// Width and height of the picture in pixels.
@@ -68,6 +76,14 @@ mod tests {
         let (ray, other) = (camera.ray(10.0, 7.0), camera.mirrored().ray(54.0, 7.0));
         let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
         assert!((mirror(ray.direction) - other.direction).length() < 1e-6 && mirror(ray.origin) == other.origin);
+    }
+
+    #[test]
+    fn a_turned_camera_looks_from_the_side() {
+        let camera = Camera::new(Vec3::new(1.0, 2.0, 13.0), Vec3::new(1.0, 2.0, 3.0), 40.0, [64, 48]);
+        let ray = camera.turned(Vec3::new(1.0, 2.0, 3.0), 90.0).ray(32.0, 24.0);
+        assert!((ray.origin - Vec3::new(11.0, 2.0, 3.0)).length() < 1e-5, "{}", ray.origin);
+        assert!((ray.direction - Vec3::NEG_X).length() < 1e-6, "{}", ray.direction);
     }
 
     #[test]

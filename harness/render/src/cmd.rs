@@ -1,5 +1,6 @@
 //! The subcommands.
 
+mod merge;
 mod render;
 
 pub(crate) use render::environment;
@@ -15,6 +16,7 @@ use hairis_harness::error::Error;
 pub fn run(args: Args) -> Result<(), Error> {
     match args.command {
         Command::Render(flags) => render::run(&flags),
+        Command::Merge(flags) => merge::run(&flags),
         Command::Figures(flags) => crate::figures::run(&flags),
     }
 }

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 use hairis_harness::light::luminance;
+use hairis_harness::sequence::mix;
+use hairis_harness::study::Shard;
 
 /// Side of a tile in pixels.
 pub const TILE: u32 = 32;
@@ -43,8 +45,8 @@ impl Crop {
         self.len() == 0
     }
 
-    /// Tiles of at most [`TILE`] pixels a side.
-    fn tiles(self) -> impl Iterator<Item = Self> {
+    /// Tiles of at most [`TILE`] pixels a side, row by row.
+    pub fn tiles(self) -> impl Iterator<Item = Self> {
         let step = TILE as usize;
         (self.y..self.y + self.height).step_by(step).flat_map(move |y| {
             (self.x..self.x + self.width).step_by(step).map(move |x| Self {
@@ -105,6 +107,27 @@ impl Film {
     pub fn new(crop: Crop) -> Self {
         let tile = |place: Crop| Tile { place, sums: vec![Sums::default(); place.len()], samples: 0, seconds: 0.0 };
         Self { crop, tiles: crop.tiles().map(tile).collect() }
+    }
+
+    /// Of tiles that are there already.
+    #[must_use]
+    pub fn of(crop: Crop, tiles: Vec<Tile>) -> Self {
+        Self { crop, tiles }
+    }
+
+    /// Keeps the tiles of one shard. They are scattered over the picture, so that shards take about as long.
+    #[must_use]
+    pub fn shard(mut self, shard: Shard) -> Self {
+        #[expect(clippy::cast_possible_truncation, reason = "any bits do")]
+        let hash = |place: Crop| mix(u64::from(place.y) << 32 | u64::from(place.x)) as usize;
+        self.tiles.retain(|tile| shard.owns(hash(tile.place)));
+        self
+    }
+
+    /// Samples that every pixel has.
+    #[must_use]
+    pub fn samples(&self) -> u32 {
+        self.tiles.iter().map(|tile| tile.samples).min().unwrap_or(0)
     }
 
     /// The part of the picture that it covers.

@@ -24,6 +24,7 @@ pub mod hair;
 pub mod lights;
 pub mod material;
 pub mod numbers;
+pub mod part;
 pub mod picture;
 pub mod protocol;
 pub mod scene;

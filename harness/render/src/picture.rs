@@ -68,7 +68,16 @@ pub fn write(picture: &Picture, path: &Path, exposure: f64) -> Result<(), Error>
     let mut bytes = Cursor::new(Vec::new());
     let encoded = image.write_to(&mut bytes, ImageFormat::OpenExr).map_err(io::Error::other);
     whole(path, |out| encoded.and_then(|()| out.write_all(bytes.get_ref())))?;
-    whole(&path.with_extension("png"), |out| out.write_all(&png(&preview(picture, exposure))?))
+    write_preview(picture, &path.with_extension("png"), exposure)
+}
+
+/// Writes a PNG preview as a whole.
+///
+/// # Errors
+///
+/// If the file cannot be written.
+pub fn write_preview(picture: &Picture, path: &Path, exposure: f64) -> Result<(), Error> {
+    whole(path, |out| out.write_all(&png(&preview(picture, exposure))?))
 }
 
 #[cfg(test)]

@@ -115,6 +115,8 @@ pub struct Parts {
     pub env: Option<Environment>,
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
+    /// Degrees by which the camera goes around the hair.
+    pub turn: f32,
 }
 
 /// Builds a scene.
@@ -123,7 +125,7 @@ pub struct Parts {
 ///
 /// If the strands are too thin for their extent.
 pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
-    let Parts { strands, imported, hair, env, size } = parts;
+    let Parts { strands, imported, hair, env, size, turn } = parts;
     let tree = Tree::build(&strands).map_err(|problem| Error::Usage(problem.to_string()))?;
     let bounds = strands.bounds();
     let extent = bounds.size().length().max(1e-3);
@@ -148,13 +150,14 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         rectangles.clear();
     }
     let camera = match name {
-        _ if imported => Camera::new(at(34.0, 9.0, 28.0), centre, 42.0, size),
+        _ if imported => Camera::new(at(0.0, 9.0, 52.0), centre, 42.0, size),
         Name::Area | Name::AreaSoft => Camera::new(at(6.0, 14.0, 26.0), centre, 36.0, size),
         Name::BoxSingle | Name::Box => Camera::new(at(0.0, 3.0, 85.0), at(0.0, -1.0, 0.0), 42.0, size),
         Name::FurnaceOne => Camera::new(at(0.0, 0.0, 100.0), centre, 8.0, size),
         Name::FurnaceIso => Camera::new(at(6.0, 14.0, 26.0), centre, 30.0, size),
-        Name::AreaHead | Name::Env | Name::Head => Camera::new(at(0.0, 3.0, 60.0), at(0.0, -1.0, 0.0), 36.0, size),
+        Name::AreaHead | Name::Env | Name::Head => Camera::new(at(0.0, 6.0, 68.0), at(0.0, -2.0, 0.0), 36.0, size),
     };
+    let camera = camera.turned(centre, turn);
     let on_head = !imported && matches!(name.kind(), Kind::Straight | Kind::Wavy);
     let head = on_head.then_some(Head { radii: 0.995 * HEAD, albedo: Vec3::new(0.45, 0.32, 0.25) });
     Ok(Scene { strands, tree, hair, head, rectangles, sky, camera, gap: 1e-3 * scale })

@@ -1,6 +1,10 @@
 //! Tests of the renderer.
 
+mod agreement;
+mod bits;
+mod furnace;
 mod groom;
 mod import;
 mod rays;
 mod segments;
+mod support;

@@ -1,15 +1,23 @@
 //! `hairis-render render`.
 
 use crate::args::Render;
-use crate::film::{Crop, Film};
+use crate::film::Film;
+use crate::formats::{Import, import, write_mitsuba};
+use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, MOST_MEAN_ALBEDO};
 use crate::material::Hair;
+use crate::part::{self, Part};
 use crate::picture;
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
 use crate::transport::{self, Integrator, Settings};
+use hairis::Level;
 use hairis_harness::error::Error;
+use hairis_harness::files::whole;
 use hairis_harness::light::Environment;
+use hairis_harness::machine::Machine;
+use hairis_harness::sequence::mix;
+use hairis_harness::study::Shard;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
 use std::io::{self, Write as _};
@@ -40,24 +48,85 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         rays: flags.aa,
         ..Settings::default()
     };
-    let hair = hair(flags, &settings)?;
     let out = flags.out.clone().unwrap_or_else(|| PathBuf::from(format!("out/render/{}.exr", flags.scene.word())));
-    prepare(&out)?;
+    let hair = hair(flags, &settings)?;
     let env = flags.env.as_deref().map(environment).transpose()?;
     let strands = match &flags.import {
-        Some(path) => import(path)?,
+        Some(path) => read_hair(flags, path)?,
         None => scenes::grow(flags.scene, flags.strands)?,
     };
-    let parts = Parts { strands, imported: flags.import.is_some(), hair, env, size: flags.size.0 };
+    if let Some(path) = &flags.export {
+        whole(path, |out| write_mitsuba(&strands, out))?;
+    }
+    let run = describe(flags, &settings, env.as_ref())?;
+    let parts = Parts { strands, imported: flags.import.is_some(), hair, env, size: flags.size.0, turn: flags.turn };
     let scene = scenes::build(flags.scene, parts)?;
+    check_out(&out)?;
+    let shard = flags.shard.unwrap_or(Shard::WHOLE);
+    let part_path = match flags.shard {
+        Some(shard) => out.with_extension(format!("{}-of-{}.part", shard.index(), shard.of())),
+        None => part::path(&out),
+    };
+    let film = match part_path.exists() {
+        true => Part::read_of(&part_path, &run)?.film,
+        false => Film::new(crop).shard(shard),
+    };
+    let mut part = Part { run, film };
     let samples = flags.spp.unwrap_or(defaults.samples);
-    let film = passes(flags, &scene, &settings, crop, samples, &out)?;
+    passes(flags, &scene, &settings, samples, &mut part, &part_path)?;
+    if flags.shard.is_some() {
+        part.write(&part_path)?;
+        let line = format!("wrote {}: join the parts by `hairis-render merge`\n", part_path.display());
+        return io::stdout().write_all(line.as_bytes()).map_err(Error::Write);
+    }
+    finish(&part.film, &out, flags.exposure)?;
+    // Where nothing was stopped there is none.
+    let _ = fs::remove_file(&part_path);
+    Ok(())
+}
+
+/// Writes a picture that is whole, and says so.
+pub(super) fn finish(film: &Film, out: &Path, exposure: Option<f64>) -> Result<(), Error> {
     let picture = film.picture();
-    picture::write(&picture, &out, flags.exposure.unwrap_or_else(|| picture::exposure(&picture)))?;
+    picture::write(&picture, out, exposure.unwrap_or_else(|| picture::exposure(&picture)))?;
     let [r, g, b] = picture.mean();
-    let seconds = film.seconds();
-    let line = format!("wrote {}: mean {r:.5} {g:.5} {b:.5}, {seconds:.1} s of CPU time\n", out.display());
+    let (samples, seconds) = (film.samples(), film.seconds());
+    let line =
+        format!("wrote {}: {samples} samples, mean {r:.5} {g:.5} {b:.5}, {seconds:.1} s of CPU time\n", out.display());
     io::stdout().write_all(line.as_bytes()).map_err(Error::Write)
+}
+
+/// Everything that the sums of a picture depend on, but the count of samples of paths.
+fn describe(flags: &Render, settings: &Settings, env: Option<&Environment>) -> Result<String, Error> {
+    let Render { scene, hair, model, sampler, energy, size, strands, import, scale, radius, up, turn, .. } = flags;
+    let Settings { integrator, sequence, seed, mis, depth, multiple, rays, .. } = settings;
+    let machine = Machine::current();
+    let digest = match import {
+        Some(path) => {
+            let bytes = fs::read(path).map_err(|source| unreadable(path, &source))?;
+            bytes.chunks(8).fold(bytes.len() as u64, |hash, chunk| {
+                mix(hash ^ chunk.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)))
+            })
+        }
+        None => 0,
+    };
+    let gathered = if *integrator == Integrator::Gather { flags.spp.unwrap_or(0) } else { 0 };
+    Ok(format!(
+        "scene={scene:?} model={model} sampler={sampler:?} hair={hair:?} energy={energy:?} size={}x{} strands={strands} turn={turn} \
+         import={digest:016x} scale={scale:?} radius={radius:?} up={up:?} env={:016x} integrator={integrator:?} gathered={gathered} xi={sequence:?} seed={seed} mis={mis:?} \
+         depth={depth} multiple={multiple} aa={rays} commit={}{} fuses={}",
+        size.0[0],
+        size.0[1],
+        env.map_or(0, Environment::digest),
+        machine.commit,
+        if machine.dirty == Some(true) { "+changes" } else { "" },
+        Level::detect().fuses()
+    ))
+}
+
+/// A file that cannot be read.
+fn unreadable(path: &Path, source: &io::Error) -> Error {
+    Error::Usage(format!("{}: cannot read: {source}", path.display()))
 }
 
 /// The hair that the flags ask for.
@@ -86,16 +155,20 @@ fn hair(flags: &Render, settings: &Settings) -> Result<Hair, Error> {
     Ok(hair)
 }
 
-/// Makes the folder of a file, and sees that the file can be written.
-fn prepare(path: &Path) -> Result<(), Error> {
+/// Makes the folder of a file, and sees that files can be written there.
+pub(super) fn check_out(path: &Path) -> Result<(), Error> {
     let refuse = |source| Error::Output { path: path.to_owned(), source };
     if path.extension().is_none_or(|end| end != "exr") {
-        return Err(Error::Usage(format!("--out must end in .exr, got {}", path.display())));
+        return Err(Error::Usage(format!("the picture must end in .exr, got {}", path.display())));
+    }
+    if path.is_dir() {
+        return Err(refuse(io::ErrorKind::IsADirectory.into()));
     }
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         fs::create_dir_all(folder).map_err(refuse)?;
     }
-    fs::File::options().append(true).create(true).open(path).map(drop).map_err(refuse)
+    let probe = path.with_extension("exr.new");
+    fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)).map_err(refuse)
 }
 
 /// Reads an environment map, and remarks on what is odd about it.
@@ -107,21 +180,28 @@ pub(crate) fn environment(path: &Path) -> Result<Environment, Error> {
     Ok(map)
 }
 
-/// Reads hair.
-fn import(path: &Path) -> Result<crate::geometry::Strands, Error> {
-    Err(Error::Usage(format!("{}: no importer yet", path.display())))
+/// Reads hair, and remarks on what is odd about it.
+fn read_hair(flags: &Render, path: &Path) -> Result<Strands, Error> {
+    let options = Import { radius: flags.radius, scale: flags.scale, up: flags.up.into(), ..Import::default() };
+    let imported = import(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
+    for remark in imported.remarks {
+        let _ = writeln!(io::stderr(), "{}: {remark}", path.display());
+    }
+    if imported.strands.strands() == 0 {
+        return Err(Error::Usage(format!("{}: there is no strand to render", path.display())));
+    }
+    Ok(imported.strands)
 }
 
-/// Renders pass by pass, and writes a preview from time to time.
+/// Renders pass by pass; from time to time writes what there is, and a preview of it.
 fn passes(
     flags: &Render,
     scene: &Scene,
     settings: &Settings,
-    crop: Crop,
     samples: u32,
-    out: &Path,
-) -> Result<Film, Error> {
-    let mut film = Film::new(crop);
+    part: &mut Part,
+    part_path: &Path,
+) -> Result<(), Error> {
     let bar = ProgressBar::new(1000);
     if let Ok(style) = ProgressStyle::with_template("{msg:>12} {wide_bar} {percent:>3}% {elapsed} (left {eta})") {
         bar.set_style(style);
@@ -131,31 +211,31 @@ fn passes(
         bar.set_position((share * 1000.0) as u64);
     };
     if settings.integrator == Integrator::Gather {
-        transport::render(scene, settings, &mut film, samples, &show);
+        transport::render(scene, settings, &mut part.film, samples, &show);
         bar.finish_and_clear();
-        return Ok(film);
+        return Ok(());
     }
     let start = Instant::now();
     let mut written = start;
-    let mut done = 0;
-    loop {
+    let mut done = part.film.samples();
+    let is_over = |done: u32| flags.time.map_or(done >= samples, |time| start.elapsed().as_secs_f64() >= time);
+    while !is_over(done) {
         let next = if flags.time.is_some() { done + PASS } else { (done + PASS).min(samples) };
         let share = |part: f64| match flags.time {
             Some(time) => (start.elapsed().as_secs_f64() / time).min(1.0),
             None => (f64::from(done) + part * f64::from(next - done)) / f64::from(samples),
         };
         bar.set_message(format!("{done} samples"));
-        transport::render(scene, settings, &mut film, next, &|part| show(share(part)));
+        transport::render(scene, settings, &mut part.film, next, &|part| show(share(part)));
         done = next;
-        let over = flags.time.map_or(done >= samples, |time| start.elapsed().as_secs_f64() >= time);
-        if over {
-            bar.finish_and_clear();
-            return Ok(film);
-        }
-        if written.elapsed() >= PREVIEW {
-            let picture = film.picture();
-            picture::write(&picture, out, flags.exposure.unwrap_or_else(|| picture::exposure(&picture)))?;
+        if written.elapsed() >= PREVIEW && !is_over(done) {
+            part.write(part_path)?;
+            let picture = part.film.picture();
+            let exposure = flags.exposure.unwrap_or_else(|| picture::exposure(&picture));
+            picture::write_preview(&picture, &part_path.with_extension("png"), exposure)?;
             written = Instant::now();
         }
     }
+    bar.finish_and_clear();
+    Ok(())
 }

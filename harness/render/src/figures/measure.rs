@@ -90,7 +90,7 @@ impl Measured {
         let title = map.as_ref().map(|map| hairis_harness::light::Light::name(map).to_owned());
         let hair = |sampler| Choice::find("gaussian", sampler, defaults.preset)?.hair(Energy::Raw);
         let strands = scenes::grow(name, plan.strands)?;
-        let parts = Parts { strands, imported: false, hair: hair(BEST)?, env: map, size: [plan.side; 2] };
+        let parts = Parts { strands, imported: false, hair: hair(BEST)?, env: map, size: [plan.side; 2], turn: 0.0 };
         step(&format!("{}: tree", name.word()));
         let mut scene: Scene = scenes::build(name, parts)?;
         let settings =

@@ -1,0 +1,17 @@
+//! `hairis-render merge`.
+
+use super::render::{check_out, finish};
+use crate::args::Merge;
+use crate::part::Part;
+use hairis_harness::error::Error;
+
+/// Joins the parts of a picture.
+///
+/// # Errors
+///
+/// If a part cannot be read, is missing, or belongs to another run; or the file cannot be written.
+pub(super) fn run(flags: &Merge) -> Result<(), Error> {
+    check_out(&flags.out)?;
+    let parts = flags.parts.iter().map(|path| Ok((path.clone(), Part::read(path)?))).collect::<Result<_, Error>>()?;
+    finish(&Part::merge(parts)?.film, &flags.out, None)
+}

@@ -1,0 +1,162 @@
+//! One picture, whatever it is rendered with.
+
+use crate::support::{distance, film, hair, mean, scene};
+use glam::Vec3;
+use hairis_render::geometry::Strands;
+use hairis_render::lights::Rectangle;
+use hairis_render::material::Hair;
+use hairis_render::numbers::Sequence;
+use hairis_render::scene::Scene;
+use hairis_render::scenes::Name;
+use hairis_render::transport::{Integrator, Mis, Settings};
+use hairis_render::tree::Tree;
+use hairis_variants::ModelId;
+
+/// Seeds of each mean.
+const RUNS: u64 = 16;
+
+#[test]
+fn samplers_weightings_and_sequences_agree() {
+    let cases = [
+        (Name::AreaSoft, Integrator::Gather, "default", 400, 16),
+        (Name::AreaHead, Integrator::Direct, "brown", 1500, 16),
+        (Name::Env, Integrator::Gather, "brown", 1500, 8),
+        (Name::Box, Integrator::Path, "brown", 1500, 8),
+    ];
+    for (name, integrator, preset, strands, samples) in cases {
+        let mut one = scene(name, hair("gaussian", "matched", preset), strands, 16);
+        let base = Settings { integrator, seed: 1, ..Settings::default() };
+        let expected = mean(&one, &base, 2 * samples, RUNS, 1);
+        let mut seed = 1;
+        let mut check = |one: &Scene, what: &str, settings: Settings| {
+            seed += 1;
+            let got = mean(one, &Settings { seed, ..settings }, samples, RUNS, 1);
+            let apart = distance(&got, &expected);
+            assert!(apart < 4.0, "{name:?}, {what}: {got:?} for {expected:?}, {apart} standard errors apart");
+            // Noise must not hide a fault: a mean is known to a tenth.
+            assert!(got.standard_error < 0.1 * expected.value, "{name:?}, {what}: {got:?}");
+        };
+        for mis in [Mis::Light, Mis::Bsdf] {
+            // Directions drawn from the hair rarely find the sun.
+            if name != Name::Env || mis == Mis::Light {
+                check(&one, &format!("{mis:?}"), Settings { mis, ..base });
+            }
+        }
+        for sequence in [Sequence::Independent, Sequence::Halton] {
+            check(&one, &format!("{sequence:?}"), Settings { sequence, ..base });
+        }
+        for sampler in ["uniform", "ou", "matched-5", "matched-25"] {
+            one.hair = hair("gaussian", sampler, preset);
+            check(&one, sampler, base);
+        }
+    }
+}
+
+#[test]
+fn every_model_renders() {
+    for id in ModelId::ALL {
+        let word = id.choice().map_or("published", |(_, word)| word);
+        let one = scene(Name::Head, hair(id.name(), word, "brown"), 500, 12);
+        let mean = film(&one, &Settings::default(), 4).picture().mean();
+        assert!(mean.iter().all(|channel| channel.is_finite() && *channel > 1e-3), "{id:?}: {mean:?}");
+    }
+}
+
+#[test]
+fn models_of_one_name_agree() {
+    for (name, words) in [("chiang", [0, 1]), ("cauchy", [0, 2])] {
+        let ids: Vec<&ModelId> = ModelId::ALL.iter().filter(|id| id.name() == name).collect();
+        let means = words.map(|word| {
+            let word: usize = word;
+            let choice = ids[word].choice().expect("several").1;
+            let one = scene(Name::AreaHead, hair(name, choice, "brown"), 800, 12);
+            let settings = Settings { integrator: Integrator::Direct, seed: 1 + word as u64, ..Settings::default() };
+            mean(&one, &settings, 16, RUNS, 1)
+        });
+        assert!(distance(&means[0], &means[1]) < 4.0, "{name}: {means:?}");
+    }
+}
+
+/// The scene mirrored in x, by rebuilding its strands; `swap` turns every strand around.
+fn rebuilt(scene: &Scene, mirror: bool, swap: bool) -> Scene {
+    let turned = |v: Vec3| if mirror { Vec3::new(-v.x, v.y, v.z) } else { v };
+    let mut builder = Strands::builder();
+    for strand in 0..u32::try_from(scene.strands.strands()).expect("few") {
+        let nodes = scene.strands.nodes_of(strand);
+        let segments = nodes.start..nodes.end - 1;
+        let mut polyline: Vec<(Vec3, f32)> = segments
+            .clone()
+            .map(|segment| (turned(scene.strands.position(segment, 0.0)), scene.strands.radius(segment, 0.0)))
+            .collect();
+        let last = segments.end - 1;
+        polyline.push((turned(scene.strands.position(last, 1.0)), scene.strands.radius(last, 1.0)));
+        if swap {
+            polyline.reverse();
+        }
+        builder.push(polyline).expect("as before");
+    }
+    let strands = builder.finish();
+    let tree = Tree::build(&strands).expect("as before");
+    let mut other = Scene { strands, tree, ..scene.clone() };
+    if mirror {
+        other.camera = scene.camera.mirrored();
+        other.rectangles = scene.rectangles.iter().map(Rectangle::mirrored).collect();
+    }
+    other
+}
+
+/// Means of the left and of the right half of a picture, over seeds.
+fn halves(scene: &Scene, seed: u64) -> [hairis_harness::stats::Estimate; 2] {
+    let settings = Settings { integrator: Integrator::Direct, ..Settings::default() };
+    let mut sums = [hairis_harness::stats::Moments::new(); 2];
+    for run in 0..RUNS {
+        let picture = film(scene, &Settings { seed: seed + run, ..settings }, 16).picture();
+        let [width, height] = picture.size;
+        for (half, sum) in sums.iter_mut().enumerate() {
+            let columns = (0..width).filter(|x| usize::from(*x >= width / 2) == half);
+            let total: f64 =
+                columns.flat_map(|x| (0..height).map(move |y| [x, y])).map(|[x, y]| picture.at(x, y)[1]).sum();
+            sum.push(total / f64::from(width * height));
+        }
+    }
+    sums.map(|sum| sum.mean_estimate())
+}
+
+/// A head lit from the side, so that its halves differ.
+fn lopsided(hair: Hair) -> Scene {
+    let mut one = scene(Name::AreaHead, hair, 1200, 16);
+    one.rectangles =
+        vec![Rectangle::light(Vec3::new(20.0, 5.0, 10.0), Vec3::new(0.0, 20.0, 0.0), 20.0 * Vec3::Z, Vec3::splat(6.0))];
+    one
+}
+
+#[test]
+fn a_mirrored_scene_gives_the_mirror_image() {
+    let one = lopsided(hair("gaussian", "matched", "brown"));
+    let [left, right] = halves(&one, 1);
+    let [other_left, other_right] = halves(&rebuilt(&one, true, false), 101);
+    assert!(distance(&left, &other_right) < 4.0 && distance(&right, &other_left) < 4.0, "{left:?} {other_right:?}");
+    assert!(distance(&left, &right) > 8.0, "the halves differ: {left:?} {right:?}");
+}
+
+/// Parallel strands with a small light where lobe R is brightest: half the sum of the inclinations is its shift.
+fn at_the_highlight(hair: Hair) -> Scene {
+    let mut one = scene(Name::AreaSoft, hair, 400, 16);
+    one.rectangles =
+        vec![Rectangle::light(Vec3::new(-13.0, 20.0, 16.0), 4.0 * Vec3::X, 4.0 * Vec3::Z, Vec3::splat(100.0))];
+    one
+}
+
+#[test]
+fn the_direction_of_strands_shows_where_lobes_are_shifted_alone() {
+    let brown = hair("gaussian", "matched", "brown");
+    let one = at_the_highlight(brown);
+    let [a, b] = [halves(&one, 1), halves(&rebuilt(&one, false, true), 201)];
+    assert!(distance(&a[1], &b[1]) > 6.0, "root and tip swapped: {a:?} {b:?}");
+    let id = ModelId::find("gaussian", Some("matched")).expect("listed");
+    let values = id.presets().find(|(name, _)| *name == "brown").expect("listed").1.with("alpha", &[0.0; 3]);
+    let level = Hair::Model(id.bsdf(&values).expect("in range"), hairis_render::material::Sampling::Own, 1.0);
+    let one = at_the_highlight(level);
+    let [a, b] = [halves(&one, 301), halves(&rebuilt(&one, false, true), 401)];
+    assert!(distance(&a[1], &b[1]) < 4.0 && distance(&a[0], &b[0]) < 4.0, "no shifts: {a:?} {b:?}");
+}

@@ -1,0 +1,133 @@
+//! Hair in a white sphere: what comes back is the albedo.
+
+use crate::support::{film, hair, inclination, mean, scene};
+use glam::Vec3;
+use hairis_render::camera::Camera;
+use hairis_render::hair::{Choice, Energy, samplers};
+use hairis_render::material::Hair;
+use hairis_render::numbers::Sequence;
+use hairis_render::scene::Met;
+use hairis_render::scenes::Name;
+use hairis_render::transport::{Integrator, Mis, Settings};
+use hairis_variants::ModelId;
+
+const MIS: [Mis; 3] = [Mis::Light, Mis::Bsdf, Mis::Both];
+
+/// Albedo of hair by the midpoint rule over the sphere of `wi`: nothing of the samplers is in it.
+fn albedo(hair: &Hair, theta_o: f32, h: f32) -> f64 {
+    use core::f32::consts::PI;
+    let wo = Vec3::new(theta_o.sin(), theta_o.cos(), 0.0);
+    let prepared = hair.prepare(hairis::Hit::new(wo, h));
+    let (steps, turns) = (720_u16, 720_u16);
+    let mut sum = 0.0;
+    for i in 0..steps {
+        let theta = ((f32::from(i) + 0.5) / f32::from(steps) - 0.5) * PI;
+        for j in (0..turns).step_by(8) {
+            let wi: [Vec3; 8] = core::array::from_fn(|lane| {
+                let phi = (f32::from(j) + lane as f32 + 0.5) / f32::from(turns) * 2.0 * PI;
+                Vec3::new(theta.sin(), theta.cos() * phi.cos(), theta.cos() * phi.sin())
+            });
+            let green = prepared.eval8(&wi.into()).value[1].to_array();
+            sum += f64::from(green.iter().sum::<f32>()) * f64::from(theta.cos().powi(2));
+        }
+    }
+    let (d_theta, d_phi) = (core::f64::consts::PI / f64::from(steps), core::f64::consts::TAU / f64::from(turns));
+    sum * d_theta * d_phi
+}
+
+/// The strand of `furnace-one`, seen at an inclination.
+fn strand(hair: Hair, theta_o: f32) -> hairis_render::scene::Scene {
+    let mut one = scene(Name::FurnaceOne, hair, 1, 8);
+    let eye = 100.0 * Vec3::new(theta_o.sin(), 0.0, theta_o.cos());
+    one.camera = Camera::new(eye, Vec3::ZERO, 3.0, [8, 8]);
+    one
+}
+
+#[test]
+fn one_strand_returns_its_albedo_with_every_sampler_and_weighting() {
+    for (theta_o, sampler) in
+        [(0.0, "uniform"), (0.5, "published"), (-1.0, "matched-5"), (0.5, "matched"), (0.2, "matched-25")]
+    {
+        for mis in MIS {
+            let one = strand(hair("gaussian", sampler, "white"), theta_o);
+            let settings = Settings { mis, sequence: Sequence::Independent, ..Settings::default() };
+            let mut expected = 0.0;
+            for (x, y) in [(0, 0), (7, 0), (3, 4), (0, 7), (7, 7)] {
+                expected += 0.2 * albedo(&one.hair, inclination(&one, x, y), 0.0);
+            }
+            let got = mean(&one, &settings, 64, 16, 1);
+            let z = got.z_score(expected);
+            // The five pixels stand for all to 1e-3.
+            assert!(
+                z.abs() < 4.0 || (got.value / expected - 1.0).abs() < 1e-3,
+                "{sampler} {mis:?}: {got:?} for {expected}"
+            );
+            assert!(got.standard_error < 0.02 * expected, "{sampler} {mis:?}: {got:?}");
+        }
+    }
+}
+
+#[test]
+fn every_model_returns_its_albedo_near_field_ones_by_offset() {
+    for id in ModelId::defaults_of_names() {
+        let mut one = strand(hair(id.name(), "published", "default"), 0.4);
+        // Off the centre, where the offset is large: 7 of a radius of 10.
+        one.camera = Camera::new(Vec3::new(40.0, 7.0, 92.0), Vec3::new(0.0, 7.0, 0.0), 0.5, [8, 8]);
+        let Met::Hair(hit) = one.closest(&one.camera.ray(4.0, 4.0)) else { panic!("no hair in the middle") };
+        assert!((hit.h.abs() - 0.7).abs() < 0.02, "h {}", hit.h);
+        let expected = albedo(&one.hair, inclination(&one, 4, 4), hit.h);
+        let got = mean(&one, &Settings::default(), 64, 16, 1);
+        let close = (got.value / expected - 1.0).abs() < 2e-3;
+        assert!(close || got.z_score(expected).abs() < 4.0, "{}: {got:?} for {expected}", id.name());
+        if id.is_near_field() {
+            let other = albedo(&one.hair, inclination(&one, 4, 4), -hit.h);
+            let middle = albedo(&one.hair, inclination(&one, 4, 4), 0.0);
+            assert!((middle / expected - 1.0).abs() > 5e-3, "the offset shows: {middle} {other} {expected}");
+        }
+    }
+}
+
+#[test]
+fn hair_that_absorbs_nothing_is_invisible() {
+    let iso = scene(Name::FurnaceIso, Hair::Isotropic, 1500, 16);
+    let endless = Settings { depth: 1000, roulette: false, mis: Mis::Bsdf, ..Settings::default() };
+    let hits = (0..16).filter(|k| matches!(iso.closest(&iso.camera.ray(*k as f32, 8.0)), Met::Hair(_))).count();
+    assert!(hits > 8, "{hits} of 16 rays meet hair");
+    for (place, pixel) in film(&iso, &endless, 8).picture().pixels.iter().enumerate() {
+        assert!((pixel[1] - 1.0).abs() < 1e-4, "pixel {place}: {pixel:?}");
+    }
+    for mis in MIS {
+        for roulette in [false, true] {
+            let depth = if roulette { 1000 } else { 300 };
+            let settings = Settings { depth, roulette, mis, ..Settings::default() };
+            let got = mean(&iso, &settings, 4, 16, 1);
+            let exact = (got.value - 1.0).abs() < 1e-4;
+            assert!(exact || got.z_score(1.0).abs() < 4.0, "{mis:?}, roulette {roulette}: {got:?}");
+            assert!(got.standard_error < 0.02, "{mis:?}: {got:?}");
+        }
+    }
+}
+
+#[test]
+fn presets_converge_and_scaled_hair_never_shines() {
+    for preset in ["blond", "brown", "red", "black", "white"] {
+        let choice = Choice::find("gaussian", "matched", preset).expect("listed");
+        let scaled = scene(Name::FurnaceIso, choice.hair(Energy::Scaled).expect("in range"), 600, 8);
+        let got = mean(&scaled, &Settings::default(), 16, 8, 0);
+        assert!(got.value < 1.0 + 4.0 * got.standard_error, "{preset}: {got:?}");
+        let [mean_albedo, _] = choice.hair(Energy::Raw).expect("in range").mean_and_worst_albedo();
+        assert!(mean_albedo < hairis_render::hair::MOST_MEAN_ALBEDO || preset == "white", "{preset}: {mean_albedo}");
+    }
+    // Paths of the lightest hair that renders as it is: the same numbers, so that the difference is what long paths add.
+    let raw = scene(Name::FurnaceIso, hair("gaussian", "matched", "blond"), 600, 12);
+    let settings = |depth| Settings { depth, ..Settings::default() };
+    let [short, long] = [64, 128].map(|depth| film(&raw, &settings(depth), 64).picture().mean()[0]);
+    assert!((long - short).abs() < 1e-3, "depth 64 {short}, 128 {long}");
+}
+
+#[test]
+fn all_samplers_are_tested() {
+    let tested = ["uniform", "published", "ou", "matched-5", "matched", "matched-25"];
+    assert_eq!(samplers("gaussian"), tested);
+    assert_ne!(Integrator::Direct, Integrator::Path);
+}
