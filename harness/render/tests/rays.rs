@@ -78,7 +78,7 @@ fn rays_per_second() {
                 let run = |_| {
                     let start = Instant::now();
                     let hits = rays.iter().filter(|ray| search(ray)).count();
-                    assert!(hits > rays.len() / 2, "{hits} hits");
+                    assert!(hits > rays.len() / 5, "{hits} hits");
                     rays.len() as f64 * 1e-6 / start.elapsed().as_secs_f64()
                 };
                 (0..5).map(run).fold(0.0, f64::max)

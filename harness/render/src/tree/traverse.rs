@@ -138,9 +138,10 @@ where
                 let lane = passed.trailing_zeros() as usize;
                 passed &= passed - 1;
                 let near = near.as_array()[lane];
-                // Inserted so that the nearest is on top.
+                // Inserted so that the nearest is on top: for rays from hits that only ask whether there is anything, too, a
+                // fifth more a second.
                 let mut place = waiting;
-                while !ANY && place > first && stack[place - 1].1 < near {
+                while place > first && stack[place - 1].1 < near {
                     stack[place] = stack[place - 1];
                     place -= 1;
                 }
