@@ -4,6 +4,7 @@ use super::block::Block;
 use super::node::{Child, Node};
 use super::split::{Extent, Primitive, middle, split};
 use crate::geometry::{Bounds, Strands};
+use core::ops::Range;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -16,22 +17,24 @@ const PARALLEL: usize = 4096;
 
 /// A part of the tree before it has its place.
 enum Draft {
-    Block(Vec<(u32, u32)>),
+    /// The segments of a block, as a range of all in their final order.
+    Block(Range<usize>),
     Node(Vec<(Bounds, Self)>),
 }
 
 /// The nodes, the root first, and the blocks. Both are in the order of a search that turns to the first child first.
 pub(super) fn build(strands: &Strands) -> (Vec<Node>, Vec<Block>) {
     let mut primitives = primitives(strands);
-    let root = match draft(&mut primitives, 0) {
-        (_, Draft::Node(children)) => children,
-        (_, Draft::Block(numbers)) if numbers.is_empty() => Vec::new(),
-        block => vec![block],
+    let extent = Extent::of(&primitives);
+    let root = match draft(&mut primitives, extent, 0, 0) {
+        Draft::Node(children) => children,
+        Draft::Block(range) if range.is_empty() => Vec::new(),
+        block => vec![(extent.bounds, block)],
     };
-    drop(primitives);
-    let mut trees = (Vec::new(), Vec::new());
-    place(strands, root, &mut trees);
-    trees
+    let (mut nodes, mut ranges) = (Vec::new(), Vec::new());
+    place(root, &mut nodes, &mut ranges);
+    let block = |range: Range<usize>| Block::new(strands, primitives[range].iter().map(|p| (p.strand, p.number)));
+    (nodes, ranges.into_par_iter().map(block).collect())
 }
 
 /// The boxes of all segments. A ray that passes an end within its radius meets it, so that they are those of spheres about
@@ -48,25 +51,30 @@ fn primitives(strands: &Strands) -> Vec<Primitive> {
     strands.numbers().map(|(strand, number)| Primitive { bounds: box_of(number), strand, number }).collect()
 }
 
-/// The tree over `primitives`, whose order it changes.
-fn draft(primitives: &mut [Primitive], depth: usize) -> (Bounds, Draft) {
-    let extent = Extent::of(primitives);
+/// The tree over `primitives`, whose order it changes; `first` is the place of the first of them among all.
+fn draft(primitives: &mut [Primitive], extent: Extent, first: usize, depth: usize) -> Draft {
     if primitives.len() <= 8 {
-        let numbers = primitives.iter().map(|primitive| (primitive.strand, primitive.number)).collect();
-        return (extent.bounds, Draft::Block(numbers));
+        return Draft::Block(first..first + primitives.len());
     }
-    let parts = divide(primitives, extent, depth < BY_COST);
-    let below = |part: &mut [Primitive]| draft(part, depth + 1);
-    let children = if parts.iter().any(|part| part.len() > PARALLEL) {
-        parts.into_par_iter().map(below).collect()
-    } else {
-        parts.into_iter().map(below).collect()
+    let large = primitives.len() > PARALLEL;
+    let mut next = first;
+    let parts = divide(primitives, extent, depth < BY_COST).into_iter().map(|(part, extent)| {
+        let first = next;
+        next += part.len();
+        (part, extent, first)
+    });
+    let below = |(part, extent, first): (&mut [Primitive], Extent, usize)| {
+        (extent.bounds, draft(part, extent, first, depth + 1))
     };
-    (extent.bounds, Draft::Node(children))
+    Draft::Node(if large {
+        parts.collect::<Vec<_>>().into_par_iter().map(below).collect()
+    } else {
+        parts.map(below).collect()
+    })
 }
 
 /// At most eight parts, in order. The part with the largest surface is divided first, or the one with the most segments.
-fn divide(primitives: &mut [Primitive], extent: Extent, by_cost: bool) -> Vec<&mut [Primitive]> {
+fn divide(primitives: &mut [Primitive], extent: Extent, by_cost: bool) -> Vec<(&mut [Primitive], Extent)> {
     let mut parts = vec![(primitives, extent)];
     while parts.len() < 8 {
         let weight = |(part, extent): &(&mut [Primitive], Extent)| {
@@ -82,24 +90,24 @@ fn divide(primitives: &mut [Primitive], extent: Extent, by_cost: bool) -> Vec<&m
         parts.insert(index, (upper, upper_extent));
         parts.insert(index, (lower, lower_extent));
     }
-    parts.into_iter().map(|(part, _)| part).collect()
+    parts
 }
 
-/// Writes a node and all below it, and gives its index.
-fn place(strands: &Strands, children: Vec<(Bounds, Draft)>, trees: &mut (Vec<Node>, Vec<Block>)) -> usize {
-    let index = trees.0.len();
-    trees.0.push(Node::new(&[]));
+/// Writes a node and all below it, and gives its index. Blocks are listed by their segments.
+fn place(children: Vec<(Bounds, Draft)>, nodes: &mut Vec<Node>, blocks: &mut Vec<Range<usize>>) -> usize {
+    let index = nodes.len();
+    nodes.push(Node::new(&[]));
     let mut links = Vec::with_capacity(8);
     for (bounds, child) in children {
         let link = match child {
-            Draft::Node(children) => Child::node(place(strands, children, trees)),
-            Draft::Block(numbers) => {
-                trees.1.push(Block::new(strands, numbers));
-                Child::block(trees.1.len() - 1)
+            Draft::Node(children) => Child::node(place(children, nodes, blocks)),
+            Draft::Block(range) => {
+                blocks.push(range);
+                Child::block(blocks.len() - 1)
             }
         };
         links.push((bounds, link));
     }
-    trees.0[index] = Node::new(&links);
+    nodes[index] = Node::new(&links);
     index
 }
