@@ -24,6 +24,7 @@ pub struct Args {
 
 /// The subcommands, each with its flags.
 #[derive(Clone, Debug, Subcommand)]
+#[expect(clippy::large_enum_variant, reason = "there is one per process")]
 pub enum Command {
     /// Render a scene: an EXR file and a PNG preview; a run that was stopped goes on
     Render(Render),

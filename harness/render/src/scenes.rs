@@ -151,7 +151,7 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
     }
     let camera = match name {
         _ if imported => Camera::new(at(0.0, 9.0, 52.0), centre, 42.0, size),
-        Name::Area | Name::AreaSoft => Camera::new(at(6.0, 14.0, 26.0), centre, 36.0, size),
+        Name::Area | Name::AreaSoft => Camera::new(at(6.0, 14.0, 26.0), at(-0.5, -1.5, 0.0), 34.0, size),
         Name::BoxSingle | Name::Box => Camera::new(at(0.0, 3.0, 85.0), at(0.0, -1.0, 0.0), 42.0, size),
         Name::FurnaceOne => Camera::new(at(0.0, 0.0, 100.0), centre, 8.0, size),
         Name::FurnaceIso => Camera::new(at(6.0, 14.0, 26.0), centre, 30.0, size),

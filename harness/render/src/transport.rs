@@ -11,6 +11,7 @@ use crate::film::{Crop, Film, Tile};
 use crate::numbers::Sequence;
 use crate::scene::Scene;
 use clap::ValueEnum;
+use core::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 /// How light is estimated.
@@ -112,7 +113,7 @@ const PASS: u32 = 4;
 /// of [`Integrator::Gather`] is made at once.
 pub fn render(scene: &Scene, settings: &Settings, film: &mut Film, samples: u32, progress: &(dyn Fn(f64) + Sync)) {
     let total = film.tiles.len().max(1);
-    let done = std::sync::atomic::AtomicUsize::new(0);
+    let done = AtomicUsize::new(0);
     film.tiles.par_iter_mut().for_each(|tile| {
         let start = seconds_of_thread();
         match settings.integrator {
@@ -120,7 +121,7 @@ pub fn render(scene: &Scene, settings: &Settings, film: &mut Film, samples: u32,
             Integrator::Direct | Integrator::Path => paths(scene, settings, tile, samples),
         }
         tile.seconds += seconds_of_thread() - start;
-        let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let done = 1 + done.fetch_add(1, Ordering::Relaxed);
         progress(done as f64 / total as f64);
     });
 }

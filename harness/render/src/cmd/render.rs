@@ -11,6 +11,7 @@ use crate::picture;
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
 use crate::transport::{self, Integrator, Settings};
+use core::time::Duration;
 use hairis::Level;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
@@ -22,7 +23,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Time between two previews.
 const PREVIEW: Duration = Duration::from_secs(10);

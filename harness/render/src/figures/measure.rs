@@ -33,7 +33,7 @@ pub(super) struct Plan {
 impl Plan {
     /// A first look.
     pub(super) const QUICK: Self =
-        Self { side: 80, strands: 8_000, samples: [&[4, 16, 64], &[4, 16]], reference: [1024, 256], runs: 4 };
+        Self { side: 96, strands: 8_000, samples: [&[4, 16, 64], &[4, 16]], reference: [1024, 320], runs: 8 };
     /// What is published.
     pub(super) const FULL: Self = Self {
         side: 192,

@@ -2,7 +2,7 @@
 
 use super::measure::{BySampler, Measured, Plan};
 use super::panel::{Column, panel};
-use super::verdict::{gain, sentence};
+use super::verdict::{gain, sentence, trimmed_gain};
 use crate::args::Figures;
 use crate::picture::exposure;
 use crate::protocol::{Runs, slope};
@@ -28,7 +28,7 @@ fn page(all: &[Measured], plan: &Plan, flags: &Figures) -> std::io::Result<Repor
     let machine = Machine::current();
     let mut report = Report::new("What samplers are worth on pictures of hair").subtitle(machine.summary());
     for measured in all {
-        report = report.finding(format!("`{}`: {}", measured.title(), sentence(measured)));
+        report = report.finding(format!("{}: {}", measured.title(), sentence(measured)));
     }
     report = report.section(Section::new("Summary").table(summary(all)));
     for measured in all {
@@ -67,7 +67,7 @@ fn summary(all: &[Measured]) -> Table {
         let mut row = vec![measured.title(), kind(measured).to_owned(), best.runs[shown].samples.to_string()];
         for sampler in measured.samplers.iter().rev().skip(1).rev() {
             row.push(ratio(gain(measured, sampler)));
-            row.push(ratio(sampler.runs[shown].ratio(&best.runs[shown], |errors| errors.trimmed, true)));
+            row.push(ratio(trimmed_gain(measured, sampler)));
         }
         table.push(row);
     }
@@ -96,11 +96,11 @@ fn section(measured: &Measured) -> std::io::Result<Section> {
     let equal_samples = panel_of(measured, |sampler| &sampler.runs[shown])?;
     let equal_time = panel_of(measured, |sampler| &sampler.equal_time)?;
     let samples = measured.samplers[0].runs[shown].samples;
-    let caption = "Below: the part that varies most, 4 times as large; and the relative error of each pixel, blue too dark, red too \
+    let caption = "Below: the brightest part, 4 times as large; and the relative error of each pixel, blue too dark, red too \
                    bright, on one scale on this page (full colour at 100 %).";
     Ok(Section::new(title.clone())
         .paragraph(format!("Light: {}; hair: `{}`.", kind(measured), measured.preset))
-        .paragraph(format!("In `{title}` {}", sentence(measured)))
+        .paragraph(sentence(measured))
         .figure(Figure::new(equal_samples, format!("Equal samples: {samples} per pixel. {caption}")))
         .figure(Figure::new(equal_time, format!("Equal time. {caption}")))
         .figure(Figure::new(convergence(measured), "relMSE against samples; bars are one standard error."))
@@ -153,6 +153,7 @@ fn table(measured: &Measured) -> Table {
         .number("RMSE")
         .number("time (s)")
         .number("relMSE × time, relative to matched")
+        .number("MSE, relative to matched")
         .number("slope");
     for sampler in &measured.samplers {
         for (place, runs) in sampler.runs.iter().enumerate() {
@@ -170,6 +171,7 @@ fn table(measured: &Measured) -> Table {
                 number::plain(runs.mean(|errors| errors.square).value.max(0.0).sqrt(), 3),
                 number::plain(runs.seconds, 3),
                 ratio(runs.ratio(best, |errors| errors.relative, true)),
+                ratio(runs.ratio(best, |errors| errors.square, false)),
                 if place == 0 { String::new() } else { number::plain(slope(&points), 3) },
             ]);
         }

@@ -1,6 +1,6 @@
 //! Pictures side by side as one drawing that needs no other file.
 
-use crate::film::Picture;
+use crate::film::{Crop, Picture};
 use crate::picture::{png, preview};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -24,13 +24,14 @@ pub(super) struct Column<'a> {
     pub(super) errors: Option<Vec<f64>>,
 }
 
-/// Columns of picture, crop and error map, as SVG. The crop is where the first picture varies most.
+/// Columns of picture, crop and error map, as SVG. The crop is the brightest part of the first picture.
 pub(super) fn panel(columns: &[Column], exposure: f64) -> io::Result<String> {
     let Some(first) = columns.first() else { return Ok(String::new()) };
     let [width, height] = first.picture.size;
-    let place = busiest(first.picture);
+    let place = brightest(first.picture);
     let shown = WIDTH * height / width.max(1);
-    let [rows, total] = [3 * (shown + GAP) + 3 * LABEL, columns.len() as u32 * (WIDTH + GAP)];
+    let total: u32 = columns.iter().map(|_| WIDTH + GAP).sum();
+    let rows = 3 * (shown + GAP) + 3 * LABEL;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{total}\" height=\"{rows}\" viewBox=\"0 0 {total} {rows}\" \
          role=\"img\" font-family=\"sans-serif\" font-size=\"12\">\n<title>Pictures side by side</title>\n\
@@ -65,32 +66,17 @@ fn enlarge(image: &RgbImage) -> RgbImage {
     resize(image, image.width() * by, image.height() * by, FilterType::Nearest)
 }
 
-/// Upper left corner of the part of `1 / ZOOM` the size whose luminance varies most.
-fn busiest(picture: &Picture) -> [u32; 2] {
+/// Upper left corner of the brightest part of `1 / ZOOM` the size.
+fn brightest(picture: &Picture) -> [u32; 2] {
     let [width, height] = picture.size.map(|side| (side / ZOOM).max(1));
     let luminances = picture.luminances();
-    let deviation = |x0: u32, y0: u32| {
-        let (mut sum, mut squares) = (0.0, 0.0);
-        for y in y0..y0 + height {
-            for x in x0..x0 + width {
-                let l = luminances[(y * picture.size[0] + x) as usize];
-                (sum, squares) = (sum + l, squares + l * l);
-            }
-        }
-        let n = f64::from(width * height);
-        squares / n - (sum / n) * (sum / n)
+    let sum = |[x0, y0]: [u32; 2]| -> f64 {
+        let part = Crop { x: x0, y: y0, width, height };
+        part.pixels().map(|[x, y]| luminances[(y * picture.size[0] + x) as usize]).sum()
     };
-    let starts = |side: u32, part: u32| (0..=side - part).step_by((part / 2).max(1) as usize);
-    let mut best = ([0, 0], f64::NEG_INFINITY);
-    for y in starts(picture.size[1], height) {
-        for x in starts(picture.size[0], width) {
-            let one = deviation(x, y);
-            if one > best.1 {
-                best = ([x, y], one);
-            }
-        }
-    }
-    best.0
+    let starts = |side: u32, part: u32| (0..=side.saturating_sub(part)).step_by((part / 2).max(1) as usize);
+    let places = starts(picture.size[1], height).flat_map(|y| starts(picture.size[0], width).map(move |x| [x, y]));
+    places.max_by(|a, b| sum(*a).total_cmp(&sum(*b))).unwrap_or_default()
 }
 
 /// Signed errors as colours: blue for too dark, red for too bright, white for none; full at 1.
@@ -116,7 +102,7 @@ mod tests {
         let svg = panel(&[column], 1.0).expect("a drawing");
         assert!(svg.contains("&lt;b&gt;") && svg.matches("data:image/png;base64,").count() == 2);
         assert!(!svg.replace("http://www.w3.org/2000/svg", "").contains("http"));
-        let [x, y] = busiest(&picture);
+        let [x, y] = brightest(&picture);
         assert!((x..x + 4).contains(&13) && (y..y + 4).contains(&9), "{x} {y}");
     }
 

@@ -104,7 +104,7 @@ impl Point {
         let sample = self.prepared.sample8(xi);
         let (directions, cos) = (self.frame.to_world(&sample.wi), crate::material::cosine(&sample.wi).to_array());
         let mut sum = Vec3::ZERO;
-        for lane in 0..count {
+        for (lane, cos) in cos.into_iter().enumerate().take(count) {
             let pdf = sample.pdf.as_array()[lane];
             if pdf <= 0.0 {
                 continue;
@@ -114,7 +114,7 @@ impl Point {
             let weight = settings.mis.of_bsdf(pdf, seen.pdf);
             let of_bsdf = Vec3::from_array([0, 1, 2].map(|c| sample.weight[c].as_array()[lane]));
             let radiance = seen.radiance * of_bsdf * weight;
-            let ray = leave(scene, &self.hit, self.origin, direction, cos[lane]);
+            let ray = leave(scene, &self.hit, self.origin, direction, cos);
             if radiance.max_element() > 0.0 && !scene.blocked(&Ray { t_max: distance, ..ray }) {
                 sum += radiance;
             }
