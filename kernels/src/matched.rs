@@ -42,8 +42,9 @@ use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3
 ///   (`textbook::MatchedTextbook::weight_bound`); the mean of a weight's RGB is `W / h` times that sum. By channel in place of
 ///   the sum: the largest energy over its lobe's probability.
 /// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it. What a sample
-///   reports holds for the direction it returns to 3e-5 and 1e-5. For widths of a degree and more, further than 1e-3 rad from
-///   the fibre's axis; errors grow as widths shrink. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor
+///   reports holds for the direction it returns to 6e-5 and 1e-5, to the ends of the uniform numbers, where S is above 1e-20
+///   (test `tails`). For widths of a degree and more, further than 1e-3 rad from the fibre's axis; errors grow as widths
+///   shrink. A Gaussian lobe below `2^-115` of its peak has neither value nor density; nor
 ///   is a lobe sampled whose energy is below 1e-36 of the largest.
 /// - Domain: `BANDS` is 5, 9 or 25. By channel, a channel below 1e-18 of the brightest is ignored.
 /// - Source: ours; it replaces section 3.2 of Ou et al. 2012.

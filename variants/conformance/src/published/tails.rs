@@ -1,0 +1,116 @@
+//! Samples far from the centres of their lobes, at the ends of the uniform numbers: what they report is of the direction they
+//! return.
+
+use super::Published;
+use super::support::{DEG, Worst, angles, direction, double, lanes_of, narrow, oracle, relative};
+use core::f64::consts::PI;
+use hairis::{Bsdf, HairDesc, HairParams, Level, Lobe};
+
+const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// Numbers next to the ends of their range, and some between.
+const NUMBERS: [f32; 15] = [
+    0.0,
+    f32::EPSILON / 2.0,
+    f32::EPSILON,
+    3e-7,
+    1e-6,
+    1e-5,
+    1e-3,
+    0.137,
+    0.295,
+    0.5,
+    0.81,
+    0.999,
+    0.999_99,
+    0.999_999_5,
+    LAST,
+];
+
+/// S, density and weight of samples at these numbers, further than 1e-3 rad from the axis and from the seam; the density of TT and
+/// the glints also next to the seam.
+fn errors<S: Published>(descs: &[HairDesc], theta_o: impl Iterator<Item = f64> + Clone) -> ([Worst; 4], usize) {
+    let mut worst: [Worst; 4] = Default::default();
+    let mut seen = 0;
+    for params in descs.iter().map(|desc| HairParams::new(desc).unwrap()) {
+        for (turn, theta_o) in theta_o.clone().enumerate() {
+            let wo = direction(theta_o, 0.7 * turn as f64 - 3.0);
+            let gather = Bsdf::new(&S::forms()[0].0, &params).prepare(wo);
+            let textbook = oracle::<S>(&params, 1.0, wo);
+            let ends = NUMBERS.iter().flat_map(|a| NUMBERS.map(|b| [*a, b]));
+            for [theta, phi] in ends {
+                let xi = core::array::from_fn(|lane| [(lane as f32 + 0.5) / 8.0, theta, phi]);
+                let wide = Level::available().flat_map(|level| {
+                    let eight = gather.sample8_at(level, &lanes_of(&xi));
+                    (0..8).map(move |lane| eight.lane(lane))
+                });
+                for sample in wide.chain(xi.iter().map(|xi| gather.sample(*xi))).flatten() {
+                    let d = double(sample.wi);
+                    let [theta_i, angle] = angles(wo, sample.wi);
+                    if theta_i.cos() < 1e-3 {
+                        continue;
+                    }
+                    let at = || format!("{sample:?} wo {wo:?} xi {theta} {phi} {params:?}");
+                    let (value, pdf) = (textbook.eval(d), textbook.pdf(d));
+                    // A Gaussian is cut where it is 1e-35.
+                    if value[0] < 1e-20 {
+                        continue;
+                    }
+                    seen += 1;
+                    let error = relative(sample.pdf, pdf, S::PDF_FLOOR);
+                    if PI - angle < 1e-3 {
+                        // R and TRT-g vanish there, and the rounding of the direction is all that is left of them.
+                        if sample.lobe == Lobe::TT || sample.lobe == Lobe::GLINT {
+                            worst[3].see(error, at);
+                        }
+                        continue;
+                    }
+                    worst[1].see(error, at);
+                    for ((got, weight), want) in sample.value.into_iter().zip(sample.weight).zip(value) {
+                        worst[0].see(relative(got, want, S::PDF_FLOOR), at);
+                        worst[2].see(relative(weight, want * theta_i.cos() / pdf, 1e-20), at);
+                    }
+                }
+            }
+        }
+    }
+    (worst, seen)
+}
+
+/// Every width a degree or a little more.
+fn degrees() -> Vec<HairDesc> {
+    let of = |width: f32| {
+        let (beta_r, beta_tt, beta_trt) = (width, width, width);
+        HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: width, gamma_g: width, ..HairDesc::default() }
+    };
+    let mut all = Vec::new();
+    for base in [of(narrow(DEG)), of(0.019_24), of(0.05), HairDesc { beta_r: 0.019_24, ..HairDesc::default() }] {
+        all.extend([base, HairDesc { alpha_r: 0.2, alpha_tt: -0.15, alpha_trt: -0.35, phi_g: 0.7, ..base }]);
+    }
+    all
+}
+
+pub fn samples_in_the_tails_report_their_own_direction<S: Published>() {
+    let (worst, seen) = errors::<S>(&degrees(), (0..40).map(|i| 0.077 * f64::from(i) - 1.5));
+    assert!(seen > 50_000, "hardly any sample: {seen}");
+    for ((worst, bound), what) in
+        worst.iter().zip(S::ROWS.tail_sample).zip(["S", "pdf", "weight", "pdf next to the seam"])
+    {
+        worst.check(&format!("{what} of a sample in the tails"), bound);
+    }
+}
+
+/// No lobe has its centre on the sphere: all samples are of tails, up to nine widths out.
+pub fn samples_of_lobes_off_the_sphere_report_their_own_direction<S: Published>() {
+    let off: Vec<HairDesc> = degrees()
+        .into_iter()
+        .flat_map(|base| [0.1, 0.15, 0.2].map(|by| HairDesc { alpha_r: by, alpha_tt: by, alpha_trt: by, ..base }))
+        .collect();
+    let (worst, seen) = errors::<S>(&off, (0..32).map(|i| -1.56 + 0.006 * f64::from(i)));
+    assert!(seen > 10_000, "hardly any sample: {seen}");
+    for ((worst, bound), what) in
+        worst.iter().zip(S::ROWS.off_sphere_sample).zip(["S", "pdf", "weight", "pdf next to the seam"])
+    {
+        worst.check(&format!("{what} of a sample of a lobe off the sphere"), bound);
+    }
+}
