@@ -37,6 +37,9 @@ pub fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
 const TO_EXPONENT: f32 = -0.5 * LOG2_E;
 /// Least exponent of [`gaussian`].
 const LEAST_EXPONENT: f32 = 115.0;
+/// The largest squared distance that [`gaussian`] tells from others: a little less than that of the least exponent, so that no
+/// direction of rounding leads below it.
+const FURTHEST: f32 = 0.999_98 * LEAST_EXPONENT / -TO_EXPONENT;
 /// `exp(-s/2)` for `s >= 0`, a Gaussian of the squared distance from its centre; exactly 0 from about `2^-115` down.
 ///
 /// That is far below any other term of a sum, and so far above the denormals that the products made of it seldom are
@@ -48,7 +51,7 @@ pub fn gaussian<L: Lanes>(s: L) -> L {
     let magic = L::splat(8_388_608.0 + LEAST_EXPONENT);
     let to_exponent = L::splat(TO_EXPONENT);
     // The second operand of `min` wins over NaN.
-    let s = s.min(L::splat(LEAST_EXPONENT / -TO_EXPONENT));
+    let s = s.min(L::splat(FURTHEST));
     let n = s.mul_add(to_exponent, magic);
     let f = s.mul_add(to_exponent, magic - n);
     const SCALE: f32 = 4096.0;

@@ -6,6 +6,7 @@ mod family;
 mod frames;
 mod math;
 mod params;
+mod rounding;
 mod rows;
 mod textbook;
 mod tolerance;
