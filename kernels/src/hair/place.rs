@@ -51,6 +51,9 @@ impl<L: Lanes> Place<L> {
         let cross = L::difference_of_products(wi.z, v_o, wi.y, w_o).abs();
         let reach = cos_theta_i * cos_o;
         let far = reach + dot.abs();
+        // Off the axis, seen from a wo that is a direction: else the length of its part across the fibre is NaN. Longer than
+        // 2 is no direction; the comparison is false for the infinities of a sum that overflowed.
+        let sound = L::and((cos_o * c(GRAZING)).lt(reach), wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)));
 
         // A division of its own: next to opposite poles theta_i and theta_o cancel, and each digit counts.
         let half_theta_i = half_atan2(wi.x, cos_theta_i, one);
@@ -60,9 +63,6 @@ impl<L: Lanes> Place<L> {
         let inv_reach = reciprocal * far;
         let cos_half = (far * inv_reach * c(0.5)).sqrt();
         let inv_cos = inv_reach * cos_o;
-        // Off the axis, seen from a wo that is a direction: else the length of its part across the fibre is NaN. Longer than
-        // 2 is no direction; the comparison is false for the infinities of a sum that overflowed.
-        let sound = L::and(inv_cos.lt(c(1.0 / GRAZING)), wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)));
         let front = c(0.0).lt(dot);
         let sin_cos = [tau * cos_half, cos_half];
         let half = atan_unit(tau);

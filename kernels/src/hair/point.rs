@@ -92,11 +92,11 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
     // The digits of a wo of about unit length are kept as they are; any other is scaled by its largest component, so
     // that no finite wo overflows or vanishes. Zero counts as v. Of any other, the component that is NaN, or infinite and
     // then scaled by 0, is NaN after that.
-    let least = c(1e-30);
+    let least = c(f32::MIN_POSITIVE);
     let largest = wo.x.abs().max(wo.z.abs().max(wo.y.abs()));
     let usual = L::and(c(0.25).lt(largest), largest.lt(c(4.0)));
     let none = largest.lt(least);
-    let by = L::select(usual, one, L::select(none, zero, one / largest.max(least)));
+    let by = L::select(usual, one, one / largest.max(least));
     let x = wo.x * by;
     let y = L::select(none, one, wo.y * by);
     let z = wo.z * by;
@@ -127,7 +127,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
             L::select(near_axis, cos_phi_o, y),
             L::select(near_axis, sin_phi_o, z),
             // NaN if any component is: no direction is sound then, see `Place::of`, and every sample is next to the axis.
-            L::select(near_axis, one, plane) + (len - len),
+            len.mul_add(zero, L::select(near_axis, one, plane)),
         ]),
         inv_plane_o: L::select(near_axis, one, inv_plane).store(),
         shift: store4([r, tt, trt, trt]),

@@ -16,6 +16,9 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let (zero, one) = (c(0.0), c(1.0));
     let (point, hair, sampler) = (&gather.point, &gather.point.lobes, &gather.sampler);
     let choice = L::search(xi[0], lanes3(&sampler.bounds), 3);
+    // NaN if any number is, or infinite: a sample without an inclination is discarded.
+    let along = (xi[0] + xi[1] + xi[2]).mul_add(zero, xi[1]);
+    let along = zero.max(one.min(along));
 
     // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Interleaved with the azimuth.
     let turn = Turn::of(xi[2]);
@@ -24,10 +27,8 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
         cos_mid: Pair(C::look_up_three(&gather.longitude_cos, choice), C::look_up_half(&sampler.azimuth_cos, choice)),
         span: Pair(C::look_up_three(&gather.longitude_span, choice), C::look_up_half(&sampler.azimuth_span, choice)),
     };
-    let Pair(x, y) = both.invert(Pair(zero.max(xi[1].min(one)), one - turn.across));
-    // NaN if any number is, or infinite: a sample without an inclination is discarded.
-    let shift = (xi[0] + xi[1] + xi[2]).mul_add(zero, C::look_up_three(&point.shift, choice));
-    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), shift);
+    let Pair(x, y) = both.invert(Pair(along, one - turn.across));
+    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&point.shift, choice));
     let center = L::keep(L::is_index(choice, 3), hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
     let (wi, place) = turned(point, choice, half_theta_i, turn, psi);
