@@ -2,9 +2,10 @@
 
 use crate::support::{distance, film, hair, mean, scene};
 use glam::Vec3;
+use hairis_render::camera::Camera;
 use hairis_render::geometry::Strands;
 use hairis_render::lights::Rectangle;
-use hairis_render::material::Hair;
+use hairis_render::material::{Hair, Sampling};
 use hairis_render::numbers::Sequence;
 use hairis_render::scene::Scene;
 use hairis_render::scenes::Name;
@@ -139,24 +140,29 @@ fn a_mirrored_scene_gives_the_mirror_image() {
     assert!(distance(&left, &right) > 8.0, "the halves differ: {left:?} {right:?}");
 }
 
-/// Parallel strands with a small light where lobe R is brightest: half the sum of the inclinations is its shift.
-fn at_the_highlight(hair: Hair) -> Scene {
+/// Parallel strands seen across, with a small light at an inclination of -0.2 rad: half the sum of the inclinations is -0.1,
+/// and all lobes are shifted by `alpha`.
+fn at_the_highlight(alpha: f32) -> Scene {
+    let id = ModelId::find("gaussian", Some("matched")).expect("listed");
+    let values = id.presets().find(|(name, _)| *name == "brown").expect("listed").1.with("alpha", &[alpha; 3]);
+    let hair = Hair::Model(id.bsdf(&values).expect("in range"), Sampling::Own, 1.0);
     let mut one = scene(Name::AreaSoft, hair, 400, 16);
-    one.rectangles =
-        vec![Rectangle::light(Vec3::new(-13.0, 20.0, 16.0), 4.0 * Vec3::X, 4.0 * Vec3::Z, Vec3::splat(100.0))];
+    one.camera = Camera::new(Vec3::new(0.0, 60.0, 80.0), Vec3::NEG_Y, 3.0, [16, 16]);
+    let (sin, cos) = 0.2_f32.sin_cos();
+    let corner = 60.0 * Vec3::new(-sin, 0.8 * cos, 0.6 * cos) - Vec3::new(2.0, 0.0, 2.0);
+    one.rectangles = vec![Rectangle::light(corner, 4.0 * Vec3::X, 4.0 * Vec3::Z, Vec3::splat(100.0))];
     one
 }
 
 #[test]
 fn the_direction_of_strands_shows_where_lobes_are_shifted_alone() {
-    let brown = hair("gaussian", "matched", "brown");
-    let one = at_the_highlight(brown);
+    let one = at_the_highlight(-0.1);
     let [a, b] = [halves(&one, 1), halves(&rebuilt(&one, false, true), 201)];
-    assert!(distance(&a[1], &b[1]) > 6.0, "root and tip swapped: {a:?} {b:?}");
-    let id = ModelId::find("gaussian", Some("matched")).expect("listed");
-    let values = id.presets().find(|(name, _)| *name == "brown").expect("listed").1.with("alpha", &[0.0; 3]);
-    let level = Hair::Model(id.bsdf(&values).expect("in range"), hairis_render::material::Sampling::Own, 1.0);
-    let one = at_the_highlight(level);
+    for half in 0..2 {
+        let darker = a[half].value > 1.1 * b[half].value && distance(&a[half], &b[half]) > 6.0;
+        assert!(darker, "root and tip swapped: {a:?} {b:?}");
+    }
+    let one = at_the_highlight(0.0);
     let [a, b] = [halves(&one, 301), halves(&rebuilt(&one, false, true), 401)];
     assert!(distance(&a[1], &b[1]) < 4.0 && distance(&a[0], &b[0]) < 4.0, "no shifts: {a:?} {b:?}");
 }
