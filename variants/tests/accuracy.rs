@@ -97,14 +97,14 @@ impl Errors {
                 self.lobes.see(f64::from(got.pdf) / want.pdf - 1.0, bound, || format!("density of {lobe:?}: {}", at()));
                 self.lobes.see(f64::from(got.value) / want.value - 1.0, bound, || format!("S of {lobe:?}: {}", at()));
             }
-            for c in 0..3 {
-                allowed[c] += want.value * want.color[c] * bound;
+            for (allowed, color) in allowed.iter_mut().zip(want.color) {
+                *allowed += want.value * color * bound;
             }
             allowed[3] += want.pdf * shares[lobe] * bound;
         }
         for got in evals {
-            for c in 0..3 {
-                self.sums.see(f64::from(got.value[c]) - want.0[c], allowed[c], || format!("S, channel {c}: {}", at()));
+            for (c, (&got, &allowed)) in got.value.iter().zip(&allowed).enumerate() {
+                self.sums.see(f64::from(got) - want.0[c], allowed, || format!("S, channel {c}: {}", at()));
             }
             self.sums.see(f64::from(got.pdf) - want.1, allowed[3], || format!("density: {}", at()));
         }

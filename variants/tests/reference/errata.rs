@@ -299,5 +299,5 @@ fn elsewhere_an_inverse_pi_too_many() {
         .sum();
     assert!((returned - 1.0).abs() < 1e-11, "clear hair returns all light: {returned}");
     let printed = returned / PI;
-    assert!((printed - 0.318).abs() < 1e-3, "with 1 / pi it keeps two thirds: {printed}");
+    assert!(0.31 < printed && printed < 0.33, "with 1 / pi two thirds are lost: {printed}");
 }
