@@ -20,7 +20,7 @@ pub enum Sampling {
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one per scene")]
 pub enum Hair {
-    /// A model of the registry. The factor is on all it scatters: see [`Energy`](crate::scene::Energy).
+    /// A model of the registry. The factor is on all it scatters: see [`Energy`](crate::hair::Energy).
     Model(AnyBsdf, Sampling, f32),
     /// Scatters equally into all directions and absorbs nothing: `S cos theta_i = 1 / (4 pi)`. For tests of transport.
     Isotropic,
