@@ -280,7 +280,7 @@ impl Values {
 impl PartialEq for Values {
     #[inline]
     fn eq(&self, other: &Self) -> bool {
-        core::ptr::eq(self.fields, other.fields) && self.given == other.given && self.numbers == other.numbers
+        self.fields == other.fields && self.given == other.given && self.numbers == other.numbers
     }
 }
 
