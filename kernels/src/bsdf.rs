@@ -219,8 +219,8 @@ impl<M: Model> Gather<M> {
 
     /// A direction for three uniform numbers in `[0, 1)`; the first chooses the lobe.
     ///
-    /// `None` is a discarded sample. It counts, with a contribution of 0; do not draw it again. NaN or infinity among the
-    /// numbers gives one.
+    /// `None` is a discarded sample. It counts, with a contribution of 0; do not draw it again. NaN among the numbers
+    /// gives one.
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: [f32; 3]) -> Option<Sample> {

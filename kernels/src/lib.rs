@@ -41,10 +41,11 @@
 //! - **Totality.** Parameters are checked once, by [`HairParams::new`]. After that nothing fails: for every finite
 //!   input, results are finite and not negative. Directions within [`GRAZING`] of the axis have value and density 0,
 //!   and a sample there is discarded. It counts; do not draw it again.
-//! - **NaN and infinity.** An input that is not finite is black. With such a component in `wo` every value, density and albedo
-//!   is 0 and every sample is discarded. With one in `wi` value and density are 0. With one among the uniform numbers the
-//!   sample is discarded: value, density and weight are 0 and the slot is -1; its direction may be NaN. The rule holds for every
-//!   model and entry point (test `inputs_that_are_no_numbers_are_black`).
+//! - **NaN and infinity.** A direction that is not finite is black. With such a component in `wo` every value, density and albedo
+//!   is 0 and every sample is discarded. With one in `wi` value and density are 0. With NaN among the uniform numbers the
+//!   sample is discarded: value, density and weight are 0 and the slot is -1; its direction may be NaN. (An infinite number
+//!   discards it, or counts as the end of the range.) The rule holds for every model and entry point (test
+//!   `inputs_that_are_no_numbers_are_black`).
 //! - **Energy.** The model is reciprocal but does not conserve energy. Before path tracing, scale the material by
 //!   [`Bsdf::conserving_scale`] through [`HairParams::scaled`].
 //! - **Bits.** Results depend on whether a level fuses multiply and add ([`Level::fuses`]), in the last bits, and on

@@ -280,7 +280,8 @@ impl<M: LobeModel> Model for M {
         let (start, start_less_one) = (C::look_up(&m.start, lobe), C::look_up(&m.start_less_one, lobe));
         let into = L::select(xi[0].lt(c(0.5)), xi[0] - start, (xi[0] - c(1.0)) - start_less_one);
         let again = into / C::look_up(&m.selection, lobe);
-        let numbers = (xi[0] + xi[1] + xi[2]).abs().lt(c(f32::INFINITY));
+        // False for NaN.
+        let numbers = (xi[0] + xi[1] + xi[2]).lt(c(f32::INFINITY));
         let xi = [zero.max(again.min(most)), zero.max(xi[1].min(most)), zero.max(xi[2].min(most))];
         let wi = M::sample_lobe(&gather.prepared, lobe, xi);
         let Eval { value, pdf } = total::<M, L, C>(gather, &wi);

@@ -13,8 +13,8 @@ use wide::f32x8;
 /// # What an implementation promises
 ///
 /// - Functions are total: for every finite input the results are finite and at least 0, and nothing panics.
-/// - An input that is not finite is black: a `wo` with NaN or an infinity makes every value, density and albedo 0 and every
-///   sample discarded, a `wi` its own value and density 0, one among the uniform numbers its own sample discarded.
+/// - A direction that is not finite is black: a `wo` with NaN or an infinity makes every value, density and albedo 0 and every
+///   sample discarded, a `wi` its own value and density 0; NaN among the uniform numbers discards the sample.
 /// - `sample` draws from the density that `eval` reports. A discarded sample has slot -1 and no value, pdf or weight; a
 ///   model does not draw again.
 /// - `prepare_one` gives the bits of `prepare` of one lane, in every build. `restrict` does not use `mul_add`: it runs in lanes
@@ -81,7 +81,7 @@ impl<L: Lanes> Hit<L> {
     /// use hairis::Hit;
     /// assert_eq!(Hit::new(Vec3::Y, 1.5).h, 1.0);
     /// ```
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn new(wo: impl Into<Vec3x<L>>, h: L) -> Self {
         let one = L::splat(1.0);

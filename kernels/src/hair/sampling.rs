@@ -16,9 +16,8 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let (zero, one) = (c(0.0), c(1.0));
     let (point, hair, sampler) = (&gather.point, &gather.point.lobes, &gather.sampler);
     let choice = L::search(xi[0], lanes3(&sampler.bounds), 3);
-    // NaN if any number is, or infinite: a sample without an inclination is discarded.
-    let along = (xi[0] + xi[1] + xi[2]).mul_add(zero, xi[1]);
-    let along = zero.max(one.min(along));
+    // The second operand wins over NaN: that of a number stays, and the sample has no inclination, or no density.
+    let along = zero.max(one.min(xi[0].mul_add(zero, xi[1])));
 
     // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Interleaved with the azimuth.
     let turn = Turn::of(xi[2]);
@@ -45,11 +44,11 @@ pub(crate) struct Turn<L> {
 }
 
 impl<L: Lanes> Turn<L> {
-    /// Of a number in `[0, 1]`.
+    /// Of a number in `[0, 1]`, or NaN.
     #[inline(always)]
     pub(crate) fn of(xi: L) -> Self {
         let side = xi + xi - L::splat(1.0);
-        Self { side, across: side.abs().min(L::splat(1.0)) }
+        Self { side, across: L::splat(1.0).min(side.abs()) }
     }
 }
 

@@ -17,7 +17,7 @@ pub trait MatchedBell: Bell {
     /// The integral up to `x` in the interval: it ascends with `x`.
     fn integral<L: Lanes>(origin: L, x: L) -> L;
 
-    /// The point whose integral is `sum`. Rounding may take it past an end. NaN gives NaN.
+    /// The point whose integral is `sum`. Rounding may take it past an end.
     fn invert<L: Lanes>(origin: L, sum: L) -> L;
 }
 
@@ -45,7 +45,7 @@ impl MatchedBell for Gaussian {
     fn invert<L: Lanes>(_origin: L, sum: L) -> L {
         let c = L::splat;
         // Half of the least step below 1: no number stands for a point without density.
-        let tail = sum.abs().min(c(f32::EPSILON / 4.0).max(c(1.0) - sum));
+        let tail = sum.abs().min((c(1.0) - sum).max(c(f32::EPSILON / 4.0)));
         // Below the centre where the sum is between 0 and 1/2.
         normal_tail_inverse(tail).times_sign(sum * (sum - c(0.5)))
     }

@@ -26,8 +26,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     // Longitude: the number's share of the integral of M W, from the nearer pole. As a function of it the integral of M is the
     // least of the bands' lines: outwards they are steeper. Above the middle it is the negative integral.
     let total = C::look_up_three(&gather.area, choice);
-    // NaN if any number is, or infinite, and so is all that follows from it.
-    let area = (xi[0] + xi[1] + xi[2]).mul_add(zero, xi[1]) * total;
+    let area = xi[1] * total;
     let lower = area.lt(C::look_up_three(&gather.below, choice));
     let area = L::select(lower, area, total - area);
     let mut integral = line::<L, C, N>(gather, choice, lower, area, 0);
@@ -39,8 +38,8 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let [first, minus_last] =
         [C::look_up_three(&gather.offset[0], choice), C::look_up_three(&gather.offset[N - 1], choice)];
     let least = (first + minus_last) * c(-LEAST_SHARE);
-    let integral = L::select(lower, integral, -integral);
-    let integral = (-(minus_last + least)).min((first + least).max(integral));
+    // The second operand wins over NaN.
+    let integral = L::select(lower, integral, -integral).max(first + least).min(-(minus_last + least));
 
     // Azimuth: TT's runs from its centre outwards, that of a glint from phi = 0.
     let turn = Turn::of(xi[2]);
@@ -52,8 +51,9 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     // Side by side.
     let origin = Pair(C::look_up_three(&gather.origin, choice), C::look_up_half(&gather.azimuth_origin, choice));
     let Pair(x, y) = B::invert(origin, Pair(integral, share.mul_add(mass, from)));
-    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&point.shift, choice));
-    // The second operand wins over NaN: the sample is on the pole, and discarded there.
+    // NaN if any number is, or infinite. The second operand wins over it: the sample is on the pole, and discarded there.
+    let shift = (xi[0] + xi[1] + xi[2]).mul_add(zero, C::look_up_three(&point.shift, choice));
+    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), shift);
     let half_theta_i = c(-FRAC_PI_4).max(half_theta_i.min(c(FRAC_PI_4)));
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);

@@ -31,11 +31,11 @@ fn vector(draws: &mut Draws) -> Direction {
     Direction::new(v[0], v[1], v[2])
 }
 
-/// Three numbers of which one at least is none.
+/// Three numbers of which one at least is NaN.
 fn numbers(draws: &mut Draws) -> [f32; 3] {
     let mut xi = draws.xi3();
     for _ in 0..*draws.pick(&[1, 1, 1, 2, 3]) {
-        xi[*draws.pick(&[0, 1, 2])] = odd(draws);
+        xi[*draws.pick(&[0, 1, 2])] = f32::NAN;
     }
     xi
 }
@@ -120,7 +120,7 @@ fn at_each<M: Model>(
 }
 
 /// A `wo` of which a component is NaN or infinite sees nothing, such a `wi` receives nothing, and samples of numbers of which
-/// one is NaN or infinite are discarded: on one lane, on eight, in slices, at one hit and at eight, on every level.
+/// one is NaN are discarded: on one lane, on eight, in slices, at one hit and at eight, on every level.
 ///
 /// # Errors
 ///
