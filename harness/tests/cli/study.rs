@@ -188,7 +188,7 @@ fn a_look_up_is_timed_after_a_merge_if_the_environment_is_at_hand() {
 
     let run = merge(out.path(), &[dir.path()]);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
-    assert!(run.err[0].contains("not timed: --env FILE"), "{:?}", run.err);
+    assert!(run.err[0].contains("not timed; pass --env FILE"), "{:?}", run.err);
     assert_eq!(look_ups(out.path(), "map.hdr"), 0);
     let efficiency = fs::read_to_string(out.path().join("efficiency.csv")).unwrap();
     let fields = |line: &str| -> Vec<String> { line.split(',').map(str::to_owned).collect() };
