@@ -4,7 +4,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v objdump >/dev/null || { apt-get update -qq && apt-get install -qqy binutils; }
-cargo build --release --locked -p hairis-harness --bin hairis
+# The build of .ci/main_job.sh.
+cargo build --release --locked -p hairis-harness --features parquet,png
 program=${CARGO_TARGET_DIR:-target}/release/hairis
 objdump -d --no-show-raw-insn -C "$program" | awk '
   /^[0-9a-f]+ <.*>:$/ { name = $0; entry = name ~ /hairis::simd::dispatch::(run|rows)_avx/; entries += entry }
