@@ -69,6 +69,11 @@ impl Reference for Formulas {
         let wi = [sin, cos * phi.cos(), cos * phi.sin()];
         if cos < 1e-5 { ReferenceSample::Discarded } else { ReferenceSample::Drawn(usize::from(!diffuse), wi) }
     }
+
+    // The cone inverts the difference of two arc tangents, rounded to 1e-7 rad, over its width: 2.1e-4 where it is narrow.
+    fn tolerance(&self) -> Tolerance {
+        Tolerance { direction: 3e-4, ..Tolerance::default() }
+    }
 }
 
 impl Formulas {
@@ -97,11 +102,6 @@ impl Subject for Beside {
 
     fn claims(&self) -> Claims {
         Broken::<SOUND>.claims()
-    }
-
-    // The cone inverts the difference of two arc tangents, rounded to 1e-7 rad, over its width: 2.1e-4 where it is narrow.
-    fn tolerance(&self) -> Tolerance {
-        Tolerance { direction: 3e-4, ..Tolerance::default() }
     }
 
     fn random_materials(&self) -> Vec<Params> {
