@@ -33,9 +33,9 @@ pub(crate) const PUBLISHED: Rows = Rows {
     albedo_lanes: 2.6e-6,
     // 3.0e-6
     albedo: 4e-6,
-    // 2.5e-5
     // 5.3e-5
     albedo_any: 7e-5,
+    // 2.5e-5
     reciprocity: 3.2e-5,
     // 1.2e-6
     sample_eval: 1.6e-6,
@@ -79,9 +79,9 @@ pub(crate) const MATCHED: Rows = Rows {
     albedo_lanes: 2.6e-6,
     // 3.0e-6
     albedo: 4e-6,
-    // 2.5e-5
     // 5.3e-5
     albedo_any: 7e-5,
+    // 2.5e-5
     reciprocity: 3.3e-5,
     // 2.9e-6
     sample_eval: 3.8e-6,

@@ -33,9 +33,9 @@ pub(crate) const PUBLISHED: Rows = Rows {
     albedo_lanes: 5.2e-7,
     // 2.2e-6
     albedo: 2.9e-6,
-    // 8.6e-6
     // 4.3e-5
     albedo_any: 5.6e-5,
+    // 8.6e-6
     reciprocity: 1.1e-5,
     // 1.7e-6
     sample_eval: 2.2e-6,
@@ -79,9 +79,9 @@ pub(crate) const MATCHED: Rows = Rows {
     albedo_lanes: 5.2e-7,
     // 2.2e-6
     albedo: 2.9e-6,
-    // 8.6e-6
     // 4.3e-5
     albedo_any: 5.6e-5,
+    // 8.6e-6
     reciprocity: 1.2e-5,
     // 3.7e-6, a glint of 0.04 degrees
     sample_eval: 4.8e-6,
