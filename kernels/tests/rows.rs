@@ -35,6 +35,8 @@ pub(crate) const PUBLISHED: Rows = Rows {
     albedo: 4e-6,
     // 5.3e-5
     albedo_any: 7e-5,
+    // 1.8e-6
+    albedo_mesh: 4e-6,
     // 2.5e-5
     reciprocity: 3.2e-5,
     // 1.2e-6
@@ -81,6 +83,8 @@ pub(crate) const MATCHED: Rows = Rows {
     albedo: 4e-6,
     // 5.3e-5
     albedo_any: 7e-5,
+    // 5.4e-5: the mesh of a glint of half a degree
+    albedo_mesh: 7e-5,
     // 2.5e-5
     reciprocity: 3.3e-5,
     // 2.9e-6

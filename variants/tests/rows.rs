@@ -35,6 +35,8 @@ pub(crate) const PUBLISHED: Rows = Rows {
     albedo: 2.9e-6,
     // 4.3e-5
     albedo_any: 5.6e-5,
+    // 1.06e-6
+    albedo_mesh: 2.9e-6,
     // 8.6e-6
     reciprocity: 1.1e-5,
     // 1.7e-6
@@ -81,6 +83,8 @@ pub(crate) const MATCHED: Rows = Rows {
     albedo: 2.9e-6,
     // 4.3e-5
     albedo_any: 5.6e-5,
+    // 1.06e-6
+    albedo_mesh: 2.9e-6,
     // 8.6e-6
     reciprocity: 1.2e-5,
     // 3.7e-6, a glint of 0.04 degrees

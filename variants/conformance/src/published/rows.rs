@@ -34,6 +34,9 @@ pub struct Rows {
     pub albedo: f64,
     /// Directional albedo of a lobe of any width, seen from further than 1e-5 rad from the axis, relative to at least 1e-9.
     pub albedo_any: f64,
+    /// Directional albedo of a lobe against quadrature on the mesh of its own samples, relative to at least 1e-3, and of eight
+    /// lanes against one. The mesh of the matched Gaussian's samples is coarser than that of the published sampler's.
+    pub albedo_mesh: f64,
     /// Reciprocity of S, relative, wide and grid materials.
     pub reciprocity: f64,
     /// Density of a sample against that of its direction, relative, times `width / (width + 0.1)` with the least width.

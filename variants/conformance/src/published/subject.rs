@@ -91,9 +91,7 @@ impl<P: Published> Subject for Family<P> {
             integral: 1.4e-4, // 1.03e-4
             // Lobes off the sphere, of 0.01 rad.
             direction: 2e-5, // 1.2e-5
-            // The mesh that samples of the matched Gaussian make leaves 5.4e-8 of a glint of half a degree; the test of
-            // albedos by quadrature holds them to `albedo`.
-            albedo: P::ROWS.albedo_any,
+            albedo: P::ROWS.albedo_mesh,
             ..Claims::default()
         }
     }
