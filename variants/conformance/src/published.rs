@@ -75,16 +75,21 @@ macro_rules! published {
     };
     ($name:ident, $model:ty, published) => {
         $crate::published!(
-            @$name, $model,
-            albedo {
-                albedo_is_the_integral albedo_of_any_width_is_the_integral max_albedo_bounds_a_scan_ten_times_as_fine
-                max_albedo_bounds_lobes_of_any_width
-                scaled_hair_returns_at_most_what_it_receives
-            }
+            @sampled $name, $model,
             weights { weights_are_below_their_bound the_bound_is_reached the_published_flaw_is_there }
         );
     };
     ($name:ident, $model:ty, matched) => {
+        $crate::published!(
+            @sampled $name, $model,
+            density { each_lobe_integrates_to_one }
+            fireflies { weights_are_below_their_bound_and_close_to_the_mean }
+            seam { samples_next_to_the_seam_report_their_own_direction }
+            tails { samples_in_the_tails_report_their_own_direction samples_of_lobes_off_the_sphere_report_their_own_direction }
+            variance { variance_falls_by_what_is_promised }
+        );
+    };
+    (@sampled $name:ident, $model:ty, $($more:tt)*) => {
         $crate::published!(
             @$name, $model,
             albedo {
@@ -92,11 +97,7 @@ macro_rules! published {
                 max_albedo_bounds_lobes_of_any_width
                 scaled_hair_returns_at_most_what_it_receives
             }
-            density { each_lobe_integrates_to_one }
-            fireflies { weights_are_below_their_bound_and_close_to_the_mean }
-            seam { samples_next_to_the_seam_report_their_own_direction }
-            tails { samples_in_the_tails_report_their_own_direction samples_of_lobes_off_the_sphere_report_their_own_direction }
-            variance { variance_falls_by_what_is_promised }
+            $($more)*
         );
     };
     (@$name:ident, $model:ty, $($more:tt)*) => {
