@@ -95,8 +95,8 @@ pub struct Render {
     #[arg(long, value_name = "CM", requires = "import")]
     pub radius: Option<f32>,
     /// The axis of the file of hair that points up
-    #[arg(long, value_enum, requires = "import", default_value_t = UpArg::Y)]
-    pub up: UpArg,
+    #[arg(long, value_enum, requires = "import", default_value_t = Up::Y)]
+    pub up: Up,
     /// Write the hair as Mitsuba's text, too
     #[arg(long, value_name = "FILE.txt")]
     pub export: Option<PathBuf>,
@@ -149,27 +149,6 @@ pub struct Figures {
     /// Folder for report.html and the pictures; made if missing
     #[arg(long, value_name = "DIR", default_value = "out/figures")]
     pub out: PathBuf,
-}
-
-/// An axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum UpArg {
-    /// The first
-    X,
-    /// The second
-    Y,
-    /// The third
-    Z,
-}
-
-impl From<UpArg> for Up {
-    fn from(axis: UpArg) -> Self {
-        match axis {
-            UpArg::X => Self::X,
-            UpArg::Y => Self::Y,
-            UpArg::Z => Self::Z,
-        }
-    }
 }
 
 /// Width and height in pixels: 1 to 16384 each.

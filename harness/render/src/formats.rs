@@ -24,14 +24,14 @@ const HALVINGS: i32 = 4;
 const MANY: f64 = 0.01;
 
 /// The axis of a file that points up. The renderer's is y.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Up {
-    /// x becomes y, and y becomes -x.
+    /// x becomes y, and y becomes -x
     X,
-    /// As it is.
+    /// Axes stay as they are
     #[default]
     Y,
-    /// z becomes y, and y becomes -z.
+    /// z becomes y, and y becomes -z
     Z,
 }
 

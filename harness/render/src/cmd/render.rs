@@ -183,7 +183,7 @@ pub(crate) fn environment(path: &Path) -> Result<Environment, Error> {
 
 /// Reads hair, and remarks on what is odd about it.
 fn read_hair(flags: &Render, path: &Path) -> Result<Strands, Error> {
-    let options = Import { radius: flags.radius, scale: flags.scale, up: flags.up.into(), ..Import::default() };
+    let options = Import { radius: flags.radius, scale: flags.scale, up: flags.up, ..Import::default() };
     let imported = import(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
     for remark in imported.remarks {
         let _ = writeln!(io::stderr(), "{}: {remark}", path.display());
