@@ -17,7 +17,7 @@ use crate::subject::ModelKind;
 use hairis::ParamError;
 use serde::Serialize;
 
-/// What to compare.
+/// Settings of a comparison.
 #[derive(Clone, Copy, Debug)]
 pub struct CompareConfig<'a> {
     /// Seed of everything that is drawn.
@@ -26,7 +26,7 @@ pub struct CompareConfig<'a> {
     pub quick: bool,
     /// The environment light.
     pub environment: &'a Environment,
-    /// What the environment is, for the report: a file, or the procedural sky.
+    /// Description of the environment in the report: a file, or the procedural sky.
     pub environment_name: &'a str,
 }
 
@@ -54,7 +54,7 @@ pub struct Settings {
     pub quick: bool,
     /// The environment light.
     pub environment: String,
-    /// What was repaired in the environment, and what is odd about it.
+    /// Repairs to the environment, and remarks on it.
     pub environment_notes: Vec<String>,
 }
 
@@ -70,7 +70,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// What a progress bar calls it.
+    /// Name in a progress bar.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -122,7 +122,7 @@ fn sample_costs(times: &Times) -> SampleCosts {
 }
 
 impl Comparison {
-    /// What failed: wrong answers, errors beyond their bounds, biased estimates. Empty if nothing did.
+    /// Failures: wrong answers, errors beyond their bounds, biased estimates. Empty if there are none.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
         let slow =

@@ -14,7 +14,7 @@ use std::thread;
 
 const PATHS: [&str; 4] = ["scalar", "x8", "batch", "f64"];
 
-/// What a run left behind.
+/// Result of a run.
 struct Run {
     code: Option<i32>,
     out: Vec<String>,

@@ -1,4 +1,4 @@
-//! What choosing lobes by channel buys on coloured hair, and that nothing is lost by it.
+//! Choice of lobes by channel: its gain on coloured hair, and exactness of its values and densities.
 
 use crate::family::Bands;
 use crate::support::{Draws, direction, double, lanes_of, oracle};

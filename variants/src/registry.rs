@@ -46,7 +46,7 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     /// Name of the lobes' colours in reports; `None` if they are not reported.
     const COLORS: Option<&'static str> = None;
 
-    /// What the formulas have in common for all gather points of a material.
+    /// Formulas prepared once per material.
     #[cfg(feature = "textbook")]
     type Formulas<T: Real>: Copy + Debug;
     /// The formulas at one gather point.

@@ -127,7 +127,7 @@ impl Errors {
     }
 }
 
-/// What one lane says, and what eight do.
+/// Results of one lane, and of eight.
 fn evals<M: Model>(gather: &Gather<M>, wi: &[Vec3; 8]) -> [[Eval; 2]; 8] {
     let eight = gather.eval_pdf8_at(Level::detect(), &packet(wi));
     core::array::from_fn(|k| [gather.eval_pdf(wi[k]), eight.lane(k)])

@@ -1,4 +1,4 @@
-//! What is the Cauchy's own: its factors, and weights that do not vary with the azimuth.
+//! Properties of the Cauchy variant alone: its factors, and weights that do not vary with the azimuth.
 
 use crate::support::{Draws, direction};
 use hairis::{Bell, Bsdf, Hair, HairDesc, HairParams, Lobe, LobeMask, ParamError};

@@ -12,7 +12,7 @@ use hairis_harness::error::Error;
 ///
 /// # Errors
 ///
-/// Those of the subcommand.
+/// Errors of the subcommand.
 pub fn run(args: Args) -> Result<(), Error> {
     match args.command {
         Command::Render(flags) => render::run(&flags),

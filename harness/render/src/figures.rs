@@ -17,7 +17,7 @@ use std::path::Path;
 
 /// The scenes that are compared, without maps of the caller's.
 const SCENES: [Name; 6] = [Name::Area, Name::AreaSoft, Name::AreaHead, Name::Env, Name::Box, Name::Head];
-/// Those of a quick run.
+/// Scenes of a quick run.
 const QUICK: [Name; 4] = [Name::Area, Name::AreaHead, Name::Box, Name::Head];
 
 /// Compares samplers on every scene, and writes `report.html` with an EXR file of each picture beside it.

@@ -1,4 +1,4 @@
-//! What a picture is made of: sums over samples, tile by tile.
+//! Film: sums over samples, tile by tile.
 
 use glam::Vec3;
 use hairis_harness::light::luminance;

@@ -128,7 +128,7 @@ struct Raw<'a> {
     count: usize,
     /// Whether it has radii.
     radii: bool,
-    /// What is in it and not used.
+    /// Contents of the file that are not used.
     unused: Vec<&'static str>,
 }
 

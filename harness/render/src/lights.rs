@@ -67,7 +67,7 @@ impl Sky {
         }
     }
 
-    /// What a ray that meets nothing sees.
+    /// Radiance along a ray that meets nothing, and the density of its direction.
     #[must_use]
     pub fn see(&self, direction: Vec3) -> Seen {
         match self {

@@ -1,4 +1,4 @@
-//! What hair is made of: a model of the registry and how it is sampled.
+//! Material of hair: a model of the registry and how it is sampled.
 
 use crate::lights::uniform_direction;
 use core::f32::consts::{FRAC_PI_2, PI};

@@ -46,7 +46,7 @@ impl Reference {
         Self { picture, luminances, variances, mean }
     }
 
-    /// What squared errors of a pixel are divided by to be relative.
+    /// Divisor that makes squared errors of a pixel relative.
     fn unit(&self, pixel: usize) -> f64 {
         self.luminances[pixel].powi(2) + (FLOOR * self.mean).powi(2)
     }
@@ -87,7 +87,7 @@ pub struct Errors {
     pub relative: f64,
     /// The same without the pixels of the largest errors: see [`TRIMMED`].
     pub trimmed: f64,
-    /// What the reference's own noise added to the relative error, and was subtracted.
+    /// Relative error due to noise of the reference, which was subtracted.
     pub own: f64,
 }
 

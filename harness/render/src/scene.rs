@@ -1,4 +1,4 @@
-//! What is rendered: hair, a head, walls and lights, and a camera.
+//! Scene: hair, a head, walls and lights, and a camera.
 
 use crate::camera::Camera;
 use crate::geometry::Strands;
@@ -36,7 +36,7 @@ impl Head {
     }
 }
 
-/// What a ray meets first.
+/// First object along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Met {
     /// Nothing: the sky.
@@ -56,7 +56,7 @@ pub struct Scene {
     pub strands: Strands,
     /// Where they are.
     pub tree: Tree,
-    /// What they are made of.
+    /// Their material.
     pub hair: Hair,
     /// The head that they grow on.
     pub head: Option<Head>,
@@ -71,7 +71,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// What a ray meets first.
+    /// Finds the first object along a ray.
     #[inline]
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Met {
@@ -138,7 +138,7 @@ impl Scene {
         Some(LightSample { pdf: sample.pdf * share, ..sample })
     }
 
-    /// What a ray sees that met no hair and no surface.
+    /// Radiance along a ray that met no hair and no surface.
     #[inline]
     #[must_use]
     pub fn see(&self, ray: &Ray, met: &Met) -> Option<Seen> {

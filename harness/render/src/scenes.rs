@@ -35,7 +35,7 @@ pub enum Name {
     FurnaceIso,
 }
 
-/// What a scene is rendered with unless told otherwise.
+/// Default settings of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Defaults {
     /// How light is estimated.
@@ -65,7 +65,7 @@ impl Name {
         }
     }
 
-    /// What it is rendered with unless told otherwise.
+    /// Default settings of the scene.
     #[must_use]
     pub fn defaults(self) -> Defaults {
         let gather = |preset| Defaults { integrator: Integrator::Gather, preset, samples: 64, multiple: true };
@@ -102,14 +102,14 @@ pub fn grow(name: Name, count: usize) -> Result<Strands, Error> {
     groom.grow(&Flattening::default()).map_err(|problem| Error::Usage(problem.to_string()))
 }
 
-/// What a scene is made of beside its name.
+/// Parts of a scene beside its name.
 #[derive(Debug)]
 pub struct Parts {
     /// The fibres.
     pub strands: Strands,
     /// Whether they were read from a file: there is no head then, and camera and lights go by their extent.
     pub imported: bool,
-    /// What they are made of.
+    /// Their material.
     pub hair: Hair,
     /// An environment map in place of the scene's light.
     pub env: Option<Environment>,

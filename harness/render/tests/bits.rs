@@ -5,7 +5,7 @@ use hairis_render::film::{Crop, Film};
 use hairis_render::scenes::Name;
 use hairis_render::transport::{self, Integrator, Settings};
 
-/// What of a film must not depend on the machine's load.
+/// Sums of a film, which must not depend on the machine's load.
 fn sums(film: &Film) -> Vec<(Crop, u32, Vec<[u64; 4]>)> {
     let bits = |sums: &hairis_render::film::Sums| {
         let [r, g, b] = sums.radiance.map(f64::to_bits);

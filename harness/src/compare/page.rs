@@ -122,7 +122,7 @@ fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
     verdicts
 }
 
-/// What a ratio of variances means for the number of samples.
+/// Words for a ratio of variances, as a change in the number of samples.
 fn change(ratio: f64) -> String {
     match ratio {
         ratio if ratio >= 2.0 => format!("{} fewer", number::ratio(ratio)),

@@ -13,7 +13,7 @@ use hairis_variants::{Accuracy, ModelId};
 /// How much a set of tables holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
-    /// What fits a terminal.
+    /// The rows that fit a terminal.
     Summary,
     /// All of it.
     Full,

@@ -1,4 +1,4 @@
-//! What charts share: the title, the axes with their grid, and the legend.
+//! Parts common to all charts: the title, the axes with their grid, and the legend.
 
 use super::axis::{Axis, Fitted};
 use super::canvas::{Canvas, Hang, Pen, Place, Type, text_width, wrap};
@@ -12,7 +12,7 @@ pub(super) const LABEL: f64 = 15.0;
 pub(super) const TICK: f64 = 13.5;
 const LEGEND_LINE: f64 = 23.0;
 
-/// What a legend shows beside a name.
+/// Mark that a legend shows beside a name.
 #[derive(Clone, Copy)]
 pub(super) struct Key {
     pub(super) color: Color,

@@ -76,7 +76,7 @@ impl Series {
 pub enum Reference {
     /// `y = y0 (x / x0)^slope`: a straight line when both axes are logarithmic, such as the -1/2 of Monte Carlo.
     Power {
-        /// What the line stands for.
+        /// Meaning of the line.
         label: String,
         /// The exponent.
         slope: f64,
@@ -85,7 +85,7 @@ pub enum Reference {
     },
     /// `y` is the same everywhere.
     Level {
-        /// What the line stands for.
+        /// Meaning of the line.
         label: String,
         /// The value.
         y: f64,

@@ -102,7 +102,7 @@ impl Columns {
     ///
     /// # Errors
     ///
-    /// What `out` gave.
+    /// Errors of `out`.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         let names: Vec<&str> = self.0.iter().map(|(name, _)| *name).collect();
         writeln!(out, "{}", names.join(","))?;
@@ -122,7 +122,7 @@ impl Columns {
     ///
     /// # Errors
     ///
-    /// What `out` gave.
+    /// Errors of `out`.
     #[cfg(feature = "parquet")]
     pub fn write_parquet(&self, notes: &[(String, String)], out: impl Write + Send) -> io::Result<()> {
         parquet::write(self, notes, out)

@@ -1,4 +1,4 @@
-//! What is refused, and how.
+//! Refusals of bad input, and their messages.
 
 use super::{PATHS, eval, good, run};
 use core::f64::consts::{FRAC_PI_2, PI};

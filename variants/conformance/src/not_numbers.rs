@@ -54,7 +54,7 @@ fn no_lobes(lobes: &[[f32x8; 2]]) -> bool {
     lobes.as_flattened().iter().all(|x| x.to_array() == [0.0; 8])
 }
 
-/// What is not nothing at these directions, or of these numbers.
+/// Describes any result other than zero at this direction, or of these numbers.
 fn at_one<M: Model>(gather: &Gather<M>, wi: Option<Direction>, xi: Option<[f32; 3]>) -> Option<String> {
     if let Some(wi) = wi {
         let e = calls::eval(gather, wi);
@@ -102,7 +102,7 @@ fn slices<const N: usize>(out: &mut [[f32; ROWS]; N]) -> [&mut [f32]; N] {
     out.each_mut().map(|column| &mut column[..])
 }
 
-/// What is not nothing at eight gather points.
+/// Describes any result other than zero at eight shading points.
 fn at_each<M: Model>(
     each: &Gather8<M>,
     level: Level,

@@ -1,4 +1,4 @@
-//! What is measured on a scene.
+//! Measurements on a scene.
 
 use crate::hair::{Choice, Energy, PUBLISHED, UNIFORM};
 use crate::picture;
@@ -34,7 +34,7 @@ impl Plan {
     /// A first look.
     pub(super) const QUICK: Self =
         Self { side: 96, strands: 8_000, samples: [&[4, 16, 64], &[4, 16]], reference: [1024, 320], runs: 8 };
-    /// What is published.
+    /// Settings of the published figures.
     pub(super) const FULL: Self = Self {
         side: 192,
         strands: 30_000,
@@ -71,7 +71,7 @@ pub(super) struct Measured {
     pub(super) integrator: Integrator,
     /// The preset of the hair.
     pub(super) preset: &'static str,
-    /// What pictures are compared with.
+    /// Picture that the others are compared with.
     pub(super) reference: Reference,
     /// The samplers, in the order of [`SAMPLERS`].
     pub(super) samplers: Vec<BySampler>,

@@ -12,11 +12,11 @@ pub struct ImportError {
     pub path: PathBuf,
     /// The byte, counted from 0, if the problem is in one.
     pub offset: Option<u64>,
-    /// What is wrong.
+    /// The problem.
     pub problem: Problem,
 }
 
-/// What is wrong with a file of hair.
+/// Problem with a file of hair.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Problem {
@@ -33,7 +33,7 @@ pub enum Problem {
     Option {
         /// Which.
         name: &'static str,
-        /// What it was.
+        /// Value given.
         value: f32,
     },
     /// It is shorter than its header.
@@ -52,16 +52,16 @@ pub enum Problem {
     },
     /// It has no points, or arrays that the format does not know.
     Flags {
-        /// What flags must be.
+        /// Requirement on the flags.
         expected: &'static str,
-        /// What they are.
+        /// Flags of the file.
         got: u32,
     },
     /// A number of things is out of its range.
     Count {
         /// Of what, and its range.
         expected: &'static str,
-        /// What it was.
+        /// Number in the file.
         got: u32,
     },
     /// The points that strands need, and those that there are, differ.
@@ -94,12 +94,12 @@ pub enum Problem {
     },
     /// A coordinate is not finite, or too far away.
     Coordinate {
-        /// What it was.
+        /// Value in the file.
         value: f32,
     },
     /// A thickness is negative or not finite.
     Thickness {
-        /// What it was.
+        /// Value in the file.
         value: f32,
     },
     /// Thickness is 0 everywhere.

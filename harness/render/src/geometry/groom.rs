@@ -55,7 +55,7 @@ impl Kind {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Groom {
-    /// What it is.
+    /// Kind of hair.
     pub kind: Kind,
     /// Number of strands.
     pub strands: usize,

@@ -254,21 +254,21 @@ pub enum GeometryError {
     Position {
         /// The node of the strand, from 0.
         node: usize,
-        /// What it was.
+        /// Position of the node.
         position: Vec3,
     },
     /// A radius was negative, not finite, or too large.
     Radius {
         /// The node of the strand, from 0.
         node: usize,
-        /// What it was.
+        /// Radius at the node.
         radius: f32,
     },
     /// A setting of a groom was not finite, or out of its range.
     Setting {
         /// Which.
         name: &'static str,
-        /// What it was.
+        /// Value given.
         value: f32,
         /// The least that it may be.
         least: f32,
@@ -279,7 +279,7 @@ pub enum GeometryError {
     Count {
         /// Of what.
         name: &'static str,
-        /// What it was.
+        /// Number given.
         value: usize,
         /// The least that it may be.
         least: usize,

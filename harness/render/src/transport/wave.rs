@@ -12,7 +12,7 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path {
     pub(super) ray: Ray,
-    /// What a unit of radiance along the ray adds to the sample.
+    /// Change of the sample per unit of radiance along the ray.
     pub(super) throughput: Vec3,
     /// Density with which the ray's direction was drawn, per steradian.
     pub(super) pdf: f32,

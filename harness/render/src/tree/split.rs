@@ -19,7 +19,7 @@ const COUNT_BLOCKS: usize = 64;
 /// Sets larger than this are looked at by several threads. Minima, maxima and counts are the same in any order.
 const PARALLEL: usize = 1 << 15;
 
-/// What a set of segments occupies, and their centres.
+/// Bounds of a set of segments, and of their centres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
     pub(super) bounds: Bounds,
@@ -29,7 +29,7 @@ pub(super) struct Extent {
 impl Extent {
     const EMPTY: Self = Self { bounds: Bounds::EMPTY, centres: Bounds::EMPTY };
 
-    /// That of `primitives`.
+    /// Extent of `primitives`.
     pub(super) fn of(primitives: &[Primitive]) -> Self {
         if primitives.len() > PARALLEL {
             let chunks = primitives.par_chunks(PARALLEL / 4);
@@ -45,7 +45,7 @@ impl Extent {
     }
 }
 
-/// What the segments of a bin occupy, and how many they are.
+/// Bounds of the segments of a bin, and their number.
 #[derive(Clone, Copy)]
 struct Bin {
     bounds: Bounds,

@@ -103,7 +103,7 @@ fn by_light(of: &View<'_>, base: Estimator, other: (ModelKind, Strategy), time: 
     (0..of.lights.len()).map(bar).collect()
 }
 
-/// What a gain counts of the time; `None` for samples alone.
+/// Time that a gain counts; `None` for samples alone.
 type Timing = Option<Counted>;
 
 /// The verdicts in one plot: the Cauchy model against the Gaussian one, by light.

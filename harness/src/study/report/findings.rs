@@ -207,7 +207,7 @@ fn limit(of: &View<'_>) -> Option<String> {
     ))
 }
 
-/// What does it change in looks?
+/// Sentences on the change in looks.
 fn looks(of: &View<'_>) -> String {
     let d = of.difference;
     let of_figures = |width, figure| d.summary(width, figure);
@@ -233,7 +233,7 @@ fn looks(of: &View<'_>) -> String {
     )
 }
 
-/// What does it cost?
+/// Sentences on the cost.
 fn cost(of: &View<'_>) -> String {
     let ns = |of_one: Estimator| {
         let [many, one] = [MANY, 1].map(|n| of.ns(of_one, n));

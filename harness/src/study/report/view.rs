@@ -1,4 +1,4 @@
-//! What a report asks of a study: variances, gains and times by model, sampler and light.
+//! Queries of a report to a study: variances, gains and times by model, sampler and light.
 
 use super::super::cell::Measured;
 use super::super::equal_time::{NOTHING, in_equal_time, time_ratio};
@@ -29,7 +29,7 @@ pub(super) struct View<'a> {
 /// Samples a gather point of figures and sentences that give one number of them: direct lighting.
 pub(super) const MANY: usize = 16;
 
-/// What counts as the time of a sample.
+/// Parts of a sample whose time is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Counted {
     /// The sampler's alone.

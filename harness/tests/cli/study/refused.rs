@@ -1,4 +1,4 @@
-//! What a study refuses: flags, and files that are of another one.
+//! Refusals of a study: flags, and files that belong to another one.
 
 use super::{WHOLE, assert_refused, merge, reference, study};
 use crate::cli::run;

@@ -4,7 +4,7 @@ use core::f32::consts::TAU;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
-/// What a sequence of numbers is for: no two share numbers.
+/// Purpose of a sequence of numbers: no two share numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stream {
     /// A strand, by number.
