@@ -1,8 +1,8 @@
 //! The published model over any bell: its value, its densities and its albedo.
 
 pub(crate) mod albedo;
+mod angles;
 mod gather;
-mod place;
 mod point;
 mod results;
 mod sampling;
@@ -10,8 +10,8 @@ mod sampling;
 pub use gather::{HairGather, HairMaterial, HairSampler};
 pub use point::{HairLobes, HairPoint};
 
+pub(crate) use angles::{Angles, LobeTerms};
 pub(crate) use gather::selection;
-pub(crate) use place::{Place, Shapes};
 pub(crate) use point::{prepare as prepare_point, times};
 pub(crate) use results::{drawn, evaluated, mixture, per_lobe};
 pub(crate) use sampling::{Turn, turned};
@@ -58,29 +58,29 @@ impl<B: Bell> Model for Hair<B> {
 
     #[inline(always)]
     fn eval<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> Eval<L> {
-        let (place, sound) = Place::of(&gather.point, wi);
-        let shapes = place.shapes::<B, C>(&gather.point);
-        evaluated(&gather.point, &place, sound, &shapes, mixture(shapes.density, &gather.weight))
+        let (angles, sound) = Angles::from_direction(&gather.point, wi);
+        let terms = angles.eval_lobes::<B, C>(&gather.point);
+        evaluated(&gather.point, &angles, sound, &terms, mixture(terms.density, &gather.weight))
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
-        let (place, sound) = Place::of(&gather.point, wi);
-        let shapes = place.shapes::<B, C>(&gather.point);
+        let (angles, sound) = Angles::from_direction(&gather.point, wi);
+        let terms = angles.eval_lobes::<B, C>(&gather.point);
         let density = [
-            shapes.density[0] * gather.density[0].lanes(),
-            shapes.density[1] * gather.density[1].lanes(),
-            shapes.density[2] * gather.density[2].lanes(),
-            shapes.density[3] * gather.density[3].lanes(),
+            terms.density[0] * gather.density[0].lanes(),
+            terms.density[1] * gather.density[1].lanes(),
+            terms.density[2] * gather.density[2].lanes(),
+            terms.density[3] * gather.density[3].lanes(),
         ];
-        per_lobe(&gather.point, &place, sound, &shapes, density)
+        per_lobe(&gather.point, &angles, sound, &terms, density)
     }
 
     #[inline(always)]
     fn sample<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> Drawn<L> {
-        let (wi, choice, place) = sampling::draw(gather, xi);
-        let shapes = place.shapes::<B, C>(&gather.point);
-        drawn(&gather.point, wi, choice, &place, &shapes, mixture(shapes.density, &gather.weight))
+        let (wi, choice, angles) = sampling::draw(gather, xi);
+        let terms = angles.eval_lobes::<B, C>(&gather.point);
+        drawn(&gather.point, wi, choice, &angles, &terms, mixture(terms.density, &gather.weight))
     }
 
     #[inline(always)]

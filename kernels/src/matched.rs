@@ -12,7 +12,7 @@ pub use bell::MatchedBell;
 pub use gather::MatchedGather;
 pub use material::MatchedMaterial;
 
-use crate::hair::{Place, Shapes, albedo, drawn, evaluated, mixture, per_lobe, times};
+use crate::hair::{Angles, LobeTerms, albedo, drawn, evaluated, mixture, per_lobe, times};
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::simd::pair::Pair;
 use crate::simd::unfused::Unfused;
@@ -111,26 +111,26 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
 
     #[inline(always)]
     fn eval<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> Eval<L> {
-        let (place, sound) = Place::of(&gather.point, wi);
-        let shapes = place.shapes::<B, C>(&gather.point);
-        evaluated(&gather.point, &place, sound, &shapes, density(gather, &place, &shapes))
+        let (angles, sound) = Angles::from_direction(&gather.point, wi);
+        let terms = angles.eval_lobes::<B, C>(&gather.point);
+        evaluated(&gather.point, &angles, sound, &terms, density(gather, &angles, &terms))
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
-        let (place, sound) = Place::of(&gather.point, wi);
-        let shapes = place.shapes::<B, C>(&gather.point);
-        let height = gather.height::<L>(place.sin_theta_i);
+        let (angles, sound) = Angles::from_direction(&gather.point, wi);
+        let terms = angles.eval_lobes::<B, C>(&gather.point);
+        let height = gather.height::<L>(angles.sin_theta_i);
         let [by_area, by_extent] = gather.lone_density::<B, L>();
-        let density = times(times(times(shapes.value, [height; 4]), by_area), by_extent);
-        per_lobe(&gather.point, &place, sound, &shapes, density)
+        let density = times(times(times(terms.value, [height; 4]), by_area), by_extent);
+        per_lobe(&gather.point, &angles, sound, &terms, density)
     }
 
     #[inline(always)]
     fn sample<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, xi: [L; 3]) -> Drawn<L> {
-        let (wi, choice, place) = sampling::draw::<B, L, C, BANDS>(gather, xi);
-        let shapes = place.shapes::<B, C>(&gather.point);
-        drawn(&gather.point, wi, choice, &place, &shapes, density(gather, &place, &shapes))
+        let (wi, choice, angles) = sampling::draw::<B, L, C, BANDS>(gather, xi);
+        let terms = angles.eval_lobes::<B, C>(&gather.point);
+        drawn(&gather.point, wi, choice, &angles, &terms, density(gather, &angles, &terms))
     }
 
     #[inline(always)]
@@ -143,8 +143,8 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
 #[inline(always)]
 fn density<L: Lanes, C: Broadcast<L>, const N: usize>(
     gather: &MatchedGather<C, N>,
-    place: &Place<L>,
-    shapes: &Shapes<L>,
+    angles: &Angles<L>,
+    terms: &LobeTerms<L>,
 ) -> L {
-    mixture(shapes.value, &gather.weight) * (gather.height(place.sin_theta_i) * gather.scale.lanes())
+    mixture(terms.value, &gather.weight) * (gather.height(angles.sin_theta_i) * gather.scale.lanes())
 }

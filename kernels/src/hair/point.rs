@@ -126,7 +126,8 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
         plane_o: store3([
             L::select(near_axis, cos_phi_o, y),
             L::select(near_axis, sin_phi_o, z),
-            // NaN if any component is: no direction is sound then, see `Place::of`, and every sample is next to the axis.
+            // NaN if any component is. No direction is sound then (`Angles::from_direction`), and every sample is next to the
+            // axis.
             len.mul_add(zero, L::select(near_axis, one, plane)),
         ]),
         inv_plane_o: L::select(near_axis, one, inv_plane).store(),

@@ -1,6 +1,6 @@
 //! Results for a direction and for a sample, from the lobe terms and the density.
 
-use super::{GRAZING, HairPoint, Place, Shapes};
+use super::{Angles, GRAZING, HairPoint, LobeTerms};
 use crate::lanes3;
 use crate::model::{Drawn, Eval, LobeEval};
 use crate::{Broadcast, Lanes, PerLobe, Vec3x};
@@ -28,26 +28,26 @@ pub(crate) fn mixture<L: Lanes, C: Broadcast<L>>(lobes: [L; 4], weight: &[C; 4])
     lobes[0].mul_add(weight[0].lanes(), d)
 }
 
-/// Value and density at a place, of the mixture's `density` times `cos theta_i`.
+/// Value and density at these angles, of the mixture's `density` times `cos theta_i`.
 #[inline(always)]
 pub(crate) fn evaluated<L: Lanes, C: Broadcast<L>>(
     point: &HairPoint<C>,
-    place: &Place<L>,
+    angles: &Angles<L>,
     sound: L::Mask,
-    shapes: &Shapes<L>,
+    terms: &LobeTerms<L>,
     density: L,
 ) -> Eval<L> {
     let limit = limit::<L>(sound);
-    Eval { value: min3(shapes.value(point), limit), pdf: (density * place.inv_cos_theta_i).min(limit) }
+    Eval { value: min3(terms.sum_lobes(point), limit), pdf: (density * angles.inv_cos_theta_i).min(limit) }
 }
 
-/// Each lobe at a place, of its own `density` times `cos theta_i`.
+/// Each lobe at these angles, of its own `density` times `cos theta_i`.
 #[inline(always)]
 pub(crate) fn per_lobe<L: Lanes, C: Broadcast<L>>(
     point: &HairPoint<C>,
-    place: &Place<L>,
+    angles: &Angles<L>,
     sound: L::Mask,
-    shapes: &Shapes<L>,
+    terms: &LobeTerms<L>,
     density: [L; 4],
 ) -> PerLobe<LobeEval<L>> {
     let limit = limit::<L>(sound);
@@ -57,11 +57,11 @@ pub(crate) fn per_lobe<L: Lanes, C: Broadcast<L>>(
     let mut lobes = [LobeEval { value: zero, color: [zero; 3], pdf: zero }; 4];
     let mut l = 0;
     while l < 4 {
-        let strength = hair.strength[l].lanes() * shapes.inv_cos_sq_theta_d;
+        let strength = hair.strength[l].lanes() * terms.inv_cos_sq_theta_d;
         lobes[l] = LobeEval {
-            value: (shapes.value[l] * strength).min(limit),
+            value: (terms.value[l] * strength).min(limit),
             color: colors[l],
-            pdf: (density[l] * place.inv_cos_theta_i).min(limit),
+            pdf: (density[l] * angles.inv_cos_theta_i).min(limit),
         };
         l += 1;
     }
@@ -74,20 +74,20 @@ pub(crate) fn drawn<L: Lanes, C: Broadcast<L>>(
     point: &HairPoint<C>,
     wi: Vec3x<L>,
     choice: L::Index,
-    place: &Place<L>,
-    shapes: &Shapes<L>,
+    angles: &Angles<L>,
+    terms: &LobeTerms<L>,
     density: L,
 ) -> Drawn<L> {
-    let cos = place.cos_theta_i;
+    let cos = angles.cos_theta_i;
     let sound = L::and(L::splat(GRAZING).lt(cos), L::splat(LEAST_DENSITY).lt(density));
     let limit = limit::<L>(sound);
-    let value = min3(shapes.value(point), limit);
+    let value = min3(terms.sum_lobes(point), limit);
     // weight = S cos theta_i / pdf, and pdf = density / cos theta_i.
     let by = cos * cos / density;
     Drawn {
         wi,
         value,
-        pdf: (density * place.inv_cos_theta_i).min(limit),
+        pdf: (density * angles.inv_cos_theta_i).min(limit),
         weight: min3([value[0] * by, value[1] * by, value[2] * by], limit),
         slot: L::select(sound, L::index_number(choice), L::splat(-1.0)),
     }

@@ -1,7 +1,7 @@
 //! The published sampler: a lobe by its energy, then longitude and azimuth by inversion (section 3.2 of the paper).
 
-use super::place::complement;
-use super::{HairGather, HairPoint, Place};
+use super::angles::complement;
+use super::{Angles, HairGather, HairPoint};
 use crate::lanes3;
 use crate::math::{atan_unit, sin_cos_absolute, sin_cos_twice};
 use crate::simd::pair::Pair;
@@ -9,9 +9,9 @@ use crate::truncated::TruncatedCauchy;
 use crate::{Broadcast, Lanes, Vec3x};
 use core::f32::consts::FRAC_PI_4;
 
-/// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place.
+/// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its angles.
 #[inline(always)]
-pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> (Vec3x<L>, L::Index, Place<L>) {
+pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> (Vec3x<L>, L::Index, Angles<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     let (point, hair, sampler) = (&gather.point, &gather.point.lobes, &gather.sampler);
@@ -30,8 +30,8 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&point.shift, choice));
     let center = L::keep(L::is_index(choice, 3), hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
-    let (wi, place) = turned(point, choice, half_theta_i, turn, psi);
-    (wi, choice, place)
+    let (wi, angles) = turned(point, choice, half_theta_i, turn, psi);
+    (wi, choice, angles)
 }
 
 /// The number for the azimuth, folded about its middle.
@@ -65,7 +65,7 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     half_theta_i: L,
     Turn { side, across }: Turn<L>,
     psi: L,
-) -> (Vec3x<L>, Place<L>) {
+) -> (Vec3x<L>, Angles<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     let is_tt = L::is_index(choice, 1);
@@ -107,7 +107,7 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
     let turned = cross.mul_sub(cos_turn.abs(), dot.abs() * sin_turn) * (inv_reach * c(0.5));
-    let place = Place::new(
+    let angles = Angles::from_parts(
         half_theta_i,
         sin_theta_i,
         cos_theta_i,
@@ -117,5 +117,5 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
         [zero.max(turned.mul_add(large, small)), large],
         zero.lt(dot),
     );
-    (Vec3x::new(sin_theta_i, v, w), place)
+    (Vec3x::new(sin_theta_i, v, w), angles)
 }

@@ -1,7 +1,7 @@
 //! A direction from three uniform numbers.
 
 use super::{MatchedBell, MatchedGather};
-use crate::hair::{Place, Turn, turned};
+use crate::hair::{Angles, Turn, turned};
 use crate::lanes3;
 use crate::simd::pair::Pair;
 use crate::{Broadcast, Lanes, Vec3x};
@@ -12,12 +12,12 @@ use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 /// Gaussian has no density left. A wide bell may reach the pole; there is no sample of it there.
 const LEAST_SHARE: f32 = f32::EPSILON / 8.0;
 
-/// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its place.
+/// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its angles.
 #[inline(always)]
 pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     gather: &MatchedGather<C, N>,
     xi: [L; 3],
-) -> (Vec3x<L>, L::Index, Place<L>) {
+) -> (Vec3x<L>, L::Index, Angles<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     let (point, hair) = (&gather.point, &gather.point.lobes);
@@ -58,8 +58,8 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
     let psi = zero.max(psi.min(c(FRAC_PI_2)));
-    let (wi, place) = turned(point, choice, half_theta_i, turn, psi);
-    (wi, choice, place)
+    let (wi, angles) = turned(point, choice, half_theta_i, turn, psi);
+    (wi, choice, angles)
 }
 
 /// The line of band `j` of a side at an area from its pole.

@@ -8,7 +8,7 @@ use core::f32::consts::FRAC_PI_2;
 
 /// Angles of a direction relative to the gather point.
 #[derive(Clone, Copy)]
-pub(crate) struct Place<L: Lanes> {
+pub(crate) struct Angles<L: Lanes> {
     /// Half of `theta_i`.
     pub(crate) half_theta_i: L,
     pub(crate) sin_theta_i: L,
@@ -26,7 +26,7 @@ pub(crate) struct Place<L: Lanes> {
 
 /// Lobe terms at these angles.
 #[derive(Clone, Copy)]
-pub(crate) struct Shapes<L> {
+pub(crate) struct LobeTerms<L> {
     /// `M N`, with unit peaks: no colour, no strength.
     pub(crate) value: [L; 4],
     /// The same of Cauchy bells, the glints cut at `pi/2`: the published sampler's density but for the gather point's
@@ -36,10 +36,10 @@ pub(crate) struct Shapes<L> {
     pub(crate) inv_cos_sq_theta_d: L,
 }
 
-impl<L: Lanes> Place<L> {
+impl<L: Lanes> Angles<L> {
     /// The angles of `wi` relative to a gather point, and the mask of lanes where `wi` is a direction off the axis.
     #[inline(always)]
-    pub(crate) fn of<C: Broadcast<L>>(point: &HairPoint<C>, wi: Vec3x<L>) -> (Self, L::Mask) {
+    pub(crate) fn from_direction<C: Broadcast<L>>(point: &HairPoint<C>, wi: Vec3x<L>) -> (Self, L::Mask) {
         let c = L::splat;
         let one = c(1.0);
         let plane_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
@@ -66,14 +66,15 @@ impl<L: Lanes> Place<L> {
         let front = c(0.0).lt(dot);
         let sin_cos = [tau * cos_half, cos_half];
         let half = atan_unit(tau);
-        let place = Self::new(half_theta_i, wi.x, cos_theta_i, inv_cos, [half, complement(half)], sin_cos, front);
-        (place, sound)
+        let angles =
+            Self::from_parts(half_theta_i, wi.x, cos_theta_i, inv_cos, [half, complement(half)], sin_cos, front);
+        (angles, sound)
     }
 
     /// The angles of `theta_i` and of an azimuth. The azimuth is given by half of the smaller of `|phi|` and `pi - |phi|`, its
     /// complement, its sine and its cosine.
     #[inline(always)]
-    pub(super) fn new(
+    pub(super) fn from_parts(
         half_theta_i: L,
         sin_theta_i: L,
         cos_theta_i: L,
@@ -97,7 +98,7 @@ impl<L: Lanes> Place<L> {
 
     /// The lobe terms at these angles.
     #[inline(always)]
-    pub(crate) fn shapes<B: Bell, C: Broadcast<L>>(&self, point: &HairPoint<C>) -> Shapes<L> {
+    pub(crate) fn eval_lobes<B: Bell, C: Broadcast<L>>(&self, point: &HairPoint<C>) -> LobeTerms<L> {
         let c = L::splat;
         let one = c(1.0);
         // Distances from the centres of the bells in widths, squared.
@@ -129,7 +130,7 @@ impl<L: Lanes> Place<L> {
         let of_tt = [s_tt, t_tt, cauchy_tt, cauchy_tt * d_tt_y, cauchy_tt * d_tt_x];
         let of_g = [s_trt, t_g, cauchy_g, cauchy_trt, cauchy_g * d_trt];
         let [m_r, f_tt, m_trt, f_g] = B::four([s_r, cauchy_r], of_tt, [s_trt, cauchy_trt], of_g);
-        Shapes {
+        LobeTerms {
             value: [m_r * self.cos_half_phi, f_tt, m_trt * self.cos_half_phi, f_g],
             density: [
                 cauchy_r * self.cos_half_phi,
@@ -149,10 +150,10 @@ pub(super) fn complement<L: Lanes>(angle: L) -> L {
     (L::splat(FRAC_PI_2) - angle) + L::splat(FRAC_PI_2_LOW)
 }
 
-impl<L: Lanes> Shapes<L> {
+impl<L: Lanes> LobeTerms<L> {
     /// S before the final bound, linear RGB.
     #[inline(always)]
-    pub(crate) fn value<C: Broadcast<L>>(&self, point: &HairPoint<C>) -> [L; 3] {
+    pub(crate) fn sum_lobes<C: Broadcast<L>>(&self, point: &HairPoint<C>) -> [L; 3] {
         let hair = &point.lobes;
         let trt = self.value[2] * hair.strength[2].lanes();
         let secondary = self.value[3].mul_add(hair.strength[3].lanes(), trt);
