@@ -3,18 +3,18 @@
 pub(crate) mod albedo;
 mod angles;
 mod gather;
-mod point;
 mod results;
 mod sampling;
+mod view;
 
 pub use gather::{HairGather, HairMaterial, HairSampler};
-pub use point::{HairLobes, HairPoint};
+pub use view::{HairLobes, HairView};
 
 pub(crate) use angles::{Angles, LobeTerms};
 pub(crate) use gather::selection;
-pub(crate) use point::{prepare as prepare_point, times};
 pub(crate) use results::{drawn, evaluated, mixture, per_lobe};
 pub(crate) use sampling::{Turn, turned};
+pub(crate) use view::{prepare as prepare_view, times};
 
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::{Bell, Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3x};
@@ -58,33 +58,33 @@ impl<B: Bell> Model for Hair<B> {
 
     #[inline(always)]
     fn eval<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> Eval<L> {
-        let (angles, sound) = Angles::from_direction(&gather.point, wi);
-        let terms = angles.eval_lobes::<B, C>(&gather.point);
-        evaluated(&gather.point, &angles, sound, &terms, mixture(terms.density, &gather.weight))
+        let (angles, sound) = Angles::from_direction(&gather.view, wi);
+        let terms = angles.eval_lobes::<B, C>(&gather.view);
+        evaluated(&gather.view, &angles, sound, &terms, mixture(terms.density, &gather.weight))
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
-        let (angles, sound) = Angles::from_direction(&gather.point, wi);
-        let terms = angles.eval_lobes::<B, C>(&gather.point);
+        let (angles, sound) = Angles::from_direction(&gather.view, wi);
+        let terms = angles.eval_lobes::<B, C>(&gather.view);
         let density = [
             terms.density[0] * gather.density[0].lanes(),
             terms.density[1] * gather.density[1].lanes(),
             terms.density[2] * gather.density[2].lanes(),
             terms.density[3] * gather.density[3].lanes(),
         ];
-        per_lobe(&gather.point, &angles, sound, &terms, density)
+        per_lobe(&gather.view, &angles, sound, &terms, density)
     }
 
     #[inline(always)]
     fn sample<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> Drawn<L> {
         let (wi, choice, angles) = sampling::draw(gather, xi);
-        let terms = angles.eval_lobes::<B, C>(&gather.point);
-        drawn(&gather.point, wi, choice, &angles, &terms, mixture(terms.density, &gather.weight))
+        let terms = angles.eval_lobes::<B, C>(&gather.view);
+        drawn(&gather.view, wi, choice, &angles, &terms, mixture(terms.density, &gather.weight))
     }
 
     #[inline(always)]
     fn albedo<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>) -> PerLobe<[L; 3]> {
-        albedo::albedo::<B, L, C>(&gather.point)
+        albedo::albedo::<B, L, C>(&gather.view)
     }
 }

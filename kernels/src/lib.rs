@@ -94,7 +94,7 @@ pub use bsdf::{Bsdf, Bsdf8, Gather, Gather8};
 pub use direction::Direction;
 pub use error::ParamError;
 pub use frame::{FiberFrame, FiberFrame8, Vec3x, Vec3x8};
-pub use hair::{GRAZING, Hair, HairGather, HairLobes, HairMaterial, HairPoint, HairSampler};
+pub use hair::{GRAZING, Hair, HairGather, HairLobes, HairMaterial, HairSampler, HairView};
 pub use lobe::{Lobe, LobeMask, PerLobe};
 pub use lobe_model::{LobeModel, Mixed, Mixture};
 pub use matched::{Matched, MatchedBell, MatchedGather, MatchedMaterial};

@@ -111,31 +111,31 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
 
     #[inline(always)]
     fn eval<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> Eval<L> {
-        let (angles, sound) = Angles::from_direction(&gather.point, wi);
-        let terms = angles.eval_lobes::<B, C>(&gather.point);
-        evaluated(&gather.point, &angles, sound, &terms, density(gather, &angles, &terms))
+        let (angles, sound) = Angles::from_direction(&gather.view, wi);
+        let terms = angles.eval_lobes::<B, C>(&gather.view);
+        evaluated(&gather.view, &angles, sound, &terms, density(gather, &angles, &terms))
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
-        let (angles, sound) = Angles::from_direction(&gather.point, wi);
-        let terms = angles.eval_lobes::<B, C>(&gather.point);
+        let (angles, sound) = Angles::from_direction(&gather.view, wi);
+        let terms = angles.eval_lobes::<B, C>(&gather.view);
         let height = gather.height::<L>(angles.sin_theta_i);
         let [by_area, by_extent] = gather.lone_density::<B, L>();
         let density = times(times(times(terms.value, [height; 4]), by_area), by_extent);
-        per_lobe(&gather.point, &angles, sound, &terms, density)
+        per_lobe(&gather.view, &angles, sound, &terms, density)
     }
 
     #[inline(always)]
     fn sample<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, xi: [L; 3]) -> Drawn<L> {
         let (wi, choice, angles) = sampling::draw::<B, L, C, BANDS>(gather, xi);
-        let terms = angles.eval_lobes::<B, C>(&gather.point);
-        drawn(&gather.point, wi, choice, &angles, &terms, density(gather, &angles, &terms))
+        let terms = angles.eval_lobes::<B, C>(&gather.view);
+        drawn(&gather.view, wi, choice, &angles, &terms, density(gather, &angles, &terms))
     }
 
     #[inline(always)]
     fn albedo<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>) -> PerLobe<[L; 3]> {
-        albedo::albedo::<B, L, C>(&gather.point)
+        albedo::albedo::<B, L, C>(&gather.view)
     }
 }
 

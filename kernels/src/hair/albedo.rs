@@ -1,6 +1,6 @@
 //! Directional albedo of the published model, by quadrature away from the centres of the bells.
 
-use super::HairPoint;
+use super::HairView;
 use crate::lanes3;
 use crate::math::{FRAC_PI_2_LOW, half_atan2, sin_cos_half_turn};
 use crate::quadrature::GRADED;
@@ -30,24 +30,23 @@ pub(super) fn bell_area<B: Bell>(lo: f32, hi: f32, width: f32) -> f32 {
 
 /// Directional albedo of each lobe, linear RGB; 0 where `wo` is no direction.
 #[inline(always)]
-pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>) -> PerLobe<[L; 3]> {
-    let hair = &point.lobes;
+pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> PerLobe<[L; 3]> {
+    let hair = &view.lobes;
     let (r, tt, trt) = (lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt));
     // The azimuthal term of R and TRT-g, cos(phi / 2), has an area of 4.
     let four = L::splat(4.0);
-    let area =
-        [longitudinal::<B, L, C>(point, 0), longitudinal::<B, L, C>(point, 1), longitudinal::<B, L, C>(point, 2)];
+    let area = [longitudinal::<B, L, C>(view, 0), longitudinal::<B, L, C>(view, 1), longitudinal::<B, L, C>(view, 2)];
     PerLobe([
-        lobe(point, 0, area[0] * four, r),
-        lobe(point, 1, area[1] * hair.azimuth_area[0].lanes(), tt),
-        lobe(point, 2, area[2] * four, trt),
-        lobe(point, 3, area[2] * hair.azimuth_area[1].lanes(), trt),
+        lobe(view, 0, area[0] * four, r),
+        lobe(view, 1, area[1] * hair.azimuth_area[0].lanes(), tt),
+        lobe(view, 2, area[2] * four, trt),
+        lobe(view, 3, area[2] * hair.azimuth_area[1].lanes(), trt),
     ])
 }
 
 #[inline(always)]
-fn lobe<L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usize, area: L, color: [L; 3]) -> [L; 3] {
-    let hair = &point.lobes;
+fn lobe<L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize, area: L, color: [L; 3]) -> [L; 3] {
+    let hair = &view.lobes;
     let (zero, most) = (L::splat(0.0), L::splat(f32::MAX));
     // The second operand wins over NaN.
     let albedo = (area * hair.strength[l].lanes()).max(zero);
@@ -59,16 +58,16 @@ fn lobe<L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usize, area: L, colo
 /// From the centre of the bell towards either pole, told by distances in `theta_h` from it and from both poles: no digit of a
 /// small one is lost.
 #[inline(always)]
-fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(point: &HairPoint<C>, l: usize) -> L {
+fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize) -> L {
     let c = L::splat;
-    let (sin, cos) = (point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes());
+    let (sin, cos) = (view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes());
     // Mirrored, so that wo is above the normal plane, and the tilt with it. From the lower pole to the centre, and from the
     // upper one.
-    let tilt = point.lobes.alpha[l].lanes().times_sign(sin);
+    let tilt = view.lobes.alpha[l].lanes().times_sign(sin);
     let to_pole = half_atan2(cos, sin.abs(), c(0.5));
     let lower = tilt + to_pole;
     let upper = ((c(FRAC_PI_2) - tilt) + c(FRAC_PI_2_LOW)) - to_pole;
-    let beta = [point.lobes.beta[l].lanes(), point.lobes.inv_beta[l].lanes()];
+    let beta = [view.lobes.beta[l].lanes(), view.lobes.inv_beta[l].lanes()];
     let down = towards::<B, L>(beta, lower, upper, [-sin.abs(), cos]);
     let up = towards::<B, L>(beta, upper, lower, [sin.abs(), cos]);
     // dtheta_i = 2 dtheta_h.

@@ -1,6 +1,6 @@
 //! Angles of a direction relative to the gather point, and the lobe terms there.
 
-use super::{GRAZING, HairPoint};
+use super::{GRAZING, HairView};
 use crate::lanes3;
 use crate::math::{FRAC_PI_2_LOW, atan_unit, half_atan2};
 use crate::{Bell, Broadcast, Lanes, Vec3x};
@@ -39,14 +39,14 @@ pub(crate) struct LobeTerms<L> {
 impl<L: Lanes> Angles<L> {
     /// The angles of `wi` relative to a gather point, and the mask of lanes where `wi` is a direction off the axis.
     #[inline(always)]
-    pub(crate) fn from_direction<C: Broadcast<L>>(point: &HairPoint<C>, wi: Vec3x<L>) -> (Self, L::Mask) {
+    pub(crate) fn from_direction<C: Broadcast<L>>(view: &HairView<C>, wi: Vec3x<L>) -> (Self, L::Mask) {
         let c = L::splat;
         let one = c(1.0);
         let plane_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
         let cos_theta_i = plane_sq.sqrt();
         // Azimuth relative to wo, folded: tau is the tangent of half of |phi| or of pi - |phi|, at most 1.
         // R and TRT-g vanish with it at phi = pi: it takes the digits of wo as they are, and a sum that does not cancel.
-        let [v_o, w_o, cos_o] = lanes3(&point.plane_o);
+        let [v_o, w_o, cos_o] = lanes3(&view.plane_o);
         let dot = wi.y.mul_add(v_o, wi.z * w_o);
         let cross = L::difference_of_products(wi.z, v_o, wi.y, w_o).abs();
         let reach = cos_theta_i * cos_o;
@@ -98,14 +98,14 @@ impl<L: Lanes> Angles<L> {
 
     /// The lobe terms at these angles.
     #[inline(always)]
-    pub(crate) fn eval_lobes<B: Bell, C: Broadcast<L>>(&self, point: &HairPoint<C>) -> LobeTerms<L> {
+    pub(crate) fn eval_lobes<B: Bell, C: Broadcast<L>>(&self, view: &HairView<C>) -> LobeTerms<L> {
         let c = L::splat;
         let one = c(1.0);
         // Distances from the centres of the bells in widths, squared.
-        let hair = &point.lobes;
-        let x_r = (self.half_theta_i + point.shift[0].lanes()) * hair.inv_beta[0].lanes();
-        let x_tt = (self.half_theta_i + point.shift[1].lanes()) * hair.inv_beta[1].lanes();
-        let x_trt = (self.half_theta_i + point.shift[2].lanes()) * hair.inv_beta[2].lanes();
+        let hair = &view.lobes;
+        let x_r = (self.half_theta_i + view.shift[0].lanes()) * hair.inv_beta[0].lanes();
+        let x_tt = (self.half_theta_i + view.shift[1].lanes()) * hair.inv_beta[1].lanes();
+        let x_trt = (self.half_theta_i + view.shift[2].lanes()) * hair.inv_beta[2].lanes();
         let y_tt = self.half_back * hair.inv_half_gamma[0].lanes();
         let y_g = (self.half_phi - hair.half_phi_g.lanes()) * hair.inv_half_gamma[1].lanes();
         let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);
@@ -121,8 +121,8 @@ impl<L: Lanes> Angles<L> {
         // Cos^2 theta_d is the squared length of the mean of the two directions in the meridian plane: exact where both
         // are near opposite poles, where 1 + cos cos + sin sin cancels.
         let half = c(0.5);
-        let mean_u = self.sin_theta_i.mul_add(half, point.half_sin_theta_o.lanes());
-        let mean_c = self.cos_theta_i.mul_add(half, point.half_cos_theta_o.lanes());
+        let mean_u = self.sin_theta_i.mul_add(half, view.half_sin_theta_o.lanes());
+        let mean_c = self.cos_theta_i.mul_add(half, view.half_cos_theta_o.lanes());
         let cos_sq_theta_d = mean_u.mul_add(mean_u, mean_c * mean_c);
         let inv_r = one / (d_r * cos_sq_theta_d);
         let cauchy_r = inv_r * cos_sq_theta_d;
@@ -153,8 +153,8 @@ pub(super) fn complement<L: Lanes>(angle: L) -> L {
 impl<L: Lanes> LobeTerms<L> {
     /// S before the final bound, linear RGB.
     #[inline(always)]
-    pub(crate) fn sum_lobes<C: Broadcast<L>>(&self, point: &HairPoint<C>) -> [L; 3] {
-        let hair = &point.lobes;
+    pub(crate) fn sum_lobes<C: Broadcast<L>>(&self, view: &HairView<C>) -> [L; 3] {
+        let hair = &view.lobes;
         let trt = self.value[2] * hair.strength[2].lanes();
         let secondary = self.value[3].mul_add(hair.strength[3].lanes(), trt);
         let (f_r, f_tt) = (self.value[0] * self.inv_cos_sq_theta_d, self.value[1] * self.inv_cos_sq_theta_d);

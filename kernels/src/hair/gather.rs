@@ -1,6 +1,6 @@
 //! Constants of the published sampler: per material, and per material and direction (section 3.3 of the paper).
 
-use super::point::{self, HairLobes, HairPoint, times};
+use super::view::{self, HairLobes, HairView, times};
 use crate::store4;
 use crate::truncated::TruncatedCauchy;
 use crate::{Bell, Broadcast, HairParams, Lanes, Lobe, LobeMask, Vec3x};
@@ -39,7 +39,7 @@ crate::lane_struct! {
     /// The constants of a gather point of the published model: those of its material, and those of `wo`.
     pub struct HairGather {
         /// The lobes as seen from `wo`.
-        pub point: (HairPoint<C>),
+        pub view: (HairView<C>),
         /// The longitude's truncated Cauchy: sine of the middle of its angles, to a common scale with the cosine.
         pub longitude_sin: [C; 4],
         /// Cosine of the middle.
@@ -137,11 +137,11 @@ fn longitude<L: Lanes, C: Broadcast<L>>(shift: L, beta: C) -> TruncatedCauchy<L>
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<L>) -> HairGather<L::Stored> {
     let c = L::splat;
     let (hair, sampler) = (&m.lobes, &m.sampler);
-    let point = point::prepare(hair, wo);
+    let view = view::prepare(hair, wo);
     let [r, tt, trt] = [
-        longitude::<L, C>(point.shift[0].lanes(), hair.beta[0]),
-        longitude::<L, C>(point.shift[1].lanes(), hair.beta[1]),
-        longitude::<L, C>(point.shift[2].lanes(), hair.beta[2]),
+        longitude::<L, C>(view.shift[0].lanes(), hair.beta[0]),
+        longitude::<L, C>(view.shift[1].lanes(), hair.beta[1]),
+        longitude::<L, C>(view.shift[2].lanes(), hair.beta[2]),
     ];
     let span = [r.span, tt.span, trt.span];
 
@@ -162,7 +162,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
         [density[0] * p[0].lanes(), density[1] * p[1].lanes(), density[2] * p[2].lanes(), density[3] * p[3].lanes()];
 
     HairGather {
-        point,
+        view,
         longitude_sin: store4([r.sin_mid, tt.sin_mid, trt.sin_mid, trt.sin_mid]),
         longitude_cos: store4([r.cos_mid, tt.cos_mid, trt.cos_mid, trt.cos_mid]),
         longitude_span: store4([span[0], span[1], span[2], span[2]]),
@@ -179,7 +179,7 @@ impl<C: Lanes> HairGather<C> {
         let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));
         let (p, bounds, _) = selection(times(self.sampler.selection, factor));
         Self {
-            point: self.point.restrict(lobes),
+            view: self.view.restrict(lobes),
             weight: times(self.density, p),
             sampler: HairSampler { selection: p, bounds, ..self.sampler },
             ..*self

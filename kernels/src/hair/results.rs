@@ -1,6 +1,6 @@
 //! Results for a direction and for a sample, from the lobe terms and the density.
 
-use super::{Angles, GRAZING, HairPoint, LobeTerms};
+use super::{Angles, GRAZING, HairView, LobeTerms};
 use crate::lanes3;
 use crate::model::{Drawn, Eval, LobeEval};
 use crate::{Broadcast, Lanes, PerLobe, Vec3x};
@@ -31,27 +31,27 @@ pub(crate) fn mixture<L: Lanes, C: Broadcast<L>>(lobes: [L; 4], weight: &[C; 4])
 /// Value and density at these angles, of the mixture's `density` times `cos theta_i`.
 #[inline(always)]
 pub(crate) fn evaluated<L: Lanes, C: Broadcast<L>>(
-    point: &HairPoint<C>,
+    view: &HairView<C>,
     angles: &Angles<L>,
     sound: L::Mask,
     terms: &LobeTerms<L>,
     density: L,
 ) -> Eval<L> {
     let limit = limit::<L>(sound);
-    Eval { value: min3(terms.sum_lobes(point), limit), pdf: (density * angles.inv_cos_theta_i).min(limit) }
+    Eval { value: min3(terms.sum_lobes(view), limit), pdf: (density * angles.inv_cos_theta_i).min(limit) }
 }
 
 /// Each lobe at these angles, of its own `density` times `cos theta_i`.
 #[inline(always)]
 pub(crate) fn per_lobe<L: Lanes, C: Broadcast<L>>(
-    point: &HairPoint<C>,
+    view: &HairView<C>,
     angles: &Angles<L>,
     sound: L::Mask,
     terms: &LobeTerms<L>,
     density: [L; 4],
 ) -> PerLobe<LobeEval<L>> {
     let limit = limit::<L>(sound);
-    let hair = &point.lobes;
+    let hair = &view.lobes;
     let colors = [lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt), lanes3(&hair.color_trt)];
     let zero = L::splat(0.0);
     let mut lobes = [LobeEval { value: zero, color: [zero; 3], pdf: zero }; 4];
@@ -71,7 +71,7 @@ pub(crate) fn per_lobe<L: Lanes, C: Broadcast<L>>(
 /// The sample `wi` of the lobe `choice`, of the mixture's `density` times `cos theta_i`.
 #[inline(always)]
 pub(crate) fn drawn<L: Lanes, C: Broadcast<L>>(
-    point: &HairPoint<C>,
+    view: &HairView<C>,
     wi: Vec3x<L>,
     choice: L::Index,
     angles: &Angles<L>,
@@ -81,7 +81,7 @@ pub(crate) fn drawn<L: Lanes, C: Broadcast<L>>(
     let cos = angles.cos_theta_i;
     let sound = L::and(L::splat(GRAZING).lt(cos), L::splat(LEAST_DENSITY).lt(density));
     let limit = limit::<L>(sound);
-    let value = min3(terms.sum_lobes(point), limit);
+    let value = min3(terms.sum_lobes(view), limit);
     // weight = S cos theta_i / pdf, and pdf = density / cos theta_i.
     let by = cos * cos / density;
     Drawn {

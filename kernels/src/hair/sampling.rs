@@ -1,7 +1,7 @@
 //! The published sampler: a lobe by its energy, then longitude and azimuth by inversion (section 3.2 of the paper).
 
 use super::angles::complement;
-use super::{Angles, HairGather, HairPoint};
+use super::{Angles, HairGather, HairView};
 use crate::lanes3;
 use crate::math::{atan_unit, sin_cos_absolute, sin_cos_twice};
 use crate::simd::pair::Pair;
@@ -14,7 +14,7 @@ use core::f32::consts::FRAC_PI_4;
 pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> (Vec3x<L>, L::Index, Angles<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let (point, hair, sampler) = (&gather.point, &gather.point.lobes, &gather.sampler);
+    let (view, hair, sampler) = (&gather.view, &gather.view.lobes, &gather.sampler);
     let choice = L::search(xi[0], lanes3(&sampler.bounds), 3);
     // The second operand wins over NaN: that of a number stays, and the sample has no inclination, or no density.
     let along = zero.max(one.min(xi[0].mul_add(zero, xi[1])));
@@ -27,10 +27,10 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
         span: Pair(C::look_up_three(&gather.longitude_span, choice), C::look_up_half(&sampler.azimuth_span, choice)),
     };
     let Pair(x, y) = both.invert(Pair(along, one - turn.across));
-    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&point.shift, choice));
+    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&view.shift, choice));
     let center = L::keep(L::is_index(choice, 3), hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
-    let (wi, angles) = turned(point, choice, half_theta_i, turn, psi);
+    let (wi, angles) = turned(view, choice, half_theta_i, turn, psi);
     (wi, choice, angles)
 }
 
@@ -60,7 +60,7 @@ impl<L: Lanes> Turn<L> {
 /// cosine folds it at one end, and `turned` turns it back at the other.
 #[inline(always)]
 pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
-    point: &HairPoint<C>,
+    view: &HairView<C>,
     choice: L::Index,
     half_theta_i: L,
     Turn { side, across }: Turn<L>,
@@ -96,8 +96,8 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     let cos_phi = L::negate(is_tt, cos_turn);
     // The length absorbs the distance of sine and cosine from the unit circle.
     let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;
-    let [v_o, w_o, cos_o] = lanes3(&point.plane_o);
-    let by = point.inv_plane_o.lanes();
+    let [v_o, w_o, cos_o] = lanes3(&view.plane_o);
+    let by = view.inv_plane_o.lanes();
     let by = by - by * off_unit;
     let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by * cos_theta_i;
     let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by * cos_theta_i;

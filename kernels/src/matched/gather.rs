@@ -5,8 +5,8 @@ use super::bands::bands;
 use super::chain::chain;
 use super::material::{MatchedMaterial, extent};
 use super::sides::Sides;
-use crate::hair::{prepare_point, selection, times};
-use crate::{Broadcast, HairPoint, LaneStruct, Lanes, Lobe, LobeMask, Scalar, Vec3x};
+use crate::hair::{prepare_view, selection, times};
+use crate::{Broadcast, HairView, LaneStruct, Lanes, Lobe, LobeMask, Scalar, Vec3x};
 use crate::{lanes3, lanes4, store3, store4};
 use wide::f32x8;
 
@@ -26,7 +26,7 @@ const LEAST_CHANNEL: f32 = 1e-18;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchedGather<C, const N: usize> {
     /// The lobes as seen from `wo`.
-    pub point: HairPoint<C>,
+    pub view: HairView<C>,
     /// Origin of the integrals of each longitude.
     pub origin: [C; 4],
     /// The constant for W in each band; ascends to the band in the middle.
@@ -73,9 +73,9 @@ where
     let c = L::splat;
     let zero = c(0.0);
     let hair = &m.lobes;
-    let point = prepare_point(hair, wo);
-    let theta_o = [point.half_sin_theta_o.lanes(), point.half_cos_theta_o.lanes()];
-    let (shift, inv_beta) = (lanes3(&[point.shift[0], point.shift[1], point.shift[2]]), lanes3(&hair.inv_beta));
+    let view = prepare_view(hair, wo);
+    let theta_o = [view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes()];
+    let (shift, inv_beta) = (lanes3(&[view.shift[0], view.shift[1], view.shift[2]]), lanes3(&hair.inv_beta));
     let chain = chain::<B, L, P, K, N>(shift, inv_beta, theta_o);
     // The glints share the longitude of TRT.
     let [r, tt, trt] = chain.area;
@@ -114,7 +114,7 @@ where
     }
 
     MatchedGather {
-        point,
+        view,
         origin: shared4(chain.origin),
         height: chain.height,
         slope: chain.slope,
@@ -206,7 +206,7 @@ impl<C, const N: usize> MatchedGather<C, N> {
     {
         let one = L::splat(1.0);
         let azimuth_mass = [self.azimuth_mass[0].lanes(), self.azimuth_mass[1].lanes()];
-        let mut by_extent = extent::<B, L, C>(&self.point.lobes, azimuth_mass);
+        let mut by_extent = extent::<B, L, C>(&self.view.lobes, azimuth_mass);
         let mut by_area = by_extent;
         let mut l = 0;
         while l < 4 {
@@ -226,7 +226,7 @@ impl<C: Lanes, const N: usize> MatchedGather<C, N> {
         let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));
         let (p, bounds, inv_total) = selection(times(self.selection, factor));
         let weight = times(times(self.weight, factor), [inv_total; 4]);
-        Self { point: self.point.restrict(lobes), weight, selection: p, bounds, ..*self }
+        Self { view: self.view.restrict(lobes), weight, selection: p, bounds, ..*self }
     }
 }
 
@@ -241,7 +241,7 @@ impl<const N: usize> MatchedGather<f32x8, N> {
     pub fn lane(&self, lane: usize) -> MatchedGather<f32, N> {
         let at = |x: f32x8| x.as_array()[lane];
         MatchedGather {
-            point: self.point.lane(lane),
+            view: self.view.lane(lane),
             origin: self.origin.map(at),
             height: self.height.map(at),
             slope: self.slope.map(at),
@@ -271,7 +271,7 @@ impl<C: Scalar, const N: usize> LaneStruct for MatchedGather<C, N> {
             };
         }
         MatchedGather {
-            point: HairPoint::pack(g.map(|g| &g.point)),
+            view: HairView::pack(g.map(|g| &g.view)),
             origin: n!(origin),
             height: n!(height),
             slope: n!(slope),

@@ -20,7 +20,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
 ) -> (Vec3x<L>, L::Index, Angles<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let (point, hair) = (&gather.point, &gather.point.lobes);
+    let (view, hair) = (&gather.view, &gather.view.lobes);
     let choice = L::search(xi[0], lanes3(&gather.bounds), 3);
 
     // Longitude: the number's share of the integral of M W, from the nearer pole. As a function of it the integral of M is the
@@ -52,13 +52,13 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let origin = Pair(C::look_up_three(&gather.origin, choice), C::look_up_half(&gather.azimuth_origin, choice));
     let Pair(x, y) = B::invert(origin, Pair(integral, share.mul_add(mass, from)));
     // NaN if any number is, or infinite. The second operand wins over it: the sample is on the pole, and discarded there.
-    let shift = (xi[0] + xi[1] + xi[2]).mul_add(zero, C::look_up_three(&point.shift, choice));
+    let shift = (xi[0] + xi[1] + xi[2]).mul_add(zero, C::look_up_three(&view.shift, choice));
     let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), shift);
     let half_theta_i = c(-FRAC_PI_4).max(half_theta_i.min(c(FRAC_PI_4)));
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
     let psi = zero.max(psi.min(c(FRAC_PI_2)));
-    let (wi, angles) = turned(point, choice, half_theta_i, turn, psi);
+    let (wi, angles) = turned(view, choice, half_theta_i, turn, psi);
     (wi, choice, angles)
 }
 

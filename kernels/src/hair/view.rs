@@ -39,7 +39,7 @@ crate::lane_struct! {
 
 crate::lane_struct! {
     /// View terms of a gather point, which every sampler reads: the lobes of its material, and `wo`.
-    pub struct HairPoint {
+    pub struct HairView {
         /// Half the sine of `theta_o`.
         pub half_sin_theta_o: C,
         /// Half its cosine.
@@ -86,7 +86,7 @@ impl HairLobes<f32> {
 
 /// The lobes of a material seen from `wo`.
 #[inline(always)]
-pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x<L>) -> HairPoint<L::Stored> {
+pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x<L>) -> HairView<L::Stored> {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     // The digits of a wo of about unit length are kept as they are; any other is scaled by its largest component, so
@@ -120,7 +120,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
         half_theta_o - lobes.alpha[2].lanes(),
     ];
 
-    HairPoint {
+    HairView {
         half_sin_theta_o: (x * half_inv_len).store(),
         half_cos_theta_o: (plane * half_inv_len).store(),
         plane_o: store3([
@@ -136,7 +136,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
     }
 }
 
-impl<C: Lanes> HairPoint<C> {
+impl<C: Lanes> HairView<C> {
     /// The gather point with only some of its lobes.
     #[inline(always)]
     pub(crate) fn restrict(&self, lobes: LobeMask) -> Self {
