@@ -1,12 +1,12 @@
 //! Lower-variance samplers of the published model, which follow its bells and its angular factor W.
 
+mod band_cdf;
 mod bands;
 mod bell;
-mod chain;
 mod gather;
+mod hemispheres;
 mod material;
 mod sampling;
-mod sides;
 
 pub use bell::MatchedBell;
 pub use gather::MatchedGather;

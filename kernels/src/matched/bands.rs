@@ -1,6 +1,6 @@
 //! Bands of inclination, in each of which W is approximated by a constant.
 
-use super::sides::Sides;
+use super::hemispheres::Hemispheres;
 use crate::Lanes;
 
 /// A band, and the one as far on the other side of the normal plane.
@@ -79,7 +79,7 @@ const fn cosine_of(sine: f64) -> f64 {
 impl Band {
     /// `cos^2 theta_d` in the middle of the band, below the normal plane and above it: W is `cos_sq_theta_i` over it.
     #[inline(always)]
-    pub(super) fn cos_sq_theta_d<L: Lanes, P: Sides<L, K>, const K: usize>(
+    pub(super) fn cos_sq_theta_d<L: Lanes, P: Hemispheres<L, K>, const K: usize>(
         &self,
         [half_sin_theta_o, half_cos_theta_o]: [L; 2],
     ) -> P {

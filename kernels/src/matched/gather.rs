@@ -1,10 +1,10 @@
 //! Constants of a matched sampler per material and direction.
 
 use super::MatchedBell;
+use super::band_cdf::integrate_bands;
 use super::bands::bands;
-use super::chain::chain;
+use super::hemispheres::Hemispheres;
 use super::material::{MatchedMaterial, extent};
-use super::sides::Sides;
 use crate::hair::{prepare_view, selection, times};
 use crate::{Broadcast, HairView, LaneStruct, Lanes, Lobe, LobeMask, Scalar, Vec3x};
 use crate::{lanes3, lanes4, store3, store4};
@@ -68,7 +68,7 @@ where
     B: MatchedBell,
     L: Lanes,
     C: Broadcast<L>,
-    P: Sides<L, K>,
+    P: Hemispheres<L, K>,
 {
     let c = L::splat;
     let zero = c(0.0);
@@ -76,9 +76,9 @@ where
     let view = prepare_view(hair, wo);
     let theta_o = [view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes()];
     let (shift, inv_beta) = (lanes3(&[view.shift[0], view.shift[1], view.shift[2]]), lanes3(&hair.inv_beta));
-    let chain = chain::<B, L, P, K, N>(shift, inv_beta, theta_o);
+    let cdf = integrate_bands::<B, L, P, K, N>(shift, inv_beta, theta_o);
     // The glints share the longitude of TRT.
-    let [r, tt, trt] = chain.area;
+    let [r, tt, trt] = cdf.area;
     let total = [r, tt, trt, trt];
 
     // To the scale of the largest area, which may be next to nothing where all lobes lie off the sphere.
@@ -115,12 +115,12 @@ where
 
     MatchedGather {
         view,
-        origin: shared4(chain.origin),
-        height: chain.height,
-        slope: chain.slope,
-        offset: chain.offset,
-        offset_above: chain.offset_above,
-        below: shared4(chain.below),
+        origin: shared4(cdf.origin),
+        height: cdf.height,
+        slope: cdf.slope,
+        offset: cdf.offset,
+        offset_above: cdf.offset_above,
+        below: shared4(cdf.below),
         area: store4(total),
         weight: store4(weight),
         scale: scale.store(),

@@ -35,9 +35,9 @@ pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(hair: &HairLobes
     // dtheta_i is two widths for each of x; the azimuth of R and TRT-g has an area of 4, and bells have two sides.
     let unit = L::splat(2.0 * B::UNIT);
     let [r, tt, trt] = [hair.beta[0].lanes() * unit, hair.beta[1].lanes() * unit, hair.beta[2].lanes() * unit];
-    let sides = L::splat(4.0 * B::UNIT);
-    let azimuth_tt = hair.half_gamma[0].lanes() * azimuth_mass[0] * sides;
-    let azimuth_g = hair.half_gamma[1].lanes() * azimuth_mass[1] * sides;
+    let both_sides = L::splat(4.0 * B::UNIT);
+    let azimuth_tt = hair.half_gamma[0].lanes() * azimuth_mass[0] * both_sides;
+    let azimuth_g = hair.half_gamma[1].lanes() * azimuth_mass[1] * both_sides;
     let four = L::splat(4.0);
     [r * four, tt * azimuth_tt, trt * four, trt * azimuth_g]
 }
@@ -50,9 +50,9 @@ impl MatchedMaterial<f32> {
         let lobes = HairLobes::of(bell, params);
         let phi_g = params.desc().phi_g;
         let [inv_gamma_tt, inv_gamma_g] = lobes.inv_half_gamma.map(|inv| 0.5 * inv);
-        let sides = [(0.0, PI * inv_gamma_tt), (-phi_g * inv_gamma_g, (PI - phi_g) * inv_gamma_g)];
-        let azimuth_origin = sides.map(|(lo, hi)| B::origin(lo, hi));
-        let from_to = |i: usize| [sides[i].0, sides[i].1].map(|x| B::integral(azimuth_origin[i], x));
+        let ranges = [(0.0, PI * inv_gamma_tt), (-phi_g * inv_gamma_g, (PI - phi_g) * inv_gamma_g)];
+        let azimuth_origin = ranges.map(|(lo, hi)| B::origin(lo, hi));
+        let from_to = |i: usize| [ranges[i].0, ranges[i].1].map(|x| B::integral(azimuth_origin[i], x));
         let [tt, glint] = [from_to(0), from_to(1)];
         // Integrals ascend but for their rounding.
         let azimuth_mass = [tt, glint].map(|[from, to]| 0.0_f32.max(to - from));

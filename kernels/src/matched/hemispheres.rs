@@ -1,4 +1,4 @@
-//! Longitudes of the three lobes on both sides of the normal plane, in lanes.
+//! Longitudes of the three lobes in both hemispheres, in lanes: below the normal plane and above it.
 
 use crate::Lanes;
 use crate::simd::pair::Pair;
@@ -6,16 +6,16 @@ use crate::simd::unfused::Unfused;
 use wide::f32x8;
 
 /// Numbers of lobes below the normal plane and above it: `K` of these are those of R, TT and TRT.
-pub(super) trait Sides<L, const K: usize>: Lanes {
-    /// The same for all lobes, on both sides.
+pub(super) trait Hemispheres<L, const K: usize>: Lanes {
+    /// The same for all lobes, in both hemispheres.
     fn of(x: L) -> Self;
-    /// A number each for R, TT and TRT, the same on both sides.
+    /// One number each for R, TT and TRT, the same in both hemispheres.
     fn of_lobes(x: [L; 3]) -> [Self; K];
     /// `-x` below, `x` above.
     fn outwards(x: f32) -> Self;
     /// As it is below, negative above.
     fn negate_above(self) -> Self;
-    /// The other side's.
+    /// The hemispheres exchanged.
     fn swapped(self) -> Self;
     /// Below and above, of what is the same for all lobes.
     fn apart(self) -> [L; 2];
@@ -24,7 +24,7 @@ pub(super) trait Sides<L, const K: usize>: Lanes {
 }
 
 /// Packets: a lobe at a time.
-impl<L: Lanes> Sides<L, 3> for Pair<L> {
+impl<L: Lanes> Hemispheres<L, 3> for Pair<L> {
     #[inline(always)]
     fn of(x: L) -> Self {
         Self(x, x)
@@ -57,7 +57,7 @@ impl<L: Lanes> Sides<L, 3> for Pair<L> {
 
 /// One gather point: lanes 0 to 2 are the lobes below, 4 to 6 those above. One lane would do each after the other, and gives
 /// the same bits: these lanes do not fuse either.
-impl Sides<f32, 1> for Unfused {
+impl Hemispheres<f32, 1> for Unfused {
     #[inline(always)]
     fn of(x: f32) -> Self {
         <Self as Lanes>::splat(x)
@@ -72,7 +72,7 @@ impl Sides<f32, 1> for Unfused {
     }
     #[inline(always)]
     fn negate_above(self) -> Self {
-        self.times_sign(<Self as Sides<f32, 1>>::outwards(-1.0))
+        self.times_sign(<Self as Hemispheres<f32, 1>>::outwards(-1.0))
     }
     #[inline(always)]
     fn swapped(self) -> Self {

@@ -3,7 +3,7 @@
 use super::MatchedBell;
 use super::bands::bands;
 use super::gather::shared4;
-use super::sides::Sides;
+use super::hemispheres::Hemispheres;
 use crate::Lanes;
 use core::f32::consts::FRAC_PI_4;
 
@@ -24,7 +24,7 @@ impl<P: Lanes> Longitude<P> {
     #[inline(always)]
     fn at_poles<B: MatchedBell, L, const K: usize>(shift: P, inv_beta: P) -> Self
     where
-        P: Sides<L, K>,
+        P: Hemispheres<L, K>,
     {
         let (none, quarter) = (P::splat(0.0), P::splat(FRAC_PI_4));
         let origin = B::origin((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
@@ -32,11 +32,11 @@ impl<P: Lanes> Longitude<P> {
         Self { integral: this.integral_to::<B, L, K>(FRAC_PI_4), ..this }
     }
 
-    /// The integrals up to half an inclination on either side.
+    /// The integrals up to half an inclination in either hemisphere.
     #[inline(always)]
     fn integral_to<B: MatchedBell, L, const K: usize>(&self, half_theta_i: f32) -> P
     where
-        P: Sides<L, K>,
+        P: Hemispheres<L, K>,
     {
         B::integral(self.origin, (self.shift + P::outwards(half_theta_i)) * self.inv_beta).negate_above()
     }
@@ -45,7 +45,7 @@ impl<P: Lanes> Longitude<P> {
     #[inline(always)]
     fn pass<B: MatchedBell, L, const K: usize>(&mut self, half_theta_i: f32, height: P, minus_slope: P) -> P
     where
-        P: Sides<L, K>,
+        P: Hemispheres<L, K>,
     {
         let offset = self.offset(minus_slope);
         let next = self.integral_to::<B, L, K>(half_theta_i);
@@ -64,7 +64,7 @@ impl<P: Lanes> Longitude<P> {
     #[inline(always)]
     fn join<L, const K: usize>(&self, height: P) -> [P; 2]
     where
-        P: Sides<L, K>,
+        P: Hemispheres<L, K>,
     {
         let middle = (self.integral + self.integral.swapped()).abs() * height;
         [middle.mul_add(P::splat(0.5), self.area), (self.area + self.area.swapped()) + middle]
@@ -82,8 +82,8 @@ macro_rules! for_each {
     };
 }
 
-/// Constants of the bands in [`MatchedGather`]; arrays of three are R, TT and TRT.
-pub(super) struct Chain<L: Lanes, const N: usize> {
+/// Cdf of the longitudes over the bands, as [`MatchedGather`] has it; arrays of three are R, TT and TRT.
+pub(super) struct BandCdf<L: Lanes, const N: usize> {
     pub(super) origin: [L; 3],
     pub(super) height: [L::Stored; N],
     pub(super) slope: [L::Stored; N],
@@ -95,11 +95,11 @@ pub(super) struct Chain<L: Lanes, const N: usize> {
 
 /// Integrates over all bands, from both poles to the middle.
 #[inline(always)]
-pub(super) fn chain<B: MatchedBell, L: Lanes, P: Sides<L, K>, const K: usize, const N: usize>(
+pub(super) fn integrate_bands<B: MatchedBell, L: Lanes, P: Hemispheres<L, K>, const K: usize, const N: usize>(
     shift: [L; 3],
     inv_beta: [L; 3],
     theta_o: [L; 2],
-) -> Chain<L, N> {
+) -> BandCdf<L, N> {
     let none = L::splat(0.0);
     let (shift, inv_beta) = (P::of_lobes(shift), P::of_lobes(inv_beta));
     let mut lobes = [Longitude::at_poles::<B, L, K>(shift[0], inv_beta[0]); K];
@@ -111,7 +111,7 @@ pub(super) fn chain<B: MatchedBell, L: Lanes, P: Sides<L, K>, const K: usize, co
         of_lobes[k] = lobes[k].origin;
     });
     let [origin, _] = P::lobes_apart(of_lobes);
-    let mut chain = Chain {
+    let mut cdf = BandCdf {
         origin,
         height: [none.store(); N],
         slope: [none.store(); N],
@@ -132,16 +132,16 @@ pub(super) fn chain<B: MatchedBell, L: Lanes, P: Sides<L, K>, const K: usize, co
         });
         for_each!(above < 2, {
             let at = if above == 0 { j } else { N - 1 - j };
-            chain.height[at] = height.apart()[above].store();
-            chain.slope[at] = minus_slope.abs().apart()[above].store();
-            chain.offset[at] = shared4(P::lobes_apart(of_lobes)[above]);
+            cdf.height[at] = height.apart()[above].store();
+            cdf.slope[at] = minus_slope.abs().apart()[above].store();
+            cdf.offset[at] = shared4(P::lobes_apart(of_lobes)[above]);
         });
     });
     let cos_sq: P = const { bands(N) }[N / 2].cos_sq_theta_d(theta_o);
     let height = height.max(height.swapped()).max(P::splat(1.0) / cos_sq);
     let slope = minus_slope.max(minus_slope.swapped()).abs().min(cos_sq);
     let minus_slope = slope.times_sign(P::splat(-1.0));
-    (chain.height[N / 2], chain.slope[N / 2]) = (height.apart()[0].store(), slope.apart()[0].store());
+    (cdf.height[N / 2], cdf.slope[N / 2]) = (height.apart()[0].store(), slope.apart()[0].store());
     let mut area = of_lobes;
     let mut below = of_lobes;
     for_each!(k < K, {
@@ -149,7 +149,7 @@ pub(super) fn chain<B: MatchedBell, L: Lanes, P: Sides<L, K>, const K: usize, co
         [below[k], area[k]] = lobes[k].join::<L, K>(height);
     });
     let [offset, offset_above] = P::lobes_apart(of_lobes);
-    (chain.offset[N / 2], chain.offset_above) = (shared4(offset), shared4(offset_above));
-    ([chain.below, _], [chain.area, _]) = (P::lobes_apart(below), P::lobes_apart(area));
-    chain
+    (cdf.offset[N / 2], cdf.offset_above) = (shared4(offset), shared4(offset_above));
+    ([cdf.below, _], [cdf.area, _]) = (P::lobes_apart(below), P::lobes_apart(area));
+    cdf
 }
