@@ -12,8 +12,8 @@ pub use view::{HairLobes, HairView};
 
 pub(crate) use angles::{Angles, LobeTerms};
 pub(crate) use gather::selection;
-pub(crate) use results::{drawn, evaluated, mixture, per_lobe};
-pub(crate) use sampling::{Turn, turned};
+pub(crate) use results::{finish_eval, finish_lobes, finish_sample, mix_densities};
+pub(crate) use sampling::{FoldedXi, direction_from_angles};
 pub(crate) use view::{prepare as prepare_view, times};
 
 use crate::model::{Drawn, Eval, Hit, LobeEval};
@@ -60,7 +60,7 @@ impl<B: Bell> Model for Hair<B> {
     fn eval<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> Eval<L> {
         let (angles, sound) = Angles::from_direction(&gather.view, wi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
-        evaluated(&gather.view, &angles, sound, &terms, mixture(terms.density, &gather.weight))
+        finish_eval(&gather.view, &angles, sound, &terms, mix_densities(terms.density, &gather.weight))
     }
 
     #[inline(always)]
@@ -73,14 +73,14 @@ impl<B: Bell> Model for Hair<B> {
             terms.density[2] * gather.density[2].lanes(),
             terms.density[3] * gather.density[3].lanes(),
         ];
-        per_lobe(&gather.view, &angles, sound, &terms, density)
+        finish_lobes(&gather.view, &angles, sound, &terms, density)
     }
 
     #[inline(always)]
     fn sample<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> Drawn<L> {
         let (wi, choice, angles) = sampling::draw(gather, xi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
-        drawn(&gather.view, wi, choice, &angles, &terms, mixture(terms.density, &gather.weight))
+        finish_sample(&gather.view, wi, choice, &angles, &terms, mix_densities(terms.density, &gather.weight))
     }
 
     #[inline(always)]

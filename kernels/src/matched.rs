@@ -12,7 +12,7 @@ pub use bell::MatchedBell;
 pub use gather::MatchedGather;
 pub use material::MatchedMaterial;
 
-use crate::hair::{Angles, LobeTerms, albedo, drawn, evaluated, mixture, per_lobe, times};
+use crate::hair::{Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities, times};
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::simd::pair::Pair;
 use crate::simd::unfused::Unfused;
@@ -113,7 +113,7 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
     fn eval<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> Eval<L> {
         let (angles, sound) = Angles::from_direction(&gather.view, wi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
-        evaluated(&gather.view, &angles, sound, &terms, density(gather, &angles, &terms))
+        finish_eval(&gather.view, &angles, sound, &terms, density(gather, &angles, &terms))
     }
 
     #[inline(always)]
@@ -123,14 +123,14 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
         let height = gather.height::<L>(angles.sin_theta_i);
         let [by_area, by_extent] = gather.lone_density::<B, L>();
         let density = times(times(times(terms.value, [height; 4]), by_area), by_extent);
-        per_lobe(&gather.view, &angles, sound, &terms, density)
+        finish_lobes(&gather.view, &angles, sound, &terms, density)
     }
 
     #[inline(always)]
     fn sample<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, xi: [L; 3]) -> Drawn<L> {
         let (wi, choice, angles) = sampling::draw::<B, L, C, BANDS>(gather, xi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
-        drawn(&gather.view, wi, choice, &angles, &terms, density(gather, &angles, &terms))
+        finish_sample(&gather.view, wi, choice, &angles, &terms, density(gather, &angles, &terms))
     }
 
     #[inline(always)]
@@ -146,5 +146,5 @@ fn density<L: Lanes, C: Broadcast<L>, const N: usize>(
     angles: &Angles<L>,
     terms: &LobeTerms<L>,
 ) -> L {
-    mixture(terms.value, &gather.weight) * (gather.height(angles.sin_theta_i) * gather.scale.lanes())
+    mix_densities(terms.value, &gather.weight) * (gather.height(angles.sin_theta_i) * gather.scale.lanes())
 }

@@ -87,7 +87,7 @@ pub(crate) fn mix<T: Real>(lobes: &PerLobe<LobeAt<T>>, probabilities: &PerLobe<T
 }
 
 /// The sample of `lobe` at this inclination and azimuth, with the value and density of [`mix`].
-pub(crate) fn drawn<T: Real>(
+pub(crate) fn finish_sample<T: Real>(
     lobe: Lobe,
     [sin_theta_i, cos_theta_i]: [T; 2],
     phi_i: T,

@@ -27,7 +27,7 @@ impl Camera {
 
     /// The camera after a turn about the vertical axis through a point, in degrees: from +z towards +x.
     #[must_use]
-    pub fn turned(&self, about: Vec3, degrees: f32) -> Self {
+    pub fn orbit(&self, about: Vec3, degrees: f32) -> Self {
         let turn = |v: Vec3| Quat::from_rotation_y(degrees.to_radians()) * v;
         let eye = about + turn(self.eye - about);
         Self { eye, forward: turn(self.forward), right: turn(self.right), up: turn(self.up), ..*self }
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn a_turned_camera_looks_from_the_side() {
         let camera = Camera::new(Vec3::new(1.0, 2.0, 13.0), Vec3::new(1.0, 2.0, 3.0), 40.0, [64, 48]);
-        let ray = camera.turned(Vec3::new(1.0, 2.0, 3.0), 90.0).ray(32.0, 24.0);
+        let ray = camera.orbit(Vec3::new(1.0, 2.0, 3.0), 90.0).ray(32.0, 24.0);
         assert!((ray.origin - Vec3::new(11.0, 2.0, 3.0)).length() < 1e-5, "{}", ray.origin);
         assert!((ray.direction - Vec3::NEG_X).length() < 1e-6, "{}", ray.direction);
     }

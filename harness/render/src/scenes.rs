@@ -157,7 +157,7 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         Name::FurnaceIso => Camera::new(at(6.0, 14.0, 26.0), centre, 30.0, size),
         Name::AreaHead | Name::Env | Name::Head => Camera::new(at(0.0, 6.0, 68.0), at(0.0, -2.0, 0.0), 36.0, size),
     };
-    let camera = camera.turned(centre, turn);
+    let camera = camera.orbit(centre, turn);
     let on_head = !imported && matches!(name.kind(), Kind::Straight | Kind::Wavy);
     let head = on_head.then_some(Head { radii: 0.995 * HEAD, albedo: Vec3::new(0.45, 0.32, 0.25) });
     Ok(Scene { strands, tree, hair, head, rectangles, sky, camera, gap: 1e-3 * scale })

@@ -164,7 +164,7 @@ impl Exact<'_> {
         let error = worst(slack);
         let bound = quantity.bound(&self.accuracy);
         let unexplained = error > bound && {
-            let (low, high) = (truth(turned(wi, -ROUNDING)), truth(turned(wi, ROUNDING)));
+            let (low, high) = (truth(rotate(wi, -ROUNDING)), truth(rotate(wi, ROUNDING)));
             worst(core::array::from_fn(|c| slack[c] + (low[c] - want[c]).abs().max((high[c] - want[c]).abs()))) > bound
         };
         Measured { error, unexplained, at: self.place }
@@ -221,7 +221,7 @@ fn azimuth([_, v, w]: [f64; 3]) -> f64 {
 }
 
 /// The direction turned about the fibre by `angle` rad.
-fn turned([u, v, w]: [f64; 3], angle: f64) -> [f64; 3] {
+fn rotate([u, v, w]: [f64; 3], angle: f64) -> [f64; 3] {
     let (sin, cos) = angle.sin_cos();
     [u, v * cos - w * sin, v * sin + w * cos]
 }

@@ -22,7 +22,7 @@ fn min3<L: Lanes>(x: [L; 3], limit: L) -> [L; 3] {
 
 /// The density of a mixture of lobes, from the shape of each lobe's density and its weight.
 #[inline(always)]
-pub(crate) fn mixture<L: Lanes, C: Broadcast<L>>(lobes: [L; 4], weight: &[C; 4]) -> L {
+pub(crate) fn mix_densities<L: Lanes, C: Broadcast<L>>(lobes: [L; 4], weight: &[C; 4]) -> L {
     let back = lobes[1].mul_add(weight[1].lanes(), lobes[3] * weight[3].lanes());
     let d = lobes[2].mul_add(weight[2].lanes(), back);
     lobes[0].mul_add(weight[0].lanes(), d)
@@ -30,7 +30,7 @@ pub(crate) fn mixture<L: Lanes, C: Broadcast<L>>(lobes: [L; 4], weight: &[C; 4])
 
 /// Value and density at these angles, of the mixture's `density` times `cos theta_i`.
 #[inline(always)]
-pub(crate) fn evaluated<L: Lanes, C: Broadcast<L>>(
+pub(crate) fn finish_eval<L: Lanes, C: Broadcast<L>>(
     view: &HairView<C>,
     angles: &Angles<L>,
     sound: L::Mask,
@@ -43,7 +43,7 @@ pub(crate) fn evaluated<L: Lanes, C: Broadcast<L>>(
 
 /// Each lobe at these angles, of its own `density` times `cos theta_i`.
 #[inline(always)]
-pub(crate) fn per_lobe<L: Lanes, C: Broadcast<L>>(
+pub(crate) fn finish_lobes<L: Lanes, C: Broadcast<L>>(
     view: &HairView<C>,
     angles: &Angles<L>,
     sound: L::Mask,
@@ -70,7 +70,7 @@ pub(crate) fn per_lobe<L: Lanes, C: Broadcast<L>>(
 
 /// The sample `wi` of the lobe `choice`, of the mixture's `density` times `cos theta_i`.
 #[inline(always)]
-pub(crate) fn drawn<L: Lanes, C: Broadcast<L>>(
+pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
     view: &HairView<C>,
     wi: Vec3x<L>,
     choice: L::Index,

@@ -20,30 +20,30 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     let along = zero.max(one.min(xi[0].mul_add(zero, xi[1])));
 
     // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Interleaved with the azimuth.
-    let turn = Turn::of(xi[2]);
+    let folded = FoldedXi::of(xi[2]);
     let both = TruncatedCauchy {
         sin_mid: Pair(C::look_up_three(&gather.longitude_sin, choice), C::look_up_half(&sampler.azimuth_sin, choice)),
         cos_mid: Pair(C::look_up_three(&gather.longitude_cos, choice), C::look_up_half(&sampler.azimuth_cos, choice)),
         span: Pair(C::look_up_three(&gather.longitude_span, choice), C::look_up_half(&sampler.azimuth_span, choice)),
     };
-    let Pair(x, y) = both.invert(Pair(along, one - turn.across));
+    let Pair(x, y) = both.invert(Pair(along, one - folded.across));
     let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&view.shift, choice));
     let center = L::keep(L::is_index(choice, 3), hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
-    let (wi, angles) = turned(view, choice, half_theta_i, turn, psi);
+    let (wi, angles) = direction_from_angles(view, choice, half_theta_i, folded, psi);
     (wi, choice, angles)
 }
 
 /// The number for the azimuth, folded about its middle.
 #[derive(Clone, Copy)]
-pub(crate) struct Turn<L> {
+pub(crate) struct FoldedXi<L> {
     /// Its sign is the side.
     side: L,
     /// Share of a side, from the middle of `xi_phi`.
     pub(crate) across: L,
 }
 
-impl<L: Lanes> Turn<L> {
+impl<L: Lanes> FoldedXi<L> {
     /// Of a number in `[0, 1]`, or NaN.
     #[inline(always)]
     pub(crate) fn of(xi: L) -> Self {
@@ -55,15 +55,15 @@ impl<L: Lanes> Turn<L> {
 /// The direction at half a longitude and at an azimuth, and its angles. Angles that keep their digits in the direction are
 /// reused, not recomputed from it.
 ///
-/// The azimuth is on the side of `turn`. `psi` is half of `|phi|` for the glints and half of `pi - |phi|` for TT; R and TRT-g
-/// take it from `turn` alone. Where bells are narrow, rounding may take it a little out of `[0, pi/2]`: the magnitude of its
-/// cosine folds it at one end, and `turned` turns it back at the other.
+/// The azimuth is on the side of `folded`. `psi` is half of `|phi|` for the glints and half of `pi - |phi|` for TT; R and TRT-g
+/// take it from `folded` alone. Where bells are narrow, rounding may take it a little out of `[0, pi/2]`: the magnitude of its
+/// cosine folds it at one end, and `rotation` turns it back at the other.
 #[inline(always)]
-pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
+pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     view: &HairView<C>,
     choice: L::Index,
     half_theta_i: L,
-    Turn { side, across }: Turn<L>,
+    FoldedXi { side, across }: FoldedXi<L>,
     psi: L,
 ) -> (Vec3x<L>, Angles<L>) {
     let c = L::splat;
@@ -90,10 +90,10 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
 
     // The direction, from the double angle; phi_i = phi_o - phi. The sides of R and TRT-g are the other way round.
     let sin_psi_sq = sin_psi * sin_psi;
-    let sin_turn = (sin_psi + sin_psi) * cos_psi;
-    let cos_turn = cos_psi.mul_sub(cos_psi, sin_psi_sq);
-    let sin_phi = sin_turn.times_sign(L::negate(is_bell, side));
-    let cos_phi = L::negate(is_tt, cos_turn);
+    let sin_twice = (sin_psi + sin_psi) * cos_psi;
+    let cos_twice = cos_psi.mul_sub(cos_psi, sin_psi_sq);
+    let sin_phi = sin_twice.times_sign(L::negate(is_bell, side));
+    let cos_phi = L::negate(is_tt, cos_twice);
     // The length absorbs the distance of sine and cosine from the unit circle.
     let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;
     let [v_o, w_o, cos_o] = lanes3(&view.plane_o);
@@ -106,15 +106,15 @@ pub(crate) fn turned<L: Lanes, C: Broadcast<L>>(
     let inv_reach = one / (cos_theta_i * cos_o);
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
-    let turned = cross.mul_sub(cos_turn.abs(), dot.abs() * sin_turn) * (inv_reach * c(0.5));
+    let rotation = cross.mul_sub(cos_twice.abs(), dot.abs() * sin_twice) * (inv_reach * c(0.5));
     let angles = Angles::from_parts(
         half_theta_i,
         sin_theta_i,
         cos_theta_i,
         inv_reach * cos_o,
-        [angle + turned, complement(angle) - turned],
+        [angle + rotation, complement(angle) - rotation],
         // On the seam the two may cancel to below 0.
-        [zero.max(turned.mul_add(large, small)), large],
+        [zero.max(rotation.mul_add(large, small)), large],
         zero.lt(dot),
     );
     (Vec3x::new(sin_theta_i, v, w), angles)

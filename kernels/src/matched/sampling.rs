@@ -1,7 +1,7 @@
 //! A direction from three uniform numbers.
 
 use super::{MatchedBell, MatchedGather};
-use crate::hair::{Angles, Turn, turned};
+use crate::hair::{Angles, FoldedXi, direction_from_angles};
 use crate::lanes3;
 use crate::simd::pair::Pair;
 use crate::{Broadcast, Lanes, Vec3x};
@@ -42,9 +42,9 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let integral = L::select(lower, integral, -integral).max(first + least).min(-(minus_last + least));
 
     // Azimuth: TT's runs from its centre outwards, that of a glint from phi = 0.
-    let turn = Turn::of(xi[2]);
+    let folded = FoldedXi::of(xi[2]);
     let is_glint = L::is_index(choice, 3);
-    let share = L::select(is_glint, one - turn.across, turn.across);
+    let share = L::select(is_glint, one - folded.across, folded.across);
     let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON / 2.0)));
     let (mass, from) = (C::look_up_half(&gather.azimuth_mass, choice), C::look_up_half(&gather.azimuth_from, choice));
 
@@ -58,7 +58,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
     let psi = zero.max(psi.min(c(FRAC_PI_2)));
-    let (wi, angles) = turned(view, choice, half_theta_i, turn, psi);
+    let (wi, angles) = direction_from_angles(view, choice, half_theta_i, folded, psi);
     (wi, choice, angles)
 }
 

@@ -6,7 +6,7 @@ mod cone;
 mod parameters;
 
 use super::params::Selection;
-use crate::reference::{Fixed, choose, discarded, drawn, fixed, inclination, mix, sum_to_one};
+use crate::reference::{Fixed, choose, discarded, finish_sample, fixed, inclination, mix, sum_to_one};
 use azimuth::Logistic;
 use cone::Cone;
 use hairis::textbook::{Drawn, LobeAt, Real, Reference};
@@ -231,7 +231,7 @@ impl<T: Real> ChiangReference<T> {
             return discarded();
         }
         let lobes = self.lobes_at(sin_theta_i, cos_theta_i, phi);
-        drawn(lobe, inclination, self.phi_o + phi, mix(&lobes, &self.probabilities))
+        finish_sample(lobe, inclination, self.phi_o + phi, mix(&lobes, &self.probabilities))
     }
 
     /// Sampled sine and cosine of `theta_i` of a lobe: d'Eon et al. 2013.

@@ -1,7 +1,7 @@
 //! Kajiya and Kay's model, formula by formula, in either precision.
 
 use super::params::{Form, KajiyaKayParams};
-use crate::reference::{Fixed, choose, discarded, drawn, fixed, inclination, mix, sum_to_one};
+use crate::reference::{Fixed, choose, discarded, finish_sample, fixed, inclination, mix, sum_to_one};
 use hairis::textbook::{Drawn, LobeAt, Real, Reference, integrate};
 use hairis::{Lobe, PerLobe};
 
@@ -207,7 +207,7 @@ impl<T: Real> KajiyaKayReference<T> {
         let (inclination, xi_phi) =
             if lobe == DIFFUSE { (from_disk(xi[1], rest), xi[2]) } else { self.sample_specular(xi[1], rest, xi[2]) };
         let phi_i = T::PI * (T::from_f64(2.0) * xi_phi - T::from_f64(1.0));
-        drawn(lobe, inclination, phi_i, mix(&self.lobes_at(inclination), &self.probabilities))
+        finish_sample(lobe, inclination, phi_i, mix(&self.lobes_at(inclination), &self.probabilities))
     }
 
     /// Sampled sine and cosine of `theta_i` of the highlight, and the remainder of `xi_sign` for the azimuth: the angle of
