@@ -19,7 +19,7 @@ use crate::subject::values_json;
 use core::fmt;
 use hairis::ParamError;
 use hairis_variants::{Accuracy, ModelId};
-use measure::{Measured, Place, Way, measure};
+use measure::{CodePath, Measured, Place, measure};
 use packet::{Formulas, Packet, formulas};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -220,15 +220,15 @@ pub fn passed(rows: &[AgreementResult]) -> bool {
     rows.iter().all(|row| row.passed)
 }
 
-/// The rows of one model in one region; the packets are shared by all ways.
+/// The rows of one model in one region; the packets are shared by all code paths.
 fn of_model(
     model: ModelId,
     formulas: &Formulas<'_>,
     region: Region,
     config: &AgreementConfig,
 ) -> Result<Vec<AgreementResult>, ParamError> {
-    let ways = Way::all();
-    let columns = ways.len() * Quantity::ALL.len();
+    let paths = CodePath::all();
+    let columns = paths.len() * Quantity::ALL.len();
     let indices: Vec<u32> = (0..config.packets).collect();
     let parts: Vec<Vec<Column>> = indices
         .par_chunks(500)
@@ -236,8 +236,8 @@ fn of_model(
             let mut part = vec![Column::default(); columns];
             for index in chunk {
                 let packet = Packet::draw(model, formulas, region, config.seed, u64::from(*index))?;
-                for (w, way) in ways.iter().enumerate() {
-                    measure(model, region, &packet, *way, &mut |quantity, measured| {
+                for (w, path) in paths.iter().enumerate() {
+                    measure(model, region, &packet, *path, &mut |quantity, measured| {
                         part[w * Quantity::ALL.len() + quantity as usize].add(measured);
                     })?;
                 }
@@ -252,11 +252,11 @@ fn of_model(
             column.join(more);
         }
     }
-    let labels = ways.iter().flat_map(|way| Quantity::ALL.map(|quantity| (*way, quantity)));
+    let labels = paths.iter().flat_map(|path| Quantity::ALL.map(|quantity| (*path, quantity)));
     // Not every model has a cdf.
     let compared =
         labels.zip(all).filter(|((_, quantity), column)| *quantity != Quantity::SampleCdf || !column.errors.is_empty());
-    Ok(compared.map(|((way, quantity), column)| column.row(model, region, way, quantity)).collect())
+    Ok(compared.map(|((path, quantity), column)| column.row(model, region, path, quantity)).collect())
 }
 
 /// The errors behind a row.
@@ -288,15 +288,15 @@ impl Column {
         }
     }
 
-    fn row(mut self, model: ModelId, region: Region, way: Way, quantity: Quantity) -> AgreementResult {
+    fn row(mut self, model: ModelId, region: Region, path: CodePath, quantity: Quantity) -> AgreementResult {
         self.errors.sort_by(f64::total_cmp);
         let worst = self.errors.last().copied().unwrap_or(f64::NAN);
         let bound = quantity.bound(&model.accuracy());
         AgreementResult {
             model: model.name(),
             sampler: model.choice().map(|(_, word)| word),
-            path: way.name(),
-            level: way.level(),
+            path: path.name(),
+            level: path.level(),
             region,
             quantity,
             count: self.errors.len(),
@@ -321,8 +321,8 @@ mod tests {
     #[test]
     fn kernels_agree_wherever_the_azimuth_can_tell() {
         let rows = run(&SMALL).expect("hair within range");
-        let ways = 1 + 2 * hairis::Level::available().count();
-        let per_quantity = Region::ALL.len() * ways;
+        let paths = 1 + 2 * hairis::Level::available().count();
+        let per_quantity = Region::ALL.len() * paths;
         let cdf = rows.iter().filter(|row| row.quantity == Quantity::SampleCdf).count();
         let others = ModelId::ALL.len() * (Quantity::ALL.len() - 1) * per_quantity;
         assert!(rows.len() - cdf == others && cdf % per_quantity == 0, "a row is missing");

@@ -87,7 +87,7 @@ fn for_each_sample(draw: &Draw, stream: u64, mut f: impl FnMut(Option<Vec3>)) {
 }
 
 /// A sampler in double precision.
-trait Twin {
+trait ReferenceSampler {
     fn probabilities(&self) -> PerLobe<f64>;
     fn sample_theta(&self, lobe: Lobe, xi: f64) -> f64;
     fn sample_phi(&self, lobe: Lobe, xi: f64) -> f64;
@@ -95,9 +95,9 @@ trait Twin {
     fn cdf_phi(&self, lobe: Lobe, phi: f64) -> f64;
 }
 
-macro_rules! twin {
+macro_rules! reference_sampler {
     ($($Book:ident)*) => { $(
-        impl Twin for $Book<f64> {
+        impl ReferenceSampler for $Book<f64> {
             fn probabilities(&self) -> PerLobe<f64> {
                 self.probabilities()
             }
@@ -116,7 +116,7 @@ macro_rules! twin {
         }
     )* };
 }
-twin! { Textbook MatchedTextbook }
+reference_sampler! { Textbook MatchedTextbook }
 
 /// The published sampler of a shape.
 fn published(shape: Shape) -> impl Fn(&HairParams, Vec3) -> Textbook<f64> {
@@ -137,7 +137,7 @@ struct Cells {
 }
 
 impl Cells {
-    fn new(textbook: &impl Twin, mask: LobeMask) -> Self {
+    fn new(textbook: &impl ReferenceSampler, mask: LobeMask) -> Self {
         let share = textbook.probabilities().0;
         let of = |lobe: Lobe| share[lobe.index()] * f64::from(mask.factor(lobe));
         let total: f64 = Lobe::ALL.into_iter().map(of).sum();
@@ -223,9 +223,9 @@ fn masks() -> impl Iterator<Item = (String, LobeMask)> {
     alone.chain([("mixture".to_owned(), LobeMask::ALL)])
 }
 
-fn check<T: Twin>(
+fn check<T: ReferenceSampler>(
     draw: impl Fn(&HairParams, Vec3, LobeMask) -> Draw,
-    twin: impl Fn(&HairParams, Vec3) -> T,
+    reference: impl Fn(&HairParams, Vec3) -> T,
     shape: &str,
     seed: u64,
 ) {
@@ -234,7 +234,7 @@ fn check<T: Twin>(
     for (name, params) in materials() {
         for degrees in THETA_O {
             let wo = wo(degrees);
-            let textbook = twin(&params, wo);
+            let textbook = reference(&params, wo);
             for (lobe, mask) in masks() {
                 stream += 1;
                 // A Gaussian lobe so far off the sphere is cut to 0 (at 2^-115 of its peak) across its tail: part of its
@@ -296,9 +296,9 @@ fn samples_of_many_bands_follow_their_density() {
 
 #[test]
 fn samples_by_channel_follow_their_density() {
-    let twin = |shape| move |params: &HairParams, wo| matched(shape, 9)(params, wo).by_channel();
-    check(of_type(Matched::<_, 9, true>(Gaussian)), twin(Shape::Gaussian), "Gaussian by channel", 9);
-    check(of_type(Matched::<_, 9, true>(Cauchy::PAPER)), twin(Shape::Cauchy), "Cauchy by channel", 10);
+    let reference = |shape| move |params: &HairParams, wo| matched(shape, 9)(params, wo).by_channel();
+    check(of_type(Matched::<_, 9, true>(Gaussian)), reference(Shape::Gaussian), "Gaussian by channel", 9);
+    check(of_type(Matched::<_, 9, true>(Cauchy::PAPER)), reference(Shape::Cauchy), "Cauchy by channel", 10);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The published model and its variants in the registry: parameters, names, textbook twins.
+//! The published model and its variants in the registry: parameters, names, formulas.
 
 use crate::{Cauchy, Field, Kind, Parameters, Registered, Values};
 use hairis::{Gaussian, Hair, HairDesc, HairParams, Matched, MatchedBell, ParamError};

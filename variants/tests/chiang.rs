@@ -3,7 +3,7 @@
 
 use crate::support::Draws;
 use hairis::{Bsdf, Hit, LobeMask};
-use hairis_conformance::{Claims, Materials, Reference, Subject, Tolerance, Twin, conformance};
+use hairis_conformance::{Claims, FormulaReference, Materials, Reference, Subject, Tolerance, conformance};
 use hairis_variants::chiang::{
     Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, FarField, OffsetNodes, Selection,
 };
@@ -24,7 +24,7 @@ fn double(hit: &Hit) -> [f64; 3] {
 }
 
 impl<const BY_CHANNEL: bool> Fibers<BY_CHANNEL> {
-    fn book(params: &ChiangParams, hit: &Hit) -> ChiangReference<f64> {
+    fn formulas(params: &ChiangParams, hit: &Hit) -> ChiangReference<f64> {
         let selection = if BY_CHANNEL { Selection::ByChannel } else { Selection::Mean };
         ChiangReference::prepare(&ChiangParameters::from(params), selection, double(hit), f64::from(hit.h))
     }
@@ -78,18 +78,18 @@ impl<const BY_CHANNEL: bool> Subject for Fibers<BY_CHANNEL> {
 
     /// The cones, and the kinks of the azimuthal terms.
     fn edges(&self, params: &ChiangParams, hit: &Hit) -> [Vec<f64>; 2] {
-        let (book, [_, v, w]) = (Self::book(params, hit), double(hit));
+        let (formulas, [_, v, w]) = (Self::formulas(params, hit), double(hit));
         let lobes = [hairis::Lobe::R, hairis::Lobe::TT, hairis::Lobe::TRT];
         let wrap = |phi: f64| phi.sin().atan2(phi.cos());
         let azimuths = lobes.into_iter().flat_map(|lobe| {
-            let phi = w.atan2(v) + book.centre(lobe);
+            let phi = w.atan2(v) + formulas.centre(lobe);
             [wrap(phi), wrap(phi + core::f64::consts::PI)]
         });
-        [lobes.map(|lobe| book.cone(lobe)).to_vec(), azimuths.collect()]
+        [lobes.map(|lobe| formulas.cone(lobe)).to_vec(), azimuths.collect()]
     }
 
     fn weight_bound(&self, params: &ChiangParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
-        let albedo = Self::book(params, hit).albedo();
+        let albedo = Self::formulas(params, hit).albedo();
         let lit = hairis::Lobe::ALL.into_iter().filter(|lobe| lobes.contains(*lobe));
         let sum = lit.fold([0.0; 3], |sum, lobe| core::array::from_fn(|c| sum[c] + albedo[lobe][c]));
         let most = if BY_CHANNEL { sum.into_iter().fold(0.0, f64::max) } else { sum.iter().sum::<f64>() / 3.0 };
@@ -111,7 +111,7 @@ impl<const BY_CHANNEL: bool> Subject for Fibers<BY_CHANNEL> {
         let floor = (-12.0_f64).exp() * 0.5 * peak.max(0.1) / v.hypot(w).max(1e-3);
         let direction = 1e-5;
         let tolerance = Tolerance { value: bound, pdf: bound, lobes: bound, floor, direction, ..Tolerance::default() };
-        Some(Box::new(Twin { book: Self::book(params, hit), tolerance }))
+        Some(Box::new(FormulaReference { formulas: Self::formulas(params, hit), tolerance }))
     }
 
     fn random_materials(&self) -> Vec<ChiangParams> {

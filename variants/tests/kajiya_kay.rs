@@ -2,7 +2,7 @@
 
 use crate::support::Draws;
 use hairis::{Hit, Lobe, LobeMask};
-use hairis_conformance::{Claims, Materials, Reference, Subject, Tolerance, Twin, conformance};
+use hairis_conformance::{Claims, FormulaReference, Materials, Reference, Subject, Tolerance, conformance};
 use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams, KajiyaKayReference, cosine_integral};
 use hairis_variants::{KajiyaKay, kajiya_kay};
 
@@ -15,7 +15,7 @@ fn params(desc: KajiyaKayDesc) -> KajiyaKayParams {
     KajiyaKayParams::new(&desc).unwrap()
 }
 
-fn book(params: &KajiyaKayParams, hit: &Hit) -> KajiyaKayReference<f64> {
+fn formulas(params: &KajiyaKayParams, hit: &Hit) -> KajiyaKayReference<f64> {
     let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
     KajiyaKayReference::prepare(&kajiya_kay::KajiyaKayParameters::from(params), wo)
 }
@@ -77,7 +77,7 @@ impl Subject for Fibers {
     fn weight_bound(&self, params: &KajiyaKayParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
         let (desc, p) = (params.desc(), f64::from(params.desc().exponent));
         let m = if self.0 == Form::Reciprocal { 2.0 } else { 1.0 };
-        let all = book(params, hit).probabilities().0;
+        let all = formulas(params, hit).probabilities().0;
         let [d, s] = [DIFFUSE, Lobe::slot(1)].map(|lobe| all[lobe.index()] * f64::from(lobes.factor(lobe)));
         let most = |color: [f32; 3]| f64::from(color.into_iter().fold(0.0, f32::max));
         let part = |color, by: f64, share: f64| if share > 0.0 { by * most(color) * (d + s) / share } else { 0.0 };
@@ -88,7 +88,7 @@ impl Subject for Fibers {
     fn reference(&self, params: &KajiyaKayParams, hit: &Hit) -> Option<Box<dyn Reference>> {
         // Errors grow with the exponent of the bell: below 1e-12 they are compared absolutely.
         let tolerance = Tolerance { floor: 1e-12, ..Tolerance::default() };
-        Some(Box::new(Twin { book: book(params, hit), tolerance }))
+        Some(Box::new(FormulaReference { formulas: formulas(params, hit), tolerance }))
     }
 
     fn random_materials(&self) -> Vec<KajiyaKayParams> {

@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1.0 / 4_194_304.0;
 
 /// Code path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum CodePath {
     /// One direction per call.
     One,
     /// Eight directions at one gather point.
@@ -24,7 +24,7 @@ pub(super) enum Way {
     Points(Level),
 }
 
-impl Way {
+impl CodePath {
     /// Every code path on this CPU.
     pub(super) fn all() -> Vec<Self> {
         let mut all = vec![Self::One];
@@ -73,24 +73,24 @@ pub(super) fn measure(
     model: ModelId,
     region: Region,
     packet: &Packet,
-    way: Way,
+    path: CodePath,
     keep: &mut impl FnMut(Quantity, Measured),
 ) -> Result<(), ParamError> {
     let materials = packet.values.iter().map(|values| model.bsdf(values)).collect::<Result<Vec<_>, _>>()?;
     let hit = |k: usize| Hit { wo: packet.wo[k].into(), h: packet.h[k] };
     let xi: [f32x8; 3] = core::array::from_fn(|k| f32x8::new(packet.xi.map(|xi| xi[k])));
-    let answers: [(Eval, Option<Sample>); 8] = match way {
-        Way::One => core::array::from_fn(|k| {
+    let answers: [(Eval, Option<Sample>); 8] = match path {
+        CodePath::One => core::array::from_fn(|k| {
             let gather = materials[k].prepare(hit(k));
             (gather.eval_pdf(packet.wi[k]), gather.sample(packet.xi[k]))
         }),
-        Way::Shared(level) => {
+        CodePath::Shared(level) => {
             let gather = materials[0].prepare(hit(0));
             let eval = gather.eval_pdf8_at(level, &Vec3x8::from(packet.wi_shared));
             let sample = gather.sample8_at(level, &xi);
             core::array::from_fn(|k| (eval.lane(k), sample.lane(k)))
         }
-        Way::Points(level) => {
+        CodePath::Points(level) => {
             let hits = Hit { wo: Vec3x8::from(packet.wo), h: f32x8::new(packet.h) };
             let materials = AnyBsdf8::pack(core::array::from_fn(|k| &materials[k])).expect("eight of one model");
             let gather = materials.prepare8_at(level, hits);
@@ -100,7 +100,8 @@ pub(super) fn measure(
         }
     };
     for (k, (eval, sample)) in answers.iter().enumerate() {
-        let (point, wi) = if matches!(way, Way::Shared(_)) { (0, packet.wi_shared[k]) } else { (k, packet.wi[k]) };
+        let (point, wi) =
+            if matches!(path, CodePath::Shared(_)) { (0, packet.wi_shared[k]) } else { (k, packet.wi[k]) };
         let place = Place { values: packet.values[point], wo: packet.wo[point], h: packet.h[point], wi, xi: None };
         let exact = |place| Exact { model, accuracy: model.accuracy(), truth: &packet.truth[point], place };
         if region.holds(place.wo, wi) {

@@ -109,7 +109,7 @@ macro_rules! real {
             #[allow(
                 clippy::cast_possible_truncation,
                 trivial_numeric_casts,
-                reason = "constants are meant to be rounded to f32; the f64 twin of this function casts nothing"
+                reason = "constants are meant to be rounded to f32; this function in f64 casts nothing"
             )]
             fn from_f64(value: f64) -> Self {
                 value as $t

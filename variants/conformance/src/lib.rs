@@ -49,7 +49,7 @@
 //! | `white_furnace` | white materials return all light, if claimed |
 //! | `weights_are_bounded` | weights are below the bound that the subject states, if any |
 //! | `eval_is_reciprocal` | S with its directions exchanged, if claimed |
-//! | `agrees_with_reference` | agreement with a twin in double precision, if there is one |
+//! | `agrees_with_reference` | agreement with the reference in double precision, if there is one |
 //!
 //! All run on every level that the CPU has. Inputs are the same in every run. Each property is also a function that returns
 //! an [`Outcome`], whose [`Failure`] names material, directions, numbers, lane and level; `cargo test -- --nocapture` prints
@@ -64,6 +64,7 @@ pub mod bounds;
 mod calls;
 pub mod chi_square;
 mod failure;
+mod formula_reference;
 pub mod integral;
 pub mod inversion;
 pub mod lanes;
@@ -85,11 +86,10 @@ pub mod slices;
 mod statistics;
 mod subject;
 pub mod totality;
-mod twin;
 
 pub use failure::{Failure, Outcome};
+pub use formula_reference::FormulaReference;
 pub use subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subject, Tolerance};
-pub use twin::Twin;
 
 /// Declares a module with a `#[test]` for each property of a [`Subject`].
 ///

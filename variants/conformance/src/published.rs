@@ -12,20 +12,20 @@ pub mod lobes;
 pub mod parity;
 pub mod props;
 pub mod quadrature;
+mod reference;
 mod rows;
 pub mod sampling;
 pub mod seam;
 pub mod subject;
 pub mod support;
 pub mod tails;
-mod twin;
 pub mod values;
 pub mod variance;
 pub mod weights;
 
+pub use reference::PublishedReference;
 pub use rows::Rows;
 pub use subject::Family;
-pub use twin::Twin;
 
 use hairis::textbook::Shape;
 use hairis::{Hair, HairParams, Matched, MatchedBell, Model};

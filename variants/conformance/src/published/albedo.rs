@@ -2,14 +2,14 @@
 
 use super::quadrature::{integrate, panels};
 use super::support::{Draws, Kind, Point, Worst, direction, for_each_point, narrow, parameters};
-use super::{Published, Twin};
+use super::{Published, PublishedReference};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::textbook::Parameters;
 use hairis::{Bsdf, HairDesc, HairParams, Lobe, Model, PerLobe};
 
 /// Integral of each lobe's value times the cosine: a product of two line integrals, as the lobes are products.
-fn integrals(textbook: &Twin, point: &Point) -> PerLobe<f64> {
+fn integrals(textbook: &PublishedReference, point: &Point) -> PerLobe<f64> {
     let p = &point.p;
     let l = |lobe: Lobe| lobe.index().min(2);
     let at = |lobe: Lobe, theta: f64, phi: f64| {

@@ -17,7 +17,7 @@ fn integrals<S: Published, M: Model<Params = HairParams>>(
     let wo = direction(theta_o, 0.4);
     let p = parameters(params, 1.0);
     let gather = Bsdf::new(&model, params).prepare(wo);
-    let twin = MatchedTextbook::prepare(&p, S::SHAPE, double(wo), bands);
+    let reference = MatchedTextbook::prepare(&p, S::SHAPE, double(wo), bands);
     Lobe::ALL.map(|lobe| {
         let l = lobe.index().min(2);
         let at = |theta: f64, phi: f64| {
@@ -29,7 +29,7 @@ fn integrals<S: Published, M: Model<Params = HairParams>>(
         let inner = FRAC_PI_2 - 1e-5;
         let mut ends = panels(-inner, inner, &[(centre, p.beta[l])]);
         // The density jumps between bands: panels end there.
-        ends.extend(twin.bands().filter(|x| x.abs() < inner));
+        ends.extend(reference.bands().filter(|x| x.abs() < inner));
         ends.sort_by(f64::total_cmp);
         let phi = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt)]);
         let largest = at(theta_0, phi_0);
@@ -37,7 +37,7 @@ fn integrals<S: Published, M: Model<Params = HairParams>>(
             return f64::NAN;
         }
         // Directions closer to the axis are discarded: their part of the density.
-        let caps = twin.cdf_theta(lobe, -inner) + 1.0 - twin.cdf_theta(lobe, inner);
+        let caps = reference.cdf_theta(lobe, -inner) + 1.0 - reference.cdf_theta(lobe, inner);
         caps + integrate(&ends, |theta| at(theta, phi_0)) * 2.0 * integrate(&phi, |phi| at(theta_0, phi)) / largest
     })
 }

@@ -26,8 +26,8 @@ fn scan<S: Published, M: Model<Params = HairParams>>(model: M, bands: usize, wor
         let wo = direction(theta_o, draws.between(-PI, PI));
         let mask = if round % 4 == 0 { LobeMask::of(&[Lobe::ALL[draws.below(4)]]) } else { LobeMask::ALL };
         let gather = Bsdf::new(&model, &params).prepare(wo).with_lobes(mask);
-        let twin = MatchedTextbook::prepare(&parameters(&params, 1.0), S::SHAPE, double(wo), bands);
-        let limit = twin.weight_bound(mask);
+        let reference = MatchedTextbook::prepare(&parameters(&params, 1.0), S::SHAPE, double(wo), bands);
+        let limit = reference.weight_bound(mask);
         if mask == LobeMask::ALL {
             let mean: f64 = gather.albedo().0.iter().flatten().map(|x| f64::from(*x) / 3.0).sum();
             worst[1].see(limit / mean, || format!("{bands} theta_o {theta_o} {params:?}"));

@@ -1,7 +1,7 @@
 //! Samples against the textbook: cdf of the drawn angle, value, density and weight at the drawn direction.
 
 use super::support::{Draws, Kind, Point, Worst, angles, double, for_each_point, lanes_of, relative};
-use super::{Published, Twin};
+use super::{Published, PublishedReference};
 use core::f64::consts::PI;
 use hairis::{Level, Lobe, LobeMask, Sample};
 
@@ -31,7 +31,7 @@ fn phi(point: &Point, sample: &Sample) -> f64 {
 }
 
 /// Errors of a sample at the direction it returned: S, density, weight, and the length of the direction.
-fn see<S: Published>(worst: &mut [Worst; 4], textbook: &Twin, point: &Point, sample: &Sample) {
+fn see<S: Published>(worst: &mut [Worst; 4], textbook: &PublishedReference, point: &Point, sample: &Sample) {
     let at = || format!("{sample:?} wo {:?} {:?}", point.wo, point.params);
     let d = double(sample.wi);
     worst[3].see((d.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs(), at);

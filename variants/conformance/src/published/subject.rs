@@ -1,7 +1,7 @@
 //! The family as subjects of the suite.
 
 use super::support::{double, oracle, parameters};
-use super::{Published, Twin};
+use super::{Published, PublishedReference};
 use crate::probe::{angles, narrow};
 use crate::subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subject, Tolerance};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -98,8 +98,8 @@ impl<P: Published> Subject for Family<P> {
 
     fn edges(&self, params: &HairParams, hit: &Hit) -> [Vec<f64>; 2] {
         let theta = match oracle::<P>(params, P::forms()[0].1, vector(hit)) {
-            Twin::Published(_) => Vec::new(),
-            Twin::Matched(book) => book.bands().collect(),
+            PublishedReference::Published(_) => Vec::new(),
+            PublishedReference::Matched(book) => book.bands().collect(),
         };
         let [_, phi_o] = angles(double(vector(hit)));
         let glint = f64::from(params.desc().phi_g);
@@ -112,8 +112,8 @@ impl<P: Published> Subject for Family<P> {
 
     /// The bound is on the mean of the channels.
     fn weight_bound(&self, params: &HairParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
-        let twin = oracle::<P>(params, P::forms()[0].1, vector(hit));
-        matches!(twin, Twin::Matched(_)).then(|| 3.0 * twin.weight_bound(lobes))
+        let reference = oracle::<P>(params, P::forms()[0].1, vector(hit));
+        matches!(reference, PublishedReference::Matched(_)).then(|| 3.0 * reference.weight_bound(lobes))
     }
 
     fn reference(&self, params: &ParamsOf<Self>, hit: &Hit) -> Option<Box<dyn Reference>> {
@@ -126,39 +126,39 @@ impl<P: Published> Subject for Family<P> {
         };
         let tolerance =
             Tolerance { value, pdf, lobes: lobe_value.max(lobe_pdf), rounding: 5e-7, ..Tolerance::default() };
-        Some(Box::new(Beside {
-            twin: oracle::<P>(params, P::forms()[0].1, vector(hit)),
+        Some(Box::new(FlooredReference {
+            reference: oracle::<P>(params, P::forms()[0].1, vector(hit)),
             floor: P::PDF_FLOOR,
             tolerance,
         }))
     }
 }
 
-/// A twin, and the densities below which it is compared absolutely.
-struct Beside {
-    twin: Twin,
+/// A reference, and the densities below which it is compared absolutely.
+struct FlooredReference {
+    reference: PublishedReference,
     floor: f64,
     tolerance: Tolerance,
 }
 
-impl Reference for Beside {
+impl Reference for FlooredReference {
     fn eval(&self, wi: [f64; 3]) -> [f64; 3] {
-        self.twin.eval(wi)
+        self.reference.eval(wi)
     }
 
     fn pdf(&self, wi: [f64; 3]) -> f64 {
-        self.twin.pdf(wi)
+        self.reference.pdf(wi)
     }
 
     fn lobes(&self, wi: [f64; 3]) -> Option<[[f64; 2]; 4]> {
-        let (values, pdfs) = (self.twin.lobe_values(wi), self.twin.lobe_pdfs(wi));
+        let (values, pdfs) = (self.reference.lobe_values(wi), self.reference.lobe_pdfs(wi));
         // Normalised, a lobe of the last few powers of two of a Gaussian would show its cut.
         let whole = Lobe::ALL.into_iter().all(|lobe| values[lobe] >= self.floor);
         whole.then(|| Lobe::ALL.map(|lobe| [values[lobe], pdfs[lobe]]))
     }
 
     fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
-        let drawn = self.twin.sample(xi);
+        let drawn = self.reference.sample(xi);
         drawn.lobe.map_or(ReferenceSample::Discarded, |lobe| ReferenceSample::Drawn(lobe.index(), drawn.wi))
     }
 

@@ -2,7 +2,7 @@
 
 pub use crate::probe::{Draws, narrow};
 
-use super::{Published, Twin};
+use super::{Published, PublishedReference};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::textbook::Parameters;
@@ -127,8 +127,8 @@ pub fn parameters(params: &HairParams, factor: f32) -> Parameters<f64> {
 }
 
 /// The textbook at the gather point of `wo`.
-pub fn oracle<S: Published>(params: &HairParams, factor: f32, wo: Vec3) -> Twin {
-    Twin::prepare::<S>(&parameters(params, factor), double(wo))
+pub fn oracle<S: Published>(params: &HairParams, factor: f32, wo: Vec3) -> PublishedReference {
+    PublishedReference::prepare::<S>(&parameters(params, factor), double(wo))
 }
 
 /// Error of `got` relative to `want`, or to `floor` where `want` is smaller.
@@ -210,7 +210,7 @@ pub fn grid_point(beta_r: f64, gamma_tt: f64, gamma_g: f64, phi_g: f64, intensit
 pub const THETA_O: [f64; 12] = [0.0, 15.0, -30.0, 45.0, -60.0, 75.0, -80.0, 85.0, 89.0, -89.0, 89.9, -89.9];
 
 /// A material of one kind with its textbook, for every form of the model, material and inclination.
-pub fn for_each_point<S: Published>(kind: Kind, mut f: impl FnMut(&Bsdf<S::Model>, &Twin, &Point)) {
+pub fn for_each_point<S: Published>(kind: Kind, mut f: impl FnMut(&Bsdf<S::Model>, &PublishedReference, &Point)) {
     for (model, factor) in S::forms() {
         for (index, params) in materials(kind).iter().enumerate() {
             let bsdf = Bsdf::new(&model, params);

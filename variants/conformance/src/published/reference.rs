@@ -4,10 +4,10 @@ use super::Published;
 use hairis::textbook::{Drawn, MatchedTextbook, Parameters, Textbook};
 use hairis::{Lobe, LobeMask, PerLobe};
 
-/// The twin of a model, in double precision.
+/// The reference of a model, in double precision.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "one at a time lives on the stack of a test")]
-pub enum Twin {
+pub enum PublishedReference {
     /// With the published sampler.
     Published(Textbook<f64>),
     /// With the matched one.
@@ -20,22 +20,22 @@ macro_rules! both {
         #[must_use]
         pub fn $name(&self $(, $arg: $type)*) -> $out {
             match self {
-                Self::Published(book) => book.$name($($arg),*),
-                Self::Matched(book) => book.$name($($arg),*),
+                Self::Published(formulas) => formulas.$name($($arg),*),
+                Self::Matched(formulas) => formulas.$name($($arg),*),
             }
         }
     )* };
 }
 
-impl Twin {
-    /// The twin for these parameters at the gather point of `wo`.
+impl PublishedReference {
+    /// The reference for these parameters at the gather point of `wo`.
     #[must_use]
     pub fn prepare<S: Published>(parameters: &Parameters<f64>, wo: [f64; 3]) -> Self {
         let Some(bands) = S::BANDS else {
             return Self::Published(Textbook::prepare(parameters, S::SHAPE, wo));
         };
-        let book = MatchedTextbook::prepare(parameters, S::SHAPE, wo, bands);
-        Self::Matched(if S::BY_CHANNEL { book.by_channel() } else { book })
+        let formulas = MatchedTextbook::prepare(parameters, S::SHAPE, wo, bands);
+        Self::Matched(if S::BY_CHANNEL { formulas.by_channel() } else { formulas })
     }
 
     both! {
@@ -58,7 +58,7 @@ impl Twin {
     pub fn weight_bound(&self, mask: LobeMask) -> f64 {
         match self {
             Self::Published(_) => panic!("the published sampler has a bound of its own"),
-            Self::Matched(book) => book.weight_bound(mask),
+            Self::Matched(formulas) => formulas.weight_bound(mask),
         }
     }
 }

@@ -1,33 +1,33 @@
-//! Formulas of a textbook as the reference of a [`Subject`](crate::Subject).
+//! Formulas of a model as the reference of a [`Subject`](crate::Subject).
 
 use crate::subject::{Reference, ReferenceSample, Tolerance};
 use hairis::{Lobe, textbook};
 
 /// A model's formulas in double precision, with the agreement to expect.
 #[derive(Clone, Copy, Debug)]
-pub struct Twin<R> {
+pub struct FormulaReference<R> {
     /// The formulas at one hit.
-    pub book: R,
+    pub formulas: R,
     /// Agreement to expect.
     pub tolerance: Tolerance,
 }
 
-impl<R: textbook::Reference<f64>> Reference for Twin<R> {
+impl<R: textbook::Reference<f64>> Reference for FormulaReference<R> {
     fn eval(&self, wi: [f64; 3]) -> [f64; 3] {
-        self.book.eval(wi)
+        self.formulas.eval(wi)
     }
 
     fn pdf(&self, wi: [f64; 3]) -> f64 {
-        self.book.pdf(wi)
+        self.formulas.pdf(wi)
     }
 
     fn lobes(&self, wi: [f64; 3]) -> Option<[[f64; 2]; 4]> {
-        let lobes = self.book.lobes(wi);
+        let lobes = self.formulas.lobes(wi);
         Some(Lobe::ALL.map(|lobe| [lobes[lobe].value, lobes[lobe].pdf]))
     }
 
     fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
-        let drawn = self.book.sample(xi);
+        let drawn = self.formulas.sample(xi);
         drawn.lobe.map_or(ReferenceSample::Discarded, |lobe| ReferenceSample::Drawn(lobe.index(), drawn.wi))
     }
 
