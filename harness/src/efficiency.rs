@@ -6,7 +6,7 @@
 //! relative variance of one sample: a mean of `N` independent samples has a relative error of `sqrt(V / N)`.
 //!
 //! - One number out of three: every figure is of the mean of RGB, the intensity by which the sampler weights its lobes. So is the recorded table of
-//!   "luminance V", as quadrature shows (test `the_recorded_figures_are_of_the_mean_of_rgb`): `ou` on the Gaussian model at `theta_o = 45` has V = 0.1890
+//!   "luminance V", as quadrature shows (test `the_recorded_figures_are_of_the_mean_of_rgb`): `published` on the Gaussian model at `theta_o = 45` has V = 0.1890
 //!   for the mean of RGB, 0.1923 for the luminance of Rec. 709, and the table has 0.189. All twelve figures agree with the mean of RGB to 6e-4.
 //! - Correlated samples (stratified, Halton) have no variance of their own. For them `V = N Var(mean) / mean^2` with `Var(mean)` the variance of the mean
 //!   of `N` samples over `R` independent randomisations, so that V / N is again the squared relative error, but at that `N` alone: each row states its `N`.
@@ -87,7 +87,7 @@ pub const FALSE_ALARM: f64 = 1e-3;
 /// [`SequenceKind::Stratified`](crate::sequence::SequenceKind::Stratified) numbers.
 ///
 /// The matched sampler is the documented default one; [`study`](crate::study) has them all.
-pub const SAMPLERS: [Sampler; 3] = [Sampler::Uniform, Sampler::Ou, Sampler::Matched];
+pub const SAMPLERS: [Sampler; 3] = [Sampler::Uniform, Sampler::Published, Sampler::Matched];
 
 /// A figure of each of [`SAMPLERS`], in their order.
 pub type EachSampler<T> = [T; SAMPLERS.len()];

@@ -189,7 +189,7 @@ mod tests {
             |c: f64| (1..9).map(move |i| (n(i), c / n(i).sqrt())).map(|(n, e)| Point::new(n, e).with_error(0.12 * e));
         let mut chart =
             LineChart::new("Convergence (made up)", Axis::log("samples N"), Axis::log("relative RMS error"));
-        for (i, name) in ["uniform", "ou", "matched", "light", "MIS", "quasi-MC"].into_iter().enumerate() {
+        for (i, name) in ["uniform", "published", "matched", "light", "MIS", "quasi-MC"].into_iter().enumerate() {
             chart = chart.series(Series::new(name, decay(1.0 / n(i32::try_from(i).unwrap_or(0)).sqrt())));
         }
         let slope = Reference::Power { label: "slope −1/2".into(), slope: -0.5, through: (4.0, 0.6) };
@@ -211,7 +211,7 @@ mod tests {
         .level(1.0);
         let logs = BarChart::new("Variance (made up)", Axis::log("V (relative variance)"), ["0°", "45°", "75°"])
             .series("uniform", [0.706, 0.931, 2.268].map(bar))
-            .series("ou", [0.209, 0.189, 0.290].map(bar))
+            .series("published", [0.209, 0.189, 0.290].map(bar))
             .series("matched", [0.018, 0.009, 0.006].map(bar));
         let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), &default_hair())).prepare(direction(0.35, 0.0));
         let grid = Grid::sample(Projection::EqualAngle, (90, 180), |theta, phi| reflected(&gather, theta, phi));
@@ -232,7 +232,7 @@ mod tests {
                 number::ratio(1.0),
             ])
             .row([
-                "ou".into(),
+                "published".into(),
                 number::with_error(0.209, 0.001),
                 number::with_error(0.189, 0.001),
                 number::with_error(0.29, 0.002),

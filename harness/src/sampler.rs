@@ -19,7 +19,7 @@ pub enum Sampler {
     /// Uniformly over the sphere.
     Uniform,
     /// By the published sampler.
-    Ou,
+    Published,
     /// By the sampler matched to the model with five bands: its cheapest.
     #[serde(rename = "matched-5")]
     Matched5,
@@ -32,14 +32,14 @@ pub enum Sampler {
 
 impl Sampler {
     /// Every sampler, in the order of reports.
-    pub const ALL: [Self; 5] = [Self::Uniform, Self::Ou, Self::Matched5, Self::Matched, Self::Matched25];
+    pub const ALL: [Self; 5] = [Self::Uniform, Self::Published, Self::Matched5, Self::Matched, Self::Matched25];
 
     /// Name in reports and in rows.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Uniform => "uniform",
-            Self::Ou => "ou",
+            Self::Published => "published",
             Self::Matched5 => "matched-5",
             Self::Matched => "matched",
             Self::Matched25 => "matched-25",
@@ -58,7 +58,7 @@ impl Sampler {
     /// Bands of a sampler that is matched to the model.
     pub(crate) const fn bands(self) -> Option<usize> {
         match self {
-            Self::Uniform | Self::Ou => None,
+            Self::Uniform | Self::Published => None,
             Self::Matched5 => Some(5),
             Self::Matched => Some(9),
             Self::Matched25 => Some(25),
@@ -80,7 +80,7 @@ impl Sampler {
 ///
 /// - `uniform`: the lobes have peaks of 1, and `cos theta_i / cos^2 theta_d` is at most `1 / cos theta_o`, which it
 ///   reaches at `theta_i = -theta_o`.
-/// - `ou`: none in closed form. Its glints end at `|phi| = pi/2`; other lobes sample their tails beyond it.
+/// - `published`: none in closed form. Its glints end at `|phi| = pi/2`; other lobes sample their tails beyond it.
 /// - `matched`: the integral of all lobes, times the largest ratio of W to its constant in a band.
 pub(crate) fn weight_bound(model: ModelKind, sampler: Sampler, params: &HairParams, theta_o: f64) -> Option<f64> {
     if sampler == Sampler::Uniform {
@@ -132,7 +132,7 @@ impl Scatter {
 ///
 /// Never: every sampler of the models is registered, and their parameters are those of hair.
 pub(crate) fn bsdf(model: ModelKind, sampler: Sampler, params: &HairParams) -> AnyBsdf {
-    let word = (sampler != Sampler::Uniform).then(|| sampler.name());
+    let word = sampler.bands().map(|_| sampler.name());
     let id = ModelId::find(model.name(), word).expect("a registered sampler");
     id.bsdf(&params.values()).expect("parameters of hair")
 }
@@ -221,7 +221,7 @@ mod tests {
         for theta_o in [0.0_f64, 0.8, 1.4] {
             let wo = crate::subject::direction(theta_o.sin(), theta_o.cos(), 1.0);
             for model in ModelKind::ALL {
-                for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
+                for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Published) {
                     let bound = weight_bound(model, sampler, &params, theta_o).expect("there is one");
                     let gather = Scatter::new(model, sampler, &params, wo);
                     let mut most = 0.0_f32;

@@ -24,7 +24,7 @@ pub enum Align {
 ///     .text("sampler")
 ///     .number("V (relative variance)")
 ///     .row(["uniform".into(), number::with_error(0.706, 0.002)])
-///     .row(["ou".into(), number::with_error(0.209, 0.001)])
+///     .row(["published".into(), number::with_error(0.209, 0.001)])
 ///     .note("2²⁰ samples each.");
 /// assert!(table.to_html().contains("<td class=\"number\">0.2090 ± 0.0010</td>"));
 /// assert!(table.to_plain().contains("0.2090 ± 0.0010"));

@@ -87,7 +87,7 @@ fn uniform_sampling_is_better_on_rough_hair_and_nowhere_else() {
         assert!((exact.value - value).abs() < 1e-3, "{exact:?}");
         assert!((measured.value - exact.value).abs() < 4.0 * measured.error, "{measured:?} {exact:?}");
     };
-    example("V of ou, Gaussian, β_R = 20°", 0.302);
+    example("V of the published sampler, Gaussian, β_R = 20°", 0.302);
     example("V of uniform, Gaussian, β_R = 20°", 0.267);
     for model in ["Gaussian", "Cauchy"] {
         let worse = value(claim, &format!("cells worse than uniform, {model}"));

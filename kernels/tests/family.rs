@@ -7,9 +7,9 @@ use hairis_conformance::published::{Family, Published, Rows};
 use hairis_conformance::{conformance, published};
 
 /// The published sampler.
-pub(crate) struct Ou;
+pub(crate) struct PublishedHair;
 
-impl Published for Ou {
+impl Published for PublishedHair {
     type Model = Hair<Gaussian>;
     type Bell = Gaussian;
     const SHAPE: Shape = Shape::Gaussian;
@@ -37,7 +37,7 @@ impl<const BANDS: usize, const BY_CHANNEL: bool> Published for Bands<BANDS, BY_C
     const SHAPE: Shape = Shape::Gaussian;
     const BANDS: Option<usize> = Some(BANDS);
     const BY_CHANNEL: bool = BY_CHANNEL;
-    const OVER_CAUCHY: f64 = Ou::OVER_CAUCHY;
+    const OVER_CAUCHY: f64 = PublishedHair::OVER_CAUCHY;
     // A Gaussian, and with it the density, is cut to 0 at `2^-115` of its peak.
     const PDF_FLOOR: f64 = 1e-20;
     const ROWS: Rows = MATCHED;
@@ -51,12 +51,12 @@ impl<const BANDS: usize, const BY_CHANNEL: bool> Published for Bands<BANDS, BY_C
     }
 }
 
-conformance!(hair, Family::<Ou>::new());
+conformance!(hair, Family::<PublishedHair>::new());
 conformance!(matched_5, Family::<Bands<5>>::new());
 conformance!(matched_9, Family::<Bands<9>>::new());
 conformance!(matched_25, Family::<Bands<25>>::new());
 conformance!(matched_by_channel, Family::<Bands<9, true>>::new());
 
-published!(ou, crate::family::Ou, published);
+published!(published_sampler, crate::family::PublishedHair, published);
 published!(matched, crate::family::Bands<9>, matched);
 published!(by_channel, crate::family::Bands<9, true>, common);

@@ -8,9 +8,9 @@ use hairis_conformance::{conformance, published};
 use hairis_variants::Cauchy;
 
 /// The published sampler, which follows this model exactly.
-pub(crate) struct Ou;
+pub(crate) struct PublishedHair;
 
-impl Published for Ou {
+impl Published for PublishedHair {
     type Model = Hair<Cauchy>;
     type Bell = Cauchy;
     const SHAPE: Shape = Shape::Cauchy;
@@ -53,8 +53,8 @@ impl Published for Bands {
     }
 }
 
-conformance!(hair, Family::<Ou>::new());
+conformance!(hair, Family::<PublishedHair>::new());
 conformance!(matched_9, Family::<Bands>::new());
 
-published!(ou, crate::family::Ou, published);
+published!(published_sampler, crate::family::PublishedHair, published);
 published!(matched, crate::family::Bands, matched);

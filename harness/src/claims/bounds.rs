@@ -31,7 +31,7 @@ pub(super) fn claim(cells: &Cells) -> Claim {
     let lost = || cells.iter().map(|(.., found)| exact(found.lost));
     // All that is drawn lands on the sphere with a density of the printed one over the share that does.
     let bias = || lost().map(|lost| exact(lost.value / (1.0 - lost.value)));
-    let factor = |found: &Found| found.printed.over(found.ou);
+    let factor = |found: &Found| found.printed.over(found.published);
     let factors = || cells.iter().map(|(.., found)| factor(found));
     let mean = geometric_mean(factors());
     let sentence = format!(

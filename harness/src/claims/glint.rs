@@ -125,7 +125,7 @@ pub(super) fn interval(cells: &Cells) -> Result<Claim, ParamError> {
     // The glints that leave most of themselves behind: the widest, furthest from the viewer.
     let widest = alone.last().map(|params| Hair::new(ModelKind::Cauchy, params, 0.0));
     let growing = widest.map(|hair| GAPS.map(|gap| (gap, up_to(&hair, gap))));
-    let ratio = |found: &Found| found.ou.over(found.whole);
+    let ratio = |found: &Found| found.published.over(found.whole);
     let ratios = || cells.iter().map(|(.., found)| ratio(found));
     let mean = geometric_mean(ratios());
     let sentence = format!(
@@ -143,8 +143,8 @@ pub(super) fn interval(cells: &Cells) -> Result<Claim, ParamError> {
         figure("growth of V, TRT and glints alone, glints on [0, π]".to_owned(), both(&alone, 1)),
     ];
     let at = "γ_g = 20°, φ_g = 45°, I_g = 5, Cauchy";
-    for (gap, [ou, whole]) in growing.into_iter().flatten() {
-        further.push(figure(format!("V up to {gap:e} rad from π, {at}"), ou));
+    for (gap, [published, whole]) in growing.into_iter().flatten() {
+        further.push(figure(format!("V up to {gap:e} rad from π, {at}"), published));
         if gap == last {
             further.push(figure(format!("the same, glints on [0, π], {at}"), whole));
         }

@@ -79,7 +79,7 @@ pub(super) struct Found {
     /// V of uniform directions.
     pub(super) uniform: Bounded,
     /// V of the published sampler.
-    pub(super) ou: Bounded,
+    pub(super) published: Bounded,
     /// V of the published sampler with the printed A and B, where samples off the sphere count and contribute nothing.
     pub(super) printed: Bounded,
     /// V of the published sampler with glints drawn from [0, pi].
@@ -121,8 +121,8 @@ impl Hair {
             let cos_theta_i = theta_i.cos();
             let y = self.oracle.eval(wi).iter().sum::<f64>() / 3.0 * cos_theta_i;
             let mut pdfs = self.oracle.lobe_pdfs(wi);
-            let ou = sum(&pdfs);
-            if ou <= 0.0 {
+            let published = sum(&pdfs);
+            if published <= 0.0 {
                 return [0.0; 6];
             }
             let printed = Lobe::ALL.into_iter().map(|lobe| shares[lobe] * masses[lobe] * pdfs[lobe]).sum::<f64>();
@@ -131,7 +131,8 @@ impl Hair {
             pdfs[Lobe::GLINT] /= within;
             let uncut = sum(&pdfs);
             let y_sq = y * y;
-            [y, y_sq * 4.0 * PI, y_sq / ou, y_sq / printed, y_sq / whole, y * (ou / uncut)].map(|x| x * cos_theta_i)
+            [y, y_sq * 4.0 * PI, y_sq / published, y_sq / printed, y_sq / whole, y * (published / uncut)]
+                .map(|x| x * cos_theta_i)
         };
         let r = integrate_rectangle(integrand, &self.theta_breakpoints(), phi, &Tolerance::relative(1e-6));
         // Half the sphere: hair is the same for phi and -phi.
@@ -146,7 +147,7 @@ impl Hair {
         let v = |k: usize| all[k].over(mean.times(mean)).plus(-1.0);
         Found {
             uniform: v(1),
-            ou: v(2),
+            published: v(2),
             printed: v(3),
             whole: v(4),
             uncut_bias: all[5].over(mean).plus(-1.0),
@@ -199,7 +200,7 @@ mod tests {
             for theta_o_deg in [0.0_f64, 45.0, 75.0] {
                 let found = Hair::new(model, &params, theta_o_deg.to_radians()).found();
                 let want = quadrature(model, &params, theta_o_deg, &Constant::white()).v;
-                for (got, want) in [found.uniform, found.ou].into_iter().zip(want) {
+                for (got, want) in [found.uniform, found.published].into_iter().zip(want) {
                     assert!((got.value - want).abs() < 1e-5 && got.error < 1e-4, "{model:?}: {got:?} {want}");
                 }
             }
@@ -215,7 +216,7 @@ mod tests {
         let found = Hair::new(ModelKind::Gaussian, &params, 0.5).found();
         let mass = Longitudinal::of(&Parameters::from(&params), 0, 0.5).printed_mass();
         assert!((found.lost - (1.0 - mass)).abs() < 1e-12 && mass < 0.99, "{found:?} {mass}");
-        assert!(((1.0 + found.ou.value) / mass - 1.0 - found.printed.value).abs() < 1e-6, "{found:?} {mass}");
+        assert!(((1.0 + found.published.value) / mass - 1.0 - found.printed.value).abs() < 1e-6, "{found:?} {mass}");
         assert!(found.uncut_bias.value.abs() < 1e-9, "no glints, no bias: {found:?}");
     }
 

@@ -52,7 +52,7 @@ type Pairs = [[Estimate; 2]; 5];
 fn measure(plan: &Plan<'_>, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Pairs>, ParamError> {
     let (grid, finished) = (plan.grid(), AtomicUsize::new(0));
     let cell = |index: usize| {
-        let v = variances(plan, plan.budget(), &grid.cell(index), &[Sampler::Ou])?;
+        let v = variances(plan, plan.budget(), &grid.cell(index), &[Sampler::Published])?;
         done(finished.fetch_add(1, Ordering::Relaxed) + 1);
         Ok(core::array::from_fn(|light| [v[light], v[LIGHTS.len() + light]]))
     };
@@ -111,7 +111,7 @@ fn is_below_one(ratio: Estimate) -> bool {
 /// The claim in equal time.
 fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
     let times = Times::measure(plan.seed, plan.quick, None);
-    let [gaussian, cauchy] = ModelKind::ALL.map(|model| times.ns(model, Sampler::Ou, PER_POINT));
+    let [gaussian, cauchy] = ModelKind::ALL.map(|model| times.ns(model, Sampler::Published, PER_POINT));
     let faster = gaussian.ratio(&cauchy);
     let gains: Vec<Estimate> = means.iter().map(|mean| in_equal_time(*mean, faster)).collect();
     let figure = |name: String, of| Figure::sampled(name, of, "").by(Origin::Timed);

@@ -35,14 +35,14 @@ fn example() -> Option<Cell> {
 fn measured(plan: &Plan<'_>, cell: &Cell) -> Result<[Estimate; 2], ParamError> {
     let budget = if plan.quick { 1 << 18 } else { 1 << 22 };
     let budget = Budget { samples: budget, light_samples: 8 };
-    let v = variances(plan, budget, cell, &[Sampler::Uniform, Sampler::Ou])?;
+    let v = variances(plan, budget, cell, &[Sampler::Uniform, Sampler::Published])?;
     // Models outermost, then samplers, then lights: the constant light is the first of five.
     Ok([v[0], v[5]])
 }
 
 /// The claim.
 pub(super) fn claim(plan: &Plan<'_>, cells: &Cells) -> Result<Claim, ParamError> {
-    let ratio = |found: &Found| found.ou.over(found.uniform);
+    let ratio = |found: &Found| found.published.over(found.uniform);
     let all = || cells.iter().map(|(_, _, found)| ratio(found));
     let narrow = cells.iter().filter(|(cell, ..)| cell.beta_r_deg <= NARROW).map(|(_, _, found)| ratio(found));
     let worse = |of: ModelKind| {
@@ -56,23 +56,23 @@ pub(super) fn claim(plan: &Plan<'_>, cells: &Cells) -> Result<Claim, ParamError>
     let mut further = Vec::new();
     let mut said = String::new();
     if let Some(cell) = example() {
-        let [uniform, ou] = measured(plan, &cell)?;
+        let [uniform, published] = measured(plan, &cell)?;
         let exact = hair_of(&cell, ModelKind::Gaussian)?.found();
         let at = "β_R = 20°, γ_TT = 45°, γ_g = 20°, θ_o = 0°";
         further.extend([
-            Figure::sampled(format!("V of ou, Gaussian, {at}, measured"), ou, ""),
+            Figure::sampled(format!("V of the published sampler, Gaussian, {at}, measured"), published, ""),
             Figure::sampled(format!("V of uniform, Gaussian, {at}, measured"), uniform, ""),
-            Figure::integral(format!("V of ou, Gaussian, {at}"), exact.ou, ""),
+            Figure::integral(format!("V of the published sampler, Gaussian, {at}"), exact.published, ""),
             Figure::integral(format!("V of uniform, Gaussian, {at}"), exact.uniform, ""),
         ]);
-        said = format!(", as at {at}: {:.3} against {:.3}", ou.value, uniform.value);
+        said = format!(", as at {at}: {:.3} against {:.3}", published.value, uniform.value);
     }
     further.extend([
         Figure::count("cells worse than uniform, Gaussian", gaussian, "cells"),
         Figure::count("cells worse than uniform, Cauchy", cauchy, "cells"),
         Figure::count("cells of each model", of_each, "cells"),
-        Figure::integral("V of ou over V of uniform, least", smallest(all()), ""),
-        Figure::integral("V of ou over V of uniform, geometric mean", geometric_mean(all()), ""),
+        Figure::integral("V of the published sampler over V of uniform, least", smallest(all()), ""),
+        Figure::integral("V of the published sampler over V of uniform, geometric mean", geometric_mean(all()), ""),
     ]);
     let sentence = format!(
         "Uniform sampling has the lower variance in {gaussian} of {of_each} cells on the Gaussian model and in {cauchy} \
@@ -83,8 +83,8 @@ pub(super) fn claim(plan: &Plan<'_>, cells: &Cells) -> Result<Claim, ParamError>
         WORDS,
         THRESHOLD,
         [
-            Figure::integral("V of ou over V of uniform, most, both models", worst, ""),
-            Figure::integral("V of ou over V of uniform, most for β_R ≤ 10°", within, ""),
+            Figure::integral("V of the published sampler over V of uniform, most, both models", worst, ""),
+            Figure::integral("V of the published sampler over V of uniform, most for β_R ≤ 10°", within, ""),
         ],
         further,
         sentence,
@@ -103,11 +103,11 @@ mod tests {
         let sky = Sky::default().environment();
         let plan = Plan { seed: 3, quick: true, environment: &sky };
         let cell = example().expect("in the grid");
-        let [uniform, ou] = measured(&plan, &cell).expect("accepted");
+        let [uniform, published] = measured(&plan, &cell).expect("accepted");
         let exact = hair_of(&cell, ModelKind::Gaussian).expect("accepted").found();
         let near = |of: Bounded, value: f64| (of.value - value).abs() < 1e-3;
-        assert!(near(exact.uniform, 0.267) && near(exact.ou, 0.302), "{exact:?}");
-        for (got, want) in [(uniform, exact.uniform), (ou, exact.ou)] {
+        assert!(near(exact.uniform, 0.267) && near(exact.published, 0.302), "{exact:?}");
+        for (got, want) in [(uniform, exact.uniform), (published, exact.published)] {
             assert!(got.z_score(want.value).abs() < 4.0, "{got:?} {want:?}");
         }
     }

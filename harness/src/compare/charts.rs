@@ -30,16 +30,17 @@ pub(super) fn models() -> Vec<Figure> {
 pub(super) fn summary(of: &Comparison) -> Figure {
     let lights = &of.efficiency.settings.lights;
     let labels = lights.iter().map(|light| light.replace(['-', '_'], " "));
-    let ou = (ModelKind::Gaussian, Sampler::Ou);
+    let published = (ModelKind::Gaussian, Sampler::Published);
     let bars = |other| {
-        let bar = move |light: &String| Bar::new(v_ratio(of, light, ou, other).unwrap_or(f64::NAN));
+        let bar = move |light: &String| Bar::new(v_ratio(of, light, published, other).unwrap_or(f64::NAN));
         lights.iter().map(bar)
     };
-    let chart = BarChart::new("Fewer samples than ou on the Gaussian model", Axis::log("V / V (×)"), labels)
-        .narrow()
-        .series("Cauchy, ou", bars((ModelKind::Cauchy, Sampler::Ou)))
-        .series("Gaussian, matched", bars((ModelKind::Gaussian, Sampler::Matched)))
-        .series("Cauchy, matched", bars((ModelKind::Cauchy, Sampler::Matched)));
+    let chart =
+        BarChart::new("Fewer samples than the published sampler on the Gaussian model", Axis::log("V / V (×)"), labels)
+            .narrow()
+            .series("Cauchy, published", bars((ModelKind::Cauchy, Sampler::Published)))
+            .series("Gaussian, matched", bars((ModelKind::Gaussian, Sampler::Matched)))
+            .series("Cauchy, matched", bars((ModelKind::Cauchy, Sampler::Matched)));
     let caption = format!(
         "By what factor the number of samples falls (above 1) or grows (below), by light; default hair seen from {}°.",
         super::page::THETA_O_DEG

@@ -39,7 +39,7 @@ pub fn report(of: &Comparison) -> Report {
 
     let mut efficiency = Section::new("Sample efficiency").paragraph(
         "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. Directions are drawn \
-         uniformly, by the published sampler (`ou`) and by the one that is matched to the model (`matched`, with nine bands, \
+         uniformly, by the published sampler (`published`) and by the one that is matched to the model (`matched`, with nine bands, \
          as by default). Estimates are tested against quadrature; a bias beyond its bound fails the run.",
     );
     efficiency = efficiency.heading("Against the width of the highlights");
@@ -107,11 +107,17 @@ fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
     }
     for light in &of.efficiency.settings.lights {
         let change = |ratio: Option<f64>| ratio.map_or("an unknown number of".to_owned(), change);
-        let cauchy = v_ratio(of, light, (ModelKind::Gaussian, Sampler::Ou), (ModelKind::Cauchy, Sampler::Ou));
-        let matched = v_ratio(of, light, (ModelKind::Gaussian, Sampler::Ou), (ModelKind::Gaussian, Sampler::Matched));
+        let cauchy =
+            v_ratio(of, light, (ModelKind::Gaussian, Sampler::Published), (ModelKind::Cauchy, Sampler::Published));
+        let matched =
+            v_ratio(of, light, (ModelKind::Gaussian, Sampler::Published), (ModelKind::Gaussian, Sampler::Matched));
         verdicts.push([
             format!("Under {}", in_words(light)),
-            format!("Cauchy takes {} samples; `matched` in place of `ou` takes {}.", change(cauchy), change(matched)),
+            format!(
+                "Cauchy takes {} samples; `matched` in place of `published` takes {}.",
+                change(cauchy),
+                change(matched)
+            ),
         ]);
     }
     let worst = of.agreement.iter().map(|row| row.worst / row.bound).fold(0.0, f64::max);
@@ -179,28 +185,28 @@ fn findings(of: &Comparison) -> Vec<String> {
         let rows = &of.efficiency.reference_v;
         rows.iter().find(|row| (row.model, row.sampler) == (model, sampler) && row.theta_o_deg == 0.0).map(|row| row.v)
     };
-    if let (Some(uniform), Some(ou), Some(cauchy), Some(matched), Some(cauchy_matched)) = (
+    if let (Some(uniform), Some(published), Some(cauchy), Some(matched), Some(cauchy_matched)) = (
         v(ModelKind::Gaussian, Sampler::Uniform),
-        v(ModelKind::Gaussian, Sampler::Ou),
-        v(ModelKind::Cauchy, Sampler::Ou),
+        v(ModelKind::Gaussian, Sampler::Published),
+        v(ModelKind::Cauchy, Sampler::Published),
         v(ModelKind::Gaussian, Sampler::Matched),
         v(ModelKind::Cauchy, Sampler::Matched),
     ) {
-        let gain = uniform.ratio(&ou);
+        let gain = uniform.ratio(&published);
         findings.push(format!(
             "Under constant light, seen from the side, the published sampler needs {} times fewer samples than \
              uniform sampling on the Gaussian model (V {} against {}).",
             number::with_error(gain.value, gain.standard_error),
-            number::with_error(ou.value, ou.standard_error),
+            number::with_error(published.value, published.standard_error),
             number::with_error(uniform.value, uniform.standard_error),
         ));
-        let gain = ou.ratio(&cauchy);
+        let gain = published.ratio(&cauchy);
         findings.push(format!(
             "The all-Cauchy model needs {} times fewer samples still with the same sampler (V {}).",
             number::with_error(gain.value, gain.standard_error),
             number::with_error(cauchy.value, cauchy.standard_error),
         ));
-        let [gain, on_cauchy] = [ou.ratio(&matched), cauchy.ratio(&cauchy_matched)];
+        let [gain, on_cauchy] = [published.ratio(&matched), cauchy.ratio(&cauchy_matched)];
         findings.push(format!(
             "The matched sampler needs {} times fewer samples than the published one on the Gaussian model (V {}), and {} \
              times fewer on the Cauchy model (V {}).",

@@ -61,7 +61,7 @@ impl Case {
     /// `S cos theta_i` of the oracle, linear RGB.
     pub(super) fn oracle_value(&self, dir: DVec3) -> [f64; 3] {
         let cos_theta = dir.y.hypot(dir.z);
-        self.of(Sampler::Ou).oracle.eval(dir.to_array()).map(|s| s * cos_theta)
+        self.of(Sampler::Published).oracle.eval(dir.to_array()).map(|s| s * cos_theta)
     }
 
     /// The oracle's density of `sampler`, per steradian.

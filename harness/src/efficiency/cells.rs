@@ -204,9 +204,9 @@ pub(super) fn reference_v(config: &EfficiencyConfig<'_>, case: &Case, sampler: S
 pub(super) fn recorded_v(model: ModelKind, sampler: Sampler, theta_o_deg: f64) -> Option<f64> {
     let figures = match (model, sampler) {
         (ModelKind::Gaussian, Sampler::Uniform) => [0.706, 0.931, 2.268],
-        (ModelKind::Gaussian, Sampler::Ou) => [0.209, 0.189, 0.290],
+        (ModelKind::Gaussian, Sampler::Published) => [0.209, 0.189, 0.290],
         (ModelKind::Cauchy, Sampler::Uniform) => [0.592, 0.832, 1.967],
-        (ModelKind::Cauchy, Sampler::Ou) => [0.150, 0.159, 0.232],
+        (ModelKind::Cauchy, Sampler::Published) => [0.150, 0.159, 0.232],
         // The recorded implementation has no other samplers.
         _ => return None,
     };

@@ -16,7 +16,7 @@ fn over(numerator: f64, pdf: f64) -> f64 {
 
 /// The integral of `light * S cos theta_i` by the light's own quadrature, without the variances.
 fn mean_by_quadrature(case: &Case, light: &dyn Light) -> Reference {
-    let integral = light.integrate(&|dir| case.oracle_value(dir), case.sphere(Sampler::Ou));
+    let integral = light.integrate(&|dir| case.oracle_value(dir), case.sphere(Sampler::Published));
     Reference {
         value: intensity(integral.value),
         standard_error: 0.0,
@@ -63,7 +63,7 @@ pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
 #[cfg(test)]
 pub(super) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
     let hair = |dir| intensity(case.oracle_value(dir));
-    let sphere = case.sphere(Sampler::Ou);
+    let sphere = case.sphere(Sampler::Published);
     let albedo = sphere.integrate_direction(|dir| [hair(dir)]).value[0];
     let second = second_moment(case, light, sphere, &|dir| hair(dir) / albedo);
     second / mean_by_quadrature(case, light).value.powi(2) - 1.0

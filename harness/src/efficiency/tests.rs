@@ -54,7 +54,7 @@ fn the_recorded_figures_are_of_the_mean_of_rgb() {
         let exact = exact_variance(&case, sampler);
         assert!(exact.converged, "{:?} {sampler:?} {}", case.model, case.theta_o_deg);
         if let Some(recorded) = recorded_v(case.model, sampler, case.theta_o_deg) {
-            // Measured: 5.4e-4 at most, ou on the Cauchy model at 75 degrees, 0.23146 for the table's 0.232.
+            // Measured: 5.4e-4 at most, published on the Cauchy model at 75 degrees, 0.23146 for the table's 0.232.
             assert!(
                 (exact.intensity - recorded).abs() < 6e-4,
                 "{:?} {sampler:?} {}: {exact:?}, recorded {recorded}",
@@ -125,8 +125,8 @@ fn the_sun_is_for_light_sampling_and_the_rest_for_both() {
     };
     assert!(v(Technique::Light) < 0.1, "the lobes are wider than the sun");
     assert!(v(Technique::Bsdf(Sampler::Uniform)) > 1_000.0);
-    assert!(v(Technique::Bsdf(Sampler::Ou)) > 100.0);
-    assert!(v(Technique::Mis(Sampler::Ou)) < 3.0);
+    assert!(v(Technique::Bsdf(Sampler::Published)) > 100.0);
+    assert!(v(Technique::Mis(Sampler::Published)) < 3.0);
 }
 
 /// The small run and its calls of the progress report, computed once, on two threads.
@@ -176,7 +176,7 @@ fn a_small_run_has_every_row_and_passes_its_check() {
 fn efficiency_is_one_over_variance_and_time() {
     let costs = SampleCosts { gaussian: [4.0, 8.0, 16.0], cauchy: [3.0, 6.0, 12.0] };
     let v = Estimate { value: 0.2, standard_error: 0.01 };
-    let e = measure::efficiency(&v, costs.ns(ModelKind::Cauchy, Sampler::Ou));
+    let e = measure::efficiency(&v, costs.ns(ModelKind::Cauchy, Sampler::Published));
     assert!((e.value * 0.2 * 6e-9 - 1.0).abs() < 1e-12 && (e.standard_error / e.value - 0.05).abs() < 1e-12, "{e:?}");
 }
 
@@ -184,7 +184,7 @@ fn efficiency_is_one_over_variance_and_time() {
 fn a_wrong_mean_fails_the_check() {
     let mut result = small_run().0.clone();
     // The sampler's weights too large by 5%.
-    let row = result.rows.iter_mut().find(|r| r.sampler == Sampler::Ou && r.light == "constant").expect("a row");
+    let row = result.rows.iter_mut().find(|r| r.sampler == Sampler::Published && r.light == "constant").expect("a row");
     row.z = 0.05 * row.mean.value / row.mean.standard_error;
     assert_eq!(run::check(&result).failures.len(), 1, "{:?}", run::check(&result));
     result.rows[1].z = f64::NAN;

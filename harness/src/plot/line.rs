@@ -113,7 +113,7 @@ impl Reference {
 /// use hairis_harness::plot::{Axis, LineChart, Point, Reference, Series};
 /// let errors = [(16.0, 0.25), (64.0, 0.12), (256.0, 0.063)].map(|(n, e)| Point::new(n, e).with_error(0.1 * e));
 /// let svg = LineChart::new("Convergence", Axis::log("samples N"), Axis::log("relative RMS error"))
-///     .series(Series::new("ou", errors))
+///     .series(Series::new("published", errors))
 ///     .reference(Reference::Power { label: "slope −1/2".into(), slope: -0.5, through: (16.0, 0.25) })
 ///     .svg();
 /// assert!(svg.starts_with("<svg"));

@@ -234,7 +234,7 @@ mod tests {
         assert_eq!((found.samplers.len(), found.perfect.len()), (2 * Sampler::ALL.len() * 5, 2 * 5));
         assert_eq!(found, of(1, &Cell { index: 7, ..cell }), "where the cell stands");
         assert_ne!(found, of(2, &cell), "another seed");
-        let alone = measure(1, budget, &lights, &cell, &[Sampler::Ou]).expect("accepted");
+        let alone = measure(1, budget, &lights, &cell, &[Sampler::Published]).expect("accepted");
         let among = |of: &Measured| found.samplers.contains(of);
         assert!(alone.samplers.len() == 10 && alone.samplers.iter().all(among), "a sampler alone and among others");
         assert_eq!(alone.perfect.len(), 0, "nothing to estimate it from");

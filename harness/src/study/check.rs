@@ -76,7 +76,10 @@ mod tests {
             said[0].starts_with("cell 0, gaussian uniform, constant: a weight of 1000 is above its bound 20.7"),
             "{said:?}"
         );
-        assert!(said[1].starts_with("cell 1, gaussian ou, constant: its mean is 7.07 standard errors"), "{said:?}");
+        assert!(
+            said[1].starts_with("cell 1, gaussian published, constant: its mean is 7.07 standard errors"),
+            "{said:?}"
+        );
         cells[1][5].figures.mean.value = f64::NAN;
         assert_eq!(found(&cells).len(), 2, "no number is no agreement");
     }

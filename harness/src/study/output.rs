@@ -178,10 +178,10 @@ impl Study {
     /// | column | what it is |
     /// |---|---|
     /// | `cell` .. `light`, `v`, `v_se` | as in [`columns`](Self::columns) |
-    /// | `break_even`, `break_even_se` | V of `ou` over `v`: how many times the time of `ou` a sample may take before it loses in equal time |
+    /// | `break_even`, `break_even_se` | V of `published` over `v`: the time of a sample, in times of `published`, at which it loses in equal time |
     /// | `look_up_ns`, `look_up_ns_se` | time of a look-up of the light in a direction, ns |
     /// | `ns_at_N`, `efficiency_at_N` | time of a sample, ns, and `1 / (V seconds)`, for N of 1, 4 and 16 samples per gather point |
-    /// | `gain_at_N`, `gain_at_N_se` | by what factor less variance than `ou` it has in equal time |
+    /// | `gain_at_N`, `gain_at_N_se` | by what factor less variance than `published` it has in equal time |
     /// | `look_up_efficiency_at_N` .. `look_up_gain_at_N_se` | the three with the look-up counted in every sample's time |
     ///
     /// Of `perfect`, which has no time, the first two lines alone, without a break-even where its V is 0. A look-up that was
@@ -207,9 +207,9 @@ impl Study {
         let against_ou: Vec<Estimate> = rows
             .iter()
             .map(|row| match row.strategy {
-                Strategy::By(Sampler::Ou) => Estimate { value: 1.0, standard_error: 0.0 },
+                Strategy::By(Sampler::Published) => Estimate { value: 1.0, standard_error: 0.0 },
                 _ => {
-                    let place = rows::place(row.model, Sampler::Ou, row.light, lights);
+                    let place = rows::place(row.model, Sampler::Published, row.light, lights);
                     self.cells[row.cell.index][place].figures.v.ratio(&v(row))
                 }
             })
@@ -229,11 +229,11 @@ impl Study {
             };
             let efficiency = |row: &Row<'_>, more: Estimate| 1e9 / (v(row).value * (ns(row).value + more.value));
             let gain = |(row, gain): (&Row<'_>, &Estimate), more: Estimate| {
-                if row.strategy == Strategy::By(Sampler::Ou) {
+                if row.strategy == Strategy::By(Sampler::Published) {
                     // Against itself: exactly 1 wherever its time is known.
                     return if more.value.is_nan() { NOT_KNOWN } else { *gain };
                 }
-                in_equal_time(*gain, time_ratio(times.ns(row.model, Sampler::Ou, per_point), ns(row), more))
+                in_equal_time(*gain, time_ratio(times.ns(row.model, Sampler::Published, per_point), ns(row), more))
             };
             let gains = |with: bool| -> Vec<Estimate> {
                 let more = |row: &Row<'_>| if with { look_up(row) } else { NOTHING };

@@ -53,7 +53,7 @@ impl Study {
         let with = |section: Section, figures: Vec<Figure>| figures.into_iter().fold(section, Section::figure);
         let variance = with(
             Section::new("Variance").paragraph(
-                "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. `ou` is the \
+                "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. `published` is the \
                  published sampler, `uniform` draws from the whole sphere, and the samplers named `matched` follow each \
                  model's own bells. The Cauchy model has the Gaussian one's widths (k = 1). `perfect` is no sampler: it is \
                  what one would come to that draws in proportion to S cos θᵢ, the mean of red, green and blue, and knows \
@@ -105,7 +105,7 @@ impl Study {
             .method(
                 "Perfect sampling is estimated from the directions of `matched-25`, whose weights vary least and are bounded, \
                  and of the light; the albedo it needs is the mean of the same weights, not that of another source, so that \
-                 their errors cancel. A look-up is timed in directions of `ou`, in turns with the samplers.",
+                 their errors cancel. A look-up is timed in directions of `published`, in turns with the samplers.",
             )
             .method(
                 "Differences of looks are quadrature in double precision and have no statistical error; their own is \

@@ -84,7 +84,7 @@ struct Figures<'a> {
     times: &'a Times,
 }
 
-/// The tables: the samplers of each model against `ou`, then the models against each other; variances, then variances in
+/// The tables: the samplers of each model against `published`, then the models against each other; variances, then variances in
 /// equal time.
 pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &Times) -> Vec<Table> {
     let figures = Figures { cells, lights, times };
@@ -93,12 +93,12 @@ pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &Times) 
         base: (base.0, base.1.into()),
         other: (model, strategy),
     };
-    let over_ou = |strategies: &[Strategy]| -> Vec<Comparison> {
-        let others = strategies.iter().filter(|strategy| strategy.sampler() != Some(Sampler::Ou));
-        let of_model = |model| others.clone().map(move |of| against((model, Sampler::Ou), (model, *of)));
+    let over_published = |strategies: &[Strategy]| -> Vec<Comparison> {
+        let others = strategies.iter().filter(|strategy| strategy.sampler() != Some(Sampler::Published));
+        let of_model = |model| others.clone().map(move |of| against((model, Sampler::Published), (model, *of)));
         ModelKind::ALL.into_iter().flat_map(of_model).collect()
     };
-    let (samplers, all) = (over_ou(&Sampler::ALL.map(Strategy::By)), over_ou(&Strategy::ALL));
+    let (samplers, all) = (over_published(&Sampler::ALL.map(Strategy::By)), over_published(&Strategy::ALL));
     let models = Sampler::ALL.map(|of| against((ModelKind::Gaussian, of), (ModelKind::Cauchy, of.into())));
     let percent = 100.0 * MAX_RELATIVE_ERROR;
     let left_out = format!(
@@ -109,8 +109,9 @@ pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &Times) 
     let timed = "Times of the default hair, eight lanes, one thread, on this machine; ±: one standard error, that of the \
                  times included.";
     let above = |who: &str| format!("Above 1, it needs fewer samples than {who}. {left_out}");
-    let perfect = "In equal time a sample pays until it takes so many times that of ou. perfect: directions in proportion to \
-                   S cos θᵢ, drawn without regard to the light, which is what ever better samplers of the hair come to.";
+    let perfect = "In equal time a sample pays until it takes so many times that of the published sampler. perfect: \
+                   directions in proportion to S cos θᵢ, drawn without regard to the light, which is what ever better \
+                   samplers of the hair come to.";
     let counted = format!(
         "Won and lost: by more than two standard errors, those of the variances and of the times. Of {} cells; those left \
          out above are undecided.",
@@ -119,10 +120,15 @@ pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &Times) 
     let look_up = "The time of a look-up of the light in its direction is added to that of every sample.";
     let [alone, with] = [false, true];
     vec![
-        figures.variance("V of ou over V of the sampler, over the grid", &all).note(above("ou")).note(perfect),
+        figures
+            .variance("V of the published sampler over V of another, over the grid", &all)
+            .note(above("the published sampler"))
+            .note(perfect),
         figures.equal_time("The same in equal time, set-up included: medians", &samplers, alone).note(timed),
         figures.equal_time("The same with a look-up of the light: medians", &samplers, with).note(look_up),
-        figures.counts("Cells won / undecided / lost against ou in equal time", &samplers, alone).note(&counted),
+        figures
+            .counts("Cells won / undecided / lost against the published sampler in equal time", &samplers, alone)
+            .note(&counted),
         figures.counts("Cells won / undecided / lost with a look-up of the light", &samplers, with).note(look_up),
         figures
             .variance("V on the Gaussian model over V on the Cauchy model, over the grid", &models)

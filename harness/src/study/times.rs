@@ -130,7 +130,7 @@ pub(super) fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<Ti
 
 /// Directions of the published sampler on the default hair, sixteen a gather point.
 fn directions(from: &mut Independent) -> Vec<Vec3x8> {
-    let bsdf = bsdf(ModelKind::Gaussian, Sampler::Ou, &HairParams::default());
+    let bsdf = bsdf(ModelKind::Gaussian, Sampler::Published, &HairParams::default());
     let of_packet = |_| {
         let points = Points::draw(from);
         let gather = bsdf.prepare8(&points.wo);
@@ -227,7 +227,7 @@ mod tests {
             };
             assert_eq!(found, Estimate { value: median, standard_error: time.standard_error });
         }
-        assert!(ns(&times, ModelKind::Gaussian, Sampler::Ou, 2).value.is_nan(), "not measured");
+        assert!(ns(&times, ModelKind::Gaussian, Sampler::Published, 2).value.is_nan(), "not measured");
         assert!(look_up(&times, 2).value.is_nan(), "no such light");
     }
 

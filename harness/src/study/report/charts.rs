@@ -120,13 +120,13 @@ pub(super) fn summary(of: &View<'_>) -> Figure {
     Figure::new(chart.level(1.0).svg(), caption).named("summary")
 }
 
-/// Gains over `ou` by light, a chart for each model: in samples, up to that of perfect sampling, or in equal time.
-fn over_ou(of: &View<'_>, time: Timing, strategies: &[Strategy], words: [&str; 4]) -> Vec<Figure> {
+/// Gains over `published` by light, a chart for each model: in samples, up to that of perfect sampling, or in equal time.
+fn over_published(of: &View<'_>, time: Timing, strategies: &[Strategy], words: [&str; 4]) -> Vec<Figure> {
     let [title, axis, slug, caption] = words;
     let figure = |model: ModelKind| {
         let mut chart = BarChart::new(format!("{title}, {} model", model.title()), Axis::log(axis), of.light_labels());
-        for strategy in strategies.iter().filter(|strategy| strategy.sampler() != Some(Sampler::Ou)) {
-            chart = chart.series(strategy.name(), by_light(of, (model, Sampler::Ou), (model, *strategy), time));
+        for strategy in strategies.iter().filter(|strategy| strategy.sampler() != Some(Sampler::Published)) {
+            chart = chart.series(strategy.name(), by_light(of, (model, Sampler::Published), (model, *strategy), time));
         }
         let caption = format!("{caption} Medians over the grid; whiskers go from the first to the third quartile.");
         Figure::new(chart.level(1.0).svg(), caption).named(format!("{slug}-{}", model.name()))
@@ -134,28 +134,28 @@ fn over_ou(of: &View<'_>, time: Timing, strategies: &[Strategy], words: [&str; 4
     ModelKind::ALL.map(figure).into()
 }
 
-/// Gains in V by light, over `ou`, up to that of perfect sampling.
+/// Gains in V by light, over `published`, up to that of perfect sampling.
 pub(super) fn limits(of: &View<'_>) -> Vec<Figure> {
     let caption = "By what factor fewer samples than the published sampler needs, by light. That is also how many times its \
                    time a sample may take before it loses in equal time. `perfect` draws in proportion to S cos θᵢ, blind to \
                    the light. Under constant light nothing is left of its variance: no bar.";
-    let words = ["Fewer samples than ou", "V of ou / V (×)", "fewer-samples-by-light", caption];
-    over_ou(of, None, &Strategy::ALL, words)
+    let words = ["Fewer samples than the published sampler", "V published / V (×)", "fewer-samples-by-light", caption];
+    over_published(of, None, &Strategy::ALL, words)
 }
 
-/// Gains in equal time, by light: over `ou`, without and with the look-up, then of the Cauchy model.
+/// Gains in equal time, by light: over `published`, without and with the look-up, then of the Cauchy model.
 pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
     let samplers = Sampler::ALL.map(Strategy::By);
-    let axis = "gain over ou in equal time (×)";
+    let axis = "gain over the published sampler in equal time (×)";
     let caption = format!(
         "By what factor less variance than the published sampler has in the same time, by light, at {MANY} samples per \
          gather point."
     );
     let with = format!("{caption} The time of a look-up of the light is added; one that was not timed has no bars.");
-    let title = "Less variance than ou in equal time";
-    let mut figures = over_ou(of, Some(Counted::Sample), &samplers, [title, axis, "gain-by-light", &caption]);
-    let title = "Less variance than ou in equal time, look-up included";
-    figures.extend(over_ou(of, Some(Counted::LookUp), &samplers, [title, axis, "gain-by-light-look-up", &with]));
+    let title = "Less variance than the published sampler in equal time";
+    let mut figures = over_published(of, Some(Counted::Sample), &samplers, [title, axis, "gain-by-light", &caption]);
+    let title = "Less variance than the published sampler in equal time, look-up included";
+    figures.extend(over_published(of, Some(Counted::LookUp), &samplers, [title, axis, "gain-by-light-look-up", &with]));
     let mut chart = BarChart::new(
         "Less variance on the Cauchy model in equal time",
         Axis::log("Gaussian / Cauchy in equal time (×)"),
@@ -217,15 +217,15 @@ pub(super) fn distributions(of: &View<'_>) -> Vec<Figure> {
         figures.push(figure.named(format!("cauchy-gain-over-cells-{}", sampler.name())));
     }
     for model in ModelKind::ALL {
-        let title = format!("Variance of ou over that of the sampler, {} model", model.title());
-        let mut chart = LineChart::new(title, Axis::log("V ou / V sampler"), share());
-        for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Ou) {
-            let gains = ratios((model, Sampler::Ou), (model, sampler), CONSTANT);
+        let title = format!("Variance of the published sampler over that of another, {} model", model.title());
+        let mut chart = LineChart::new(title, Axis::log("V published / V sampler"), share());
+        for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Published) {
+            let gains = ratios((model, Sampler::Published), (model, sampler), CONSTANT);
             chart = chart.series(of_sampler(sampler, distribution(sampler.name(), gains)));
         }
         let caption = format!(
             "How the gain over the published sampler spreads over the {} cells of the grid under {} light: left of 1 (the \
-             upright) the sampler needs more samples than `ou`. The time of a sample is not in it.",
+             upright) the sampler needs more samples than `published`. The time of a sample is not in it.",
             of.cells.len(),
             of.lights[CONSTANT]
         );

@@ -89,11 +89,14 @@ fn worth(of: &View<'_>) -> Option<String> {
     })
 }
 
-/// The samplers that are not told from the best of a model under a light, with the best one's gain over `ou`.
+/// The samplers that are not told from the best of a model under a light, with the best one's gain over `published`.
 fn best(of: &View<'_>, model: ModelKind, light: usize, counted: Counted) -> Option<(Vec<Sampler>, Estimate)> {
     let gain = |sampler| {
-        let over_ou = of.equal_time((model, Sampler::Ou), (model, sampler), light, counted)?;
-        Some((sampler, if sampler == Sampler::Ou { Estimate { value: 1.0, standard_error: 0.0 } } else { over_ou }))
+        let over_published = of.equal_time((model, Sampler::Published), (model, sampler), light, counted)?;
+        Some((
+            sampler,
+            if sampler == Sampler::Published { Estimate { value: 1.0, standard_error: 0.0 } } else { over_published },
+        ))
     };
     let mut gains: Vec<(Sampler, Estimate)> = Sampler::ALL.into_iter().filter_map(gain).collect();
     gains.sort_by(|a, b| b.1.value.total_cmp(&a.1.value));
@@ -121,7 +124,8 @@ fn best_by_light(
             continue;
         }
         let name = said(name);
-        let words = if samplers.contains(&Sampler::Ou) { name.to_owned() } else { format!("{name} ({})", times(gain)) };
+        let words =
+            if samplers.contains(&Sampler::Published) { name.to_owned() } else { format!("{name} ({})", times(gain)) };
         match groups.iter_mut().find(|(group, _)| *group == samplers) {
             Some((_, lights)) => lights.push(words),
             None => groups.push((samplers, vec![words])),
@@ -153,7 +157,7 @@ fn which(of: &View<'_>) -> String {
     let with = if with.is_empty() { "the same".to_owned() } else { format!("{}; else the same", words(with)) };
     format!(
         "Which sampler? Least variance in equal time, {MANY} samples a gather point (in brackets how many times less than \
-         `ou`; \"or\": not told apart): {alone}. With a look-up of the light counted in{given}: {with}.{}",
+         `published`; \"or\": not told apart): {alone}. With a look-up of the light counted in{given}: {with}.{}",
         limit(of).unwrap_or_default()
     )
 }
@@ -189,17 +193,17 @@ pub(super) fn verdicts(of: &View<'_>) -> Vec<[String; 2]> {
     verdicts
 }
 
-/// How far sampling of the hair can go under the environment: V of `ou` over that of perfect sampling, and of `matched`.
+/// How far sampling of the hair can go under the environment: V of `published` over that of perfect sampling, and of `matched`.
 fn limit(of: &View<'_>) -> Option<String> {
     let light = of.lights.len().checked_sub(1)?;
     let gain = |model, strategy: Strategy| {
-        of.gain((model, Sampler::Ou), (model, strategy), light).map(|gain| times(gain.median))
+        of.gain((model, Sampler::Published), (model, strategy), light).map(|gain| times(gain.median))
     };
     let [perfect, matched] = [Strategy::Perfect, Sampler::Matched.into()].map(|strategy| {
         Some(format!("{} (Gaussian) and {} (Cauchy)", gain(GAUSSIAN, strategy)?, gain(CAUCHY, strategy)?))
     });
     Some(format!(
-        " How far can that go? V of `ou` over that of perfect sampling, which draws in proportion to S cos θᵢ, blind to \
+        " How far can that go? V of `published` over that of perfect sampling, which draws in proportion to S cos θᵢ, blind to \
          the light, is {} under {}; over that of `matched` it is {}.",
         perfect?,
         said(&of.lights[light]),

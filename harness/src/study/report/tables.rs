@@ -57,8 +57,8 @@ pub(super) fn look_ups(of: &View<'_>) -> Table {
         table.push([name.clone(), of.look_up(light).map_or_else(|| "not timed".to_owned(), shown)]);
     }
     table.note(
-        "Radiance and the light's density in 65536 directions of ou, many gather points in turn; eight lanes, one thread, \
-         medians; ±: one standard error.",
+        "Radiance and the light's density in 65536 directions of the published sampler, many gather points in turn; eight \
+         lanes, one thread, medians; ±: one standard error.",
     )
 }
 
@@ -70,15 +70,16 @@ pub(super) fn times(of: &View<'_>) -> Table {
         for sampler in Sampler::ALL {
             let mut cells = vec![model.name().to_owned(), sampler.name().to_owned()];
             cells.extend(PER_POINT.map(|n| {
-                let [ns, ou] = [sampler, Sampler::Ou].map(|sampler| of.ns((model, sampler), n));
-                format!("{} ({})", shown(ns), number::ratio(ns.value / ou.value))
+                let [ns, published] = [sampler, Sampler::Published].map(|sampler| of.ns((model, sampler), n));
+                format!("{} ({})", shown(ns), number::ratio(ns.value / published.value))
             }));
             table.push(cells);
         }
     }
     table.note(
         "Set-up included, the default hair, eight lanes, one thread, medians; ±: one standard error. In brackets: over that \
-         of ou. A sampler pays in equal time while that is below V of ou over its own V.",
+         of the published sampler. A sampler pays in equal time while that is below V of the published sampler over its \
+         own V.",
     )
 }
 

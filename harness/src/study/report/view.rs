@@ -40,7 +40,7 @@ pub(super) enum Counted {
 
 /// The samplers that are told apart in sentences: the published one, and the matched one that a renderer takes unless it
 /// knows better.
-pub(super) const TOLD: [Sampler; 2] = [Sampler::Ou, Sampler::Matched];
+pub(super) const TOLD: [Sampler; 2] = [Sampler::Published, Sampler::Matched];
 
 impl<'a> View<'a> {
     /// Names of the lights, to be set under bars: a file's in words.

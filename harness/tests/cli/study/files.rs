@@ -54,29 +54,36 @@ fn efficiencies_follow_from_variances_and_times() {
     assert_eq!(rows.len(), CELLS * ROWS_OF_A_CELL);
     let number = |row: &HashMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
     let key = |row: &HashMap<String, String>| ["cell", "model", "light"].map(|name| row[name].clone());
-    let ou: HashMap<_, _> = rows.iter().filter(|row| row["sampler"] == "ou").map(|row| (key(row), row)).collect();
+    let published: HashMap<_, _> =
+        rows.iter().filter(|row| row["sampler"] == "published").map(|row| (key(row), row)).collect();
     let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
     for row in &rows {
-        let ou = ou[&key(row)];
+        let published = published[&key(row)];
         let v = |row| number(row, "v");
         if row["sampler"] == "perfect" {
             assert!(row.keys().filter(|name| name.contains("_at_")).all(|name| row[name].is_empty()), "{row:?}");
             let limit = row["break_even"].parse().ok();
-            assert!(limit.map_or(row["light"] == "constant", |limit| near(limit, v(ou) / v(row))), "{row:?}");
+            assert!(limit.map_or(row["light"] == "constant", |limit| near(limit, v(published) / v(row))), "{row:?}");
             continue;
         }
-        assert!(near(number(row, "break_even"), v(ou) / v(row)), "{row:?}");
+        assert!(near(number(row, "break_even"), v(published) / v(row)), "{row:?}");
         for n in [1, 4, 16] {
             let ns = |row| number(row, &format!("ns_at_{n}"));
             let look_up = |row| ns(row) + number(row, "look_up_ns");
             let gain = |name: &str| number(row, &format!("{name}_at_{n}"));
             assert!(near(gain("efficiency"), 1e9 / (v(row) * ns(row))), "{n}: {row:?}");
             assert!(near(gain("look_up_efficiency"), 1e9 / (v(row) * look_up(row))), "{n}: {row:?}");
-            assert!(near(gain("gain"), v(ou) * ns(ou) / (v(row) * ns(row))), "{n}: {row:?}");
-            assert!(near(gain("look_up_gain"), v(ou) * look_up(ou) / (v(row) * look_up(row))), "{n}: {row:?}");
+            assert!(near(gain("gain"), v(published) * ns(published) / (v(row) * ns(row))), "{n}: {row:?}");
+            assert!(
+                near(gain("look_up_gain"), v(published) * look_up(published) / (v(row) * look_up(row))),
+                "{n}: {row:?}"
+            );
             // At least that of the variances.
-            let least =
-                if row["sampler"] == "ou" { 0.0 } else { number(row, "break_even_se") / number(row, "break_even") };
+            let least = if row["sampler"] == "published" {
+                0.0
+            } else {
+                number(row, "break_even_se") / number(row, "break_even")
+            };
             for name in ["gain", "look_up_gain"] {
                 let error = number(row, &format!("{name}_at_{n}_se")) / gain(name);
                 assert!(error >= least * 0.999_999 && error.is_finite(), "{name} {n}: {error} {row:?}");

@@ -140,29 +140,29 @@ fn over_grid<M: Model<Params = HairParams>>(model: M, shares: Shares, jumps: &[f
 }
 
 /// The mean of V, the geometric mean of its gain over the published sampler, and the least of it.
-fn gain<S: Published>(bands: usize, ou: &[f64], v: &[f64]) -> [f64; 3] {
+fn gain<S: Published>(bands: usize, published: &[f64], v: &[f64]) -> [f64; 3] {
     let n = narrow(v.len() as f64);
     let mean = |x: &[f64]| x.iter().sum::<f64>() / f64::from(n);
-    let logs: Vec<f64> = ou.iter().zip(v).map(|(ou, v)| (ou / v).ln()).collect();
+    let logs: Vec<f64> = published.iter().zip(v).map(|(published, v)| (published / v).ln()).collect();
     let (geometric, least) = (mean(&logs).exp(), logs.iter().fold(f64::MAX, |a, x| a.min(*x)).exp());
     let most = v.iter().fold(0.0, |a: f64, x| a.max(*x));
     println!(
-        "{:?} {bands} bands: V {:.5} (at most {most:.5}; ou {:.4}), gain {geometric:.2}, at least {least:.2}, {} points",
+        "{:?} {bands} bands: V {:.5} (at most {most:.5}; published {:.4}), gain {geometric:.2}, at least {least:.2}, {} points",
         S::SHAPE,
         mean(v),
-        mean(ou),
+        mean(published),
         v.len()
     );
     [mean(v), geometric, least]
 }
 
 pub fn variance_falls_by_what_is_promised<S: Published>() {
-    let (ou, few, usual, many) = samplers::<S>();
-    let ou = over_grid(ou, published::<S>, &[]);
+    let (hair, few, usual, many) = samplers::<S>();
+    let published = over_grid(hair, published::<S>, &[]);
     let gains = [
-        gain::<S>(5, &ou, &over_grid(few, matched::<S, 5>, &jumps::<S>(5))),
-        gain::<S>(9, &ou, &over_grid(usual, matched::<S, 9>, &jumps::<S>(9))),
-        gain::<S>(25, &ou, &over_grid(many, matched::<S, 25>, &jumps::<S>(25))),
+        gain::<S>(5, &published, &over_grid(few, matched::<S, 5>, &jumps::<S>(5))),
+        gain::<S>(9, &published, &over_grid(usual, matched::<S, 9>, &jumps::<S>(9))),
+        gain::<S>(25, &published, &over_grid(many, matched::<S, 25>, &jumps::<S>(25))),
     ];
     for (got, [v, gain, least]) in gains.iter().zip(S::ROWS.gain) {
         assert!(got[0] <= v && got[1] >= gain && got[2] >= least, "{got:?}, not {v}, {gain}, {least}");
