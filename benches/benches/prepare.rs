@@ -1,7 +1,7 @@
-//! Cost of a hit in a path tracer: a gather point alone, and a gather point with 1, 4 and 16 samples of it, whether
-//! the lanes of a packet are eight directions at one gather point or eight gather points.
+//! Cost of a hit in a path tracer: a shading point alone, and a shading point with 1, 4 and 16 samples of it, whether
+//! the lanes of a packet are eight directions at one shading point or eight shading points.
 //!
-//! `cargo bench -p hairis-benches --bench prepare`, with `-- path-4/gaussian` for one group. Throughput is in gather
+//! `cargo bench -p hairis-benches --bench prepare`, with `-- path-4/gaussian` for one group. Throughput is in shading
 //! points for `prepare` and in samples for `path`.
 
 mod timing;

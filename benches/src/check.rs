@@ -26,7 +26,7 @@ pub struct Asked {
     pub given: Given,
 }
 
-/// Query about a gather point.
+/// Query about a shading point.
 #[derive(Clone, Copy, Debug)]
 pub enum Given {
     /// Value and density of this direction.

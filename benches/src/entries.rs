@@ -15,18 +15,18 @@ use std::sync::LazyLock;
 /// Operation of an entry point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Op {
-    /// Everything constant for one gather point.
+    /// Everything constant for one shading point.
     Prepare,
     /// Value and density of a direction.
     Eval,
     /// A direction, its value, density and weight.
     Sample,
-    /// A gather point, and so many samples of it.
+    /// A shading point, and so many samples of it.
     Path(usize),
 }
 
 impl Op {
-    /// All of them: a path takes 1, 4 or 16 samples per gather point.
+    /// All of them: a path takes 1, 4 or 16 samples per shading point.
     pub const ALL: [Self; 6] = [Self::Prepare, Self::Eval, Self::Sample, Self::Path(1), Self::Path(4), Self::Path(16)];
 }
 
@@ -179,12 +179,12 @@ impl<M: Registered> Of<'_, M> {
         Bsdf8::pack(materials::<M>().each_ref())
     }
 
-    /// The one gather point of evaluations and samples.
+    /// The one shading point of evaluations and samples.
     fn gather(&self) -> Gather<M> {
         self.bsdf().prepare(self.inputs.wo[0])
     }
 
-    /// Eight gather points on eight heads of hair.
+    /// Eight shading points on eight heads of hair.
     fn gather8(&self, level: Level) -> Gather8<M> {
         self.mixed().prepare8_at(level, &packets(&self.inputs.wo[..8])[0])
     }
@@ -199,7 +199,7 @@ impl<M: Registered> Of<'_, M> {
         Asked { values: params::<M>()[i % 8].values(), wo: self.inputs.wo[i % 8], given }
     }
 
-    /// The query at a gather point of its own, on one material.
+    /// The query at a shading point of its own, on one material.
     fn shared(&self, i: usize, given: Given) -> Asked {
         Asked { values: M::Params::default().values(), wo: self.inputs.wo[i], given }
     }
@@ -315,10 +315,10 @@ impl<M: Registered> Of<'_, M> {
         }
     }
 
-    /// A gather point and `samples` samples of it: the answers checked are those of the last call.
+    /// A shading point and `samples` samples of it: the answers checked are those of the last call.
     fn path(&self, visitor: &mut impl Visitor, samples: usize) {
         let inputs = self.inputs;
-        // The numbers of a path are the first that were drawn, whatever the gather point.
+        // The numbers of a path are the first that were drawn, whatever the shading point.
         let (xi, eights) = (&inputs.xi[..samples], xi_packets(&inputs.xi));
         let packets_at_one = samples.div_ceil(8);
         let scalar = |i| self.shared(i, Given::Xi(xi[samples - 1]));
@@ -339,7 +339,7 @@ impl<M: Registered> Of<'_, M> {
             })
         });
         for level in Level::available() {
-            // Eight directions at one gather point; of the last packet only the requested lanes count.
+            // Eight directions at one shading point; of the last packet only the requested lanes count.
             self.show(visitor, "prepare-sample8", label(level), one, || {
                 let (bsdf, xi) = (self.bsdf(), eights[..packets_at_one].to_vec());
                 Each::new(samples, inputs.wo.clone(), move |wo| {
@@ -347,7 +347,7 @@ impl<M: Registered> Of<'_, M> {
                     last(&xi, |xi| gather.sample8_at(level, xi))
                 })
             });
-            // Eight gather points on eight heads of hair.
+            // Eight shading points on eight heads of hair.
             self.show(visitor, "prepare8-sample8", label(level), eight, || {
                 let (bsdf, xi) = (self.mixed(), eights[..samples].to_vec());
                 Each::new(8 * samples, packets(&inputs.wo), move |wo| {

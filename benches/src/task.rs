@@ -9,7 +9,7 @@ use hairis::textbook::{self, Reference};
 use hairis::wide::f32x8;
 use hairis::{Eval, Eval8, Gather, Gather8, LengthError, Model, Sample, Sample8, Vec3x8};
 
-/// Direction at which prepared gather points are evaluated to check them: no lobe is negligible there.
+/// Direction at which prepared shading points are evaluated to check them: no lobe is negligible there.
 pub const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
 
 /// Answer of an entry point for one direction.
@@ -192,7 +192,7 @@ impl Output for Sample8 {
     }
 }
 
-/// A gather point of the formulas.
+/// A shading point of the formulas.
 #[derive(Debug)]
 pub struct Point<R>(pub R);
 

@@ -170,7 +170,7 @@ pub struct AgreementResult {
     pub worst_case: Option<WorstCase>,
 }
 
-/// A gather point and a direction, written as `hairis eval` reads them.
+/// A shading point and a direction, written as `hairis eval` reads them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WorstCase {
     /// The model.
@@ -183,7 +183,7 @@ pub struct WorstCase {
     /// Offset across the fibre, for a model of the near field.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub h: Option<f32>,
-    /// The gather point's direction.
+    /// The shading point's direction.
     pub wo: [f32; 3],
     /// The direction, given or drawn.
     pub wi: [f32; 3],

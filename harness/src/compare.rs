@@ -112,7 +112,7 @@ pub fn run(config: &CompareConfig<'_>, progress: &(dyn Fn(Part, f64) + Sync)) ->
     Ok(Comparison { settings, machine: Machine::current(), speed, agreement, efficiency })
 }
 
-/// Samples at a gather point over which its preparation is spread, as in direct lighting.
+/// Samples at a shading point over which its preparation is spread, as in direct lighting.
 const SAMPLES_A_POINT: usize = 16;
 
 /// Times of a sample on eight lanes, set-up included.

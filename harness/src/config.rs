@@ -83,7 +83,7 @@ pub struct Eval {
 pub enum Path {
     /// One direction per call, in single precision
     Scalar,
-    /// Eight lines per call, in single precision: eight materials and gather points, one per lane
+    /// Eight lines per call, in single precision: eight materials and shading points, one per lane
     X8,
     /// Slices, in single precision: neighbouring lines on the same hair with the same wo share a call
     Batch,

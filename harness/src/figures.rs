@@ -203,7 +203,7 @@ mod tests {
         let bars = BarChart::new(
             "Speed (made up)",
             Axis::linear("speed relative to scalar (×)"),
-            ["eval", "sample", "sample and eval, one gather point", "prepare"],
+            ["eval", "sample", "sample and eval, one shading point", "prepare"],
         )
         .series("8 lanes, portable", [2.1, 2.4, 2.2, 1.4].map(bar))
         .series("8 lanes, AVX2 and FMA", [7.4, 6.1, 6.6, 3.9].map(bar))

@@ -98,7 +98,7 @@ pub(crate) fn weight_bound(model: ModelKind, sampler: Sampler, params: &HairPara
 /// Density of a uniform direction, per steradian.
 pub(crate) const UNIFORM_PDF: f32 = 0.25 / PI;
 
-/// A gather point with one of the samplers.
+/// A shading point with one of the samplers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scatter {
     gather: AnyGather,

@@ -40,25 +40,25 @@ const MAX_WRONG: f64 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Op {
-    /// Everything constant for one gather point (section 3.3 of the paper).
+    /// Everything constant for one shading point (section 3.3 of the paper).
     Prepare,
-    /// Value and density of a direction, the gather point prepared beforehand.
+    /// Value and density of a direction, the shading point prepared beforehand.
     EvalPdf,
-    /// A direction with its value, density and weight, the gather point prepared beforehand.
+    /// A direction with its value, density and weight, the shading point prepared beforehand.
     Sample,
     /// [`EvalPdf`](Self::EvalPdf) of hair so narrow that the directions lie in the far tails of every lobe.
     EvalPdfTails,
     /// [`Sample`](Self::Sample) of the same hair.
     SampleTails,
-    /// A gather point of its own for each direction, and one sample with its value: all on one head of hair.
+    /// A shading point of its own for each direction, and one sample with its value: all on one head of hair.
     PointsShared,
-    /// The same with four samples per gather point.
+    /// The same with four samples per shading point.
     PointsOf4,
     /// With sixteen.
     PointsOf16,
     /// With one, on eight heads of hair, one per lane, packed once.
     PointsMixed,
-    /// The same, packed anew for each eight gather points.
+    /// The same, packed anew for each eight shading points.
     PointsPacked,
 }
 
@@ -139,7 +139,7 @@ pub struct SpeedResult {
     pub rounds: usize,
     /// Calls over all the inputs in each timed stretch.
     pub passes: u32,
-    /// Time for one direction (one gather point where each direction has its own), ns: median over the rounds.
+    /// Time for one direction (one shading point where each direction has its own), ns: median over the rounds.
     pub ns: f64,
     /// First quartile of the same.
     pub ns_q1: f64,
@@ -296,7 +296,7 @@ const FRAMES: usize = 23;
 
 /// Calls `f` from so many frames further down the stack.
 ///
-/// Results are left on the stack. Where their addresses agree with those of a gather point's constants in the lower
+/// Results are left on the stack. Where their addresses agree with those of a shading point's constants in the lower
 /// twelve bits, which is a matter of luck, each call waits for the stores of the one before, and takes up to twice as
 /// long: rounds at different depths leave such places to the tail of the distribution.
 #[inline(never)]

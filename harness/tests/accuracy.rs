@@ -48,7 +48,7 @@ fn scalar(model: ModelId, case: &Case) -> Answer {
     (eval.value, eval.pdf)
 }
 
-/// Eight different materials, gather points and directions a call.
+/// Eight different materials, shading points and directions a call.
 fn eight(model: ModelId, level: Level, cases: &[Case]) -> Vec<Answer> {
     let (groups, rest) = cases.as_chunks::<8>();
     assert!(rest.is_empty(), "a number of cases that eight divides");

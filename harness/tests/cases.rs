@@ -1,4 +1,4 @@
-//! Random gather points and directions over realistic hair.
+//! Random shading points and directions over realistic hair.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::Vec3;
@@ -25,7 +25,7 @@ impl Region {
     pub(crate) const ALL: [Self; 5] = [Self::Sphere, Self::Peaks, Self::Grazing, Self::Back, Self::GlintCut];
 }
 
-/// A gather point and a direction.
+/// A shading point and a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Case {
     pub(crate) region: Region,

@@ -55,7 +55,7 @@ fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
     [u.atan2(v.hypot(w)), (v * w_o - w * v_o).atan2(v * v_o + w * w_o)]
 }
 
-/// Samples of some lobes of a gather point.
+/// Samples of some lobes of a shading point.
 type Draw = Box<dyn Fn(&[f32x8; 3]) -> Sample8>;
 
 /// Samples of a model of the registry.

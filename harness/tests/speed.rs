@@ -8,7 +8,7 @@ use hairis_variants::ModelId;
 fn every_contender_is_timed_and_right() {
     let mut last = 0.0;
     let report = run(&SpeedConfig { seconds: 0.0, seed: 1 }, |done| last = done).expect("hair within range");
-    // Slices take part where a gather point is given: evaluation and sampling. Eight lanes at one gather point take
+    // Slices take part where a shading point is given: evaluation and sampling. Eight lanes at one shading point take
     // part where it has several samples.
     let levels = Level::available().count();
     let models = ModelId::defaults_of_names().count();

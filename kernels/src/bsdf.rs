@@ -1,4 +1,4 @@
-//! Public handles: a material and a gather point of any model.
+//! Public handles: a material and a shading point of any model.
 
 use crate::model::{Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Sample, Sample8};
 use crate::packet::{Albedo, EvalPdf, Lobes, Prepare, SampleWi};
@@ -8,7 +8,7 @@ use core::fmt;
 use glam::Vec3;
 use wide::f32x8;
 
-/// A material: a model with its parameters, made once per material and prepared once per gather point.
+/// A material: a model with its parameters, made once per material and prepared once per shading point.
 ///
 /// ```
 /// use glam::Vec3;
@@ -22,7 +22,7 @@ pub struct Bsdf<M: Model> {
     material: M::Material<f32>,
 }
 
-/// Eight materials, one per lane: for eight gather points on different hair.
+/// Eight materials, one per lane: for eight shading points on different hair.
 pub struct Bsdf8<M: Model> {
     material: M::Material<f32x8>,
 }
@@ -33,7 +33,7 @@ pub struct Gather<M: Model> {
     pub(crate) inner: M::Gather<f32>,
 }
 
-/// Eight gather points, one per lane.
+/// Eight shading points, one per lane.
 pub struct Gather8<M: Model> {
     pub(crate) inner: M::Gather<f32x8>,
 }
@@ -65,7 +65,7 @@ impl<M: Model> Bsdf<M> {
         Self { material: model.material(params) }
     }
 
-    /// The gather point of a hit: a [`Hit`], or `wo` alone.
+    /// The shading point of a hit: a [`Hit`], or `wo` alone.
     ///
     /// - Domain: `wo` in the fibre's frame, of any length; zero counts as the normal plane. Along the fibre its
     ///   azimuth counts as 0. NaN and infinite ones see black.
@@ -75,7 +75,7 @@ impl<M: Model> Bsdf<M> {
         Gather { inner: M::prepare_one(&self.material, hit.into()) }
     }
 
-    /// Eight gather points on this material, one per lane: a [`Hit8`], or eight `wo`.
+    /// Eight shading points on this material, one per lane: a [`Hit8`], or eight `wo`.
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Gather8<M> {
@@ -168,7 +168,7 @@ impl<M: Model> Bsdf8<M> {
         Self { material: <M::Material<f32> as LaneStruct>::pack(materials.map(|m| &m.material)) }
     }
 
-    /// Eight gather points, lane by lane: a [`Hit8`], or eight `wo`.
+    /// Eight shading points, lane by lane: a [`Hit8`], or eight `wo`.
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Gather8<M> {
@@ -269,14 +269,14 @@ impl<M: Model> Gather<M> {
         level.run(SampleWi::<M, f32> { gather: &self.inner, xi })
     }
 
-    /// The constants of the model at this gather point.
+    /// The constants of the model at this shading point.
     #[inline]
     #[must_use]
     pub const fn constants(&self) -> &M::Gather<f32> {
         &self.inner
     }
 
-    /// The gather point with only some of its lobes: the others neither scatter nor are sampled.
+    /// The shading point with only some of its lobes: the others neither scatter nor are sampled.
     #[inline]
     #[must_use]
     pub fn with_lobes(&self, lobes: LobeMask) -> Self {
@@ -294,7 +294,7 @@ impl<M: Model> Gather<M> {
 }
 
 impl<M: Model> Gather8<M> {
-    /// Value and density at `wi`, each lane at its own gather point.
+    /// Value and density at `wi`, each lane at its own shading point.
     #[inline]
     #[must_use]
     pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
@@ -308,7 +308,7 @@ impl<M: Model> Gather8<M> {
         level.run(EvalPdf::<M, f32x8> { gather: &self.inner, wi })
     }
 
-    /// Each lobe's value, colour and own density, each lane at its own gather point.
+    /// Each lobe's value, colour and own density, each lane at its own shading point.
     #[inline]
     #[must_use]
     pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
@@ -322,7 +322,7 @@ impl<M: Model> Gather8<M> {
         level.run(Lobes::<M, f32x8> { gather: &self.inner, wi })
     }
 
-    /// One direction for each gather point.
+    /// One direction for each shading point.
     #[inline]
     #[must_use]
     pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
@@ -336,14 +336,14 @@ impl<M: Model> Gather8<M> {
         level.run(SampleWi::<M, f32x8> { gather: &self.inner, xi })
     }
 
-    /// The constants of the model at these gather points.
+    /// The constants of the model at these shading points.
     #[inline]
     #[must_use]
     pub const fn constants(&self) -> &M::Gather<f32x8> {
         &self.inner
     }
 
-    /// The gather point of one lane.
+    /// The shading point of one lane.
     ///
     /// # Panics
     ///
@@ -354,14 +354,14 @@ impl<M: Model> Gather8<M> {
         Gather { inner: <M::Gather<f32> as LaneStruct>::lane(&self.inner, lane) }
     }
 
-    /// The gather points with only some of their lobes: the others neither scatter nor are sampled.
+    /// The shading points with only some of their lobes: the others neither scatter nor are sampled.
     #[inline]
     #[must_use]
     pub fn with_lobes(&self, lobes: LobeMask) -> Self {
         Self { inner: M::restrict::<f32x8>(&self.inner, lobes) }
     }
 
-    /// Directional albedo of each lobe, linear RGB, each lane at its own gather point.
+    /// Directional albedo of each lobe, linear RGB, each lane at its own shading point.
     #[inline]
     #[must_use]
     pub fn albedo8(&self) -> PerLobe<[f32x8; 3]> {

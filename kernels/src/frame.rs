@@ -260,7 +260,7 @@ fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     if largest > 0.0 && v.is_finite() { (v / largest).normalize() } else { fallback }
 }
 
-/// One frame per lane: the same for eight directions ([`splat`](Self::splat)), or those of eight gather points.
+/// One frame per lane: the same for eight directions ([`splat`](Self::splat)), or those of eight shading points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiberFrame8 {
     /// Along each fibre.

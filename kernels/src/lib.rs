@@ -36,7 +36,7 @@
 //! - **Relative angles.** `phi = phi_o - phi_i`, `theta_h = (theta_i + theta_o) / 2`, `theta_d = (theta_o - theta_i) / 2`.
 //! - **Measures.** `L_o` is the integral of `L_i S cos theta_i` over `wi`. `eval` is S without the cosine; `pdf` is per
 //!   steradian; `weight` is `S cos theta_i / pdf`. Angles are radians.
-//! - **Lanes.** A lane is one sample: of the one gather point of a [`Gather`], or of the gather point in the same lane
+//! - **Lanes.** A lane is one sample: of the one shading point of a [`Gather`], or of the shading point in the same lane
 //!   of a [`Gather8`]. Lanes never mix.
 //! - **Totality.** Parameters are checked once, by [`HairParams::new`]. After that nothing fails: for every finite
 //!   input, results are finite and not negative. Directions within [`GRAZING`] of the axis have value and density 0,

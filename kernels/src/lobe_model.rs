@@ -39,7 +39,7 @@ use wide::f32x8;
 /// struct Even;
 ///
 /// lane_struct! {
-///     /// Material and gather point alike: the albedo, linear RGB.
+///     /// Material and shading point alike: the albedo, linear RGB.
 ///     pub struct Albedo {
 ///         /// Red, green and blue.
 ///         pub rgb: [C; 3],
@@ -90,7 +90,7 @@ pub trait LobeModel: Copy {
     type Params;
     /// Constants of a material, declared with [`lane_struct!`](crate::lane_struct).
     type Material<C: Scalar>: LaneStruct<One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
-    /// Constants of a gather point.
+    /// Constants of a shading point.
     type Prepared<C: Scalar>: LaneStruct<One = Self::Prepared<f32>, Eight = Self::Prepared<f32x8>>;
 
     /// Names of the lobes, in slot order: 1 to 4.
@@ -124,7 +124,7 @@ pub trait LobeModel: Copy {
     }
 }
 
-/// The constants of a gather point of a [`LobeModel`], and the mixture of its lobes.
+/// The constants of a shading point of a [`LobeModel`], and the mixture of its lobes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixed<P, C> {
     prepared: P,

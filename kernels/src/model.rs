@@ -6,7 +6,7 @@ use wide::f32x8;
 
 /// A scattering model, written once over [`Lanes`].
 ///
-/// [`Bsdf`](crate::Bsdf) makes scalar calls, eight lanes (eight directions at one gather point, or eight gather points),
+/// [`Bsdf`](crate::Bsdf) makes scalar calls, eight lanes (eight directions at one shading point, or eight shading points),
 /// run-time dispatch and slices of it. Authors implement [`LobeModel`](crate::LobeModel), which needs less and gives a
 /// `Model`; this trait is for models that compute several lobes together, as the published one does.
 ///
@@ -26,7 +26,7 @@ pub trait Model: Copy {
     type Params;
     /// Constants of a material: one number each (`C = f32`), or one per lane (`C = f32x8`).
     type Material<C: Scalar>: LaneStruct<One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
-    /// Constants of a gather point.
+    /// Constants of a shading point.
     type Gather<C: Scalar>: LaneStruct<One = Self::Gather<f32>, Eight = Self::Gather<f32x8>>;
 
     /// Names of the lobes, in slot order: at most [`Lobe::COUNT`].
@@ -44,7 +44,7 @@ pub trait Model: Copy {
         Self::prepare::<f32, f32>(material, hit)
     }
 
-    /// The gather point with only the lobes of `lobes`: the others neither scatter nor are sampled.
+    /// The shading point with only the lobes of `lobes`: the others neither scatter nor are sampled.
     fn restrict<C: Lanes>(gather: &Self::Gather<C>, lobes: LobeMask) -> Self::Gather<C>;
 
     /// Value and density of the direction `wi`.
@@ -221,7 +221,7 @@ impl<L: Lanes> Drawn<L> {
     }
 }
 
-/// A direction sampled at one gather point.
+/// A direction sampled at one shading point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Towards the light, in the fibre's frame, unit.
@@ -245,7 +245,7 @@ impl Sample {
     }
 }
 
-/// Eight sampled directions: of one gather point, or one of each of eight.
+/// Eight sampled directions: of one shading point, or one of each of eight.
 ///
 /// A discarded lane has value, pdf and weight 0 and slot -1, and counts as a sample whose contribution is 0.
 pub type Sample8 = Drawn<f32x8>;

@@ -7,7 +7,7 @@ use crate::{
 use core::marker::PhantomData;
 use wide::f32x8;
 
-/// Eight gather points. The caller's arguments are converted to hits inside the kernel, by vector code.
+/// Eight shading points. The caller's arguments are converted to hits inside the kernel, by vector code.
 pub(crate) struct Prepare<'a, M: Model, C: Constant, H> {
     pub(crate) material: &'a M::Material<C>,
     pub(crate) hits: H,
@@ -30,7 +30,7 @@ impl<M: Model, C: Constant, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
     }
 }
 
-/// Declares the kernel of one of a model's functions at a gather point, of eight lanes each.
+/// Declares the kernel of one of a model's functions at a shading point, of eight lanes each.
 macro_rules! at_gather {
     ($(#[$meta:meta])* $name:ident($input:ident: &$Input:ty) -> $Output:ty, $M:ident $L:ident $gather:ident $body:expr) => {
         $(#[$meta])*
@@ -72,7 +72,7 @@ at_gather! {
     SampleWi(xi: &[f32x8; 3]) -> Sample8, M L gather M::sample::<L, C>(gather, lanes3(xi)).store()
 }
 
-/// The directional albedos of eight gather points.
+/// The directional albedos of eight shading points.
 pub(crate) struct Albedo<'a, M: Model> {
     pub(crate) gather: &'a M::Gather<f32x8>,
 }
@@ -92,7 +92,7 @@ impl<M: Model> Kernel for Albedo<'_, M> {
     }
 }
 
-/// A row of a batch: the columns `K` of one gather point.
+/// A row of a batch: the columns `K` of one shading point.
 pub(crate) struct AtGather<'a, M: Model, K> {
     gather: &'a M::Gather<f32>,
     columns: PhantomData<K>,

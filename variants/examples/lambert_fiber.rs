@@ -45,7 +45,7 @@ lane_struct! {
 }
 
 lane_struct! {
-    /// Constants of a gather point.
+    /// Constants of a shading point.
     pub(crate) struct Point {
         material: (Material<C>),
         sin_theta_o: C,
@@ -107,7 +107,7 @@ impl LobeModel for LambertFiber {
     }
 }
 
-/// The integral of a gather point's density over the sphere, by midpoints in `sin theta` (it does not see `phi`).
+/// The integral of a shading point's density over the sphere, by midpoints in `sin theta` (it does not see `phi`).
 pub(crate) fn pdf_integral(gather: &hairis::Gather<LambertFiber>) -> f64 {
     const STEPS: u16 = 20_000;
     let mut sum = 0.0;

@@ -65,7 +65,7 @@ lane_struct! {
 }
 
 lane_struct! {
-    /// The constants of a gather point of Kajiya and Kay's model.
+    /// The constants of a shading point of Kajiya and Kay's model.
     pub struct KajiyaKayGather {
         /// Sine and cosine of `theta_o`.
         pub theta_o: [C; 2],

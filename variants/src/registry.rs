@@ -49,7 +49,7 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     /// Formulas prepared once per material.
     #[cfg(feature = "textbook")]
     type Formulas<T: Real>: Copy + Debug;
-    /// The formulas at one gather point.
+    /// The formulas at one shading point.
     #[cfg(feature = "textbook")]
     type Reference<T: Real>: Reference<T> + Copy + Debug;
     /// The accuracy that comparisons with the formulas require.

@@ -1,4 +1,4 @@
-//! Linux on x86-64 without std, alloc or libc: evaluates and samples both models, one lane, eight lanes, eight gather
+//! Linux on x86-64 without std, alloc or libc: evaluates and samples both models, one lane, eight lanes, eight shading
 //! points and slices, and checks that they agree. Exits with the number of the first check that failed, or 0.
 #![no_std]
 #![no_main]

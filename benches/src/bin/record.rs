@@ -1,7 +1,7 @@
 //! Turns a folder of Criterion results into a record: `record FOLDER`.
 //!
 //! Prints a CSV: first, as comments, the CPU, the compiler, the commit and the levels; then one row per bench, with the time
-//! per direction (`prepare`: per gather point; `math`: per argument) in ns: the median over Criterion's
+//! per direction (`prepare`: per shading point; `math`: per argument) in ns: the median over Criterion's
 //! samples, the bounds of its 95% confidence interval, and the median absolute deviation of a sample.
 
 use core::error::Error;

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 /// How light is estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Integrator {
-    /// Direct light, with samples of light and BSDF at a fixed gather point per camera ray
+    /// Direct light, with samples of light and BSDF at a fixed shading point per camera ray
     Gather,
     /// Direct light, one light and one BSDF sample per camera ray
     Direct,

@@ -18,9 +18,9 @@ const ROUNDING: f64 = 1.0 / 4_194_304.0;
 pub(super) enum CodePath {
     /// One direction per call.
     One,
-    /// Eight directions at one gather point.
+    /// Eight directions at one shading point.
     Shared(Level),
-    /// Eight gather points.
+    /// Eight shading points.
     Points(Level),
 }
 
@@ -57,7 +57,7 @@ pub(super) struct Measured {
     pub(super) at: Place,
 }
 
-/// A lane of a packet: the gather point, and the direction.
+/// A lane of a packet: the shading point, and the direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) values: Values,

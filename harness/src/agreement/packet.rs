@@ -1,4 +1,4 @@
-//! Eight gather points, and directions and numbers that fall into a region.
+//! Eight shading points, and directions and numbers that fall into a region.
 
 use super::Region;
 use crate::sequence::{Independent, stream_id};
@@ -31,9 +31,9 @@ pub(super) struct Packet {
     pub(super) wo: [Vec3; 8],
     /// Offsets across the fibre; 0 for a model of the far field.
     pub(super) h: [f32; 8],
-    /// One for each gather point.
+    /// One for each shading point.
     pub(super) wi: [Vec3; 8],
-    /// Eight for the first gather point.
+    /// Eight for the first shading point.
     pub(super) wi_shared: [Vec3; 8],
     pub(super) xi: [[f32; 3]; 8],
     pub(super) truth: Vec<AnyReference<f64>>,

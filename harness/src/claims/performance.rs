@@ -42,7 +42,7 @@ const IN_EQUAL_TIME: Threshold = Threshold {
     limits: "the light under which the Cauchy model gains most",
 };
 
-/// Samples of a gather point over which its set-up is spread in the comparison of times.
+/// Samples of a shading point over which its set-up is spread in the comparison of times.
 const PER_POINT: usize = 16;
 
 /// V on both models in a cell, under each light.

@@ -227,7 +227,7 @@ fn findings(of: &Comparison) -> Vec<String> {
     ) {
         findings.push(format!(
             "Eight lanes on {level} evaluate the Gaussian model {} and the Cauchy model {} as fast as the paper's \
-             formulas in scalar f32, and sample {} as fast; on eight different gather points, preparation included, \
+             formulas in scalar f32, and sample {} as fast; on eight different shading points, preparation included, \
              {}.",
             number::ratio(eval),
             number::ratio(cauchy),

@@ -1,4 +1,4 @@
-//! One model seen from one direction: the measured eight-lane gather point, and its double-precision oracle.
+//! One model seen from one direction: the measured eight-lane shading point, and its double-precision oracle.
 
 use super::{ModelKind, PHI_O_DEG};
 use crate::quadrature::{SphereIntegrator, Tolerance, fibre_direction};

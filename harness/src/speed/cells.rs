@@ -18,7 +18,7 @@ pub(super) const ONE: &str = "one lane";
 /// The kernel, eight directions per call.
 pub(super) const EIGHT: &str = "eight lanes";
 
-/// The kernel, eight directions at one gather point per call, where [`EIGHT`] has eight gather points.
+/// The kernel, eight directions at one shading point per call, where [`EIGHT`] has eight shading points.
 pub(super) const EIGHT_AT_ONE: &str = "eight lanes, one point";
 
 /// The kernel, all directions in one call.

@@ -9,8 +9,8 @@ use wide::f32x8;
 
 /// Directions per pass. With their numbers `xi` they take 21 KB.
 ///
-/// Packets of gather points with 16 samples each, and no power of two: columns of 4096 bytes one after the other make loads wait for stores they have nothing to do with,
-/// which costs slices up to 40 %.
+/// Packets of shading points with 16 samples each, and no power of two: consecutive columns of 4096 bytes make loads wait
+/// for unrelated stores, which costs slices up to 40%.
 pub(super) const DIRECTIONS: usize = 896;
 
 /// Directions and numbers, all lanes different, and eight sets of parameters.

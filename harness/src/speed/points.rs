@@ -1,4 +1,4 @@
-//! Gather points of their own: preparing one, and a few samples of it.
+//! Shading points of their own: preparing one, and a few samples of it.
 
 use super::cells::{Contender, EIGHT, EIGHT_AT_ONE, ONE, TEXTBOOK, scalar, truth, with_levels};
 use super::check::Truth;
@@ -21,7 +21,7 @@ impl<const N: usize> Output for Leading<N> {
     }
 }
 
-/// A gather point and `N` samples of it, all on the same hair: each lane at its own point, or a point's samples in `P`
+/// A shading point and `N` samples of it, all on the same hair: each lane at its own point, or a point's samples in `P`
 /// packets, the last of which may have lanes to spare.
 pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
     id: ModelId,
@@ -91,7 +91,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
     Ok((contenders, Truth::of_samples(points, &inputs.xi)))
 }
 
-/// A gather point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
+/// A shading point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
 pub(super) fn mixed<M: Registered>(
     id: ModelId,
     inputs: &Inputs<M::Params>,

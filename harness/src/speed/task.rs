@@ -7,7 +7,7 @@ use glam::Vec3;
 use hairis::textbook::{Drawn, Reference};
 use hairis::{Eval, Eval8, Gather, Gather8, Model, Sample, Sample8, Vec3x8};
 
-/// Direction at which prepared gather points are evaluated to check them: no lobe is negligible there.
+/// Direction at which prepared shading points are evaluated to check them: no lobe is negligible there.
 pub(super) const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
 
 /// Answer of a contender for one direction.
@@ -164,7 +164,7 @@ impl Output for Sample8 {
     }
 }
 
-/// A gather point of the formulas.
+/// A shading point of the formulas.
 pub(super) struct Point<R>(pub(super) R);
 
 impl<R: Reference<f32>> Output for Point<R> {

@@ -47,7 +47,7 @@ impl Times {
         })
     }
 
-    /// Median time of a sample in ns, for 1, 4 or 16 samples per gather point; not a number for others.
+    /// Median time of a sample in ns, for 1, 4 or 16 samples per shading point; not a number for others.
     pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
         times::ns(&self.0, model, sampler, per_point)
     }
@@ -180,7 +180,7 @@ impl Study {
     /// | `cell` .. `light`, `v`, `v_se` | as in [`columns`](Self::columns) |
     /// | `break_even`, `break_even_se` | V of `published` over `v`: the time of a sample, in times of `published`, at which it loses in equal time |
     /// | `look_up_ns`, `look_up_ns_se` | time of a look-up of the light in a direction, ns |
-    /// | `ns_at_N`, `efficiency_at_N` | time of a sample, ns, and `1 / (V seconds)`, for N of 1, 4 and 16 samples per gather point |
+    /// | `ns_at_N`, `efficiency_at_N` | time of a sample, ns, and `1 / (V seconds)`, for N of 1, 4 and 16 samples per shading point |
     /// | `gain_at_N`, `gain_at_N_se` | by what factor less variance than `published` it has in equal time |
     /// | `look_up_efficiency_at_N` .. `look_up_gain_at_N_se` | the three with the look-up counted in every sample's time |
     ///

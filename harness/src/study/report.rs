@@ -63,7 +63,7 @@ impl Study {
         );
         let time = with(
             Section::new("Efficiency").paragraph(
-                "What counts is the variance that is left after a given time. A sampler prepares each gather point, then \
+                "What counts is the variance that is left after a given time. A sampler prepares each shading point, then \
                  draws from it; a path tracer draws once, direct lighting often. Every sample needs the light in its \
                  direction: gains are given for the samplers' own times, and with a look-up of the light added.",
             ),

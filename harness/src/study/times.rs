@@ -1,7 +1,7 @@
 //! Times of a sample, set-up included, and of a look-up of the light in its direction. They turn variances into
 //! efficiencies.
 //!
-//! Measured on one thread, with nothing else at work, on the default hair and eight gather points at a time, one per
+//! Measured on one thread, with nothing else at work, on the default hair and eight shading points at a time, one per
 //! lane. Contenders alternate within a round, as in [`speed`](crate::speed).
 //!
 //! A look-up is [`Light::see8`] in directions of the published sampler, the light's density of them included, as multiple
@@ -21,13 +21,13 @@ use core::hint::black_box;
 use hairis::{HairParams, Sample8, Vec3x8};
 use wide::f32x8;
 
-/// Samples of a gather point over which its set-up is spread: a path tracer's, and two of direct lighting.
+/// Samples of a shading point over which its set-up is spread: a path tracer's, and two of direct lighting.
 pub(super) const PER_POINT: [usize; 3] = [1, 4, 16];
 
-/// Packets of eight gather points a pass.
+/// Packets of eight shading points a pass.
 const PACKETS: usize = 64;
 
-/// Packets of eight gather points whose sixteen samples each are the directions of the look-ups, 2^16 in all.
+/// Packets of eight shading points whose sixteen samples each are the directions of the look-ups, 2^16 in all.
 const LOOK_UP_PACKETS: usize = 512;
 
 /// Timed operation.
@@ -37,7 +37,7 @@ pub(super) enum Timed {
     Sample {
         model: ModelKind,
         sampler: Sampler,
-        /// Samples of a gather point.
+        /// Samples of a shading point.
         per_point: usize,
     },
     /// A look-up of the light at this place.
@@ -128,7 +128,7 @@ pub(super) fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<Ti
     contenders.into_iter().map(time).collect()
 }
 
-/// Directions of the published sampler on the default hair, sixteen a gather point.
+/// Directions of the published sampler on the default hair, sixteen per shading point.
 fn directions(from: &mut Independent) -> Vec<Vec3x8> {
     let bsdf = bsdf(ModelKind::Gaussian, Sampler::Published, &HairParams::default());
     let of_packet = |_| {
@@ -139,7 +139,7 @@ fn directions(from: &mut Independent) -> Vec<Vec3x8> {
     (0..LOOK_UP_PACKETS).flat_map(of_packet).collect()
 }
 
-/// Eight gather points and the numbers of their samples.
+/// Eight shading points and the numbers of their samples.
 #[derive(Clone)]
 struct Points {
     wo: Vec3x8,

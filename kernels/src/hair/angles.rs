@@ -1,4 +1,4 @@
-//! Angles of a direction relative to the gather point, and the lobe terms there.
+//! Angles of a direction relative to the shading point, and the lobe terms there.
 
 use super::{GRAZING, HairView};
 use crate::lanes3;
@@ -6,7 +6,7 @@ use crate::math::{FRAC_PI_2_LOW, atan_unit, half_atan2};
 use crate::{Bell, Broadcast, Lanes, Vec3x};
 use core::f32::consts::FRAC_PI_2;
 
-/// Angles of a direction relative to the gather point.
+/// Angles of a direction relative to the shading point.
 #[derive(Clone, Copy)]
 pub(crate) struct Angles<L: Lanes> {
     /// Half of `theta_i`.
@@ -29,7 +29,7 @@ pub(crate) struct Angles<L: Lanes> {
 pub(crate) struct LobeTerms<L> {
     /// `M N`, with unit peaks: no colour, no strength.
     pub(crate) value: [L; 4],
-    /// The same of Cauchy bells, the glints cut at `pi/2`: the published sampler's density but for the gather point's
+    /// The same of Cauchy bells, the glints cut at `pi/2`: the published sampler's density but for the shading point's
     /// constants, and for `1 / cos theta_i`.
     pub(super) density: [L; 4],
     /// `1 / cos^2 theta_d`.
@@ -37,7 +37,7 @@ pub(crate) struct LobeTerms<L> {
 }
 
 impl<L: Lanes> Angles<L> {
-    /// The angles of `wi` relative to a gather point, and the mask of lanes where `wi` is a direction off the axis.
+    /// The angles of `wi` relative to a shading point, and the mask of lanes where `wi` is a direction off the axis.
     #[inline(always)]
     pub(crate) fn from_direction<C: Broadcast<L>>(view: &HairView<C>, wi: Vec3x<L>) -> (Self, L::Mask) {
         let c = L::splat;

@@ -36,7 +36,7 @@ crate::lane_struct! {
 }
 
 crate::lane_struct! {
-    /// The constants of a gather point of the published model: those of its material, and those of `wo`.
+    /// The constants of a shading point of the published model: those of its material, and those of `wo`.
     pub struct HairGather {
         /// The lobes as seen from `wo`.
         pub view: (HairView<C>),
@@ -132,7 +132,7 @@ fn longitude<L: Lanes, C: Broadcast<L>>(shift: L, beta: C) -> TruncatedCauchy<L>
     TruncatedCauchy::new(shift - quarter, shift + quarter, beta.lanes())
 }
 
-/// The gather point of a material seen from `wo`.
+/// The shading point of a material seen from `wo`.
 #[inline(always)]
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<L>) -> HairGather<L::Stored> {
     let c = L::splat;
@@ -173,7 +173,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
 }
 
 impl<C: Lanes> HairGather<C> {
-    /// The gather point with only some of its lobes.
+    /// The shading point with only some of its lobes.
     #[inline(always)]
     pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
         let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));

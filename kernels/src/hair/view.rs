@@ -1,4 +1,4 @@
-//! Lobes of a material, and the view terms of a gather point: shared by all samplers of the published model.
+//! Lobes of a material, and the view terms of a shading point: shared by all samplers of the published model.
 
 use super::albedo::bell_area;
 use crate::math::half_atan2;
@@ -38,7 +38,7 @@ crate::lane_struct! {
 }
 
 crate::lane_struct! {
-    /// View terms of a gather point, which every sampler reads: the lobes of its material, and `wo`.
+    /// View terms of a shading point, which every sampler reads: the lobes of its material, and `wo`.
     pub struct HairView {
         /// Half the sine of `theta_o`.
         pub half_sin_theta_o: C,
@@ -137,7 +137,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
 }
 
 impl<C: Lanes> HairView<C> {
-    /// The gather point with only some of its lobes.
+    /// The shading point with only some of its lobes.
     #[inline(always)]
     pub(crate) fn restrict(&self, lobes: LobeMask) -> Self {
         let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));

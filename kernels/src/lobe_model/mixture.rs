@@ -3,7 +3,7 @@
 use crate::{Lanes, store3, store4};
 
 crate::lane_struct! {
-    /// Probabilities of the lobes of a gather point, and the choice of one.
+    /// Probabilities of the lobes of a shading point, and the choice of one.
     pub struct Mixture {
         /// Probability of each lobe.
         pub selection: [C; 4],

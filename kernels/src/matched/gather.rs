@@ -20,7 +20,7 @@ const LEAST_AREA: f32 = 3e-39;
 /// A channel below this share of the largest is ignored in the choice of lobes: the square of its reciprocal is a float.
 const LEAST_CHANNEL: f32 = 1e-18;
 
-/// The constants of a gather point with a matched sampler of `N` bands.
+/// The constants of a shading point with a matched sampler of `N` bands.
 ///
 /// Arrays of four are in the order of [`Lobe`], of two TT and the glints, of `N` from the lower pole to the upper.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,7 @@ pub struct MatchedGather<C, const N: usize> {
     pub azimuth_origin: [C; 2],
 }
 
-/// The gather point of a material seen from `wo`.
+/// The shading point of a material seen from `wo`.
 #[inline(always)]
 pub(super) fn prepare<B, L, C, P, const K: usize, const N: usize, const BY_CHANNEL: bool>(
     m: &MatchedMaterial<C>,
@@ -220,7 +220,7 @@ impl<C, const N: usize> MatchedGather<C, N> {
 }
 
 impl<C: Lanes, const N: usize> MatchedGather<C, N> {
-    /// The gather point with only some of its lobes.
+    /// The shading point with only some of its lobes.
     #[inline(always)]
     pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
         let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));

@@ -55,7 +55,7 @@ impl<L: Lanes> Hemispheres<L, 3> for Pair<L> {
     }
 }
 
-/// One gather point: lanes 0 to 2 are the lobes below, 4 to 6 those above. One lane would do each after the other, and gives
+/// One shading point: lanes 0 to 2 are the lobes below, 4 to 6 those above. One lane would do each after the other, and gives
 /// the same bits: these lanes do not fuse either.
 impl Hemispheres<f32, 1> for Unfused {
     #[inline(always)]

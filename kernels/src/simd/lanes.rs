@@ -1,6 +1,6 @@
 //! SIMD vector trait in which every model is written: one lane (`f32`), or eight.
 //!
-//! A lane is one sample of one gather point, or one of eight gather points, as the caller has it: models never mix
+//! A lane is one sample of one shading point, or one of eight shading points, as the caller has it: models never mix
 //! lanes. [`Lanes`] holds the arithmetic and nothing else, so that a model compiles to the same straight line of
 //! instructions on every backend. It is public for models to be written over it, and sealed: the backends are ours.
 //!
@@ -120,8 +120,8 @@ pub trait Lanes:
 
 /// Storage of lanes: one number for all of them, or one per lane.
 ///
-/// A model reads its constants through this trait, so that one source serves eight directions at one gather point
-/// (constants in `f32`) and eight gather points (constants in `f32x8`).
+/// A model reads its constants through this trait, so that one source serves eight directions at one shading point
+/// (constants in `f32`) and eight shading points (constants in `f32x8`).
 pub trait Broadcast<L: Lanes>: Scalar {
     /// The number of each lane.
     fn lanes(&self) -> L;
@@ -220,7 +220,7 @@ pub(crate) fn select_of_three<L: Lanes>(table: [L; 3], [one, two, _]: [L::Mask; 
 ///
 /// ```
 /// hairis::lane_struct! {
-///     /// Constants of one gather point.
+///     /// Constants of one shading point.
 ///     pub struct Constants {
 ///         /// Exponent of the highlight.
 ///         pub exponent: C,

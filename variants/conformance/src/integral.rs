@@ -105,7 +105,7 @@ impl Integral {
         self.unresolved += if error > ERROR { error } else { 0.0 };
     }
 
-    /// The density of a gather point.
+    /// The density of a shading point.
     pub(crate) fn density<M: Model>(gather: &Gather<M>, mesh: &Mesh) -> Self {
         Self::new(mesh, |wi, out| {
             let written = gather.pdf_batch_at(Level::detect(), wi, out);

@@ -87,7 +87,7 @@ fn same_bits(claims: &Claims, level: Level) -> bool {
 
 /// Each of eight lanes, with a material, hit, direction and numbers of its own, gives the results of one lane: the same
 /// bits on levels that do not fuse, and close ones on those that do. So do eight lanes at one hit, and `lane` of eight
-/// gather points.
+/// shading points.
 ///
 /// # Errors
 ///

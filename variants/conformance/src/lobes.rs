@@ -9,7 +9,7 @@ use hairis::{Bsdf, Eval, Level, Lobe, LobeMask, Model};
 /// Hits per material.
 const ROUNDS: usize = 120;
 
-/// The lobes' values times their colours sum to S; the density of each lobe alone is that of the gather point with only
+/// The lobes' values times their colours sum to S; the density of each lobe alone is that of the shading point with only
 /// this lobe; the density of all is between the least and the largest of them.
 ///
 /// # Errors

@@ -26,7 +26,7 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    /// A mesh for the density of a gather point: of all its lobes, or of those in `mask`.
+    /// A mesh for the density of a shading point: of all its lobes, or of those in `mask`.
     pub(crate) fn new<S: Subject>(
         subject: &S,
         params: &ParamsOf<S>,
@@ -56,7 +56,7 @@ impl Mesh {
     }
 }
 
-/// Many samples of one gather point, by column.
+/// Many samples of one shading point, by column.
 pub(crate) struct Samples {
     columns: [Vec<f32>; COLUMNS],
 }

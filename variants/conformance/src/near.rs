@@ -10,7 +10,7 @@ const ROUNDING: f64 = 4e-7;
 /// Values and densities below this are compared absolutely.
 const FLOOR: f64 = 1e-20;
 
-/// A gather point, and those of the hits that its hit may be taken for once it is rounded.
+/// A shading point, and those of the hits that its hit may be taken for once it is rounded.
 pub(crate) struct Nearby<'a, M: Model> {
     bsdf: &'a Bsdf<M>,
     hit: Hit,
@@ -27,7 +27,7 @@ impl<'a, M: Model> Nearby<'a, M> {
         &self.gather
     }
 
-    /// The gather points of rounded hits.
+    /// The shading points of rounded hits.
     fn gathers(&self) -> impl Iterator<Item = Gather<M>> {
         let Hit { wo, h } = self.hit;
         let moved = rounded(wo, ROUNDING).map(|wo| Hit { wo, h });

@@ -116,8 +116,8 @@ macro_rules! published {
             }
             lobes { lobes_add_up a_subset_scatters_and_samples_its_lobes_alone a_lobe_is_colored_by_its_parameters }
             parity {
-                every_lane_position_equals_one_lane eight_gather_points_equal_one_each one_lane_never_fuses
-                one_gather_point_in_every_lane_equals_a_shared_one permuted_lanes_permute_the_results
+                every_lane_position_equals_one_lane eight_shading_points_equal_one_each one_lane_never_fuses
+                one_shading_point_in_every_lane_equals_a_shared_one permuted_lanes_permute_the_results
                 levels_agree_with_one_lane levels_that_round_alike_give_the_same_bits
                 lobes_and_albedo_agree_with_one_lane a_hit_is_its_direction
             }

@@ -65,7 +65,7 @@ hairis::lane_struct! {
 }
 
 hairis::lane_struct! {
-    /// Constants of a gather point.
+    /// Constants of a shading point.
     pub struct Point {
         /// As in the material.
         pub kd: [C; 3],

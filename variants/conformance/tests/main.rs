@@ -74,7 +74,7 @@ fn sampling_finds_a_sample_of_another_direction() {
 }
 
 #[test]
-fn lanes_find_a_lane_of_another_gather_point() {
+fn lanes_find_a_lane_of_another_shading_point() {
     assert_fails(lanes::lanes_equal_scalar(&Broken::<WRONG_LANE>), "lane 3");
 }
 
@@ -90,7 +90,7 @@ fn lanes_find_packets_that_differ_from_scalar() {
 }
 
 #[test]
-fn levels_find_a_lane_of_another_gather_point() {
+fn levels_find_a_lane_of_another_shading_point() {
     // Equal lanes hide which of them `lane` returns; the packed material is found out by another property.
     assert_fails(lanes::lanes_equal_scalar(&Broken::<WRONG_LANE>), "`lane`");
 }

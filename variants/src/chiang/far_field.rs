@@ -63,7 +63,7 @@ impl ChiangDesc {
     }
 }
 
-/// A gather point in the far field: `wo` is given, and `h` is uniform.
+/// A shading point in the far field: `wo` is given, and `h` is uniform.
 ///
 /// Value and density are means over the nodes. Energy is that of the near field, whatever the nodes.
 ///
@@ -85,7 +85,7 @@ pub struct FarField<const PACKETS: usize, const BY_CHANNEL: bool = false> {
 }
 
 impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL> {
-    /// The gather point of a material seen from `wo`, whose domain is that of [`Bsdf::prepare`].
+    /// The shading point of a material seen from `wo`, whose domain is that of [`Bsdf::prepare`].
     #[inline]
     #[must_use]
     pub fn prepare(bsdf: &Bsdf<Chiang<BY_CHANNEL>>, nodes: &OffsetNodes<PACKETS>, wo: impl Into<Vec3x<f32>>) -> Self {
@@ -130,7 +130,7 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
         (pdf > 1e-30).then(|| Sample { value, pdf, weight: value.map(|s| (s * by).min(f32::MAX)), ..drawn })
     }
 
-    /// The gather point with only some of its lobes.
+    /// The shading point with only some of its lobes.
     #[inline]
     #[must_use]
     pub fn with_lobes(&self, lobes: LobeMask) -> Self {

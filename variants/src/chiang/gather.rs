@@ -41,7 +41,7 @@ lane_struct! {
 }
 
 lane_struct! {
-    /// The constants of a gather point of the energy-conserving fibre.
+    /// The constants of a shading point of the energy-conserving fibre.
     pub struct ChiangGather {
         /// Sine of each lobe's cone, `theta' = theta_o - shift`.
         pub sin_cone: [C; 4],
@@ -146,7 +146,7 @@ fn fresnel<L: Lanes>(c: L, k: L, eta_sq: L, eta_sq_less_one: L) -> [L; 2] {
     [L::select(none, L::splat(0.0), reflected), L::select(none, one, passed)]
 }
 
-/// The gather point of a material hit from `hit.wo` at `hit.h`.
+/// The shading point of a material hit from `hit.wo` at `hit.h`.
 #[inline(always)]
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit<L>) -> ChiangGather<L::Stored> {
     let c = L::splat;

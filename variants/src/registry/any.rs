@@ -83,16 +83,16 @@ macro_rules! handles {
             AnyBsdf8 Bsdf8 $models
         }
         any::handle! {
-            /// A gather point of any model: see [`Gather`].
+            /// A shading point of any model: see [`Gather`].
             AnyGather Gather $models
         }
         any::handle! {
-            /// Eight gather points of one model, one per lane: see [`Gather8`].
+            /// Eight shading points of one model, one per lane: see [`Gather8`].
             AnyGather8 Gather8 $models
         }
 
         impl AnyBsdf {
-            /// The gather point of a hit: a [`Hit`], or `wo` alone.
+            /// The shading point of a hit: a [`Hit`], or `wo` alone.
             #[inline]
             #[must_use]
             pub fn prepare(&self, hit: impl Into<Hit>) -> AnyGather {
@@ -106,7 +106,7 @@ macro_rules! handles {
                 any::each!(@match $variants self prepare (hit) AnyGather)
             }
 
-            /// Eight gather points on this material, one per lane: a [`Hit8`], or eight `wo`.
+            /// Eight shading points on this material, one per lane: a [`Hit8`], or eight `wo`.
             #[inline]
             #[must_use]
             pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyGather8 {
@@ -140,7 +140,7 @@ macro_rules! handles {
         impl AnyBsdf8 {
             any::pack! { $variants }
 
-            /// Eight gather points, lane by lane: a [`Hit8`], or eight `wo`.
+            /// Eight shading points, lane by lane: a [`Hit8`], or eight `wo`.
             #[inline]
             #[must_use]
             pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyGather8 {
@@ -261,7 +261,7 @@ macro_rules! handles {
                 #[inline(never)]
                 #[must_use]
                 pub fn sample8_at(level: Level, xi: &[f32x8; 3]) -> Sample8;
-                /// The gather point with only some of its lobes.
+                /// The shading point with only some of its lobes.
                 #[inline(never)]
                 #[must_use]
                 pub fn with_lobes(lobes: LobeMask) -> Self => Self;
@@ -301,28 +301,28 @@ macro_rules! handles {
         }
 
         impl AnyGather8 {
-            /// Value and density at `wi`, each lane at its own gather point.
+            /// Value and density at `wi`, each lane at its own shading point.
             #[inline]
             #[must_use]
             pub fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
                 self.eval_pdf8_at(Level::detect(), wi)
             }
 
-            /// Each lobe's value, colour and own density, each lane at its own gather point.
+            /// Each lobe's value, colour and own density, each lane at its own shading point.
             #[inline]
             #[must_use]
             pub fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
                 self.lobes8_at(Level::detect(), wi)
             }
 
-            /// Directional albedo of each lobe, linear RGB, each lane at its own gather point.
+            /// Directional albedo of each lobe, linear RGB, each lane at its own shading point.
             #[inline]
             #[must_use]
             pub fn albedo8(&self) -> PerLobe<[f32x8; 3]> {
                 self.albedo8_at(Level::detect())
             }
 
-            /// One direction for each gather point.
+            /// One direction for each shading point.
             #[inline]
             #[must_use]
             pub fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
@@ -342,7 +342,7 @@ macro_rules! handles {
                 #[inline(never)]
                 #[must_use]
                 pub fn sample8_at(level: Level, xi: &[f32x8; 3]) -> Sample8;
-                /// The gather points with only some of their lobes.
+                /// The shading points with only some of their lobes.
                 #[inline(never)]
                 #[must_use]
                 pub fn with_lobes(lobes: LobeMask) -> Self => Self;
@@ -350,7 +350,7 @@ macro_rules! handles {
                 #[inline(never)]
                 #[must_use]
                 pub fn albedo8_at(level: Level) -> PerLobe<[f32x8; 3]>;
-                /// The gather point of one lane.
+                /// The shading point of one lane.
                 ///
                 /// # Panics
                 ///

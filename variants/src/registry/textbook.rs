@@ -2,7 +2,7 @@
 
 macro_rules! formulas {
     ([$($variant:ident: $model:ty;)*] $variants:tt) => {
-        /// The formulas of one of the models at one gather point.
+        /// The formulas of one of the models at one shading point.
         #[derive(Clone, Copy, Debug)]
         #[non_exhaustive]
         pub enum AnyReference<T: Real> {

@@ -22,9 +22,9 @@ pub(super) struct Plan {
     pub(super) side: u32,
     /// Strands of hair.
     pub(super) strands: usize,
-    /// Samples of gather points, and of paths.
+    /// Samples of shading points, and of paths.
     pub(super) samples: [&'static [u32]; 2],
-    /// Samples of each half of the reference, of gather points and of paths.
+    /// Samples of each half of the reference, of shading points and of paths.
     pub(super) reference: [u32; 2],
     /// Pictures for each error.
     pub(super) runs: u32,

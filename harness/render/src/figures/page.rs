@@ -42,7 +42,7 @@ fn page(all: &[Measured], plan: &Plan, flags: &Figures) -> std::io::Result<Repor
              over {runs} pictures of different seeds, with a standard error by the jackknife."
         ))
         .method(
-            "Scenes of direct light have one fixed gather point per pixel, and as many light as BSDF samples there; all pictures, \
+            "Scenes of direct light have one fixed shading point per pixel, and as many light as BSDF samples there; all pictures, \
              and the reference, share the camera rays. In scenes of paths, each sample has a camera ray of its own.",
         )
         .method(
@@ -76,7 +76,7 @@ fn summary(all: &[Measured]) -> Table {
 
 fn kind(measured: &Measured) -> &'static str {
     match measured.integrator {
-        Integrator::Gather => "direct, at gather points",
+        Integrator::Gather => "direct, at shading points",
         Integrator::Direct => "direct",
         Integrator::Path => "paths",
     }

@@ -1,4 +1,4 @@
-//! The paper's protocol for direct light: fixed camera rays, and many samples at each gather point.
+//! The paper's protocol for direct light: fixed camera rays, and many samples at each shading point.
 
 use super::path::leave;
 use super::{Mis, Settings, key};

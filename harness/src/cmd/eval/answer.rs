@@ -85,7 +85,7 @@ fn scalar(request: &Request) -> Answer<f32> {
     }
 }
 
-/// Eight lines per call, all of one model: every lane has its own material, gather point and query. Spare lanes repeat the
+/// Eight lines per call, all of one model: every lane has its own material, shading point and query. Spare lanes repeat the
 /// last line.
 fn eight(requests: &[&Request]) -> Vec<Answer<f32>> {
     let mut answers = Vec::with_capacity(requests.len());
@@ -117,7 +117,7 @@ fn eight(requests: &[&Request]) -> Vec<Answer<f32>> {
     answers
 }
 
-/// Slices: one call for all directions, and one for all samples, of neighbouring lines that share a gather
+/// Slices: one call for all directions, and one for all samples, of neighbouring lines that share a shading
 /// point.
 fn batch(requests: &[&Request]) -> Vec<Answer<f32>> {
     let mut answers = Vec::with_capacity(requests.len());

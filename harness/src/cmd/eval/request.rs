@@ -31,7 +31,7 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Query about a gather point.
+/// Query about a shading point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Query {
     /// The value and the densities at a unit direction.

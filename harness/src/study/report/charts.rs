@@ -61,17 +61,17 @@ fn bar(of: Option<Estimate>) -> Bar {
     of.map_or(Bar::new(f64::NAN), |of| Bar::new(of.value).with_error(of.standard_error))
 }
 
-/// Efficiency by samples a gather point.
+/// Efficiency by samples per shading point.
 pub(super) fn efficiencies(of: &View<'_>) -> Vec<Figure> {
     let figure = |model: ModelKind| {
         let title = format!("Efficiency under {} light, {} model", of.lights[CONSTANT], model.title());
-        let groups = PER_POINT.map(|n| format!("{n} a gather point"));
+        let groups = PER_POINT.map(|n| format!("{n} per shading point"));
         let mut chart = BarChart::new(title, Axis::log("1 / (V · µs)"), groups);
         for sampler in Sampler::ALL {
             let bars = PER_POINT.map(|n| bar(of.efficiency((model, sampler), CONSTANT, n)));
             chart = chart.series(sampler.name(), bars);
         }
-        let caption = "Geometric mean over the grid of 1 / (V · time of a sample), the set-up of a gather point spread \
+        let caption = "Geometric mean over the grid of 1 / (V · time of a sample), the set-up of a shading point spread \
                        over 1, 4 or 16 samples; eight lanes, one thread, this machine. Whiskers are one standard error, \
                        that of the times included. Twice the efficiency is half the time to the same error squared.";
         Figure::new(chart.svg(), caption).named(format!("efficiency-{}", model.name()))
@@ -149,7 +149,7 @@ pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
     let axis = "gain over the published sampler in equal time (×)";
     let caption = format!(
         "By what factor less variance than the published sampler has in the same time, by light, at {MANY} samples per \
-         gather point."
+         shading point."
     );
     let with = format!("{caption} The time of a look-up of the light is added; one that was not timed has no bars.");
     let title = "Less variance than the published sampler in equal time";
@@ -168,7 +168,7 @@ pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
     }
     let caption = format!(
         "Variance on the Gaussian model over that on the Cauchy model with the same sampler in the same time, by light, at \
-         {MANY} samples per gather point. Medians over the grid; whiskers go from the first to the third quartile."
+         {MANY} samples per shading point. Medians over the grid; whiskers go from the first to the third quartile."
     );
     figures.push(Figure::new(chart.level(1.0).svg(), caption).named("cauchy-gain-by-light"));
     figures

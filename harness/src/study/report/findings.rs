@@ -82,7 +82,7 @@ fn worth(of: &View<'_>) -> Option<String> {
     let parts: Vec<String> = TOLD.into_iter().filter_map(sentence).collect();
     (!parts.is_empty()).then(|| {
         format!(
-            "Is the Cauchy model worth it? Against the Gaussian model in equal time, {MANY} samples per gather point, \
+            "Is the Cauchy model worth it? Against the Gaussian model in equal time, {MANY} samples per shading point, \
              medians over the grid: {}.",
             parts.join("; ")
         )
@@ -156,7 +156,7 @@ fn which(of: &View<'_>) -> String {
     let given = if is_timed { "" } else { ", where it was timed" };
     let with = if with.is_empty() { "the same".to_owned() } else { format!("{}; else the same", words(with)) };
     format!(
-        "Which sampler? Least variance in equal time, {MANY} samples a gather point (in brackets how many times less than \
+        "Which sampler? Least variance in equal time, {MANY} samples per shading point (in brackets how many times less than \
          `published`; \"or\": not told apart): {alone}. With a look-up of the light counted in{given}: {with}.{}",
         limit(of).unwrap_or_default()
     )

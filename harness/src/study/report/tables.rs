@@ -57,7 +57,7 @@ pub(super) fn look_ups(of: &View<'_>) -> Table {
         table.push([name.clone(), of.look_up(light).map_or_else(|| "not timed".to_owned(), shown)]);
     }
     table.note(
-        "Radiance and the light's density in 65536 directions of the published sampler, many gather points in turn; eight \
+        "Radiance and the light's density in 65536 directions of the published sampler, many shading points in turn; eight \
          lanes, one thread, medians; ±: one standard error.",
     )
 }
@@ -65,7 +65,7 @@ pub(super) fn look_ups(of: &View<'_>) -> Table {
 /// Times of a sample.
 pub(super) fn times(of: &View<'_>) -> Table {
     let table = Table::new("Time of a sample, ns").text("model").text("sampler");
-    let mut table = PER_POINT.into_iter().fold(table, |table, n| table.number(format!("{n} a gather point")));
+    let mut table = PER_POINT.into_iter().fold(table, |table, n| table.number(format!("{n} per shading point")));
     for model in ModelKind::ALL {
         for sampler in Sampler::ALL {
             let mut cells = vec![model.name().to_owned(), sampler.name().to_owned()];

@@ -26,7 +26,7 @@ pub(super) struct View<'a> {
     pub(super) difference: &'a Difference,
 }
 
-/// Samples a gather point of figures and sentences that give one number of them: direct lighting.
+/// Samples per shading point of figures and sentences that give one number of them: direct lighting.
 pub(super) const MANY: usize = 16;
 
 /// Parts of a sample whose time is counted.
@@ -98,7 +98,7 @@ impl<'a> View<'a> {
         gain(cells.map(|cell| [self.v(cell.index, of, light), one])).map(|gain| gain.geometric_mean)
     }
 
-    /// Time of a sample in ns, its gather point's set-up shared by `per_point`.
+    /// Time of a sample in ns, its shading point's set-up shared by `per_point`.
     pub(super) fn ns(&self, (model, sampler): Estimator, per_point: usize) -> Estimate {
         self.times.ns(model, sampler, per_point)
     }
@@ -108,7 +108,7 @@ impl<'a> View<'a> {
         Some(self.times.look_up(light)).filter(|of| of.value.is_finite())
     }
 
-    /// How many times the variance `base` has of `other` in equal time, [`MANY`] samples a gather point: median over
+    /// How many times the variance `base` has of `other` in equal time, [`MANY`] samples per shading point: median over
     /// the cells.
     pub(super) fn equal_time(
         &self,
@@ -121,7 +121,7 @@ impl<'a> View<'a> {
         self.gain(base, other, light).map(|gain| in_equal_time(gain.median, time))
     }
 
-    /// Time of a sample of `base` over that of one of `other`, at [`MANY`] samples per gather point.
+    /// Time of a sample of `base` over that of one of `other`, at [`MANY`] samples per shading point.
     pub(super) fn time_ratio(
         &self,
         base: Estimator,

@@ -74,7 +74,7 @@ pub fn every_lane_position_equals_one_lane<S: Published>() {
     });
 }
 
-pub fn eight_gather_points_equal_one_each<S: Published>() {
+pub fn eight_shading_points_equal_one_each<S: Published>() {
     let mut draws = Draws(11);
     for _ in 0..2000 {
         let m = mixed::<S>(&mut draws);
@@ -106,7 +106,7 @@ pub fn one_lane_never_fuses<S: Published>() {
     }
 }
 
-pub fn one_gather_point_in_every_lane_equals_a_shared_one<S: Published>() {
+pub fn one_shading_point_in_every_lane_equals_a_shared_one<S: Published>() {
     let (model, _) = S::forms()[0];
     let mut draws = Draws(12);
     let random: Vec<_> = (0..200).map(|_| draws.params(10.0)).collect();

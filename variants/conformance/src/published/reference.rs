@@ -28,7 +28,7 @@ macro_rules! both {
 }
 
 impl PublishedReference {
-    /// The reference for these parameters at the gather point of `wo`.
+    /// The reference for these parameters at the shading point of `wo`.
     #[must_use]
     pub fn prepare<S: Published>(parameters: &Parameters<f64>, wo: [f64; 3]) -> Self {
         let Some(bands) = S::BANDS else {

@@ -126,7 +126,7 @@ pub fn parameters(params: &HairParams, factor: f32) -> Parameters<f64> {
     }
 }
 
-/// The textbook at the gather point of `wo`.
+/// The textbook at the shading point of `wo`.
 pub fn oracle<S: Published>(params: &HairParams, factor: f32, wo: Vec3) -> PublishedReference {
     PublishedReference::prepare::<S>(&parameters(params, factor), double(wo))
 }

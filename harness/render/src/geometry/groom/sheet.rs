@@ -1,4 +1,4 @@
-//! Parallel strands: the scene of the gather points.
+//! Parallel strands: the scene of the shading points.
 
 use super::Groom;
 use super::random::{Random, Stream};
