@@ -1,4 +1,4 @@
-//! Value and density of a direction: the textbook in `f32`, one lane, eight lanes (at one shading point, and at eight)
+//! Value and density of a direction: the reference in `f32`, one lane, eight lanes (at one shading point, and at eight)
 //! and slices, long and shorter than a packet, on every level.
 //!
 //! `cargo bench -p hairis-benches --bench eval`, with `-- eval/gaussian` for one group. Throughput is in directions.

@@ -1,4 +1,4 @@
-//! A direction with its value, density and weight: the textbook in `f32`, one lane, eight lanes (at one shading point,
+//! A direction with its value, density and weight: the reference in `f32`, one lane, eight lanes (at one shading point,
 //! and at eight) and slices, long and shorter than a packet, on every level.
 //!
 //! `cargo bench -p hairis-benches --bench sample`, with `-- sample/gaussian` for one group. Throughput is in directions.

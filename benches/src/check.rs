@@ -3,16 +3,16 @@
 use crate::Name;
 use crate::task::{Answer, Task};
 use glam::Vec3;
-use hairis::textbook::Reference;
+use hairis::reference::Reference;
 use hairis_variants::{ModelId, Values};
 
-/// Largest error of an answer that counts as correct: relative for value and density, rad for a direction. The textbook in
+/// Largest error of an answer that counts as correct: relative for value and density, rad for a direction. The reference in
 /// `f32`, which takes part, needs this much. The kernels' own bounds are tighter; their tests check them.
 const TOLERANCE: f64 = 1e-3;
-/// Values below this count as 0: the kernels' Gaussians end at `2^-115`, those of the `f32` textbook at denormals.
+/// Values below this count as 0: the kernels' Gaussians end at `2^-115`, those of the `f32` reference at denormals.
 const NEGLIGIBLE: f64 = 1e-25;
 /// One answer in a hundred may be wrong: samples next to the boundary of two lobes may choose either, and the `f32`
-/// textbook loses digits near the axis. A wrong lane is one in eight.
+/// reference loses digits near the axis. A wrong lane is one in eight.
 const MOST_WRONG: usize = 100;
 
 /// Query for one direction.

@@ -7,7 +7,7 @@ use core::fmt;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
-use hairis::textbook::Reference;
+use hairis::reference::Reference;
 use hairis::{Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Level, SampleSlices};
 use hairis_variants::{ModelId, Parameters, Registered};
 use std::sync::LazyLock;
@@ -96,7 +96,7 @@ pub fn label(level: Level) -> &'static str {
     if level == Level::portable() { "portable" } else { level.name() }
 }
 
-/// Passes an operation's entry points of all [`MODELS`] to `visitor`; the textbook comes first. Answers are checked
+/// Passes an operation's entry points of all [`MODELS`] to `visitor`; the reference comes first. Answers are checked
 /// before.
 ///
 /// # Panics
@@ -167,7 +167,7 @@ impl<M: Registered> Of<'_, M> {
     }
 
     /// The formulas for the default parameters, seen from `wo`.
-    fn textbook(wo: [f32; 3]) -> M::Reference<f32> {
+    fn reference(wo: [f32; 3]) -> M::Reference<f32> {
         M::reference(&M::Params::default(), wo, 0.0)
     }
 
@@ -238,8 +238,8 @@ impl<M: Registered> Of<'_, M> {
         let one = |i| self.at_one(Given::Wi(inputs.wi[i]));
         let lane = |i| self.at_lane(i, Given::Wi(inputs.wi[i]));
         self.show(visitor, TEXTBOOK, "scalar", one, || {
-            let textbook = Self::textbook(inputs.wo[0].to_array());
-            Each::new(1, arrays(&inputs.wi), move |wi| textbook.eval_pdf(*wi))
+            let reference = Self::reference(inputs.wo[0].to_array());
+            Each::new(1, arrays(&inputs.wi), move |wi| reference.eval_pdf(*wi))
         });
         self.show(visitor, "eval_pdf", "scalar", one, || {
             let gather = self.gather();
@@ -282,8 +282,8 @@ impl<M: Registered> Of<'_, M> {
         let one = |i| self.at_one(Given::Xi(inputs.xi[i]));
         let lane = |i| self.at_lane(i, Given::Xi(inputs.xi[i]));
         self.show(visitor, TEXTBOOK, "scalar", one, || {
-            let textbook = Self::textbook(inputs.wo[0].to_array());
-            Each::new(1, inputs.xi.clone(), move |xi| textbook.sample(*xi))
+            let reference = Self::reference(inputs.wo[0].to_array());
+            Each::new(1, inputs.xi.clone(), move |xi| reference.sample(*xi))
         });
         self.show(visitor, "sample", "scalar", one, || {
             let gather = self.gather();
@@ -327,8 +327,8 @@ impl<M: Registered> Of<'_, M> {
         self.show(visitor, TEXTBOOK, "scalar", scalar, || {
             let (formulas, xi) = (M::formulas::<f32>(&M::Params::default()), xi.to_vec());
             Each::new(samples, arrays(&inputs.wo), move |wo| {
-                let textbook = M::reference_at(&formulas, *wo, 0.0);
-                last(&xi, |xi| textbook.sample(*xi))
+                let reference = M::reference_at(&formulas, *wo, 0.0);
+                last(&xi, |xi| reference.sample(*xi))
             })
         });
         self.show(visitor, "prepare-sample", "scalar", scalar, || {

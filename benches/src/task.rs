@@ -5,7 +5,7 @@ use core::array::from_fn;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
-use hairis::textbook::{self, Reference};
+use hairis::reference::{self, Reference};
 use hairis::wide::f32x8;
 use hairis::{Eval, Eval8, Gather, Gather8, LengthError, Model, Sample, Sample8, Vec3x8};
 
@@ -169,7 +169,7 @@ impl Output for Eval8 {
     }
 }
 
-impl Output for textbook::Drawn<f32> {
+impl Output for reference::ReferenceSample<f32> {
     fn answers(&self, out: &mut Vec<Answer>) {
         out.push(Answer { wi: Some(self.wi.into()), value: Some(self.value), pdf: Some(self.pdf) });
     }

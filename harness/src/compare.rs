@@ -39,7 +39,7 @@ pub struct Comparison {
     pub machine: Machine,
     /// Time a direction.
     pub speed: SpeedReport,
-    /// Errors against the textbook in double precision.
+    /// Errors against the reference in double precision.
     pub agreement: Vec<AgreementResult>,
     /// Variance a sample.
     pub efficiency: EfficiencyResult,

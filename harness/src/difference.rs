@@ -15,7 +15,7 @@
 //!
 //! # Method
 //!
-//! Quadrature in double precision of the textbook's bells; nothing is sampled. S is a sum of three products of a function
+//! Quadrature in double precision of the reference's bells; nothing is sampled. S is a sum of three products of a function
 //! of `theta_i` and one of `phi`, so that albedos and L2 norms are products of integrals on a line. L1 is a sum over the
 //! product of both rules. The blur uses spherical harmonics up to a degree beyond which the coefficients vanish. Tests
 //! compare the figures to 1e-3 with those of twice the resolution, and the blur with its integral.
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
     use crate::quadrature::{SphereIntegrator, Tolerance, fibre_direction};
     use crate::subject::ModelKind;
-    use hairis::textbook::{Parameters, Textbook};
+    use hairis::reference::{HairReference, Parameters};
 
     #[test]
     fn the_best_factors_are_the_best_in_their_norm() {
@@ -178,13 +178,13 @@ mod tests {
     }
 
     #[test]
-    fn figures_are_those_of_the_textbook_by_another_quadrature() {
+    fn figures_are_those_of_the_reference_by_another_quadrature() {
         let cell = Grid::QUICK.cell(17);
         let (params, theta_o) = (cell.params().expect("accepted"), f64::from(cell.theta_o_deg).to_radians());
         let found = hair(&cell).expect("accepted").figures(&[Kind::cauchy(1.0)], &Blur::new(0.2, 32, 32))[0];
         let wo = fibre_direction(theta_o, 0.0).as_vec3().as_dvec3().to_array();
         let [gaussian, cauchy] =
-            ModelKind::ALL.map(|model| Textbook::<f64>::prepare(&Parameters::from(&params), model.shape(), wo));
+            ModelKind::ALL.map(|model| HairReference::<f64>::prepare(&Parameters::from(&params), model.shape(), wo));
         let scale = found.albedo_gaussian / found.albedo_cauchy;
         let desc = params.desc();
         let mut sphere =

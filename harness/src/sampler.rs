@@ -6,7 +6,7 @@ use crate::quadrature::fibre_direction;
 use crate::subject::ModelKind;
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
-use hairis::textbook::{MatchedTextbook, Parameters};
+use hairis::reference::{MatchedReference, Parameters};
 use hairis::{Eval8, HairParams, LobeMask, Sample8, Vec3x8};
 use hairis_variants::{AnyBsdf, AnyGather, ModelId, Parameters as _};
 use serde::Serialize;
@@ -92,7 +92,7 @@ pub(crate) fn weight_bound(model: ModelKind, sampler: Sampler, params: &HairPara
     }
     let bands = sampler.bands()?;
     let wo = fibre_direction(theta_o, 0.0).to_array();
-    Some(MatchedTextbook::prepare(&Parameters::from(params), model.shape(), wo, bands).weight_bound(LobeMask::ALL))
+    Some(MatchedReference::prepare(&Parameters::from(params), model.shape(), wo, bands).weight_bound(LobeMask::ALL))
 }
 
 /// Density of a uniform direction, per steradian.

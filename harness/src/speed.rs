@@ -1,9 +1,9 @@
-//! Time of each operation: the textbook's scalar code, the kernel on one lane, and on eight lanes of every
+//! Time of each operation: the reference's scalar code, the kernel on one lane, and on eight lanes of every
 //! instruction set of this CPU, interleaved in one run.
 //!
 //! A round times every contender of every operation once, under the same state of the machine; a ratio is formed
 //! within a round, and the report has the median over the rounds with its quartiles. Directions and numbers are
-//! drawn beforehand and stay in the second-level cache. The answers of every contender are compared with the textbook
+//! drawn beforehand and stay in the second-level cache. The answers of every contender are compared with the reference
 //! in `f64` after the timing.
 
 mod cells;
@@ -33,7 +33,7 @@ const MIN_ROUNDS: usize = 15;
 /// their speed).
 const MIN_STRETCH: f64 = 5e4;
 /// Share of wrong answers from which a contender fails: samples next to the boundary of two lobes may choose either,
-/// and the `f32` textbook loses digits near the axis; a wrong lane is an eighth.
+/// and the `f32` reference loses digits near the axis; a wrong lane is an eighth.
 const MAX_WRONG: f64 = 0.01;
 
 /// Timed operation.
@@ -145,13 +145,13 @@ pub struct SpeedResult {
     pub ns_q1: f64,
     /// Third quartile of the same.
     pub ns_q3: f64,
-    /// How many times as fast as the textbook: median over the rounds of the ratio within a round.
+    /// How many times as fast as the reference: median over the rounds of the ratio within a round.
     pub ratio: f64,
     /// First quartile of the same.
     pub ratio_q1: f64,
     /// Third quartile of the same.
     pub ratio_q3: f64,
-    /// Share of the answers further than 1e-3 (relative, or rad) from the textbook's in `f64`.
+    /// Share of the answers further than 1e-3 (relative, or rad) from the reference's in `f64`.
     pub wrong_share: f64,
     /// Whether the answers are right, but for one in a hundred. A row that did not pass is no result.
     pub passed: bool,
@@ -168,7 +168,7 @@ pub struct SpeedReport {
     pub compiled_level: &'static str,
     /// Default instruction set of eight lanes.
     pub detected_level: &'static str,
-    /// By model, operation and contender; the textbook leads each block.
+    /// By model, operation and contender; the reference leads each block.
     pub rows: Vec<SpeedResult>,
     /// Slices on several threads.
     pub threads: Vec<ThreadsResult>,
@@ -267,7 +267,7 @@ impl<'a> Timing<'a> {
         let contenders = self.cell.contenders.iter().zip(&self.passes).zip(&self.ns);
         contenders
             .map(|((contender, passes), ns)| {
-                let ratios: Vec<f64> = self.ns[0].iter().zip(ns).map(|(textbook, ns)| textbook / ns).collect();
+                let ratios: Vec<f64> = self.ns[0].iter().zip(ns).map(|(reference, ns)| reference / ns).collect();
                 let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) = (quartiles(ns), quartiles(&ratios));
                 let wrong_share = self.cell.truth.wrong_share(&contender.task.answers());
                 SpeedResult {

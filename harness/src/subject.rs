@@ -2,7 +2,7 @@
 
 use crate::sequence::Independent;
 use glam::Vec3;
-use hairis::textbook::Shape;
+use hairis::reference::Shape;
 use hairis::{HairParams, ParamError};
 use hairis_variants::{Draw, Field, Kind, ModelId, Parameters as _, Values};
 use serde::Serialize;
@@ -44,7 +44,7 @@ impl ModelKind {
         }
     }
 
-    /// Its bell in the textbook.
+    /// Its bell in the reference.
     pub(crate) const fn shape(self) -> Shape {
         match self {
             Self::Gaussian => Shape::Gaussian,

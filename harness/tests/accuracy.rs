@@ -4,7 +4,7 @@ use crate::cases::{Case, Cases, Region, angles};
 use core::array::from_fn;
 use core::fmt::Write as _;
 use glam::Vec3;
-use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::reference::{HairReference, Parameters, Shape};
 use hairis::{HairParams, Level, Vec3x8};
 use hairis_variants::{AnyBsdf, AnyBsdf8, ModelId, Parameters as _};
 
@@ -98,7 +98,7 @@ fn compare(report: &mut String, name: &str, shape: Shape, s_bound: f64, cases: &
 fn errors(shape: Shape, case: &Case, (value, pdf): &Answer) -> [f64; 2] {
     let parameters = Parameters::<f64>::from(&params(case));
     let double = |w: Vec3| w.as_dvec3().to_array();
-    let oracle = Textbook::prepare(&parameters, shape, double(case.wo));
+    let oracle = HairReference::prepare(&parameters, shape, double(case.wo));
     let expected = oracle.eval(double(case.wi));
     let cos_theta_d = (0.5 * (angles(case.wo).0 - angles(case.wi).0)).cos();
     let bell = if shape == Shape::Gaussian { 2.0_f64.powi(-114) } else { 0.0 };

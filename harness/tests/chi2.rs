@@ -4,7 +4,7 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::fmt::Write as _;
 use glam::Vec3;
-use hairis::textbook::{MatchedTextbook, Parameters, Shape, Textbook};
+use hairis::reference::{HairReference, MatchedReference, Parameters, Shape};
 use hairis::wide::f32x8;
 use hairis::{Bsdf, Gaussian, HairDesc, HairParams, Lobe, LobeMask, Matched, Model, PerLobe, Sample8};
 use hairis_harness::sequence::Independent;
@@ -116,16 +116,16 @@ macro_rules! reference_sampler {
         }
     )* };
 }
-reference_sampler! { Textbook MatchedTextbook }
+reference_sampler! { HairReference MatchedReference }
 
 /// The published sampler of a shape.
-fn published(shape: Shape) -> impl Fn(&HairParams, Vec3) -> Textbook<f64> {
-    move |params, wo| Textbook::prepare(&Parameters::from(params), shape, double(wo))
+fn published(shape: Shape) -> impl Fn(&HairParams, Vec3) -> HairReference<f64> {
+    move |params, wo| HairReference::prepare(&Parameters::from(params), shape, double(wo))
 }
 
 /// The matched sampler of a shape.
-fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedTextbook<f64> {
-    move |params, wo| MatchedTextbook::prepare(&Parameters::from(params), shape, double(wo), bands)
+fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedReference<f64> {
+    move |params, wo| MatchedReference::prepare(&Parameters::from(params), shape, double(wo), bands)
 }
 
 /// Cells in `theta_i` and `phi` that resolve every lobe, and the samples each should hold.
@@ -137,8 +137,8 @@ struct Cells {
 }
 
 impl Cells {
-    fn new(textbook: &impl ReferenceSampler, mask: LobeMask) -> Self {
-        let share = textbook.probabilities().0;
+    fn new(reference: &impl ReferenceSampler, mask: LobeMask) -> Self {
+        let share = reference.probabilities().0;
         let of = |lobe: Lobe| share[lobe.index()] * f64::from(mask.factor(lobe));
         let total: f64 = Lobe::ALL.into_iter().map(of).sum();
         let inner = FRAC_PI_2 - GRAZING;
@@ -148,8 +148,8 @@ impl Cells {
             theta.push(inner * (2.0 * even - 1.0));
             phi.push(PI * (2.0 * even - 1.0));
             for lobe in Lobe::ALL.into_iter().filter(|lobe| mask.contains(*lobe)) {
-                theta.push(textbook.sample_theta(lobe, even));
-                let drawn = textbook.sample_phi(lobe, even);
+                theta.push(reference.sample_theta(lobe, even));
+                let drawn = reference.sample_phi(lobe, even);
                 phi.push(if drawn > PI { drawn - 2.0 * PI } else { drawn });
             }
         }
@@ -168,15 +168,15 @@ impl Cells {
             let part = |ends: &[f64]| {
                 let end = if ends[1] == 0.0 { -f64::MIN_POSITIVE } else { ends[1] };
                 let start = if ends[0] == -PI { -PI + 1e-15 } else { ends[0] };
-                textbook.cdf_phi(lobe, end) - textbook.cdf_phi(lobe, start)
+                reference.cdf_phi(lobe, end) - reference.cdf_phi(lobe, start)
             };
             let columns: Vec<f64> = phi.windows(2).map(part).collect();
             let mut cells = expected.iter_mut();
             for row in theta.windows(2) {
-                let row = textbook.cdf_theta(lobe, row[1]) - textbook.cdf_theta(lobe, row[0]);
+                let row = reference.cdf_theta(lobe, row[1]) - reference.cdf_theta(lobe, row[0]);
                 columns.iter().zip(&mut cells).for_each(|(column, cell)| *cell += number * row * column);
             }
-            let caps = textbook.cdf_theta(lobe, -inner) + 1.0 - textbook.cdf_theta(lobe, inner);
+            let caps = reference.cdf_theta(lobe, -inner) + 1.0 - reference.cdf_theta(lobe, inner);
             *expected.last_mut().unwrap() += number * caps;
         }
         Self { theta, phi, expected }
@@ -234,17 +234,17 @@ fn check<T: ReferenceSampler>(
     for (name, params) in materials() {
         for degrees in THETA_O {
             let wo = wo(degrees);
-            let textbook = reference(&params, wo);
+            let reference = reference(&params, wo);
             for (lobe, mask) in masks() {
                 stream += 1;
                 // A Gaussian lobe so far off the sphere is cut to 0 (at 2^-115 of its peak) across its tail: part of its
                 // samples are discarded, as they must be.
                 let share: f64 =
-                    Lobe::ALL.iter().map(|l| textbook.probabilities()[*l] * f64::from(mask.factor(*l))).sum();
+                    Lobe::ALL.iter().map(|l| reference.probabilities()[*l] * f64::from(mask.factor(*l))).sum();
                 if share < 1e-25 {
                     continue;
                 }
-                let cells = Cells::new(&textbook, mask);
+                let cells = Cells::new(&reference, mask);
                 let at = format!("{shape} {name} {degrees} {lobe}");
                 let mass: f64 = cells.expected.iter().sum::<f64>() / f64::from(SAMPLES);
                 assert!((mass - 1.0).abs() < 1e-9, "{at}: the density has a mass of {mass}");
@@ -306,9 +306,9 @@ fn widths_off_by_a_twentieth_are_found() {
     // The control: the same test must reject a sampler whose widths are 5% too large.
     for degrees in [0.0, -80.0] {
         let wo = wo(degrees);
-        let textbook = Textbook::prepare(&Parameters::from(&HairParams::default()), Shape::Gaussian, double(wo));
+        let reference = HairReference::prepare(&Parameters::from(&HairParams::default()), Shape::Gaussian, double(wo));
         for (lobe, mask) in masks() {
-            let cells = Cells::new(&textbook, mask);
+            let cells = Cells::new(&reference, mask);
             let (result, _) = cells.test(&registered(ModelId::Gaussian)(&widened(1.05), wo, mask), wo, 7);
             assert!(result.p_value < sidak(0.01, TESTS), "{lobe} at {degrees}: {result:?} passes a wrong width");
         }
@@ -322,7 +322,7 @@ fn every_sampler_on_the_line_follows_its_cdf() {
     for (name, params) in materials() {
         for degrees in [0.0, 85.0] {
             let wo = wo(degrees);
-            let textbook = Textbook::prepare(&Parameters::from(&params), Shape::Gaussian, double(wo));
+            let reference = HairReference::prepare(&Parameters::from(&params), Shape::Gaussian, double(wo));
             for lobe in Lobe::ALL {
                 let mut uniform = [const { Vec::new() }; 2];
                 let stream = 9000 + lobe.index() as u64;
@@ -330,8 +330,8 @@ fn every_sampler_on_the_line_follows_its_cdf() {
                 for_each_sample(&draw, stream, |wi| {
                     let Some(wi) = wi else { return };
                     let [theta, phi] = angles(wo, wi);
-                    uniform[0].push(textbook.cdf_theta(lobe, theta));
-                    uniform[1].push(textbook.cdf_phi(lobe, phi));
+                    uniform[0].push(reference.cdf_theta(lobe, theta));
+                    uniform[1].push(reference.cdf_phi(lobe, phi));
                 });
                 for (axis, u) in ["theta", "phi"].into_iter().zip(&mut uniform) {
                     assert!(u.len() > 990_000, "{name} {degrees} {lobe:?}: only {} were kept", u.len());

@@ -17,7 +17,7 @@ fn every_contender_is_timed_and_right() {
     for row in &report.rows {
         assert!(row.passed, "wrong answers: {row:?}");
         assert!(row.rounds == 15 && row.ns > 0.0 && row.ns_q1 <= row.ns && row.ns <= row.ns_q3, "{row:?}");
-        assert!(row.contender != "textbook" || row.ratio == 1.0, "the textbook against itself: {row:?}");
+        assert!(row.contender != "textbook" || row.ratio == 1.0, "the reference against itself: {row:?}");
     }
     assert!(report.passed(), "all rows passed");
     let row = report.row(Op::Sample, "cauchy", "eight lanes", Level::portable().name());

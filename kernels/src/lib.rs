@@ -83,9 +83,9 @@ mod packet;
 mod params;
 mod quadrature;
 pub mod random;
-mod simd;
 #[cfg(feature = "textbook")]
-pub mod textbook;
+pub mod reference;
+mod simd;
 mod truncated;
 
 pub use batch::{EvalSlices, LengthError, SampleSlices};

@@ -6,9 +6,9 @@ mod family;
 mod frames;
 mod math;
 mod params;
+mod reference;
 mod rounding;
 mod rows;
-mod textbook;
 mod tolerance;
 mod vector;
 

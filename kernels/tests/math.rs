@@ -7,7 +7,7 @@ use hairis::math::{
     atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_and_complement, half_atan2, log2, log2_one_plus,
     normal_tail_inverse, normal_tail_ratio, sin_cos_absolute, sin_cos_twice,
 };
-use hairis::textbook::Real;
+use hairis::reference::Real;
 use hairis::wide::f32x8;
 use hairis::{Lanes, Level};
 

@@ -2,7 +2,7 @@
 
 use crate::quadrature::{panels, rule};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::reference::{HairReference, Parameters, Shape};
 use hairis::{ArtistControls, Glints, HairDesc, HairParams, Highlight, ParamError, Transmission};
 
 #[test]
@@ -20,7 +20,7 @@ fn mean_albedo(params: &HairParams) -> [f64; 3] {
     let phi = rule(&panels(0.0, PI, &[(PI, p.gamma_tt), (p.phi_g, p.gamma_g)]));
     let mut sum = [0.0; 3];
     for (theta_o, w_o) in rule(&[-inner, 0.0, inner]) {
-        let hair = Textbook::prepare(&p, Shape::Gaussian, [theta_o.sin(), theta_o.cos(), 0.0]);
+        let hair = HairReference::prepare(&p, Shape::Gaussian, [theta_o.sin(), theta_o.cos(), 0.0]);
         let peaks = [0, 1, 2].map(|lobe| (2.0 * p.alpha[lobe] - theta_o, 2.0 * p.beta[lobe]));
         for (theta_i, w_i) in rule(&panels(-inner, inner, &peaks)) {
             let (sin, cos) = theta_i.sin_cos();

@@ -1,4 +1,4 @@
-//! Bounds of the tests against the textbook, one row each, with the worst case measured above it: the larger of a default
+//! Bounds of the tests against the reference, one row each, with the worst case measured above it: the larger of a default
 //! build and one for x86-64-v3, over all levels. To measure again: `cargo test --workspace -- --nocapture | grep measured`.
 
 use hairis_conformance::published::Rows;

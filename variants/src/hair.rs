@@ -8,7 +8,7 @@ use crate::Accuracy;
 #[cfg(feature = "textbook")]
 use hairis::{
     Lobe,
-    textbook::{self, MatchedTextbook, Real, Shape, Textbook},
+    reference::{self, HairReference, MatchedReference, Real, Shape},
 };
 
 /// Half a degree, rad.
@@ -114,9 +114,9 @@ impl<B: RegisteredBell> Registered for Hair<B> {
     const MODEL: Self = Self(B::BELL);
 
     #[cfg(feature = "textbook")]
-    type Formulas<T: Real> = textbook::Parameters<T>;
+    type Formulas<T: Real> = reference::Parameters<T>;
     #[cfg(feature = "textbook")]
-    type Reference<T: Real> = Textbook<T>;
+    type Reference<T: Real> = HairReference<T>;
     #[cfg(feature = "textbook")]
     const ACCURACY: Accuracy = {
         let [value, _, _] = B::ERRORS;
@@ -134,14 +134,14 @@ impl<B: RegisteredBell> Registered for Hair<B> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn formulas<T: Real>(params: &HairParams) -> textbook::Parameters<T> {
-        textbook::Parameters::from(params)
+    fn formulas<T: Real>(params: &HairParams) -> reference::Parameters<T> {
+        reference::Parameters::from(params)
     }
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn reference_at<T: Real>(formulas: &textbook::Parameters<T>, wo: [T; 3], _h: T) -> Textbook<T> {
-        Textbook::prepare(formulas, B::SHAPE, wo)
+    fn reference_at<T: Real>(formulas: &reference::Parameters<T>, wo: [T; 3], _h: T) -> HairReference<T> {
+        HairReference::prepare(formulas, B::SHAPE, wo)
     }
 
     #[cfg(feature = "textbook")]
@@ -152,7 +152,7 @@ impl<B: RegisteredBell> Registered for Hair<B> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn cdf(reference: &Textbook<f64>, lobe: Lobe, theta_i: f64, phi: f64) -> Option<[f64; 2]> {
+    fn cdf(reference: &HairReference<f64>, lobe: Lobe, theta_i: f64, phi: f64) -> Option<[f64; 2]> {
         Some([reference.cdf_theta(lobe, theta_i), reference.cdf_phi(lobe, phi)])
     }
 }
@@ -174,9 +174,9 @@ impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
     const MODEL: Self = Self(B::BELL);
 
     #[cfg(feature = "textbook")]
-    type Formulas<T: Real> = textbook::Parameters<T>;
+    type Formulas<T: Real> = reference::Parameters<T>;
     #[cfg(feature = "textbook")]
-    type Reference<T: Real> = MatchedTextbook<T>;
+    type Reference<T: Real> = MatchedReference<T>;
     #[cfg(feature = "textbook")]
     const ACCURACY: Accuracy = {
         let [value, sample, cdf] = B::ERRORS;
@@ -193,14 +193,14 @@ impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn formulas<T: Real>(params: &HairParams) -> textbook::Parameters<T> {
-        textbook::Parameters::from(params)
+    fn formulas<T: Real>(params: &HairParams) -> reference::Parameters<T> {
+        reference::Parameters::from(params)
     }
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn reference_at<T: Real>(formulas: &textbook::Parameters<T>, wo: [T; 3], _h: T) -> MatchedTextbook<T> {
-        MatchedTextbook::prepare(formulas, B::SHAPE, wo, BANDS)
+    fn reference_at<T: Real>(formulas: &reference::Parameters<T>, wo: [T; 3], _h: T) -> MatchedReference<T> {
+        MatchedReference::prepare(formulas, B::SHAPE, wo, BANDS)
     }
 
     #[cfg(feature = "textbook")]
@@ -211,7 +211,7 @@ impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn cdf(reference: &MatchedTextbook<f64>, lobe: Lobe, theta_i: f64, phi: f64) -> Option<[f64; 2]> {
+    fn cdf(reference: &MatchedReference<f64>, lobe: Lobe, theta_i: f64, phi: f64) -> Option<[f64; 2]> {
         Some([reference.cdf_theta(lobe, theta_i), reference.cdf_phi(lobe, phi)])
     }
 }

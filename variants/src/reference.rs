@@ -1,6 +1,6 @@
 //! Steps that the formulas of several models share, in either precision.
 
-use hairis::textbook::{Drawn, LobeAt, Real};
+use hairis::reference::{LobeAt, Real, ReferenceSample};
 use hairis::{Lobe, PerLobe};
 
 /// A fixed direction: its inclination and azimuth.
@@ -35,9 +35,9 @@ pub(crate) fn grazing<T: Real>() -> T {
 }
 
 /// A discarded sample: it counts, with a contribution of 0.
-pub(crate) fn discarded<T: Real>() -> Drawn<T> {
+pub(crate) fn discarded<T: Real>() -> ReferenceSample<T> {
     let zero = T::default();
-    Drawn { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None }
+    ReferenceSample { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None }
 }
 
 /// The parts over their sum; all 0 if that is 0.
@@ -92,11 +92,11 @@ pub(crate) fn finish_sample<T: Real>(
     [sin_theta_i, cos_theta_i]: [T; 2],
     phi_i: T,
     (value, pdf): ([T; 3], T),
-) -> Drawn<T> {
+) -> ReferenceSample<T> {
     if pdf <= T::default() {
         return discarded();
     }
-    Drawn {
+    ReferenceSample {
         wi: [sin_theta_i, cos_theta_i * phi_i.cos(), cos_theta_i * phi_i.sin()],
         value,
         pdf,
@@ -144,7 +144,7 @@ macro_rules! implement {
                 self.lobes(wi)
             }
             #[inline]
-            fn sample(&self, xi: [T; 3]) -> Drawn<T> {
+            fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
                 self.sample(xi)
             }
             #[inline]

@@ -6,7 +6,7 @@
 #[cfg(any(feature = "any", feature = "textbook"))]
 mod any;
 #[cfg(feature = "textbook")]
-mod textbook;
+mod formulas;
 
 use crate::{AllCauchy, Cauchy, Chiang, Field, KajiyaKay, Parameters, Values};
 use hairis::{Gaussian, Hair, Matched, Model};
@@ -28,7 +28,7 @@ use core::fmt::Debug;
 #[cfg(feature = "textbook")]
 use hairis::{
     Lobe,
-    textbook::{Drawn, LobeAt, Real, Reference},
+    reference::{LobeAt, Real, Reference, ReferenceSample},
 };
 
 /// A model of the list: its names, and the formulas it is compared with.
@@ -248,7 +248,7 @@ macro_rules! models {
         any::handles! { [$($variant: $model;)*] [$($variant)*] }
 
         #[cfg(feature = "textbook")]
-        textbook::formulas! { [$($variant: $model;)*] [$($variant)*] }
+        formulas::formulas! { [$($variant: $model;)*] [$($variant)*] }
     };
 }
 

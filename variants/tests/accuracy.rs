@@ -7,7 +7,7 @@
 use crate::support::{Draws, direction, narrow, packet};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
-use hairis::textbook::LobeAt;
+use hairis::reference::LobeAt;
 use hairis::{Bsdf, Eval, Gather, Hit, Level, Lobe, LobeEval, Model, PerLobe, Sample};
 use hairis_variants::KajiyaKay;
 use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, Selection, Shifts};

@@ -1,7 +1,7 @@
-//! The all-Cauchy variant and its samplers: the suite that every model passes, and the tests against the textbook.
+//! The all-Cauchy variant and its samplers: the suite that every model passes, and the tests against the reference.
 
 use crate::rows::{MATCHED, PUBLISHED};
-use hairis::textbook::Shape;
+use hairis::reference::Shape;
 use hairis::{Hair, Matched};
 use hairis_conformance::published::{Family, Published, Rows};
 use hairis_conformance::{conformance, published};

@@ -14,7 +14,7 @@ pub(super) const AXIS: [f64; 2] = [1e-3, 1e-2];
 pub(super) const BACK: f64 = 1e-2;
 /// Within this of pi/2, rad, `|phi|` may fall on either side of the cut of the glints' density.
 const CUT: f64 = 1e-6;
-/// Within this of pi, rad, the textbook itself has lost the digits of `cos(phi / 2)`: a double at pi is good to 4e-16.
+/// Within this of pi, rad, the reference itself has lost the digits of `cos(phi / 2)`: a double at pi is good to 4e-16.
 const SEAM: f64 = 1e-9;
 
 /// Formulas of these values, seen from `wo` at the offset `h`.

@@ -4,7 +4,7 @@ use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, largest};
 use super::hair::theta_h_interval;
 use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::Shape;
+use hairis::reference::Shape;
 
 const WORDS: Words = Words {
     id: "energy-within-1-percent",

@@ -7,7 +7,7 @@ use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::Parameters;
+use hairis::reference::Parameters;
 use hairis::{HairDesc, HairParams, ParamError};
 
 const DENSITY: Words = Words {

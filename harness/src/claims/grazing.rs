@@ -5,7 +5,7 @@ use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::reference::{HairReference, Parameters, Shape};
 use hairis::{HairParams, Lobe};
 
 const WORDS: Words = Words {
@@ -40,7 +40,7 @@ struct Lobe1 {
 }
 
 impl Lobe1 {
-    /// `M cos^2 theta_i / cos^2 theta_d` at `delta` from the end `sign` of the axis. The textbook is 0 within the cap.
+    /// `M cos^2 theta_i / cos^2 theta_d` at `delta` from the end `sign` of the axis. The reference is 0 within the cap.
     fn energy_at(&self, sign: f64, delta: f64) -> f64 {
         let theta_i = sign * (FRAC_PI_2 - delta);
         let m = self.shape.bell(self.beta, 0.5 * (theta_i + self.theta_o) - self.alpha);
@@ -99,7 +99,7 @@ fn share_of(shape: Shape, params: &HairParams, theta_o: f64) -> Bounded {
 /// The share of the samples of a hair that are discarded.
 fn discarded(params: &HairParams, theta_o: f64) -> f64 {
     let wo = [theta_o.sin(), theta_o.cos(), 0.0];
-    let hair = Textbook::prepare(&Parameters::<f64>::from(params), Shape::Gaussian, wo);
+    let hair = HairReference::prepare(&Parameters::<f64>::from(params), Shape::Gaussian, wo);
     let shares = hair.probabilities();
     let of = |lobe: Lobe| hair.cdf_theta(lobe, CAP - FRAC_PI_2) + 1.0 - hair.cdf_theta(lobe, FRAC_PI_2 - CAP);
     Lobe::ALL.into_iter().map(|lobe| shares[lobe] * of(lobe)).sum()
@@ -164,11 +164,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn beyond_the_cap_it_is_the_textbook() {
+    fn beyond_the_cap_it_is_the_reference() {
         let params = HairParams::default();
         let p = Parameters::<f64>::from(&params);
         for (theta_o, delta) in [(0.3_f64, 2e-5_f64), (-1.2, 0.4), (1.5, 1.1)] {
-            let hair = Textbook::prepare(&p, Shape::Cauchy, [theta_o.sin(), theta_o.cos(), 0.0]);
+            let hair = HairReference::prepare(&p, Shape::Cauchy, [theta_o.sin(), theta_o.cos(), 0.0]);
             for sign in [-1.0, 1.0] {
                 let wi = [sign * delta.cos(), delta.sin(), 0.0];
                 let of = Lobe1 { shape: Shape::Cauchy, alpha: p.alpha[2], beta: p.beta[2], theta_o };

@@ -6,7 +6,7 @@ use crate::quadrature::{Tolerance, bell_breakpoints, fibre_direction, integrate_
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::{Parameters, Textbook, TruncatedCauchy};
+use hairis::reference::{CauchyDensity, HairReference, Parameters};
 use hairis::{HairParams, Lobe, PerLobe};
 
 /// The interval of `theta_h` as `theta_i` runs over all inclinations, rad.
@@ -57,19 +57,19 @@ pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
 
 /// The longitudinal density that A and B normalise as printed, without the half: on an interval twice as long as that of
 /// `theta_h`.
-fn printed_bounds(alpha: f64, beta: f64, theta_o: f64) -> TruncatedCauchy<f64> {
-    TruncatedCauchy::new(alpha, beta, theta_o - FRAC_PI_2, theta_o + FRAC_PI_2)
+fn printed_bounds(alpha: f64, beta: f64, theta_o: f64) -> CauchyDensity<f64> {
+    CauchyDensity::new(alpha, beta, theta_o - FRAC_PI_2, theta_o + FRAC_PI_2)
 }
 
 /// A glint's density of `|phi|` on [0, pi]; as printed, without an end, it is this over its cdf at a right angle.
-pub(super) fn whole_glint(p: &Parameters<f64>) -> TruncatedCauchy<f64> {
-    TruncatedCauchy::new(p.phi_g, p.gamma_g, 0.0, PI)
+pub(super) fn whole_glint(p: &Parameters<f64>) -> CauchyDensity<f64> {
+    CauchyDensity::new(p.phi_g, p.gamma_g, 0.0, PI)
 }
 
 /// A hair of a model seen from an inclination.
 pub(super) struct Hair {
     parameters: Parameters<f64>,
-    oracle: Textbook<f64>,
+    oracle: HairReference<f64>,
     theta_o: f64,
 }
 
@@ -94,7 +94,7 @@ impl Hair {
     pub(super) fn new(model: ModelKind, params: &HairParams, theta_o: f64) -> Self {
         let parameters = Parameters::from(params);
         let wo = fibre_direction(theta_o, 0.0).to_array();
-        Self { parameters, oracle: Textbook::prepare(&parameters, model.shape(), wo), theta_o }
+        Self { parameters, oracle: HairReference::prepare(&parameters, model.shape(), wo), theta_o }
     }
 
     /// Shares of the lobes' samples that the printed A and B leave on the sphere.

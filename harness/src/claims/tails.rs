@@ -4,7 +4,7 @@ use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, largest, smal
 use super::hair::{Longitudinal, longitudinal_grid};
 use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
 use core::f64::consts::PI;
-use hairis::textbook::Shape;
+use hairis::reference::Shape;
 
 const WORDS: Words = Words {
     id: "wider-tails",

@@ -10,7 +10,7 @@
 use crate::quadrature::GaussLegendre;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::HairParams;
-use hairis::textbook::{Parameters, Shape};
+use hairis::reference::{Parameters, Shape};
 
 /// The products of `S cos theta_i`.
 pub(super) const TERMS: usize = 3;
@@ -168,12 +168,12 @@ mod tests {
     use crate::sequence::Independent;
     use crate::study::Grid;
     use crate::subject::random_hair;
-    use hairis::textbook::Textbook;
+    use hairis::reference::HairReference;
     use hairis::{Bsdf, Gaussian, Hair};
     use hairis_variants::Cauchy;
 
     #[test]
-    fn the_products_are_the_textbook() {
+    fn the_products_are_the_reference() {
         let mut xi = Independent::new(11, 0);
         for _ in 0..200 {
             let hair = random_hair(&mut xi).expect("within range");
@@ -181,7 +181,7 @@ mod tests {
             let view = View::new(&hair, theta_o);
             for kind in [Kind::GAUSSIAN, Kind::cauchy(1.0), Kind::cauchy(0.8)] {
                 let parameters = Parameters::from(&hair).with_width_factor(kind.factor);
-                let oracle = Textbook::prepare(&parameters, kind.shape, fibre_direction(theta_o, 0.3).to_array());
+                let oracle = HairReference::prepare(&parameters, kind.shape, fibre_direction(theta_o, 0.3).to_array());
                 let (theta_i, phi) = (1.55 * (2.0 * xi.next_f64() - 1.0), PI * (2.0 * xi.next_f64() - 1.0));
                 let (along, around) = (view.along(kind, theta_i), view.around(kind, phi));
                 let got: f64 = along.iter().zip(around).map(|(a, b)| a * b).sum();

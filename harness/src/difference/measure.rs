@@ -132,7 +132,7 @@ mod tests {
     use super::*;
     use crate::study::Grid;
     use core::f64::consts::PI;
-    use hairis::textbook::Real;
+    use hairis::reference::Real;
     use hairis::{HairDesc, HairParams};
 
     fn blur(size: usize) -> Blur {

@@ -7,7 +7,7 @@ use crate::sequence::{XiSource, to_unit_f32};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::{DVec3, Vec3};
 use hairis::HairParams;
-use hairis::textbook::{Oracle, Parameters};
+use hairis::reference::{Oracle, Parameters};
 use hairis::wide::f32x8;
 
 /// A model with its parameters, seen from `wo`.

@@ -7,7 +7,7 @@ use super::task::{PROBE, Pass, Point, task};
 use super::{points, slices};
 use crate::subject::to_f64;
 use glam::Vec3;
-use hairis::textbook::Reference;
+use hairis::reference::Reference;
 use hairis::{Bsdf, Level, ParamError};
 use hairis_variants::{AnyReference, ModelId, Parameters, Registered, Visitor};
 
@@ -36,7 +36,7 @@ pub(super) struct Contender {
 pub(super) struct Cell {
     pub(super) op: Op,
     pub(super) model: &'static str,
-    /// The textbook first.
+    /// The reference first.
     pub(super) contenders: Vec<Contender>,
     pub(super) truth: Truth,
 }
@@ -109,10 +109,10 @@ fn eval_pdf<M: Registered>(
     inputs: &Inputs<M::Params>,
 ) -> Result<(Vec<Contender>, Truth), ParamError> {
     let wo = inputs.wo[0];
-    let textbook = M::reference::<f32>(params, wo.to_array(), 0.0);
+    let reference = M::reference::<f32>(params, wo.to_array(), 0.0);
     let gather = Bsdf::new(&M::MODEL, params).prepare(wo);
     let contenders = vec![
-        scalar(TEXTBOOK, task(&arrays(&inputs.wi), move |wi| textbook.eval_pdf(*wi))),
+        scalar(TEXTBOOK, task(&arrays(&inputs.wi), move |wi| reference.eval_pdf(*wi))),
         scalar(ONE, task(&inputs.wi, move |wi| gather.eval_pdf(*wi))),
     ];
     let contenders =
@@ -127,10 +127,10 @@ fn sample<M: Registered>(
     inputs: &Inputs<M::Params>,
 ) -> Result<(Vec<Contender>, Truth), ParamError> {
     let wo = inputs.wo[0];
-    let textbook = M::reference::<f32>(params, wo.to_array(), 0.0);
+    let reference = M::reference::<f32>(params, wo.to_array(), 0.0);
     let gather = Bsdf::new(&M::MODEL, params).prepare(wo);
     let contenders = vec![
-        scalar(TEXTBOOK, task(&inputs.xi, move |xi| textbook.sample(*xi))),
+        scalar(TEXTBOOK, task(&inputs.xi, move |xi| reference.sample(*xi))),
         scalar(ONE, task(&inputs.xi, move |xi| gather.sample(*xi))),
     ];
     let contenders =

@@ -3,18 +3,18 @@
 use super::task::Answer;
 use crate::subject::to_f64;
 use glam::{DVec3, Vec3};
-use hairis::textbook::Reference;
+use hairis::reference::Reference;
 use hairis_variants::AnyReference;
 
 /// Largest error of an answer that counts as correct: relative for value and density, rad for a direction.
 ///
-/// The `f32` textbook, which is timed as well, needs it; `agreement` checks the kernels to tighter bounds.
+/// The `f32` reference, which is timed as well, needs it; `agreement` checks the kernels to tighter bounds.
 pub(super) const TOLERANCE: f64 = 1e-3;
 
-/// Values below this count as 0: the kernels' Gaussians end at `2^-115`, those of the `f32` textbook at denormals.
+/// Values below this count as 0: the kernels' Gaussians end at `2^-115`, those of the `f32` reference at denormals.
 const NEGLIGIBLE: f64 = 1e-25;
 
-/// Correct answers for the directions of a pass, by the textbook in `f64`.
+/// Correct answers for the directions of a pass, by the reference in `f64`.
 pub(super) struct Truth {
     points: Vec<AnyReference<f64>>,
     /// The direction given, or the one that a sample must come to; `None` if it must be discarded.

@@ -45,7 +45,7 @@ impl<P: Parameters> Inputs<P> {
     }
 }
 
-/// The directions as the textbook takes them.
+/// The directions as the reference takes them.
 pub(super) fn arrays(v: &[Vec3]) -> Vec<[f32; 3]> {
     v.iter().map(|v| v.to_array()).collect()
 }

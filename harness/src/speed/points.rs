@@ -5,7 +5,7 @@ use super::check::Truth;
 use super::inputs::{Inputs, arrays, packets, pairs, xi_packets};
 use super::task::{Answer, Output, several, task};
 use glam::Vec3;
-use hairis::textbook::Reference;
+use hairis::reference::Reference;
 use hairis::wide::f32x8;
 use hairis::{Bsdf, Bsdf8, ParamError, Sample8};
 use hairis_variants::{ModelId, Registered};

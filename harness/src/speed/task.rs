@@ -4,7 +4,7 @@ use crate::light::Seen8;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
-use hairis::textbook::{Drawn, Reference};
+use hairis::reference::{Reference, ReferenceSample};
 use hairis::{Eval, Eval8, Gather, Gather8, Model, Sample, Sample8, Vec3x8};
 
 /// Direction at which prepared shading points are evaluated to check them: no lobe is negligible there.
@@ -141,7 +141,7 @@ impl Output for Seen8 {
     }
 }
 
-impl Output for Drawn<f32> {
+impl Output for ReferenceSample<f32> {
     fn answers(&self, out: &mut Vec<Answer>) {
         out.push(Answer { wi: Some(self.wi.into()), value: self.value, pdf: self.pdf });
     }

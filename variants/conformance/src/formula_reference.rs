@@ -1,7 +1,7 @@
 //! Formulas of a model as the reference of a [`Subject`](crate::Subject).
 
 use crate::subject::{Reference, ReferenceSample, Tolerance};
-use hairis::{Lobe, textbook};
+use hairis::{Lobe, reference};
 
 /// A model's formulas in double precision, with the agreement to expect.
 #[derive(Clone, Copy, Debug)]
@@ -12,7 +12,7 @@ pub struct FormulaReference<R> {
     pub tolerance: Tolerance,
 }
 
-impl<R: textbook::Reference<f64>> Reference for FormulaReference<R> {
+impl<R: reference::Reference<f64>> Reference for FormulaReference<R> {
     fn eval(&self, wi: [f64; 3]) -> [f64; 3] {
         self.formulas.eval(wi)
     }

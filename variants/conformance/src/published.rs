@@ -27,7 +27,7 @@ pub use reference::PublishedReference;
 pub use rows::Rows;
 pub use subject::Family;
 
-use hairis::textbook::Shape;
+use hairis::reference::Shape;
 use hairis::{Hair, HairParams, Matched, MatchedBell, Model};
 
 /// A model of the family.
@@ -43,7 +43,7 @@ pub trait Published: Sync {
     /// Every form of the model, with its factor on the widths: the first is that of [`bell`](Self::bell).
     fn forms() -> Vec<(Self::Model, f32)>;
 
-    /// The same bell in the textbook.
+    /// The same bell in the reference.
     const SHAPE: Shape;
     /// Number of bands of the matched sampler; `None` for the published one.
     const BANDS: Option<usize> = None;

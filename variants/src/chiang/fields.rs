@@ -9,7 +9,7 @@ use super::{ChiangConstants, ChiangReference, Selection};
 #[cfg(feature = "textbook")]
 use crate::Accuracy;
 #[cfg(feature = "textbook")]
-use hairis::textbook::Real;
+use hairis::reference::Real;
 
 const SHIFTS: [(&str, Shifts); 2] = [("d-eon", Shifts::DEon), ("small-angle", Shifts::SmallAngle)];
 

@@ -9,7 +9,7 @@ use super::params::Selection;
 use crate::reference::{Fixed, choose, discarded, finish_sample, fixed, inclination, mix, sum_to_one};
 use azimuth::Logistic;
 use cone::Cone;
-use hairis::textbook::{Drawn, LobeAt, Real, Reference};
+use hairis::reference::{LobeAt, Real, Reference, ReferenceSample};
 use hairis::{Lobe, PerLobe};
 
 pub use bessel::bessel_i0_scaled;
@@ -223,7 +223,7 @@ impl<T: Real> ChiangReference<T> {
     /// - A sample within 1e-5 rad of the axis, or of zero density, is discarded. It counts in N.
     #[inline]
     #[must_use]
-    pub fn sample(&self, xi: [T; 3]) -> Drawn<T> {
+    pub fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         let Some((lobe, rest)) = choose(&self.probabilities, xi[0]) else { return discarded() };
         let inclination @ [sin_theta_i, cos_theta_i] = self.sample_inclination(lobe, xi[1], xi[2]);
         let phi = self.centres[lobe] + self.sample_azimuth(lobe, rest);

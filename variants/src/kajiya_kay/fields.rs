@@ -9,7 +9,7 @@ use super::{KajiyaKayConstants, KajiyaKayReference};
 #[cfg(feature = "textbook")]
 use crate::Accuracy;
 #[cfg(feature = "textbook")]
-use hairis::textbook::Real;
+use hairis::reference::Real;
 
 const FORMS: [(&str, Form); 2] = [("reciprocal", Form::Reciprocal), ("published", Form::Published)];
 

@@ -2,7 +2,7 @@
 
 use super::params::{Form, KajiyaKayParams};
 use crate::reference::{Fixed, choose, discarded, finish_sample, fixed, inclination, mix, sum_to_one};
-use hairis::textbook::{Drawn, LobeAt, Real, Reference, integrate};
+use hairis::reference::{LobeAt, Real, Reference, ReferenceSample, integrate};
 use hairis::{Lobe, PerLobe};
 
 const DIFFUSE: Lobe = Lobe::slot(0);
@@ -202,7 +202,7 @@ impl<T: Real> KajiyaKayReference<T> {
     /// - A sample within 1e-5 rad of the axis, or of zero density, is discarded. It counts in N.
     #[inline]
     #[must_use]
-    pub fn sample(&self, xi: [T; 3]) -> Drawn<T> {
+    pub fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         let Some((lobe, rest)) = choose(&self.probabilities, xi[0]) else { return discarded() };
         let (inclination, xi_phi) =
             if lobe == DIFFUSE { (from_disk(xi[1], rest), xi[2]) } else { self.sample_specular(xi[1], rest, xi[2]) };

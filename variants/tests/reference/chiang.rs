@@ -3,7 +3,7 @@
 use super::support::{DEG, Worst, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
-use hairis::textbook::{Real, Reference};
+use hairis::reference::{Real, Reference};
 use hairis_variants::chiang::{ChiangParameters, ChiangParams, ChiangReference, Selection, Shifts, bessel_i0_scaled};
 
 pub(crate) type Fiber = ChiangReference<f64>;

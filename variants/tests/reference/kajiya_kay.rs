@@ -3,7 +3,7 @@
 use super::support::{DEG, Worst, cdf_gap, cells, chi_square, corners, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
-use hairis::textbook::{Real, Reference};
+use hairis::reference::{Real, Reference};
 use hairis_variants::kajiya_kay::{
     Form, KajiyaKayParameters, KajiyaKayParams, KajiyaKayReference, cosine_power_integral,
 };

@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 use hairis::random;
-use hairis::textbook::{Real, Reference};
+use hairis::reference::{Real, Reference};
 use hairis_conformance::published::quadrature::{self, POINTS};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;

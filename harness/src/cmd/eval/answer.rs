@@ -5,7 +5,7 @@ use crate::config::Path;
 use crate::subject::to_f64;
 use core::array::from_fn;
 use glam::Vec3;
-use hairis::textbook::Reference;
+use hairis::reference::Reference;
 use hairis::{Eval, EvalSlices, Hit, Lobe, LobeEval8, PerLobe, Sample, SampleSlices, Vec3x8};
 use hairis_variants::{AnyBsdf8, AnyGather, ModelId};
 use serde::Serialize;

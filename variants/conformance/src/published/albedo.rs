@@ -1,21 +1,21 @@
-//! The directional albedo against quadrature of the textbook, and the scale that keeps it at most 1.
+//! The directional albedo against quadrature of the reference, and the scale that keeps it at most 1.
 
 use super::quadrature::{integrate, panels};
 use super::support::{Draws, Kind, Point, Worst, direction, for_each_point, narrow, parameters};
 use super::{Published, PublishedReference};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
-use hairis::textbook::Parameters;
+use hairis::reference::Parameters;
 use hairis::{Bsdf, HairDesc, HairParams, Lobe, Model, PerLobe};
 
 /// Integral of each lobe's value times the cosine: a product of two line integrals, as the lobes are products.
-fn integrals(textbook: &PublishedReference, point: &Point) -> PerLobe<f64> {
+fn integrals(reference: &PublishedReference, point: &Point) -> PerLobe<f64> {
     let p = &point.p;
     let l = |lobe: Lobe| lobe.index().min(2);
     let at = |lobe: Lobe, theta: f64, phi: f64| {
         let (sin, cos) = theta.sin_cos();
         let azimuth = point.phi_o - phi;
-        textbook.lobe_values([sin, cos * azimuth.cos(), cos * azimuth.sin()])[lobe]
+        reference.lobe_values([sin, cos * azimuth.cos(), cos * azimuth.sin()])[lobe]
     };
     let mut all = PerLobe::default();
     for lobe in Lobe::ALL {
@@ -40,13 +40,13 @@ pub fn albedo_is_the_integral<S: Published>() {
     let mut worst = Worst::default();
     let mut turn = 0;
     for kind in [Kind::Grid, Kind::Narrow, Kind::Wide] {
-        for_each_point::<S>(kind, |bsdf, textbook, point| {
+        for_each_point::<S>(kind, |bsdf, reference, point| {
             turn += 1;
             if kind == Kind::Grid && turn % 7 != 0 {
                 return;
             }
             let got = bsdf.prepare(point.wo).albedo();
-            let want = integrals(textbook, point);
+            let want = integrals(reference, point);
             let d = point.params.desc();
             let colors = PerLobe([d.intensity_r, d.intensity_tt, d.intensity_trt, d.intensity_trt]);
             for lobe in Lobe::ALL {

@@ -4,7 +4,7 @@ use super::quadrature::{integrate, panels};
 use super::support::{Kind, THETA_O, Worst, direction, double, materials, parameters};
 use super::{Published, samplers};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::MatchedTextbook;
+use hairis::reference::MatchedReference;
 use hairis::{Bsdf, HairParams, Lobe, Model};
 
 /// Integral over the sphere of the density of each lobe alone, of the others but for rounding a product of two.
@@ -17,7 +17,7 @@ fn integrals<S: Published, M: Model<Params = HairParams>>(
     let wo = direction(theta_o, 0.4);
     let p = parameters(params, 1.0);
     let gather = Bsdf::new(&model, params).prepare(wo);
-    let reference = MatchedTextbook::prepare(&p, S::SHAPE, double(wo), bands);
+    let reference = MatchedReference::prepare(&p, S::SHAPE, double(wo), bands);
     Lobe::ALL.map(|lobe| {
         let l = lobe.index().min(2);
         let at = |theta: f64, phi: f64| {

@@ -3,7 +3,7 @@
 use super::support::{Draws, Worst, direction, double, lanes_of, narrow, parameters};
 use super::{Published, samplers};
 use core::f64::consts::PI;
-use hairis::textbook::MatchedTextbook;
+use hairis::reference::MatchedReference;
 use hairis::{Bsdf, HairDesc, HairParams, Lobe, LobeMask, Model};
 
 /// Hair with `beta_r` from 0.5 to 60 degrees and all else as wide as it is found, seen from up to 89.9 degrees.
@@ -26,7 +26,7 @@ fn scan<S: Published, M: Model<Params = HairParams>>(model: M, bands: usize, wor
         let wo = direction(theta_o, draws.between(-PI, PI));
         let mask = if round % 4 == 0 { LobeMask::of(&[Lobe::ALL[draws.below(4)]]) } else { LobeMask::ALL };
         let gather = Bsdf::new(&model, &params).prepare(wo).with_lobes(mask);
-        let reference = MatchedTextbook::prepare(&parameters(&params, 1.0), S::SHAPE, double(wo), bands);
+        let reference = MatchedReference::prepare(&parameters(&params, 1.0), S::SHAPE, double(wo), bands);
         let limit = reference.weight_bound(mask);
         if mask == LobeMask::ALL {
             let mean: f64 = gather.albedo().0.iter().flatten().map(|x| f64::from(*x) / 3.0).sum();

@@ -7,9 +7,9 @@ use hairis::{Bsdf, Lobe, LobeMask};
 
 pub fn lobes_add_up<S: Published>() {
     let (mut s, mut pdf) = (Worst::default(), Worst::default());
-    for_each_point::<S>(Kind::Grid, |bsdf, textbook, point| {
+    for_each_point::<S>(Kind::Grid, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
-        let probability = textbook.probabilities();
+        let probability = reference.probabilities();
         for wi in point.directions(8) {
             let (lobes, all) = (gather.lobes(wi), gather.eval_pdf(wi));
             let at = || format!("wo {:?} wi {wi:?} {:?}", point.wo, point.params);
@@ -27,14 +27,14 @@ pub fn lobes_add_up<S: Published>() {
 
 pub fn a_subset_scatters_and_samples_its_lobes_alone<S: Published>() {
     let (mut s, mut pdf) = (Worst::default(), Worst::default());
-    for_each_point::<S>(Kind::Wide, |bsdf, textbook, point| {
+    for_each_point::<S>(Kind::Wide, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         let eight = Bsdf::prepare8(bsdf, &hairis::Vec3x8::splat(point.wo));
         let mut draws = Draws(point.seed);
         for mask in masks() {
             let part = gather.with_lobes(mask);
             let total: f64 =
-                Lobe::ALL.into_iter().map(|l| textbook.probabilities()[l] * f64::from(mask.factor(l))).sum();
+                Lobe::ALL.into_iter().map(|l| reference.probabilities()[l] * f64::from(mask.factor(l))).sum();
             for wi in point.directions(8) {
                 let at = || format!("{mask:?} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
                 let (lobes, got) = (gather.lobes(wi), part.eval_pdf(wi));
@@ -45,7 +45,7 @@ pub fn a_subset_scatters_and_samples_its_lobes_alone<S: Published>() {
                     let sum = of(&|l| f64::from(lobes[l].value) * f64::from(lobes[l].color[c]));
                     s.see(relative(got.value[c], sum, 1e-20), at);
                 }
-                let sum = of(&|l| textbook.probabilities()[l] * f64::from(lobes[l].pdf)) / total.max(1e-300);
+                let sum = of(&|l| reference.probabilities()[l] * f64::from(lobes[l].pdf)) / total.max(1e-300);
                 pdf.see(relative(got.pdf, sum, S::PDF_FLOOR.max(1e-300)), at);
                 let value_alone = part.lobes(wi);
                 for lobe in Lobe::ALL {
@@ -75,7 +75,7 @@ pub fn a_subset_scatters_and_samples_its_lobes_alone<S: Published>() {
 }
 
 pub fn a_lobe_is_colored_by_its_parameters<S: Published>() {
-    for_each_point::<S>(Kind::Wide, |bsdf, textbook, point| {
+    for_each_point::<S>(Kind::Wide, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         let d = point.params.desc();
         let wi = point.directions(1)[0];
@@ -85,7 +85,7 @@ pub fn a_lobe_is_colored_by_its_parameters<S: Published>() {
             assert_eq!(lobes[lobe].color, color, "color of {lobe:?}");
         }
         // The strength of the glints is theirs, not the color's.
-        let glint = textbook.lobe_values(double(wi))[Lobe::GLINT];
+        let glint = reference.lobe_values(double(wi))[Lobe::GLINT];
         let error = relative(lobes[Lobe::GLINT].value, glint, 1e-20);
         assert!(error <= S::ROWS.wide[2], "glint {:?} against {}", lobes[Lobe::GLINT], narrow(glint));
     });

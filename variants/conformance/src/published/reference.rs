@@ -1,7 +1,7 @@
-//! The textbook with the sampler of the model under test.
+//! The reference with the sampler of the model under test.
 
 use super::Published;
-use hairis::textbook::{Drawn, MatchedTextbook, Parameters, Textbook};
+use hairis::reference::{HairReference, MatchedReference, Parameters, ReferenceSample};
 use hairis::{Lobe, LobeMask, PerLobe};
 
 /// The reference of a model, in double precision.
@@ -9,14 +9,14 @@ use hairis::{Lobe, LobeMask, PerLobe};
 #[expect(clippy::large_enum_variant, reason = "one at a time lives on the stack of a test")]
 pub enum PublishedReference {
     /// With the published sampler.
-    Published(Textbook<f64>),
+    Published(HairReference<f64>),
     /// With the matched one.
-    Matched(MatchedTextbook<f64>),
+    Matched(MatchedReference<f64>),
 }
 
 macro_rules! both {
     ($($name:ident($($arg:ident: $type:ty),*) -> $out:ty;)*) => { $(
-        /// As in the textbook.
+        /// As in the reference.
         #[must_use]
         pub fn $name(&self $(, $arg: $type)*) -> $out {
             match self {
@@ -32,9 +32,9 @@ impl PublishedReference {
     #[must_use]
     pub fn prepare<S: Published>(parameters: &Parameters<f64>, wo: [f64; 3]) -> Self {
         let Some(bands) = S::BANDS else {
-            return Self::Published(Textbook::prepare(parameters, S::SHAPE, wo));
+            return Self::Published(HairReference::prepare(parameters, S::SHAPE, wo));
         };
-        let formulas = MatchedTextbook::prepare(parameters, S::SHAPE, wo, bands);
+        let formulas = MatchedReference::prepare(parameters, S::SHAPE, wo, bands);
         Self::Matched(if S::BY_CHANNEL { formulas.by_channel() } else { formulas })
     }
 
@@ -44,7 +44,7 @@ impl PublishedReference {
         lobe_values(wi: [f64; 3]) -> PerLobe<f64>;
         lobe_pdfs(wi: [f64; 3]) -> PerLobe<f64>;
         probabilities() -> PerLobe<f64>;
-        sample(xi: [f64; 3]) -> Drawn<f64>;
+        sample(xi: [f64; 3]) -> ReferenceSample<f64>;
         cdf_theta(lobe: Lobe, theta_i: f64) -> f64;
         cdf_phi(lobe: Lobe, phi: f64) -> f64;
     }

@@ -3,7 +3,7 @@
 /// Every bound of the tests of one model of the family. Rows that a model's tests do not read may be 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows {
-    /// S and density against the textbook, relative, further than 1e-3 rad from the axis; then those of a lobe alone: on the
+    /// S and density against the reference, relative, further than 1e-3 rad from the axis; then those of a lobe alone: on the
     /// efficiency grid and the presets.
     pub grid: [f64; 4],
     /// The same, every width 0.5 degrees.
@@ -12,7 +12,7 @@ pub struct Rows {
     pub wide: [f64; 4],
     /// The sum of the lobes against the whole, relative.
     pub lobe_sum: f64,
-    /// Samples against the textbook at the direction they return: S, density, weight, relative, off the seam and the axis.
+    /// Samples against the reference at the direction they return: S, density, weight, relative, off the seam and the axis.
     pub grid_sample: [f64; 3],
     /// The same, every width 0.5 degrees.
     pub narrow_sample: [f64; 3],
@@ -45,10 +45,10 @@ pub struct Rows {
     pub weight_bound: f64,
     /// The integral of a lobe's density against 1: grid, narrow and wide materials; matched samplers.
     pub integral: [f64; 3],
-    /// Samples of TT and of glints next to the seam, against the textbook at the direction they return: S, density, weight;
+    /// Samples of TT and of glints next to the seam, against the reference at the direction they return: S, density, weight;
     /// matched samplers.
     pub seam: [f64; 3],
-    /// Samples at the ends of the uniform numbers, widths of a degree and more, against the textbook at the direction they
+    /// Samples at the ends of the uniform numbers, widths of a degree and more, against the reference at the direction they
     /// return: S, density, weight off the seam, density next to it; matched samplers.
     pub tail_sample: [f64; 4],
     /// The same off the seam, where no lobe has its centre on the sphere.

@@ -1,4 +1,4 @@
-//! Samples against the textbook: cdf of the drawn angle, value, density and weight at the drawn direction.
+//! Samples against the reference: cdf of the drawn angle, value, density and weight at the drawn direction.
 
 use super::support::{Draws, Kind, Point, Worst, angles, double, for_each_point, lanes_of, relative};
 use super::{Published, PublishedReference};
@@ -31,7 +31,7 @@ fn phi(point: &Point, sample: &Sample) -> f64 {
 }
 
 /// Errors of a sample at the direction it returned: S, density, weight, and the length of the direction.
-fn see<S: Published>(worst: &mut [Worst; 4], textbook: &PublishedReference, point: &Point, sample: &Sample) {
+fn see<S: Published>(worst: &mut [Worst; 4], reference: &PublishedReference, point: &Point, sample: &Sample) {
     let at = || format!("{sample:?} wo {:?} {:?}", point.wo, point.params);
     let d = double(sample.wi);
     worst[3].see((d.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs(), at);
@@ -39,7 +39,7 @@ fn see<S: Published>(worst: &mut [Worst; 4], textbook: &PublishedReference, poin
     if theta.cos() < 1e-3 || (phi - 0.5 * PI).abs() < 1e-6 {
         return;
     }
-    let (value, pdf) = (textbook.eval(d), textbook.pdf(d));
+    let (value, pdf) = (reference.eval(d), reference.pdf(d));
     // On the seam R and TRT-g vanish, and the rounding of the direction is all that is left of them.
     let seam = PI - phi < 1e-3;
     if !(seam && S::BANDS.is_some()) {
@@ -57,7 +57,7 @@ fn see<S: Published>(worst: &mut [Worst; 4], textbook: &PublishedReference, poin
 fn check<S: Published>(kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3], cdf: [f64; 2]) {
     let mut worst: [Worst; 4] = Default::default();
     let (mut theta, mut azimuth) = (Worst::default(), Worst::default());
-    for_each_point::<S>(kind, |bsdf, textbook, point| {
+    for_each_point::<S>(kind, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         let mut draws = Draws(point.seed);
         for _ in 0..per_point {
@@ -66,10 +66,10 @@ fn check<S: Published>(kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3],
             for (lane, xi) in xi.iter().enumerate() {
                 let all = wide.iter().map(|eight| eight.lane(lane)).chain([gather.sample(*xi)]);
                 for sample in all.flatten() {
-                    see::<S>(&mut worst, textbook, point, &sample);
-                    let chosen = textbook.sample(xi.map(f64::from)).lobe;
+                    see::<S>(&mut worst, reference, point, &sample);
+                    let chosen = reference.sample(xi.map(f64::from)).lobe;
                     let mut edge = 0.0;
-                    let edges = textbook.probabilities().0.map(|p| {
+                    let edges = reference.probabilities().0.map(|p| {
                         edge += p;
                         (edge - f64::from(xi[0])).abs()
                     });
@@ -90,9 +90,9 @@ fn check<S: Published>(kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3],
                     for sample in all.flatten() {
                         let at = || format!("{lobe:?} xi {xi:?} {sample:?} wo {:?} {:?}", point.wo, point.params);
                         assert_eq!(sample.lobe, lobe, "only this lobe may be drawn");
-                        let got = textbook.cdf_theta(lobe, angles(point.wo, sample.wi)[0]);
+                        let got = reference.cdf_theta(lobe, angles(point.wo, sample.wi)[0]);
                         theta.see((got - f64::from(xi[1])).abs(), at);
-                        let got = textbook.cdf_phi(lobe, phi(point, &sample));
+                        let got = reference.cdf_phi(lobe, phi(point, &sample));
                         azimuth.see(around(got, f64::from(xi[2])), at);
                     }
                 }

@@ -26,7 +26,7 @@ pub fn samples_next_to_the_seam_report_their_own_direction<S: Published>() {
         for (theta_o, phi_o) in [(0.0, 0.0), (0.3, 0.785), (-0.9, 2.4), (1.2, -1.1), (0.7, 3.1)] {
             let wo = direction(theta_o, phi_o);
             let gather = Bsdf::new(&S::forms()[0].0, &params).prepare(wo);
-            let textbook = oracle::<S>(&params, 1.0, wo);
+            let reference = oracle::<S>(&params, 1.0, wo);
             for xi_phi in about_a_half() {
                 let xi = core::array::from_fn(|lane| [(lane as f32 + 0.5) / 8.0, 0.11 * lane as f32 + 0.05, xi_phi]);
                 for sample in Level::available().flat_map(|level| {
@@ -40,7 +40,7 @@ pub fn samples_next_to_the_seam_report_their_own_direction<S: Published>() {
                     glints += usize::from(sample.lobe == Lobe::GLINT);
                     let at = || format!("{sample:?} wo {wo:?} {xi_phi} {params:?}");
                     let d = double(sample.wi);
-                    let (value, pdf) = (textbook.eval(d), textbook.pdf(d));
+                    let (value, pdf) = (reference.eval(d), reference.pdf(d));
                     worst[0].see(relative(sample.value[1], value[1], 1e-20), at);
                     worst[1].see(relative(sample.pdf, pdf, 1e-20), at);
                     let weight = value[1] * d[1].hypot(d[2]) / pdf;

@@ -1,11 +1,11 @@
-//! Shared by the tests: numbers, directions, materials, and the textbook set beside the kernels.
+//! Shared by the tests: numbers, directions, materials, and the reference set beside the kernels.
 
 pub use crate::probe::{Draws, narrow};
 
 use super::{Published, PublishedReference};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
-use hairis::textbook::Parameters;
+use hairis::reference::Parameters;
 use hairis::wide::f32x8;
 use hairis::{Bsdf, HairDesc, HairParams, MAX_WIDTH, MIN_WIDTH, Vec3x8};
 
@@ -113,7 +113,7 @@ pub fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
     [u.atan2(v.hypot(w)), cross.atan2(dot).abs()]
 }
 
-/// The parameters the textbook needs for the kernels' widths: rounded where they round.
+/// The parameters the reference needs for the kernels' widths: rounded where they round.
 pub fn parameters(params: &HairParams, factor: f32) -> Parameters<f64> {
     let p = Parameters::<f64>::from(params);
     let d = params.desc();
@@ -126,7 +126,7 @@ pub fn parameters(params: &HairParams, factor: f32) -> Parameters<f64> {
     }
 }
 
-/// The textbook at the shading point of `wo`.
+/// The reference at the shading point of `wo`.
 pub fn oracle<S: Published>(params: &HairParams, factor: f32, wo: Vec3) -> PublishedReference {
     PublishedReference::prepare::<S>(&parameters(params, factor), double(wo))
 }
@@ -209,7 +209,7 @@ pub fn grid_point(beta_r: f64, gamma_tt: f64, gamma_g: f64, phi_g: f64, intensit
 /// Inclinations of `wo`, degrees: grazing on both sides, and tilted.
 pub const THETA_O: [f64; 12] = [0.0, 15.0, -30.0, 45.0, -60.0, 75.0, -80.0, 85.0, 89.0, -89.0, 89.9, -89.9];
 
-/// A material of one kind with its textbook, for every form of the model, material and inclination.
+/// A material of one kind with its reference, for every form of the model, material and inclination.
 pub fn for_each_point<S: Published>(kind: Kind, mut f: impl FnMut(&Bsdf<S::Model>, &PublishedReference, &Point)) {
     for (model, factor) in S::forms() {
         for (index, params) in materials(kind).iter().enumerate() {

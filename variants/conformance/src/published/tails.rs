@@ -36,7 +36,7 @@ fn errors<S: Published>(descs: &[HairDesc], theta_o: impl Iterator<Item = f64> +
         for (turn, theta_o) in theta_o.clone().enumerate() {
             let wo = direction(theta_o, 0.7 * turn as f64 - 3.0);
             let gather = Bsdf::new(&S::forms()[0].0, &params).prepare(wo);
-            let textbook = oracle::<S>(&params, 1.0, wo);
+            let reference = oracle::<S>(&params, 1.0, wo);
             let ends = NUMBERS.iter().flat_map(|a| NUMBERS.map(|b| [*a, b]));
             for [theta, phi] in ends {
                 let xi = core::array::from_fn(|lane| [(lane as f32 + 0.5) / 8.0, theta, phi]);
@@ -51,7 +51,7 @@ fn errors<S: Published>(descs: &[HairDesc], theta_o: impl Iterator<Item = f64> +
                         continue;
                     }
                     let at = || format!("{sample:?} wo {wo:?} xi {theta} {phi} {params:?}");
-                    let (value, pdf) = (textbook.eval(d), textbook.pdf(d));
+                    let (value, pdf) = (reference.eval(d), reference.pdf(d));
                     // A Gaussian is cut where it is 1e-35.
                     if value[0] < 1e-20 {
                         continue;

@@ -1,4 +1,4 @@
-//! Values, densities and lobes against the textbook in double precision, one lane and eight, on every level.
+//! Values, densities and lobes against the reference in double precision, one lane and eight, on every level.
 
 use super::Published;
 use super::support::{Kind, Worst, for_each_point, packet, relative};
@@ -10,7 +10,7 @@ const FLOOR: f64 = 1e-20;
 /// Largest errors of S and of the density over the materials of a kind.
 fn scan<S: Published>(kind: Kind, per_point: usize) -> [Worst; 4] {
     let mut worst: [Worst; 4] = Default::default();
-    for_each_point::<S>(kind, |bsdf, textbook, point| {
+    for_each_point::<S>(kind, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         for eight in point.directions(per_point).chunks(8) {
             let wi = packet(eight);
@@ -19,8 +19,8 @@ fn scan<S: Published>(kind: Kind, per_point: usize) -> [Worst; 4] {
             let wide_lobes = gather.lobes8(&wi);
             for (lane, wi) in eight.iter().enumerate() {
                 let d = super::support::double(*wi);
-                let (value, pdf) = (textbook.eval(d), textbook.pdf(d));
-                let (lobe_values, lobe_pdfs) = (textbook.lobe_values(d), textbook.lobe_pdfs(d));
+                let (value, pdf) = (reference.eval(d), reference.pdf(d));
+                let (lobe_values, lobe_pdfs) = (reference.lobe_values(d), reference.lobe_pdfs(d));
                 let mut see = |got: Eval, level: &str| {
                     let at = || format!("{level} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
                     for (got, want) in got.value.into_iter().zip(value) {

@@ -5,7 +5,7 @@ use super::quadrature::{panels, rule};
 use super::support::{DEG, direction, double, grid_point, narrow, parameters};
 use super::{Published, samplers};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::{MatchedTextbook, Textbook};
+use hairis::reference::{HairReference, MatchedReference};
 use hairis::{Bsdf, Gather, HairParams, Lobe, Model, PerLobe};
 
 const PHI_O: f64 = 0.4;
@@ -14,11 +14,11 @@ const PHI_O: f64 = 0.4;
 type Shares = fn(&HairParams, f64) -> PerLobe<f64>;
 
 fn published<S: Published>(params: &HairParams, theta_o: f64) -> PerLobe<f64> {
-    Textbook::prepare(&parameters(params, 1.0), S::SHAPE, double(direction(theta_o, PHI_O))).probabilities()
+    HairReference::prepare(&parameters(params, 1.0), S::SHAPE, double(direction(theta_o, PHI_O))).probabilities()
 }
 
 fn matched<S: Published, const N: usize>(params: &HairParams, theta_o: f64) -> PerLobe<f64> {
-    MatchedTextbook::prepare(&parameters(params, 1.0), S::SHAPE, double(direction(theta_o, PHI_O)), N).probabilities()
+    MatchedReference::prepare(&parameters(params, 1.0), S::SHAPE, double(direction(theta_o, PHI_O)), N).probabilities()
 }
 
 /// Quadrature in one angle: its weights, and each lobe's value and density there, the other angle at a peak.
@@ -105,7 +105,7 @@ fn v(long: &Line, round: &Line, params: &HairParams, shares: PerLobe<f64>) -> f6
 /// The inclinations where the density of a sampler of so many bands jumps: the same for all hair.
 fn jumps<S: Published>(bands: usize) -> Vec<f64> {
     let p = parameters(&HairParams::default(), 1.0);
-    MatchedTextbook::prepare(&p, S::SHAPE, [0.0, 1.0, 0.0], bands).bands().collect()
+    MatchedReference::prepare(&p, S::SHAPE, [0.0, 1.0, 0.0], bands).bands().collect()
 }
 
 /// V at every point of the grid.

@@ -1,6 +1,6 @@
 //! The azimuthal lobe: a logistic cut to one turn.
 
-use hairis::textbook::Real;
+use hairis::reference::Real;
 
 /// A logistic of scale s on `[-pi, pi]`: Chiang et al. 2016, section 3.
 #[derive(Clone, Copy, Debug, PartialEq)]

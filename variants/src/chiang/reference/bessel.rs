@@ -1,7 +1,7 @@
 //! The modified Bessel function of the first kind and order 0, scaled.
 
 use crate::chiang::lobes::{SEAM, SERIES, TAIL};
-use hairis::textbook::Real;
+use hairis::reference::Real;
 
 /// `exp(-x) I0(x)`, `x >= 0`.
 ///

@@ -1,7 +1,7 @@
 //! The longitudinal lobe: a spherical Gaussian summed around the fibre.
 
 use super::bessel_i0_scaled;
-use hairis::textbook::Real;
+use hairis::reference::Real;
 
 /// Light spread about the cone of inclination `-theta'` with variance v: d'Eon et al. 2011.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use crate::chiang::params::{ChiangParams, Shifts};
 use hairis::PerLobe;
-use hairis::textbook::Real;
+use hairis::reference::Real;
 
 /// A [`ChiangDesc`](crate::ChiangDesc) in either precision. Nothing is checked: make it from [`ChiangParams`].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! The published sampler: sections 3.2.1 to 3.2.3 and appendices A to D.
 
-use super::{Angles, Drawn, GRAZING, Real, Textbook, cos_half, wrapped};
+use super::{Angles, GRAZING, HairReference, Real, ReferenceSample, cos_half, wrapped};
 use crate::{Lobe, PerLobe};
 
-impl<T: Real> Textbook<T> {
+impl<T: Real> HairReference<T> {
     /// The published sampler: a lobe by energy, `theta_i` and `phi` by inversion (section 3.2).
     ///
     /// - `xi` is (`xi_lobe`, `xi_theta`, `xi_phi`), each in [0, 1). A lobe without energy is never chosen.
@@ -12,9 +12,9 @@ impl<T: Real> Textbook<T> {
     ///   the same but for the rounding of those angles.
     #[inline]
     #[must_use]
-    pub fn sample(&self, xi: [T; 3]) -> Drawn<T> {
+    pub fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         let zero = T::default();
-        let discarded = Drawn { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None };
+        let discarded = ReferenceSample { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None };
         let Some(lobe) = choose(&self.probabilities, xi[0]) else { return discarded };
         let theta_i = self.sample_theta(lobe, xi[1]);
         let phi = self.sample_phi(lobe, xi[2]);
@@ -29,7 +29,7 @@ impl<T: Real> Textbook<T> {
         }
         let value = self.colour(&self.values_at(&at));
         let weight = value.map(|s| s * at.cos_theta_i / pdf);
-        Drawn { wi: self.direction(theta_i, phi), value, pdf, weight, lobe: Some(lobe) }
+        ReferenceSample { wi: self.direction(theta_i, phi), value, pdf, weight, lobe: Some(lobe) }
     }
 
     /// The direction a lobe alone draws from two uniform numbers; nothing is discarded.

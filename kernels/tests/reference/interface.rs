@@ -3,7 +3,7 @@
 use super::{DEG, SHAPES, THETA_O, direction, points, with_tilt_and_width};
 use crate::quadrature::{panels, rule};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::{Oracle, Reference, Shape};
+use hairis::reference::{Oracle, Reference, Shape};
 use hairis::{Lobe, PerLobe};
 
 /// The albedo by panels of the sphere that shrink towards every peak, and towards the pole that `wo` may lie on.

@@ -1,12 +1,12 @@
-//! The textbook: normalisation, inversion, reciprocity, sampling, and its two precisions against each other.
+//! The reference: normalisation, inversion, reciprocity, sampling, and its two precisions against each other.
 
 mod errata;
-mod reference;
+mod interface;
 mod variance;
 
 use crate::quadrature::{panels, rule};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::textbook::{Parameters, Real, Shape, Textbook};
+use hairis::reference::{HairReference, Parameters, Real, Shape};
 use hairis::{HairDesc, HairParams, Lobe};
 
 const DEG: f64 = PI / 180.0;
@@ -62,7 +62,7 @@ fn each_lobe_and_the_mixture_integrate_to_one() {
     for (tilt, width) in TILTS.into_iter().flat_map(|tilt| [0.5, 3.0, 15.0, 60.0].map(|width| (tilt, width))) {
         for theta_o in THETA_O {
             let p = with_tilt_and_width(tilt, width);
-            let hair = Textbook::prepare(&p, Shape::Gaussian, direction(theta_o * DEG, 0.3));
+            let hair = HairReference::prepare(&p, Shape::Gaussian, direction(theta_o * DEG, 0.3));
             let [theta, phi] = sphere(&p, theta_o * DEG);
             let mut sums = [0.0; Lobe::COUNT + 1];
             for &(theta_i, w_theta) in &theta {
@@ -98,7 +98,7 @@ fn cdf_is_the_integral_of_the_density() {
     for (tilt, width) in [(TILTS[0], 0.5), (TILTS[1], 15.0)] {
         for theta_o in THETA_O {
             let p = with_tilt_and_width(tilt, width);
-            let hair = Textbook::prepare(&p, Shape::Gaussian, direction(theta_o * DEG, 0.0));
+            let hair = HairReference::prepare(&p, Shape::Gaussian, direction(theta_o * DEG, 0.0));
             for lobe in Lobe::ALL {
                 let tilt = if lobe == Lobe::GLINT { tilt[2] } else { tilt[lobe.index()] };
                 let bell = (2.0 * tilt * DEG - theta_o * DEG, 2.0 * width * DEG);
@@ -114,7 +114,7 @@ fn cdf_is_the_integral_of_the_density() {
 }
 
 fn worst_inversion<T: Real>(p: &Parameters<T>, wo: [T; 3]) -> f64 {
-    let hair = Textbook::prepare(p, Shape::Gaussian, wo);
+    let hair = HairReference::prepare(p, Shape::Gaussian, wo);
     let turn = |phi: T| if phi > T::PI { phi - T::PI - T::PI } else { phi };
     let mut worst = 0.0_f64;
     for xi in uniforms(500).map(T::from_f64) {
@@ -151,21 +151,21 @@ fn eval_is_reciprocal() {
         let p = Parameters::<f64>::from(&params);
         for [a, b, c] in points(500) {
             let (wo, wi) = (direction((a - 0.5) * PI, 6.0 * c), direction((b - 0.5) * PI, -2.0 * c));
-            let forth = Textbook::prepare(&p, shape, wo).eval(wi);
-            let back = Textbook::prepare(&p, shape, wi).eval(wo);
+            let forth = HairReference::prepare(&p, shape, wo).eval(wi);
+            let back = HairReference::prepare(&p, shape, wi).eval(wo);
             let off = forth.into_iter().zip(back).map(|(a, b)| (a - b).abs() / (a + 1e-280)).fold(0.0, f64::max);
             worst = worst.max(off);
             assert!(off < 1e-12, "{shape:?} {wo:?} {wi:?}: {forth:?} and {back:?}");
         }
     }
-    println!("worst reciprocity of the textbook: {worst:e}");
+    println!("worst reciprocity of the reference: {worst:e}");
 }
 
 #[test]
 fn a_sample_agrees_with_eval_and_pdf() {
     let mut worst = 0.0_f64;
     for (shape, theta_o) in SHAPES.into_iter().flat_map(|shape| THETA_O.map(|theta_o| (shape, theta_o))) {
-        let hair = Textbook::prepare(&default_set(), shape, direction(theta_o * DEG, -2.0));
+        let hair = HairReference::prepare(&default_set(), shape, direction(theta_o * DEG, -2.0));
         for xi in points(2000) {
             let drawn = hair.sample(xi);
             let Some(lobe) = drawn.lobe else {
@@ -198,7 +198,7 @@ fn a_sample_agrees_with_eval_and_pdf() {
 #[test]
 fn lobes_are_chosen_by_energy_and_never_without() {
     let no_tt = Parameters { intensity_tt: [0.0; 3], ..default_set() };
-    let hair = Textbook::prepare(&no_tt, Shape::Gaussian, direction(0.2, 0.0));
+    let hair = HairReference::prepare(&no_tt, Shape::Gaussian, direction(0.2, 0.0));
     let mut counts = [0_u32; Lobe::COUNT];
     let total = 10_000;
     for n in 0..total {
@@ -211,7 +211,7 @@ fn lobes_are_chosen_by_energy_and_never_without() {
     }
     assert_eq!(counts[Lobe::TT.index()], 0, "a lobe without energy is never chosen");
     let black = Parameters { intensity_r: [0.0; 3], intensity_trt: [0.0; 3], ..no_tt };
-    let black = Textbook::prepare(&black, Shape::Cauchy, direction(0.2, 0.0));
+    let black = HairReference::prepare(&black, Shape::Cauchy, direction(0.2, 0.0));
     assert_eq!(black.sample([0.3; 3]).lobe, None, "black hair draws nothing");
     assert_eq!((black.pdf([0.0, 1.0, 0.0]), black.eval([0.0, 1.0, 0.0])), (0.0, [0.0; 3]), "and returns nothing");
 }
@@ -219,7 +219,7 @@ fn lobes_are_chosen_by_energy_and_never_without() {
 #[test]
 fn the_axis_is_discarded() {
     for wo in [[1.0, 0.0, 0.0], [-1.0, -0.0, -0.0], [0.6, 0.0, 0.8]] {
-        let hair = Textbook::prepare(&default_set(), Shape::Cauchy, wo);
+        let hair = HairReference::prepare(&default_set(), Shape::Cauchy, wo);
         for theta in [FRAC_PI_2, -FRAC_PI_2, FRAC_PI_2 - 0.9e-5] {
             let wi = direction(theta, 1.0);
             assert_eq!((hair.pdf(wi), hair.eval(wi)), (0.0, [0.0; 3]), "wo {wo:?} theta_i {theta}");
@@ -239,8 +239,8 @@ fn f32_is_close_to_f64() {
         let single = |v: [f64; 3]| v.map(f32::from_f64);
         let (wo, wi) = (single(direction((a - 0.5) * 3.1, 0.7)), single(direction((b - 0.5) * 3.1, 6.2 * c)));
         let (wo_f64, wi_f64) = (wo.map(f64::from), wi.map(f64::from));
-        let narrow = Textbook::prepare(&Parameters::<f32>::from(&params), Shape::Cauchy, wo);
-        let wide = Textbook::prepare(&Parameters::<f64>::from(&params), Shape::Cauchy, wo_f64);
+        let narrow = HairReference::prepare(&Parameters::<f32>::from(&params), Shape::Cauchy, wo);
+        let wide = HairReference::prepare(&Parameters::<f64>::from(&params), Shape::Cauchy, wo_f64);
         for (x, y) in narrow.eval(wi).into_iter().zip(wide.eval(wi_f64)) {
             worst_value = worst_value.max((f64::from(x) / y - 1.0).abs());
         }
@@ -279,7 +279,7 @@ fn f32_results_are_finite() {
                 ..Parameters::<f32>::from(&HairParams::default_set())
             };
             for wo in axes {
-                let hair = Textbook::prepare(&p, shape, wo);
+                let hair = HairReference::prepare(&p, shape, wo);
                 for (a, b, c) in
                     ends.into_iter().flat_map(|a| ends.into_iter().flat_map(move |b| ends.map(|c| (a, b, c))))
                 {

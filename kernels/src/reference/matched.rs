@@ -1,7 +1,7 @@
 //! Formulas of the matched sampler [`Matched`](crate::Matched), line by line.
 
 use super::cut::Cut;
-use super::{Angles, Drawn, GRAZING, Parameters, Real, Shape, Textbook, cos_half, wrapped};
+use super::{Angles, GRAZING, HairReference, Parameters, Real, ReferenceSample, Shape, cos_half, wrapped};
 use crate::{Lobe, LobeMask, PerLobe};
 
 /// Most bands.
@@ -20,15 +20,15 @@ const fn ends(bands: usize) -> &'static [f32] {
 /// The model with its matched sampler, for one set of parameters and one `wo`.
 ///
 /// ```
-/// use hairis::{HairParams, textbook::{MatchedTextbook, Parameters, Shape}};
+/// use hairis::{HairParams, reference::{MatchedReference, Parameters, Shape}};
 /// let parameters = Parameters::<f64>::from(&HairParams::brown());
-/// let hair = MatchedTextbook::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0], 9);
+/// let hair = MatchedReference::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0], 9);
 /// let drawn = hair.sample([0.1, 0.4, 0.7]);
 /// assert!((hair.pdf(drawn.wi) / drawn.pdf - 1.0).abs() < 1e-9);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MatchedTextbook<T> {
-    book: Textbook<T>,
+pub struct MatchedReference<T> {
+    book: HairReference<T>,
     longitudinal: PerLobe<Cut<T>>,
     /// Number of bands, from the lower pole to the upper, their sines, and the constant for W in each.
     bands: usize,
@@ -63,7 +63,7 @@ fn shares<T: Real>(of: &PerLobe<T>) -> PerLobe<T> {
     shares
 }
 
-impl<T: Real> MatchedTextbook<T> {
+impl<T: Real> MatchedReference<T> {
     /// Computes the constants of `parameters` and `wo`, with 5, 9 or 25 bands.
     ///
     /// # Panics
@@ -74,7 +74,7 @@ impl<T: Real> MatchedTextbook<T> {
     pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3], bands: usize) -> Self {
         let number = T::from_f64;
         let (zero, one, half) = (T::default(), number(1.0), number(0.5));
-        let book = Textbook::prepare(parameters, shape, wo);
+        let book = HairReference::prepare(parameters, shape, wo);
         let p = parameters;
         let transmission = Cut::new(shape, zero, T::PI / p.gamma_tt);
         let glint = Cut::new(shape, -p.phi_g / p.gamma_g, (T::PI - p.phi_g) / p.gamma_g);
@@ -231,18 +231,18 @@ impl<T: Real> MatchedTextbook<T> {
         self.sines[..=self.bands].iter().map(|sine| sine.asin())
     }
 
-    /// As [`Textbook::eval`]: the sampler does not change the model.
+    /// As [`HairReference::eval`]: the sampler does not change the model.
     #[inline]
     #[must_use]
     pub fn eval(&self, wi: [T; 3]) -> [T; 3] {
         self.book.eval(wi)
     }
 
-    pub(super) fn book(&self) -> &Textbook<T> {
+    pub(super) fn book(&self) -> &HairReference<T> {
         &self.book
     }
 
-    /// As [`Textbook::lobe_values`].
+    /// As [`HairReference::lobe_values`].
     #[inline]
     #[must_use]
     pub fn lobe_values(&self, wi: [T; 3]) -> PerLobe<T> {
@@ -289,9 +289,9 @@ impl<T: Real> MatchedTextbook<T> {
     /// A lobe, then `theta_i` and `phi`, by inversion.
     #[inline]
     #[must_use]
-    pub fn sample(&self, xi: [T; 3]) -> Drawn<T> {
+    pub fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         let zero = T::default();
-        let discarded = Drawn { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None };
+        let discarded = ReferenceSample { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None };
         let Some(lobe) = super::sampler::choose(&self.probabilities, xi[0]) else { return discarded };
         let theta_i = self.sample_theta(lobe, xi[1]);
         let phi = wrapped(self.sample_phi(lobe, xi[2]));
@@ -303,7 +303,7 @@ impl<T: Real> MatchedTextbook<T> {
         }
         let value = self.book.colour(&self.book.values_at(&at));
         let weight = value.map(|s| s * at.cos_theta_i / pdf);
-        Drawn { wi, value, pdf, weight, lobe: Some(lobe) }
+        ReferenceSample { wi, value, pdf, weight, lobe: Some(lobe) }
     }
 
     /// `theta_i` of a lobe.
@@ -338,7 +338,7 @@ impl<T: Real> MatchedTextbook<T> {
         (areas[j] + self.heights[j] * part) / areas[self.bands]
     }
 
-    /// `phi = phi_o - phi_i`, as [`Textbook::sample_phi`] has it, the glint's in [-pi, pi].
+    /// `phi = phi_o - phi_i`, as [`HairReference::sample_phi`] has it, the glint's in [-pi, pi].
     #[inline]
     #[must_use]
     pub fn sample_phi(&self, lobe: Lobe, xi: T) -> T {

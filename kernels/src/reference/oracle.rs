@@ -1,12 +1,12 @@
-//! The textbook with any of the samplers of the kernels.
+//! The reference with any of the samplers of the kernels.
 
-use super::{Drawn, MatchedTextbook, Parameters, Real, Shape, Textbook};
+use super::{HairReference, MatchedReference, Parameters, Real, ReferenceSample, Shape};
 use crate::{Lobe, PerLobe};
 
 /// The model for one set of parameters and one `wo`, with one of the samplers of the kernels: the reference for a kernel.
 ///
 /// ```
-/// use hairis::{Gaussian, Bsdf, HairParams, Matched, textbook::{Oracle, Parameters, Shape}};
+/// use hairis::{Gaussian, Bsdf, HairParams, Matched, reference::{Oracle, Parameters, Shape}};
 /// let params = HairParams::brown();
 /// let oracle = Oracle::prepare(&Parameters::<f64>::from(&params), Shape::Gaussian, [0.0, 1.0, 0.0], Some(9));
 /// let kernel = Bsdf::new(&Matched::<_>(Gaussian), &params).prepare(glam::Vec3::Y).pdf(glam::Vec3::Z);
@@ -15,9 +15,9 @@ use crate::{Lobe, PerLobe};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Oracle<T> {
     /// With the published sampler.
-    Published(Textbook<T>),
+    Published(HairReference<T>),
     /// With the sampler matched to the model.
-    Matched(MatchedTextbook<T>),
+    Matched(MatchedReference<T>),
 }
 
 impl<T: Real> Oracle<T> {
@@ -30,12 +30,12 @@ impl<T: Real> Oracle<T> {
     #[must_use]
     pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3], bands: Option<usize>) -> Self {
         match bands {
-            None => Self::Published(Textbook::prepare(parameters, shape, wo)),
-            Some(bands) => Self::Matched(MatchedTextbook::prepare(parameters, shape, wo, bands)),
+            None => Self::Published(HairReference::prepare(parameters, shape, wo)),
+            Some(bands) => Self::Matched(MatchedReference::prepare(parameters, shape, wo, bands)),
         }
     }
 
-    pub(super) fn book(&self) -> &Textbook<T> {
+    pub(super) fn book(&self) -> &HairReference<T> {
         match self {
             Self::Published(book) => book,
             Self::Matched(book) => book.book(),
@@ -75,7 +75,7 @@ impl<T: Real> Oracle<T> {
     /// The sample of three numbers of [0, 1).
     #[inline]
     #[must_use]
-    pub fn sample(&self, xi: [T; 3]) -> Drawn<T> {
+    pub fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         match self {
             Self::Published(book) => book.sample(xi),
             Self::Matched(book) => book.sample(xi),

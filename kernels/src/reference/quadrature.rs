@@ -19,7 +19,7 @@ const DEPTH: u32 = 8;
 /// - Accuracy: in `f64`, 1e-9 of the integral of `|f|` for a Gaussian, a Cauchy and a power of a cosine; in `f32`, rounding.
 ///
 /// ```
-/// use hairis::textbook::integrate;
+/// use hairis::reference::integrate;
 /// let cauchy = integrate([-1.0_f64, 2.0], 0.3, 1e-4, |x| 1e-4 / ((x - 0.3) * (x - 0.3) + 1e-8));
 /// assert!((cauchy - (1.3e4_f64.atan() + 1.7e4_f64.atan())).abs() < 1e-9);
 /// ```

@@ -20,7 +20,7 @@ impl Shape {
     /// - Accuracy: that of `libm`. Exponents are not clamped: far from the peak an `f32` Gaussian may be denormal.
     ///
     /// ```
-    /// use hairis::textbook::Shape;
+    /// use hairis::reference::Shape;
     /// assert_eq!(Shape::Cauchy.bell(0.2_f64, 0.2), 0.5);
     /// ```
     #[inline]
@@ -33,7 +33,7 @@ impl Shape {
     }
 }
 
-/// Parameters of [`Textbook::prepare`](super::Textbook::prepare): a [`HairDesc`](crate::HairDesc) in either precision.
+/// Parameters of [`HairReference::prepare`](super::HairReference::prepare): a [`HairDesc`](crate::HairDesc) in either precision.
 /// Arrays are R, TT, TRT, or linear RGB. Nothing is checked: make it from [`HairParams`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T> {

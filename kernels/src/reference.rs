@@ -2,7 +2,7 @@
 //!
 //! Two uses: in `f64` the oracle of the tests, in `f32` the scalar baseline of the figures, the code people write
 //! from the paper today. So it is plain: angles come from `atan2`, every factor is formed as it is printed, and
-//! only what section 3.3 of the paper amortises is kept in [`Textbook`]. The kernels share no code with it.
+//! only what section 3.3 of the paper amortises is kept in [`HairReference`]. The kernels share no code with it.
 //!
 //! - Source: Ou et al. 2012, sections 3.1 to 3.3 and appendices A to D, mended by ERRATA E1, E2 and E3.
 //! - Conventions: those of the crate. `wo` is the paper's `omega_r`, `wi` its `omega_i`.
@@ -13,30 +13,30 @@
 
 mod cauchy;
 mod cut;
+mod interface;
 mod matched;
 mod oracle;
 mod parameters;
 mod quadrature;
 mod real;
-mod reference;
 mod sampler;
 
 use crate::{Lobe, PerLobe};
 
-pub use cauchy::TruncatedCauchy;
-pub use matched::MatchedTextbook;
+pub use cauchy::CauchyDensity;
+pub use interface::{LobeAt, Reference};
+pub use matched::MatchedReference;
 pub use oracle::Oracle;
 pub use parameters::{Parameters, Shape};
 pub use quadrature::integrate;
 pub use real::Real;
-pub use reference::{LobeAt, Reference};
 
 /// Directions closer than this to the fibre axis (in cosine of `theta_i`) are discarded: section 3.3.
 const GRAZING: f64 = 1e-5;
 
-/// A sample of [`Textbook::sample`].
+/// A sample of [`HairReference::sample`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drawn<T> {
+pub struct ReferenceSample<T> {
     /// The direction; the zero vector if the sample was discarded.
     pub wi: [T; 3],
     /// S, without the cosine.
@@ -52,24 +52,24 @@ pub struct Drawn<T> {
 /// The model and its published sampler for one set of parameters and one `wo`.
 ///
 /// ```
-/// use hairis::{HairParams, textbook::{Parameters, Shape, Textbook}};
+/// use hairis::{HairParams, reference::{Parameters, Shape, HairReference}};
 /// let parameters = Parameters::<f64>::from(&HairParams::brown());
-/// let hair = Textbook::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0]);
+/// let hair = HairReference::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0]);
 /// let drawn = hair.sample([0.1, 0.4, 0.7]);
 /// assert!((hair.pdf(drawn.wi) / drawn.pdf - 1.0).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Textbook<T> {
+pub struct HairReference<T> {
     parameters: Parameters<T>,
     shape: Shape,
     theta_o: T,
     phi_o: T,
     /// Densities of `theta_h`; the glint has that of TRT.
-    longitudinal: PerLobe<TruncatedCauchy<T>>,
+    longitudinal: PerLobe<CauchyDensity<T>>,
     /// Density of `phi` in [0, 2 pi] of TT.
-    transmission: TruncatedCauchy<T>,
+    transmission: CauchyDensity<T>,
     /// Density of `|phi|` of the glint.
-    glint: TruncatedCauchy<T>,
+    glint: CauchyDensity<T>,
     energies: PerLobe<T>,
     probabilities: PerLobe<T>,
 }
@@ -85,7 +85,7 @@ struct Angles<T> {
     cos_half_phi: T,
 }
 
-impl<T: Real> Textbook<T> {
+impl<T: Real> HairReference<T> {
     /// Computes what is constant for `parameters` and `wo`: A, B, C, D and the energies (section 3.3).
     ///
     /// - Units: rad; `wo` a unit vector in (u, v, w).
@@ -102,10 +102,10 @@ impl<T: Real> Textbook<T> {
         // Interval of theta_h = (theta_i + theta_o) / 2 as theta_i runs over [-pi/2, pi/2] (ERRATA E1).
         let lo = (theta_o - right) * half;
         let hi = (theta_o + right) * half;
-        let trt = TruncatedCauchy::new(p.alpha[2], p.beta[2], lo, hi);
+        let trt = CauchyDensity::new(p.alpha[2], p.beta[2], lo, hi);
         let mut longitudinal = PerLobe::default();
-        longitudinal[Lobe::R] = TruncatedCauchy::new(p.alpha[0], p.beta[0], lo, hi);
-        longitudinal[Lobe::TT] = TruncatedCauchy::new(p.alpha[1], p.beta[1], lo, hi);
+        longitudinal[Lobe::R] = CauchyDensity::new(p.alpha[0], p.beta[0], lo, hi);
+        longitudinal[Lobe::TT] = CauchyDensity::new(p.alpha[1], p.beta[1], lo, hi);
         longitudinal[Lobe::TRT] = trt;
         longitudinal[Lobe::GLINT] = trt;
 
@@ -123,8 +123,8 @@ impl<T: Real> Textbook<T> {
             theta_o,
             phi_o,
             longitudinal,
-            transmission: TruncatedCauchy::new(T::PI, p.gamma_tt, zero, T::PI + T::PI),
-            glint: TruncatedCauchy::new(p.phi_g, p.gamma_g, zero, right),
+            transmission: CauchyDensity::new(T::PI, p.gamma_tt, zero, T::PI + T::PI),
+            glint: CauchyDensity::new(p.phi_g, p.gamma_g, zero, right),
             energies,
             probabilities,
         }
@@ -168,7 +168,7 @@ impl<T: Real> Textbook<T> {
     ///
     /// - Units: per steradian.
     /// - Integral: 1 over the sphere, less the caps of 1e-5 rad (test
-    ///   `textbook::each_lobe_and_the_mixture_integrate_to_one`).
+    ///   `reference::each_lobe_and_the_mixture_integrate_to_one`).
     #[inline]
     #[must_use]
     pub fn pdf(&self, wi: [T; 3]) -> T {

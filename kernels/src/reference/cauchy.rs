@@ -8,13 +8,13 @@ use super::Real;
 /// - Units: rad.
 ///
 /// ```
-/// use hairis::textbook::TruncatedCauchy;
-/// let density = TruncatedCauchy::new(0.1, 0.2, -1.0, 1.0);
+/// use hairis::reference::CauchyDensity;
+/// let density = CauchyDensity::new(0.1, 0.2, -1.0, 1.0);
 /// let x = density.sample(0.3_f64);
 /// assert!((density.cdf(x) - 0.3).abs() < 1e-14);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TruncatedCauchy<T> {
+pub struct CauchyDensity<T> {
     location: T,
     scale: T,
     lo: T,
@@ -25,7 +25,7 @@ pub struct TruncatedCauchy<T> {
     span: T,
 }
 
-impl<T: Real> TruncatedCauchy<T> {
+impl<T: Real> CauchyDensity<T> {
     /// The density of peak `location` and half width at half maximum `scale` on `[lo, hi]`.
     ///
     /// A - B is formed as `atan2(scale (hi - lo), scale^2 + lo hi)`, bounds taken from `location`: the difference of
@@ -51,7 +51,7 @@ impl<T: Real> TruncatedCauchy<T> {
     /// - Source: Ou et al. 2012, appendices A, C, D; interval of M by ERRATA E1, of the glint by E3.
     /// - Units: per rad of `x`, not per steradian.
     /// - Domain: any `x`. Exactly 0 outside `[lo, hi]`.
-    /// - Integral: 1 over `[lo, hi]` (test `textbook::each_lobe_and_the_mixture_integrate_to_one`).
+    /// - Integral: 1 over `[lo, hi]` (test `reference::each_lobe_and_the_mixture_integrate_to_one`).
     #[inline]
     #[must_use]
     pub fn pdf(&self, x: T) -> T {

@@ -1,4 +1,4 @@
-//! The number types that the textbook is written for.
+//! The number types that the reference is written for.
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -6,7 +6,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 /// A real number with elementary functions: `f32` or `f64` with those of `libm`, or a type of the caller's with others.
 ///
 /// ```
-/// use hairis::textbook::Real;
+/// use hairis::reference::Real;
 /// fn full_turn<T: Real>() -> T {
 ///     T::from_f64(2.0) * T::PI
 /// }

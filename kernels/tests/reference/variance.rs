@@ -2,7 +2,7 @@
 
 use super::{DEG, SHAPES, default_set, direction, sphere};
 use hairis::HairParams;
-use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::reference::{HairReference, Parameters, Shape};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -13,7 +13,7 @@ fn luminance([r, g, b]: [f64; 3]) -> f64 {
 
 /// Albedo (luminance), then the relative variance of a uniform sample and of one of the published sampler.
 fn moments(p: &Parameters<f64>, shape: Shape, theta_o: f64) -> [f64; 3] {
-    let hair = Textbook::prepare(p, shape, direction(theta_o, 0.0));
+    let hair = HairReference::prepare(p, shape, direction(theta_o, 0.0));
     let [theta, phi] = sphere(p, theta_o);
     let (mut mean, mut uniform, mut published) = (0.0, 0.0, 0.0);
     for &(theta_i, w_theta) in &theta {
@@ -70,7 +70,7 @@ fn importance_sampled_albedo_is_the_integral() {
         let p = Parameters::<f64>::from(&params);
         let theta_o = -50.0 * DEG;
         let [albedo, _, variance] = moments(&p, shape, theta_o);
-        let hair = Textbook::prepare(&p, shape, direction(theta_o, 0.0));
+        let hair = HairReference::prepare(&p, shape, direction(theta_o, 0.0));
         let count = 100_000;
         let mut sum = 0.0;
         for _ in 0..count {

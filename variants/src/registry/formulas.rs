@@ -68,7 +68,7 @@ macro_rules! formulas {
                 #[inline(never)]
                 fn lobes(wi: [T; 3]) -> PerLobe<LobeAt<T>>;
                 #[inline(never)]
-                fn sample(xi: [T; 3]) -> Drawn<T>;
+                fn sample(xi: [T; 3]) -> ReferenceSample<T>;
                 #[inline(never)]
                 fn albedo() -> PerLobe<[T; 3]>;
             }

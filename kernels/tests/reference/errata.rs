@@ -4,7 +4,7 @@ use super::{DEG, default_set, direction};
 use crate::quadrature::{integrate, panels};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
-use hairis::textbook::{Parameters, Shape, Textbook};
+use hairis::reference::{HairReference, Parameters, Shape};
 
 /// A, B of section 3.2.1 as printed, without the half.
 fn printed_bounds(alpha: f64, beta: f64, theta_o: f64) -> (f64, f64) {
@@ -66,9 +66,9 @@ fn e1_printed_samples_leave_the_sphere() {
     let printed_cdf = |theta_i: f64| (((theta_i + theta_o - alpha) / beta).atan() - b) / (a - b);
     assert!((printed_cdf(sample((a, b), 0.3)) - 0.3).abs() > 0.05, "the printed cdf is another one");
     let p = Parameters { alpha: [alpha; 3], beta: [beta; 3], ..default_set() };
-    let hair = Textbook::prepare(&p, Shape::Gaussian, direction(theta_o, 0.0));
+    let hair = HairReference::prepare(&p, Shape::Gaussian, direction(theta_o, 0.0));
     let mended = sample(mended_bounds(alpha, beta, theta_o), 0.3);
-    assert!((hair.sample_theta(Lobe::R, 0.3) - mended).abs() < 1e-14, "the textbook draws the mended sample");
+    assert!((hair.sample_theta(Lobe::R, 0.3) - mended).abs() < 1e-14, "the reference draws the mended sample");
     assert!((hair.cdf_theta(Lobe::R, mended) - 0.3).abs() < 1e-14, "and inverts it");
 }
 
@@ -82,7 +82,7 @@ fn energy_ratio(width: f64, share: f64) -> f64 {
 fn e2_row_r_of_table_2_has_the_width_of_r() {
     // beta_g of the glint, the only thing printed so, is that of TRT: R would return twice its energy.
     let p = default_set();
-    let hair = Textbook::prepare(&p, Shape::Gaussian, [0.0, 1.0, 0.0]);
+    let hair = HairReference::prepare(&p, Shape::Gaussian, [0.0, 1.0, 0.0]);
     let share = hair.energies()[Lobe::R] / (4.0 * p.intensity_r[0]);
     assert!((energy_ratio(p.beta[0], share) - 1.0).abs() < 1e-10, "with beta_r the energy is the integral");
     assert!((energy_ratio(p.beta[2], share) - 2.0).abs() < 1e-10, "with the width of the glint it is half of it");
@@ -104,7 +104,7 @@ fn e2_the_cauchy_antiderivative_needs_a_half() {
 #[test]
 fn e3_the_glint_has_no_density_beyond_a_right_angle() {
     let mass = |p: &Parameters<f64>, printed: bool| {
-        let hair = Textbook::prepare(p, Shape::Gaussian, [0.0, 1.0, 0.0]);
+        let hair = HairReference::prepare(p, Shape::Gaussian, [0.0, 1.0, 0.0]);
         let [c, d] = [FRAC_PI_2, 0.0].map(|end| ((end - p.phi_g) / p.gamma_g).atan());
         let ends = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (FRAC_PI_2, PI)]);
         2.0 * integrate(&ends, |phi| {
@@ -131,7 +131,7 @@ fn e3_the_glint_has_no_density_beyond_a_right_angle() {
 fn e3_a_cut_glint_leaves_its_tail_to_a_lobe_that_vanishes() {
     // Second moment of the azimuth of TRT and glint alone, up to `gap` from pi: every decade adds the same amount.
     let p = Parameters { gamma_g: 20.0 * DEG, phi_g: 45.0 * DEG, ..default_set() };
-    let hair = Textbook::prepare(&p, Shape::Cauchy, [0.0, 1.0, 0.0]);
+    let hair = HairReference::prepare(&p, Shape::Cauchy, [0.0, 1.0, 0.0]);
     let [trt, glint] = [Lobe::TRT, Lobe::GLINT].map(|lobe| hair.probabilities()[lobe]);
     let decade = |gap: f64, density: &dyn Fn(f64) -> f64| {
         let ends = panels(PI - 10.0 * gap, PI - gap, &[(PI, gap)]);
@@ -156,7 +156,7 @@ fn e3_a_cut_glint_leaves_its_tail_to_a_lobe_that_vanishes() {
 #[test]
 fn e4_energies_hold_for_bells_of_peak_one() {
     let p = default_set();
-    let energies = Textbook::prepare(&p, Shape::Gaussian, [0.0, 1.0, 0.0]).energies();
+    let energies = HairReference::prepare(&p, Shape::Gaussian, [0.0, 1.0, 0.0]).energies();
     let line = |width: f64| integrate(&panels(-3.0, 3.0, &[(0.0, width)]), |x| Shape::Gaussian.bell(width, x));
     let mean = |rgb: [f64; 3]| rgb.iter().sum::<f64>() / 3.0;
     let trt = line(p.beta[2]) * mean(p.intensity_trt);

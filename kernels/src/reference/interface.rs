@@ -1,6 +1,6 @@
 //! The interface that the formulas of every model share.
 
-use super::{Drawn, MatchedTextbook, Oracle, Parameters, Real, Textbook, integrate};
+use super::{HairReference, MatchedReference, Oracle, Parameters, Real, ReferenceSample, integrate};
 use crate::{Lobe, PerLobe};
 
 /// One lobe at one direction, in either precision.
@@ -17,11 +17,11 @@ pub struct LobeAt<T> {
 /// A model's formulas at one shading point, in either precision: the reference of conformance tests and reports.
 ///
 /// ```
-/// use hairis::{HairParams, textbook::{Parameters, Reference, Shape, Textbook}};
+/// use hairis::{HairParams, reference::{Parameters, Reference, Shape, HairReference}};
 /// fn reflected(point: &impl Reference<f64>) -> f64 {
 ///     point.albedo().0.iter().map(|lobe| lobe[0]).sum()
 /// }
-/// let brown = Textbook::prepare(&Parameters::from(&HairParams::brown()), Shape::Gaussian, [0.0, 1.0, 0.0]);
+/// let brown = HairReference::prepare(&Parameters::from(&HairParams::brown()), Shape::Gaussian, [0.0, 1.0, 0.0]);
 /// assert!(reflected(&brown) < 1.0);
 /// ```
 pub trait Reference<T: Real> {
@@ -46,7 +46,7 @@ pub trait Reference<T: Real> {
 
     /// The sample of three uniform numbers in `[0, 1)`.
     #[must_use]
-    fn sample(&self, xi: [T; 3]) -> Drawn<T>;
+    fn sample(&self, xi: [T; 3]) -> ReferenceSample<T>;
 
     /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
     ///
@@ -72,7 +72,7 @@ macro_rules! reference {
                 lobes(self.book(), &self.lobe_pdfs(wi), wi)
             }
             #[inline]
-            fn sample(&self, xi: [T; 3]) -> Drawn<T> {
+            fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
                 self.sample(xi)
             }
             #[inline]
@@ -83,13 +83,13 @@ macro_rules! reference {
     )* };
 }
 reference! {
-    Textbook {
+    HairReference {
         #[inline]
         fn eval_pdf(&self, wi: [T; 3]) -> ([T; 3], T) {
             self.eval_pdf(wi)
         }
     }
-    MatchedTextbook
+    MatchedReference
     Oracle
 }
 
@@ -98,7 +98,7 @@ fn colours<T: Real>(p: &Parameters<T>) -> PerLobe<[T; 3]> {
     PerLobe([p.intensity_r, p.intensity_tt, p.intensity_trt, p.intensity_trt])
 }
 
-fn lobes<T: Real>(book: &Textbook<T>, pdfs: &PerLobe<T>, wi: [T; 3]) -> PerLobe<LobeAt<T>> {
+fn lobes<T: Real>(book: &HairReference<T>, pdfs: &PerLobe<T>, wi: [T; 3]) -> PerLobe<LobeAt<T>> {
     let (values, colours) = (book.lobe_values(wi), colours(&book.parameters));
     let mut lobes = PerLobe::default();
     for lobe in Lobe::ALL {
@@ -108,7 +108,7 @@ fn lobes<T: Real>(book: &Textbook<T>, pdfs: &PerLobe<T>, wi: [T; 3]) -> PerLobe<
 }
 
 /// The product of two integrals: `bell(theta_h - alpha) (cos theta_i / cos theta_d)^2` over `theta_i`, and N over `phi`.
-fn albedo<T: Real>(book: &Textbook<T>) -> PerLobe<[T; 3]> {
+fn albedo<T: Real>(book: &HairReference<T>) -> PerLobe<[T; 3]> {
     let (zero, half, two) = (T::default(), T::from_f64(0.5), T::from_f64(2.0));
     let p = &book.parameters;
     let (shape, right) = (book.shape, T::PI * half);
