@@ -19,7 +19,7 @@ use crate::subject::values_json;
 use core::fmt;
 use hairis::ParamError;
 use hairis_variants::{Accuracy, ModelId};
-use measure::{CodePath, Measured, Place, measure};
+use measure::{CodePath, LanePlace, LocatedError, measure};
 use packet::{Formulas, Packet, formulas};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -192,7 +192,7 @@ pub struct WorstCase {
 }
 
 impl WorstCase {
-    fn new(model: ModelId, at: &Place) -> Self {
+    fn new(model: ModelId, at: &LanePlace) -> Self {
         let (wo, wi, h) = (at.wo.to_array(), at.wi.to_array(), model.is_near_field().then_some(at.h));
         let choice = model.choice().into_iter().collect();
         Self { model: model.name(), choice, params: values_json(&at.values), h, wo, wi, xi: at.xi }
@@ -264,11 +264,11 @@ fn of_model(
 struct Column {
     errors: Vec<f64>,
     unexplained: usize,
-    worst: Option<Measured>,
+    worst: Option<LocatedError>,
 }
 
 impl Column {
-    fn add(&mut self, measured: Measured) {
+    fn add(&mut self, measured: LocatedError) {
         self.errors.push(measured.error);
         self.unexplained += usize::from(measured.unexplained);
         self.keep_worst(Some(measured));
@@ -280,9 +280,9 @@ impl Column {
         self.keep_worst(other.worst);
     }
 
-    fn keep_worst(&mut self, other: Option<Measured>) {
+    fn keep_worst(&mut self, other: Option<LocatedError>) {
         // An error that rounding does not explain matters more than a larger one that it does.
-        let rank = |m: &Option<Measured>| m.map_or((false, -1.0), |m| (m.unexplained, m.error));
+        let rank = |m: &Option<LocatedError>| m.map_or((false, -1.0), |m| (m.unexplained, m.error));
         if rank(&other) > rank(&self.worst) {
             self.worst = other;
         }

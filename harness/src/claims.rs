@@ -37,7 +37,7 @@ use crate::light::Sky;
 use crate::machine::Machine;
 use crate::study::{Cell, Grid, Plan};
 use crate::subject::ModelKind;
-use hair::{Found, Hair};
+use hair::{Hair, HairFigures};
 use hairis::ParamError;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -78,7 +78,7 @@ pub struct Settings {
 }
 
 /// Results of quadrature for every cell and model.
-type Cells = [(Cell, ModelKind, Found)];
+type FoundCells = [(Cell, ModelKind, HairFigures)];
 
 /// Computes the claims. Workers call `progress` with the share that is done, from 0 to 1, in no order.
 ///
@@ -112,7 +112,7 @@ fn hair_of(cell: &Cell, model: ModelKind) -> Result<Hair, ParamError> {
 }
 
 /// Integrates every cell of `grid` on all cores. `done` is called with the number of finished cells.
-fn by_quadrature(grid: Grid, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<(Cell, ModelKind, Found)>, ParamError> {
+fn by_quadrature(grid: Grid, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<(Cell, ModelKind, HairFigures)>, ParamError> {
     let finished = core::sync::atomic::AtomicUsize::new(0);
     let of_cell = |index: usize| {
         let cell = grid.cell(index);

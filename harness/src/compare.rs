@@ -34,7 +34,7 @@ pub struct CompareConfig<'a> {
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
     /// The command's settings.
-    pub settings: Settings,
+    pub settings: CompareSettings,
     /// Where it ran, and what ran.
     pub machine: Machine,
     /// Time a direction.
@@ -47,7 +47,7 @@ pub struct Comparison {
 
 /// The settings of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Settings {
+pub struct CompareSettings {
     /// Seed of everything that is drawn.
     pub seed: u64,
     /// Whether it was the short run.
@@ -103,7 +103,7 @@ pub fn run(config: &CompareConfig<'_>, progress: &(dyn Fn(Part, f64) + Sync)) ->
         progress(Part::Efficiency, done as f64 / total as f64);
     })?;
 
-    let settings = Settings {
+    let settings = CompareSettings {
         seed: config.seed,
         quick: config.quick,
         environment: config.environment_name.to_owned(),

@@ -27,15 +27,15 @@ mod measure;
 mod output;
 
 pub use blur::SIGMA_DEG;
-pub use measure::{Figures, Norms};
+pub use measure::{Differences, Norms};
 pub(crate) use output::{Summary, albedo_ratio};
 
 use crate::study::{Cell, Grid};
 use blur::Blur;
 use hairis::{Bell, HairParams, ParamError};
 use hairis_variants::Cauchy;
-use lobes::{Kind, View};
-use measure::Hair;
+use lobes::{Kind, ViewedHair};
+use measure::HairValues;
 use rayon::prelude::*;
 
 /// Points of the rule on each panel between breakpoints.
@@ -78,19 +78,19 @@ impl Width {
 
 /// One row: a cell with one choice of widths.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct DifferenceRow {
     /// The hair, and the inclination it is seen from.
     pub cell: Cell,
     /// Choice of the factor.
     pub width: Width,
     /// The measured differences.
-    pub figures: Figures,
+    pub figures: Differences,
 }
 
 /// The differences over a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    rows: Vec<Row>,
+    rows: Vec<DifferenceRow>,
 }
 
 impl Difference {
@@ -101,7 +101,7 @@ impl Difference {
     /// Never for [`Grid::FULL`] and [`Grid::QUICK`]: their hair is accepted.
     pub fn over(grid: Grid) -> Result<Self, ParamError> {
         let cells: Vec<Cell> = (0..grid.len()).map(|index| grid.cell(index)).collect();
-        let hair: Vec<Hair> = cells.par_iter().map(hair).collect::<Result<_, ParamError>>()?;
+        let hair: Vec<HairValues> = cells.par_iter().map(hair).collect::<Result<_, ParamError>>()?;
         let best_of_grid = best::least(|k| {
             let squares: Vec<f64> = hair.par_iter().map(|hair| hair.square_error(Kind::cauchy(k))).collect();
             squares.iter().sum()
@@ -116,19 +116,19 @@ impl Difference {
                 Width::BestOfCell => best::least(|k| hair.square_error(Kind::cauchy(k))),
             });
             let found = hair.figures(&factors.map(Kind::cauchy), &blur);
-            Width::ALL.into_iter().zip(found).map(|(width, figures)| Row { cell: *cell, width, figures })
+            Width::ALL.into_iter().zip(found).map(|(width, figures)| DifferenceRow { cell: *cell, width, figures })
         });
         Ok(Self { rows: rows.collect() })
     }
 
     /// The rows: cells outermost, in the order of the grid, then [`Width::ALL`].
     #[must_use]
-    pub fn rows(&self) -> &[Row] {
+    pub fn rows(&self) -> &[DifferenceRow] {
         &self.rows
     }
 
     /// The rows of one choice of widths.
-    pub fn of(&self, width: Width) -> impl Iterator<Item = &Row> + Clone {
+    pub fn of(&self, width: Width) -> impl Iterator<Item = &DifferenceRow> + Clone {
         self.rows.iter().filter(move |row| row.width == width)
     }
 }
@@ -140,7 +140,7 @@ pub(crate) fn blurred_difference(
     theta_o: f64,
     k: f64,
 ) -> (impl Fn(f64, f64) -> f64, impl Fn(f64, f64) -> f64) {
-    let view = View::new(params, theta_o);
+    let view = ViewedHair::new(params, theta_o);
     let rule = view.rule(ORDER);
     let values = [Kind::GAUSSIAN, Kind::cauchy(k)].map(|kind| rule.values(&view, kind));
     let blurred = Blur::new(SIGMA_DEG.to_radians(), 1, 1).harmonics(&rule, &values);
@@ -149,9 +149,9 @@ pub(crate) fn blurred_difference(
     (move |theta, phi| gaussian.at(theta, phi), more)
 }
 
-fn hair(cell: &Cell) -> Result<Hair, ParamError> {
+fn hair(cell: &Cell) -> Result<HairValues, ParamError> {
     let params: HairParams = cell.params()?;
-    Ok(Hair::new(View::new(&params, f64::from(cell.theta_o_deg).to_radians()), ORDER))
+    Ok(HairValues::new(ViewedHair::new(&params, f64::from(cell.theta_o_deg).to_radians()), ORDER))
 }
 
 #[cfg(test)]

@@ -43,8 +43,8 @@ mod run;
 mod tests;
 
 pub use result::{
-    Check, ConvergencePoint, EfficiencyResult, MisRow, Reference, ReferenceMethod, ReferenceV, Row, Settings, SweepRow,
-    Technique,
+    Check, ConvergencePoint, EfficiencyResult, EfficiencyRow, EfficiencySettings, MisRow, Reference, ReferenceMethod,
+    ReferenceV, SweepRow, Technique,
 };
 pub use run::run;
 

@@ -4,8 +4,8 @@ mod looks;
 
 pub use looks::{difference_map, maps, polar};
 
-use crate::plot::{Axis, Dash, Grid, LineChart, Panel, Projection, ScatterMap, Series};
-use crate::report::Figure;
+use crate::plot::{Axis, Dash, LineChart, Projection, ScatterMap, ScatterPanel, Series, SphereGrid};
+use crate::report::Drawing;
 use core::f32::consts::TAU as TAU_F32;
 use core::f64::consts::{PI, SQRT_2};
 use glam::Vec3;
@@ -39,7 +39,7 @@ fn bells(title: &str, y: Axis, span: f64, height: impl Fn(&Bell, f64, f64) -> f6
 
 /// The paper's figure 4: Gaussians and Cauchys of the same widths, each of area 1 on `[-pi/2, pi/2]`.
 #[must_use]
-pub fn normalised_bells() -> Figure {
+pub fn normalised_bells() -> Drawing {
     let y = Axis::linear("density (1/rad)").from_zero();
     let svg = bells("Gaussian and Cauchy of the same width, area 1", y, 90.0, |(_, at, area), x, width| {
         at(x / width) / (width.to_radians() * area(90.0 / width))
@@ -47,18 +47,18 @@ pub fn normalised_bells() -> Figure {
     let caption = "Gaussian (unbroken) and Cauchy (dashed) distributions of the same width and offset, both \
                    normalised on [−90°, 90°], as figure 4 of the paper: these are the densities that the sampler draws \
                    from and those it stands in for. The Cauchy's tails are wider and its peak is lower.";
-    Figure::new(svg, caption).named("bells-of-area-1")
+    Drawing::new(svg, caption).named("bells-of-area-1")
 }
 
 /// The same bells as the scattering function has them: of peak 1.
 #[must_use]
-pub fn unit_bells() -> Figure {
+pub fn unit_bells() -> Drawing {
     let y = Axis::linear("bell (no unit)").from_zero();
     let svg = bells("Gaussian and Cauchy of the same width, peak 1", y, 90.0, |(_, at, _), x, width| at(x / width));
     let caption = "The same bells with peak 1, as the lobes of the published model (Gaussian) and of the all-Cauchy \
                    variant use them. At the same width parameter the Cauchy is narrower at half height (1 width \
                    against 1.177) and far higher in the tails: 1/10 against 1/90 three widths out.";
-    Figure::new(svg, caption).named("bells-of-peak-1")
+    Drawing::new(svg, caption).named("bells-of-peak-1")
 }
 
 /// The unit vector of an inclination and an azimuth.
@@ -84,15 +84,16 @@ fn reflected(gather: &AnyGather, theta: f64, phi: f64) -> f64 {
 ///
 /// `xi` gives the points of the unit cube, the same ones to all six maps: a Halton sequence, as in the paper.
 #[must_use]
-pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: impl Iterator<Item = [f32; 3]> + Clone) -> Figure {
+pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: impl Iterator<Item = [f32; 3]> + Clone) -> Drawing {
     const CELLS: (u16, u16) = (80, 160);
     let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params)).prepare(direction(theta_o, 0.0));
     let count = xi.clone().count();
     let uniform = xi.clone().map(|[_, a, b]| angles(uniform_direction(a, b)));
     let mut map = ScatterMap::new("Sample distributions over S cos θᵢ", Projection::EqualArea);
-    let background =
-        |gather: &AnyGather| Grid::sample(Projection::EqualArea, CELLS, |theta, phi| reflected(gather, theta, phi));
-    map = map.panel(Panel::new("(a) uniform", uniform).with_density(background(&gather)));
+    let background = |gather: &AnyGather| {
+        SphereGrid::sample(Projection::EqualArea, CELLS, |theta, phi| reflected(gather, theta, phi))
+    };
+    map = map.panel(ScatterPanel::new("(a) uniform", uniform).with_density(background(&gather)));
     let lobes = [
         ("(b) all lobes", LobeMask::ALL),
         ("(c) R", LobeMask::of(&[Lobe::R])),
@@ -103,7 +104,7 @@ pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: impl Iterator
     for (name, mask) in lobes {
         let gather = gather.with_lobes(mask);
         let points = xi.clone().filter_map(|xi| gather.sample(xi)).map(|sample| angles(sample.wi));
-        map = map.panel(Panel::new(name, points).with_density(background(&gather)));
+        map = map.panel(ScatterPanel::new(name, points).with_density(background(&gather)));
     }
     let degrees = theta_o.to_degrees();
     let svg = map.mark(format!("direction to the viewer, θₒ = {degrees:.0}°"), theta_o, 0.0).svg();
@@ -112,7 +113,7 @@ pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: impl Iterator
          mixture, (c) to (f) each lobe alone. The background is S cos θᵢ of the same lobes (square root; darker is \
          more), so samples should lie where it is dark. TT surrounds φ = ±180°, the direction away from the viewer."
     );
-    Figure::new(svg, caption).named("sample-distributions")
+    Drawing::new(svg, caption).named("sample-distributions")
 }
 
 fn uniform_direction(a: f32, b: f32) -> Vec3 {
@@ -126,7 +127,7 @@ fn uniform_direction(a: f32, b: f32) -> Vec3 {
 mod tests {
     use super::*;
     use crate::markup::well_formed;
-    use crate::plot::{Bar, BarChart, HeatMap, Point, Reference};
+    use crate::plot::{Bar, BarChart, HeatMap, Point, ReferenceLine};
     use crate::report::{Report, Section};
     use crate::table::{Table, number};
     use hairis::HairDesc;
@@ -150,7 +151,7 @@ mod tests {
         value
     }
 
-    fn all() -> Vec<Figure> {
+    fn all() -> Vec<Drawing> {
         let params = default_hair();
         let theta_o = 20.0_f64.to_radians();
         let samples = sample_distributions(&params, theta_o, halton(2000));
@@ -192,13 +193,13 @@ mod tests {
         for (i, name) in ["uniform", "published", "matched", "light", "MIS", "quasi-MC"].into_iter().enumerate() {
             chart = chart.series(Series::new(name, decay(1.0 / n(i32::try_from(i).unwrap_or(0)).sqrt())));
         }
-        let slope = Reference::Power { label: "slope −1/2".into(), slope: -0.5, through: (4.0, 0.6) };
+        let slope = ReferenceLine::Power { label: "slope −1/2".into(), slope: -0.5, through: (4.0, 0.6) };
         let band = (0..50)
             .map(|i| f64::from(i) / 10.0)
             .map(|x| Point::new(x, x.sin()).with_interval(x.sin() - 0.2, x.sin() + 0.1));
         let bands = LineChart::new("Intervals (made up)", Axis::linear("x (rad)"), Axis::linear("y"))
             .series(Series::curve("sine", band))
-            .reference(Reference::Level { label: "zero".into(), y: 0.0 });
+            .reference(ReferenceLine::Level { label: "zero".into(), y: 0.0 });
         let bar = |v: f64| Bar::new(v).with_error(0.04 * v);
         let bars = BarChart::new(
             "Speed (made up)",
@@ -214,7 +215,7 @@ mod tests {
             .series("published", [0.209, 0.189, 0.290].map(bar))
             .series("matched", [0.018, 0.009, 0.006].map(bar));
         let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), &default_hair())).prepare(direction(0.35, 0.0));
-        let grid = Grid::sample(Projection::EqualAngle, (90, 180), |theta, phi| reflected(&gather, theta, phi));
+        let grid = SphereGrid::sample(Projection::EqualAngle, (90, 180), |theta, phi| reflected(&gather, theta, phi));
         let heat =
             HeatMap::new("S cos θᵢ of the default hair, θₒ = 20°", Axis::linear("S cos θᵢ (1/sr)"), grid.clone());
         let heat_log = HeatMap::new("The same, logarithmic", Axis::log("S cos θᵢ (1/sr)").range(1e-4, 2.0), grid);
@@ -241,7 +242,7 @@ mod tests {
             .note("2²⁰ samples a cell; ± is one standard error.");
         println!("{}", table.to_width(80));
         for svg in [chart.reference(slope).svg(), bands.svg(), bars.svg(), logs.svg(), heat.svg(), heat_log.svg()] {
-            section = section.figure(Figure::new(svg, "Made up."));
+            section = section.figure(Drawing::new(svg, "Made up."));
         }
         let page = Report::new("hairis: scalar against SIMD, Gaussian against Cauchy").subtitle("A gallery")
             .finding("Eight lanes are 7.1× as fast as one (`sample`, AVX2).").finding("The published sampler's variance is 0.29 to 0.22 of …")

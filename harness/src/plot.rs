@@ -20,14 +20,14 @@ mod scatter;
 
 pub use axis::{Axis, Scale};
 pub use bar::{Bar, BarChart};
-pub use grid::{Grid, Projection};
+pub use grid::{Projection, SphereGrid};
 pub use heat::HeatMap;
-pub use line::{LineChart, Point, Reference, Series};
+pub use line::{LineChart, Point, ReferenceLine, Series};
 pub use palette::Dash;
 #[cfg(feature = "png")]
 pub use png::png;
 pub use polar::{PolarChart, PolarPanel, PolarSeries};
-pub use scatter::{Panel, ScatterMap};
+pub use scatter::{ScatterMap, ScatterPanel};
 
 #[cfg(test)]
 mod tests;

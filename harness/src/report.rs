@@ -32,7 +32,7 @@ pub struct Report {
     title: String,
     subtitle: String,
     verdicts: Vec<[String; 2]>,
-    summary: Option<Figure>,
+    summary: Option<Drawing>,
     findings: Vec<String>,
     sections: Vec<Section>,
     facts: Vec<[String; 2]>,
@@ -51,12 +51,12 @@ enum Block {
     Heading(String),
     Paragraph(String),
     Table(Table),
-    Figure(Figure),
+    Drawing(Drawing),
 }
 
 /// A drawing with its caption.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Figure {
+pub struct Drawing {
     /// Name of its files, without the end; empty for none.
     pub name: String,
     /// A complete `<svg>` element, as those of [`crate::plot`]: it goes into the page as it is.
@@ -65,7 +65,7 @@ pub struct Figure {
     pub caption: String,
 }
 
-impl Figure {
+impl Drawing {
     /// A drawing with its caption.
     #[must_use]
     pub fn new(svg: impl Into<String>, caption: impl Into<String>) -> Self {
@@ -106,8 +106,8 @@ impl Section {
 
     /// Adds a figure; figures are numbered through the report.
     #[must_use]
-    pub fn figure(self, figure: Figure) -> Self {
-        self.with(Block::Figure(figure))
+    pub fn figure(self, figure: Drawing) -> Self {
+        self.with(Block::Drawing(figure))
     }
 
     fn with(mut self, block: Block) -> Self {
@@ -139,7 +139,7 @@ impl Report {
 
     /// Sets the plot beside the verdicts.
     #[must_use]
-    pub fn summary(self, figure: Figure) -> Self {
+    pub fn summary(self, figure: Drawing) -> Self {
         Self { summary: Some(figure), ..self }
     }
 
@@ -213,9 +213,9 @@ impl Report {
     }
 
     /// The figures, each with its number.
-    pub fn figures(&self) -> impl Iterator<Item = (usize, &Figure)> {
+    pub fn figures(&self) -> impl Iterator<Item = (usize, &Drawing)> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
-        let figures = blocks.filter_map(|block| if let Block::Figure(figure) = block { Some(figure) } else { None });
+        let figures = blocks.filter_map(|block| if let Block::Drawing(figure) = block { Some(figure) } else { None });
         (1..).zip(self.summary.iter().chain(figures))
     }
 
@@ -229,7 +229,7 @@ impl Report {
         whole(&dir.join("report.html"), |out| out.write_all(self.html().as_bytes()))?;
         let folder = dir.join("figures");
         fs::create_dir_all(&folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
-        let figures: Vec<(usize, &Figure)> = self.figures().collect();
+        let figures: Vec<(usize, &Drawing)> = self.figures().collect();
         figures.par_iter().try_for_each(|(number, figure)| {
             let hyphen = if figure.name.is_empty() { "" } else { "-" };
             let stem = format!("{name}-{number:02}{hyphen}{}", figure.name);
@@ -268,12 +268,12 @@ impl Block {
                 let title = escape(table.title());
                 page.push_str(&format!("<details><summary>{title}</summary>\n{}</details>\n", table.to_html()));
             }
-            Self::Figure(figure) => figure.write(page, figures),
+            Self::Drawing(figure) => figure.write(page, figures),
         }
     }
 }
 
-impl Figure {
+impl Drawing {
     fn write(&self, page: &mut String, figures: &mut usize) {
         *figures += 1;
         page.push_str(&format!(
@@ -324,8 +324,8 @@ mod tests {
         let chart = LineChart::new(text, Axis::linear(text), Axis::log(text)).series(Series::curve(text, [(1.0, 2.0)]));
         let table = || Table::new(text).text(text).number(text).row([text, text]).note(text);
         let section = Section::new(text).heading(text).paragraph(text).table(table());
-        let section = section.figure(Figure::new(chart.svg(), text)).figure(Figure::new(chart.svg(), text));
-        let summary = Figure::new(chart.svg(), text).named("summary");
+        let section = section.figure(Drawing::new(chart.svg(), text)).figure(Drawing::new(chart.svg(), text));
+        let summary = Drawing::new(chart.svg(), text).named("summary");
         let report = Report::new(text).subtitle(text).verdict(text, text).summary(summary).finding(text);
         report.section(section).method(text).fact(text, text)
     }
@@ -361,7 +361,7 @@ mod tests {
         let dir = tempfile::TempDir::new().expect("a folder");
         let mut report = full("text");
         let chart = LineChart::new("t", Axis::linear("x"), Axis::linear("y"));
-        report = report.section(Section::new("s").figure(Figure::new(chart.svg(), "c").named("last")));
+        report = report.section(Section::new("s").figure(Drawing::new(chart.svg(), "c").named("last")));
         report.write(dir.path(), "example").expect("written");
         let read = |name: &str| fs::read(dir.path().join(name)).expect("there");
         assert_eq!(read("report.html"), report.html().as_bytes());

@@ -15,7 +15,7 @@ pub(crate) mod task;
 mod threads;
 
 use crate::stats::percentile;
-use cells::{Cell, Cells};
+use cells::{SpeedCell, SpeedCells};
 use core::fmt;
 use core::hint::black_box;
 use hairis::{Level, ParamError};
@@ -200,9 +200,9 @@ impl SpeedReport {
 pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedReport, ParamError> {
     let mut all = Vec::new();
     for model in ModelId::defaults_of_names() {
-        all.extend(model.visit(Cells(config.seed))?);
+        all.extend(model.visit(SpeedCells(config.seed))?);
     }
-    let mut timings: Vec<Timing> = all.iter().map(Timing::calibrate).collect();
+    let mut timings: Vec<CellTimings> = all.iter().map(CellTimings::calibrate).collect();
 
     let start = Instant::now();
     for round in 0.. {
@@ -225,21 +225,21 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
         directions: DIRECTIONS,
         compiled_level: Level::portable().name(),
         detected_level: Level::detect().name(),
-        rows: timings.iter().flat_map(Timing::rows).collect(),
+        rows: timings.iter().flat_map(CellTimings::rows).collect(),
         threads,
     })
 }
 
 /// The timings of one cell: one column per contender, one entry per round, ns per direction.
-struct Timing<'a> {
-    cell: &'a Cell,
+struct CellTimings<'a> {
+    cell: &'a SpeedCell,
     passes: Vec<u32>,
     ns: Vec<Vec<f64>>,
 }
 
-impl<'a> Timing<'a> {
+impl<'a> CellTimings<'a> {
     /// Finds how many passes make a stretch long enough to time.
-    fn calibrate(cell: &'a Cell) -> Self {
+    fn calibrate(cell: &'a SpeedCell) -> Self {
         let passes = cell.contenders.iter().map(|contender| {
             let fastest = (0..5).map(|_| stretch(&*contender.task, 1)).fold(f64::INFINITY, f64::min);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 1000")]

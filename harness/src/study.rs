@@ -67,14 +67,14 @@ type Light5<'a> = [&'a dyn Light; 5];
 
 /// Samples of a cell. Both are multiples of eight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Budget {
+pub struct StudyBudget {
     /// Of each sampler of each model.
     pub samples: usize,
     /// Of each light that is not seen from everywhere.
     pub light_samples: usize,
 }
 
-impl Budget {
+impl StudyBudget {
     /// Samples of a light to one of a sampler.
     fn ratio(self) -> f32x8 {
         #[expect(clippy::cast_possible_truncation, reason = "a ratio of two small numbers")]
@@ -102,11 +102,11 @@ impl Plan<'_> {
 
     /// Numbers of samples per cell.
     #[must_use]
-    pub const fn budget(&self) -> Budget {
+    pub const fn budget(&self) -> StudyBudget {
         if self.quick {
-            Budget { samples: 1 << 15, light_samples: 1 << 12 }
+            StudyBudget { samples: 1 << 15, light_samples: 1 << 12 }
         } else {
-            Budget { samples: 1 << 18, light_samples: 1 << 15 }
+            StudyBudget { samples: 1 << 18, light_samples: 1 << 15 }
         }
     }
 
@@ -174,7 +174,7 @@ where
 /// The hair's.
 pub(crate) fn variances(
     plan: &Plan<'_>,
-    budget: Budget,
+    budget: StudyBudget,
     cell: &Cell,
     samplers: &[Sampler],
 ) -> Result<Vec<Estimate>, ParamError> {

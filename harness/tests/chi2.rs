@@ -129,14 +129,14 @@ fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedR
 }
 
 /// Cells in `theta_i` and `phi` that resolve every lobe, and the samples each should hold.
-struct Cells {
+struct SphereCells {
     theta: Vec<f64>,
     phi: Vec<f64>,
     /// Row by row, then one for the caps, whose samples are discarded.
     expected: Vec<f64>,
 }
 
-impl Cells {
+impl SphereCells {
     fn new(reference: &impl ReferenceSampler, mask: LobeMask) -> Self {
         let share = reference.probabilities().0;
         let of = |lobe: Lobe| share[lobe.index()] * f64::from(mask.factor(lobe));
@@ -244,7 +244,7 @@ fn check<T: ReferenceSampler>(
                 if share < 1e-25 {
                     continue;
                 }
-                let cells = Cells::new(&reference, mask);
+                let cells = SphereCells::new(&reference, mask);
                 let at = format!("{shape} {name} {degrees} {lobe}");
                 let mass: f64 = cells.expected.iter().sum::<f64>() / f64::from(SAMPLES);
                 assert!((mass - 1.0).abs() < 1e-9, "{at}: the density has a mass of {mass}");
@@ -308,7 +308,7 @@ fn widths_off_by_a_twentieth_are_found() {
         let wo = wo(degrees);
         let reference = HairReference::prepare(&Parameters::from(&HairParams::default()), Shape::Gaussian, double(wo));
         for (lobe, mask) in masks() {
-            let cells = Cells::new(&reference, mask);
+            let cells = SphereCells::new(&reference, mask);
             let (result, _) = cells.test(&registered(ModelId::Gaussian)(&widened(1.05), wo, mask), wo, 7);
             assert!(result.p_value < sidak(0.01, TESTS), "{lobe} at {degrees}: {result:?} passes a wrong width");
         }

@@ -1,6 +1,6 @@
 //! The elementary functions against double precision, over dense scans of their ranges.
 
-use crate::support::{Draws, Worst, narrow};
+use crate::support::{Draws, LargestError, narrow};
 use crate::tolerance as bound;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use hairis::math::{
@@ -32,7 +32,12 @@ fn scan(lo: f32, hi: f32) -> impl Iterator<Item = f32> {
 }
 
 /// Both lanes: the scalar result, after it was compared with that of every position of the eight.
-fn both(x: [f32; 2], one: impl Fn([f32; 2]) -> f32, eight: impl Fn([f32x8; 2]) -> f32x8, worst: &mut Worst) -> f32 {
+fn both(
+    x: [f32; 2],
+    one: impl Fn([f32; 2]) -> f32,
+    eight: impl Fn([f32x8; 2]) -> f32x8,
+    worst: &mut LargestError,
+) -> f32 {
     let scalar = one(x);
     let wide = eight(x.map(f32x8::splat));
     for lane in wide.to_array() {
@@ -81,7 +86,7 @@ fn cos_absolute<L: Lanes>([x, _]: [L; 2]) -> L {
 
 #[test]
 fn gaussian_is_accurate_and_then_zero() {
-    let (mut worst, mut lanes) = (Worst::default(), Worst::default());
+    let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
     let zero = 2.0 * 115.0 * core::f32::consts::LN_2;
     for s in scan(0.0, 0.99 * zero).chain(scan(0.0, 2.0)) {
         let got = both([s, 0.0], exp, exp, &mut lanes);
@@ -108,7 +113,8 @@ fn gaussian_is_accurate_and_then_zero() {
 
 #[test]
 fn atan_unit_is_accurate() {
-    let (mut worst, mut absolute, mut lanes) = (Worst::default(), Worst::default(), Worst::default());
+    let (mut worst, mut absolute, mut lanes) =
+        (LargestError::default(), LargestError::default(), LargestError::default());
     for x in scan(-1.0, 1.0) {
         let (got, want) = (both([x, 0.0], atan, atan, &mut lanes), f64::from(x).atan());
         worst.see(ulp(got, want), || format!("{x:e}"));
@@ -123,7 +129,8 @@ fn atan_unit_is_accurate() {
 
 #[test]
 fn atan2_upper_is_accurate_at_every_magnitude() {
-    let (mut worst, mut absolute, mut lanes) = (Worst::default(), Worst::default(), Worst::default());
+    let (mut worst, mut absolute, mut lanes) =
+        (LargestError::default(), LargestError::default(), LargestError::default());
     let mut draws = Draws(5);
     for i in 0..POINTS {
         let angle = match i % 4 {
@@ -158,7 +165,8 @@ fn atan2_upper_is_accurate_at_every_magnitude() {
 
 #[test]
 fn half_atan2_is_accurate_at_both_ends() {
-    let (mut worst, mut absolute, mut lanes) = (Worst::default(), Worst::default(), Worst::default());
+    let (mut worst, mut absolute, mut lanes) =
+        (LargestError::default(), LargestError::default(), LargestError::default());
     let mut draws = Draws(6);
     for i in 0..POINTS {
         let angle = match i % 3 {
@@ -180,8 +188,9 @@ fn half_atan2_is_accurate_at_both_ends() {
 
 #[test]
 fn sine_and_cosine_are_accurate_where_they_vanish() {
-    let (mut sine, mut cosine, mut absolute) = (Worst::default(), Worst::default(), Worst::default());
-    let (mut sine_lanes, mut cosine_lanes) = (Worst::default(), Worst::default());
+    let (mut sine, mut cosine, mut absolute) =
+        (LargestError::default(), LargestError::default(), LargestError::default());
+    let (mut sine_lanes, mut cosine_lanes) = (LargestError::default(), LargestError::default());
     let near_the_pole = (0..=4096).map(|i| f32::from_bits(FRAC_PI_4.to_bits() - i));
     for x in scan(-FRAC_PI_4, FRAC_PI_4).chain(near_the_pole) {
         let (s, c) = (both([x, 0.0], sin, sin, &mut sine_lanes), both([x, 0.0], cos, cos, &mut cosine_lanes));
@@ -201,10 +210,11 @@ fn sine_and_cosine_are_accurate_where_they_vanish() {
 
 #[test]
 fn the_sine_and_cosine_of_inversion_are_accurate_absolutely() {
-    let (mut worst, mut sine_lanes, mut cosine_lanes) = (Worst::default(), Worst::default(), Worst::default());
+    let (mut worst, mut sine_lanes, mut cosine_lanes) =
+        (LargestError::default(), LargestError::default(), LargestError::default());
     for x in scan(-FRAC_PI_2, FRAC_PI_2) {
         let s = both([x, 0.0], sin_absolute, sin_absolute, &mut sine_lanes);
-        let c = both([x, 0.0], cos_absolute, cos_absolute, &mut Worst::default());
+        let c = both([x, 0.0], cos_absolute, cos_absolute, &mut LargestError::default());
         let c8 = cos_absolute([f32x8::splat(x); 2]).to_array()[3];
         cosine_lanes.see(f64::from(c - c8).abs(), || format!("{x:e}"));
         let (want_s, want_c) = f64::from(x).sin_cos();
@@ -233,7 +243,7 @@ fn tail_inverse<L: Lanes>([q, _]: [L; 2]) -> L {
 /// The last argument collects what eight lanes and one differ by; it is bounded by the error of either.
 #[test]
 fn logarithm_and_normal_tails_are_accurate() {
-    let (mut worst, mut lanes): ([Worst; 4], Worst) = Default::default();
+    let (mut worst, mut lanes): ([LargestError; 4], LargestError) = Default::default();
     for i in 0..POINTS {
         let share = f64::from(i) / f64::from(POINTS);
         let x = narrow((-126.0 + 253.0 * share).exp2());
@@ -268,8 +278,8 @@ fn logarithm_and_normal_tails_are_accurate() {
 
 #[test]
 fn a_gaussian_s_complement_keeps_its_digits_where_it_is_small() {
-    let (mut worst, mut lanes) = (Worst::default(), Worst::default());
-    let mut beside = Worst::default();
+    let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
+    let mut beside = LargestError::default();
     for s in scan(0.0, 170.0).chain(scan(0.0, 2.0)).chain(scan(0.0, 1e-6)) {
         let got = both([s, 0.0], complement, complement, &mut lanes);
         worst.see(ulp(got, -(-f64::from(s) / 2.0).exp_m1()), || format!("{s:e}"));
@@ -287,7 +297,7 @@ fn a_gaussian_s_complement_keeps_its_digits_where_it_is_small() {
 
 #[test]
 fn a_logarithm_next_to_one_keeps_the_digits_of_the_difference() {
-    let (mut worst, mut lanes) = (Worst::default(), Worst::default());
+    let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
     let least = -1.0 + f32::EPSILON / 2.0;
     for f in scan(least, 0.0).chain(scan(-1e-6, 0.0)) {
         let got = both([f, 0.0], log_one_plus, log_one_plus, &mut lanes);
@@ -300,7 +310,7 @@ fn a_logarithm_next_to_one_keeps_the_digits_of_the_difference() {
 
 #[test]
 fn the_arc_tangent_of_an_eighth_of_a_turn_is_accurate() {
-    let (mut worst, mut lanes) = (Worst::default(), Worst::default());
+    let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
     let most = core::f32::consts::FRAC_PI_8.tan();
     for x in scan(-most, most) {
         worst.see(ulp(both([x, 0.0], atan_eighth, atan_eighth, &mut lanes), f64::from(x).atan()), || format!("{x:e}"));

@@ -9,7 +9,7 @@ use hairis_variants::chiang::{
 };
 
 /// The model with one of its selections.
-struct Fibers<const BY_CHANNEL: bool>;
+struct ChiangFibers<const BY_CHANNEL: bool>;
 
 fn params(desc: ChiangDesc) -> ChiangParams {
     ChiangParams::new(&desc).unwrap()
@@ -23,14 +23,14 @@ fn double(hit: &Hit) -> [f64; 3] {
     [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from)
 }
 
-impl<const BY_CHANNEL: bool> Fibers<BY_CHANNEL> {
+impl<const BY_CHANNEL: bool> ChiangFibers<BY_CHANNEL> {
     fn formulas(params: &ChiangParams, hit: &Hit) -> ChiangReference<f64> {
         let selection = if BY_CHANNEL { Selection::ByChannel } else { Selection::Mean };
         ChiangReference::prepare(&ChiangParameters::from(params), selection, double(hit), f64::from(hit.h))
     }
 }
 
-impl<const BY_CHANNEL: bool> Subject for Fibers<BY_CHANNEL> {
+impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
     type Model = Chiang<BY_CHANNEL>;
 
     fn model(&self) -> Chiang<BY_CHANNEL> {
@@ -126,8 +126,8 @@ impl<const BY_CHANNEL: bool> Subject for Fibers<BY_CHANNEL> {
     }
 }
 
-conformance!(by_mean, Fibers::<false>);
-conformance!(by_channel, Fibers::<true>);
+conformance!(by_mean, ChiangFibers::<false>);
+conformance!(by_channel, ChiangFibers::<true>);
 
 /// Directions of the sphere with the solid angle of each, of clear fibre's far field.
 #[test]

@@ -7,7 +7,7 @@ use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams, KajiyaKa
 use hairis_variants::{KajiyaKay, kajiya_kay};
 
 /// The model in one of its forms.
-struct Fibers(Form);
+struct KajiyaKayFibers(Form);
 
 const DIFFUSE: Lobe = Lobe::slot(0);
 
@@ -20,13 +20,13 @@ fn formulas(params: &KajiyaKayParams, hit: &Hit) -> KajiyaKayReference<f64> {
     KajiyaKayReference::prepare(&kajiya_kay::KajiyaKayParameters::from(params), wo)
 }
 
-impl Fibers {
+impl KajiyaKayFibers {
     fn desc(&self, exponent: f32) -> KajiyaKayDesc {
         KajiyaKayDesc { kd: [0.4, 0.3, 0.2], ks: [0.1, 0.3, 0.5], exponent, form: self.0 }
     }
 }
 
-impl Subject for Fibers {
+impl Subject for KajiyaKayFibers {
     type Model = KajiyaKay;
 
     fn model(&self) -> KajiyaKay {
@@ -101,5 +101,5 @@ impl Subject for Fibers {
     }
 }
 
-conformance!(reciprocal, Fibers(Form::Reciprocal));
-conformance!(published, Fibers(Form::Published));
+conformance!(reciprocal, KajiyaKayFibers(Form::Reciprocal));
+conformance!(published, KajiyaKayFibers(Form::Published));

@@ -11,9 +11,9 @@ use hairis::{Bsdf, Bsdf8, EvalSlices, Hit, Level, Lobe, LobeMask};
 use hairis_conformance::{Claims, Materials, Subject};
 
 /// The example under the suite that every model passes.
-struct Fibers;
+struct LambertFibers;
 
-impl Subject for Fibers {
+impl Subject for LambertFibers {
     type Model = LambertFiber;
 
     fn model(&self) -> LambertFiber {
@@ -51,7 +51,7 @@ impl Subject for Fibers {
     }
 }
 
-hairis_conformance::conformance!(suite, Fibers);
+hairis_conformance::conformance!(suite, LambertFibers);
 
 const FIBER: Params = Params { kd: [0.4, 0.3, 0.2], ks: [0.5, 0.4, 0.6], width: 0.1 };
 

@@ -50,16 +50,16 @@ impl CodePath {
 
 /// One error, and its place.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Measured {
+pub(super) struct LocatedError {
     pub(super) error: f64,
     /// Beyond the bound, and not because the azimuth is rounded.
     pub(super) unexplained: bool,
-    pub(super) at: Place,
+    pub(super) at: LanePlace,
 }
 
 /// A lane of a packet: the shading point, and the direction.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct LanePlace {
     pub(super) values: Values,
     pub(super) wo: Vec3,
     pub(super) h: f32,
@@ -74,7 +74,7 @@ pub(super) fn measure(
     region: Region,
     packet: &Packet,
     path: CodePath,
-    keep: &mut impl FnMut(Quantity, Measured),
+    keep: &mut impl FnMut(Quantity, LocatedError),
 ) -> Result<(), ParamError> {
     let materials = packet.values.iter().map(|values| model.bsdf(values)).collect::<Result<Vec<_>, _>>()?;
     let hit = |k: usize| Hit { wo: packet.wo[k].into(), h: packet.h[k] };
@@ -102,13 +102,17 @@ pub(super) fn measure(
     for (k, (eval, sample)) in answers.iter().enumerate() {
         let (point, wi) =
             if matches!(path, CodePath::Shared(_)) { (0, packet.wi_shared[k]) } else { (k, packet.wi[k]) };
-        let place = Place { values: packet.values[point], wo: packet.wo[point], h: packet.h[point], wi, xi: None };
+        let place = LanePlace { values: packet.values[point], wo: packet.wo[point], h: packet.h[point], wi, xi: None };
         let exact = |place| Exact { model, accuracy: model.accuracy(), truth: &packet.truth[point], place };
         if region.holds(place.wo, wi) {
             exact(place).of_eval(eval, keep)?;
         }
         if let Some(sample) = sample.filter(|sample| region.holds(place.wo, sample.wi)) {
-            exact(Place { wi: sample.wi, xi: Some(packet.xi[k]), ..place }).of_sample(packet.xi[k], &sample, keep)?;
+            exact(LanePlace { wi: sample.wi, xi: Some(packet.xi[k]), ..place }).of_sample(
+                packet.xi[k],
+                &sample,
+                keep,
+            )?;
         }
     }
     Ok(())
@@ -119,11 +123,11 @@ struct Exact<'a> {
     model: ModelId,
     accuracy: Accuracy,
     truth: &'a AnyReference<f64>,
-    place: Place,
+    place: LanePlace,
 }
 
 impl Exact<'_> {
-    fn of_eval(&self, eval: &Eval, keep: &mut impl FnMut(Quantity, Measured)) -> Result<(), ParamError> {
+    fn of_eval(&self, eval: &Eval, keep: &mut impl FnMut(Quantity, LocatedError)) -> Result<(), ParamError> {
         let slack = self.slack()?;
         keep(Quantity::Pdf, self.compare(Quantity::Pdf, [eval.pdf], |wi| [self.truth.pdf(wi)], self.pdf_slack(slack)));
         keep(Quantity::Value, self.compare(Quantity::Value, eval.value, |wi| self.truth.eval(wi), slack));
@@ -134,7 +138,7 @@ impl Exact<'_> {
         &self,
         xi: [f32; 3],
         sample: &Sample,
-        keep: &mut impl FnMut(Quantity, Measured),
+        keep: &mut impl FnMut(Quantity, LocatedError),
     ) -> Result<(), ParamError> {
         let over_pdf = |wi: [f64; 3]| wi[1].hypot(wi[2]) / self.truth.pdf(wi);
         let (slack, scale) = (self.slack()?, over_pdf(to_f64(self.place.wi)));
@@ -158,7 +162,7 @@ impl Exact<'_> {
         got: [f32; N],
         truth: impl Fn([f64; 3]) -> [f64; N],
         slack: [f64; N],
-    ) -> Measured {
+    ) -> LocatedError {
         let wi = to_f64(self.place.wi);
         let want = truth(wi);
         let worst = |slack: [f64; N]| (0..N).map(|c| relative(got[c], want[c], slack[c])).fold(0.0, f64::max);
@@ -168,19 +172,19 @@ impl Exact<'_> {
             let (low, high) = (truth(rotate(wi, -ROUNDING)), truth(rotate(wi, ROUNDING)));
             worst(core::array::from_fn(|c| slack[c] + (low[c] - want[c]).abs().max((high[c] - want[c]).abs()))) > bound
         };
-        Measured { error, unexplained, at: self.place }
+        LocatedError { error, unexplained, at: self.place }
     }
 
     /// Distance of the lobe's cdf at the direction from the numbers it was sampled with, on the circle of length 1: both
     /// ends of the cosines' cdf are the same direction.
-    fn cdf(&self, xi: [f32; 3], lobe: Lobe) -> Option<Measured> {
+    fn cdf(&self, xi: [f32; 3], lobe: Lobe) -> Option<LocatedError> {
         let wi = to_f64(self.place.wi);
         let turn = azimuth(to_f64(self.place.wo)) - azimuth(wi);
         let phi = turn - TAU * (turn / TAU).round();
         let cdf = self.truth.cdf(lobe, inclination(wi), phi)?;
         let off = |k: usize| (cdf[k] - f64::from(xi[k + 1])).abs();
         let error = off(0).max(off(1).min((1.0 - off(1)).abs()));
-        Some(Measured { error, unexplained: error > self.accuracy.cdf, at: self.place })
+        Some(LocatedError { error, unexplained: error > self.accuracy.cdf, at: self.place })
     }
 
     /// Absolute error of a value that the model allows by design.

@@ -1,8 +1,8 @@
 //! A and B as printed, without the half: samples off the sphere.
 
-use super::Cells;
+use super::FoundCells;
 use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, geometric_mean, largest, smallest};
-use super::hair::{Found, Longitudinal, longitudinal_grid};
+use super::hair::{HairFigures, Longitudinal, longitudinal_grid};
 
 const WORDS: Words = Words {
     id: "misprint-bounds",
@@ -25,13 +25,13 @@ fn exact(value: f64) -> Bounded {
 }
 
 /// The claim.
-pub(super) fn claim(cells: &Cells) -> Claim {
+pub(super) fn claim(cells: &FoundCells) -> Claim {
     let lobes = || longitudinal_grid().into_iter().map(|lobe: Longitudinal| exact(1.0 - lobe.printed_mass()));
     let (most, least) = (largest(lobes()), smallest(lobes()));
     let lost = || cells.iter().map(|(.., found)| exact(found.lost));
     // All that is drawn lands on the sphere with a density of the printed one over the share that does.
     let bias = || lost().map(|lost| exact(lost.value / (1.0 - lost.value)));
-    let factor = |found: &Found| found.printed.over(found.published);
+    let factor = |found: &HairFigures| found.printed.over(found.published);
     let factors = || cells.iter().map(|(.., found)| factor(found));
     let mean = geometric_mean(factors());
     let sentence = format!(

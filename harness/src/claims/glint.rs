@@ -1,8 +1,8 @@
 //! The glint's density: printed without an end, and its end at a right angle.
 
-use super::Cells;
+use super::FoundCells;
 use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, geometric_mean, largest, smallest};
-use super::hair::{Found, Hair, whole_glint};
+use super::hair::{Hair, HairFigures, whole_glint};
 use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
 use crate::study::Grid;
 use crate::subject::ModelKind;
@@ -73,7 +73,7 @@ fn excess(params: &HairParams) -> Bounded {
 }
 
 /// The printed density.
-pub(super) fn density(cells: &Cells) -> Result<Claim, ParamError> {
+pub(super) fn density(cells: &FoundCells) -> Result<Claim, ParamError> {
     let glints = glints(false)?;
     let excesses = || glints.iter().map(excess);
     let bias = || cells.iter().map(|(.., found)| found.uncut_bias.magnitude());
@@ -114,7 +114,7 @@ fn decade(hair: &Hair, gap: f64) -> [Bounded; 2] {
 }
 
 /// The end at a right angle.
-pub(super) fn interval(cells: &Cells) -> Result<Claim, ParamError> {
+pub(super) fn interval(cells: &FoundCells) -> Result<Claim, ParamError> {
     let (alone, with_tt) = (glints(false)?, glints(true)?);
     let last = GAPS[GAPS.len() - 1];
     let growth = |model: ModelKind, all: &[HairParams], place: usize| {
@@ -125,7 +125,7 @@ pub(super) fn interval(cells: &Cells) -> Result<Claim, ParamError> {
     // The glints that leave most of themselves behind: the widest, furthest from the viewer.
     let widest = alone.last().map(|params| Hair::new(ModelKind::Cauchy, params, 0.0));
     let growing = widest.map(|hair| GAPS.map(|gap| (gap, up_to(&hair, gap))));
-    let ratio = |found: &Found| found.published.over(found.whole);
+    let ratio = |found: &HairFigures| found.published.over(found.whole);
     let ratios = || cells.iter().map(|(.., found)| ratio(found));
     let mean = geometric_mean(ratios());
     let sentence = format!(

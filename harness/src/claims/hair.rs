@@ -75,7 +75,7 @@ pub(super) struct Hair {
 
 /// Figures of a hair, all under constant light and of the mean of RGB.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
+pub(super) struct HairFigures {
     /// V of uniform directions.
     pub(super) uniform: Bounded,
     /// V of the published sampler.
@@ -140,12 +140,12 @@ impl Hair {
     }
 
     /// All that is found of it.
-    pub(super) fn found(&self) -> Found {
+    pub(super) fn found(&self) -> HairFigures {
         let (masses, shares) = (self.masses(), self.oracle.probabilities());
         let all = self.integrals(&self.phi_breakpoints());
         let mean = all[0];
         let v = |k: usize| all[k].over(mean.times(mean)).plus(-1.0);
-        Found {
+        HairFigures {
             uniform: v(1),
             published: v(2),
             printed: v(3),

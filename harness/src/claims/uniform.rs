@@ -1,11 +1,11 @@
 //! Importance sampling against uniform sampling, over the parameter grid.
 
 use super::claim::{Claim, Figure, Side, Threshold, Words, geometric_mean, largest, smallest};
-use super::hair::Found;
-use super::{Cells, hair_of};
+use super::hair::HairFigures;
+use super::{FoundCells, hair_of};
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
-use crate::study::{Budget, Cell, Grid, Plan, variances};
+use crate::study::{Cell, Grid, Plan, StudyBudget, variances};
 use crate::subject::ModelKind;
 use hairis::ParamError;
 
@@ -34,19 +34,20 @@ fn example() -> Option<Cell> {
 /// V of uniform sampling and of the published sampler on the example, Gaussian model, from samples.
 fn measured(plan: &Plan<'_>, cell: &Cell) -> Result<[Estimate; 2], ParamError> {
     let budget = if plan.quick { 1 << 18 } else { 1 << 22 };
-    let budget = Budget { samples: budget, light_samples: 8 };
+    let budget = StudyBudget { samples: budget, light_samples: 8 };
     let v = variances(plan, budget, cell, &[Sampler::Uniform, Sampler::Published])?;
     // Models outermost, then samplers, then lights: the constant light is the first of five.
     Ok([v[0], v[5]])
 }
 
 /// The claim.
-pub(super) fn claim(plan: &Plan<'_>, cells: &Cells) -> Result<Claim, ParamError> {
-    let ratio = |found: &Found| found.published.over(found.uniform);
+pub(super) fn claim(plan: &Plan<'_>, cells: &FoundCells) -> Result<Claim, ParamError> {
+    let ratio = |found: &HairFigures| found.published.over(found.uniform);
     let all = || cells.iter().map(|(_, _, found)| ratio(found));
     let narrow = cells.iter().filter(|(cell, ..)| cell.beta_r_deg <= NARROW).map(|(_, _, found)| ratio(found));
     let worse = |of: ModelKind| {
-        let is = |(_, model, found): &&(Cell, ModelKind, Found)| *model == of && ratio(found).value > THRESHOLD.bound;
+        let is =
+            |(_, model, found): &&(Cell, ModelKind, HairFigures)| *model == of && ratio(found).value > THRESHOLD.bound;
         cells.iter().filter(is).count()
     };
     let (worst, within) = (largest(all()), largest(narrow));

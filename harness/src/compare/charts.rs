@@ -4,8 +4,8 @@ use super::Comparison;
 use super::page::v_ratio;
 use crate::efficiency::SAMPLERS;
 use crate::figures;
-use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
-use crate::report::Figure;
+use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, ReferenceLine, Series};
+use crate::report::Drawing;
 use crate::sampler::Sampler;
 use crate::sequence::{SequenceKind, XiSource};
 use crate::speed::Op;
@@ -17,7 +17,7 @@ use hairis_variants::{Cauchy, ModelId};
 const POINTS: usize = 2000;
 
 /// The Gaussian and the Cauchy bells, and the models made of them.
-pub(super) fn models() -> Vec<Figure> {
+pub(super) fn models() -> Vec<Drawing> {
     let params = HairParams::default();
     vec![
         figures::normalised_bells(),
@@ -27,7 +27,7 @@ pub(super) fn models() -> Vec<Figure> {
 }
 
 /// The verdicts in one plot: ratios of variances by light.
-pub(super) fn summary(of: &Comparison) -> Figure {
+pub(super) fn summary(of: &Comparison) -> Drawing {
     let lights = &of.efficiency.settings.lights;
     let labels = lights.iter().map(|light| light.replace(['-', '_'], " "));
     let published = (ModelKind::Gaussian, Sampler::Published);
@@ -45,18 +45,18 @@ pub(super) fn summary(of: &Comparison) -> Figure {
         "By what factor the number of samples falls (above 1) or grows (below), by light; default hair seen from {}°.",
         super::page::THETA_O_DEG
     );
-    Figure::new(chart.level(1.0).svg(), caption).named("summary")
+    Drawing::new(chart.level(1.0).svg(), caption).named("summary")
 }
 
 /// Where samples go: the paper's figure 5.
-pub(super) fn distributions(of: &Comparison) -> Figure {
+pub(super) fn distributions(of: &Comparison) -> Drawing {
     let mut numbers = SequenceKind::Halton.source(of.settings.seed, 0, 3, POINTS);
     let xi: Vec<[f32; 3]> = (0..POINTS).map(|_| numbers.next_xi_f32()).collect();
     figures::sample_distributions(&HairParams::default(), 20_f64.to_radians(), xi.into_iter())
 }
 
 /// Speed against the textbook, a chart per model.
-pub(super) fn speeds(of: &Comparison) -> Vec<Figure> {
+pub(super) fn speeds(of: &Comparison) -> Vec<Drawing> {
     let ops = [Op::Prepare, Op::EvalPdf, Op::Sample, Op::PointsMixed];
     let mut contenders: Vec<(&str, &str)> = Vec::new();
     for row in of.speed.rows.iter().filter(|row| row.contender != "textbook") {
@@ -77,13 +77,13 @@ pub(super) fn speeds(of: &Comparison) -> Vec<Figure> {
         }
         let caption = "How many times as fast as the paper's formulas in scalar f32, by operation: medians over the rounds, \
                        whiskers from the first to the third quartile.";
-        Figure::new(chart.level(1.0).svg(), caption).named(format!("speed-{}", model.name()))
+        Drawing::new(chart.level(1.0).svg(), caption).named(format!("speed-{}", model.name()))
     };
     ModelId::defaults_of_names().map(figure).collect()
 }
 
 /// V against the width of the primary highlight.
-pub(super) fn widths(of: &Comparison) -> Vec<Figure> {
+pub(super) fn widths(of: &Comparison) -> Vec<Drawing> {
     of.efficiency
         .settings
         .theta_o_deg
@@ -109,7 +109,7 @@ pub(super) fn widths(of: &Comparison) -> Vec<Figure> {
                     chart = chart.series(series.styled(sampler.color(), Dash::of(dash)));
                 }
             }
-            Figure::new(
+            Drawing::new(
                 chart.svg(),
                 format!(
                     "Relative variance of one sample under constant light, seen from {theta_o}°, with β_TT = β_R/2 and \
@@ -122,7 +122,7 @@ pub(super) fn widths(of: &Comparison) -> Vec<Figure> {
 }
 
 /// The error of the mean against the number of samples.
-pub(super) fn convergence(of: &Comparison) -> Vec<Figure> {
+pub(super) fn convergence(of: &Comparison) -> Vec<Drawing> {
     let mut lights: Vec<&str> = Vec::new();
     for point in &of.efficiency.convergence {
         if !lights.contains(&point.light.as_str()) {
@@ -154,10 +154,11 @@ pub(super) fn convergence(of: &Comparison) -> Vec<Figure> {
                 }
             }
             if let Some(through) = first {
-                chart = chart.reference(Reference::Power { label: "slope −1/2".to_owned(), slope: -0.5, through });
+                chart =
+                    chart.reference(ReferenceLine::Power { label: "slope −1/2".to_owned(), slope: -0.5, through });
             }
             figures.push(
-                Figure::new(
+                Drawing::new(
                     chart.svg(),
                     format!(
                         "Error of the mean of N samples, {} model, light: {light}, θₒ = {}°, over independent \

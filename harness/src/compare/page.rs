@@ -1,7 +1,7 @@
 //! The report of a comparison.
 
 use super::{Comparison, Depth, charts, tables};
-use crate::efficiency::Row;
+use crate::efficiency::EfficiencyRow;
 use crate::light::in_words;
 use crate::report::{Report, Section};
 use crate::sampler::Sampler;
@@ -149,7 +149,7 @@ pub(super) fn v_ratio(
     other: (ModelKind, Sampler),
 ) -> Option<f64> {
     let v = |estimator| {
-        let is = |row: &&Row| {
+        let is = |row: &&EfficiencyRow| {
             (row.model, row.sampler) == estimator
                 && (row.sequence, row.theta_o_deg) == (SequenceKind::Independent, THETA_O_DEG)
                 && row.light == light

@@ -2,7 +2,7 @@
 
 use super::Comparison;
 use crate::agreement::{Quantity, Region};
-use crate::efficiency::{MisRow, Row, SAMPLERS, Technique};
+use crate::efficiency::{EfficiencyRow, MisRow, SAMPLERS, Technique};
 use crate::sequence::SequenceKind;
 use crate::speed::Op;
 use crate::stats::Estimate;
@@ -177,7 +177,12 @@ fn reference(of: &Comparison) -> Table {
 }
 
 /// A table with a row for each light, inclination and model, and a column for each sampler.
-fn by_light(of: &Comparison, title: &str, sequences: &[SequenceKind], cell: impl Fn(&Row) -> String) -> Table {
+fn by_light(
+    of: &Comparison,
+    title: &str,
+    sequences: &[SequenceKind],
+    cell: impl Fn(&EfficiencyRow) -> String,
+) -> Table {
     let mut table = Table::new(title).text("light").number("θₒ, °");
     if sequences.len() > 1 {
         table = table.text("numbers");
@@ -308,7 +313,7 @@ fn light_sampling(of: &Comparison, depth: Depth) -> Table {
 }
 
 /// V of a row as the reference predicts it.
-fn predicted(row: &Row) -> f64 {
+fn predicted(row: &EfficiencyRow) -> f64 {
     let [v, _] = row.reference.predicted(row.sampler);
     v
 }

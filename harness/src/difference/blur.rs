@@ -8,7 +8,7 @@
 //!
 //! Functions are even in `phi`, so that `cos(m phi)` is all they need.
 
-use super::lobes::{Rule, TERMS, Values};
+use super::lobes::{BellValues, Rule, TERMS};
 use crate::quadrature::GaussLegendre;
 use core::f64::consts::{PI, SQRT_2};
 
@@ -114,7 +114,7 @@ impl Blur {
     }
 
     /// The harmonics of several functions, blurred.
-    pub(super) fn harmonics(&self, rule: &Rule, functions: &[Values]) -> Vec<Harmonics> {
+    pub(super) fn harmonics(&self, rule: &Rule, functions: &[BellValues]) -> Vec<Harmonics> {
         let width = TERMS * functions.len();
         // Along the fibre: every Legendre function with every product of every function.
         let mut along = vec![0.0; COEFFICIENTS * width];
@@ -201,7 +201,7 @@ impl Harmonics {
 
 #[cfg(test)]
 mod tests {
-    use super::super::lobes::{Kind, Nodes, View};
+    use super::super::lobes::{Kind, Nodes, ViewedHair};
     use super::*;
     use crate::quadrature::fibre_direction;
     use core::f64::consts::FRAC_PI_2;
@@ -212,11 +212,11 @@ mod tests {
     }
 
     /// A rule without lobes, and a function of `theta` alone on it.
-    fn plain(f: impl Fn(f64) -> f64) -> (Rule, Values) {
+    fn plain(f: impl Fn(f64) -> f64) -> (Rule, BellValues) {
         let rule = GaussLegendre::new(128);
         let along = Nodes(rule.on(-FRAC_PI_2, FRAC_PI_2).map(|[x, w]| [x, w * x.cos()]).collect());
         let around = Nodes(rule.on(0.0, PI).map(|[x, w]| [x, 2.0 * w]).collect());
-        let values = Values {
+        let values = BellValues {
             along: along.0.iter().map(|[theta, _]| [f(*theta), 0.0, 0.0]).collect(),
             around: vec![[1.0, 0.0, 0.0]; around.0.len()],
         };
@@ -255,7 +255,7 @@ mod tests {
     fn hair_blurred_is_its_integral_with_the_kernel() {
         let kappa = 1.0 / SIGMA_DEG.to_radians().powi(2);
         let kernel = |cos: f64| kappa / (2.0 * PI * (1.0 - (-2.0 * kappa).exp())) * (kappa * (cos - 1.0)).exp();
-        let view = View::new(&HairParams::default(), 0.9);
+        let view = ViewedHair::new(&HairParams::default(), 0.9);
         let (rule, blur) = (view.rule(12), blur());
         for kind in [Kind::GAUSSIAN, Kind::cauchy(1.0)] {
             let values = rule.values(&view, kind);

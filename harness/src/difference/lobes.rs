@@ -34,7 +34,7 @@ impl Kind {
 
 /// Hair seen from an inclination.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct View {
+pub(super) struct ViewedHair {
     parameters: Parameters<f64>,
     theta_o: f64,
 }
@@ -54,7 +54,7 @@ pub(super) struct Rule {
 
 /// The values of the three products of a [`Kind`] at the points of a [`Rule`].
 #[derive(Clone, Debug)]
-pub(super) struct Values {
+pub(super) struct BellValues {
     pub(super) along: Vec<[f64; TERMS]>,
     pub(super) around: Vec<[f64; TERMS]>,
 }
@@ -62,7 +62,7 @@ pub(super) struct Values {
 /// The 3 by 3 integrals of the products of two models' terms.
 type Gram = [[f64; TERMS]; TERMS];
 
-impl View {
+impl ViewedHair {
     /// The hair seen from `theta_o`, in rad, within (-pi/2, pi/2).
     pub(super) fn new(params: &HairParams, theta_o: f64) -> Self {
         Self { parameters: Parameters::from(params), theta_o }
@@ -121,21 +121,21 @@ fn panels(rule: &GaussLegendre, mut breaks: Vec<f64>, [lo, hi]: [f64; 2]) -> imp
 
 impl Rule {
     /// The values of a model at its points.
-    pub(super) fn values(&self, view: &View, kind: Kind) -> Values {
-        Values {
+    pub(super) fn values(&self, view: &ViewedHair, kind: Kind) -> BellValues {
+        BellValues {
             along: self.along.0.iter().map(|[theta, _]| view.along(kind, *theta)).collect(),
             around: self.around.0.iter().map(|[phi, _]| view.around(kind, *phi)).collect(),
         }
     }
 
     /// The integral of `S cos theta_i` over the sphere: the directional albedo, the mean of RGB.
-    pub(super) fn albedo(&self, of: &Values) -> f64 {
+    pub(super) fn albedo(&self, of: &BellValues) -> f64 {
         let (along, around) = (self.along.integral(&of.along), self.around.integral(&of.around));
         along.iter().zip(around).map(|(a, b)| a * b).sum()
     }
 
     /// The integral of the product of two models' `S cos theta_i` over the sphere.
-    pub(super) fn product(&self, a: &Values, b: &Values) -> f64 {
+    pub(super) fn product(&self, a: &BellValues, b: &BellValues) -> f64 {
         let (along, around) = (self.along.gram(&a.along, &b.along), self.around.gram(&a.around, &b.around));
         along.as_flattened().iter().zip(around.as_flattened()).map(|(x, y)| x * y).sum()
     }
@@ -178,7 +178,7 @@ mod tests {
         for _ in 0..200 {
             let hair = random_hair(&mut xi).expect("within range");
             let theta_o = 1.5 * (2.0 * xi.next_f64() - 1.0);
-            let view = View::new(&hair, theta_o);
+            let view = ViewedHair::new(&hair, theta_o);
             for kind in [Kind::GAUSSIAN, Kind::cauchy(1.0), Kind::cauchy(0.8)] {
                 let parameters = Parameters::from(&hair).with_width_factor(kind.factor);
                 let oracle = HairReference::prepare(&parameters, kind.shape, fibre_direction(theta_o, 0.3).to_array());
@@ -198,7 +198,7 @@ mod tests {
             let cell = Grid::QUICK.cell(index);
             let (params, theta_o) = (cell.params().expect("accepted"), f64::from(cell.theta_o_deg).to_radians());
             let wo = fibre_direction(theta_o, 0.0);
-            let view = View::new(&params, theta_o);
+            let view = ViewedHair::new(&params, theta_o);
             let rule = view.rule(8);
             let kernels = [
                 (Kind::GAUSSIAN, Bsdf::new(&Hair(Gaussian), &params).prepare(wo.as_vec3()).albedo()),

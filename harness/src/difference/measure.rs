@@ -1,12 +1,12 @@
 //! One cell: the distance of a Cauchy model from the Gaussian one.
 
 use super::blur::Blur;
-use super::lobes::{Kind, Rule, TERMS, Values, View};
+use super::lobes::{BellValues, Kind, Rule, TERMS, ViewedHair};
 
 /// Differences between a Cauchy model and the Gaussian one of the same hair: of `S cos theta_i`, the mean of RGB, over
 /// the sphere, relative to the same norm of the Gaussian model alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Figures {
+pub struct Differences {
     /// Factor on the widths.
     pub k: f64,
     /// Albedo of the Gaussian model: the integral of `S cos theta_i`.
@@ -34,19 +34,19 @@ pub struct Norms {
 
 /// A hair with the values of its Gaussian model at the points of its rule.
 #[derive(Debug)]
-pub(super) struct Hair {
-    view: View,
+pub(super) struct HairValues {
+    view: ViewedHair,
     rule: Rule,
     /// As fine again: the magnitude of a difference has kinks wherever the models cross.
     fine: Rule,
-    gaussian: Values,
+    gaussian: BellValues,
     /// Integral of its square.
     square: f64,
 }
 
-impl Hair {
+impl HairValues {
     /// Prepares a hair; `order` is that of the rules on each panel.
-    pub(super) fn new(view: View, order: usize) -> Self {
+    pub(super) fn new(view: ViewedHair, order: usize) -> Self {
         let rule = view.rule(order);
         let gaussian = rule.values(&view, Kind::GAUSSIAN);
         let square = rule.product(&gaussian, &gaussian);
@@ -59,14 +59,14 @@ impl Hair {
         self.square_of(&other, 1.0)
     }
 
-    fn square_of(&self, other: &Values, scale: f64) -> f64 {
+    fn square_of(&self, other: &BellValues, scale: f64) -> f64 {
         let (cross, square) = (self.rule.product(&self.gaussian, other), self.rule.product(other, other));
         // For equal models rounding may make the difference negative.
         ((self.square - 2.0 * scale * cross + scale * scale * square) / self.square).max(0.0)
     }
 
     /// The figures of several models.
-    pub(super) fn figures(&self, kinds: &[Kind], blur: &Blur) -> Vec<Figures> {
+    pub(super) fn figures(&self, kinds: &[Kind], blur: &Blur) -> Vec<Differences> {
         let mut models = vec![self.gaussian.clone()];
         models.extend(kinds.iter().map(|kind| self.rule.values(&self.view, *kind)));
         let albedos: Vec<f64> = models.iter().map(|model| self.rule.albedo(model)).collect();
@@ -83,7 +83,7 @@ impl Hair {
                     l1: blur.l1(&blurred[0], &blurred[n], scale) / albedo,
                     l2: harmonics[0].l2(&harmonics[n], scale) / norm,
                 };
-                Figures {
+                Differences {
                     k: kinds[n - 1].factor,
                     albedo_gaussian: albedo,
                     albedo_cauchy: albedos[n],
@@ -99,7 +99,7 @@ impl Hair {
     /// The integrals of the magnitude of the Gaussian model less each of the others: as it is, and scaled to its albedo.
     fn magnitudes(&self, kinds: &[Kind], albedos: &[f64]) -> Vec<[f64; 2]> {
         let kinds = [Kind::GAUSSIAN].iter().chain(kinds);
-        let models: Vec<Values> = kinds.map(|kind| self.fine.values(&self.view, *kind)).collect();
+        let models: Vec<BellValues> = kinds.map(|kind| self.fine.values(&self.view, *kind)).collect();
         let mut sums = vec![[0.0; 2]; models.len() - 1];
         let columns = self.fine.around.0.len();
         // One row of the map per model.
@@ -139,14 +139,14 @@ mod tests {
         Blur::new(SIGMA_DEG.to_radians(), size, size)
     }
 
-    fn hair(index: usize, order: usize) -> Hair {
+    fn hair(index: usize, order: usize) -> HairValues {
         let cell = Grid::FULL.cell(index);
         let params = cell.params().expect("accepted");
-        Hair::new(View::new(&params, f64::from(cell.theta_o_deg).to_radians()), order)
+        HairValues::new(ViewedHair::new(&params, f64::from(cell.theta_o_deg).to_radians()), order)
     }
 
-    fn numbers(of: &Figures) -> [f64; 10] {
-        let Figures { albedo_gaussian, albedo_cauchy, plain, shape, blurred, blurred_shape, .. } = *of;
+    fn numbers(of: &Differences) -> [f64; 10] {
+        let Differences { albedo_gaussian, albedo_cauchy, plain, shape, blurred, blurred_shape, .. } = *of;
         let [a, b, c, d] = [plain, shape, blurred, blurred_shape].map(|norms| [norms.l1, norms.l2]);
         [albedo_gaussian, albedo_cauchy, a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1]]
     }
@@ -165,7 +165,7 @@ mod tests {
         // R alone, so narrow that nothing else changes across it: the norms are those of two bells on a line.
         let black = [0.0; 3];
         let desc = HairDesc { beta_r: 0.002, intensity_tt: black, intensity_trt: black, ..HairDesc::default() };
-        let hair = Hair::new(View::new(&HairParams::new(&desc).expect("accepted"), 0.3), ORDER);
+        let hair = HairValues::new(ViewedHair::new(&HairParams::new(&desc).expect("accepted"), 0.3), ORDER);
         for k in [1.0, 0.797_884_6, 1.177_41] {
             let got = hair.square_error(Kind::cauchy(k)).sqrt();
             // Integrals over the line, in widths: of g^2, of c^2 and of g c.

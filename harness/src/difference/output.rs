@@ -1,13 +1,13 @@
 //! The differences as columns and as tables.
 
-use super::{Difference, Figures, Row, Width};
+use super::{Difference, DifferenceRow, Differences, Width};
 use crate::stats::percentile;
 use crate::study::columns::Columns;
 use crate::study::grid::columns_of;
 use crate::table::{Table, number};
 
-/// Figures of a row, by name.
-type Shown = (&'static str, fn(&Figures) -> f64);
+/// Differences of a row, by name.
+type Shown = (&'static str, fn(&Differences) -> f64);
 
 /// The relative differences.
 const NORMS: [Shown; 8] = [
@@ -58,7 +58,7 @@ impl Difference {
         const NAMES: [&str; 8] =
             ["l1", "l2", "shape_l1", "shape_l2", "blurred_l1", "blurred_l2", "blurred_shape_l1", "blurred_shape_l2"];
         let rows = self.rows();
-        let figure = |of: fn(&Figures) -> f64| rows.iter().map(move |row| of(&row.figures));
+        let figure = |of: fn(&Differences) -> f64| rows.iter().map(move |row| of(&row.figures));
         let columns = columns_of(rows.iter().map(|row| &row.cell))
             .text("width", rows.iter().map(|row| row.width.name()))
             .number("k", figure(|f| f.k))
@@ -75,7 +75,7 @@ impl Difference {
     }
 
     /// The summary of a figure over the cells of one choice of widths.
-    pub(crate) fn summary(&self, width: Width, of: fn(&Figures) -> f64) -> Summary {
+    pub(crate) fn summary(&self, width: Width, of: fn(&Differences) -> f64) -> Summary {
         Summary::of(self.of(width).map(|row| of(&row.figures)))
     }
 
@@ -135,7 +135,7 @@ impl Difference {
                 .number("albedo, Gaussian");
         table = Width::ALL.iter().fold(table, |table, width| table.number(width.name()));
         for theta_o in axis_values(self.rows(), |row| row.cell.theta_o_deg) {
-            let of = |width, figure: fn(&Figures) -> f64| {
+            let of = |width, figure: fn(&Differences) -> f64| {
                 let rows = self.of(width).filter(|row| row.cell.theta_o_deg == theta_o);
                 let found = Summary::of(rows.map(|row| figure(&row.figures)));
                 let [mean, least, most] = [found.geometric_mean, found.least, found.most].map(|x| number::plain(x, 3));
@@ -150,12 +150,12 @@ impl Difference {
 }
 
 /// Albedo of the Cauchy model over that of the Gaussian one.
-pub(crate) fn albedo_ratio(of: &Figures) -> f64 {
+pub(crate) fn albedo_ratio(of: &Differences) -> f64 {
     of.albedo_cauchy / of.albedo_gaussian
 }
 
 /// The values of an axis, ascending.
-pub(crate) fn axis_values(rows: &[Row], of: impl Fn(&Row) -> f32) -> Vec<f32> {
+pub(crate) fn axis_values(rows: &[DifferenceRow], of: impl Fn(&DifferenceRow) -> f32) -> Vec<f32> {
     let mut values: Vec<f32> = rows.iter().map(of).collect();
     values.sort_by(f32::total_cmp);
     values.dedup();

@@ -15,11 +15,11 @@ pub(super) struct Case {
     pub(super) model: ModelKind,
     pub(super) theta_o_deg: f64,
     /// In the order of [`Sampler::ALL`].
-    estimators: [Estimator; Sampler::ALL.len()],
+    estimators: [SampledCase; Sampler::ALL.len()],
 }
 
 /// One sampler of the case.
-struct Estimator {
+struct SampledCase {
     scatter: Scatter,
     /// S, and the density of every sampler but the uniform one.
     oracle: Oracle<f64>,
@@ -44,12 +44,12 @@ impl Case {
         let estimators = Sampler::ALL.map(|sampler| {
             let oracle = Oracle::prepare(&parameters, model.shape(), exact.to_array(), sampler.bands());
             let sphere = oracle.jumps().fold(integrator(&parameters, exact), SphereIntegrator::theta_break);
-            Estimator { scatter: Scatter::new(model, sampler, params, wo), oracle, sphere }
+            SampledCase { scatter: Scatter::new(model, sampler, params, wo), oracle, sphere }
         });
         Self { model, theta_o_deg, estimators }
     }
 
-    fn of(&self, sampler: Sampler) -> &Estimator {
+    fn of(&self, sampler: Sampler) -> &SampledCase {
         &self.estimators[sampler as usize]
     }
 

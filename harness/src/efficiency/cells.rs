@@ -1,9 +1,9 @@
 //! One cell of each table.
 
 use super::case::Case;
-use super::measure::{self, Tally, bias_z};
+use super::measure::{self, CellMoments, bias_z};
 use super::reference::exact_variance;
-use super::result::{ConvergencePoint, MisRow, ReferenceV, Row, SweepRow, Technique};
+use super::result::{ConvergencePoint, EfficiencyRow, MisRow, ReferenceV, SweepRow, Technique};
 use super::{EfficiencyConfig, ModelKind, Reference, ReferenceMethod, SAMPLERS, mis, stream};
 use crate::light::{Constant, Light};
 use crate::sampler::Sampler;
@@ -35,7 +35,7 @@ fn kind_index(kind: SequenceKind) -> u64 {
 }
 
 /// Largest contribution in means, 0 when there was none.
-fn in_means(tally: &Tally) -> f64 {
+fn in_means(tally: &CellMoments) -> f64 {
     if tally.max_contribution > 0.0 { tally.max_contribution / tally.moments.mean() } else { 0.0 }
 }
 
@@ -45,7 +45,7 @@ pub(super) fn row(
     sampler: Sampler,
     sequence: SequenceKind,
     lit: &Lit<'_>,
-) -> Row {
+) -> EfficiencyRow {
     let budget = &config.budget;
     let at = cell(config, stream::ROW, case, &[sampler.index(), kind_index(sequence), lit.index]);
     let (tally, n, randomisations) = if sequence == SequenceKind::Independent {
@@ -55,7 +55,7 @@ pub(super) fn row(
         (measure::means(case, sampler, sequence, lit.light, at, size), size[0], size[1])
     };
     let v = tally.moments.relative_variance().scale(n as f64);
-    Row {
+    EfficiencyRow {
         model: case.model,
         sampler,
         sequence,

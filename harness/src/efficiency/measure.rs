@@ -9,14 +9,14 @@ use crate::stats::{Estimate, Moments};
 
 /// Moments of one cell, and the largest numbers seen on the way.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tally {
+pub(super) struct CellMoments {
     /// Of single contributions, or of the means of randomisations.
     pub(super) moments: Moments,
     pub(super) max_weight: f64,
     pub(super) max_contribution: f64,
 }
 
-impl Tally {
+impl CellMoments {
     fn see(&mut self, weight: f64, contribution: f64) {
         self.max_weight = self.max_weight.max(weight);
         self.max_contribution = self.max_contribution.max(contribution);
@@ -58,9 +58,9 @@ pub(super) fn independent(
     light: &dyn Light,
     [seed, stream]: [u64; 2],
     n: usize,
-) -> Tally {
+) -> CellMoments {
     let mut source = SequenceKind::Independent.source(seed, stream, sampler.dims(), n);
-    let mut tally = Tally::default();
+    let mut tally = CellMoments::default();
     samples(case, sampler, light, &mut source, n, |weight, y| {
         tally.moments.push(y);
         tally.see(weight, y);
@@ -76,8 +76,8 @@ pub(super) fn means(
     light: &dyn Light,
     [seed, stream]: [u64; 2],
     [n, randomisations]: [usize; 2],
-) -> Tally {
-    let mut tally = Tally::default();
+) -> CellMoments {
+    let mut tally = CellMoments::default();
     let mut source = kind.source(seed, stream, sampler.dims(), n);
     for run in 0..randomisations {
         // Every pass of the other kinds is a randomisation of its own.

@@ -2,7 +2,7 @@
 
 use super::SAMPLERS;
 use super::case::Case;
-use super::measure::{Tally, contribution, independent};
+use super::measure::{CellMoments, contribution, independent};
 use super::result::Technique;
 use crate::light::{Light, LightSample};
 use crate::sampler::Sampler;
@@ -37,7 +37,7 @@ impl Technique {
 }
 
 /// Moments of `n` contributions of `technique`: of single samples, or of pairs of one sample each.
-pub(super) fn estimate(case: &Case, technique: Technique, light: &dyn Light, at: [u64; 2], n: usize) -> Tally {
+pub(super) fn estimate(case: &Case, technique: Technique, light: &dyn Light, at: [u64; 2], n: usize) -> CellMoments {
     match technique {
         Technique::Bsdf(sampler) => independent(case, sampler, light, at, n),
         Technique::Light => pairs(case, None, light, at, n),
@@ -56,7 +56,7 @@ fn power_heuristic(mine: f64, other: f64) -> f64 {
 }
 
 /// One light sample, and with `partner` one sample of that too, a contribution.
-fn pairs(case: &Case, partner: Option<Sampler>, light: &dyn Light, [seed, stream]: [u64; 2], n: usize) -> Tally {
+fn pairs(case: &Case, partner: Option<Sampler>, light: &dyn Light, [seed, stream]: [u64; 2], n: usize) -> CellMoments {
     let mut source = Independent::new(seed, stream);
     let mut moments = Moments::new();
     let mut largest = 0.0_f64;
@@ -94,5 +94,5 @@ fn pairs(case: &Case, partner: Option<Sampler>, light: &dyn Light, [seed, stream
         }
         left -= lanes;
     }
-    Tally { moments, max_weight: 0.0, max_contribution: largest }
+    CellMoments { moments, max_weight: 0.0, max_contribution: largest }
 }

@@ -10,11 +10,11 @@ use serde::Serialize;
 #[derive(Clone, Debug, Serialize)]
 pub struct EfficiencyResult {
     /// Numbers of samples.
-    pub settings: Settings,
+    pub settings: EfficiencySettings,
     /// Under constant light: measured V against quadrature and against the recorded figures.
     pub reference_v: Vec<ReferenceV>,
     /// Variance and bias of every estimator under every light.
-    pub rows: Vec<Row>,
+    pub rows: Vec<EfficiencyRow>,
     /// Light sampling and multiple importance sampling.
     pub mis_rows: Vec<MisRow>,
     /// Error against the number of samples.
@@ -27,7 +27,7 @@ pub struct EfficiencyResult {
 
 /// Settings that the figures depend on, besides the hair and the environment.
 #[derive(Clone, Debug, Serialize)]
-pub struct Settings {
+pub struct EfficiencySettings {
     /// Seed of every stream.
     pub seed: u64,
     /// Sample counts.
@@ -106,7 +106,7 @@ pub struct ReferenceV {
 
 /// One estimator under one light.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct EfficiencyRow {
     /// The model.
     pub model: ModelKind,
     /// The sampler.

@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::cells::{self, Lit};
 use super::reference::{by_quadrature, of_environment};
-use super::result::{Check, EfficiencyResult, Settings, Technique};
+use super::result::{Check, EfficiencyResult, EfficiencySettings, Technique};
 use super::{
     BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG, Reference, SAMPLERS,
     SUN_DEG, THETA_O_DEG, with_beta,
@@ -137,7 +137,7 @@ pub fn run(
     });
 
     let mut result = EfficiencyResult {
-        settings: Settings {
+        settings: EfficiencySettings {
             seed: config.seed,
             budget: config.budget,
             theta_o_deg: THETA_O_DEG,

@@ -165,7 +165,7 @@ fn a_small_run_has_every_row_and_passes_its_check() {
     let check = &result.check;
     assert!(check.passed(), "{check:#?}");
     // The sun at these sizes is too small to be tested by the scattering function alone.
-    let sun = |r: &&Row| r.light == "sun";
+    let sun = |r: &&EfficiencyRow| r.light == "sun";
     assert!(result.rows.iter().filter(sun).all(|r| !r.tested), "{check:?}");
     assert!(result.rows.iter().filter(|r| r.light == "constant").all(|r| r.tested), "{check:?}");
     assert!(check.tests > 675 && check.untested >= 72, "{} {}", check.tests, check.untested);

@@ -2,8 +2,8 @@
 
 use super::direction;
 use crate::difference::{SIGMA_DEG, blurred_difference};
-use crate::plot::{Axis, Grid, HeatMap, PolarChart, PolarPanel, PolarSeries, Projection};
-use crate::report::Figure;
+use crate::plot::{Axis, HeatMap, PolarChart, PolarPanel, PolarSeries, Projection, SphereGrid};
+use crate::report::Drawing;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::{Bell, Bsdf, Gaussian, Hair, HairParams};
@@ -13,9 +13,9 @@ use hairis_variants::{AnyBsdf, Cauchy};
 const CELLS: (u16, u16) = (60, 120);
 
 /// S of the published model or of a variant, the mean of RGB.
-type Scatter = Box<dyn Fn(Vec3) -> f64>;
+type ScatterFn = Box<dyn Fn(Vec3) -> f64>;
 
-fn scatter(bsdf: impl Into<AnyBsdf>, theta_o: f64) -> Scatter {
+fn scatter(bsdf: impl Into<AnyBsdf>, theta_o: f64) -> ScatterFn {
     let gather = bsdf.into().prepare(direction(theta_o, 0.0));
     Box::new(move |wi| gather.eval(wi).into_iter().map(f64::from).sum::<f64>() / 3.0)
 }
@@ -26,7 +26,7 @@ fn scatter(bsdf: impl Into<AnyBsdf>, theta_o: f64) -> Scatter {
 /// Around it, `wi` turns on the cone of the mirror direction, `theta_i = -theta_o`, which is the normal plane when
 /// `theta_o` is 0; along it, `wi` turns in the plane of incidence, that of the fibre and the viewer.
 #[must_use]
-pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> Figure {
+pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> Drawing {
     const STEPS: i32 = 1440;
     let mut models = vec![("Gaussian (published)".to_owned(), scatter(Bsdf::new(&Hair(Gaussian), params), theta_o))];
     models.extend(
@@ -57,36 +57,37 @@ pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> 
          own scale. Every lobe has the same peak in all models; with the same widths the Cauchy is the lower one within \
          1.6 widths of its centre and the higher one further out."
     );
-    Figure::new(chart.svg(), caption).named("polar")
+    Drawing::new(chart.svg(), caption).named("polar")
 }
 
 /// Latitude-longitude maps of S of the Gaussian model, of a Cauchy model and of what the second has more, seen from the
 /// inclination `theta_o` (radians) at azimuth 0.
 #[must_use]
-pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Figure; 3] {
+pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Drawing; 3] {
     const DECADES: f64 = 1e3;
     let (a, b) =
         (scatter(Bsdf::new(&Hair(Gaussian), params), theta_o), scatter(Bsdf::new(&cauchy.model(), params), theta_o));
-    let map =
-        |s: &dyn Fn(Vec3) -> f64| Grid::sample(Projection::EqualAngle, CELLS, |theta, phi| s(direction(theta, phi)));
+    let map = |s: &dyn Fn(Vec3) -> f64| {
+        SphereGrid::sample(Projection::EqualAngle, CELLS, |theta, phi| s(direction(theta, phi)))
+    };
     let (gaussian, other, more) = (map(&a), map(&b), map(&|wi| b(wi) - a(wi)));
     let most = [&gaussian, &other].iter().filter_map(|grid| grid.range()).map(|(_, high)| high).fold(0.0, f64::max);
     let degrees = theta_o.to_degrees();
     let value = || Axis::log("S (1/sr)").range(most / DECADES, most);
     // Values below the range take its first colour.
-    let shown = |grid: Grid| grid.map(|s| s.max(most / DECADES));
+    let shown = |grid: SphereGrid| grid.map(|s| s.max(most / DECADES));
     let heat = |title: &str, grid| HeatMap::new(format!("{title}, θₒ = {degrees:.0}°"), value(), shown(grid)).svg();
     let seen = format!("seen from θₒ = {degrees:.0}° at azimuth 0: the mean of RGB, logarithmic over three decades");
     let k = cauchy.width_factor();
     [
-        Figure::new(heat("S, Gaussian model", gaussian), format!("S of the Gaussian model, {seen}."))
+        Drawing::new(heat("S, Gaussian model", gaussian), format!("S of the Gaussian model, {seen}."))
             .named("map-gaussian"),
-        Figure::new(
+        Drawing::new(
             heat("S, Cauchy model", other),
             format!("S of the Cauchy model with k = {k}, {seen}; same colours."),
         )
         .named("map-cauchy"),
-        Figure::new(
+        Drawing::new(
             HeatMap::new("S, Cauchy less Gaussian", Axis::linear("difference of S (1/sr)"), more).signed().svg(),
             "What the Cauchy model has more (vermilion) and less (blue) than the Gaussian one, linear.",
         )
@@ -96,10 +97,10 @@ pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Figure; 3] {
 
 /// A map of what a Cauchy model has more of `S cos theta_i` after the blur of [`difference`](crate::difference).
 #[must_use]
-pub fn difference_map(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> Figure {
+pub fn difference_map(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> Drawing {
     let (gaussian, more) = blurred_difference(params, theta_o, f64::from(cauchy.width_factor()));
-    let map = Grid::sample(Projection::EqualAngle, CELLS, more);
-    let most = Grid::sample(Projection::EqualAngle, CELLS, gaussian).range().map_or(f64::NAN, |(_, high)| high);
+    let map = SphereGrid::sample(Projection::EqualAngle, CELLS, more);
+    let most = SphereGrid::sample(Projection::EqualAngle, CELLS, gaussian).range().map_or(f64::NAN, |(_, high)| high);
     let value = Axis::linear("difference of S cos θᵢ (1/sr)");
     let title = format!("S cos θᵢ blurred by {SIGMA_DEG}°, Cauchy less Gaussian");
     let caption = format!(
@@ -107,5 +108,5 @@ pub fn difference_map(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> Figu
          model alone, blurred, reaches {:.2}.",
         most
     );
-    Figure::new(HeatMap::new(title, value, map).signed().svg(), caption).named("map-blurred-difference")
+    Drawing::new(HeatMap::new(title, value, map).signed().svg(), caption).named("map-blurred-difference")
 }

@@ -35,13 +35,13 @@ impl Projection {
 
 /// Values on a map of the sphere, in cells of equal size on it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
+pub struct SphereGrid {
     projection: Projection,
     columns: usize,
     values: Vec<f64>,
 }
 
-impl Grid {
+impl SphereGrid {
     /// `value(theta, phi)` in the middle of each of `rows` by `columns` cells; angles in radians.
     #[must_use]
     pub fn sample(projection: Projection, (rows, columns): (u16, u16), mut value: impl FnMut(f64, f64) -> f64) -> Self {
@@ -95,7 +95,7 @@ impl Map {
     pub(super) fn fill(
         &self,
         canvas: &mut Canvas,
-        grid: &Grid,
+        grid: &SphereGrid,
         levels: u16,
         share: impl Fn(f64) -> f64,
         color: impl Fn(f64) -> Color,

@@ -3,15 +3,15 @@
 use super::axis::Axis;
 use super::canvas::sheet;
 use super::frame;
-use super::grid::{Grid, Map, color_bar};
+use super::grid::{Map, SphereGrid, color_bar};
 use super::palette::{scale_color, signed_color};
 
 /// A map of the sphere coloured by a scalar, in viridis, with a bar of its colours; by a difference, in blue and
 /// vermilion either side of white.
 ///
 /// ```
-/// use hairis_harness::plot::{Axis, Grid, HeatMap, Projection};
-/// let grid = Grid::sample(Projection::EqualArea, (36, 72), |theta, phi| theta.cos() * (1.0 + phi.cos()));
+/// use hairis_harness::plot::{Axis, SphereGrid, HeatMap, Projection};
+/// let grid = SphereGrid::sample(Projection::EqualArea, (36, 72), |theta, phi| theta.cos() * (1.0 + phi.cos()));
 /// let svg = HeatMap::new("Radiance", Axis::linear("L (W/m²/sr)"), grid).svg();
 /// assert!(svg.ends_with("</svg>\n"));
 /// ```
@@ -19,14 +19,14 @@ use super::palette::{scale_color, signed_color};
 pub struct HeatMap {
     title: String,
     value: Axis,
-    grid: Grid,
+    grid: SphereGrid,
     signed: bool,
 }
 
 impl HeatMap {
     /// A map of `grid`; `value` says what its numbers are and how colours spread over them.
     #[must_use]
-    pub fn new(title: impl Into<String>, value: Axis, grid: Grid) -> Self {
+    pub fn new(title: impl Into<String>, value: Axis, grid: SphereGrid) -> Self {
         Self { title: title.into(), value, grid, signed: false }
     }
 

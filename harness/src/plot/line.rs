@@ -73,7 +73,7 @@ impl Series {
 
 /// A line that data are compared with.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Reference {
+pub enum ReferenceLine {
     /// `y = y0 (x / x0)^slope`: a straight line when both axes are logarithmic, such as the -1/2 of Monte Carlo.
     Power {
         /// Meaning of the line.
@@ -92,7 +92,7 @@ pub enum Reference {
     },
 }
 
-impl Reference {
+impl ReferenceLine {
     fn label(&self) -> &str {
         match self {
             Self::Power { label, .. } | Self::Level { label, .. } => label,
@@ -110,11 +110,11 @@ impl Reference {
 /// Series of points over two axes.
 ///
 /// ```
-/// use hairis_harness::plot::{Axis, LineChart, Point, Reference, Series};
+/// use hairis_harness::plot::{Axis, LineChart, Point, ReferenceLine, Series};
 /// let errors = [(16.0, 0.25), (64.0, 0.12), (256.0, 0.063)].map(|(n, e)| Point::new(n, e).with_error(0.1 * e));
 /// let svg = LineChart::new("Convergence", Axis::log("samples N"), Axis::log("relative RMS error"))
 ///     .series(Series::new("published", errors))
-///     .reference(Reference::Power { label: "slope −1/2".into(), slope: -0.5, through: (16.0, 0.25) })
+///     .reference(ReferenceLine::Power { label: "slope −1/2".into(), slope: -0.5, through: (16.0, 0.25) })
 ///     .svg();
 /// assert!(svg.starts_with("<svg"));
 /// ```
@@ -124,7 +124,7 @@ pub struct LineChart {
     x: Axis,
     y: Axis,
     series: Vec<Series>,
-    references: Vec<Reference>,
+    references: Vec<ReferenceLine>,
 }
 
 impl LineChart {
@@ -143,7 +143,7 @@ impl LineChart {
 
     /// Adds a line to compare with.
     #[must_use]
-    pub fn reference(mut self, reference: Reference) -> Self {
+    pub fn reference(mut self, reference: ReferenceLine) -> Self {
         self.references.push(reference);
         self
     }
@@ -152,15 +152,15 @@ impl LineChart {
     #[must_use]
     pub fn svg(&self) -> String {
         let mut names: Vec<&str> = self.series.iter().map(|s| s.name.as_str()).collect();
-        names.extend(self.references.iter().map(Reference::label));
+        names.extend(self.references.iter().map(ReferenceLine::label));
         let description = format!("{} against {}: {}.", self.y.label, self.x.label, names.join(", "));
         let top = frame::title_height(&self.title, frame::WIDTH);
         let bottom = top + 400.0;
         let shown = |p: &&Point| self.x.shows(p.x) && self.y.shows(p.y);
         let points = || self.series.iter().flat_map(|s| &s.points).filter(shown);
         let levels = self.references.iter().filter_map(|r| match r {
-            Reference::Level { y, .. } => Some(*y),
-            Reference::Power { .. } => None,
+            ReferenceLine::Level { y, .. } => Some(*y),
+            ReferenceLine::Power { .. } => None,
         });
         let y = self.y.fit(points().flat_map(|p| [p.y, p.low, p.high]).chain(levels), bottom, top);
         let left = frame::left_margin(&y);

@@ -2,18 +2,18 @@
 
 use super::canvas::{Hang, Type, sheet};
 use super::frame;
-use super::grid::{Grid, Map, Projection};
+use super::grid::{Map, Projection, SphereGrid};
 use super::palette::{INK, MARK, Marker, series_color, soft_color};
 
 /// One map of a [`ScatterMap`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Panel {
+pub struct ScatterPanel {
     title: String,
     points: Vec<(f64, f64)>,
-    density: Option<Grid>,
+    density: Option<SphereGrid>,
 }
 
-impl Panel {
+impl ScatterPanel {
     /// Directions as `(theta, phi)` in radians.
     #[must_use]
     pub fn new(title: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
@@ -22,7 +22,7 @@ impl Panel {
 
     /// A density shown behind the points, from white at 0 to a pale colour at its greatest value.
     #[must_use]
-    pub fn with_density(mut self, density: Grid) -> Self {
+    pub fn with_density(mut self, density: SphereGrid) -> Self {
         self.density = Some(density);
         self
     }
@@ -31,16 +31,16 @@ impl Panel {
 /// Directions as dots on maps of the sphere, one map a data set, in rows of two or three.
 ///
 /// ```
-/// use hairis_harness::plot::{Panel, Projection, ScatterMap};
+/// use hairis_harness::plot::{ScatterPanel, Projection, ScatterMap};
 /// let spiral = (0..100).map(|i| f64::from(i) / 100.0).map(|t| (2.0 * t - 1.0, 30.0 * t));
-/// let svg = ScatterMap::new("Directions", Projection::EqualArea).panel(Panel::new("a spiral", spiral)).svg();
+/// let svg = ScatterMap::new("Directions", Projection::EqualArea).panel(ScatterPanel::new("a spiral", spiral)).svg();
 /// assert!(svg.contains("a spiral"));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatterMap {
     title: String,
     projection: Projection,
-    panels: Vec<Panel>,
+    panels: Vec<ScatterPanel>,
     mark: Option<(String, f64, f64)>,
 }
 
@@ -53,7 +53,7 @@ impl ScatterMap {
 
     /// Adds a map.
     #[must_use]
-    pub fn panel(mut self, panel: Panel) -> Self {
+    pub fn panel(mut self, panel: ScatterPanel) -> Self {
         self.panels.push(panel);
         self
     }

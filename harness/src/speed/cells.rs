@@ -3,7 +3,7 @@
 use super::Op;
 use super::check::Truth;
 use super::inputs::{DIRECTIONS, Inputs, arrays, packets, xi_packets};
-use super::task::{PROBE, Pass, Point, task};
+use super::task::{FormulaPoint, PROBE, Pass, task};
 use super::{points, slices};
 use crate::subject::to_f64;
 use glam::Vec3;
@@ -33,7 +33,7 @@ pub(super) struct Contender {
 }
 
 /// One operation of one model: a table's block of rows.
-pub(super) struct Cell {
+pub(super) struct SpeedCell {
     pub(super) op: Op,
     pub(super) model: &'static str,
     /// The reference first.
@@ -42,10 +42,10 @@ pub(super) struct Cell {
 }
 
 /// All operations of one model, on inputs of this seed; none unless it is the first of its name.
-pub(super) struct Cells(pub(super) u64);
+pub(super) struct SpeedCells(pub(super) u64);
 
-impl Visitor for Cells {
-    type Output = Result<Vec<Cell>, ParamError>;
+impl Visitor for SpeedCells {
+    type Output = Result<Vec<SpeedCell>, ParamError>;
 
     fn visit<M: Registered>(self) -> Self::Output {
         // At compile time: models that are not timed are not compiled.
@@ -66,7 +66,7 @@ impl Visitor for Cells {
                 Op::PointsMixed => points::mixed::<M>(id, &inputs, false)?,
                 Op::PointsPacked => points::mixed::<M>(id, &inputs, true)?,
             };
-            Ok(Cell { op, model: id.name(), contenders, truth })
+            Ok(SpeedCell { op, model: id.name(), contenders, truth })
         };
         Op::ALL.into_iter().map(timed).collect()
     }
@@ -95,7 +95,7 @@ fn prepare<M: Registered>(id: ModelId, inputs: &Inputs<M::Params>) -> Result<(Ve
     let params = inputs.params[0];
     let (bsdf, formulas) = (Bsdf::new(&M::MODEL, &params), M::formulas::<f32>(&params));
     let contenders = vec![
-        scalar(TEXTBOOK, task(&arrays(&inputs.wo), move |wo| Point(M::reference_at(&formulas, *wo, 0.0)))),
+        scalar(TEXTBOOK, task(&arrays(&inputs.wo), move |wo| FormulaPoint(M::reference_at(&formulas, *wo, 0.0)))),
         scalar(ONE, task(&inputs.wo, move |wo| bsdf.prepare(*wo))),
     ];
     let contenders =

@@ -1,6 +1,6 @@
 //! Check of a contender's answers: a wrong kernel must not win.
 
-use super::task::Answer;
+use super::task::ContenderAnswer;
 use crate::subject::to_f64;
 use glam::{DVec3, Vec3};
 use hairis::reference::Reference;
@@ -41,7 +41,7 @@ impl Truth {
     }
 
     /// Share of the answers that are wrong; 1 if there are not as many as there should be.
-    pub(super) fn wrong_share(&self, answers: &[Answer]) -> f64 {
+    pub(super) fn wrong_share(&self, answers: &[ContenderAnswer]) -> f64 {
         if answers.len() != self.wi.len() {
             return 1.0;
         }
@@ -51,7 +51,7 @@ impl Truth {
     }
 }
 
-fn right(point: &AnyReference<f64>, truth: &Option<[f64; 3]>, answer: &Answer) -> bool {
+fn right(point: &AnyReference<f64>, truth: &Option<[f64; 3]>, answer: &ContenderAnswer) -> bool {
     let Some(truth) = *truth else {
         return answer.pdf == 0.0;
     };

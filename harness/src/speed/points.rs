@@ -3,7 +3,7 @@
 use super::cells::{Contender, EIGHT, EIGHT_AT_ONE, ONE, TEXTBOOK, scalar, truth, with_levels};
 use super::check::Truth;
 use super::inputs::{Inputs, arrays, packets, pairs, xi_packets};
-use super::task::{Answer, Output, several, task};
+use super::task::{ContenderAnswer, Output, several, task};
 use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::wide::f32x8;
@@ -14,7 +14,7 @@ use hairis_variants::{ModelId, Registered};
 struct Leading<const N: usize>(Sample8);
 
 impl<const N: usize> Output for Leading<N> {
-    fn answers(&self, out: &mut Vec<Answer>) {
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
         for lane in 0..N.min(8) {
             self.0.lane(lane).answers(out);
         }

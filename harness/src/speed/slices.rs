@@ -1,6 +1,6 @@
 //! Contenders that take whole slices: one call per pass.
 
-use super::task::{Answer, Pass};
+use super::task::{ContenderAnswer, Pass};
 use core::cell::RefCell;
 use core::hint::black_box;
 use glam::Vec3;
@@ -61,12 +61,12 @@ where
         black_box((&*out, done.is_ok()));
     }
 
-    fn answers(&self) -> Vec<Answer> {
+    fn answers(&self) -> Vec<ContenderAnswer> {
         self.pass();
         let out = self.out.borrow();
         let at = |k: usize, i: usize| out[k][i];
         (0..out[0].len())
-            .map(|i| Answer {
+            .map(|i| ContenderAnswer {
                 wi: (N > 4).then(|| Vec3::new(at(4, i), at(5, i), at(6, i))),
                 value: [at(0, i), at(1, i), at(2, i)],
                 pdf: at(3, i),

@@ -12,7 +12,7 @@ pub(super) const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
 
 /// Answer of a contender for one direction.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Answer {
+pub(crate) struct ContenderAnswer {
     /// The direction it drew; `None` if it was given one, zero if it discarded the sample.
     pub(super) wi: Option<Vec3>,
     pub(super) value: [f32; 3],
@@ -21,7 +21,7 @@ pub(crate) struct Answer {
 
 /// The result of one call: of one direction, or of eight.
 pub(crate) trait Output {
-    fn answers(&self, out: &mut Vec<Answer>);
+    fn answers(&self, out: &mut Vec<ContenderAnswer>);
 }
 
 /// Work over all the inputs of a run.
@@ -29,7 +29,7 @@ pub(crate) trait Pass {
     /// One call per input; results are dropped.
     fn pass(&self);
     /// The same calls, their results kept, in the order of the directions.
-    fn answers(&self) -> Vec<Answer>;
+    fn answers(&self) -> Vec<ContenderAnswer>;
 }
 
 /// A function of one argument and the arguments it is given.
@@ -60,7 +60,7 @@ impl<I, O: Output, F: Fn(&I) -> O> Pass for Task<I, O, F> {
         }
     }
 
-    fn answers(&self) -> Vec<Answer> {
+    fn answers(&self) -> Vec<ContenderAnswer> {
         let mut out = Vec::new();
         for input in &self.inputs {
             (self.call)(input).answers(&mut out);
@@ -99,7 +99,7 @@ impl<I, O: Output, F: Fn(&I, &mut dyn FnMut(&O))> Pass for Several<I, O, F> {
         }
     }
 
-    fn answers(&self) -> Vec<Answer> {
+    fn answers(&self) -> Vec<ContenderAnswer> {
         let mut out = Vec::new();
         for input in &self.inputs {
             (self.call)(input, &mut |result| result.answers(&mut out));
@@ -113,19 +113,19 @@ impl<I, O: Output, F: Fn(&I, &mut dyn FnMut(&O))> Pass for Several<I, O, F> {
 }
 
 impl Output for ([f32; 3], f32) {
-    fn answers(&self, out: &mut Vec<Answer>) {
-        out.push(Answer { wi: None, value: self.0, pdf: self.1 });
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
+        out.push(ContenderAnswer { wi: None, value: self.0, pdf: self.1 });
     }
 }
 
 impl Output for Eval {
-    fn answers(&self, out: &mut Vec<Answer>) {
-        out.push(Answer { wi: None, value: self.value, pdf: self.pdf });
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
+        out.push(ContenderAnswer { wi: None, value: self.value, pdf: self.pdf });
     }
 }
 
 impl Output for Eval8 {
-    fn answers(&self, out: &mut Vec<Answer>) {
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
         for lane in 0..8 {
             self.lane(lane).answers(out);
         }
@@ -133,31 +133,31 @@ impl Output for Eval8 {
 }
 
 impl Output for Seen8 {
-    fn answers(&self, out: &mut Vec<Answer>) {
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
         for lane in 0..8 {
             let value = self.radiance.map(|c| c.to_array()[lane]);
-            out.push(Answer { wi: None, value, pdf: self.pdf.to_array()[lane] });
+            out.push(ContenderAnswer { wi: None, value, pdf: self.pdf.to_array()[lane] });
         }
     }
 }
 
 impl Output for ReferenceSample<f32> {
-    fn answers(&self, out: &mut Vec<Answer>) {
-        out.push(Answer { wi: Some(self.wi.into()), value: self.value, pdf: self.pdf });
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
+        out.push(ContenderAnswer { wi: Some(self.wi.into()), value: self.value, pdf: self.pdf });
     }
 }
 
 impl Output for Option<Sample> {
-    fn answers(&self, out: &mut Vec<Answer>) {
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
         out.push(match self {
-            Some(sample) => Answer { wi: Some(sample.wi), value: sample.value, pdf: sample.pdf },
-            None => Answer { wi: Some(Vec3::ZERO), value: [0.0; 3], pdf: 0.0 },
+            Some(sample) => ContenderAnswer { wi: Some(sample.wi), value: sample.value, pdf: sample.pdf },
+            None => ContenderAnswer { wi: Some(Vec3::ZERO), value: [0.0; 3], pdf: 0.0 },
         });
     }
 }
 
 impl Output for Sample8 {
-    fn answers(&self, out: &mut Vec<Answer>) {
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
         for lane in 0..8 {
             self.lane(lane).answers(out);
         }
@@ -165,22 +165,22 @@ impl Output for Sample8 {
 }
 
 /// A shading point of the formulas.
-pub(super) struct Point<R>(pub(super) R);
+pub(super) struct FormulaPoint<R>(pub(super) R);
 
-impl<R: Reference<f32>> Output for Point<R> {
-    fn answers(&self, out: &mut Vec<Answer>) {
+impl<R: Reference<f32>> Output for FormulaPoint<R> {
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
         self.0.eval_pdf(PROBE.to_array()).answers(out);
     }
 }
 
 impl<M: Model> Output for Gather<M> {
-    fn answers(&self, out: &mut Vec<Answer>) {
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
         self.eval_pdf(PROBE).answers(out);
     }
 }
 
 impl<M: Model> Output for Gather8<M> {
-    fn answers(&self, out: &mut Vec<Answer>) {
+    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
         self.eval_pdf8(&Vec3x8::splat(PROBE)).answers(out);
     }
 }

@@ -3,7 +3,7 @@
 use super::grid::Cell;
 use super::perfect;
 use super::tally::{Figures, Tally, figures};
-use super::{Budget, Light5};
+use super::{Light5, StudyBudget};
 use crate::efficiency::PHI_O_DEG;
 use crate::light::Light;
 use crate::quadrature::fibre_direction;
@@ -52,7 +52,7 @@ struct LightDraw {
 /// The streams are keyed by what the cell is, not by where it stands or who computes it.
 pub(super) fn measure(
     seed: u64,
-    budget: Budget,
+    budget: StudyBudget,
     lights: &Light5<'_>,
     cell: &Cell,
     samplers: &[Sampler],
@@ -74,7 +74,7 @@ pub(super) fn measure(
         for &sampler in samplers {
             let scatter = Scatter::new(model, sampler, &params, wo);
             let mut from = stream(&[1, model.index(), sampler.index()]);
-            let mut perfect = (sampler == perfect::SOURCE).then_some([[perfect::Tally::default(); 2]; 5]);
+            let mut perfect = (sampler == perfect::SOURCE).then_some([[perfect::PerfectTally::default(); 2]; 5]);
             let (tallies, max_weight) = by_sampler(&scatter, &mut from, budget, lights, perfect.as_mut());
             for (light, (tally, draws)) in tallies.into_iter().zip(&draws).enumerate() {
                 let of_light = perfect.as_mut().map(|perfect| &mut perfect[light][1]);
@@ -99,9 +99,9 @@ const fn is_drawn(place: u64) -> bool {
 fn by_sampler(
     scatter: &Scatter,
     from: &mut Independent,
-    budget: Budget,
+    budget: StudyBudget,
     lights: &Light5<'_>,
-    mut perfect: Option<&mut [[perfect::Tally; 2]; 5]>,
+    mut perfect: Option<&mut [[perfect::PerfectTally; 2]; 5]>,
 ) -> ([Tally; 5], f64) {
     let mut tallies = [Tally::default(); 5];
     let mut max_weight = f32x8::ZERO;
@@ -130,7 +130,12 @@ fn by_sampler(
 }
 
 /// The tally of a light's directions; perfect sampling's on the side.
-fn by_light(scatter: &Scatter, draws: &[LightDraw], budget: Budget, mut perfect: Option<&mut perfect::Tally>) -> Tally {
+fn by_light(
+    scatter: &Scatter,
+    draws: &[LightDraw],
+    budget: StudyBudget,
+    mut perfect: Option<&mut perfect::PerfectTally>,
+) -> Tally {
     let mut tally = Tally::default();
     let ratio = widened(budget.ratio());
     for draw in draws {
@@ -176,7 +181,7 @@ mod tests {
     use crate::stats::Estimate;
     use crate::study::Grid;
 
-    const BUDGET: Budget = Budget { samples: 1 << 16, light_samples: 1 << 13 };
+    const BUDGET: StudyBudget = StudyBudget { samples: 1 << 16, light_samples: 1 << 13 };
 
     fn cell_of(beta_r_deg: f32, theta_o_deg: f32) -> Cell {
         let is = |cell: &Cell| cell.beta_r_deg == beta_r_deg && cell.theta_o_deg == theta_o_deg;
@@ -227,7 +232,7 @@ mod tests {
         let sky = Sky::default().environment();
         let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), sun(), Rectangle::figure_6a());
         let lights: Light5<'_> = [&constant, &smooth, &sun, &area, &sky];
-        let budget = Budget { samples: 256, light_samples: 64 };
+        let budget = StudyBudget { samples: 256, light_samples: 64 };
         let of = |seed, cell: &Cell| measure(seed, budget, &lights, cell, &Sampler::ALL).expect("accepted");
         let cell = cell_of(7.5, 45.0);
         let found = of(1, &cell);

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 
 /// The values of a column.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Values {
+pub enum ColumnValues {
     /// Words, as UTF-8.
     Text(Vec<Cow<'static, str>>),
     /// Counts, as 32-bit integers.
@@ -17,7 +17,7 @@ pub enum Values {
     Number(Vec<f64>),
 }
 
-impl Values {
+impl ColumnValues {
     /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -50,7 +50,7 @@ impl Values {
 
 /// Named columns of one length.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Columns(Vec<(&'static str, Values)>);
+pub struct Columns(Vec<(&'static str, ColumnValues)>);
 
 impl Columns {
     /// No columns.
@@ -61,7 +61,7 @@ impl Columns {
 
     /// Adds a column.
     #[must_use]
-    pub fn with(mut self, name: &'static str, values: Values) -> Self {
+    pub fn with(mut self, name: &'static str, values: ColumnValues) -> Self {
         debug_assert!(self.0.iter().all(|(_, first)| first.len() == values.len()), "{name} has another length");
         self.0.push((name, values));
         self
@@ -70,25 +70,25 @@ impl Columns {
     /// Adds a column of numbers.
     #[must_use]
     pub fn number(self, name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
-        self.with(name, Values::Number(values.into_iter().collect()))
+        self.with(name, ColumnValues::Number(values.into_iter().collect()))
     }
 
     /// Adds a column of counts.
     #[must_use]
     pub fn whole(self, name: &'static str, values: impl IntoIterator<Item = usize>) -> Self {
         let count = |value: usize| i32::try_from(value).unwrap_or(i32::MAX);
-        self.with(name, Values::Whole(values.into_iter().map(count).collect()))
+        self.with(name, ColumnValues::Whole(values.into_iter().map(count).collect()))
     }
 
     /// Adds a column of words.
     #[must_use]
     pub fn text<S: Into<Cow<'static, str>>>(self, name: &'static str, values: impl IntoIterator<Item = S>) -> Self {
-        self.with(name, Values::Text(values.into_iter().map(Into::into).collect()))
+        self.with(name, ColumnValues::Text(values.into_iter().map(Into::into).collect()))
     }
 
     /// The columns, by name.
     #[must_use]
-    pub fn columns(&self) -> &[(&'static str, Values)] {
+    pub fn columns(&self) -> &[(&'static str, ColumnValues)] {
         &self.0
     }
 

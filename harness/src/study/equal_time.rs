@@ -45,13 +45,13 @@ pub(crate) fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
 
 /// Cells by what becomes of a sampler in equal time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Cells {
+pub(super) struct CellCounts {
     pub(super) won: usize,
     pub(super) undecided: usize,
     pub(super) lost: usize,
 }
 
-impl Cells {
+impl CellCounts {
     /// Counts gains in V, those of cells that are unsure being `None`, against the ratio of the times.
     pub(super) fn count(gains: impl Iterator<Item = Option<Estimate>>, time: Estimate) -> Self {
         gains.fold(Self::default(), |mut cells, gain| {
@@ -65,7 +65,7 @@ impl Cells {
     }
 }
 
-impl fmt::Display for Cells {
+impl fmt::Display for CellCounts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { won, undecided, lost } = self;
         write!(f, "{won} / {undecided} / {lost}")
@@ -105,10 +105,10 @@ mod tests {
     #[test]
     fn cells_are_won_and_lost_beyond_the_errors_of_variance_and_time() {
         let gains = [Some(of(2.1, 0.01)), Some(of(1.9, 0.01)), Some(of(2.01, 0.01)), Some(of(2.1, 0.1)), None];
-        let cells = Cells::count(gains.into_iter(), of(0.5, 0.0));
-        assert_eq!(cells, Cells { won: 1, undecided: 3, lost: 1 });
+        let cells = CellCounts::count(gains.into_iter(), of(0.5, 0.0));
+        assert_eq!(cells, CellCounts { won: 1, undecided: 3, lost: 1 });
         assert_eq!(cells.to_string(), "1 / 3 / 1");
-        let vague = Cells::count(gains.into_iter(), of(0.5, 0.05));
+        let vague = CellCounts::count(gains.into_iter(), of(0.5, 0.05));
         assert_eq!(vague.undecided, 5, "times with errors of a tenth");
     }
 }

@@ -28,7 +28,7 @@ const N: usize = 4;
 
 /// Sums over the directions of one stratum, the sampler's or the light's, one per lane.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tally {
+pub(super) struct PerfectTally {
     /// Of the weight that counts for F, and of `m w r`, `m w r^2` and `m w r ln r`.
     sums: [f64x8; N],
     /// Of the products of each two of them, the first no earlier than the second.
@@ -38,7 +38,7 @@ pub(super) struct Tally {
     largest: f64x8,
 }
 
-impl Tally {
+impl PerfectTally {
     /// Adds eight directions drawn from the sampler, of weight `w` and contribution `y = w r`, each counted `m`.
     pub(super) fn push_drawn(&mut self, w: f64x8, y: f64x8, m: f64x8) {
         self.push(w, w, y, m);
@@ -84,9 +84,9 @@ impl Tally {
 /// contributed.
 ///
 /// Standard errors are those of the delta method.
-pub(super) fn measured(strata: &[Tally; 2]) -> Measured {
+pub(super) fn measured(strata: &[PerfectTally; 2]) -> Measured {
     let (mut means, mut covariances) = ([0.0; N], [[0.0; N]; N]);
-    for (of, s) in strata.iter().map(Tally::means) {
+    for (of, s) in strata.iter().map(PerfectTally::means) {
         for i in 0..N {
             means[i] += of[i];
             covariances[i].iter_mut().zip(s[i]).for_each(|(sum, x)| *sum += x);
@@ -128,7 +128,7 @@ mod tests {
     /// From directions of density `1/2 + x`, and `ratio` of the light's to one of them.
     fn estimated(run: u64, ratio: u64) -> Measured {
         let mut from = Independent::new(4, run);
-        let mut strata = [Tally::default(); 2];
+        let mut strata = [PerfectTally::default(); 2];
         let c = ratio as f64;
         let of = |x: [f64; 8], share: f64| {
             let p = |x: f64| 0.5 + x;
@@ -170,17 +170,17 @@ mod tests {
 
     #[test]
     fn nothing_seen_is_no_number_and_light_from_everywhere_leaves_nothing() {
-        let mut tally = Tally::default();
+        let mut tally = PerfectTally::default();
         let one = f64x8::splat(1.0);
         tally.push_drawn(one, f64x8::ZERO, one);
-        let dark = measured(&[tally, Tally::default()]).figures;
+        let dark = measured(&[tally, PerfectTally::default()]).figures;
         assert!(dark.mean.value == 0.0 && dark.v.value.is_nan() && dark.kl.value.is_nan(), "{dark:?}");
-        let mut tally = Tally::default();
+        let mut tally = PerfectTally::default();
         for k in 1..9 {
             let w = f64x8::new(core::array::from_fn(|lane| 1.0 / (lane + k) as f64));
             tally.push_drawn(w, w + w, one);
         }
-        let even = measured(&[tally, Tally::default()]).figures;
+        let even = measured(&[tally, PerfectTally::default()]).figures;
         assert!(even.v.value.abs() < 1e-14 && even.v.standard_error < 1e-7, "{even:?}");
         assert!(even.kl.value.abs() < 1e-14 && even.kl.standard_error < 1e-7, "{even:?}");
         assert!(even.mean.standard_error > 0.01, "weights that vary: {even:?}");

@@ -9,7 +9,7 @@ mod view;
 use super::output::{Study, Times};
 use crate::difference::{Difference, SIGMA_DEG};
 use crate::machine::Machine;
-use crate::report::{Figure, Report, Section};
+use crate::report::{Drawing, Report, Section};
 use serde_json::Value;
 use view::View;
 
@@ -50,7 +50,7 @@ impl Study {
     }
 
     fn sections(&self, page: Report, view: &View<'_>, times: &Times, difference: &Difference) -> Report {
-        let with = |section: Section, figures: Vec<Figure>| figures.into_iter().fold(section, Section::figure);
+        let with = |section: Section, figures: Vec<Drawing>| figures.into_iter().fold(section, Section::figure);
         let variance = with(
             Section::new("Variance").paragraph(
                 "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. `published` is the \

@@ -2,7 +2,7 @@
 //! in how many cells.
 
 use super::cell::Measured;
-use super::equal_time::{Cells, NOTHING, Sign, in_equal_time, time_ratio};
+use super::equal_time::{CellCounts, NOTHING, Sign, in_equal_time, time_ratio};
 use super::output::Times;
 use super::rows::{Strategy, place};
 use super::times::PER_POINT;
@@ -68,17 +68,17 @@ pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
 }
 
 /// A model, and how its directions are drawn.
-type Estimator = (ModelKind, Strategy);
+type ModelStrategy = (ModelKind, Strategy);
 
 /// Two compared estimators, and the label of their row.
-struct Comparison {
+struct ComparedEstimators {
     words: [&'static str; 2],
-    base: Estimator,
-    other: Estimator,
+    base: ModelStrategy,
+    other: ModelStrategy,
 }
 
 /// Inputs of a summary.
-struct Figures<'a> {
+struct SummaryInputs<'a> {
     cells: &'a [Vec<Measured>],
     lights: &'a [String],
     times: &'a Times,
@@ -87,13 +87,13 @@ struct Figures<'a> {
 /// The tables: the samplers of each model against `published`, then the models against each other; variances, then variances in
 /// equal time.
 pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &Times) -> Vec<Table> {
-    let figures = Figures { cells, lights, times };
-    let against = |base: (ModelKind, Sampler), (model, strategy): Estimator| Comparison {
+    let figures = SummaryInputs { cells, lights, times };
+    let against = |base: (ModelKind, Sampler), (model, strategy): ModelStrategy| ComparedEstimators {
         words: [model.name(), strategy.name()],
         base: (base.0, base.1.into()),
         other: (model, strategy),
     };
-    let over_published = |strategies: &[Strategy]| -> Vec<Comparison> {
+    let over_published = |strategies: &[Strategy]| -> Vec<ComparedEstimators> {
         let others = strategies.iter().filter(|strategy| strategy.sampler() != Some(Sampler::Published));
         let of_model = |model| others.clone().map(move |of| against((model, Sampler::Published), (model, *of)));
         ModelKind::ALL.into_iter().flat_map(of_model).collect()
@@ -137,17 +137,17 @@ pub(super) fn tables(cells: &[Vec<Measured>], lights: &[String], times: &Times) 
     ]
 }
 
-impl Figures<'_> {
+impl SummaryInputs<'_> {
     /// V of both sides in every cell.
-    fn pairs<'c>(&'c self, of: &'c Comparison, light: usize) -> impl Iterator<Item = [Estimate; 2]> + 'c {
-        let place = move |(model, strategy): Estimator| place(model, strategy, light, self.lights.len());
+    fn pairs<'c>(&'c self, of: &'c ComparedEstimators, light: usize) -> impl Iterator<Item = [Estimate; 2]> + 'c {
+        let place = move |(model, strategy): ModelStrategy| place(model, strategy, light, self.lights.len());
         self.cells.iter().map(move |cell| [of.base, of.other].map(|of| cell[place(of)].figures.v))
     }
 
     /// Time of the one over that of the other, alone or with a look-up of the light.
-    fn time(&self, of: &Comparison, light: usize, per_point: usize, with_look_up: bool) -> Estimate {
+    fn time(&self, of: &ComparedEstimators, light: usize, per_point: usize, with_look_up: bool) -> Estimate {
         let none = Estimate { value: f64::NAN, standard_error: f64::NAN };
-        let ns = |(model, strategy): Estimator| {
+        let ns = |(model, strategy): ModelStrategy| {
             strategy.sampler().map_or(none, |sampler| self.times.ns(model, sampler, per_point))
         };
         let more = if with_look_up { self.times.look_up(light) } else { NOTHING };
@@ -155,7 +155,10 @@ impl Figures<'_> {
     }
 
     /// A row for every light of every comparison, its first three cells filled in.
-    fn each<'c>(&'c self, of: &'c [Comparison]) -> impl Iterator<Item = (Vec<String>, &'c Comparison, usize)> {
+    fn each<'c>(
+        &'c self,
+        of: &'c [ComparedEstimators],
+    ) -> impl Iterator<Item = (Vec<String>, &'c ComparedEstimators, usize)> {
         of.iter().flat_map(move |of| {
             self.lights.iter().enumerate().map(move |(light, name)| {
                 let [first, second] = of.words.map(str::to_owned);
@@ -164,7 +167,7 @@ impl Figures<'_> {
         })
     }
 
-    fn variance(&self, title: &str, of: &[Comparison]) -> Table {
+    fn variance(&self, title: &str, of: &[ComparedEstimators]) -> Table {
         let mut table = keys(title)
             .number("median")
             .number("cells above 1 / below 1")
@@ -192,9 +195,9 @@ impl Figures<'_> {
     fn timed(
         &self,
         title: &str,
-        of: &[Comparison],
+        of: &[ComparedEstimators],
         with_look_up: bool,
-        cell: impl Fn(&Comparison, usize, Estimate) -> String,
+        cell: impl Fn(&ComparedEstimators, usize, Estimate) -> String,
     ) -> Table {
         let table = keys(title);
         let mut table = PER_POINT.into_iter().fold(table, |table, n| table.number(format!("{n} a point")));
@@ -208,16 +211,16 @@ impl Figures<'_> {
         table
     }
 
-    fn equal_time(&self, title: &str, of: &[Comparison], with_look_up: bool) -> Table {
+    fn equal_time(&self, title: &str, of: &[ComparedEstimators], with_look_up: bool) -> Table {
         self.timed(title, of, with_look_up, |of, light, time| {
             let gain = gain(self.pairs(of, light));
             gain.map_or_else(String::new, |gain| shown(in_equal_time(gain.median, time)))
         })
     }
 
-    fn counts(&self, title: &str, of: &[Comparison], with_look_up: bool) -> Table {
-        let cell = |of: &Comparison, light: usize, time: Estimate| {
-            Cells::count(self.pairs(of, light).map(sure_ratio), time).to_string()
+    fn counts(&self, title: &str, of: &[ComparedEstimators], with_look_up: bool) -> Table {
+        let cell = |of: &ComparedEstimators, light: usize, time: Estimate| {
+            CellCounts::count(self.pairs(of, light).map(sure_ratio), time).to_string()
         };
         self.timed(title, of, with_look_up, cell)
     }

@@ -72,7 +72,7 @@ pub(super) fn look_up(times: &[Time], light: usize) -> Estimate {
 }
 
 /// Something that is timed, and its times so far.
-struct Contender<'a> {
+struct TimedSampler<'a> {
     of: Timed,
     pass: Box<dyn Pass + 'a>,
     /// Directions of a pass.
@@ -90,7 +90,7 @@ pub(super) fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<Ti
     for model in ModelKind::ALL {
         for sampler in Sampler::ALL {
             for per_point in PER_POINT {
-                contenders.push(Contender {
+                contenders.push(TimedSampler {
                     of: Timed::Sample { model, sampler, per_point },
                     pass: pass(model, sampler, &points, per_point),
                     directions: 8 * PACKETS * per_point,
@@ -102,7 +102,7 @@ pub(super) fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<Ti
     }
     let seen = directions(&mut from);
     for (place, light) in lights.iter().enumerate() {
-        contenders.push(Contender {
+        contenders.push(TimedSampler {
             of: Timed::LookUp(place),
             pass: task(&seen, |wi| light.see8(wi)),
             directions: 8 * seen.len(),
@@ -113,13 +113,13 @@ pub(super) fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<Ti
     for round in 0..rounds {
         let count = contenders.len();
         for k in 0..count {
-            let Contender { pass, directions, passes, ns, .. } = &mut contenders[(k + round) % count];
+            let TimedSampler { pass, directions, passes, ns, .. } = &mut contenders[(k + round) % count];
             // One stretch untimed, for the caches; short ones are repeated.
             stretch(&**pass, 1);
             ns.push(stretch(&**pass, *passes) / (f64::from(*passes) * *directions as f64));
         }
     }
-    let time = |Contender { of, ns, .. }: Contender<'_>| {
+    let time = |TimedSampler { of, ns, .. }: TimedSampler<'_>| {
         let quartiles = quartiles(&ns);
         // A normal deviation is 1/1.349 of the distance of its quartiles, and a median's error 1.2533 of a mean's.
         let standard_error = 1.2533 / 1.349 * (quartiles[2] - quartiles[0]) / (rounds as f64).sqrt();

@@ -52,14 +52,14 @@ impl Sealed for Avx512 {}
 
 /// An index from 0 to 3 per lane: its number, and where it is at least 1, 2 and 3. What is not used is not kept.
 #[derive(Clone, Copy, Debug)]
-pub struct Indices {
+pub struct Indices16 {
     number: __m512i,
     at_least: [__mmask16; 3],
 }
 
 impl Lanes for Avx512 {
     type Mask = __mmask16;
-    type Index = Indices;
+    type Index = Indices16;
     // Only columns run in sixteen lanes: nothing is kept in them between calls.
     type Stored = Self;
 
@@ -150,7 +150,7 @@ impl Lanes for Avx512 {
         Self(avx512!(_mm512_maskz_mov_ps(mask, x.0)))
     }
     #[inline(always)]
-    fn search(x: Self, bounds: [Self; 3], count: usize) -> Indices {
+    fn search(x: Self, bounds: [Self; 3], count: usize) -> Indices16 {
         let at_least = avx512!([
             if count > 0 { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[0].0) } else { 0 },
             if count > 1 { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[1].0) } else { 0 },
@@ -162,10 +162,10 @@ impl Lanes for Avx512 {
             let second = _mm512_mask_add_epi32(first, at_least[1], first, one);
             _mm512_mask_add_epi32(second, at_least[2], second, one)
         });
-        Indices { number, at_least }
+        Indices16 { number, at_least }
     }
     #[inline(always)]
-    fn is_index(index: Indices, entry: usize) -> __mmask16 {
+    fn is_index(index: Indices16, entry: usize) -> __mmask16 {
         let [one, two, three] = index.at_least;
         match entry {
             0 => !one,
@@ -175,7 +175,7 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
-    fn index_number(index: Indices) -> Self {
+    fn index_number(index: Indices16) -> Self {
         Self(avx512!(_mm512_cvtepi32_ps(index.number)))
     }
 }
@@ -187,15 +187,15 @@ impl Broadcast<Avx512> for f32 {
     }
     // One shuffle in place of three blends.
     #[inline(always)]
-    fn look_up(table: &[f32; 4], index: Indices) -> Avx512 {
+    fn look_up(table: &[f32; 4], index: Indices16) -> Avx512 {
         Avx512(avx512!(_mm512_permutevar_ps(_mm512_broadcast_f32x4(_mm_loadu_ps(table.as_ptr())), index.number)))
     }
     #[inline(always)]
-    fn look_up_three(table: &[f32; 4], index: Indices) -> Avx512 {
+    fn look_up_three(table: &[f32; 4], index: Indices16) -> Avx512 {
         Self::look_up(table, index)
     }
     #[inline(always)]
-    fn look_up_half(table: &[f32; 2], index: Indices) -> Avx512 {
+    fn look_up_half(table: &[f32; 2], index: Indices16) -> Avx512 {
         Avx512(avx512!({
             // Either entry in every second lane: the upper of an index's two bits is which.
             let two = _mm512_castpd_ps(_mm512_set1_pd(table.as_ptr().cast::<f64>().read_unaligned()));
@@ -210,15 +210,15 @@ impl Broadcast<Self> for Avx512 {
         *self
     }
     #[inline(always)]
-    fn look_up(table: &[Self; 4], index: Indices) -> Self {
+    fn look_up(table: &[Self; 4], index: Indices16) -> Self {
         select_of_four(*table, index.at_least)
     }
     #[inline(always)]
-    fn look_up_three(table: &[Self; 4], index: Indices) -> Self {
+    fn look_up_three(table: &[Self; 4], index: Indices16) -> Self {
         select_of_four(*table, index.at_least)
     }
     #[inline(always)]
-    fn look_up_half(table: &[Self; 2], index: Indices) -> Self {
+    fn look_up_half(table: &[Self; 2], index: Indices16) -> Self {
         Self::select(index.at_least[1], table[1], table[0])
     }
 }

@@ -1,12 +1,12 @@
 //! The energy-conserving fibre's formulas: energy, normalisation, symmetries, agreement with the published forms.
 
-use super::support::{DEG, Worst, direction, points, rule, sum};
+use super::support::{DEG, LargestError, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
 use hairis::reference::{Real, Reference};
 use hairis_variants::chiang::{ChiangParameters, ChiangParams, ChiangReference, Selection, Shifts, bessel_i0_scaled};
 
-pub(crate) type Fiber = ChiangReference<f64>;
+pub(crate) type ChiangFiber = ChiangReference<f64>;
 pub(crate) const GRAZING: f64 = 1.000_01e-5;
 const ROUGHNESSES: [f64; 5] = [1e-3, 0.05, 0.3, 0.7, 1.0];
 /// Inclinations of `wo`, degrees.
@@ -18,12 +18,12 @@ pub(crate) fn clear(beta_m: f64, beta_n: f64, tilt_deg: f64) -> ChiangParameters
     ChiangParameters { beta_m, beta_n, tilt: tilt_deg * DEG, eta: 1.55, sigma_a: [0.0; 3], shifts: Shifts::DEon }
 }
 
-pub(crate) fn prepare(p: &ChiangParameters<f64>, theta_o: f64, h: f64) -> Fiber {
-    Fiber::prepare(p, Selection::Mean, direction(theta_o, 0.7), h)
+pub(crate) fn prepare(p: &ChiangParameters<f64>, theta_o: f64, h: f64) -> ChiangFiber {
+    ChiangFiber::prepare(p, Selection::Mean, direction(theta_o, 0.7), h)
 }
 
 /// Panels of `theta_i` between the discarded caps: peaks at the cones, and the poles, where M changes over `v`.
-pub(crate) fn inclinations(p: &ChiangParameters<f64>, fiber: &Fiber, edge: f64) -> Vec<(f64, f64)> {
+pub(crate) fn inclinations(p: &ChiangParameters<f64>, fiber: &ChiangFiber, edge: f64) -> Vec<(f64, f64)> {
     let v = p.variances();
     let mut peaks: Vec<_> = Lobe::ALL.into_iter().map(|lobe| (fiber.cone(lobe), v[lobe].sqrt().min(1.0))).collect();
     let least = v[Lobe::TT].min(0.1);
@@ -32,7 +32,7 @@ pub(crate) fn inclinations(p: &ChiangParameters<f64>, fiber: &Fiber, edge: f64) 
 }
 
 /// Panels of `phi_i - phi_o` over a turn: peaks and cuts of the logistics.
-pub(crate) fn azimuths(p: &ChiangParameters<f64>, fiber: &Fiber) -> Vec<(f64, f64)> {
+pub(crate) fn azimuths(p: &ChiangParameters<f64>, fiber: &ChiangFiber) -> Vec<(f64, f64)> {
     let turn = 2.0 * PI;
     let centres = [Lobe::R, Lobe::TT, Lobe::TRT].map(|lobe| fiber.centre(lobe).rem_euclid(turn));
     let peaks: Vec<_> = centres.into_iter().flat_map(|c| [c - turn, c, c + turn]).map(|c| (c, p.scale())).collect();
@@ -47,7 +47,7 @@ fn the_scaled_bessel_function_is_its_integral() {
         let half = |n: u32| (0.5 * PI * (f64::from(n) + 0.5) / f64::from(count)).sin();
         (0_u32..count).map(|n| (-2.0 * x * half(n) * half(n)).exp()).sum::<f64>() / f64::from(count)
     };
-    let (mut double, mut single) = (Worst::default(), Worst::default());
+    let (mut double, mut single) = (LargestError::default(), LargestError::default());
     for step in 0..4000_u32 {
         let x = f64::from(step).powi(2) * 1e-3;
         let expected = integral(x);
@@ -63,7 +63,7 @@ fn the_scaled_bessel_function_is_its_integral() {
 
 #[test]
 fn attenuations_of_clear_hair_sum_to_one() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for eta in [1.0, 1.0 + 1e-7, 1.1, 1.55, 2.5, 4.0] {
         for theta_o in THETA_O.into_iter().chain([90.0]) {
             for h in OFFSETS.into_iter().chain([1.0, 2.0]) {
@@ -102,7 +102,7 @@ fn absorption_only_takes_away() {
 
 #[test]
 fn longitudinal_terms_integrate_to_one() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for (beta_m, tilt) in ROUGHNESSES.into_iter().flat_map(|m| TILTS.map(|tilt| (m, tilt))) {
         for theta_o in THETA_O {
             let p = clear(beta_m, 0.3, tilt);
@@ -118,7 +118,7 @@ fn longitudinal_terms_integrate_to_one() {
 
 #[test]
 fn azimuthal_terms_integrate_to_one() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for (beta_n, h) in ROUGHNESSES.into_iter().flat_map(|n| OFFSETS.map(|h| (n, h))) {
         let p = clear(0.3, beta_n, 2.0);
         let fiber = prepare(&p, 0.4, h);
@@ -133,7 +133,7 @@ fn azimuthal_terms_integrate_to_one() {
 #[test]
 fn the_longitudinal_term_is_the_published_one_where_that_does_not_overflow() {
     // csch(1/v) / (2 v) exp(-sin theta_i sin theta' / v) I0(cos theta_i cos theta' / v), d'Eon et al. 2011.
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for beta_m in [0.15, 0.3, 0.7, 1.0] {
         let p = clear(beta_m, 0.3, 0.0);
         for [a, b, _] in points(500) {
@@ -153,7 +153,7 @@ fn the_longitudinal_term_is_the_published_one_where_that_does_not_overflow() {
 
 #[test]
 fn clear_hair_returns_all_the_light() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     let cases = [(1e-3, 1e-3), (0.05, 0.3), (0.3, 0.05), (0.3, 1.0), (1.0, 0.7)];
     for ((beta_m, beta_n), theta_o) in cases.into_iter().flat_map(|betas| [0.0, 60.0, -85.0].map(|t| (betas, t))) {
         for (h, tilt) in [(0.2, 2.0), (-0.97, -20.0)] {
@@ -173,10 +173,10 @@ fn clear_hair_returns_all_the_light() {
 
 #[test]
 fn colours_integrate_to_the_albedo() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for (_, preset) in ChiangParams::presets() {
         let p = ChiangParameters::<f64>::from(&preset);
-        let fiber = Fiber::prepare(&p, Selection::ByChannel, direction(0.6, 0.7), -0.4);
+        let fiber = ChiangFiber::prepare(&p, Selection::ByChannel, direction(0.6, 0.7), -0.4);
         let (theta, phi) = (inclinations(&p, &fiber, FRAC_PI_2 - GRAZING), azimuths(&p, &fiber));
         let (mut sums, mut mass) = ([0.0; 3], 0.0);
         for &(t, w_t) in &theta {
@@ -197,14 +197,18 @@ fn colours_integrate_to_the_albedo() {
 
 #[test]
 fn symmetries_hold() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for (beta_m, beta_n) in [(0.05, 0.3), (0.3, 0.1), (1.0, 1.0)] {
         for [a, b, c] in points(300) {
             let p = ChiangParameters { sigma_a: [0.1, 0.5, 2.0], ..clear(beta_m, beta_n, 7.0) };
             let (theta_o, theta_i, h) = ((a - 0.5) * 3.0, (b - 0.5) * 3.0, 2.0 * c - 1.0);
             let value = |p: &ChiangParameters<f64>, sign_theta: f64, sign_phi: f64| {
-                let fiber =
-                    Fiber::prepare(p, Selection::Mean, direction(sign_theta * theta_o, sign_phi * 0.3), sign_phi * h);
+                let fiber = ChiangFiber::prepare(
+                    p,
+                    Selection::Mean,
+                    direction(sign_theta * theta_o, sign_phi * 0.3),
+                    sign_phi * h,
+                );
                 fiber.eval(direction(sign_theta * theta_i, sign_phi * 5.0 * b))[2]
             };
             let here = value(&p, 1.0, 1.0);
@@ -231,7 +235,7 @@ fn shares_of_the_lobes_are_as_stated() {
 
 #[test]
 fn single_precision_follows_and_is_total() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for (beta_m, beta_n) in ROUGHNESSES.into_iter().flat_map(|m| ROUGHNESSES.map(|n| (m, n))) {
         for (theta_o, h) in THETA_O.into_iter().flat_map(|t| OFFSETS.map(|h| (t * DEG, h))) {
             let p = ChiangParameters { sigma_a: [0.5, 0.0, 3e38], ..clear(beta_m, beta_n, 2.0) };
@@ -245,7 +249,7 @@ fn single_precision_follows_and_is_total() {
             };
             let wo = direction(theta_o, 0.7).map(f32::from_f64);
             let fiber = ChiangReference::prepare(&single, Selection::ByChannel, wo, f32::from_f64(h));
-            let double = Fiber::prepare(&p, Selection::ByChannel, wo.map(f64::from), f64::from(f32::from_f64(h)));
+            let double = ChiangFiber::prepare(&p, Selection::ByChannel, wo.map(f64::from), f64::from(f32::from_f64(h)));
             let narrow = p.scale().min(p.variances()[Lobe::TT].sqrt());
             if theta_o.abs() < 1.5 && h.abs() < 0.99 {
                 for [a, b, c] in points(20) {

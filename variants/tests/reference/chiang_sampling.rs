@@ -1,7 +1,7 @@
 //! The energy-conserving fibre's sampler: inversion, its reports, bounds of its weights, variances.
 
-use super::chiang::{Fiber, clear, inclinations, prepare};
-use super::support::{DEG, Worst, cdf_gap, cells, chi_square, direction, points, rule, sum};
+use super::chiang::{ChiangFiber, clear, inclinations, prepare};
+use super::support::{DEG, LargestError, cdf_gap, cells, chi_square, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
 use hairis_variants::chiang::{ChiangParameters, ChiangParams, Selection};
@@ -18,7 +18,7 @@ fn uniforms() -> impl Iterator<Item = f64> {
 
 #[test]
 fn both_distributions_invert() {
-    let (mut cone, mut azimuth) = (Worst::default(), Worst::default());
+    let (mut cone, mut azimuth) = (LargestError::default(), LargestError::default());
     for beta in ROUGHNESSES {
         let fiber = prepare(&clear(beta, beta, 2.0), 0.4, 0.3);
         for (lobe, xi) in Lobe::ALL.into_iter().flat_map(|lobe| uniforms().map(move |xi| (lobe, xi))) {
@@ -37,7 +37,7 @@ fn both_distributions_invert() {
 #[test]
 fn inclinations_follow_the_longitudinal_term() {
     // The differences are the grid's, 300 numbers a side.
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for (beta_m, tilt) in ROUGHNESSES.into_iter().flat_map(|m| [2.0, -20.0, 45.0].map(|tilt| (m, tilt))) {
         for theta_o in [0.0, 50.0, -85.0] {
             let p = clear(beta_m, 0.3, tilt);
@@ -69,9 +69,9 @@ fn fibers() -> impl Iterator<Item = (ChiangParameters<f64>, Selection, f64, f64)
 
 #[test]
 fn a_sample_reports_its_value_and_density_and_keeps_its_bound() {
-    let (mut reported, mut over) = (Worst::default(), Worst::default());
+    let (mut reported, mut over) = (LargestError::default(), LargestError::default());
     for (p, selection, theta_o, h) in fibers() {
-        let fiber = Fiber::prepare(&p, selection, direction(theta_o, 0.7), h);
+        let fiber = ChiangFiber::prepare(&p, selection, direction(theta_o, 0.7), h);
         let returned: [f64; 3] = core::array::from_fn(|c| fiber.albedo().0.iter().map(|a| a[c]).sum());
         let mean = returned.iter().sum::<f64>() / 3.0;
         assert!((fiber.probabilities().0.iter().sum::<f64>() - 1.0).abs() < 1e-15, "probabilities");
@@ -93,11 +93,11 @@ fn a_sample_reports_its_value_and_density_and_keeps_its_bound() {
 
 #[test]
 fn weights_of_clear_hair_are_one() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for (beta_m, beta_n) in ROUGHNESSES.into_iter().flat_map(|m| ROUGHNESSES.map(|n| (m, n))) {
         for (theta_o, h) in [(0.0, 0.0), (0.7, -0.8), (-1.5, 0.5), (1.569, 0.999), (0.2, 1.0)] {
             for selection in BOTH {
-                let fiber = Fiber::prepare(&clear(beta_m, beta_n, 2.0), selection, direction(theta_o, 0.7), h);
+                let fiber = ChiangFiber::prepare(&clear(beta_m, beta_n, 2.0), selection, direction(theta_o, 0.7), h);
                 for drawn in points(50).map(|xi| fiber.sample(xi)).filter(|drawn| drawn.lobe.is_some()) {
                     drawn.weight.into_iter().for_each(|w| worst.see(w - 1.0));
                 }
@@ -140,7 +140,7 @@ fn variances(p: &ChiangParameters<f64>, selection: Selection) -> [f64; 3] {
     let (mut mean, mut weights) = ([0.0; 4], 0.0);
     for (h, w_h) in rule(0.0, 1.0, &[], &[]) {
         for theta_o in [0.0, 45.0, 75.0] {
-            let fiber = Fiber::prepare(p, selection, direction(theta_o * DEG, 0.0), h);
+            let fiber = ChiangFiber::prepare(p, selection, direction(theta_o * DEG, 0.0), h);
             let lobes = [Lobe::R, Lobe::TT, Lobe::TRT];
             let theta = coarse(-FRAC_PI_2 + 1e-5, FRAC_PI_2 - 1e-5, lobes.map(|lobe| fiber.cone(lobe)), 0.4);
             let phi = coarse(0.0, 2.0 * PI, lobes.map(|lobe| fiber.centre(lobe).rem_euclid(2.0 * PI)), 0.5);
@@ -173,7 +173,7 @@ fn samples_pass_chi_square_on_the_sphere() {
     for ((beta_m, beta_n, theta_o, h), selection) in cases.into_iter().flat_map(|case| BOTH.map(|s| (case, s))) {
         let brown = ChiangParameters::<f64>::from(&ChiangParams::brown());
         let p = ChiangParameters { beta_m, beta_n, tilt: 10.0 * DEG, ..brown };
-        let fiber = Fiber::prepare(&p, selection, direction(theta_o * DEG, 0.7), h);
+        let fiber = ChiangFiber::prepare(&p, selection, direction(theta_o * DEG, 0.7), h);
         let turn = 2.0 * PI;
         let centres = [Lobe::R, Lobe::TT, Lobe::TRT].map(|lobe| (0.7 + fiber.centre(lobe) + PI).rem_euclid(turn) - PI);
         let theta = rule(-FRAC_PI_2, FRAC_PI_2, &Lobe::ALL.map(|lobe| (fiber.cone(lobe), 0.05)), &[]);
@@ -191,7 +191,7 @@ fn few_offsets_make_the_far_field_of_rough_fibres() {
         let p = clear(0.3, beta_n, 0.0);
         let far_field = |nodes: &[(f64, f64)]| {
             let fibers: Vec<_> = nodes.iter().map(|&(h, w)| (prepare(&p, theta_o * DEG, h), 0.5 * w)).collect();
-            let one = |fiber: &Fiber, phi: f64| -> f64 {
+            let one = |fiber: &ChiangFiber, phi: f64| -> f64 {
                 Lobe::ALL.into_iter().map(|lobe| fiber.albedo()[lobe][0] * fiber.azimuthal(lobe, phi)).sum()
             };
             let at = |n: u32| f64::from(n) * DEG;

@@ -1,7 +1,7 @@
 //! One test per erratum of the second source (variants/ERRATA.md): a check that the mended form passes and the printed form
 //! fails.
 
-use super::chiang::{Fiber, clear, inclinations, prepare};
+use super::chiang::{ChiangFiber, clear, inclinations, prepare};
 use super::support::{DEG, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
@@ -161,7 +161,7 @@ fn e9_the_azimuth_is_not_drawn_from_the_claimed_density() {
         let share: f64 = fibers.iter().map(|(fiber, w)| w * fiber.albedo()[lobe][0]).sum();
         let ratio = |phi: f64| {
             let [drawn, claimed] = [true, false].map(|weighed| -> f64 {
-                let weight = |fiber: &Fiber| if weighed { fiber.albedo()[lobe][0] / share } else { 0.5 };
+                let weight = |fiber: &ChiangFiber| if weighed { fiber.albedo()[lobe][0] / share } else { 0.5 };
                 fibers.iter().map(|(fiber, w)| w * weight(fiber) * fiber.azimuthal(lobe, phi)).sum()
             });
             drawn / claimed

@@ -1,6 +1,6 @@
 //! Kajiya and Kay's formulas: energy, reciprocity, densities, sampling.
 
-use super::support::{DEG, Worst, cdf_gap, cells, chi_square, corners, direction, points, rule, sum};
+use super::support::{DEG, LargestError, cdf_gap, cells, chi_square, corners, direction, points, rule, sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
 use hairis::reference::{Real, Reference};
@@ -8,7 +8,7 @@ use hairis_variants::kajiya_kay::{
     Form, KajiyaKayParameters, KajiyaKayParams, KajiyaKayReference, cosine_power_integral,
 };
 
-type Fiber = KajiyaKayReference<f64>;
+type KajiyaKayFiber = KajiyaKayReference<f64>;
 const FORMS: [Form; 2] = [Form::Reciprocal, Form::Published];
 const EXPONENTS: [f64; 7] = [1.0, 1.5, 5.0, 20.0, 80.0, 1000.0, 1e4];
 /// Inclinations of `wo`, degrees.
@@ -44,7 +44,7 @@ fn inclinations(exponent: f64, theta_o: f64) -> Vec<(f64, f64)> {
 #[test]
 fn powers_of_a_cosine_integrate_to_b() {
     // Measured: 2.4e-12, at 1e4.
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for n in EXPONENTS.into_iter().chain([0.5, 2.0, 3.0]) {
         let found = sum(
             &rule(-FRAC_PI_2, FRAC_PI_2, &[(0.0, 1.0 / n.sqrt()), (FRAC_PI_2, 1e-6), (-FRAC_PI_2, 1e-6)], &[]),
@@ -57,9 +57,10 @@ fn powers_of_a_cosine_integrate_to_b() {
 
 #[test]
 fn the_albedo_is_the_integral_of_the_value() {
-    let (mut diffuse, mut highlight, mut trait_sum) = (Worst::default(), Worst::default(), Worst::default());
+    let (mut diffuse, mut highlight, mut trait_sum) =
+        (LargestError::default(), LargestError::default(), LargestError::default());
     for (p, theta_o) in grid(parameters) {
-        let fiber = Fiber::prepare(&p, direction(theta_o, 0.7));
+        let fiber = KajiyaKayFiber::prepare(&p, direction(theta_o, 0.7));
         let rule = inclinations(p.exponent, theta_o);
         let lobe = |i: usize| {
             2.0 * PI
@@ -81,13 +82,13 @@ fn the_albedo_is_the_integral_of_the_value() {
 
 #[test]
 fn the_highlight_never_gains_energy() {
-    let mut excess = Worst::default();
+    let mut excess = LargestError::default();
     for form in FORMS {
         for exponent in EXPONENTS {
             let mut before = 1.0 + 1e-11;
             for step in 0..=90 {
                 let theta_o = f64::from(step) * DEG;
-                let rho = Fiber::prepare(&specular(exponent, form), direction(theta_o, 0.0)).specular_albedo();
+                let rho = KajiyaKayFiber::prepare(&specular(exponent, form), direction(theta_o, 0.0)).specular_albedo();
                 assert!(rho <= before && rho >= 0.0, "{form:?} p {exponent} theta_o {step}: {rho} after {before}");
                 before = rho + 1e-11;
                 if step == 0 {
@@ -102,12 +103,12 @@ fn the_highlight_never_gains_energy() {
 
 #[test]
 fn the_reciprocal_form_is_reciprocal_and_the_published_one_is_not() {
-    let (mut worst, mut published) = (Worst::default(), Worst::default());
+    let (mut worst, mut published) = (LargestError::default(), LargestError::default());
     for exponent in EXPONENTS {
         for [a, b, c] in points(200) {
             let [one, other] = [direction((a - 0.5) * 3.1, 6.0 * b), direction((c - 0.5) * 3.1, 6.0 * a)];
             let pair = |form| {
-                let value = |wo, wi| Fiber::prepare(&parameters(exponent, form), wo).eval(wi)[0];
+                let value = |wo, wi| KajiyaKayFiber::prepare(&parameters(exponent, form), wo).eval(wi)[0];
                 value(one, other) / value(other, one) - 1.0
             };
             worst.see(pair(Form::Reciprocal));
@@ -121,9 +122,9 @@ fn the_reciprocal_form_is_reciprocal_and_the_published_one_is_not() {
 #[test]
 fn densities_integrate_to_one() {
     // What falls into the caps of 1e-5 rad: up to 8e-4, of a narrow highlight that points along the fibre.
-    let (mut worst, mut grazing) = (Worst::default(), Worst::default());
+    let (mut worst, mut grazing) = (LargestError::default(), LargestError::default());
     for (p, theta_o) in grid(parameters) {
-        let fiber = Fiber::prepare(&p, direction(theta_o, 0.7));
+        let fiber = KajiyaKayFiber::prepare(&p, direction(theta_o, 0.7));
         let rule = inclinations(p.exponent, theta_o);
         let mass = |pdf: &dyn Fn([f64; 3]) -> f64| 2.0 * PI * sum(&rule, |t| pdf(direction(t, 0.2)) * t.cos());
         let of = |lobe: usize| mass(&|wi| fiber.lobes(wi).0[lobe].pdf);
@@ -138,12 +139,12 @@ fn densities_integrate_to_one() {
 #[test]
 fn the_highlight_draws_its_density() {
     // The cdf of theta_i on a grid of two numbers, with both signs weighed by their shares. The differences are the grid's.
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for (p, theta_o) in grid(specular) {
         if theta_o.abs() > 80.0 * DEG {
             continue;
         }
-        let fiber = Fiber::prepare(&p, direction(theta_o, 0.0));
+        let fiber = KajiyaKayFiber::prepare(&p, direction(theta_o, 0.0));
         let both = |[xi_radius, xi_turn]: [f64; 2]| {
             let [sin, cos] = fiber.sample_angle(xi_radius, xi_turn);
             let (x, kept) = (sin.atan2(cos), fiber.share_kept(sin, cos));
@@ -158,9 +159,9 @@ fn the_highlight_draws_its_density() {
 
 #[test]
 fn a_sample_reports_its_value_and_density_and_keeps_its_bound() {
-    let (mut worst, mut over) = (Worst::default(), Worst::default());
+    let (mut worst, mut over) = (LargestError::default(), LargestError::default());
     for (p, theta_o) in grid(parameters) {
-        let fiber = Fiber::prepare(&p, direction(theta_o, 0.7));
+        let fiber = KajiyaKayFiber::prepare(&p, direction(theta_o, 0.7));
         let m = if p.form == Form::Reciprocal { 2.0 } else { 1.0 };
         let most = cosine_power_integral(p.exponent) / cosine_power_integral(p.exponent + m);
         let [w_d, w_s, ..] = fiber.probabilities().0;
@@ -196,7 +197,7 @@ fn the_highlights_variance_is_as_stated() {
     let published =
         [(5.0, [0.012, 0.009, 0.042, 0.24]), (20.0, [0.001, 0.001, 0.007, 0.16]), (80.0, [0.000, 0.000, 0.000, 0.05])];
     let variance = |p: &KajiyaKayParameters<f64>, theta_o: f64| {
-        let fiber = Fiber::prepare(p, direction(theta_o, 0.0));
+        let fiber = KajiyaKayFiber::prepare(p, direction(theta_o, 0.0));
         let moment = |t: f64| {
             let (value, pdf) = fiber.eval_pdf(direction(t, 0.0));
             let f = value[0] * t.cos();
@@ -226,7 +227,7 @@ fn the_highlights_variance_is_as_stated() {
 fn samples_pass_chi_square_on_the_sphere() {
     let cases = [(1.0, 30.0), (5.0, 75.0), (80.0, 45.0), (80.0, -85.0), (1000.0, 10.0)];
     for (form, (exponent, theta_o)) in FORMS.into_iter().flat_map(|form| cases.map(|case| (form, case))) {
-        let fiber = Fiber::prepare(&parameters(exponent, form), direction(theta_o * DEG, 0.7));
+        let fiber = KajiyaKayFiber::prepare(&parameters(exponent, form), direction(theta_o * DEG, 0.7));
         let p = chi_square(&fiber, &inclinations(exponent, theta_o * DEG), &[]);
         // Sidak's correction of .01 over ten runs.
         assert!(p > 1e-3, "{form:?} p {exponent} theta_o {theta_o}: p-value {p}");
@@ -235,7 +236,7 @@ fn samples_pass_chi_square_on_the_sphere() {
 
 #[test]
 fn single_precision_follows_and_is_total() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for (p, theta_o) in grid(parameters) {
         let single = KajiyaKayParameters {
             kd: p.kd.map(f32::from_f64),
@@ -245,7 +246,7 @@ fn single_precision_follows_and_is_total() {
         };
         let wo = direction(theta_o, 0.7).map(f32::from_f64);
         let fiber = KajiyaKayReference::prepare(&single, wo);
-        let double = Fiber::prepare(&p, wo.map(f64::from));
+        let double = KajiyaKayFiber::prepare(&p, wo.map(f64::from));
         for [a, b, _] in points(100) {
             let wi = direction((a - 0.5) * 3.1, 6.0 * b).map(f32::from_f64);
             let (value, pdf) = fiber.eval_pdf(wi);
@@ -262,7 +263,7 @@ fn single_precision_follows_and_is_total() {
     }
     worst.assert_below(1.5e-7, "f32 over f64, by exponent");
     let nothing = KajiyaKayParameters { kd: [0.0; 3], ks: [0.0; 3], ..parameters(80.0, Form::Reciprocal) };
-    assert_eq!(Fiber::prepare(&nothing, [0.0, 1.0, 0.0]).sample([0.5; 3]).lobe, None, "nothing scatters");
+    assert_eq!(KajiyaKayFiber::prepare(&nothing, [0.0, 1.0, 0.0]).sample([0.5; 3]).lobe, None, "nothing scatters");
     let bright = KajiyaKayParams::default().scaled(1e37).unwrap();
     let bright = KajiyaKayReference::<f32>::prepare(&(&bright).into(), [0.0, 1.0, 0.0]);
     assert!(bright.sample([0.9, 0.5, 0.5]).weight[0].is_finite(), "bright colours");

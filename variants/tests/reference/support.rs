@@ -34,9 +34,9 @@ pub(crate) fn points(count: u32) -> impl Iterator<Item = [f64; 3]> {
 
 /// The largest of what was found; NaN counts as infinite.
 #[derive(Default)]
-pub(crate) struct Worst(pub(crate) f64);
+pub(crate) struct LargestError(pub(crate) f64);
 
-impl Worst {
+impl LargestError {
     pub(crate) fn see(&mut self, found: f64) {
         self.0 = if found.is_nan() { f64::INFINITY } else { self.0.max(found.abs()) };
     }

@@ -10,8 +10,8 @@ use crate::transport::Integrator;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::machine::Machine;
-use hairis_harness::plot::{Axis, LineChart, Point, Reference as Line, Series};
-use hairis_harness::report::{Figure, Report, Section};
+use hairis_harness::plot::{Axis, LineChart, Point, ReferenceLine, Series};
+use hairis_harness::report::{Drawing, Report, Section};
 use hairis_harness::stats::Estimate;
 use hairis_harness::table::{Table, number};
 use std::io::Write as _;
@@ -101,9 +101,9 @@ fn section(measured: &Measured) -> std::io::Result<Section> {
     Ok(Section::new(title.clone())
         .paragraph(format!("Light: {}; hair: `{}`.", kind(measured), measured.preset))
         .paragraph(sentence(measured))
-        .figure(Figure::new(equal_samples, format!("Equal samples: {samples} per pixel. {caption}")))
-        .figure(Figure::new(equal_time, format!("Equal time. {caption}")))
-        .figure(Figure::new(convergence(measured), "relMSE against samples; bars are one standard error."))
+        .figure(Drawing::new(equal_samples, format!("Equal samples: {samples} per pixel. {caption}")))
+        .figure(Drawing::new(equal_time, format!("Equal time. {caption}")))
+        .figure(Drawing::new(convergence(measured), "relMSE against samples; bars are one standard error."))
         .table(table(measured)))
 }
 
@@ -139,7 +139,7 @@ fn convergence(measured: &Measured) -> String {
     }
     if let Some(runs) = measured.samplers.last().and_then(|sampler| sampler.runs.first()) {
         let through = (f64::from(runs.samples), runs.mean(|errors| errors.relative).value);
-        chart = chart.reference(Line::Power { label: "slope −1".to_owned(), slope: -1.0, through });
+        chart = chart.reference(ReferenceLine::Power { label: "slope −1".to_owned(), slope: -1.0, through });
     }
     chart.svg()
 }

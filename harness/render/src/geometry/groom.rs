@@ -152,7 +152,7 @@ impl Groom {
         // Doubled ends take a sixth of the distance of two nodes from either end.
         let grow: Box<dyn Fn(usize) -> Vec<Vec3> + Sync> = match self.kind {
             Kind::Straight | Kind::Wavy | Kind::Curly | Kind::Fur => {
-                let head = head::Head::new(*self);
+                let head = head::HeadGroom::new(*self);
                 Box::new(move |strand| head.strand(strand))
             }
             Kind::Patch => Box::new(|strand| sheet::strand(self, strand)),

@@ -28,7 +28,7 @@ const MOST_NODES: usize = 1 << 31;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strands {
-    nodes: Vec<Node>,
+    nodes: Vec<StrandNode>,
     tangents: Vec<Vec3>,
     /// The first node of each strand, and the number of nodes.
     first: Vec<u32>,
@@ -37,7 +37,7 @@ pub struct Strands {
 
 /// Place and radius side by side: both are read for every hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Node {
+struct StrandNode {
     position: Vec3,
     radius: f32,
 }
@@ -158,7 +158,7 @@ impl Strands {
 /// Takes strands one by one, each checked, and makes [`Strands`] of them.
 #[derive(Clone, Debug, Default)]
 pub struct Builder {
-    nodes: Vec<Node>,
+    nodes: Vec<StrandNode>,
     last: Vec<u32>,
     dropped_nodes: usize,
     dropped_strands: usize,
@@ -194,7 +194,7 @@ impl Builder {
             if last.is_some_and(|last| Self::coincide(last.position, position)) {
                 dropped += 1;
             } else {
-                self.nodes.push(Node { position, radius });
+                self.nodes.push(StrandNode { position, radius });
             }
         }
         self.dropped_nodes += dropped;

@@ -1,6 +1,6 @@
 //! The Parquet form: one row group, columns compressed by Snappy, text and the axes by dictionary.
 
-use super::{Columns, Values};
+use super::{ColumnValues, Columns};
 use ::parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical};
 use ::parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int32Type};
 use ::parquet::errors::ParquetError;
@@ -29,14 +29,14 @@ fn write_file(columns: &Columns, notes: &[(String, String)], out: impl Write + S
     for (_, values) in columns.columns() {
         let Some(mut column) = group.next_column()? else { break };
         match values {
-            Values::Text(values) => {
+            ColumnValues::Text(values) => {
                 let values: Vec<ByteArray> = values.iter().map(|value| ByteArray::from(&**value)).collect();
                 column.typed::<ByteArrayType>().write_batch(&values, None, None)?;
             }
-            Values::Whole(values) => {
+            ColumnValues::Whole(values) => {
                 column.typed::<Int32Type>().write_batch(values, None, None)?;
             }
-            Values::Number(values) => {
+            ColumnValues::Number(values) => {
                 let there: Vec<i16> = values.iter().map(|value| i16::from(value.is_finite())).collect();
                 let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
                 column.typed::<DoubleType>().write_batch(&finite, Some(&there), None)?;
@@ -49,14 +49,14 @@ fn write_file(columns: &Columns, notes: &[(String, String)], out: impl Write + S
     Ok(())
 }
 
-fn field(name: &str, values: &Values) -> Result<Arc<Type>, ParquetError> {
+fn field(name: &str, values: &ColumnValues) -> Result<Arc<Type>, ParquetError> {
     let (physical, repetition) = match values {
-        Values::Text(_) => (Physical::BYTE_ARRAY, Repetition::REQUIRED),
-        Values::Whole(_) => (Physical::INT32, Repetition::REQUIRED),
-        Values::Number(_) => (Physical::DOUBLE, Repetition::OPTIONAL),
+        ColumnValues::Text(_) => (Physical::BYTE_ARRAY, Repetition::REQUIRED),
+        ColumnValues::Whole(_) => (Physical::INT32, Repetition::REQUIRED),
+        ColumnValues::Number(_) => (Physical::DOUBLE, Repetition::OPTIONAL),
     };
     let mut builder = Type::primitive_type_builder(name, physical).with_repetition(repetition);
-    if matches!(values, Values::Text(_)) {
+    if matches!(values, ColumnValues::Text(_)) {
         builder = builder.with_logical_type(Some(LogicalType::String)).with_converted_type(ConvertedType::UTF8);
     }
     Ok(Arc::new(builder.build()?))

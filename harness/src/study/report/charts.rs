@@ -5,8 +5,8 @@ use super::super::rows::Strategy;
 use super::super::summary::Gain;
 use super::super::times::PER_POINT;
 use super::view::{Counted, Estimator, MANY, TOLD, View, ess};
-use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, Reference, Series};
-use crate::report::Figure;
+use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, ReferenceLine, Series};
+use crate::report::Drawing;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::subject::ModelKind;
@@ -23,7 +23,7 @@ struct Over {
 }
 
 /// V of every sampler over the width of R, and over the inclination.
-pub(super) fn variances(of: &View<'_>) -> Vec<Figure> {
+pub(super) fn variances(of: &View<'_>) -> Vec<Drawing> {
     let axes = [
         Over { slug: "width", label: "width of R, β_R (°)", values: of.grid.beta_r_deg, of: |cell| cell.beta_r_deg },
         Over {
@@ -51,7 +51,7 @@ pub(super) fn variances(of: &View<'_>) -> Vec<Figure> {
                  grid. Bars are one standard error, mostly smaller than the marks. An error of 1% takes 10⁴ V samples.",
                 of.lights[CONSTANT]
             );
-            figures.push(Figure::new(chart.svg(), caption).named(format!("v-by-{}-{}", over.slug, model.name())));
+            figures.push(Drawing::new(chart.svg(), caption).named(format!("v-by-{}-{}", over.slug, model.name())));
         }
     }
     figures
@@ -62,7 +62,7 @@ fn bar(of: Option<Estimate>) -> Bar {
 }
 
 /// Efficiency by samples per shading point.
-pub(super) fn efficiencies(of: &View<'_>) -> Vec<Figure> {
+pub(super) fn efficiencies(of: &View<'_>) -> Vec<Drawing> {
     let figure = |model: ModelKind| {
         let title = format!("Efficiency under {} light, {} model", of.lights[CONSTANT], model.title());
         let groups = PER_POINT.map(|n| format!("{n} per shading point"));
@@ -74,7 +74,7 @@ pub(super) fn efficiencies(of: &View<'_>) -> Vec<Figure> {
         let caption = "Geometric mean over the grid of 1 / (V · time of a sample), the set-up of a shading point spread \
                        over 1, 4 or 16 samples; eight lanes, one thread, this machine. Whiskers are one standard error, \
                        that of the times included. Twice the efficiency is half the time to the same error squared.";
-        Figure::new(chart.svg(), caption).named(format!("efficiency-{}", model.name()))
+        Drawing::new(chart.svg(), caption).named(format!("efficiency-{}", model.name()))
     };
     ModelKind::ALL.map(figure).into()
 }
@@ -107,7 +107,7 @@ fn by_light(of: &View<'_>, base: Estimator, other: (ModelKind, Strategy), time: 
 type Timing = Option<Counted>;
 
 /// The verdicts in one plot: the Cauchy model against the Gaussian one, by light.
-pub(super) fn summary(of: &View<'_>) -> Figure {
+pub(super) fn summary(of: &View<'_>) -> Drawing {
     let title = "Samples: Gaussian model over Cauchy model";
     let mut chart = BarChart::new(title, Axis::log("V Gaussian / V Cauchy"), of.light_labels()).narrow();
     for sampler in TOLD {
@@ -117,11 +117,11 @@ pub(super) fn summary(of: &View<'_>) -> Figure {
     }
     let caption = "By what factor the Cauchy model needs fewer samples (above 1) or more (below), by light: medians over the \
                    grid. The spread over its cells is shown below.";
-    Figure::new(chart.level(1.0).svg(), caption).named("summary")
+    Drawing::new(chart.level(1.0).svg(), caption).named("summary")
 }
 
 /// Gains over `published` by light, a chart for each model: in samples, up to that of perfect sampling, or in equal time.
-fn over_published(of: &View<'_>, time: Timing, strategies: &[Strategy], words: [&str; 4]) -> Vec<Figure> {
+fn over_published(of: &View<'_>, time: Timing, strategies: &[Strategy], words: [&str; 4]) -> Vec<Drawing> {
     let [title, axis, slug, caption] = words;
     let figure = |model: ModelKind| {
         let mut chart = BarChart::new(format!("{title}, {} model", model.title()), Axis::log(axis), of.light_labels());
@@ -129,13 +129,13 @@ fn over_published(of: &View<'_>, time: Timing, strategies: &[Strategy], words: [
             chart = chart.series(strategy.name(), by_light(of, (model, Sampler::Published), (model, *strategy), time));
         }
         let caption = format!("{caption} Medians over the grid; whiskers go from the first to the third quartile.");
-        Figure::new(chart.level(1.0).svg(), caption).named(format!("{slug}-{}", model.name()))
+        Drawing::new(chart.level(1.0).svg(), caption).named(format!("{slug}-{}", model.name()))
     };
     ModelKind::ALL.map(figure).into()
 }
 
 /// Gains in V by light, over `published`, up to that of perfect sampling.
-pub(super) fn limits(of: &View<'_>) -> Vec<Figure> {
+pub(super) fn limits(of: &View<'_>) -> Vec<Drawing> {
     let caption = "By what factor fewer samples than the published sampler needs, by light. That is also how many times its \
                    time a sample may take before it loses in equal time. `perfect` draws in proportion to S cos θᵢ, blind to \
                    the light. Under constant light nothing is left of its variance: no bar.";
@@ -144,7 +144,7 @@ pub(super) fn limits(of: &View<'_>) -> Vec<Figure> {
 }
 
 /// Gains in equal time, by light: over `published`, without and with the look-up, then of the Cauchy model.
-pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
+pub(super) fn gains(of: &View<'_>) -> Vec<Drawing> {
     let samplers = Sampler::ALL.map(Strategy::By);
     let axis = "gain over the published sampler in equal time (×)";
     let caption = format!(
@@ -170,7 +170,7 @@ pub(super) fn gains(of: &View<'_>) -> Vec<Figure> {
         "Variance on the Gaussian model over that on the Cauchy model with the same sampler in the same time, by light, at \
          {MANY} samples per shading point. Medians over the grid; whiskers go from the first to the third quartile."
     );
-    figures.push(Figure::new(chart.level(1.0).svg(), caption).named("cauchy-gain-by-light"));
+    figures.push(Drawing::new(chart.level(1.0).svg(), caption).named("cauchy-gain-by-light"));
     figures
 }
 
@@ -192,7 +192,7 @@ fn distribution(name: &str, mut gains: Vec<f64>) -> Series {
 }
 
 /// How gains spread over the cells.
-pub(super) fn distributions(of: &View<'_>) -> Vec<Figure> {
+pub(super) fn distributions(of: &View<'_>) -> Vec<Drawing> {
     let ratios = |base: Estimator, other: Estimator, light: usize| -> Vec<f64> {
         let ratio = |cell: Cell| of.v(cell.index, base, light).value / of.v(cell.index, other, light).value;
         of.each_cell().map(ratio).collect()
@@ -213,7 +213,7 @@ pub(super) fn distributions(of: &View<'_>) -> Vec<Figure> {
             of.cells.len(),
             sampler.name()
         );
-        let figure = Figure::new(chart.series(even()).svg(), caption);
+        let figure = Drawing::new(chart.series(even()).svg(), caption);
         figures.push(figure.named(format!("cauchy-gain-over-cells-{}", sampler.name())));
     }
     for model in ModelKind::ALL {
@@ -229,14 +229,14 @@ pub(super) fn distributions(of: &View<'_>) -> Vec<Figure> {
             of.cells.len(),
             of.lights[CONSTANT]
         );
-        let figure = Figure::new(chart.series(even()).svg(), caption);
+        let figure = Drawing::new(chart.series(even()).svg(), caption);
         figures.push(figure.named(format!("gain-over-cells-{}", model.name())));
     }
     figures
 }
 
 /// Effective samples and largest weights.
-pub(super) fn weights(of: &View<'_>) -> Vec<Figure> {
+pub(super) fn weights(of: &View<'_>) -> Vec<Drawing> {
     let mut figures = Vec::new();
     for model in ModelKind::ALL {
         let title = format!("Effective samples in 1000, {} model", model.title());
@@ -249,7 +249,7 @@ pub(super) fn weights(of: &View<'_>) -> Vec<Figure> {
         let caption = "1000 / (1 + V): how many samples without variance are worth as much as 1000 of the sampler. \
                        `perfect` would draw in proportion to S cos θᵢ, blind to the light. Means over the grid; whiskers \
                        are one standard error.";
-        figures.push(Figure::new(chart.svg(), caption).named(format!("effective-samples-{}", model.name())));
+        figures.push(Drawing::new(chart.svg(), caption).named(format!("effective-samples-{}", model.name())));
     }
     for model in ModelKind::ALL {
         let title = format!("Largest weight, {} model", model.title());
@@ -269,14 +269,14 @@ pub(super) fn weights(of: &View<'_>) -> Vec<Figure> {
         let caption = "The largest weight S cos θᵢ / pdf of any sample in the worst cell of each inclination, in units of \
                        the albedo: what a firefly under constant light would be. It is the largest of those drawn, and \
                        so has no error bar; more samples can only raise it.";
-        figures.push(Figure::new(chart.svg(), caption).named(format!("largest-weight-{}", model.name())));
+        figures.push(Drawing::new(chart.svg(), caption).named(format!("largest-weight-{}", model.name())));
     }
     figures.extend(bounds(of));
     figures
 }
 
 /// Largest weights over their proven bounds, a chart for each model.
-fn bounds(of: &View<'_>) -> Vec<Figure> {
+fn bounds(of: &View<'_>) -> Vec<Drawing> {
     let chart = |model: ModelKind| {
         let title = format!("Largest weight over its proven bound, {} model", model.title());
         let mut chart = LineChart::new(title, Axis::linear("θₒ (°)"), Axis::linear("largest weight / bound"));
@@ -296,10 +296,10 @@ fn bounds(of: &View<'_>) -> Vec<Figure> {
                 chart = chart.series(of_sampler(sampler, Series::new(sampler.name(), points)));
             }
         }
-        let line = Reference::Level { label: "the bound".to_owned(), y: 1.0 };
+        let line = ReferenceLine::Level { label: "the bound".to_owned(), y: 1.0 };
         let caption = "For samplers with a bound in closed form: the largest weight drawn over the bound, in the worst cell of \
                        each inclination. A point above 1 would fail the run.";
-        Figure::new(chart.reference(line).svg(), caption).named(format!("weight-bound-{}", model.name()))
+        Drawing::new(chart.reference(line).svg(), caption).named(format!("weight-bound-{}", model.name()))
     };
     ModelKind::ALL.map(chart).into()
 }

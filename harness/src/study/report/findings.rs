@@ -299,7 +299,7 @@ fn where_not(of: &View<'_>) -> Option<String> {
             parts.push(format!("with `{}` in {}", sampler.name(), listed(&words)));
         }
     }
-    let worst = |figure: fn(&crate::difference::Figures) -> f64| {
+    let worst = |figure: fn(&crate::difference::Differences) -> f64| {
         let of_width = |beta: f32| {
             let rows = of.difference.of(Width::Paper).filter(move |row| row.cell.beta_r_deg == beta);
             (beta, Summary::of(rows.map(|row| figure(&row.figures))).median)

@@ -1,10 +1,10 @@
 //! The plots of how different the models look.
 
 use super::view::View;
-use crate::difference::{Figures, Summary, Width, albedo_ratio};
+use crate::difference::{Differences, Summary, Width, albedo_ratio};
 use crate::figures;
 use crate::plot::{Axis, LineChart, Point, Series};
-use crate::report::Figure;
+use crate::report::Drawing;
 use hairis::HairParams;
 use hairis_variants::Cauchy;
 
@@ -12,10 +12,10 @@ use hairis_variants::Cauchy;
 const THETA_O_DEG: f64 = 45.0;
 
 /// A difference by name.
-type Kind = (&'static str, fn(&Figures) -> f64);
+type NamedDifference = (&'static str, fn(&Differences) -> f64);
 
 /// The default hair: sections and maps.
-pub(super) fn pictures() -> Vec<Figure> {
+pub(super) fn pictures() -> Vec<Drawing> {
     let (hair, theta_o) = (HairParams::default(), THETA_O_DEG.to_radians());
     let variants = [
         ("Cauchy, k = 1", Cauchy::PAPER),
@@ -29,10 +29,10 @@ pub(super) fn pictures() -> Vec<Figure> {
 }
 
 /// The differences over the grid.
-pub(super) fn charts(of: &View<'_>) -> Vec<Figure> {
+pub(super) fn charts(of: &View<'_>) -> Vec<Drawing> {
     let x = || Axis::linear("width of R, β_R (°)").from_zero();
     let percent = |label: &str| Axis::linear(label.to_owned()).from_zero();
-    let over = |width: Width, figure: fn(&Figures) -> f64| {
+    let over = |width: Width, figure: fn(&Differences) -> f64| {
         of.grid.beta_r_deg.iter().map(move |beta| {
             let rows = of.difference.of(width).filter(|row| row.cell.beta_r_deg == *beta);
             (f64::from(*beta), Summary::of(rows.map(|row| 100.0 * figure(&row.figures))))
@@ -52,7 +52,7 @@ pub(super) fn charts(of: &View<'_>) -> Vec<Figure> {
         x(),
         percent("difference of S cos θᵢ, L1 (%)"),
     );
-    let kinds: [Kind; 4] = [
+    let kinds: [NamedDifference; 4] = [
         ("as they are", |f| f.plain.l1),
         ("shape alone", |f| f.shape.l1),
         ("blurred by 10°", |f| f.blurred.l1),
@@ -77,20 +77,20 @@ pub(super) fn charts(of: &View<'_>) -> Vec<Figure> {
         albedo = albedo.series(Series::new(named(of, width), of.grid.theta_o_deg.iter().map(point)));
     }
     vec![
-        Figure::new(
+        Drawing::new(
             by_width.svg(),
             "Integral over the sphere of |S cos θᵢ of the Cauchy model − that of the Gaussian model|, relative to the \
              albedo of the latter, by the factor k on the Cauchy model's widths: medians over the other axes of the grid. \
              By quadrature, exact to less than 0.1% of each figure.",
         )
         .named("difference-by-k"),
-        Figure::new(
+        Drawing::new(
             by_kind.svg(),
             "The same for k = 1: as the models are, with the Cauchy model scaled to the Gaussian one's albedo, and after a \
              blur of 10°. Marks are medians, bars go from the least to the most of the cells.",
         )
         .named("difference-by-kind"),
-        Figure::new(
+        Drawing::new(
             albedo.svg(),
             "Directional albedos, the integrals of S cos θᵢ: geometric means over the other axes of the grid; bars go from \
              the least to the most of the cells.",

@@ -1,7 +1,7 @@
 //! The directional albedo against quadrature of the reference, and the scale that keeps it at most 1.
 
 use super::quadrature::{integrate, panels};
-use super::support::{Draws, Kind, Point, Worst, direction, for_each_point, narrow, parameters};
+use super::support::{Draws, Kind, LargestError, Point, direction, for_each_point, narrow, parameters};
 use super::{Published, PublishedReference};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
@@ -37,7 +37,7 @@ fn integrals(reference: &PublishedReference, point: &Point) -> PerLobe<f64> {
 }
 
 pub fn albedo_is_the_integral<S: Published>() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     let mut turn = 0;
     for kind in [Kind::Grid, Kind::Narrow, Kind::Wide] {
         for_each_point::<S>(kind, |bsdf, reference, point| {
@@ -112,7 +112,7 @@ fn exact<S: Published>(p: &Parameters<f64>, theta_o: f64) -> PerLobe<f64> {
 }
 
 pub fn albedo_of_any_width_is_the_integral<S: Published>() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for (model, factor) in S::forms() {
         for params in any_widths() {
             let (bsdf, p) = (Bsdf::new(&model, &params), parameters(&params, factor));
@@ -135,7 +135,7 @@ pub fn albedo_of_any_width_is_the_integral<S: Published>() {
 }
 
 pub fn max_albedo_bounds_lobes_of_any_width<S: Published>() {
-    let (mut above, mut scaled) = (Worst::default(), Worst::default());
+    let (mut above, mut scaled) = (LargestError::default(), LargestError::default());
     for (model, factor) in S::forms() {
         for params in any_widths() {
             let p = parameters(&params, factor);

@@ -1,7 +1,7 @@
 //! Each lobe's density integrates to 1, and so does the mixture: quadrature over the kernels' own numbers.
 
 use super::quadrature::{integrate, panels};
-use super::support::{Kind, THETA_O, Worst, direction, double, materials, parameters};
+use super::support::{Kind, LargestError, THETA_O, direction, double, materials, parameters};
 use super::{Published, samplers};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::reference::MatchedReference;
@@ -43,7 +43,7 @@ fn integrals<S: Published, M: Model<Params = HairParams>>(
 }
 
 fn see<S: Published, M: Model<Params = HairParams>>(
-    worst: &mut Worst,
+    worst: &mut LargestError,
     model: M,
     bands: usize,
     kind: Kind,
@@ -64,7 +64,7 @@ pub fn each_lobe_integrates_to_one<S: Published>() {
     for (kind, limit) in
         [(Kind::Grid, S::ROWS.integral[0]), (Kind::Narrow, S::ROWS.integral[1]), (Kind::Wide, S::ROWS.integral[2])]
     {
-        let mut worst = Worst::default();
+        let mut worst = LargestError::default();
         see::<S, _>(&mut worst, few, 5, kind, &THETA_O);
         see::<S, _>(&mut worst, usual, 9, kind, &THETA_O);
         see::<S, _>(&mut worst, many, 25, kind, &THETA_O);

@@ -1,6 +1,6 @@
 //! No fireflies: every weight is below its closed-form bound, and that is a small multiple of the mean over all everyday hair.
 
-use super::support::{Draws, Worst, direction, double, lanes_of, narrow, parameters};
+use super::support::{Draws, LargestError, direction, double, lanes_of, narrow, parameters};
 use super::{Published, samplers};
 use core::f64::consts::PI;
 use hairis::reference::MatchedReference;
@@ -19,7 +19,7 @@ fn hair(draws: &mut Draws) -> (HairParams, f64) {
 }
 
 /// The largest weights over their bound, and the largest bounds over the mean.
-fn scan<S: Published, M: Model<Params = HairParams>>(model: M, bands: usize, worst: &mut [Worst; 2]) {
+fn scan<S: Published, M: Model<Params = HairParams>>(model: M, bands: usize, worst: &mut [LargestError; 2]) {
     let mut draws = Draws(81);
     for round in 0..16_000 {
         let (params, theta_o) = hair(&mut draws);
@@ -44,7 +44,7 @@ fn scan<S: Published, M: Model<Params = HairParams>>(model: M, bands: usize, wor
 
 pub fn weights_are_below_their_bound_and_close_to_the_mean<S: Published>() {
     let (_, few, usual, many) = samplers::<S>();
-    let mut worst: [[Worst; 2]; 3] = Default::default();
+    let mut worst: [[LargestError; 2]; 3] = Default::default();
     scan::<S, _>(few, 5, &mut worst[0]);
     scan::<S, _>(usual, 9, &mut worst[1]);
     scan::<S, _>(many, 25, &mut worst[2]);

@@ -1,12 +1,12 @@
 //! The lobes apart: their sums, and every subset of them.
 
 use super::Published;
-use super::support::{Draws, Kind, Worst, double, for_each_point, lanes_of, narrow, packet, relative};
+use super::support::{Draws, Kind, LargestError, double, for_each_point, lanes_of, narrow, packet, relative};
 use crate::probe::masks;
 use hairis::{Bsdf, Lobe, LobeMask};
 
 pub fn lobes_add_up<S: Published>() {
-    let (mut s, mut pdf) = (Worst::default(), Worst::default());
+    let (mut s, mut pdf) = (LargestError::default(), LargestError::default());
     for_each_point::<S>(Kind::Grid, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         let probability = reference.probabilities();
@@ -26,7 +26,7 @@ pub fn lobes_add_up<S: Published>() {
 }
 
 pub fn a_subset_scatters_and_samples_its_lobes_alone<S: Published>() {
-    let (mut s, mut pdf) = (Worst::default(), Worst::default());
+    let (mut s, mut pdf) = (LargestError::default(), LargestError::default());
     for_each_point::<S>(Kind::Wide, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         let eight = Bsdf::prepare8(bsdf, &hairis::Vec3x8::splat(point.wo));

@@ -2,12 +2,12 @@
 //! alike.
 
 use super::Published;
-use super::support::{Draws, Kind, Point, Worst, for_each_point, lanes_of, materials, packet, parameters};
+use super::support::{Draws, Kind, LargestError, Point, for_each_point, lanes_of, materials, packet, parameters};
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{Bsdf, Bsdf8, Drawn, Eval, Gather8, Hit, Level, Lobe, Model, PerLobe, Sample8};
 
-type Material<S> = Bsdf<<S as Published>::Model>;
+type BsdfOf<S> = Bsdf<<S as Published>::Model>;
 
 fn eval_bits(e: Eval) -> [u32; 4] {
     [e.value[0], e.value[1], e.value[2], e.pdf].map(f32::to_bits)
@@ -29,14 +29,14 @@ fn unfused() -> impl Iterator<Item = Level> {
 }
 
 /// Eight different hits and materials, and eight directions and triples of numbers.
-struct Mixed<S: Published> {
-    bsdf: [Material<S>; 8],
+struct MixedPacket<S: Published> {
+    bsdf: [BsdfOf<S>; 8],
     wo: [Vec3; 8],
     wi: [Vec3; 8],
     xi: [[f32; 3]; 8],
 }
 
-fn mixed<S: Published>(draws: &mut Draws) -> Mixed<S> {
+fn mixed<S: Published>(draws: &mut Draws) -> MixedPacket<S> {
     let (model, factor) = S::forms()[0];
     let params: [_; 8] = core::array::from_fn(|_| draws.params(1e3));
     let wo: [_; 8] =
@@ -46,10 +46,10 @@ fn mixed<S: Published>(draws: &mut Draws) -> Mixed<S> {
         draws.near_lobes(&parameters(&params[lane], factor), theta_o, phi_o)
     });
     let xi = core::array::from_fn(|_| draws.xi3());
-    Mixed { bsdf: params.map(|p| Bsdf::new(&model, &p)), wo, wi, xi }
+    MixedPacket { bsdf: params.map(|p| Bsdf::new(&model, &p)), wo, wi, xi }
 }
 
-fn gathers<S: Published>(m: &Mixed<S>, level: Level) -> Gather8<S::Model> {
+fn gathers<S: Published>(m: &MixedPacket<S>, level: Level) -> Gather8<S::Model> {
     Bsdf8::pack(m.bsdf.each_ref()).prepare8_at(level, &packet(&m.wo))
 }
 
@@ -137,7 +137,7 @@ pub fn permuted_lanes_permute_the_results<S: Published>() {
         for last in (1..8).rev() {
             order.swap(last, draws.below(last + 1));
         }
-        let p = Mixed::<S> {
+        let p = MixedPacket::<S> {
             bsdf: order.map(|i| m.bsdf[i]),
             wo: order.map(|i| m.wo[i]),
             wi: order.map(|i| m.wi[i]),
@@ -167,7 +167,7 @@ fn tame(point: &Point) -> Vec<Vec3> {
 }
 
 pub fn levels_agree_with_one_lane<S: Published>() {
-    let mut worst: [Worst; 3] = Default::default();
+    let mut worst: [LargestError; 3] = Default::default();
     for_each_point::<S>(Kind::Wide, |bsdf, _, point| {
         let gather = bsdf.prepare(point.wo);
         let mut draws = Draws(point.seed + 7);
@@ -222,7 +222,7 @@ pub fn levels_that_round_alike_give_the_same_bits<S: Published>() {
 
 pub fn lobes_and_albedo_agree_with_one_lane<S: Published>() {
     let mut draws = Draws(15);
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     for _ in 0..200 {
         let m = mixed::<S>(&mut draws);
         let gather = Bsdf8::pack(m.bsdf.each_ref()).prepare8(&packet(&m.wo));

@@ -1,7 +1,7 @@
 //! Properties of every input: totality over all bit patterns, reciprocity, and samples that agree with eval and pdf.
 
 use super::Published;
-use super::support::{Draws, Worst, direction, lanes_of, materials, narrow, packet, relative};
+use super::support::{Draws, LargestError, direction, lanes_of, materials, narrow, packet, relative};
 use super::support::{Kind, angles};
 use core::f64::consts::PI;
 use glam::Vec3;
@@ -123,7 +123,7 @@ pub fn nothing_panics_on_nan_and_infinity<S: Published>() {
 }
 
 pub fn a_sample_agrees_with_eval_and_pdf<S: Published>() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     let mut draws = Draws(53);
     for (model, factor) in S::forms() {
         for _ in 0..10_000 {
@@ -157,7 +157,7 @@ pub fn a_sample_agrees_with_eval_and_pdf<S: Published>() {
 }
 
 pub fn eval_is_reciprocal<S: Published>() {
-    let mut worst = Worst::default();
+    let mut worst = LargestError::default();
     let mut draws = Draws(51);
     for (model, _) in S::forms() {
         for params in materials(Kind::Wide).into_iter().chain(materials(Kind::Grid).into_iter().step_by(17)) {

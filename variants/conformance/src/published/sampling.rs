@@ -1,6 +1,6 @@
 //! Samples against the reference: cdf of the drawn angle, value, density and weight at the drawn direction.
 
-use super::support::{Draws, Kind, Point, Worst, angles, double, for_each_point, lanes_of, relative};
+use super::support::{Draws, Kind, LargestError, Point, angles, double, for_each_point, lanes_of, relative};
 use super::{Published, PublishedReference};
 use core::f64::consts::PI;
 use hairis::{Level, Lobe, LobeMask, Sample};
@@ -31,7 +31,7 @@ fn phi(point: &Point, sample: &Sample) -> f64 {
 }
 
 /// Errors of a sample at the direction it returned: S, density, weight, and the length of the direction.
-fn see<S: Published>(worst: &mut [Worst; 4], reference: &PublishedReference, point: &Point, sample: &Sample) {
+fn see<S: Published>(worst: &mut [LargestError; 4], reference: &PublishedReference, point: &Point, sample: &Sample) {
     let at = || format!("{sample:?} wo {:?} {:?}", point.wo, point.params);
     let d = double(sample.wi);
     worst[3].see((d.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs(), at);
@@ -55,8 +55,8 @@ fn see<S: Published>(worst: &mut [Worst; 4], reference: &PublishedReference, poi
 }
 
 fn check<S: Published>(kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3], cdf: [f64; 2]) {
-    let mut worst: [Worst; 4] = Default::default();
-    let (mut theta, mut azimuth) = (Worst::default(), Worst::default());
+    let mut worst: [LargestError; 4] = Default::default();
+    let (mut theta, mut azimuth) = (LargestError::default(), LargestError::default());
     for_each_point::<S>(kind, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         let mut draws = Draws(point.seed);

@@ -1,7 +1,7 @@
 //! Next to `|phi|` = pi, where glints may end: samples report value and density of the direction they return, however narrow TT is.
 
 use super::Published;
-use super::support::{Worst, direction, double, lanes_of, oracle, relative};
+use super::support::{LargestError, direction, double, lanes_of, oracle, relative};
 use hairis::{Bsdf, HairDesc, HairParams, Level, Lobe};
 
 /// Numbers of 24 bits about a half, which both TT and the glints draw pi from: all next to it, and then fewer and fewer.
@@ -11,7 +11,7 @@ fn about_a_half() -> impl Iterator<Item = f32> {
 }
 
 pub fn samples_next_to_the_seam_report_their_own_direction<S: Published>() {
-    let mut worst: [Worst; 3] = Default::default();
+    let mut worst: [LargestError; 3] = Default::default();
     let mut glints = 0;
     for (gamma_tt, gamma_g, phi_g) in [
         (0.0175, 0.3, 2.8),

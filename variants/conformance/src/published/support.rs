@@ -138,12 +138,12 @@ pub fn relative(got: f32, want: f64, floor: f64) -> f64 {
 
 /// The largest error so far and where it was seen.
 #[derive(Debug, Default)]
-pub struct Worst {
+pub struct LargestError {
     pub error: f64,
     at: String,
 }
 
-impl Worst {
+impl LargestError {
     pub fn see(&mut self, error: f64, at: impl FnOnce() -> String) {
         // NaN is the worst of all.
         if error.is_nan() || error > self.error {

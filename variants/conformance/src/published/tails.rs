@@ -2,7 +2,7 @@
 //! return.
 
 use super::Published;
-use super::support::{DEG, Worst, angles, direction, double, lanes_of, narrow, oracle, relative};
+use super::support::{DEG, LargestError, angles, direction, double, lanes_of, narrow, oracle, relative};
 use core::f64::consts::PI;
 use hairis::{Bsdf, HairDesc, HairParams, Level, Lobe};
 
@@ -29,8 +29,8 @@ const NUMBERS: [f32; 15] = [
 
 /// S, density and weight of samples at these numbers, further than 1e-3 rad from the axis and from the seam; the density of TT and
 /// the glints also next to the seam.
-fn errors<S: Published>(descs: &[HairDesc], theta_o: impl Iterator<Item = f64> + Clone) -> ([Worst; 4], usize) {
-    let mut worst: [Worst; 4] = Default::default();
+fn errors<S: Published>(descs: &[HairDesc], theta_o: impl Iterator<Item = f64> + Clone) -> ([LargestError; 4], usize) {
+    let mut worst: [LargestError; 4] = Default::default();
     let mut seen = 0;
     for params in descs.iter().map(|desc| HairParams::new(desc).unwrap()) {
         for (turn, theta_o) in theta_o.clone().enumerate() {

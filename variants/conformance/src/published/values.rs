@@ -1,15 +1,15 @@
 //! Values, densities and lobes against the reference in double precision, one lane and eight, on every level.
 
 use super::Published;
-use super::support::{Kind, Worst, for_each_point, packet, relative};
+use super::support::{Kind, LargestError, for_each_point, packet, relative};
 use hairis::{Eval, Level, Lobe};
 
 /// Below this share of 1 per steradian a Gaussian is compared absolutely: it is cut to 0 at `2^-115` of its peak.
 const FLOOR: f64 = 1e-20;
 
 /// Largest errors of S and of the density over the materials of a kind.
-fn scan<S: Published>(kind: Kind, per_point: usize) -> [Worst; 4] {
-    let mut worst: [Worst; 4] = Default::default();
+fn scan<S: Published>(kind: Kind, per_point: usize) -> [LargestError; 4] {
+    let mut worst: [LargestError; 4] = Default::default();
     for_each_point::<S>(kind, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         for eight in point.directions(per_point).chunks(8) {

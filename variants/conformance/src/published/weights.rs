@@ -16,7 +16,7 @@
 //! and where R and TT are black no bound exists: [`the_published_flaw_is_there`] shows it.
 
 use super::Published;
-use super::support::{Draws, Worst, angles, direction, double, lanes_of, oracle, parameters};
+use super::support::{Draws, LargestError, angles, direction, double, lanes_of, oracle, parameters};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::{Bsdf, HairDesc, HairParams, Level, Lobe, LobeMask, Sample};
@@ -65,7 +65,7 @@ fn w(wo: Vec3, wi: Vec3) -> f64 {
 }
 
 /// The largest weight of a sample over `W` times its bound.
-fn worst_ratio(worst: &mut Worst, limit: [f64; 3], wo: Vec3, sample: &Sample, params: &HairParams) {
+fn worst_ratio(worst: &mut LargestError, limit: [f64; 3], wo: Vec3, sample: &Sample, params: &HairParams) {
     let w = w(wo, sample.wi);
     assert!(w <= 4.0 * (1.0 + 1e-6), "W = {w} wo {wo:?} wi {:?}", sample.wi);
     for (weight, limit) in sample.weight.into_iter().zip(limit) {
@@ -89,7 +89,7 @@ fn material(draws: &mut Draws) -> HairParams {
 }
 
 pub fn weights_are_below_their_bound<S: Published>() {
-    let (mut worst, mut checked) = (Worst::default(), 0);
+    let (mut worst, mut checked) = (LargestError::default(), 0);
     let mut draws = Draws(21);
     for (model, factor) in S::forms() {
         for round in 0..2000 {

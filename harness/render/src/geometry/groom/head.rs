@@ -16,7 +16,7 @@ const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
 /// Clumps, ready for strands to be grown.
 #[derive(Clone, Debug)]
-pub(super) struct Head {
+pub(super) struct HeadGroom {
     groom: Groom,
     clumps: Vec<Clump>,
 }
@@ -30,7 +30,7 @@ struct Clump {
     curl_length: f32,
 }
 
-impl Head {
+impl HeadGroom {
     pub(super) fn new(groom: Groom) -> Self {
         let clump = |index| {
             let mut random = Random::new(groom.seed, Stream::Clump(index));
