@@ -91,7 +91,7 @@ impl<F: Function> Kernel for Eight<'_, F> {
 #[derive(Clone, Copy, Debug)]
 pub struct Columns<F: Function>(pub F);
 
-impl<F: Function> Row<3> for Columns<F> {
+impl<F: Function> Row<3, 3> for Columns<F> {
     #[inline(always)]
     fn row<L: Lanes>(self, [x, y, zero]: [L; 3]) -> [L; 3]
     where

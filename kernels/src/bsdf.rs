@@ -19,12 +19,12 @@ use wide::f32x8;
 /// assert!((gather.pdf(sample.wi) / sample.pdf - 1.0).abs() < 1e-4);
 /// ```
 pub struct Bsdf<M: Model> {
-    material: M::Material<f32>,
+    pub(crate) material: M::Material<f32>,
 }
 
 /// Eight materials, one per lane: for eight shading points on different hair.
 pub struct Bsdf8<M: Model> {
-    material: M::Material<f32x8>,
+    pub(crate) material: M::Material<f32x8>,
 }
 
 /// A prepared shading point: a material seen from one direction. Evaluate and sample it any number of times, one direction or

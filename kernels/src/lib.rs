@@ -26,6 +26,7 @@
 //! | build | material | [`Bsdf::new`]; eight different ones: [`Bsdf8::pack`] |
 //! | prepare | hit | [`Bsdf::prepare`]; eight hits: [`Bsdf::prepare8`], [`Bsdf8::prepare8`] |
 //! | evaluate, sample | direction | [`Gather::eval_pdf`], [`Gather::sample`]; eight directions at one hit: [`Gather::eval_pdf8`], [`Gather::sample8`]; one at each of eight hits: [`Gather8::eval_pdf8`], [`Gather8::sample8`]; slices: [`Gather::eval_pdf_batch`], [`Gather::sample_batch`] |
+//! | both in one | hit and direction | slices of hits: [`Bsdf::eval_pdf_hits`], [`Bsdf::sample_hits`]; a material per hit: [`MaterialTable`] |
 //!
 //! # Conventions
 //!
@@ -74,6 +75,7 @@ mod direction;
 mod error;
 mod frame;
 mod hair;
+mod hits;
 mod lobe;
 mod lobe_model;
 mod matched;
@@ -86,15 +88,16 @@ pub mod random;
 #[cfg(feature = "textbook")]
 pub mod reference;
 mod simd;
+mod slices;
 mod truncated;
 
-pub use batch::{EvalSlices, LengthError, SampleSlices};
 pub use bell::{Bell, Gaussian};
 pub use bsdf::{Bsdf, Bsdf8, Gather, Gather8};
 pub use direction::Direction;
 pub use error::ParamError;
 pub use frame::{FiberFrame, FiberFrame8, Vec3x, Vec3x8};
 pub use hair::{GRAZING, Hair, HairGather, HairLobes, HairMaterial, HairSampler, HairView};
+pub use hits::{HitsError, MaterialTable};
 pub use lobe::{Lobe, LobeMask, PerLobe};
 pub use lobe_model::{LobeModel, Mixed, Mixture};
 pub use matched::{Matched, MatchedBell, MatchedGather, MatchedMaterial};
@@ -104,6 +107,7 @@ pub use simd::columns::Row;
 pub use simd::dispatch::{Constant, Kernel, Level};
 pub use simd::lanes::{Broadcast, LaneStruct, Lanes, Scalar, lanes3, lanes4, store3, store4};
 pub use simd::pair::Pair;
+pub use slices::{EvalColumns, EvalSlices, HitSlices, LengthError, SampleColumns, SampleSlices};
 
 #[doc(hidden)]
 pub use wide;

@@ -1,9 +1,7 @@
 //! Functions of a model as kernels of the vector layer: packets of eight, and rows of columns.
 
 use crate::model::{Drawn, Eval8, Hit8, LobeEval8, Sample8};
-use crate::{
-    Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Level, Model, PerLobe, Row, Vec3x, Vec3x8, lanes3, store3,
-};
+use crate::{Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Model, PerLobe, Row, Vec3x, Vec3x8, lanes3, store3};
 use core::marker::PhantomData;
 use wide::f32x8;
 
@@ -103,12 +101,6 @@ impl<'a, M: Model, K> AtGather<'a, M, K> {
     pub(crate) fn new(gather: &'a M::Gather<f32>) -> Self {
         Self { gather, columns: PhantomData }
     }
-
-    /// Value and density of eight directions.
-    #[inline(always)]
-    fn eval8(self, level: Level, [x, y, z]: &[f32x8; 3]) -> Eval8 {
-        level.run(EvalPdf::<M, f32> { gather: self.gather, wi: &Vec3x::new(*x, *y, *z) })
-    }
 }
 
 impl<M: Model, K> Clone for AtGather<'_, M, K> {
@@ -121,7 +113,7 @@ impl<M: Model, K> Copy for AtGather<'_, M, K> {}
 
 /// Columns of S. Terms that only the density needs are not computed.
 pub(crate) struct Value;
-impl<M: Model> Row<3> for AtGather<'_, M, Value> {
+impl<M: Model> Row<3, 3> for AtGather<'_, M, Value> {
     #[inline(always)]
     fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 3]
     where
@@ -129,15 +121,11 @@ impl<M: Model> Row<3> for AtGather<'_, M, Value> {
     {
         M::eval::<L, f32>(self.gather, Vec3x::new(x, y, z)).value
     }
-    #[inline(always)]
-    fn eight(self, level: Level, input: &[f32x8; 3]) -> [f32x8; 3] {
-        self.eval8(level, input).value
-    }
 }
 
 /// The column of the density.
 pub(crate) struct Pdf;
-impl<M: Model> Row<1> for AtGather<'_, M, Pdf> {
+impl<M: Model> Row<3, 1> for AtGather<'_, M, Pdf> {
     #[inline(always)]
     fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 1]
     where
@@ -145,15 +133,11 @@ impl<M: Model> Row<1> for AtGather<'_, M, Pdf> {
     {
         [M::eval::<L, f32>(self.gather, Vec3x::new(x, y, z)).pdf]
     }
-    #[inline(always)]
-    fn eight(self, level: Level, input: &[f32x8; 3]) -> [f32x8; 1] {
-        [self.eval8(level, input).pdf]
-    }
 }
 
 /// Columns of S and of the density.
 pub(crate) struct ValuePdf;
-impl<M: Model> Row<4> for AtGather<'_, M, ValuePdf> {
+impl<M: Model> Row<3, 4> for AtGather<'_, M, ValuePdf> {
     #[inline(always)]
     fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 4]
     where
@@ -163,27 +147,17 @@ impl<M: Model> Row<4> for AtGather<'_, M, ValuePdf> {
         let [r, g, b] = eval.value;
         [r, g, b, eval.pdf]
     }
-    #[inline(always)]
-    fn eight(self, level: Level, input: &[f32x8; 3]) -> [f32x8; 4] {
-        let eval = self.eval8(level, input);
-        let [r, g, b] = eval.value;
-        [r, g, b, eval.pdf]
-    }
 }
 
 /// Columns of samples.
 pub(crate) struct Samples;
-impl<M: Model> Row<11> for AtGather<'_, M, Samples> {
+impl<M: Model> Row<3, 11> for AtGather<'_, M, Samples> {
     #[inline(always)]
     fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11]
     where
         f32: Broadcast<L>,
     {
         columns(M::sample::<L, f32>(self.gather, xi))
-    }
-    #[inline(always)]
-    fn eight(self, level: Level, xi: &[f32x8; 3]) -> [f32x8; 11] {
-        columns(level.run(SampleWi::<M, f32> { gather: self.gather, xi }))
     }
 }
 
@@ -192,4 +166,103 @@ impl<M: Model> Row<11> for AtGather<'_, M, Samples> {
 fn columns<L>(s: Drawn<L>) -> [L; 11] {
     let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
     [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
+}
+
+/// Columns of hits: constants of each hit are made and used in registers.
+pub(crate) trait HitRow<M: Model, const N: usize> {
+    /// Numbers of each lane, from `wo`, `h` and a direction or three uniform numbers.
+    fn row<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, input: [L; 7]) -> [L; N];
+}
+
+/// Columns of S and of the density.
+pub(crate) struct HitEvals;
+impl<M: Model> HitRow<M, 4> for HitEvals {
+    #[inline(always)]
+    fn row<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, [u, v, w, h, x, y, z]: [L; 7]) -> [L; 4] {
+        let gather = M::prepare::<L, C>(material, Hit::new(Vec3x::new(u, v, w), h));
+        let eval = M::eval::<L, L::Stored>(&gather, Vec3x::new(x, y, z));
+        let [r, g, b] = eval.value;
+        [r, g, b, eval.pdf]
+    }
+}
+
+/// Columns of samples.
+pub(crate) struct HitSamples;
+impl<M: Model> HitRow<M, 11> for HitSamples {
+    #[inline(always)]
+    fn row<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, [u, v, w, h, x, y, z]: [L; 7]) -> [L; 11] {
+        let gather = M::prepare::<L, C>(material, Hit::new(Vec3x::new(u, v, w), h));
+        columns(M::sample::<L, L::Stored>(&gather, [x, y, z]))
+    }
+}
+
+/// Rows of hits on one material.
+pub(crate) struct AtHits<'a, M: Model, K> {
+    material: &'a M::Material<f32>,
+    columns: PhantomData<K>,
+}
+
+impl<'a, M: Model, K> AtHits<'a, M, K> {
+    #[inline(always)]
+    pub(crate) fn new(material: &'a M::Material<f32>) -> Self {
+        Self { material, columns: PhantomData }
+    }
+}
+
+impl<M: Model, K> Clone for AtHits<'_, M, K> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<M: Model, K> Copy for AtHits<'_, M, K> {}
+
+impl<M: Model, K: HitRow<M, N>, const N: usize> Row<7, N> for AtHits<'_, M, K> {
+    const OPTIONAL: bool = true;
+
+    #[inline(always)]
+    fn row<L: Lanes>(self, input: [L; 7]) -> [L; N]
+    where
+        f32: Broadcast<L>,
+    {
+        K::row::<L, f32>(self.material, input)
+    }
+}
+
+/// Eight hits, each on a material of its own.
+pub(crate) struct EightHits<'a, M: Model, K, const N: usize> {
+    material: &'a M::Material<f32x8>,
+    input: &'a [f32x8; 7],
+    columns: PhantomData<K>,
+}
+
+impl<'a, M: Model, K, const N: usize> EightHits<'a, M, K, N> {
+    #[inline(always)]
+    pub(crate) fn new(material: &'a M::Material<f32x8>, input: &'a [f32x8; 7]) -> Self {
+        Self { material, input, columns: PhantomData }
+    }
+}
+
+impl<M: Model, K: HitRow<M, N>, const N: usize> Kernel for EightHits<'_, M, K, N> {
+    type Constant = f32x8;
+    type Output = [f32x8; N];
+    // Packing the materials takes longer than what more registers would save.
+    const MANY_REGISTERS: bool = false;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; N]
+    where
+        f32x8: Broadcast<L>,
+    {
+        let [u, v, w, h, x, y, z] = self.input;
+        let input = [u.lanes(), v.lanes(), w.lanes(), h.lanes(), x.lanes(), y.lanes(), z.lanes()];
+        let row = K::row::<L, f32x8>(self.material, input);
+        let mut out = [f32x8::ZERO; N];
+        let mut i = 0;
+        while i < N {
+            out[i] = row[i].store();
+            i += 1;
+        }
+        out
+    }
 }

@@ -52,10 +52,10 @@ impl<const BANDS: usize, const BY_CHANNEL: bool> Published for Bands<BANDS, BY_C
 }
 
 conformance!(hair, Family::<PublishedHair>::new());
-conformance!(matched_5, Family::<Bands<5>>::new());
+conformance!(matched_5, Family::<Bands<5>>::new(), but hits);
 conformance!(matched_9, Family::<Bands<9>>::new());
-conformance!(matched_25, Family::<Bands<25>>::new());
-conformance!(matched_by_channel, Family::<Bands<9, true>>::new());
+conformance!(matched_25, Family::<Bands<25>>::new(), but hits);
+conformance!(matched_by_channel, Family::<Bands<9, true>>::new(), but hits);
 
 published!(published_sampler, crate::family::PublishedHair, published);
 published!(matched, crate::family::Bands<9>, matched);

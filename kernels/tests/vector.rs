@@ -63,7 +63,7 @@ fn search_counts_bounds_and_tables_answer_by_index() {
 #[derive(Clone, Copy)]
 struct Sums;
 
-impl Row<2> for Sums {
+impl Row<3, 2> for Sums {
     #[inline(always)]
     fn row<L: Lanes>(self, [a, b, c]: [L; 3]) -> [L; 2]
     where

@@ -4,157 +4,139 @@
     allow(dead_code, reason = "packets of other levels have more than eight lanes on these machines alone")
 )]
 
-use super::dispatch::{Kernel, Level};
-use super::lanes::{Broadcast, Lanes, Packet, lanes3};
+use super::lanes::{Broadcast, Lanes, Packet};
 use core::{mem, slice};
-use wide::f32x8;
 
-/// Work of [`Level::run_rows`] over columns: three numbers in, `N` numbers out, whatever the lanes.
-pub trait Row<const N: usize>: Copy {
+/// Work of [`Level::run_rows`](crate::Level::run_rows) over columns: `I` numbers in, `N` numbers out, whatever the lanes.
+pub trait Row<const I: usize, const N: usize>: Copy {
+    /// Whether columns may be left out. An empty input but the first then reads as 0, and an empty output is not written.
+    const OPTIONAL: bool = false;
+
     /// The numbers of each lane. Mark it `#[inline(always)]`, and all it calls.
-    fn row<L: Lanes>(self, input: [L; 3]) -> [L; N]
+    fn row<L: Lanes>(self, input: [L; I]) -> [L; N]
     where
         f32: Broadcast<L>;
-
-    /// The same of eight lanes, by [`Level::run`].
-    #[inline(always)]
-    fn eight(self, level: Level, input: &[f32x8; 3]) -> [f32x8; N] {
-        level.run(Eight { row: self, input })
-    }
 }
 
-/// One row of eight lanes.
-struct Eight<'a, R, const N: usize> {
-    row: R,
-    input: &'a [f32x8; 3],
-}
-
-impl<R: Row<N>, const N: usize> Kernel for Eight<'_, R, N> {
-    type Constant = f32;
-    type Output = [f32x8; N];
-
-    #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; N]
-    where
-        f32: Broadcast<L>,
-        f32x8: Broadcast<L>,
-    {
-        let row = self.row.row::<L>(lanes3(self.input));
-        let mut out = [f32x8::ZERO; N];
-        let mut i = 0;
-        while i < N {
-            out[i] = row[i].store();
-            i += 1;
-        }
-        out
-    }
-}
-
-/// The loop of a batch over whole packets. Every column has as many packets as the first; were one shorter, none would
-/// be written, for want of a branch that panics.
+/// The loop of a batch over whole packets. Every column has as many packets as the first, or none where it may be left out;
+/// were one shorter, none would be written, for want of a branch that panics.
 ///
 /// Columns are cut to one length before the loop, so that it has no other branch: the compiler moves the computation of
 /// a result past the branch that decides on its being written, and with it all of one packet of a pair before the other.
 #[inline(always)]
-pub(crate) fn packets<R: Row<N>, L: Packet<W>, const N: usize, const W: usize>(
+pub(crate) fn packets<R: Row<I, N>, L: Packet<W>, const I: usize, const N: usize, const W: usize>(
     row: R,
-    [first, second, third]: [&[[f32; W]]; 3],
+    inputs: [&[[f32; W]]; I],
     outputs: &mut [&mut [[f32; W]]; N],
 ) where
     f32: Broadcast<L>,
 {
-    let len = first.len();
-    let (Some(second), Some(third)) = (second.get(..len), third.get(..len)) else { return };
+    let len = inputs[0].len();
     // No loops over columns: compilers that save space leave them, and the row in memory.
     macro_rules! run {
-        ($($column:ident $index:literal)*) => {
+        ([$($input:ident $i:literal)*] [$($output:ident $o:literal)*]) => {
             $(
-                let $column = match outputs.get_mut($index).map(|column| mem::take(column).split_at_mut_checked(len)) {
+                let $input = match inputs.get($i).map(|column| column.get(..len)) {
+                    Some(Some(whole)) => whole,
+                    Some(None) if !R::OPTIONAL => return,
+                    _ => &[],
+                };
+            )*
+            $(
+                let $output = match outputs.get_mut($o).map(|column| mem::take(column).split_at_mut_checked(len)) {
                     Some(Some((whole, _))) => whole,
-                    Some(None) => return,
-                    None => &mut [],
+                    Some(None) if !R::OPTIONAL => return,
+                    _ => &mut [],
                 };
             )*
             for at in 0..len {
-                let row = row.row::<L>([L::read(&first[at]), L::read(&second[at]), L::read(&third[at])]);
+                let mut input = [L::splat(0.0); I];
                 $(
-                    if $index < N {
-                        row[$index].write(&mut $column[at]);
+                    if $i < I {
+                        input[$i] = if !R::OPTIONAL {
+                            L::read(&$input[at])
+                        } else if let Some(from) = $input.get(at) {
+                            L::read(from)
+                        } else {
+                            L::splat(0.0)
+                        };
+                    }
+                )*
+                let row = row.row::<L>(input);
+                $(
+                    if $o < N {
+                        if !R::OPTIONAL {
+                            row[$o].write(&mut $output[at]);
+                        } else if let Some(to) = $output.get_mut(at) {
+                            row[$o].write(to);
+                        }
                     }
                 )*
             }
         };
     }
-    const { assert!(N <= 11, "every column is written") };
-    run!(a 0 b 1 c 2 d 3 e 4 f 5 g 6 h 7 i 8 j 9 k 10);
+    const { assert!(I <= 7 && N <= 11, "every column is read or written") };
+    run!([a 0 b 1 c 2 d 3 e 4 f 5 g 6] [p 0 q 1 r 2 s 3 t 4 u 5 v 6 w 7 x 8 y 9 z 10]);
 }
 
-/// Calls `run` on the whole packets of the slices. Returns the number of rows done.
+/// Calls `run` on the whole packets of the slices from row `done` on. Returns the number of rows done.
 ///
-/// The rest is less than a packet. If it is more than eight rows, or a packet is no more than eight, the last packet of
-/// rows is computed once more: a row is the same wherever it is computed. Slices of less than a packet of eight fill its
-/// first lanes.
+/// The rest is less than a packet. If it is more than half of one, or `all` of it is wanted, the last packet of rows is
+/// computed once more: a row is the same wherever it is computed.
 #[inline(always)]
-pub(crate) fn in_packets<const N: usize, const W: usize>(
-    inputs: [&[f32]; 3],
+pub(crate) fn in_packets<const I: usize, const N: usize, const W: usize>(
+    inputs: [&[f32]; I],
     outputs: &mut [&mut [f32]; N],
-    mut run: impl FnMut([&[[f32; W]]; 3], &mut [&mut [[f32; W]]; N]),
+    done: usize,
+    all: bool,
+    mut run: impl FnMut([&[[f32; W]]; I], &mut [&mut [[f32; W]]; N]),
 ) -> usize {
     let len = inputs[0].len();
-    if len >= W {
-        run(inputs.map(|column| column.as_chunks().0), &mut outputs.each_mut().map(|column| column.as_chunks_mut().0));
-        let left = len % W;
-        if left == 0 || (W > 8 && left <= 8) {
-            return len - left;
-        }
-        let last = inputs.map(|column| column.last_chunk().map_or(&[][..], slice::from_ref));
-        run(last, &mut outputs.each_mut().map(|column| column.last_chunk_mut().map_or(&mut [][..], slice::from_mut)));
-    } else if W == 8 && len > 0 {
-        let mut from = [[0.0; W]; 3];
-        for (to, column) in from.iter_mut().zip(inputs) {
-            copy(column, to);
-        }
-        let mut to = [[0.0; W]; N];
-        run(from.each_ref().map(slice::from_ref), &mut to.each_mut().map(slice::from_mut));
-        for (from, column) in to.iter().zip(outputs) {
-            copy(from, column);
-        }
-    } else {
-        return 0;
+    let rows = len.saturating_sub(done);
+    if rows >= W {
+        run(
+            inputs.map(|column| column.get(done..).unwrap_or_default().as_chunks().0),
+            &mut outputs.each_mut().map(|column| column.get_mut(done..).unwrap_or_default().as_chunks_mut().0),
+        );
     }
+    let left = rows % W;
+    if left == 0 || len < W || (left <= W / 2 && !all) {
+        return len - left;
+    }
+    let last = inputs.map(|column| column.last_chunk().map_or(&[][..], slice::from_ref));
+    run(last, &mut outputs.each_mut().map(|column| column.last_chunk_mut().map_or(&mut [][..], slice::from_mut)));
     len
 }
 
-/// Rows from `done` on, eight at a time; the last eight of the slices include some that are done already.
+/// Calls `run` on the rows from `done` on, eight at a time.
 ///
-/// Slices of less than eight rows are lanes 0 on.
+/// The last eight include rows that are done already. Slices of less than eight rows are lanes 0 on.
 #[inline(always)]
-pub(crate) fn in_eights<R: Row<N>, const N: usize>(
-    level: Level,
-    row: R,
-    inputs: [&[f32]; 3],
+pub(crate) fn in_eights<const I: usize, const N: usize>(
+    inputs: [&[f32]; I],
     outputs: &mut [&mut [f32]; N],
-    mut done: usize,
+    done: usize,
+    mut run: impl FnMut([&[[f32; 8]]; I], &mut [&mut [[f32; 8]]; N]),
 ) {
-    let len = inputs[0].len();
-    while done < len {
-        let start = done.min(len.saturating_sub(8));
-        let mut from = [[0.0; 8]; 3];
-        for (to, column) in from.iter_mut().zip(&inputs) {
-            copy(column.get(start..).unwrap_or_default(), to);
-        }
-        let lanes = row.eight(level, &from.map(f32x8::new));
-        for (lanes, column) in lanes.iter().zip(outputs.iter_mut()) {
-            copy(lanes.as_array(), column.get_mut(start..).unwrap_or_default());
-        }
-        done = start + 8;
+    let done = in_packets(inputs, outputs, done, true, &mut run);
+    if done == inputs[0].len() {
+        return;
+    }
+    let mut from = [[0.0; 8]; I];
+    for (to, column) in from.iter_mut().zip(inputs) {
+        copy(column, to);
+    }
+    let mut to = [[0.0; 8]; N];
+    run(from.each_ref().map(slice::from_ref), &mut to.each_mut().map(slice::from_mut));
+    for (from, column) in to.iter().zip(outputs) {
+        copy(from, column);
     }
 }
 
 /// Copies eight numbers, or as many as the shorter has. In pieces of fixed length: a loop, and the system's copy all the
 /// more, costs several times as much.
 #[inline(always)]
-fn copy(from: &[f32], to: &mut [f32]) {
+pub(crate) fn copy(from: &[f32], to: &mut [f32]) {
     if let (Some(from), Some(to)) = (from.first_chunk::<8>(), to.first_chunk_mut::<8>()) {
         *to = *from;
         return;

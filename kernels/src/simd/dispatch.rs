@@ -202,16 +202,37 @@ fn run_avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Avx2>()
 }
 
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-#[target_feature(enable = "avx2,fma")]
-fn rows_avx2<R: Row<N>, const N: usize>(row: R, inputs: [&[[f32; 16]]; 3], outputs: &mut [&mut [[f32; 16]]; N]) {
-    columns::packets::<R, Pair<Avx2>, N, 16>(row, inputs, outputs);
+/// The rows of any machine. A function of its own, as those of target features are: the three places that call it would
+/// each have a copy of the model.
+#[inline(never)]
+fn rows_portable<R: Row<I, N>, const I: usize, const N: usize>(
+    row: R,
+    inputs: [&[[f32; 8]]; I],
+    outputs: &mut [&mut [[f32; 8]]; N],
+) {
+    columns::packets::<R, f32x8, I, N, 8>(row, inputs, outputs);
 }
 
+/// The rows of an instruction set, in packets of `W`.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-#[target_feature(enable = "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw")]
-fn rows_avx512<R: Row<N>, const N: usize>(row: R, inputs: [&[[f32; 32]]; 3], outputs: &mut [&mut [[f32; 32]]; N]) {
-    columns::packets::<R, Pair<Avx512>, N, 32>(row, inputs, outputs);
+macro_rules! rows {
+    ($($name:ident $features:literal $Lanes:ty, $W:literal;)*) => { $(
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        #[target_feature(enable = $features)]
+        fn $name<R: Row<I, N>, const I: usize, const N: usize>(
+            row: R,
+            inputs: [&[[f32; $W]]; I],
+            outputs: &mut [&mut [[f32; $W]]; N],
+        ) {
+            columns::packets::<R, $Lanes, I, N, $W>(row, inputs, outputs);
+        }
+    )* };
+}
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+rows! {
+    eights_avx2 "avx2,fma" Avx2, 8;
+    rows_avx2 "avx2,fma" Pair<Avx2>, 16;
+    rows_avx512 "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw" Pair<Avx512>, 32;
 }
 
 impl Level {
@@ -232,34 +253,36 @@ impl Level {
         }
     }
 
-    /// Runs `row` over columns: three numbers in, `N` out. All columns are to be of one length.
+    /// Runs `row` over columns: `I` numbers in, `N` out. All columns are to be of one length.
     ///
-    /// Rows are computed in packets as wide as the instruction set has them, two at a time, and the rest eight at a
-    /// time. Columns that are too short leave the others unwritten.
+    /// Rows are computed in packets as wide as the instruction set has them, two at a time, and the rest in narrower ones.
+    /// Columns that are too short leave the others unwritten, unless they are [`OPTIONAL`](Row::OPTIONAL).
     #[inline]
-    pub fn run_rows<R: Row<N>, const N: usize>(self, row: R, inputs: [&[f32]; 3], outputs: &mut [&mut [f32]; N]) {
-        match self.0 {
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Kind::Avx2 => {
-                let done = columns::in_packets(inputs, outputs, |inputs, outputs| {
+    pub fn run_rows<R: Row<I, N>, const I: usize, const N: usize>(
+        self,
+        row: R,
+        inputs: [&[f32]; I],
+        outputs: &mut [&mut [f32]; N],
+    ) {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        if self.0 != Kind::Portable {
+            let mut done = 0;
+            if self.0 == Kind::Avx512 {
+                done = columns::in_packets(inputs, outputs, done, false, |inputs, outputs| {
                     // SAFETY: a `Level` of this kind is made only where these features were found.
-                    unsafe { rows_avx2(row, inputs, outputs) }
-                });
-                columns::in_eights(self, row, inputs, outputs, done);
-            }
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Kind::Avx512 => {
-                let done = columns::in_packets(inputs, outputs, |inputs, outputs| {
-                    // SAFETY: as above.
                     unsafe { rows_avx512(row, inputs, outputs) }
                 });
-                columns::in_eights(self, row, inputs, outputs, done);
             }
-            Kind::Portable => {
-                columns::in_packets(inputs, outputs, |inputs, outputs| {
-                    columns::packets::<R, f32x8, N, 8>(row, inputs, outputs);
-                });
-            }
+            done = columns::in_packets(inputs, outputs, done, false, |inputs, outputs| {
+                // SAFETY: as above, and a level with AVX-512 has those of AVX2.
+                unsafe { rows_avx2(row, inputs, outputs) }
+            });
+            columns::in_eights(inputs, outputs, done, |inputs, outputs| {
+                // SAFETY: as above.
+                unsafe { eights_avx2(row, inputs, outputs) }
+            });
+            return;
         }
+        columns::in_eights(inputs, outputs, 0, |inputs, outputs| rows_portable(row, inputs, outputs));
     }
 }

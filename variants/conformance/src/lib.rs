@@ -43,6 +43,7 @@
 //! | `levels_agree` | levels that fuse alike, packed and shared materials, give the same bits |
 //! | `lobes_and_albedo_equal_scalar` | the same of lobes and albedo; `h` matters only where it is claimed to |
 //! | `slices_equal_packets` | slices of every length and alignment give the bits of packets |
+//! | `hits_equal_packets` | slices of hits give them too, on one material and on tables, with columns left out |
 //! | `lobes_sum_to_value` | values and densities of lobes alone and together |
 //! | `masks_select_lobes` | masked lobes neither scatter nor are sampled |
 //! | `albedo_is_the_integral` | `albedo` against quadrature |
@@ -65,6 +66,7 @@ mod calls;
 pub mod chi_square;
 mod failure;
 mod formula_reference;
+pub mod hits;
 pub mod integral;
 pub mod inversion;
 pub mod lanes;
@@ -93,10 +95,17 @@ pub use subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subje
 
 /// Declares a module with a `#[test]` for each property of a [`Subject`].
 ///
-/// The subject is an expression without surroundings: a unit struct, or a constant.
+/// The subject is an expression without surroundings: a unit struct, or a constant. `but hits` after it leaves out slices of
+/// hits, which take the longest to compile: for models that differ by a constant from one that is tested whole.
 #[macro_export]
 macro_rules! conformance {
     ($name:ident, $subject:expr) => {
+        $crate::conformance!(+$name, $subject, hits hits_equal_packets,);
+    };
+    ($name:ident, $subject:expr, but hits) => {
+        $crate::conformance!(+$name, $subject,);
+    };
+    (+$name:ident, $subject:expr, $($more:tt)*) => {
         $crate::conformance!(
             @$name, $subject,
             totality results_are_finite,
@@ -117,6 +126,7 @@ macro_rules! conformance {
             bounds weights_are_bounded,
             bounds eval_is_reciprocal,
             reference agrees_with_reference,
+            $($more)*
         );
     };
     (@$name:ident, $subject:expr, $($module:ident $property:ident,)*) => {

@@ -9,31 +9,31 @@ use hairis::{Bsdf, EvalSlices, Gather, LengthError, Level, Model, SampleSlices};
 
 const NAME: &str = "slices give the bits of packets";
 /// Content of a slice that is not to be written.
-const UNTOUCHED: f32 = -77.0;
+pub(crate) const UNTOUCHED: f32 = -77.0;
 /// Room after the slice under test.
 const MARGIN: usize = 9;
 /// Two packets of the widest level, and some.
 const LONGEST: usize = 69;
 
 /// `N` columns of room for `len` numbers at an offset, with margins.
-struct Room<const N: usize> {
+pub(crate) struct Room<const N: usize> {
     columns: [Vec<f32>; N],
     offset: usize,
     len: usize,
 }
 
 impl<const N: usize> Room<N> {
-    fn new(offset: usize, len: usize) -> Self {
+    pub(crate) fn new(offset: usize, len: usize) -> Self {
         Self { columns: core::array::from_fn(|_| vec![UNTOUCHED; offset + len + MARGIN]), offset, len }
     }
 
-    fn slices(&mut self) -> [&mut [f32]; N] {
+    pub(crate) fn slices(&mut self) -> [&mut [f32]; N] {
         let (offset, len) = (self.offset, self.len);
         self.columns.each_mut().map(|column| &mut column[offset..offset + len])
     }
 
     /// Whether the results are those wanted, and nothing is written beside them.
-    fn check(&self, want: &[[u32; N]], what: &str, at: &str) -> Outcome {
+    pub(crate) fn check(&self, want: &[[u32; N]], what: &str, at: &str) -> Outcome {
         for (n, column) in self.columns.iter().enumerate() {
             let margins = column[..self.offset].iter().chain(&column[self.offset + self.len..]);
             if margins.into_iter().any(|x| *x != UNTOUCHED) {

@@ -6,8 +6,8 @@ mod reference;
 
 use broken::*;
 use hairis_conformance::{
-    Claims, Materials, Outcome, Subject, bounds, chi_square, integral, inversion, lanes, lobes, not_numbers, sampling,
-    slices, totality,
+    Claims, Materials, Outcome, Subject, bounds, chi_square, hits, integral, inversion, lanes, lobes, not_numbers,
+    sampling, slices, totality,
 };
 
 hairis_conformance::conformance!(sound, crate::Broken::<{ crate::SOUND }>);
@@ -105,6 +105,7 @@ fn slices_find_entries_that_differ_from_packets() {
     // Only levels that work off more than one packet at a time have lanes of their own for slices.
     if hairis::Level::available().any(|level| level != hairis::Level::portable()) {
         assert_fails(slices::slices_equal_packets(&Broken::<WIDE_SLICES_DIFFER>), "entry");
+        assert_fails(hits::hits_equal_packets(&Broken::<WIDE_SLICES_DIFFER>), "entry");
     }
 }
 

@@ -1,0 +1,216 @@
+//! Slices of hits give the bits of packets, whatever their length, alignment, materials and columns.
+
+use crate::calls::{self, COLUMNS, Direction};
+use crate::failure::{Failure, Outcome};
+use crate::lanes::{eval_bits, sample_bits};
+use crate::probe::{Draws, hits8, packet, triples};
+use crate::slices::{Room, UNTOUCHED};
+use crate::subject::Subject;
+use hairis::{
+    Bsdf, Bsdf8, EvalColumns, Hit, HitSlices, HitsError, LengthError, Level, MaterialTable, Model, SampleColumns,
+};
+
+const NAME: &str = "slices of hits give the bits of packets";
+/// Two packets of the widest level, and some.
+const LONGEST: usize = 69;
+/// Which of value and density, or of direction, value, density, weight and slot, are asked for.
+const EVAL_CHOICES: [[bool; 2]; 3] = [[true, true], [true, false], [false, true]];
+const SAMPLE_CHOICES: [[bool; 5]; 4] = [
+    [true; 5],
+    [true, false, true, true, false], // a path tracer
+    [false, true, false, false, true],
+    [false; 5],
+];
+
+/// Slices of hits give the bits that [`Bsdf8::prepare8`] and then eight lanes give: on one material, and on a table of
+/// materials in runs and at random; without `h`, they are hits on the axis. Columns that are left out are not written, nor is
+/// anything beyond a slice. Slices of different lengths and indices beyond the table are refused, and then nothing is written.
+///
+/// # Errors
+///
+/// At the first entry that differs.
+pub fn hits_equal_packets<S: Subject>(subject: &S) -> Outcome {
+    let mut draws = Draws(0x417);
+    let all = subject.materials().into_iter().chain(subject.extremes());
+    let materials: Vec<Bsdf<S::Model>> = all.map(|(_, params)| Bsdf::new(&subject.model(), &params)).collect();
+    for level in Level::available() {
+        for (len, one) in (0..=LONGEST).zip(materials.iter().cycle()) {
+            let rows: Vec<Row> = (0..len).map(|_| Row::new(&mut draws)).collect();
+            let at = format!("{len} hits on {level}");
+            let slices = Slices::new(&rows, len % 8, len % 3 != 1);
+            let expected = Expected::new(&vec![one; len], level, &slices.rows);
+            slices.check(&expected, len, &format!("one material, {at}"), |xi, out| match out {
+                Columns::Eval(out) => one.eval_pdf_hits_at(level, slices.hits(), xi, out).map_err(HitsError::from),
+                Columns::Sample(out) => one.sample_hits_at(level, slices.hits(), xi, out).map_err(HitsError::from),
+            })?;
+            let index = indices(&mut draws, len, materials.len());
+            let each: Vec<_> = index.iter().map(|i| &materials[*i as usize]).collect();
+            let table = MaterialTable { materials: &materials, index: &index };
+            let expected = Expected::new(&each, level, &slices.rows);
+            slices.check(&expected, len, &format!("materials {index:?}, {at}"), |xi, out| match out {
+                Columns::Eval(out) => table.eval_pdf_hits_at(level, slices.hits(), xi, out),
+                Columns::Sample(out) => table.sample_hits_at(level, slices.hits(), xi, out),
+            })?;
+        }
+    }
+    arguments_are_checked(&materials)
+}
+
+/// Indices in runs of every length up to 20.
+fn indices(draws: &mut Draws, len: usize, materials: usize) -> Vec<u32> {
+    let mut index = Vec::new();
+    while index.len() < len {
+        let run = 1 + draws.bits() % *draws.pick(&[3, 20]);
+        let one = u32::try_from(draws.bits() % materials as u64).unwrap_or(0);
+        index.extend((0..run).map(|_| one));
+    }
+    index.truncate(len);
+    index
+}
+
+/// A hit, and what it is asked.
+#[derive(Clone, Copy)]
+struct Row {
+    hit: Hit,
+    wi: Direction,
+    xi: [f32; 3],
+}
+
+impl Row {
+    fn new(draws: &mut Draws) -> Self {
+        Self { hit: draws.hit(), wi: draws.direction(), xi: draws.xi3() }
+    }
+}
+
+/// The columns of a call that are asked for.
+enum Columns<'a> {
+    Eval(EvalColumns<'a>),
+    Sample(SampleColumns<'a>),
+}
+
+/// Rows by column: `wo`, `h`, `wi` and `xi`, each with some room before it.
+struct Slices {
+    rows: Vec<Row>,
+    columns: [Vec<f32>; 10],
+    offset: usize,
+    has_h: bool,
+}
+
+impl Slices {
+    fn new(rows: &[Row], offset: usize, has_h: bool) -> Self {
+        let row = |row: &Row| Row { hit: Hit { h: if has_h { row.hit.h } else { 0.0 }, ..row.hit }, ..*row };
+        let rows: Vec<_> = rows.iter().map(row).collect();
+        let of =
+            |Row { hit: Hit { wo, h }, wi, xi }: &Row| [wo.x, wo.y, wo.z, *h, wi.x, wi.y, wi.z, xi[0], xi[1], xi[2]];
+        let columns = core::array::from_fn(|n| {
+            let room = core::iter::repeat_n(9.0, offset);
+            room.chain(rows.iter().map(|row| of(row)[n])).collect()
+        });
+        Self { rows, columns, offset, has_h }
+    }
+
+    fn three(&self, from: usize) -> [&[f32]; 3] {
+        [0, 1, 2].map(|n| &self.columns[from + n][self.offset..])
+    }
+
+    fn hits(&self) -> HitSlices<'_> {
+        HitSlices { wo: self.three(0), h: self.has_h.then(|| &self.columns[3][self.offset..]) }
+    }
+
+    fn check(
+        &self,
+        expected: &Expected,
+        len: usize,
+        at: &str,
+        call: impl Fn([&[f32]; 3], Columns<'_>) -> Result<(), HitsError>,
+    ) -> Outcome {
+        let refused = |e: HitsError| Failure::new(NAME, format!("{e}: {at}"));
+        for [value, pdf] in EVAL_CHOICES {
+            let mut room = Room::<4>::new(self.offset, len);
+            let [r, g, b, density] = room.slices();
+            let out = EvalColumns { value: value.then_some([r, g, b]), pdf: pdf.then_some(density) };
+            call(self.three(4), Columns::Eval(out)).map_err(refused)?;
+            room.check(&chosen(&expected.evals, [value, value, value, pdf]), "value and density", at)?;
+        }
+        for [wi, value, pdf, weight, slot] in SAMPLE_CHOICES {
+            let mut room = Room::<COLUMNS>::new(self.offset, len);
+            let [u, v, w, r, g, b, density, wr, wg, wb, lobe] = room.slices();
+            let out = SampleColumns {
+                wi: wi.then_some([u, v, w]),
+                value: value.then_some([r, g, b]),
+                pdf: pdf.then_some(density),
+                weight: weight.then_some([wr, wg, wb]),
+                slot: slot.then_some(lobe),
+            };
+            call(self.three(7), Columns::Sample(out)).map_err(refused)?;
+            let asked = [wi, wi, wi, value, value, value, pdf, weight, weight, weight, slot];
+            room.check(&chosen(&expected.samples, asked), "samples", at)?;
+        }
+        Ok(())
+    }
+}
+
+/// The results with the columns that are not asked for untouched.
+fn chosen<const N: usize>(results: &[[u32; N]], asked: [bool; N]) -> Vec<[u32; N]> {
+    let row = |row: &[u32; N]| core::array::from_fn(|n| if asked[n] { row[n] } else { UNTOUCHED.to_bits() });
+    results.iter().map(row).collect()
+}
+
+/// Results of packets for some rows.
+struct Expected {
+    evals: Vec<[u32; 4]>,
+    samples: Vec<[u32; COLUMNS]>,
+}
+
+impl Expected {
+    fn new<M: Model>(materials: &[&Bsdf<M>], level: Level, rows: &[Row]) -> Self {
+        let mut all = Self { evals: Vec::new(), samples: Vec::new() };
+        for (materials, rows) in materials.chunks(8).zip(rows.chunks(8)) {
+            let lane = |lane: usize| lane % rows.len();
+            let bsdf = Bsdf8::pack(core::array::from_fn(|i| materials[lane(i)]));
+            let row: [Row; 8] = core::array::from_fn(|i| rows[lane(i)]);
+            let gather = calls::prepare_packed(&bsdf, level, hits8(&row.map(|row| row.hit)));
+            let evals = calls::eval_each(&gather, level, &packet(&row.map(|row| row.wi)));
+            let samples = calls::sample_each(&gather, level, &triples(&row.map(|row| row.xi)));
+            for lane in 0..rows.len() {
+                all.evals.push(eval_bits(evals.lane(lane)));
+                all.samples.push(sample_bits(&samples, lane));
+            }
+        }
+        all
+    }
+}
+
+/// A slice of another length is refused by its name, an index by its place, and nothing is written.
+fn arguments_are_checked<M: Model>(materials: &[Bsdf<M>]) -> Outcome {
+    const NAMES: [&str; 8] = ["index", "wo.v", "wo.w", "h", "wi.u", "wi.v", "wi.w", "pdf"];
+    let refused_as = |want: HitsError, lens: [usize; 8], index: u32| {
+        let columns = lens.map(|len| vec![0.5; len]);
+        let [_, v, w, h, x, y, z, _] = columns.each_ref().map(|column| &column[..]);
+        let (u, mut pdf) = (vec![0.5; EXPECTED], vec![UNTOUCHED; lens[7]]);
+        let mut all = vec![0; lens[0]];
+        if let Some(last) = all.last_mut() {
+            *last = index;
+        }
+        let table = MaterialTable { materials, index: &all };
+        let out = EvalColumns { pdf: Some(&mut pdf), ..EvalColumns::default() };
+        let got = table.eval_pdf_hits(HitSlices { wo: [&u, v, w], h: Some(h) }, [x, y, z], out);
+        if got == Err(want) && pdf.iter().all(|x| *x == UNTOUCHED) {
+            return Ok(());
+        }
+        Err(Failure::new(NAME, format!("{got:?} for {want:?}, densities {pdf:?}")))
+    };
+    const EXPECTED: usize = 5;
+    for (wrong, field) in NAMES.into_iter().enumerate() {
+        for len in [0, 4, 6] {
+            let mut lens = [EXPECTED; 8];
+            lens[wrong] = len;
+            refused_as(LengthError { field, len, expected: EXPECTED }.into(), lens, 0)?;
+        }
+    }
+    let (materials, most) = (materials.len(), u32::MAX);
+    for index in [u32::try_from(materials).unwrap_or(most), most] {
+        refused_as(HitsError::Material { hit: EXPECTED - 1, index, materials }, [EXPECTED; 8], index)?;
+    }
+    Ok(())
+}
