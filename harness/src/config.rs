@@ -87,7 +87,7 @@ pub enum Path {
     X8,
     /// Slices, in single precision: neighbouring lines on the same hair with the same wo share a call
     Batch,
-    /// The paper's formulas line by line, in double precision, on input rounded as for the others
+    /// The formulas line by line, in double precision, on the input as it is: the other paths round it
     F64,
 }
 

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod claims;
+mod exact;
 mod refusals;
 mod streams;
 mod study;

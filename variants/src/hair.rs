@@ -140,6 +140,12 @@ impl<B: RegisteredBell> Registered for Hair<B> {
 
     #[cfg(feature = "textbook")]
     #[inline]
+    fn exact_formulas<T: Real>(_params: &HairParams, exact: &Values<T>) -> reference::Parameters<T> {
+        exact_parameters(exact)
+    }
+
+    #[cfg(feature = "textbook")]
+    #[inline]
     fn reference_at<T: Real>(formulas: &reference::Parameters<T>, wo: [T; 3], _h: T) -> HairReference<T> {
         HairReference::prepare(formulas, B::SHAPE, wo)
     }
@@ -199,6 +205,12 @@ impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
 
     #[cfg(feature = "textbook")]
     #[inline]
+    fn exact_formulas<T: Real>(_params: &HairParams, exact: &Values<T>) -> reference::Parameters<T> {
+        exact_parameters(exact)
+    }
+
+    #[cfg(feature = "textbook")]
+    #[inline]
     fn reference_at<T: Real>(formulas: &reference::Parameters<T>, wo: [T; 3], _h: T) -> MatchedReference<T> {
         MatchedReference::prepare(formulas, B::SHAPE, wo, BANDS)
     }
@@ -213,6 +225,27 @@ impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
     #[inline]
     fn cdf(reference: &MatchedReference<f64>, lobe: Lobe, theta_i: f64, phi: f64) -> Option<[f64; 2]> {
         Some([reference.cdf_theta(lobe, theta_i), reference.cdf_phi(lobe, phi)])
+    }
+}
+
+/// The formulas' parameters of these values.
+#[cfg(feature = "textbook")]
+#[inline]
+fn exact_parameters<T: Real>(exact: &Values<T>) -> reference::Parameters<T> {
+    let number = |name| {
+        let [number] = exact.get(name);
+        number
+    };
+    reference::Parameters {
+        alpha: exact.get("alpha"),
+        beta: exact.get("beta"),
+        gamma_tt: number("gamma_tt"),
+        gamma_g: number("gamma_g"),
+        phi_g: number("phi_g"),
+        intensity_r: exact.get("i_r"),
+        intensity_tt: exact.get("i_tt"),
+        intensity_trt: exact.get("i_trt"),
+        intensity_g: number("i_g"),
     }
 }
 

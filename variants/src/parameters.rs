@@ -154,23 +154,29 @@ fn channel(error: &ParamError) -> Option<usize> {
     }
 }
 
-/// Values of fields: plain data, whatever the model.
+/// Values of fields: plain data, whatever the model. Parameters are made of single precision; the formulas take any.
 #[derive(Clone, Copy, Debug)]
-pub struct Values {
+pub struct Values<T = f32> {
     fields: &'static [Field],
-    numbers: [f32; Self::MOST],
+    numbers: [T; MOST],
     given: u32,
 }
 
-impl Values {
-    /// Largest count of numbers of a model, and of its fields.
-    pub const MOST: usize = 32;
+const MOST: usize = 32;
 
+impl<T: Copy + Default> Values<T> {
     /// No value yet.
     #[inline]
     #[must_use]
-    pub const fn none(fields: &'static [Field]) -> Self {
-        Self { fields, numbers: [0.0; Self::MOST], given: 0 }
+    pub fn none(fields: &'static [Field]) -> Self {
+        Self { fields, numbers: [T::default(); MOST], given: 0 }
+    }
+
+    /// The same fields with every number converted.
+    #[inline]
+    #[must_use]
+    pub fn map<U>(&self, convert: impl FnMut(T) -> U) -> Values<U> {
+        Values { fields: self.fields, numbers: self.numbers.map(convert), given: self.given }
     }
 
     /// The fields.
@@ -187,26 +193,12 @@ impl Values {
     /// If there is no such field, or it has another count of numbers.
     #[inline]
     #[must_use]
-    pub fn with(mut self, name: &str, numbers: &[f32]) -> Self {
+    pub fn with(mut self, name: &str, numbers: &[T]) -> Self {
         let (index, at) = self.place(name);
         assert!(self.fields[index].kind.width() == numbers.len(), "the field has another count of numbers");
         self.numbers[at..at + numbers.len()].copy_from_slice(numbers);
         self.given |= 1 << index;
         self
-    }
-
-    /// With a word for the field `name`.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such field, or it has no such word.
-    #[inline]
-    #[must_use]
-    pub fn with_word(self, name: &str, word: &str) -> Self {
-        let (index, _) = self.place(name);
-        let Kind::Word(words) = self.fields[index].kind else { panic!("not a field of words") };
-        let place = words.iter().zip(0_u8..).find(|(one, _)| **one == word).expect("a word of the field").1;
-        self.with(name, &[f32::from(place)])
     }
 
     /// Without a value for the field `name`.
@@ -239,7 +231,7 @@ impl Values {
     /// If there is no such field.
     #[inline]
     #[must_use]
-    pub fn numbers(&self, name: &str) -> &[f32] {
+    pub fn numbers(&self, name: &str) -> &[T] {
         let (index, at) = self.place(name);
         &self.numbers[at..at + self.fields[index].kind.width()]
     }
@@ -251,9 +243,35 @@ impl Values {
     /// If there is no such field, or it has another count of numbers.
     #[inline]
     #[must_use]
-    pub fn get<const N: usize>(&self, name: &str) -> [f32; N] {
+    pub fn get<const N: usize>(&self, name: &str) -> [T; N] {
         let Ok(numbers) = self.numbers(name).try_into() else { panic!("the field has another count of numbers") };
         numbers
+    }
+
+    /// Index of the field `name`, and where its numbers begin.
+    #[inline]
+    fn place(&self, name: &str) -> (usize, usize) {
+        let index = self.fields.iter().position(|field| field.name == name).expect("a field of the model");
+        (index, self.fields[..index].iter().map(|field| field.kind.width()).sum())
+    }
+}
+
+impl Values {
+    /// Largest count of numbers of a model, and of its fields.
+    pub const MOST: usize = MOST;
+
+    /// With a word for the field `name`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such field, or it has no such word.
+    #[inline]
+    #[must_use]
+    pub fn with_word(self, name: &str, word: &str) -> Self {
+        let (index, _) = self.place(name);
+        let Kind::Word(words) = self.fields[index].kind else { panic!("not a field of words") };
+        let place = words.iter().zip(0_u8..).find(|(one, _)| **one == word).expect("a word of the field").1;
+        self.with(name, &[f32::from(place)])
     }
 
     /// The word of the field `name`, its first if it has no value.
@@ -268,16 +286,9 @@ impl Values {
         let [number] = self.get(name);
         words.iter().zip(0_u8..).find(|(_, place)| f32::from(*place) == number).map_or(words[0], |(word, _)| word)
     }
-
-    /// Index of the field `name`, and where its numbers begin.
-    #[inline]
-    fn place(&self, name: &str) -> (usize, usize) {
-        let index = self.fields.iter().position(|field| field.name == name).expect("a field of the model");
-        (index, self.fields[..index].iter().map(|field| field.kind.width()).sum())
-    }
 }
 
-impl PartialEq for Values {
+impl<T: PartialEq> PartialEq for Values<T> {
     #[inline]
     fn eq(&self, other: &Self) -> bool {
         self.fields == other.fields && self.given == other.given && self.numbers == other.numbers

@@ -60,6 +60,10 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     #[cfg(feature = "textbook")]
     fn formulas<T: Real>(params: &Self::Params) -> Self::Formulas<T>;
 
+    /// The formulas for the numbers of `exact`, in any precision; `params` are the same, rounded, and give the words.
+    #[cfg(feature = "textbook")]
+    fn exact_formulas<T: Real>(params: &Self::Params, exact: &Values<T>) -> Self::Formulas<T>;
+
     /// The formulas seen from `wo` at the offset `h`.
     #[cfg(feature = "textbook")]
     fn reference_at<T: Real>(formulas: &Self::Formulas<T>, wo: [T; 3], h: T) -> Self::Reference<T>;

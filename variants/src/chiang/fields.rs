@@ -5,7 +5,7 @@ use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
 
 #[cfg(feature = "textbook")]
-use super::{ChiangConstants, ChiangReference, Selection};
+use super::{ChiangConstants, ChiangParameters, ChiangReference, Selection};
 #[cfg(feature = "textbook")]
 use crate::Accuracy;
 #[cfg(feature = "textbook")]
@@ -93,7 +93,33 @@ impl<const BY_CHANNEL: bool> Registered for Chiang<BY_CHANNEL> {
     #[cfg(feature = "textbook")]
     #[inline]
     fn formulas<T: Real>(params: &ChiangParams) -> ChiangConstants<T> {
-        ChiangConstants::new(&params.into(), if BY_CHANNEL { Selection::ByChannel } else { Selection::Mean })
+        ChiangConstants::new(&params.into(), selection::<BY_CHANNEL>())
+    }
+
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn exact_formulas<T: Real>(params: &ChiangParams, exact: &Values<T>) -> ChiangConstants<T> {
+        let number = |name| {
+            let [number] = exact.get(name);
+            number
+        };
+        let parameters = ChiangParameters {
+            beta_m: number("beta_m"),
+            beta_n: number("beta_n"),
+            tilt: number("tilt"),
+            eta: number("eta"),
+            sigma_a: exact.get("sigma_a"),
+            shifts: params.desc().shifts,
+        };
+        let parameters = if exact.has("melanin") {
+            let [eumelanin, pheomelanin] = exact.get("melanin");
+            parameters.with_melanin(eumelanin, pheomelanin)
+        } else if exact.has("color") {
+            parameters.with_color(exact.get("color"))
+        } else {
+            parameters
+        };
+        ChiangConstants::new(&parameters, selection::<BY_CHANNEL>())
     }
 
     #[cfg(feature = "textbook")]
@@ -111,4 +137,11 @@ impl<const BY_CHANNEL: bool> Registered for Chiang<BY_CHANNEL> {
         let peak = 0.25 / (spread * f64::from(desc.azimuthal_scale()));
         [Self::ACCURACY.value * libm::exp(-12.0) * peak / libm::hypot(v, w); 3]
     }
+}
+
+/// The criterion for the choice of a lobe.
+#[cfg(feature = "textbook")]
+#[inline]
+const fn selection<const BY_CHANNEL: bool>() -> Selection {
+    if BY_CHANNEL { Selection::ByChannel } else { Selection::Mean }
 }

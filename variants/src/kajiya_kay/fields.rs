@@ -5,7 +5,7 @@ use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
 
 #[cfg(feature = "textbook")]
-use super::{KajiyaKayConstants, KajiyaKayReference};
+use super::{KajiyaKayConstants, KajiyaKayParameters, KajiyaKayReference};
 #[cfg(feature = "textbook")]
 use crate::Accuracy;
 #[cfg(feature = "textbook")]
@@ -66,6 +66,14 @@ impl Registered for KajiyaKay {
     #[inline]
     fn formulas<T: Real>(params: &KajiyaKayParams) -> KajiyaKayConstants<T> {
         KajiyaKayConstants::new(&params.into())
+    }
+
+    #[cfg(feature = "textbook")]
+    #[inline]
+    fn exact_formulas<T: Real>(params: &KajiyaKayParams, exact: &Values<T>) -> KajiyaKayConstants<T> {
+        let [exponent] = exact.get("exponent");
+        let form = params.desc().form;
+        KajiyaKayConstants::new(&KajiyaKayParameters { kd: exact.get("kd"), ks: exact.get("ks"), exponent, form })
     }
 
     #[cfg(feature = "textbook")]

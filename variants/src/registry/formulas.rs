@@ -24,6 +24,27 @@ macro_rules! formulas {
                 })
             }
 
+            /// The formulas for the numbers of `exact`, seen from `wo` at the offset `h`. `values` are the same, rounded.
+            ///
+            /// # Errors
+            ///
+            /// If one of `values` is out of its range; `exact` is not checked.
+            #[inline(never)]
+            pub fn exact_reference<T: Real>(
+                self,
+                values: &Values,
+                exact: &Values<T>,
+                wo: [T; 3],
+                h: T,
+            ) -> Result<AnyReference<T>, ParamError> {
+                Ok(match self {
+                    $(Self::$variant => {
+                        let formulas = <$model>::exact_formulas(&Parameters::from_values(values)?, exact);
+                        AnyReference::$variant(<$model>::reference_at(&formulas, wo, h))
+                    }),*
+                })
+            }
+
             /// The accuracy that comparisons with the formulas require.
             #[inline]
             #[must_use]

@@ -1,8 +1,7 @@
 //! The answers, computed along the chosen path.
 
-use super::request::{Query, Request};
+use super::request::{Exact, Query, Request};
 use crate::config::Path;
-use crate::subject::to_f64;
 use core::array::from_fn;
 use glam::Vec3;
 use hairis::reference::Reference;
@@ -184,18 +183,17 @@ fn batch_densities(gather: &AnyGather, wi: &[Vec3]) -> Vec<[f32; 4]> {
     wi.chunks(8).flat_map(eight).collect()
 }
 
-/// The formulas in double precision.
+/// The formulas in double precision, for the numbers of the line as they are.
 fn textbook(request: &Request) -> Answer<f64> {
-    let Request { model, values, wo, h, query, .. } = request;
-    let point = model.reference(values, to_f64(*wo), f64::from(*h)).expect("checked when it was read");
+    let Request { model, values, exact: Exact { values: exact, wo, h, query: numbers }, .. } = request;
+    let point = model.exact_reference(values, exact, *wo, *h).expect("checked when it was read");
     let densities = |wi| pdf_lobe(*model, point.lobes(wi).0.map(|lobe| lobe.pdf));
-    let what = match query {
-        Query::Wi(wi) => {
-            let wi = to_f64(*wi);
-            What::Value { s: point.eval(wi), pdf: point.pdf(wi), pdf_lobe: densities(wi) }
+    let what = match request.query {
+        Query::Wi(_) => {
+            What::Value { s: point.eval(*numbers), pdf: point.pdf(*numbers), pdf_lobe: densities(*numbers) }
         }
-        Query::Xi(xi) => {
-            let drawn = point.sample(xi.map(f64::from));
+        Query::Xi(_) => {
+            let drawn = point.sample(*numbers);
             What::Sample {
                 wi: drawn.wi,
                 s: drawn.value,
@@ -206,7 +204,7 @@ fn textbook(request: &Request) -> Answer<f64> {
             }
         }
     };
-    Answer { what, colors: colors(*model, || point.lobes(to_f64(*wo)).0.map(|lobe| lobe.color)) }
+    Answer { what, colors: colors(*model, || point.lobes(*wo).0.map(|lobe| lobe.color)) }
 }
 
 fn gather(request: &Request) -> AnyGather {

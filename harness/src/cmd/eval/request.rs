@@ -40,7 +40,7 @@ pub(super) enum Query {
     Xi([f32; 3]),
 }
 
-/// A line of the input, rounded to single precision: every path computes from the same input.
+/// A line of the input, rounded to single precision for the kernels, and as it is for the formulas.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Request {
     pub(super) model: ModelId,
@@ -51,6 +51,16 @@ pub(super) struct Request {
     /// Offset across the fibre; 0 for a model of the far field.
     pub(super) h: f32,
     pub(super) query: Query,
+    pub(super) exact: Exact,
+}
+
+/// The numbers of a line in double precision; the query is the `wi` or `xi` of [`Query`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Exact {
+    pub(super) values: Values<f64>,
+    pub(super) wo: [f64; 3],
+    pub(super) h: f64,
+    pub(super) query: [f64; 3],
 }
 
 impl Request {
@@ -77,16 +87,23 @@ impl Request {
         let bsdf = model.bsdf(&values).map_err(|error| refused(model.fields(), &error, &exact))?;
         let h = match next(h.is_some()) {
             None => 0.0,
-            json => single(Json::number(json, "h")?).clamp(-1.0, 1.0),
+            json => Json::number(json, "h")?.clamp(-1.0, 1.0),
         };
         let wo = direction(next(true), "wo")?;
-        let query = match (next(true), next(true)) {
-            (Some(wi), None) => Query::Wi(direction(Some(wi), "wi")?),
-            (None, Some(xi)) => Query::Xi(uniform(Some(xi), "xi")?),
+        let (query, numbers) = match (next(true), next(true)) {
+            (Some(wi), None) => {
+                let wi = direction(Some(wi), "wi")?;
+                (Query::Wi(single3(wi)), wi)
+            }
+            (None, Some(xi)) => {
+                let xi = uniform(Some(xi), "xi")?;
+                (Query::Xi(single_xi(xi)), xi)
+            }
             (None, None) => return Err(Refusal::at("wi", "missing; give wi or xi")),
             (Some(_), Some(_)) => return Err(Refusal::at("wi", "given together with xi; give one of them")),
         };
-        Ok(Self { model, values, bsdf, wo, h, query })
+        let exact = Exact { values: exact, wo, h, query: numbers };
+        Ok(Self { model, values, bsdf, wo: single3(wo), h: single(h), query, exact })
     }
 }
 
@@ -106,22 +123,24 @@ fn named(field: &str, name: &str, names: &[&str]) -> Result<usize, Refusal> {
 }
 
 /// The values that `params` gives in place of the defaults, rounded, and as they are in the input.
-fn read(mut values: Values, params: Json) -> Result<(Values, Vec<Vec<f64>>), Refusal> {
+fn read(mut values: Values, params: Json) -> Result<(Values, Values<f64>), Refusal> {
     let fields = values.fields();
     let names: Vec<&str> = fields.iter().map(|field| field.name).collect();
     let given = params.fields("params", &names)?;
     for field in fields.iter().filter(|field| field.instead_of.is_none()) {
         one_of_group(field.name, fields, &given)?;
     }
-    let mut exact = vec![Vec::new(); fields.len()];
-    for ((field, json), exact) in fields.iter().zip(given).zip(&mut exact) {
+    let mut exact = values.map(f64::from);
+    for (field, json) in fields.iter().zip(given) {
         if json.is_none() && (field.optional || in_group(field, fields)) {
             continue;
         }
-        *exact = numbers(field, json)?;
-        let rounded: Vec<f32> = exact.iter().map(|x| single(*x)).collect();
-        let replaced = field.instead_of.into_iter().fold(values, |values, other| values.without(other));
-        values = replaced.with(field.name, &rounded);
+        if let Some(other) = field.instead_of {
+            (values, exact) = (values.without(other), exact.without(other));
+        }
+        let numbers = numbers(field, json)?;
+        exact = exact.with(field.name, &numbers);
+        values = values.with(field.name, &numbers.iter().map(|x| single(*x)).collect::<Vec<_>>());
     }
     Ok((values, exact))
 }
@@ -165,7 +184,7 @@ fn numbers(field: &Field, json: Option<Json>) -> Result<Vec<f64>, Refusal> {
 }
 
 /// A refusal with the text of [`ParamError`], and the field's name and value as they are in the input.
-fn refused(fields: &[Field], error: &ParamError, exact: &[Vec<f64>]) -> Refusal {
+fn refused(fields: &[Field], error: &ParamError, exact: &Values<f64>) -> Refusal {
     let text = error.to_string();
     let rule = text.split_once(" must ").and_then(|(_, rest)| rest.rsplit_once(", got "));
     let (Some((field, number)), Some((rule, value))) = (Field::refused(fields, error), rule) else {
@@ -173,7 +192,7 @@ fn refused(fields: &[Field], error: &ParamError, exact: &[Vec<f64>]) -> Refusal 
     };
     let is_list = field.kind.width() > 1;
     let item = number.filter(|_| is_list).map_or_else(String::new, |number| format!("[{number}]"));
-    let numbers = fields.iter().position(|one| one.name == field.name).map_or(&[][..], |place| &exact[place]);
+    let numbers = exact.numbers(field.name);
     let problem = match if is_list { number.and_then(|number| numbers.get(number)) } else { numbers.first() } {
         // Finite in the input, but too large for single precision.
         Some(value) if single(*value).is_infinite() => format!("too large for single precision, got {value:e}"),
@@ -184,27 +203,27 @@ fn refused(fields: &[Field], error: &ParamError, exact: &[Vec<f64>]) -> Refusal 
 }
 
 /// A direction, normalised.
-fn direction(json: Option<Json>, field: &str) -> Result<Vec3, Refusal> {
+fn direction(json: Option<Json>, field: &str) -> Result<[f64; 3], Refusal> {
     let [u, v, w] = Json::three(json, field)?;
     let length = u.hypot(v).hypot(w);
     if (length - 1.0).abs() <= ROUNDED {
-        Ok(single3([u, v, w]))
+        Ok([u, v, w])
     } else if (length - 1.0).abs() <= LENGTH_TOLERANCE {
-        Ok(single3([u / length, v / length, w / length]))
+        Ok([u / length, v / length, w / length])
     } else {
         Err(Refusal::at(field, format!("must be a unit vector (to {LENGTH_TOLERANCE}), got length {length}")))
     }
 }
 
 /// Three numbers in `[0, 1)`.
-fn uniform(json: Option<Json>, field: &str) -> Result<[f32; 3], Refusal> {
+fn uniform(json: Option<Json>, field: &str) -> Result<[f64; 3], Refusal> {
     let xi = Json::three(json, field)?;
     for (i, x) in xi.iter().enumerate() {
         if !(0.0..1.0).contains(x) {
             return Err(Refusal::at(&format!("{field}[{i}]"), format!("must be in [0, 1), got {x}")));
         }
     }
-    Ok(single_xi(xi))
+    Ok(xi)
 }
 
 /// The nearest number of single precision.
