@@ -8,7 +8,7 @@ pub mod study;
 
 use crate::config::Run;
 use crate::error::Error;
-use crate::light::{Environment, Sky};
+use crate::light::{Environment, LightError, Sky};
 use crate::table::Table;
 use std::io::{self, Write};
 use std::path::Path;
@@ -28,21 +28,30 @@ pub fn run(run: &Run) -> Result<(), Error> {
     }
 }
 
-/// The environment in a file, or the procedural sky if there is none, and its name in reports.
+/// The environment in a file, or the procedural sky if there is none, and its name in reports. Its oddities go to standard
+/// error; a map without light is refused.
 fn environment(path: Option<&Path>) -> Result<(Environment, String), Error> {
-    match path {
-        Some(path) => Ok((Environment::load(path).map_err(Error::Environment)?, path.display().to_string())),
-        None => Ok((Sky::default().environment(), "procedural sky".to_owned())),
+    let Some(path) = path else {
+        return Ok((Sky::default().environment(), "procedural sky".to_owned()));
+    };
+    let environment = Environment::load(path).map_err(Error::Environment)?;
+    if environment.is_black() {
+        return Err(Error::Environment(LightError::Black(path.to_owned(), environment.repairs())));
     }
+    environment.notes().iter().for_each(|note| say(note));
+    Ok((environment, path.display().to_string()))
 }
 
-/// Prints tables on standard output. Ignores a closed pipe.
-fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>) -> io::Result<()> {
+/// Prints tables on standard output. A reader that leaves early is told the file that has them.
+fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     for table in tables {
-        match writeln!(out, "{}", table.to_terminal()) {
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
-            result => result?,
+        match writeln!(out, "{}", table.to_terminal()).and_then(|()| out.flush()) {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+                say(&format!("standard output was closed; the tables are in {}", file.display()));
+                return Ok(());
+            }
+            result => result.map_err(Error::Write)?,
         }
     }
     Ok(())

@@ -1,12 +1,13 @@
 //! `hairis claims`: computes the paper's claims, prints them, and writes `claims.json`.
 
 use crate::claims::{self, ClaimsConfig};
-use crate::cmd::compare::{json, output, write};
+use crate::cmd::compare::{output, write_json};
 use crate::cmd::{print_tables, say};
 use crate::config::Claims;
 use crate::error::Error;
+use crate::files::writable;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::fs::{self, File};
+use std::fs;
 
 /// Computes the claims.
 ///
@@ -16,7 +17,7 @@ use std::fs::{self, File};
 pub fn run(config: &Claims) -> Result<(), Error> {
     fs::create_dir_all(&config.out).map_err(|source| output(&config.out, source))?;
     let path = config.out.join("claims.json");
-    File::options().append(true).create(true).open(&path).map_err(|source| output(&path, source))?;
+    writable(&path)?;
 
     let bar = ProgressBar::new(1000);
     if let Ok(style) = ProgressStyle::with_template("claims {wide_bar} {percent:>3}% {elapsed} (left {eta})") {
@@ -29,8 +30,8 @@ pub fn run(config: &Claims) -> Result<(), Error> {
     })?;
     bar.finish_and_clear();
 
-    write(&path, &json(&claims)?)?;
-    print_tables(claims::tables(&claims).iter()).map_err(Error::Write)?;
+    write_json(&path, &claims)?;
+    print_tables(claims::tables(&claims).iter(), &path)?;
     say(&format!("wrote {}", path.display()));
     Ok(())
 }

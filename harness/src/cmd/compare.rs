@@ -5,9 +5,10 @@ use crate::cmd::{environment, print_tables};
 use crate::compare::{self, CompareConfig, Comparison, Depth, Part};
 use crate::config::Compare;
 use crate::error::Error;
+use crate::files::{whole, writable};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Mutex;
@@ -23,7 +24,7 @@ pub fn run(config: &Compare) -> Result<(), Error> {
     fs::create_dir_all(&config.out).map_err(|source| output(&config.out, source))?;
     let [json_path, page_path] = ["compare.json", "report.html"].map(|name| config.out.join(name));
     for path in [&json_path, &page_path] {
-        File::options().append(true).create(true).open(path).map_err(|source| output(path, source))?;
+        writable(path)?;
     }
 
     let bar = Bar::new();
@@ -32,9 +33,9 @@ pub fn run(config: &Compare) -> Result<(), Error> {
     let comparison = compare::run(&settings, &|part, done| bar.show(part, done)).map_err(Error::Params)?;
     bar.finish();
 
-    write(&json_path, &json(&comparison)?)?;
+    write_json(&json_path, &comparison)?;
     compare::report(&comparison).write(&config.out, "compare")?;
-    print(&comparison).map_err(Error::Write)?;
+    print(&comparison, &page_path)?;
     let failures = comparison.failures();
     let mut said = format!("wrote {} and {}\n", page_path.display(), json_path.display());
     for failure in &failures {
@@ -49,21 +50,18 @@ pub(super) fn output(path: &Path, source: io::Error) -> Error {
     Error::Output { path: path.to_owned(), source }
 }
 
-pub(super) fn write(path: &Path, text: &str) -> Result<(), Error> {
-    fs::write(path, text).map_err(|source| output(path, source))
-}
-
-/// Content of a JSON file.
-pub(super) fn json(results: &impl Serialize) -> Result<String, Error> {
-    let mut text = serde_json::to_string_pretty(results).map_err(|source| Error::Write(source.into()))?;
-    text.push('\n');
-    Ok(text)
+/// Writes a JSON file, as a whole or not at all.
+pub(super) fn write_json(path: &Path, results: &impl Serialize) -> Result<(), Error> {
+    whole(path, |out| {
+        serde_json::to_writer_pretty(&mut *out, results)?;
+        out.write_all(b"\n")
+    })
 }
 
 /// The tables on standard output.
-fn print(comparison: &Comparison) -> io::Result<()> {
+fn print(comparison: &Comparison, page: &Path) -> Result<(), Error> {
     let tables = compare::tables(comparison, Depth::Summary);
-    print_tables(tables.speed.iter().chain(&tables.agreement).chain(&tables.efficiency))
+    print_tables(tables.speed.iter().chain(&tables.agreement).chain(&tables.efficiency), page)
 }
 
 /// Progress bars, one per part, on standard error; nothing where that is no terminal.

@@ -10,6 +10,7 @@ use crate::study::part::{Part, read};
 use crate::study::{self, Plan, Shard};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Runs the study. Continues an interrupted one.
@@ -20,10 +21,12 @@ use std::path::Path;
 /// written, or is of another study; [`Error::Failed`] at the end, with all files written, if a check failed.
 pub fn run(config: &Config) -> Result<(), Error> {
     let (environment, _) = environment(config.env.as_deref())?;
-    for note in environment.notes() {
-        say(&note);
-    }
     let plan = Plan { seed: config.seed, quick: config.quick, environment: &environment };
+    let cells = plan.grid().len();
+    if config.shard.of() > cells {
+        let shard = config.shard;
+        return Err(Error::Usage(format!("--shard N must be at most {cells}, the number of cells, got \"{shard}\"")));
+    }
     fs::create_dir_all(&config.out).map_err(|source| Error::Output { path: config.out.clone(), source })?;
     let (part, finished) = Part::open(&config.out, &plan.header(config.shard))?;
 
@@ -59,20 +62,37 @@ pub(super) fn finish(study: &Study, environment: Option<&Environment>, out: &Pat
     let times = Times::measure(seed, quick, environment);
     let difference = Difference::over(study.grid())?;
     study.write(out, &times, &difference)?;
-    study.report(&times, &difference, claims(out).as_ref()).write(out, "study")?;
-    print_tables(study.summary(&times).iter().chain(&difference.tables())).map_err(Error::Write)?;
+    study.report(&times, &difference, claims(out, study).as_ref()).write(out, "study")?;
+    let page = out.join("report.html");
+    print_tables(study.summary(&times).iter().chain(&difference.tables()), &page)?;
     let [rows, others @ ..] = ["study", "efficiency", "difference"].map(|name| out.join(name).display().to_string());
     let parquet = if cfg!(feature = "parquet") { " and .parquet" } else { "" };
     say(&format!("wrote {rows}.csv{parquet}, {} as .csv{parquet}, and {rows}.json", others.join(" and ")));
-    say(&format!("wrote {} and figures/", out.join("report.html").display()));
+    say(&format!("wrote {} and figures/", page.display()));
     let failures = study.failures();
     failures.iter().for_each(|failure| say(&format!("failed: {failure}")));
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
 }
 
-/// Result of `hairis claims` in `out`, if any.
-fn claims(out: &Path) -> Option<serde_json::Value> {
-    serde_json::from_slice(&fs::read(out.join("claims.json")).ok()?).ok()
+/// Result of `hairis claims` in `out`, if any and if it is of the same settings; else the reason on standard error.
+fn claims(out: &Path, study: &Study) -> Option<serde_json::Value> {
+    let path = out.join("claims.json");
+    let unused = |problem: String| {
+        say(&format!("{}: left out of the report: {problem}; run `hairis claims` again", path.display()));
+        None
+    };
+    let bytes = match fs::read(&path) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::NotFound => return None,
+        Err(error) => return unused(format!("cannot read: {error}")),
+    };
+    let Ok(claims) = serde_json::from_slice::<serde_json::Value>(&bytes) else {
+        return unused("it is damaged".to_owned());
+    };
+    match study.refusal_of(&claims) {
+        Some(problem) => unused(problem),
+        None => Some(claims),
+    }
 }
 
 /// Progress bar over the remaining cells, on standard error; nothing where that is no terminal.

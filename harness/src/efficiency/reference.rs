@@ -14,17 +14,18 @@ fn over(numerator: f64, pdf: f64) -> f64 {
     if pdf > 0.0 { numerator / pdf } else { 0.0 }
 }
 
-/// The integral of `light * S cos theta_i` by the light's own quadrature, without the variances.
-fn mean_by_quadrature(case: &Case, light: &dyn Light) -> Reference {
+/// The integral of `light * S cos theta_i` by the light's own quadrature, without the variances; whether it converged.
+fn mean_by_quadrature(case: &Case, light: &dyn Light) -> (Reference, bool) {
     let integral = light.integrate(&|dir| case.oracle_value(dir), case.sphere(Sampler::Published));
-    Reference {
+    let reference = Reference {
         value: intensity(integral.value),
         standard_error: 0.0,
         quadrature_error: intensity(integral.error),
         method: ReferenceMethod::Quadrature,
         v: [f64::NAN; SAMPLERS.len()],
         skewness: [0.0; SAMPLERS.len()],
-    }
+    };
+    (reference, integral.converged)
 }
 
 /// Second moment of a contribution when directions have a density, by the light's own quadrature.
@@ -46,7 +47,7 @@ fn second_moment(case: &Case, light: &dyn Light, sphere: &SphereIntegrator, dens
 
 /// Mean and variances by the light's own quadrature.
 pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
-    let mean = mean_by_quadrature(case, light);
+    let (mean, _) = mean_by_quadrature(case, light);
     let v = SAMPLERS.map(|sampler| {
         let sphere = case.sphere(sampler).clone();
         // A light that integrates over itself has edges where a matched density jumps: twenty times as many take the
@@ -66,10 +67,13 @@ pub(super) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
     let sphere = case.sphere(Sampler::Published);
     let albedo = sphere.integrate_direction(|dir| [hair(dir)]).value[0];
     let second = second_moment(case, light, sphere, &|dir| hair(dir) / albedo);
-    second / mean_by_quadrature(case, light).value.powi(2) - 1.0
+    second / mean_by_quadrature(case, light).0.value.powi(2) - 1.0
 }
 
 /// Mean and variances under an environment map: the mean by quadrature while the map has at most `max_texels`, all else by a stratified run over the oracle.
+///
+/// Quadrature texel by texel does not resolve lobes much narrower than a texel: unless it converges, or its error is below
+/// that of the run, the mean is that of the run as well.
 ///
 /// The run draws from the map, `passes` randomisations of 64 x 64 strata; only the map's own sampling is shared with what it is a reference for.
 pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, passes: usize, seed: u64) -> Reference {
@@ -104,7 +108,10 @@ pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, 
     });
     let [width, height] = map.size();
     if width * height <= max_texels {
-        return Reference { v, skewness, ..mean_by_quadrature(case, map) };
+        let (exact, converged) = mean_by_quadrature(case, map);
+        if converged || exact.quadrature_error <= mean.standard_error {
+            return Reference { v, skewness, ..exact };
+        }
     }
     Reference {
         value: mean.value,

@@ -193,6 +193,25 @@ fn a_wrong_mean_fails_the_check() {
 }
 
 #[test]
+fn maps_of_few_texels_raise_no_alarm() {
+    // Four nodes do not resolve a lobe inside a texel of 45 degrees and more: the quadrature must not count as exact.
+    let gradient = |width: u16, height: u16| {
+        let pixels = (0..width * height).map(|k| [1.0, 0.5 + f32::from(k), 2.0]).collect();
+        Environment::from_pixels("few", usize::from(width), usize::from(height), pixels).expect("valid")
+    };
+    for map in [Environment::from_pixels("one", 1, 1, vec![[1.0; 3]]).expect("valid"), gradient(2, 1), gradient(8, 4)] {
+        let result = run(&small(&map), &|_, _| ()).expect("valid hair");
+        assert!(result.check.passed(), "{:?}: {:?}", map.size(), result.check.failures);
+    }
+    // The one texel is a constant light, whose integral is known.
+    let one = Environment::from_pixels("one", 1, 1, vec![[1.0; 3]]).expect("valid");
+    let case = Case::new(ModelKind::Gaussian, &HairParams::default(), 45.0);
+    let [got, exact] = [reference::of_environment(&case, &one, 128, 16, 1), by_quadrature(&case, &Constant::white())];
+    assert_eq!(got.method, ReferenceMethod::StratifiedRun);
+    assert!((got.value - exact.value).abs() < 5.0 * got.standard_error, "{got:?}, {exact:?}");
+}
+
+#[test]
 fn black_hair_and_black_maps_are_no_failures() {
     let black =
         HairDesc { intensity_r: [0.0; 3], intensity_tt: [0.0; 3], intensity_trt: [0.0; 3], ..HairDesc::default() };

@@ -1,7 +1,10 @@
 //! Environment maps from files.
 
-use super::Environment;
+use super::{Environment, PixelRepairs};
 use core::fmt;
+use exr::meta::MetaData;
+use exr::meta::header::Header;
+use exr::prelude::{ReadChannels as _, ReadLayers as _, ReadSpecificChannel as _, read};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::path::{Path, PathBuf};
 
@@ -24,6 +27,8 @@ pub enum LightError {
     TooLarge(PathBuf, u32, u32),
     /// The file is damaged or cut short.
     Decode(PathBuf, String),
+    /// The map gives no light, and no figure can be relative to it.
+    Black(PathBuf, PixelRepairs),
 }
 
 impl fmt::Display for LightError {
@@ -42,6 +47,13 @@ impl fmt::Display for LightError {
             }
             Self::Decode(path, reason) => {
                 write!(f, "{}: damaged or cut short: {reason}", path.display())
+            }
+            Self::Black(path, PixelRepairs { nan, negative, .. }) => {
+                write!(f, "{}: the map gives no light", path.display())?;
+                if nan + negative > 0 {
+                    write!(f, ": {nan} NaN and {negative} negative channels count as 0")?;
+                }
+                f.write_str("; pass another file")
             }
         }
     }
@@ -82,7 +94,12 @@ impl Environment {
             image::ImageError::Unsupported(e) => LightError::Unsupported(file(), line(&e)),
             e => LightError::Decode(file(), line(&e)),
         };
-        let mut decoder = reader.into_decoder().map_err(refuse)?;
+        let is_exr = reader.format() == Some(ImageFormat::OpenExr);
+        let mut decoder = match reader.into_decoder() {
+            // The decoder knows colour alone.
+            Err(_) if is_exr && let Some(map) = luminance_map(path)? => return Ok(map),
+            decoder => decoder.map_err(refuse)?,
+        };
         let (width, height) = decoder.dimensions();
         if width == 0 || height == 0 {
             return Err(LightError::ZeroSize(file(), width, height));
@@ -100,10 +117,52 @@ impl Environment {
                 return Err(LightError::Unsupported(file(), format!("pixels of type {:?}", other.color())));
             }
         };
-        let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
-        Self::from_pixels(name, width as usize, height as usize, pixels)
+        Self::from_pixels(name(path), width as usize, height as usize, pixels)
             .map_err(|reason| LightError::Decode(file(), reason))
     }
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned())
+}
+
+/// The map of an `OpenEXR` file that has luminance (channel Y) and no colour; `None` for any other file.
+fn luminance_map(path: &Path) -> Result<Option<Environment>, LightError> {
+    let file = || path.to_path_buf();
+    let Ok(meta) = MetaData::read_from_file(path, false) else { return Ok(None) };
+    let names =
+        |header: &Header| header.channels.list.iter().map(|channel| channel.name.to_string()).collect::<Vec<_>>();
+    let Some(header) = meta.headers.iter().find(|header| names(header).iter().any(|name| name == "Y")) else {
+        return Ok(None);
+    };
+    if names(header).iter().any(|name| name == "RY" || name == "BY") {
+        let reason = "luminance with chroma; convert it to RGB";
+        return Err(LightError::Unsupported(file(), reason.to_owned()));
+    }
+    let size = header.layer_size;
+    let [width, height] = [size.width(), size.height()];
+    #[expect(clippy::cast_possible_truncation, reason = "sizes of the format have 32 bits")]
+    if width as u64 * height as u64 > MAX_TEXELS {
+        return Err(LightError::TooLarge(file(), width as u32, height as u32));
+    }
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .specific_channels()
+        .required("Y")
+        .collect_pixels(
+            |size, _| (size.width(), vec![[0.0; 3]; size.area()]),
+            |(width, pixels), at, (y,): (f32,)| pixels[at.y() * *width + at.x()] = [y; 3],
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(path)
+        .map_err(|e| LightError::Decode(file(), line(&e)))?;
+    let (width, pixels) = image.layer_data.channel_data.pixels;
+    let height = pixels.len() / width.max(1);
+    Environment::from_pixels(name(path), width, height, pixels)
+        .map(Some)
+        .map_err(|reason| LightError::Decode(file(), reason))
 }
 
 /// A foreign error's message on one line.

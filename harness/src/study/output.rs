@@ -6,7 +6,7 @@ use super::equal_time::{NOTHING, in_equal_time, time_ratio};
 use super::part::{self, FORMAT, Finished, Header, Read};
 use super::rows::{self, Bounds, Row, Strategy, rows};
 use super::times::{self, PER_POINT, Time};
-use super::{Grid, Shard, check, grid_of, summary, with_built_in_lights};
+use super::{Grid, Shard, check, grid_of, report, summary, with_built_in_lights};
 use crate::difference::Difference;
 use crate::error::Error;
 use crate::files::whole;
@@ -16,7 +16,7 @@ use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::table::Table;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -145,6 +145,21 @@ impl Study {
     #[must_use]
     pub const fn settings(&self) -> (u64, bool) {
         (self.header.seed, self.header.quick)
+    }
+
+    /// The reason why the content of a `claims.json` has no place in the report of this study; `None` if it has one.
+    #[must_use]
+    pub fn refusal_of(&self, claims: &Value) -> Option<String> {
+        if !report::has_claims(claims) {
+            return Some("it is damaged".to_owned());
+        }
+        let Header { seed, quick, cells, samples, .. } = &self.header;
+        let expected = json!({ "seed": seed, "quick": quick, "cells": cells, "samples": samples });
+        let fields = expected.as_object().into_iter().flatten();
+        fields
+            .map(|(name, here)| (name, here, &claims["settings"][name]))
+            .find(|(_, here, there)| here != there)
+            .map(|(name, here, there)| format!("it belongs to a run with {name} {there}, expected {here}"))
     }
 
     /// Whether the environment is the one among the lights.

@@ -1,7 +1,11 @@
 //! The part file: finished cells, one per line, after a header line.
 //!
 //! It is only ever appended to, a whole line at a time. A process that is killed leaves at most its last line torn:
-//! the next run drops that line and computes its cell again.
+//! the next run drops that line and computes its cell again. Each line ends in a checksum of the rest of it.
+
+mod sealed;
+
+pub use sealed::line;
 
 use super::Shard;
 use super::cell::{Found, Measured};
@@ -9,6 +13,7 @@ use super::tally::Figures;
 use crate::error::Error;
 use crate::light::Environment;
 use crate::stats::Estimate;
+use sealed::unseal;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs::{self, File, TryLockError};
@@ -17,7 +22,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 /// First word of every part file: the layout of its lines.
-pub const FORMAT: &str = "hairis-study-2";
+pub const FORMAT: &str = "hairis-study-3";
 
 /// Header of a part file. Parts of one study agree in all of it except the shard.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -177,12 +182,29 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
     };
     let mut lines = bytes[..last].split(|byte| *byte == b'\n');
     let first = lines.next().unwrap_or_default();
-    let header: Header = serde_json::from_slice(first).map_err(|_| refuse(path, "is no part of a study"))?;
+    // Parts of earlier versions have no checksums; their format tells them apart.
+    let (first, is_right) = unseal(first).unwrap_or_else(|| (first.to_vec(), true));
+    if !is_right {
+        return Err(refuse(path, "line 1 is damaged: its checksum is wrong; delete the file"));
+    }
+    let header: Header = serde_json::from_slice(&first).map_err(|_| refuse(path, "is no part of a study"))?;
+    if header.format != FORMAT {
+        return Ok(Some(Read { header, finished: Vec::new(), whole: last + 1 }));
+    }
     let shard = header.shard().map_err(|problem| refuse(path, problem))?;
     let mut finished = Vec::new();
     for (line, number) in lines.zip(2..) {
-        let damaged = |problem: &str| refuse(path, format!("line {number} is damaged: {problem}"));
-        let cell: Finished = serde_json::from_slice(line).map_err(|_| damaged("not a cell"))?;
+        let damaged = |problem: &str| {
+            refuse(
+                path,
+                format!("line {number} is damaged: {problem}; delete the line, and `hairis study` computes it again"),
+            )
+        };
+        let (line, is_right) = unseal(line).ok_or_else(|| damaged("not a cell"))?;
+        if !is_right {
+            return Err(damaged("its checksum is wrong"));
+        }
+        let cell: Finished = serde_json::from_slice(&line).map_err(|_| damaged("not a cell"))?;
         if cell.cell >= header.cells || !shard.owns(cell.cell) {
             return Err(damaged(&format!("cell {} is not of shard {shard}", cell.cell)));
         }
@@ -202,8 +224,8 @@ fn refuse(path: &Path, problem: impl Into<String>) -> Error {
 #[derive(Debug)]
 pub struct Part {
     path: PathBuf,
-    /// `None` once a line might be torn: nothing must follow it.
-    file: Mutex<Option<File>>,
+    /// The cause once a line might be torn: nothing must follow it.
+    file: Mutex<Result<File, io::Error>>,
 }
 
 impl Part {
@@ -222,8 +244,7 @@ impl Part {
             return Err(refuse(&path, "another process is writing to it"));
         }
         let bytes = fs::read(&path).map_err(output)?;
-        let mut first = serde_json::to_vec(header).map_err(|source| output(source.into()))?;
-        first.push(b'\n');
+        let first = line(header).map_err(output)?;
         let (whole, finished) = match parse(&path, &bytes)? {
             Some(read) => {
                 if let Some([field, was, is]) = read.header.difference(header) {
@@ -243,7 +264,7 @@ impl Part {
         if whole == 0 {
             file.write_all(&first).map_err(output)?;
         }
-        Ok((Self { path, file: Mutex::new(Some(file)) }, finished))
+        Ok((Self { path, file: Mutex::new(Ok(file)) }, finished))
     }
 
     /// The file.
@@ -259,15 +280,18 @@ impl Part {
     /// [`Error::Output`] if it cannot be written.
     pub fn keep(&self, finished: &Finished) -> Result<(), Error> {
         let output = |source| Error::Output { path: self.path.clone(), source };
-        let mut line = serde_json::to_vec(finished).map_err(|source| output(source.into()))?;
-        line.push(b'\n');
-        let failed = || output(io::Error::other("an earlier line could not be written"));
-        let mut file = self.file.lock().map_err(|_| failed())?;
-        let written = file.as_mut().ok_or_else(failed)?.write_all(&line).map_err(output);
-        if written.is_err() {
-            *file = None;
-        }
-        written
+        let line = line(finished).map_err(output)?;
+        let mut file = self.file.lock().map_err(|_| output(io::Error::other("another thread failed")))?;
+        let written = match &mut *file {
+            Ok(file) => file.write_all(&line),
+            // Other threads fail by the same cause: whichever is reported names it.
+            Err(cause) => Err(io::Error::new(cause.kind(), cause.to_string())),
+        };
+        written.map_err(|cause| {
+            let copy = io::Error::new(cause.kind(), cause.to_string());
+            *file = Err(copy);
+            output(cause)
+        })
     }
 }
 
@@ -319,11 +343,36 @@ mod tests {
     fn nothing_follows_a_line_that_could_not_be_written() {
         let path = PathBuf::from("/dev/full");
         let file = File::options().append(true).open(&path).expect("Linux has it");
-        let part = Part { path, file: Mutex::new(Some(file)) };
+        let part = Part { path, file: Mutex::new(Ok(file)) };
         let header = header(1);
-        for words in ["No space left", "an earlier line"] {
+        // Of several threads any may be the one whose error is reported: all of them name the cause.
+        for _ in 0..3 {
             let error = part.keep(&finished(0, &header)).expect_err("the device is full").to_string();
-            assert!(error.starts_with("cannot write /dev/full: ") && error.contains(words), "{error}");
+            assert!(error.starts_with("cannot write /dev/full: No space left"), "{error}");
         }
+        assert!(part.file.lock().is_ok_and(|file| file.is_err()), "nothing is written after that");
+    }
+
+    #[test]
+    fn a_changed_byte_is_found() {
+        let dir = tempfile::TempDir::new().expect("a folder");
+        let header = header(1);
+        let path = {
+            let (part, _) = Part::open(dir.path(), &header).expect("new");
+            [2, 5].into_iter().for_each(|cell| part.keep(&finished(cell, &header)).expect("written"));
+            part.path().to_owned()
+        };
+        let bytes = fs::read(&path).expect("read");
+        let mut places = 0;
+        // Every digit of the file, header and checksums included, but for those of the format's name.
+        for place in (40..bytes.len()).filter(|place| bytes[*place].is_ascii_digit()).step_by(7) {
+            let mut changed = bytes.clone();
+            changed[place] = if changed[place] == b'9' { b'8' } else { changed[place] + 1 };
+            let error = parse(&path, &changed).expect_err(&format!("byte {place}")).to_string();
+            let line = 1 + bytes[..place].iter().filter(|byte| **byte == b'\n').count();
+            assert!(error.contains(&format!("line {line} is damaged: its checksum is wrong; delete the")), "{error}");
+            places += 1;
+        }
+        assert!(places > 100, "{places}");
     }
 }

@@ -13,6 +13,11 @@ use crate::report::{Drawing, Report, Section};
 use serde_json::Value;
 use view::View;
 
+/// Whether the content of a `claims.json` has verdicts to show.
+pub(super) fn has_claims(claims: &Value) -> bool {
+    tables::claims(claims).is_some()
+}
+
 impl Study {
     /// The page. `claims`, if given, is what `claims.json` holds: its verdicts are shown with the commit they are of.
     #[must_use]

@@ -49,6 +49,26 @@ fn the_file_is_complete_and_depends_on_the_seed_alone() {
 }
 
 #[test]
+#[cfg(unix)]
+fn a_full_disk_leaves_the_file_as_it_was() {
+    let dir = TempDir::new().unwrap();
+    let path = dir.path().join("claims.json");
+    fs::write(&path, "before").unwrap();
+    // No file may grow beyond a kilobyte or two; the signal for that is ignored, as for any program that checks its writes.
+    let script = "trap '' XFSZ; ulimit -f 2; exec \"$0\" claims --quick --out \"$1\"";
+    let output = std::process::Command::new("sh")
+        .args(["-c", script, env!("CARGO_BIN_EXE_hairis"), dir.path().to_str().unwrap()])
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.starts_with("hairis: cannot write") && error.contains("claims.json: File too large"), "{error}");
+    assert_eq!(fs::read_to_string(&path).unwrap(), "before");
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "nothing else is left");
+}
+
+#[test]
 fn a_folder_that_cannot_be_written_is_refused() {
     let dir = TempDir::new().unwrap();
     fs::write(dir.path().join("file"), "").unwrap();

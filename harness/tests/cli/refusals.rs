@@ -118,6 +118,19 @@ fn each_bad_line_is_refused_and_the_rest_still_runs() {
 }
 
 #[test]
+fn refusals_stay_short() {
+    let long = "gamma".repeat(40);
+    let deep = format!("{{\"{long}\":").repeat(20) + "x" + &"}".repeat(20);
+    let known = and("/params", &long, json!(1)).to_string();
+    let number = with("/params/alpha/0", json!(long)).to_string();
+    for line in [&deep, &known, &number, &format!("{{\"model\":\"{long}\"}}")] {
+        let run = run(&["eval"], line.as_bytes());
+        let error = run.json()[0]["error"].as_str().unwrap().to_owned();
+        assert!((10..=330).contains(&error.chars().count()), "{} characters: {error}", error.chars().count());
+    }
+}
+
+#[test]
 fn limits_written_in_double_precision_are_accepted() {
     let requests = [
         with("/params/beta", json!([PI, 1e-4, PI])),

@@ -1,6 +1,7 @@
 //! `hairis study` and `hairis merge`: stopped, resumed, split, joined and refused.
 
 mod files;
+mod inputs;
 mod refused;
 
 use super::{Run, command};

@@ -21,8 +21,20 @@ pub(super) struct Refusal {
 
 impl Refusal {
     pub(super) fn at(field: &str, problem: impl Into<String>) -> Self {
-        Self { field: field.to_owned(), problem: problem.into() }
+        Self { field: cut(field.to_owned(), LONGEST_FIELD), problem: cut(problem.into(), LONGEST_PROBLEM) }
     }
+}
+
+/// Longest path of a field and longest problem in a refusal, in characters: a line of the input is echoed in part.
+const LONGEST_FIELD: usize = 80;
+const LONGEST_PROBLEM: usize = 240;
+
+fn cut(mut text: String, longest: usize) -> String {
+    if let Some((at, _)) = text.char_indices().nth(longest) {
+        text.truncate(at);
+        text.push_str("...");
+    }
+    text
 }
 
 impl fmt::Display for Refusal {

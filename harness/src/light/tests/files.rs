@@ -54,6 +54,31 @@ fn content_decides_and_alpha_is_ignored() {
 }
 
 #[test]
+fn luminance_alone_is_a_grey_map() {
+    use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage as _};
+    let dir = directory();
+    let path = dir.path().join("grey.exr");
+    let luminance = |at: Vec2<usize>| (1.0 + at.x() as f32 + 10.0 * at.y() as f32,);
+    let channels = SpecificChannels::build().with_channel("Y").with_pixel_fn(luminance);
+    Image::from_channels((4, 2), channels).write().to_file(&path).expect("written");
+    let map = Environment::load(&path).expect("luminance");
+    assert_eq!((map.size(), map.name()), ([4, 2], "grey.exr"));
+    // The lower row, and the column to the right of the middle.
+    assert_eq!(map.radiance(DVec3::new(0.1, -1.0, -0.2)), [13.0; 3]);
+    let cut = dir.path().join("cut.exr");
+    let bytes = std::fs::read(&path).expect("read");
+    std::fs::write(&cut, &bytes[..bytes.len() - 5]).expect("written");
+    one_line(&Environment::load(&cut).expect_err("cut"), &cut);
+
+    let channels = SpecificChannels::build().with_channel("BY").with_channel("RY").with_channel("Y");
+    let path = dir.path().join("chroma.exr");
+    let image = Image::from_channels((4, 2), channels.with_pixel_fn(|_| (0.0_f32, 0.0_f32, 1.0_f32)));
+    image.write().to_file(&path).expect("written");
+    let error = Environment::load(&path).expect_err("chroma");
+    assert!(matches!(&error, LightError::Unsupported(_, reason) if reason.contains("chroma")), "{error}");
+}
+
+#[test]
 fn bad_pixels_of_a_file_are_counted() {
     let dir = directory();
     let path = dir.path().join("bad.exr");

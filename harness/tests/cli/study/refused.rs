@@ -2,6 +2,7 @@
 
 use super::{WHOLE, assert_refused, merge, reference, study};
 use crate::cli::run;
+use hairis_harness::study::part;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -12,6 +13,8 @@ fn shards_that_are_none_are_refused() {
     let shape = "--shard must be I/N with whole numbers";
     for (shard, words) in [
         ("5/4", "--shard I must be from 1 to N, got \"5/4\""),
+        ("49/49", "--shard N must be at most 48, the number of cells, got \"49/49\""),
+        ("99999/100000", "--shard N must be at most 48"),
         ("0/4", "--shard I must be from 1 to N"),
         ("0/0", "--shard I must be from 1 to N"),
         ("x", shape),
@@ -64,11 +67,11 @@ fn cells_of_another_run_are_refused() {
     assert_eq!(fs::read(dir.path().join(WHOLE)).unwrap(), before, "a refused file is left alone");
 
     // An older program, another instruction set.
-    let text = String::from_utf8(before).unwrap();
-    for field in ["version", "commit", "level", "environment"] {
-        let (head, rest) = text.split_once(&format!("\"{field}\":\"")).unwrap();
-        let (_, tail) = rest.split_once('"').unwrap();
-        fs::write(dir.path().join(WHOLE), format!("{head}\"{field}\":\"other\"{tail}")).unwrap();
+    let whole = part::read(&dir.path().join(WHOLE)).unwrap();
+    for field in ["format", "version", "commit", "level", "environment"] {
+        let mut header = serde_json::to_value(&whole.header).unwrap();
+        header[field] = "other".into();
+        fs::write(dir.path().join(WHOLE), part::line(&header).unwrap()).unwrap();
         assert_refused(&study(dir.path(), "1", &[]), &format!("belongs to a run with {field} \"other\""));
     }
 }
@@ -98,10 +101,22 @@ fn damage_before_the_last_line_is_refused() {
     };
     with(7, &lines[6][..100]);
     assert_refused(&study(dir.path(), "1", &[]), "line 7 is damaged: not a cell");
-    with(9, "{\"cell\":48,\"rows\":[]}");
+    let sealed = |cell: usize| {
+        let line = part::line(&part::Finished { cell, rows: Vec::new() }).unwrap();
+        String::from_utf8(line).unwrap().trim_end().to_owned()
+    };
+    with(9, &sealed(48));
     assert_refused(&study(dir.path(), "1", &[]), "line 9 is damaged: cell 48 is not of shard 1/1");
-    with(3, "{\"cell\":4,\"rows\":[]}");
+    with(3, &sealed(4));
     assert_refused(&merge(dir.path(), &[dir.path()]), "line 3 is damaged: 0 rows");
+    with(4, &lines[3].replacen("1.", "2.", 1));
+    let words = "line 4 is damaged: its checksum is wrong; delete the line, and `hairis study` computes it again";
+    assert_refused(&merge(dir.path(), &[dir.path()]), words);
+    // As the message says.
+    with(4, "");
+    let text = fs::read_to_string(&path).unwrap().replace("\n\n", "\n");
+    fs::write(&path, text).unwrap();
+    assert_eq!(study(dir.path(), "2", &[]).code, Some(0), "the line is computed again");
 }
 
 #[test]
@@ -124,9 +139,11 @@ fn parts_that_do_not_belong_together_are_refused() {
     // The same cell with other figures.
     let twin = TempDir::new().unwrap();
     let name = "cells-1-of-24.jsonl";
-    let text = fs::read_to_string(first.path().join(name)).unwrap();
-    let at = text.rfind("1.").unwrap();
-    fs::write(twin.path().join(name), format!("{}2.{}", &text[..at], &text[at + 2..])).unwrap();
+    let mut read = part::read(&first.path().join(name)).unwrap();
+    read.finished[0].rows[0][0] = Some(2.0);
+    let mut text = part::line(&read.header).unwrap();
+    read.finished.iter().for_each(|cell| text.extend(part::line(cell).unwrap()));
+    fs::write(twin.path().join(name), text).unwrap();
     assert_refused(&merged(&first, &twin), "differs in cell");
 }
 
