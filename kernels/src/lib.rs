@@ -87,6 +87,7 @@ mod quadrature;
 pub mod random;
 #[cfg(feature = "textbook")]
 pub mod reference;
+pub mod resample;
 mod simd;
 mod slices;
 mod truncated;

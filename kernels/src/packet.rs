@@ -1,6 +1,7 @@
 //! Functions of a model as kernels of the vector layer: packets of eight, and rows of columns.
 
 use crate::model::{Drawn, Eval8, Hit8, LobeEval8, Sample8};
+use crate::resample::{Weighed8, Weighing};
 use crate::{Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Model, PerLobe, Row, Vec3x, Vec3x8, lanes3, store3};
 use core::marker::PhantomData;
 use wide::f32x8;
@@ -264,5 +265,106 @@ impl<M: Model, K: HitRow<M, N>, const N: usize> Kernel for EightHits<'_, M, K, N
             i += 1;
         }
         out
+    }
+}
+
+/// Columns of the BSDF's candidates: directions that were not discarded.
+pub(crate) type Proposals<'a, M> = AtGather<'a, M, Proposed>;
+pub(crate) struct Proposed;
+impl<M: Model> Row<3, 3> for Proposals<'_, M> {
+    #[inline(always)]
+    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 3]
+    where
+        f32: Broadcast<L>,
+    {
+        proposed(M::sample::<L, f32>(self.gather, xi))
+    }
+}
+
+/// The direction of a sample, 0 if it was discarded.
+#[inline(always)]
+fn proposed<L: Lanes>(sample: Drawn<L>) -> [L; 3] {
+    let kept = L::splat(0.0).lt(sample.pdf);
+    [L::keep(kept, sample.wi.x), L::keep(kept, sample.wi.y), L::keep(kept, sample.wi.z)]
+}
+
+/// Columns of candidates' contributions and weights.
+#[derive(Clone, Copy)]
+pub(crate) struct Weighs<'a, M: Model> {
+    at: AtGather<'a, M, ValuePdf>,
+    weighing: Weighing,
+}
+
+impl<'a, M: Model> Weighs<'a, M> {
+    #[inline(always)]
+    pub(crate) fn new(gather: &'a M::Gather<f32>, weighing: Weighing) -> Self {
+        Self { at: AtGather::new(gather), weighing }
+    }
+}
+
+impl<M: Model> Row<7, 4> for Weighs<'_, M> {
+    #[inline(always)]
+    fn row<L: Lanes>(self, [x, y, z, r, g, b, pdf_light]: [L; 7]) -> [L; 4]
+    where
+        f32: Broadcast<L>,
+    {
+        weighed::<M, L, f32>(self.at.gather, self.weighing, Vec3x::new(x, y, z), [r, g, b], pdf_light)
+    }
+}
+
+#[inline(always)]
+fn weighed<M: Model, L: Lanes, C: Broadcast<L>>(
+    gather: &M::Gather<C>,
+    weighing: Weighing,
+    wi: Vec3x<L>,
+    radiance: [L; 3],
+    pdf_light: L,
+) -> [L; 4] {
+    let cos_theta_i = wi.y.mul_add(wi.y, wi.z * wi.z).sqrt();
+    let eval = M::eval::<L, C>(gather, wi);
+    weighing.weigh(eval.value, eval.pdf, cos_theta_i, radiance, pdf_light)
+}
+
+/// A candidate of the BSDF for each of eight hits.
+pub(crate) struct ProposalsOf<'a, M: Model> {
+    pub(crate) gather: &'a M::Gather<f32x8>,
+    pub(crate) xi: &'a [f32x8; 3],
+}
+
+impl<M: Model> Kernel for ProposalsOf<'_, M> {
+    type Constant = f32x8;
+    type Output = Vec3x8;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Vec3x8
+    where
+        f32x8: Broadcast<L>,
+    {
+        let [x, y, z] = store3(proposed(M::sample::<L, f32x8>(self.gather, lanes3(self.xi))));
+        Vec3x::new(x, y, z)
+    }
+}
+
+/// Contribution and weight of a candidate for each of eight hits.
+pub(crate) struct WeighOf<'a, M: Model> {
+    pub(crate) gather: &'a M::Gather<f32x8>,
+    pub(crate) wi: &'a Vec3x8,
+    pub(crate) radiance: &'a [f32x8; 3],
+    pub(crate) pdf_light: &'a f32x8,
+    pub(crate) weighing: Weighing,
+}
+
+impl<M: Model> Kernel for WeighOf<'_, M> {
+    type Constant = f32x8;
+    type Output = Weighed8;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Weighed8
+    where
+        f32x8: Broadcast<L>,
+    {
+        let (wi, light) = (Vec3x::load(self.wi), self.pdf_light.lanes());
+        let [r, g, b, weight] = weighed::<M, L, f32x8>(self.gather, self.weighing, wi, lanes3(self.radiance), light);
+        Weighed8 { contribution: store3([r, g, b]), weight: weight.store() }
     }
 }

@@ -44,6 +44,7 @@
 //! | `lobes_and_albedo_equal_scalar` | the same of lobes and albedo; `h` matters only where it is claimed to |
 //! | `slices_equal_packets` | slices of every length and alignment give the bits of packets |
 //! | `hits_equal_packets` | slices of hits give them too, on one material and on tables, with columns left out |
+//! | `resampling_is_unbiased` | resampled light against plain estimates, under five lights, partly hidden |
 //! | `lobes_sum_to_value` | values and densities of lobes alone and together |
 //! | `masks_select_lobes` | masked lobes neither scatter nor are sampled |
 //! | `albedo_is_the_integral` | `albedo` against quadrature |
@@ -83,6 +84,7 @@ mod probe;
 )]
 pub mod published;
 pub mod reference;
+pub mod resampling;
 pub mod sampling;
 pub mod slices;
 mod statistics;
@@ -96,11 +98,11 @@ pub use subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subje
 /// Declares a module with a `#[test]` for each property of a [`Subject`].
 ///
 /// The subject is an expression without surroundings: a unit struct, or a constant. `but hits` after it leaves out slices of
-/// hits, which take the longest to compile: for models that differ by a constant from one that is tested whole.
+/// hits and resampling, which take the longest to compile: for models that differ by a constant from one that is tested whole.
 #[macro_export]
 macro_rules! conformance {
     ($name:ident, $subject:expr) => {
-        $crate::conformance!(+$name, $subject, hits hits_equal_packets,);
+        $crate::conformance!(+$name, $subject, hits hits_equal_packets, resampling resampling_is_unbiased,);
     };
     ($name:ident, $subject:expr, but hits) => {
         $crate::conformance!(+$name, $subject,);

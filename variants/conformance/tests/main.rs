@@ -7,7 +7,7 @@ mod reference;
 use broken::*;
 use hairis_conformance::{
     Claims, Materials, Outcome, Subject, bounds, chi_square, hits, integral, inversion, lanes, lobes, not_numbers,
-    sampling, slices, totality,
+    resampling, sampling, slices, totality,
 };
 
 hairis_conformance::conformance!(sound, crate::Broken::<{ crate::SOUND }>);
@@ -106,6 +106,13 @@ fn slices_find_entries_that_differ_from_packets() {
     if hairis::Level::available().any(|level| level != hairis::Level::portable()) {
         assert_fails(slices::slices_equal_packets(&Broken::<WIDE_SLICES_DIFFER>), "entry");
         assert_fails(hits::hits_equal_packets(&Broken::<WIDE_SLICES_DIFFER>), "entry");
+    }
+}
+
+#[test]
+fn resampling_finds_estimates_that_are_two_percent_off() {
+    for factor in [0.98, 1.02] {
+        assert_fails(resampling::check(&Broken::<SOUND>, factor), "standard errors");
     }
 }
 

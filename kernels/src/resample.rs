@@ -1,0 +1,280 @@
+//! One ray for many candidates: resampled importance sampling of direct light (Talbot et al. 2005), with the balance
+//! heuristic between the BSDF's candidates and the light's.
+//!
+//! A ray costs as much as tens of candidates. Draw `n_b` directions from the BSDF and `n_l` from the light, weigh each by the
+//! light that it would bring without occlusion, and trace the few that are chosen:
+//!
+//! 1. **Propose.** [`Gather::propose_batch`] draws the BSDF's candidates; the host draws the light's.
+//! 2. **Look up.** The host finds the radiance of each direction, and the light's density there.
+//! 3. **Weigh.** [`Gather::weigh_batch`] gives each candidate its contribution `f = L S cos theta_i` and its weight `w`, the mean
+//!    of `f` over the channels by `n_b p_b + n_l p_l`.
+//! 4. **Choose.** [`choose`] picks `k` of them by one uniform number; equal choices are one ray. The direct light is the sum of
+//!    `V * contribution` over the choices, V being visibility.
+//!
+//! [`Pool`] holds the columns of one hit. Eight hits at a time, a lane a hit, keep a [`Reservoir8`].
+//!
+//! # Unbiased, and when
+//!
+//! - The estimate has the right mean for any `n_b`, `n_l` and `k` above 0, as long as some technique that proposes can draw
+//!   every direction that brings light. With `n_l` 0 the BSDF's density must be above 0 wherever `f` is; with `n_b` 0 the light's.
+//! - Resampling estimates all direct light. A path that goes on by a BSDF sample of its own must not add an emitter that it
+//!   meets, but with a [`Partition`]: candidates then come from the light alone, the estimate is the light technique's share,
+//!   and the emitter counts with the rest, `1 - w_l`.
+//! - Lights without an extent have no density: add them on their own.
+//! - Radiance that is NaN or below 0 counts as 0. Contributions and weights above 1e30 count as 1e30, so that no sum overflows:
+//!   infinite radiance is such a contribution.
+
+use crate::packet::{Proposals, ProposalsOf, WeighOf, Weighs};
+use crate::simd::dispatch::clean_upper_halves;
+use crate::slices::{LengthError, WI, XI, check_lengths, check_three, lens3};
+use crate::{Gather, Gather8, Lanes, Level, Model, Vec3x8};
+use wide::f32x8;
+
+mod choice;
+mod pool;
+mod reservoir;
+
+pub use choice::{Choice, Choices, choose};
+pub use pool::Pool;
+pub use reservoir::Reservoir8;
+
+/// The largest contribution and weight.
+const MOST: f32 = 1e30;
+
+/// Numbers of candidates: what each technique proposes for one hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Directions drawn from the BSDF.
+    pub bsdf: u32,
+    /// Directions drawn from the light.
+    pub light: u32,
+}
+
+/// Share of the light that resampling estimates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Partition {
+    /// All of it.
+    #[default]
+    All,
+    /// `w_l = p_l / (p_l + p_b)`; the path's next direction estimates the rest.
+    Balance,
+    /// `w_l = p_l^2 / (p_l^2 + p_b^2)`.
+    Power,
+}
+
+impl Partition {
+    /// The share of the light technique, `w_l`, for the densities of the light and of the BSDF at a direction. An emitter that
+    /// a path meets by its BSDF sample counts with `1 - w_l`; where resampling estimates [`All`](Self::All) it does not count.
+    ///
+    /// - Range: `[0, 1]`. Without a density of the light it is 0, but for `All`.
+    #[inline]
+    #[must_use]
+    pub fn light_share(self, pdf_light: f32, pdf_bsdf: f32) -> f32 {
+        share(self, pdf_light, pdf_bsdf)
+    }
+}
+
+#[inline(always)]
+fn share<L: Lanes>(partition: Partition, pdf_light: L, pdf_bsdf: L) -> L {
+    let one = L::splat(1.0);
+    // As far as squares go.
+    let ratio = (pdf_bsdf / L::splat(f32::MIN_POSITIVE).max(pdf_light)).min(L::splat(1e18));
+    match partition {
+        Partition::All => one,
+        Partition::Balance => one / (one + ratio),
+        Partition::Power => one / ratio.mul_add(ratio, one),
+    }
+}
+
+/// How candidates are weighed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Weighing {
+    counts: [f32; 2],
+    partition: Partition,
+}
+
+impl Weighing {
+    #[expect(clippy::cast_precision_loss, reason = "numbers of candidates are far below 2^24")]
+    const fn new(counts: Counts, partition: Partition) -> Self {
+        Self { counts: [counts.bsdf as f32, counts.light as f32], partition }
+    }
+
+    /// Contribution and weight of a direction whose S is `value`.
+    #[inline(always)]
+    pub(crate) fn weigh<L: Lanes>(
+        self,
+        value: [L; 3],
+        pdf_bsdf: L,
+        cos_theta_i: L,
+        radiance: [L; 3],
+        pdf_light: L,
+    ) -> [L; 4] {
+        let c = L::splat;
+        let (zero, most) = (c(0.0), c(MOST));
+        let positive = |x: L| L::keep(zero.lt(x), x).min(most);
+        let pdf_light = positive(pdf_light);
+        let scale = cos_theta_i * share(self.partition, pdf_light, pdf_bsdf);
+        let [r, g, b] = radiance;
+        let f = [
+            (value[0] * scale * positive(r)).min(most),
+            (value[1] * scale * positive(g)).min(most),
+            (value[2] * scale * positive(b)).min(most),
+        ];
+        let [bsdf, light] = self.counts;
+        let density = pdf_bsdf.min(most).mul_add(c(bsdf), pdf_light * c(light));
+        let mean = (f[0] + f[1] + f[2]) * c(1.0 / 3.0);
+        let weight = L::keep(zero.lt(density), mean / c(f32::MIN_POSITIVE).max(density)).min(most);
+        let [r, g, b] = f;
+        [r, g, b, weight]
+    }
+}
+
+/// Candidates of one hit by column, as the host looked them up.
+#[derive(Clone, Copy, Debug)]
+pub struct CandidateSlices<'a> {
+    /// Towards the light, in the fibre's frame: u, v, w. Those of discarded samples are 0.
+    pub wi: [&'a [f32]; 3],
+    /// Radiance from there, linear RGB, without visibility; times the path's throughput if that is to decide as well.
+    pub radiance: [&'a [f32]; 3],
+    /// The light's density of proposing the direction, per steradian, whichever technique did.
+    pub pdf_light: &'a [f32],
+}
+
+/// Output of [`Gather::weigh_batch`]: one entry per candidate.
+#[derive(Debug)]
+pub struct WeightSlices<'a> {
+    /// Light that the direction would bring, `L S cos theta_i`, linear RGB, without visibility.
+    pub contribution: [&'a mut [f32]; 3],
+    /// Weight of the candidate; 0 where it brings nothing.
+    pub weight: &'a mut [f32],
+}
+
+/// Eight weighed candidates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weighed8 {
+    /// Light that the direction would bring, `L S cos theta_i`, linear RGB, without visibility.
+    pub contribution: [f32x8; 3],
+    /// Weight of the candidate; 0 where it brings nothing.
+    pub weight: f32x8,
+}
+
+impl<M: Model> Gather<M> {
+    /// Candidates of the BSDF: as [`sample_batch`](Self::sample_batch), directions alone. Those of discarded samples are 0, which
+    /// weighs nothing.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then.
+    #[inline]
+    pub fn propose_batch(&self, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
+        self.propose_batch_at(Level::detect(), xi, wi)
+    }
+
+    /// As [`propose_batch`](Self::propose_batch), on a given instruction set.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then.
+    #[inline]
+    pub fn propose_batch_at(&self, level: Level, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
+        clean_upper_halves();
+        check_three(XI, xi, xi[0].len())?;
+        let mut out = wi;
+        check_lengths(xi[0].len(), lens3(WI, Some(&out)))?;
+        level.run_rows(Proposals::<M>::new(&self.inner), xi, &mut out);
+        Ok(())
+    }
+
+    /// Contributions and weights of the candidates of one hit, proposed by either technique.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then.
+    #[inline]
+    pub fn weigh_batch(
+        &self,
+        candidates: CandidateSlices<'_>,
+        counts: Counts,
+        partition: Partition,
+        out: WeightSlices<'_>,
+    ) -> Result<(), LengthError> {
+        self.weigh_batch_at(Level::detect(), candidates, counts, partition, out)
+    }
+
+    /// As [`weigh_batch`](Self::weigh_batch), on a given instruction set.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then.
+    #[inline]
+    pub fn weigh_batch_at(
+        &self,
+        level: Level,
+        candidates: CandidateSlices<'_>,
+        counts: Counts,
+        partition: Partition,
+        out: WeightSlices<'_>,
+    ) -> Result<(), LengthError> {
+        clean_upper_halves();
+        let CandidateSlices { wi, radiance, pdf_light } = candidates;
+        let expected = wi[0].len();
+        check_three(WI, wi, expected)?;
+        check_three(["radiance.r", "radiance.g", "radiance.b"], radiance, expected)?;
+        check_lengths(expected, [("pdf_light", Some(pdf_light.len()))])?;
+        check_lengths(
+            expected,
+            lens3(["contribution.r", "contribution.g", "contribution.b"], Some(&out.contribution)),
+        )?;
+        check_lengths(expected, [("weight", Some(out.weight.len()))])?;
+        let ([u, v, w], [r, g, b], [fr, fg, fb]) = (wi, radiance, out.contribution);
+        let row = Weighs::<M>::new(&self.inner, Weighing::new(counts, partition));
+        level.run_rows(row, [u, v, w, r, g, b, pdf_light], &mut [fr, fg, fb, out.weight]);
+        Ok(())
+    }
+}
+
+impl<M: Model> Gather8<M> {
+    /// A candidate of the BSDF for each hit; 0 where the sample was discarded.
+    #[inline]
+    #[must_use]
+    pub fn propose8(&self, xi: &[f32x8; 3]) -> Vec3x8 {
+        self.propose8_at(Level::detect(), xi)
+    }
+
+    /// As [`propose8`](Self::propose8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn propose8_at(&self, level: Level, xi: &[f32x8; 3]) -> Vec3x8 {
+        level.run(ProposalsOf::<M> { gather: &self.inner, xi })
+    }
+
+    /// Contribution and weight of a candidate for each hit, from the light's radiance and density there.
+    #[inline]
+    #[must_use]
+    pub fn weigh8(
+        &self,
+        wi: &Vec3x8,
+        radiance: &[f32x8; 3],
+        pdf_light: &f32x8,
+        counts: Counts,
+        partition: Partition,
+    ) -> Weighed8 {
+        self.weigh8_at(Level::detect(), wi, radiance, pdf_light, counts, partition)
+    }
+
+    /// As [`weigh8`](Self::weigh8), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn weigh8_at(
+        &self,
+        level: Level,
+        wi: &Vec3x8,
+        radiance: &[f32x8; 3],
+        pdf_light: &f32x8,
+        counts: Counts,
+        partition: Partition,
+    ) -> Weighed8 {
+        let weighing = Weighing::new(counts, partition);
+        level.run(WeighOf::<M> { gather: &self.inner, wi, radiance, pdf_light, weighing })
+    }
+}

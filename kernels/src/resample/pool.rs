@@ -1,0 +1,190 @@
+//! The candidates of one hit, stored by column.
+
+use super::{CandidateSlices, Choice, Choices, Counts, Partition, WeightSlices, choose};
+use crate::{Gather, LengthError, Model};
+use glam::Vec3;
+
+/// The candidates of one hit, at most `N`: those of the BSDF first. Keep one per thread and use it again.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairis::resample::{Counts, Partition, Pool};
+/// use hairis::{Bsdf, Gaussian, Hair, HairParams};
+///
+/// // A sky that is brighter above, and a light sampler that draws it uniformly: density 1 / (4 pi).
+/// let sky = |wi: Vec3| ([1.0 + wi.y, 1.0, 1.0], 0.079_577_47);
+/// let gather = Bsdf::new(&Hair(Gaussian), &HairParams::brown()).prepare(Vec3::Y);
+///
+/// let mut pool = Pool::<16>::new(Counts { bsdf: 8, light: 8 }, Partition::All).expect("16 candidates");
+/// let xi = core::array::from_fn::<f32, 8, _>(|i| (i as f32 + 0.5) / 8.0);
+/// pool.propose(&gather, [&xi, &xi, &xi])?; // from the BSDF
+/// for i in 0..8 {
+///     let (z, phi) = (xi[i] * 2.0 - 1.0, 2.4 * i as f32);
+///     let r = (1.0 - z * z).sqrt();
+///     let wi = Vec3::new(r * phi.cos(), r * phi.sin(), z);
+///     pool.set_light(i, wi, sky(wi).0, sky(wi).1); // from the light
+/// }
+/// pool.look_up(sky);
+/// pool.weigh(&gather);
+/// let mut direct = [0.0; 3];
+/// for (wi, choice) in pool.choose(4, 0.3) {
+///     let visible = wi.y > 0.0; // a ray
+///     for (sum, light) in direct.iter_mut().zip(choice.contribution) {
+///         *sum += if visible { light } else { 0.0 };
+///     }
+/// }
+/// assert!(direct[0] > 0.0);
+/// # Ok::<(), hairis::LengthError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Pool<const N: usize> {
+    wi: [[f32; N]; 3],
+    radiance: [[f32; N]; 3],
+    pdf_light: [f32; N],
+    contribution: [[f32; N]; 3],
+    weight: [f32; N],
+    counts: Counts,
+    partition: Partition,
+    /// Numbers of candidates as lengths.
+    bsdf: usize,
+    len: usize,
+}
+
+/// Columns of a technique's candidates that the host writes.
+#[derive(Debug)]
+pub struct CandidateColumns<'a> {
+    /// Towards the light, in the fibre's frame: u, v, w.
+    pub wi: [&'a mut [f32]; 3],
+    /// Radiance from there, linear RGB.
+    pub radiance: [&'a mut [f32]; 3],
+    /// The light's density of proposing the direction, per steradian.
+    pub pdf_light: &'a mut [f32],
+}
+
+impl<const N: usize> Pool<N> {
+    /// A pool for so many candidates of each technique. `None` if there are more than `N` of them, or a [`Partition`] other
+    /// than `All` with candidates of the BSDF: the path's next direction is that technique's.
+    #[inline]
+    #[must_use]
+    pub fn new(counts: Counts, partition: Partition) -> Option<Self> {
+        let bsdf = usize::try_from(counts.bsdf).ok()?;
+        let len = bsdf.checked_add(usize::try_from(counts.light).ok()?)?;
+        let shared = partition != Partition::All && bsdf > 0;
+        let (three, one) = ([[0.0; N]; 3], [0.0; N]);
+        (len <= N && !shared).then_some(Self {
+            wi: three,
+            radiance: three,
+            pdf_light: one,
+            contribution: three,
+            weight: one,
+            counts,
+            partition,
+            bsdf,
+            len,
+        })
+    }
+
+    /// Draws the BSDF's candidates, one for each triple of numbers.
+    ///
+    /// # Errors
+    ///
+    /// If there are more or less numbers than candidates.
+    #[inline]
+    pub fn propose<M: Model>(&mut self, gather: &Gather<M>, xi: [&[f32]; 3]) -> Result<(), LengthError> {
+        gather.propose_batch(xi, self.bsdf_candidates().wi).map_err(|LengthError { field, len, expected }| {
+            // The numbers are the first slices of that call, and the room of the pool is what they must fill.
+            if field.starts_with("wi") {
+                LengthError { field: "xi.lobe", len: expected, expected: len }
+            } else {
+                LengthError { field, len, expected }
+            }
+        })
+    }
+
+    /// The BSDF's candidates: directions to look up, and where radiance and density go.
+    #[inline]
+    pub fn bsdf_candidates(&mut self) -> CandidateColumns<'_> {
+        self.candidates(0, self.bsdf)
+    }
+
+    /// The light's candidates, all of which the host writes.
+    #[inline]
+    pub fn light_candidates(&mut self) -> CandidateColumns<'_> {
+        self.candidates(self.bsdf, self.len)
+    }
+
+    #[inline]
+    fn candidates(&mut self, from: usize, to: usize) -> CandidateColumns<'_> {
+        CandidateColumns {
+            wi: self.wi.each_mut().map(|column| column.get_mut(from..to).unwrap_or_default()),
+            radiance: self.radiance.each_mut().map(|column| column.get_mut(from..to).unwrap_or_default()),
+            pdf_light: self.pdf_light.get_mut(from..to).unwrap_or_default(),
+        }
+    }
+
+    /// Writes candidate `i` of the light: its direction, radiance and density. Nothing happens beyond the last.
+    #[inline]
+    pub fn set_light(&mut self, i: usize, wi: Vec3, radiance: [f32; 3], pdf_light: f32) {
+        let mut columns = self.light_candidates();
+        set(&mut columns.wi, i, wi.to_array());
+        set(&mut columns.radiance, i, radiance);
+        set(&mut [columns.pdf_light], i, [pdf_light]);
+    }
+
+    /// Asks `light` for the radiance and the light's density in the direction of each of the BSDF's candidates.
+    #[inline]
+    pub fn look_up(&mut self, mut light: impl FnMut(Vec3) -> ([f32; 3], f32)) {
+        let mut columns = self.bsdf_candidates();
+        for i in 0..columns.pdf_light.len() {
+            let [x, y, z] = columns.wi.each_ref().map(|column| column.get(i).copied().unwrap_or_default());
+            let wi = Vec3::new(x, y, z);
+            let (radiance, pdf) = if wi == Vec3::ZERO { ([0.0; 3], 0.0) } else { light(wi) };
+            set(&mut columns.radiance, i, radiance);
+            set(&mut [&mut *columns.pdf_light], i, [pdf]);
+        }
+    }
+
+    /// Weighs the candidates, once all are looked up.
+    #[inline]
+    pub fn weigh<M: Model>(&mut self, gather: &Gather<M>) {
+        let len = self.len;
+        let candidates = CandidateSlices {
+            wi: self.wi.each_ref().map(|column| column.get(..len).unwrap_or_default()),
+            radiance: self.radiance.each_ref().map(|column| column.get(..len).unwrap_or_default()),
+            pdf_light: self.pdf_light.get(..len).unwrap_or_default(),
+        };
+        let out = WeightSlices {
+            contribution: self.contribution.each_mut().map(|column| column.get_mut(..len).unwrap_or_default()),
+            weight: self.weight.get_mut(..len).unwrap_or_default(),
+        };
+        let written = gather.weigh_batch(candidates, self.counts, self.partition, out);
+        debug_assert!(written.is_ok(), "all columns have the length of the pool");
+    }
+
+    /// Chooses `k` candidates by one uniform number: see [`choose`]. Yields the direction of each.
+    #[inline]
+    pub fn choose(&self, k: u32, u: f32) -> impl Iterator<Item = (Vec3, Choice)> {
+        self.choices(k, u).map(|choice| {
+            let [x, y, z] = self.wi.each_ref().map(|column| column.get(choice.index).copied().unwrap_or_default());
+            (Vec3::new(x, y, z), choice)
+        })
+    }
+
+    /// The same, by index.
+    #[inline]
+    #[must_use]
+    pub fn choices(&self, k: u32, u: f32) -> Choices<'_> {
+        let contribution = self.contribution.each_ref().map(|column| &column[..]);
+        choose(contribution, self.weight.get(..self.len).unwrap_or_default(), k, u)
+    }
+}
+
+/// Writes entry `i` of each column, if there is one.
+#[inline]
+fn set<const C: usize>(columns: &mut [&mut [f32]; C], i: usize, values: [f32; C]) {
+    for (column, value) in columns.iter_mut().zip(values) {
+        if let Some(entry) = column.get_mut(i) {
+            *entry = value;
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! A reservoir per lane: candidates come and go, one is kept.
+
+use super::Weighed8;
+use crate::simd::lanes::{lanes3, store3};
+use crate::{Broadcast, Kernel, Lanes, Level, Vec3x, Vec3x8};
+use wide::f32x8;
+
+/// One candidate of each of eight hits, kept with probability proportional to its weight of all that were added.
+///
+/// After the last one, trace [`wi`](Self::wi) and add [`estimate`](Self::estimate) where it is visible. One ray a lane; keep
+/// several reservoirs for several rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reservoir8 {
+    /// The direction that is kept, in the fibre's frame; 0 while no candidate has had a weight.
+    pub wi: Vec3x8,
+    /// Its contribution.
+    pub contribution: [f32x8; 3],
+    /// The sum of all weights: the estimate of the mean over the channels, were everything visible.
+    pub sum: f32x8,
+}
+
+impl Default for Reservoir8 {
+    /// Without a candidate.
+    #[inline]
+    fn default() -> Self {
+        let zero = f32x8::ZERO;
+        Self { wi: Vec3x::new(zero, zero, zero), contribution: [zero; 3], sum: zero }
+    }
+}
+
+impl Reservoir8 {
+    /// Adds a candidate per lane, kept if `u` times the sum of the weights is below its own. `u` is uniform in `[0, 1)`, drawn
+    /// anew for each candidate: one number that is rescaled runs out of bits after twenty.
+    ///
+    /// The candidate's weight counts the candidates of one hit: see [`Gather8::weigh8`](crate::Gather8::weigh8).
+    #[inline]
+    pub fn add(&mut self, wi: &Vec3x8, candidate: &Weighed8, u: &f32x8) {
+        self.add_at(Level::detect(), wi, candidate, u);
+    }
+
+    /// As [`add`](Self::add), on a given instruction set.
+    #[inline]
+    pub fn add_at(&mut self, level: Level, wi: &Vec3x8, candidate: &Weighed8, u: &f32x8) {
+        let other = Self { wi: *wi, contribution: candidate.contribution, sum: candidate.weight };
+        self.merge_at(level, &other, u);
+    }
+
+    /// Merges a reservoir of other candidates, whose `u` it takes: exact for the same hits, the same target and weights that
+    /// count the candidates of both. Across hits it would be biased: weigh the kept directions anew at the other hit, with
+    /// the weights of Lin et al. 2022.
+    #[inline]
+    pub fn merge(&mut self, other: &Self, u: &f32x8) {
+        self.merge_at(Level::detect(), other, u);
+    }
+
+    /// As [`merge`](Self::merge), on a given instruction set.
+    #[inline]
+    pub fn merge_at(&mut self, level: Level, other: &Self, u: &f32x8) {
+        *self = level.run(Merge { a: self, b: other, u });
+    }
+
+    /// What the kept direction of each lane adds where it is visible, linear RGB.
+    #[inline]
+    #[must_use]
+    pub fn estimate(&self) -> [f32x8; 3] {
+        self.estimate_at(Level::detect())
+    }
+
+    /// As [`estimate`](Self::estimate), on a given instruction set.
+    #[inline]
+    #[must_use]
+    pub fn estimate_at(&self, level: Level) -> [f32x8; 3] {
+        level.run(Estimate(self))
+    }
+}
+
+/// Two reservoirs as one.
+struct Merge<'a> {
+    a: &'a Reservoir8,
+    b: &'a Reservoir8,
+    u: &'a f32x8,
+}
+
+impl Kernel for Merge<'_> {
+    type Constant = f32x8;
+    type Output = Reservoir8;
+    const MANY_REGISTERS: bool = false;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Reservoir8
+    where
+        f32x8: Broadcast<L>,
+    {
+        let Self { a, b, u } = self;
+        let (u, added): (L, L) = (u.lanes(), b.sum.lanes());
+        let sum = a.sum.lanes() + added;
+        // False for a weight of 0, and for NaN as `u`.
+        let taken = (u * sum).lt(added);
+        let (from, to) = (Vec3x::<L>::load(&a.wi), Vec3x::<L>::load(&b.wi));
+        let (old, new): ([L; 3], [L; 3]) = (lanes3(&a.contribution), lanes3(&b.contribution));
+        Reservoir8 {
+            wi: Vec3x::new(
+                L::select(taken, to.x, from.x).store(),
+                L::select(taken, to.y, from.y).store(),
+                L::select(taken, to.z, from.z).store(),
+            ),
+            contribution: store3([
+                L::select(taken, new[0], old[0]),
+                L::select(taken, new[1], old[1]),
+                L::select(taken, new[2], old[2]),
+            ]),
+            sum: sum.min(L::splat(f32::MAX)).store(),
+        }
+    }
+}
+
+/// Contribution of the kept candidate by its share.
+struct Estimate<'a>(&'a Reservoir8);
+
+impl Kernel for Estimate<'_> {
+    type Constant = f32x8;
+    type Output = [f32x8; 3];
+    const MANY_REGISTERS: bool = false;
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 3]
+    where
+        f32x8: Broadcast<L>,
+    {
+        let [r, g, b]: [L; 3] = lanes3(&self.0.contribution);
+        let sum: L = self.0.sum.lanes();
+        let c = L::splat;
+        // Shares first, at most 3: the sum may be close to the largest float.
+        let total = c(f32::MIN_POSITIVE).max(r + g + b);
+        let most = c(f32::MAX);
+        let scale = c(3.0) * sum;
+        store3([(r / total * scale).min(most), (g / total * scale).min(most), (b / total * scale).min(most)])
+    }
+}

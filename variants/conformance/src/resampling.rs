@@ -1,0 +1,248 @@
+//! Resampled estimates of direct light have the mean of plain ones.
+
+use crate::calls;
+use crate::failure::{Failure, Outcome};
+use crate::probe::{Draws, hits8, packet, triples};
+use crate::subject::Subject;
+use core::f32::consts::PI;
+use glam::Vec3;
+use hairis::resample::{Counts, Partition, Pool, Reservoir8};
+use hairis::wide::f32x8;
+use hairis::{Bsdf, Gather, Gather8, Hit, Level, Model};
+
+const NAME: &str = "resampling is unbiased";
+/// Estimates per cell.
+const ESTIMATES: usize = 320;
+/// Standard errors that one cell in 1000 exceeds by chance.
+const ONE_IN_1000: f64 = 3.29;
+
+/// Light from a cap about a direction, and from everywhere else.
+#[derive(Clone, Copy)]
+struct Light {
+    axis: Vec3,
+    /// Cosine of the cap's radius.
+    edge: f32,
+    cap: [f32; 3],
+    around: [f32; 3],
+    /// Probability of drawing from the cap.
+    share: f32,
+}
+
+impl Light {
+    /// Constant, half a sphere, a window, a lamp, and a lamp alone.
+    fn all(draws: &mut Draws) -> [Self; 5] {
+        let white = [1.0; 3];
+        [
+            (-1.0, white, white, 0.5),
+            (0.0, [2.0, 1.5, 0.5], [0.1, 0.2, 0.4], 0.5),
+            (0.9, [9.0, 8.0, 7.0], [0.2; 3], 0.7),
+            (0.998, [500.0, 400.0, 300.0], [0.0, 0.3, 0.6], 0.8),
+            (0.98, [20.0, 0.0, 60.0], [0.0; 3], 1.0),
+        ]
+        .map(|(edge, cap, around, share)| Self {
+            axis: Vec3::from(draws.direction()),
+            edge,
+            cap,
+            around,
+            share,
+        })
+    }
+
+    /// Radiance and density of drawing a direction.
+    fn look_up(&self, wi: Vec3) -> ([f32; 3], f32) {
+        let (inside, outside) = (2.0 * PI * (1.0 - self.edge), 2.0 * PI * (1.0 + self.edge));
+        if wi.dot(self.axis) >= self.edge {
+            (self.cap, self.share / inside + if self.edge == -1.0 { 1.0 - self.share } else { 0.0 } / inside)
+        } else {
+            (self.around, (1.0 - self.share) / outside.max(1e-6))
+        }
+    }
+
+    /// A direction drawn with that density.
+    fn draw(&self, draws: &mut Draws) -> Vec3 {
+        let [which, x, y] = draws.xi3();
+        let cos = if which < self.share || self.edge == -1.0 {
+            1.0 - x * (1.0 - self.edge)
+        } else {
+            // Below the edge, which itself is of the cap.
+            (self.edge - (1.0 - x) * (1.0 + self.edge)).max(-1.0)
+        };
+        let (sin, (sin_phi, cos_phi)) = ((1.0 - cos * cos).max(0.0).sqrt(), (2.0 * PI * y).sin_cos());
+        let (a, b) = self.axis.any_orthonormal_pair();
+        (a * (sin * cos_phi) + b * (sin * sin_phi) + self.axis * cos).normalize()
+    }
+}
+
+/// Hair in between: none of the light from every second of some cells.
+fn visible(wi: Vec3) -> f64 {
+    let cells = (wi * 3.0 + Vec3::splat(10.0)).floor();
+    if (cells.x + cells.y + cells.z) % 2.0 < 1.0 { 1.0 } else { 0.0 }
+}
+
+/// Mean over the channels.
+fn mean(rgb: [f32; 3]) -> f64 {
+    rgb.into_iter().map(f64::from).sum::<f64>() / 3.0
+}
+
+/// One-sample estimates of what a direction brings by both techniques at once, in double precision and without a pool.
+struct Plain<'a, M: Model> {
+    gather: &'a Gather<M>,
+    light: Light,
+}
+
+impl<M: Model> Plain<'_, M> {
+    /// `f V`, and the densities of the BSDF and of the light.
+    fn terms(&self, wi: Vec3) -> [f64; 3] {
+        let (radiance, pdf_light) = self.light.look_up(wi);
+        let eval = calls::eval(self.gather, wi.into());
+        let cos = f64::from(wi.y).hypot(f64::from(wi.z));
+        let f = (0..3).map(|c| f64::from(eval.value[c]) * f64::from(radiance[c])).sum::<f64>() / 3.0;
+        [f * cos * visible(wi), f64::from(eval.pdf), f64::from(pdf_light)]
+    }
+
+    fn estimate(&self, draws: &mut Draws) -> f64 {
+        let over = |[f, bsdf, light]: [f64; 3]| if f > 0.0 { f / (bsdf + light) } else { 0.0 };
+        let from_bsdf = calls::sample(self.gather, draws.xi3()).map_or(0.0, |sample| over(self.terms(sample.wi)));
+        from_bsdf + over(self.terms(self.light.draw(draws)))
+    }
+
+    /// The light by resampling from a pool of 16.
+    fn pooled(&self, counts: Counts, partition: Partition, k: u32, draws: &mut Draws) -> f64 {
+        let mut pool = Pool::<16>::new(counts, partition).expect("16 candidates at most");
+        let xi: Vec<[f32; 3]> = (0..counts.bsdf).map(|_| draws.xi3()).collect();
+        let xi = [0, 1, 2].map(|axis| xi.iter().map(|xi| xi[axis]).collect::<Vec<_>>());
+        pool.propose(self.gather, xi.each_ref().map(|column| &column[..])).expect("of one length");
+        for i in 0..counts.light as usize {
+            let wi = self.light.draw(draws);
+            let (radiance, pdf) = self.light.look_up(wi);
+            pool.set_light(i, wi, radiance, pdf);
+        }
+        pool.look_up(|wi| self.light.look_up(wi));
+        pool.weigh(self.gather);
+        let chosen: Vec<_> = pool.choose(k, draws.xi()).collect();
+        let count: u32 = chosen.iter().map(|(_, choice)| choice.count).sum();
+        assert!(chosen.is_empty() || count == k, "{count} of {k} choices");
+        chosen.iter().map(|(wi, choice)| visible(*wi) * mean(choice.contribution)).sum()
+    }
+
+    /// The light's share by resampling, and the rest where a path's next direction meets it.
+    fn path(&self, partition: Partition, draws: &mut Draws) -> f64 {
+        let direct = self.pooled(Counts { bsdf: 0, light: 8 }, partition, 1, draws);
+        let Some(next) = calls::sample(self.gather, draws.xi3()) else { return direct };
+        let ([f, bsdf, _], (_, pdf_light)) = (self.terms(next.wi), self.light.look_up(next.wi));
+        let rest = 1.0 - f64::from(partition.light_share(pdf_light, next.pdf));
+        direct + if f > 0.0 { rest * f / bsdf } else { 0.0 }
+    }
+}
+
+/// Estimates of eight hits with a reservoir each: the candidates in two reservoirs that are merged.
+fn reservoirs<M: Model>(gather: &Gather8<M>, light: Light, level: Level, draws: &mut Draws) -> [f64; 8] {
+    let counts = Counts { bsdf: 4, light: 4 };
+    let mut kept = [Reservoir8::default(); 2];
+    for i in 0..8 {
+        let wi = if i < 4 {
+            gather.propose8_at(level, &triples(&core::array::from_fn(|_| draws.xi3())))
+        } else {
+            packet(&core::array::from_fn(|_| light.draw(draws).into()))
+        };
+        let found: [([f32; 3], f32); 8] = core::array::from_fn(|lane| light.look_up(wi.lane(lane)));
+        let (radiance, pdf) = (triples(&found.map(|(rgb, _)| rgb)), f32x8::new(found.map(|(_, pdf)| pdf)));
+        let weighed = gather.weigh8_at(level, &wi, &radiance, &pdf, counts, Partition::All);
+        kept[i % 2].add_at(level, &wi, &weighed, &f32x8::new(core::array::from_fn(|_| draws.xi())));
+    }
+    let [mut all, other] = kept;
+    all.merge_at(level, &other, &f32x8::new(core::array::from_fn(|_| draws.xi())));
+    let light = all.estimate_at(level);
+    core::array::from_fn(|lane| visible(all.wi.lane(lane)) * mean(light.map(|c| c.as_array()[lane])))
+}
+
+/// Sums of estimates and of their squares.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    n: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Sums {
+    fn add(&mut self, x: f64) {
+        self.n += 1.0;
+        self.sum += x;
+        self.squares += x * x;
+    }
+
+    /// Mean and its variance.
+    fn mean(&self) -> [f64; 2] {
+        let mean = self.sum / self.n;
+        [mean, (self.squares / self.n - mean * mean).max(0.0) / self.n]
+    }
+}
+
+/// Under five lights, partly hidden, resampled estimates have the mean of plain ones: pools with one and with several rays,
+/// both partitions with the path's next direction, and merged reservoirs of eight hits, on every level.
+///
+/// # Errors
+///
+/// If more cells lie apart than chance allows, or all lie to one side on average.
+pub fn resampling_is_unbiased<S: Subject>(subject: &S) -> Outcome {
+    check(subject, 1.0)
+}
+
+/// The same of estimates times `factor`.
+///
+/// # Errors
+///
+/// As there.
+#[doc(hidden)]
+pub fn check<S: Subject>(subject: &S, factor: f64) -> Outcome {
+    let mut draws = Draws(0x2e5a);
+    let mut errors: Vec<f64> = Vec::new();
+    for (_, params) in subject.materials() {
+        let bsdf = Bsdf::new(&subject.model(), &params);
+        let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
+        for light in Light::all(&mut draws) {
+            let mut compare = |hit: Hit, resampled: Sums, draws: &mut Draws| {
+                let gather = calls::prepare(&bsdf, hit);
+                // Drawn for each cell alone, so that the cells' errors are independent.
+                let mut plain = Sums::default();
+                (0..4 * ESTIMATES).for_each(|_| plain.add(Plain { gather: &gather, light }.estimate(draws)));
+                let ([a, a_var], [b, b_var]) = (resampled.mean(), plain.mean());
+                let error = (a_var + b_var).sqrt();
+                // Estimates without any spread, and hits that see next to nothing, are left out.
+                if error > 1e-5 * b.abs() && b > 0.0 {
+                    errors.push((factor * a - b) / error);
+                }
+            };
+            for (n, hit) in hits.into_iter().enumerate() {
+                let gather = calls::prepare(&bsdf, hit);
+                let one = Plain { gather: &gather, light };
+                let mut sums = Sums::default();
+                for _ in 0..ESTIMATES {
+                    sums.add(match n % 4 {
+                        0 => one.pooled(Counts { bsdf: 4, light: 4 }, Partition::All, 1, &mut draws),
+                        1 => one.pooled(Counts { bsdf: 6, light: 10 }, Partition::All, 4, &mut draws),
+                        2 => one.path(Partition::Balance, &mut draws),
+                        _ => one.path(Partition::Power, &mut draws),
+                    });
+                }
+                compare(hit, sums, &mut draws);
+            }
+            for (level, lane) in Level::available().zip(0..) {
+                let gather = calls::prepare8(&bsdf, level, hits8(&hits));
+                let mut sums = Sums::default();
+                (0..ESTIMATES).for_each(|_| sums.add(reservoirs(&gather, light, level, &mut draws)[lane]));
+                compare(hits[lane], sums, &mut draws);
+            }
+        }
+    }
+    let (n, apart) = (errors.len() as f64, errors.iter().filter(|z| z.abs() > ONE_IN_1000).count());
+    let aside = errors.iter().sum::<f64>() / n.sqrt();
+    // Poisson: 1e-3 of the cells, and as many more as chance exceeds once in 1000.
+    let allowed = 2.0 + 1e-3 * n + 3.1 * (1e-3 * n).sqrt();
+    if apart as f64 > allowed || aside.abs() > ONE_IN_1000 {
+        let message =
+            format!("{apart} of {n} cells are {ONE_IN_1000} standard errors apart, all on average {aside:.2}");
+        return Err(Failure::new(NAME, message));
+    }
+    Ok(())
+}
