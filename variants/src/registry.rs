@@ -18,8 +18,8 @@ use {
     glam::Vec3,
     hairis::wide::f32x8,
     hairis::{
-        Bsdf, Bsdf8, Eval, Eval8, EvalColumns, EvalSlices, Gather, Gather8, Hit, Hit8, HitSlices, LengthError, Level,
-        LobeEval, LobeEval8, LobeMask, Sample, Sample8, SampleColumns, SampleSlices, Vec3x8,
+        Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level, LobeEval, LobeEval8,
+        LobeMask, Sample, Sample8, SampleSlices, Vec3x8,
     },
 };
 

@@ -53,8 +53,8 @@ impl Published for Bands {
     }
 }
 
-conformance!(hair, Family::<PublishedHair>::new());
-conformance!(matched_9, Family::<Bands>::new());
+conformance!(hair, Family::<PublishedHair>::new(), but hits);
+conformance!(matched_9, Family::<Bands>::new(), but hits);
 
 published!(published_sampler, crate::family::PublishedHair, published);
 published!(matched, crate::family::Bands, matched);

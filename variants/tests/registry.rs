@@ -3,9 +3,7 @@
 use crate::support::{Draws, direction, lanes_of, packet};
 use core::fmt::Debug;
 use glam::Vec3;
-use hairis::{
-    Bsdf, Bsdf8, EvalColumns, EvalSlices, HairParams, Hit, HitSlices, Level, Lobe, LobeMask, ParamError, SampleColumns,
-};
+use hairis::{Bsdf, Bsdf8, EvalSlices, HairParams, Hit, Level, Lobe, LobeMask, ParamError};
 use hairis_variants::{AnyBsdf8, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters, Registered, Visitor};
 
 #[test]
@@ -115,21 +113,6 @@ impl Visitor for Compare {
         let [r, g, b] = &mut value_of_type;
         one.eval_pdf_batch(columns, EvalSlices { value: [r, g, b], pdf: &mut pdf_of_type }).unwrap();
         same(&(value, pdf), &(value_of_type, pdf_of_type));
-
-        let wo_columns = [wo.map(|wo| wo.x), wo.map(|wo| wo.y), wo.map(|wo| wo.z)];
-        let hits = HitSlices { wo: wo_columns.each_ref().map(|column| column.as_slice()), h: None };
-        let (mut pdf, mut pdf_of_type) = ([0.0; 8], [0.0; 8]);
-        any[0].eval_pdf_hits(hits, columns, EvalColumns { pdf: Some(&mut pdf), ..EvalColumns::default() }).unwrap();
-        let out = EvalColumns { pdf: Some(&mut pdf_of_type), ..EvalColumns::default() };
-        bsdfs[0].eval_pdf_hits(hits, columns, out).unwrap();
-        same(&pdf, &pdf_of_type);
-        let xi_columns = [0, 1, 2].map(|axis| xi.map(|xi| xi[axis]));
-        let numbers = xi_columns.each_ref().map(|column| column.as_slice());
-        let out = SampleColumns { pdf: Some(&mut pdf), ..SampleColumns::default() };
-        any[0].sample_hits(hits, numbers, out).unwrap();
-        let out = SampleColumns { pdf: Some(&mut pdf_of_type), ..SampleColumns::default() };
-        bsdfs[0].sample_hits(hits, numbers, out).unwrap();
-        same(&pdf, &pdf_of_type);
 
         let eight = Bsdf8::pack(bsdfs.each_ref()).prepare8(&packet(&wo));
         let chosen = AnyBsdf8::pack(any.each_ref()).expect("of one model").prepare8(&packet(&wo));

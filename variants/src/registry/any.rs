@@ -120,51 +120,7 @@ macro_rules! handles {
                 self.prepare_hits(level, &hits.into())
             }
 
-            /// Value and density of many directions, each at a hit of its own: see [`Bsdf::eval_pdf_hits`].
-            ///
-            /// # Errors
-            ///
-            /// If the slices differ in length; nothing is written then.
-            #[inline]
-            pub fn eval_pdf_hits(
-                &self,
-                hits: HitSlices<'_>,
-                wi: [&[f32]; 3],
-                out: EvalColumns<'_>,
-            ) -> Result<(), LengthError> {
-                self.eval_pdf_hits_at(Level::detect(), hits, wi, out)
-            }
-
-            /// Many samples, each at a hit of its own: see [`Bsdf::sample_hits`].
-            ///
-            /// # Errors
-            ///
-            /// If the slices differ in length; nothing is written then.
-            #[inline]
-            pub fn sample_hits(
-                &self,
-                hits: HitSlices<'_>,
-                xi: [&[f32]; 3],
-                out: SampleColumns<'_>,
-            ) -> Result<(), LengthError> {
-                self.sample_hits_at(Level::detect(), hits, xi, out)
-            }
-
             any::each! { $variants
-                /// As [`eval_pdf_hits`](Self::eval_pdf_hits), on a given instruction set.
-                ///
-                /// # Errors
-                ///
-                /// If the slices differ in length; nothing is written then.
-                #[inline(never)]
-                pub fn eval_pdf_hits_at(level: Level, hits: HitSlices<'_>, wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), LengthError>;
-                /// As [`sample_hits`](Self::sample_hits), on a given instruction set.
-                ///
-                /// # Errors
-                ///
-                /// If the slices differ in length; nothing is written then.
-                #[inline(never)]
-                pub fn sample_hits_at(level: Level, hits: HitSlices<'_>, xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), LengthError>;
                 /// The largest directional albedo: see [`Bsdf::max_albedo`].
                 #[inline(never)]
                 #[must_use]
