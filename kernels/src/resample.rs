@@ -27,7 +27,7 @@
 use crate::packet::{Proposals, ProposalsOf, WeighOf, Weighs};
 use crate::simd::dispatch::clean_upper_halves;
 use crate::slices::{LengthError, WI, XI, check_lengths, check_three, lens3};
-use crate::{Gather, Gather8, Lanes, Level, Model, Vec3x8};
+use crate::{Eval8, Gather, Gather8, Lanes, Level, Model, Vec3x8};
 use wide::f32x8;
 
 mod choice;
@@ -156,6 +156,25 @@ pub struct Weighed8 {
     pub contribution: [f32x8; 3],
     /// Weight of the candidate; 0 where it brings nothing.
     pub weight: f32x8,
+}
+
+impl Weighed8 {
+    /// Candidates whose values and densities the host has, for densities that are not the model's own: a mixture with another
+    /// technique, say. Otherwise [`Gather8::weigh8`] and [`Gather::weigh_batch`] do it in one pass.
+    #[inline]
+    #[must_use]
+    pub fn new(
+        eval: &Eval8,
+        cos_theta_i: &f32x8,
+        radiance: &[f32x8; 3],
+        pdf_light: &f32x8,
+        counts: Counts,
+        partition: Partition,
+    ) -> Self {
+        let weighing = Weighing::new(counts, partition);
+        let [r, g, b, weight] = weighing.weigh(eval.value, eval.pdf, *cos_theta_i, *radiance, *pdf_light);
+        Self { contribution: [r, g, b], weight }
+    }
 }
 
 impl<M: Model> Gather<M> {

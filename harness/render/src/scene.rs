@@ -6,6 +6,8 @@ use crate::lights::{LightSample, Rectangle, Seen, Sky};
 use crate::material::Hair;
 use crate::tree::{self, Ray, Tree};
 use glam::Vec3;
+use hairis::wide::f32x8;
+use hairis_harness::light::Light;
 
 /// An ellipsoid along the axes that reflects as Lambert's law says, seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,6 +138,23 @@ impl Scene {
             None => self.sky.sample([x, y]),
         }?;
         Some(LightSample { pdf: sample.pdf * share, ..sample })
+    }
+
+    /// The lights in eight directions from a point, and how far away they are: as [`light_along`](Self::light_along).
+    #[must_use]
+    pub fn lights_along(&self, origin: Vec3, directions: &[Vec3; 8]) -> [Option<(Seen, f32)>; 8] {
+        match &self.sky {
+            Sky::Map(map) if self.lamps().next().is_none() => {
+                let seen = Light::see8(&**map, &(*directions).into());
+                core::array::from_fn(|lane| {
+                    let at = |lanes: &f32x8| lanes.as_array()[lane];
+                    let radiance = Vec3::from_array(seen.radiance.each_ref().map(at));
+                    let pdf = at(&seen.pdf);
+                    (pdf > 0.0).then_some((Seen { radiance, pdf }, f32::INFINITY))
+                })
+            }
+            _ => directions.map(|direction| self.light_along(origin, direction)),
+        }
     }
 
     /// Radiance along a ray that met no hair and no surface.

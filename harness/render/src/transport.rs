@@ -3,6 +3,7 @@
 mod clock;
 mod gather;
 mod path;
+mod resampled;
 mod wave;
 
 pub use clock::seconds_of_thread;
@@ -34,6 +35,8 @@ pub enum Mis {
     Bsdf,
     /// Both, weighted by the power heuristic
     Both,
+    /// Rays chosen from four candidates each, of lights and BSDF; in paths from eight of the lights, by the power heuristic
+    Resampled,
 }
 
 impl Mis {
@@ -53,7 +56,7 @@ impl Mis {
         match self {
             Self::Light => 1.0,
             Self::Bsdf => 0.0,
-            Self::Both => Self::power(pdf, bsdf),
+            Self::Both | Self::Resampled => Self::power(pdf, bsdf),
         }
     }
 
@@ -63,7 +66,7 @@ impl Mis {
         match self {
             Self::Light => 0.0,
             Self::Bsdf => 1.0,
-            Self::Both => Self::power(pdf, light),
+            Self::Both | Self::Resampled => Self::power(pdf, light),
         }
     }
 }

@@ -11,7 +11,7 @@ use hairis_render::scenes::Name;
 use hairis_render::transport::{Integrator, Mis, Settings};
 use hairis_variants::ModelId;
 
-const MIS: [Mis; 3] = [Mis::Light, Mis::Bsdf, Mis::Both];
+const MIS: [Mis; 4] = [Mis::Light, Mis::Bsdf, Mis::Both, Mis::Resampled];
 
 /// Albedo of hair by the midpoint rule over the sphere of `wi`: nothing of the samplers is in it.
 fn albedo(hair: &Hair, theta_o: f32, h: f32) -> f64 {

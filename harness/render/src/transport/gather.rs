@@ -1,6 +1,7 @@
 //! The paper's protocol for direct light: fixed camera rays, and many samples at each shading point.
 
 use super::path::leave;
+use super::resampled::Candidates;
 use super::{Mis, Settings, key};
 use crate::film::Tile;
 use crate::material::Prepared;
@@ -24,6 +25,7 @@ struct Point {
 /// Estimates the direct light of hair at `samples` light and as many BSDF samples per camera ray. What is no hair is
 /// black, but for lights that the camera sees.
 pub(super) fn tile(scene: &Scene, settings: &Settings, tile: &mut Tile, samples: u32) {
+    let mut candidates = Candidates::default();
     for (pixel, sums) in tile.place.pixels().zip(&mut tile.sums) {
         *sums = Default::default();
         for ray in 0..settings.rays {
@@ -33,8 +35,12 @@ pub(super) fn tile(scene: &Scene, settings: &Settings, tile: &mut Tile, samples:
                 Met::Hair(hit) => {
                     let point = Point::new(scene, &ray_of, hit);
                     let first = ray * samples;
-                    let sum = point.light(scene, settings, key(pixel), first..first + samples);
-                    sums.add(sum / samples as f32);
+                    sums.add(if settings.mis == Mis::Resampled {
+                        let numbers = Numbers::new(settings.sequence, settings.seed, key(pixel), first);
+                        point.resampled(scene, numbers, samples, &mut candidates)
+                    } else {
+                        point.light(scene, settings, key(pixel), first..first + samples) / samples as f32
+                    });
                 }
                 met => sums.add(scene.see(&ray_of, &met).map_or(Vec3::ZERO, |seen| seen.radiance)),
             }
@@ -74,6 +80,19 @@ impl Point {
                 sum += self.by_bsdf(scene, settings, &xi, count);
             }
             next += 8.min(samples.end - next);
+        }
+        sum
+    }
+
+    /// Light of as many rays as samples, chosen from candidates.
+    fn resampled(&self, scene: &Scene, mut numbers: Numbers, rays: u32, candidates: &mut Candidates) -> Vec3 {
+        candidates.draw(scene, self.origin, &self.frame, &self.prepared, &mut numbers, rays);
+        let mut sum = Vec3::ZERO;
+        for (candidate, radiance) in candidates.choose(rays) {
+            let ray = leave(scene, &self.hit, self.origin, candidate.direction, candidate.cos);
+            if !scene.blocked(&Ray { t_max: candidate.distance, ..ray }) {
+                sum += radiance;
+            }
         }
         sum
     }

@@ -1,7 +1,7 @@
 //! Paths, and direct light as their shortest.
 
 use super::wave::{Path, Shadow, Wave};
-use super::{Integrator, Mis, Settings};
+use super::{Integrator, Mis, Settings, resampled};
 use crate::frames::frames8;
 use crate::lights::LightSample;
 use crate::material::cosine;
@@ -116,11 +116,14 @@ fn hair(scene: &Scene, settings: &Settings, wave: &mut Wave) {
         // Uniform numbers, and directions towards lights.
         let origins: [Vec3; 8] = core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
         let mut lights = [None; 8];
+        let mut numbers = [[0.0; 4]; 8];
         let mut xi = [[0.0; 8]; 3];
         for (lane, (index, _)) in packet.iter().enumerate() {
             let path = &mut paths[*index as usize];
-            let [x, y, choice, _] = path.numbers.four();
-            if settings.mis != Mis::Bsdf {
+            let four = path.numbers.four();
+            numbers[lane] = four;
+            if !matches!(settings.mis, Mis::Bsdf | Mis::Resampled) {
+                let [x, y, choice, _] = four;
                 lights[lane] = scene.sample_light(origins[lane], [x, y, choice]);
             }
             let [lobe, theta, phi, roulette] = path.numbers.four();
@@ -128,7 +131,16 @@ fn hair(scene: &Scene, settings: &Settings, wave: &mut Wave) {
         }
 
         // What the lights add.
-        if settings.mis != Mis::Bsdf {
+        if settings.mis == Mis::Resampled {
+            let chosen = resampled::of_lights(scene, &origins, &frames, &prepared, &numbers, packet.len());
+            for ((index, hit), (lane, chosen)) in packet.iter().zip(chosen.into_iter().enumerate()) {
+                let Some((candidate, radiance)) = chosen else { continue };
+                let path = &paths[*index as usize];
+                let ray = leave(scene, hit, origins[lane], candidate.direction, candidate.cos);
+                let ray = Ray { t_max: candidate.distance, ..ray };
+                shadows.push(Shadow { ray, radiance: path.throughput * radiance, slot: path.slot });
+            }
+        } else if settings.mis != Mis::Bsdf {
             let towards = |light: &Option<LightSample>| light.map_or(Vec3::Y, |light| light.direction);
             let wi = frames.to_local(&Vec3x8::from(core::array::from_fn::<Vec3, 8, _>(|lane| towards(&lights[lane]))));
             let (eval, cos) = (prepared.eval8(&wi), cosine(&wi).to_array());
