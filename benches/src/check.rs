@@ -55,18 +55,26 @@ pub fn check(name: &Name, task: &mut impl Task, model: ModelId, asked: impl Fn(u
 }
 
 fn right(asked: &Asked, model: ModelId, answer: &Answer) -> bool {
-    let to_f64 = |v: Vec3| v.to_array().map(f64::from);
     let point = model.reference::<f64>(&asked.values, to_f64(asked.wo), 0.0).expect("checked parameters");
     let truth = match asked.given {
-        Given::Wi(wi) => to_f64(wi),
-        Given::Xi(xi) => {
-            let drawn = point.sample(xi.map(f64::from));
-            if drawn.lobe.is_none() {
-                return answer.pdf == Some(0.0);
-            }
-            drawn.wi
-        }
+        Given::Wi(wi) => Some(to_f64(wi)),
+        Given::Xi(xi) => drawn(&point, xi),
     };
+    is_right(&point, truth, answer)
+}
+
+/// The direction that these numbers come to at a shading point; `None` if the sample is discarded.
+#[must_use]
+pub fn drawn(point: &impl Reference<f64>, xi: [f32; 3]) -> Option<[f64; 3]> {
+    let sample = point.sample(xi.map(f64::from));
+    sample.lobe.map(|_| sample.wi)
+}
+
+/// Whether an answer is correct for the direction that was given, or that a sample must come to; `None` if the sample must be
+/// discarded.
+#[must_use]
+pub fn is_right(point: &impl Reference<f64>, truth: Option<[f64; 3]>, answer: &Answer) -> bool {
+    let Some(truth) = truth else { return answer.pdf == Some(0.0) };
     let wi = answer.wi.map_or(truth, to_f64);
     let (value, pdf) = (point.eval(wi), point.pdf(wi));
     let close = |got: f32, want: f64| (f64::from(got) - want).abs() <= TOLERANCE * want + NEGLIGIBLE;
@@ -74,4 +82,8 @@ fn right(asked: &Asked, model: ModelId, answer: &Answer) -> bool {
     apart <= TOLERANCE
         && answer.pdf.is_none_or(|got| close(got, pdf))
         && answer.value.is_none_or(|got| got.into_iter().zip(value).all(|(got, want)| close(got, want)))
+}
+
+fn to_f64(v: Vec3) -> [f64; 3] {
+    v.to_array().map(f64::from)
 }

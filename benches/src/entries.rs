@@ -1,12 +1,11 @@
 //! The entry points.
 
 use crate::check::{Asked, Given, check};
-use crate::inputs::{DIRECTIONS, Inputs, materials, packets, params, xi_packets};
+use crate::inputs::{DIRECTIONS, Inputs, arrays, materials, packets, params, xi_packets};
 use crate::task::{Each, PROBE, Point, Slices, Task};
 use core::fmt;
 use core::hint::black_box;
 use core::marker::PhantomData;
-use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::{Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Level, SampleSlices};
 use hairis_variants::{ModelId, Parameters, Registered};
@@ -367,8 +366,4 @@ fn last<X, O>(inputs: &[X], call: impl Fn(&X) -> O) -> O {
         black_box(&call(black_box(input)));
     }
     call(black_box(input))
-}
-
-fn arrays(v: &[Vec3]) -> Vec<[f32; 3]> {
-    v.iter().map(|v| v.to_array()).collect()
 }

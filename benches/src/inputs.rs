@@ -42,7 +42,13 @@ fn on_sphere(height: f32, turn: f32) -> Vec3 {
     Vec3::new(u, plane * cos, plane * sin)
 }
 
-/// Eight directions a packet.
+/// The directions as the formulas take them.
+#[must_use]
+pub fn arrays(v: &[Vec3]) -> Vec<[f32; 3]> {
+    v.iter().map(|v| v.to_array()).collect()
+}
+
+/// Eight directions per packet.
 #[must_use]
 pub fn packets(v: &[Vec3]) -> Vec<Vec3x8> {
     let (eights, _) = v.as_chunks::<8>();

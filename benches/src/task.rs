@@ -35,6 +35,26 @@ pub trait Task {
     fn answers(&mut self) -> Vec<Answer>;
 }
 
+/// The same as one pass: all calls, timed as one loop behind a dynamic call.
+pub trait Pass {
+    /// Makes all calls; results are dropped.
+    fn pass(&mut self);
+    /// The answers of a pass, in the order of the directions.
+    fn answers(&mut self) -> Vec<Answer>;
+}
+
+impl<T: Task> Pass for T {
+    #[inline(never)]
+    fn pass(&mut self) {
+        for index in 0..self.calls() {
+            self.call(index);
+        }
+    }
+    fn answers(&mut self) -> Vec<Answer> {
+        Task::answers(self)
+    }
+}
+
 /// The result of one call: of one direction, or of eight.
 pub trait Output {
     /// Adds an answer for each direction.
@@ -76,6 +96,45 @@ impl<I, O: Output, F: Fn(&I) -> O> Task for Each<I, O, F> {
             (self.call)(input).answers(&mut out);
         }
         out
+    }
+}
+
+/// A function of one argument with several results, each passed on as it comes.
+#[derive(Debug)]
+pub struct Several<I, O, F> {
+    inputs: Vec<I>,
+    call: F,
+    place: fn(usize) -> usize,
+    output: PhantomData<fn() -> O>,
+}
+
+impl<I, O: Output, F: Fn(&I, &mut dyn FnMut(&O))> Several<I, O, F> {
+    /// Calls `call` once for each of `inputs`; of its answers in the order they come, the `i`th is the answer to direction
+    /// `place(i)`.
+    pub const fn new(inputs: Vec<I>, place: fn(usize) -> usize, call: F) -> Self {
+        Self { inputs, call, place, output: PhantomData }
+    }
+}
+
+impl<I, O: Output, F: Fn(&I, &mut dyn FnMut(&O))> Pass for Several<I, O, F> {
+    #[inline(never)]
+    fn pass(&mut self) {
+        for input in &self.inputs {
+            (self.call)(black_box(input), &mut |result| {
+                black_box(result);
+            });
+        }
+    }
+    fn answers(&mut self) -> Vec<Answer> {
+        let mut out = Vec::new();
+        for input in &self.inputs {
+            (self.call)(input, &mut |result| result.answers(&mut out));
+        }
+        let mut ordered = out.clone();
+        for (i, answer) in out.iter().enumerate() {
+            ordered[(self.place)(i)] = *answer;
+        }
+        ordered
     }
 }
 

@@ -10,8 +10,6 @@ mod cells;
 mod check;
 mod inputs;
 mod points;
-mod slices;
-pub(crate) mod task;
 mod threads;
 
 use crate::stats::percentile;
@@ -19,11 +17,11 @@ use cells::{SpeedCell, SpeedCells};
 use core::fmt;
 use core::hint::black_box;
 use hairis::{Level, ParamError};
+use hairis_benches::task::{Each, Output, Pass};
 use hairis_variants::ModelId;
 use inputs::{DIRECTIONS, Inputs};
 use serde::Serialize;
 use std::time::Instant;
-use task::Pass;
 pub use threads::ThreadsResult;
 
 /// Rounds below which no figure is given, however slow the machine.
@@ -202,7 +200,7 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
     for model in ModelId::defaults_of_names() {
         all.extend(model.visit(SpeedCells(config.seed))?);
     }
-    let mut timings: Vec<CellTimings> = all.iter().map(CellTimings::calibrate).collect();
+    let mut timings: Vec<CellTimings> = all.into_iter().map(CellTimings::calibrate).collect();
 
     let start = Instant::now();
     for round in 0.. {
@@ -225,28 +223,29 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
         directions: DIRECTIONS,
         compiled_level: Level::portable().name(),
         detected_level: Level::detect().name(),
-        rows: timings.iter().flat_map(CellTimings::rows).collect(),
+        rows: timings.into_iter().flat_map(CellTimings::rows).collect(),
         threads,
     })
 }
 
 /// The timings of one cell: one column per contender, one entry per round, ns per direction.
-struct CellTimings<'a> {
-    cell: &'a SpeedCell,
+struct CellTimings {
+    cell: SpeedCell,
     passes: Vec<u32>,
     ns: Vec<Vec<f64>>,
 }
 
-impl<'a> CellTimings<'a> {
+impl CellTimings {
     /// Finds how many passes make a stretch long enough to time.
-    fn calibrate(cell: &'a SpeedCell) -> Self {
-        let passes = cell.contenders.iter().map(|contender| {
-            let fastest = (0..5).map(|_| stretch(&*contender.task, 1)).fold(f64::INFINITY, f64::min);
+    fn calibrate(mut cell: SpeedCell) -> Self {
+        let passes = cell.contenders.iter_mut().map(|contender| {
+            let fastest = (0..5).map(|_| stretch(&mut *contender.task, 1)).fold(f64::INFINITY, f64::min);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 1000")]
             let passes = (MIN_STRETCH / fastest).ceil().clamp(1.0, 1e3) as u32;
             passes
         });
-        Self { cell, passes: passes.collect(), ns: vec![Vec::new(); cell.contenders.len()] }
+        let passes: Vec<u32> = passes.collect();
+        Self { ns: vec![Vec::new(); passes.len()], passes, cell }
     }
 
     /// Times every contender once, in an order that changes from round to round.
@@ -254,7 +253,7 @@ impl<'a> CellTimings<'a> {
         let count = self.cell.contenders.len();
         for k in 0..count {
             let k = (k + round) % count;
-            let task = &*self.cell.contenders[k].task;
+            let task = &mut *self.cell.contenders[k].task;
             // One stretch untimed: the one before was another's, and left the caches its own and the vector units asleep.
             stretch(task, self.passes[k]);
             let mut ns = 0.0;
@@ -263,8 +262,8 @@ impl<'a> CellTimings<'a> {
         }
     }
 
-    fn rows(&self) -> Vec<SpeedResult> {
-        let contenders = self.cell.contenders.iter().zip(&self.passes).zip(&self.ns);
+    fn rows(mut self) -> Vec<SpeedResult> {
+        let contenders = self.cell.contenders.iter_mut().zip(&self.passes).zip(&self.ns);
         contenders
             .map(|((contender, passes), ns)| {
                 let ratios: Vec<f64> = self.ns[0].iter().zip(ns).map(|(reference, ns)| reference / ns).collect();
@@ -310,8 +309,18 @@ fn deeper(depth: usize, f: &mut dyn FnMut()) {
     black_box(&frame);
 }
 
+/// A pass that calls `call` with each of `inputs`.
+pub(crate) fn task<'a, I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass + 'a>
+where
+    I: Clone + 'a,
+    O: Output + 'a,
+    F: Fn(&I) -> O + 'a,
+{
+    Box::new(Each::new(1, inputs.to_vec(), call))
+}
+
 /// Time of `passes` passes, ns.
-pub(crate) fn stretch(task: &dyn Pass, passes: u32) -> f64 {
+pub(crate) fn stretch(task: &mut dyn Pass, passes: u32) -> f64 {
     let start = Instant::now();
     for _ in 0..passes {
         task.pass();
@@ -329,9 +338,9 @@ pub(crate) fn quartiles(samples: &[f64]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::check::Truth;
-    use super::inputs::packets;
     use super::*;
     use hairis::HairParams;
+    use hairis_benches::inputs::packets;
     use hairis_variants::Parameters as _;
 
     #[test]
@@ -341,10 +350,10 @@ mod tests {
         let gather = ModelId::Gaussian.bsdf(&hair.values()).expect("accepted").prepare(wo);
         let points = cells::truth(ModelId::Gaussian, &hair, &[wo; DIRECTIONS]).expect("accepted");
         let truth = Truth::of_directions(points, &inputs.wi);
-        let mut answers = task::task(&packets(&inputs.wi), move |wi| gather.eval_pdf8(wi)).answers();
+        let mut answers = task(&packets(&inputs.wi), move |wi| gather.eval_pdf8(wi)).answers();
         assert!(truth.wrong_share(&answers) <= MAX_WRONG, "right answers");
         for answer in answers.iter_mut().step_by(8) {
-            answer.pdf *= 1.01;
+            answer.pdf = answer.pdf.map(|pdf| 1.01 * pdf);
         }
         assert!(truth.wrong_share(&answers) >= 0.12, "a wrong density passed");
         answers.truncate(DIRECTIONS - 1);

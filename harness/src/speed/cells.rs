@@ -2,17 +2,17 @@
 
 use super::Op;
 use super::check::Truth;
-use super::inputs::{DIRECTIONS, Inputs, arrays, packets, xi_packets};
-use super::task::{FormulaPoint, PROBE, Pass, task};
-use super::{points, slices};
+use super::inputs::{DIRECTIONS, Inputs};
+use super::{points, task};
 use crate::subject::to_f64;
 use glam::Vec3;
 use hairis::reference::Reference;
-use hairis::{Bsdf, Level, ParamError};
+use hairis::{Bsdf, EvalSlices, Level, ParamError, SampleSlices};
+use hairis_benches::entries::TEXTBOOK;
+use hairis_benches::inputs::{arrays, packets, xi_packets};
+use hairis_benches::task::{PROBE, Pass, Point, Slices};
 use hairis_variants::{AnyReference, ModelId, Parameters, Registered, Visitor};
 
-/// Name of the contender that all others are compared with; the first of every cell.
-pub(super) const TEXTBOOK: &str = "textbook";
 /// The kernel, one direction per call.
 pub(super) const ONE: &str = "one lane";
 /// The kernel, eight directions per call.
@@ -95,7 +95,7 @@ fn prepare<M: Registered>(id: ModelId, inputs: &Inputs<M::Params>) -> Result<(Ve
     let params = inputs.params[0];
     let (bsdf, formulas) = (Bsdf::new(&M::MODEL, &params), M::formulas::<f32>(&params));
     let contenders = vec![
-        scalar(TEXTBOOK, task(&arrays(&inputs.wo), move |wo| FormulaPoint(M::reference_at(&formulas, *wo, 0.0)))),
+        scalar(TEXTBOOK, task(&arrays(&inputs.wo), move |wo| Point(M::reference_at(&formulas, *wo, 0.0)))),
         scalar(ONE, task(&inputs.wo, move |wo| bsdf.prepare(*wo))),
     ];
     let contenders =
@@ -117,7 +117,11 @@ fn eval_pdf<M: Registered>(
     ];
     let contenders =
         with_levels(contenders, EIGHT, |level| task(&packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi)));
-    let contenders = with_levels(contenders, SLICES, |level| slices::eval_pdf(gather, level, &inputs.wi));
+    let contenders = with_levels(contenders, SLICES, |level| {
+        Box::new(Slices::new(DIRECTIONS, &arrays(&inputs.wi), move |wi, [r, g, b, pdf]: [&mut [f32]; 4]| {
+            gather.eval_pdf_batch_at(level, wi, EvalSlices { value: [r, g, b], pdf })
+        }))
+    });
     Ok((contenders, Truth::of_directions(truth(id, params, &[wo; DIRECTIONS])?, &inputs.wi)))
 }
 
@@ -135,6 +139,12 @@ fn sample<M: Registered>(
     ];
     let contenders =
         with_levels(contenders, EIGHT, |level| task(&xi_packets(&inputs.xi), move |xi| gather.sample8_at(level, xi)));
-    let contenders = with_levels(contenders, SLICES, |level| slices::sample(gather, level, &inputs.xi));
+    let contenders = with_levels(contenders, SLICES, |level| {
+        let call = move |xi: [&[f32]; 3], [r, g, b, pdf, u, v, w, wr, wg, wb, slot]: [&mut [f32]; 11]| {
+            let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
+            gather.sample_batch_at(level, xi, out)
+        };
+        Box::new(Slices::new(DIRECTIONS, &inputs.xi, call))
+    });
     Ok((contenders, Truth::of_samples(truth(id, params, &[wo; DIRECTIONS])?, &inputs.xi)))
 }

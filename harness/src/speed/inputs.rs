@@ -3,14 +3,10 @@
 use crate::sequence::{Independent, stream_id};
 use crate::subject::{random, uniform_direction};
 use glam::Vec3;
-use hairis::{ParamError, Vec3x8};
+use hairis::ParamError;
 use hairis_variants::Parameters;
-use wide::f32x8;
 
-/// Directions per pass. With their numbers `xi` they take 21 KB.
-///
-/// Packets of shading points with 16 samples each, and no power of two: consecutive columns of 4096 bytes make loads wait
-/// for unrelated stores, which costs slices up to 40%.
+/// Directions per pass: packets of shading points with 16 samples each. With their numbers `xi` they take 21 KB.
 pub(super) const DIRECTIONS: usize = 896;
 
 /// Directions and numbers, all lanes different, and eight sets of parameters.
@@ -43,23 +39,6 @@ impl<P: Parameters> Inputs<P> {
             narrow: P::from_values(&narrow)?,
         })
     }
-}
-
-/// The directions as the reference takes them.
-pub(super) fn arrays(v: &[Vec3]) -> Vec<[f32; 3]> {
-    v.iter().map(|v| v.to_array()).collect()
-}
-
-/// Eight directions a packet.
-pub(super) fn packets(v: &[Vec3]) -> Vec<Vec3x8> {
-    let (eights, _) = v.as_chunks::<8>();
-    eights.iter().map(|eight| (*eight).into()).collect()
-}
-
-/// Eight triples of numbers per packet.
-pub(super) fn xi_packets(xi: &[[f32; 3]]) -> Vec<[f32x8; 3]> {
-    let (eights, _) = xi.as_chunks::<8>();
-    eights.iter().map(|eight| core::array::from_fn(|k| f32x8::new(eight.map(|xi| xi[k])))).collect()
 }
 
 /// The elements of two lists, paired.

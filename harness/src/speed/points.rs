@@ -1,24 +1,35 @@
 //! Shading points of their own: preparing one, and a few samples of it.
 
-use super::cells::{Contender, EIGHT, EIGHT_AT_ONE, ONE, TEXTBOOK, scalar, truth, with_levels};
+use super::cells::{Contender, EIGHT, EIGHT_AT_ONE, ONE, scalar, truth, with_levels};
 use super::check::Truth;
-use super::inputs::{Inputs, arrays, packets, pairs, xi_packets};
-use super::task::{ContenderAnswer, Output, several, task};
+use super::inputs::{Inputs, pairs};
+use super::task;
 use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::wide::f32x8;
 use hairis::{Bsdf, Bsdf8, ParamError, Sample8};
+use hairis_benches::entries::TEXTBOOK;
+use hairis_benches::inputs::{arrays, packets, xi_packets};
+use hairis_benches::task::{Answer, Output, Pass, Several};
 use hairis_variants::{ModelId, Registered};
 
 /// The first `N` samples of a packet.
 struct Leading<const N: usize>(Sample8);
 
 impl<const N: usize> Output for Leading<N> {
-    fn answers(&self, out: &mut Vec<ContenderAnswer>) {
+    fn answers(&self, out: &mut Vec<Answer>) {
         for lane in 0..N.min(8) {
             self.0.lane(lane).answers(out);
         }
     }
+}
+
+fn several<I: 'static, O: Output + 'static>(
+    inputs: Vec<I>,
+    place: fn(usize) -> usize,
+    call: impl Fn(&I, &mut dyn FnMut(&O)) + 'static,
+) -> Box<dyn Pass> {
+    Box::new(Several::new(inputs, place, call))
 }
 
 /// A shading point and `N` samples of it, all on the same hair: each lane at its own point, or a point's samples in `P`
@@ -35,7 +46,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
         scalar(
             TEXTBOOK,
             several(
-                &pairs(&arrays(wo), rows),
+                pairs(&arrays(wo), rows),
                 |i| i,
                 move |(wo, xi), keep| {
                     let point = M::reference_at(&formulas, *wo, 0.0);
@@ -46,7 +57,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
         scalar(
             ONE,
             several(
-                &pairs(wo, rows),
+                pairs(wo, rows),
                 |i| i,
                 move |(wo, xi), keep| {
                     let point = bsdf.prepare(*wo);
@@ -61,7 +72,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
     // A packet holds the same sample of eight points; the directions are in the order of the points.
     let place = |i: usize| (i / (8 * N) * 8 + i % 8) * N + i / 8 % N;
     let mut contenders = with_levels(contenders, EIGHT, |level| {
-        several(&pairs(&packets(wo), &by_sample), place, move |(wo, xi), keep| {
+        several(pairs(&packets(wo), &by_sample), place, move |(wo, xi), keep| {
             let points = bsdf.prepare8_at(level, wo);
             xi.iter().for_each(|xi| keep(&points.sample8_at(level, xi)));
         })
@@ -78,7 +89,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
             .collect();
         contenders = with_levels(contenders, EIGHT_AT_ONE, |level| {
             several(
-                &pairs(wo, &packed),
+                pairs(wo, &packed),
                 |i| i,
                 move |(wo, xi), keep| {
                     let point = bsdf.prepare(*wo);

@@ -9,16 +9,16 @@
 //! whatever cache holds all of it.
 
 use super::columns::Columns;
-use crate::light::Light;
+use crate::light::{Light, Seen8};
 use crate::sampler::{Sampler, bsdf, uniform_sample8, uniform8};
 use crate::sequence::{Independent, stream_id};
-use crate::speed::task::{Pass, task};
-use crate::speed::{quartiles, stretch};
+use crate::speed::{quartiles, stretch, task};
 use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::subject::uniform_direction;
 use core::hint::black_box;
 use hairis::{HairParams, Sample8, Vec3x8};
+use hairis_benches::task::{Answer, Output, Pass};
 use wide::f32x8;
 
 /// Samples of a shading point over which its set-up is spread: a path tracer's, and two of direct lighting.
@@ -115,8 +115,8 @@ pub(super) fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<Ti
         for k in 0..count {
             let TimedSampler { pass, directions, passes, ns, .. } = &mut contenders[(k + round) % count];
             // One stretch untimed, for the caches; short ones are repeated.
-            stretch(&**pass, 1);
-            ns.push(stretch(&**pass, *passes) / (f64::from(*passes) * *directions as f64));
+            stretch(&mut **pass, 1);
+            ns.push(stretch(&mut **pass, *passes) / (f64::from(*passes) * *directions as f64));
         }
     }
     let time = |TimedSampler { of, ns, .. }: TimedSampler<'_>| {
@@ -174,6 +174,11 @@ fn pass<'a>(model: ModelKind, sampler: Sampler, points: &[Points], per_point: us
             each(&points.xi[..per_point], |xi| gather.sample8(xi))
         })
     }
+}
+
+/// A look-up has neither a direction of its own nor a reference: it is timed, not checked.
+impl Output for Seen8 {
+    fn answers(&self, _: &mut Vec<Answer>) {}
 }
 
 /// Draws every sample and keeps the last.
