@@ -221,10 +221,7 @@ mod tests {
         let heat_log = HeatMap::new("The same, logarithmic", Axis::log("S cos θᵢ (1/sr)").range(1e-4, 2.0), grid);
         let table = Table::new("Relative variance V under constant light")
             .text("sampler")
-            .number("θₒ = 0°")
-            .number("θₒ = 45°")
-            .number("θₒ = 75°")
-            .number("gain over uniform")
+            .numbers(["θₒ = 0°", "θₒ = 45°", "θₒ = 75°", "gain over uniform"])
             .row([
                 "uniform".into(),
                 number::with_error(0.706, 0.003),

@@ -63,6 +63,18 @@ impl Table {
         self.column(header, Align::Right)
     }
 
+    /// Adds columns of text.
+    #[must_use]
+    pub fn texts<S: Into<String>>(self, headers: impl IntoIterator<Item = S>) -> Self {
+        headers.into_iter().fold(self, Self::text)
+    }
+
+    /// Adds columns of numbers.
+    #[must_use]
+    pub fn numbers<S: Into<String>>(self, headers: impl IntoIterator<Item = S>) -> Self {
+        headers.into_iter().fold(self, Self::number)
+    }
+
     /// Adds a row; cells that it lacks are empty, and those beyond the last column are left out.
     #[must_use]
     pub fn row<S: Into<String>>(mut self, cells: impl IntoIterator<Item = S>) -> Self {

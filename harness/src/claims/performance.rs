@@ -66,9 +66,8 @@ pub(super) fn claims(plan: &Plan<'_>, done: &(dyn Fn(usize) + Sync)) -> Result<V
     let mut means = Vec::new();
     for (light, (id, name)) in IDS.into_iter().zip(LIGHTS).enumerate() {
         let pairs = || cells.iter().map(move |cell| cell[light]);
-        let nothing = Estimate { value: f64::NAN, standard_error: f64::NAN };
-        let (mean, least, most, unsure) = gain(pairs()).map_or((nothing, nothing, nothing, cells.len()), |gain| {
-            (gain.geometric_mean, gain.least, gain.most, gain.unsure)
+        let ([mean, least, most], unsure) = gain(pairs()).map_or(([Estimate::UNKNOWN; 3], cells.len()), |gain| {
+            ([gain.geometric_mean, gain.least, gain.most], gain.unsure)
         });
         let worse = pairs().filter(|[gaussian, cauchy]| is_below_one(gaussian.ratio(cauchy))).count();
         let sentence = format!(

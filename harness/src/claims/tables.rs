@@ -12,7 +12,7 @@ pub fn tables(of: &Claims) -> Vec<Table> {
 
 fn of_claim(claim: &Claim) -> Table {
     let title = format!("{}: \"{}\" ({})", claim.id, claim.quotation, claim.source);
-    let mut table = Table::new(title).text("figure").number("value").number("error").text("unit").text("from");
+    let mut table = Table::new(title).text("figure").numbers(["value", "error"]).texts(["unit", "from"]);
     for figure in &claim.figures {
         let mark = match figure.role {
             Role::Everywhere => " [1]",
@@ -67,13 +67,9 @@ fn shown(figure: &Figure) -> [String; 2] {
 
 fn summary(of: &Claims) -> Table {
     let mut table = Table::new("The paper's claims")
-        .text("claim")
-        .text("source")
-        .text("threshold")
-        .number("everywhere")
-        .number("within limits")
-        .text("limits")
-        .text("verdict");
+        .texts(["claim", "source", "threshold"])
+        .numbers(["everywhere", "within limits"])
+        .texts(["limits", "verdict"]);
     for claim in &of.claims {
         let of_role = |role: Role| {
             let [value, error] = claim.figures.iter().find(|figure| figure.role == role).map(shown).unwrap_or_default();

@@ -196,24 +196,24 @@ fn findings(of: &Comparison) -> Vec<String> {
         findings.push(format!(
             "Under constant light, seen from the side, the published sampler needs {} times fewer samples than \
              uniform sampling on the Gaussian model (V {} against {}).",
-            number::with_error(gain.value, gain.standard_error),
-            number::with_error(published.value, published.standard_error),
-            number::with_error(uniform.value, uniform.standard_error),
+            number::estimate(&gain),
+            number::estimate(&published),
+            number::estimate(&uniform),
         ));
         let gain = published.ratio(&cauchy);
         findings.push(format!(
             "The all-Cauchy model needs {} times fewer samples still with the same sampler (V {}).",
-            number::with_error(gain.value, gain.standard_error),
-            number::with_error(cauchy.value, cauchy.standard_error),
+            number::estimate(&gain),
+            number::estimate(&cauchy),
         ));
         let [gain, on_cauchy] = [published.ratio(&matched), cauchy.ratio(&cauchy_matched)];
         findings.push(format!(
             "The matched sampler needs {} times fewer samples than the published one on the Gaussian model (V {}), and {} \
              times fewer on the Cauchy model (V {}).",
-            number::with_error(gain.value, gain.standard_error),
-            number::with_error(matched.value, matched.standard_error),
-            number::with_error(on_cauchy.value, on_cauchy.standard_error),
-            number::with_error(cauchy_matched.value, cauchy_matched.standard_error),
+            number::estimate(&gain),
+            number::estimate(&matched),
+            number::estimate(&on_cauchy),
+            number::estimate(&cauchy_matched),
         ));
     }
     findings.extend(worse_than_uniform(of));

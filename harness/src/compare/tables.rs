@@ -3,9 +3,9 @@
 use super::Comparison;
 use crate::agreement::{Quantity, Region};
 use crate::efficiency::{EfficiencyRow, MisRow, SAMPLERS, Technique};
+use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
 use crate::speed::Op;
-use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::table::{Table, number};
 use hairis_variants::{Accuracy, ModelId};
@@ -46,13 +46,11 @@ pub fn tables(of: &Comparison, depth: Depth) -> Tables {
 
 fn speed(of: &Comparison, model: ModelId, depth: Depth) -> Table {
     let title = format!("Time a direction, {} model", model.name());
-    let mut table = Table::new(title)
-        .text("operation")
-        .text("contender")
-        .text("instruction set")
-        .number("ns")
-        .number("quartiles, ns")
-        .number("against the textbook");
+    let mut table = Table::new(title).texts(["operation", "contender", "instruction set"]).numbers([
+        "ns",
+        "quartiles, ns",
+        "against the textbook",
+    ]);
     for row in of.speed.rows.iter().filter(|row| row.model == model.name()) {
         if depth == Depth::Summary
             && matches!(row.op, Op::PointsShared | Op::PointsOf4 | Op::PointsPacked | Op::SampleTails)
@@ -76,14 +74,12 @@ fn speed(of: &Comparison, model: ModelId, depth: Depth) -> Table {
 }
 
 fn threads(of: &Comparison) -> Table {
-    let mut table = Table::new("Slices on several threads")
-        .text("model")
-        .text("operation")
-        .text("instruction set")
-        .number("threads")
-        .number("million directions a second")
-        .number("against one thread")
-        .number("quartiles");
+    let mut table = Table::new("Slices on several threads").texts(["model", "operation", "instruction set"]).numbers([
+        "threads",
+        "million directions a second",
+        "against one thread",
+        "quartiles",
+    ]);
     for row in &of.speed.threads {
         table.push([
             row.model.to_owned(),
@@ -100,15 +96,14 @@ fn threads(of: &Comparison) -> Table {
 
 fn agreement(of: &Comparison, depth: Depth) -> Table {
     let shown = [Quantity::Pdf, Quantity::Value, Quantity::SamplePdf, Quantity::SampleCdf];
-    let mut table = Table::new("Largest relative error against f64 (99.9th percentile)")
-        .text("model")
-        .text("sampler")
-        .text("path")
-        .text("instruction set")
-        .text("region");
-    for quantity in shown {
-        table = table.number(quantity.label());
-    }
+    let mut table = Table::new("Largest relative error against f64 (99.9th percentile)").texts([
+        "model",
+        "sampler",
+        "path",
+        "instruction set",
+        "region",
+    ]);
+    table = table.numbers(shown.map(Quantity::label));
     let mut seen = Vec::new();
     for first in &of.agreement {
         let key = (first.model, first.sampler, first.path, first.level, first.region);
@@ -154,20 +149,19 @@ fn bounds() -> String {
 }
 
 fn reference(of: &Comparison) -> Table {
-    let mut table = Table::new("V of the default set under constant light")
-        .text("model")
-        .text("sampler")
-        .number("θₒ, °")
-        .number("V")
-        .number("quadrature")
-        .number("recorded")
-        .number("z");
+    let mut table = Table::new("V of the default set under constant light").texts(["model", "sampler"]).numbers([
+        "θₒ, °",
+        "V",
+        "quadrature",
+        "recorded",
+        "z",
+    ]);
     for row in &of.efficiency.reference_v {
         table.push([
             row.model.name().to_owned(),
             row.sampler.name().to_owned(),
             number::plain(row.theta_o_deg, 3),
-            estimate(&row.v),
+            number::estimate(&row.v),
             number::plain(row.quadrature, 4),
             row.recorded.map_or_else(String::new, |v| number::plain(v, 3)),
             format!("{:+.1}", row.z_quadrature),
@@ -187,10 +181,7 @@ fn by_light(
     if sequences.len() > 1 {
         table = table.text("numbers");
     }
-    table = table.text("model");
-    for sampler in SAMPLERS {
-        table = table.number(sampler.name());
-    }
+    table = table.text("model").numbers(SAMPLERS.map(Sampler::name));
     let rows = &of.efficiency.rows;
     for light in &of.efficiency.settings.lights {
         for theta_o in of.efficiency.settings.theta_o_deg {
@@ -219,7 +210,7 @@ fn by_light(
 
 fn variance(of: &Comparison) -> Table {
     by_light(of, "Relative variance of one sample, independent numbers", &[SequenceKind::Independent], |row| {
-        if row.tested { estimate(&row.v) } else { format!("≈ {}", number::plain(predicted(row), 3)) }
+        if row.tested { number::estimate(&row.v) } else { format!("≈ {}", number::plain(predicted(row), 3)) }
     })
     .note("± one standard error; ≈ predicted from the reference, where too few samples see the light to measure it. Samples for an error of 1%: 10⁴ V.")
 }
@@ -228,7 +219,7 @@ fn correlated(of: &Comparison) -> Table {
     let sequences = [SequenceKind::Stratified, SequenceKind::Halton];
     let n = of.efficiency.settings.budget.correlated;
     by_light(of, "Relative variance times the number of samples, stratified and Halton numbers", &sequences, |row| {
-        estimate(&row.v)
+        number::estimate(&row.v)
     })
     .note(format!("Of the mean of {n} samples, over independent randomisations; uniform on stratified numbers is the paper's stratified uniform sampling."))
 }
@@ -236,7 +227,7 @@ fn correlated(of: &Comparison) -> Table {
 fn effective(of: &Comparison) -> Table {
     by_light(of, "Effective samples in 1000", &[SequenceKind::Independent], |row| {
         if row.tested {
-            estimate(&row.ess_per_1000)
+            number::estimate(&row.ess_per_1000)
         } else {
             format!("≈ {}", number::plain(1e3 / (1.0 + predicted(row)), 3))
         }
@@ -250,7 +241,7 @@ fn samples(of: &Comparison) -> Table {
             return format!("≈ {}", number::si(1e4 * predicted(row), ""));
         }
         let n = row.samples_for_1_percent;
-        if n.value < 1e5 { estimate(&n) } else { number::si(n.value, "") }
+        if n.value < 1e5 { number::estimate(&n) } else { number::si(n.value, "") }
     })
     .note("10⁴ V.")
 }
@@ -258,7 +249,7 @@ fn samples(of: &Comparison) -> Table {
 fn efficiency(of: &Comparison) -> Table {
     by_light(of, "Efficiency, 1/(V · µs)", &[SequenceKind::Independent], |row| {
         let shown = row.efficiency.filter(|_| row.tested);
-        shown.map_or_else(String::new, |e| estimate(&e.scale(1e-6)))
+        shown.map_or_else(String::new, |e| number::estimate(&e.scale(1e-6)))
     })
     .note(
         "Time of a sample on eight lanes, a sixteenth of the preparation included; lights are not charged. The error is \
@@ -276,12 +267,9 @@ fn light_sampling(of: &Comparison, depth: Depth) -> Table {
         }
     }
     let mut table = Table::new("Light sampling and multiple importance sampling: relative variance a sample")
-        .text("model")
-        .text("light")
+        .texts(["model", "light"])
         .number("θₒ, °");
-    for name in &names {
-        table = table.number(*name);
-    }
+    table = table.numbers(names.iter().copied());
     let mut seen = Vec::new();
     for first in &of.efficiency.mis_rows {
         let key = (first.model, &first.light, first.theta_o_deg.to_bits());
@@ -300,7 +288,7 @@ fn light_sampling(of: &Comparison, depth: Depth) -> Table {
                 Technique::Bsdf(sampler) if !row.tested => {
                     format!("≈ {}", number::plain(row.reference.predicted(sampler)[0], 3))
                 }
-                _ => estimate(&row.v),
+                _ => number::estimate(&row.v),
             }));
         }
         table.push(cells);
@@ -316,8 +304,4 @@ fn light_sampling(of: &Comparison, depth: Depth) -> Table {
 fn predicted(row: &EfficiencyRow) -> f64 {
     let [v, _] = row.reference.predicted(row.sampler);
     v
-}
-
-fn estimate(of: &Estimate) -> String {
-    number::with_error(of.value, of.standard_error)
 }

@@ -91,9 +91,7 @@ impl Difference {
             .text("widths")
             .number("k")
             .text("difference")
-            .number("geometric mean")
-            .number("median")
-            .number("worst");
+            .numbers(["geometric mean", "median", "worst"]);
         for width in Width::ALL {
             for (name, of) in NORMS {
                 let found = self.summary(width, of);
@@ -113,7 +111,7 @@ impl Difference {
         let mut table =
             Table::new("The same by the width of R: geometric mean (worst)").number("β_R, °").text("widths");
         let shown = [NORMS[0], NORMS[1], NORMS[2], NORMS[4], NORMS[6]];
-        table = shown.iter().fold(table, |table, (name, _)| table.number(*name));
+        table = table.numbers(shown.map(|(name, _)| name));
         for beta in axis_values(self.rows(), |row| row.cell.beta_r_deg) {
             for width in Width::ALL {
                 let mut cells = vec![number::plain(f64::from(beta), 3), width.name().to_owned()];
@@ -131,9 +129,8 @@ impl Difference {
     fn by_inclination(&self) -> Table {
         let mut table =
             Table::new("Albedo of the Cauchy model over that of the Gaussian one: geometric mean (least to most)")
-                .number("θₒ, °")
-                .number("albedo, Gaussian");
-        table = Width::ALL.iter().fold(table, |table, width| table.number(width.name()));
+                .numbers(["θₒ, °", "albedo, Gaussian"]);
+        table = table.numbers(Width::ALL.map(Width::name));
         for theta_o in axis_values(self.rows(), |row| row.cell.theta_o_deg) {
             let of = |width, figure: fn(&Differences) -> f64| {
                 let rows = self.of(width).filter(|row| row.cell.theta_o_deg == theta_o);

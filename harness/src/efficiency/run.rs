@@ -9,6 +9,7 @@ use super::{
     SUN_DEG, THETA_O_DEG, with_beta,
 };
 use crate::light::{Constant, Light, Rectangle, Smooth};
+use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
 use crate::stats::{sidak, z_p_value};
 use core::sync::atomic::{AtomicUsize, Ordering};
@@ -172,41 +173,28 @@ fn product<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
 
 /// Holds every z-score against the bound that all of them together pass with probability `1 - FALSE_ALARM`.
 pub(super) fn check(result: &EfficiencyResult) -> Check {
-    let mut scores: Vec<(f64, String)> = Vec::new();
-    let mut untested = 0;
-    for r in &result.rows {
-        if !r.tested {
-            untested += 1;
-            continue;
-        }
-        let (model, sampler) = (r.model.name(), r.sampler.name());
-        let numbers = r.sequence.name();
-        scores.push((r.z, format!("{model} {sampler} {numbers}, {}, theta_o {}: mean", r.light, r.theta_o_deg)));
-    }
-    for r in &result.mis_rows {
-        if !r.tested {
-            untested += 1;
-            continue;
-        }
-        scores.push((r.z, format!("{} {}, {}, theta_o {}: mean", r.model.name(), r.name, r.light, r.theta_o_deg)));
-    }
-    for r in &result.convergence {
-        if !r.tested {
-            untested += 1;
-            continue;
-        }
-        let (model, sampler) = (r.model.name(), r.sampler.name());
-        let numbers = r.sequence.name();
-        scores.push((r.z, format!("{model} {sampler} {numbers}, {}, means of {}: bias", r.light, r.n)));
-    }
+    let of = |model: ModelKind, sampler: Sampler| format!("{} {}", model.name(), sampler.name());
+    let rows = result.rows.iter().map(|r| {
+        let place = format!("{} {}, {}", of(r.model, r.sampler), r.sequence.name(), r.light);
+        (r.tested, r.z, format!("{place}, theta_o {}: mean", r.theta_o_deg))
+    });
+    let mis = result.mis_rows.iter().map(|r| {
+        (r.tested, r.z, format!("{} {}, {}, theta_o {}: mean", r.model.name(), r.name, r.light, r.theta_o_deg))
+    });
+    let convergence = result.convergence.iter().map(|r| {
+        let place = format!("{} {}, {}", of(r.model, r.sampler), r.sequence.name(), r.light);
+        (r.tested, r.z, format!("{place}, means of {}: bias", r.n))
+    });
+    let (tested, left_out): (Vec<_>, Vec<_>) = rows.chain(mis).chain(convergence).partition(|(tested, ..)| *tested);
+    let untested = left_out.len();
+    let mut scores: Vec<(f64, String)> = tested.into_iter().map(|(_, z, what)| (z, what)).collect();
     for r in &result.beta_sweep {
-        let (model, sampler) = (r.model.name(), r.sampler.name());
-        let place = format!("{model} {sampler}, beta_r {}, theta_o {}", r.beta_r_deg, r.theta_o_deg);
+        let place = format!("{}, beta_r {}, theta_o {}", of(r.model, r.sampler), r.beta_r_deg, r.theta_o_deg);
         scores.push((r.z_quadrature, format!("{place}: V against quadrature")));
         scores.push((r.z, format!("{place}: mean")));
     }
     for r in &result.reference_v {
-        let place = format!("{} {}, constant, theta_o {}", r.model.name(), r.sampler.name(), r.theta_o_deg);
+        let place = format!("{}, constant, theta_o {}", of(r.model, r.sampler), r.theta_o_deg);
         scores.push((r.z_quadrature, format!("{place}: V against quadrature")));
         if let Some(z) = r.z_recorded {
             scores.push((z, format!("{place}: V against the recorded figure")));

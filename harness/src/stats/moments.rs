@@ -12,6 +12,15 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// A figure that is not known.
+    pub const UNKNOWN: Self = Self { value: f64::NAN, standard_error: f64::NAN };
+
+    /// A figure without error.
+    #[must_use]
+    pub const fn exact(value: f64) -> Self {
+        Self { value, standard_error: 0.0 }
+    }
+
     /// Distance to `truth` in standard errors.
     ///
     /// - Units: dimensionless.
@@ -164,7 +173,7 @@ impl Moments {
         let s2 = self.variance();
         let m = self.mean;
         if self.count < 2 || m == 0.0 {
-            return Estimate { value: f64::NAN, standard_error: f64::NAN };
+            return Estimate::UNKNOWN;
         }
         let [m3, m4] = self.higher_moments();
         let v = s2 / (m * m);

@@ -3,6 +3,7 @@
 #[cfg(feature = "parquet")]
 mod parquet;
 
+use crate::stats::Estimate;
 use std::borrow::Cow;
 use std::io::{self, Write};
 
@@ -50,7 +51,7 @@ impl ColumnValues {
 
 /// Named columns of one length.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Columns(Vec<(&'static str, ColumnValues)>);
+pub struct Columns(Vec<(Cow<'static, str>, ColumnValues)>);
 
 impl Columns {
     /// No columns.
@@ -61,7 +62,8 @@ impl Columns {
 
     /// Adds a column.
     #[must_use]
-    pub fn with(mut self, name: &'static str, values: ColumnValues) -> Self {
+    pub fn with(mut self, name: impl Into<Cow<'static, str>>, values: ColumnValues) -> Self {
+        let name = name.into();
         debug_assert!(self.0.iter().all(|(_, first)| first.len() == values.len()), "{name} has another length");
         self.0.push((name, values));
         self
@@ -69,8 +71,16 @@ impl Columns {
 
     /// Adds a column of numbers.
     #[must_use]
-    pub fn number(self, name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+    pub fn number(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = f64>) -> Self {
         self.with(name, ColumnValues::Number(values.into_iter().collect()))
+    }
+
+    /// Adds a column of figures, and one of their standard errors, whose name ends in `_se`.
+    #[must_use]
+    pub fn estimate(self, name: &str, values: impl IntoIterator<Item = Estimate>) -> Self {
+        let (figures, errors): (Vec<f64>, Vec<f64>) =
+            values.into_iter().map(|of| (of.value, of.standard_error)).unzip();
+        self.number(name.to_owned(), figures).number(format!("{name}_se"), errors)
     }
 
     /// Adds a column of counts.
@@ -88,7 +98,7 @@ impl Columns {
 
     /// The columns, by name.
     #[must_use]
-    pub fn columns(&self) -> &[(&'static str, ColumnValues)] {
+    pub fn columns(&self) -> &[(Cow<'static, str>, ColumnValues)] {
         &self.0
     }
 
@@ -104,7 +114,7 @@ impl Columns {
     ///
     /// Errors of `out`.
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
-        let names: Vec<&str> = self.0.iter().map(|(name, _)| *name).collect();
+        let names: Vec<&str> = self.0.iter().map(|(name, _)| &**name).collect();
         writeln!(out, "{}", names.join(","))?;
         for row in 0..self.rows() {
             for (place, (_, values)) in self.0.iter().enumerate() {

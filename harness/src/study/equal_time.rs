@@ -24,7 +24,7 @@ impl Sign {
 }
 
 /// No work after a sample: its time alone counts.
-pub(super) const NOTHING: Estimate = Estimate { value: 0.0, standard_error: 0.0 };
+pub(super) const NOTHING: Estimate = Estimate::exact(0.0);
 
 /// The time of `base` over that of `other` when each is followed by the same `more`.
 pub(super) fn time_ratio(base: Estimate, other: Estimate, more: Estimate) -> Estimate {

@@ -20,9 +20,6 @@ use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// A figure that has not been measured.
-const NOT_KNOWN: Estimate = Estimate { value: f64::NAN, standard_error: f64::NAN };
-
 /// Every cell of a study, in the order of the grid.
 #[derive(Clone, Debug)]
 pub struct Study {
@@ -203,26 +200,12 @@ impl Study {
     /// not timed ([`Times::measure`]) leaves its columns empty.
     #[must_use]
     pub fn efficiencies(&self, times: &Times) -> Columns {
-        macro_rules! names {
-            ($($n:literal),+) => {
-                [$([
-                    concat!("ns_at_", $n),
-                    concat!("efficiency_at_", $n),
-                    concat!("gain_at_", $n),
-                    concat!("gain_at_", $n, "_se"),
-                    concat!("look_up_efficiency_at_", $n),
-                    concat!("look_up_gain_at_", $n),
-                    concat!("look_up_gain_at_", $n, "_se"),
-                ]),+]
-            };
-        }
-        const NAMES: [[&str; 7]; 3] = names!(1, 4, 16);
         let (rows, lights) = (self.rows(), self.header.lights.len());
         let v = |row: &Row<'_>| row.measured.figures.v;
-        let against_ou: Vec<Estimate> = rows
+        let against_published: Vec<Estimate> = rows
             .iter()
             .map(|row| match row.strategy {
-                Strategy::By(Sampler::Published) => Estimate { value: 1.0, standard_error: 0.0 },
+                Strategy::By(Sampler::Published) => Estimate::exact(1.0),
                 _ => {
                     let place = rows::place(row.model, Sampler::Published, row.light, lights);
                     self.cells[row.cell.index][place].figures.v.ratio(&v(row))
@@ -230,39 +213,37 @@ impl Study {
             })
             .collect();
         let look_ups: Vec<Estimate> = (0..lights).map(|light| times.look_up(light)).collect();
-        let look_up = |row: &Row<'_>| if row.strategy == Strategy::Perfect { NOT_KNOWN } else { look_ups[row.light] };
+        let look_up =
+            |row: &Row<'_>| if row.strategy == Strategy::Perfect { Estimate::UNKNOWN } else { look_ups[row.light] };
         let mut columns = rows::keys(&rows, &self.header.lights)
-            .number("v", rows.iter().map(|row| v(row).value))
-            .number("v_se", rows.iter().map(|row| v(row).standard_error))
-            .number("break_even", against_ou.iter().map(|gain| gain.value))
-            .number("break_even_se", against_ou.iter().map(|gain| gain.standard_error))
-            .number("look_up_ns", rows.iter().map(|row| look_up(row).value))
-            .number("look_up_ns_se", rows.iter().map(|row| look_up(row).standard_error));
-        for (per_point, names) in PER_POINT.into_iter().zip(NAMES) {
+            .estimate("v", rows.iter().map(v))
+            .estimate("break_even", against_published.iter().copied())
+            .estimate("look_up_ns", rows.iter().map(look_up));
+        for per_point in PER_POINT {
             let ns = |row: &Row<'_>| {
-                row.strategy.sampler().map_or(NOT_KNOWN, |sampler| times.ns(row.model, sampler, per_point))
+                row.strategy.sampler().map_or(Estimate::UNKNOWN, |sampler| times.ns(row.model, sampler, per_point))
             };
             let efficiency = |row: &Row<'_>, more: Estimate| 1e9 / (v(row).value * (ns(row).value + more.value));
             let gain = |(row, gain): (&Row<'_>, &Estimate), more: Estimate| {
                 if row.strategy == Strategy::By(Sampler::Published) {
                     // Against itself: exactly 1 wherever its time is known.
-                    return if more.value.is_nan() { NOT_KNOWN } else { *gain };
+                    return if more.value.is_nan() { Estimate::UNKNOWN } else { *gain };
                 }
                 in_equal_time(*gain, time_ratio(times.ns(row.model, Sampler::Published, per_point), ns(row), more))
             };
             let gains = |with: bool| -> Vec<Estimate> {
                 let more = |row: &Row<'_>| if with { look_up(row) } else { NOTHING };
-                rows.iter().zip(&against_ou).map(|(row, of)| gain((row, of), more(row))).collect()
+                rows.iter().zip(&against_published).map(|(row, of)| gain((row, of), more(row))).collect()
             };
-            let [alone, with] = [gains(false), gains(true)];
             columns = columns
-                .number(names[0], rows.iter().map(|row| ns(row).value))
-                .number(names[1], rows.iter().map(|row| efficiency(row, NOTHING)))
-                .number(names[2], alone.iter().map(|gain| gain.value))
-                .number(names[3], alone.iter().map(|gain| gain.standard_error))
-                .number(names[4], rows.iter().map(|row| efficiency(row, look_up(row))))
-                .number(names[5], with.iter().map(|gain| gain.value))
-                .number(names[6], with.iter().map(|gain| gain.standard_error));
+                .number(format!("ns_at_{per_point}"), rows.iter().map(|row| ns(row).value))
+                .number(format!("efficiency_at_{per_point}"), rows.iter().map(|row| efficiency(row, NOTHING)))
+                .estimate(&format!("gain_at_{per_point}"), gains(false))
+                .number(
+                    format!("look_up_efficiency_at_{per_point}"),
+                    rows.iter().map(|row| efficiency(row, look_up(row))),
+                )
+                .estimate(&format!("look_up_gain_at_{per_point}"), gains(true));
         }
         columns
     }

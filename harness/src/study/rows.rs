@@ -128,15 +128,12 @@ pub(super) fn keys(rows: &[Row<'_>], lights: &[String]) -> Columns {
 pub(super) fn columns(rows: &[Row<'_>], lights: &[String]) -> Columns {
     let figures = |of: fn(&Measured) -> f64| rows.iter().map(move |row| of(row.measured));
     keys(rows, lights)
-        .number("mean", figures(|m| m.figures.mean.value))
-        .number("mean_se", figures(|m| m.figures.mean.standard_error))
-        .number("v", figures(|m| m.figures.v.value))
-        .number("v_se", figures(|m| m.figures.v.standard_error))
+        .estimate("mean", rows.iter().map(|row| row.measured.figures.mean))
+        .estimate("v", rows.iter().map(|row| row.measured.figures.v))
         .number("ess_per_1000", figures(|m| 1_000.0 / (1.0 + m.figures.v.value)))
         .number("samples_for_1_percent", figures(|m| m.figures.v.value * 1e4))
         .number("max_weight", figures(|m| m.max_weight))
         .number("weight_bound", rows.iter().map(|row| row.weight_bound))
         .number("max_contribution", figures(|m| m.max_contribution))
-        .number("kl", figures(|m| m.figures.kl.value))
-        .number("kl_se", figures(|m| m.figures.kl.standard_error))
+        .estimate("kl", rows.iter().map(|row| row.measured.figures.kl))
 }

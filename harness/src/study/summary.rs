@@ -146,9 +146,8 @@ impl SummaryInputs<'_> {
 
     /// Time of the one over that of the other, alone or with a look-up of the light.
     fn time(&self, of: &ComparedEstimators, light: usize, per_point: usize, with_look_up: bool) -> Estimate {
-        let none = Estimate { value: f64::NAN, standard_error: f64::NAN };
         let ns = |(model, strategy): ModelStrategy| {
-            strategy.sampler().map_or(none, |sampler| self.times.ns(model, sampler, per_point))
+            strategy.sampler().map_or(Estimate::UNKNOWN, |sampler| self.times.ns(model, sampler, per_point))
         };
         let more = if with_look_up { self.times.look_up(light) } else { NOTHING };
         time_ratio(ns(of.base), ns(of.other), more)
@@ -168,13 +167,8 @@ impl SummaryInputs<'_> {
     }
 
     fn variance(&self, title: &str, of: &[ComparedEstimators]) -> Table {
-        let mut table = keys(title)
-            .number("median")
-            .number("cells above 1 / below 1")
-            .number("geometric mean")
-            .number("least")
-            .number("most")
-            .number("left out");
+        let mut table =
+            keys(title).numbers(["median", "cells above 1 / below 1", "geometric mean", "least", "most", "left out"]);
         for (mut row, of, light) in self.each(of) {
             match gain(self.pairs(of, light)) {
                 Some(gain) => {
@@ -199,8 +193,7 @@ impl SummaryInputs<'_> {
         with_look_up: bool,
         cell: impl Fn(&ComparedEstimators, usize, Estimate) -> String,
     ) -> Table {
-        let table = keys(title);
-        let mut table = PER_POINT.into_iter().fold(table, |table, n| table.number(format!("{n} a point")));
+        let mut table = keys(title).numbers(PER_POINT.map(|n| format!("{n} a point")));
         for (mut row, of, light) in self.each(of) {
             row.extend(PER_POINT.map(|per_point| {
                 let time = self.time(of, light, per_point, with_look_up);
@@ -227,11 +220,11 @@ impl SummaryInputs<'_> {
 }
 
 fn keys(title: &str) -> Table {
-    Table::new(title).text("model").text("sampler").text("light")
+    Table::new(title).texts(["model", "sampler", "light"])
 }
 
 pub(super) fn shown(of: Estimate) -> String {
-    number::with_error(of.value, of.standard_error)
+    number::estimate(&of)
 }
 
 #[cfg(test)]

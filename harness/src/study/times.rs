@@ -56,9 +56,8 @@ pub(super) struct Time {
 
 /// Median time in ns; not a number if it was not measured.
 fn median(times: &[Time], of: Timed) -> Estimate {
-    let none = Estimate { value: f64::NAN, standard_error: f64::NAN };
     let found = |time: &Time| Estimate { value: time.quartiles[1], standard_error: time.standard_error };
-    times.iter().find(|time| time.of == of).map_or(none, found)
+    times.iter().find(|time| time.of == of).map_or(Estimate::UNKNOWN, found)
 }
 
 /// Time of a sample.

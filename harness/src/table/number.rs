@@ -1,5 +1,7 @@
 //! Numbers as people read them, formatted in this one place for the terminal, the report and the plots.
 
+use crate::stats::Estimate;
+
 /// `value` with as many digits as its standard error deserves: two of the error, or one if it is 4 to 9, and no more
 /// than six of the value.
 ///
@@ -27,6 +29,12 @@ pub fn with_error(value: f64, error: f64) -> String {
         return plain(value, 6);
     }
     minus(&format!("{value:.places$} ± {error:.places$}"))
+}
+
+/// [`with_error`] of an estimate.
+#[must_use]
+pub fn estimate(of: &Estimate) -> String {
+    with_error(of.value, of.standard_error)
 }
 
 /// `value` to `digits` significant digits; powers of ten outside of 10^-4 .. 10^6.

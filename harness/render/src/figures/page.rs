@@ -56,7 +56,7 @@ fn page(all: &[Measured], plan: &Plan, flags: &Figures) -> std::io::Result<Repor
 
 /// How many times as large relMSE times time is, scene by scene.
 fn summary(all: &[Measured]) -> Table {
-    let mut table = Table::new("relMSE × time, relative to matched").text("scene").text("light").number("samples");
+    let mut table = Table::new("relMSE × time, relative to matched").texts(["scene", "light"]).number("samples");
     let Some(first) = all.first() else { return table };
     for sampler in first.samplers.iter().rev().skip(1).rev() {
         table = table.number(sampler.name).number(format!("{}, trimmed", sampler.name));
@@ -145,16 +145,16 @@ fn convergence(measured: &Measured) -> String {
 }
 
 fn table(measured: &Measured) -> Table {
-    let mut table = Table::new("Errors")
-        .text("sampler")
-        .number("samples")
-        .number("relMSE")
-        .number("trimmed")
-        .number("RMSE")
-        .number("time (s)")
-        .number("relMSE × time, relative to matched")
-        .number("MSE, relative to matched")
-        .number("slope");
+    let mut table = Table::new("Errors").text("sampler").numbers([
+        "samples",
+        "relMSE",
+        "trimmed",
+        "RMSE",
+        "time (s)",
+        "relMSE × time, relative to matched",
+        "MSE, relative to matched",
+        "slope",
+    ]);
     for sampler in &measured.samplers {
         for (place, runs) in sampler.runs.iter().enumerate() {
             let best = measured.samplers.last().map_or(runs, |best| &best.runs[place]);

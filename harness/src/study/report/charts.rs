@@ -94,7 +94,7 @@ fn median_bar(of: Option<Gain>, time: Option<Estimate>) -> Bar {
 fn by_light(of: &View<'_>, base: Estimator, other: (ModelKind, Strategy), time: Timing) -> Vec<Bar> {
     let bar = |light| {
         let ratio = match (time, other.1.sampler()) {
-            (None, _) => Some(Estimate { value: 1.0, standard_error: 0.0 }),
+            (None, _) => Some(Estimate::exact(1.0)),
             (Some(counted), Some(sampler)) => of.time_ratio(base, (other.0, sampler), light, counted),
             (Some(_), None) => None,
         };

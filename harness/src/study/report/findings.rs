@@ -31,7 +31,7 @@ fn times(of: Estimate) -> String {
 /// Names and gains by light, of those with a sign.
 fn lights(gains: &[(&str, Estimate)], sign: Sign) -> Option<String> {
     let shown = |(name, gain): &(&str, Estimate)| match sign {
-        Sign::Below => format!("{name} ({})", times(Estimate { value: 1.0, standard_error: 0.0 }.ratio(gain))),
+        Sign::Below => format!("{name} ({})", times(Estimate::exact(1.0).ratio(gain))),
         _ => format!("{name} ({})", times(*gain)),
     };
     let words: Vec<String> = gains.iter().filter(|(_, gain)| Sign::of(*gain) == sign).map(shown).collect();
@@ -93,10 +93,7 @@ fn worth(of: &View<'_>) -> Option<String> {
 fn best(of: &View<'_>, model: ModelKind, light: usize, counted: Counted) -> Option<(Vec<Sampler>, Estimate)> {
     let gain = |sampler| {
         let over_published = of.equal_time((model, Sampler::Published), (model, sampler), light, counted)?;
-        Some((
-            sampler,
-            if sampler == Sampler::Published { Estimate { value: 1.0, standard_error: 0.0 } } else { over_published },
-        ))
+        Some((sampler, if sampler == Sampler::Published { Estimate::exact(1.0) } else { over_published }))
     };
     let mut gains: Vec<(Sampler, Estimate)> = Sampler::ALL.into_iter().filter_map(gain).collect();
     gains.sort_by(|a, b| b.1.value.total_cmp(&a.1.value));

@@ -12,13 +12,8 @@ use serde_json::Value;
 /// V, effective samples, divergence and largest weight of every sampler under every light.
 pub(super) fn quality(of: &View<'_>) -> Table {
     let mut table = Table::new("Every sampler under every light, over the grid")
-        .text("model")
-        .text("sampler")
-        .text("light")
-        .number("V")
-        .number("effective samples in 1000")
-        .number("divergence, nats")
-        .number("largest contribution, means");
+        .texts(["model", "sampler", "light"])
+        .numbers(["V", "effective samples in 1000", "divergence, nats", "largest contribution, means"]);
     for model in ModelKind::ALL {
         for strategy in Strategy::ALL {
             for (light, name) in of.lights.iter().enumerate() {
@@ -64,8 +59,8 @@ pub(super) fn look_ups(of: &View<'_>) -> Table {
 
 /// Times of a sample.
 pub(super) fn times(of: &View<'_>) -> Table {
-    let table = Table::new("Time of a sample, ns").text("model").text("sampler");
-    let mut table = PER_POINT.into_iter().fold(table, |table, n| table.number(format!("{n} per shading point")));
+    let table = Table::new("Time of a sample, ns").texts(["model", "sampler"]);
+    let mut table = table.numbers(PER_POINT.map(|n| format!("{n} per shading point")));
     for model in ModelKind::ALL {
         for sampler in Sampler::ALL {
             let mut cells = vec![model.name().to_owned(), sampler.name().to_owned()];
@@ -86,7 +81,7 @@ pub(super) fn times(of: &View<'_>) -> Table {
 /// The verdicts in a `claims.json`; `None` if it holds none.
 pub(super) fn claims(of: &Value) -> Option<Table> {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let mut table = Table::new("Each claim, and what is left of it").text("claim").text("verdict").text("found");
+    let mut table = Table::new("Each claim, and what is left of it").texts(["claim", "verdict", "found"]);
     for claim in of.get("claims")?.as_array()? {
         let words = format!("\u{201c}{}\u{201d} ({})", text(&claim["quotation"]), text(&claim["source"]));
         table.push([words, text(&claim["verdict"]), text(&claim["sentence"])]);

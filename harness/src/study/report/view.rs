@@ -93,7 +93,7 @@ impl<'a> View<'a> {
         light: usize,
         keep: impl Fn(&Cell) -> bool,
     ) -> Option<Estimate> {
-        let one = Estimate { value: 1.0, standard_error: 0.0 };
+        let one = Estimate::exact(1.0);
         let cells = self.each_cell().filter(|cell| keep(cell));
         gain(cells.map(|cell| [self.v(cell.index, of, light), one])).map(|gain| gain.geometric_mean)
     }
