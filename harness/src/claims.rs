@@ -35,11 +35,11 @@ pub use tables::tables;
 
 use crate::light::Sky;
 use crate::machine::Machine;
+use crate::progress::Progress;
 use crate::study::{Cell, Grid, Plan};
 use crate::subject::ModelKind;
 use hair::{Hair, HairFigures};
 use hairis::ParamError;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// Settings of a run.
@@ -90,11 +90,12 @@ pub fn run(config: ClaimsConfig, progress: &(dyn Fn(f64) + Sync)) -> Result<Clai
     let plan = Plan { seed: config.seed, quick: config.quick, environment: &sky };
     let grid = plan.grid();
     // Quadrature and sampling take about as long.
-    let half = |begin: f64, done: usize| progress(begin + 0.5 * done as f64 / grid.len() as f64);
-    let cells = by_quadrature(grid, &|done| half(0.0, done))?;
+    let [first, second] =
+        [0.0, 0.5].map(|begin| move |done: usize, total: usize| progress(begin + 0.5 * done as f64 / total as f64));
+    let cells = by_quadrature(grid, &Progress::new(grid.len(), &first))?;
 
     let mut claims = vec![energy::claim(), tails::claim(), uniform::claim(&plan, &cells)?, grazing::claim()];
-    claims.extend(performance::claims(&plan, &|done| half(0.5, done))?);
+    claims.extend(performance::claims(&plan, &Progress::new(grid.len(), &second))?);
     claims.extend([bounds::claim(&cells), glint::density(&cells)?, glint::interval(&cells)?]);
     let settings = Settings {
         seed: config.seed,
@@ -111,16 +112,11 @@ fn hair_of(cell: &Cell, model: ModelKind) -> Result<Hair, ParamError> {
     Ok(Hair::new(model, &cell.params()?, f64::from(cell.theta_o_deg).to_radians()))
 }
 
-/// Integrates every cell of `grid` on all cores. `done` is called with the number of finished cells.
-fn by_quadrature(grid: Grid, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<(Cell, ModelKind, HairFigures)>, ParamError> {
-    let finished = core::sync::atomic::AtomicUsize::new(0);
-    let of_cell = |index: usize| {
-        let cell = grid.cell(index);
-        let found = ModelKind::ALL.map(|model| Ok((cell, model, hair_of(&cell, model)?.found())));
-        done(finished.fetch_add(1, core::sync::atomic::Ordering::Relaxed) + 1);
-        found
-    };
-    (0..grid.len()).into_par_iter().with_max_len(1).flat_map_iter(of_cell).collect()
+/// Integrates every cell of `grid` on all cores.
+fn by_quadrature(grid: Grid, progress: &Progress<'_>) -> Result<Vec<(Cell, ModelKind, HairFigures)>, ParamError> {
+    let cells: Vec<Cell> = (0..grid.len()).map(|index| grid.cell(index)).collect();
+    let found = |cell: &Cell| ModelKind::ALL.map(|model| Ok((*cell, model, hair_of(cell, model)?.found())));
+    progress.map(&cells, found).into_iter().flatten().collect()
 }
 
 impl Claims {

@@ -15,6 +15,7 @@ pub mod light;
 pub mod machine;
 pub mod markup;
 pub mod plot;
+mod progress;
 pub mod quadrature;
 pub mod report;
 pub mod sampler;

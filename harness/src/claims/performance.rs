@@ -1,15 +1,14 @@
 //! The all-Cauchy model against the Gaussian one, each under the published sampler: the study's machinery, light by light.
 
 use super::claim::{Claim, Figure, Origin, Side, Threshold, Words};
+use crate::progress::Progress;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::study::output::Times;
-use crate::study::{Plan, gain, in_equal_time, variances};
+use crate::study::{Cell, Plan, gain, in_equal_time, variances};
 use crate::subject::ModelKind;
 use crate::table::number;
-use core::sync::atomic::{AtomicUsize, Ordering};
 use hairis::ParamError;
-use rayon::prelude::*;
 
 const QUOTATION: &str = "This new bsdf model introduces some very minor visual differences, but it is able to achieve a \
                          better sampling performance.";
@@ -48,20 +47,19 @@ const PER_POINT: usize = 16;
 /// V on both models in a cell, under each light.
 type Pairs = [[Estimate; 2]; 5];
 
-/// Measures every cell. `done` is called after each.
-fn measure(plan: &Plan<'_>, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Pairs>, ParamError> {
-    let (grid, finished) = (plan.grid(), AtomicUsize::new(0));
-    let cell = |index: usize| {
-        let v = variances(plan, plan.budget(), &grid.cell(index), &[Sampler::Published])?;
-        done(finished.fetch_add(1, Ordering::Relaxed) + 1);
+/// Measures every cell.
+fn measure(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Pairs>, ParamError> {
+    let cells: Vec<Cell> = (0..plan.grid().len()).map(|index| plan.grid().cell(index)).collect();
+    let pairs = |cell: &Cell| {
+        let v = variances(plan, plan.budget(), cell, &[Sampler::Published])?;
         Ok(core::array::from_fn(|light| [v[light], v[LIGHTS.len() + light]]))
     };
-    (0..grid.len()).into_par_iter().with_max_len(1).map(cell).collect()
+    progress.map(&cells, pairs).into_iter().collect()
 }
 
 /// The claims: one per light, then one of all lights in equal time.
-pub(super) fn claims(plan: &Plan<'_>, done: &(dyn Fn(usize) + Sync)) -> Result<Vec<Claim>, ParamError> {
-    let cells = measure(plan, done)?;
+pub(super) fn claims(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Claim>, ParamError> {
+    let cells = measure(plan, progress)?;
     let mut claims = Vec::new();
     let mut means = Vec::new();
     for (light, (id, name)) in IDS.into_iter().zip(LIGHTS).enumerate() {

@@ -9,12 +9,11 @@ use super::{
     SUN_DEG, THETA_O_DEG, with_beta,
 };
 use crate::light::{Constant, Light, Rectangle, Smooth};
+use crate::progress::Progress;
 use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
 use crate::stats::{sidak, z_p_value};
-use core::sync::atomic::{AtomicUsize, Ordering};
 use hairis::ParamError;
-use rayon::prelude::*;
 
 /// Places of the lights in the order of reports.
 const CONSTANT: usize = 0;
@@ -24,27 +23,6 @@ const ENVIRONMENT: usize = 4;
 
 /// The largest V of an environment for which convergence is shown.
 const CONVERGENCE_V: f64 = 100.0;
-
-/// Reports finished cells.
-struct Progress<'a> {
-    done: AtomicUsize,
-    total: usize,
-    report: &'a (dyn Fn(usize, usize) + Sync),
-}
-
-impl Progress<'_> {
-    /// Computes `f` on every cell, in parallel; results keep the order of the cells.
-    fn map<C: Sync, R: Send>(&self, cells: &[C], f: impl Fn(&C) -> R + Sync) -> Vec<R> {
-        let each = |cell| {
-            let result = f(cell);
-            let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-            (self.report)(done, self.total);
-            result
-        };
-        // One cell at a time: they differ in length by a factor of a hundred.
-        cells.par_iter().with_max_len(1).map(each).collect()
-    }
-}
 
 /// Computes every table. `progress` is called from the workers with the number of cells done and of all cells.
 ///
@@ -93,7 +71,7 @@ pub fn run(
         + convergence_cells(&[CONSTANT, AREA, ENVIRONMENT]).len()
         + sweep_cells.len()
         + v_cells.len();
-    let progress = Progress { done: AtomicUsize::new(0), total, report: progress };
+    let progress = Progress::new(total, progress);
 
     let budget = &config.budget;
     let references: Vec<Reference> = progress.map(&reference_cells, |&(case, light)| {

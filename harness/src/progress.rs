@@ -1,0 +1,30 @@
+//! Parallel work with a count of what is done.
+
+use core::sync::atomic::{AtomicUsize, Ordering};
+use rayon::prelude::*;
+
+/// Cells done so far, out of all.
+pub(crate) struct Progress<'a> {
+    done: AtomicUsize,
+    total: usize,
+    report: &'a (dyn Fn(usize, usize) + Sync),
+}
+
+impl<'a> Progress<'a> {
+    /// Workers call `report` with the number of cells that are done, and `total`, in no order.
+    pub(crate) const fn new(total: usize, report: &'a (dyn Fn(usize, usize) + Sync)) -> Self {
+        Self { done: AtomicUsize::new(0), total, report }
+    }
+
+    /// Computes `f` on every cell, on all cores; results keep the order of the cells.
+    pub(crate) fn map<C: Sync, R: Send>(&self, cells: &[C], f: impl Fn(&C) -> R + Sync) -> Vec<R> {
+        let each = |cell| {
+            let result = f(cell);
+            let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+            (self.report)(done, self.total);
+            result
+        };
+        // One cell at a time: they differ in length by a factor of a hundred.
+        cells.par_iter().with_max_len(1).map(each).collect()
+    }
+}
