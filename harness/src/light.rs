@@ -16,7 +16,7 @@ mod tests;
 pub use constant::Constant;
 pub use environment::{Environment, PixelRepairs};
 pub use load::LightError;
-pub use rectangle::{Rectangle, RectangleSampling};
+pub use rectangle::Rectangle;
 pub use sky::Sky;
 pub use smooth::Smooth;
 pub use sun::Sun;

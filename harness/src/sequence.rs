@@ -6,8 +6,8 @@
 mod halton;
 mod stratified;
 
-pub use halton::{HALTON_BASES, Halton, radical_inverse};
-pub use stratified::{Stratified, strata, stratified_2d, stratified_3d};
+pub use halton::{HALTON_BASES, Halton};
+pub use stratified::{Stratified, strata};
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -120,11 +120,6 @@ impl Independent {
         (self.rng.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
     }
 
-    /// Sixty-four random bits.
-    pub fn next_bits(&mut self) -> u64 {
-        self.rng.next_u64()
-    }
-
     /// A whole number below `bound` (0 when `bound` is 0), with a bias below `bound` / 2^64.
     pub fn next_below(&mut self, bound: usize) -> usize {
         let product = u128::from(self.rng.next_u64()) * bound as u128;
@@ -188,7 +183,7 @@ impl SequenceKind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stats::{chi_square, ks_p_value, ks_statistic};
+    use hairis_conformance::statistics::{chi_square, ks_p_value, ks_statistic};
 
     #[test]
     fn f32_never_reaches_one() {
@@ -216,7 +211,7 @@ mod tests {
         }
         let p = chi_square(&cells, &vec![1_000.0; 256], 5.0).p_value;
         assert!(p > 0.01, "pairs: p {p}");
-        let first = |seed, stream| Independent::new(seed, stream).next_bits();
+        let first = |seed, stream| Independent::new(seed, stream).next_f64();
         assert!(first(1, 0) != first(1, 1) && first(1, 0) != first(2, 0));
         assert_eq!(first(1, 5), first(1, 5));
     }

@@ -1,20 +1,26 @@
 //! Statistics of estimators and of timings: figures with error bars from columns of numbers.
 //!
 //! - [`Moments`]: running central moments up to the fourth, mergeable; mean, variance and relative variance with their standard errors.
-//! - [`Spread`]: median, quartiles and median absolute deviation of timing samples.
-//! - [`chi_square`], [`ks_statistic`], [`sidak`]: goodness of fit of samples to a density.
+//! - [`percentile`]: order statistics.
+//! - [`sidak`]: the correction for many tests.
 //!
 //! All numbers are `f64`. Nothing here draws random numbers or reads a clock.
 
-mod goodness;
 mod moments;
-mod special;
 mod spread;
 
-pub use goodness::{ChiSquare, chi_square, ks_p_value, ks_statistic, sidak};
 pub use moments::{Estimate, Moments};
-pub use special::regularised_gamma_q;
-pub use spread::{Spread, percentile};
+pub use spread::percentile;
+
+/// Significance for each of `tests` independent tests, such that all together keep `alpha`.
+///
+/// Sidak's `1 - (1 - alpha)^(1/tests)`, without cancellation.
+///
+/// - Domain: `alpha` in [0, 1]; no tests count as one.
+#[must_use]
+pub fn sidak(alpha: f64, tests: usize) -> f64 {
+    -((-alpha).ln_1p() / tests.max(1) as f64).exp_m1()
+}
 
 /// Two-sided p-value of a standard normal deviate.
 ///
@@ -37,5 +43,13 @@ mod tests {
             assert!((z_p_value(z) - p).abs() <= 1e-12, "z {z}: {}", z_p_value(z));
             assert_eq!(z_p_value(z), z_p_value(-z));
         }
+    }
+
+    #[test]
+    fn sidak_is_between_alpha_over_n_and_alpha() {
+        assert!((sidak(0.05, 1) - 0.05).abs() < 1e-16);
+        assert!((sidak(0.05, 10) - 0.005_116_196_891_823_743).abs() < 1e-15);
+        assert!((sidak(0.01, 1_000_000) / 1e-8 - 1.005_033_6).abs() < 1e-6);
+        assert!((sidak(0.01, 0) - 0.01).abs() < 1e-16);
     }
 }

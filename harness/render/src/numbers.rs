@@ -82,7 +82,7 @@ fn unit(bits: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hairis_harness::stats::chi_square;
+    use hairis_conformance::statistics::chi_square;
 
     const ALL: [Sequence; 3] = [Sequence::Independent, Sequence::Halton, Sequence::Sobol];
 

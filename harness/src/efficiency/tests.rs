@@ -271,3 +271,10 @@ fn a_full_run_under_the_sky_passes_its_check() {
     let independent = result.rows.iter().filter(|r| r.sequence == SequenceKind::Independent);
     assert!(independent.clone().all(|r| r.tested), "every light is seen often enough by independent numbers");
 }
+
+#[test]
+fn the_bound_is_that_of_the_normal_table() {
+    for (p, z) in [(0.05, 1.959_963_984_540_054), (6.334_248_366_623_996e-5, 4.0), (1e-9, 6.109_410_204_869_03)] {
+        assert!((z_bound(p) - z).abs() < 1e-9, "{p}: {}", z_bound(p));
+    }
+}

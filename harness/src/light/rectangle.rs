@@ -6,16 +6,10 @@ use glam::DVec3;
 use hairis::Vec3x8;
 use wide::f32x8;
 
-/// Sampling of the points of a [`Rectangle`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RectangleSampling {
-    /// Uniformly over the area, as production renderers of 2012 did: the density per steradian is `distance^2 / (area cos)`.
-    Area,
-    /// Uniformly over the solid angle (Urena, Fajardo and King 2013): constant density, so all the noise left is that of the scattering function.
-    SolidAngle,
-}
-
 /// A horizontal rectangle above the shading point, centred, long side along world x (the fibre), of constant radiance.
+///
+/// Sampled uniformly over the solid angle (Urena, Fajardo and King 2013): the density is constant, so all the noise left is
+/// that of the scattering function.
 ///
 /// - Integral: of the radiance, the radiance times [`solid_angle`](Self::solid_angle).
 ///
@@ -31,27 +25,20 @@ pub struct Rectangle {
     half_z: f64,
     height: f64,
     radiance: [f64; 3],
-    sampling: RectangleSampling,
 }
 
 impl Rectangle {
     /// 4 by 1 units at distance 1, radiance 1, sampled by solid angle: it spans 127 degrees along the fibre and 53 across.
     #[must_use]
     pub fn figure_6a() -> Self {
-        Self::new(4.0, 1.0, 1.0, [1.0; 3], RectangleSampling::SolidAngle)
+        Self::new(4.0, 1.0, 1.0, [1.0; 3])
     }
 
     /// A rectangle of `length` along x and `width` along z at `height` above. Sizes in units of length, clamped to [1e-3, 1e3].
     #[must_use]
-    pub fn new(length: f64, width: f64, height: f64, radiance: [f64; 3], sampling: RectangleSampling) -> Self {
+    pub fn new(length: f64, width: f64, height: f64, radiance: [f64; 3]) -> Self {
         let size = |x: f64| x.clamp(1e-3, 1e3);
-        Self { half_x: 0.5 * size(length), half_z: 0.5 * size(width), height: size(height), radiance, sampling }
-    }
-
-    /// The same light with another sampling.
-    #[must_use]
-    pub fn with_sampling(self, sampling: RectangleSampling) -> Self {
-        Self { sampling, ..self }
+        Self { half_x: 0.5 * size(length), half_z: 0.5 * size(width), height: size(height), radiance }
     }
 
     /// Solid angle seen from the shading point, in sr.
@@ -64,68 +51,53 @@ impl Rectangle {
         4.0 * (a * b).atan2(h * (a * a + b * b + h * h).sqrt())
     }
 
-    /// Where the ray along `dir` meets the plane, as (x, z), when that is on the rectangle.
-    fn hit(&self, dir: DVec3) -> Option<[f64; 2]> {
+    /// Whether the ray along `dir` meets the rectangle.
+    fn hit(&self, dir: DVec3) -> bool {
         if dir.y.is_nan() || dir.y <= 0.0 {
-            return None;
+            return false;
         }
         let t = self.height / dir.y;
         let (x, z) = (dir.x * t, dir.z * t);
         // Slack for rounded rim samples, as for the sun.
         let slack = 1.0 + 1e-9;
-        (x.abs() <= self.half_x * slack && z.abs() <= self.half_z * slack).then_some([x, z])
-    }
-
-    /// Density per steradian of the point (x, z) of the rectangle.
-    fn density(&self, x: f64, z: f64) -> f64 {
-        match self.sampling {
-            RectangleSampling::SolidAngle => 1.0 / self.solid_angle(),
-            RectangleSampling::Area => {
-                let distance_sq = x * x + z * z + self.height * self.height;
-                distance_sq * distance_sq.sqrt() / (self.height * 4.0 * self.half_x * self.half_z)
-            }
-        }
+        x.abs() <= self.half_x * slack && z.abs() <= self.half_z * slack
     }
 
     /// The point of the rectangle for two uniform numbers, as (x, z).
     fn point(&self, xi: [f64; 2]) -> [f64; 2] {
         let (a, b, h) = (self.half_x, self.half_z, self.height);
-        match self.sampling {
-            RectangleSampling::Area => [a * (2.0 * xi[0] - 1.0), b * (2.0 * xi[1] - 1.0)],
-            RectangleSampling::SolidAngle => {
-                // The strip between the centre plane and x subtends 2 atan(x b / (h sqrt(x^2 + b^2 + h^2))): invert for x.
-                let part = (2.0 * xi[0] - 1.0) * 0.25 * self.solid_angle();
-                let t = h * part.tan();
-                let x = (t * ((b * b + h * h) / ((b - t) * (b + t)).max(f64::MIN_POSITIVE)).sqrt()).clamp(-a, a);
-                // Across the strip the sine of the angle to the plane of x and h is uniform.
-                let rho_sq = x * x + h * h;
-                let s = (2.0 * xi[1] - 1.0) * b / (rho_sq + b * b).sqrt();
-                let z = (s * (rho_sq / ((1.0 - s) * (1.0 + s))).sqrt()).clamp(-b, b);
-                [x, z]
-            }
-        }
+        // The strip between the centre plane and x subtends 2 atan(x b / (h sqrt(x^2 + b^2 + h^2))): invert for x.
+        let part = (2.0 * xi[0] - 1.0) * 0.25 * self.solid_angle();
+        let t = h * part.tan();
+        let x = (t * ((b * b + h * h) / ((b - t) * (b + t)).max(f64::MIN_POSITIVE)).sqrt()).clamp(-a, a);
+        // Across the strip the sine of the angle to the plane of x and h is uniform.
+        let rho_sq = x * x + h * h;
+        let s = (2.0 * xi[1] - 1.0) * b / (rho_sq + b * b).sqrt();
+        let z = (s * (rho_sq / ((1.0 - s) * (1.0 + s))).sqrt()).clamp(-b, b);
+        [x, z]
     }
 }
 
 impl Light for Rectangle {
     fn name(&self) -> &str {
-        match self.sampling {
-            RectangleSampling::Area => "rectangle (by area)",
-            RectangleSampling::SolidAngle => "rectangle",
-        }
+        "rectangle"
     }
 
     fn radiance(&self, dir: DVec3) -> [f64; 3] {
-        if self.hit(dir).is_some() { self.radiance } else { [0.0; 3] }
+        if self.hit(dir) { self.radiance } else { [0.0; 3] }
     }
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
         let [x, z] = self.point(xi);
-        LightSample { dir: DVec3::new(x, self.height, z).normalize(), radiance: self.radiance, pdf: self.density(x, z) }
+        LightSample {
+            dir: DVec3::new(x, self.height, z).normalize(),
+            radiance: self.radiance,
+            pdf: 1.0 / self.solid_angle(),
+        }
     }
 
     fn pdf(&self, dir: DVec3) -> f64 {
-        self.hit(dir).map_or(0.0, |[x, z]| self.density(x, z))
+        if self.hit(dir) { 1.0 / self.solid_angle() } else { 0.0 }
     }
 
     fn see8(&self, dir: &Vec3x8) -> Seen8 {
@@ -134,14 +106,7 @@ impl Light for Rectangle {
         let within = |x: f32x8, half: f64| (x.abs() * splat(self.height)).simd_le(dir.y * splat(half));
         let hit = dir.y.simd_gt(f32x8::ZERO) & within(dir.x, self.half_x) & within(dir.z, self.half_z);
         let on = |x: f32x8| hit.select(x, f32x8::ZERO);
-        let pdf = match self.sampling {
-            RectangleSampling::SolidAngle => splat(1.0 / self.solid_angle()),
-            // Distance^3 / (height area) with the distance height / y.
-            RectangleSampling::Area => {
-                let inverse = splat(self.height) / dir.y;
-                inverse * inverse * inverse / splat(self.height * 4.0 * self.half_x * self.half_z)
-            }
-        };
+        let pdf = splat(1.0 / self.solid_angle());
         Seen8 { radiance: splat3(self.radiance).map(on), pdf: on(pdf) }
     }
 
@@ -174,11 +139,11 @@ mod tests {
     #[test]
     fn solid_angle_of_known_rectangles() {
         // A face of a cube seen from its centre is a sixth of the sphere; a small far one is area over distance squared.
-        let face = Rectangle::new(2.0, 2.0, 1.0, [1.0; 3], RectangleSampling::Area);
+        let face = Rectangle::new(2.0, 2.0, 1.0, [1.0; 3]);
         assert!((face.solid_angle() - 4.0 * PI / 6.0).abs() < 1e-14);
-        let far = Rectangle::new(0.1, 0.2, 100.0, [1.0; 3], RectangleSampling::Area);
+        let far = Rectangle::new(0.1, 0.2, 100.0, [1.0; 3]);
         assert!((far.solid_angle() / (0.02 / 1e4) - 1.0).abs() < 1e-5);
-        let plane = Rectangle::new(1e3, 1e3, 1e-3, [1.0; 3], RectangleSampling::Area);
+        let plane = Rectangle::new(1e3, 1e3, 1e-3, [1.0; 3]);
         assert!((plane.solid_angle() / (2.0 * PI) - 1.0).abs() < 1e-5);
     }
 

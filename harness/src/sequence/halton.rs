@@ -5,26 +5,6 @@ use super::{XiSource, mix, unit_f64};
 /// The prime bases of the dimensions, in order.
 pub const HALTON_BASES: [u32; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
 
-/// Radical inverse of `index` in `base`: its digits mirrored at the radix point.
-///
-/// - Units: in [0, 1).
-///
-/// # Panics
-/// When `base` is below 2.
-#[must_use]
-pub fn radical_inverse(base: u32, index: u64) -> f64 {
-    assert!(base >= 2, "a radical inverse needs a base of at least 2, got {base}");
-    let b = u64::from(base);
-    let inv = 1.0 / f64::from(base);
-    let (mut n, mut scale, mut value) = (index, inv, 0.0);
-    while n > 0 {
-        value += (n % b) as f64 * scale;
-        n /= b;
-        scale *= inv;
-    }
-    value.min(1.0 - f64::EPSILON / 2.0)
-}
-
 /// Scrambled Halton points: dimension `d` is the radical inverse in the `d`-th prime, each digit permuted at random.
 ///
 /// The scrambling is Owen's nested one with affine permutations, `digit -> (a digit + c) mod base` with `a` in 1..base and `c` in 0..base drawn by a hash of
@@ -106,19 +86,11 @@ impl XiSource for Halton {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stats::{Moments, chi_square, ks_p_value, ks_statistic};
+    use crate::stats::Moments;
+    use hairis_conformance::statistics::{chi_square, ks_p_value, ks_statistic};
 
     fn cell(x: f64, cells: u32) -> usize {
         (0..cells as usize).rev().find(|&i| x >= i as f64 / f64::from(cells)).unwrap_or(0)
-    }
-
-    #[test]
-    fn radical_inverse_values() {
-        assert_eq!([0, 1, 2, 3, 4, 5].map(|i| radical_inverse(2, i)), [0.0, 0.5, 0.25, 0.75, 0.125, 0.625]);
-        for (i, want) in [(1, 1.0 / 3.0), (2, 2.0 / 3.0), (3, 1.0 / 9.0), (5, 7.0 / 9.0)] {
-            assert!((radical_inverse(3, i) - want).abs() < 1e-15, "{i}");
-        }
-        assert!(radical_inverse(2, u64::MAX) < 1.0);
     }
 
     #[test]

@@ -87,7 +87,7 @@ pub mod reference;
 pub mod resampling;
 pub mod sampling;
 pub mod slices;
-mod statistics;
+pub mod statistics;
 mod subject;
 pub mod totality;
 

@@ -167,8 +167,8 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hairis_conformance::statistics::chi_square;
     use hairis_harness::sequence::{Independent, XiSource as _};
-    use hairis_harness::stats::chi_square;
 
     fn tilted() -> Rectangle {
         let (a, b) = (Vec3::new(3.0, 1.0, 0.0), Vec3::new(-1.0, 3.0, 2.0).cross(Vec3::new(3.0, 1.0, 0.0)).normalize());
