@@ -61,7 +61,7 @@ def entry(name):
         return (f"{found[2]}-{found[3]}" if found[3] else found[2]), model, found[1]
     return None
 
-# Calls of memset and memcpy that the compiler makes of buffers and gather points: by opt-level and model, at most.
+# Calls of memset and memcpy that the compiler makes of buffers and shading points: by opt-level and model, at most.
 COPIES = {("s", "kajiya-kay"): 1, ("s", "chiang"): 2, ("s", "chiang-by-channel"): 2}
 
 

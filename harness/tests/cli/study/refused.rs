@@ -137,14 +137,14 @@ fn parts_that_do_not_belong_together_are_refused() {
     assert_refused(&merge(out.path(), &[Path::new("/nonexistent")]), "/nonexistent: cannot read");
 
     // The same cell with other figures.
-    let twin = TempDir::new().unwrap();
+    let changed = TempDir::new().unwrap();
     let name = "cells-1-of-24.jsonl";
     let mut read = part::read(&first.path().join(name)).unwrap();
     read.finished[0].rows[0][0] = Some(2.0);
     let mut text = part::line(&read.header).unwrap();
     read.finished.iter().for_each(|cell| text.extend(part::line(cell).unwrap()));
-    fs::write(twin.path().join(name), text).unwrap();
-    assert_refused(&merged(&first, &twin), "differs in cell");
+    fs::write(changed.path().join(name), text).unwrap();
+    assert_refused(&merged(&first, &changed), "differs in cell");
 }
 
 #[test]

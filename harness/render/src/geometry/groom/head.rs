@@ -75,8 +75,8 @@ impl HeadGroom {
         let below = self.clumps.partition_point(|clump| clump.root.y > root.y);
         let (upper, lower) = self.clumps.split_at(below);
         let mut best = (f32::INFINITY, &self.clumps[0]);
-        let ways: [&mut dyn Iterator<Item = &Clump>; 2] = [&mut upper.iter().rev(), &mut lower.iter()];
-        for clumps in ways {
+        let sides: [&mut dyn Iterator<Item = &Clump>; 2] = [&mut upper.iter().rev(), &mut lower.iter()];
+        for clumps in sides {
             for clump in clumps {
                 let distance = root.distance_squared(clump.root);
                 if distance < best.0 {
