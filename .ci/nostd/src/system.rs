@@ -1,80 +1,17 @@
-//! Replacements for std and libc: an entry point, two system calls, and the memory functions that the compiler
-//! calls by name.
+//! Replacements for std and libc: an entry point, output and exit, and where the target's core has none the memory functions.
 
-use core::arch::{asm, global_asm};
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+mod cortex_m;
+#[cfg(target_os = "linux")]
+mod linux;
+#[cfg(target_arch = "x86_64")]
+mod memory;
+#[cfg(target_arch = "wasm32")]
+mod wasm;
 
-global_asm!(
-    ".globl _start",
-    "_start:",
-    "xor ebp, ebp",
-    "and rsp, -16",
-    "call {main}",
-    "ud2",
-    main = sym main,
-);
-
-extern "C" fn main() -> ! {
-    exit(crate::start())
-}
-
-pub fn exit(code: i32) -> ! {
-    // SAFETY: `exit_group` does not return and touches no memory of ours.
-    unsafe { asm!("syscall", in("rax") 231, in("rdi") code, options(noreturn)) }
-}
-
-pub fn write(text: &[u8]) {
-    // SAFETY: `write` reads `text.len()` bytes at `text`, and clobbers rax, rcx and r11 alone.
-    unsafe {
-        asm!("syscall", inlateout("rax") 1_usize => _, in("rdi") 1, in("rsi") text.as_ptr(), in("rdx") text.len(),
-             lateout("rcx") _, lateout("r11") _);
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn memcpy(to: *mut u8, from: *const u8, len: usize) -> *mut u8 {
-    // SAFETY: the caller passes two ranges of `len` bytes that do not overlap.
-    unsafe {
-        asm!("rep movsb", inout("rdi") to => _, inout("rsi") from => _, inout("rcx") len => _,
-             options(nostack, preserves_flags));
-    }
-    to
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn memmove(to: *mut u8, from: *const u8, len: usize) -> *mut u8 {
-    if (to as usize).wrapping_sub(from as usize) >= len {
-        // SAFETY: the destination does not start within the source, so copying upwards reads before it overwrites.
-        return unsafe { memcpy(to, from, len) };
-    }
-    // SAFETY: copying downwards from the last byte; `len` is at least 1, since the destination starts inside.
-    unsafe {
-        asm!("std", "rep movsb", "cld", inout("rdi") to.add(len - 1) => _, inout("rsi") from.add(len - 1) => _,
-             inout("rcx") len => _, options(nostack));
-    }
-    to
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn memset(to: *mut u8, byte: i32, len: usize) -> *mut u8 {
-    // SAFETY: the caller passes a range of `len` bytes.
-    unsafe {
-        asm!("rep stosb", inout("rdi") to => _, inout("rcx") len => _, in("al") byte as u8,
-             options(nostack, preserves_flags));
-    }
-    to
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn memcmp(a: *const u8, b: *const u8, len: usize) -> i32 {
-    for i in 0..len {
-        // SAFETY: the caller passes two ranges of `len` bytes. Volatile, or the compiler would call memcmp for it.
-        let (x, y) = unsafe { (a.add(i).read_volatile(), b.add(i).read_volatile()) };
-        if x != y {
-            return i32::from(x) - i32::from(y);
-        }
-    }
-    0
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn rust_eh_personality() {}
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+pub use cortex_m::{exit, write};
+#[cfg(target_os = "linux")]
+pub use linux::{exit, write};
+#[cfg(target_arch = "wasm32")]
+pub use wasm::{exit, write};

@@ -108,7 +108,7 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
                 *sum += lanes * f32x8::new(weight);
             }
         }
-        let [r, g, b, pdf] = sum.map(f32x8::reduce_add);
+        let [r, g, b, pdf] = sum.map(total);
         Eval { value: [r, g, b], pdf }
     }
 
@@ -146,10 +146,16 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
             let albedo = near.albedo8();
             for (sum, lobe) in sum.0.iter_mut().zip(albedo.0) {
                 for (sum, lanes) in sum.iter_mut().zip(lobe) {
-                    *sum += (lanes * f32x8::new(weight)).reduce_add();
+                    *sum += total(lanes * f32x8::new(weight));
                 }
             }
         }
         sum
     }
+}
+
+/// The sum of the lanes, in their order: that of `reduce_add` depends on the build, and so do its last bits.
+#[inline(always)]
+fn total(lanes: f32x8) -> f32 {
+    lanes.as_array().iter().sum()
 }
