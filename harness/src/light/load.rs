@@ -95,11 +95,15 @@ impl Environment {
             e => LightError::Decode(file(), line(&e)),
         };
         let is_exr = reader.format() == Some(ImageFormat::OpenExr);
-        let mut decoder = match reader.into_decoder() {
-            // The decoder knows colour alone.
-            Err(_) if is_exr && let Some(map) = luminance_map(path)? => return Ok(map),
-            decoder => decoder.map_err(refuse)?,
-        };
+        let decoder = reader.into_decoder();
+        // The decoder knows colour alone.
+        if is_exr
+            && decoder.is_err()
+            && let Some(map) = luminance_map(path)?
+        {
+            return Ok(map);
+        }
+        let mut decoder = decoder.map_err(refuse)?;
         let (width, height) = decoder.dimensions();
         if width == 0 || height == 0 {
             return Err(LightError::ZeroSize(file(), width, height));
