@@ -1,0 +1,21 @@
+#!/bin/bash
+# Promise: every set of features compiles, and dependencies have known licences, one source and no second version but those
+# listed in deny.toml. The minimum Rust version is clippy's: incompatible_msrv.
+#
+# Licences, bans and sources need cargo-deny, which takes minutes to build: where it is not installed the script says so.
+# Advisories are not checked: their database is a git repository.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+check() { # check PACKAGE FEATURES...: without the default features, with each of these sets
+  local package=$1; shift
+  for features in "$@"; do
+    cargo check -q --locked -p "$package" --no-default-features --features "$features" || { echo "FAIL $package with '$features'"; exit 1; }
+    echo "$package with '$features'"
+  done
+}
+check hairis '' textbook
+check hairis-variants '' any textbook any,textbook
+check hairis-harness '' parquet png parquet,png
+
+if command -v cargo-deny > /dev/null; then cargo deny check licenses bans sources
+else echo "licences, bans and sources were not checked: cargo install --locked cargo-deny"; fi
