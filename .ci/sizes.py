@@ -45,12 +45,9 @@ def entry(name):
         return None
     if "::Matched<" in name:
         model += "-matched"
-    found = re.search(r"dispatch::(?:rows_(avx\w+)|Level>::run_rows)::<.*packet::(\w+)>, \d+>(::\{closure#\d\})?$", name)
-    if found:
-        # Without a level it is the portable one, or the code that cuts slices into packets, which is no loop.
-        if not found[1] and not found[3]:
-            return None
-        return ROWS[found[2]], model, found[1] or "portable"
+    found = re.search(r"dispatch::(rows|eights)_(avx\w+|portable)::<.*packet::(\w+)>, \d+, \d+>$", name)
+    if found and found[3] in ROWS:
+        return ROWS[found[3]] + ("-eights" if found[1] == "eights" else ""), model, found[2]
     found = re.search(r"dispatch::run_(avx\w+)::<hairis::packet::(\w+)<.*?, (f32|wide::[\w:]+)(?:, .*)?>>$", name)
     if found and found[2] in PACKETS:
         base, shared, own = PACKETS[found[2]]
