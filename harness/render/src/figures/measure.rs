@@ -5,15 +5,22 @@ use crate::picture;
 use crate::protocol::{Reference, Runs};
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
-use crate::transport::{Integrator, Settings};
+use crate::transport::{Integrator, Mis, Settings};
 use hairis_harness::error::Error;
 use hairis_harness::light::Environment;
 use std::path::Path;
 
 /// The sampler that references are made with, and that others are compared with.
 pub(super) const BEST: &str = "matched";
+/// Rays chosen from candidates, those of the hair drawn by [`BEST`].
+const RESAMPLED: &str = "resampled";
 /// The samplers, in the order of the page.
-pub(super) const SAMPLERS: [&str; 3] = [UNIFORM, PUBLISHED, BEST];
+pub(super) const SAMPLERS: [&str; 4] = [UNIFORM, PUBLISHED, RESAMPLED, BEST];
+
+/// How the model draws directions, and which samples count.
+fn strategy(sampler: &'static str) -> (&'static str, Mis) {
+    if sampler == RESAMPLED { (BEST, Mis::Resampled) } else { (sampler, Mis::Both) }
+}
 
 /// How much is rendered.
 #[derive(Clone, Copy, Debug)]
@@ -100,7 +107,9 @@ impl Measured {
         let reference = Reference::render(&scene, &settings, plan.reference[kind]);
         let mut all = Vec::new();
         for sampler in SAMPLERS {
-            scene.hair = hair(sampler)?;
+            let (drawn, mis) = strategy(sampler);
+            scene.hair = hair(drawn)?;
+            let settings = Settings { mis, ..settings };
             let run = |samples: &u32| {
                 step(&format!("{}: {sampler}, {samples} samples", name.word()));
                 Runs::render(&scene, &settings, &reference, *samples, plan.runs)
@@ -112,7 +121,9 @@ impl Measured {
         let least = all.iter().map(|(_, runs)| runs[shown].seconds).fold(f64::INFINITY, f64::min);
         let mut samplers = Vec::new();
         for (sampler, runs) in all {
-            scene.hair = hair(sampler)?;
+            let (drawn, mis) = strategy(sampler);
+            scene.hair = hair(drawn)?;
+            let settings = Settings { mis, ..settings };
             step(&format!("{}: {sampler}, equal time", name.word()));
             let samples = runs[shown].samples_in(least);
             let equal_time = Runs::render(&scene, &settings, &reference, samples, plan.runs);

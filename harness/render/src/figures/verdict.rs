@@ -21,9 +21,10 @@ pub(super) fn trimmed_gain(measured: &Measured, sampler: &BySampler) -> Estimate
     sampler.runs[shown].ratio(&best.runs[shown], |errors| errors.trimmed, true)
 }
 
-/// Whether a gain is one, by what is left of it within two standard errors.
-fn matters(gain: &Estimate) -> bool {
-    gain.value > GAIN && gain.value - 2.0 * gain.standard_error > 1.0
+/// Whether a ratio is a gain or a loss, by what is left of it within two standard errors.
+fn matters(ratio: &Estimate) -> bool {
+    let Estimate { value, standard_error, .. } = *ratio;
+    (value > GAIN && value - 2.0 * standard_error > 1.0) || (value < 1.0 / GAIN && value + 2.0 * standard_error < 1.0)
 }
 
 /// The sentence.
@@ -35,7 +36,7 @@ pub(super) fn sentence(measured: &Measured) -> String {
             let gain = gain(measured, one);
             format!("{} with {}", ratio_with_error(gain.value, gain.standard_error), one.name)
         };
-        others.iter().map(one).collect::<Vec<String>>().join(" and ")
+        others.iter().map(one).collect::<Vec<String>>().join(", ")
     };
     let numbers = format!(
         "At {samples} samples, relMSE × time is {}, relative to `{}`; without the worst 0.1 % of the pixels, {}.",
