@@ -4,6 +4,7 @@ use crate::calls::Direction;
 use core::f64::consts::PI;
 use hairis::wide::f32x8;
 use hairis::{Hit, Hit8, Lobe, LobeMask, Model, Vec3x, Vec3x8};
+use std::sync::OnceLock;
 
 /// The largest uniform number.
 pub(crate) const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
@@ -15,15 +16,30 @@ pub fn narrow(x: f64) -> f32 {
     x as f32
 }
 
-/// Uniform numbers: splitmix64.
+/// Uniform numbers: splitmix64, from a seed that is the test's own.
+///
+/// The environment variable `HAIRIS_SEED`, a whole number, gives every test other numbers; without it they are always the same.
 #[derive(Clone, Debug)]
 pub struct Draws(pub u64);
+
+/// The seed of this run: 0, or that of the environment.
+///
+/// # Panics
+///
+/// If it is no whole number of 64 bits.
+fn run_seed() -> u64 {
+    static SEED: OnceLock<u64> = OnceLock::new();
+    *SEED.get_or_init(|| match std::env::var("HAIRIS_SEED") {
+        Ok(text) => text.parse().unwrap_or_else(|_| panic!("HAIRIS_SEED must be a whole number, got {text:?}")),
+        Err(_) => 0,
+    })
+}
 
 impl Draws {
     /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
+        let mut z = self.0 ^ run_seed();
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
