@@ -1,0 +1,134 @@
+//! Every entry point on numbers of any bits: nothing but NaN directions may be anything but finite and at least 0.
+
+use glam::Vec3;
+use hairis::wide::f32x8;
+use hairis::{Bsdf, Eval, EvalSlices, Hit, Level, Lobe, LobeMask, Model, SampleSlices, Vec3x8};
+use hairis_variants::{ModelId, Parameters, Registered, Visitor};
+
+/// Numbers from bytes, zeros at their end.
+struct Numbers<'a>(&'a [u8]);
+
+impl Numbers<'_> {
+    fn byte(&mut self) -> u8 {
+        let Some((byte, rest)) = self.0.split_first() else { return 0 };
+        self.0 = rest;
+        *byte
+    }
+
+    /// A float of any bits.
+    fn any(&mut self) -> f32 {
+        f32::from_bits(u32::from_le_bytes([self.byte(), self.byte(), self.byte(), self.byte()]))
+    }
+
+    /// A number in [0, 1).
+    fn unit(&mut self) -> f32 {
+        let bits = u32::from_le_bytes([self.byte(), self.byte(), self.byte(), 0]);
+        bits as f32 * (1.0 / 16_777_216.0)
+    }
+
+    /// A direction: unit or, once in a while, any three numbers.
+    fn direction(&mut self) -> Vec3 {
+        match self.byte() {
+            0..=15 => Vec3::new(self.any(), self.any(), self.any()),
+            16..=31 => Vec3::new(1.0, 1e-4 * self.unit(), 1e-4 * self.unit()).normalize(),
+            _ => (2.0 * Vec3::new(self.unit(), self.unit(), self.unit()) - Vec3::ONE).normalize_or_zero(),
+        }
+    }
+}
+
+pub fn fuzz(data: &[u8]) {
+    let mut numbers = Numbers(data);
+    let id = ModelId::ALL[usize::from(numbers.byte()) % ModelId::ALL.len()];
+    id.visit(Everything(numbers));
+}
+
+struct Everything<'a>(Numbers<'a>);
+
+impl Visitor for Everything<'_> {
+    type Output = ();
+
+    fn visit<M: Registered>(mut self) {
+        let numbers = &mut self.0;
+        // Half of the fields of a preset become any numbers: those within range are taken.
+        let presets = M::Params::PRESETS;
+        let mut params = presets[usize::from(numbers.byte()) % presets.len()].1;
+        for field in M::Params::FIELDS {
+            let kind = numbers.byte();
+            if kind > 127 {
+                continue;
+            }
+            let old = params.values();
+            let mut new = [0.0; 4];
+            let new = &mut new[..field.kind.width()];
+            for (new, old) in new.iter_mut().zip(old.numbers(field.name)) {
+                *new = if kind < 32 { numbers.any() } else { old * (0.25 + 4.0 * numbers.unit()) };
+            }
+            params = M::Params::from_values(&old.with(field.name, new)).unwrap_or(params);
+        }
+        calls(&Bsdf::new(&M::MODEL, &params), numbers);
+    }
+}
+
+fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
+    let gather = bsdf.prepare(Hit::new(numbers.direction(), 2.0 * numbers.unit() - 1.0));
+    let gather =
+        if numbers.byte() < 64 { gather.with_lobes(LobeMask::of(&[Lobe::slot(numbers.byte() % 4)])) } else { gather };
+    let wi: [Vec3; 8] = core::array::from_fn(|_| numbers.direction());
+    let xi: [[f32; 3]; 8] = core::array::from_fn(|_| [numbers.unit(), numbers.unit(), numbers.unit()]);
+    for (wi, xi) in wi.iter().zip(xi) {
+        sound_eval(gather.eval_pdf(*wi));
+        gather
+            .lobes(*wi)
+            .0
+            .iter()
+            .for_each(|lobe| sound(&[lobe.value, lobe.pdf, lobe.color[0], lobe.color[1], lobe.color[2]]));
+        if let Some(sample) = gather.sample(xi) {
+            sound(&sample.value);
+            sound(&sample.weight);
+            sound(&[sample.pdf]);
+            assert!(sample.wi.is_finite() && (sample.wi.length() - 1.0).abs() < 1e-5, "{sample:?}");
+        }
+    }
+    gather.albedo().0.iter().for_each(|lobe| sound(lobe));
+    let (wi8, xi8) = (Vec3x8::from(wi), core::array::from_fn(|row| f32x8::new(xi.map(|xi| xi[row]))));
+    let columns = |vectors: [[f32; 3]; 8]| -> [[f32; 8]; 3] { core::array::from_fn(|row| vectors.map(|v| v[row])) };
+    let (wi, xi) = (columns(wi.map(Vec3::into)), columns(xi));
+    let len = usize::from(numbers.byte()) % 9;
+    for level in Level::available() {
+        let eval = gather.eval_pdf8_at(level, &wi8);
+        let samples = gather.sample8_at(level, &xi8);
+        let points = bsdf.prepare8_at(level, &wi8);
+        for lane in 0..8 {
+            sound_eval(eval.lane(lane));
+            if let Some(sample) = samples.lane(lane) {
+                sound(&sample.weight);
+                sound(&[sample.pdf]);
+            }
+            sound_eval(points.eval_pdf8_at(level, &wi8).lane(lane));
+        }
+        let (mut value, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
+        let [r, g, b] = value.each_mut().map(|row| &mut row[..len]);
+        let out = EvalSlices { value: [r, g, b], pdf: &mut pdf[..len] };
+        gather.eval_pdf_batch_at(level, [&wi[0][..len], &wi[1][..len], &wi[2][..len]], out).expect("one length");
+        for i in 0..len {
+            let Eval { value: expected, pdf: density } = eval.lane(i);
+            let same = value.map(|row| row[i].to_bits()) == expected.map(f32::to_bits)
+                && pdf[i].to_bits() == density.to_bits();
+            assert!(same, "entry {i} of {len} on {level}");
+        }
+        let mut rows = [[0.0; 8]; 11];
+        let [u, v, w, r, g, b, pdf, x, y, z, slot] = rows.each_mut().map(|row| &mut row[..len]);
+        let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [x, y, z], slot };
+        gather.sample_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out).expect("one length");
+        rows[3..10].iter().for_each(|row| sound(row));
+    }
+}
+
+fn sound_eval(Eval { value, pdf }: Eval) {
+    sound(&value);
+    sound(&[pdf]);
+}
+
+fn sound(numbers: &[f32]) {
+    assert!(numbers.iter().all(|x| x.is_finite() && *x >= 0.0), "{numbers:?}");
+}

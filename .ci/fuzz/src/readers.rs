@@ -1,0 +1,71 @@
+//! The readers of files: what they take is sound, and what they refuse they refuse in one line.
+
+use hairis_harness::cmd::eval;
+use hairis_harness::config::Path as CodePath;
+use hairis_harness::light::{Environment, Light};
+use hairis_harness::study::part;
+use hairis_render::formats::{Import, import_bytes};
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+/// `hairis eval`: a line out for each line in, whatever it is.
+pub fn lines(data: &[u8]) {
+    for path in [CodePath::X8, CodePath::F64] {
+        let mut out = Vec::new();
+        let _ = eval::stream(path, BufReader::new(data), &mut out);
+        let expected =
+            data.split(|byte| *byte == b'\n').count() - usize::from(data.is_empty() || data.ends_with(b"\n"));
+        let lines = out.iter().filter(|byte| **byte == b'\n').count();
+        assert_eq!(lines, expected, "lines");
+    }
+}
+
+/// A file for readers that take a path; each process has its own.
+fn file(name: &str, data: &[u8]) -> PathBuf {
+    static DIR: LazyLock<PathBuf> = LazyLock::new(|| {
+        let memory = Path::new("/dev/shm");
+        let dir = if memory.is_dir() { memory.to_owned() } else { std::env::temp_dir() };
+        let dir = dir.join(format!("hairis-fuzz-{}", std::process::id()));
+        std::fs::create_dir_all(&dir).expect("a folder");
+        dir
+    });
+    let path = DIR.join(name);
+    std::fs::write(&path, data).expect("written");
+    path
+}
+
+/// A part file: read or refused in one line.
+pub fn parts(data: &[u8]) {
+    match part::read(&file("cells-1-of-1.jsonl", data)) {
+        Ok(part) => assert!(part.finished.iter().all(|cell| cell.cell < part.header.cells), "cells of the grid"),
+        Err(error) => one_line(&error.to_string()),
+    }
+}
+
+/// An environment map: a light, or refused in one line.
+pub fn map(data: &[u8]) {
+    match Environment::load(file("map", data)) {
+        Ok(map) => {
+            for xi in [[0.0, 0.0], [0.3, 0.7], [0.999_999, 0.5]] {
+                let sample = map.sample(xi);
+                assert!(sample.pdf.is_finite() && sample.pdf >= 0.0, "density");
+                assert!(sample.radiance.iter().all(|c| c.is_finite() && *c >= 0.0), "radiance");
+            }
+        }
+        Err(error) => one_line(&error.to_string()),
+    }
+}
+
+/// A file of strands, cyHair or TressFX by its first bytes: strands, or refused.
+pub fn hair(data: &[u8]) {
+    for name in ["fuzz.hair", "fuzz.tfx"] {
+        if let Err(error) = import_bytes(Path::new(name), data, &Import::default()) {
+            one_line(&error.to_string());
+        }
+    }
+}
+
+fn one_line(error: &str) {
+    assert!(!error.is_empty() && !error.contains('\n'), "{error:?}");
+}
