@@ -1,6 +1,6 @@
 #!/bin/bash
 # Promise: every set of features compiles, and dependencies have known licences, one source and no second version but those
-# listed in deny.toml. The minimum Rust version is clippy's: incompatible_msrv.
+# listed in .ci/deny.toml. The minimum Rust version is clippy's: incompatible_msrv.
 #
 # Licences, bans and sources need cargo-deny, which takes minutes to build: where it is not installed the script says so.
 # Advisories are not checked: their database is a git repository.
@@ -17,5 +17,5 @@ check hairis '' textbook
 check hairis-variants '' any textbook any,textbook
 check hairis-harness '' parquet png parquet,png
 
-if command -v cargo-deny > /dev/null; then cargo deny check licenses bans sources
+if command -v cargo-deny > /dev/null; then cargo deny check --config .ci/deny.toml licenses bans sources
 else echo "licences, bans and sources were not checked: cargo install --locked cargo-deny"; fi
