@@ -6,7 +6,7 @@
 
 use crate::packet::{AtGather, Pdf, Samples, Value, ValuePdf};
 use crate::simd::dispatch::clean_upper_halves;
-use crate::slices::{EvalSlices, LengthError, SampleSlices, VALUE, WI, XI, check_lengths, check_three, lens3};
+use crate::slices::{EvalSlices, LengthError, SampleSlices, WI, XI, check_columns};
 use crate::{Gather, Level, Model};
 
 impl<M: Model> Gather<M> {
@@ -41,8 +41,9 @@ impl<M: Model> Gather<M> {
     #[inline]
     pub fn eval_pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
         clean_upper_halves();
-        check_three(WI, wi, wi[0].len())?;
-        let mut out = out.columns(wi[0].len())?;
+        let [r, g, b] = out.value;
+        let mut out = [r, g, b, out.pdf];
+        check_columns(&WI, wi, &["value.r", "value.g", "value.b", "pdf"], &out)?;
         level.run_rows(AtGather::<M, ValuePdf>::new(&self.inner), wi, &mut out);
         Ok(())
     }
@@ -65,9 +66,8 @@ impl<M: Model> Gather<M> {
     #[inline]
     pub fn eval_batch_at(&self, level: Level, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError> {
         clean_upper_halves();
-        check_three(WI, wi, wi[0].len())?;
         let mut out = value;
-        check_lengths(wi[0].len(), lens3(VALUE, Some(&out)))?;
+        check_columns(&WI, wi, &["value.r", "value.g", "value.b"], &out)?;
         level.run_rows(AtGather::<M, Value>::new(&self.inner), wi, &mut out);
         Ok(())
     }
@@ -90,9 +90,8 @@ impl<M: Model> Gather<M> {
     #[inline]
     pub fn pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError> {
         clean_upper_halves();
-        check_three(WI, wi, wi[0].len())?;
-        check_lengths(wi[0].len(), [("pdf", Some(pdf.len()))])?;
         let mut out = [pdf];
+        check_columns(&WI, wi, &["pdf"], &out)?;
         level.run_rows(AtGather::<M, Pdf>::new(&self.inner), wi, &mut out);
         Ok(())
     }
@@ -115,9 +114,14 @@ impl<M: Model> Gather<M> {
     #[inline]
     pub fn sample_batch_at(&self, level: Level, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
         clean_upper_halves();
-        check_three(XI, xi, xi[0].len())?;
-        let mut out = out.columns(xi[0].len())?;
+        let ([u, v, w], [r, g, b], [wr, wg, wb]) = (out.wi, out.value, out.weight);
+        let mut out = [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot];
+        check_columns(&XI, xi, &SAMPLE, &out)?;
         level.run_rows(AtGather::<M, Samples>::new(&self.inner), xi, &mut out);
         Ok(())
     }
 }
+
+/// Names of the slices of samples.
+const SAMPLE: [&str; 11] =
+    ["wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf", "weight.r", "weight.g", "weight.b", "slot"];

@@ -26,7 +26,7 @@
 
 use crate::packet::{Proposals, ProposalsOf, WeighOf, Weighs};
 use crate::simd::dispatch::clean_upper_halves;
-use crate::slices::{LengthError, WI, XI, check_lengths, check_three, lens3};
+use crate::slices::{LengthError, WI, XI, check_columns};
 use crate::{Eval8, Gather, Gather8, Lanes, Level, Model, Vec3x8};
 use wide::f32x8;
 
@@ -158,6 +158,10 @@ pub struct Weighed8 {
     pub weight: f32x8,
 }
 
+/// Names of the slices of candidates, and of weights.
+const CANDIDATE: [&str; 7] = ["wi.u", "wi.v", "wi.w", "radiance.r", "radiance.g", "radiance.b", "pdf_light"];
+const WEIGHT: [&str; 4] = ["contribution.r", "contribution.g", "contribution.b", "weight"];
+
 impl Weighed8 {
     /// Candidates whose values and densities the host has, for densities that are not the model's own: a mixture with another
     /// technique, say. Otherwise [`Gather8::weigh8`] and [`Gather::weigh_batch`] do it in one pass.
@@ -197,9 +201,8 @@ impl<M: Model> Gather<M> {
     #[inline]
     pub fn propose_batch_at(&self, level: Level, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
         clean_upper_halves();
-        check_three(XI, xi, xi[0].len())?;
         let mut out = wi;
-        check_lengths(xi[0].len(), lens3(WI, Some(&out)))?;
+        check_columns(&XI, xi, &WI, &out)?;
         level.run_rows(Proposals::<M>::new(&self.inner), xi, &mut out);
         Ok(())
     }
@@ -236,18 +239,12 @@ impl<M: Model> Gather<M> {
     ) -> Result<(), LengthError> {
         clean_upper_halves();
         let CandidateSlices { wi, radiance, pdf_light } = candidates;
-        let expected = wi[0].len();
-        check_three(WI, wi, expected)?;
-        check_three(["radiance.r", "radiance.g", "radiance.b"], radiance, expected)?;
-        check_lengths(expected, [("pdf_light", Some(pdf_light.len()))])?;
-        check_lengths(
-            expected,
-            lens3(["contribution.r", "contribution.g", "contribution.b"], Some(&out.contribution)),
-        )?;
-        check_lengths(expected, [("weight", Some(out.weight.len()))])?;
         let ([u, v, w], [r, g, b], [fr, fg, fb]) = (wi, radiance, out.contribution);
+        let inputs = [u, v, w, r, g, b, pdf_light];
+        let mut out = [fr, fg, fb, out.weight];
+        check_columns(&CANDIDATE, inputs, &WEIGHT, &out)?;
         let row = Weighs::<M>::new(&self.inner, Weighing::new(counts, partition));
-        level.run_rows(row, [u, v, w, r, g, b, pdf_light], &mut [fr, fg, fb, out.weight]);
+        level.run_rows(row, inputs, &mut out);
         Ok(())
     }
 }

@@ -82,24 +82,6 @@ pub struct SampleColumns<'a> {
     pub slot: Option<&'a mut [f32]>,
 }
 
-impl<'a> EvalSlices<'a> {
-    /// The columns of these slices.
-    #[inline(always)]
-    pub(crate) fn columns(self, expected: usize) -> Result<[&'a mut [f32]; 4], LengthError> {
-        EvalColumns { value: Some(self.value), pdf: Some(self.pdf) }.columns(expected)
-    }
-}
-
-impl<'a> SampleSlices<'a> {
-    /// The columns of these slices.
-    #[inline(always)]
-    pub(crate) fn columns(self, expected: usize) -> Result<[&'a mut [f32]; 11], LengthError> {
-        let Self { wi, value, pdf, weight, slot } = self;
-        SampleColumns { wi: Some(wi), value: Some(value), pdf: Some(pdf), weight: Some(weight), slot: Some(slot) }
-            .columns(expected)
-    }
-}
-
 impl<'a> HitSlices<'a> {
     pub(crate) const fn len(&self) -> usize {
         self.wo[0].len()
@@ -114,7 +96,7 @@ impl<'a> HitSlices<'a> {
     ) -> Result<[&'a [f32]; 7], LengthError> {
         let [u, v, w] = self.wo;
         check_lengths(self.len(), [("wo.v", Some(v.len())), ("wo.w", Some(w.len())), ("h", self.h.map(<[f32]>::len))])?;
-        check_three(names, [x, y, z], self.len())?;
+        check_lengths(self.len(), [(names[0], Some(x.len())), (names[1], Some(y.len())), (names[2], Some(z.len()))])?;
         Ok([u, v, w, self.h.unwrap_or_default(), x, y, z])
     }
 }
@@ -149,23 +131,63 @@ pub(crate) const WI: [&str; 3] = ["wi.u", "wi.v", "wi.w"];
 /// Names of the slices of the uniform numbers.
 pub(crate) const XI: [&str; 3] = ["xi.lobe", "xi.theta", "xi.phi"];
 /// Names of the slices of a value.
-pub(crate) const VALUE: [&str; 3] = ["value.r", "value.g", "value.b"];
+const VALUE: [&str; 3] = ["value.r", "value.g", "value.b"];
 
 /// Names and lengths of three columns; no length where they are left out.
 #[inline(always)]
-pub(crate) fn lens3(names: [&'static str; 3], columns: Option<&[&mut [f32]; 3]>) -> [(&'static str, Option<usize>); 3] {
+fn lens3(names: [&'static str; 3], columns: Option<&[&mut [f32]; 3]>) -> [(&'static str, Option<usize>); 3] {
     let len = |i: usize| columns.map(|columns| columns[i].len());
     [(names[0], len(0)), (names[1], len(1)), (names[2], len(2))]
 }
 
-/// Refuses three columns that are not of one length.
+/// Refuses columns that differ in length from the first input. Names and lengths are put together only then: the check is
+/// most of what a short slice costs.
 #[inline(always)]
-pub(crate) fn check_three(
-    names: [&'static str; 3],
-    [x, y, z]: [&[f32]; 3],
-    expected: usize,
+pub(crate) fn check_columns<const I: usize, const N: usize>(
+    in_names: &'static [&'static str; I],
+    inputs: [&[f32]; I],
+    out_names: &'static [&'static str; N],
+    outputs: &[&mut [f32]; N],
 ) -> Result<(), LengthError> {
-    check_lengths(expected, [(names[0], Some(x.len())), (names[1], Some(y.len())), (names[2], Some(z.len()))])
+    let expected = inputs[0].len();
+    let mut differs = false;
+    let mut i = 0;
+    while i < I {
+        differs |= inputs[i].len() != expected;
+        i += 1;
+    }
+    i = 0;
+    while i < N {
+        differs |= outputs[i].len() != expected;
+        i += 1;
+    }
+    if differs {
+        return Err(first_that_differs(
+            in_names,
+            &inputs.map(<[f32]>::len),
+            out_names,
+            &outputs.each_ref().map(|s| s.len()),
+        ));
+    }
+    Ok(())
+}
+
+/// The first of the slices that is not of the length of the first input.
+#[cold]
+fn first_that_differs(
+    in_names: &[&'static str],
+    inputs: &[usize],
+    out_names: &[&'static str],
+    outputs: &[usize],
+) -> LengthError {
+    let mut all = in_names.iter().zip(inputs).chain(out_names.iter().zip(outputs));
+    let expected = inputs.first().copied().unwrap_or_default();
+    let differs = all.find(|(_, len)| **len != expected);
+    differs.map_or(LengthError { field: "", len: expected, expected }, |(field, len)| LengthError {
+        field,
+        len: *len,
+        expected,
+    })
 }
 
 /// Refuses the first column that has a length, and not the expected one.

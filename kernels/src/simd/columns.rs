@@ -126,7 +126,8 @@ pub(crate) fn in_eights<const I: usize, const N: usize>(
     for (to, column) in from.iter_mut().zip(inputs) {
         copy(column, to);
     }
-    let mut to = [[0.0; 8]; N];
+    // Not zeros, which compilers write by a call of memset.
+    let mut to = [[1.0; 8]; N];
     run(from.each_ref().map(slice::from_ref), &mut to.each_mut().map(slice::from_mut));
     for (from, column) in to.iter().zip(outputs) {
         copy(from, column);
