@@ -1,7 +1,7 @@
 //! Lobes of a material, and the view terms of a shading point: shared by all samplers of the published model.
 
 use super::albedo::bell_area;
-use crate::math::half_atan2;
+use crate::math::{FRAC_PI_2_LOW, half_atan2};
 use crate::{Bell, Broadcast, HairParams, Lanes, Lobe, LobeMask, Vec3x};
 use crate::{store3, store4};
 use core::f32::consts::PI;
@@ -66,6 +66,8 @@ impl HairLobes<f32> {
         let [b_r, b_tt, b_trt, gamma_tt, gamma_g] =
             [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g].map(|width| (width * k).max(5e-5));
         let phi_g = d.phi_g;
+        // The float next to pi is above it by a thousandth of the least width.
+        let to_back = (PI - phi_g) + 2.0 * FRAC_PI_2_LOW;
         // Glints of absurd strength take the excess from the colour, so that their product overflows last.
         let excess = (d.intensity_g * 1e-6).max(1.0);
         Self {
@@ -75,7 +77,7 @@ impl HairLobes<f32> {
             half_gamma: [0.5 * gamma_tt, 0.5 * gamma_g],
             inv_half_gamma: [2.0 / gamma_tt, 2.0 / gamma_g],
             half_phi_g: 0.5 * phi_g,
-            azimuth_area: [bell_area::<B>(-PI, PI, gamma_tt), 2.0 * bell_area::<B>(-phi_g, PI - phi_g, gamma_g)],
+            azimuth_area: [bell_area::<B>(-PI, PI, gamma_tt), 2.0 * bell_area::<B>(-phi_g, to_back, gamma_g)],
             color_r: d.intensity_r,
             color_tt: d.intensity_tt,
             color_trt: d.intensity_trt.map(|c| (c * excess).min(f32::MAX)),
