@@ -5,7 +5,7 @@
 )]
 
 use super::lanes::{Broadcast, Lanes, Packet};
-use core::{mem, slice};
+use core::{array, mem, slice};
 
 /// Work of [`Level::run_rows`](crate::Level::run_rows) over columns: `I` numbers in, `N` numbers out, whatever the lanes.
 pub trait Row<const I: usize, const N: usize>: Copy {
@@ -127,8 +127,9 @@ pub(crate) fn in_eights<const I: usize, const N: usize>(
         copy(column, to);
     }
     // Not zeros, which compilers write by a call of memset.
-    let mut to = [[1.0; 8]; N];
-    run(from.each_ref().map(slice::from_ref), &mut to.each_mut().map(slice::from_mut));
+    const FILL: [f32; 8] = [1.0; 8];
+    let mut to = [FILL; N];
+    run(array::from_fn(|column| slice::from_ref(&from[column])), &mut to.each_mut().map(slice::from_mut));
     for (from, column) in to.iter().zip(outputs) {
         copy(from, column);
     }
