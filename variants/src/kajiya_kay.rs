@@ -137,7 +137,9 @@ impl LobeModel for KajiyaKay {
         // cos^p of the sum of the inclinations: by the sine where that is small, as p magnifies what the cosine has lost.
         let sin = sin_i.mul_add(cos_o, cos_i * sin_o);
         let cos = L::difference_of_products(cos_i, cos_o, sin_i, sin_o);
-        let bell = L::keep(zero.lt(cos), gaussian(log2_near_one(cos * cos, -(sin * sin)) * m.exponent.lanes()));
+        // At most 1, for directions too that are longer than they should be: no power overflows.
+        let s = zero.max(log2_near_one(cos * cos, -(sin * sin)) * m.exponent.lanes());
+        let bell = L::keep(zero.lt(cos), gaussian(s));
 
         // The density over both signs of the sum; one division for it and for 1 / cos theta_i.
         let mirrored = zero.max(cos.mul_sub(cos_o, sin * sin_o));
