@@ -1,5 +1,5 @@
 //! Bounds of the tests against the reference, one row each, with the worst case measured above it: the larger of a default
-//! build and one for x86-64-v3, over all levels. To measure again: `cargo test --workspace -- --nocapture | grep measured`.
+//! build and one for x86-64-v3, over all levels and seven seeds (`HAIRIS_SEED`). To measure again: `cargo test --workspace -- --nocapture | grep measured`.
 
 use hairis_conformance::published::Rows;
 
@@ -9,8 +9,8 @@ pub(crate) const PUBLISHED: Rows = Rows {
     grid: [6e-5, 1e-5, 1e-4, 1e-5],
     // 2.0e-4, 2.0e-5, 2.0e-4, 2.2e-5: every width 0.5 degrees
     narrow: [2.5e-4, 2.5e-5, 2.5e-4, 2.8e-5],
-    // 7.7e-7, 5.6e-7, 1.9e-6, 9.1e-7: every width 60 degrees
-    wide: [1e-6, 7e-7, 2.4e-6, 1.1e-6],
+    // 7.7e-7, 7.1e-7, 2.0e-6, 9.3e-7: every width 60 degrees
+    wide: [1e-6, 9.2e-7, 2.5e-6, 1.2e-6],
     // 3.5e-7
     lobe_sum: 4.5e-7,
     // 1.6e-5, 4.8e-6, 1.6e-5
@@ -23,8 +23,8 @@ pub(crate) const PUBLISHED: Rows = Rows {
     sample_length: 4.5e-7,
     // 2.2e-6, 4.5e-7
     grid_cdf: [3e-6, 6e-7],
-    // 5.3e-6, 4.3e-6
-    narrow_cdf: [7e-6, 6e-6],
+    // 5.3e-6, 6.2e-6
+    narrow_cdf: [7e-6, 8.1e-6],
     // 2.9e-7, 9.8e-8
     wide_cdf: [4e-7, 1.4e-7],
     // 5.9e-7, 6.3e-7, 9.6e-7
@@ -55,8 +55,8 @@ pub(crate) const PUBLISHED: Rows = Rows {
 pub(crate) const MATCHED: Rows = Rows {
     // 1.5e-5, 1.4e-5, 4.3e-5, 4.3e-5
     grid: [1.9e-5, 1.9e-5, 5.6e-5, 5.6e-5],
-    // 1e-4, 1e-4, 1.2e-4, 1.2e-4
-    narrow: [1.4e-4, 1.4e-4, 1.6e-4, 1.6e-4],
+    // 1e-4, 1e-4, 1.6e-4, 1.6e-4
+    narrow: [1.4e-4, 1.4e-4, 2.1e-4, 2.1e-4],
     // 6.7e-7, 9e-7, 1.9e-6, 1.9e-6
     wide: [8.8e-7, 1.2e-6, 2.5e-6, 2.5e-6],
     // 3.7e-6
@@ -71,12 +71,12 @@ pub(crate) const MATCHED: Rows = Rows {
     sample_length: 3.5e-7,
     // 1.9e-5, 5.5e-7
     grid_cdf: [2.5e-5, 7.2e-7],
-    // 1e-4, 4.6e-6
-    narrow_cdf: [1.4e-4, 6e-6],
+    // 1e-4, 6.2e-6
+    narrow_cdf: [1.4e-4, 8.1e-6],
     // 5.5e-7, 1.4e-7
     wide_cdf: [7.3e-7, 1.9e-7],
-    // 5.9e-7, 4.5e-7, 1.6e-6
-    levels: [7.7e-7, 5.9e-7, 2.2e-6],
+    // 5.9e-7, 6.1e-7, 3.4e-6
+    levels: [7.7e-7, 7.9e-7, 4.4e-6],
     // 2.0e-6; 0 where neither fuses
     albedo_lanes: 2.6e-6,
     // 3.0e-6
@@ -100,6 +100,6 @@ pub(crate) const MATCHED: Rows = Rows {
     off_sphere_sample: [5.9e-5, 3.1e-5, 3.4e-5],
     // .0412, 7.27, 2.27; .0206, 14.0, 3.69; .0059, 55.6, 8.27
     gain: [[0.0413, 7.2, 2.2], [0.0207, 13.9, 3.6], [0.006, 55.0, 8.1]],
-    // 7.2, 4.3, 2.44
-    weight: [7.6, 4.6, 2.6],
+    // 8.34, 4.27, 2.44: those of a few million shading points
+    weight: [9.0, 4.6, 2.6],
 };

@@ -86,8 +86,8 @@ impl Subject for KajiyaKayFibers {
     }
 
     fn reference(&self, params: &KajiyaKayParams, hit: &Hit) -> Option<Box<dyn Reference>> {
-        // Errors grow with the exponent of the bell: below 1e-12 they are compared absolutely.
-        let tolerance = Tolerance { floor: 1e-12, ..Tolerance::default() };
+        // The logarithm of the bell is rounded: beyond exp(-17) of the peak, 3e-6 + 4e-7 * 17 is above the tolerance.
+        let tolerance = Tolerance { floor: 4e-8, ..Tolerance::default() };
         Some(Box::new(FormulaReference { formulas: formulas(params, hit), tolerance }))
     }
 

@@ -257,9 +257,12 @@ pub fn lobes_and_albedo_equal_scalar<S: Subject>(subject: &S) -> Outcome {
                 if bits(&lobes) != bits(&alone) {
                     return Err(Failure::new(NAME, format!("lobes {lobes:?}, one lane {alone:?}: {}", at())));
                 }
+                let one_color = alone[lobe].color.map(|color| color.as_array()[lane]);
                 for c in 0..3 {
                     let (got, want) = (f64::from(albedo[lobe][c].as_array()[lane]), f64::from(one_albedo[lobe][c]));
-                    worst.see(relative(got, want, 1e-12), || format!("{lobe:?} {got}, one lane {want}: {}", at()))?;
+                    // A lobe that lies off the sphere returns next to nothing, with the digits of its tail.
+                    let floor = 1e-4 * f64::from(one_color[c]).max(1e-20);
+                    worst.see(relative(got, want, floor), || format!("{lobe:?} {got}, one lane {want}: {}", at()))?;
                 }
             }
             if !claims.near_field {

@@ -244,7 +244,11 @@ pub fn lobes_and_albedo_agree_with_one_lane<S: Published>() {
                 for c in 0..3 {
                     assert_eq!(bits(a.color[c], lane), bits(b.color[c], 0), "color of {lobe:?} in lane {lane}");
                     let (wide, scalar) = (albedo[lobe][c].as_array()[lane], alone_albedo[lobe][c]);
-                    worst.see(super::support::relative(wide, f64::from(scalar), 1e-20), || format!("{lobe:?}"));
+                    // A lobe that lies off the sphere returns next to nothing, with the digits of its tail.
+                    let floor = 1e-4 * f64::from(a.color[c].as_array()[lane]).max(1e-20);
+                    worst.see(super::support::relative(wide, f64::from(scalar), floor), || {
+                        format!("{lobe:?}: {wide}, one lane {scalar}")
+                    });
                 }
             }
         }
