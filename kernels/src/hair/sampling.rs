@@ -98,9 +98,9 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;
     let [v_o, w_o, cos_o] = lanes3(&view.plane_o);
     let by = view.inv_plane_o.lanes();
-    let by = by - by * off_unit;
-    let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by * cos_theta_i;
-    let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by * cos_theta_i;
+    let by = (by - by * off_unit) * cos_theta_i;
+    let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by;
+    let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by;
 
     // The angle, rotated by the rounding error of the direction.
     let inv_reach = one / (cos_theta_i * cos_o);

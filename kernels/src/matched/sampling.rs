@@ -5,7 +5,6 @@ use crate::hair::{Angles, FoldedXi, direction_from_angles};
 use crate::lanes3;
 use crate::simd::pair::Pair;
 use crate::{Broadcast, Lanes, Vec3x};
-use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// A quarter of the step between uniform numbers of 24 bits: the share of an integral that is left out at its ends, so that
 /// where they have digits for it, on narrow bells and in far tails, rounding takes no sample past them, to a pole or to where a
@@ -37,9 +36,10 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     }
     let [first, minus_last] =
         [C::look_up_three(&gather.offset[0], choice), C::look_up_three(&gather.offset[N - 1], choice)];
-    let least = (first + minus_last) * c(-LEAST_SHARE);
+    let whole = first + minus_last;
+    let (least, most) = (whole.mul_add(c(-LEAST_SHARE), first), whole.mul_sub(c(LEAST_SHARE), minus_last));
     // The second operand wins over NaN.
-    let integral = L::select(lower, integral, -integral).max(first + least).min(-(minus_last + least));
+    let integral = L::select(lower, integral, -integral).max(least).min(most);
 
     // Azimuth: TT's runs from its centre outwards, that of a glint from phi = 0.
     let folded = FoldedXi::of(xi[2]);
@@ -51,13 +51,12 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     // Side by side.
     let origin = Pair(C::look_up_three(&gather.origin, choice), C::look_up_half(&gather.azimuth_origin, choice));
     let Pair(x, y) = B::invert(origin, Pair(integral, share.mul_add(mass, from)));
-    // NaN if any number is, or infinite. The second operand wins over it: the sample is on the pole, and discarded there.
+    // NaN if any number is, or infinite: the sample has no inclination then, and no density. Rounding may take another past
+    // the pole, where it has none either.
     let shift = (xi[0] + xi[1] + xi[2]).mul_add(zero, C::look_up_three(&view.shift, choice));
     let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), shift);
-    let half_theta_i = c(-FRAC_PI_4).max(half_theta_i.min(c(FRAC_PI_4)));
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
-    let psi = zero.max(psi.min(c(FRAC_PI_2)));
     let (wi, angles) = direction_from_angles(view, choice, half_theta_i, folded, psi);
     (wi, choice, angles)
 }

@@ -122,44 +122,39 @@ pub(crate) fn in_eights<const I: usize, const N: usize>(
     if done == inputs[0].len() {
         return;
     }
+    let len = inputs[0].len();
     let mut from = [[0.0; 8]; I];
-    for (to, column) in from.iter_mut().zip(inputs) {
-        copy(column, to);
-    }
+    copy_few(inputs.into_iter().zip(from.each_mut().map(|lanes| &mut lanes[..])), len);
     // Not zeros, which compilers write by a call of memset.
     const FILL: [f32; 8] = [1.0; 8];
     let mut to = [FILL; N];
     run(array::from_fn(|column| slice::from_ref(&from[column])), &mut to.each_mut().map(slice::from_mut));
-    for (from, column) in to.iter().zip(outputs) {
-        copy(from, column);
+    copy_few(
+        to.each_ref().map(|lanes| &lanes[..]).into_iter().zip(outputs.each_mut().map(|column| &mut **column)),
+        len,
+    );
+}
+
+/// Copies `len` numbers of each column, at most 8: in two halves that overlap, of fixed length. A loop, and the system's copy all
+/// the more, costs several times as much.
+#[inline(always)]
+pub(crate) fn copy_few<'a>(columns: impl Iterator<Item = (&'a [f32], &'a mut [f32])>, len: usize) {
+    match len {
+        4.. => columns.for_each(|(from, to)| copy_halves::<4>(from, to, len)),
+        2.. => columns.for_each(|(from, to)| copy_halves::<2>(from, to, len)),
+        _ => columns.for_each(|(from, to)| copy_halves::<1>(from, to, len)),
     }
 }
 
-/// Copies eight numbers, or as many as the shorter has. In pieces of fixed length: a loop, and the system's copy all the
-/// more, costs several times as much.
+/// Copies the first `HALF` of `len` numbers, and the last.
 #[inline(always)]
-pub(crate) fn copy(from: &[f32], to: &mut [f32]) {
-    if let (Some(from), Some(to)) = (from.first_chunk::<8>(), to.first_chunk_mut::<8>()) {
-        *to = *from;
-        return;
-    }
-    let len = from.len().min(to.len());
+fn copy_halves<const HALF: usize>(from: &[f32], to: &mut [f32], len: usize) {
     let (Some(from), Some(to)) = (from.get(..len), to.get_mut(..len)) else { return };
-    // Two halves that overlap.
-    macro_rules! halves {
-        ($half:literal) => {
-            if let (Some(first), Some(last)) = (from.first_chunk::<$half>(), from.last_chunk::<$half>()) {
-                if let Some(to) = to.first_chunk_mut() {
-                    *to = *first;
-                }
-                if let Some(to) = to.last_chunk_mut() {
-                    *to = *last;
-                }
-                return;
-            }
-        };
+    let Some(rest) = len.checked_sub(HALF) else { return };
+    for at in [0, rest] {
+        let (Some(from), Some(to)) = (from.get(at..), to.get_mut(at..)) else { return };
+        if let (Some(from), Some(to)) = (from.first_chunk::<HALF>(), to.first_chunk_mut()) {
+            *to = *from;
+        }
     }
-    halves!(4);
-    halves!(2);
-    halves!(1);
 }
