@@ -214,7 +214,7 @@ impl<M: Registered> Of<'_, M> {
         let mixed = |i| self.mixed_hair(i, Given::Wi(PROBE));
         self.show(visitor, TEXTBOOK, "scalar", shared, || {
             let formulas = M::formulas::<f32>(&M::Params::default());
-            Each::new(1, arrays(&inputs.wo), move |wo| Point(M::reference_at(&formulas, *wo, 0.0)))
+            Each::new(1, arrays(&inputs.wo), move |wo| Point(M::reference_at(&formulas, *wo, 0.0), PhantomData))
         });
         self.show(visitor, "prepare", "scalar", shared, || {
             let bsdf = self.bsdf();

@@ -7,6 +7,7 @@ pub mod check;
 pub mod entries;
 pub mod inputs;
 pub mod math;
+pub mod platform;
 pub mod task;
 
 pub use entries::{Name, Op, Visitor};

@@ -1,11 +1,12 @@
 //! One entry point on its inputs, and its answers in one form for all entry points.
 
 use crate::inputs::{Column, DIRECTIONS};
+use crate::platform::Platform;
 use core::array::from_fn;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
-use hairis::reference::{self, Reference};
+use hairis::reference::{self, Real, Reference};
 use hairis::wide::f32x8;
 use hairis::{Eval, Eval8, Gather, Gather8, LengthError, Model, Sample, Sample8, Vec3x8};
 
@@ -138,34 +139,34 @@ impl<I, O: Output, F: Fn(&I, &mut dyn FnMut(&O))> Pass for Several<I, O, F> {
     }
 }
 
-/// A function from three slices to `N` (the density; the value; or the value, the density and more), and the columns that
+/// A function from `I` slices to `N` (the density; the value; or the value, the density and more), and the columns that
 /// it is given parts of.
 #[derive(Debug)]
-pub struct Slices<F, const N: usize> {
-    inputs: [Column; 3],
+pub struct Slices<F, const N: usize, const I: usize = 3> {
+    inputs: [Column; I],
     outputs: [Column; N],
     len: usize,
     call: F,
 }
 
-impl<F, const N: usize> Slices<F, N>
+impl<F, const N: usize, const I: usize> Slices<F, N, I>
 where
-    F: Fn([&[f32]; 3], [&mut [f32]; N]) -> Result<(), LengthError>,
+    F: Fn([&[f32]; I], [&mut [f32]; N]) -> Result<(), LengthError>,
 {
     /// Calls `call` on `len` rows after `len` rows.
-    pub fn new(len: usize, rows: &[[f32; 3]], call: F) -> Self {
+    pub fn new(len: usize, rows: &[[f32; I]], call: F) -> Self {
         Self {
             inputs: from_fn(|k| Column::new(k, rows.iter().map(|row| row[k]))),
-            outputs: from_fn(|k| Column::new(3 + k, [])),
+            outputs: from_fn(|k| Column::new(I + k, [])),
             len,
             call,
         }
     }
 }
 
-impl<F, const N: usize> Task for Slices<F, N>
+impl<F, const N: usize, const I: usize> Task for Slices<F, N, I>
 where
-    F: Fn([&[f32]; 3], [&mut [f32]; N]) -> Result<(), LengthError>,
+    F: Fn([&[f32]; I], [&mut [f32]; N]) -> Result<(), LengthError>,
 {
     fn calls(&self) -> usize {
         DIRECTIONS / self.len
@@ -176,8 +177,7 @@ where
     #[inline(always)]
     fn call(&mut self, index: usize) {
         let (at, len) = (index * self.len, self.len);
-        let [a, b, c] = black_box(&self.inputs);
-        let inputs = [a.part(at, len), b.part(at, len), c.part(at, len)];
+        let inputs = black_box(&self.inputs).each_ref().map(|column| column.part(at, len));
         // All slices are of one length; if they were not, the answers would be found wrong.
         let done = (self.call)(inputs, self.outputs.each_mut().map(|column| column.part_mut(at, len)));
         black_box((&self.outputs, done.is_ok()));
@@ -200,9 +200,27 @@ where
     }
 }
 
-impl Output for ([f32; 3], f32) {
+/// A number in single precision, of the libm crate's functions or of the platform's.
+pub trait Single: Real {
+    /// The number.
+    fn number(self) -> f32;
+}
+
+impl Single for f32 {
+    fn number(self) -> f32 {
+        self
+    }
+}
+
+impl Single for Platform {
+    fn number(self) -> f32 {
+        self.0
+    }
+}
+
+impl<T: Single> Output for ([T; 3], T) {
     fn answers(&self, out: &mut Vec<Answer>) {
-        out.push(Answer { wi: None, value: Some(self.0), pdf: Some(self.1) });
+        out.push(Answer { wi: None, value: Some(self.0.map(T::number)), pdf: Some(self.1.number()) });
     }
 }
 
@@ -228,9 +246,10 @@ impl Output for Eval8 {
     }
 }
 
-impl Output for reference::ReferenceSample<f32> {
+impl<T: Single> Output for reference::ReferenceSample<T> {
     fn answers(&self, out: &mut Vec<Answer>) {
-        out.push(Answer { wi: Some(self.wi.into()), value: Some(self.value), pdf: Some(self.pdf) });
+        let (wi, value) = (self.wi.map(T::number), self.value.map(T::number));
+        out.push(Answer { wi: Some(wi.into()), value: Some(value), pdf: Some(self.pdf.number()) });
     }
 }
 
@@ -251,13 +270,13 @@ impl Output for Sample8 {
     }
 }
 
-/// A shading point of the formulas.
+/// A shading point of the formulas, in numbers of one type.
 #[derive(Debug)]
-pub struct Point<R>(pub R);
+pub struct Point<R, T = f32>(pub R, pub PhantomData<T>);
 
-impl<R: Reference<f32>> Output for Point<R> {
+impl<R: Reference<T>, T: Single> Output for Point<R, T> {
     fn answers(&self, out: &mut Vec<Answer>) {
-        self.0.eval_pdf(PROBE.to_array()).answers(out);
+        self.0.eval_pdf(PROBE.to_array().map(T::from_f32)).answers(out);
     }
 }
 

@@ -1,5 +1,8 @@
-//! Time of each operation: the reference's scalar code, the kernel on one lane, and on eight lanes of every
+//! Time of each operation: the formulas in scalar code, the kernel on one lane, and on eight lanes of every
 //! instruction set of this CPU, interleaved in one run.
+//!
+//! The formulas are timed twice: on the libm crate, and on the methods of std, which are the platform's library. Ratios are to
+//! the faster.
 //!
 //! A round times every contender of every operation once, under the same state of the machine; a ratio is formed
 //! within a round, and the report has the median over the rounds with its quartiles. Directions and numbers are
@@ -48,7 +51,9 @@ pub enum Op {
     EvalPdfTails,
     /// [`Sample`](Self::Sample) of the same hair.
     SampleTails,
-    /// A shading point of its own for each direction, and one sample with its value: all on one head of hair.
+    /// A shading point of its own for each direction, and its value and density: all on one head of hair.
+    PointsEval,
+    /// The same, and one sample with its value.
     PointsShared,
     /// The same with four samples per shading point.
     PointsOf4,
@@ -62,12 +67,13 @@ pub enum Op {
 
 impl Op {
     /// Every operation, in the order of the tables.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Prepare,
         Self::EvalPdf,
         Self::Sample,
         Self::EvalPdfTails,
         Self::SampleTails,
+        Self::PointsEval,
         Self::PointsShared,
         Self::PointsOf4,
         Self::PointsOf16,
@@ -84,6 +90,7 @@ impl Op {
             Self::Sample => "sample",
             Self::EvalPdfTails => "eval + pdf, far tails",
             Self::SampleTails => "sample, far tails",
+            Self::PointsEval => "prepare + eval + pdf",
             Self::PointsShared => "prepare + 1 sample",
             Self::PointsOf4 => "prepare + 4 samples",
             Self::PointsOf16 => "prepare + 16 samples",
@@ -129,9 +136,9 @@ pub struct SpeedResult {
     pub op: Op,
     /// The model.
     pub model: &'static str,
-    /// `textbook`, `one lane`, `eight lanes` or `slices`.
+    /// `textbook`, `one lane`, or eight lanes, one of the kinds of packets and slices.
     pub contender: &'static str,
-    /// Instruction set of the lanes; `scalar` for one lane.
+    /// Instruction set of the lanes; `scalar` for one lane, with the library that a textbook takes its functions from.
     pub level: &'static str,
     /// Number of rounds.
     pub rounds: usize,
@@ -143,7 +150,7 @@ pub struct SpeedResult {
     pub ns_q1: f64,
     /// Third quartile of the same.
     pub ns_q3: f64,
-    /// How many times as fast as the reference: median over the rounds of the ratio within a round.
+    /// How many times as fast as the faster textbook: median over the rounds of the ratio within a round.
     pub ratio: f64,
     /// First quartile of the same.
     pub ratio_q1: f64,
@@ -166,7 +173,7 @@ pub struct SpeedReport {
     pub compiled_level: &'static str,
     /// Default instruction set of eight lanes.
     pub detected_level: &'static str,
-    /// By model, operation and contender; the reference leads each block.
+    /// By model, operation and contender; the textbooks lead each block.
     pub rows: Vec<SpeedResult>,
     /// Slices on several threads.
     pub threads: Vec<ThreadsResult>,
@@ -263,10 +270,13 @@ impl CellTimings {
     }
 
     fn rows(mut self) -> Vec<SpeedResult> {
+        // The two textbooks lead; ratios are to the faster of them.
+        let [libm, std] = [&self.ns[0], &self.ns[1]];
+        let fastest = if quartiles(std)[1] < quartiles(libm)[1] { std } else { libm };
         let contenders = self.cell.contenders.iter_mut().zip(&self.passes).zip(&self.ns);
         contenders
             .map(|((contender, passes), ns)| {
-                let ratios: Vec<f64> = self.ns[0].iter().zip(ns).map(|(reference, ns)| reference / ns).collect();
+                let ratios: Vec<f64> = fastest.iter().zip(ns).map(|(textbook, ns)| textbook / ns).collect();
                 let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) = (quartiles(ns), quartiles(&ratios));
                 let wrong_share = self.cell.truth.wrong_share(&contender.task.answers());
                 SpeedResult {

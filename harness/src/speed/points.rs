@@ -1,16 +1,16 @@
 //! Shading points of their own: preparing one, and a few samples of it.
 
-use super::cells::{Contender, EIGHT, EIGHT_AT_ONE, ONE, scalar, truth, with_levels};
+use super::cells::{Contender, EIGHT, EIGHT_AT_ONE, HITS, ONE, scalar, textbooks, truth, with_levels};
 use super::check::Truth;
-use super::inputs::{Inputs, pairs};
+use super::inputs::{DIRECTIONS, Inputs, pairs};
 use super::task;
 use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, ParamError, Sample8};
-use hairis_benches::entries::TEXTBOOK;
+use hairis::{Bsdf, Bsdf8, EvalColumns, HitSlices, ParamError, Sample8, SampleColumns};
 use hairis_benches::inputs::{arrays, packets, xi_packets};
-use hairis_benches::task::{Answer, Output, Pass, Several};
+use hairis_benches::platform::{Platform, platform};
+use hairis_benches::task::{Answer, Output, Pass, Several, Slices};
 use hairis_variants::{ModelId, Registered};
 
 /// The first `N` samples of a packet.
@@ -39,33 +39,26 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
     inputs: &Inputs<M::Params>,
 ) -> Result<(Vec<Contender>, Truth), ParamError> {
     let params = inputs.params[0];
-    let (bsdf, formulas) = (Bsdf::new(&M::MODEL, &params), M::formulas::<f32>(&params));
+    let bsdf = Bsdf::new(&M::MODEL, &params);
+    let (libm, std) = (M::formulas::<f32>(&params), M::formulas::<Platform>(&params));
     let (rows, _) = inputs.xi.as_chunks::<N>();
     let wo = &inputs.wo[..rows.len()];
-    let contenders = vec![
-        scalar(
-            TEXTBOOK,
-            several(
-                pairs(&arrays(wo), rows),
-                |i| i,
-                move |(wo, xi), keep| {
-                    let point = M::reference_at(&formulas, *wo, 0.0);
-                    xi.iter().for_each(|xi| keep(&point.sample(*xi)));
-                },
-            ),
-        ),
-        scalar(
-            ONE,
-            several(
-                pairs(wo, rows),
-                |i| i,
-                move |(wo, xi), keep| {
-                    let point = bsdf.prepare(*wo);
-                    xi.iter().for_each(|xi| keep(&point.sample(*xi)));
-                },
-            ),
-        ),
-    ];
+    let in_turn = |i| i;
+    let mut contenders = textbooks(
+        several(pairs(&arrays(wo), rows), in_turn, move |(wo, xi), keep| {
+            let point = M::reference_at(&libm, *wo, 0.0);
+            xi.iter().for_each(|xi| keep(&point.sample(*xi)));
+        }),
+        several(pairs(&arrays(wo), rows), in_turn, move |(wo, xi), keep| {
+            let point = M::reference_at(&std, platform(*wo), Platform(0.0));
+            xi.iter().for_each(|xi| keep(&point.sample(platform(*xi))));
+        }),
+    );
+    let one = several(pairs(wo, rows), in_turn, move |(wo, xi), keep| {
+        let point = bsdf.prepare(*wo);
+        xi.iter().for_each(|xi| keep(&point.sample(*xi)));
+    });
+    contenders.push(scalar(ONE, one));
     let (eights, _) = rows.as_chunks::<8>();
     let by_sample: Vec<[[f32x8; 3]; N]> =
         eights.iter().map(|eight| core::array::from_fn(|k| xi_packets(&eight.map(|xi| xi[k]))[0])).collect();
@@ -88,18 +81,64 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
             })
             .collect();
         contenders = with_levels(contenders, EIGHT_AT_ONE, |level| {
-            several(
-                pairs(wo, &packed),
-                |i| i,
-                move |(wo, xi), keep| {
-                    let point = bsdf.prepare(*wo);
-                    xi.iter().for_each(|xi| keep(&Leading::<N>(point.sample8_at(level, xi))));
-                },
-            )
+            several(pairs(wo, &packed), in_turn, move |(wo, xi), keep| {
+                let point = bsdf.prepare(*wo);
+                xi.iter().for_each(|xi| keep(&Leading::<N>(point.sample8_at(level, xi))));
+            })
+        });
+    }
+    if N == 1 {
+        contenders = with_levels(contenders, HITS, |level| {
+            let call = move |[x, y, z, a, b, c]: [&[f32]; 6], out: [&mut [f32]; 11]| {
+                let [red, green, blue, pdf, u, v, w, wr, wg, wb, slot] = out;
+                let out = SampleColumns {
+                    wi: Some([u, v, w]),
+                    value: Some([red, green, blue]),
+                    pdf: Some(pdf),
+                    weight: Some([wr, wg, wb]),
+                    slot: Some(slot),
+                };
+                bsdf.sample_hits_at(level, HitSlices { wo: [x, y, z], h: None }, [a, b, c], out)
+            };
+            Box::new(Slices::new(DIRECTIONS, &joined(&arrays(wo), &inputs.xi), call))
         });
     }
     let points = truth(id, &params, wo)?.into_iter().flat_map(|point| core::iter::repeat_n(point, N)).collect();
     Ok((contenders, Truth::of_samples(points, &inputs.xi)))
+}
+
+/// Rows of both.
+fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
+    a.iter().zip(b).map(|([x, y, z], [u, v, w])| [*x, *y, *z, *u, *v, *w]).collect()
+}
+
+/// A shading point and an evaluation at it, all on the same hair.
+pub(super) fn eval<M: Registered>(
+    id: ModelId,
+    inputs: &Inputs<M::Params>,
+) -> Result<(Vec<Contender>, Truth), ParamError> {
+    let params = inputs.params[0];
+    let bsdf = Bsdf::new(&M::MODEL, &params);
+    let (libm, std) = (M::formulas::<f32>(&params), M::formulas::<Platform>(&params));
+    let both = pairs(&arrays(&inputs.wo), &arrays(&inputs.wi));
+    let mut contenders = textbooks(
+        task(&both, move |(wo, wi)| M::reference_at(&libm, *wo, 0.0).eval_pdf(*wi)),
+        task(&both, move |(wo, wi)| M::reference_at(&std, platform(*wo), Platform(0.0)).eval_pdf(platform(*wi))),
+    );
+    let one = task(&pairs(&inputs.wo, &inputs.wi), move |(wo, wi)| bsdf.prepare(*wo).eval_pdf(*wi));
+    contenders.push(scalar(ONE, one));
+    let eights = pairs(&packets(&inputs.wo), &packets(&inputs.wi));
+    let contenders = with_levels(contenders, EIGHT, |level| {
+        task(&eights, move |(wo, wi)| bsdf.prepare8_at(level, wo).eval_pdf8_at(level, wi))
+    });
+    let contenders = with_levels(contenders, HITS, |level| {
+        let call = move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
+            let out = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
+            bsdf.eval_pdf_hits_at(level, HitSlices { wo: [x, y, z], h: None }, [u, v, w], out)
+        };
+        Box::new(Slices::new(DIRECTIONS, &joined(&arrays(&inputs.wo), &arrays(&inputs.wi)), call))
+    });
+    Ok((contenders, Truth::of_directions(truth(id, &params, &inputs.wo)?, &inputs.wi)))
 }
 
 /// A shading point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
@@ -110,18 +149,18 @@ pub(super) fn mixed<M: Registered>(
 ) -> Result<(Vec<Contender>, Truth), ParamError> {
     let params = inputs.params;
     let bsdfs = params.map(|params| Bsdf::new(&M::MODEL, &params));
-    let formulas = params.map(|params| M::formulas::<f32>(&params));
+    let libm = params.map(|params| M::formulas::<f32>(&params));
+    let std = params.map(|params| M::formulas::<Platform>(&params));
     let numbered: Vec<(usize, Vec3)> = inputs.wo.iter().enumerate().map(|(i, wo)| (i % 8, *wo)).collect();
     let arrays: Vec<(usize, [f32; 3])> = numbered.iter().map(|(i, wo)| (*i, wo.to_array())).collect();
-    let contenders = vec![
-        scalar(
-            TEXTBOOK,
-            task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
-                M::reference_at(&formulas[*i], *wo, 0.0).sample(*xi)
-            }),
-        ),
-        scalar(ONE, task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| bsdfs[*i].prepare(*wo).sample(*xi))),
-    ];
+    let mut contenders = textbooks(
+        task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| M::reference_at(&libm[*i], *wo, 0.0).sample(*xi)),
+        task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
+            M::reference_at(&std[*i], platform(*wo), Platform(0.0)).sample(platform(*xi))
+        }),
+    );
+    let one = task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| bsdfs[*i].prepare(*wo).sample(*xi));
+    contenders.push(scalar(ONE, one));
     let eights = pairs(&packets(&inputs.wo), &xi_packets(&inputs.xi));
     let packed = Bsdf8::pack(bsdfs.each_ref());
     let contenders = with_levels(contenders, EIGHT, |level| {
