@@ -141,7 +141,8 @@ fn any_finite_vector_has_a_direction() {
             assert!((got - want / length).abs() < 1.2e-7, "{v:?} times {scale}: {got}, not {}", want / length);
         }
         let cos = truth[1].hypot(truth[2]) / length;
-        assert!((f64::from(cos_theta) - cos).abs() < 1.2e-7 && sin_theta == vector.x, "{v:?} times {scale}");
+        // Three roundings.
+        assert!((f64::from(cos_theta) - cos).abs() < 1.8e-7 && sin_theta == vector.x, "{v:?} times {scale}");
     }
     let zero = Direction::normalized(Vec3x::<f32>::from(Vec3::ZERO));
     assert_eq!((Vec3::from(zero.vector), zero.cos_theta), (Vec3::Y, 1.0), "zero counts as v");
