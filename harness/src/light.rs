@@ -65,6 +65,11 @@ pub trait Light: Sync + Send {
     /// A direction drawn with density [`pdf`](Self::pdf) from two numbers of [0, 1).
     fn sample(&self, xi: [f64; 2]) -> LightSample;
 
+    /// Eight directions, as [`sample`](Self::sample) draws them.
+    fn sample8(&self, xi: [[f64; 2]; 8]) -> [LightSample; 8] {
+        xi.map(|xi| self.sample(xi))
+    }
+
     /// Density of [`sample`](Self::sample) at `dir`, per steradian; integrates to 1 over the sphere.
     fn pdf(&self, dir: DVec3) -> f64;
 

@@ -1,16 +1,25 @@
 //! Latitude-longitude environment maps with exact importance sampling.
 
+mod inversion;
+mod places;
+
 use super::{Light, LightSample, Seen8, luminance, rounded};
 use crate::quadrature::{GaussLegendre, Integral, SphereIntegrator};
 use crate::sequence::mix;
+use core::array;
 use core::f64::consts::PI;
 use glam::DVec3;
-use hairis::Vec3x8;
+use hairis::{Level, Vec3x8};
+use inversion::{cell, guide, search};
+use places::{Places, in_doubt};
 use serde::Serialize;
 use wide::f32x8;
 
 /// The radiance that replaces an infinite pixel: the largest half float of `OpenEXR`.
 const INFINITE_PIXEL: f32 = 65_504.0;
+
+/// Samples are at least this far, in shares of a texel, from its edges where it is not looked up once more.
+const EDGE: f64 = 1e-6;
 
 /// Repaired channels of an environment, by kind of repair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -44,13 +53,14 @@ pub struct Environment {
     name: String,
     width: usize,
     height: usize,
-    pixels: Vec<[f32; 3]>,
+    /// Radiance of each texel, and the density of drawing a direction of it: what a look-up reads.
+    texels: Vec<[f32; 4]>,
     /// Cosine of the polar angle at the upper edge of each row, and at the bottom: 1 down to -1.
     edges: Vec<f64>,
     /// Cumulative weights over rows, and within each row over its columns; both start after the first element.
     rows: Vec<f64>,
     columns: Vec<f64>,
-    /// Where the searches in them begin: see [`guide`].
+    /// Where the searches in them begin: see [`guide`](inversion::guide).
     row_guide: Vec<u32>,
     column_guide: Vec<u32>,
     repairs: PixelRepairs,
@@ -107,7 +117,13 @@ impl Environment {
         }
         let row_guide = guide(&rows).collect();
         let column_guide = columns.chunks_exact(width).flat_map(guide).collect();
-        Self { name: name.into(), width, height, pixels, edges, rows, columns, row_guide, column_guide, repairs }
+        let texels = pixels.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
+        let name = name.into();
+        let mut map = Self { name, width, height, texels, edges, rows, columns, row_guide, column_guide, repairs };
+        for place in 0..map.texels.len() {
+            map.texels[place][3] = rounded(map.density(map.radiance_of([place % width, place / width])));
+        }
+        map
     }
 
     /// Width and height in texels.
@@ -152,7 +168,7 @@ impl Environment {
     #[must_use]
     pub fn total_radiance(&self) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for (j, row) in self.pixels.chunks_exact(self.width).enumerate() {
+        for (j, row) in self.texels.chunks_exact(self.width).enumerate() {
             let solid_angle = self.texel_solid_angle(j);
             for rgb in row {
                 for c in 0..3 {
@@ -167,7 +183,10 @@ impl Environment {
     #[must_use]
     pub fn digest(&self) -> u64 {
         let start = mix(mix(self.width as u64) ^ self.height as u64);
-        self.pixels.iter().flatten().fold(start, |hash, channel| mix(hash ^ u64::from(channel.to_bits())))
+        self.texels
+            .iter()
+            .flat_map(|texel| &texel[..3])
+            .fold(start, |hash, channel| mix(hash ^ u64::from(channel.to_bits())))
     }
 
     fn total(&self) -> f64 {
@@ -193,64 +212,57 @@ impl Environment {
         DVec3::new(r * sin, cosine, -r * cos)
     }
 
-    fn radiance_of(&self, [i, j]: [usize; 2]) -> [f64; 3] {
-        self.pixels[j * self.width + i].map(f64::from)
+    fn at(&self, [i, j]: [usize; 2]) -> [f32; 4] {
+        self.texels[j * self.width + i]
     }
 
-    fn density_of(&self, texel: [usize; 2]) -> f64 {
+    fn radiance_of(&self, texel: [usize; 2]) -> [f64; 3] {
+        let [r, g, b, _] = self.at(texel).map(f64::from);
+        [r, g, b]
+    }
+
+    /// Density of drawing a direction of a texel with this radiance.
+    fn density(&self, radiance: [f64; 3]) -> f64 {
         let total = self.total();
         if total == 0.0 {
             return 0.25 / PI;
         }
         // Probability luminance * (edge difference) / total, over the solid angle 2 pi / width * (edge difference).
-        luminance(self.radiance_of(texel)) / total * self.width as f64 / (2.0 * PI)
+        luminance(radiance) / total * self.width as f64 / (2.0 * PI)
     }
 }
 
-/// The cell of [0, 1] cut in `n` that holds `x`.
-fn cell(x: f64, n: usize) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0..=n; NaN becomes 0")]
-    let i = (x * n as f64).clamp(0.0, n as f64) as usize;
-    i.min(n - 1)
-}
-
-/// The whole part of `x` as an index below `n`; NaN and what is below 0 become 0.
-fn index(x: f32, n: usize) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the cast saturates; NaN becomes 0")]
-    let i = x as usize;
-    i.min(n - 1)
-}
-
-/// For each of as many equal parts of the total as there are indices, the index that the part begins in: a search that starts there takes a step or two, on
-/// average, where bisection takes a dozen. The inversion stays monotone, unlike that of alias tables, so that stratified numbers stay stratified.
-fn guide(cumulative: &[f64]) -> impl Iterator<Item = u32> + '_ {
-    let (parts, total) = (cumulative.len(), cumulative.last().copied().unwrap_or(0.0));
-    let mut index = 0;
-    (0..parts).map(move |part| {
-        while index + 1 < parts && cumulative[index] <= part as f64 / parts as f64 * total {
-            index += 1;
+impl Environment {
+    /// Directions from pairs of numbers. The tables of a large map are in no cache: reads of one kind are side by side, so that
+    /// they wait together.
+    fn draw<const N: usize>(&self, xi: [[f64; 2]; N]) -> [LightSample; N] {
+        if self.is_black() {
+            let dir = |[a, b]: [f64; 2]| Self::direction(b, 1.0 - 2.0 * a);
+            return xi.map(|xi| LightSample { dir: dir(xi), radiance: [0.0; 3], pdf: 0.25 / PI });
         }
-        u32::try_from(index).unwrap_or(u32::MAX)
-    })
-}
-
-/// Draws an index from a cumulative sum, and what is left of `xi` in [0, 1). Indices of no weight are never drawn while some have weight.
-fn draw(cumulative: &[f64], guide: &[u32], xi: f64) -> (usize, f64) {
-    let last = cumulative.len() - 1;
-    let total = cumulative[last];
-    // Strictly below the total, or rounding could fall off the end into indices of no weight.
-    let target = (xi * total).min(total * (1.0 - f64::EPSILON / 2.0));
-    let mut index = guide[cell(xi, guide.len())] as usize;
-    // Rounding may have put the start one too far.
-    while index > 0 && cumulative[index - 1] > target {
-        index -= 1;
+        let rows = xi.map(|[xi, _]| {
+            let index = self.row_guide[cell(xi, self.height)] as usize;
+            search(&self.rows, self.total(), (index, self.rows[index]), xi)
+        });
+        let of_row = |k: usize| rows[k].0 * self.width..(rows[k].0 + 1) * self.width;
+        let totals: [f64; N] = array::from_fn(|k| self.columns[of_row(k).end - 1]);
+        let starts: [usize; N] =
+            array::from_fn(|k| self.column_guide[of_row(k).start + cell(xi[k][1], self.width)] as usize);
+        let sums: [f64; N] = array::from_fn(|k| self.columns[of_row(k).start + starts[k]]);
+        let columns: [(usize, f64); N] =
+            array::from_fn(|k| search(&self.columns[of_row(k)], totals[k], (starts[k], sums[k]), xi[k][1]));
+        let drawn: [[f32; 4]; N] = array::from_fn(|k| self.texels[of_row(k).start + columns[k].0]);
+        array::from_fn(|k| {
+            let ((j, down), (i, across)) = (rows[k], columns[k]);
+            let cosine = self.edges[j] + down * (self.edges[j + 1] - self.edges[j]);
+            let dir = Self::direction((i as f64 + across) / self.width as f64, cosine);
+            // On an edge between texels rounding may land in the next one, and value and density must be of one texel.
+            let inside = |x: f64| (EDGE..1.0 - EDGE).contains(&x);
+            let [r, g, b, _] = if inside(down) && inside(across) { drawn[k] } else { self.at(self.texel(dir)) };
+            let radiance = [r, g, b].map(f64::from);
+            LightSample { dir, radiance, pdf: self.density(radiance) }
+        })
     }
-    while index < last && cumulative[index] <= target {
-        index += 1;
-    }
-    let before = if index == 0 { 0.0 } else { cumulative[index - 1] };
-    let rest = (target - before) / (cumulative[index] - before);
-    (index, if rest.is_finite() { rest.clamp(0.0, 1.0) } else { 0.5 })
 }
 
 impl Light for Environment {
@@ -263,42 +275,38 @@ impl Light for Environment {
     }
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
-        let dir = if self.is_black() {
-            Self::direction(xi[1], 1.0 - 2.0 * xi[0])
-        } else {
-            let (j, down) = draw(&self.rows, &self.row_guide, xi[0]);
-            let row = j * self.width..(j + 1) * self.width;
-            let (i, across) = draw(&self.columns[row.clone()], &self.column_guide[row], xi[1]);
-            Self::direction(
-                (i as f64 + across) / self.width as f64,
-                self.edges[j] + down * (self.edges[j + 1] - self.edges[j]),
-            )
-        };
-        // Looked up again: on an edge between texels rounding may land in the next one, and value and density must be of one texel.
-        let texel = self.texel(dir);
-        LightSample { dir, radiance: self.radiance_of(texel), pdf: self.density_of(texel) }
+        let [sample] = self.draw([xi]);
+        sample
+    }
+
+    fn sample8(&self, xi: [[f64; 2]; 8]) -> [LightSample; 8] {
+        self.draw(xi)
     }
 
     fn pdf(&self, dir: DVec3) -> f64 {
-        self.density_of(self.texel(dir))
+        self.density(self.radiance(dir))
     }
 
+    /// To the bit what [`radiance`](Light::radiance) and [`pdf`](Light::pdf) give in double precision, rounded.
     fn see8(&self, dir: &Vec3x8) -> Seen8 {
-        let splat = |x: f64| f32x8::splat(rounded(x));
-        let flat = (dir.x * dir.x + dir.z * dir.z).sqrt();
-        let row = (flat.atan2(dir.y) * splat(self.height as f64 / PI)).to_array();
-        let turn = dir.x.atan2(-dir.z) * splat(0.5 / PI) + splat(0.5);
-        let column = (turn * splat(self.width as f64)).to_array();
-        let (mut radiance, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
-        let scale = if self.is_black() { 0.0 } else { self.width as f64 / (2.0 * PI * self.total()) };
+        let [row, column] = Level::detect().run(Places { dir, texels: [self.height as f32, self.width as f32] });
+        let [rows, columns] = [row.fast_trunc_int().to_array(), column.fast_trunc_int().to_array()];
+        let doubt = in_doubt(row, self.height as f32) | in_doubt(column, self.width as f32);
+        let mut seen = [[0.0; 8]; 4];
         for lane in 0..8 {
-            let rgb = self.pixels[index(row[lane], self.height) * self.width + index(column[lane], self.width)];
-            for (of, c) in radiance.iter_mut().zip(rgb) {
-                of[lane] = c;
+            let texel = if doubt >> lane & 1 == 1 {
+                let [i, j] = self.texel(dir.lane(lane).as_dvec3());
+                j * self.width + i
+            } else {
+                // Above 0 and below the size: in doubt otherwise.
+                rows[lane].unsigned_abs() as usize * self.width + columns[lane].unsigned_abs() as usize
+            };
+            for (of, number) in seen.iter_mut().zip(self.texels[texel]) {
+                of[lane] = number;
             }
-            pdf[lane] = if scale > 0.0 { rounded(luminance(rgb.map(f64::from)) * scale) } else { rounded(0.25 / PI) };
         }
-        Seen8 { radiance: radiance.map(f32x8::new), pdf: f32x8::new(pdf) }
+        let [r, g, b, pdf] = seen.map(f32x8::new);
+        Seen8 { radiance: [r, g, b], pdf }
     }
 
     /// Gauss-Legendre in each texel, 4 by 4 nodes and 3 by 3 for the error; texels of no light are skipped. Exact edges, but lobes of `f` much narrower than
@@ -334,46 +342,5 @@ impl Light for Environment {
         let largest = value.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
         let allowed = tolerance.absolute.max(tolerance.relative * largest);
         Integral { value, error, evaluations, converged: error.iter().all(|e| *e <= allowed) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sequence::Independent;
-
-    #[test]
-    fn guided_searches_find_what_bisection_finds() {
-        let mut xi = Independent::new(11, 0);
-        for length in [1, 2, 3, 100, 1024] {
-            for kind in 0..4 {
-                let mut sum = 0.0;
-                let weight = |xi: &mut Independent| match kind {
-                    0 => 1.0,
-                    1 => xi.next_f64().powi(20),
-                    2 if xi.next_f64() < 0.9 => 0.0,
-                    2 => 1.0,
-                    _ => 1.0 / 3.0,
-                };
-                let cumulative: Vec<f64> = (0..length)
-                    .map(|_| {
-                        sum += weight(&mut xi);
-                        sum
-                    })
-                    .collect();
-                if sum == 0.0 {
-                    continue;
-                }
-                let guide: Vec<u32> = guide(&cumulative).collect();
-                let edges =
-                    (0..=length).map(|k| f64::from(k) / f64::from(length)).chain([f64::EPSILON, 1.0 - f64::EPSILON]);
-                for xi in edges.chain((0..1000).map(|_| xi.next_f64())) {
-                    let xi = xi.min(1.0 - f64::EPSILON / 2.0);
-                    let target = (xi * sum).min(sum * (1.0 - f64::EPSILON / 2.0));
-                    let expected = cumulative.partition_point(|c| *c <= target).min(cumulative.len() - 1);
-                    assert_eq!(draw(&cumulative, &guide, xi).0, expected, "{length} of kind {kind} at {xi}");
-                }
-            }
-        }
     }
 }

@@ -75,3 +75,57 @@ fn sky_estimates_match_its_sum() {
         assert!(m.mean_estimate().z_score(want).abs() < 4.0, "{:?} {want}", m.mean_estimate());
     }
 }
+
+/// Radiance and density of a direction of single precision, as bits.
+fn bits(radiance: [f64; 3], pdf: f64) -> [u32; 4] {
+    let [r, g, b] = radiance;
+    [r, g, b, pdf].map(|x| rounded(x).to_bits())
+}
+
+#[test]
+fn eight_lanes_find_the_texels_of_one() {
+    let mut xi = Independent::new(8, 0);
+    for [width, height] in [[1, 1], [3, 1], [1, 4], [7, 5], [16, 8], [1024, 512], [4096, 2048]] {
+        let pixels = (0..width * height).map(|_| xi.next_xi_f32::<3>()).collect();
+        let map = Environment::from_pixels("random", width, height, pixels).expect("valid");
+        let mut dirs: Vec<DVec3> = (0..40_000).map(|_| Constant::white().sample(xi.next_xi()).dir).collect();
+        // Corners of texels, rounded to either side; meridians and parallels; the poles, and what is next to them.
+        for k in 0..20_000 {
+            let [a, b] = xi.next_xi::<2>();
+            let whole = |x: f64, n: usize| if k % 3 == 0 { x } else { (x * n as f64).floor() / n as f64 };
+            let (turn, polar) = (2.0 * PI * (whole(a, width) - 0.5), PI * whole(b, height));
+            dirs.push(DVec3::new(polar.sin() * turn.sin(), polar.cos(), -polar.sin() * turn.cos()));
+        }
+        for (x, y, z) in [(0, 0, 1), (0, 1, 0), (1, 0, 0), (1, 0, 1), (1, 1, 0), (0, 1, 1), (0, 0, 0)] {
+            let zero_or = |is: i32, sign: u32| f64::from(is).copysign(if sign % 2 == 1 { -1.0 } else { 1.0 });
+            for signs in 0..8 {
+                let axis = DVec3::new(zero_or(x, signs), zero_or(y, signs / 2), zero_or(z, signs / 4));
+                let tiny = DVec3::new(zero_or(1, signs), 0.0, zero_or(1, signs / 4));
+                dirs.extend([axis, axis + 1e-7 * tiny, axis + 1e-20 * tiny, axis + 1e-40 * tiny, axis + 1e-45 * tiny]);
+            }
+        }
+        dirs.extend([DVec3::NAN, DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::new(f64::NAN, 1.0, 0.0)]);
+        for eight in dirs.chunks(8) {
+            let eight: [glam::Vec3; 8] = core::array::from_fn(|lane| eight[lane % eight.len()].as_vec3());
+            let seen = map.see8(&eight.into());
+            for (lane, dir) in eight.into_iter().enumerate() {
+                let [r, g, b] = seen.radiance.map(|channel| channel.as_array()[lane].to_bits());
+                let expected = bits(map.radiance(dir.as_dvec3()), map.pdf(dir.as_dvec3()));
+                assert_eq!([r, g, b, seen.pdf.as_array()[lane].to_bits()], expected, "{width} x {height}: {dir}");
+            }
+        }
+    }
+}
+
+#[test]
+fn samples_have_the_texel_of_their_direction() {
+    let mut xi = Independent::new(9, 0);
+    for [width, height] in [[1, 1], [5, 3], [1024, 512]] {
+        let pixels = (0..width * height).map(|_| xi.next_xi_f32::<3>()).collect();
+        let map = Environment::from_pixels("random", width, height, pixels).expect("valid");
+        for _ in 0..100_000 {
+            let sample = map.sample(xi.next_xi());
+            assert_eq!((sample.radiance, sample.pdf), (map.radiance(sample.dir), map.pdf(sample.dir)), "{sample:?}");
+        }
+    }
+}
