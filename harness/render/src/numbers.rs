@@ -1,5 +1,9 @@
 //! Uniform numbers for camera rays and paths: functions of seed, pixel, sample and place on the path alone.
 
+mod even;
+
+pub use even::Even;
+
 use clap::ValueEnum;
 use hairis_harness::sequence::{HALTON_BASES, Halton, mix, to_unit_f32};
 

@@ -2,12 +2,16 @@
 
 use crate::camera::Camera;
 use crate::geometry::Strands;
-use crate::lights::{LightSample, Rectangle, Seen, Sky};
+use crate::lights::{LightSample, LightSample8, Rectangle, Seen, Sky};
 use crate::material::Hair;
 use crate::tree::{self, Ray, Tree};
 use glam::Vec3;
+use hairis::Vec3x8;
 use hairis::wide::f32x8;
-use hairis_harness::light::Light;
+use hairis_harness::light::Seen8;
+
+/// Rays to lights end this much before them.
+const SHORTER: f32 = 1.0 - 1e-4;
 
 /// An ellipsoid along the axes that reflects as Lambert's law says, seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,7 +108,7 @@ impl Scene {
     #[inline]
     #[must_use]
     pub fn blocked(&self, ray: &Ray) -> bool {
-        let t_max = ray.t_max * (1.0 - 1e-4);
+        let t_max = ray.t_max * SHORTER;
         let short = |t: f32| t < t_max;
         self.head.is_some_and(|head| head.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
             || self.rectangles.iter().any(|one| one.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
@@ -122,39 +126,62 @@ impl Scene {
         1.0 / lights.max(1) as f32
     }
 
-    /// A direction towards a light, from two numbers for the direction and one for the choice.
-    #[inline]
-    #[must_use]
-    pub fn sample_light(&self, origin: Vec3, [x, y, choice]: [f32; 3]) -> Option<LightSample> {
-        let share = self.share();
+    /// The lamp that a number chooses, or the sky.
+    fn lamp(&self, choice: f32) -> Option<&Rectangle> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "a small count; the cast saturates"
         )]
-        let index = (choice / share) as usize;
-        let sample = match self.lamps().nth(index) {
-            Some(lamp) => self.rectangles[lamp].sample(origin, [x, y]),
-            None => self.sky.sample([x, y]),
-        }?;
-        Some(LightSample { pdf: sample.pdf * share, ..sample })
+        let index = (choice / self.share()) as usize;
+        self.lamps().nth(index).map(|lamp| &self.rectangles[lamp])
     }
 
-    /// The lights in eight directions from a point, and how far away they are: as [`light_along`](Self::light_along).
+    /// A direction towards a light, from two numbers for the direction and one for the choice.
+    #[inline]
     #[must_use]
-    pub fn lights_along(&self, origin: Vec3, directions: &[Vec3; 8]) -> [Option<(Seen, f32)>; 8] {
-        match &self.sky {
-            Sky::Map(map) if self.lamps().next().is_none() => {
-                let seen = Light::see8(&**map, &(*directions).into());
-                core::array::from_fn(|lane| {
-                    let at = |lanes: &f32x8| lanes.as_array()[lane];
-                    let radiance = Vec3::from_array(seen.radiance.each_ref().map(at));
-                    let pdf = at(&seen.pdf);
-                    (pdf > 0.0).then_some((Seen { radiance, pdf }, f32::INFINITY))
-                })
-            }
-            _ => directions.map(|direction| self.light_along(origin, direction)),
+    pub fn sample_light(&self, origin: Vec3, [x, y, choice]: [f32; 3]) -> Option<LightSample> {
+        let sample = match self.lamp(choice) {
+            Some(lamp) => lamp.sample(origin, [x, y]),
+            None => self.sky.sample([x, y]),
+        }?;
+        Some(LightSample { pdf: sample.pdf * self.share(), ..sample })
+    }
+
+    /// Eight directions towards lights from a point per lane, as [`sample_light`](Self::sample_light) draws them. Where there is a
+    /// `sky`, directions towards it are its lanes.
+    #[inline]
+    #[must_use]
+    pub fn sample_lights8(
+        &self,
+        origin: impl Fn(usize) -> Vec3,
+        xi: &[[f32; 8]; 3],
+        sky: Option<&LightSample8>,
+    ) -> LightSample8 {
+        if self.lamps().next().is_none() {
+            return sky.copied().unwrap_or_else(|| self.sky.sample8(&[xi[0], xi[1]]));
         }
+        LightSample8::from(core::array::from_fn(|lane| {
+            let xi = xi.each_ref().map(|axis| axis[lane]);
+            match (self.lamp(xi[2]), sky) {
+                (None, Some(sky)) => sky.lane(lane, self.share()),
+                _ => self.sample_light(origin(lane), xi),
+            }
+        }))
+    }
+
+    /// The lights in eight directions from a point: as [`light_along`](Self::light_along).
+    #[must_use]
+    pub fn lights_along(&self, origin: Vec3, direction: &Vec3x8) -> LightSample8 {
+        if self.lamps().next().is_none() {
+            let Seen8 { radiance, pdf } = self.sky.see8(direction);
+            return LightSample8 { direction: *direction, distance: f32x8::splat(f32::INFINITY), radiance, pdf };
+        }
+        LightSample8::from(core::array::from_fn(|lane| {
+            let direction = direction.lane(lane);
+            let (Seen { radiance, pdf }, distance) = self.light_along(origin, direction)?;
+            Some(LightSample { direction, distance, radiance, pdf })
+        }))
     }
 
     /// Radiance along a ray that met no hair and no surface.

@@ -4,11 +4,14 @@ mod clock;
 mod gather;
 mod path;
 mod resampled;
+#[cfg(test)]
+mod tests;
 mod wave;
 
 pub use clock::seconds_of_thread;
 
 use crate::film::{Crop, Film, Tile};
+use crate::lights::Table;
 use crate::numbers::Sequence;
 use crate::scene::Scene;
 use clap::ValueEnum;
@@ -116,14 +119,20 @@ const PASS: u32 = 4;
 /// of [`Integrator::Gather`] is made at once.
 pub fn render(scene: &Scene, settings: &Settings, film: &mut Film, samples: u32, progress: &(dyn Fn(f64) + Sync)) {
     let total = film.tiles.len().max(1);
+    let start = seconds_of_thread();
+    let table = match (settings.integrator, settings.mis) {
+        (Integrator::Gather, Mis::Resampled) => Table::draw(&scene.sky, settings.seed, resampled::each(samples)),
+        _ => None,
+    };
+    let drawing = (seconds_of_thread() - start) / total as f64;
     let done = AtomicUsize::new(0);
     film.tiles.par_iter_mut().for_each(|tile| {
         let start = seconds_of_thread();
         match settings.integrator {
-            Integrator::Gather => gather::tile(scene, settings, tile, samples),
+            Integrator::Gather => gather::tile(scene, table.as_ref(), settings, tile, samples),
             Integrator::Direct | Integrator::Path => paths(scene, settings, tile, samples),
         }
-        tile.seconds += seconds_of_thread() - start;
+        tile.seconds += drawing + seconds_of_thread() - start;
         let done = 1 + done.fetch_add(1, Ordering::Relaxed);
         progress(done as f64 / total as f64);
     });

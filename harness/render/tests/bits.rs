@@ -3,7 +3,7 @@
 use crate::support::{film, hair, scene};
 use hairis_render::film::{Crop, Film};
 use hairis_render::scenes::Name;
-use hairis_render::transport::{self, Integrator, Settings};
+use hairis_render::transport::{self, Integrator, Mis, Settings};
 
 /// Sums of a film, which must not depend on the machine's load.
 fn sums(film: &Film) -> Vec<(Crop, u32, Vec<[u64; 4]>)> {
@@ -16,9 +16,16 @@ fn sums(film: &Film) -> Vec<(Crop, u32, Vec<[u64; 4]>)> {
 
 #[test]
 fn threads_passes_and_crops_do_not_show() {
-    for integrator in [Integrator::Path, Integrator::Gather] {
-        let one = scene(Name::Head, hair("gaussian", "matched", "blond"), 800, 70);
-        let settings = Settings { integrator, ..Settings::default() };
+    let cases = [
+        (Name::Head, Integrator::Path, Mis::Both),
+        (Name::Head, Integrator::Gather, Mis::Both),
+        (Name::Head, Integrator::Gather, Mis::Resampled),
+        (Name::Env, Integrator::Gather, Mis::Resampled),
+        (Name::Env, Integrator::Path, Mis::Resampled),
+    ];
+    for (name, integrator, mis) in cases {
+        let one = scene(name, hair("gaussian", "matched", "blond"), 800, 70);
+        let settings = Settings { integrator, mis, ..Settings::default() };
         let whole = Crop::whole([70, 70]);
         let all: Vec<_> = [1, 2, 7]
             .map(|threads| {
@@ -26,7 +33,7 @@ fn threads_passes_and_crops_do_not_show() {
                 sums(&pool.install(|| film(&one, &settings, 6)))
             })
             .into();
-        assert!(all[0] == all[1] && all[0] == all[2], "{integrator:?}: threads show");
+        assert!(all[0] == all[1] && all[0] == all[2], "{integrator:?}, {mis:?}: threads show");
         let mut bit_by_bit = Film::new(whole);
         if integrator == Integrator::Path {
             for samples in [1, 3, 6] {
@@ -38,7 +45,11 @@ fn threads_passes_and_crops_do_not_show() {
         let part = transport::film(&one, &settings, crop, 6).picture();
         let picture = film(&one, &settings, 6).picture();
         for [x, y] in crop.pixels() {
-            assert_eq!(part.at(x - crop.x, y - crop.y), picture.at(x, y), "{integrator:?}: the crop shows at {x} {y}");
+            assert_eq!(
+                part.at(x - crop.x, y - crop.y),
+                picture.at(x, y),
+                "{integrator:?}, {mis:?}: the crop shows at {x} {y}"
+            );
         }
         assert!(picture.mean()[0] > 1e-3);
     }

@@ -3,7 +3,6 @@
 use super::wave::{Path, Shadow, Wave};
 use super::{Integrator, Mis, Settings, resampled};
 use crate::frames::frames8;
-use crate::lights::LightSample;
 use crate::material::cosine;
 use crate::scene::{Met, Scene};
 use crate::tree::{self, Ray, Skip};
@@ -115,24 +114,18 @@ fn hair(scene: &Scene, settings: &Settings, wave: &mut Wave) {
 
         // Uniform numbers, and directions towards lights.
         let origins: [Vec3; 8] = core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
-        let mut lights = [None; 8];
         let mut numbers = [[0.0; 4]; 8];
         let mut xi = [[0.0; 8]; 3];
         for (lane, (index, _)) in packet.iter().enumerate() {
             let path = &mut paths[*index as usize];
-            let four = path.numbers.four();
-            numbers[lane] = four;
-            if !matches!(settings.mis, Mis::Bsdf | Mis::Resampled) {
-                let [x, y, choice, _] = four;
-                lights[lane] = scene.sample_light(origins[lane], [x, y, choice]);
-            }
+            numbers[lane] = path.numbers.four();
             let [lobe, theta, phi, roulette] = path.numbers.four();
             (xi[0][lane], xi[1][lane], xi[2][lane], path.roulette) = (lobe, theta, phi, roulette);
         }
 
         // What the lights add.
         if settings.mis == Mis::Resampled {
-            let chosen = resampled::of_lights(scene, &origins, &frames, &prepared, &numbers, packet.len());
+            let chosen = resampled::of_lights(scene, &origins, &frames, &prepared, &numbers);
             for ((index, hit), (lane, chosen)) in packet.iter().zip(chosen.into_iter().enumerate()) {
                 let Some((candidate, radiance)) = chosen else { continue };
                 let path = &paths[*index as usize];
@@ -141,11 +134,12 @@ fn hair(scene: &Scene, settings: &Settings, wave: &mut Wave) {
                 shadows.push(Shadow { ray, radiance: path.throughput * radiance, slot: path.slot });
             }
         } else if settings.mis != Mis::Bsdf {
-            let towards = |light: &Option<LightSample>| light.map_or(Vec3::Y, |light| light.direction);
-            let wi = frames.to_local(&Vec3x8::from(core::array::from_fn::<Vec3, 8, _>(|lane| towards(&lights[lane]))));
+            let xi = [0, 1, 2].map(|axis| numbers.map(|four| four[axis]));
+            let lights = scene.sample_lights8(|lane| origins[lane], &xi, None);
+            let wi = frames.to_local(&lights.direction);
             let (eval, cos) = (prepared.eval8(&wi), cosine(&wi).to_array());
             for (lane, (index, hit)) in packet.iter().enumerate() {
-                let Some(light) = lights[lane] else { continue };
+                let Some(light) = lights.lane(lane, 1.0) else { continue };
                 let path = &paths[*index as usize];
                 let eval = eval.lane(lane);
                 let weight = settings.mis.of_light(light.pdf, eval.pdf) * cos[lane] / light.pdf;

@@ -1,0 +1,143 @@
+//! Directions towards a sky, drawn beforehand.
+
+use super::{LightSample8, Sky};
+use crate::numbers::Even;
+#[cfg(test)]
+use hairis::wide::f32x8;
+use hairis_harness::sequence::mix;
+
+/// Least and most directions of a table: 0.5 MB and 8 MB.
+const LENGTH: [usize; 2] = [1 << 14, 1 << 18];
+/// Directions per direction that one point reads, within [`LENGTH`].
+const PER_READ: usize = 8;
+
+/// Directions of a sky in blocks of eight, drawn once for many shading points. A point reads blocks in a row, from a block of its own
+/// choice.
+///
+/// The numbers behind the directions are an additive sequence that fills the square evenly (Roberts's generalised golden ratio), shifted
+/// by two random numbers.
+///
+/// - Each direction has the sky's density: its two numbers are uniform.
+/// - Any row of blocks is spread evenly over the sky, since it is the same sequence with another shift.
+/// - The mean over all points has the error of the table. It is that of a sum over evenly spread points, far below the noise of a
+///   picture, and differs from seed to seed.
+#[derive(Clone, Debug)]
+pub struct Table {
+    blocks: Vec<LightSample8>,
+}
+
+impl Table {
+    /// Draws a table for points that read `each` directions. `None` without a sky.
+    #[must_use]
+    pub fn draw(sky: &Sky, seed: u64, each: usize) -> Option<Self> {
+        if sky.is_black() {
+            return None;
+        }
+        let length = each.saturating_mul(PER_READ).clamp(LENGTH[0], LENGTH[1]);
+        let start = mix(seed ^ 0x74_6162_6c65);
+        let even = Even::square([low(start), low(mix(start))]);
+        let block = |first| sky.sample8(&even.eight(first));
+        Some(Self { blocks: (0..).step_by(8).take(length.div_ceil(8)).map(block).collect() })
+    }
+
+    /// A block's place, from a uniform number.
+    #[inline]
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a place of the table; the cast saturates"
+    )]
+    pub fn place(&self, xi: f32) -> usize {
+        (xi * self.blocks.len() as f32) as usize
+    }
+
+    /// A block by its place, counted around.
+    #[inline]
+    #[must_use]
+    pub fn block(&self, place: usize) -> &LightSample8 {
+        &self.blocks[place % self.blocks.len()]
+    }
+
+    /// Makes all densities wrong by a factor.
+    #[cfg(test)]
+    pub(crate) fn scale_density(&mut self, by: f32) {
+        self.blocks.iter_mut().for_each(|block| block.pdf *= f32x8::splat(by));
+    }
+}
+
+/// The lower 32 bits.
+fn low(bits: u64) -> u32 {
+    (bits & 0xffff_ffff) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hairis_conformance::statistics::chi_square;
+    use hairis_harness::light::{Environment, Light as _};
+    use hairis_harness::sequence::{Independent, XiSource as _};
+    use hairis_harness::stats::Moments;
+
+    fn map() -> Environment {
+        let mut xi = Independent::new(4, 0);
+        let pixels = (0..32).map(|k| xi.next_xi_f32::<3>().map(|x| if k == 9 { 20.0 * x } else { x })).collect();
+        Environment::from_pixels("small", 8, 4, pixels).expect("valid")
+    }
+
+    #[test]
+    fn every_entry_has_the_density_of_the_sky() {
+        // Over seeds, the texels of single entries, against the probabilities of texels.
+        let map = map();
+        let sky = Sky::Map(Box::new(map.clone()));
+        let texel = |dir: glam::Vec3| {
+            let (polar, turn) = (dir.y.clamp(-1.0, 1.0).acos(), dir.x.atan2(-dir.z));
+            let cell = |x: f32, n: usize| (0..n).rev().find(|k| x * n as f32 >= *k as f32).unwrap_or(0);
+            cell(polar / core::f32::consts::PI, 4) * 8 + cell(0.5 + turn / core::f32::consts::TAU, 8)
+        };
+        let mut counts = [[0_u64; 32]; 3];
+        let seeds = 3000;
+        for seed in 0..seeds {
+            let table = Table::draw(&sky, seed, 16).expect("a sky");
+            for (counts, place) in counts.iter_mut().zip([0, 777, table.blocks.len() - 1]) {
+                counts[texel(table.block(place).direction.lane(place % 8))] += 1;
+            }
+        }
+        let mut xi = Independent::new(5, 0);
+        let mut expected = [0.0; 32];
+        for _ in 0..2_000_000 {
+            let sample = map.sample(xi.next_xi());
+            expected[texel(sample.dir.as_vec3())] += seeds as f64 / 2e6;
+        }
+        for counts in &counts {
+            let p = chi_square(counts, &expected, 5.0).p_value;
+            assert!(p > 1e-3, "p {p}");
+        }
+    }
+
+    #[test]
+    fn tables_differ_by_seed_and_their_error_is_small() {
+        let map = map();
+        let sky = Sky::Map(Box::new(map.clone()));
+        let mut moments = Moments::new();
+        for seed in 0..64 {
+            let table = Table::draw(&sky, seed, 16).expect("a sky");
+            let one = |block: &LightSample8| {
+                let up = block.direction.y * block.direction.y;
+                (up * block.radiance[1] / block.pdf).to_array().iter().map(|x| f64::from(*x)).sum::<f64>()
+            };
+            let count = 8.0 * table.blocks.len() as f64;
+            moments.push(table.blocks.iter().map(one).sum::<f64>() / count);
+            let seen = sky.see8(&table.block(5).direction);
+            assert_eq!((seen.pdf, seen.radiance), (table.block(5).pdf, table.block(5).radiance));
+        }
+        let got = moments.mean_estimate();
+        // Independent directions would leave some 5e-3 of it in each table.
+        assert!(8.0 * got.standard_error < 5e-4 * got.value && got.standard_error > 0.0, "{got:?}");
+        let truth = map.integrate(&|dir| [dir.y * dir.y; 3], &hairis_harness::quadrature::SphereIntegrator::new());
+        assert!((got.value / truth.value[1] - 1.0).abs() < 1e-4, "{got:?} for {:?}", truth.value);
+        assert!(Table::draw(&Sky::Black, 1, 16).is_none());
+        let bytes = |each| size_of_val(&Table::draw(&sky, 1, each).expect("a sky").blocks[..]);
+        assert_eq!([bytes(1), bytes(usize::MAX)], [1 << 19, 1 << 23]);
+    }
+}

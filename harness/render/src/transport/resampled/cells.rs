@@ -1,0 +1,115 @@
+//! Cells of the sphere in a row, in which neighbours look in similar directions.
+
+use hairis::wide::f32x8;
+use hairis::{Broadcast, Kernel, Lanes, Level, Vec3x8};
+
+/// Cells along a side of the square that the sphere is unfolded to.
+const SIDE: usize = 8;
+/// Count of cells.
+pub(super) const CELLS: usize = SIDE * SIDE;
+
+/// Places of the square's cells along a curve of Hilbert's, row by row.
+static CURVE: [u8; CELLS] = curve();
+
+/// The cell of a unit vector per lane.
+#[inline]
+pub(super) fn cells(direction: &Vec3x8) -> [u8; 8] {
+    let [a, b] = Level::detect().run(Unfold(direction)).map(|side| side.fast_trunc_int().to_array());
+    // Numbers beyond the square, and those that are none, go into some cell.
+    core::array::from_fn(|lane| {
+        CURVE[(a[lane].cast_unsigned() as usize % SIDE) * SIDE + b[lane].cast_unsigned() as usize % SIDE]
+    })
+}
+
+/// Unfolds the octahedron: the upper half of the sphere is in the middle of the square, the lower half about it.
+///
+/// Places on the square, in cells.
+struct Unfold<'a>(&'a Vec3x8);
+
+impl Kernel for Unfold<'_> {
+    type Constant = f32x8;
+    type Output = [f32x8; 2];
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 2]
+    where
+        f32x8: Broadcast<L>,
+    {
+        let (x, y, z): (L, L, L) = (self.0.x.lanes(), self.0.y.lanes(), self.0.z.lanes());
+        let c = L::splat;
+        let one = c(1.0);
+        let by = one / (x.abs() + y.abs() + z.abs()).max(c(f32::MIN_POSITIVE));
+        let (a, b) = (x * by, z * by);
+        let below = y.lt(c(0.0));
+        let folded = [(one - b.abs()).times_sign(a), (one - a.abs()).times_sign(b)];
+        // A little less than half the side, so that both edges are within.
+        let half = c(0.5 * SIDE as f32);
+        let place = |upper: L, lower: L| L::select(below, lower, upper).mul_add(half * c(1.0 - 1e-6), half).store();
+        [place(a, folded[0]), place(b, folded[1])]
+    }
+}
+
+/// Hilbert's curve through a square of [`SIDE`] cells.
+const fn curve() -> [u8; CELLS] {
+    let mut places = [0; CELLS];
+    let mut place = 0;
+    while place < CELLS {
+        let (mut x, mut y, mut rest, mut side) = (0, 0, place, 1);
+        while side < SIDE {
+            let (right, up) = (1 & (rest / 2), 1 & (rest ^ (rest / 2)));
+            if up == 0 {
+                if right == 1 {
+                    (x, y) = (side - 1 - x, side - 1 - y);
+                }
+                (x, y) = (y, x);
+            }
+            (x, y) = (x + side * right, y + side * up);
+            (rest, side) = (rest / 4, 2 * side);
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "below 64")]
+        let number = place as u8;
+        places[x * SIDE + y] = number;
+        place += 1;
+    }
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+    use hairis_harness::sequence::{Independent, XiSource as _};
+
+    #[test]
+    fn the_curve_goes_from_cell_to_neighbour() {
+        let mut at = [[0; 2]; CELLS];
+        for (index, place) in CURVE.iter().enumerate() {
+            at[usize::from(*place)] = [index / SIDE, index % SIDE];
+        }
+        for pair in at.windows(2) {
+            let steps = pair[0][0].abs_diff(pair[1][0]) + pair[0][1].abs_diff(pair[1][1]);
+            assert_eq!(steps, 1, "{pair:?}");
+        }
+    }
+
+    #[test]
+    fn a_cell_is_a_small_part_of_the_sphere() {
+        let mut xi = Independent::new(3, 0);
+        let mut members = vec![Vec::new(); CELLS];
+        for _ in 0..4000 {
+            let dirs: [Vec3; 8] = core::array::from_fn(|_| crate::lights::uniform_direction(xi.next_xi_f32()));
+            for (dir, cell) in dirs.iter().zip(cells(&dirs.into())) {
+                members[usize::from(cell)].push(*dir);
+            }
+        }
+        for members in &members {
+            let mean = members.iter().sum::<Vec3>().normalize();
+            assert!(members.len() > 200, "{} directions", members.len());
+            // The sphere has cells of 0.2 sr, longer where it is unfolded.
+            assert!(members.iter().all(|dir| dir.dot(mean) > 0.7), "about {mean}");
+        }
+        let none =
+            cells(&[Vec3::ZERO, Vec3::NAN, Vec3::INFINITY, Vec3::Y, -Vec3::Y, Vec3::X, -Vec3::X, Vec3::Z].into());
+        assert!(none.iter().all(|cell| usize::from(*cell) < CELLS), "{none:?}");
+    }
+}

@@ -1,0 +1,63 @@
+//! Light drawn from tables against light drawn at each point.
+
+use super::*;
+use crate::hair::{Choice, Energy};
+use crate::lights::Rectangle;
+use crate::scenes::{self, Name, Parts};
+use glam::Vec3;
+use hairis_harness::light::Environment;
+use hairis_harness::sequence::{Independent, XiSource as _};
+use hairis_harness::stats::{Estimate, Moments};
+
+/// A few strands on a head under a map with bright texels; with two lamps as well.
+fn under_map(lamps: bool) -> Scene {
+    let mut xi = Independent::new(21, 0);
+    let bright = |k: usize| if matches!(k, 70 | 137 | 300) { 60.0 } else { 1.0 };
+    let pixels = (0..512).map(|k| xi.next_xi_f32::<3>().map(|x| bright(k) * x)).collect();
+    let env = Environment::from_pixels("small", 32, 16, pixels).expect("valid");
+    let hair = Choice::find("gaussian", "matched", "blond").and_then(|hair| hair.hair(Energy::Raw)).expect("listed");
+    let strands = scenes::grow(Name::Env, 1500).expect("a few");
+    let parts = Parts { strands, imported: false, hair, env: Some(env), size: [20; 2], turn: 0.0 };
+    let mut scene = scenes::build(Name::Env, parts).expect("a scene");
+    if lamps {
+        for x in [-30.0, 20.0] {
+            let corner = Vec3::new(x, 20.0, 10.0);
+            let lamp = Rectangle::light(corner, 10.0 * Vec3::X, Vec3::new(0.0, 6.0, 8.0), Vec3::splat(20.0));
+            scene.rectangles.push(lamp.facing(Vec3::ZERO));
+        }
+    }
+    scene
+}
+
+/// Mean luminance of pictures of many seeds, whose tables `change` has changed.
+fn mean(scene: &Scene, mis: Mis, samples: u32, change: impl Fn(&mut Table)) -> Estimate {
+    let mut moments = Moments::new();
+    for seed in 0..200 {
+        let settings = Settings { integrator: Integrator::Gather, mis, seed, ..Settings::default() };
+        let mut table = Table::draw(&scene.sky, seed, resampled::each(samples));
+        table.iter_mut().for_each(&change);
+        let mut film = Film::new(Crop::whole(scene.camera.size()));
+        for tile in &mut film.tiles {
+            gather::tile(scene, table.as_ref(), &settings, tile, samples);
+        }
+        moments.push(film.picture().luminances().iter().sum());
+    }
+    moments.mean_estimate()
+}
+
+#[test]
+fn candidates_from_a_table_are_unbiased() {
+    for lamps in [false, true] {
+        let scene = under_map(lamps);
+        let expected = mean(&scene, Mis::Both, 32, |_| ());
+        let apart = |got: &Estimate| (got.value - expected.value) / got.standard_error.hypot(expected.standard_error);
+        // Pools of 16 rays, incomplete blocks of candidates, a pool of 16 and one of 11.
+        for samples in [16, 5, 27] {
+            let got = mean(&scene, Mis::Resampled, samples, |_| ());
+            assert!(got.standard_error < 3e-3 * got.value, "{got:?}");
+            assert!(apart(&got).abs() < 4.0, "{samples} rays, lamps {lamps}: {got:?} for {expected:?}");
+        }
+        let scaled = mean(&scene, Mis::Resampled, 32, |table| table.scale_density(1.02));
+        assert!(lamps || apart(&scaled) < -4.0, "a density 2% off shows: {scaled:?} for {expected:?}");
+    }
+}
