@@ -34,6 +34,20 @@ impl Head {
         (discriminant >= 0.0 && t > t_min).then_some(t)
     }
 
+    /// Where eight rays from a point meet it before their ends: a mask, bit for bit what [`meet`](Self::meet) says.
+    #[inline]
+    #[must_use]
+    pub fn blocks8(&self, origin: Vec3, direction: &Vec3x8, t_max: &f32x8) -> f32x8 {
+        let c = f32x8::splat;
+        let origin = origin / self.radii;
+        let Vec3x8 { x, y, z } = *direction;
+        let (x, y, z) = (x / c(self.radii.x), y / c(self.radii.y), z / c(self.radii.z));
+        let (a, b) = (x * x + y * y + z * z, c(origin.x) * x + c(origin.y) * y + c(origin.z) * z);
+        let discriminant = b * b - a * c(origin.length_squared() - 1.0);
+        let t = (-b - discriminant.max(c(0.0)).sqrt()) / a;
+        discriminant.simd_ge(c(0.0)) & t.simd_gt(c(0.0)) & t.simd_lt(*t_max)
+    }
+
     /// Unit normal at a point of the surface.
     #[inline]
     #[must_use]
@@ -113,6 +127,14 @@ impl Scene {
         self.head.is_some_and(|head| head.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
             || self.rectangles.iter().any(|one| one.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
             || self.tree.occluded(ray)
+    }
+
+    /// Takes the radiance from directions that the head blocks: so cheap a test that candidates for rays pass it first.
+    #[inline]
+    pub fn remove_blocked(&self, origin: Vec3, light: &mut LightSample8) {
+        let Some(head) = &self.head else { return };
+        let clear = !head.blocks8(origin, &light.direction, &(light.distance * f32x8::splat(SHORTER)));
+        light.radiance = light.radiance.map(|channel| channel & clear);
     }
 
     /// Places of the rectangles that emit.
@@ -212,5 +234,32 @@ impl Scene {
             }
         }
         Some((self.see(&ray, &met)?, ray.t_max))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lights::uniform_direction;
+    use hairis_harness::sequence::{Independent, XiSource as _};
+
+    #[test]
+    fn eight_rays_meet_the_head_as_one_does() {
+        let head = Head { radii: Vec3::new(7.5, 10.0, 8.8), albedo: Vec3::ONE };
+        let mut xi = Independent::new(6, 0);
+        let mut met = 0;
+        for turn in 0..20_000 {
+            // Inside, on the surface and outside.
+            let origin = [0.5, 1.0, 1.01, 3.0][turn % 4] * head.radii * uniform_direction(xi.next_xi_f32());
+            let dirs: [Vec3; 8] = core::array::from_fn(|_| uniform_direction(xi.next_xi_f32()));
+            let t_max = if turn % 3 == 0 { 12.0 } else { f32::INFINITY };
+            let lanes = head.blocks8(origin, &dirs.into(), &f32x8::splat(t_max)).to_bitmask();
+            for (lane, dir) in dirs.into_iter().enumerate() {
+                let one = head.meet(origin, dir, 0.0).is_some_and(|t| t < t_max);
+                assert_eq!(lanes >> lane & 1 == 1, one, "{origin} {dir}");
+                met += u32::from(one);
+            }
+        }
+        assert!(met > 10_000, "{met} met");
     }
 }

@@ -102,13 +102,15 @@ impl Candidates {
         let start = table.map_or(0, |table| table.place(streams.place));
         for first in (0..each).step_by(8) {
             let sky = table.map(|table| table.block(start + ((before + first) / 8) as usize));
-            let light = scene.sample_lights8(|_| origin, &streams.light.eight(before + first), sky);
+            let mut light = scene.sample_lights8(|_| origin, &streams.light.eight(before + first), sky);
+            scene.remove_blocked(origin, &mut light);
             let wi = frame.to_local(&light.direction);
             self.push(&prepared.eval8(&wi), &cosine(&wi), &light, counts, each - first);
         }
         for first in (0..each).step_by(8) {
             let sample = prepared.sample8(&streams.bsdf.eight(before + first));
             let mut light = scene.lights_along(origin, &frame.to_world(&sample.wi));
+            scene.remove_blocked(origin, &mut light);
             let drawn = sample.pdf.simd_gt(f32x8::ZERO);
             light.pdf &= drawn;
             light.radiance.iter_mut().for_each(|channel| *channel &= drawn);
