@@ -3,7 +3,7 @@
 mod rectangle;
 mod table;
 
-pub use rectangle::Rectangle;
+pub use rectangle::{Rectangle, View};
 pub use table::Table;
 
 use core::f32::consts::{PI, TAU};

@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::geometry::Strands;
-use crate::lights::{LightSample, LightSample8, Rectangle, Seen, Sky};
+use crate::lights::{LightSample, LightSample8, Rectangle, Seen, Sky, View};
 use crate::material::Hair;
 use crate::tree::{self, Ray, Tree};
 use glam::Vec3;
@@ -149,14 +149,14 @@ impl Scene {
     }
 
     /// The lamp that a number chooses, or the sky.
-    fn lamp(&self, choice: f32) -> Option<&Rectangle> {
+    fn lamp(&self, choice: f32) -> Option<usize> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "a small count; the cast saturates"
         )]
         let index = (choice / self.share()) as usize;
-        self.lamps().nth(index).map(|lamp| &self.rectangles[lamp])
+        self.lamps().nth(index)
     }
 
     /// A direction towards a light, from two numbers for the direction and one for the choice.
@@ -164,7 +164,7 @@ impl Scene {
     #[must_use]
     pub fn sample_light(&self, origin: Vec3, [x, y, choice]: [f32; 3]) -> Option<LightSample> {
         let sample = match self.lamp(choice) {
-            Some(lamp) => lamp.sample(origin, [x, y]),
+            Some(lamp) => self.rectangles[lamp].sample(origin, [x, y]),
             None => self.sky.sample([x, y]),
         }?;
         Some(LightSample { pdf: sample.pdf * self.share(), ..sample })
@@ -183,26 +183,37 @@ impl Scene {
         if self.lamps().next().is_none() {
             return sky.copied().unwrap_or_else(|| self.sky.sample8(&[xi[0], xi[1]]));
         }
+        let (share, mut views) = (self.share(), Views::default());
         LightSample8::from(core::array::from_fn(|lane| {
-            let xi = xi.each_ref().map(|axis| axis[lane]);
-            match (self.lamp(xi[2]), sky) {
-                (None, Some(sky)) => sky.lane(lane, self.share()),
-                _ => self.sample_light(origin(lane), xi),
-            }
+            let [x, y, choice] = xi.each_ref().map(|axis| axis[lane]);
+            let sample = match (self.lamp(choice), sky) {
+                (Some(lamp), _) => views.of(self, lamp, origin(lane))?.sample([x, y]),
+                (None, Some(sky)) => return sky.lane(lane, share),
+                (None, None) => self.sky.sample([x, y])?,
+            };
+            Some(LightSample { pdf: sample.pdf * share, ..sample })
         }))
     }
 
-    /// The lights in eight directions from a point: as [`light_along`](Self::light_along).
+    /// The lights in eight directions from a point: the lamp that a ray would meet if there were nothing else, or the sky. What is
+    /// nearer is not looked at.
     #[must_use]
     pub fn lights_along(&self, origin: Vec3, direction: &Vec3x8) -> LightSample8 {
         if self.lamps().next().is_none() {
             let Seen8 { radiance, pdf } = self.sky.see8(direction);
             return LightSample8 { direction: *direction, distance: f32x8::splat(f32::INFINITY), radiance, pdf };
         }
+        let (share, mut views) = (self.share(), Views::default());
         LightSample8::from(core::array::from_fn(|lane| {
             let direction = direction.lane(lane);
-            let (Seen { radiance, pdf }, distance) = self.light_along(origin, direction)?;
-            Some(LightSample { direction, distance, radiance, pdf })
+            let (lamp, distance) = self.lamp_along(origin, direction);
+            let Seen { radiance, pdf } = match lamp {
+                Some(lamp) => {
+                    Seen { radiance: self.rectangles[lamp].emission, pdf: views.of(self, lamp, origin)?.pdf() }
+                }
+                None => self.sky.see(direction),
+            };
+            (pdf > 0.0).then_some(LightSample { direction, distance, radiance, pdf: pdf * share })
         }))
     }
 
@@ -221,19 +232,34 @@ impl Scene {
         (seen.pdf > 0.0).then_some(Seen { pdf: seen.pdf * self.share(), ..seen })
     }
 
-    /// The lamp that a ray would meet if there were nothing else, or the sky: what it sees, and how far away.
+    /// The lamp that a ray would meet if there were nothing else, and how far away it is; or the sky.
     #[inline]
-    #[must_use]
-    pub fn light_along(&self, origin: Vec3, direction: Vec3) -> Option<(Seen, f32)> {
-        let mut ray = Ray::new(origin, direction);
-        let mut met = Met::Nothing;
-        for index in self.lamps() {
-            if let Some(t) = self.rectangles[index].meet(origin, direction, 0.0).filter(|t| *t < ray.t_max) {
-                ray.t_max = t;
-                met = Met::Light(index);
+    fn lamp_along(&self, origin: Vec3, direction: Vec3) -> (Option<usize>, f32) {
+        let mut nearest = (None, f32::INFINITY);
+        for lamp in self.lamps() {
+            if let Some(t) = self.rectangles[lamp].meet(origin, direction, 0.0).filter(|t| *t < nearest.1) {
+                nearest = (Some(lamp), t);
             }
         }
-        Some((self.see(&ray, &met)?, ray.t_max))
+        nearest
+    }
+}
+
+/// The lamp that was last seen, and from where: most directions from a point are towards the same.
+#[derive(Default)]
+struct Views(Option<(usize, Vec3, Option<View>)>);
+
+impl Views {
+    #[inline]
+    fn of(&mut self, scene: &Scene, lamp: usize, origin: Vec3) -> Option<View> {
+        match self.0 {
+            Some((last, from, view)) if last == lamp && from == origin => view,
+            _ => {
+                let view = scene.rectangles[lamp].view(origin);
+                self.0 = Some((lamp, origin, view));
+                view
+            }
+        }
     }
 }
 

@@ -29,7 +29,9 @@ pub struct Rectangle {
 }
 
 /// A rectangle as it is seen from a point: in its own frame, with the point as origin.
-struct View {
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    emission: Vec3,
     axes: [DVec3; 3],
     lo: [f64; 2],
     hi: [f64; 2],
@@ -93,7 +95,7 @@ impl Rectangle {
     /// Density of a direction that meets it, per steradian: 1 over the solid angle. 0 from behind.
     #[must_use]
     pub fn pdf(&self, origin: Vec3) -> f32 {
-        self.view(origin).map_or(0.0, |view| rounded(1.0 / view.solid_angle))
+        self.view(origin).map_or(0.0, |view| view.pdf())
     }
 
     /// A direction drawn from two uniform numbers, uniform in solid angle; `None` from behind.
@@ -101,20 +103,12 @@ impl Rectangle {
     /// - Source: Urena, Fajardo and King 2013.
     #[must_use]
     pub fn sample(&self, origin: Vec3, xi: [f32; 2]) -> Option<LightSample> {
-        let view = self.view(origin)?;
-        let [x, y] = view.point(xi.map(f64::from));
-        let towards = x * view.axes[0] + y * view.axes[1] - view.height * view.axes[2];
-        let distance = towards.length();
-        Some(LightSample {
-            direction: (towards / distance).as_vec3(),
-            distance: rounded(distance),
-            radiance: self.emission,
-            pdf: rounded(1.0 / view.solid_angle),
-        })
+        Some(self.view(origin)?.sample(xi))
     }
 
-    /// How it is seen; `None` from behind.
-    fn view(&self, origin: Vec3) -> Option<View> {
+    /// How it is seen from a point: several directions from there cost half as much so. `None` from behind.
+    #[must_use]
+    pub fn view(&self, origin: Vec3) -> Option<View> {
         let corner = (self.corner - origin).as_dvec3();
         let edges = self.edges.map(Vec3::as_dvec3);
         let normal = self.normal.as_dvec3();
@@ -127,7 +121,7 @@ impl Rectangle {
         let lo = [corner.dot(axes[0]), corner.dot(axes[1])];
         let hi = [lo[0] + lengths[0], lo[1] + lengths[1]];
         // Components of the normals of the planes through the origin and a side.
-        let slope = |side: f64| side / side.hypot(height);
+        let slope = |side: f64| side / length(side, height);
         let ([x0, y0], [x1, y1]) = (lo.map(slope), hi.map(slope));
         // The spherical rectangle's angles, whose sum exceeds 2 pi by its area.
         let angles = [(x1 * y0).acos(), (-x1 * y1).acos(), (x0 * y1).acos(), (-x0 * y0).acos()];
@@ -139,11 +133,38 @@ impl Rectangle {
             let centre = DVec3::new(0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), height);
             (lengths[0] * lengths[1] * height / centre.length().powi(3)).min(SMALL)
         };
-        Some(View { axes, lo, hi, height, solid_angle, start, normals: [-y0, y1] })
+        Some(View { emission: self.emission, axes, lo, hi, height, solid_angle, start, normals: [-y0, y1] })
     }
 }
 
+/// Length of a vector whose squares are far from overflow.
+#[inline]
+fn length(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
 impl View {
+    /// Density of a direction, per steradian.
+    #[inline]
+    #[must_use]
+    pub fn pdf(&self) -> f32 {
+        rounded(1.0 / self.solid_angle)
+    }
+
+    /// A direction drawn from two uniform numbers, uniform in solid angle.
+    #[must_use]
+    pub fn sample(&self, xi: [f32; 2]) -> LightSample {
+        let [x, y] = self.point(xi.map(f64::from));
+        let towards = x * self.axes[0] + y * self.axes[1] - self.height * self.axes[2];
+        let distance = towards.length();
+        LightSample {
+            direction: (towards / distance).as_vec3(),
+            distance: rounded(distance),
+            radiance: self.emission,
+            pdf: self.pdf(),
+        }
+    }
+
     /// A point of the rectangle, in its frame.
     fn point(&self, xi: [f64; 2]) -> [f64; 2] {
         if self.solid_angle <= SMALL {
@@ -153,11 +174,11 @@ impl View {
         let [below, above] = self.normals;
         let (sin, cos) = (xi[0] * self.solid_angle + self.start).sin_cos();
         let f = (cos * below - above) / sin;
-        let c = (1.0_f64.copysign(f) / f.hypot(below)).clamp(-1.0, 1.0);
+        let c = (1.0_f64.copysign(f) / length(f, below)).clamp(-1.0, 1.0);
         let x = (c * self.height / (1.0 - c * c).sqrt()).clamp(self.lo[0], self.hi[0]);
         // Across, the sine of the angle to the plane of x and the height is uniform.
-        let distance = x.hypot(self.height);
-        let sine = |y: f64| y / y.hypot(distance);
+        let distance = length(x, self.height);
+        let sine = |y: f64| y / length(y, distance);
         let s = sine(self.lo[1]) + xi[1] * (sine(self.hi[1]) - sine(self.lo[1]));
         let y = (s * distance / (1.0 - s * s).max(f64::MIN_POSITIVE).sqrt()).clamp(self.lo[1], self.hi[1]);
         [x, y]
