@@ -38,7 +38,7 @@ pub enum Mis {
     Bsdf,
     /// Both, weighted by the power heuristic
     Both,
-    /// Rays chosen from four candidates each, of lights and BSDF; in paths from eight of the lights, by the power heuristic
+    /// Rays chosen from six candidates each, of lights and BSDF; in paths from eight of the lights, by the power heuristic
     Resampled,
 }
 

@@ -51,8 +51,8 @@ fn candidates_from_a_table_are_unbiased() {
         let scene = under_map(lamps);
         let expected = mean(&scene, Mis::Both, 32, |_| ());
         let apart = |got: &Estimate| (got.value - expected.value) / got.standard_error.hypot(expected.standard_error);
-        // Pools of 16 rays, incomplete blocks of candidates, a pool of 16 and one of 11.
-        for samples in [16, 5, 27] {
+        // Whole blocks of candidates, incomplete ones, a pool of 32 rays and one of 11.
+        for samples in [16, 5, 43] {
             let got = mean(&scene, Mis::Resampled, samples, |_| ());
             assert!(got.standard_error < 3e-3 * got.value, "{got:?}");
             assert!(apart(&got).abs() < 4.0, "{samples} rays, lamps {lamps}: {got:?} for {expected:?}");
