@@ -2,7 +2,7 @@
 
 use super::measure::{BySampler, Measured, Plan};
 use super::panel::{Column, panel};
-use super::verdict::{gain, sentence, trimmed_gain};
+use super::verdict::{ERRORS, gain, sentence};
 use crate::args::Figures;
 use crate::picture::exposure;
 use crate::protocol::{Runs, slope};
@@ -54,20 +54,19 @@ fn page(all: &[Measured], plan: &Plan, flags: &Figures) -> std::io::Result<Repor
         .fact("Seed", flags.seed.to_string()))
 }
 
-/// How many times as large relMSE times time is, scene by scene.
+/// How many times as large errors times time are, scene by scene.
 fn summary(all: &[Measured]) -> Table {
-    let mut table = Table::new("relMSE × time, relative to matched").texts(["scene", "light"]).number("samples");
+    let mut table = Table::new("Error × time, relative to matched").texts(["scene", "light"]).number("samples");
     let Some(first) = all.first() else { return table };
     for sampler in first.samplers.iter().rev().skip(1).rev() {
-        table = table.number(sampler.name).number(format!("{}, trimmed", sampler.name));
+        table = table.numbers(ERRORS.map(|(error, _)| format!("{}, {error}", sampler.name)));
     }
     for measured in all {
         let shown = measured.shown();
         let Some(best) = measured.samplers.last() else { continue };
         let mut row = vec![measured.title(), kind(measured).to_owned(), best.runs[shown].samples.to_string()];
         for sampler in measured.samplers.iter().rev().skip(1).rev() {
-            row.push(ratio(gain(measured, sampler)));
-            row.push(ratio(trimmed_gain(measured, sampler)));
+            row.extend(ERRORS.map(|(_, error)| ratio(gain(measured, sampler, error))));
         }
         table.push(row);
     }
@@ -151,8 +150,10 @@ fn table(measured: &Measured) -> Table {
         "trimmed",
         "RMSE",
         "time (s)",
-        "relMSE × time, relative to matched",
         "MSE, relative to matched",
+        "MSE × time, relative to matched",
+        "relMSE × time, relative to matched",
+        "trimmed × time, relative to matched",
         "slope",
     ]);
     for sampler in &measured.samplers {
@@ -163,17 +164,18 @@ fn table(measured: &Measured) -> Table {
                 .iter()
                 .map(|runs| (f64::from(runs.samples), runs.mean(|errors| errors.relative).value))
                 .collect();
-            table.push([
+            let with_time = ERRORS.map(|(_, error)| ratio(runs.ratio(best, error, true)));
+            let numbers = [
                 sampler.name.to_owned(),
                 runs.samples.to_string(),
                 estimate(runs.mean(|errors| errors.relative)) + below,
                 estimate(runs.mean(|errors| errors.trimmed)),
                 number::plain(runs.mean(|errors| errors.square).value.max(0.0).sqrt(), 3),
                 number::plain(runs.seconds, 3),
-                ratio(runs.ratio(best, |errors| errors.relative, true)),
                 ratio(runs.ratio(best, |errors| errors.square, false)),
-                if place == 0 { String::new() } else { number::plain(slope(&points), 3) },
-            ]);
+            ];
+            let slope = if place == 0 { String::new() } else { number::plain(slope(&points), 3) };
+            table.push(numbers.into_iter().chain(with_time).chain([slope]));
         }
     }
     table

@@ -1,24 +1,28 @@
 //! The sentence that follows from the numbers of a scene.
 
 use super::measure::{BySampler, Measured};
+use crate::protocol::Errors;
 use hairis_harness::stats::Estimate;
 use hairis_harness::table::number::ratio_with_error;
 
 /// A gain below this, or within two standard errors of 1, is none.
 const GAIN: f64 = 1.15;
 
-/// How many times as large relMSE times time is with a sampler as with the last, at the count that pictures show.
-pub(super) fn gain(measured: &Measured, sampler: &BySampler) -> Estimate {
-    let shown = measured.shown();
-    let best = measured.samplers.last().unwrap_or(sampler);
-    sampler.runs[shown].ratio(&best.runs[shown], |errors| errors.relative, true)
-}
+/// An error of pictures.
+pub(super) type Error = fn(&Errors) -> f64;
 
-/// The same without the pixels of the largest errors.
-pub(super) fn trimmed_gain(measured: &Measured, sampler: &BySampler) -> Estimate {
+/// The errors that are compared, by name: the last without the pixels of the largest.
+pub(super) const ERRORS: [(&str, Error); 3] = [
+    ("MSE", |errors| errors.square),
+    ("relMSE", |errors| errors.relative),
+    ("trimmed relMSE", |errors| errors.trimmed),
+];
+
+/// How many times as large an error times time is with a sampler as with the last, at the count that pictures show.
+pub(super) fn gain(measured: &Measured, sampler: &BySampler, error: Error) -> Estimate {
     let shown = measured.shown();
     let best = measured.samplers.last().unwrap_or(sampler);
-    sampler.runs[shown].ratio(&best.runs[shown], |errors| errors.trimmed, true)
+    sampler.runs[shown].ratio(&best.runs[shown], error, true)
 }
 
 /// Whether a ratio is a gain or a loss, by what is left of it within two standard errors.
@@ -31,20 +35,20 @@ fn matters(ratio: &Estimate) -> bool {
 pub(super) fn sentence(measured: &Measured) -> String {
     let samples = measured.samplers[0].runs[measured.shown()].samples;
     let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
-    let list = |gain: fn(&Measured, &BySampler) -> Estimate| {
+    let list = |(name, error): &(&str, Error)| {
         let one = |one: &BySampler| {
-            let gain = gain(measured, one);
+            let gain = gain(measured, one, *error);
             format!("{} with {}", ratio_with_error(gain.value, gain.standard_error), one.name)
         };
-        others.iter().map(one).collect::<Vec<String>>().join(", ")
+        format!("{name} {}", others.iter().map(one).collect::<Vec<String>>().join(", "))
     };
     let numbers = format!(
-        "At {samples} samples, relMSE × time is {}, relative to `{}`; without the worst 0.1 % of the pixels, {}.",
-        list(gain),
+        "At {samples} samples, error × time relative to `{}`: {}. Trimmed: without the worst 0.1 % of the pixels.",
         best.name,
-        list(trimmed_gain)
+        ERRORS.iter().map(list).collect::<Vec<String>>().join("; ")
     );
-    let any = others.iter().any(|one| matters(&gain(measured, one)) || matters(&trimmed_gain(measured, one)));
+    // Relative errors are what is seen.
+    let any = others.iter().any(|one| ERRORS[1..].iter().any(|(_, error)| matters(&gain(measured, one, *error))));
     let answer = if any {
         "Does the sampler matter? Yes."
     } else {
