@@ -4,7 +4,7 @@ mod rectangle;
 mod table;
 
 pub use rectangle::{Rectangle, View};
-pub use table::Table;
+pub use table::{Table, Tables};
 
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;

@@ -46,6 +46,13 @@ impl Numbers {
         Self { sequence, key: mix(mix(seed) ^ pixel), sample, group: 0 }
     }
 
+    /// The sample.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self) -> u32 {
+        self.sample
+    }
+
     /// The next four numbers, each in `[0, 1 - 2^-24]`.
     #[inline]
     pub fn four(&mut self) -> [f32; 4] {

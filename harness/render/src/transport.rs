@@ -11,7 +11,7 @@ mod wave;
 pub use clock::seconds_of_thread;
 
 use crate::film::{Crop, Film, Tile};
-use crate::lights::Table;
+use crate::lights::Tables;
 use crate::numbers::Sequence;
 use crate::scene::Scene;
 use clap::ValueEnum;
@@ -119,20 +119,15 @@ const PASS: u32 = 4;
 /// of [`Integrator::Gather`] is made at once.
 pub fn render(scene: &Scene, settings: &Settings, film: &mut Film, samples: u32, progress: &(dyn Fn(f64) + Sync)) {
     let total = film.tiles.len().max(1);
-    let start = seconds_of_thread();
-    let table = match (settings.integrator, settings.mis) {
-        (Integrator::Gather, Mis::Resampled) => Table::draw(&scene.sky, settings.seed, resampled::each(samples)),
-        _ => None,
-    };
-    let drawing = (seconds_of_thread() - start) / total as f64;
+    let tables = Tables::new(&scene.sky, settings.seed, resampled::length(settings.integrator, samples));
     let done = AtomicUsize::new(0);
     film.tiles.par_iter_mut().for_each(|tile| {
         let start = seconds_of_thread();
         match settings.integrator {
-            Integrator::Gather => gather::tile(scene, table.as_ref(), settings, tile, samples),
-            Integrator::Direct | Integrator::Path => paths(scene, settings, tile, samples),
+            Integrator::Gather => gather::tile(scene, &tables, settings, tile, samples),
+            Integrator::Direct | Integrator::Path => paths(scene, &tables, settings, tile, samples),
         }
-        tile.seconds += drawing + seconds_of_thread() - start;
+        tile.seconds += seconds_of_thread() - start;
         let done = 1 + done.fetch_add(1, Ordering::Relaxed);
         progress(done as f64 / total as f64);
     });
@@ -147,12 +142,12 @@ pub fn film(scene: &Scene, settings: &Settings, crop: Crop, samples: u32) -> Fil
 }
 
 /// Adds paths to a tile, a few samples of all its pixels at a time.
-fn paths(scene: &Scene, settings: &Settings, tile: &mut Tile, samples: u32) {
+fn paths(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile: &mut Tile, samples: u32) {
     let mut wave = wave::Wave::default();
     while tile.samples < samples {
         let pass = PASS.min(samples - tile.samples);
         wave.start(scene, settings, tile.place, tile.samples..tile.samples + pass);
-        path::run(scene, settings, &mut wave);
+        path::run(scene, tables, settings, &mut wave);
         for (sums, radiances) in tile.sums.iter_mut().zip(wave.radiances().chunks_exact(pass as usize)) {
             radiances.iter().for_each(|radiance| sums.add(*radiance));
         }

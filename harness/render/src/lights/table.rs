@@ -5,11 +5,12 @@ use crate::numbers::Even;
 #[cfg(test)]
 use hairis::wide::f32x8;
 use hairis_harness::sequence::mix;
+use std::sync::OnceLock;
 
-/// Least and most directions of a table: 0.5 MB and 8 MB.
-const LENGTH: [usize; 2] = [1 << 14, 1 << 18];
-/// Directions per direction that one point reads, within [`LENGTH`].
-const PER_READ: usize = 8;
+/// Most directions of a table: 8 MB.
+const MOST: usize = 1 << 18;
+/// Most tables of a scene: later passes read the first ones again.
+const TABLES: u32 = 64;
 
 /// Directions of a sky in blocks of eight, drawn once for many shading points. A point reads blocks in a row, from a block of its own
 /// choice.
@@ -27,13 +28,13 @@ pub struct Table {
 }
 
 impl Table {
-    /// Draws a table for points that read `each` directions. `None` without a sky.
+    /// Draws a table of some length, at most 8 MB. `None` without a sky.
     #[must_use]
-    pub fn draw(sky: &Sky, seed: u64, each: usize) -> Option<Self> {
+    pub fn draw(sky: &Sky, seed: u64, length: usize) -> Option<Self> {
         if sky.is_black() {
             return None;
         }
-        let length = each.saturating_mul(PER_READ).clamp(LENGTH[0], LENGTH[1]);
+        let length = length.min(MOST);
         let start = mix(seed ^ 0x74_6162_6c65);
         let even = Even::square([low(start), low(mix(start))]);
         let block = |first| sky.sample8(&even.eight(first));
@@ -63,6 +64,40 @@ impl Table {
     #[cfg(test)]
     pub(crate) fn scale_density(&mut self, by: f32) {
         self.blocks.iter_mut().for_each(|block| block.pdf *= f32x8::splat(by));
+    }
+}
+
+/// Tables of the passes of a picture, each drawn when it is first read.
+///
+/// Tables depend on seed and pass alone, not on the thread that draws them.
+#[derive(Debug)]
+pub struct Tables<'a> {
+    sky: &'a Sky,
+    seed: u64,
+    length: usize,
+    tables: Vec<OnceLock<Option<Table>>>,
+}
+
+impl<'a> Tables<'a> {
+    /// Tables of some length.
+    #[must_use]
+    pub fn new(sky: &'a Sky, seed: u64, length: usize) -> Self {
+        Self { sky, seed, length, tables: (0..TABLES).map(|_| OnceLock::new()).collect() }
+    }
+
+    /// Replaces the table of the first pass.
+    #[cfg(test)]
+    pub(crate) fn set(&mut self, table: Option<Table>) {
+        self.tables[0] = OnceLock::from(table);
+    }
+
+    /// The table of a pass. `None` without a sky.
+    #[inline]
+    #[must_use]
+    pub fn of_pass(&self, pass: u32) -> Option<&Table> {
+        let pass = pass % TABLES;
+        let draw = || Table::draw(self.sky, mix(self.seed) ^ u64::from(pass), self.length);
+        self.tables[pass as usize].get_or_init(draw).as_ref()
     }
 }
 
@@ -98,7 +133,7 @@ mod tests {
         let mut counts = [[0_u64; 32]; 3];
         let seeds = 3000;
         for seed in 0..seeds {
-            let table = Table::draw(&sky, seed, 16).expect("a sky");
+            let table = Table::draw(&sky, seed, 1 << 14).expect("a sky");
             for (counts, place) in counts.iter_mut().zip([0, 777, table.blocks.len() - 1]) {
                 counts[texel(table.block(place).direction.lane(place % 8))] += 1;
             }
@@ -121,7 +156,7 @@ mod tests {
         let sky = Sky::Map(Box::new(map.clone()));
         let mut moments = Moments::new();
         for seed in 0..64 {
-            let table = Table::draw(&sky, seed, 16).expect("a sky");
+            let table = Table::draw(&sky, seed, 1 << 14).expect("a sky");
             let one = |block: &LightSample8| {
                 let up = block.direction.y * block.direction.y;
                 (up * block.radiance[1] / block.pdf).to_array().iter().map(|x| f64::from(*x)).sum::<f64>()
@@ -137,7 +172,10 @@ mod tests {
         let truth = map.integrate(&|dir| [dir.y * dir.y; 3], &hairis_harness::quadrature::SphereIntegrator::new());
         assert!((got.value / truth.value[1] - 1.0).abs() < 1e-4, "{got:?} for {:?}", truth.value);
         assert!(Table::draw(&Sky::Black, 1, 16).is_none());
-        let bytes = |each| size_of_val(&Table::draw(&sky, 1, each).expect("a sky").blocks[..]);
-        assert_eq!([bytes(1), bytes(usize::MAX)], [1 << 19, 1 << 23]);
+        let bytes = |length| size_of_val(&Table::draw(&sky, 1, length).expect("a sky").blocks[..]);
+        assert_eq!([bytes(1 << 14), bytes(usize::MAX)], [1 << 19, 1 << 23]);
+        let tables = Tables::new(&sky, 1, 64);
+        let first = |pass| tables.of_pass(pass).expect("a sky").block(0).direction.lane(0);
+        assert!(first(0) != first(1) && first(3) == first(3 + TABLES), "a table per pass");
     }
 }

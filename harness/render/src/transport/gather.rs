@@ -4,7 +4,7 @@ use super::path::leave;
 use super::resampled::{Candidates, Place, Streams};
 use super::{Mis, Settings, key};
 use crate::film::Tile;
-use crate::lights::Table;
+use crate::lights::{Table, Tables};
 use crate::material::Prepared;
 use crate::numbers::{Numbers, Sequence};
 use crate::scene::{Met, Scene};
@@ -25,7 +25,7 @@ struct Point {
 
 /// Estimates the direct light of hair at `samples` light and as many BSDF samples per camera ray. What is no hair is
 /// black, but for lights that the camera sees.
-pub(super) fn tile(scene: &Scene, table: Option<&Table>, settings: &Settings, tile: &mut Tile, samples: u32) {
+pub(super) fn tile(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile: &mut Tile, samples: u32) {
     let mut candidates = Candidates::default();
     for (pixel, sums) in tile.place.pixels().zip(&mut tile.sums) {
         *sums = Default::default();
@@ -38,7 +38,7 @@ pub(super) fn tile(scene: &Scene, table: Option<&Table>, settings: &Settings, ti
                     let first = ray * samples;
                     sums.add(if settings.mis == Mis::Resampled {
                         let mut numbers = Numbers::new(settings.sequence, settings.seed, key(pixel), first);
-                        point.resampled(scene, table, &Streams::new(&mut numbers), samples, &mut candidates)
+                        point.resampled(scene, tables.of_pass(0), &Streams::new(&mut numbers), samples, &mut candidates)
                     } else {
                         point.light(scene, settings, key(pixel), first..first + samples) / samples as f32
                     });

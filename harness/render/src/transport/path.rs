@@ -1,8 +1,9 @@
 //! Paths, and direct light as their shortest.
 
 use super::wave::{Path, Shadow, Wave};
-use super::{Integrator, Mis, Settings, resampled};
+use super::{Integrator, Mis, PASS, Settings, resampled};
 use crate::frames::frames8;
+use crate::lights::Tables;
 use crate::material::cosine;
 use crate::scene::{Met, Scene};
 use crate::tree::{self, Ray, Skip};
@@ -17,7 +18,7 @@ const FIRST_ROULETTE: u32 = 4;
 const MOST_SURVIVAL: f32 = 0.95;
 
 /// Follows all paths of a wave to their ends.
-pub(super) fn run(scene: &Scene, settings: &Settings, wave: &mut Wave) {
+pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave) {
     let depth = if settings.integrator == Integrator::Direct { 1 } else { settings.depth };
     for scatterings in 0.. {
         trace(scene, settings, wave, scatterings == 0);
@@ -26,7 +27,7 @@ pub(super) fn run(scene: &Scene, settings: &Settings, wave: &mut Wave) {
         }
         wave.shadows.clear();
         surfaces(scene, settings, wave);
-        hair(scene, settings, wave);
+        hair(scene, tables, settings, wave);
         for k in 0..wave.shadows.len() {
             let shadow = wave.shadows[k];
             if !scene.blocked(&shadow.ray) {
@@ -100,7 +101,7 @@ fn reflect(
 }
 
 /// Scatters at hair, eight hits at a time. Lanes of the last packet that have no hit repeat its first.
-fn hair(scene: &Scene, settings: &Settings, wave: &mut Wave) {
+fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave) {
     let Wave { paths, hits, shadows, .. } = wave;
     for packet in hits.chunks(8) {
         let lanes = |lane: usize| packet.get(lane).unwrap_or(&packet[0]);
@@ -125,7 +126,9 @@ fn hair(scene: &Scene, settings: &Settings, wave: &mut Wave) {
 
         // What the lights add.
         if settings.mis == Mis::Resampled {
-            let chosen = resampled::of_lights(scene, &origins, &frames, &prepared, &numbers);
+            let sample = |lane: usize| paths[lanes(lane).0 as usize].numbers.sample();
+            let tables = core::array::from_fn(|lane| tables.of_pass(sample(lane) / PASS));
+            let chosen = resampled::of_lights(scene, &tables, &origins, &frames, &prepared, &numbers);
             for ((index, hit), (lane, chosen)) in packet.iter().zip(chosen.into_iter().enumerate()) {
                 let Some((candidate, radiance)) = chosen else { continue };
                 let path = &paths[*index as usize];

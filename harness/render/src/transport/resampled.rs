@@ -5,6 +5,7 @@ mod cells;
 
 pub(super) use candidates::Candidates;
 
+use super::Integrator;
 use crate::lights::{LightSample8, Table};
 use crate::material::{Prepared, cosine};
 use crate::numbers::{Even, Numbers};
@@ -12,7 +13,7 @@ use crate::scene::Scene;
 use glam::Vec3;
 use hairis::resample::{Counts, Partition, Weighed8, choose};
 use hairis::wide::f32x8;
-use hairis::{Eval8, FiberFrame8};
+use hairis::{Eval8, FiberFrame8, Vec3x8};
 
 /// Candidates of each technique per ray, where one shading point has many.
 ///
@@ -38,9 +39,13 @@ const POOL: u32 = 32;
 /// Candidates of a pool, at most.
 const MOST: usize = 2 * (PER_RAY * POOL) as usize;
 
-/// Candidates of the lights that a shading point of `rays` rays reads.
-pub(super) fn each(rays: u32) -> usize {
-    PER_RAY as usize * rays as usize
+/// Directions of a table of the sky: many times as many as a shading point reads, of which each sees some. 0.5 MB, and 128 kB for a pass
+/// of paths.
+pub(super) fn length(integrator: Integrator, samples: u32) -> usize {
+    match integrator {
+        Integrator::Gather => (8 * PER_RAY as usize * samples as usize).max(1 << 14),
+        Integrator::Direct | Integrator::Path => 1 << 12,
+    }
 }
 
 /// Numbers of a shading point.
@@ -126,6 +131,7 @@ impl Candidates {
 /// blocked: the lights' share by the power heuristic, whose rest is the path's next ray's.
 pub(super) fn of_lights(
     scene: &Scene,
+    tables: &[Option<&Table>; 8],
     origins: &[Vec3; 8],
     frames: &FiberFrame8,
     prepared: &Prepared,
@@ -136,13 +142,17 @@ pub(super) fn of_lights(
     let mut contribution = [[[0.0; OF_LIGHTS]; 3]; 8];
     let mut weight = [[0.0; OF_LIGHTS]; 8];
     let even = numbers.map(|[x, y, choice, _]| Even::cube([x, y, choice]));
+    // A block is the candidates of one hit.
+    let block = |lane: usize| tables[lane].map(|table| table.block(table.place(numbers[lane][0])));
+    let blocks = tables[0].is_some().then(|| core::array::from_fn(block));
     for (k, i) in (0..OF_LIGHTS).zip(0..) {
         let mut xi = [[0.0; 8]; 3];
         for (lane, even) in even.iter().enumerate() {
             let point = even.at(i);
             (0..3).for_each(|axis| xi[axis][lane] = point[axis]);
         }
-        let lights = scene.sample_lights8(|lane| origins[lane], &xi, None);
+        let sky = blocks.as_ref().map(|blocks| transposed(blocks, k));
+        let lights = scene.sample_lights8(|lane| origins[lane], &xi, sky.as_ref());
         let wi = frames.to_local(&lights.direction);
         let cos = cosine(&wi);
         let (eval, LightSample8 { radiance, pdf, .. }) = (prepared.eval8(&wi), lights);
@@ -160,4 +170,22 @@ pub(super) fn of_lights(
         let choice = choose(contribution, &weight[lane], 1, numbers[lane][3]).next()?;
         Some((candidates[lane][choice.index], Vec3::from_array(choice.contribution)))
     })
+}
+
+/// Lane `k` of each of eight blocks.
+#[inline]
+fn transposed(blocks: &[Option<&LightSample8>; 8], k: usize) -> LightSample8 {
+    let lanes = |of: fn(&LightSample8) -> &f32x8| {
+        f32x8::new(blocks.map(|block| block.map_or(0.0, |block| of(block).as_array()[k])))
+    };
+    LightSample8 {
+        direction: Vec3x8::new(
+            lanes(|one| &one.direction.x),
+            lanes(|one| &one.direction.y),
+            lanes(|one| &one.direction.z),
+        ),
+        distance: lanes(|one| &one.distance),
+        radiance: [lanes(|one| &one.radiance[0]), lanes(|one| &one.radiance[1]), lanes(|one| &one.radiance[2])],
+        pdf: lanes(|one| &one.pdf),
+    }
 }

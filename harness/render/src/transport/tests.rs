@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::hair::{Choice, Energy};
-use crate::lights::Rectangle;
+use crate::lights::{Rectangle, Table};
 use crate::scenes::{self, Name, Parts};
 use glam::Vec3;
 use hairis_harness::light::Environment;
@@ -29,35 +29,59 @@ fn under_map(lamps: bool) -> Scene {
     scene
 }
 
-/// Mean luminance of pictures of many seeds, whose tables `change` has changed.
-fn mean(scene: &Scene, mis: Mis, samples: u32, change: impl Fn(&mut Table)) -> Estimate {
+/// Mean luminance of pictures of many seeds, whose first tables have densities that are wrong by a factor.
+fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f32) -> Estimate {
     let mut moments = Moments::new();
     for seed in 0..200 {
-        let settings = Settings { integrator: Integrator::Gather, mis, seed, ..Settings::default() };
-        let mut table = Table::draw(&scene.sky, seed, resampled::each(samples));
-        table.iter_mut().for_each(&change);
+        let settings = Settings { integrator, mis, seed, ..Settings::default() };
+        let length = resampled::length(integrator, samples);
+        let mut tables = Tables::new(&scene.sky, seed, length);
+        if factor != 1.0 {
+            let mut table = Table::draw(&scene.sky, seed, length);
+            table.iter_mut().for_each(|table| table.scale_density(factor));
+            tables.set(table);
+        }
         let mut film = Film::new(Crop::whole(scene.camera.size()));
         for tile in &mut film.tiles {
-            gather::tile(scene, table.as_ref(), &settings, tile, samples);
+            match integrator {
+                Integrator::Gather => gather::tile(scene, &tables, &settings, tile, samples),
+                Integrator::Direct | Integrator::Path => paths(scene, &tables, &settings, tile, samples),
+            }
         }
         moments.push(film.picture().luminances().iter().sum());
     }
     moments.mean_estimate()
 }
 
+/// Distance of two estimates in standard errors.
+fn apart(a: &Estimate, b: &Estimate) -> f64 {
+    (a.value - b.value) / a.standard_error.hypot(b.standard_error)
+}
+
 #[test]
 fn candidates_from_a_table_are_unbiased() {
+    let gather = |scene: &Scene, mis, samples, factor| mean(scene, Integrator::Gather, mis, samples, factor);
     for lamps in [false, true] {
         let scene = under_map(lamps);
-        let expected = mean(&scene, Mis::Both, 32, |_| ());
-        let apart = |got: &Estimate| (got.value - expected.value) / got.standard_error.hypot(expected.standard_error);
+        let expected = gather(&scene, Mis::Both, 32, 1.0);
         // Whole blocks of candidates, incomplete ones, a pool of 32 rays and one of 11.
         for samples in [16, 5, 43] {
-            let got = mean(&scene, Mis::Resampled, samples, |_| ());
+            let got = gather(&scene, Mis::Resampled, samples, 1.0);
             assert!(got.standard_error < 3e-3 * got.value, "{got:?}");
-            assert!(apart(&got).abs() < 4.0, "{samples} rays, lamps {lamps}: {got:?} for {expected:?}");
+            assert!(apart(&got, &expected).abs() < 4.0, "{samples} rays, lamps {lamps}: {got:?} for {expected:?}");
         }
-        let scaled = mean(&scene, Mis::Resampled, 32, |table| table.scale_density(1.02));
-        assert!(lamps || apart(&scaled) < -4.0, "a density 2% off shows: {scaled:?} for {expected:?}");
+        let scaled = gather(&scene, Mis::Resampled, 32, 1.02);
+        assert!(lamps || apart(&scaled, &expected) < -4.0, "a density 2% off shows: {scaled:?} for {expected:?}");
+    }
+}
+
+#[test]
+fn paths_have_the_same_light_from_a_table() {
+    for lamps in [false, true] {
+        let scene = under_map(lamps);
+        // Samples of two passes, the second incomplete.
+        let [got, expected] = [Mis::Resampled, Mis::Both].map(|mis| mean(&scene, Integrator::Path, mis, 6, 1.0));
+        assert!(got.standard_error < 1e-2 * got.value, "{got:?}");
+        assert!(apart(&got, &expected).abs() < 4.0, "lamps {lamps}: {got:?} for {expected:?}");
     }
 }
