@@ -109,11 +109,11 @@ pub(crate) fn relative(got: f64, want: f64, floor: f64) -> f64 {
     (got - want).abs() / want.abs().max(floor)
 }
 
-/// Directions that a direction may be taken for once its components and its inclination are rounded: turned by `by` towards
-/// the axis and away from it, and moved across the fibre by as much less as the direction is shorter there.
-pub(crate) fn rounded(v: Direction, by: f64) -> [Direction; 6] {
+/// Directions that a direction may be taken for once its components and its inclination are rounded: moved by `by` along each
+/// axis, across the fibre by as much less as the direction is shorter there, and turned by `by` towards the axis and away from it.
+pub(crate) fn rounded(v: Direction, by: f64) -> [Direction; 8] {
     let cos = cos_theta(v);
-    let across = narrow(by * cos);
+    let (along, across) = (narrow(by), narrow(by * cos));
     let moved = |x: f32, y: f32, z: f32| Vec3x::new(v.x + x, v.y + y, v.z + z);
     let turned = |by: f64| {
         // On the axis every way across is as good.
@@ -122,6 +122,8 @@ pub(crate) fn rounded(v: Direction, by: f64) -> [Direction; 6] {
         moved(narrow(by * cos), narrow(across * y), narrow(across * z))
     };
     [
+        moved(along, 0.0, 0.0),
+        moved(-along, 0.0, 0.0),
         turned(by),
         turned(-by),
         moved(0.0, across, 0.0),
