@@ -112,6 +112,9 @@ pub struct Render {
     /// Factor on radiance in the preview [default: by the picture's brightness]
     #[arg(long, value_name = "X")]
     pub exposure: Option<f64>,
+    /// Measure where the time goes: rays, light, kernels, frames, numbers, the rest
+    #[arg(long)]
+    pub profile: bool,
     /// Render shard I of N only, I from 1 to N, into a .part file for `hairis-render merge` to join
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
@@ -146,6 +149,9 @@ pub struct Figures {
     /// Only these scenes
     #[arg(long, value_enum, value_name = "SCENE")]
     pub scene: Vec<Name>,
+    /// How light is estimated [default: by scene]
+    #[arg(long, value_enum)]
+    pub integrator: Option<Integrator>,
     /// Folder for report.html and the pictures; made if missing
     #[arg(long, value_name = "DIR", default_value = "out/figures")]
     pub out: PathBuf,

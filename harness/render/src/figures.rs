@@ -29,6 +29,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     let maps = flags.env.iter().map(|path| environment(path)).collect::<Result<Vec<_>, _>>()?;
     prepare(&flags.out)?;
     let plan = if flags.quick { Plan::QUICK } else { Plan::FULL };
+    let plan = Plan { integrator: flags.integrator, ..plan };
     let chosen: &[Name] = match (flags.scene.as_slice(), flags.quick) {
         ([], true) => &QUICK,
         ([], false) => &SCENES,

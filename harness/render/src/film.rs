@@ -1,5 +1,6 @@
 //! Film: sums over samples, tile by tile.
 
+use crate::transport::Profile;
 use glam::Vec3;
 use hairis_harness::light::luminance;
 use hairis_harness::sequence::mix;
@@ -99,6 +100,8 @@ pub struct Film {
     crop: Crop,
     /// The tiles, row by row.
     pub tiles: Vec<Tile>,
+    /// Where the time went, if that was measured.
+    pub profile: Profile,
 }
 
 impl Film {
@@ -106,13 +109,13 @@ impl Film {
     #[must_use]
     pub fn new(crop: Crop) -> Self {
         let tile = |place: Crop| Tile { place, sums: vec![Sums::default(); place.len()], samples: 0, seconds: 0.0 };
-        Self { crop, tiles: crop.tiles().map(tile).collect() }
+        Self::of(crop, crop.tiles().map(tile).collect())
     }
 
     /// Of tiles that are there already.
     #[must_use]
     pub fn of(crop: Crop, tiles: Vec<Tile>) -> Self {
-        Self { crop, tiles }
+        Self { crop, tiles, profile: Profile::default() }
     }
 
     /// Keeps the tiles of one shard. They are scattered over the picture, so that shards take about as long.

@@ -21,6 +21,7 @@ pub mod formats;
 pub mod frames;
 pub mod geometry;
 pub mod hair;
+pub mod layers;
 pub mod lights;
 pub mod material;
 pub mod numbers;

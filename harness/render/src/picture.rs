@@ -1,11 +1,15 @@
 //! Pictures as files: `OpenEXR` for measuring, PNG for looking.
 
 use crate::film::Picture;
+use crate::layers::Beside;
+use exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage as _,
+};
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::light::luminance;
 use hairis_harness::stats::percentile;
-use image::{ExtendedColorType, ImageEncoder as _, ImageFormat, Rgb32FImage, RgbImage};
+use image::{ExtendedColorType, ImageEncoder as _, RgbImage};
 use std::io::{self, Cursor, Write as _};
 use std::path::Path;
 
@@ -56,19 +60,36 @@ pub fn png(image: &RgbImage) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes a picture as `OpenEXR`, single precision, and beside it a PNG preview, each as a whole.
+/// Writes a picture as `OpenEXR`, single precision, with layers and attributes, and beside it a PNG preview, each as a whole.
 ///
 /// # Errors
 ///
 /// If a file cannot be written.
-pub fn write(picture: &Picture, path: &Path, exposure: f64) -> Result<(), Error> {
-    let [width, height] = picture.size;
-    #[expect(clippy::cast_possible_truncation, reason = "files hold single precision")]
-    let image = Rgb32FImage::from_fn(width, height, |x, y| image::Rgb(picture.at(x, y).map(|channel| channel as f32)));
-    let mut bytes = Cursor::new(Vec::new());
-    let encoded = image.write_to(&mut bytes, ImageFormat::OpenExr).map_err(io::Error::other);
-    whole(path, |out| encoded.and_then(|()| out.write_all(bytes.get_ref())))?;
+pub fn write(picture: &Picture, beside: &Beside, path: &Path, exposure: f64) -> Result<(), Error> {
+    let encoded = exr(picture, beside).map_err(io::Error::other);
+    whole(path, |out| encoded.and_then(|bytes| out.write_all(&bytes)))?;
     write_preview(picture, &path.with_extension("png"), exposure)
+}
+
+/// An `OpenEXR` file in memory.
+fn exr(picture: &Picture, beside: &Beside) -> exr::error::Result<Vec<u8>> {
+    let channel = |name: &str, pixels| AnyChannel::new(name, FlatSamples::F32(pixels));
+    #[expect(clippy::cast_possible_truncation, reason = "files hold single precision")]
+    let radiance = ["R", "G", "B"]
+        .into_iter()
+        .enumerate()
+        .map(|(c, name)| channel(name, picture.pixels.iter().map(|pixel| pixel[c] as f32).collect()));
+    let layers = beside.channels.iter().map(|layer| channel(layer.name, layer.pixels.clone()));
+    let channels = AnyChannels::sort(radiance.chain(layers).collect());
+    let [width, height] = picture.size.map(|side| side as usize);
+    let mut image =
+        Image::from_layer(Layer::new((width, height), LayerAttributes::default(), Encoding::SMALL_LOSSLESS, channels));
+    for (name, value) in &beside.attributes {
+        image.layer_data.attributes.other.insert((*name).into(), AttributeValue::Text(value.as_str().into()));
+    }
+    let mut bytes = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut bytes)?;
+    Ok(bytes.into_inner())
 }
 
 /// Writes a PNG preview as a whole.
@@ -83,6 +104,7 @@ pub fn write_preview(picture: &Picture, path: &Path, exposure: f64) -> Result<()
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::{Crop, Film};
 
     #[test]
     fn files_hold_the_picture() {
@@ -90,7 +112,15 @@ mod tests {
         let mut picture = Picture::black([5, 3]);
         picture.pixels[7] = [0.25, 1.5, 1e-3];
         let path = folder.path().join("a.exr");
-        write(&picture, &path, 1.0).expect("written");
+        let film = Film::new(Crop::whole(picture.size));
+        let beside = Beside::film(&film, "seed=1 commit=abc");
+        write(&picture, &beside, &path, 1.0).expect("written");
+        let file = exr::prelude::read_all_flat_layers_from_file(&path).expect("an EXR file");
+        let [layer] = &file.layer_data[..] else { panic!("one part") };
+        let names: Vec<String> = layer.channel_data.list.iter().map(|channel| channel.name.to_string()).collect();
+        assert_eq!(names, ["B", "G", "R", "samples", "variance"]);
+        let run = layer.attributes.other.get(&exr::prelude::Text::from("run"));
+        assert_eq!(run, Some(&AttributeValue::Text("seed=1 commit=abc".into())));
         let read = image::open(&path).expect("an image").to_rgb32f();
         assert_eq!(read.get_pixel(2, 1).0, [0.25, 1.5, 1e-3]);
         assert_eq!(read.get_pixel(1, 2).0, [0.0; 3]);

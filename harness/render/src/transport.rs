@@ -3,12 +3,14 @@
 mod clock;
 mod gather;
 mod path;
+mod profile;
 mod resampled;
 #[cfg(test)]
 mod tests;
 mod wave;
 
 pub use clock::seconds_of_thread;
+pub use profile::{Phase, Profile};
 
 use crate::film::{Crop, Film, Tile};
 use crate::lights::Tables;
@@ -17,6 +19,7 @@ use crate::scene::Scene;
 use clap::ValueEnum;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
+use std::sync::Mutex;
 
 /// How light is estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -93,6 +96,8 @@ pub struct Settings {
     pub multiple: bool,
     /// Camera rays of a pixel for [`Integrator::Gather`].
     pub rays: u32,
+    /// Whether to measure where the time goes: [`Film::profile`].
+    pub profile: bool,
 }
 
 impl Default for Settings {
@@ -106,6 +111,7 @@ impl Default for Settings {
             roulette: true,
             multiple: true,
             rays: 1,
+            profile: false,
         }
     }
 }
@@ -121,16 +127,26 @@ pub fn render(scene: &Scene, settings: &Settings, film: &mut Film, samples: u32,
     let total = film.tiles.len().max(1);
     let tables = Tables::new(&scene.sky, settings.seed, resampled::length(settings.integrator, samples));
     let done = AtomicUsize::new(0);
+    let whole = Mutex::new(Profile::default());
     film.tiles.par_iter_mut().for_each(|tile| {
         let start = seconds_of_thread();
+        if settings.profile {
+            profile::start();
+        }
         match settings.integrator {
             Integrator::Gather => gather::tile(scene, &tables, settings, tile, samples),
             Integrator::Direct | Integrator::Path => paths(scene, &tables, settings, tile, samples),
         }
         tile.seconds += seconds_of_thread() - start;
+        if settings.profile
+            && let Ok(mut whole) = whole.lock()
+        {
+            whole.add(profile::stop());
+        }
         let done = 1 + done.fetch_add(1, Ordering::Relaxed);
         progress(done as f64 / total as f64);
     });
+    film.profile.add(whole.into_inner().unwrap_or_default());
 }
 
 /// The picture of a part of a scene.
@@ -151,6 +167,7 @@ fn paths(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile: &mut Til
         for (sums, radiances) in tile.sums.iter_mut().zip(wave.radiances().chunks_exact(pass as usize)) {
             radiances.iter().for_each(|radiance| sums.add(*radiance));
         }
+        profile::lap(Phase::Rest);
         tile.samples += pass;
     }
 }

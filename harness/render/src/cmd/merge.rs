@@ -2,6 +2,7 @@
 
 use super::render::{check_out, finish};
 use crate::args::Merge;
+use crate::layers::Beside;
 use crate::part::Part;
 use hairis_harness::error::Error;
 
@@ -13,5 +14,6 @@ use hairis_harness::error::Error;
 pub(super) fn run(flags: &Merge) -> Result<(), Error> {
     check_out(&flags.out)?;
     let parts = flags.parts.iter().map(|path| Ok((path.clone(), Part::read(path)?))).collect::<Result<_, Error>>()?;
-    finish(&Part::merge(parts)?.film, &flags.out, None)
+    let Part { run, film } = Part::merge(parts)?;
+    finish(&film, &Beside::film(&film, &run), &flags.out, None)
 }

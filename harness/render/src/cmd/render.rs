@@ -5,6 +5,7 @@ use crate::film::Film;
 use crate::formats::{Import, import, write_mitsuba};
 use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, MOST_MEAN_ALBEDO};
+use crate::layers::Beside;
 use crate::material::Hair;
 use crate::part::{self, Part};
 use crate::picture;
@@ -47,6 +48,7 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         depth: flags.depth,
         multiple: defaults.multiple && !flags.no_multiple,
         rays: flags.aa,
+        profile: flags.profile,
         ..Settings::default()
     };
     let out = flags.out.clone().unwrap_or_else(|| PathBuf::from(format!("out/render/{}.exr", flags.scene.word())));
@@ -75,21 +77,25 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     let mut part = Part { run, film };
     let samples = flags.spp.unwrap_or(defaults.samples);
     passes(flags, &scene, &settings, samples, &mut part, &part_path)?;
+    if flags.profile {
+        writeln!(io::stdout(), "time: {}", part.film.profile).map_err(Error::Write)?;
+    }
     if flags.shard.is_some() {
         part.write(&part_path)?;
         let line = format!("wrote {}: join the parts by `hairis-render merge`\n", part_path.display());
         return io::stdout().write_all(line.as_bytes()).map_err(Error::Write);
     }
-    finish(&part.film, &out, flags.exposure)?;
+    let beside = Beside::film(&part.film, &part.run).scene(&scene, crop);
+    finish(&part.film, &beside, &out, flags.exposure)?;
     // Where nothing was stopped there is none.
     let _ = fs::remove_file(&part_path);
     Ok(())
 }
 
 /// Writes a picture that is whole, and says so.
-pub(super) fn finish(film: &Film, out: &Path, exposure: Option<f64>) -> Result<(), Error> {
+pub(super) fn finish(film: &Film, beside: &Beside, out: &Path, exposure: Option<f64>) -> Result<(), Error> {
     let picture = film.picture();
-    picture::write(&picture, out, exposure.unwrap_or_else(|| picture::exposure(&picture)))?;
+    picture::write(&picture, beside, out, exposure.unwrap_or_else(|| picture::exposure(&picture)))?;
     let [r, g, b] = picture.mean();
     let (samples, seconds) = (film.samples(), film.seconds());
     let line =

@@ -1,6 +1,7 @@
 //! Measurements on a scene.
 
 use crate::hair::{Choice, Energy, PUBLISHED, UNIFORM};
+use crate::layers::Beside;
 use crate::picture;
 use crate::protocol::{Reference, Runs};
 use crate::scene::Scene;
@@ -35,12 +36,20 @@ pub(super) struct Plan {
     pub(super) reference: [u32; 2],
     /// Pictures for each error.
     pub(super) runs: u32,
+    /// How light is estimated, in place of the scenes' own ways.
+    pub(super) integrator: Option<Integrator>,
 }
 
 impl Plan {
     /// A first look.
-    pub(super) const QUICK: Self =
-        Self { side: 96, strands: 8_000, samples: [&[4, 16, 64], &[4, 16]], reference: [1024, 320], runs: 8 };
+    pub(super) const QUICK: Self = Self {
+        side: 96,
+        strands: 8_000,
+        samples: [&[4, 16, 64], &[4, 16]],
+        reference: [1024, 320],
+        runs: 8,
+        integrator: None,
+    };
     /// Settings of the published figures.
     pub(super) const FULL: Self = Self {
         side: 192,
@@ -48,6 +57,7 @@ impl Plan {
         samples: [&[4, 16, 64, 256], &[4, 16, 64]],
         reference: [8192, 2048],
         runs: 8,
+        integrator: None,
     };
 
     /// Steps of progress for a count of scenes.
@@ -100,9 +110,9 @@ impl Measured {
         let parts = Parts { strands, imported: false, hair: hair(BEST)?, env: map, size: [plan.side; 2], turn: 0.0 };
         step(&format!("{}: tree", name.word()));
         let mut scene: Scene = scenes::build(name, parts)?;
-        let settings =
-            Settings { integrator: defaults.integrator, multiple: defaults.multiple, seed, ..Settings::default() };
-        let kind = usize::from(defaults.integrator != Integrator::Gather);
+        let integrator = plan.integrator.unwrap_or(defaults.integrator);
+        let settings = Settings { integrator, multiple: defaults.multiple, seed, ..Settings::default() };
+        let kind = usize::from(integrator != Integrator::Gather);
         step(&format!("{}: reference", name.word()));
         let reference = Reference::render(&scene, &settings, plan.reference[kind]);
         let mut all = Vec::new();
@@ -129,8 +139,7 @@ impl Measured {
             let equal_time = Runs::render(&scene, &settings, &reference, samples, plan.runs);
             samplers.push(BySampler { name: sampler, runs, equal_time });
         }
-        let (integrator, preset) = (defaults.integrator, defaults.preset);
-        Ok(Self { name, map: title, integrator, preset, reference, samplers })
+        Ok(Self { name, map: title, integrator, preset: defaults.preset, reference, samplers })
     }
 
     /// Name of the scene on the page.
@@ -149,10 +158,15 @@ impl Measured {
         let exposure = picture::exposure(&self.reference.picture);
         let stem = self.title().replace(|c: char| !c.is_ascii_alphanumeric(), "-");
         let file = |what: &str| out.join(format!("{stem}-{what}.exr"));
-        picture::write(&self.reference.picture, &file("reference"), exposure)?;
+        picture::write(&self.reference.picture, &Beside::default(), &file("reference"), exposure)?;
         for sampler in &self.samplers {
             let runs = &sampler.runs[self.shown()];
-            picture::write(&runs.picture, &file(&format!("{}-{}", sampler.name, runs.samples)), exposure)?;
+            picture::write(
+                &runs.picture,
+                &Beside::default(),
+                &file(&format!("{}-{}", sampler.name, runs.samples)),
+                exposure,
+            )?;
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! The paper's protocol for direct light: fixed camera rays, and many samples at each shading point.
 
 use super::path::leave;
+use super::profile::{Phase, lap};
 use super::resampled::{Candidates, Place, Streams};
 use super::{Mis, Settings, key};
 use crate::film::Tile;
@@ -32,7 +33,10 @@ pub(super) fn tile(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile
         for ray in 0..settings.rays {
             let [x, y, ..] = Numbers::new(Sequence::Sobol, CAMERA_SEED, key(pixel), ray).four();
             let ray_of = scene.camera.ray(pixel[0] as f32 + x, pixel[1] as f32 + y);
-            match scene.closest(&ray_of) {
+            lap(Phase::Numbers);
+            let met = scene.closest(&ray_of);
+            lap(Phase::Rays);
+            match met {
                 Met::Hair(hit) => {
                     let point = Point::new(scene, &ray_of, hit);
                     let first = ray * samples;
@@ -45,6 +49,7 @@ pub(super) fn tile(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile
                 }
                 met => sums.add(scene.see(&ray_of, &met).map_or(Vec3::ZERO, |seen| seen.radiance)),
             }
+            lap(Phase::Rest);
         }
     }
     tile.samples = settings.rays;
@@ -54,9 +59,12 @@ impl Point {
     fn new(scene: &Scene, ray: &Ray, hit: tree::Hit) -> Self {
         let wo = -ray.direction;
         let frame = FiberFrame::from_tangent_normal(scene.strands.tangent(hit.segment, hit.s), wo);
-        let prepared = scene.hair.prepare(Hit::new(frame.to_local(wo), hit.h));
         let origin = scene.strands.position(hit.segment, hit.s);
-        Self { hit, origin, frame: FiberFrame8::splat(&frame), prepared }
+        let (local, eight) = (Hit::new(frame.to_local(wo), hit.h), FiberFrame8::splat(&frame));
+        lap(Phase::Frames);
+        let prepared = scene.hair.prepare(local);
+        lap(Phase::Kernels);
+        Self { hit, origin, frame: eight, prepared }
     }
 
     /// Sum over samples of the radiance towards the camera.
@@ -74,6 +82,7 @@ impl Point {
                 let [lobe, theta, phi, _] = numbers.four();
                 (xi[0][lane], xi[1][lane], xi[2][lane]) = (lobe, theta, phi);
             }
+            lap(Phase::Numbers);
             if settings.mis != Mis::Bsdf {
                 sum += self.by_light(scene, settings, &xi_light, count);
             }
@@ -105,6 +114,7 @@ impl Point {
                 if !scene.blocked(&Ray { t_max: candidate.distance, ..ray }) {
                     sum += radiance;
                 }
+                lap(Phase::Rays);
             },
         );
         sum
@@ -112,8 +122,11 @@ impl Point {
 
     fn by_light(&self, scene: &Scene, settings: &Settings, xi: &[[f32; 8]; 3], count: usize) -> Vec3 {
         let lights = scene.sample_lights8(|_| self.origin, xi, None);
+        lap(Phase::Light);
         let wi = self.frame.to_local(&lights.direction);
+        lap(Phase::Frames);
         let (eval, cos) = (self.prepared.eval8(&wi), crate::material::cosine(&wi).to_array());
+        lap(Phase::Kernels);
         let mut sum = Vec3::ZERO;
         for (lane, cos) in cos.into_iter().enumerate().take(count) {
             let Some(light) = lights.lane(lane, 1.0) else { continue };
@@ -125,13 +138,17 @@ impl Point {
                 sum += radiance;
             }
         }
+        lap(Phase::Rays);
         sum
     }
 
     fn by_bsdf(&self, scene: &Scene, settings: &Settings, xi: &[[f32; 8]; 3], count: usize) -> Vec3 {
         let sample = self.prepared.sample8(xi);
-        let cos = crate::material::cosine(&sample.wi).to_array();
-        let lights = scene.lights_along(self.origin, &self.frame.to_world(&sample.wi));
+        lap(Phase::Kernels);
+        let (cos, directions) = (crate::material::cosine(&sample.wi).to_array(), self.frame.to_world(&sample.wi));
+        lap(Phase::Frames);
+        let lights = scene.lights_along(self.origin, &directions);
+        lap(Phase::Light);
         let mut sum = Vec3::ZERO;
         for (lane, cos) in cos.into_iter().enumerate().take(count) {
             let pdf = sample.pdf.as_array()[lane];
@@ -147,6 +164,7 @@ impl Point {
                 sum += radiance;
             }
         }
+        lap(Phase::Rays);
         sum
     }
 }

@@ -1,5 +1,6 @@
 //! Paths, and direct light as their shortest.
 
+use super::profile::{Phase, lap};
 use super::wave::{Path, Shadow, Wave};
 use super::{Integrator, Mis, PASS, Settings, resampled};
 use crate::frames::frames8;
@@ -20,6 +21,7 @@ const MOST_SURVIVAL: f32 = 0.95;
 /// Follows all paths of a wave to their ends.
 pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave) {
     let depth = if settings.integrator == Integrator::Direct { 1 } else { settings.depth };
+    lap(Phase::Numbers);
     for scatterings in 0.. {
         trace(scene, settings, wave, scatterings == 0);
         if scatterings == depth {
@@ -34,6 +36,7 @@ pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave:
                 wave.add(shadow.slot, shadow.radiance);
             }
         }
+        lap(Phase::Rays);
         end_some(wave, settings.roulette && scatterings >= FIRST_ROULETTE);
         if wave.paths.is_empty() {
             break;
@@ -45,12 +48,14 @@ pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave:
 fn trace(scene: &Scene, settings: &Settings, wave: &mut Wave, is_first: bool) {
     wave.met.clear();
     wave.met.extend(wave.paths.iter().map(|path| scene.closest(&path.ray)));
+    lap(Phase::Rays);
     for k in 0..wave.paths.len() {
         let path = wave.paths[k];
         let Some(seen) = scene.see(&path.ray, &wave.met[k]) else { continue };
         let weight = if is_first { 1.0 } else { settings.mis.of_bsdf(path.pdf, seen.pdf) };
         wave.add(path.slot, path.throughput * seen.radiance * weight);
     }
+    lap(Phase::Light);
 }
 
 /// Scatters at surfaces; puts the hits of hair into the queue, and ends the paths that go no further.
@@ -67,6 +72,7 @@ fn surfaces(scene: &Scene, settings: &Settings, wave: &mut Wave) {
             Met::Nothing | Met::Light(_) => path.alive = false,
         }
     }
+    lap(Phase::Rest);
 }
 
 /// Scatters at a surface as Lambert's law says: the light that it receives, and the path's next ray.
@@ -111,10 +117,13 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
         let wo = Vec3x8::from(wo);
         let frames = frames8(&tangents.into(), &wo);
         let h = f32x8::new(core::array::from_fn(|lane| at(lane).1.h));
-        let prepared = scene.hair.prepare8(&Hit8::new(frames.to_local(&wo), h));
+        let origins: [Vec3; 8] = core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
+        let hits = Hit8::new(frames.to_local(&wo), h);
+        lap(Phase::Frames);
+        let prepared = scene.hair.prepare8(&hits);
+        lap(Phase::Kernels);
 
         // Uniform numbers, and directions towards lights.
-        let origins: [Vec3; 8] = core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
         let mut numbers = [[0.0; 4]; 8];
         let mut xi = [[0.0; 8]; 3];
         for (lane, (index, _)) in packet.iter().enumerate() {
@@ -123,6 +132,8 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
             let [lobe, theta, phi, roulette] = path.numbers.four();
             (xi[0][lane], xi[1][lane], xi[2][lane], path.roulette) = (lobe, theta, phi, roulette);
         }
+
+        lap(Phase::Numbers);
 
         // What the lights add.
         if settings.mis == Mis::Resampled {
@@ -139,8 +150,11 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
         } else if settings.mis != Mis::Bsdf {
             let xi = [0, 1, 2].map(|axis| numbers.map(|four| four[axis]));
             let lights = scene.sample_lights8(|lane| origins[lane], &xi, None);
+            lap(Phase::Light);
             let wi = frames.to_local(&lights.direction);
+            lap(Phase::Frames);
             let (eval, cos) = (prepared.eval8(&wi), cosine(&wi).to_array());
+            lap(Phase::Kernels);
             for (lane, (index, hit)) in packet.iter().enumerate() {
                 let Some(light) = lights.lane(lane, 1.0) else { continue };
                 let path = &paths[*index as usize];
@@ -155,8 +169,11 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
             }
         }
 
+        lap(Phase::Rest);
+
         // The paths' next rays.
         let sample = prepared.sample8(&xi);
+        lap(Phase::Kernels);
         let (directions, cos) = (frames.to_world(&sample.wi), cosine(&sample.wi).to_array());
         for (lane, (index, hit)) in packet.iter().enumerate() {
             let path = &mut paths[*index as usize];
@@ -167,6 +184,7 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
             path.ray = leave(scene, hit, origins[lane], directions.lane(lane).normalize_or(Vec3::Y), cos[lane]);
             path.from_hair = true;
         }
+        lap(Phase::Frames);
     }
 }
 

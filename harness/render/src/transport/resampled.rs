@@ -6,6 +6,7 @@ mod cells;
 pub(super) use candidates::Candidates;
 
 use super::Integrator;
+use super::profile::{Phase, lap};
 use crate::lights::{LightSample8, Table};
 use crate::material::{Prepared, cosine};
 use crate::numbers::{Even, Numbers};
@@ -95,6 +96,7 @@ impl Candidates {
             let of_pool = POOL.min(rays - pool * POOL);
             self.draw(place, streams, pool * POOL * PER_RAY, of_pool * PER_RAY);
             let share = of_pool as f32 / rays as f32;
+            lap(Phase::Rest);
             for (candidate, radiance) in self.choose(of_pool, streams.choice.at(pool)[0]) {
                 trace(candidate, share * radiance);
             }
@@ -110,19 +112,31 @@ impl Candidates {
         for first in (0..each).step_by(8) {
             let sky = table.map(|table| table.block(start + ((before + first) / 8) as usize));
             let mut light = scene.sample_lights8(|_| origin, &streams.light.eight(before + first), sky);
+            lap(Phase::Light);
             scene.remove_blocked(origin, &mut light);
+            lap(Phase::Rays);
             let wi = frame.to_local(&light.direction);
-            self.push(&prepared.eval8(&wi), &cosine(&wi), &light, counts, each - first);
+            lap(Phase::Frames);
+            let eval = prepared.eval8(&wi);
+            lap(Phase::Kernels);
+            self.push(&eval, &cosine(&wi), &light, counts, each - first);
+            lap(Phase::Rest);
         }
         for first in (0..each).step_by(8) {
             let sample = prepared.sample8(&streams.bsdf.eight(before + first));
-            let mut light = scene.lights_along(origin, &frame.to_world(&sample.wi));
+            lap(Phase::Kernels);
+            let directions = frame.to_world(&sample.wi);
+            lap(Phase::Frames);
+            let mut light = scene.lights_along(origin, &directions);
+            lap(Phase::Light);
             scene.remove_blocked(origin, &mut light);
+            lap(Phase::Rays);
             let drawn = sample.pdf.simd_gt(f32x8::ZERO);
             light.pdf &= drawn;
             light.radiance.iter_mut().for_each(|channel| *channel &= drawn);
             let eval = Eval8 { value: sample.value, pdf: sample.pdf };
             self.push(&eval, &cosine(&sample.wi), &light, counts, each - first);
+            lap(Phase::Rest);
         }
     }
 }
@@ -153,9 +167,12 @@ pub(super) fn of_lights(
         }
         let sky = blocks.as_ref().map(|blocks| transposed(blocks, k));
         let lights = scene.sample_lights8(|lane| origins[lane], &xi, sky.as_ref());
+        lap(Phase::Light);
         let wi = frames.to_local(&lights.direction);
         let cos = cosine(&wi);
+        lap(Phase::Frames);
         let (eval, LightSample8 { radiance, pdf, .. }) = (prepared.eval8(&wi), lights);
+        lap(Phase::Kernels);
         let weighed = Weighed8::new(&eval, &cos, &radiance, &pdf, counts, Partition::Power);
         for lane in 0..8 {
             let distance = lights.distance.as_array()[lane];
@@ -164,6 +181,7 @@ pub(super) fn of_lights(
             (0..3).for_each(|c| contribution[lane][c][k] = weighed.contribution[c].as_array()[lane]);
             weight[lane][k] = weighed.weight.as_array()[lane];
         }
+        lap(Phase::Rest);
     }
     core::array::from_fn(|lane| {
         let contribution = contribution[lane].each_ref().map(|column| &column[..]);

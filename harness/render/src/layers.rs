@@ -1,0 +1,108 @@
+//! What the file of a picture holds beside its radiance: layers of pixels, and attributes.
+
+use crate::film::{Crop, Film};
+use crate::scene::{Met, Scene};
+use glam::Vec3;
+use hairis_harness::light::luminance;
+use hairis_harness::machine::Machine;
+use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+
+/// One channel of a layer, row by row from the upper left corner.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Its name, after that of the layer and a dot where the layer has several.
+    pub name: &'static str,
+    /// A number per pixel.
+    pub pixels: Vec<f32>,
+}
+
+/// Layers and attributes of a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Beside {
+    /// Channels of the layers.
+    pub channels: Vec<Channel>,
+    /// Names and values of the attributes.
+    pub attributes: Vec<(&'static str, String)>,
+}
+
+impl Beside {
+    /// What the sums of a film tell: `variance`, that of a pixel's mean luminance, supposing independent samples; `samples`, their
+    /// count; and the attributes of a run.
+    #[must_use]
+    pub fn film(film: &Film, run: &str) -> Self {
+        let crop = film.crop();
+        let [mut variance, mut samples] = [vec![0.0; crop.len()], vec![0.0; crop.len()]];
+        for tile in &film.tiles {
+            let n = f64::from(tile.samples.max(1));
+            for ([x, y], sums) in tile.place.pixels().zip(&tile.sums) {
+                let place = (y - crop.y) as usize * crop.width as usize + (x - crop.x) as usize;
+                let mean = luminance(sums.radiance) / n;
+                variance[place] = rounded((sums.luminance_sq / n - mean * mean).max(0.0) / n);
+                samples[place] = rounded(f64::from(tile.samples));
+            }
+        }
+        let channels =
+            vec![Channel { name: "variance", pixels: variance }, Channel { name: "samples", pixels: samples }];
+        let attributes = vec![
+            ("run", run.to_owned()),
+            ("machine", Machine::current().summary()),
+            ("samplesPerPixel", film.samples().to_string()),
+            ("secondsOfCpuTime", format!("{:.1}", film.seconds())),
+        ];
+        Self { channels, attributes }
+    }
+
+    /// With what the rays through the pixels' centres meet first: `albedo`, the directional albedo of hair and the albedo of
+    /// surfaces; and `tangent`, the direction of the fibre from root to tip. Both are 0 elsewhere.
+    #[must_use]
+    pub fn scene(mut self, scene: &Scene, crop: Crop) -> Self {
+        let pixels: Vec<[u32; 2]> = crop.pixels().collect();
+        let met: Vec<[f32; 6]> = pixels.par_iter().map(|pixel| first(scene, *pixel)).collect();
+        let names = ["albedo.R", "albedo.G", "albedo.B", "tangent.X", "tangent.Y", "tangent.Z"];
+        let channel = |(k, name)| Channel { name, pixels: met.iter().map(|numbers| numbers[k]).collect() };
+        self.channels.extend(names.into_iter().enumerate().map(channel));
+        self
+    }
+}
+
+/// Albedo and tangent of what the ray through a pixel's centre meets first.
+fn first(scene: &Scene, [x, y]: [u32; 2]) -> [f32; 6] {
+    let ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
+    let (albedo, tangent) = match scene.closest(&ray) {
+        Met::Hair(hit) => {
+            let tangent = scene.strands.tangent(hit.segment, hit.s).normalize_or_zero();
+            let theta_o = (-ray.direction.dot(tangent)).clamp(-1.0, 1.0).asin();
+            (scene.hair.albedo(theta_o, hit.h), tangent)
+        }
+        Met::Surface(_, _, albedo) => (albedo.to_array(), Vec3::ZERO),
+        Met::Nothing | Met::Light(_) => ([0.0; 3], Vec3::ZERO),
+    };
+    let [r, g, b] = albedo;
+    [r, g, b, tangent.x, tangent.y, tangent.z]
+}
+
+/// As files hold it.
+#[expect(clippy::cast_possible_truncation, reason = "files hold single precision")]
+const fn rounded(x: f64) -> f32 {
+    x as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variance_is_that_of_the_mean() {
+        let mut film = Film::new(Crop { x: 3, y: 1, width: 2, height: 2 });
+        let tile = &mut film.tiles[0];
+        tile.samples = 4;
+        for grey in [1.0, 3.0, 1.0, 3.0] {
+            tile.sums[2].add(Vec3::splat(grey));
+        }
+        let beside = Beside::film(&film, "a run");
+        let [variance, samples] = &beside.channels[..] else { panic!("two layers") };
+        assert!((variance.pixels[2] - 0.25).abs() < 1e-6 && variance.pixels[0] == 0.0, "{variance:?}");
+        assert_eq!(samples.pixels, [4.0; 4]);
+        assert!(beside.attributes.contains(&("run", "a run".to_owned())), "{beside:?}");
+    }
+}
