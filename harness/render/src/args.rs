@@ -152,6 +152,9 @@ pub struct Figures {
     /// How light is estimated [default: by scene]
     #[arg(long, value_enum)]
     pub integrator: Option<Integrator>,
+    /// Compare the models, too, where --scene is given
+    #[arg(long)]
+    pub models: bool,
     /// Folder for report.html and the pictures; made if missing
     #[arg(long, value_name = "DIR", default_value = "out/figures")]
     pub out: PathBuf,

@@ -1,6 +1,7 @@
 //! `hairis-render figures`: samplers side by side, as pictures and as numbers, on one page.
 
 mod measure;
+mod models;
 mod page;
 mod panel;
 mod verdict;
@@ -9,8 +10,10 @@ use crate::args::Figures;
 use crate::cmd::environment;
 use crate::scenes::Name;
 use hairis_harness::error::Error;
+use hairis_variants::ModelId;
 use indicatif::{ProgressBar, ProgressStyle};
 use measure::{Measured, Plan};
+use models::Preset;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::Path;
@@ -43,7 +46,14 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
             scenes.push((*name, None));
         }
     }
-    let bar = ProgressBar::new(plan.steps(scenes.len()) as u64);
+    // Models are compared where the scenes are not chosen one by one.
+    let presets: &[&'static str] = match (flags.scene.is_empty() || flags.models, flags.quick) {
+        (false, _) => &[],
+        (true, true) => &models::PRESETS[..1],
+        (true, false) => &models::PRESETS,
+    };
+    let steps = plan.steps(scenes.len()) + presets.len() * ModelId::defaults_of_names().count();
+    let bar = ProgressBar::new(steps as u64);
     if let Ok(style) = ProgressStyle::with_template("{msg:>30} {wide_bar} {percent:>3}% {elapsed} (left {eta})") {
         bar.set_style(style);
     }
@@ -57,7 +67,12 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         measured.write_pictures(&flags.out)?;
         all.push(measured);
         // After every scene, so that a run that is stopped leaves a page.
-        page::write(&all, &plan, flags, &flags.out)?;
+        page::write(&all, &[], &plan, flags, &flags.out)?;
+    }
+    let mut compared = Vec::new();
+    for name in presets {
+        compared.push(Preset::render(name, &plan, flags.seed, &step)?);
+        page::write(&all, &compared, &plan, flags, &flags.out)?;
     }
     bar.finish_and_clear();
     let mut lines = String::new();

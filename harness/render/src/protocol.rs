@@ -58,6 +58,19 @@ impl Reference {
         luminances.map(|(k, l)| (l - self.luminances[k]) / self.unit(k).sqrt()).collect()
     }
 
+    /// How another scene looks beside this one: the ratio of the mean luminances, and the root of the mean squared relative
+    /// difference. The noise of both is subtracted.
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> (f64, f64) {
+        let square = |k: usize| {
+            let (apart, noise) = (self.luminances[k] - other.luminances[k], self.variances[k] + other.variances[k]);
+            (apart * apart - noise) / self.unit(k)
+        };
+        let count = self.luminances.len().max(1);
+        let mean = (0..self.luminances.len()).map(square).sum::<f64>() / count as f64;
+        (other.mean / self.mean, mean.max(0.0).sqrt())
+    }
+
     /// Errors of a picture; what the reference's own noise adds is subtracted.
     #[must_use]
     pub fn errors(&self, picture: &Picture) -> Errors {

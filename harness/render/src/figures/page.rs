@@ -1,6 +1,7 @@
 //! The page.
 
 use super::measure::{BySampler, Measured, Plan};
+use super::models::{self, Preset};
 use super::panel::{Column, panel};
 use super::verdict::{ERRORS, gain, sentence};
 use crate::args::Figures;
@@ -18,13 +19,19 @@ use std::io::Write as _;
 use std::path::Path;
 
 /// Writes `report.html`.
-pub(super) fn write(all: &[Measured], plan: &Plan, flags: &Figures, out: &Path) -> Result<(), Error> {
+pub(super) fn write(
+    all: &[Measured],
+    presets: &[Preset],
+    plan: &Plan,
+    flags: &Figures,
+    out: &Path,
+) -> Result<(), Error> {
     let path = out.join("report.html");
-    let page = page(all, plan, flags).map_err(|source| Error::Output { path: path.clone(), source })?;
+    let page = page(all, presets, plan, flags).map_err(|source| Error::Output { path: path.clone(), source })?;
     whole(&path, |out| out.write_all(page.html().as_bytes()))
 }
 
-fn page(all: &[Measured], plan: &Plan, flags: &Figures) -> std::io::Result<Report> {
+fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> std::io::Result<Report> {
     let machine = Machine::current();
     let mut report = Report::new("What samplers are worth on pictures of hair").subtitle(machine.summary());
     for measured in all {
@@ -33,6 +40,9 @@ fn page(all: &[Measured], plan: &Plan, flags: &Figures) -> std::io::Result<Repor
     report = report.section(Section::new("Summary").table(summary(all)));
     for measured in all {
         report = report.section(section(measured)?);
+    }
+    if !presets.is_empty() {
+        report = report.section(models::section(presets)?);
     }
     let Plan { side, strands, runs, .. } = plan;
     Ok(report

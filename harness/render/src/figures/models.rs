@@ -1,0 +1,112 @@
+//! One head of hair by every model, side by side.
+
+use super::measure::Plan;
+use super::panel::{Column, panel};
+use crate::hair::{Choice, Energy, PUBLISHED, samplers};
+use crate::picture::exposure;
+use crate::protocol::Reference;
+use crate::scenes::{self, Name, Parts};
+use crate::transport::Settings;
+use hairis_harness::error::Error;
+
+use hairis_harness::report::{Drawing, Section};
+use hairis_harness::table::{Table, number};
+use hairis_variants::ModelId;
+
+/// The sampler, of models that have it.
+const SAMPLER: &str = "matched";
+/// Hair of every model, by the names of its presets.
+pub(super) const PRESETS: [&str; 4] = ["blond", "brown", "black", "red"];
+
+/// Pictures of one preset, a model each; the first is the published one.
+#[derive(Debug)]
+pub(super) struct Preset {
+    name: &'static str,
+    samples: u32,
+    models: Vec<(&'static str, Reference)>,
+}
+
+impl Preset {
+    /// Renders the scene `head` with every model.
+    pub(super) fn render(name: &'static str, plan: &Plan, seed: u64, step: &dyn Fn(&str)) -> Result<Self, Error> {
+        let scene = Name::Head;
+        // A quarter of what references of paths take: looks need less than errors.
+        let samples = plan.reference[1] / 4;
+        let strands = scenes::grow(scene, plan.strands)?;
+        let hair = |model: &str| {
+            let sampler = if samplers(model).contains(&SAMPLER) { SAMPLER } else { PUBLISHED };
+            Choice::find(model, sampler, name)?.hair(Energy::Raw)
+        };
+        let names = ModelId::defaults_of_names().map(ModelId::name);
+        let hairs = names.map(|model| Ok((model, hair(model)?))).collect::<Result<Vec<_>, Error>>()?;
+        let Some((_, first)) = hairs.first() else { return Ok(Self { name, samples, models: Vec::new() }) };
+        let parts = Parts { strands, imported: false, hair: *first, env: None, size: [plan.side; 2], turn: 0.0 };
+        let mut scene = scenes::build(scene, parts)?;
+        let defaults = Name::Head.defaults();
+        let settings =
+            Settings { integrator: defaults.integrator, multiple: defaults.multiple, seed, ..Settings::default() };
+        let mut models = Vec::new();
+        for (model, hair) in hairs {
+            step(&format!("{name}: {model}"));
+            scene.hair = hair;
+            models.push((model, Reference::render(&scene, &settings, samples)));
+        }
+        Ok(Self { name, samples, models })
+    }
+
+    /// Brightness and look of each model beside the first.
+    fn differences(&self) -> impl Iterator<Item = (&'static str, f64, f64)> {
+        let first = self.models.first().map(|(_, first)| first);
+        let rest = self.models.iter().skip(1);
+        rest.filter_map(move |(name, other)| {
+            let (brightness, look) = first?.difference(other);
+            Some((*name, brightness, look))
+        })
+    }
+}
+
+/// The section of the page.
+pub(super) fn section(presets: &[Preset]) -> std::io::Result<Section> {
+    let mut table = Table::new("Models beside the published one")
+        .texts(["hair", "model"])
+        .numbers(["brightness", "difference of the look (%)"]);
+    let mut section = Section::new("Models").paragraph(
+        "One head of wavy hair under an area light, by paths: the published model, its all-Cauchy variant, and the other models \
+         with presets of the same names. The presets of a colour are tuned by eye, model by model: the all-Cauchy variant alone \
+         has the parameters of the published model.",
+    );
+    for preset in presets {
+        for (model, brightness, look) in preset.differences() {
+            table.push([
+                preset.name.to_owned(),
+                model.to_owned(),
+                number::ratio(brightness),
+                number::plain(100.0 * look, 3),
+            ]);
+        }
+        let Some((_, first)) = preset.models.first() else { continue };
+        let column = |(name, of)| column(preset, first, name, of);
+        let columns: Vec<Column<'_>> = preset.models.iter().map(|(name, of)| (*name, of)).map(column).collect();
+        let drawing = panel(&columns, exposure(&first.picture))?;
+        let caption = format!(
+            "{}. Below: the brightest part, 4 times as large; and the difference of each pixel from the published model, blue \
+             darker, red brighter (full colour at 100 %).",
+            preset.name
+        );
+        section = section.figure(Drawing::new(drawing, caption));
+    }
+    table = table.note(
+        "Brightness: ratio of mean luminances. Look: root of the mean of (a − b)² / (b² + (0.1 mean)²) in luminance, the noise of \
+         both pictures subtracted.",
+    );
+    Ok(section.table(table))
+}
+
+fn column<'a>(preset: &Preset, first: &Reference, name: &str, of: &'a Reference) -> Column<'a> {
+    Column {
+        title: name.to_owned(),
+        remark: format!("{}, {} samples", preset.name, 2 * preset.samples),
+        picture: &of.picture,
+        errors: Some(first.signed(&of.picture)),
+    }
+}
