@@ -1,6 +1,6 @@
 //! One entry point on its inputs, and its answers in one form for all entry points.
 
-use crate::inputs::{Column, DIRECTIONS};
+use crate::inputs::Column;
 use crate::platform::Platform;
 use core::array::from_fn;
 use core::hint::black_box;
@@ -145,6 +145,7 @@ impl<I, O: Output, F: Fn(&I, &mut dyn FnMut(&O))> Pass for Several<I, O, F> {
 pub struct Slices<F, const N: usize, const I: usize = 3> {
     inputs: [Column; I],
     outputs: [Column; N],
+    calls: usize,
     len: usize,
     call: F,
 }
@@ -158,6 +159,7 @@ where
         Self {
             inputs: from_fn(|k| Column::new(k, rows.iter().map(|row| row[k]))),
             outputs: from_fn(|k| Column::new(I + k, [])),
+            calls: rows.len() / len,
             len,
             call,
         }
@@ -169,7 +171,7 @@ where
     F: Fn([&[f32]; I], [&mut [f32]; N]) -> Result<(), LengthError>,
 {
     fn calls(&self) -> usize {
-        DIRECTIONS / self.len
+        self.calls
     }
     fn directions(&self) -> usize {
         self.len

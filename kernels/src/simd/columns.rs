@@ -124,37 +124,63 @@ pub(crate) fn in_eights<const I: usize, const N: usize>(
     }
     let len = inputs[0].len();
     let mut from = [[0.0; 8]; I];
-    copy_few(inputs.into_iter().zip(from.each_mut().map(|lanes| &mut lanes[..])), len);
+    match len {
+        4.. => read_few::<4, I>(&inputs, &mut from, len),
+        2.. => read_few::<2, I>(&inputs, &mut from, len),
+        _ => read_few::<1, I>(&inputs, &mut from, len),
+    }
     // Not zeros, which compilers write by a call of memset.
     const FILL: [f32; 8] = [1.0; 8];
     let mut to = [FILL; N];
     run(array::from_fn(|column| slice::from_ref(&from[column])), &mut to.each_mut().map(slice::from_mut));
-    copy_few(
-        to.each_ref().map(|lanes| &lanes[..]).into_iter().zip(outputs.each_mut().map(|column| &mut **column)),
-        len,
-    );
-}
-
-/// Copies `len` numbers of each column, at most 8: in two halves that overlap, of fixed length. A loop, and the system's copy all
-/// the more, costs several times as much.
-#[inline(always)]
-pub(crate) fn copy_few<'a>(columns: impl Iterator<Item = (&'a [f32], &'a mut [f32])>, len: usize) {
     match len {
-        4.. => columns.for_each(|(from, to)| copy_halves::<4>(from, to, len)),
-        2.. => columns.for_each(|(from, to)| copy_halves::<2>(from, to, len)),
-        _ => columns.for_each(|(from, to)| copy_halves::<1>(from, to, len)),
+        4.. => write_few::<4, N>(&to, outputs, len),
+        2.. => write_few::<2, N>(&to, outputs, len),
+        _ => write_few::<1, N>(&to, outputs, len),
     }
 }
 
-/// Copies the first `HALF` of `len` numbers, and the last.
+/// Copies `len` rows into lanes; `HALF` is at least half of it.
+#[inline(always)]
+fn read_few<const HALF: usize, const I: usize>(columns: &[&[f32]; I], lanes: &mut [[f32; 8]; I], len: usize) {
+    let mut column = 0;
+    while column < I {
+        copy_halves::<HALF>(columns[column], &mut lanes[column], len);
+        column += 1;
+    }
+}
+
+/// Copies `len` rows from lanes; `HALF` is at least half of it.
+#[inline(always)]
+fn write_few<const HALF: usize, const N: usize>(lanes: &[[f32; 8]; N], columns: &mut [&mut [f32]; N], len: usize) {
+    let mut column = 0;
+    while column < N {
+        copy_halves::<HALF>(&lanes[column], columns[column], len);
+        column += 1;
+    }
+}
+
+/// Copies `len` numbers, at most 8.
+#[inline(always)]
+pub(crate) fn copy(from: &[f32], to: &mut [f32], len: usize) {
+    match len {
+        4.. => copy_halves::<4>(from, to, len),
+        2.. => copy_halves::<2>(from, to, len),
+        _ => copy_halves::<1>(from, to, len),
+    }
+}
+
+/// Copies the first `HALF` of `len` numbers, and the last: of fixed length each. A loop, and the system's copy all the more,
+/// costs several times as much.
 #[inline(always)]
 fn copy_halves<const HALF: usize>(from: &[f32], to: &mut [f32], len: usize) {
     let (Some(from), Some(to)) = (from.get(..len), to.get_mut(..len)) else { return };
     let Some(rest) = len.checked_sub(HALF) else { return };
-    for at in [0, rest] {
-        let (Some(from), Some(to)) = (from.get(at..), to.get_mut(at..)) else { return };
-        if let (Some(from), Some(to)) = (from.first_chunk::<HALF>(), to.first_chunk_mut()) {
-            *to = *from;
-        }
+    if let (Some(from), Some(to)) = (from.first_chunk::<HALF>(), to.first_chunk_mut()) {
+        *to = *from;
+    }
+    let (Some(from), Some(to)) = (from.get(rest..), to.get_mut(rest..)) else { return };
+    if let (Some(from), Some(to)) = (from.first_chunk::<HALF>(), to.first_chunk_mut()) {
+        *to = *from;
     }
 }
