@@ -2,6 +2,7 @@
 
 mod charts;
 mod page;
+mod rays;
 mod tables;
 
 pub use page::report;
@@ -11,6 +12,7 @@ use crate::agreement::{self, AgreementConfig, AgreementResult};
 use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, SAMPLERS, SampleCosts};
 use crate::light::Environment;
 use crate::machine::Machine;
+use crate::rays::{self as ray_figures, RaysConfig, RaysResult};
 use crate::speed::{self, SpeedConfig, SpeedReport};
 use crate::study::output::Times;
 use crate::subject::ModelKind;
@@ -43,6 +45,8 @@ pub struct Comparison {
     pub agreement: Vec<AgreementResult>,
     /// Variance a sample.
     pub efficiency: EfficiencyResult,
+    /// One ray for many candidates.
+    pub rays: RaysResult,
 }
 
 /// The settings of a comparison.
@@ -67,6 +71,8 @@ pub enum Part {
     Agreement,
     /// Variances.
     Efficiency,
+    /// Rays chosen from candidates; they are timed first, and nothing else runs meanwhile.
+    Rays,
 }
 
 impl Part {
@@ -77,6 +83,7 @@ impl Part {
             Self::Speed => "speed",
             Self::Agreement => "agreement",
             Self::Efficiency => "sample efficiency",
+            Self::Rays => "rays",
         }
     }
 }
@@ -103,13 +110,19 @@ pub fn run(config: &CompareConfig<'_>, progress: &(dyn Fn(Part, f64) + Sync)) ->
         progress(Part::Efficiency, done as f64 / total as f64);
     })?;
 
+    let settings_of_rays = RaysConfig::new(config.seed, config.quick, config.environment);
+    let rays = ray_figures::run(&settings_of_rays, &efficiency, &|done, total| {
+        #[expect(clippy::cast_precision_loss, reason = "counts of cells, below a thousand")]
+        progress(Part::Rays, done as f64 / total as f64);
+    });
+
     let settings = CompareSettings {
         seed: config.seed,
         quick: config.quick,
         environment: config.environment_name.to_owned(),
         environment_notes: config.environment.notes(),
     };
-    Ok(Comparison { settings, machine: Machine::current(), speed, agreement, efficiency })
+    Ok(Comparison { settings, machine: Machine::current(), speed, agreement, efficiency, rays })
 }
 
 /// Samples at a shading point over which its preparation is spread, as in direct lighting.
@@ -143,6 +156,7 @@ impl Comparison {
             )
         });
         let biased = self.efficiency.check.failures.iter().map(|what| format!("efficiency: {what}"));
-        slow.chain(far).chain(biased).collect()
+        let rays = self.rays.check.failures.iter().map(|what| format!("rays: {what}"));
+        slow.chain(far).chain(biased).chain(rays).collect()
     }
 }

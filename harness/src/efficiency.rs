@@ -48,6 +48,7 @@ pub use result::{
 };
 pub use run::run;
 
+pub(crate) use measure::{bias_z, is_tested};
 pub(crate) use run::z_bound;
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ pub mod markup;
 pub mod plot;
 mod progress;
 pub mod quadrature;
+pub mod rays;
 pub mod report;
 pub mod sampler;
 pub mod sequence;

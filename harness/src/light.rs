@@ -111,7 +111,7 @@ pub(crate) fn in_words(name: &str) -> &str {
 
 /// The nearest number of single precision.
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
-const fn rounded(x: f64) -> f32 {
+pub(crate) const fn rounded(x: f64) -> f32 {
     x as f32
 }
 

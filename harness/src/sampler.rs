@@ -111,6 +111,11 @@ impl Scatter {
         Self { gather: bsdf(model, sampler, params).prepare(wo), is_uniform: sampler == Sampler::Uniform }
     }
 
+    /// A prepared shading point, with the model's own sampler or with uniform directions.
+    pub(crate) const fn at(gather: AnyGather, is_uniform: bool) -> Self {
+        Self { gather, is_uniform }
+    }
+
     pub(crate) fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
         if self.is_uniform {
             let wi = uniform8(xi);

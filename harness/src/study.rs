@@ -140,7 +140,7 @@ impl Plan<'_> {
 }
 
 /// The lights that need no file; the environment follows them.
-fn with_built_in_lights<R>(f: impl FnOnce([&dyn Light; 4]) -> R) -> R {
+pub(crate) fn with_built_in_lights<R>(f: impl FnOnce([&dyn Light; 4]) -> R) -> R {
     f([&Constant::white(), &Smooth::new(), &sun(), &Rectangle::figure_6a()])
 }
 

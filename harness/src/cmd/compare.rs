@@ -61,7 +61,7 @@ pub(super) fn write_json(path: &Path, results: &impl Serialize) -> Result<(), Er
 /// The tables on standard output.
 fn print(comparison: &Comparison, page: &Path) -> Result<(), Error> {
     let tables = compare::tables(comparison, Depth::Summary);
-    print_tables(tables.speed.iter().chain(&tables.agreement).chain(&tables.efficiency), page)
+    print_tables(tables.speed.iter().chain(&tables.agreement).chain(&tables.efficiency).chain(&tables.rays), page)
 }
 
 /// Progress bars, one per part, on standard error; nothing where that is no terminal.

@@ -1,6 +1,6 @@
 //! The report of a comparison.
 
-use super::{Comparison, Depth, charts, tables};
+use super::{Comparison, Depth, charts, rays, tables};
 use crate::efficiency::EfficiencyRow;
 use crate::light::in_words;
 use crate::report::{Report, Section};
@@ -54,6 +54,17 @@ pub fn report(of: &Comparison) -> Report {
         efficiency = efficiency.table(table);
     }
 
+    let mut chosen = Section::new("One ray for many candidates").paragraph(
+        "Directions are drawn from the BSDF and from the light, weighed by the light that they would bring, and a few are traced \
+         (`hairis::resample`). One-sample MIS traces each direction that it draws.",
+    );
+    if let Some(figure) = rays::chart(of) {
+        chosen = chosen.figure(figure);
+    }
+    for table in tables.rays {
+        chosen = chosen.table(table);
+    }
+
     let mut speed = charts::speeds(of).into_iter().fold(Section::new("Speed"), Section::figure);
     for table in tables.speed {
         speed = speed.table(table);
@@ -66,7 +77,7 @@ pub fn report(of: &Comparison) -> Report {
         agreement = agreement.table(table);
     }
 
-    page = page.section(speed).section(efficiency).section(models).section(agreement);
+    page = page.section(speed).section(efficiency).section(chosen).section(models).section(agreement);
     let check = &of.efficiency.check;
     let (tests, bound) = (check.tests, check.bound);
     page = page
@@ -217,6 +228,7 @@ fn findings(of: &Comparison) -> Vec<String> {
         ));
     }
     findings.extend(worse_than_uniform(of));
+    findings.extend(rays::finding(of));
     let level = of.speed.detected_level;
     let ratio = |op, model: ModelKind| of.speed.row(op, model.name(), "eight lanes", level).map(|row| row.ratio);
     if let (Some(eval), Some(cauchy), Some(sample), Some(points)) = (
@@ -241,7 +253,7 @@ fn findings(of: &Comparison) -> Vec<String> {
         number::percent(worst)
     ));
     findings.push(match of.failures().len() {
-        0 => format!("All {} estimates agree with their references.", of.efficiency.check.tests),
+        0 => format!("All {} estimates agree with their references.", of.efficiency.check.tests + of.rays.check.tests),
         n => format!("{n} checks failed; they are listed on the terminal and in compare.json."),
     });
     findings

@@ -1,6 +1,6 @@
 //! The tables of a comparison, the same for the terminal and for the page.
 
-use super::Comparison;
+use super::{Comparison, rays};
 use crate::agreement::{Quantity, Region};
 use crate::efficiency::{EfficiencyRow, MisRow, SAMPLERS, Technique};
 use crate::sampler::Sampler;
@@ -28,6 +28,8 @@ pub struct Tables {
     pub agreement: Vec<Table>,
     /// Variance a sample.
     pub efficiency: Vec<Table>,
+    /// One ray for many candidates.
+    pub rays: Vec<Table>,
 }
 
 /// Makes the tables.
@@ -41,7 +43,7 @@ pub fn tables(of: &Comparison, depth: Depth) -> Tables {
     efficiency.push(light_sampling(of, depth));
     let mut speed: Vec<Table> = ModelId::defaults_of_names().map(|model| speed(of, model, depth)).collect();
     speed.push(threads(of));
-    Tables { speed, agreement: vec![agreement(of, depth)], efficiency }
+    Tables { speed, agreement: vec![agreement(of, depth)], efficiency, rays: rays::tables(of, depth) }
 }
 
 fn speed(of: &Comparison, model: ModelId, depth: Depth) -> Table {

@@ -101,7 +101,7 @@ pub(super) fn means(
 ///
 /// - Source: Hall 1992, On the removal of skewness by transformation, equation (3).
 /// - Domain: 0 when the mean is exactly the reference; infinite when it differs without any spread; NaN when a contribution was NaN.
-pub(super) fn bias_z(moments: &Moments, reference: &Reference) -> f64 {
+pub(crate) fn bias_z(moments: &Moments, reference: &Reference) -> f64 {
     let mean = moments.mean_estimate();
     let difference = mean.value - reference.value;
     if difference == 0.0 {
@@ -122,7 +122,7 @@ pub(super) fn bias_z(moments: &Moments, reference: &Reference) -> f64 {
 
 /// Whether `samples` of variance `v` and of this skewness are worth enough for a test of their mean: if rare hits carry a part of it, by their number, which is
 /// `n / skewness^2` whatever the part; if they carry all of it, by `n / (1 + V)` as well. What is no number (black light, black hair) is no reason not to.
-pub(super) fn is_tested(samples: usize, [v, skewness]: [f64; 2]) -> bool {
+pub(crate) fn is_tested(samples: usize, [v, skewness]: [f64; 2]) -> bool {
     let n = samples as f64;
     (v.is_nan() || n / (1.0 + v) >= MIN_EFFECTIVE) && (skewness.is_nan() || n >= MIN_EFFECTIVE * skewness * skewness)
 }

@@ -133,14 +133,7 @@ pub fn run(
         mis_rows,
         convergence,
         beta_sweep,
-        check: Check {
-            tests: 0,
-            untested: 0,
-            false_alarm: FALSE_ALARM,
-            bound: 0.0,
-            largest_z: 0.0,
-            failures: Vec::new(),
-        },
+        check: Check::of(&[], 0),
     };
     result.check = check(&result);
     Ok(result)
@@ -180,19 +173,26 @@ pub(super) fn check(result: &EfficiencyResult) -> Check {
             scores.push((z, format!("{place}: V against the recorded figure")));
         }
     }
-    let bound = z_bound(sidak(FALSE_ALARM, scores.len()));
-    let size = |z: f64| if z.is_nan() { f64::INFINITY } else { z.abs() };
-    Check {
-        tests: scores.len(),
-        untested,
-        false_alarm: FALSE_ALARM,
-        bound,
-        largest_z: scores.iter().map(|(z, _)| size(*z)).fold(0.0, f64::max),
-        failures: scores
-            .iter()
-            .filter(|(z, _)| size(*z) > bound)
-            .map(|(z, what)| format!("{what}: {z:.2} standard errors off, allowed {bound:.2}"))
-            .collect(),
+    Check::of(&scores, untested)
+}
+
+impl Check {
+    /// Holds scores, each with its place, against the bound that all of them together pass with probability `1 - FALSE_ALARM`.
+    pub(crate) fn of(scores: &[(f64, String)], untested: usize) -> Self {
+        let bound = z_bound(sidak(FALSE_ALARM, scores.len()));
+        let size = |z: f64| if z.is_nan() { f64::INFINITY } else { z.abs() };
+        Self {
+            tests: scores.len(),
+            untested,
+            false_alarm: FALSE_ALARM,
+            bound,
+            largest_z: scores.iter().map(|(z, _)| size(*z)).fold(0.0, f64::max),
+            failures: scores
+                .iter()
+                .filter(|(z, _)| size(*z) > bound)
+                .map(|(z, what)| format!("{what}: {z:.2} standard errors off, allowed {bound:.2}"))
+                .collect(),
+        }
     }
 }
 

@@ -1,0 +1,80 @@
+//! Eight candidates at a time: drawn, looked up and weighed.
+
+use crate::light::{Light, Seen8, rounded};
+use crate::sampler::Scatter;
+use crate::sequence::{Independent, XiSource};
+use core::array;
+use hairis::resample::{Counts, Partition, Weighed8};
+use hairis::{Eval8, Vec3x8};
+use wide::f32x8;
+
+/// Eight directions that were drawn from a light, one per lane.
+#[derive(Clone, Copy)]
+pub(super) struct LightBlock {
+    wi: Vec3x8,
+    seen: Seen8,
+}
+
+impl LightBlock {
+    pub(super) fn draw(light: &dyn Light, source: &mut Independent) -> Self {
+        let samples = light.sample8(array::from_fn(|_| source.next_xi()));
+        let wi = samples.map(|sample| sample.dir.as_vec3()).into();
+        let radiance = array::from_fn(|c| f32x8::new(samples.map(|sample| rounded(sample.radiance[c]))));
+        Self { wi, seen: Seen8 { radiance, pdf: f32x8::new(samples.map(|sample| rounded(sample.pdf))) } }
+    }
+}
+
+/// Three rows of eight uniform numbers.
+pub(super) fn numbers(source: &mut Independent) -> [f32x8; 3] {
+    array::from_fn(|_| f32x8::new(array::from_fn(|_| source.next_f32())))
+}
+
+/// Eight candidates of one technique at one hit, one per lane: everything that a weight needs.
+pub(super) struct Candidates8 {
+    eval: Eval8,
+    cos_theta_i: f32x8,
+    seen: Seen8,
+}
+
+impl Candidates8 {
+    /// From the BSDF. Samples bring their value and density along.
+    #[inline]
+    pub(super) fn of_bsdf(scatter: &Scatter, light: &dyn Light, xi: &[f32x8; 3]) -> Self {
+        let sample = scatter.sample8(xi);
+        let eval = Eval8 { value: sample.value, pdf: sample.pdf };
+        Self { eval, cos_theta_i: cos_theta(&sample.wi), seen: light.see8(&sample.wi) }
+    }
+
+    /// From the light.
+    #[inline]
+    pub(super) fn of_light(scatter: &Scatter, block: &LightBlock) -> Self {
+        let eval = scatter.eval_pdf8(&block.wi);
+        Self { eval, cos_theta_i: cos_theta(&block.wi), seen: block.seen }
+    }
+
+    /// In a pool of `count` candidates of each technique.
+    #[inline]
+    pub(super) fn weigh(&self, count: u32) -> Weighed8 {
+        let Self { eval, cos_theta_i, seen } = self;
+        let counts = Counts { bsdf: count, light: count };
+        Weighed8::new(eval, cos_theta_i, &seen.radiance, &seen.pdf, counts, Partition::All)
+    }
+
+    /// Densities of the BSDF's technique and of the light's, per steradian.
+    pub(super) const fn pdf(&self) -> [f32x8; 2] {
+        [self.eval.pdf, self.seen.pdf]
+    }
+
+    /// What each direction adds as a ray of one-sample MIS, linear RGB.
+    #[inline]
+    pub(super) fn one_sample_mis(&self) -> [f32x8; 3] {
+        let density = f32x8::splat(0.5) * (self.eval.pdf + self.seen.pdf);
+        let scale = self.cos_theta_i / density.max(f32x8::splat(f32::MIN_POSITIVE));
+        array::from_fn(|c| self.eval.value[c] * self.seen.radiance[c] * scale)
+    }
+}
+
+#[inline]
+fn cos_theta(wi: &Vec3x8) -> f32x8 {
+    (wi.y * wi.y + wi.z * wi.z).sqrt()
+}

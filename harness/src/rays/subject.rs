@@ -1,0 +1,82 @@
+//! The models and samplers whose rays are measured, and the shading points.
+
+use crate::efficiency::{PHI_O_DEG, THETA_O_DEG};
+use crate::quadrature::fibre_direction;
+use crate::sampler::{Sampler, Scatter};
+use glam::Vec3;
+use hairis::Hit;
+use hairis::reference::Reference as _;
+use hairis_variants::{AnyReference, ModelId};
+
+/// Offset of the ray from the fibre's axis, for models that read it, by place in [`THETA_O_DEG`].
+const OFFSETS: [f32; 4] = [0.0, 0.5, -0.75, 0.25];
+
+/// A model with one of its samplers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RaySubject {
+    id: ModelId,
+    is_uniform: bool,
+}
+
+impl RaySubject {
+    /// Every model of the registry with each of its samplers; the two bells with uniform directions as well.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let with_uniform = |id: ModelId| {
+            let uniform = matches!(id, ModelId::Gaussian | ModelId::Cauchy).then_some(Self { id, is_uniform: true });
+            uniform.into_iter().chain([Self { id, is_uniform: false }])
+        };
+        ModelId::ALL.iter().copied().flat_map(with_uniform)
+    }
+
+    /// Name of the model.
+    #[must_use]
+    pub const fn model(self) -> &'static str {
+        self.id.name()
+    }
+
+    /// Name of the sampler.
+    #[must_use]
+    pub fn sampler(self) -> &'static str {
+        match self {
+            Self { is_uniform: true, .. } => Sampler::Uniform.name(),
+            Self { id: ModelId::Gaussian | ModelId::Cauchy, .. } => Sampler::Published.name(),
+            Self { id, .. } => id.choice().map_or("its own", |(_, word)| word),
+        }
+    }
+
+    /// Number among streams of random numbers.
+    pub(super) fn index(self) -> u64 {
+        2 * self.id as u64 + u64::from(self.is_uniform)
+    }
+
+    /// The default hair, seen from place `pose` of [`THETA_O_DEG`].
+    ///
+    /// # Panics
+    ///
+    /// Never: default parameters are within their ranges.
+    pub(super) fn scatter(self, pose: usize) -> Scatter {
+        let hit = Hit::new(viewer(pose), OFFSETS[pose]);
+        let bsdf = self.id.bsdf(&self.id.defaults()).expect("defaults are accepted");
+        Scatter::at(bsdf.prepare(hit), self.is_uniform)
+    }
+
+    /// The formulas of the same in double precision.
+    ///
+    /// # Panics
+    ///
+    /// Never: default parameters are within their ranges.
+    pub(super) fn formulas(self, pose: usize) -> AnyReference<f64> {
+        let wo = viewer(pose).as_dvec3().to_array();
+        self.id.reference(&self.id.defaults(), wo, f64::from(OFFSETS[pose])).expect("defaults are accepted")
+    }
+}
+
+/// `S cos theta_i` of formulas, linear RGB.
+pub(super) fn exact_value(formulas: &AnyReference<f64>, dir: [f64; 3]) -> [f64; 3] {
+    let cos_theta = dir[1].hypot(dir[2]);
+    formulas.eval(dir).map(|s| s * cos_theta)
+}
+
+fn viewer(pose: usize) -> Vec3 {
+    fibre_direction(THETA_O_DEG[pose].to_radians(), PHI_O_DEG.to_radians()).as_vec3()
+}

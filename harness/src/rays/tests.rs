@@ -1,0 +1,224 @@
+//! Against references and closed forms; determinism; times and prices.
+
+use super::equal_time::PRICES_US;
+use super::measure::pose;
+use super::result::{geometric_mean, occluded};
+use super::*;
+use crate::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, Reference, ReferenceMethod, THETA_O_DEG};
+use crate::light::{Environment, Light, Sky};
+use crate::sequence::{Independent, XiSource};
+use crate::stats::Estimate;
+use crate::study::with_built_in_lights;
+use std::sync::OnceLock;
+
+const SMALL: Budget = Budget {
+    independent: 2_000,
+    correlated: 16,
+    randomisations: 64,
+    mis: 1_024,
+    sweep: 1_024,
+    convergence: 16,
+    convergence_n: 16,
+    quadrature_texels: 128,
+    reference_passes: 64,
+};
+
+fn small_map() -> Environment {
+    let mut xi = Independent::new(5, 0);
+    let pixels = (0..128).map(|_| xi.next_xi_f32()).collect();
+    Environment::from_pixels("small", 16, 8, pixels).expect("valid")
+}
+
+/// References under the sky.
+fn sky() -> &'static (Environment, EfficiencyResult) {
+    static SKY: OnceLock<(Environment, EfficiencyResult)> = OnceLock::new();
+    SKY.get_or_init(|| {
+        let sky = Sky::default().environment();
+        let config = EfficiencyConfig { budget: SMALL, ..EfficiencyConfig::new(3, true, &sky) };
+        let result = efficiency::run(&config, &|_, _| ()).expect("valid");
+        (sky, result)
+    })
+}
+
+fn rows(config: &RaysConfig<'_>, subjects: &[RaySubject], references: &EfficiencyResult) -> Vec<RayRow> {
+    with_built_in_lights(|built_in| {
+        let mut lights = built_in.to_vec();
+        lights.push(config.environment);
+        run::rows(config, subjects, &lights, references, &|_, _| ())
+    })
+}
+
+fn config<'a>(environment: &'a Environment, pools: usize) -> RaysConfig<'a> {
+    RaysConfig { pools, passes: 16, rounds: 3, ..RaysConfig::new(3, true, environment) }
+}
+
+#[test]
+fn a_ray_of_4_and_4_candidates_is_worth_8_of_mis_and_of_8_and_8_15() {
+    let (map, references) = sky();
+    let subjects: Vec<RaySubject> = RaySubject::all().filter(|subject| subject.sampler() != "uniform").collect();
+    let rows = rows(&config(map, 512), &subjects, references);
+    let under_sky: Vec<&RayRow> = rows.iter().filter(|row| row.light == map.name()).collect();
+    assert_eq!(under_sky.len(), subjects.len());
+    let of_all = |pick: &dyn Fn(&RayFigures) -> Estimate| {
+        geometric_mean(&under_sky.iter().map(|row| pick(&row.mean)).collect::<Vec<_>>())
+    };
+    let mis = of_all(&|figures| figures.mis.unoccluded);
+    for (size, least) in [(1, 8.0), (2, 15.0)] {
+        let gain = mis.ratio(&of_all(&|figures| figures.chosen[size].unoccluded));
+        assert!(gain.value > least, "{} + {}: {gain:?}", SIZES[size], SIZES[size]);
+        for row in &under_sky {
+            // The balance heuristic over n + n candidates has at most 1/(2n) of the variance of one sample of it.
+            let gain = row.mean.mis.unoccluded.ratio(&row.mean.chosen[size].unoccluded);
+            let bound = 2.0 * f64::from(SIZES[size]);
+            assert!(gain.value > bound - 4.0 * gain.standard_error, "{} {}: {gain:?}", row.model, row.sampler);
+        }
+    }
+    let check = run::check(&rows);
+    assert!(check.passed(), "{check:#?}");
+    assert!(check.tests > 20 * check.untested, "{} {}", check.tests, check.untested);
+}
+
+#[test]
+fn one_ray_obeys_the_law_of_visibility() {
+    let (map, references) = sky();
+    let subjects: Vec<RaySubject> = RaySubject::all().filter(|subject| subject.sampler() == "matched").collect();
+    let mut scores = Vec::new();
+    for row in rows(&config(map, 1024), &subjects, references) {
+        for pose in &row.poses {
+            for (size, pool) in pose.figures.half.iter().filter(|pool| pool.rays == 1).enumerate() {
+                let law = occluded(pose.figures.chosen[size].unoccluded, HALF);
+                scores.push(pool.v.z_score(law.value));
+                assert!(pool.traced > 0.9 && pool.traced <= 1.0, "{pool:?}");
+            }
+        }
+    }
+    // 200 scores; the law's own error is of the same candidates, and below that of the measurement.
+    assert!(scores.len() == 200 && scores.iter().all(|z| z.abs() < 4.5), "{scores:?}");
+    assert!(scores.iter().any(|z| z.abs() > 0.5), "no errors at all");
+}
+
+#[test]
+fn plain_estimators_have_the_variances_of_their_references() {
+    // Under the sun the BSDF's samples hit once in thousands: its V is known all the same.
+    let (map, references) = sky();
+    let subjects: Vec<RaySubject> = RaySubject::all().filter(|subject| subject.sampler() == "published").collect();
+    for row in rows(&config(map, 512), &subjects, references).iter().filter(|row| row.light == "sun") {
+        for pose in &row.poses {
+            let found = |r: &&efficiency::EfficiencyRow| {
+                r.model.name() == row.model && r.light == row.light && r.theta_o_deg == pose.theta_o_deg
+            };
+            let exact = references.rows.iter().find(found).expect("a row").reference.v[1];
+            let v = pose.figures.bsdf.unoccluded;
+            assert!(v.z_score(exact).abs() < 4.5 && v.standard_error < 0.05 * exact, "{v:?}, exact {exact}");
+        }
+    }
+}
+
+#[test]
+fn rows_depend_on_the_seed_alone_and_black_maps_are_no_failures() {
+    let map = small_map();
+    let references =
+        efficiency::run(&EfficiencyConfig { budget: SMALL, ..EfficiencyConfig::new(3, true, &map) }, &|_, _| ());
+    let references = references.expect("valid");
+    let subjects: Vec<RaySubject> = RaySubject::all().collect();
+    assert_eq!(subjects.len(), 13);
+    let on = |threads: usize, seed: u64| {
+        let config = RaysConfig { seed, passes: 4, ..config(&map, 16) };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        serde_json::to_string(&pool.install(|| rows(&config, &subjects, &references))).expect("serialises")
+    };
+    assert!(on(1, 3) == on(2, 3), "one thread and two gave different rows");
+    assert!(on(2, 3) != on(2, 4), "seeds do not matter");
+
+    let black = Environment::from_pixels("black", 4, 2, vec![[0.0; 3]; 8]).expect("valid");
+    let pose = pose(&subjects[0].scatter(0), &black, 0.0, &reference(0.0), [1, 1], 16);
+    assert!(pose.z.iter().all(|score| score.z == 0.0), "{:?}", pose.z);
+}
+
+fn reference(value: f64) -> Reference {
+    let method = ReferenceMethod::Quadrature;
+    Reference { value, standard_error: 0.0, quadrature_error: 0.0, method, v: [f64::NAN; 3], skewness: [f64::NAN; 3] }
+}
+
+#[test]
+fn a_wrong_mean_fails_the_check() {
+    let (map, references) = sky();
+    let subjects: Vec<RaySubject> = RaySubject::all().filter(|subject| subject.model() == "kajiya-kay").collect();
+    let mut all = rows(&config(map, 512), &subjects, references);
+    assert!(run::check(&all).passed(), "{:#?}", run::check(&all));
+    all[0].poses[0].z[3].z = f64::NAN;
+    assert_eq!(run::check(&all).failures.len(), 1);
+    // A reference that is 5% off.
+    let light = Sky::default().environment();
+    let pose_of = |value: f64| pose(&subjects[0].scatter(1), &light, 45.0, &reference(value), [1, 1], 1024);
+    let right = all.iter().find(|row| row.light == map.name()).expect("the sky").poses[1].reference.value;
+    let worst = |value| pose_of(value).z.iter().filter(|score| score.tested).map(|s| s.z.abs()).fold(0.0, f64::max);
+    assert!(worst(right) < 5.0 && worst(1.05 * right) > 6.0, "{} {}", worst(right), worst(1.05 * right));
+}
+
+#[test]
+fn times_prices_and_fronts_fit_together() {
+    let row = RayRow {
+        model: "gaussian",
+        sampler: "published",
+        light: "small".to_owned(),
+        mean: figures(1.4, 0.2),
+        poses: Vec::new(),
+    };
+    let times = RayTimes {
+        model: "gaussian",
+        sampler: "published",
+        light: "small".to_owned(),
+        mis_ns: 10.0,
+        pool_ns: SIZES.map(|count| [20.0 * f64::from(count), 25.0 * f64::from(count)]),
+    };
+    let equal = EqualTime::new(&row, &times);
+    let point = equal.pool(8, 1).expect("a pool");
+    // MIS: V 3.8, 10 ns and a ray; the pool: V 1.4, 160 ns and a ray. Equal at 3.8 (10 + p) = 1.4 (160 + p).
+    let expected = (1.4 * 160.0 - 3.8 * 10.0) / (3.8 - 1.4) * 1e-3;
+    let price = point.break_even_us.expect("it gains");
+    assert!((price - expected).abs() < 1e-12, "{price} {expected}");
+    assert!((point.gain_over(&equal.mis[0], price) - 1.0).abs() < 1e-12);
+    assert!(point.gain[0] > 1.0 && point.gain[3] > point.gain[0], "{point:?}");
+    assert_eq!(times.pool_ns(8, 16), 200.0, "as measured");
+    for place in 0..PRICES_US.len() {
+        let all = || equal.mis.iter().chain(&equal.pools);
+        let fastest = all().min_by(|a, b| a.time_ns(PRICES_US[place]).total_cmp(&b.time_ns(PRICES_US[place])));
+        assert!(fastest.expect("points").on_front[place], "the fastest is on the front");
+        assert!(all().any(|point| !point.on_front[place]), "not all are");
+    }
+    assert_eq!(equal.best(3.0).map(|point| point.gain_over(&equal.mis[0], 3.0) > 2.0), Some(true));
+}
+
+/// Figures of plain estimators of `mis` and of pools of `chosen` over one ray.
+fn figures(mis: f64, chosen: f64) -> RayFigures {
+    let one = |v| OneRay::new(Estimate::exact(v));
+    let half = super::pools().map(|(size, rays)| PoolFigures {
+        candidates_each: SIZES[size],
+        rays: RAYS[rays],
+        traced: f64::from(RAYS[rays]),
+        v: occluded(Estimate::exact(chosen), HALF).scale(1.0 / f64::from(RAYS[rays])),
+    });
+    RayFigures {
+        bsdf: one(9.0),
+        light: one(1.6),
+        mis: one(mis),
+        chosen: SIZES.map(|_| one(chosen)).to_vec(),
+        half: half.collect(),
+    }
+}
+
+#[test]
+fn every_estimator_is_timed() {
+    let map = small_map();
+    let subjects: Vec<RaySubject> = RaySubject::all().take(2).collect();
+    let mut calls = 0;
+    let times = times::measure(&subjects, &[&map as &dyn Light], 1, 3, |_| calls += 1);
+    assert_eq!((times.len(), calls), (2, 2));
+    for time in &times {
+        assert!(time.mis_ns > 0.0 && time.candidate_ns() > 0.0 && time.pool_ns(2, 1) > 0.0, "{time:?}");
+        assert!(time.pool_ns(32, 1) > time.pool_ns(4, 1), "{time:?}");
+        assert!(time.pool_ns(3, 1).is_nan(), "no such pool");
+    }
+    assert_eq!(THETA_O_DEG.len(), 4);
+}
