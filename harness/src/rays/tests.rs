@@ -193,7 +193,7 @@ fn times_prices_and_fronts_fit_together() {
 /// Figures of plain estimators of `mis` and of pools of `chosen` over one ray.
 fn figures(mis: f64, chosen: f64) -> RayFigures {
     let one = |v| OneRay::new(Estimate::exact(v));
-    let half = super::pools().map(|(size, rays)| PoolFigures {
+    let half = pools().map(|(size, rays)| PoolFigures {
         candidates_each: SIZES[size],
         rays: RAYS[rays],
         traced: f64::from(RAYS[rays]),
