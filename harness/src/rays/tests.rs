@@ -181,9 +181,9 @@ fn times_prices_and_fronts_fit_together() {
     assert!((point.gain_over(&equal.mis[0], price) - 1.0).abs() < 1e-12);
     assert!(point.gain[0] > 1.0 && point.gain[3] > point.gain[0], "{point:?}");
     assert_eq!(times.pool_ns(8, 16), 200.0, "as measured");
-    for place in 0..PRICES_US.len() {
+    for (place, price) in PRICES_US.into_iter().enumerate() {
         let all = || equal.mis.iter().chain(&equal.pools);
-        let fastest = all().min_by(|a, b| a.time_ns(PRICES_US[place]).total_cmp(&b.time_ns(PRICES_US[place])));
+        let fastest = all().min_by(|a, b| a.time_ns(price).total_cmp(&b.time_ns(price)));
         assert!(fastest.expect("points").on_front[place], "the fastest is on the front");
         assert!(all().any(|point| !point.on_front[place]), "not all are");
     }
