@@ -89,7 +89,7 @@ pub(super) fn section(presets: &[Preset]) -> std::io::Result<Section> {
         let columns: Vec<Column<'_>> = preset.models.iter().map(|(name, of)| (*name, of)).map(column).collect();
         let drawing = panel(&columns, exposure(&first.picture))?;
         let caption = format!(
-            "{}. Below: the brightest part, 4 times as large; and the difference of each pixel from the published model, blue \
+            "Hair: {}. Below: the brightest part, 4 times as large; and the difference of each pixel from the published model, blue \
              darker, red brighter (full colour at 100 %).",
             preset.name
         );
