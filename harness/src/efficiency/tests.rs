@@ -269,7 +269,8 @@ fn a_full_run_under_the_sky_passes_its_check() {
     assert!(result.check.passed(), "{:#?}", result.check);
     // Correlated numbers at theta_o = 0 are short of it: 262 144 samples at a V of 2994 are worth 88.
     let independent = result.rows.iter().filter(|r| r.sequence == SequenceKind::Independent);
-    assert!(independent.clone().all(|r| r.tested), "every light is seen often enough by independent numbers");
+    let rare: Vec<_> = independent.filter(|r| !r.tested).collect();
+    assert!(rare.is_empty(), "every light is seen often enough by independent numbers, but for {rare:#?}");
 }
 
 #[test]
