@@ -192,7 +192,7 @@ pub(super) fn chart(of: &Comparison) -> Option<Drawing> {
     let (row, _, equal) = under_environment(of).find(|(row, ..)| [row.model, row.sampler] == EXAMPLE)?;
     let words = in_words(&row.light);
     let title = format!("Efficiency over one-sample MIS, {} model, {words}", row.model);
-    let mut chart = LineChart::new(title, Axis::log("price of a ray (µs)"), Axis::log("efficiency / efficiency (×)"));
+    let mut chart = LineChart::new(title, Axis::log("price of a ray (µs)"), Axis::log("times as efficient (×)"));
     let prices = || (0..=48).map(|step| 10.0_f64.powf(-3.0 + f64::from(step) / 12.0));
     for point in PLOTTED.iter().filter_map(|[count, rays]| equal.pool(*count, *rays)) {
         let gains = prices().map(|price| PlotPoint::new(price, point.gain_over(&equal.mis[0], price)));
