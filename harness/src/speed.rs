@@ -354,6 +354,16 @@ mod tests {
     use hairis_variants::Parameters as _;
 
     #[test]
+    fn every_contender_answers_every_direction() {
+        for cell in ModelId::KajiyaKay.visit(SpeedCells(1)).expect("accepted") {
+            for mut contender in cell.contenders {
+                let wrong = cell.truth.wrong_share(&contender.task.answers());
+                assert!(wrong <= MAX_WRONG, "{} {} {}: {wrong}", cell.op, contender.name, contender.level);
+            }
+        }
+    }
+
+    #[test]
     fn one_wrong_lane_in_eight_fails() {
         let inputs = Inputs::<HairParams>::draw(1).expect("hair within range");
         let (hair, wo) = (inputs.params[0], inputs.wo[0]);
