@@ -1,5 +1,5 @@
 //! Bounds of the tests against the reference, one row each, with the worst case measured above it: the larger of a default
-//! build and one for x86-64-v3, over all levels and ten seeds (`HAIRIS_SEED`). To measure again: `cargo test --workspace -- --nocapture | grep measured`.
+//! build and one for x86-64-v3, over all levels and twelve seeds (`HAIRIS_SEED`). To measure again: `cargo test --workspace -- --nocapture | grep measured`.
 
 use hairis_conformance::published::Rows;
 
@@ -87,8 +87,8 @@ pub(crate) const MATCHED: Rows = Rows {
     albedo_mesh: 7e-5,
     // 2.5e-5
     reciprocity: 3.3e-5,
-    // 2.9e-6
-    sample_eval: 3.8e-6,
+    // 3.9e-6
+    sample_eval: 5.1e-6,
     weight_bound: 0.0,
     // 4.2e-6, 7.4e-5, 7.5e-7
     integral: [5.5e-6, 9.6e-5, 9.8e-7],

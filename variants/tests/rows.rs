@@ -1,5 +1,5 @@
 //! Bounds of the tests against the reference, one row each, with the worst case measured above it: the larger of a default
-//! build and one for x86-64-v3, over all levels and ten seeds (`HAIRIS_SEED`). To measure again: `cargo test --workspace -- --nocapture | grep measured`.
+//! build and one for x86-64-v3, over all levels and twelve seeds (`HAIRIS_SEED`). To measure again: `cargo test --workspace -- --nocapture | grep measured`.
 
 use hairis_conformance::published::Rows;
 
