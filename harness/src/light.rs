@@ -110,8 +110,9 @@ pub(crate) fn in_words(name: &str) -> &str {
 }
 
 /// The nearest number of single precision.
+#[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
-pub(crate) const fn rounded(x: f64) -> f32 {
+pub const fn rounded(x: f64) -> f32 {
     x as f32
 }
 

@@ -153,10 +153,17 @@ pub(crate) fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
     Vec3x8::new(u, r * cos_phi, r * sin_phi)
 }
 
+/// Cosine of the inclination of directions in the fibre's frame.
+#[inline]
+#[must_use]
+pub fn cosine(direction: &Vec3x8) -> f32x8 {
+    (direction.y * direction.y + direction.z * direction.z).sqrt()
+}
+
 /// The samples of uniform directions that evaluate to `eval`.
 #[inline]
 pub(crate) fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
-    let factor = (wi.y * wi.y + wi.z * wi.z).sqrt() * f32x8::splat(1.0 / UNIFORM_PDF);
+    let factor = cosine(&wi) * f32x8::splat(1.0 / UNIFORM_PDF);
     let [r, g, b] = eval.value;
     let weight = [r * factor, g * factor, b * factor];
     Sample8 { wi, value: eval.value, pdf: f32x8::splat(UNIFORM_PDF), weight, slot: f32x8::ZERO }

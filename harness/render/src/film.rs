@@ -34,6 +34,12 @@ impl Crop {
         (self.y..self.y + self.height).flat_map(move |y| (self.x..self.x + self.width).map(move |x| [x, y]))
     }
 
+    /// Place of one of its pixels among them.
+    #[must_use]
+    pub fn index(self, [x, y]: [u32; 2]) -> usize {
+        (y - self.y) as usize * self.width as usize + (x - self.x) as usize
+    }
+
     /// Count of pixels.
     #[must_use]
     pub fn len(self) -> usize {
@@ -151,9 +157,8 @@ impl Film {
         let mut picture = Picture::black([self.crop.width, self.crop.height]);
         for tile in &self.tiles {
             let by = 1.0 / f64::from(tile.samples.max(1));
-            for ([x, y], sums) in tile.place.pixels().zip(&tile.sums) {
-                let place = (y - self.crop.y) as usize * self.crop.width as usize + (x - self.crop.x) as usize;
-                picture.pixels[place] = sums.radiance.map(|sum| sum * by);
+            for (pixel, sums) in tile.place.pixels().zip(&tile.sums) {
+                picture.pixels[self.crop.index(pixel)] = sums.radiance.map(|sum| sum * by);
             }
         }
         picture

@@ -8,6 +8,8 @@ use hairis_variants::{ModelId, Values};
 pub const UNIFORM: &str = "uniform";
 /// The word for the first sampler of a model, which for the published model is the published one.
 pub const PUBLISHED: &str = "published";
+/// The word for the samplers that are made for the bells of a model.
+pub const MATCHED: &str = "matched";
 /// A preset beside those of the models: the published model's default set with the narrow lobes of glossy hair.
 pub const GLOSSY: &str = "glossy";
 
@@ -87,6 +89,12 @@ impl Choice {
             (Sampling::Own, _) => PUBLISHED,
         }
     }
+}
+
+/// The sampler of a model where none is asked for: the matched one, or its own.
+#[must_use]
+pub fn default_sampler(model: &str) -> &'static str {
+    if samplers(model).contains(&MATCHED) { MATCHED } else { PUBLISHED }
 }
 
 /// Words for the samplers of a model.

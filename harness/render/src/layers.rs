@@ -1,9 +1,9 @@
-//! What the file of a picture holds beside its radiance: layers of pixels, and attributes.
+//! Layers and attributes of the file of a picture.
 
 use crate::film::{Crop, Film};
 use crate::scene::{Met, Scene};
 use glam::Vec3;
-use hairis_harness::light::luminance;
+use hairis_harness::light::{luminance, rounded};
 use hairis_harness::machine::Machine;
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
@@ -26,16 +26,16 @@ pub struct Beside {
 }
 
 impl Beside {
-    /// What the sums of a film tell: `variance`, that of a pixel's mean luminance, supposing independent samples; `samples`, their
-    /// count; and the attributes of a run.
+    /// Layers of a film's sums: `variance`, that of a pixel's mean luminance, supposing independent samples; and `samples`, their
+    /// count. The attributes of a run.
     #[must_use]
     pub fn film(film: &Film, run: &str) -> Self {
         let crop = film.crop();
         let [mut variance, mut samples] = [vec![0.0; crop.len()], vec![0.0; crop.len()]];
         for tile in &film.tiles {
             let n = f64::from(tile.samples.max(1));
-            for ([x, y], sums) in tile.place.pixels().zip(&tile.sums) {
-                let place = (y - crop.y) as usize * crop.width as usize + (x - crop.x) as usize;
+            for (pixel, sums) in tile.place.pixels().zip(&tile.sums) {
+                let place = crop.index(pixel);
                 let mean = luminance(sums.radiance) / n;
                 variance[place] = rounded((sums.luminance_sq / n - mean * mean).max(0.0) / n);
                 samples[place] = rounded(f64::from(tile.samples));
@@ -52,8 +52,8 @@ impl Beside {
         Self { channels, attributes }
     }
 
-    /// With what the rays through the pixels' centres meet first: `albedo`, the directional albedo of hair and the albedo of
-    /// surfaces; and `tangent`, the direction of the fibre from root to tip. Both are 0 elsewhere.
+    /// Adds layers of the first object along the ray through each pixel's centre: `albedo`, the directional albedo of hair and
+    /// the albedo of surfaces; and `tangent`, the direction of the fibre from root to tip. Both are 0 elsewhere.
     #[must_use]
     pub fn scene(mut self, scene: &Scene, crop: Crop) -> Self {
         let pixels: Vec<[u32; 2]> = crop.pixels().collect();
@@ -79,12 +79,6 @@ fn first(scene: &Scene, [x, y]: [u32; 2]) -> [f32; 6] {
     };
     let [r, g, b] = albedo;
     [r, g, b, tangent.x, tangent.y, tangent.z]
-}
-
-/// As files hold it.
-#[expect(clippy::cast_possible_truncation, reason = "files hold single precision")]
-const fn rounded(x: f64) -> f32 {
-    x as f32
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::Vec3x8;
 use hairis::wide::f32x8;
-use hairis_harness::light::{self, Environment, Light as _, Seen8};
+use hairis_harness::light::{self, Environment, Light as _, Seen8, rounded};
 
 /// Light from infinitely far away.
 #[derive(Clone, Debug)]
@@ -156,10 +156,4 @@ pub fn uniform_direction([xi_x, xi_phi]: [f32; 2]) -> Vec3 {
     let across = (4.0 * xi_x * (1.0 - xi_x)).max(0.0).sqrt();
     let (sin, cos) = (TAU * xi_phi).sin_cos();
     Vec3::new(x, across * cos, across * sin)
-}
-
-/// The nearest number of single precision.
-#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
-const fn rounded(x: f64) -> f32 {
-    x as f32
 }

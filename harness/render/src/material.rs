@@ -5,6 +5,7 @@ use core::f32::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{Eval8, Hit, Hit8, Sample8, Vec3x8};
+use hairis_harness::sampler::cosine;
 use hairis_variants::{AnyBsdf, AnyGather, AnyGather8};
 
 /// How directions are drawn at a hit.
@@ -141,11 +142,4 @@ impl Prepared {
             slot: f32x8::ZERO,
         }
     }
-}
-
-/// Cosine of the inclination of directions in the fibre's frame.
-#[inline]
-#[must_use]
-pub fn cosine(direction: &Vec3x8) -> f32x8 {
-    (direction.y * direction.y + direction.z * direction.z).sqrt()
 }

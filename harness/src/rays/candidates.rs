@@ -1,7 +1,7 @@
 //! Eight candidates at a time: drawn, looked up and weighed.
 
 use crate::light::{Light, Seen8, rounded};
-use crate::sampler::Scatter;
+use crate::sampler::{Scatter, cosine};
 use crate::sequence::{Independent, XiSource};
 use core::array;
 use hairis::resample::{Counts, Partition, Weighed8};
@@ -42,14 +42,14 @@ impl Candidates8 {
     pub(super) fn of_bsdf(scatter: &Scatter, light: &dyn Light, xi: &[f32x8; 3]) -> Self {
         let sample = scatter.sample8(xi);
         let eval = Eval8 { value: sample.value, pdf: sample.pdf };
-        Self { eval, cos_theta_i: cos_theta(&sample.wi), seen: light.see8(&sample.wi) }
+        Self { eval, cos_theta_i: cosine(&sample.wi), seen: light.see8(&sample.wi) }
     }
 
     /// From the light.
     #[inline]
     pub(super) fn of_light(scatter: &Scatter, block: &LightBlock) -> Self {
         let eval = scatter.eval_pdf8(&block.wi);
-        Self { eval, cos_theta_i: cos_theta(&block.wi), seen: block.seen }
+        Self { eval, cos_theta_i: cosine(&block.wi), seen: block.seen }
     }
 
     /// In a pool of `count` candidates of each technique.
@@ -65,16 +65,11 @@ impl Candidates8 {
         [self.eval.pdf, self.seen.pdf]
     }
 
-    /// What each direction adds as a ray of one-sample MIS, linear RGB.
+    /// The estimate of one-sample MIS along each direction, linear RGB.
     #[inline]
     pub(super) fn one_sample_mis(&self) -> [f32x8; 3] {
         let density = f32x8::splat(0.5) * (self.eval.pdf + self.seen.pdf);
         let scale = self.cos_theta_i / density.max(f32x8::splat(f32::MIN_POSITIVE));
         array::from_fn(|c| self.eval.value[c] * self.seen.radiance[c] * scale)
     }
-}
-
-#[inline]
-fn cos_theta(wi: &Vec3x8) -> f32x8 {
-    (wi.y * wi.y + wi.z * wi.z).sqrt()
 }

@@ -51,7 +51,7 @@ impl Columns {
         columns
     }
 
-    /// What a candidate would bring, the mean of RGB, and its densities.
+    /// Contribution of a candidate, the mean of RGB, and its densities.
     fn at(&self, place: usize) -> (f64, [f64; 2]) {
         let f = self.contribution.iter().map(|column| f64::from(column[place])).sum::<f64>() / 3.0;
         (f, [0, 1].map(|technique: usize| f64::from(self.pdf[technique][place])))

@@ -4,7 +4,7 @@ use crate::args::Render;
 use crate::film::Film;
 use crate::formats::{Import, import, write_mitsuba};
 use crate::geometry::Strands;
-use crate::hair::{Choice, Energy, MOST_MEAN_ALBEDO};
+use crate::hair::{Choice, Energy, MOST_MEAN_ALBEDO, default_sampler};
 use crate::layers::Beside;
 use crate::material::Hair;
 use crate::part::{self, Part};
@@ -142,11 +142,7 @@ fn hair(flags: &Render, settings: &Settings) -> Result<Hair, Error> {
         return Ok(Hair::Isotropic);
     }
     let preset = flags.hair.as_deref().unwrap_or_else(|| flags.scene.defaults().preset);
-    let sampler = match &flags.sampler {
-        Some(word) => word,
-        None if crate::hair::samplers(&flags.model).contains(&"matched") => "matched",
-        None => crate::hair::PUBLISHED,
-    };
+    let sampler = flags.sampler.as_deref().unwrap_or_else(|| default_sampler(&flags.model));
     let choice = Choice::find(&flags.model, sampler, preset)?;
     let energy = flags.energy.unwrap_or(Energy::Raw);
     let hair = choice.hair(energy)?;

@@ -1,6 +1,6 @@
 //! Measurements on a scene.
 
-use crate::hair::{Choice, Energy, PUBLISHED, UNIFORM};
+use crate::hair::{Choice, Energy, MATCHED, PUBLISHED, UNIFORM};
 use crate::layers::Beside;
 use crate::picture;
 use crate::protocol::{Reference, Runs};
@@ -12,7 +12,7 @@ use hairis_harness::light::Environment;
 use std::path::Path;
 
 /// The sampler that references are made with, and that others are compared with.
-pub(super) const BEST: &str = "matched";
+pub(super) const BEST: &str = MATCHED;
 /// Rays chosen from candidates, those of the hair drawn by [`BEST`].
 const RESAMPLED: &str = "resampled";
 /// The samplers, in the order of the page.

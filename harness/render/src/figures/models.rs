@@ -2,7 +2,7 @@
 
 use super::measure::Plan;
 use super::panel::{Column, panel};
-use crate::hair::{Choice, Energy, PUBLISHED, samplers};
+use crate::hair::{Choice, Energy, default_sampler};
 use crate::picture::exposure;
 use crate::protocol::Reference;
 use crate::scenes::{self, Name, Parts};
@@ -13,8 +13,6 @@ use hairis_harness::report::{Drawing, Section};
 use hairis_harness::table::{Table, number};
 use hairis_variants::ModelId;
 
-/// The sampler, of models that have it.
-const SAMPLER: &str = "matched";
 /// Hair of every model, by the names of its presets.
 pub(super) const PRESETS: [&str; 4] = ["blond", "brown", "black", "red"];
 
@@ -33,10 +31,7 @@ impl Preset {
         // A quarter of what references of paths take: looks need less than errors.
         let samples = plan.reference[1] / 4;
         let strands = scenes::grow(scene, plan.strands)?;
-        let hair = |model: &str| {
-            let sampler = if samplers(model).contains(&SAMPLER) { SAMPLER } else { PUBLISHED };
-            Choice::find(model, sampler, name)?.hair(Energy::Raw)
-        };
+        let hair = |model: &str| Choice::find(model, default_sampler(model), name)?.hair(Energy::Raw);
         let names = ModelId::defaults_of_names().map(ModelId::name);
         let hairs = names.map(|model| Ok((model, hair(model)?))).collect::<Result<Vec<_>, Error>>()?;
         let Some((_, first)) = hairs.first() else { return Ok(Self { name, samples, models: Vec::new() }) };

@@ -1,8 +1,9 @@
 //! Rectangles: walls, and lights that are sampled by solid angle.
 
-use super::{LightSample, rounded};
+use super::LightSample;
 use core::f64::consts::PI;
 use glam::{DVec3, Vec3};
+use hairis_harness::light::rounded;
 
 /// Below this solid angle, in sr, the difference of its corners' angles keeps no digits: points are drawn by area.
 const SMALL: f64 = 1e-7;

@@ -12,6 +12,7 @@ use crate::scene::{Met, Scene};
 use crate::tree::{self, Ray};
 use glam::Vec3;
 use hairis::{FiberFrame, FiberFrame8, Hit};
+use hairis_harness::sampler::cosine;
 
 /// Seed of the camera rays: one for all pictures, so that they differ by their samples alone.
 const CAMERA_SEED: u64 = 0x6361_6d65_7261;
@@ -125,7 +126,7 @@ impl Point {
         lap(Phase::Light);
         let wi = self.frame.to_local(&lights.direction);
         lap(Phase::Frames);
-        let (eval, cos) = (self.prepared.eval8(&wi), crate::material::cosine(&wi).to_array());
+        let (eval, cos) = (self.prepared.eval8(&wi), cosine(&wi).to_array());
         lap(Phase::Kernels);
         let mut sum = Vec3::ZERO;
         for (lane, cos) in cos.into_iter().enumerate().take(count) {
@@ -145,7 +146,7 @@ impl Point {
     fn by_bsdf(&self, scene: &Scene, settings: &Settings, xi: &[[f32; 8]; 3], count: usize) -> Vec3 {
         let sample = self.prepared.sample8(xi);
         lap(Phase::Kernels);
-        let (cos, directions) = (crate::material::cosine(&sample.wi).to_array(), self.frame.to_world(&sample.wi));
+        let (cos, directions) = (cosine(&sample.wi).to_array(), self.frame.to_world(&sample.wi));
         lap(Phase::Frames);
         let lights = scene.lights_along(self.origin, &directions);
         lap(Phase::Light);

@@ -5,13 +5,13 @@ use super::wave::{Path, Shadow, Wave};
 use super::{Integrator, Mis, PASS, Settings, resampled};
 use crate::frames::frames8;
 use crate::lights::Tables;
-use crate::material::cosine;
 use crate::scene::{Met, Scene};
 use crate::tree::{self, Ray, Skip};
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{Hit8, Vec3x8};
+use hairis_harness::sampler::cosine;
 
 /// Scatterings before paths may end at random.
 const FIRST_ROULETTE: u32 = 4;

@@ -8,13 +8,14 @@ pub(super) use candidates::Candidates;
 use super::Integrator;
 use super::profile::{Phase, lap};
 use crate::lights::{LightSample8, Table};
-use crate::material::{Prepared, cosine};
+use crate::material::Prepared;
 use crate::numbers::{Even, Numbers};
 use crate::scene::Scene;
 use glam::Vec3;
 use hairis::resample::{Counts, Partition, Weighed8, choose};
 use hairis::wide::f32x8;
 use hairis::{Eval8, FiberFrame8, Vec3x8};
+use hairis_harness::sampler::cosine;
 
 /// Candidates of each technique per ray, where one shading point has many.
 ///
