@@ -43,8 +43,8 @@ impl<M: Model> Gather<M> {
         clean_upper_halves();
         let [r, g, b] = out.value;
         let mut out = [r, g, b, out.pdf];
-        check_columns(&WI, wi, &["value.r", "value.g", "value.b", "pdf"], &out)?;
-        level.run_rows(AtGather::<M, ValuePdf>::new(&self.inner), wi, &mut out);
+        let columns = check_columns(&WI, &wi, &["value.r", "value.g", "value.b", "pdf"], &mut out)?;
+        level.run_columns(AtGather::<M, ValuePdf>::new(&self.inner), &columns);
         Ok(())
     }
 
@@ -67,8 +67,8 @@ impl<M: Model> Gather<M> {
     pub fn eval_batch_at(&self, level: Level, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError> {
         clean_upper_halves();
         let mut out = value;
-        check_columns(&WI, wi, &["value.r", "value.g", "value.b"], &out)?;
-        level.run_rows(AtGather::<M, Value>::new(&self.inner), wi, &mut out);
+        let columns = check_columns(&WI, &wi, &["value.r", "value.g", "value.b"], &mut out)?;
+        level.run_columns(AtGather::<M, Value>::new(&self.inner), &columns);
         Ok(())
     }
 
@@ -91,8 +91,8 @@ impl<M: Model> Gather<M> {
     pub fn pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError> {
         clean_upper_halves();
         let mut out = [pdf];
-        check_columns(&WI, wi, &["pdf"], &out)?;
-        level.run_rows(AtGather::<M, Pdf>::new(&self.inner), wi, &mut out);
+        let columns = check_columns(&WI, &wi, &["pdf"], &mut out)?;
+        level.run_columns(AtGather::<M, Pdf>::new(&self.inner), &columns);
         Ok(())
     }
 
@@ -116,8 +116,8 @@ impl<M: Model> Gather<M> {
         clean_upper_halves();
         let ([u, v, w], [r, g, b], [wr, wg, wb]) = (out.wi, out.value, out.weight);
         let mut out = [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot];
-        check_columns(&XI, xi, &SAMPLE, &out)?;
-        level.run_rows(AtGather::<M, Samples>::new(&self.inner), xi, &mut out);
+        let columns = check_columns(&XI, &xi, &SAMPLE, &mut out)?;
+        level.run_columns(AtGather::<M, Samples>::new(&self.inner), &columns);
         Ok(())
     }
 }

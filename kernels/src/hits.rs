@@ -1,7 +1,7 @@
 //! Slice calls over hits: each entry has a hit and a direction of its own.
 
 use crate::packet::{AtHits, EightHits, HitEvals, HitRow, HitSamples};
-use crate::simd::columns::copy;
+use crate::simd::columns::copy_few;
 use crate::simd::dispatch::clean_upper_halves;
 use crate::slices::{EvalColumns, HitSlices, LengthError, SampleColumns, WI, XI, check_lengths};
 use crate::{Bsdf, Bsdf8, Level, Model};
@@ -246,13 +246,13 @@ impl<M: Model> MaterialTable<'_, M> {
                 }
                 let input = inputs.map(|column| {
                     let mut lanes = [0.0; 8];
-                    copy(column, &mut lanes, column.len());
+                    copy_few(column, &mut lanes);
                     f32x8::new(lanes)
                 });
                 let Bsdf8 { material } = Bsdf8::pack(lanes);
                 let output = level.run(EightHits::<M, K, N>::new(&material, &input));
                 for (lanes, column) in output.iter().zip(outputs) {
-                    copy(lanes.as_array(), column, done);
+                    copy_few(lanes.as_array(), column);
                 }
             }
             at += done;

@@ -202,8 +202,8 @@ impl<M: Model> Gather<M> {
     pub fn propose_batch_at(&self, level: Level, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
         clean_upper_halves();
         let mut out = wi;
-        check_columns(&XI, xi, &WI, &out)?;
-        level.run_rows(Proposals::<M>::new(&self.inner), xi, &mut out);
+        let columns = check_columns(&XI, &xi, &WI, &mut out)?;
+        level.run_columns(Proposals::<M>::new(&self.inner), &columns);
         Ok(())
     }
 
@@ -242,9 +242,9 @@ impl<M: Model> Gather<M> {
         let ([u, v, w], [r, g, b], [fr, fg, fb]) = (wi, radiance, out.contribution);
         let inputs = [u, v, w, r, g, b, pdf_light];
         let mut out = [fr, fg, fb, out.weight];
-        check_columns(&CANDIDATE, inputs, &WEIGHT, &out)?;
+        let columns = check_columns(&CANDIDATE, &inputs, &WEIGHT, &mut out)?;
         let row = Weighs::<M>::new(&self.inner, Weighing::new(counts, partition));
-        level.run_rows(row, inputs, &mut out);
+        level.run_columns(row, &columns);
         Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! Arguments of slice calls: structures of arrays, whose lengths are checked.
 
+use crate::simd::columns::Columns;
 use core::fmt;
 
 /// Slices of one call whose lengths differ: which, how long it is, and how long the first is.
@@ -140,36 +141,18 @@ fn lens3(names: [&'static str; 3], columns: Option<&[&mut [f32]; 3]>) -> [(&'sta
     [(names[0], len(0)), (names[1], len(1)), (names[2], len(2))]
 }
 
-/// Refuses columns that differ in length from the first input. Names and lengths are put together only then: the check is
-/// most of what a short slice costs.
+/// Columns of one length. Names and lengths of those that differ are put together only for the error: the check is most of what
+/// a short slice costs.
 #[inline(always)]
-pub(crate) fn check_columns<const I: usize, const N: usize>(
+pub(crate) fn check_columns<'a, const I: usize, const N: usize>(
     in_names: &'static [&'static str; I],
-    inputs: [&[f32]; I],
+    inputs: &[&'a [f32]; I],
     out_names: &'static [&'static str; N],
-    outputs: &[&mut [f32]; N],
-) -> Result<(), LengthError> {
-    let expected = inputs[0].len();
-    let mut differs = false;
-    let mut i = 0;
-    while i < I {
-        differs |= inputs[i].len() != expected;
-        i += 1;
-    }
-    i = 0;
-    while i < N {
-        differs |= outputs[i].len() != expected;
-        i += 1;
-    }
-    if differs {
-        return Err(first_that_differs(
-            in_names,
-            &inputs.map(<[f32]>::len),
-            out_names,
-            &outputs.each_ref().map(|s| s.len()),
-        ));
-    }
-    Ok(())
+    outputs: &'a mut [&mut [f32]; N],
+) -> Result<Columns<'a, I, N>, LengthError> {
+    let lens = (inputs.map(<[f32]>::len), outputs.each_ref().map(|column| column.len()));
+    let columns = Columns::new(inputs, outputs);
+    if columns.is_whole() { Ok(columns) } else { Err(first_that_differs(in_names, &lens.0, out_names, &lens.1)) }
 }
 
 /// The first of the slices that is not of the length of the first input.

@@ -267,10 +267,15 @@ fn a_full_run_under_the_sky_passes_its_check() {
     let sky = crate::light::Sky::default().environment();
     let result = run(&EfficiencyConfig::new(2, false, &sky), &|_, _| ()).expect("valid");
     assert!(result.check.passed(), "{:#?}", result.check);
-    // Correlated numbers at theta_o = 0 are short of it: 262 144 samples at a V of 2994 are worth 88.
-    let independent = result.rows.iter().filter(|r| r.sequence == SequenceKind::Independent);
-    let rare: Vec<_> = independent.filter(|r| !r.tested).collect();
-    assert!(rare.is_empty(), "every light is seen often enough by independent numbers, but for {rare:#?}");
+    // Directions from the BSDF meet a sun off the highlights once in a thousand samples or less: V is up to 40,000, and two
+    // million samples are worth 50. Those rows are predicted instead. Uniform directions test every light, and the others test
+    // those that are wider than a sun.
+    let independent: Vec<_> = result.rows.iter().filter(|r| r.sequence == SequenceKind::Independent).collect();
+    let has_sun = |r: &EfficiencyRow| r.light == "sun" || r.light == "clear sky";
+    let untested: Vec<_> = independent.iter().filter(|r| !r.tested).collect();
+    let wrong: Vec<_> = untested.iter().filter(|r| r.sampler == Sampler::Uniform || !has_sun(r)).collect();
+    assert!(wrong.is_empty(), "seen often enough by independent numbers, but for {wrong:#?}");
+    assert!(untested.len() * 5 <= independent.len(), "{} of {} rows are not tested", untested.len(), independent.len());
 }
 
 #[test]

@@ -1,11 +1,10 @@
-//! Rows of numbers over slices: in whole packets and then eight at a time.
-#![cfg_attr(
-    not(any(target_arch = "x86", target_arch = "x86_64")),
-    allow(dead_code, reason = "packets of other levels have more than eight lanes on these machines alone")
-)]
+//! Rows of numbers over columns: slices of one length, which is checked once per call.
+#![allow(unsafe_code, reason = "a check per packet and column is most of what a short call costs")]
 
 use super::lanes::{Broadcast, Lanes, Packet};
-use core::{array, mem, slice};
+use core::marker::PhantomData;
+use core::mem::MaybeUninit;
+use core::ptr;
 
 /// Work of [`Level::run_rows`](crate::Level::run_rows) over columns: `I` numbers in, `N` numbers out, whatever the lanes.
 pub trait Row<const I: usize, const N: usize>: Copy {
@@ -18,169 +17,225 @@ pub trait Row<const I: usize, const N: usize>: Copy {
         f32: Broadcast<L>;
 }
 
-/// The loop of a batch over whole packets. Every column has as many packets as the first, or none where it may be left out;
-/// were one shorter, none would be written, for want of a branch that panics.
-///
-/// Columns are cut to one length before the loop, so that it has no other branch: the compiler moves the computation of
-/// a result past the branch that decides on its being written, and with it all of one packet of a pair before the other.
-#[inline(always)]
-pub(crate) fn packets<R: Row<I, N>, L: Packet<W>, const I: usize, const N: usize, const W: usize>(
-    row: R,
-    inputs: [&[[f32; W]]; I],
-    outputs: &mut [&mut [[f32; W]]; N],
-) where
-    f32: Broadcast<L>,
-{
-    let len = inputs[0].len();
-    // No loops over columns: compilers that save space leave them, and the row in memory.
-    macro_rules! run {
-        ([$($input:ident $i:literal)*] [$($output:ident $o:literal)*]) => {
-            $(
-                let $input = match inputs.get($i).map(|column| column.get(..len)) {
-                    Some(Some(whole)) => whole,
-                    Some(None) if !R::OPTIONAL => return,
-                    _ => &[],
-                };
-            )*
-            $(
-                let $output = match outputs.get_mut($o).map(|column| mem::take(column).split_at_mut_checked(len)) {
-                    Some(Some((whole, _))) => whole,
-                    Some(None) if !R::OPTIONAL => return,
-                    _ => &mut [],
-                };
-            )*
-            for at in 0..len {
-                let mut input = [L::splat(0.0); I];
+/// Columns of `len` rows: the addresses of that many numbers each.
+#[derive(Clone, Copy)]
+pub(crate) struct Columns<'a, const I: usize, const N: usize> {
+    inputs: [*const f32; I],
+    outputs: [*mut f32; N],
+    len: usize,
+    /// Bits of the columns that are left out, the inputs first: their addresses are not used.
+    absent: u32,
+    slices: PhantomData<&'a mut [f32]>,
+}
+
+impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
+    /// The columns that have the length of the first input; others are left out.
+    #[inline(always)]
+    pub(crate) fn new(inputs: &[&'a [f32]; I], outputs: &'a mut [&mut [f32]; N]) -> Self {
+        let len = inputs[0].len();
+        let (from, to) = ([ptr::null(); I], [ptr::null_mut(); N]);
+        let mut columns = Self { inputs: from, outputs: to, len, absent: 0, slices: PhantomData };
+        let mut i = 0;
+        while i < I {
+            columns.inputs[i] = inputs[i].as_ptr();
+            columns.absent |= u32::from(inputs[i].len() != len) << i;
+            i += 1;
+        }
+        i = 0;
+        while i < N {
+            columns.outputs[i] = outputs[i].as_mut_ptr();
+            columns.absent |= u32::from(outputs[i].len() != len) << (I + i);
+            i += 1;
+        }
+        columns
+    }
+
+    /// Whether no column is left out.
+    #[inline(always)]
+    pub(crate) const fn is_whole(&self) -> bool {
+        self.absent == 0
+    }
+
+    /// The columns from row `first` on.
+    #[inline(always)]
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    fn from_row(&self, first: usize) -> Self {
+        let mut columns = *self;
+        let mut i = 0;
+        while i < I {
+            columns.inputs[i] = columns.inputs[i].wrapping_add(first);
+            i += 1;
+        }
+        i = 0;
+        while i < N {
+            columns.outputs[i] = columns.outputs[i].wrapping_add(first);
+            i += 1;
+        }
+        columns.len -= first;
+        columns
+    }
+
+    /// Calls `run` with the rows from `done` on and their number of packets of `W`, if there are any. Returns the number of rows
+    /// done.
+    ///
+    /// The rest is less than a packet. If it is more than half of one, the last packet of rows is computed as well: a row is the
+    /// same wherever it is computed.
+    #[inline(always)]
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    pub(crate) fn in_packets<const W: usize>(&self, done: usize, run: impl Fn(&Self, usize)) -> usize {
+        let (packets, left) = ((self.len - done) / W, (self.len - done) % W);
+        if packets > 0 {
+            run(&self.from_row(done), packets);
+        }
+        if left <= W / 2 || self.len < W {
+            return self.len - left;
+        }
+        run(&self.from_row(self.len - W), 1);
+        self.len
+    }
+
+    /// Calls `run` with columns and the first of eight rows, for the rows from `done` on. The last eight include rows that are done
+    /// already; less than eight rows in all are copied to lanes 0 on.
+    #[inline(always)]
+    pub(crate) fn in_eights(&self, done: usize, run: impl Fn(&Columns<'_, I, N>, usize)) {
+        let len = self.len;
+        if done == len {
+            return;
+        }
+        let mut from = [[1.0_f32; 8]; I];
+        let mut to = [const { MaybeUninit::<[f32; 8]>::uninit() }; N];
+        let mut columns = *self;
+        if len < 8 {
+            let mut i = 0;
+            while i < I {
+                if self.absent >> i & 1 == 0 {
+                    // SAFETY: each column has `len` numbers, at most eight.
+                    unsafe { copy(self.inputs[i], from[i].as_mut_ptr(), len) };
+                }
+                columns.inputs[i] = from[i].as_ptr();
+                i += 1;
+            }
+            i = 0;
+            while i < N {
+                columns.outputs[i] = to[i].as_mut_ptr().cast();
+                i += 1;
+            }
+            columns.len = 8;
+        }
+        // One call, so that the compiler makes one copy of the model.
+        let last = columns.len - 8;
+        let mut at = done.min(last);
+        loop {
+            run(&columns, at);
+            if at == last {
+                break;
+            }
+            at = (at + 8).min(last);
+        }
+        if len < 8 {
+            let mut i = 0;
+            while i < N {
+                if self.absent >> (I + i) & 1 == 0 {
+                    // SAFETY: each column has `len` numbers, at most eight, and `run` wrote eight.
+                    unsafe { copy(to[i].as_ptr().cast(), self.outputs[i], len) };
+                }
+                i += 1;
+            }
+        }
+    }
+
+    /// Computes packets of `W` rows from the first row on. The loop has no branch but its own, unless columns may be left out: the
+    /// compiler would move the computation of a result past a branch that decides on its being written, and with it all of one
+    /// packet of a pair before the other.
+    ///
+    /// # Safety
+    ///
+    /// There are as many packets.
+    #[inline(always)]
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    pub(crate) unsafe fn packets<R: Row<I, N>, L: Packet<W>, const W: usize>(&self, row: R, packets: usize)
+    where
+        f32: Broadcast<L>,
+    {
+        let columns = *self;
+        for packet in 0..packets {
+            // SAFETY: there are as many packets.
+            unsafe { columns.packet::<R, L, W>(row, packet * W) };
+        }
+    }
+
+    /// Computes the `W` rows that begin at row `at`.
+    ///
+    /// # Safety
+    ///
+    /// There are as many rows.
+    #[inline(always)]
+    pub(crate) unsafe fn packet<R: Row<I, N>, L: Packet<W>, const W: usize>(&self, row: R, at: usize)
+    where
+        f32: Broadcast<L>,
+    {
+        const { assert!(I <= 7 && N <= 11, "every column is read or written") };
+        let mut input = [L::splat(0.0); I];
+        // No loops over columns: compilers that save space leave them, and the row in memory.
+        macro_rules! run {
+            ([$($i:literal)*] [$($o:literal)*]) => {
                 $(
-                    if $i < I {
-                        input[$i] = if !R::OPTIONAL {
-                            L::read(&$input[at])
-                        } else if let Some(from) = $input.get(at) {
-                            L::read(from)
-                        } else {
-                            L::splat(0.0)
-                        };
+                    if $i < I && (!R::OPTIONAL || self.absent >> $i & 1 == 0) {
+                        // SAFETY: the column has these rows.
+                        input[$i] = L::read(unsafe { &*self.inputs[$i].add(at).cast() });
                     }
                 )*
                 let row = row.row::<L>(input);
                 $(
-                    if $o < N {
-                        if !R::OPTIONAL {
-                            row[$o].write(&mut $output[at]);
-                        } else if let Some(to) = $output.get_mut(at) {
-                            row[$o].write(to);
-                        }
+                    if $o < N && (!R::OPTIONAL || self.absent >> (I + $o) & 1 == 0) {
+                        // SAFETY: as above, and nothing else refers to the column.
+                        row[$o].write(unsafe { &mut *self.outputs[$o].add(at).cast() });
                     }
                 )*
-            }
-        };
-    }
-    const { assert!(I <= 7 && N <= 11, "every column is read or written") };
-    run!([a 0 b 1 c 2 d 3 e 4 f 5 g 6] [p 0 q 1 r 2 s 3 t 4 u 5 v 6 w 7 x 8 y 9 z 10]);
-}
-
-/// Calls `run` on the whole packets of the slices from row `done` on. Returns the number of rows done.
-///
-/// The rest is less than a packet. If it is more than half of one, or `all` of it is wanted, the last packet of rows is
-/// computed once more: a row is the same wherever it is computed.
-#[inline(always)]
-pub(crate) fn in_packets<const I: usize, const N: usize, const W: usize>(
-    inputs: [&[f32]; I],
-    outputs: &mut [&mut [f32]; N],
-    done: usize,
-    all: bool,
-    mut run: impl FnMut([&[[f32; W]]; I], &mut [&mut [[f32; W]]; N]),
-) -> usize {
-    let len = inputs[0].len();
-    let rows = len.saturating_sub(done);
-    if rows >= W {
-        run(
-            inputs.map(|column| column.get(done..).unwrap_or_default().as_chunks().0),
-            &mut outputs.each_mut().map(|column| column.get_mut(done..).unwrap_or_default().as_chunks_mut().0),
-        );
-    }
-    let left = rows % W;
-    if left == 0 || len < W || (left <= W / 2 && !all) {
-        return len - left;
-    }
-    let last = inputs.map(|column| column.last_chunk().map_or(&[][..], slice::from_ref));
-    run(last, &mut outputs.each_mut().map(|column| column.last_chunk_mut().map_or(&mut [][..], slice::from_mut)));
-    len
-}
-
-/// Calls `run` on the rows from `done` on, eight at a time.
-///
-/// The last eight include rows that are done already. Slices of less than eight rows are lanes 0 on.
-#[inline(always)]
-pub(crate) fn in_eights<const I: usize, const N: usize>(
-    inputs: [&[f32]; I],
-    outputs: &mut [&mut [f32]; N],
-    done: usize,
-    mut run: impl FnMut([&[[f32; 8]]; I], &mut [&mut [[f32; 8]]; N]),
-) {
-    let done = in_packets(inputs, outputs, done, true, &mut run);
-    if done == inputs[0].len() {
-        return;
-    }
-    let len = inputs[0].len();
-    let mut from = [[0.0; 8]; I];
-    match len {
-        4.. => read_few::<4, I>(&inputs, &mut from, len),
-        2.. => read_few::<2, I>(&inputs, &mut from, len),
-        _ => read_few::<1, I>(&inputs, &mut from, len),
-    }
-    // Not zeros, which compilers write by a call of memset.
-    const FILL: [f32; 8] = [1.0; 8];
-    let mut to = [FILL; N];
-    run(array::from_fn(|column| slice::from_ref(&from[column])), &mut to.each_mut().map(slice::from_mut));
-    match len {
-        4.. => write_few::<4, N>(&to, outputs, len),
-        2.. => write_few::<2, N>(&to, outputs, len),
-        _ => write_few::<1, N>(&to, outputs, len),
-    }
-}
-
-/// Copies `len` rows into lanes; `HALF` is at least half of it.
-#[inline(always)]
-fn read_few<const HALF: usize, const I: usize>(columns: &[&[f32]; I], lanes: &mut [[f32; 8]; I], len: usize) {
-    let mut column = 0;
-    while column < I {
-        copy_halves::<HALF>(columns[column], &mut lanes[column], len);
-        column += 1;
-    }
-}
-
-/// Copies `len` rows from lanes; `HALF` is at least half of it.
-#[inline(always)]
-fn write_few<const HALF: usize, const N: usize>(lanes: &[[f32; 8]; N], columns: &mut [&mut [f32]; N], len: usize) {
-    let mut column = 0;
-    while column < N {
-        copy_halves::<HALF>(&lanes[column], columns[column], len);
-        column += 1;
+            };
+        }
+        run!([0 1 2 3 4 5 6] [0 1 2 3 4 5 6 7 8 9 10]);
     }
 }
 
 /// Copies `len` numbers, at most 8.
+///
+/// # Safety
+///
+/// Both have `len` numbers.
 #[inline(always)]
-pub(crate) fn copy(from: &[f32], to: &mut [f32], len: usize) {
-    match len {
-        4.. => copy_halves::<4>(from, to, len),
-        2.. => copy_halves::<2>(from, to, len),
-        _ => copy_halves::<1>(from, to, len),
+unsafe fn copy(from: *const f32, to: *mut f32, len: usize) {
+    // SAFETY: the caller's.
+    unsafe {
+        match len {
+            4.. => copy_halves::<4>(from, to, len - 4),
+            2.. => copy_halves::<2>(from, to, len - 2),
+            _ => *to = *from,
+        }
     }
 }
 
-/// Copies the first `HALF` of `len` numbers, and the last: of fixed length each. A loop, and the system's copy all the more,
-/// costs several times as much.
+/// Copies the first `HALF` of `rest + HALF` numbers, and the last. A loop, and the system's copy all the more, costs several
+/// times as much.
+///
+/// # Safety
+///
+/// Both have that many numbers, and `rest` is at most `HALF`.
 #[inline(always)]
-fn copy_halves<const HALF: usize>(from: &[f32], to: &mut [f32], len: usize) {
-    let (Some(from), Some(to)) = (from.get(..len), to.get_mut(..len)) else { return };
-    let Some(rest) = len.checked_sub(HALF) else { return };
-    if let (Some(from), Some(to)) = (from.first_chunk::<HALF>(), to.first_chunk_mut()) {
-        *to = *from;
+unsafe fn copy_halves<const HALF: usize>(from: *const f32, to: *mut f32, rest: usize) {
+    // SAFETY: the caller's.
+    unsafe {
+        *to.cast::<[f32; HALF]>() = *from.cast::<[f32; HALF]>();
+        *to.add(rest).cast::<[f32; HALF]>() = *from.add(rest).cast::<[f32; HALF]>();
     }
-    let (Some(from), Some(to)) = (from.get(rest..), to.get_mut(rest..)) else { return };
-    if let (Some(from), Some(to)) = (from.first_chunk::<HALF>(), to.first_chunk_mut()) {
-        *to = *from;
+}
+
+/// Copies the first of `from` to `to`, as many as both have, at most 8.
+#[inline(always)]
+pub(crate) fn copy_few(from: &[f32], to: &mut [f32]) {
+    let len = from.len().min(to.len()).min(8);
+    if len > 0 {
+        // SAFETY: both have `len` numbers.
+        unsafe { copy(from.as_ptr(), to.as_mut_ptr(), len) }
     }
 }

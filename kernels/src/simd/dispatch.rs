@@ -1,7 +1,7 @@
 //! Run-time dispatch: the only place that picks a backend.
 #![allow(unsafe_code, reason = "calls into functions of target features that a `Level` proves present")]
 
-use super::columns::{self, Row};
+use super::columns::{Columns, Row};
 use super::lanes::{Broadcast, Lanes, Scalar};
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use super::{avx2::Avx2, avx512::Avx512, pair::Pair};
@@ -202,37 +202,26 @@ fn run_avx512<K: Kernel>(kernel: K) -> K::Output {
     kernel.run::<Avx2>()
 }
 
-/// The rows of any machine. A function of its own, as those of target features are: the three places that call it would
-/// each have a copy of the model.
-#[inline(never)]
-fn rows_portable<R: Row<I, N>, const I: usize, const N: usize>(
-    row: R,
-    inputs: [&[[f32; 8]]; I],
-    outputs: &mut [&mut [[f32; 8]]; N],
-) {
-    columns::packets::<R, f32x8, I, N, 8>(row, inputs, outputs);
-}
-
-/// The rows of an instruction set, in packets of `W`.
+/// The rows of an instruction set.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 macro_rules! rows {
-    ($($name:ident $features:literal $Lanes:ty, $W:literal;)*) => { $(
+    ($($(#[$meta:meta])* $name:ident $method:ident $features:literal $Lanes:ty, $W:literal;)*) => { $(
+        $(#[$meta])*
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         #[target_feature(enable = $features)]
-        fn $name<R: Row<I, N>, const I: usize, const N: usize>(
-            row: R,
-            inputs: [&[[f32; $W]]; I],
-            outputs: &mut [&mut [[f32; $W]]; N],
-        ) {
-            columns::packets::<R, $Lanes, I, N, $W>(row, inputs, outputs);
+        unsafe fn $name<R: Row<I, N>, const I: usize, const N: usize>(row: R, columns: &Columns<'_, I, N>, at: usize) {
+            // SAFETY: the caller's.
+            unsafe { columns.$method::<R, $Lanes, $W>(row, at) };
         }
     )* };
 }
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 rows! {
-    eights_avx2 "avx2,fma" Avx2, 8;
-    rows_avx2 "avx2,fma" Pair<Avx2>, 16;
-    rows_avx512 "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw" Pair<Avx512>, 32;
+    /// One packet, what is left of longer ones or all of a short slice. It has no loop, before which the compiler would expand
+    /// all constants in memory.
+    eight_avx2 packet "avx2,fma" Avx2, 8;
+    rows_avx2 packets "avx2,fma" Pair<Avx2>, 16;
+    rows_avx512 packets "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw" Pair<Avx512>, 32;
 }
 
 impl Level {
@@ -253,10 +242,10 @@ impl Level {
         }
     }
 
-    /// Runs `row` over columns: `I` numbers in, `N` out. All columns are to be of one length.
+    /// Runs `row` over columns: `I` numbers in, `N` out. Nothing is written unless all columns are of one length; where they are
+    /// [`OPTIONAL`](Row::OPTIONAL), those of another length than the first input are left out.
     ///
     /// Rows are computed in packets as wide as the instruction set has them, two at a time, and the rest in narrower ones.
-    /// Columns that are too short leave the others unwritten, unless they are [`OPTIONAL`](Row::OPTIONAL).
     #[inline]
     pub fn run_rows<R: Row<I, N>, const I: usize, const N: usize>(
         self,
@@ -264,25 +253,29 @@ impl Level {
         inputs: [&[f32]; I],
         outputs: &mut [&mut [f32]; N],
     ) {
+        let columns = Columns::new(&inputs, outputs);
+        if R::OPTIONAL || columns.is_whole() {
+            self.run_columns(row, &columns);
+        }
+    }
+
+    /// Runs `row` over columns of one length.
+    #[inline(always)]
+    pub(crate) fn run_columns<R: Row<I, N>, const I: usize, const N: usize>(self, row: R, columns: &Columns<'_, I, N>) {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         if self.0 != Kind::Portable {
             let mut done = 0;
             if self.0 == Kind::Avx512 {
-                done = columns::in_packets(inputs, outputs, done, false, |inputs, outputs| {
-                    // SAFETY: a `Level` of this kind is made only where these features were found.
-                    unsafe { rows_avx512(row, inputs, outputs) }
-                });
+                // SAFETY: a `Level` of this kind is made only where these features were found; there are as many packets.
+                done = columns.in_packets::<32>(done, |columns, packets| unsafe { rows_avx512(row, columns, packets) });
             }
-            done = columns::in_packets(inputs, outputs, done, false, |inputs, outputs| {
-                // SAFETY: as above, and a level with AVX-512 has those of AVX2.
-                unsafe { rows_avx2(row, inputs, outputs) }
-            });
-            columns::in_eights(inputs, outputs, done, |inputs, outputs| {
-                // SAFETY: as above.
-                unsafe { eights_avx2(row, inputs, outputs) }
-            });
+            // SAFETY: as above, and a level with AVX-512 has those of AVX2.
+            done = columns.in_packets::<16>(done, |columns, packets| unsafe { rows_avx2(row, columns, packets) });
+            // SAFETY: as above; there are eight rows.
+            columns.in_eights(done, |columns, at| unsafe { eight_avx2(row, columns, at) });
             return;
         }
-        columns::in_eights(inputs, outputs, 0, |inputs, outputs| rows_portable(row, inputs, outputs));
+        // SAFETY: there are eight rows.
+        columns.in_eights(0, |columns, at| unsafe { columns.packet::<R, f32x8, 8>(row, at) });
     }
 }
