@@ -59,6 +59,12 @@ impl<L: Lanes> Vec3x<L> {
         Vec3x::new(self.x.store(), self.y.store(), self.z.store())
     }
 
+    /// The stored vector, which may just have been written, as lanes.
+    #[inline(always)]
+    pub(crate) fn load_fresh<C: crate::Broadcast<L>>(stored: &Vec3x<C>) -> Self {
+        Self::new(stored.x.fresh_lanes(), stored.y.fresh_lanes(), stored.z.fresh_lanes())
+    }
+
     /// The stored vector as lanes.
     #[inline(always)]
     pub(crate) fn load<C: crate::Broadcast<L>>(stored: &Vec3x<C>) -> Self {

@@ -106,6 +106,7 @@ pub use model::{Drawn, Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Model, Sampl
 pub use params::{ArtistControls, Glints, HairDesc, HairParams, Highlight, MAX_WIDTH, MIN_WIDTH, Transmission};
 pub use simd::columns::Row;
 pub use simd::dispatch::{Constant, Kernel, Level};
+pub(crate) use simd::lanes::fresh_lanes3;
 pub use simd::lanes::{Broadcast, LaneStruct, Lanes, Scalar, lanes3, lanes4, store3, store4};
 pub use simd::pair::Pair;
 pub use slices::{EvalColumns, EvalSlices, HitSlices, LengthError, SampleColumns, SampleSlices};

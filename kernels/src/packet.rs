@@ -2,7 +2,9 @@
 
 use crate::model::{Drawn, Eval8, Hit8, LobeEval8, Sample8};
 use crate::resample::{Weighed8, Weighing};
-use crate::{Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Model, PerLobe, Row, Vec3x, Vec3x8, lanes3, store3};
+use crate::{
+    Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Model, PerLobe, Row, Vec3x, Vec3x8, fresh_lanes3, store3,
+};
 use core::marker::PhantomData;
 use wide::f32x8;
 
@@ -57,18 +59,18 @@ macro_rules! at_gather {
 
 at_gather! {
     /// Value and density of eight directions.
-    EvalPdf(wi: &Vec3x8) -> Eval8, M L gather M::eval::<L, C>(gather, Vec3x::load(wi)).store()
+    EvalPdf(wi: &Vec3x8) -> Eval8, M L gather M::eval::<L, C>(gather, Vec3x::load_fresh(wi)).store()
 }
 at_gather! {
     /// Each lobe's value, colour and density at eight directions.
     Lobes(wi: &Vec3x8) -> PerLobe<LobeEval8>, M L gather {
-        let [a, b, c, d] = M::lobes::<L, C>(gather, Vec3x::load(wi)).0;
+        let [a, b, c, d] = M::lobes::<L, C>(gather, Vec3x::load_fresh(wi)).0;
         PerLobe([a.store(), b.store(), c.store(), d.store()])
     }
 }
 at_gather! {
     /// Eight sampled directions.
-    SampleWi(xi: &[f32x8; 3]) -> Sample8, M L gather M::sample::<L, C>(gather, lanes3(xi)).store()
+    SampleWi(xi: &[f32x8; 3]) -> Sample8, M L gather M::sample::<L, C>(gather, fresh_lanes3(xi)).store()
 }
 
 /// The directional albedos of eight shading points.
@@ -256,7 +258,15 @@ impl<M: Model, K: HitRow<M, N>, const N: usize> Kernel for EightHits<'_, M, K, N
         f32x8: Broadcast<L>,
     {
         let [u, v, w, h, x, y, z] = self.input;
-        let input = [u.lanes(), v.lanes(), w.lanes(), h.lanes(), x.lanes(), y.lanes(), z.lanes()];
+        let input = [
+            u.fresh_lanes(),
+            v.fresh_lanes(),
+            w.fresh_lanes(),
+            h.fresh_lanes(),
+            x.fresh_lanes(),
+            y.fresh_lanes(),
+            z.fresh_lanes(),
+        ];
         let row = K::row::<L, f32x8>(self.material, input);
         let mut out = [f32x8::ZERO; N];
         let mut i = 0;
@@ -340,7 +350,7 @@ impl<M: Model> Kernel for ProposalsOf<'_, M> {
     where
         f32x8: Broadcast<L>,
     {
-        let [x, y, z] = store3(proposed(M::sample::<L, f32x8>(self.gather, lanes3(self.xi))));
+        let [x, y, z] = store3(proposed(M::sample::<L, f32x8>(self.gather, fresh_lanes3(self.xi))));
         Vec3x::new(x, y, z)
     }
 }
@@ -363,8 +373,9 @@ impl<M: Model> Kernel for WeighOf<'_, M> {
     where
         f32x8: Broadcast<L>,
     {
-        let (wi, light) = (Vec3x::load(self.wi), self.pdf_light.lanes());
-        let [r, g, b, weight] = weighed::<M, L, f32x8>(self.gather, self.weighing, wi, lanes3(self.radiance), light);
+        let (wi, light) = (Vec3x::load_fresh(self.wi), self.pdf_light.fresh_lanes());
+        let [r, g, b, weight] =
+            weighed::<M, L, f32x8>(self.gather, self.weighing, wi, fresh_lanes3(self.radiance), light);
         Weighed8 { contribution: store3([r, g, b]), weight: weight.store() }
     }
 }

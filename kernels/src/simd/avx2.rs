@@ -203,6 +203,27 @@ fn interleave(mut a: __m256, mut b: __m256) -> (__m256, __m256) {
     (a, b)
 }
 
+/// Two loads of 16 bytes, each of which a store of 16 bytes is forwarded to. From intrinsics the compiler makes one load of 32.
+#[target_feature(enable = "avx")]
+#[inline]
+fn load_halves(from: &[f32; 8]) -> __m256 {
+    #[cfg(miri)]
+    // SAFETY: there are eight numbers.
+    return unsafe { _mm256_loadu_ps(from.as_ptr()) };
+    #[cfg(not(miri))]
+    // SAFETY: there are eight numbers, and AVX, which the register belongs to, is there.
+    unsafe {
+        let mut lanes = _mm256_castps128_ps256(_mm_loadu_ps(from.as_ptr()));
+        asm!(
+            "vinsertf128 {0}, {0}, xmmword ptr [{1} + 16], 1",
+            inout(ymm_reg) lanes,
+            in(reg) from.as_ptr(),
+            options(pure, readonly, nostack, preserves_flags)
+        );
+        lanes
+    }
+}
+
 impl Broadcast<Avx2> for f32 {
     #[inline(always)]
     fn lanes(&self) -> Avx2 {
@@ -236,6 +257,10 @@ impl Broadcast<Avx2> for f32x8 {
         Avx2(avx2!(_mm256_loadu_ps(self.as_array().as_ptr())))
     }
     #[inline(always)]
+    fn fresh_lanes(&self) -> Avx2 {
+        Avx2(avx2!(load_halves(self.as_array())))
+    }
+    #[inline(always)]
     fn look_up(table: &[f32x8; 4], index: Indices) -> Avx2 {
         select_of_four([table[0].lanes(), table[1].lanes(), table[2].lanes(), table[3].lanes()], index.at_least)
     }
@@ -253,6 +278,10 @@ impl Packet<8> for Avx2 {
     #[inline(always)]
     fn read(from: &[f32; 8]) -> Self {
         Self(avx2!(_mm256_loadu_ps(from.as_ptr())))
+    }
+    #[inline(always)]
+    fn read_fresh(from: &[f32; 8]) -> Self {
+        Self(avx2!(load_halves(from)))
     }
     #[inline(always)]
     fn write(self, to: &mut [f32; 8]) {

@@ -182,7 +182,7 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
                 $(
                     if $i < I && (!R::OPTIONAL || self.absent >> $i & 1 == 0) {
                         // SAFETY: the column has these rows.
-                        input[$i] = L::read(unsafe { &*self.inputs[$i].add(at).cast() });
+                        input[$i] = L::read_fresh(unsafe { &*self.inputs[$i].add(at).cast() });
                     }
                 )*
                 let row = row.row::<L>(input);

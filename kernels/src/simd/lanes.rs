@@ -125,6 +125,12 @@ pub trait Lanes:
 pub trait Broadcast<L: Lanes>: Scalar {
     /// The number of each lane.
     fn lanes(&self) -> L;
+    /// The same of numbers that the caller may just have written, by narrower stores: a CPU does not forward two stores to one
+    /// load, but waits some fifteen cycles for both to reach the cache.
+    #[inline(always)]
+    fn fresh_lanes(&self) -> L {
+        self.lanes()
+    }
     /// The entry of each lane's index.
     fn look_up(table: &[Self; 4], index: L::Index) -> L;
     /// The entry of each lane's index, of a table whose last two entries are equal: for less.
@@ -137,6 +143,11 @@ pub trait Broadcast<L: Lanes>: Scalar {
 pub(crate) trait Packet<const W: usize>: Lanes {
     /// Reads the numbers.
     fn read(from: &[f32; W]) -> Self;
+    /// Reads numbers that may just have been written: see [`Broadcast::fresh_lanes`].
+    #[inline(always)]
+    fn read_fresh(from: &[f32; W]) -> Self {
+        Self::read(from)
+    }
     /// Writes the numbers.
     fn write(self, to: &mut [f32; W]);
 }
@@ -145,6 +156,12 @@ pub(crate) trait Packet<const W: usize>: Lanes {
 #[inline(always)]
 pub fn lanes3<L: Lanes, C: Broadcast<L>>(x: &[C; 3]) -> [L; 3] {
     [x[0].lanes(), x[1].lanes(), x[2].lanes()]
+}
+
+/// The three numbers of `x`, which may just have been written, read as lanes.
+#[inline(always)]
+pub(crate) fn fresh_lanes3<L: Lanes, C: Broadcast<L>>(x: &[C; 3]) -> [L; 3] {
+    [x[0].fresh_lanes(), x[1].fresh_lanes(), x[2].fresh_lanes()]
 }
 
 /// The four numbers of `x`, read as lanes.
