@@ -9,12 +9,20 @@ import re
 import subprocess
 import sys
 
-ROWS = {"ValuePdf": "eval_pdf_batch", "Value": "eval_batch", "Pdf": "pdf_batch", "Samples": "sample_batch"}
+ROWS = {
+    "ValuePdf": "eval_pdf_batch",
+    "Value": "eval_batch",
+    "Pdf": "pdf_batch",
+    "Samples": "sample_batch",
+    "Proposed": "propose_batch",
+}
 PACKETS = {
     "Prepare": ("prepare8", "shared", "mixed"),
     "EvalPdf": ("eval_pdf8", "", "points"),
     "SampleWi": ("sample8", "", "points"),
 }
+# Weights of candidates, and packets of eight hits: the model is their only parameter.
+OF_MODEL = {"Weighs": "weigh_batch", "ProposalsOf": "propose8-points", "WeighOf": "weigh8-points"}
 MODELS = {
     "Chiang<true>": "chiang-by-channel",
     "Chiang": "chiang",
@@ -48,6 +56,9 @@ def entry(name):
     found = re.search(r"dispatch::(rows|eights)_(avx\w+|portable)::<.*packet::(\w+)>, \d+, \d+>$", name)
     if found and found[3] in ROWS:
         return ROWS[found[3]] + ("-eights" if found[1] == "eights" else ""), model, found[2]
+    found = re.search(r"dispatch::(rows|eights|run)_(avx\w+|portable)::<hairis::packet::(\w+)<.*>(?:, \d+, \d+)?>$", name)
+    if found and found[3] in OF_MODEL:
+        return OF_MODEL[found[3]] + ("-eights" if found[1] == "eights" else ""), model, found[2]
     found = re.search(r"dispatch::run_(avx\w+)::<hairis::packet::(\w+)<.*?, (f32|wide::[\w:]+)(?:, .*)?>>$", name)
     if found and found[2] in PACKETS:
         base, shared, own = PACKETS[found[2]]

@@ -25,7 +25,7 @@ done
 if [ "${1:-}" = --time ]; then
   # ROUNDS rounds; the median over them of the time, and of the ratios within a round.
   for round in $(seq "${ROUNDS:-5}"); do
-    for start in prepare/ eval/ sample/; do
+    for start in prepare/ eval/ sample/ resample/; do
       for level in 3 s z; do "$dir/entry-$level" time "$start*" 0.02 | sed "s/^/$round $level /"; done
     done
   done | grep -v textbook | python3 -c '

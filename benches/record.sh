@@ -1,5 +1,5 @@
 #!/bin/bash
-# Writes a record of the benches to benches/records/<cpu>/<date>.csv, in a quarter of an hour on an otherwise idle machine.
+# Writes a record of the benches to benches/records/<cpu>/<date>.csv, in 20 minutes on an otherwise idle machine.
 # Arguments go to `cargo bench`: benches/record.sh --bench eval
 set -euo pipefail
 cd "$(dirname "$0")/.."

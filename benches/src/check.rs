@@ -1,6 +1,7 @@
 //! Checks of the answers: a wrong kernel has no speed.
 
 use crate::Name;
+use crate::resample::{COUNTS, SKY_PDF};
 use crate::task::{Answer, Task};
 use glam::Vec3;
 use hairis::reference::Reference;
@@ -33,6 +34,13 @@ pub enum Given {
     Wi(Vec3),
     /// A direction for these numbers, its value and density.
     Xi([f32; 3]),
+    /// Contribution (as value) and weight (as density) of this direction as a candidate under the sky of
+    /// [`resample`](crate::resample).
+    Candidate(Vec3),
+    /// The same of a direction for these numbers.
+    Proposal([f32; 3]),
+    /// Contribution of whichever candidate is in the answer.
+    Kept,
 }
 
 /// Compares a pass with the formulas of the model in `f64`.
@@ -57,10 +65,24 @@ pub fn check(name: &Name, task: &mut impl Task, model: ModelId, asked: impl Fn(u
 fn right(asked: &Asked, model: ModelId, answer: &Answer) -> bool {
     let point = model.reference::<f64>(&asked.values, to_f64(asked.wo), 0.0).expect("checked parameters");
     let truth = match asked.given {
-        Given::Wi(wi) => Some(to_f64(wi)),
-        Given::Xi(xi) => drawn(&point, xi),
+        Given::Wi(wi) | Given::Candidate(wi) => Some(to_f64(wi)),
+        Given::Xi(xi) | Given::Proposal(xi) => drawn(&point, xi),
+        Given::Kept => answer.wi.map(to_f64),
     };
-    is_right(&point, truth, answer)
+    match asked.given {
+        Given::Wi(_) | Given::Xi(_) => is_right(&point, truth, answer),
+        Given::Candidate(_) | Given::Proposal(_) | Given::Kept => agrees(truth, answer, |wi| weighed(&point, wi)),
+    }
+}
+
+/// Contribution and weight of a candidate.
+fn weighed(point: &impl Reference<f64>, wi: [f64; 3]) -> ([f64; 3], f64) {
+    let cosine = wi[1].hypot(wi[2]);
+    // The sky of `resample`, in double precision.
+    let (value, radiance) = (point.eval(wi), wi.map(|x| 1.0 + 0.5 * x));
+    let f = [0, 1, 2].map(|c: usize| radiance[c] * value[c] * cosine);
+    let density = f64::from(COUNTS.bsdf) * point.pdf(wi) + f64::from(COUNTS.light) * f64::from(SKY_PDF);
+    (f, f.iter().sum::<f64>() / (3.0 * density))
 }
 
 /// The direction that these numbers come to at a shading point; `None` if the sample is discarded.
@@ -74,9 +96,14 @@ pub fn drawn(point: &impl Reference<f64>, xi: [f32; 3]) -> Option<[f64; 3]> {
 /// discarded.
 #[must_use]
 pub fn is_right(point: &impl Reference<f64>, truth: Option<[f64; 3]>, answer: &Answer) -> bool {
+    agrees(truth, answer, |wi| (point.eval(wi), point.pdf(wi)))
+}
+
+/// Whether an answer has the right direction, and what `expected` gives there.
+fn agrees(truth: Option<[f64; 3]>, answer: &Answer, expected: impl Fn([f64; 3]) -> ([f64; 3], f64)) -> bool {
     let Some(truth) = truth else { return answer.pdf == Some(0.0) };
     let wi = answer.wi.map_or(truth, to_f64);
-    let (value, pdf) = (point.eval(wi), point.pdf(wi));
+    let (value, pdf) = expected(wi);
     let close = |got: f32, want: f64| (f64::from(got) - want).abs() <= TOLERANCE * want + NEGLIGIBLE;
     let apart = wi.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
     apart <= TOLERANCE

@@ -1,5 +1,7 @@
 //! The entry points.
 
+mod resample;
+
 use crate::check::{Asked, Given, check};
 use crate::inputs::{DIRECTIONS, Inputs, arrays, materials, packets, params, xi_packets};
 use crate::task::{Each, PROBE, Point, Slices, Task};
@@ -22,11 +24,14 @@ pub enum Op {
     Sample,
     /// A shading point, and so many samples of it.
     Path(usize),
+    /// Candidates for rays: directions, weights and the choice.
+    Resample,
 }
 
 impl Op {
     /// All of them: a path takes 1, 4 or 16 samples per shading point.
-    pub const ALL: [Self; 6] = [Self::Prepare, Self::Eval, Self::Sample, Self::Path(1), Self::Path(4), Self::Path(16)];
+    pub const ALL: [Self; 7] =
+        [Self::Prepare, Self::Eval, Self::Sample, Self::Path(1), Self::Path(4), Self::Path(16), Self::Resample];
 }
 
 impl fmt::Display for Op {
@@ -36,6 +41,7 @@ impl fmt::Display for Op {
             Self::Eval => f.write_str("eval"),
             Self::Sample => f.write_str("sample"),
             Self::Path(samples) => write!(f, "path-{samples}"),
+            Self::Resample => f.write_str("resample"),
         }
     }
 }
@@ -144,6 +150,7 @@ impl<M: Registered> Of<'_, M> {
             Op::Eval => self.eval(visitor),
             Op::Sample => self.sample(visitor),
             Op::Path(samples) => self.path(visitor, samples),
+            Op::Resample => self.resample(visitor),
         }
     }
 

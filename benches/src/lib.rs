@@ -8,6 +8,7 @@ pub mod entries;
 pub mod inputs;
 pub mod math;
 pub mod platform;
+pub mod resample;
 pub mod task;
 
 pub use entries::{Name, Op, Visitor};

@@ -148,6 +148,20 @@ pub struct Slices<F, const N: usize, const I: usize = 3> {
     calls: usize,
     len: usize,
     call: F,
+    read: fn([f32; N]) -> Answer,
+}
+
+/// The answer in a row of `N` columns.
+fn read<const N: usize>(row: [f32; N]) -> Answer {
+    Answer {
+        wi: (N > 4).then(|| Vec3::new(row[4], row[5], row[6])),
+        value: (N >= 3).then(|| [row[0], row[1], row[2]]),
+        pdf: match N {
+            1 => Some(row[0]),
+            3 => None,
+            _ => Some(row[3]),
+        },
+    }
 }
 
 impl<F, const N: usize, const I: usize> Slices<F, N, I>
@@ -162,7 +176,14 @@ where
             calls: rows.len() / len,
             len,
             call,
+            read,
         }
+    }
+
+    /// With another reading of a row of the outputs.
+    #[must_use]
+    pub fn read_by(self, read: fn([f32; N]) -> Answer) -> Self {
+        Self { read, ..self }
     }
 }
 
@@ -187,18 +208,8 @@ where
     fn answers(&mut self) -> Vec<Answer> {
         let calls = self.calls();
         (0..calls).for_each(|index| self.call(index));
-        let at = |k: usize, i: usize| self.outputs[k].part(i, 1)[0];
-        (0..calls * self.len)
-            .map(|i| Answer {
-                wi: (N > 4).then(|| Vec3::new(at(4, i), at(5, i), at(6, i))),
-                value: (N >= 3).then(|| [at(0, i), at(1, i), at(2, i)]),
-                pdf: match N {
-                    1 => Some(at(0, i)),
-                    3 => None,
-                    _ => Some(at(3, i)),
-                },
-            })
-            .collect()
+        let row = |i: usize| from_fn(|k| self.outputs[k].part(i, 1)[0]);
+        (0..calls * self.len).map(|i| (self.read)(row(i))).collect()
     }
 }
 

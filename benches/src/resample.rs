@@ -1,0 +1,232 @@
+//! Candidates for rays under a sky: the pool of one hit and the reservoirs of eight, from uniform numbers to chosen rays.
+
+use crate::inputs::{Column, DIRECTIONS, Inputs, packets, xi_packets};
+use crate::task::{Answer, Output, Task};
+use core::array::from_fn;
+use core::hint::black_box;
+use glam::Vec3;
+use hairis::resample::{CandidateSlices, Choices, Counts, Partition, Reservoir8, Weighed8, WeightSlices, choose};
+use hairis::wide::f32x8;
+use hairis::{Gather, Gather8, LengthError, Level, Model, Vec3x8};
+
+/// Candidates of each technique in a pool.
+const EACH: usize = 32;
+/// Rays chosen from a pool.
+const RAYS: u32 = 16;
+/// Candidates of both techniques.
+const ALL: usize = 2 * EACH;
+/// Packets of each technique's candidates for eight hits.
+const PACKETS: usize = 4;
+
+/// Numbers of candidates by which every weight counts.
+pub const COUNTS: Counts = Counts { bsdf: 32, light: 32 };
+
+/// The sky's density of every direction, per steradian: it is drawn uniformly.
+pub const SKY_PDF: f32 = 0.079_577_47;
+
+/// Radiance of the sky, each channel by one of the coordinates. It stands for a look-up and takes next to no time.
+#[inline(always)]
+fn sky_along(x: f32) -> f32 {
+    1.0 + 0.5 * x
+}
+
+/// The same in eight directions.
+#[must_use]
+pub fn sky8(wi: &Vec3x8) -> [f32x8; 3] {
+    [wi.x, wi.y, wi.z].map(|x| f32x8::splat(1.0) + f32x8::splat(0.5) * x)
+}
+
+/// Direction, radiance and density of candidates that were drawn from the sky: the columns to weigh.
+#[must_use]
+pub fn looked_up(wi: &[Vec3]) -> Vec<[f32; 7]> {
+    let row = |wi: &Vec3| {
+        let ([x, y, z], [r, g, b]) = (wi.to_array(), wi.to_array().map(sky_along));
+        [x, y, z, r, g, b, SKY_PDF]
+    };
+    wi.iter().map(row).collect()
+}
+
+/// The pool of one hit: proposes 32 directions, looks them up, adds 32 of the light that were drawn beforehand, weighs all and
+/// chooses 16 rays. The directions of a call are its candidates.
+#[derive(Debug)]
+pub struct PoolTask<M: Model> {
+    gather: Gather<M>,
+    level: Level,
+    xi: [Column; 3],
+    /// Candidates of the light.
+    block: [Column; 7],
+    pool: Columns,
+}
+
+/// Direction, radiance, density, contribution and weight of the candidates, those of the BSDF first.
+#[derive(Debug)]
+struct Columns {
+    wi: [[f32; ALL]; 3],
+    radiance: [[f32; ALL]; 3],
+    pdf_light: [f32; ALL],
+    contribution: [[f32; ALL]; 3],
+    weight: [f32; ALL],
+}
+
+impl<M: Model> PoolTask<M> {
+    /// Pools at this hit, with the numbers and the directions of `inputs`.
+    #[must_use]
+    pub fn new(gather: Gather<M>, level: Level, inputs: &Inputs) -> Self {
+        let block = looked_up(&inputs.wi);
+        let (three, one) = ([[0.0; ALL]; 3], [0.0; ALL]);
+        Self {
+            gather,
+            level,
+            xi: from_fn(|k| Column::new(k, inputs.xi.iter().map(|xi| xi[k]))),
+            block: from_fn(|k| Column::new(3 + k, block.iter().map(|row| row[k]))),
+            pool: Columns { wi: three, radiance: three, pdf_light: one, contribution: three, weight: one },
+        }
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, index: usize) -> Result<(), LengthError> {
+        let at = index * EACH;
+        let Columns { wi, radiance, pdf_light, contribution, weight } = &mut self.pool;
+        let xi = black_box(&self.xi).each_ref().map(|column| column.part(at, EACH));
+        let proposed = wi.each_mut().map(|column| &mut column[..EACH]);
+        self.gather.propose_batch_at(self.level, xi, proposed)?;
+        for (radiance, wi) in radiance.iter_mut().zip(&*wi) {
+            for (radiance, x) in radiance[..EACH].iter_mut().zip(wi) {
+                *radiance = sky_along(*x);
+            }
+        }
+        pdf_light[..EACH].fill(SKY_PDF);
+        let columns = wi.iter_mut().chain(radiance.iter_mut()).chain([&mut *pdf_light]);
+        for (column, drawn) in columns.zip(black_box(&self.block)) {
+            column[EACH..].copy_from_slice(drawn.part(at, EACH));
+        }
+        let candidates = CandidateSlices {
+            wi: wi.each_ref().map(|column| &column[..]),
+            radiance: radiance.each_ref().map(|column| &column[..]),
+            pdf_light,
+        };
+        let out = WeightSlices { contribution: contribution.each_mut().map(|column| &mut column[..]), weight };
+        self.gather.weigh_batch_at(self.level, candidates, COUNTS, Partition::All, out)
+    }
+}
+
+impl<M: Model> Task for PoolTask<M> {
+    fn calls(&self) -> usize {
+        DIRECTIONS / EACH
+    }
+    fn directions(&self) -> usize {
+        ALL
+    }
+    #[inline(always)]
+    fn call(&mut self, index: usize) {
+        // All columns are of one length; if they were not, the answers would be found wrong.
+        let done = self.fill(index);
+        let contribution = self.pool.contribution.each_ref().map(|column| &column[..]);
+        for choice in choose(contribution, &self.pool.weight, RAYS, black_box(0.5)) {
+            black_box(&choice);
+        }
+        black_box((&self.pool, done.is_ok()));
+    }
+    fn answers(&mut self) -> Vec<Answer> {
+        let mut out = Vec::new();
+        for index in 0..self.calls() {
+            self.call(index);
+            let Columns { wi, contribution, weight, .. } = &self.pool;
+            let contribution = contribution.each_ref().map(|column| &column[..]);
+            let choices = choose(contribution, weight, RAYS, 0.5);
+            let (sum, mut shares) = (Choices::sum(&choices), 0.0_f32);
+            for choice in choices {
+                shares += choice.contribution.iter().sum::<f32>() / (3.0 * sum);
+            }
+            // Of one channel, what is chosen adds up to the sum of the weights; if not, every answer is wrong.
+            let weight = weight.map(|w| if (shares - 1.0).abs() < 1e-4 { w } else { f32::NAN });
+            out.extend((0..ALL).map(|i| Answer {
+                wi: Some(Vec3::from_array(wi.map(|column| column[i]))),
+                value: Some([0, 1, 2].map(|c: usize| contribution[c][i])),
+                pdf: Some(weight[i]),
+            }));
+        }
+        out
+    }
+}
+
+/// Candidates of eight hits: numbers of the BSDF's, directions of the light's, and a number to keep each by.
+#[derive(Clone, Debug)]
+pub struct Stream {
+    xi: [[f32x8; 3]; PACKETS],
+    wi: [Vec3x8; PACKETS],
+    u: [f32x8; 2 * PACKETS],
+}
+
+/// Candidates of a [`Stream`].
+pub const STREAMED: usize = 2 * PACKETS * 8;
+
+impl Stream {
+    /// Those of `inputs`, four packets of each technique at a time.
+    #[must_use]
+    pub fn of(inputs: &Inputs) -> Vec<Self> {
+        let (xi, wi) = (xi_packets(&inputs.xi), packets(&inputs.wi));
+        let (xi, wi) = (xi.as_chunks::<PACKETS>().0, wi.as_chunks::<PACKETS>().0);
+        // Other numbers than those that candidates are drawn by: from packets elsewhere.
+        let u = |at: usize| from_fn(|k| xi[(at + 1 + k / PACKETS) % xi.len()][k % PACKETS][0]);
+        xi.iter().zip(wi).enumerate().map(|(at, (xi, wi))| Self { xi: *xi, wi: *wi, u: u(at) }).collect()
+    }
+
+    /// Proposes, looks up, weighs and adds all candidates; then the estimate.
+    #[inline(always)]
+    #[must_use]
+    pub fn keep<M: Model>(&self, gather: &Gather8<M>, level: Level) -> Kept {
+        let pdf = f32x8::splat(SKY_PDF);
+        let mut reservoir = Reservoir8::default();
+        let mut add = |wi: &Vec3x8, u: &f32x8| {
+            let weighed = gather.weigh8_at(level, wi, &sky8(wi), &pdf, COUNTS, Partition::All);
+            reservoir.add_at(level, wi, &weighed, u);
+        };
+        let (first, second) = self.u.split_at(PACKETS);
+        self.xi.iter().zip(first).for_each(|(xi, u)| add(&gather.propose8_at(level, xi), u));
+        self.wi.iter().zip(second).for_each(|(wi, u)| add(wi, u));
+        Kept { reservoir, estimate: reservoir.estimate_at(level) }
+    }
+}
+
+/// A reservoir per hit and its estimate.
+#[derive(Clone, Copy, Debug)]
+pub struct Kept {
+    reservoir: Reservoir8,
+    estimate: [f32x8; 3],
+}
+
+impl Output for Kept {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        let Self { reservoir: Reservoir8 { wi, contribution, sum }, estimate } = self;
+        for lane in 0..8 {
+            let colour = |of: &[f32x8; 3]| of.map(|channel| channel.to_array()[lane]);
+            // The mean over the channels is the sum of the weights; if not, the answer is wrong.
+            let mean = colour(estimate).iter().sum::<f32>() / 3.0;
+            let is_sum = (mean / sum.to_array()[lane] - 1.0).abs() < 1e-5;
+            let value = if is_sum { colour(contribution) } else { [f32::NAN; 3] };
+            out.push(Answer { wi: Some(wi.lane(lane)), value: Some(value), pdf: None });
+        }
+    }
+}
+
+/// A direction that was proposed; a discarded sample has density 0.
+#[must_use]
+pub fn proposed(wi: Vec3) -> Answer {
+    Answer { wi: Some(wi), value: None, pdf: (wi == Vec3::ZERO).then_some(0.0) }
+}
+
+impl Output for Vec3x8 {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        out.extend((0..8).map(|lane| proposed(self.lane(lane))));
+    }
+}
+
+/// Contributions as values, weights as densities.
+impl Output for Weighed8 {
+    fn answers(&self, out: &mut Vec<Answer>) {
+        let ([r, g, b], weight) = (self.contribution.map(f32x8::to_array), self.weight.to_array());
+        let answer = |i: usize| Answer { wi: None, value: Some([r[i], g[i], b[i]]), pdf: Some(weight[i]) };
+        out.extend((0..8).map(answer));
+    }
+}
