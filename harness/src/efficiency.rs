@@ -240,6 +240,18 @@ pub(crate) fn perfect_v(model: ModelKind, params: &HairParams, theta_o_deg: f64,
     reference::perfect_v(&case::Case::new(model, params, theta_o_deg), light)
 }
 
+/// V of one ray by one-sample MIS, and that of a ray from `n + n` candidates times `n`, under such a light.
+#[cfg(test)]
+pub(crate) fn ray_v(
+    model: ModelKind,
+    params: &HairParams,
+    theta_o_deg: f64,
+    light: &dyn Light,
+    sampler: Sampler,
+) -> [f64; 2] {
+    reference::ray_v(&case::Case::new(model, params, theta_o_deg), light, sampler)
+}
+
 /// The mean of a colour, on which all figures are based.
 fn intensity(rgb: [f64; 3]) -> f64 {
     (rgb[0] + rgb[1] + rgb[2]) / 3.0

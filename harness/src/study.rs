@@ -18,12 +18,15 @@
 //! directions of the sampler alone, a V of 1000 has an error of 10% after some hundred thousand samples, and that error is
 //! underestimated.
 //!
+//! Rays of direct light are measured as [`rays`](crate::rays) does, from candidates of streams of their own: V of one ray by
+//! one-sample MIS and from 4 + 4 and 8 + 8 candidates.
+//!
 //! # Determinism
 //!
 //! The rows depend on the [`Plan`], on the build and on its instruction set, and on nothing else: each cell draws from
 //! streams of its own and is computed by one thread. Finished cells are kept in a part file, see [`part`], so that a run
 //! that was stopped goes on where it was, and so that many processes can share the work. Times are measured apart, by
-//! the process that writes the tables: of a sample, and of a look-up of each light. The environment's needs its file, which
+//! the process that writes the tables: of a sample, of a look-up of each light, and of a ray without its tracing. The environment's needs its file, which
 //! `hairis merge` takes as an option.
 //!
 //! # Adding a sampler
@@ -38,6 +41,7 @@ pub mod grid;
 pub mod output;
 pub mod part;
 mod perfect;
+mod rays;
 mod report;
 mod rows;
 pub mod shard;
@@ -65,13 +69,15 @@ use wide::f32x8;
 /// The lights, in the order of reports.
 type Light5<'a> = [&'a dyn Light; 5];
 
-/// Samples of a cell. Both are multiples of eight.
+/// Samples of a cell. The first two are multiples of eight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StudyBudget {
     /// Of each sampler of each model.
     pub samples: usize,
     /// Of each light that is not seen from everywhere.
     pub light_samples: usize,
+    /// Pools of 32 + 32 candidates of each sampler and light, from whose parts rays are chosen; none if 0.
+    pub pools: usize,
 }
 
 impl StudyBudget {
@@ -104,9 +110,9 @@ impl Plan<'_> {
     #[must_use]
     pub const fn budget(&self) -> StudyBudget {
         if self.quick {
-            StudyBudget { samples: 1 << 15, light_samples: 1 << 12 }
+            StudyBudget { samples: 1 << 15, light_samples: 1 << 12, pools: 128 }
         } else {
-            StudyBudget { samples: 1 << 18, light_samples: 1 << 15 }
+            StudyBudget { samples: 1 << 18, light_samples: 1 << 15, pools: 256 }
         }
     }
 
@@ -125,6 +131,7 @@ impl Plan<'_> {
             seed: self.seed,
             samples: budget.samples,
             light_samples: budget.light_samples,
+            pools: budget.pools,
             environment: part::digest(self.environment),
             models: ModelKind::ALL.iter().map(|model| model.name().to_owned()).collect(),
             samplers: Sampler::ALL.iter().map(|sampler| sampler.name().to_owned()).collect(),

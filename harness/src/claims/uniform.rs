@@ -34,7 +34,7 @@ fn example() -> Option<Cell> {
 /// V of uniform sampling and of the published sampler on the example, Gaussian model, from samples.
 fn measured(plan: &Plan<'_>, cell: &Cell) -> Result<[Estimate; 2], ParamError> {
     let budget = if plan.quick { 1 << 18 } else { 1 << 22 };
-    let budget = StudyBudget { samples: budget, light_samples: 8 };
+    let budget = StudyBudget { samples: budget, light_samples: 8, pools: 0 };
     let v = variances(plan, budget, cell, &[Sampler::Uniform, Sampler::Published])?;
     // Models outermost, then samplers, then lights: the constant light is the first of five.
     Ok([v[0], v[5]])

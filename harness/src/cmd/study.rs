@@ -59,7 +59,7 @@ pub fn run(config: &Config) -> Result<(), Error> {
 /// Measures times, computes how different the models look, writes the tables and prints the summary.
 pub(super) fn finish(study: &Study, environment: Option<&Environment>, out: &Path) -> Result<(), Error> {
     let (seed, quick) = study.settings();
-    let times = Times::measure(seed, quick, environment);
+    let times = Times::measure(seed, quick, environment).with_rays(seed, quick, environment);
     let difference = Difference::over(study.grid())?;
     study.write(out, &times, &difference)?;
     study.report(&times, &difference, claims(out, study).as_ref()).write(out, "study")?;

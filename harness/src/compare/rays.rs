@@ -135,13 +135,13 @@ fn visible(of: &Comparison) -> Table {
 fn in_equal_time(of: &Comparison) -> Table {
     let mut table =
         Table::new("Rays in equal time, half of the directions visible").texts(["model", "sampler", "light"]);
-    table = table.numbers(["MIS, ns", "candidate, ns"]);
+    table = table.numbers(["MIS, ns", "candidate, ns", "of 32 + 32, 16 rays"]);
     table = table.numbers(PRICES_US.map(|price| format!("8 + 8, {}", microseconds(price))));
     table = table.numbers(PRICES_US.map(|price| format!("best, {}", microseconds(price))));
     table = table.numbers(["4 + 4 from, µs", "8 + 8 from, µs", "any pool from, µs"]);
     for (row, times, equal) in measured(of) {
         let mut cells = [row.model, row.sampler, &row.light].map(str::to_owned).to_vec();
-        cells.extend([times.mis_ns, times.candidate_ns()].map(|ns| number::plain(ns, 3)));
+        cells.extend([times.mis_ns, times.candidate_ns(), times.shared_candidate_ns()].map(|ns| number::plain(ns, 3)));
         let eight = equal.pool(8, 1);
         cells.extend(
             (0..PRICES_US.len()).map(|place| eight.map_or_else(String::new, |eight| number::ratio(eight.gain[place]))),
@@ -157,7 +157,7 @@ fn in_equal_time(of: &Comparison) -> Table {
     }
     table.note(
         "Efficiency 1 / (V · time) over one-sample MIS at the same price of a ray. Times are those of candidates, weights, \
-         look-ups of the light and the choice on one thread; numbers, the light's directions and the preparation of the shading \
+         look-ups of the light and the choice on one thread, per candidate of 16 + 16 with one ray and of 32 + 32 with 16 rays; numbers, the light's directions and the preparation of the shading \
          point are left out of both. In brackets: candidates, and rays chosen from them.",
     )
 }

@@ -70,6 +70,23 @@ pub(super) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
     second / mean_by_quadrature(case, light).0.value.powi(2) - 1.0
 }
 
+/// V of one ray of direct light by one-sample MIS, and that of a ray from `n + n` candidates times `n`, by the light's own
+/// quadrature. With h = f / (p + q), of the densities of the sampler and of the light, the estimate from candidates is the mean
+/// of `n` values of h drawn by p plus that of `n` drawn by q.
+#[cfg(test)]
+pub(super) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2] {
+    let both = |dir: DVec3| case.density(sampler, dir) + light.pdf(dir);
+    let sphere = case.sphere(sampler).clone();
+    let tolerance = Tolerance { max_panels: 2_000, ..*sphere.tolerance() };
+    let sphere = sphere.with_tolerance(tolerance);
+    let share = |dir: DVec3| case.oracle_value(dir).map(|s| over(s * case.density(sampler, dir), both(dir)));
+    let by_sampler = intensity(light.integrate(&share, &sphere).value);
+    let mean = mean_by_quadrature(case, light).0.value;
+    let (second, by_light) = (second_moment(case, light, &sphere, &both), mean - by_sampler);
+    let squares = by_sampler * by_sampler + by_light * by_light;
+    [2.0 * second / (mean * mean) - 1.0, (second - squares) / (mean * mean)]
+}
+
 /// Mean and variances under an environment map: the mean by quadrature while the map has at most `max_texels`, all else by a stratified run over the oracle.
 ///
 /// Quadrature texel by texel does not resolve lobes much narrower than a texel: unless it converges, or its error is below

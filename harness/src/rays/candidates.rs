@@ -1,5 +1,6 @@
 //! Eight candidates at a time: drawn, looked up and weighed.
 
+use super::MOST;
 use crate::light::{Light, Seen8, rounded};
 use crate::sampler::{Scatter, cosine};
 use crate::sequence::{Independent, XiSource};
@@ -21,6 +22,19 @@ impl LightBlock {
         let wi = samples.map(|sample| sample.dir.as_vec3()).into();
         let radiance = array::from_fn(|c| f32x8::new(samples.map(|sample| rounded(sample.radiance[c]))));
         Self { wi, seen: Seen8 { radiance, pdf: f32x8::new(samples.map(|sample| rounded(sample.pdf))) } }
+    }
+}
+
+/// Packets of each technique in the largest pool.
+pub(super) const PACKETS: usize = MOST / 8;
+
+/// Directions of a light that were drawn beforehand: the largest pool's, for several pools.
+pub(crate) struct LightBlocks(pub(super) Vec<[LightBlock; PACKETS]>);
+
+impl LightBlocks {
+    /// For so many of the largest pools.
+    pub(crate) fn draw(light: &dyn Light, source: &mut Independent, pools: usize) -> Self {
+        Self((0..pools).map(|_| array::from_fn(|_| LightBlock::draw(light, source))).collect())
     }
 }
 

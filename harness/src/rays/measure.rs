@@ -1,6 +1,7 @@
 //! Variances at one shading point.
 
-use super::candidates::{Candidates8, LightBlock, numbers};
+use super::candidates::{Candidates8, LightBlock, LightBlocks, PACKETS, numbers};
+use super::reference::of_run;
 use super::result::{BiasScore, OneRay, PoolFigures, RayFigures, RayPose};
 use super::{HALF, MOST, RAYS, SIZES, pools};
 use crate::efficiency::{Reference, bias_z, is_tested};
@@ -8,32 +9,39 @@ use crate::light::Light;
 use crate::sampler::Scatter;
 use crate::sequence::Independent;
 use crate::stats::{Estimate, Moments};
-use hairis::resample::choose;
+use hairis::resample::{Choice, Choices, choose};
 
 /// Candidates of both techniques.
 const ALL: usize = 2 * MOST;
 
-/// Candidates by column. Those of both techniques alternate in pairs, so that the pools of every size are adjacent.
-struct Columns {
+/// Candidates by column, weighed in pools of each of `S` sizes. Those of both techniques alternate in pairs, so that the pools
+/// of every size are adjacent.
+pub(super) struct Columns<const S: usize> {
+    sizes: [u32; S],
     contribution: [[f32; ALL]; 3],
     /// In pools of each size.
-    weight: [[f32; ALL]; SIZES.len()],
+    weight: [[f32; ALL]; S],
     /// Densities of the BSDF's technique and of the light's.
     pdf: [[f32; ALL]; 2],
 }
 
-impl Columns {
-    /// As many candidates of each technique as the largest pool has.
-    fn draw(scatter: &Scatter, light: &dyn Light, source: &mut Independent) -> Self {
-        let mut columns =
-            Self { contribution: [[0.0; ALL]; 3], weight: [[0.0; ALL]; SIZES.len()], pdf: [[0.0; ALL]; 2] };
-        for packet in 0..MOST / 8 {
+impl<const S: usize> Columns<S> {
+    /// As many candidates of each technique as the largest pool has; `block` gives those of the light, packet by packet.
+    pub(super) fn draw(
+        scatter: &Scatter,
+        light: &dyn Light,
+        sizes: [u32; S],
+        source: &mut Independent,
+        block: impl Fn(usize, &mut Independent) -> LightBlock,
+    ) -> Self {
+        let mut columns = Self { sizes, contribution: [[0.0; ALL]; 3], weight: [[0.0; ALL]; S], pdf: [[0.0; ALL]; 2] };
+        for packet in 0..PACKETS {
             let drawn = [
                 Candidates8::of_bsdf(scatter, light, &numbers(source)),
-                Candidates8::of_light(scatter, &LightBlock::draw(light, source)),
+                Candidates8::of_light(scatter, &block(packet, source)),
             ];
             for (technique, drawn) in drawn.iter().enumerate() {
-                let weighed = SIZES.map(|count| drawn.weigh(count));
+                let weighed = sizes.map(|count| drawn.weigh(count));
                 for lane in 0..8 {
                     let place = place(technique, 8 * packet + lane);
                     for (column, channel) in columns.contribution.iter_mut().zip(&weighed[0].contribution) {
@@ -51,7 +59,35 @@ impl Columns {
         columns
     }
 
+    /// Places of the first candidates of the pools of a size.
+    fn pools(&self, size: usize) -> impl Iterator<Item = usize> + use<S> {
+        (0..ALL).step_by(2 * self.sizes[size] as usize)
+    }
+
+    /// The choice of `rays` candidates of the pool of a size at a place.
+    fn choose(&self, size: usize, from: usize, rays: u32, u: f32) -> Choices<'_> {
+        let to = from + 2 * self.sizes[size] as usize;
+        let contribution = self.contribution.each_ref().map(|column| &column[from..to]);
+        choose(contribution, &self.weight[size][from..to], rays, u)
+    }
+
+    /// Squared deviations of the plain estimators from `mean` at a candidate: by the BSDF, by the light and by one-sample MIS.
+    #[inline]
+    fn squares(&self, place: usize, mean: f64) -> [f64; 3] {
+        let (f, [bsdf, light]) = self.at(place);
+        if !is_light(place) && bsdf == 0.0 {
+            // A discarded sample is an event of the BSDF's sampler that the mixture has half as often.
+            return [2.0, 0.0, 1.0].map(|times| times * mean * mean);
+        }
+        let mixture = 0.5 * (bsdf + light);
+        [bsdf, light, mixture].map(|pdf| {
+            let deviation = f - mean * pdf;
+            if deviation == 0.0 { 0.0 } else { deviation * deviation / (pdf * mixture) }
+        })
+    }
+
     /// Contribution of a candidate, the mean of RGB, and its densities.
+    #[inline]
     fn at(&self, place: usize) -> (f64, [f64; 2]) {
         let f = self.contribution.iter().map(|column| f64::from(column[place])).sum::<f64>() / 3.0;
         (f, [0, 1].map(|technique: usize| f64::from(self.pdf[technique][place])))
@@ -61,6 +97,11 @@ impl Columns {
 /// Place of candidate `index` of a technique.
 const fn place(technique: usize, index: usize) -> usize {
     4 * (index / 2) + 2 * technique + index % 2
+}
+
+/// Whether the candidate at a place is the light's.
+const fn is_light(place: usize) -> bool {
+    place % 4 > 1
 }
 
 /// Squared deviations of the plain estimators from the reference, and the means of those that see every light.
@@ -73,25 +114,14 @@ struct Plain {
 }
 
 impl Plain {
-    fn add(&mut self, columns: &Columns, mean: f64) {
+    fn add<const S: usize>(&mut self, columns: &Columns<S>, mean: f64) {
         for place in 0..ALL {
-            let is_light = place % 4 > 1;
+            for (moments, square) in self.squares.iter_mut().zip(columns.squares(place, mean)) {
+                moments.push(square);
+            }
             let (f, [bsdf, light]) = columns.at(place);
-            let mixture = 0.5 * (bsdf + light);
-            if !is_light && bsdf == 0.0 {
-                // A discarded sample is an event of the BSDF's sampler that the mixture has half as often.
-                for (moments, times) in self.squares.iter_mut().zip([2.0, 0.0, 1.0]) {
-                    moments.push(times * mean * mean);
-                }
-                self.mis.push(0.0);
-                continue;
-            }
-            for (moments, pdf) in self.squares.iter_mut().zip([bsdf, light, mixture]) {
-                let deviation = f - mean * pdf;
-                moments.push(if deviation == 0.0 { 0.0 } else { deviation * deviation / (pdf * mixture) });
-            }
-            self.mis.push(if f > 0.0 { f / mixture } else { 0.0 });
-            if is_light {
+            self.mis.push(if f > 0.0 { f / (0.5 * (bsdf + light)) } else { 0.0 });
+            if is_light(place) {
                 self.light.push(if f > 0.0 { f / light } else { 0.0 });
             }
         }
@@ -112,18 +142,14 @@ struct Pooled {
 }
 
 impl Pooled {
-    fn add(&mut self, columns: &Columns, visible: &[bool; ALL], source: &mut Independent) {
+    fn add(&mut self, columns: &Columns<{ SIZES.len() }>, visible: &[bool; ALL], source: &mut Independent) {
         for (size, count) in SIZES.into_iter().enumerate() {
-            let length = 2 * count as usize;
-            for from in (0..ALL).step_by(length) {
-                let to = from + length;
-                let contribution = columns.contribution.each_ref().map(|column| &column[from..to]);
-                let weight = &columns.weight[size][from..to];
+            for from in columns.pools(size) {
                 for (rays, k) in RAYS.into_iter().enumerate().filter(|(_, k)| *k <= 2 * count) {
                     let (mut open, mut half) = (0.0, 0.0);
                     let (moments, traced) = &mut self.half[size][rays];
-                    for choice in choose(contribution, weight, k, source.next_f32()) {
-                        let y = choice.contribution.into_iter().map(f64::from).sum::<f64>() / 3.0;
+                    for choice in columns.choose(size, from, k, source.next_f32()) {
+                        let y = mean_of(&choice);
                         open += y;
                         half += if visible[from + choice.index] { y } else { 0.0 };
                         *traced += 1;
@@ -135,6 +161,56 @@ impl Pooled {
                 }
             }
         }
+    }
+}
+
+/// What a ray brings where it meets nothing, the mean of RGB.
+fn mean_of(choice: &Choice) -> f64 {
+    choice.contribution.into_iter().map(f64::from).sum::<f64>() / 3.0
+}
+
+/// V of one ray without occlusion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Unoccluded<const S: usize> {
+    /// By one-sample MIS.
+    pub(crate) mis: Estimate,
+    /// Chosen from pools of each size.
+    pub(crate) chosen: [Estimate; S],
+    /// Bias of the mean over the pools of the last size, in standard errors and corrected for skewness; none if there were too
+    /// few effective pools for a test.
+    pub(crate) bias: Option<f64>,
+}
+
+/// V of one ray from pools of some sizes, at most [`MOST`], by as many of the largest pools as there are `blocks` for. The
+/// errors include that of the mean, `reference`.
+pub(crate) fn unoccluded<const S: usize>(
+    scatter: &Scatter,
+    light: &dyn Light,
+    blocks: &LightBlocks,
+    sizes: [u32; S],
+    reference: Estimate,
+    source: &mut Independent,
+) -> Unoccluded<S> {
+    let mean = reference.value;
+    let (mut squares, mut chosen) = (Moments::new(), [Moments::new(); S]);
+    for blocks in &blocks.0 {
+        let columns = Columns::draw(scatter, light, sizes, source, |packet, _| blocks[packet]);
+        (0..ALL).for_each(|place| squares.push(columns.squares(place, mean)[2]));
+        for (size, moments) in chosen.iter_mut().enumerate() {
+            for from in columns.pools(size) {
+                moments.push(columns.choose(size, from, 1, source.next_f32()).map(|choice| mean_of(&choice)).sum());
+            }
+        }
+    }
+    let mis = squares.mean_estimate().scale(1.0 / (mean * mean));
+    // V about a mean that is off: its derivative by the mean is -2 V over the mean.
+    let of_mean = 2.0 * mis.value * reference.standard_error / mean;
+    let expected = of_run(reference);
+    let bias = chosen.last().map(|moments| score(String::new(), moments, &expected));
+    Unoccluded {
+        mis: Estimate { standard_error: mis.standard_error.hypot(of_mean), ..mis },
+        chosen: chosen.map(|moments| moments.relative_variance()),
+        bias: bias.filter(|score| score.tested).map(|score| score.z),
     }
 }
 
@@ -150,7 +226,8 @@ pub(super) fn pose(
     let mut source = Independent::new(seed, stream);
     let (mut plain, mut pooled) = (Plain::default(), Pooled::default());
     for _ in 0..count {
-        let columns = Columns::draw(scatter, light, &mut source);
+        let block = |_, source: &mut Independent| LightBlock::draw(light, source);
+        let columns = Columns::draw(scatter, light, SIZES, &mut source, block);
         let visible = core::array::from_fn(|_| f64::from(source.next_f32()) < HALF);
         plain.add(&columns, reference.value);
         pooled.add(&columns, &visible, &mut source);
@@ -174,18 +251,19 @@ pub(super) fn pose(
     }
 }
 
+fn score(estimator: String, moments: &Moments, reference: &Reference) -> BiasScore {
+    let deviation = moments.variance().sqrt();
+    let shape = [moments.relative_variance().value, moments.higher_moments()[0] / deviation.powi(3)];
+    let count = usize::try_from(moments.count()).unwrap_or(usize::MAX);
+    BiasScore { estimator, z: bias_z(moments, reference), tested: is_tested(count, shape) }
+}
+
 fn scores(plain: &Plain, pooled: &Pooled, reference: &Reference) -> Vec<BiasScore> {
     let at_half = Reference {
         value: HALF * reference.value,
         standard_error: HALF * reference.standard_error,
         quadrature_error: HALF * reference.quadrature_error,
         ..*reference
-    };
-    let score = |estimator: String, moments: &Moments, reference: &Reference| {
-        let deviation = moments.variance().sqrt();
-        let shape = [moments.relative_variance().value, moments.higher_moments()[0] / deviation.powi(3)];
-        let count = usize::try_from(moments.count()).unwrap_or(usize::MAX);
-        BiasScore { estimator, z: bias_z(moments, reference), tested: is_tested(count, shape) }
     };
     let mut scores = vec![
         score("light only".to_owned(), &plain.light, reference),

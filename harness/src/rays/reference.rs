@@ -5,7 +5,7 @@ use super::subject::exact_value;
 use crate::efficiency::{EfficiencyResult, Reference, ReferenceMethod, THETA_O_DEG};
 use crate::light::Light;
 use crate::sequence::{Stratified, XiSource, stream_id};
-use crate::stats::Moments;
+use crate::stats::{Estimate, Moments};
 
 /// Strata of a pass, across and down.
 const STRATA: [usize; 2] = [64, 64];
@@ -35,7 +35,11 @@ pub(super) fn by_run(subject: RaySubject, light: &dyn Light, pose: usize, at: [u
         }
         means.push(sum / source.cells() as f64);
     }
-    let mean = means.mean_estimate();
+    of_run(means.mean_estimate())
+}
+
+/// The mean of a run as a reference.
+pub(super) const fn of_run(mean: Estimate) -> Reference {
     Reference {
         value: mean.value,
         standard_error: mean.standard_error,

@@ -170,7 +170,9 @@ fn times_prices_and_fronts_fit_together() {
         sampler: "published",
         light: "small".to_owned(),
         mis_ns: 10.0,
+        mis_ns_error: 0.0,
         pool_ns: SIZES.map(|count| [20.0 * f64::from(count), 25.0 * f64::from(count)]),
+        pool_ns_error: [0.0; SIZES.len()],
     };
     let equal = EqualTime::new(&row, &times);
     let point = equal.pool(8, 1).expect("a pool");
@@ -219,6 +221,8 @@ fn every_estimator_is_timed() {
         assert!(time.mis_ns > 0.0 && time.candidate_ns() > 0.0 && time.pool_ns(2, 1) > 0.0, "{time:?}");
         assert!(time.pool_ns(32, 1) > time.pool_ns(4, 1), "{time:?}");
         assert!(time.pool_ns(3, 1).is_nan(), "no such pool");
+        assert_eq!(time.shared_candidate_ns(), time.pool_ns(32, 16) / 64.0);
+        assert!(time.mis_ns_error >= 0.0 && time.pool_ns_error.iter().all(|error| *error >= 0.0), "{time:?}");
     }
     assert_eq!(THETA_O_DEG.len(), 4);
 }

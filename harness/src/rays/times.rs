@@ -9,7 +9,8 @@ use super::{MOST, RAYS, RaySubject, SIZES};
 use crate::light::Light;
 use crate::sampler::Scatter;
 use crate::sequence::{Independent, stream_id};
-use crate::speed::quartiles;
+use crate::speed::{median_error, quartiles};
+use crate::stats::Estimate;
 use core::hint::black_box;
 use hairis::resample::choose;
 use serde::Serialize;
@@ -39,8 +40,12 @@ pub struct RayTimes {
     pub light: String,
     /// A ray by one-sample MIS, eight of each technique at a time.
     pub mis_ns: f64,
+    /// Its standard error.
+    pub mis_ns_error: f64,
     /// Pools, by [`SIZES`]: one ray chosen, and the most of [`RAYS`] that are no more than the candidates.
     pub pool_ns: [[f64; 2]; SIZES.len()],
+    /// Standard errors of pools of which one ray is chosen.
+    pub pool_ns_error: [f64; SIZES.len()],
 }
 
 /// Most rays from a pool.
@@ -62,10 +67,26 @@ impl RayTimes {
     pub fn candidate_ns(&self) -> f64 {
         self.pool_ns(16, 1) / 32.0
     }
+
+    /// Time per candidate of a pool of 32 + 32, sixteen rays chosen, in ns.
+    #[must_use]
+    pub fn shared_candidate_ns(&self) -> f64 {
+        self.pool_ns(32, 16) / 64.0
+    }
+
+    /// Time of a ray by one-sample MIS, in ns.
+    pub(crate) const fn mis(&self) -> Estimate {
+        Estimate { value: self.mis_ns, standard_error: self.mis_ns_error }
+    }
+
+    /// Time of a ray from a pool at this place of [`SIZES`], in ns.
+    pub(crate) const fn chosen(&self, size: usize) -> Estimate {
+        Estimate { value: self.pool_ns[size][0], standard_error: self.pool_ns_error[size] }
+    }
 }
 
 /// Measures every model and sampler under every light; `progress` is called with the number of those done and of all.
-pub(super) fn measure(
+pub(crate) fn measure(
     subjects: &[RaySubject],
     lights: &[&dyn Light],
     seed: u64,
@@ -108,13 +129,17 @@ fn row(subject: RaySubject, at: &Shading<'_>, rounds: usize) -> RayTimes {
             ns[contender].push(start.elapsed().as_secs_f64() * 1e9 / units as f64);
         }
     }
-    let median = |contender: usize| quartiles(&ns[contender])[1];
+    let found = ns.map(|ns| quartiles(&ns));
+    let median = |contender: usize| found[contender][1];
+    let error = |contender: usize| median_error(found[contender], rounds);
     RayTimes {
         model: subject.model(),
         sampler: subject.sampler(),
         light: at.light.name().to_owned(),
         mis_ns: median(0),
+        mis_ns_error: error(0),
         pool_ns: core::array::from_fn(|size| [1, 2].map(|rays| median(2 * size + rays))),
+        pool_ns_error: core::array::from_fn(|size| error(2 * size + 1)),
     }
 }
 

@@ -2,11 +2,13 @@
 
 use super::grid::Cell;
 use super::perfect;
+use super::rays::{Rays, SIZES};
 use super::tally::{Figures, Tally, figures};
 use super::{Light5, StudyBudget};
 use crate::efficiency::PHI_O_DEG;
 use crate::light::Light;
 use crate::quadrature::fibre_direction;
+use crate::rays::{LightBlocks, unoccluded};
 use crate::sampler::{Sampler, Scatter};
 use crate::sequence::{Independent, XiSource, stream_id};
 use crate::subject::ModelKind;
@@ -21,6 +23,8 @@ pub(super) struct Measured {
     pub(super) max_weight: f64,
     /// Largest contribution in means, of the directions of the sampler and of the light.
     pub(super) max_contribution: f64,
+    /// Rays of direct light with directions of the sampler and of the light, if they were measured.
+    pub(super) rays: Option<Rays>,
 }
 
 /// Figures of a cell.
@@ -69,6 +73,9 @@ pub(super) fn measure(
             (0..packets).map(|_| LightDraw::next(*light, &mut from)).collect()
         })
         .collect();
+    let of_light =
+        |(light, place): (&&dyn Light, u64)| LightBlocks::draw(*light, &mut stream(&[2, place]), budget.pools);
+    let blocks: Vec<LightBlocks> = lights.iter().zip(0..).map(of_light).collect();
     let mut found = Found { samplers: Vec::new(), perfect: Vec::new() };
     for model in ModelKind::ALL {
         for &sampler in samplers {
@@ -81,7 +88,11 @@ pub(super) fn measure(
                 let strata = [tally, by_light(&scatter, draws, budget, of_light)];
                 let figures = figures(&strata);
                 let max_contribution = strata[0].largest().max(strata[1].largest()) / figures.mean.value;
-                found.samplers.push(Measured { figures, max_weight, max_contribution });
+                let rays = (budget.pools > 0).then(|| {
+                    let mut from = stream(&[3, model.index(), sampler.index(), light as u64]);
+                    unoccluded(&scatter, lights[light], &blocks[light], SIZES, figures.mean, &mut from)
+                });
+                found.samplers.push(Measured { figures, max_weight, max_contribution, rays });
             }
             found.perfect.extend(perfect.iter().flatten().map(perfect::measured));
         }
@@ -176,12 +187,12 @@ fn widened(x: f32x8) -> f64x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::efficiency::{SAMPLERS, perfect_v, quadrature, sun};
+    use crate::efficiency::{SAMPLERS, perfect_v, quadrature, ray_v, sun};
     use crate::light::{Constant, Rectangle, Sky, Smooth};
     use crate::stats::Estimate;
     use crate::study::Grid;
 
-    const BUDGET: StudyBudget = StudyBudget { samples: 1 << 16, light_samples: 1 << 13 };
+    const BUDGET: StudyBudget = StudyBudget { samples: 1 << 16, light_samples: 1 << 13, pools: 0 };
 
     fn cell_of(beta_r_deg: f32, theta_o_deg: f32) -> Cell {
         let is = |cell: &Cell| cell.beta_r_deg == beta_r_deg && cell.theta_o_deg == theta_o_deg;
@@ -228,11 +239,40 @@ mod tests {
     }
 
     #[test]
+    fn rays_agree_with_quadrature() {
+        let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), sun(), Rectangle::figure_6a());
+        let lights: Light5<'_> = [&constant, &smooth, &sun, &area, &constant];
+        let budget = StudyBudget { pools: 1024, ..BUDGET };
+        for (beta_r, theta_o) in [(7.5, 45.0), (20.0, 85.0)] {
+            let cell = cell_of(beta_r, theta_o);
+            let params = cell.params().expect("accepted");
+            let found = measure(1, budget, &lights, &cell, &SAMPLERS).expect("accepted");
+            for (m, model) in ModelKind::ALL.into_iter().enumerate() {
+                for (s, sampler) in SAMPLERS.into_iter().enumerate() {
+                    for (l, light) in lights.iter().take(4).enumerate() {
+                        let rays = found.samplers[(m * SAMPLERS.len() + s) * 5 + l].rays.expect("measured");
+                        let [mis, pool] = ray_v(model, &params, f64::from(theta_o), *light, sampler);
+                        let place = format!("{beta_r} {theta_o} {model:?} {} {sampler:?}: {rays:?}", light.name());
+                        let bias = rays.bias.unwrap_or_else(|| panic!("{place}: no test of the mean"));
+                        assert!(bias.abs() < 5.0, "{place}: the mean is {bias} errors off");
+                        let sizes = rays.chosen.into_iter().zip(SIZES.map(|count| pool / f64::from(count)));
+                        for (v, want) in [(rays.mis, mis)].into_iter().chain(sizes) {
+                            let z = v.z_score(want);
+                            assert!(z.abs() < 5.0, "{place}: V {want} is {z} errors off");
+                            assert!(v.standard_error < 0.1 * want, "{place}: an error of {}", v.standard_error);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
     fn figures_depend_on_the_seed_and_the_cell_alone() {
         let sky = Sky::default().environment();
         let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), sun(), Rectangle::figure_6a());
         let lights: Light5<'_> = [&constant, &smooth, &sun, &area, &sky];
-        let budget = StudyBudget { samples: 256, light_samples: 64 };
+        let budget = StudyBudget { samples: 256, light_samples: 64, pools: 4 };
         let of = |seed, cell: &Cell| measure(seed, budget, &lights, cell, &Sampler::ALL).expect("accepted");
         let cell = cell_of(7.5, 45.0);
         let found = of(1, &cell);

@@ -13,6 +13,7 @@ const ROUNDING: f64 = 1e-4;
 /// - No weight is above its proven bound.
 /// - Under the constant light, which every direction sees, the samplers of a model agree on the mean: all of their
 ///   scores together stay below the bound that they pass by chance in one of [`FALSE_ALARM`]'s inverse runs.
+/// - The same holds for the means of rays from 8 + 8 candidates against those of samples, under every light.
 pub(super) fn failures(rows: &[Row<'_>], lights: &[String]) -> Vec<String> {
     let name = |row: &Row<'_>| {
         let (model, sampler) = (row.model.name(), row.strategy.name());
@@ -42,6 +43,15 @@ pub(super) fn failures(rows: &[Row<'_>], lights: &[String]) -> Vec<String> {
             name(row)
         ));
     }
+    let biased: Vec<(f64, &Row<'_>)> =
+        rows.iter().filter_map(|row| Some((row.measured.rays?.bias?.abs(), row))).collect();
+    let bound = z_bound(sidak(FALSE_ALARM, biased.len()));
+    for (z, row) in biased.into_iter().filter(|(z, _)| *z > bound) {
+        failures.push(format!(
+            "{}: the mean of rays from candidates is {z:.2} standard errors from that of samples, allowed {bound:.2}",
+            name(row)
+        ));
+    }
     failures
 }
 
@@ -51,6 +61,7 @@ mod tests {
     use crate::stats::Estimate;
     use crate::study::Grid;
     use crate::study::cell::Measured;
+    use crate::study::rays::Rays;
     use crate::study::rows::{Bounds, rows};
     use crate::study::tally::Figures;
     use crate::subject::ModelKind;
@@ -62,6 +73,7 @@ mod tests {
             figures: Figures { mean: of(3.0, 0.01), v: of(0.2, 0.01), kl: of(0.1, 0.01) },
             max_weight: 1.0,
             max_contribution: 2.0,
+            rays: Some(Rays { mis: of(1.4, 0.1), chosen: [of(0.2, 0.01), of(0.1, 0.01)], bias: Some(-1.0) }),
         };
         let mut cells = vec![vec![row; 5 * ModelKind::ALL.len() * Strategy::ALL.len()]; 2];
         let lights = ["constant", "smooth", "sun", "rectangle", "sky"].map(str::to_owned);
@@ -82,5 +94,10 @@ mod tests {
         );
         cells[1][5].figures.mean.value = f64::NAN;
         assert_eq!(found(&cells).len(), 2, "no number is no agreement");
+        let biased = Rays { mis: of(1.4, 0.1), chosen: [of(0.2, 0.01); 2], bias: Some(-9.0) };
+        cells[1][9].rays = Some(biased);
+        let said = found(&cells);
+        let words = "cell 1, gaussian published, sky: the mean of rays from candidates is 9.00 standard errors from";
+        assert!(said.len() == 3 && said[2].starts_with(words), "{said:?}");
     }
 }

@@ -4,6 +4,7 @@ use super::cell::Measured;
 use super::columns::Columns;
 use super::equal_time::{NOTHING, in_equal_time, time_ratio};
 use super::part::{self, FORMAT, Finished, Header, Read};
+use super::rays::{self, By};
 use super::rows::{self, Bounds, Row, Strategy, rows};
 use super::times::{self, PER_POINT, Time};
 use super::{Grid, Shard, check, grid_of, report, summary, with_built_in_lights};
@@ -12,6 +13,7 @@ use crate::error::Error;
 use crate::files::whole;
 use crate::light::{Environment, Light};
 use crate::machine::Machine;
+use crate::rays::{RayTimes, measure_times};
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::subject::ModelKind;
@@ -28,9 +30,12 @@ pub struct Study {
     pub(super) bounds: Bounds,
 }
 
-/// Times of a sample and of a look-up of the light, measured on this machine.
+/// Times of a sample, of a look-up of the light and, on request, of a ray without its tracing, measured on this machine.
 #[derive(Clone, Debug)]
-pub struct Times(Vec<Time>);
+pub struct Times {
+    of_samples: Vec<Time>,
+    of_rays: Vec<RayTimes>,
+}
 
 impl Times {
     /// Measures them, with nothing else at work: in about three seconds, or less than one if `quick`. Without an
@@ -40,18 +45,37 @@ impl Times {
         with_built_in_lights(|built_in| {
             let mut lights = built_in.to_vec();
             lights.extend(environment.map(|map| map as &dyn Light));
-            Self(times::measure(seed, if quick { 15 } else { 75 }, &lights))
+            let rounds = if quick { 15 } else { 75 };
+            Self { of_samples: times::measure(seed, rounds, &lights), of_rays: Vec::new() }
+        })
+    }
+
+    /// Measures those of rays as well: in about five seconds, or one if `quick`.
+    #[must_use]
+    pub fn with_rays(self, seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
+        with_built_in_lights(|built_in| {
+            let mut lights = built_in.to_vec();
+            lights.extend(environment.map(|map| map as &dyn Light));
+            Self {
+                of_rays: measure_times(&rays::subjects(), &lights, seed, if quick { 9 } else { 75 }, |_| ()),
+                ..self
+            }
         })
     }
 
     /// Median time of a sample in ns, for 1, 4 or 16 samples per shading point; not a number for others.
     pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
-        times::ns(&self.0, model, sampler, per_point)
+        times::ns(&self.of_samples, model, sampler, per_point)
+    }
+
+    /// Median time of a ray under a light of this name, without its tracing, in ns; not a number if it was not measured.
+    pub(super) fn ray_ns(&self, of: (ModelKind, Sampler), light: &str, by: By) -> Estimate {
+        rays::ns(&self.of_rays, of, light, by)
     }
 
     /// Median time of a look-up of the light at this place in ns; not a number if it was not measured.
     pub(super) fn look_up(&self, light: usize) -> Estimate {
-        times::look_up(&self.0, light)
+        times::look_up(&self.of_samples, light)
     }
 }
 
@@ -180,6 +204,10 @@ impl Study {
     /// | `max_weight`, `weight_bound` | largest mean of RGB of a weight, whatever the light, and its proven bound where there is one; of `perfect` the estimate of the albedo |
     /// | `max_contribution` | largest contribution, in means; under constant light the largest weight in means |
     /// | `kl`, `kl_se` | Kullback-Leibler divergence of the density from the normalised integrand, nats; under constant light that from `S cos theta_i` |
+    /// | `v_mis`, `v_mis_se` | V of one ray of direct light by one-sample MIS, without occlusion |
+    /// | `v_4_4`, `v_8_8` and their `_se` | the same of a ray chosen from 4 + 4 and from 8 + 8 candidates |
+    /// | `v_mis_visible_25` .. `v_8_8_visible_75` | the same with 25, 50 and 75% of the directions visible: `(V + 1)/v - 1` |
+    /// | `pool_bias` | bias of the mean of the estimates from 8 + 8 candidates against `mean`, in standard errors; empty where too few pools decide it |
     #[must_use]
     pub fn columns(&self) -> Columns {
         rows::columns(&self.rows(), &self.header.lights)
@@ -195,6 +223,9 @@ impl Study {
     /// | `ns_at_N`, `efficiency_at_N` | time of a sample, ns, and `1 / (V seconds)`, for N of 1, 4 and 16 samples per shading point |
     /// | `gain_at_N`, `gain_at_N_se` | by what factor less variance than `published` it has in equal time |
     /// | `look_up_efficiency_at_N` .. `look_up_gain_at_N_se` | the three with the look-up counted in every sample's time |
+    ///
+    /// | `ray_ns_mis`, `ray_ns_4_4`, `ray_ns_8_8` and their `_se` | time of a ray without its tracing, ns |
+    /// | `gain_4_4_at_P_us`, `gain_8_8_at_P_us` and their `_se` | efficiency of such a ray over one-sample MIS where a ray costs P of 0.1, 0.3, 1 and 3 µs, half of the directions visible |
     ///
     /// Of `perfect`, which has no time, the first two lines alone, without a break-even where its V is 0. A look-up that was
     /// not timed ([`Times::measure`]) leaves its columns empty.
@@ -245,7 +276,7 @@ impl Study {
                 )
                 .estimate(&format!("look_up_gain_at_{per_point}"), gains(true));
         }
-        columns
+        rays::efficiencies(columns, &rows, &self.header.lights, times)
     }
 
     /// Errors in the figures: weights beyond their proven bound, and samplers whose means disagree.
@@ -271,7 +302,7 @@ impl Study {
         let machine = json!({ "study": self.header, "times_measured_on": Machine::current() });
         let rows = self.columns();
         let (efficiencies, differences) = (self.efficiencies(times), difference.columns());
-        whole(&dir.join("times.csv"), |out| times::columns(&times.0, &self.header.lights).write_csv(out))?;
+        whole(&dir.join("times.csv"), |out| times::columns(&times.of_samples, &self.header.lights).write_csv(out))?;
         for (name, columns) in [("study", &rows), ("efficiency", &efficiencies), ("difference", &differences)] {
             whole(&dir.join(format!("{name}.csv")), |out| columns.write_csv(out))?;
             #[cfg(feature = "parquet")]

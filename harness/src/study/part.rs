@@ -9,6 +9,7 @@ pub use sealed::line;
 
 use super::Shard;
 use super::cell::{Found, Measured};
+use super::rays::Rays;
 use super::tally::Figures;
 use crate::error::Error;
 use crate::light::Environment;
@@ -22,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 /// First word of every part file: the layout of its lines.
-pub const FORMAT: &str = "hairis-study-3";
+pub const FORMAT: &str = "hairis-study-4";
 
 /// Header of a part file. Parts of one study agree in all of it except the shard.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -44,6 +45,9 @@ pub struct Header {
     pub samples: usize,
     /// Samples of each light in a cell.
     pub light_samples: usize,
+    /// Pools of 32 + 32 candidates of each sampler and light in a cell; none in parts of earlier formats.
+    #[serde(default)]
+    pub pools: usize,
     /// Digest of the environment's pixels.
     pub environment: String,
     /// Names of the models, in the order of the rows.
@@ -95,14 +99,18 @@ impl Header {
     }
 }
 
+/// Numbers in a row of a cell.
+const NUMBERS: usize = 15;
+
 /// A finished cell: for each of its rows mean, V and divergence, each with its standard error, the largest weight and
-/// the largest contribution. What is no number is `None`.
+/// the largest contribution; then V of one ray by one-sample MIS and from each size of pool, each with its standard error, and
+/// the bias of pools. What is no number is `None`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finished {
     /// Place of the cell in the grid.
     pub cell: usize,
     /// Its rows: models outermost, then samplers, then lights; after them those of perfect sampling, models, then lights.
-    pub rows: Vec<[Option<f64>; 8]>,
+    pub rows: Vec<[Option<f64>; NUMBERS]>,
 }
 
 impl Finished {
@@ -111,16 +119,26 @@ impl Finished {
             let Figures { mean, v, kl } = m.figures;
             let errors = [mean, v, kl].map(|of| [of.value, of.standard_error]);
             let [[a, b], [c, d], [e, f]] = errors;
-            [a, b, c, d, e, f, m.max_weight, m.max_contribution].map(|x| x.is_finite().then_some(x))
+            let [g, h, i, j, k, l, bias] =
+                m.rays.map_or([f64::NAN; 7], |Rays { mis, chosen: [small, large], bias }| {
+                    let [[g, h], [i, j], [k, l]] = [mis, small, large].map(|of| [of.value, of.standard_error]);
+                    [g, h, i, j, k, l, bias.unwrap_or(f64::NAN)]
+                });
+            [a, b, c, d, e, f, m.max_weight, m.max_contribution, g, h, i, j, k, l, bias]
+                .map(|x| x.is_finite().then_some(x))
         };
         Self { cell, rows: found.samplers.iter().chain(&found.perfect).map(row).collect() }
     }
 
     pub(super) fn measured(&self) -> Vec<Measured> {
-        let row = |row: &[Option<f64>; 8]| {
-            let [a, b, c, d, e, f, max_weight, max_contribution] = row.map(|x| x.unwrap_or(f64::NAN));
+        let row = |row: &[Option<f64>; NUMBERS]| {
+            let [a, b, c, d, e, f, max_weight, max_contribution, rest @ ..] = row.map(|x| x.unwrap_or(f64::NAN));
             let of = |value, standard_error| Estimate { value, standard_error };
-            Measured { figures: Figures { mean: of(a, b), v: of(c, d), kl: of(e, f) }, max_weight, max_contribution }
+            let figures = Figures { mean: of(a, b), v: of(c, d), kl: of(e, f) };
+            let [g, h, i, j, k, l, bias] = rest;
+            let bias = bias.is_finite().then_some(bias);
+            let rays = g.is_finite().then(|| Rays { mis: of(g, h), chosen: [of(i, j), of(k, l)], bias });
+            Measured { figures, max_weight, max_contribution, rays }
         };
         self.rows.iter().map(row).collect()
     }
@@ -307,7 +325,9 @@ mod tests {
     }
 
     fn finished(cell: usize, header: &Header) -> Finished {
-        let row = [Some(0.1), Some(1e-300), None, None, Some(f64::MAX), Some(1.0 / 3.0), Some(0.0), None];
+        let mut row = [Some(0.1); NUMBERS];
+        row[1..8].copy_from_slice(&[Some(1e-300), None, None, Some(f64::MAX), Some(1.0 / 3.0), Some(0.0), None]);
+        row[NUMBERS - 1] = None;
         Finished { cell, rows: vec![row; header.rows()] }
     }
 

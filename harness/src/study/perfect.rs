@@ -104,7 +104,7 @@ pub(super) fn measured(strata: &[PerfectTally; 2]) -> Measured {
         kl: estimate(c / a + z.ln() - a.ln(), [1.0 / z, -(c / a + 1.0) / a, 0.0, 1.0 / a]),
     };
     let brightest = strata.iter().flat_map(|tally| tally.largest.to_array()).fold(0.0, f64::max);
-    Measured { figures, max_weight: z, max_contribution: z * brightest / a }
+    Measured { figures, max_weight: z, max_contribution: z * brightest / a, rays: None }
 }
 
 #[cfg(test)]
@@ -159,7 +159,7 @@ mod tests {
         let kl = over(&|x| f(x) * radiance(x) / mean * (F * radiance(x) / mean).ln());
         for ratio in [0, 1, 3] {
             assert_honest(ratio, [mean, v, kl], |run| {
-                let Measured { figures, max_weight, max_contribution } = estimated(run, ratio);
+                let Measured { figures, max_weight, max_contribution, .. } = estimated(run, ratio);
                 assert!((max_weight / F - 1.0).abs() < 0.05, "every weight is F: {max_weight}");
                 let most = max_contribution * figures.mean.value / max_weight;
                 assert!(most > 2.5 && most <= 3.0, "the brightest of 1 to 3: {most}");

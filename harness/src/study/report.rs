@@ -3,6 +3,7 @@
 mod charts;
 mod findings;
 mod looks;
+mod rays;
 mod tables;
 mod view;
 
@@ -76,6 +77,7 @@ impl Study {
         );
         let spread = with(Section::new("How the gains spread"), charts::distributions(view));
         let weights = with(Section::new("Effective samples and largest weights"), charts::weights(view));
+        let rays = rays::section(view);
         let looks = Section::new("How different the models look").paragraph(format!(
             "Differences are of S cos θᵢ over the whole sphere, the mean of red, green and blue. L1 is the integral of the \
              magnitude over the Gaussian model's albedo: 30% says that light worth 30% of what the Gaussian model \
@@ -89,7 +91,7 @@ impl Study {
         let looks = difference.tables().into_iter().fold(looks, Section::table);
         let mut tables = self.summary(times).into_iter().fold(Section::new("Tables"), Section::table);
         tables = tables.table(tables::quality(view)).table(tables::times(view)).table(tables::look_ups(view));
-        [variance, time, spread, weights, looks, tables].into_iter().fold(page, Report::section)
+        [variance, time, spread, weights, rays, looks, tables].into_iter().fold(page, Report::section)
     }
 
     fn method(&self, mut page: Report, has_claims: bool) -> Report {

@@ -3,6 +3,7 @@
 use super::cell::Measured;
 use super::columns::Columns;
 use super::grid::{Cell, Grid, columns_of};
+use super::rays;
 use crate::sampler::{Sampler, weight_bound};
 use crate::subject::ModelKind;
 use rayon::prelude::*;
@@ -127,7 +128,7 @@ pub(super) fn keys(rows: &[Row<'_>], lights: &[String]) -> Columns {
 /// The columns of the study.
 pub(super) fn columns(rows: &[Row<'_>], lights: &[String]) -> Columns {
     let figures = |of: fn(&Measured) -> f64| rows.iter().map(move |row| of(row.measured));
-    keys(rows, lights)
+    let columns = keys(rows, lights)
         .estimate("mean", rows.iter().map(|row| row.measured.figures.mean))
         .estimate("v", rows.iter().map(|row| row.measured.figures.v))
         .number("ess_per_1000", figures(|m| 1_000.0 / (1.0 + m.figures.v.value)))
@@ -135,5 +136,6 @@ pub(super) fn columns(rows: &[Row<'_>], lights: &[String]) -> Columns {
         .number("max_weight", figures(|m| m.max_weight))
         .number("weight_bound", rows.iter().map(|row| row.weight_bound))
         .number("max_contribution", figures(|m| m.max_contribution))
-        .estimate("kl", rows.iter().map(|row| row.measured.figures.kl))
+        .estimate("kl", rows.iter().map(|row| row.measured.figures.kl));
+    rays::columns(columns, rows)
 }

@@ -12,7 +12,7 @@ use super::columns::Columns;
 use crate::light::{Light, Seen8};
 use crate::sampler::{Sampler, bsdf, uniform_sample8, uniform8};
 use crate::sequence::{Independent, stream_id};
-use crate::speed::{quartiles, stretch, task};
+use crate::speed::{median_error, quartiles, stretch, task};
 use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::subject::uniform_direction;
@@ -120,9 +120,7 @@ pub(super) fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<Ti
     }
     let time = |TimedSampler { of, ns, .. }: TimedSampler<'_>| {
         let quartiles = quartiles(&ns);
-        // A normal deviation is 1/1.349 of the distance of its quartiles, and a median's error 1.2533 of a mean's.
-        let standard_error = 1.2533 / 1.349 * (quartiles[2] - quartiles[0]) / (rounds as f64).sqrt();
-        Time { of, quartiles, standard_error }
+        Time { of, quartiles, standard_error: median_error(quartiles, rounds) }
     };
     contenders.into_iter().map(time).collect()
 }

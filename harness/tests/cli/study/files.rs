@@ -49,6 +49,47 @@ fn named(name: &str) -> Vec<HashMap<String, String>> {
 }
 
 #[test]
+fn rays_have_their_variances_and_gains() {
+    let (rows, efficiencies) = (named("study.csv"), named("efficiency.csv"));
+    let is_of_rays =
+        |name: &String| ["v_mis", "v_4_4", "v_8_8", "gain_4_4", "gain_8_8"].iter().any(|s| name.starts_with(s));
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+    let mut ratios = Vec::new();
+    for (row, times) in rows.iter().zip(&efficiencies) {
+        if row["sampler"] == "perfect" {
+            let all = || row.iter().chain(times).filter(|(name, _)| is_of_rays(name));
+            assert!(all().count() == 15 + 16 && all().all(|(_, value)| value.is_empty()), "{row:?}");
+            continue;
+        }
+        let number = |name: &str| row.get(name).or(times.get(name)).unwrap().parse::<f64>().unwrap();
+        let v = ["mis", "4_4", "8_8"].map(|by| number(&format!("v_{by}")));
+        // The balance heuristic over n + n candidates has at most 1/(2n) of the variance of one sample of it.
+        for (by, bound) in [("4_4", 8.0), ("8_8", 16.0)] {
+            let [(a, da), (b, db)] = ["mis", by].map(|by| (number(&format!("v_{by}")), number(&format!("v_{by}_se"))));
+            assert!(a / b * (1.0 + 4.5 * (da / a).hypot(db / b)) > bound, "{by}: {row:?}");
+        }
+        ratios.push(v[1] / v[2]);
+        for (by, v) in ["mis", "4_4", "8_8"].into_iter().zip(v) {
+            for share in [0.25, 0.5, 0.75] {
+                let visible = number(&format!("v_{by}_visible_{:.0}", 100.0 * share));
+                assert!(near(visible + 1.0, (v + 1.0) / share), "{by} {share}: {row:?}");
+            }
+        }
+        for by in ["4_4", "8_8"] {
+            for price in [0.1, 0.3, 1.0, 3.0] {
+                let cost = |by| number(&format!("v_{by}_visible_50")) * (number(&format!("ray_ns_{by}")) + 1e3 * price);
+                assert!(
+                    near(number(&format!("gain_{by}_at_{price}_us")), cost("mis") / cost(by)),
+                    "{by} {price}: {row:?}"
+                );
+            }
+        }
+    }
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    assert!((mean - 2.0).abs() < 0.05, "twice the candidates, half the variance: {mean}");
+}
+
+#[test]
 fn efficiencies_follow_from_variances_and_times() {
     let rows = named("efficiency.csv");
     assert_eq!(rows.len(), CELLS * ROWS_OF_A_CELL);
@@ -144,7 +185,7 @@ fn the_report_stands_alone_and_has_every_part() {
     for words in answers {
         assert_eq!(page.matches(words).count(), 1, "{words}");
     }
-    for words in ["perfect sampling", "look-up of the light", "won / undecided / lost"] {
+    for words in ["perfect sampling", "look-up of the light", "won / undecided / lost", "Rays from candidates"] {
         assert!(page.contains(words), "{words}");
     }
     for words in ["How different the models look", "Method and machine", "standard error", "hairis claims"] {

@@ -74,6 +74,12 @@ fn cells_of_another_run_are_refused() {
         fs::write(dir.path().join(WHOLE), part::line(&header).unwrap()).unwrap();
         assert_refused(&study(dir.path(), "1", &[]), &format!("belongs to a run with {field} \"other\""));
     }
+    // The format before there were rays: nothing of pools in its header.
+    let mut header = serde_json::to_value(&whole.header).unwrap();
+    header["format"] = "hairis-study-3".into();
+    header.as_object_mut().unwrap().remove("pools");
+    fs::write(dir.path().join(WHOLE), part::line(&header).unwrap()).unwrap();
+    assert_refused(&study(dir.path(), "1", &[]), "belongs to a run with format \"hairis-study-3\"");
 }
 
 #[test]
