@@ -5,7 +5,7 @@ use crate::task::{Answer, Output, Task};
 use core::array::from_fn;
 use core::hint::black_box;
 use glam::Vec3;
-use hairis::resample::{CandidateSlices, Choices, Counts, Partition, Reservoir8, Weighed8, WeightSlices, choose};
+use hairis::resample::{CandidateSlices, Counts, Partition, Reservoir8, Weighed8, WeightSlices, choose};
 use hairis::wide::f32x8;
 use hairis::{Gather, Gather8, LengthError, Level, Model, Vec3x8};
 
@@ -134,7 +134,7 @@ impl<M: Model> Task for PoolTask<M> {
             let Columns { wi, contribution, weight, .. } = &self.pool;
             let contribution = contribution.each_ref().map(|column| &column[..]);
             let choices = choose(contribution, weight, RAYS, 0.5);
-            let (sum, mut shares) = (Choices::sum(&choices), 0.0_f32);
+            let (sum, mut shares) = (choices.total(), 0.0_f32);
             for choice in choices {
                 shares += choice.contribution.iter().sum::<f32>() / (3.0 * sum);
             }

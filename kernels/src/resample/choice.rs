@@ -59,7 +59,7 @@ impl Choices<'_> {
     #[inline]
     #[must_use]
     #[expect(clippy::cast_possible_truncation, reason = "rounding to a float is the purpose")]
-    pub fn sum(&self) -> f32 {
+    pub fn total(&self) -> f32 {
         self.sum.min(f64::from(f32::MAX)) as f32
     }
 }
