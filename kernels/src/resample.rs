@@ -111,7 +111,6 @@ impl Weighing {
     ) -> [L; 4] {
         let c = L::splat;
         let (zero, most) = (c(0.0), c(MOST));
-        let positive = |x: L| L::keep(zero.lt(x), x).min(most);
         let pdf_light = positive(pdf_light);
         let scale = cos_theta_i * share(self.partition, pdf_light, pdf_bsdf);
         let [r, g, b] = radiance;
@@ -127,6 +126,12 @@ impl Weighing {
         let [r, g, b] = f;
         [r, g, b, weight]
     }
+}
+
+/// `x` where it is above 0, at most the largest number that counts.
+#[inline(always)]
+fn positive<L: Lanes>(x: L) -> L {
+    L::keep(L::splat(0.0).lt(x), x).min(L::splat(MOST))
 }
 
 /// Candidates of one hit by column, as the host looked them up.

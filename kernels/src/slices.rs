@@ -150,25 +150,24 @@ pub(crate) fn check_columns<'a, const I: usize, const N: usize>(
     out_names: &'static [&'static str; N],
     outputs: &'a mut [&mut [f32]; N],
 ) -> Result<Columns<'a, I, N>, LengthError> {
-    let lens = (inputs.map(<[f32]>::len), outputs.each_ref().map(|column| column.len()));
-    let columns = Columns::new(inputs, outputs);
-    if columns.is_whole() { Ok(columns) } else { Err(first_that_differs(in_names, &lens.0, out_names, &lens.1)) }
+    Columns::all(inputs, outputs).map_err(|outputs| first_that_differs(in_names, inputs, out_names, outputs))
 }
 
 /// The first of the slices that is not of the length of the first input.
 #[cold]
 fn first_that_differs(
     in_names: &[&'static str],
-    inputs: &[usize],
+    inputs: &[&[f32]],
     out_names: &[&'static str],
-    outputs: &[usize],
+    outputs: &[&mut [f32]],
 ) -> LengthError {
-    let mut all = in_names.iter().zip(inputs).chain(out_names.iter().zip(outputs));
-    let expected = inputs.first().copied().unwrap_or_default();
-    let differs = all.find(|(_, len)| **len != expected);
+    let inputs = in_names.iter().zip(inputs.iter().map(|column| column.len()));
+    let outputs = out_names.iter().zip(outputs.iter().map(|column| column.len()));
+    let expected = inputs.clone().next().map_or(0, |(_, len)| len);
+    let differs = inputs.chain(outputs).find(|(_, len)| *len != expected);
     differs.map_or(LengthError { field: "", len: expected, expected }, |(field, len)| LengthError {
         field,
-        len: *len,
+        len,
         expected,
     })
 }

@@ -31,7 +31,23 @@ pub(crate) struct Columns<'a, const I: usize, const N: usize> {
 impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
     /// The columns that have the length of the first input; others are left out.
     #[inline(always)]
-    pub(crate) fn new(inputs: &[&'a [f32]; I], outputs: &'a mut [&mut [f32]; N]) -> Self {
+    pub(crate) fn some(inputs: &[&'a [f32]; I], outputs: &'a mut [&mut [f32]; N]) -> Self {
+        Self::new(inputs, outputs)
+    }
+
+    /// Columns of one length, or the outputs again.
+    #[inline(always)]
+    pub(crate) fn all<'o>(
+        inputs: &[&'a [f32]; I],
+        outputs: &'a mut [&'o mut [f32]; N],
+    ) -> Result<Self, &'a mut [&'o mut [f32]; N]> {
+        let columns = Self::new(inputs, outputs);
+        if columns.absent == 0 { Ok(columns) } else { Err(outputs) }
+    }
+
+    /// The outputs are to be borrowed as long as the columns.
+    #[inline(always)]
+    fn new(inputs: &[&[f32]; I], outputs: &mut [&mut [f32]; N]) -> Self {
         let len = inputs[0].len();
         let (from, to) = ([ptr::null(); I], [ptr::null_mut(); N]);
         let mut columns = Self { inputs: from, outputs: to, len, absent: 0, slices: PhantomData };
@@ -50,16 +66,10 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         columns
     }
 
-    /// Whether no column is left out.
-    #[inline(always)]
-    pub(crate) const fn is_whole(&self) -> bool {
-        self.absent == 0
-    }
-
     /// The columns from row `first` on.
     #[inline(always)]
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    fn from_row(&self, first: usize) -> Self {
+    fn after(&self, first: usize) -> Self {
         let mut columns = *self;
         let mut i = 0;
         while i < I {
@@ -85,12 +95,12 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
     pub(crate) fn in_packets<const W: usize>(&self, done: usize, run: impl Fn(&Self, usize)) -> usize {
         let (packets, left) = ((self.len - done) / W, (self.len - done) % W);
         if packets > 0 {
-            run(&self.from_row(done), packets);
+            run(&self.after(done), packets);
         }
         if left <= W / 2 || self.len < W {
             return self.len - left;
         }
-        run(&self.from_row(self.len - W), 1);
+        run(&self.after(self.len - W), 1);
         self.len
     }
 

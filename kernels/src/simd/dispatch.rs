@@ -253,8 +253,9 @@ impl Level {
         inputs: [&[f32]; I],
         outputs: &mut [&mut [f32]; N],
     ) {
-        let columns = Columns::new(&inputs, outputs);
-        if R::OPTIONAL || columns.is_whole() {
+        if R::OPTIONAL {
+            self.run_columns(row, &Columns::some(&inputs, outputs));
+        } else if let Ok(columns) = Columns::all(&inputs, outputs) {
             self.run_columns(row, &columns);
         }
     }
