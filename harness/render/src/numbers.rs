@@ -1,6 +1,7 @@
 //! Uniform numbers for camera rays and paths: functions of seed, pixel, sample and place on the path alone.
 
 mod even;
+mod strata;
 
 pub use even::Even;
 
@@ -16,6 +17,8 @@ pub enum Sequence {
     Halton,
     /// Owen-scrambled Sobol' points, four dimensions at a time
     Sobol,
+    /// One point in each cell of a grid of 4 by 4 per 16 samples, two dimensions at a time
+    Stratified,
 }
 
 /// Numbers of one path, four at a time.
@@ -69,6 +72,11 @@ impl Numbers {
                     |dimension| to_unit_f32(halton.coordinate(group as usize * 4 + dimension, u64::from(self.sample)));
                 core::array::from_fn(number)
             }
+            Sequence::Stratified => {
+                let pair = |pair: u64| strata::pair(mix(self.key ^ mix(2 * u64::from(group) + pair)), self.sample);
+                let ([a, b], [c, d]) = (pair(0), pair(1));
+                [a, b, c, d]
+            }
             Sequence::Independent | Sequence::Halton => {
                 let first = mix(self.key ^ mix(u64::from(self.sample) << 32 | u64::from(group)));
                 let second = mix(first);
@@ -95,7 +103,7 @@ mod tests {
     use super::*;
     use hairis_conformance::statistics::chi_square;
 
-    const ALL: [Sequence; 3] = [Sequence::Independent, Sequence::Halton, Sequence::Sobol];
+    const ALL: [Sequence; 4] = [Sequence::Independent, Sequence::Halton, Sequence::Sobol, Sequence::Stratified];
 
     #[test]
     fn every_pair_of_every_group_is_uniform() {

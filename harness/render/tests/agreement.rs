@@ -43,7 +43,7 @@ fn samplers_weightings_and_sequences_agree() {
                 check(&one, &format!("{mis:?}"), Settings { mis, ..base });
             }
         }
-        for sequence in [Sequence::Independent, Sequence::Halton] {
+        for sequence in [Sequence::Independent, Sequence::Halton, Sequence::Stratified] {
             check(&one, &format!("{sequence:?}"), Settings { sequence, ..base });
         }
         for sampler in ["uniform", "ou", "matched-5", "matched-25"] {
