@@ -30,7 +30,7 @@ pub enum Command {
     Render(Render),
     /// Join the parts of a picture that was rendered in shards, into the same file as one run
     Merge(Merge),
-    /// Compare samplers on all scenes, at equal samples and at equal time: one page
+    /// Compare samplers on all scenes, at equal samples and at equal time: one page; a run that was stopped goes on
     Figures(Figures),
 }
 

@@ -4,6 +4,9 @@ mod measure;
 mod models;
 mod page;
 mod panel;
+mod store;
+#[cfg(test)]
+mod tests;
 mod verdict;
 
 use crate::args::Figures;
@@ -17,13 +20,15 @@ use models::Preset;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::Path;
+use store::Store;
 
 /// The scenes that are compared, without maps of the caller's.
 const SCENES: [Name; 6] = [Name::Area, Name::AreaSoft, Name::AreaHead, Name::Env, Name::Box, Name::Head];
 /// Scenes of a quick run.
 const QUICK: [Name; 4] = [Name::Area, Name::AreaHead, Name::Box, Name::Head];
 
-/// Compares samplers on every scene, and writes `report.html` with an EXR file of each picture beside it.
+/// Compares samplers on every scene, and writes `report.html` with an EXR file of each picture beside it. A run that was
+/// stopped goes on from the measurements that it had finished.
 ///
 /// # Errors
 ///
@@ -31,6 +36,7 @@ const QUICK: [Name; 4] = [Name::Area, Name::AreaHead, Name::Box, Name::Head];
 pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     let maps = flags.env.iter().map(|path| environment(path)).collect::<Result<Vec<_>, _>>()?;
     prepare(&flags.out)?;
+    let store = Store::new(&flags.out)?;
     let plan = if flags.quick { Plan::QUICK } else { Plan::FULL };
     let plan = Plan { integrator: flags.integrator, ..plan };
     let chosen: &[Name] = match (flags.scene.as_slice(), flags.quick) {
@@ -63,7 +69,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     };
     let mut all = Vec::new();
     for (name, map) in scenes {
-        let measured = Measured::render(name, map, &plan, flags.seed, &step)?;
+        let measured = Measured::render(name, map, &plan, flags.seed, &store, &step)?;
         measured.write_pictures(&flags.out)?;
         all.push(measured);
         // After every scene, so that a run that is stopped leaves a page.
@@ -71,7 +77,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     }
     let mut compared = Vec::new();
     for name in presets {
-        compared.push(Preset::render(name, &plan, flags.seed, &step)?);
+        compared.push(Preset::render(name, &plan, flags.seed, &store, &step)?);
         page::write(&all, &compared, &plan, flags, &flags.out)?;
     }
     bar.finish_and_clear();
@@ -79,6 +85,10 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     for measured in &all {
         lines.push_str(&format!("{}: {}\n", measured.title(), verdict::sentence(measured)));
     }
+    if store.resumed() > 0 {
+        lines.push_str(&format!("{} measurements are of a run that was stopped\n", store.resumed()));
+    }
+    store.remove();
     lines.push_str(&format!("wrote {}\n", flags.out.join("report.html").display()));
     io::stdout().write_all(lines.as_bytes()).map_err(Error::Write)
 }

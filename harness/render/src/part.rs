@@ -1,11 +1,14 @@
 //! Unfinished pictures as files: what a run that was stopped goes on from, and what shards leave for `merge`.
 
 use crate::film::{Crop, Film, Sums, Tile};
+use hairis::Level;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
-use std::fs;
+use hairis_harness::machine::Machine;
+use hairis_harness::sequence::mix;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::{env, fs};
 
 /// First line of a file.
 const MAGIC: &str = "hairis-render part 1";
@@ -114,6 +117,26 @@ impl Part {
     }
 }
 
+/// A number that differs where bytes do, but by chance.
+pub(crate) fn digest(bytes: &[u8]) -> u64 {
+    bytes.chunks(8).fold(bytes.len() as u64, |hash, chunk| {
+        mix(hash ^ chunk.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)))
+    })
+}
+
+/// What the sums of a picture depend on beside flags: the build, and whether the CPU fuses multiply and add.
+pub(crate) fn build() -> String {
+    let machine = Machine::current();
+    // A commit does not tell builds with changes apart: their program does.
+    let changes = if machine.dirty == Some(false) {
+        String::new()
+    } else {
+        let program = env::current_exe().and_then(fs::read).unwrap_or_default();
+        format!("+{:016x}", digest(&program))
+    };
+    format!("commit={}{changes} fuses={}", machine.commit, Level::detect().fuses())
+}
+
 /// The first word in which two runs differ.
 fn difference(found: &str, expected: &str) -> Option<String> {
     let mut pairs = found.split_whitespace().zip(expected.split_whitespace());
@@ -122,20 +145,28 @@ fn difference(found: &str, expected: &str) -> Option<String> {
 }
 
 /// Takes numbers from the front.
-struct Reader<'a>(&'a [u8]);
+pub(crate) struct Reader<'a>(&'a [u8]);
 
-impl Reader<'_> {
-    fn bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
+impl<'a> Reader<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        Self(bytes)
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub(crate) fn bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (first, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
         Some(*first)
     }
 
-    fn number(&mut self) -> Option<u32> {
+    pub(crate) fn number(&mut self) -> Option<u32> {
         self.bytes().map(u32::from_le_bytes)
     }
 
-    fn double(&mut self) -> Option<f64> {
+    pub(crate) fn double(&mut self) -> Option<f64> {
         self.bytes().map(f64::from_le_bytes)
     }
 
@@ -152,10 +183,10 @@ fn parse(bytes: &[u8]) -> Option<Part> {
         return None;
     }
     let run = core::str::from_utf8(lines.next()?).ok()?.to_owned();
-    let mut rest = Reader(lines.next()?);
+    let mut rest = Reader::new(lines.next()?);
     let crop = rest.crop()?;
     let mut tiles = Vec::new();
-    while !rest.0.is_empty() {
+    while !rest.is_empty() {
         let place = rest.crop()?;
         if !crop.tiles().any(|tile| tile == place) {
             return None;

@@ -24,15 +24,6 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Renders two pictures of `samples` samples each.
-    #[must_use]
-    pub fn render(scene: &Scene, settings: &Settings, samples: u32) -> Self {
-        let whole = Crop::whole(scene.camera.size());
-        let one = |seed: u64| film(scene, &Settings { seed, ..*settings }, whole, samples).picture();
-        let seed = settings.seed ^ 0x7265_6665_7265_6e63;
-        Self::new(&one(seed), &one(seed.wrapping_add(1)))
-    }
-
     /// Of two pictures that share no numbers.
     #[must_use]
     pub fn new(a: &Picture, b: &Picture) -> Self {
@@ -105,19 +96,27 @@ pub struct Errors {
 }
 
 /// Renders with one sampler at one count of samples, each with a seed of its own.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Runs {
     /// Samples of a pixel.
     pub samples: u32,
     /// Time of the fastest, in seconds of a thread.
     pub seconds: f64,
-    /// Errors of each.
+    /// Errors of each; none for half of a reference.
     pub errors: Vec<Errors>,
     /// The first picture.
     pub picture: Picture,
 }
 
 impl Runs {
+    /// Renders half of a reference: 0 or 1.
+    #[must_use]
+    pub fn half(scene: &Scene, settings: &Settings, samples: u32, half: u64) -> Self {
+        let seed = (settings.seed ^ 0x7265_6665_7265_6e63).wrapping_add(half);
+        let film = film(scene, &Settings { seed, ..*settings }, Crop::whole(scene.camera.size()), samples);
+        Self { samples, seconds: film.seconds(), errors: Vec::new(), picture: film.picture() }
+    }
+
     /// Renders `runs` pictures and compares them with a reference.
     #[must_use]
     pub fn render(scene: &Scene, settings: &Settings, reference: &Reference, samples: u32, runs: u32) -> Self {

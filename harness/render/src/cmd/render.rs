@@ -7,18 +7,15 @@ use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, MOST_MEAN_ALBEDO, default_sampler};
 use crate::layers::Beside;
 use crate::material::Hair;
-use crate::part::{self, Part};
+use crate::part::{self, Part, build, digest};
 use crate::picture;
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
 use crate::transport::{self, Integrator, Settings};
 use core::time::Duration;
-use hairis::Level;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::light::Environment;
-use hairis_harness::machine::Machine;
-use hairis_harness::sequence::mix;
 use hairis_harness::study::Shard;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
@@ -107,27 +104,19 @@ pub(super) fn finish(film: &Film, beside: &Beside, out: &Path, exposure: Option<
 fn describe(flags: &Render, settings: &Settings, env: Option<&Environment>) -> Result<String, Error> {
     let Render { scene, hair, model, sampler, energy, size, strands, import, scale, radius, up, turn, .. } = flags;
     let Settings { integrator, sequence, seed, mis, depth, multiple, rays, .. } = settings;
-    let machine = Machine::current();
-    let digest = match import {
-        Some(path) => {
-            let bytes = fs::read(path).map_err(|source| unreadable(path, &source))?;
-            bytes.chunks(8).fold(bytes.len() as u64, |hash, chunk| {
-                mix(hash ^ chunk.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)))
-            })
-        }
+    let file = match import {
+        Some(path) => digest(&fs::read(path).map_err(|source| unreadable(path, &source))?),
         None => 0,
     };
     let gathered = if *integrator == Integrator::Gather { flags.spp.unwrap_or(0) } else { 0 };
     Ok(format!(
         "scene={scene:?} model={model} sampler={sampler:?} hair={hair:?} energy={energy:?} size={}x{} strands={strands} turn={turn} \
-         import={digest:016x} scale={scale:?} radius={radius:?} up={up:?} env={:016x} integrator={integrator:?} gathered={gathered} xi={sequence:?} seed={seed} mis={mis:?} \
-         depth={depth} multiple={multiple} aa={rays} commit={}{} fuses={}",
+         import={file:016x} scale={scale:?} radius={radius:?} up={up:?} env={:016x} integrator={integrator:?} gathered={gathered} xi={sequence:?} seed={seed} mis={mis:?} \
+         depth={depth} multiple={multiple} aa={rays} {}",
         size.0[0],
         size.0[1],
         env.map_or(0, Environment::digest),
-        machine.commit,
-        if machine.dirty == Some(true) { "+changes" } else { "" },
-        Level::detect().fuses()
+        build(),
     ))
 }
 

@@ -2,13 +2,13 @@
 
 use super::measure::Plan;
 use super::panel::{Column, panel};
+use super::store::Store;
 use crate::hair::{Choice, Energy, default_sampler};
 use crate::picture::exposure;
 use crate::protocol::Reference;
 use crate::scenes::{self, Name, Parts};
 use crate::transport::Settings;
 use hairis_harness::error::Error;
-
 use hairis_harness::report::{Drawing, Section};
 use hairis_harness::table::{Table, number};
 use hairis_variants::ModelId;
@@ -25,8 +25,14 @@ pub(super) struct Preset {
 }
 
 impl Preset {
-    /// Renders the scene `head` with every model.
-    pub(super) fn render(name: &'static str, plan: &Plan, seed: u64, step: &dyn Fn(&str)) -> Result<Self, Error> {
+    /// Renders the scene `head` with every model, but what is in the store.
+    pub(super) fn render(
+        name: &'static str,
+        plan: &Plan,
+        seed: u64,
+        store: &Store,
+        step: &dyn Fn(&str),
+    ) -> Result<Self, Error> {
         let scene = Name::Head;
         // A quarter of what references of paths take: looks need less than errors.
         let samples = plan.reference[1] / 4;
@@ -44,7 +50,8 @@ impl Preset {
         for (model, hair) in hairs {
             step(&format!("{name}: {model}"));
             scene.hair = hair;
-            models.push((model, Reference::render(&scene, &settings, samples)));
+            let of_model = plan.scene(Name::Head, model, name);
+            models.push((model, store.reference(&format!("{name}-{model}"), &of_model, &scene, &settings, samples)?));
         }
         Ok(Self { name, samples, models })
     }

@@ -1,0 +1,218 @@
+//! Finished measurements as files, for a run that is started again after it was stopped.
+
+use crate::film::{Crop, Picture};
+use crate::part::{Reader, build, digest};
+use crate::protocol::{Errors, Reference, Runs};
+use crate::scene::Scene;
+use crate::transport::Settings;
+use core::cell::{Cell, RefCell};
+use hairis_harness::error::Error;
+use hairis_harness::files::whole;
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+/// First line of a file.
+const MAGIC: &str = "hairis-render measurement 1";
+
+/// A folder of finished measurements.
+///
+/// The name of a file has a digest of everything that the measurement depends on, and its second line spells that out: a
+/// run with other settings, another seed or another build has other files.
+#[derive(Debug)]
+pub(super) struct Store {
+    folder: PathBuf,
+    build: String,
+    /// Files that this run has written or read.
+    used: RefCell<BTreeSet<PathBuf>>,
+    resumed: Cell<usize>,
+}
+
+impl Store {
+    /// The measurements of the report in `out`.
+    ///
+    /// # Errors
+    ///
+    /// If there can be no such folder.
+    pub(super) fn new(out: &Path) -> Result<Self, Error> {
+        let folder = out.join("unfinished");
+        fs::create_dir_all(&folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
+        Ok(Self { folder, build: build(), used: RefCell::default(), resumed: Cell::new(0) })
+    }
+
+    /// A measurement: read if an earlier run has finished it, made and written if not. `settings` is a line of everything
+    /// that it depends on.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    pub(super) fn get(&self, name: &str, settings: &str, measure: impl FnOnce() -> Runs) -> Result<Runs, Error> {
+        let key = format!("{settings} {}", self.build);
+        let path = self.folder.join(format!("{name}-{:016x}.part", digest(key.as_bytes())));
+        let is_new = self.used.borrow_mut().insert(path.clone());
+        if let Some(found) = read(&path, &key) {
+            self.resumed.set(self.resumed.get() + usize::from(is_new));
+            return Ok(found);
+        }
+        let measured = measure();
+        let bytes = bytes(&measured, &key);
+        whole(&path, |out| out.write_all(&bytes))?;
+        Ok(measured)
+    }
+
+    /// A reference of two halves of `samples` samples each. `of_scene` is a line of everything that it depends on, but for the
+    /// settings and the samples.
+    ///
+    /// # Errors
+    ///
+    /// As [`get`](Self::get).
+    pub(super) fn reference(
+        &self,
+        name: &str,
+        of_scene: &str,
+        scene: &Scene,
+        settings: &Settings,
+        samples: u32,
+    ) -> Result<Reference, Error> {
+        let half = |half: u64| {
+            let of_half = format!("{of_scene} samples={samples} half={half} {settings:?}");
+            self.get(&format!("{name}-reference-{half}"), &of_half, || Runs::half(scene, settings, samples, half))
+        };
+        Ok(Reference::new(&half(0)?.picture, &half(1)?.picture))
+    }
+
+    /// Measurements that an earlier run has left.
+    pub(super) fn resumed(&self) -> usize {
+        self.resumed.get()
+    }
+
+    /// Removes the files of this run, whose report is whole.
+    pub(super) fn remove(self) {
+        for path in self.used.into_inner() {
+            // What is gone need not be removed.
+            let _ = fs::remove_file(path);
+        }
+        // It stays if runs with other settings have left files.
+        let _ = fs::remove_dir(self.folder);
+    }
+}
+
+/// Reads a file; `None`, and a remark, if it is damaged.
+fn read(path: &Path, key: &str) -> Option<Runs> {
+    let problem = match fs::read(path) {
+        Ok(bytes) => match parse(&bytes, key) {
+            Some(measured) => return Some(measured),
+            None => "damaged".to_owned(),
+        },
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
+        Err(error) => format!("cannot read: {error}"),
+    };
+    // Ignore write errors: this is a remark.
+    let _ = writeln!(io::stderr(), "{}: {problem}; measured again", path.display());
+    None
+}
+
+/// Two lines of text, the numbers, and a digest of all that.
+fn bytes(measured: &Runs, key: &str) -> Vec<u8> {
+    let Runs { samples, seconds, errors, picture } = measured;
+    let mut bytes = format!("{MAGIC}\n{key}\n").into_bytes();
+    bytes.extend(samples.to_le_bytes());
+    bytes.extend(seconds.to_le_bytes());
+    bytes.extend((errors.len() as u64).to_le_bytes());
+    for Errors { square, relative, trimmed, own } in errors {
+        bytes.extend([square, relative, trimmed, own].into_iter().flat_map(|error| error.to_le_bytes()));
+    }
+    bytes.extend(picture.size.into_iter().flat_map(u32::to_le_bytes));
+    bytes.extend(picture.pixels.iter().flatten().flat_map(|channel| channel.to_le_bytes()));
+    let check = digest(&bytes);
+    bytes.extend(check.to_le_bytes());
+    bytes
+}
+
+fn parse(bytes: &[u8], key: &str) -> Option<Runs> {
+    let (text, check) = bytes.split_last_chunk()?;
+    let rest = text.strip_prefix(MAGIC.as_bytes())?.strip_prefix(b"\n")?;
+    let rest = rest.strip_prefix(key.as_bytes())?.strip_prefix(b"\n")?;
+    if digest(text) != u64::from_le_bytes(*check) {
+        return None;
+    }
+    let mut rest = Reader::new(rest);
+    let (samples, seconds) = (rest.number()?, rest.double()?);
+    let mut errors = Vec::new();
+    for _ in 0..u64::from_le_bytes(rest.bytes()?) {
+        let (square, relative) = (rest.double()?, rest.double()?);
+        errors.push(Errors { square, relative, trimmed: rest.double()?, own: rest.double()? });
+    }
+    let size = [rest.number()?, rest.number()?];
+    let mut pixels = Vec::new();
+    for _ in 0..Crop::whole(size).len() {
+        pixels.push([rest.double()?, rest.double()?, rest.double()?]);
+    }
+    rest.is_empty().then_some(Runs { samples, seconds, errors, picture: Picture { size, pixels } })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn runs() -> Runs {
+        let errors = [1.0, 3.0].map(|x| Errors { square: x, relative: 0.5 * x, trimmed: 0.25 * x, own: 1e-9 });
+        let pixels = (0..12_u8).map(|k| [1.0, 0.1, 1.0 / 3.0].map(|x| x * f64::from(k))).collect();
+        Runs { samples: 16, seconds: 0.75, errors: errors.to_vec(), picture: Picture { size: [4, 3], pixels } }
+    }
+
+    fn only_file(store: &Store) -> PathBuf {
+        let mut files = fs::read_dir(&store.folder).expect("a folder");
+        files.next().expect("a file").expect("read").path()
+    }
+
+    #[test]
+    fn settings_that_differ_share_nothing() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let store = Store::new(folder.path()).expect("a folder");
+        let get = |store: &Store, settings: &str| {
+            let mut made = false;
+            let make = || {
+                made = true;
+                runs()
+            };
+            assert_eq!(store.get("area", settings, make).expect("written"), runs());
+            made
+        };
+        assert!(get(&store, "seed=1"));
+        assert!(!get(&store, "seed=1") && store.resumed() == 0, "the same run");
+        let again = Store::new(folder.path()).expect("a folder");
+        assert!(!get(&again, "seed=1") && again.resumed() == 1, "the next run");
+        assert!(get(&again, "seed=2"), "another seed");
+        let other = Store { build: "commit=other".to_owned(), ..Store::new(folder.path()).expect("a folder") };
+        assert!(get(&other, "seed=1"), "another build");
+        other.remove();
+        again.remove();
+        assert!(!folder.path().join("unfinished").exists(), "both have left nothing");
+    }
+
+    #[test]
+    fn damaged_files_are_measured_again() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let store = Store::new(folder.path()).expect("a folder");
+        store.get("area", "seed=1", runs).expect("written");
+        let path = only_file(&store);
+        let (good, key) = (fs::read(&path).expect("there"), format!("seed=1 {}", store.build));
+        assert_eq!(parse(&good, &key), Some(runs()));
+        for byte in 0..good.len() {
+            let mut bad = good.clone();
+            bad[byte] ^= 4;
+            assert_eq!(parse(&bad, &key), None, "byte {byte} changed");
+            assert_eq!(parse(&good[..byte], &key), None, "cut at {byte}");
+        }
+        fs::write(&path, &good[..99]).expect("written");
+        let mut made = false;
+        let make = || {
+            made = true;
+            runs()
+        };
+        store.get("area", "seed=1", make).expect("written");
+        assert!(made && fs::read(&path).expect("there") == good, "whole again");
+    }
+}

@@ -1,0 +1,79 @@
+//! Runs that are stopped and started again.
+
+use super::measure::{Measured, Plan};
+use super::models::Preset;
+use super::store::Store;
+use crate::protocol::Runs;
+use crate::scenes::Name;
+use core::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+const TINY: Plan =
+    Plan { side: 12, strands: 200, samples: [&[2, 4], &[2, 4]], reference: [8, 4], runs: 2, ..Plan::QUICK };
+
+/// Measures a scene, and stops at the given step of progress; with the count of measurements that were there.
+fn measured(plan: &Plan, seed: u64, out: &Path, last: usize) -> Option<(Measured, usize)> {
+    let store = Store::new(out).expect("a folder");
+    let steps = Cell::new(0);
+    let step = |what: &str| {
+        steps.set(steps.get() + 1);
+        assert!(steps.get() < last, "stopped at {what}");
+    };
+    let run = || Measured::render(Name::AreaHead, None, plan, seed, &store, &step).expect("rendered");
+    let measured = catch_unwind(AssertUnwindSafe(run)).ok()?;
+    Some((measured, store.resumed()))
+}
+
+/// All of the runs but their times.
+fn results(measured: &Measured) -> Vec<Runs> {
+    let runs = measured.samplers.iter().flat_map(|sampler| &sampler.runs);
+    runs.map(|runs| Runs { seconds: 0.0, ..runs.clone() }).collect()
+}
+
+#[test]
+fn a_run_that_is_stopped_goes_on_to_the_same_results() {
+    let folders = [0; 2].map(|_| tempfile::TempDir::new().expect("a folder"));
+    let [at_once, stopped] = folders.each_ref().map(|folder| folder.path());
+    let (expected, resumed) = measured(&TINY, 1, at_once, usize::MAX).expect("whole");
+    assert_eq!(resumed, 0);
+    for last in [2, 3, 6, 9] {
+        assert!(measured(&TINY, 1, stopped, last).is_none(), "stopped at step {last}");
+    }
+    // The two halves of the reference, and six runs before the stop.
+    let (got, resumed) = measured(&TINY, 1, stopped, usize::MAX).expect("whole");
+    assert_eq!(resumed, 2 + 6);
+    assert_eq!(results(&got), results(&expected));
+    assert_eq!(got.reference.picture, expected.reference.picture);
+    // Finished measurements keep their times, so that counts at equal time are the same, too.
+    let (again, _) = measured(&TINY, 1, stopped, usize::MAX).expect("whole");
+    for (a, b) in again.samplers.iter().zip(&got.samplers) {
+        assert!(a.runs == b.runs && a.equal_time == b.equal_time, "{}", a.name);
+    }
+}
+
+#[test]
+fn other_settings_use_no_results_of_a_run() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let resumed = |plan: &Plan, seed: u64| measured(plan, seed, folder.path(), usize::MAX).expect("whole").1;
+    assert_eq!(resumed(&TINY, 1), 0);
+    assert_eq!(resumed(&TINY, 2), 0, "another seed");
+    assert_eq!(resumed(&Plan { strands: 201, ..TINY }, 1), 0, "other hair");
+    assert_eq!(resumed(&Plan { side: 13, ..TINY }, 1), 0, "another size");
+    assert_eq!(resumed(&Plan { reference: [9, 4], ..TINY }, 1), 0, "another reference");
+    // The halves of the reference are those of the first run.
+    assert_eq!(resumed(&Plan { runs: 3, ..TINY }, 1), 2, "more pictures per error");
+}
+
+#[test]
+fn pictures_of_models_are_kept() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let render = || {
+        let store = Store::new(folder.path()).expect("a folder");
+        Preset::render("brown", &TINY, 1, &store, &|_| ()).expect("rendered");
+        store.resumed()
+    };
+    assert_eq!(render(), 0);
+    let models = hairis_variants::ModelId::defaults_of_names().count();
+    assert_eq!(render(), 2 * models, "two halves each");
+}
