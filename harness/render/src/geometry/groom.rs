@@ -79,6 +79,8 @@ pub struct Groom {
     pub frizz: f32,
     /// By how much strands bend down, per centimetre.
     pub gravity: f32,
+    /// How upright strands are at the root: 1 along the head's normal, 0 along its surface, combed away from a parting.
+    pub lift: f32,
     /// Nodes per strand.
     pub nodes: usize,
     /// Seed of everything random.
@@ -109,6 +111,7 @@ impl Groom {
             curl_length: 4.0,
             frizz: 0.05,
             gravity: 0.22,
+            lift: 0.2,
             nodes: 16,
             seed: 1,
         };
@@ -125,7 +128,7 @@ impl Groom {
                 nodes: 64,
                 ..straight
             },
-            Kind::Fur => Self { length: 3.0, gravity: 0.05, clump: 0.3, frizz: 0.08, nodes: 8, ..straight },
+            Kind::Fur => Self { length: 3.0, gravity: 0.05, lift: 1.0, clump: 0.3, frizz: 0.08, nodes: 8, ..straight },
             Kind::Patch => Self { length: 18.0, frizz: 0.03, nodes: 12, ..straight },
             Kind::Single => Self { length: 10.0, radius: 0.1, taper: 0.0, frizz: 0.0, nodes: 2, ..straight },
         }
@@ -194,6 +197,7 @@ impl Groom {
             ("curl_length", self.curl_length, 1e-3, 1e4),
             ("frizz", self.frizz, 0.0, 1e3),
             ("gravity", self.gravity, 0.0, 1e2),
+            ("lift", self.lift, 0.0, 1.0),
         ];
         for (name, value, least, most) in ranges {
             if !(least..=most).contains(&value) {

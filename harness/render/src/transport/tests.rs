@@ -17,7 +17,7 @@ fn under_map(lamps: bool) -> Scene {
     let env = Environment::from_pixels("small", 32, 16, pixels).expect("valid");
     let hair = Choice::find("gaussian", "matched", "blond").and_then(|hair| hair.hair(Energy::Raw)).expect("listed");
     let strands = scenes::grow(Name::Env, 1500).expect("a few");
-    let parts = Parts { strands, imported: false, hair, env: Some(env), size: [20; 2], turn: 0.0 };
+    let parts = Parts { strands, imported: false, hair, env: Some(env), size: [32; 2], turn: 0.0 };
     let mut scene = scenes::build(Name::Env, parts).expect("a scene");
     if lamps {
         for x in [-30.0, 20.0] {

@@ -9,6 +9,10 @@ use glam::Vec3;
 const COVERED: f32 = 0.625;
 /// Strands stay outside the ellipsoid times this.
 const CLEARANCE: f32 = 1.02;
+/// Strands that are combed lie in layers up to this part of the ellipsoid above that.
+const DEPTH: f32 = 0.06;
+/// Where combed strands are parted, in x on the unit sphere: they fall to either side.
+const PARTING: f32 = 0.25;
 /// How far guides are longer than strands.
 const GUIDE_LENGTH: f32 = 1.05;
 /// pi (3 - sqrt 5): successive roots are this far apart in azimuth, which spreads them evenly.
@@ -37,7 +41,7 @@ impl HeadGroom {
             let root = root(index, groom.clumps, &mut random);
             Clump {
                 root,
-                guide: fall(&groom, root, GUIDE_LENGTH * groom.length, 0.03, &mut random),
+                guide: fall(&groom, root, side(root), GUIDE_LENGTH * groom.length, 0.03, &mut random),
                 phase: random.phase(),
                 curl_length: groom.curl_length * (1.0 + 0.15 * random.normal_cut()),
             }
@@ -51,8 +55,9 @@ impl HeadGroom {
         let mut random = Random::new(groom.seed, Stream::Strand(strand));
         let root = root(strand, groom.strands, &mut random);
         let length = groom.length * (1.0 + groom.length_spread * random.normal_cut());
-        let mut nodes = fall(groom, root, length, 0.06 + groom.frizz, &mut random);
         let clump = self.nearest(root);
+        // That of its clump: a strand drawn to a guide on the other side would go through the head.
+        let mut nodes = fall(groom, root, side(clump.root), length, 0.06 + groom.frizz, &mut random);
         let phase = clump.phase + 0.5 * random.normal();
         let curl_radius = groom.curl_radius * (1.0 + 0.2 * random.normal_cut());
         let step = length / (groom.nodes - 1) as f32;
@@ -100,13 +105,22 @@ fn root(index: usize, count: usize, random: &mut Random) -> Vec3 {
     Vec3::new(across * libm::cosf(azimuth), y, across * libm::sinf(azimuth))
 }
 
-/// Nodes of a strand that leaves the head along its normal and bends down, round the head.
-fn fall(groom: &Groom, root: Vec3, length: f32, waviness: f32, random: &mut Random) -> Vec<Vec3> {
+/// The side of the parting to which combed hair falls: 1 or -1, along x.
+fn side(root: Vec3) -> f32 {
+    (root.x - PARTING).signum()
+}
+
+/// Nodes of a strand that leaves the head along its normal, or combed, and bends down, round the head.
+fn fall(groom: &Groom, root: Vec3, side: f32, length: f32, waviness: f32, random: &mut Random) -> Vec<Vec3> {
     let step = length / (groom.nodes - 1) as f32;
     let aside = 0.015 * Vec3::new(-root.z, 0.0, root.x);
     let phases = Vec3::new(random.phase(), random.phase(), random.phase());
     let mut position = root * HEAD;
-    let mut direction = (root / HEAD).normalize();
+    let normal = (root / HEAD).normalize();
+    let from_parting = side * root.y.max(0.0).powi(2) * Vec3::X;
+    let away = (from_parting + Vec3::NEG_Y).reject_from_normalized(normal).normalize_or_zero();
+    let mut direction = (groom.lift * normal + (1.0 - groom.lift) * away).normalize();
+    let shell = (CLEARANCE + DEPTH * (1.0 - groom.lift) * random.uniform()) * HEAD;
     let mut nodes = vec![position];
     for k in 1..groom.nodes {
         let s = k as f32 * step;
@@ -114,7 +128,6 @@ fn fall(groom: &Groom, root: Vec3, length: f32, waviness: f32, random: &mut Rand
         let pull = groom.gravity * Vec3::NEG_Y + aside + waviness * Vec3::from_array(wave);
         direction = (direction + step * pull).normalize();
         position += step * direction;
-        let shell = CLEARANCE * HEAD;
         let inside = position / shell;
         if inside.length_squared() < 1.0 {
             let pushed = inside.normalize() * shell;
