@@ -97,12 +97,21 @@ pub struct Render {
     /// The axis of the file of hair that points up
     #[arg(long, value_enum, requires = "import", default_value_t = Up::Y)]
     pub up: Up,
+    /// Strands to add beside each strand of the file: of hair for games, which holds guides
+    #[arg(long, value_name = "N", requires = "import", default_value_t = 0)]
+    pub follow: u32,
+    /// Largest distance of added strands from theirs in centimetres
+    #[arg(long, value_name = "CM", requires = "import", default_value_t = 0.5)]
+    pub spread: f32,
     /// Write the hair as Mitsuba's text, too
     #[arg(long, value_name = "FILE.txt")]
     pub export: Option<PathBuf>,
     /// Environment map in place of the scene's light, latitude-longitude, .hdr or .exr
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
+    /// Radiance that the camera sees beside the hair, in place of the map
+    #[arg(long, value_name = "X")]
+    pub backdrop: Option<f32>,
     /// Degrees by which the camera goes around the hair, to the right
     #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
     pub turn: f32,
@@ -224,6 +233,12 @@ impl Render {
         }
         if let Some(exposure) = self.exposure.filter(|exposure| !(*exposure > 0.0 && exposure.is_finite())) {
             return refuse("--exposure", "a number above 0", &exposure);
+        }
+        if let Some(backdrop) = self.backdrop.filter(|backdrop| !(*backdrop >= 0.0 && backdrop.is_finite())) {
+            return refuse("--backdrop", "a radiance, 0 or above", &backdrop);
+        }
+        if self.follow > 1000 {
+            return refuse("--follow", "at most 1000", &self.follow);
         }
         if !self.turn.is_finite() {
             return refuse("--turn", "a number of degrees", &self.turn);

@@ -3,10 +3,12 @@
 mod bytes;
 mod cyhair;
 mod error;
+mod follow;
 mod mitsuba;
 mod tressfx;
 
 pub use error::{ImportError, Problem};
+pub use follow::Follow;
 pub use mitsuba::write_mitsuba;
 
 use crate::geometry::{Basis, Builder, Flattening, Groom, Spline, Strands};
@@ -56,11 +58,13 @@ pub struct Import {
     pub up: Up,
     /// How finely smooth curves through the nodes are flattened; without it, nodes are joined by straight segments.
     pub smooth: Option<Flattening>,
+    /// Strands beside those of the file.
+    pub follow: Follow,
 }
 
 impl Default for Import {
     fn default() -> Self {
-        Self { radius: None, scale: None, up: Up::Y, smooth: Some(Flattening::default()) }
+        Self { radius: None, scale: None, up: Up::Y, smooth: Some(Flattening::default()), follow: Follow::default() }
     }
 }
 
@@ -78,7 +82,7 @@ pub struct Imported {
 /// # Errors
 ///
 /// If the file cannot be read, or anything in it is not as its format has it; see [`Problem`]. No file makes this panic, or
-/// take more memory than 64 times its length.
+/// take more memory than 64 times its length, times the strands that follow each.
 pub fn import(path: &Path, options: &Import) -> Result<Imported, ImportError> {
     let unread = |source| ImportError { path: path.to_owned(), offset: None, problem: Problem::Read(source) };
     let file = File::open(path).map_err(unread)?;
@@ -107,7 +111,8 @@ pub fn import_bytes(path: &Path, data: &[u8], options: &Import) -> Result<Import
         Some(ending) if ending.eq_ignore_ascii_case("tfx") => tressfx::parse,
         _ => return Err(refuse(Problem::Ending)),
     };
-    for (name, value) in [("radius", options.radius), ("scale", options.scale)] {
+    for (name, value) in [("radius", options.radius), ("scale", options.scale), ("spread", Some(options.follow.spread))]
+    {
         if let Some(value) = value.filter(|value| !(1e-6..=1e6).contains(value)) {
             return Err(refuse(Problem::Option { name, value }));
         }
@@ -142,11 +147,12 @@ impl Raw<'_> {
     /// Scaled, turned, smoothed and checked.
     fn build(self, options: &Import) -> Result<Imported, Wrong> {
         let scale = options.scale.unwrap_or(self.scale);
-        let covering = (!self.radii).then(|| Groom::covering_radius(self.count));
+        let about = options.follow.strands as usize + 1;
+        let covering = (!self.radii).then(|| Groom::covering_radius(about.saturating_mul(self.count)));
         let root_radius = options.radius.or(covering);
         let mut builder = Strands::builder();
         let (mut total, mut repeated) = (0, 0);
-        for strand in self.strands {
+        for (guide, strand) in self.strands.enumerate() {
             let place = |(position, radius): (Vec3, f32)| (options.up.turn(scale * position), scale * radius);
             let mut nodes: Vec<(Vec3, f32)> = strand.nodes.map(place).collect();
             total += nodes.len();
@@ -158,11 +164,13 @@ impl Raw<'_> {
                 let last = nodes.len().saturating_sub(1).max(1) as f32;
                 nodes.iter_mut().enumerate().for_each(|(k, node)| node.1 = Groom::tapered(radius, k as f32 / last));
             }
-            let added = match options.smooth {
-                Some(flattening) => builder.push(smooth(&nodes, &flattening.at_most(HALVINGS))),
-                None => builder.push(nodes),
-            };
-            added.map_err(|error| (strand.offset, Problem::Geometry(error)))?;
+            for nodes in options.follow.about(guide, &nodes) {
+                let added = match options.smooth {
+                    Some(flattening) => builder.push(smooth(&nodes, &flattening.at_most(HALVINGS))),
+                    None => builder.push(nodes),
+                };
+                added.map_err(|error| (strand.offset, Problem::Geometry(error)))?;
+            }
         }
         let mut remarks = Vec::new();
         let mut dropped = |what: &str, count: usize, of: usize| {
@@ -171,7 +179,7 @@ impl Raw<'_> {
                 remarks.push(format!("{warning}dropped {count} of {of} {what}"));
             }
         };
-        dropped("strands, which have no segment", builder.dropped_strands(), self.count);
+        dropped("strands, which have no segment", builder.dropped_strands(), about * self.count);
         dropped("nodes, which repeat the one before", repeated + builder.dropped_nodes(), total);
         if !self.unused.is_empty() {
             remarks.push(format!("not used: {}", self.unused.join(", ")));

@@ -84,6 +84,8 @@ pub struct Scene {
     pub rectangles: Vec<Rectangle>,
     /// Light from infinitely far away.
     pub sky: Sky,
+    /// Radiance that the camera sees where there is nothing, in place of the sky.
+    pub backdrop: Option<Vec3>,
     /// Where the picture is taken from.
     pub camera: Camera,
     /// Rays that leave a surface start this far above it, in centimetres.
@@ -230,6 +232,17 @@ impl Scene {
             }
         };
         (seen.pdf > 0.0).then_some(Seen { pdf: seen.pdf * self.share(), ..seen })
+    }
+
+    /// Radiance along a ray from the camera that met no hair and no surface: of the backdrop, if there is one, where there is
+    /// nothing.
+    #[inline]
+    #[must_use]
+    pub fn see_from_camera(&self, ray: &Ray, met: &Met) -> Option<Vec3> {
+        match (met, self.backdrop) {
+            (Met::Nothing, Some(radiance)) => Some(radiance),
+            _ => Some(self.see(ray, met)?.radiance),
+        }
     }
 
     /// The lamp that a ray would meet if there were nothing else, and how far away it is; or the sky.

@@ -160,7 +160,7 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
     let camera = camera.orbit(centre, turn);
     let on_head = !imported && matches!(name.kind(), Kind::Straight | Kind::Wavy);
     let head = on_head.then_some(Head { radii: 0.995 * HEAD, albedo: Vec3::new(0.45, 0.32, 0.25) });
-    Ok(Scene { strands, tree, hair, head, rectangles, sky, camera, gap: 1e-3 * scale })
+    Ok(Scene { strands, tree, hair, head, rectangles, sky, backdrop: None, camera, gap: 1e-3 * scale })
 }
 
 /// A box of 60 cm with a light below its ceiling, open towards the camera.

@@ -1,13 +1,14 @@
 //! Files of hair: what they hold, and each refusal.
 
 use glam::Vec3;
-use hairis_render::formats::{Import, ImportError, Imported, Up, import, import_bytes, write_mitsuba};
+use hairis_render::formats::{Follow, Import, ImportError, Imported, Up, import, import_bytes, write_mitsuba};
 use hairis_render::geometry::{Flattening, Groom, Kind};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use std::path::Path;
 
-const STRAIGHT: Import = Import { radius: None, scale: None, up: Up::Y, smooth: None };
+const STRAIGHT: Import =
+    Import { radius: None, scale: None, up: Up::Y, smooth: None, follow: Follow { strands: 0, spread: 1.0 } };
 
 /// A cyHair file: two strands of two and one segments, thickness 0.02.
 fn hair() -> Vec<u8> {
@@ -68,7 +69,7 @@ fn cyhair_is_read() {
     assert_eq!(strands.node_position(2), Vec3::new(1.0, 1.0, 0.0), "the third node");
     assert_eq!((strands.node_radius(0), strands.node_radius(4)), (0.01, 0.01), "half the thickness");
 
-    let options = Import { radius: Some(0.1), scale: Some(2.0), up: Up::Z, smooth: None };
+    let options = Import { radius: Some(0.1), scale: Some(2.0), up: Up::Z, ..STRAIGHT };
     let strands = read("a.HAIR", &hair(), &options).expect("the same file").strands;
     assert_eq!(strands.node_position(4), Vec3::new(10.0, 6.0, 0.0), "twice as large, z up");
     assert!((strands.node_radius(0) - 0.1).abs() < 1e-7 && (strands.node_radius(4) - 0.04).abs() < 1e-7, "tapered");

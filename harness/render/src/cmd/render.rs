@@ -2,7 +2,7 @@
 
 use crate::args::Render;
 use crate::film::Film;
-use crate::formats::{Import, import, write_mitsuba};
+use crate::formats::{Follow, Import, import, write_mitsuba};
 use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, MOST_MEAN_ALBEDO, default_sampler};
 use crate::layers::Beside;
@@ -60,7 +60,8 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     }
     let run = describe(flags, &settings, env.as_ref())?;
     let parts = Parts { strands, imported: flags.import.is_some(), hair, env, size: flags.size.0, turn: flags.turn };
-    let scene = scenes::build(flags.scene, parts)?;
+    let backdrop = flags.backdrop.map(glam::Vec3::splat);
+    let scene = Scene { backdrop, ..scenes::build(flags.scene, parts)? };
     check_out(&out)?;
     let shard = flags.shard.unwrap_or(Shard::WHOLE);
     let part_path = match flags.shard {
@@ -103,6 +104,7 @@ pub(super) fn finish(film: &Film, beside: &Beside, out: &Path, exposure: Option<
 /// Everything that the sums of a picture depend on, but the count of samples of paths.
 fn describe(flags: &Render, settings: &Settings, env: Option<&Environment>) -> Result<String, Error> {
     let Render { scene, hair, model, sampler, energy, size, strands, import, scale, radius, up, turn, .. } = flags;
+    let Render { follow, spread, backdrop, .. } = flags;
     let Settings { integrator, sequence, seed, mis, depth, multiple, rays, .. } = settings;
     let file = match import {
         Some(path) => digest(&fs::read(path).map_err(|source| unreadable(path, &source))?),
@@ -111,7 +113,7 @@ fn describe(flags: &Render, settings: &Settings, env: Option<&Environment>) -> R
     let gathered = if *integrator == Integrator::Gather { flags.spp.unwrap_or(0) } else { 0 };
     Ok(format!(
         "scene={scene:?} model={model} sampler={sampler:?} hair={hair:?} energy={energy:?} size={}x{} strands={strands} turn={turn} \
-         import={file:016x} scale={scale:?} radius={radius:?} up={up:?} env={:016x} integrator={integrator:?} gathered={gathered} xi={sequence:?} seed={seed} mis={mis:?} \
+         import={file:016x} scale={scale:?} radius={radius:?} up={up:?} follow={follow} spread={spread} backdrop={backdrop:?} env={:016x} integrator={integrator:?} gathered={gathered} xi={sequence:?} seed={seed} mis={mis:?} \
          depth={depth} multiple={multiple} aa={rays} {}",
         size.0[0],
         size.0[1],
@@ -174,7 +176,8 @@ pub(crate) fn environment(path: &Path) -> Result<Environment, Error> {
 
 /// Reads hair, and remarks on what is odd about it.
 fn read_hair(flags: &Render, path: &Path) -> Result<Strands, Error> {
-    let options = Import { radius: flags.radius, scale: flags.scale, up: flags.up, ..Import::default() };
+    let follow = Follow { strands: flags.follow, spread: flags.spread };
+    let options = Import { radius: flags.radius, scale: flags.scale, up: flags.up, follow, ..Import::default() };
     let imported = import(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
     for remark in imported.remarks {
         let _ = writeln!(io::stderr(), "{}: {remark}", path.display());

@@ -6,7 +6,8 @@ use super::store::Store;
 use crate::protocol::Runs;
 use crate::scenes::Name;
 use core::cell::Cell;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use core::panic::AssertUnwindSafe;
+use std::panic::catch_unwind;
 use std::path::Path;
 
 const TINY: Plan =

@@ -48,7 +48,7 @@ pub(super) fn tile(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile
                         point.light(scene, settings, key(pixel), first..first + samples) / samples as f32
                     });
                 }
-                met => sums.add(scene.see(&ray_of, &met).map_or(Vec3::ZERO, |seen| seen.radiance)),
+                met => sums.add(scene.see_from_camera(&ray_of, &met).unwrap_or_default()),
             }
             lap(Phase::Rest);
         }

@@ -51,8 +51,12 @@ fn trace(scene: &Scene, settings: &Settings, wave: &mut Wave, is_first: bool) {
     lap(Phase::Rays);
     for k in 0..wave.paths.len() {
         let path = wave.paths[k];
+        if is_first {
+            wave.add(path.slot, scene.see_from_camera(&path.ray, &wave.met[k]).unwrap_or_default());
+            continue;
+        }
         let Some(seen) = scene.see(&path.ray, &wave.met[k]) else { continue };
-        let weight = if is_first { 1.0 } else { settings.mis.of_bsdf(path.pdf, seen.pdf) };
+        let weight = settings.mis.of_bsdf(path.pdf, seen.pdf);
         wave.add(path.slot, path.throughput * seen.radiance * weight);
     }
     lap(Phase::Light);

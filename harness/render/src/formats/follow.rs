@@ -1,0 +1,73 @@
+//! Strands beside those of a file: files of hair for games have guides, and the game adds the rest.
+
+use crate::lights::uniform_direction;
+use glam::Vec3;
+use hairis_harness::sequence::{Independent, XiSource as _};
+
+/// How many strands are added beside each, and how far away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Follow {
+    /// Strands beside each strand of the file.
+    pub strands: u32,
+    /// Their largest distance from it, in centimetres.
+    pub spread: f32,
+}
+
+impl Default for Follow {
+    fn default() -> Self {
+        Self { strands: 0, spread: 0.5 }
+    }
+}
+
+impl Follow {
+    /// The nodes of all strands about one: itself first. A strand depends on its number, that of its guide, and the guide.
+    pub(super) fn about(self, guide: usize, nodes: &[(Vec3, f32)]) -> impl Iterator<Item = Vec<(Vec3, f32)>> + '_ {
+        let along = match nodes {
+            [root, next, ..] => (next.0 - root.0).normalize_or_zero(),
+            _ => Vec3::ZERO,
+        };
+        (0..=self.strands).map(move |strand| {
+            if strand == 0 {
+                return nodes.to_vec();
+            }
+            let mut xi = Independent::new(guide as u64, u64::from(strand));
+            let [root, tip] = [0, 1].map(|_| self.spread * in_ball(xi.next_xi_f32()));
+            // Roots stay on the skin, which hair leaves upright.
+            let root = root.reject_from_normalized(along);
+            let last = nodes.len().saturating_sub(1).max(1) as f32;
+            let moved =
+                |(k, (place, radius)): (usize, &(Vec3, f32))| (*place + root.lerp(tip, k as f32 / last), *radius);
+            nodes.iter().enumerate().map(moved).collect()
+        })
+    }
+}
+
+/// A point of the unit ball, uniform for uniform numbers.
+fn in_ball([x, y, radius]: [f32; 3]) -> Vec3 {
+    libm::cbrtf(radius) * uniform_direction([x, y])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strands_stay_near_their_guide() {
+        let nodes: Vec<(Vec3, f32)> = (0..5_u8).map(|k| (f32::from(k) * Vec3::Y, 0.01)).collect();
+        let follow = Follow { strands: 200, spread: 0.3 };
+        let strands: Vec<_> = follow.about(7, &nodes).collect();
+        assert_eq!((strands.len(), &strands[0]), (201, &nodes));
+        let mut mean = Vec3::ZERO;
+        for strand in &strands {
+            assert!(strand[0].0.y.abs() < 1e-6, "the root is on the skin: {}", strand[0].0);
+            for (node, guide) in strand.iter().zip(&nodes) {
+                assert!(node.0.distance(guide.0) <= 0.3 + 1e-6 && node.1 == guide.1, "{node:?}");
+            }
+            mean += (strand[4].0 - nodes[4].0) / strands.len() as f32;
+        }
+        // Deviation of an axis: 0.3 / sqrt 5.
+        assert!(mean.abs().max_element() < 4.0 * 0.3 / (5.0 * 201_f32).sqrt(), "{mean}");
+        assert_ne!(follow.about(8, &nodes).last(), strands.last().cloned(), "another guide");
+        assert_eq!(Follow::default().about(7, &nodes).count(), 1);
+    }
+}
