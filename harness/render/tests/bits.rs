@@ -1,7 +1,9 @@
 //! Bits of pictures: those of the seed, whatever the threads.
 
 use crate::support::{film, hair, scene};
+use glam::Vec3;
 use hairis_render::film::{Crop, Film};
+use hairis_render::scene::Scene;
 use hairis_render::scenes::Name;
 use hairis_render::transport::{self, Integrator, Mis, Settings};
 
@@ -52,5 +54,17 @@ fn threads_passes_and_crops_do_not_show() {
             );
         }
         assert!(picture.mean()[0] > 1e-3);
+    }
+}
+
+#[test]
+fn a_backdrop_is_seen_beside_the_hair_and_lights_nothing() {
+    for integrator in [Integrator::Gather, Integrator::Path] {
+        let one = scene(Name::Env, hair("gaussian", "matched", "blond"), 800, 24);
+        let other = Scene { backdrop: Some(Vec3::splat(0.25)), ..one.clone() };
+        let settings = Settings { integrator, ..Settings::default() };
+        let [under_sky, before] = [&one, &other].map(|scene| film(scene, &settings, 4).picture());
+        assert_eq!(before.at(0, 0), [0.25; 3], "{integrator:?}: a corner");
+        assert_eq!(before.at(12, 12), under_sky.at(12, 12), "{integrator:?}: the head");
     }
 }

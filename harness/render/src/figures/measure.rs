@@ -53,10 +53,10 @@ impl Plan {
         runs: 8,
         integrator: None,
     };
-    /// Settings of the published figures: under an hour on two cores, half of it for `box` and the models. A reference has at
-    /// most 3% of the variance of the pictures with the most samples.
+    /// Settings of the published figures: half an hour on two idle cores, two thirds of it for `box` and the models. A reference
+    /// has as many samples as 32 of the pictures with the most, so that it has about 3% of their variance.
     pub(super) const FULL: Self = Self {
-        side: 176,
+        side: 192,
         strands: 30_000,
         samples: [&[4, 16, 64, 256], &[4, 16, 64]],
         reference: [4096, 1024],
