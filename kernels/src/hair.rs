@@ -27,7 +27,7 @@ pub const GRAZING: f32 = 1e-5;
 /// they publish.
 ///
 /// `S = sum of I M(theta_h) N(phi) / cos^2 theta_d` over R, TT, TRT-g and the glints. It is reciprocal. It does not
-/// conserve energy: see [`Bsdf::conserving_scale`](crate::Bsdf::conserving_scale).
+/// conserve energy: see [`Conserving`](crate::Conserving) and [`Bsdf::conserving_scale`](crate::Bsdf::conserving_scale).
 ///
 /// - Source: Ou et al. 2012, equation 1, table 2 and section 3.2, with the misprints of `ERRATA.md` mended.
 /// - Units: value and density per steradian.
@@ -81,6 +81,11 @@ impl<B: Bell> Model for Hair<B> {
         let (wi, choice, angles) = sampling::draw(gather, xi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
         finish_sample(&gather.view, wi, choice, &angles, &terms, mix_densities(terms.density, &gather.weight))
+    }
+
+    #[inline(always)]
+    fn conserve<L: Lanes>(gather: &HairGather<L::Stored>) -> HairGather<L::Stored> {
+        HairGather { view: albedo::conserve::<B, L>(&gather.view), ..*gather }
     }
 
     #[inline(always)]

@@ -47,8 +47,8 @@
 //!   sample is discarded: value, density and weight are 0 and the slot is -1; its direction may be NaN. (An infinite number
 //!   discards it, or counts as the end of the range.) The rule holds for every model and entry point (test
 //!   `inputs_that_are_no_numbers_are_black`).
-//! - **Energy.** The model is reciprocal but does not conserve energy. Before path tracing, scale the material by
-//!   [`Bsdf::conserving_scale`] through [`HairParams::scaled`].
+//! - **Energy.** The model is reciprocal but does not conserve energy. Before path tracing, wrap it in [`Conserving`], or scale
+//!   the material by [`Bsdf::conserving_scale`] through [`HairParams::scaled`].
 //! - **Bits.** Results depend on whether a level fuses multiply and add ([`Level::fuses`]), in the last bits, and on
 //!   nothing else of the machine or the build. What takes no level, scalar calls and frames, never fuses. This needs IEEE
 //!   single precision: x87 arithmetic (`i586`) rounds otherwise.
@@ -72,6 +72,7 @@ mod batch;
 mod bell;
 mod bsdf;
 mod direction;
+mod energy;
 mod error;
 mod frame;
 mod hair;
@@ -95,6 +96,7 @@ mod truncated;
 pub use bell::{Bell, Gaussian};
 pub use bsdf::{Bsdf, Bsdf8, Gather, Gather8};
 pub use direction::Direction;
+pub use energy::Conserving;
 pub use error::ParamError;
 pub use frame::{FiberFrame, FiberFrame8, Vec3x, Vec3x8};
 pub use hair::{GRAZING, Hair, HairGather, HairLobes, HairMaterial, HairSampler, HairView};

@@ -134,6 +134,11 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
     }
 
     #[inline(always)]
+    fn conserve<L: Lanes>(gather: &MatchedGather<L::Stored, BANDS>) -> MatchedGather<L::Stored, BANDS> {
+        MatchedGather { view: albedo::conserve::<B, L>(&gather.view), ..*gather }
+    }
+
+    #[inline(always)]
     fn albedo<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>) -> PerLobe<[L; 3]> {
         albedo::albedo::<B, L, C>(&gather.view)
     }

@@ -56,6 +56,15 @@ pub trait Model: Copy {
     /// A direction drawn with three uniform numbers in `[0, 1)`. The first chooses the lobe, and may serve again.
     fn sample<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>, xi: [L; 3]) -> Drawn<L>;
 
+    /// The shading point with each channel scaled so that no more light returns than arrives: see
+    /// [`Gather::conserving`](crate::Gather::conserving).
+    ///
+    /// Provided: the shading point as it is, for models whose parameters see to that.
+    #[inline(always)]
+    fn conserve<L: Lanes>(gather: &Self::Gather<L::Stored>) -> Self::Gather<L::Stored> {
+        *gather
+    }
+
     /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
     fn albedo<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>) -> PerLobe<[L; 3]>;
 }

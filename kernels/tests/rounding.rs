@@ -38,6 +38,7 @@ fn numbers<M: Model<Params = HairParams>>(bsdf: &Bsdf<M>, wo: Vec3, wi: Vec3, xi
         all.extend([lobe.value, lobe.pdf]);
     }
     all.extend(gather.albedo().0.as_flattened());
+    all.extend(gather.conserving().albedo().0.as_flattened());
     if let Some(s) = gather.sample(xi) {
         all.extend(s.value.iter().chain(&s.weight).chain([&s.pdf]));
         all.extend(s.wi.to_array().map(|x| x.abs()));
@@ -53,6 +54,7 @@ fn numbers<M: Model<Params = HairParams>>(bsdf: &Bsdf<M>, wo: Vec3, wi: Vec3, xi
             all.extend([s.wi.x, s.wi.y, s.wi.z].iter().map(|x| first(x).abs()));
         }
         all.extend(each.albedo8_at(level).0.as_flattened().iter().map(first));
+        all.extend(each.conserving_at(level).albedo8_at(level).0.as_flattened().iter().map(first));
     }
     all
 }

@@ -111,7 +111,9 @@ impl<M: Model<Params: Parameters>> Hits<M> {
                     some.eval(gather.with_lobes(mask).eval_pdf(wi));
                 }
             }
-            gather.albedo().0.iter().for_each(|lobe| albedo.numbers(lobe));
+            for gather in [gather, gather.conserving()] {
+                gather.albedo().0.iter().for_each(|lobe| albedo.numbers(lobe));
+            }
         });
         let print = |hash: Hash, entry| hash.print("scalar", entry, model, "one-lane");
         print(eval, "eval_pdf");
@@ -172,7 +174,9 @@ impl<M: Model<Params: Parameters>> Hits<M> {
                     sample.sample8(&points.sample8_at(level, xi));
                     some.eval8(&points.with_lobes(LobeMask::of(&[Lobe::slot(0)])).eval_pdf8_at(level, wi));
                 }
-                points.albedo8_at(level).0.iter().for_each(|lobe| albedo.lanes(lobe));
+                for points in [points, points.conserving_at(level)] {
+                    points.albedo8_at(level).0.iter().for_each(|lobe| albedo.lanes(lobe));
+                }
             }
         }
         let print = |hash: Hash, entry| hash.print(rounding(level), entry, model, level.name());

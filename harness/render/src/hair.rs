@@ -1,6 +1,6 @@
 //! Hair by name: model, sampler and preset.
 
-use crate::material::{Hair, Sampling};
+use crate::material::{Hair, Sampling, Scale};
 use hairis_harness::error::Error;
 use hairis_variants::{ModelId, Values};
 
@@ -21,8 +21,10 @@ pub const MOST_MEAN_ALBEDO: f32 = 0.98;
 pub enum Energy {
     /// As the model says
     Raw,
-    /// Scaled so that no direction gives back more light than it receives
+    /// Scaled by one factor so that no direction gives back more light than it receives: reciprocal, but dark
     Scaled,
+    /// Scaled per viewing direction and channel so that none gives back more light than it receives: keeps light hair light
+    PerWo,
 }
 
 /// Hair as a command line names it.
@@ -73,11 +75,12 @@ impl Choice {
     /// If a value is out of its range.
     pub fn hair(&self, energy: Energy) -> Result<Hair, Error> {
         let bsdf = self.id.bsdf(&self.values)?;
-        let factor = match energy {
-            Energy::Raw => 1.0,
-            Energy::Scaled => bsdf.conserving_scale(),
+        let scale = match energy {
+            Energy::Raw => Scale::Factor(1.0),
+            Energy::Scaled => Scale::Factor(bsdf.conserving_scale()),
+            Energy::PerWo => Scale::PerWo,
         };
-        Ok(Hair::Model(bsdf, self.sampling, factor))
+        Ok(Hair::Model(bsdf, self.sampling, scale))
     }
 
     /// Name of the sampler in reports.

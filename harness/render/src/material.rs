@@ -21,10 +21,29 @@ pub enum Sampling {
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one per scene")]
 pub enum Hair {
-    /// A model of the registry. The factor is on all it scatters: see [`Energy`](crate::hair::Energy).
-    Model(AnyBsdf, Sampling, f32),
+    /// A model of the registry.
+    Model(AnyBsdf, Sampling, Scale),
     /// Scatters equally into all directions and absorbs nothing: `S cos theta_i = 1 / (4 pi)`. For tests of transport.
     Isotropic,
+}
+
+/// How much a model scatters of what it says: see [`Energy`](crate::hair::Energy).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scale {
+    /// One factor on everything.
+    Factor(f32),
+    /// A factor per `wo` and channel, which keeps the albedo at most 1.
+    PerWo,
+}
+
+impl Scale {
+    /// The factor that is left once a hit is prepared.
+    fn factor(self) -> f32 {
+        match self {
+            Self::Factor(factor) => factor,
+            Self::PerWo => 1.0,
+        }
+    }
 }
 
 /// Eight hits, or one hit for eight directions.
@@ -44,7 +63,11 @@ impl Hair {
     #[must_use]
     pub fn prepare8(&self, hits: &Hit8) -> Prepared {
         Prepared(match self {
-            Self::Model(bsdf, sampling, factor) => Some((Points::Each(bsdf.prepare8(hits)), *sampling, *factor)),
+            Self::Model(bsdf, sampling, scale) => {
+                let points = bsdf.prepare8(hits);
+                let points = if *scale == Scale::PerWo { points.conserving() } else { points };
+                Some((Points::Each(points), *sampling, scale.factor()))
+            }
             Self::Isotropic => None,
         })
     }
@@ -54,7 +77,9 @@ impl Hair {
     #[must_use]
     pub fn prepare(&self, hit: Hit) -> Prepared {
         Prepared(match self {
-            Self::Model(bsdf, sampling, factor) => Some((Points::One(bsdf.prepare(hit)), *sampling, *factor)),
+            Self::Model(bsdf, sampling, scale) => {
+                Some((Points::One(point(bsdf, hit, *scale)), *sampling, scale.factor()))
+            }
             Self::Isotropic => None,
         })
     }
@@ -62,10 +87,10 @@ impl Hair {
     /// Directional albedo at an inclination of `wo` in rad and an offset `h`.
     #[must_use]
     pub fn albedo(&self, theta_o: f32, h: f32) -> [f32; 3] {
-        let Self::Model(bsdf, _, factor) = self else { return [1.0; 3] };
+        let Self::Model(bsdf, _, scale) = self else { return [1.0; 3] };
         let hit = Hit::new(Vec3::new(theta_o.sin(), theta_o.cos(), 0.0), h);
-        let lobes = bsdf.prepare(hit).albedo().0;
-        core::array::from_fn(|c| lobes.iter().map(|lobe| lobe[c]).sum::<f32>() * factor)
+        let lobes = point(bsdf, hit, *scale).albedo().0;
+        core::array::from_fn(|c| lobes.iter().map(|lobe| lobe[c]).sum::<f32>() * scale.factor())
     }
 
     /// Largest mean albedo of a channel, and largest of all.
@@ -95,6 +120,12 @@ impl Hair {
         }
         [sum.into_iter().fold(0.0, f32::max) / weights, worst]
     }
+}
+
+/// One hit.
+fn point(bsdf: &AnyBsdf, hit: Hit, scale: Scale) -> AnyGather {
+    let point = bsdf.prepare(hit);
+    if scale == Scale::PerWo { point.conserving() } else { point }
 }
 
 impl Prepared {

@@ -145,7 +145,7 @@ fn a_mirrored_scene_gives_the_mirror_image() {
 fn at_the_highlight(alpha: f32) -> Scene {
     let id = ModelId::find("gaussian", Some("matched")).expect("listed");
     let values = id.presets().find(|(name, _)| *name == "brown").expect("listed").1.with("alpha", &[alpha; 3]);
-    let hair = Hair::Model(id.bsdf(&values).expect("in range"), Sampling::Own, 1.0);
+    let hair = Hair::Model(id.bsdf(&values).expect("in range"), Sampling::Own, Scale::Factor(1.0));
     let mut one = scene(Name::AreaSoft, hair, 400, 16);
     one.camera = Camera::new(Vec3::new(0.0, 60.0, 80.0), Vec3::NEG_Y, 3.0, [16, 16]);
     let (sin, cos) = 0.2_f32.sin_cos();

@@ -1,31 +1,65 @@
-//! Directional albedo of the published model, by quadrature away from the centres of the bells.
+//! Directional albedo of the published model, by quadrature over each bell.
 
-use super::HairView;
-use crate::lanes3;
+use super::{HairLobes, HairView};
 use crate::math::{FRAC_PI_2_LOW, half_atan2, sin_cos_half_turn};
-use crate::quadrature::GRADED;
+use crate::quadrature::{COARSE, GRADED, Graded};
 use crate::{Bell, Broadcast, Lanes, PerLobe};
+use crate::{lanes3, store3};
 use core::f32::consts::FRAC_PI_2;
 
-/// An interval is cut at so many widths from the centre of its bell. What is left further out changes on scales from there
-/// to the end of the interval.
-const CUT: f32 = 8.0;
+/// Nodes of an integral over `x`, the distance from the centre of a bell in widths: even in `u`, with `x = u / (1 - u^2)`, but
+/// for the grading towards both ends.
+///
+/// A bell of any width is smooth over `u`, and so are the cosines beside it up to the ends.
+#[derive(Clone, Copy)]
+struct Nodes<L> {
+    /// `1 + u` of the first, and `1 - u` of the last: they keep their digits where they vanish.
+    above: L,
+    below: L,
+    span: L,
+}
+
+impl<L: Lanes> Nodes<L> {
+    #[inline(always)]
+    fn between(from: L, to: L) -> Self {
+        let ([above, below_from], [above_to, below]) = (compress(from), compress(to));
+        Self { above, below, span: L::select(L::splat(0.0).lt(from), below_from - below, above_to - above) }
+    }
+
+    /// `x` of a node, and its weight times `dx`.
+    #[inline(always)]
+    fn at(&self, [node, rest, weight]: [f32; 3]) -> (L, L) {
+        let c = L::splat;
+        let above = c(node).mul_add(self.span, self.above);
+        let below = c(rest).mul_add(self.span, self.below);
+        let inv = c(1.0) / (above * below);
+        let u = (above - below) * c(0.5);
+        (u * inv, u.mul_add(u, c(1.0)) * (inv * inv) * (self.span * c(weight)))
+    }
+}
+
+/// `1 + u` and `1 - u` of `x = u / (1 - u^2)`.
+#[inline(always)]
+fn compress<L: Lanes>(x: L) -> [L; 2] {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let twice = (x + x).abs();
+    let root = twice.mul_add(twice, one).sqrt();
+    let inv = one / (one + root);
+    let (large, small) = (twice.mul_add(inv, one), (one + one / (root + twice)) * inv);
+    let negative = x.lt(zero);
+    [L::select(negative, small, large), L::select(negative, large, small)]
+}
 
 /// Integral of a bell of width `width` over `[lo, hi]`, about its centre at 0.
 #[inline]
 pub(super) fn bell_area<B: Bell>(lo: f32, hi: f32, width: f32) -> f32 {
-    let side = |end: f32| {
-        let cut = (CUT * width).min(end);
-        let mut sum = 0.0;
-        for [node, _, weight] in GRADED {
-            for (from, len) in [(0.0, cut), (cut, end - cut)] {
-                let x = (from + node * len) / width;
-                sum += weight * len * B::one(x * x, 1.0 / (1.0 + x * x));
-            }
-        }
-        sum
-    };
-    side(-lo) + side(hi)
+    let nodes = Nodes::between(lo / width, hi / width);
+    let mut sum = 0.0;
+    for node in GRADED {
+        let (x, dx) = nodes.at(node);
+        sum += B::one(x * x, 1.0 / (1.0 + x * x)) * dx;
+    }
+    sum * width
 }
 
 /// Directional albedo of each lobe, linear RGB; 0 where `wo` is no direction.
@@ -35,7 +69,7 @@ pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> 
     let (r, tt, trt) = (lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt));
     // The azimuthal term of R and TRT-g, cos(phi / 2), has an area of 4.
     let four = L::splat(4.0);
-    let area = [longitudinal::<B, L, C>(view, 0), longitudinal::<B, L, C>(view, 1), longitudinal::<B, L, C>(view, 2)];
+    let area = longitudes::<B, L, C, _>(view, &GRADED);
     PerLobe([
         lobe(view, 0, area[0] * four, r),
         lobe(view, 1, area[1] * hair.azimuth_area[0].lanes(), tt),
@@ -53,65 +87,82 @@ fn lobe<L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize, area: L, color:
     [(albedo * color[0]).min(most), (albedo * color[1]).min(most), (albedo * color[2]).min(most)]
 }
 
+/// The view terms with each channel of the lobes divided by its albedo where that is above 1, to within 3e-4.
+#[inline(always)]
+pub(crate) fn conserve<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> HairView<L::Stored> {
+    let hair = &view.lobes;
+    let (four, most) = (L::splat(4.0), L::splat(f32::MAX));
+    let [r, tt, trt] = longitudes::<B, L, L::Stored, _>(view, &COARSE);
+    let glints = hair.azimuth_area[1].lanes() * hair.strength[3].lanes();
+    let r = r * four * hair.strength[0].lanes();
+    let tt = tt * hair.azimuth_area[0].lanes() * hair.strength[1].lanes();
+    let trt = trt * four.mul_add(hair.strength[2].lanes(), glints);
+    let mut colors = [lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt)];
+    let mut c = 0;
+    while c < 3 {
+        let albedo = r.mul_add(colors[0][c], tt.mul_add(colors[1][c], trt * colors[2][c]));
+        // The second operand wins over NaN: the albedo towards a wo that is no direction.
+        let by = L::splat(1.0) / albedo.min(most).max(L::splat(1.0));
+        colors[0][c] = colors[0][c] * by;
+        colors[1][c] = colors[1][c] * by;
+        colors[2][c] = colors[2][c] * by;
+        c += 1;
+    }
+    let [r, tt, trt] = colors;
+    let lobes = HairLobes { color_r: store3(r), color_tt: store3(tt), color_trt: store3(trt), ..*hair };
+    HairView { lobes, ..*view }
+}
+
+/// [`longitudinal`] of R, TT and TRT.
+#[inline(always)]
+fn longitudes<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(view: &HairView<C>, rule: &Graded<N>) -> [L; 3] {
+    [
+        longitudinal::<B, L, C, N>(view, 0, rule),
+        longitudinal::<B, L, C, N>(view, 1, rule),
+        longitudinal::<B, L, C, N>(view, 2, rule),
+    ]
+}
+
 /// Integral of `M cos^2 theta_i / cos^2 theta_d` over `theta_i`.
 ///
-/// From the centre of the bell towards either pole, told by distances in `theta_h` from it and from both poles: no digit of a
-/// small one is lost.
+/// Angles are distances in `theta_h` from the nearer pole, and cosines products of what does not cancel: no digit of a small one
+/// is lost.
 #[inline(always)]
-fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize) -> L {
+fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(
+    view: &HairView<C>,
+    l: usize,
+    rule: &Graded<N>,
+) -> L {
     let c = L::splat;
-    let (sin, cos) = (view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes());
+    let (zero, one, two) = (c(0.0), c(1.0), c(2.0));
+    let (beta, inv_beta) = (view.lobes.beta[l].lanes(), view.lobes.inv_beta[l].lanes());
     // Mirrored, so that wo is above the normal plane, and the tilt with it. From the lower pole to the centre, and from the
     // upper one.
+    let (sin, cos) = (view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes());
     let tilt = view.lobes.alpha[l].lanes().times_sign(sin);
     let to_pole = half_atan2(cos, sin.abs(), c(0.5));
     let lower = tilt + to_pole;
     let upper = ((c(FRAC_PI_2) - tilt) + c(FRAC_PI_2_LOW)) - to_pole;
-    let beta = [view.lobes.beta[l].lanes(), view.lobes.inv_beta[l].lanes()];
-    let down = towards::<B, L>(beta, lower, upper, [-sin.abs(), cos]);
-    let up = towards::<B, L>(beta, upper, lower, [sin.abs(), cos]);
-    // dtheta_i = 2 dtheta_h.
-    c(2.0) * (down + up)
-}
-
-/// The part towards a pole, of which the centre of the bell is `pole` away, and `other` from the other pole: below 0 if it
-/// lies beyond. The sine of `theta_o`, halved as its cosine is, is above 0 if the pole is the one next to `wo`.
-#[inline(always)]
-fn towards<B: Bell, L: Lanes>([beta, inv_beta]: [L; 2], pole: L, other: L, [half_sin, half_cos]: [L; 2]) -> L {
-    let c = L::splat;
-    let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
-    // From the centre, or from where the sphere begins.
-    let from = zero.max(-other);
-    let other = zero.max(other);
-    let cut = from.max(pole.min(beta * c(CUT)));
-    let (within, beyond) = (cut - from, (pole - cut).max(zero));
-    let (starts, lens) = ([from, cut], [within, beyond]);
-    let (behind, ahead) = ([other, other + within], [beyond, zero]);
-    let (above, below) = (half_sin + half, half_sin - half);
+    let (from, to) = (-lower * inv_beta, upper * inv_beta);
+    let nodes = Nodes::between(from, to);
+    let (sin_pole, cos_pole) = sin_cos_half_turn(to_pole);
     let mut sum = zero;
-    let mut panel = 0;
-    while panel < 2 {
-        let len = lens[panel];
-        let mut part = zero;
-        let mut k = 0;
-        while k < GRADED.len() {
-            let [node, rest, weight] = GRADED[k];
-            let x = c(node).mul_add(len, starts[panel]) * inv_beta;
-            // Half of the angle to this pole and to the other, which add up to pi / 2.
-            let (to_pole, to_other) = (c(rest).mul_add(len, ahead[panel]), c(node).mul_add(len, behind[panel]));
-            let (sin, cos) = sin_cos_half_turn(to_pole.min(to_other));
-            // Halves of cos theta_i, and of the sums of both sines and both cosines: no digit is lost next to opposite poles.
-            let cos_theta_i = sin * cos;
-            let mean_u = L::select(to_pole.lt(to_other), above - sin * sin, below + sin * sin);
-            let mean_c = cos_theta_i + half_cos;
-            let cos_sq_theta_d = mean_u.mul_add(mean_u, mean_c * mean_c).max(c(f32::MIN_POSITIVE));
-            let w = c(4.0) * (cos_theta_i * cos_theta_i) / cos_sq_theta_d;
-            let d = x.mul_add(x, one);
-            part = (B::one(x * x, one / d) * w).mul_add(c(weight), part);
-            k += 1;
-        }
-        sum = part.mul_add(len, sum);
-        panel += 1;
+    let mut k = 0;
+    while k < N {
+        let (x, dx) = nodes.at(rule[k]);
+        let (above, below) = ((x - from) * beta, (to - x) * beta);
+        let (near, far) = sin_cos_half_turn(zero.max(above.min(below)));
+        let is_low = above.lt(below);
+        let (sin, cos) = (L::select(is_low, near, far), L::select(is_low, far, near));
+        // Cos theta_i is that of twice the distance, and cos theta_d the sine of the distance and half of wo's.
+        let cos_theta_d = sin.mul_add(cos_pole, cos * sin_pole);
+        let s = x * x;
+        let d = s + one;
+        let reciprocal = one / (d * cos_theta_d.max(c(f32::MIN_POSITIVE)));
+        let ratio = two * sin * cos * (reciprocal * d);
+        sum = (B::one(s, reciprocal * cos_theta_d) * (ratio * ratio)).mul_add(dx, sum);
+        k += 1;
     }
-    sum
+    // dtheta_i = 2 dtheta_h.
+    two * beta * sum
 }

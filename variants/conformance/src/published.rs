@@ -95,7 +95,7 @@ macro_rules! published {
             albedo {
                 albedo_is_the_integral albedo_of_any_width_is_the_integral max_albedo_bounds_a_scan_ten_times_as_fine
                 max_albedo_bounds_lobes_of_any_width
-                scaled_hair_returns_at_most_what_it_receives
+                scaled_hair_returns_at_most_what_it_receives conserving_hair_returns_at_most_what_it_receives
             }
             $($more)*
         );

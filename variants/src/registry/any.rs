@@ -265,6 +265,10 @@ macro_rules! handles {
                 #[inline(never)]
                 #[must_use]
                 pub fn with_lobes(lobes: LobeMask) -> Self => Self;
+                /// The shading point, returning no more light than arrives: see [`Conserving`](hairis::Conserving).
+                #[inline(never)]
+                #[must_use]
+                pub fn conserving() -> Self => Self;
                 /// Directional albedo of each lobe, linear RGB.
                 #[inline(never)]
                 #[must_use]
@@ -346,6 +350,10 @@ macro_rules! handles {
                 #[inline(never)]
                 #[must_use]
                 pub fn with_lobes(lobes: LobeMask) -> Self => Self;
+                /// The shading points, each returning no more light than arrives.
+                #[inline(never)]
+                #[must_use]
+                pub fn conserving() -> Self => Self;
                 /// As [`albedo8`](Self::albedo8), on a given instruction set.
                 #[inline(never)]
                 #[must_use]

@@ -143,7 +143,7 @@ fn hair(flags: &Render, settings: &Settings) -> Result<Hair, Error> {
     let bounces = settings.integrator == Integrator::Path && settings.multiple;
     if bounces && mean >= MOST_MEAN_ALBEDO && flags.energy.is_none() {
         return Err(Error::Usage(format!(
-            "paths need hair of a mean albedo below {MOST_MEAN_ALBEDO}, got {mean:.3} of {preset}: use --energy scaled"
+            "paths need hair of a mean albedo below {MOST_MEAN_ALBEDO}, got {mean:.3} of {preset}: use --energy per-wo"
         )));
     }
     Ok(hair)

@@ -1,12 +1,12 @@
 //! The directional albedo against quadrature of the reference, and the scale that keeps it at most 1.
 
 use super::quadrature::{integrate, panels};
-use super::support::{Draws, Kind, LargestError, Point, direction, for_each_point, narrow, parameters};
+use super::support::{Draws, Kind, LargestError, Point, direction, for_each_point, narrow, packet, parameters};
 use super::{Published, PublishedReference};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::reference::Parameters;
-use hairis::{Bsdf, HairDesc, HairParams, Lobe, Model, PerLobe};
+use hairis::{Bsdf, Conserving, HairDesc, HairParams, Level, Lobe, Model, PerLobe};
 
 /// Integral of each lobe's value times the cosine: a product of two line integrals, as the lobes are products.
 fn integrals(reference: &PublishedReference, point: &Point) -> PerLobe<f64> {
@@ -132,6 +132,38 @@ pub fn albedo_of_any_width_is_the_integral<S: Published>() {
         }
     }
     worst.check("albedo of any width against quadrature", S::ROWS.albedo_any);
+}
+
+pub fn conserving_hair_returns_at_most_what_it_receives<S: Published>() {
+    let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
+    let sums =
+        |PerLobe(lobes): PerLobe<[f32; 3]>| [0, 1, 2].map(|c| lobes.iter().map(|lobe| f64::from(lobe[c])).sum::<f64>());
+    let presets: Vec<HairParams> = HairParams::presets().into_iter().map(|(_, params)| params).collect();
+    for (model, factor) in S::forms() {
+        for params in any_widths().into_iter().chain(presets.clone()) {
+            let (bsdf, raw) = (Bsdf::new(&Conserving(model), &params), Bsdf::new(&model, &params));
+            let (p, d) = (parameters(&params, factor), params.desc());
+            for at in any_inclinations().filter(|(off, _)| *off > 1e-5) {
+                let (wo, theta_o) = off_pole(at);
+                let (got, PerLobe([r, tt, trt, glint])) = (sums(bsdf.prepare(wo).albedo()), exact::<S>(&p, theta_o));
+                for (c, got) in got.into_iter().enumerate() {
+                    let [i_r, i_tt, i_trt] = [d.intensity_r[c], d.intensity_tt[c], d.intensity_trt[c]].map(f64::from);
+                    let want = (r * i_r + tt * i_tt + (trt + glint) * i_trt).min(1.0);
+                    worst.see((got - want).abs() / want.max(1e-6), || format!("{got} for {want}: {theta_o} {d:?}"));
+                }
+                for level in Level::available() {
+                    let eight = raw.prepare8_at(level, &packet(&[wo])).conserving_at(level).lane(5);
+                    for (eight, one) in sums(eight.albedo()).into_iter().zip(got) {
+                        lanes.see((eight - one).abs() / one.max(1e-6), || {
+                            format!("{eight} of eight, {one}: {theta_o} {d:?}")
+                        });
+                    }
+                }
+            }
+        }
+    }
+    worst.check("albedo of hair that conserves against the smaller of quadrature and 1", 1e-3);
+    lanes.check("albedo of hair that conserves, eight lanes against one", 1e-4);
 }
 
 pub fn max_albedo_bounds_lobes_of_any_width<S: Published>() {
