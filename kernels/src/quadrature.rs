@@ -36,30 +36,27 @@ pub const GAUSS_LEGENDRE_32: [(f32, f32); 32] = [
     (0.998631930925, 0.00350930500474),
 ];
 
-/// A rule on `[0, 1]` whose nodes crowd towards both ends: each node, 1 less it, and its weight.
-pub(crate) type Graded<const N: usize> = [[f32; 3]; N];
+/// Nodes of [`GRADED`].
+const NODES: usize = 72;
 
-/// For integrands that change on any scale next to an end: the nodes next to it are 6e-9 away.
-pub(crate) const GRADED: Graded<56> = graded::<56, 4>();
+/// A rule whose nodes crowd towards both ends, as `v^5 / (v^5 + (1 - v)^5)` does for even `v`: each node, 1 less it, and its
+/// weight.
+///
+/// For integrands that change on any scale next to an end: the nodes next to it are 2e-11 away.
+pub(crate) const GRADED: [[f32; 3]; NODES] = graded();
 
-/// Half as many, for errors of 3e-4.
-pub(crate) const COARSE: Graded<28> = graded::<28, 3>();
-
-/// Nodes at `v^P / (v^P + (1 - v)^P)` for even `v`.
 #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "rounding to a float is the purpose")]
-const fn graded<const N: usize, const P: usize>() -> Graded<N> {
-    let mut nodes = [[0.0; 3]; N];
+const fn graded() -> [[f32; 3]; NODES] {
+    let mut nodes = [[0.0; 3]; NODES];
     let mut k = 0;
-    while k < N {
-        let v = (k as f64 + 0.5) / N as f64;
+    while k < NODES {
+        let v = (k as f64 + 0.5) / NODES as f64;
         let rest = 1.0 - v;
-        let (mut up, mut down, mut both, mut power) = (v, rest, 1.0, 1);
-        while power < P {
-            (up, down, both, power) = (up * v, down * rest, both * (v * rest), power + 1);
-        }
+        let (up, down) = (v * v * v * v * v, rest * rest * rest * rest * rest);
         let sum = up + down;
-        let slope = P as f64 * both / (sum * sum);
-        nodes[k] = [(up / sum) as f32, (down / sum) as f32, (slope / N as f64) as f32];
+        let both = v * rest;
+        let slope = 5.0 * (both * both * both * both) / (sum * sum);
+        nodes[k] = [(up / sum) as f32, (down / sum) as f32, (slope / NODES as f64) as f32];
         k += 1;
     }
     nodes

@@ -5,7 +5,7 @@ use glam::Vec3;
 use hairis_render::camera::Camera;
 use hairis_render::geometry::Strands;
 use hairis_render::lights::Rectangle;
-use hairis_render::material::{Hair, Sampling};
+use hairis_render::material::{Hair, Sampling, Scale};
 use hairis_render::numbers::Sequence;
 use hairis_render::scene::Scene;
 use hairis_render::scenes::Name;
