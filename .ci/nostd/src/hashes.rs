@@ -111,7 +111,7 @@ impl<M: Model<Params: Parameters>> Hits<M> {
                     some.eval(gather.with_lobes(mask).eval_pdf(wi));
                 }
             }
-            for gather in [gather, gather.conserving()] {
+            for gather in [gather, &gather.conserving()] {
                 gather.albedo().0.iter().for_each(|lobe| albedo.numbers(lobe));
             }
         });
@@ -174,7 +174,7 @@ impl<M: Model<Params: Parameters>> Hits<M> {
                     sample.sample8(&points.sample8_at(level, xi));
                     some.eval8(&points.with_lobes(LobeMask::of(&[Lobe::slot(0)])).eval_pdf8_at(level, wi));
                 }
-                for points in [points, points.conserving_at(level)] {
+                for points in [points, &points.conserving_at(level)] {
                     points.albedo8_at(level).0.iter().for_each(|lobe| albedo.lanes(lobe));
                 }
             }
