@@ -8,6 +8,6 @@ command -v objdump >/dev/null || { apt-get update -qq && apt-get install -qqy bi
 cargo build --release --locked -p hairis-harness --features parquet,png
 program=${CARGO_TARGET_DIR:-target}/release/hairis
 objdump -d --no-show-raw-insn -C "$program" | awk '
-  /^[0-9a-f]+ <.*>:$/ { name = $0; entry = name ~ /hairis::simd::dispatch::(run|rows|eights)_avx/; entries += entry }
+  /^[0-9a-f]+ <.*>:$/ { name = $0; entry = name ~ /hairis::simd::dispatch::(run|rows|eight)_avx/; entries += entry }
   entry && /\tcall/ { print name; print; calls++ }
   END { printf "%d dispatched entry points, %d calls\n", entries, calls; exit calls > 0 || entries < 8 }'

@@ -17,6 +17,22 @@ pub trait Row<const I: usize, const N: usize>: Copy {
         f32: Broadcast<L>;
 }
 
+/// Runs `body` for every column `i` below `n`, without a loop: compilers that save space keep loops, and with them the
+/// columns in memory.
+macro_rules! each {
+    ($i:ident < $n:ident, $body:expr) => {
+        each!($i < $n, $body, 0 1 2 3 4 5 6 7 8 9 10)
+    };
+    ($i:ident < $n:ident, $body:expr, $($column:literal)*) => {
+        $(
+            if $column < $n {
+                let $i = $column;
+                $body;
+            }
+        )*
+    };
+}
+
 /// Columns of `len` rows: the addresses of that many numbers each.
 #[derive(Clone, Copy)]
 pub(crate) struct Columns<'a, const I: usize, const N: usize> {
@@ -51,18 +67,14 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         let len = inputs[0].len();
         let (from, to) = ([ptr::null(); I], [ptr::null_mut(); N]);
         let mut columns = Self { inputs: from, outputs: to, len, absent: 0, slices: PhantomData };
-        let mut i = 0;
-        while i < I {
+        each!(i < I, {
             columns.inputs[i] = inputs[i].as_ptr();
             columns.absent |= u32::from(inputs[i].len() != len) << i;
-            i += 1;
-        }
-        i = 0;
-        while i < N {
+        });
+        each!(i < N, {
             columns.outputs[i] = outputs[i].as_mut_ptr();
             columns.absent |= u32::from(outputs[i].len() != len) << (I + i);
-            i += 1;
-        }
+        });
         columns
     }
 
@@ -71,16 +83,8 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     fn after(&self, first: usize) -> Self {
         let mut columns = *self;
-        let mut i = 0;
-        while i < I {
-            columns.inputs[i] = columns.inputs[i].wrapping_add(first);
-            i += 1;
-        }
-        i = 0;
-        while i < N {
-            columns.outputs[i] = columns.outputs[i].wrapping_add(first);
-            i += 1;
-        }
+        each!(i < I, columns.inputs[i] = columns.inputs[i].wrapping_add(first));
+        each!(i < N, columns.outputs[i] = columns.outputs[i].wrapping_add(first));
         columns.len -= first;
         columns
     }
@@ -116,20 +120,14 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         let mut to = [const { MaybeUninit::<[f32; 8]>::uninit() }; N];
         let mut columns = *self;
         if len < 8 {
-            let mut i = 0;
-            while i < I {
+            each!(i < I, {
                 if self.absent >> i & 1 == 0 {
                     // SAFETY: each column has `len` numbers, at most eight.
                     unsafe { copy(self.inputs[i], from[i].as_mut_ptr(), len) };
                 }
                 columns.inputs[i] = from[i].as_ptr();
-                i += 1;
-            }
-            i = 0;
-            while i < N {
-                columns.outputs[i] = to[i].as_mut_ptr().cast();
-                i += 1;
-            }
+            });
+            each!(i < N, columns.outputs[i] = to[i].as_mut_ptr().cast());
             columns.len = 8;
         }
         // One call, so that the compiler makes one copy of the model.
@@ -143,14 +141,12 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
             at = (at + 8).min(last);
         }
         if len < 8 {
-            let mut i = 0;
-            while i < N {
+            each!(i < N, {
                 if self.absent >> (I + i) & 1 == 0 {
                     // SAFETY: each column has `len` numbers, at most eight, and `run` wrote eight.
                     unsafe { copy(to[i].as_ptr().cast(), self.outputs[i], len) };
                 }
-                i += 1;
-            }
+            });
         }
     }
 
@@ -184,27 +180,21 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
     where
         f32: Broadcast<L>,
     {
-        const { assert!(I <= 7 && N <= 11, "every column is read or written") };
+        const { assert!(I <= 11 && N <= 11, "every column is read or written") };
         let mut input = [L::splat(0.0); I];
-        // No loops over columns: compilers that save space leave them, and the row in memory.
-        macro_rules! run {
-            ([$($i:literal)*] [$($o:literal)*]) => {
-                $(
-                    if $i < I && (!R::OPTIONAL || self.absent >> $i & 1 == 0) {
-                        // SAFETY: the column has these rows.
-                        input[$i] = L::read_fresh(unsafe { &*self.inputs[$i].add(at).cast() });
-                    }
-                )*
-                let row = row.row::<L>(input);
-                $(
-                    if $o < N && (!R::OPTIONAL || self.absent >> (I + $o) & 1 == 0) {
-                        // SAFETY: as above, and nothing else refers to the column.
-                        row[$o].write(unsafe { &mut *self.outputs[$o].add(at).cast() });
-                    }
-                )*
-            };
-        }
-        run!([0 1 2 3 4 5 6] [0 1 2 3 4 5 6 7 8 9 10]);
+        each!(i < I, {
+            if !R::OPTIONAL || self.absent >> i & 1 == 0 {
+                // SAFETY: the column has these rows.
+                input[i] = L::read_fresh(unsafe { &*self.inputs[i].add(at).cast() });
+            }
+        });
+        let row = row.row::<L>(input);
+        each!(i < N, {
+            if !R::OPTIONAL || self.absent >> (I + i) & 1 == 0 {
+                // SAFETY: as above, and nothing else refers to the column.
+                row[i].write(unsafe { &mut *self.outputs[i].add(at).cast() });
+            }
+        });
     }
 }
 
