@@ -16,6 +16,7 @@ use crate::film::{Crop, Film, Tile};
 use crate::lights::Tables;
 use crate::numbers::Sequence;
 use crate::scene::Scene;
+use crate::tree::Ray;
 use clap::ValueEnum;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
@@ -170,6 +171,14 @@ fn paths(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile: &mut Til
         profile::lap(Phase::Rest);
         tile.samples += pass;
     }
+}
+
+/// Whether a ray towards a light reaches it.
+#[inline]
+fn sees(scene: &Scene, ray: &Ray) -> bool {
+    let reached = !scene.blocked(ray);
+    profile::count_ray(reached);
+    reached
 }
 
 /// Key of a pixel for uniform numbers: the same in every crop.

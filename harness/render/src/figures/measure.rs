@@ -1,13 +1,14 @@
 //! Measurements on a scene.
 
 use super::store::Store;
+use crate::film::Crop;
 use crate::hair::{Choice, Energy, MATCHED, PUBLISHED, UNIFORM};
 use crate::layers::Beside;
 use crate::picture;
 use crate::protocol::{Reference, Runs};
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
-use crate::transport::{Integrator, Mis, Settings};
+use crate::transport::{Integrator, Mis, Settings, film};
 use hairis_harness::error::Error;
 use hairis_harness::light::Environment;
 use std::path::Path;
@@ -98,6 +99,8 @@ pub(super) struct Measured {
     pub(super) integrator: Integrator,
     /// The preset of the hair.
     pub(super) preset: &'static str,
+    /// Share of the rays towards lights that reach them, with [`BEST`].
+    pub(super) visible: f64,
     /// Picture that the others are compared with.
     pub(super) reference: Reference,
     /// The samplers, in the order of [`SAMPLERS`].
@@ -129,6 +132,8 @@ impl Measured {
         let of_scene = format!("{} env={digest:016x} reference={halves}", plan.scene(name, MODEL, defaults.preset));
         step(&format!("{}: reference", name.word()));
         let reference = store.reference(name.word(), &of_scene, &scene, &settings, halves)?;
+        let counted = Settings { profile: true, ..settings };
+        let visible = film(&scene, &counted, Crop::whole([plan.side; 2]), 4).profile.visible();
         let measure = |scene: &mut Scene, sampler: &'static str, samples: u32| {
             let (drawn, mis) = strategy(sampler);
             scene.hair = hair(drawn)?;
@@ -154,7 +159,7 @@ impl Measured {
             let equal_time = measure(&mut scene, sampler, runs[shown].samples_in(least))?;
             samplers.push(BySampler { name: sampler, runs, equal_time });
         }
-        Ok(Self { name, map: title, integrator, preset: defaults.preset, reference, samplers })
+        Ok(Self { name, map: title, integrator, preset: defaults.preset, visible, reference, samplers })
     }
 
     /// Name of the scene on the page.

@@ -55,6 +55,7 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
             "Scenes of direct light have one fixed shading point per pixel, and as many light as BSDF samples there; all pictures, \
              and the reference, share the camera rays. In scenes of paths, each sample has a camera ray of its own.",
         )
+        .method("Visible: the share of rays towards lights that reach them, with light and BSDF samples of `matched`.")
         .method(
             "relMSE is the mean of (a − b)² / (b² + (0.1 mean)²) in luminance; the noise of the reference, known from two \
              halves of it, is subtracted. Uniform sampling has few pixels of very large error, so that its relMSE is uncertain: \
@@ -66,7 +67,8 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
 
 /// How many times as large errors times time are, scene by scene.
 fn summary(all: &[Measured]) -> Table {
-    let mut table = Table::new("Error × time, relative to matched").texts(["scene", "light"]).number("samples");
+    let mut table =
+        Table::new("Error × time, relative to matched").texts(["scene", "light"]).numbers(["visible", "samples"]);
     let Some(first) = all.first() else { return table };
     for sampler in first.samplers.iter().rev().skip(1).rev() {
         table = table.numbers(ERRORS.map(|(error, _)| format!("{}, {error}", sampler.name)));
@@ -74,7 +76,8 @@ fn summary(all: &[Measured]) -> Table {
     for measured in all {
         let shown = measured.shown();
         let Some(best) = measured.samplers.last() else { continue };
-        let mut row = vec![measured.title(), kind(measured).to_owned(), best.runs[shown].samples.to_string()];
+        let visible = format!("{:.0} %", 100.0 * measured.visible);
+        let mut row = vec![measured.title(), kind(measured).to_owned(), visible, best.runs[shown].samples.to_string()];
         for sampler in measured.samplers.iter().rev().skip(1).rev() {
             row.extend(ERRORS.map(|(_, error)| ratio(gain(measured, sampler, error))));
         }
@@ -108,7 +111,12 @@ fn section(measured: &Measured) -> std::io::Result<Section> {
     let caption = "Below: the brightest part, 4 times as large; and the relative error of each pixel, blue too dark, red too \
                    bright, on one scale on this page (full colour at 100 %).";
     Ok(Section::new(title.clone())
-        .paragraph(format!("Light: {}; hair: `{}`.", kind(measured), measured.preset))
+        .paragraph(format!(
+            "Light: {}; hair: `{}`. {:.0} % of the rays towards lights reach them.",
+            kind(measured),
+            measured.preset,
+            100.0 * measured.visible
+        ))
         .paragraph(sentence(measured))
         .figure(Drawing::new(equal_samples, format!("Equal samples: {samples} per pixel. {caption}")))
         .figure(Drawing::new(equal_time, format!("Equal time. {caption}")))

@@ -3,7 +3,7 @@
 use super::path::leave;
 use super::profile::{Phase, lap};
 use super::resampled::{Candidates, Place, Streams};
-use super::{Mis, Settings, key};
+use super::{Mis, Settings, key, sees};
 use crate::film::Tile;
 use crate::lights::{Table, Tables};
 use crate::material::Prepared;
@@ -112,7 +112,7 @@ impl Point {
             rays,
             |candidate, radiance| {
                 let ray = leave(scene, &self.hit, *origin, candidate.direction, candidate.cos);
-                if !scene.blocked(&Ray { t_max: candidate.distance, ..ray }) {
+                if sees(scene, &Ray { t_max: candidate.distance, ..ray }) {
                     sum += radiance;
                 }
                 lap(Phase::Rays);
@@ -135,7 +135,7 @@ impl Point {
             let weight = settings.mis.of_light(light.pdf, eval.pdf) * cos / light.pdf;
             let radiance = light.radiance * Vec3::from_array(eval.value) * weight;
             let ray = leave(scene, &self.hit, self.origin, light.direction, cos);
-            if radiance.max_element() > 0.0 && !scene.blocked(&Ray { t_max: light.distance, ..ray }) {
+            if radiance.max_element() > 0.0 && sees(scene, &Ray { t_max: light.distance, ..ray }) {
                 sum += radiance;
             }
         }
@@ -161,7 +161,7 @@ impl Point {
             let of_bsdf = Vec3::from_array([0, 1, 2].map(|c| sample.weight[c].as_array()[lane]));
             let radiance = light.radiance * of_bsdf * weight;
             let ray = leave(scene, &self.hit, self.origin, light.direction, cos);
-            if radiance.max_element() > 0.0 && !scene.blocked(&Ray { t_max: light.distance, ..ray }) {
+            if radiance.max_element() > 0.0 && sees(scene, &Ray { t_max: light.distance, ..ray }) {
                 sum += radiance;
             }
         }

@@ -2,7 +2,7 @@
 
 use super::profile::{Phase, lap};
 use super::wave::{Path, Shadow, Wave};
-use super::{Integrator, Mis, PASS, Settings, resampled};
+use super::{Integrator, Mis, PASS, Settings, resampled, sees};
 use crate::frames::frames8;
 use crate::lights::Tables;
 use crate::scene::{Met, Scene};
@@ -32,7 +32,7 @@ pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave:
         hair(scene, tables, settings, wave);
         for k in 0..wave.shadows.len() {
             let shadow = wave.shadows[k];
-            if !scene.blocked(&shadow.ray) {
+            if sees(scene, &shadow.ray) {
                 wave.add(shadow.slot, shadow.radiance);
             }
         }

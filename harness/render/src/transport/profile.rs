@@ -1,4 +1,4 @@
-//! Where the time of rendering goes.
+//! Where the time of rendering goes, and how many rays reach a light.
 
 use core::cell::Cell;
 use core::fmt;
@@ -21,9 +21,15 @@ pub enum Phase {
     Rest,
 }
 
-/// Seconds of each phase, over all threads.
+/// Seconds of each phase, and rays towards lights, over all threads.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Profile([f64; Self::PHASES.len()]);
+pub struct Profile {
+    seconds: [f64; Self::PHASES.len()],
+    /// Rays towards a light.
+    towards: u64,
+    /// Those that reach it.
+    reached: u64,
+}
 
 impl Profile {
     const PHASES: [(Phase, &'static str); 6] = [
@@ -37,39 +43,49 @@ impl Profile {
 
     /// Adds those of another.
     pub fn add(&mut self, other: Self) {
-        self.0.iter_mut().zip(other.0).for_each(|(sum, seconds)| *sum += seconds);
+        self.seconds.iter_mut().zip(other.seconds).for_each(|(sum, seconds)| *sum += seconds);
+        self.towards += other.towards;
+        self.reached += other.reached;
     }
 
     /// Share of a phase, from 0 to 1.
     #[must_use]
     pub fn share(&self, phase: Phase) -> f64 {
-        self.0[phase as usize] / self.0.iter().sum::<f64>().max(f64::MIN_POSITIVE)
+        self.seconds[phase as usize] / self.seconds.iter().sum::<f64>().max(f64::MIN_POSITIVE)
+    }
+
+    /// Share of the rays towards lights that reach them, from 0 to 1; 0 without any.
+    #[must_use]
+    pub fn visible(&self) -> f64 {
+        self.reached as f64 / self.towards.max(1) as f64
     }
 }
 
 impl fmt::Display for Profile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let share = |(phase, name): (Phase, &str)| format!("{name} {:.1} %", 100.0 * self.share(phase));
-        f.write_str(&Self::PHASES.map(share).join(", "))
+        write!(f, "{}; ", Self::PHASES.map(share).join(", "))?;
+        write!(f, "{:.1} % of {} rays towards lights reach them", 100.0 * self.visible(), self.towards)
     }
 }
 
 thread_local! {
     /// When this thread's last lap ended; `None` while nothing is measured.
     static LAST: Cell<Option<Instant>> = const { Cell::new(None) };
-    static SECONDS: Cell<Profile> = const { Cell::new(Profile([0.0; Profile::PHASES.len()])) };
+    static SUMS: Cell<Profile> =
+        const { Cell::new(Profile { seconds: [0.0; Profile::PHASES.len()], towards: 0, reached: 0 }) };
 }
 
 /// Starts to measure this thread.
 pub(super) fn start() {
-    SECONDS.set(Profile::default());
+    SUMS.set(Profile::default());
     LAST.set(Some(Instant::now()));
 }
 
 /// Ends it.
 pub(super) fn stop() -> Profile {
     LAST.set(None);
-    SECONDS.get()
+    SUMS.get()
 }
 
 /// Counts the time since the last lap as `phase`. Costs next to nothing where nothing is measured, and 30 ns where it is.
@@ -83,10 +99,21 @@ pub(super) fn lap(phase: Phase) {
 #[cold]
 fn count(phase: Phase, last: Instant) {
     let now = Instant::now();
-    let mut profile = SECONDS.get();
-    profile.0[phase as usize] += (now - last).as_secs_f64();
-    SECONDS.set(profile);
+    let mut profile = SUMS.get();
+    profile.seconds[phase as usize] += (now - last).as_secs_f64();
+    SUMS.set(profile);
     LAST.set(Some(now));
+}
+
+/// Counts a ray towards a light.
+#[inline]
+pub(super) fn count_ray(reached: bool) {
+    if LAST.get().is_some() {
+        let mut profile = SUMS.get();
+        profile.towards += 1;
+        profile.reached += u64::from(reached);
+        SUMS.set(profile);
+    }
 }
 
 #[cfg(test)]
@@ -101,11 +128,13 @@ mod tests {
         start();
         std::thread::sleep(core::time::Duration::from_millis(3));
         lap(Phase::Light);
+        (0..4).for_each(|ray| count_ray(ray == 3));
         lap(Phase::Rest);
         let profile = stop();
-        let (whole, sum) = (begin.elapsed().as_secs_f64(), profile.0.iter().sum::<f64>());
+        let (whole, sum) = (begin.elapsed().as_secs_f64(), profile.seconds.iter().sum::<f64>());
         assert!(sum >= 3e-3 && sum <= whole, "{sum} of {whole}");
         assert!(profile.share(Phase::Light) > 0.5 && profile.share(Phase::Rays) == 0.0, "{profile}");
+        assert_eq!(profile.visible(), 0.25);
         let mut twice = profile;
         twice.add(profile);
         assert!((twice.share(Phase::Light) - profile.share(Phase::Light)).abs() < 1e-12);
