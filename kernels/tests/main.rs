@@ -7,7 +7,6 @@ mod frames;
 mod math;
 mod params;
 mod reference;
-mod rounding;
 mod rows;
 mod tolerance;
 mod vector;

@@ -33,7 +33,9 @@ calls! {
     sample_each(gather: &Gather8<M>, level: Level, xi: &[f32x8; 3]) -> Sample8 = gather.sample8_at(level, xi);
     with_lobes(gather: &Gather<M>, lobes: LobeMask) -> Gather<M> = gather.with_lobes(lobes);
     with_lobes_each(gather: &Gather8<M>, lobes: LobeMask) -> Gather8<M> = gather.with_lobes(lobes);
+    conserving(gather: &Gather<M>) -> Gather<M> = gather.conserving();
     albedo(gather: &Gather<M>) -> PerLobe<[f32; 3]> = gather.albedo();
+    conserving_each(gather: &Gather8<M>, level: Level) -> Gather8<M> = gather.conserving_at(level);
     albedo_each(gather: &Gather8<M>, level: Level) -> PerLobe<[f32x8; 3]> = gather.albedo8_at(level);
 }
 

@@ -1,6 +1,7 @@
 //! Slices of hits give the bits of packets, whatever their length, alignment, materials and columns.
 
 use crate::calls::{self, COLUMNS, Direction};
+use crate::environment::{DOWN, with_mode};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
 use crate::probe::{Draws, hits8, packet, triples};
@@ -25,6 +26,7 @@ const SAMPLE_CHOICES: [[bool; 5]; 4] = [
 /// Slices of hits give the bits that [`Bsdf8::prepare8`] and then eight lanes give: on one material, and on a table of
 /// materials in runs and at random; without `h`, they are hits on the axis. Columns that are left out are not written, nor is
 /// anything beyond a slice. Slices of different lengths and indices beyond the table are refused, and then nothing is written.
+/// Where the host rounds down and takes denormals for 0, results are finite and not negative.
 ///
 /// # Errors
 ///
@@ -53,7 +55,33 @@ pub fn hits_equal_packets<S: Subject>(subject: &S) -> Outcome {
             })?;
         }
     }
+    with_mode(DOWN, || any_rounding_is_finite(&materials))?;
     arguments_are_checked(&materials)
+}
+
+/// Values, densities and weights are finite and not negative.
+fn any_rounding_is_finite<M: Model>(materials: &[Bsdf<M>]) -> Outcome {
+    let mut draws = Draws(0x418);
+    let rows: Vec<Row> = (0..LONGEST).map(|_| Row::new(&mut draws)).collect();
+    let index = indices(&mut draws, LONGEST, materials.len());
+    let slices = Slices::new(&rows, 0, true);
+    for level in Level::available() {
+        let mut all = [const { [0.0; LONGEST] }; 8];
+        let [r, g, b, pdf, wr, wg, wb, density] = all.each_mut().map(|column| &mut column[..]);
+        let evals = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
+        let samples = SampleColumns { weight: Some([wr, wg, wb]), pdf: Some(density), ..SampleColumns::default() };
+        let table = MaterialTable { materials, index: &index };
+        let lengths = table.eval_pdf_hits_at(level, slices.hits(), slices.three(4), evals).and(table.sample_hits_at(
+            level,
+            slices.hits(),
+            slices.three(7),
+            samples,
+        ));
+        if lengths.is_err() || !all.iter().flatten().all(|x| x.is_finite() && *x >= 0.0) {
+            return Err(Failure::new(NAME, format!("rounded down on {level}: {all:?}")));
+        }
+    }
+    Ok(())
 }
 
 /// Indices in runs of every length up to 20.

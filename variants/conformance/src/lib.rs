@@ -33,6 +33,8 @@
 //! | test | property |
 //! |---|---|
 //! | `results_are_finite` | every finite input gives finite results that are not negative |
+//! | `any_rounding_is_finite` | so they are in every rounding mode, with denormals and without |
+//! | `everyday_input_raises_no_exception` | unit directions raise neither invalid nor division by zero nor overflow in eight lanes and slices |
 //! | `inputs_that_are_no_numbers_are_black` | NaN and infinite directions and numbers give 0, and discarded samples |
 //! | `density_integrates_to_one` | each lobe's density, and that of all, integrates to the share of samples kept |
 //! | `samples_follow_density` | chi-square test of random samples |
@@ -65,6 +67,7 @@
 pub mod bounds;
 mod calls;
 pub mod chi_square;
+pub mod environment;
 mod failure;
 mod formula_reference;
 pub mod hits;
@@ -111,6 +114,8 @@ macro_rules! conformance {
         $crate::conformance!(
             @$name, $subject,
             totality results_are_finite,
+            environment any_rounding_is_finite,
+            environment everyday_input_raises_no_exception,
             not_numbers inputs_that_are_no_numbers_are_black,
             integral density_integrates_to_one,
             chi_square samples_follow_density,

@@ -1,6 +1,7 @@
 //! Resampled estimates of direct light have the mean of plain ones.
 
 use crate::calls;
+use crate::environment::{DOWN, with_mode};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, hits8, packet, triples};
 use crate::subject::Subject;
@@ -245,6 +246,7 @@ pub fn check<S: Subject>(subject: &S, factor: f64) -> Outcome {
             }
         }
     }
+    any_rounding_is_finite(subject)?;
     let (n, apart) = (errors.len() as f64, errors.iter().filter(|z| z.abs() > ONE_IN_1000).count());
     let aside = errors.iter().sum::<f64>() / n.sqrt();
     // Poisson: 1e-3 of the cells, and as many more as chance exceeds once in 1000.
@@ -253,6 +255,31 @@ pub fn check<S: Subject>(subject: &S, factor: f64) -> Outcome {
         let message =
             format!("{apart} of {n} cells are {ONE_IN_1000} standard errors apart, all on average {aside:.2}");
         return Err(Failure::new(NAME, message));
+    }
+    Ok(())
+}
+
+/// Estimates are finite and not negative where the host rounds down and takes denormals for 0.
+fn any_rounding_is_finite<S: Subject>(subject: &S) -> Outcome {
+    let mut draws = Draws(0xd0);
+    for (name, params) in subject.materials() {
+        let bsdf = Bsdf::new(&subject.model(), &params);
+        let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
+        for light in Light::all(&mut draws) {
+            let estimates = with_mode(DOWN, || {
+                let one = Plain { gather: &calls::prepare(&bsdf, hits[0]), light };
+                let mut all = vec![one.pooled(Counts { bsdf: 6, light: 10 }, Partition::All, 4, &mut draws)];
+                all.push(one.path(Partition::Power, &mut draws));
+                for level in Level::available() {
+                    let gather = calls::prepare8(&bsdf, level, hits8(&hits));
+                    all.extend(reservoirs(&gather, light, level, &mut draws));
+                }
+                all
+            });
+            if !estimates.iter().all(|x| x.is_finite() && *x >= 0.0) {
+                return Err(Failure::new(NAME, format!("{name} {hits:?}, rounded down: {estimates:?}")));
+            }
+        }
     }
     Ok(())
 }

@@ -118,11 +118,16 @@ fn fault<M: Model>(s: &Sample8, lane: usize, mask: LobeMask) -> Option<&'static 
 ///
 /// At the first input where something is not.
 pub fn results_are_finite<S: Subject>(subject: &S) -> Outcome {
+    sweep(subject, ROUNDS, vector)
+}
+
+/// The same for so many packets per material, of these directions.
+pub(crate) fn sweep<S: Subject>(subject: &S, rounds: usize, vector: impl Fn(&mut Draws) -> Direction) -> Outcome {
     let mut draws = Draws(0x0707);
     let masks = masks();
     for (name, params) in subject.materials().into_iter().chain(subject.extremes()) {
         let bsdf = Bsdf::new(&subject.model(), &params);
-        for round in 0..ROUNDS {
+        for round in 0..rounds {
             let hits: [Hit; 8] = core::array::from_fn(|_| {
                 let h = *draws.pick(&[0.0, -0.0, 1.0, -1.0, 1e-40, 0.3, LAST, -1.5, 1e30]);
                 Hit { wo: vector(&mut draws), h }
@@ -191,9 +196,13 @@ pub fn results_are_finite<S: Subject>(subject: &S) -> Outcome {
                 return fail("a sample differs when it is drawn again", lane, "scalar", format!("{sample:?}"));
             }
             if round % 16 == 0 {
-                let albedo = calls::albedo(&gather).0;
-                if !albedo.as_flattened().iter().all(|x| sound(*x)) {
-                    return fail("an albedo", lane, "scalar", format!("{albedo:?}"));
+                for (gather, what) in
+                    [(gather, "an albedo"), (calls::conserving(&gather), "an albedo of conserving hair")]
+                {
+                    let albedo = calls::albedo(&gather).0;
+                    if !albedo.as_flattened().iter().all(|x| sound(*x)) {
+                        return fail(what, lane, "scalar", format!("{albedo:?}"));
+                    }
                 }
             }
         }

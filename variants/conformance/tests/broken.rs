@@ -32,6 +32,8 @@ pub(crate) const WRONG_PACK: u8 = 17;
 pub(crate) const NEGATIVE: u8 = 18;
 pub(crate) const AZIMUTH_UNEVEN: u8 = 19;
 pub(crate) const NAN_IS_A_NUMBER: u8 = 20;
+pub(crate) const DIVIDES_BY_ZERO: u8 = 21;
+pub(crate) const NEGATIVE_ROUNDED_DOWN: u8 = 22;
 
 /// A fibre with a diffuse lobe, uniform on the sphere, and a cone of mirror directions.
 ///
@@ -172,6 +174,13 @@ impl<const FAULT: u8> Fiber<FAULT> {
             if FAULT == NEGATIVE {
                 sum = sum - c(1e-3);
             }
+            if FAULT == DIVIDES_BY_ZERO {
+                sum = sum.min(c(1.0) / L::keep(c(9.0).lt(wi.x), wi.x));
+            }
+            if FAULT == NEGATIVE_ROUNDED_DOWN {
+                let tiny = wi.x * wi.x * c(1e-10);
+                sum = sum + ((c(1.0) - tiny) - c(1.0)) * c(1e9);
+            }
             value[channel] = sum.min(limit);
             channel += 1;
         }
@@ -238,10 +247,11 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
     fn restrict<C: Lanes>(gather: &Faulty<FAULT, Point<C>>, lobes: LobeMask) -> Faulty<FAULT, Point<C>> {
         let (d, s) = (C::splat(lobes.factor(DIFFUSE)), C::splat(lobes.factor(CONE)));
         let [p_d, p_s] = [gather.selection[0] * d, gather.selection[1] * s];
-        let by = C::splat(1.0) / (p_d + p_s).max(C::splat(f32::MIN_POSITIVE));
+        // Quotients: that of a number and itself is 1 however it is rounded.
+        let sum = (p_d + p_s).max(C::splat(f32::MIN_POSITIVE));
         let times = |x: [C; 3], by: C| [x[0] * by, x[1] * by, x[2] * by];
         let kd = if FAULT == MASK_LEAKS { times(gather.kd, d.max(C::splat(1e-4))) } else { times(gather.kd, d) };
-        Faulty(Point { kd, ks: times(gather.ks, s), selection: [p_d * by, p_s * by], ..gather.0 })
+        Faulty(Point { kd, ks: times(gather.ks, s), selection: [p_d / sum, p_s / sum], ..gather.0 })
     }
 
     #[inline(always)]

@@ -6,8 +6,8 @@ mod reference;
 
 use broken::*;
 use hairis_conformance::{
-    Claims, Materials, Outcome, Subject, bounds, chi_square, hits, integral, inversion, lanes, lobes, not_numbers,
-    resampling, sampling, slices, totality,
+    Claims, Materials, Outcome, Subject, bounds, chi_square, environment, hits, integral, inversion, lanes, lobes,
+    not_numbers, resampling, sampling, slices, totality,
 };
 
 hairis_conformance::conformance!(sound, crate::Broken::<{ crate::SOUND }>);
@@ -25,6 +25,13 @@ fn totality_finds_results_that_are_no_numbers_or_negative() {
     assert_fails(totality::results_are_finite(&Broken::<NAN_AT_THE_POLE>), "density");
     assert_fails(totality::results_are_finite(&Broken::<NEGATIVE>), "value");
     assert_fails(totality::results_are_finite(&Broken::<LONG_DIRECTION>), "unit vector");
+}
+
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn environments_are_found_to_matter() {
+    assert_fails(environment::any_rounding_is_finite(&Broken::<NEGATIVE_ROUNDED_DOWN>), "mode 0x2000");
+    assert_fails(environment::everyday_input_raises_no_exception(&Broken::<DIVIDES_BY_ZERO>), "division by zero");
 }
 
 #[test]

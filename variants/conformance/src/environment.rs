@@ -1,0 +1,208 @@
+//! Floating-point environments of hosts: results stay finite whichever way they are rounded, and everyday input raises no
+//! exception.
+//!
+//! The compiler takes the environment for the default one. Scalar code may therefore compute in unused lanes of a vector what
+//! raises an exception; code of eight lanes has none. Only x86-64 is tested.
+#![allow(unsafe_code, reason = "the control register of the vector unit has no safe access")]
+
+use crate::calls::{self, COLUMNS, Direction};
+use crate::failure::{Failure, Outcome};
+use crate::probe::{Draws, hits8, packet};
+use crate::subject::Subject;
+use crate::totality;
+use core::hint::black_box;
+use hairis::{Bsdf, Bsdf8, Level, Vec3x};
+
+const NAME: &str = "results are finite however they are rounded";
+
+/// Rounding to nearest, down, up and towards 0, each with denormals and without.
+const MODES: [u32; 8] = [0x0000, 0x2000, 0x4000, 0x6000, 0x8040, 0xa040, 0xc040, 0xe040];
+/// Rounding down, without denormals.
+pub(crate) const DOWN: u32 = 0xa040;
+/// Packets per material and mode.
+const ROUNDS: usize = 100;
+/// Packets per material of everyday input.
+const EVERYDAY: usize = 300;
+
+/// The control register: rounding, masks, and flags of exceptions.
+#[cfg(target_arch = "x86_64")]
+fn control() -> u32 {
+    let mut register = 0;
+    // SAFETY: every x86-64 CPU has the register.
+    unsafe { core::arch::asm!("stmxcsr [{}]", in(reg) &raw mut register, options(nostack)) };
+    register
+}
+
+/// Sets the control register. What writes memory stays on its side of it.
+#[cfg(target_arch = "x86_64")]
+fn set_control(register: u32) {
+    // SAFETY: as above; callers leave the exceptions masked, and restore the register.
+    unsafe { core::arch::asm!("ldmxcsr [{}]", in(reg) &raw const register, options(nostack)) };
+}
+
+/// Runs `f` with rounding and denormals as in `mode`.
+pub(crate) fn with_mode<T>(mode: u32, f: impl FnOnce() -> T) -> T {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let before = control();
+        set_control(before & !0xe040 | mode);
+        let result = black_box(f());
+        set_control(before);
+        result
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        let _ = mode;
+        black_box(f())
+    }
+}
+
+/// Names of the exceptions that `f` raises: invalid, division by zero, overflow.
+fn raised<T>(f: impl FnOnce() -> T) -> Vec<&'static str> {
+    #[cfg(target_arch = "x86_64")]
+    {
+        const FLAGS: [(u32, &str); 3] = [(1, "invalid"), (4, "division by zero"), (8, "overflow")];
+        let before = control();
+        set_control(before & !0x3f);
+        black_box(f());
+        let after = control();
+        set_control(before);
+        FLAGS.into_iter().filter(|(flag, _)| after & flag != 0).map(|(_, name)| name).collect()
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        black_box(f());
+        Vec::new()
+    }
+}
+
+/// Fails if `f` raises an exception.
+fn quiet<T>(what: &str, at: impl FnOnce() -> String, f: impl FnOnce() -> T) -> Outcome {
+    let names = raised(f);
+    if names.is_empty() {
+        return Ok(());
+    }
+    let message = format!("{what} raises {}: {}", names.join(", "), at());
+    Err(Failure::new("everyday input raises no exception", message))
+}
+
+/// A unit direction: any, along an axis, or next to that of the fibre.
+fn unit(draws: &mut Draws) -> Direction {
+    let off = *draws.pick(&[1e-20, 1e-12, 1e-7, 0.99e-5, 1.01e-5, 1e-4_f32]);
+    let any = draws.direction();
+    *draws.pick(&[
+        any,
+        any,
+        any,
+        any,
+        Vec3x::new(1.0, 0.0, 0.0),
+        Vec3x::new(0.0, -1.0, 0.0),
+        Vec3x::new(-0.6, 0.0, -0.8),
+        Vec3x::new(-1.0, off, -off),
+    ])
+}
+
+/// Results for unit directions are finite and not negative in all four rounding modes, with denormals and without: on one lane,
+/// on eight, and in slices.
+///
+/// # Errors
+///
+/// At the first result that is not.
+pub fn any_rounding_is_finite<S: Subject>(subject: &S) -> Outcome {
+    for mode in MODES {
+        let in_mode = |failure: Failure| Failure { message: format!("mode {mode:#x}: {}", failure.message), ..failure };
+        with_mode(mode, || totality::sweep(subject, ROUNDS, unit)).map_err(in_mode)?;
+        with_mode(mode, || slices_are_finite(subject)).map_err(in_mode)?;
+    }
+    Ok(())
+}
+
+fn slices_are_finite<S: Subject>(subject: &S) -> Outcome {
+    let mut draws = Draws(0xf1);
+    for (name, params) in subject.materials().into_iter().chain(subject.extremes()) {
+        let gather = calls::prepare(&Bsdf::new(&subject.model(), &params), draws.hit());
+        let rows: Vec<(Direction, [f32; 3])> = (0..69).map(|_| (unit(&mut draws), draws.xi3())).collect();
+        let wi: [Vec<f32>; 3] = [|v: &Direction| v.x, |v: &Direction| v.y, |v: &Direction| v.z]
+            .map(|of| rows.iter().map(|(wi, _)| of(wi)).collect());
+        let xi: [Vec<f32>; 3] = [0, 1, 2].map(|axis| rows.iter().map(|(_, xi)| xi[axis]).collect());
+        for level in Level::available() {
+            let (mut evals, mut samples) = ([const { [0.0_f32; 69] }; 4], [const { [0.0_f32; 69] }; COLUMNS]);
+            let lengths =
+                calls::eval_slices(&gather, level, wi.each_ref().map(|c| &c[..]), evals.each_mut().map(|c| &mut c[..]))
+                    .and(calls::sample_slices(
+                        &gather,
+                        level,
+                        xi.each_ref().map(|c| &c[..]),
+                        samples.each_mut().map(|c| &mut c[..]),
+                    ));
+            let [u, v, w, numbers @ .., _] = &samples;
+            let sound = |x: &f32| x.is_finite() && *x >= 0.0;
+            if lengths.is_err()
+                || !evals.iter().chain(numbers).flatten().all(sound)
+                || ![u, v, w].into_iter().flatten().all(|x| x.is_finite())
+            {
+                return Err(Failure::new(NAME, format!("slices of {name} on {level}: {evals:?} {samples:?}")));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Unit directions off the axis raise neither invalid nor division by zero nor overflow where eight lanes are prepared and
+/// evaluated, and in slices of values, if the material scatters at all.
+///
+/// # Errors
+///
+/// At the first call that raises one.
+pub fn everyday_input_raises_no_exception<S: Subject>(subject: &S) -> Outcome {
+    let mut draws = Draws(0xfe);
+    for (name, params) in subject.materials() {
+        let bsdf = Bsdf::new(&subject.model(), &params);
+        if calls::albedo(&calls::prepare(&bsdf, draws.hit())).0.as_flattened().iter().all(|albedo| *albedo == 0.0) {
+            continue;
+        }
+        let packed = Bsdf8::pack([&bsdf; 8]);
+        for round in 0..EVERYDAY {
+            let hits = core::array::from_fn(|_| draws.hit());
+            let wi: [Direction; 8] = core::array::from_fn(|_| draws.direction());
+            let (hits8, wi8) = (hits8(&hits), packet(&wi));
+            let columns = [wi8.x.to_array(), wi8.y.to_array(), wi8.z.to_array()];
+            let one = calls::prepare(&bsdf, hits[0]);
+            for level in Level::available() {
+                let at = || format!("{name} on {level}, {hits:?} {wi:?}");
+                quiet("prepare8", at, || calls::prepare_packed(&packed, level, hits8))?;
+                let each = calls::prepare_packed(&packed, level, hits8);
+                quiet("eval_pdf8 of one hit", at, || calls::eval8(&one, level, &wi8))?;
+                quiet("eval_pdf8 of eight hits", at, || calls::eval_each(&each, level, &wi8))?;
+                quiet("lobes8", at, || calls::lobes_each(&each, &wi8))?;
+                if round % 8 == 0 {
+                    quiet("albedo8", at, || calls::albedo_each(&each, level))?;
+                    quiet("conserving", at, || calls::conserving_each(&each, level))?;
+                }
+                let mut room = [[0.0; 8]; 4];
+                let len = round % 9;
+                quiet("eval_pdf_batch", at, || {
+                    let out = room.each_mut().map(|column| &mut column[..len]);
+                    calls::eval_slices(&one, level, columns.each_ref().map(|column| &column[..len]), out)
+                })?;
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modes_and_exceptions_are_those_of_the_register() {
+        let divide = |a: f32, b: f32| black_box(a) / black_box(b);
+        assert!(with_mode(DOWN, || divide(1.0, 3.0)) < with_mode(0x4000, || divide(1.0, 3.0)));
+        assert_eq!(with_mode(DOWN, || divide(1e-30, 1e10)), 0.0, "denormals");
+        assert_eq!(raised(|| divide(1.0, 0.0)), ["division by zero"]);
+        assert_eq!(raised(|| divide(0.0, 0.0)), ["invalid"]);
+        assert_eq!(raised(|| divide(1e38, 1e-10)), ["overflow"]);
+        assert!(raised(|| divide(1.0, 3.0)).is_empty());
+    }
+}
