@@ -6,13 +6,13 @@
 #   .ci/instructions.sh --write          rewrite the table, after a change that is worth its instructions
 #   .ci/instructions.sh --count PROGRAM  count for another build of the program `entry`; compares with nothing
 #
-# The program runs under callgrind with two numbers of passes; the difference is the cost of a pass. Only the program's own
-# instructions count: those of the system's libraries depend on their version and on the CPU. Of calls into them (memcpy
-# and the like) the table records only whether there are any. The counts depend on the compiler alone.
+# The program runs under callgrind, which counts within `entry::pass` alone. Only the program's own instructions count: those
+# of the system's libraries depend on their version and on the CPU. Of calls into them (memcpy and the like) the table records
+# only whether there are any. The counts depend on the compiler alone.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 table=benches/records/instructions.csv
-fewer=2 more=6 # passes
+passes=4
 
 command -v valgrind > /dev/null || { apt-get update -qq && apt-get install -qqy valgrind; }
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
@@ -29,7 +29,7 @@ fi
 counts=$source.counts
 # Without its debug information, which valgrind would read at each of hundreds of starts.
 program=$dir/entry
-strip -o "$program" "$source"
+strip -g -o "$program" "$source"
 
 # sums OUTPUT: instructions of the program itself, and of everything else.
 sums() {
@@ -54,18 +54,16 @@ sums() {
 # count NAME: a row of the table.
 count() {
   local name=$1 out=$dir/${1//\//_}
-  for passes in $fewer $more; do
-    valgrind -q --tool=callgrind --callgrind-out-file="$out.$passes" "$program" run "$name" "$passes" > "$out.calls"
-  done
-  # Calls in a pass and directions in a call; then own and other instructions of the few passes, and of the more.
-  echo "$(cat "$out.calls") $(sums "$out.$fewer") $(sums "$out.$more")" | awk -v passes=$((more - fewer)) '{
+  valgrind -q --tool=callgrind --toggle-collect='entry::pass*' --callgrind-out-file="$out" "$program" run "$name" $passes > "$out.calls"
+  # Calls in a pass and directions in a call; then own and other instructions of the passes.
+  echo "$(cat "$out.calls") $(sums "$out")" | awk -v passes=$passes '{
     calls = passes * $2
-    libraries = ($7 - $5 < 0.5 * calls) ? "no" : "yes"
-    printf "%s,%d,%.1f,%s\n", $1, $3, ($6 - $4) / calls, libraries
+    libraries = ($5 < 0.5 * calls) ? "no" : "yes"
+    printf "%s,%d,%.1f,%s\n", $1, $3, $4 / calls, libraries
   }' > "$out.row"
 }
 export -f count sums
-export program dir fewer more
+export program dir passes
 
 valgrind -q --tool=none "$program" list > "$dir/names"
 names=$(grep -vE '^path-|/textbook/' "$dir/names")
