@@ -58,6 +58,7 @@ count() {
   # Calls in a pass and directions in a call; then own and other instructions of the passes.
   echo "$(cat "$out.calls") $(sums "$out")" | awk -v passes=$passes '{
     calls = passes * $2
+    if ($4 < calls) { print "FAIL " $1 ": nothing was counted" > "/dev/stderr"; exit 1 }
     libraries = ($5 < 0.5 * calls) ? "no" : "yes"
     printf "%s,%d,%.1f,%s\n", $1, $3, $4 / calls, libraries
   }' > "$out.row"
