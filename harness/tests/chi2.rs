@@ -68,7 +68,7 @@ fn registered(model: ModelId) -> impl Fn(&HairParams, Vec3, LobeMask) -> Draw {
 }
 
 /// Samples of a model that is not in the registry.
-fn of_type<M: Model<Params = HairParams> + 'static>(model: M) -> impl Fn(&HairParams, Vec3, LobeMask) -> Draw {
+fn of_type<M: Model + 'static>(model: M) -> impl Fn(&M::Params, Vec3, LobeMask) -> Draw {
     move |params, wo, mask| {
         let gather = Bsdf::new(&model, params).prepare(wo).with_lobes(mask);
         Box::new(move |xi| gather.sample8(xi))

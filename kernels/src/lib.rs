@@ -107,6 +107,9 @@ pub use matched::{Matched, MatchedBell, MatchedGather, MatchedMaterial};
 pub use model::{Drawn, Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Model, Sample, Sample8};
 pub use params::{ArtistControls, Glints, HairDesc, HairParams, Highlight, MAX_WIDTH, MIN_WIDTH, Transmission};
 pub use simd::columns::Row;
+#[cfg(feature = "textbook")]
+#[doc(hidden)]
+pub use simd::control::{control, set_control};
 pub use simd::dispatch::{Constant, Kernel, Level};
 pub(crate) use simd::lanes::fresh_lanes3;
 pub use simd::lanes::{Broadcast, LaneStruct, Lanes, Scalar, lanes3, lanes4, store3, store4};

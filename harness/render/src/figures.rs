@@ -83,12 +83,8 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     bar.finish_and_clear();
     let mut lines = String::new();
     for measured in &all {
-        let visible = 100.0 * measured.visible;
-        lines.push_str(&format!(
-            "{}: {} {visible:.0} % of the rays towards lights reach them.\n",
-            measured.title(),
-            verdict::sentence(measured)
-        ));
+        let (sentence, visible) = (verdict::sentence(measured), verdict::visible(measured));
+        lines.push_str(&format!("{}: {sentence} {visible}\n", measured.title()));
     }
     if store.resumed() > 0 {
         lines.push_str(&format!("{} measurements are of a run that was stopped\n", store.resumed()));

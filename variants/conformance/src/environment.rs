@@ -3,77 +3,44 @@
 //!
 //! The compiler takes the environment for the default one. Scalar code may therefore compute in unused lanes of a vector what
 //! raises an exception; code of eight lanes has none. Only x86-64 is tested.
-#![allow(unsafe_code, reason = "the control register of the vector unit has no safe access")]
 
 use crate::calls::{self, COLUMNS, Direction};
 use crate::failure::{Failure, Outcome};
-use crate::probe::{Draws, hits8, packet};
+use crate::probe::{Draws, columns, hits8, packet};
 use crate::subject::Subject;
 use crate::totality;
 use core::hint::black_box;
-use hairis::{Bsdf, Bsdf8, Level, Vec3x};
+use hairis::{Bsdf, Bsdf8, Level, Vec3x, control, set_control};
 
 const NAME: &str = "results are finite however they are rounded";
 
 /// Rounding to nearest, down, up and towards 0, each with denormals and without.
 const MODES: [u32; 8] = [0x0000, 0x2000, 0x4000, 0x6000, 0x8040, 0xa040, 0xc040, 0xe040];
 /// Rounding down, without denormals.
-pub(crate) const DOWN: u32 = 0xa040;
+pub(crate) const DOWN: u32 = MODES[5];
 /// Packets per material and mode.
 const ROUNDS: usize = 100;
 /// Packets per material of everyday input.
 const EVERYDAY: usize = 300;
 
-/// The control register: rounding, masks, and flags of exceptions.
-#[cfg(target_arch = "x86_64")]
-fn control() -> u32 {
-    let mut register = 0;
-    // SAFETY: every x86-64 CPU has the register.
-    unsafe { core::arch::asm!("stmxcsr [{}]", in(reg) &raw mut register, options(nostack)) };
-    register
-}
-
-/// Sets the control register. What writes memory stays on its side of it.
-#[cfg(target_arch = "x86_64")]
-fn set_control(register: u32) {
-    // SAFETY: as above; callers leave the exceptions masked, and restore the register.
-    unsafe { core::arch::asm!("ldmxcsr [{}]", in(reg) &raw const register, options(nostack)) };
-}
-
 /// Runs `f` with rounding and denormals as in `mode`.
 pub(crate) fn with_mode<T>(mode: u32, f: impl FnOnce() -> T) -> T {
-    #[cfg(target_arch = "x86_64")]
-    {
-        let before = control();
-        set_control(before & !0xe040 | mode);
-        let result = black_box(f());
-        set_control(before);
-        result
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    {
-        let _ = mode;
-        black_box(f())
-    }
+    let before = control();
+    set_control(before & !0xe040 | mode);
+    let result = black_box(f());
+    set_control(before);
+    result
 }
 
 /// Names of the exceptions that `f` raises: invalid, division by zero, overflow.
 fn raised<T>(f: impl FnOnce() -> T) -> Vec<&'static str> {
-    #[cfg(target_arch = "x86_64")]
-    {
-        const FLAGS: [(u32, &str); 3] = [(1, "invalid"), (4, "division by zero"), (8, "overflow")];
-        let before = control();
-        set_control(before & !0x3f);
-        black_box(f());
-        let after = control();
-        set_control(before);
-        FLAGS.into_iter().filter(|(flag, _)| after & flag != 0).map(|(_, name)| name).collect()
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    {
-        black_box(f());
-        Vec::new()
-    }
+    const FLAGS: [(u32, &str); 3] = [(1, "invalid"), (4, "division by zero"), (8, "overflow")];
+    let before = control();
+    set_control(before & !0x3f);
+    black_box(f());
+    let after = control();
+    set_control(before);
+    FLAGS.into_iter().filter(|(flag, _)| after & flag != 0).map(|(_, name)| name).collect()
 }
 
 /// Fails if `f` raises an exception.
@@ -122,9 +89,11 @@ fn slices_are_finite<S: Subject>(subject: &S) -> Outcome {
     for (name, params) in subject.materials().into_iter().chain(subject.extremes()) {
         let gather = calls::prepare(&Bsdf::new(&subject.model(), &params), draws.hit());
         let rows: Vec<(Direction, [f32; 3])> = (0..69).map(|_| (unit(&mut draws), draws.xi3())).collect();
-        let wi: [Vec<f32>; 3] = [|v: &Direction| v.x, |v: &Direction| v.y, |v: &Direction| v.z]
-            .map(|of| rows.iter().map(|(wi, _)| of(wi)).collect());
-        let xi: [Vec<f32>; 3] = [0, 1, 2].map(|axis| rows.iter().map(|(_, xi)| xi[axis]).collect());
+        let wi = columns(69, |n| {
+            let (wi, _) = rows[n as usize];
+            [wi.x, wi.y, wi.z]
+        });
+        let xi = columns(69, |n| rows[n as usize].1);
         for level in Level::available() {
             let (mut evals, mut samples) = ([const { [0.0_f32; 69] }; 4], [const { [0.0_f32; 69] }; COLUMNS]);
             let lengths =
@@ -166,7 +135,7 @@ pub fn everyday_input_raises_no_exception<S: Subject>(subject: &S) -> Outcome {
             let hits = core::array::from_fn(|_| draws.hit());
             let wi: [Direction; 8] = core::array::from_fn(|_| draws.direction());
             let (hits8, wi8) = (hits8(&hits), packet(&wi));
-            let columns = [wi8.x.to_array(), wi8.y.to_array(), wi8.z.to_array()];
+            let by_axis = [wi8.x.to_array(), wi8.y.to_array(), wi8.z.to_array()];
             let one = calls::prepare(&bsdf, hits[0]);
             for level in Level::available() {
                 let at = || format!("{name} on {level}, {hits:?} {wi:?}");
@@ -183,7 +152,7 @@ pub fn everyday_input_raises_no_exception<S: Subject>(subject: &S) -> Outcome {
                 let len = round % 9;
                 quiet("eval_pdf_batch", at, || {
                     let out = room.each_mut().map(|column| &mut column[..len]);
-                    calls::eval_slices(&one, level, columns.each_ref().map(|column| &column[..len]), out)
+                    calls::eval_slices(&one, level, by_axis.each_ref().map(|column| &column[..len]), out)
                 })?;
             }
         }

@@ -195,6 +195,7 @@ impl Sums {
 ///
 /// If more cells lie apart than chance allows, or all lie to one side on average.
 pub fn resampling_is_unbiased<S: Subject>(subject: &S) -> Outcome {
+    any_rounding_is_finite(subject)?;
     check(subject, 1.0)
 }
 
@@ -246,7 +247,6 @@ pub fn check<S: Subject>(subject: &S, factor: f64) -> Outcome {
             }
         }
     }
-    any_rounding_is_finite(subject)?;
     let (n, apart) = (errors.len() as f64, errors.iter().filter(|z| z.abs() > ONE_IN_1000).count());
     let aside = errors.iter().sum::<f64>() / n.sqrt();
     // Poisson: 1e-3 of the cells, and as many more as chance exceeds once in 1000.

@@ -5,8 +5,8 @@ use core::hint::black_box;
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{
-    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Gaussian, Hair, HairParams, LengthError, Level, Matched,
-    Model, Sample, Sample8, SampleSlices, Vec3x8,
+    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Gaussian, Hair, LengthError, Level, Matched, Model, Sample,
+    Sample8, SampleSlices, Vec3x8,
 };
 use hairis_variants::Cauchy;
 
@@ -15,11 +15,11 @@ macro_rules! outlined {
     ($($name:ident($($arg:ident: $type:ty),*) -> $out:ty { $body:expr })*) => {
         $(
             #[inline(never)]
-            fn $name<M: Model<Params = HairParams>>($($arg: $type),*) -> $out {
+            fn $name<M: Model>($($arg: $type),*) -> $out {
                 $body
             }
         )*
-        fn of<M: Model<Params = HairParams>>() {
+        fn of<M: Model>() {
             $( black_box($name::<M> as fn($($type),*) -> $out); )*
         }
     };

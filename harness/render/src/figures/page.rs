@@ -3,7 +3,7 @@
 use super::measure::{BySampler, Measured, Plan};
 use super::models::{self, Preset};
 use super::panel::{Column, panel};
-use super::verdict::{ERRORS, gain, sentence};
+use super::verdict::{ERRORS, gain, sentence, visible};
 use crate::args::Figures;
 use crate::picture::exposure;
 use crate::protocol::{Runs, slope};
@@ -111,12 +111,7 @@ fn section(measured: &Measured) -> std::io::Result<Section> {
     let caption = "Below: the brightest part, 4 times as large; and the relative error of each pixel, blue too dark, red too \
                    bright, on one scale on this page (full colour at 100 %).";
     Ok(Section::new(title.clone())
-        .paragraph(format!(
-            "Light: {}; hair: `{}`. {:.0} % of the rays towards lights reach them.",
-            kind(measured),
-            measured.preset,
-            100.0 * measured.visible
-        ))
+        .paragraph(format!("Light: {}; hair: `{}`. {}", kind(measured), measured.preset, visible(measured)))
         .paragraph(sentence(measured))
         .figure(Drawing::new(equal_samples, format!("Equal samples: {samples} per pixel. {caption}")))
         .figure(Drawing::new(equal_time, format!("Equal time. {caption}")))

@@ -56,3 +56,8 @@ pub(super) fn sentence(measured: &Measured) -> String {
     };
     format!("{answer} {numbers}")
 }
+
+/// How many rays see a light.
+pub(super) fn visible(measured: &Measured) -> String {
+    format!("{:.0} % of the rays towards lights reach them.", 100.0 * measured.visible)
+}
