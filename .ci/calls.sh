@@ -4,9 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v objdump >/dev/null || { apt-get update -qq && apt-get install -qqy binutils; }
-# The build of .ci/main_job.sh.
-cargo build --release --locked -p hairis-harness --features parquet,png
-program=${CARGO_TARGET_DIR:-target}/release/hairis
+program=$(.ci/release.sh)/hairis
 objdump -d --no-show-raw-insn -C "$program" | awk '
   /^[0-9a-f]+ <.*>:$/ { name = $0; entry = name ~ /hairis::simd::dispatch::(run|rows|eight)_avx/; entries += entry }
   entry && /\tcall/ { print name; print; calls++ }

@@ -5,4 +5,5 @@ cd "$(dirname "$0")/.."
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")/dirty
 cd .ci/dirty
 RUSTFLAGS='' cargo build -q --release --locked --target-dir "$target"
+[ "${1:-}" != --build ] || exit 0
 "$target/release/hairis-dirty" "$@"

@@ -15,16 +15,13 @@ table=benches/records/instructions.csv
 passes=4
 
 command -v valgrind > /dev/null || { apt-get update -qq && apt-get install -qqy valgrind; }
-target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 if [ "${1:-}" = --count ]; then
   source=$2
 else
-  # The build of .ci/sizes.sh, which finds the counts in `counts` and does not count again.
-  RUSTFLAGS='-Csymbol-mangling-version=v0' cargo build -q --release --locked -p hairis-benches --bin entry \
-    --config 'profile.release.opt-level=3' --target-dir "$target/opt-3"
-  source=$target/opt-3/release/entry
+  # .ci/sizes.sh finds the counts in `counts` and does not count again.
+  source=$(.ci/release.sh)/entry
 fi
 counts=$source.counts
 # Without its debug information, which valgrind would read at each of hundreds of starts.

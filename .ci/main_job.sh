@@ -2,8 +2,7 @@
 # Promise: the command hairis runs on real input as a user runs it, and refuses bad input in one line.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-cargo build --release --locked -p hairis-harness --features parquet,png
-hairis=$(realpath "${CARGO_TARGET_DIR:-target}")/release/hairis
+hairis=$(.ci/release.sh)/hairis
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 

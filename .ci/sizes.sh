@@ -4,23 +4,18 @@
 #
 #   .ci/sizes.sh           checks; fails above 1.55 times the instructions at "s", which stays below 1.5 times the time
 #                          (Kajiya-Kay and Chiang: 1.95)
-#   .ci/sizes.sh --build   compiles only, level 3 for .ci/instructions.sh as well
+#   .ci/sizes.sh --build   compiles only
 #   .ci/sizes.sh --write   writes the table to benches/records/sizes.csv as well
 #   .ci/sizes.sh --time    time of every entry point at "s" and "z" against 3, programs interleaved
 set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v objdump > /dev/null || { apt-get update -qq && apt-get install -qqy binutils; }
-target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 
-for level in 3 s z; do
-  value=$level
-  [ $level = 3 ] || value="\"$level\""
-  # The newer mangling keeps the types of generic functions in their names.
-  RUSTFLAGS='-Csymbol-mangling-version=v0' cargo build -q --release --locked -p hairis-benches --bin entry \
-    --config "profile.release.opt-level=$value" --target-dir "$target/opt-$level"
-  cp "$target/opt-$level/release/entry" "$dir/entry-$level"
+for level in s z 3; do
+  built=$(.ci/release.sh $level)
+  cp "$built/entry" "$dir/entry-$level"
 done
 [ "${1:-}" != --build ] || exit 0
 
@@ -48,8 +43,8 @@ fi
 failed=0
 python3 .ci/sizes.py 3="$dir/entry-3" s="$dir/entry-s" z="$dir/entry-z" > "$dir/sizes.csv" || failed=1
 # Of level 3, .ci/instructions.sh has counted this very program if it ran before.
-counted=$target/opt-3/release/entry.counts
-if [ "$counted" -nt "$target/opt-3/release/entry" ]; then cp "$counted" "$dir/3.csv"
+counted=$built/entry.counts
+if [ "$counted" -nt "$built/entry" ]; then cp "$counted" "$dir/3.csv"
 else .ci/instructions.sh --count "$dir/entry-3" > "$dir/3.csv"; fi
 .ci/instructions.sh --count "$dir/entry-s" > "$dir/s.csv"
 paste -d, "$dir/3.csv" "$dir/s.csv" | awk -F, '

@@ -1,0 +1,16 @@
+#!/bin/bash
+# Builds the programs that other checks look at, once for all of them, and prints their folder: release.sh [LEVEL].
+# At opt-level 3, the default, `hairis` and `entry`; at "s" and "z" `entry` alone. The same packages each time: features that
+# differ would compile the kernels again.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+level=${1:-3}
+target=$(realpath -m "${CARGO_TARGET_DIR:-target}")/opt-$level
+case $level in
+  3) what='-p hairis-harness -p hairis-benches --bin hairis --bin entry --features hairis-harness/parquet,hairis-harness/png' value=3 ;;
+  *) what='-p hairis-benches --bin entry' value="\"$level\"" ;;
+esac
+# The newer mangling keeps the types of generic functions in their names.
+RUSTFLAGS='-Csymbol-mangling-version=v0' cargo build -q --release --locked $what \
+  --config "profile.release.opt-level=$value" --target-dir "$target" >&2
+echo "$target/release"
