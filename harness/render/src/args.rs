@@ -161,9 +161,15 @@ pub struct Figures {
     /// How light is estimated [default: by scene]
     #[arg(long, value_enum)]
     pub integrator: Option<Integrator>,
+    /// Where uniform numbers come from
+    #[arg(long, value_enum, default_value_t = Sequence::Sobol)]
+    pub xi: Sequence,
     /// Compare the models, too, where --scene is given
     #[arg(long)]
     pub models: bool,
+    /// Measure shard I of N only; a run without this flag, with what all shards have left in its folder, writes the page
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
     /// Folder for report.html and the pictures; made if missing
     #[arg(long, value_name = "DIR", default_value = "out/figures")]
     pub out: PathBuf,

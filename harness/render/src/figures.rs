@@ -38,7 +38,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     prepare(&flags.out)?;
     let store = Store::new(&flags.out)?;
     let plan = if flags.quick { Plan::QUICK } else { Plan::FULL };
-    let plan = Plan { integrator: flags.integrator, ..plan };
+    let plan = Plan { integrator: flags.integrator, sequence: flags.xi, ..plan };
     let chosen: &[Name] = match (flags.scene.as_slice(), flags.quick) {
         ([], true) => &QUICK,
         ([], false) => &SCENES,
@@ -58,6 +58,11 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         (true, true) => &models::PRESETS[..1],
         (true, false) => &models::PRESETS,
     };
+    // The shard's own: every so many of scenes and models.
+    let owns = |place: usize| flags.shard.is_none_or(|shard| shard.owns(place));
+    let count = scenes.len();
+    let scenes: Vec<_> = (0..).zip(scenes).filter(|(place, _)| owns(*place)).map(|(_, scene)| scene).collect();
+    let presets: Vec<_> = (count..).zip(presets).filter(|(place, _)| owns(*place)).map(|(_, name)| *name).collect();
     let steps = plan.steps(scenes.len()) + presets.len() * ModelId::defaults_of_names().count();
     let bar = ProgressBar::new(steps as u64);
     if let Ok(style) = ProgressStyle::with_template("{msg:>30} {wide_bar} {percent:>3}% {elapsed} (left {eta})") {
@@ -70,6 +75,9 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     let mut all = Vec::new();
     for (name, map) in scenes {
         let measured = Measured::render(name, map, &plan, flags.seed, &store, &step)?;
+        if flags.shard.is_some() {
+            continue;
+        }
         measured.write_pictures(&flags.out)?;
         all.push(measured);
         // After every scene, so that a run that is stopped leaves a page.
@@ -78,9 +86,15 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     let mut compared = Vec::new();
     for name in presets {
         compared.push(Preset::render(name, &plan, flags.seed, &store, &step)?);
-        page::write(&all, &compared, &plan, flags, &flags.out)?;
+        if flags.shard.is_none() {
+            page::write(&all, &compared, &plan, flags, &flags.out)?;
+        }
     }
     bar.finish_and_clear();
+    if let Some(shard) = flags.shard {
+        let line = format!("shard {shard}: measurements are in {}\n", store.folder().display());
+        return io::stdout().write_all(line.as_bytes()).map_err(Error::Write);
+    }
     let mut lines = String::new();
     for measured in &all {
         let (sentence, visible) = (verdict::sentence(measured), verdict::visible(measured));

@@ -4,6 +4,7 @@ use super::store::Store;
 use crate::film::Crop;
 use crate::hair::{Choice, Energy, MATCHED, PUBLISHED, UNIFORM};
 use crate::layers::Beside;
+use crate::numbers::Sequence;
 use crate::picture;
 use crate::protocol::{Reference, Runs};
 use crate::scene::Scene;
@@ -42,6 +43,8 @@ pub(super) struct Plan {
     pub(super) runs: u32,
     /// How light is estimated, in place of the scenes' own ways.
     pub(super) integrator: Option<Integrator>,
+    /// Where the samplers' uniform numbers come from; references are of Sobol' points.
+    pub(super) sequence: Sequence,
 }
 
 impl Plan {
@@ -53,6 +56,7 @@ impl Plan {
         reference: [1024, 320],
         runs: 8,
         integrator: None,
+        sequence: Sequence::Sobol,
     };
     /// Settings of the published figures: half an hour on two idle cores, two thirds of it for `box` and the models. A reference
     /// has as many samples as 32 of the pictures with the most, so that it has about 3% of their variance.
@@ -63,6 +67,7 @@ impl Plan {
         reference: [4096, 1024],
         runs: 8,
         integrator: None,
+        sequence: Sequence::Sobol,
     };
 
     /// What a scene with hair of a model depends on, but for the light.
@@ -137,7 +142,7 @@ impl Measured {
         let measure = |scene: &mut Scene, sampler: &'static str, samples: u32| {
             let (drawn, mis) = strategy(sampler);
             scene.hair = hair(drawn)?;
-            let (settings, runs) = (Settings { mis, ..settings }, plan.runs);
+            let (settings, runs) = (Settings { mis, sequence: plan.sequence, ..settings }, plan.runs);
             let file = format!("{}-{sampler}-{samples}", name.word());
             let of_runs = format!("{of_scene} sampler={drawn} samples={samples} runs={runs} {settings:?}");
             store.get(&file, &of_runs, || Runs::render(scene, &settings, &reference, samples, runs))

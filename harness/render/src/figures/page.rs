@@ -5,6 +5,7 @@ use super::models::{self, Preset};
 use super::panel::{Column, panel};
 use super::verdict::{ERRORS, gain, sentence, visible};
 use crate::args::Figures;
+use crate::numbers::Sequence;
 use crate::picture::exposure;
 use crate::protocol::{Runs, slope};
 use crate::transport::Integrator;
@@ -44,12 +45,13 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
     if !presets.is_empty() {
         report = report.section(models::section(presets)?);
     }
-    let Plan { side, strands, runs, .. } = plan;
+    let Plan { side, strands, runs, sequence, .. } = plan;
     Ok(report
         .method(format!(
             "Pictures of {side} by {side} pixels, procedural hair of {strands} strands, published model, sampled by \
-             Owen-scrambled Sobol' points; light and BSDF samples are combined by the power heuristic. Each error is the mean \
-             over {runs} pictures of different seeds, with a standard error by the jackknife."
+             {}; light and BSDF samples are combined by the power heuristic. Each error is the mean over {runs} pictures of \
+             different seeds, with a standard error by the jackknife.",
+            numbers(*sequence)
         ))
         .method(
             "Scenes of direct light have one fixed shading point per pixel, and as many light as BSDF samples there; all pictures, \
@@ -84,6 +86,15 @@ fn summary(all: &[Measured]) -> Table {
         table.push(row);
     }
     table
+}
+
+fn numbers(sequence: Sequence) -> &'static str {
+    match sequence {
+        Sequence::Independent => "independent numbers",
+        Sequence::Halton => "scrambled Halton points",
+        Sequence::Sobol => "Owen-scrambled Sobol' points",
+        Sequence::Stratified => "stratified points",
+    }
 }
 
 fn kind(measured: &Measured) -> &'static str {

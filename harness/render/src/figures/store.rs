@@ -82,6 +82,11 @@ impl Store {
         Ok(Reference::new(&half(0)?.picture, &half(1)?.picture))
     }
 
+    /// Where the files are.
+    pub(super) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// Measurements that an earlier run has left.
     pub(super) fn resumed(&self) -> usize {
         self.resumed.get()
