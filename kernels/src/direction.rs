@@ -45,7 +45,7 @@ impl<L: Lanes> Direction<L> {
         let length_sq = x.mul_add(x, y.mul_add(y, z * z));
         let some = c(1e-30).lt(length_sq);
         let unit = (length_sq - one).abs().lt(c(1e-5));
-        let by = L::select(unit, one, L::keep(some, one / length_sq.sqrt()));
+        let by = L::select(unit, one, L::keep(some, L::quotient(one, length_sq.sqrt())));
         let (x, y, z) = (x * by, L::select(some, y * by, one), z * by);
         // Correct the length by its remaining difference from 1: one rounding per component.
         let plane_sq = y.mul_add(y, z * z);

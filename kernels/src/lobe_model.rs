@@ -279,7 +279,7 @@ impl<M: LobeModel> Model for M {
         // Stretch the first number again, from the nearer end, where differences are exact: a rare lobe keeps the low bits.
         let (start, start_less_one) = (C::look_up(&m.start, lobe), C::look_up(&m.start_less_one, lobe));
         let into = L::select(xi[0].lt(c(0.5)), xi[0] - start, (xi[0] - c(1.0)) - start_less_one);
-        let again = into / C::look_up(&m.selection, lobe);
+        let again = L::quotient(into, C::look_up(&m.selection, lobe));
         // False for NaN.
         let numbers = (xi[0] + xi[1] + xi[2]).lt(c(f32::INFINITY));
         let xi = [zero.max(again.min(most)), zero.max(xi[1].min(most)), zero.max(xi[2].min(most))];
@@ -287,7 +287,7 @@ impl<M: LobeModel> Model for M {
         let Eval { value, pdf } = total::<M, L, C>(gather, &wi);
         let sound = L::and(L::and(wi.is_sound(), c(LEAST_DENSITY).lt(pdf)), numbers);
         let limit = limit::<L>(sound);
-        let by = wi.cos_theta / pdf;
+        let by = L::quotient(wi.cos_theta, pdf);
         let Vec3x { x, y, z } = wi.vector;
         Drawn {
             wi: Vec3x::new(L::keep(sound, x), L::keep(sound, y), L::keep(sound, z)),
@@ -333,7 +333,7 @@ fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(prepared: &M::Prepare
             let wi = M::sample_lobe(prepared, lobe, xi);
             let at = M::lobes(prepared, &wi).0[l];
             let sound = L::and(wi.is_sound(), c(LEAST_DENSITY).lt(at.pdf));
-            sum = sum + L::select(sound, at.value * wi.cos_theta / at.pdf * c(slope), c(0.0));
+            sum = sum + L::select(sound, L::quotient(at.value * wi.cos_theta, at.pdf) * c(slope), c(0.0));
             color = at.color;
             step += 1;
         }

@@ -126,7 +126,7 @@ pub fn atan_unit<L: Lanes>(t: L) -> L {
 pub fn half_atan2<L: Lanes>(y: L, x: L, length: L) -> L {
     let c = L::splat;
     let across = y.abs();
-    let half = atan_eighth_turn(across.min(x) / (length + across.max(x)));
+    let half = atan_eighth_turn(L::quotient(across.min(x), length + across.max(x)));
     let rest = (c(FRAC_PI_4) - half) + c(0.5 * FRAC_PI_2_LOW);
     L::select(x.lt(across), rest, half).times_sign(y)
 }
@@ -149,7 +149,7 @@ pub fn atan2_upper<L: Lanes>(y: L, x: L) -> L {
     let across = x.abs();
     let steep = across.lt(y);
     let (small, large) = (L::select(steep, across, y), L::select(steep, y, across));
-    let a = atan_unit(small / large.max(c(f32::MIN_POSITIVE)));
+    let a = atan_unit(L::quotient(small, large.max(c(f32::MIN_POSITIVE))));
     let a = L::select(steep, (c(FRAC_PI_2) - a) + c(FRAC_PI_2_LOW), a);
     L::select(x.lt(c(0.0)), (c(PI) - a) + c(2.0 * FRAC_PI_2_LOW), a)
 }
@@ -237,7 +237,7 @@ pub fn log2_one_plus<L: Lanes>(f: L) -> L {
 #[inline(always)]
 pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
     let c = L::splat;
-    let t = (c(1.0) / x.mul_add(c(0.3), c(1.0))).interleaved();
+    let t = L::quotient(c(1.0), x.mul_add(c(0.3), c(1.0))).interleaved();
     let p = polynomial(
         t,
         [
@@ -278,7 +278,7 @@ pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
     );
     let root = w.max(c(7.0)).sqrt().interleaved();
     let tail = polynomial(
-        one / root,
+        L::quotient(one, root),
         [
             1.182_418_329_216_171_4,
             -0.228_760_861_835_545_21,

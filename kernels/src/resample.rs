@@ -78,11 +78,11 @@ impl Partition {
 fn share<L: Lanes>(partition: Partition, pdf_light: L, pdf_bsdf: L) -> L {
     let one = L::splat(1.0);
     // As far as squares go.
-    let ratio = (pdf_bsdf / L::splat(f32::MIN_POSITIVE).max(pdf_light)).min(L::splat(1e18));
+    let ratio = L::quotient(pdf_bsdf, L::splat(f32::MIN_POSITIVE).max(pdf_light)).min(L::splat(1e18));
     match partition {
         Partition::All => one,
-        Partition::Balance => one / (one + ratio),
-        Partition::Power => one / ratio.mul_add(ratio, one),
+        Partition::Balance => L::quotient(one, one + ratio),
+        Partition::Power => L::quotient(one, ratio.mul_add(ratio, one)),
     }
 }
 
@@ -122,7 +122,7 @@ impl Weighing {
         let [bsdf, light] = self.counts;
         let density = pdf_bsdf.min(most).mul_add(c(bsdf), pdf_light * c(light));
         let mean = (f[0] + f[1] + f[2]) * c(1.0 / 3.0);
-        let weight = L::keep(zero.lt(density), mean / c(f32::MIN_POSITIVE).max(density)).min(most);
+        let weight = L::keep(zero.lt(density), L::quotient(mean, c(f32::MIN_POSITIVE).max(density))).min(most);
         let [r, g, b] = f;
         [r, g, b, weight]
     }

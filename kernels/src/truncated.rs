@@ -45,6 +45,6 @@ impl<L: Lanes> TruncatedCauchy<L> {
     #[inline(always)]
     pub(crate) fn invert(self, xi: L) -> L {
         let (sin, cos) = sin_cos_absolute((xi - L::splat(0.5)) * self.span);
-        self.cos_mid.mul_add(sin, self.sin_mid * cos) / self.cos_mid.mul_sub(cos, self.sin_mid * sin)
+        L::quotient(self.cos_mid.mul_add(sin, self.sin_mid * cos), self.cos_mid.mul_sub(cos, self.sin_mid * sin))
     }
 }

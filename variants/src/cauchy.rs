@@ -101,13 +101,13 @@ impl MatchedBell for Cauchy {
         let (sin, cos) = (x - origin, x.mul_add(origin, L::splat(1.0)));
         let across = sin.abs();
         let steep = cos.lt(across);
-        let angle = atan_unit(across.min(cos) / across.max(cos));
+        let angle = atan_unit(L::quotient(across.min(cos), across.max(cos)));
         L::select(steep, L::splat(FRAC_PI_2) - angle, angle).times_sign(sin)
     }
 
     #[inline(always)]
     fn invert<L: Lanes>(origin: L, sum: L) -> L {
         let (sin, cos) = sin_cos_absolute(sum);
-        origin.mul_add(cos, sin) / origin.mul_add(-sin, cos)
+        L::quotient(origin.mul_add(cos, sin), origin.mul_add(-sin, cos))
     }
 }

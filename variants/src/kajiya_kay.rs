@@ -144,7 +144,7 @@ impl LobeModel for KajiyaKay {
         // The density over both signs of the sum; one division for it and for 1 / cos theta_i.
         let mirrored = zero.max(cos.mul_sub(cos_o, sin * sin_o));
         let both = power(reciprocal, cos_i) + power(reciprocal, mirrored);
-        let inverse = one / (both * cos_i);
+        let inverse = L::quotient(one, both * cos_i);
         let value = bell * m.peak.lanes() * L::select(reciprocal, one, inverse * both);
         let pdf = bell * m.density.lanes() * (inverse * cos_i) * L::select(reciprocal, cos_i, one);
 
@@ -175,7 +175,8 @@ impl LobeModel for KajiyaKay {
         let (kept, turned) = (power(reciprocal, zero.max(minus)), power(reciprocal, zero.max(plus)));
         let scaled = xi[2] * (kept + turned);
         let keep = scaled.lt(kept);
-        let again = L::select(keep, scaled, scaled - kept) / L::select(keep, kept, turned).max(c(f32::MIN_POSITIVE));
+        let into = L::select(keep, scaled, scaled - kept);
+        let again = L::quotient(into, L::select(keep, kept, turned).max(c(f32::MIN_POSITIVE)));
         let sum = L::select(keep, sin, -sin);
         let sin_i = sum.mul_sub(cos_o, cos * sin_o);
         let cos_i = zero.max(L::select(keep, minus, plus));
@@ -192,7 +193,7 @@ impl LobeModel for KajiyaKay {
         let (m, [sin_o, cos_o]) = (&gather.material, [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()]);
         let reciprocal = c(0.5).lt(m.reciprocal.lanes());
         let theta_o = half_atan2(sin_o, cos_o, c(1.0)) * c(2.0);
-        let reach = half_turn.min(c(6.5) * (c(-LN_2) / m.exponent.lanes()).sqrt());
+        let reach = half_turn.min(c(6.5) * L::quotient(c(-LN_2), m.exponent.lanes()).sqrt());
         let (lo, hi) = ((theta_o - half_turn).max(-reach), (theta_o + half_turn).min(reach));
         let mut sum = zero;
         for (x, weight) in GAUSS_LEGENDRE_32 {

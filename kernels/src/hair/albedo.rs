@@ -32,7 +32,7 @@ impl<L: Lanes> Nodes<L> {
         let c = L::splat;
         let above = c(node).mul_add(self.span, self.above);
         let below = c(rest).mul_add(self.span, self.below);
-        let inv = c(1.0) / (above * below);
+        let inv = L::quotient(c(1.0), above * below);
         let u = (above - below) * c(0.5);
         (u * inv, u.mul_add(u, c(1.0)) * (inv * inv) * (self.span * c(weight)))
     }
@@ -44,8 +44,8 @@ fn compress<L: Lanes>(x: L) -> [L; 2] {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
     let twice = (x + x).abs();
     let root = twice.mul_add(twice, one).sqrt();
-    let inv = one / (one + root);
-    let (large, small) = (twice.mul_add(inv, one), (one + one / (root + twice)) * inv);
+    let inv = L::quotient(one, one + root);
+    let (large, small) = (twice.mul_add(inv, one), (one + L::quotient(one, root + twice)) * inv);
     let negative = x.lt(zero);
     [L::select(negative, small, large), L::select(negative, large, small)]
 }
@@ -53,11 +53,11 @@ fn compress<L: Lanes>(x: L) -> [L; 2] {
 /// Integral of a bell of width `width` over `[lo, hi]`, about its centre at 0.
 #[inline]
 pub(super) fn bell_area<B: Bell>(lo: f32, hi: f32, width: f32) -> f32 {
-    let nodes = Nodes::between(lo / width, hi / width);
+    let nodes = Nodes::between(f32::quotient(lo, width), f32::quotient(hi, width));
     let mut sum = 0.0;
     for node in GRADED {
         let (x, dx) = nodes.at(node);
-        sum += B::one(x * x, 1.0 / (1.0 + x * x)) * dx;
+        sum += B::one(x * x, f32::quotient(1.0, 1.0 + x * x)) * dx;
     }
     sum * width
 }
@@ -102,7 +102,7 @@ pub(crate) fn conserve<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> HairVie
     while c < 3 {
         let albedo = r.mul_add(colors[0][c], tt.mul_add(colors[1][c], trt * colors[2][c]));
         // The second operand wins over NaN: the albedo towards a wo that is no direction.
-        let by = L::splat(1.0) / albedo.min(most).max(L::splat(1.0));
+        let by = L::quotient(L::splat(1.0), albedo.min(most).max(L::splat(1.0)));
         colors[0][c] = colors[0][c] * by;
         colors[1][c] = colors[1][c] * by;
         colors[2][c] = colors[2][c] * by;
@@ -150,7 +150,7 @@ fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize
         let cos_theta_d = sin.mul_add(cos_pole, cos * sin_pole);
         let s = x * x;
         let d = s + one;
-        let reciprocal = one / (d * cos_theta_d.max(c(f32::MIN_POSITIVE)));
+        let reciprocal = L::quotient(one, d * cos_theta_d.max(c(f32::MIN_POSITIVE)));
         let ratio = two * sin * cos * (reciprocal * d);
         sum = (B::one(s, reciprocal * cos_theta_d) * (ratio * ratio)).mul_add(dx, sum);
         k += 1;

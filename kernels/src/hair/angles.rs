@@ -57,7 +57,7 @@ impl<L: Lanes> Angles<L> {
 
         // A division of its own: next to opposite poles theta_i and theta_o cancel, and each digit counts.
         let half_theta_i = half_atan2(wi.x, cos_theta_i, one);
-        let reciprocal = one / (far * reach);
+        let reciprocal = L::quotient(one, far * reach);
         let inv_far = reciprocal * reach;
         let tau = cross * inv_far;
         let inv_reach = reciprocal * far;
@@ -106,8 +106,8 @@ impl<L: Lanes> Angles<L> {
         let x_r = (self.half_theta_i + view.shift[0].lanes()) * hair.inv_beta[0].lanes();
         let x_tt = (self.half_theta_i + view.shift[1].lanes()) * hair.inv_beta[1].lanes();
         let x_trt = (self.half_theta_i + view.shift[2].lanes()) * hair.inv_beta[2].lanes();
-        let y_tt = self.half_back * hair.inv_half_gamma[0].lanes();
-        let y_g = (self.half_phi - hair.half_phi_g.lanes()) * hair.inv_half_gamma[1].lanes();
+        let y_tt = (self.half_back * hair.inv_half_gamma[0].lanes()).alone();
+        let y_g = ((self.half_phi - hair.half_phi_g.lanes()) * hair.inv_half_gamma[1].lanes()).alone();
         let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);
 
         // The Cauchy value of each, from two divisions. Each of the five is at most 1e9, so that four of them
@@ -115,7 +115,7 @@ impl<L: Lanes> Angles<L> {
         let (d_r, d_tt_x, d_trt) = (x_r.mul_add(x_r, one), x_tt.mul_add(x_tt, one), x_trt.mul_add(x_trt, one));
         let (d_tt_y, d_g_y) = (y_tt.mul_add(y_tt, one), y_g.mul_add(y_g, one));
         let (d_tt, d_g) = (d_tt_x * d_tt_y, d_trt * d_g_y);
-        let inv_tt_g = one / (d_tt * d_g);
+        let inv_tt_g = L::quotient(one, d_tt * d_g);
         let (cauchy_tt, cauchy_g) = (inv_tt_g * d_g, inv_tt_g * d_tt);
         let cauchy_trt = cauchy_g * d_g_y;
         // Cos^2 theta_d is the squared length of the mean of the two directions in the meridian plane: exact where both
@@ -124,7 +124,7 @@ impl<L: Lanes> Angles<L> {
         let mean_u = self.sin_theta_i.mul_add(half, view.half_sin_theta_o.lanes());
         let mean_c = self.cos_theta_i.mul_add(half, view.half_cos_theta_o.lanes());
         let cos_sq_theta_d = mean_u.mul_add(mean_u, mean_c * mean_c);
-        let inv_r = one / (d_r * cos_sq_theta_d);
+        let inv_r = L::quotient(one, d_r * cos_sq_theta_d);
         let cauchy_r = inv_r * cos_sq_theta_d;
 
         let of_tt = [s_tt, t_tt, cauchy_tt, cauchy_tt * d_tt_y, cauchy_tt * d_tt_x];

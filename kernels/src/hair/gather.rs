@@ -65,7 +65,7 @@ pub(crate) fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3], L) {
     let c = L::splat;
     let zero = c(0.0);
     let total = (energy[0] + energy[1]) + (energy[2] + energy[3]);
-    let inv_total = L::select(zero.lt(total), c(1.0) / total, zero);
+    let inv_total = L::select(zero.lt(total), L::quotient(c(1.0), total), zero);
     let p = [energy[0] * inv_total, energy[1] * inv_total, energy[2] * inv_total, energy[3] * inv_total];
     let (two, low) = (c(2.0), p[0] + p[1]);
     let more = [p[1] + p[2] + p[3], p[2] + p[3], p[3]];
@@ -93,7 +93,7 @@ impl HairMaterial<f32> {
             azimuth_sin: [tt.sin_mid, glint.sin_mid],
             azimuth_cos: [tt.cos_mid, glint.cos_mid],
             azimuth_span: [-tt.span, glint.span],
-            azimuth_density: [0.5 / (tt.span * gamma_tt), 0.5 / (glint.span * gamma_g)],
+            azimuth_density: [f32::quotient(0.5, tt.span * gamma_tt), f32::quotient(0.5, glint.span * gamma_g)],
             selection: p,
             bounds,
         };
@@ -148,7 +148,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     // 1 / (2 span beta) of the three, from one division; each is at least 1e-9.
     let range = [span[0] * hair.beta[0].lanes(), span[1] * hair.beta[1].lanes(), span[2] * hair.beta[2].lanes()];
     let first_two = range[0] * range[1];
-    let reciprocal = c(0.5) / (first_two * range[2]);
+    let reciprocal = L::quotient(c(0.5), first_two * range[2]);
     let (of_trt, rest) = (reciprocal * first_two, reciprocal * range[2]);
     let quarter = c(0.25);
     let density = [

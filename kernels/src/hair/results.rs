@@ -83,7 +83,7 @@ pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
     let limit = limit::<L>(sound);
     let value = min3(terms.sum_lobes(view), limit);
     // weight = S cos theta_i / pdf, and pdf = density / cos theta_i.
-    let by = cos * cos / density;
+    let by = L::quotient(cos * cos, density);
     Drawn {
         wi,
         value,

@@ -86,7 +86,7 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     // cosine has few. A division of its own: nothing here waits for the longitude.
     let (small, large) = (sin_psi.min(cos_psi), sin_psi.max(cos_psi));
     let as_drawn = L::and(is_bell, psi.lt(c(FRAC_PI_4)));
-    let angle = L::select(as_drawn, psi, atan_unit(small / large));
+    let angle = L::select(as_drawn, psi, atan_unit(L::quotient(small, large)));
 
     // The direction, from the double angle; phi_i = phi_o - phi. The sides of R and TRT-g are the other way round.
     let sin_psi_sq = sin_psi * sin_psi;
@@ -103,7 +103,7 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by;
 
     // The angle, rotated by the rounding error of the direction.
-    let inv_reach = one / (cos_theta_i * cos_o);
+    let inv_reach = L::quotient(one, c(f32::MIN_POSITIVE).max(cos_theta_i * cos_o));
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
     let rotation = cross.mul_sub(cos_twice.abs(), dot.abs() * sin_twice) * (inv_reach * c(0.5));

@@ -73,15 +73,15 @@ impl HairLobes<f32> {
         Self {
             alpha: [d.alpha_r, d.alpha_tt, d.alpha_trt],
             beta: [b_r, b_tt, b_trt, b_trt],
-            inv_beta: [b_r, b_tt, b_trt].map(|b| 1.0 / b),
+            inv_beta: [b_r, b_tt, b_trt].map(|b| f32::quotient(1.0, b)),
             half_gamma: [0.5 * gamma_tt, 0.5 * gamma_g],
-            inv_half_gamma: [2.0 / gamma_tt, 2.0 / gamma_g],
+            inv_half_gamma: [f32::quotient(2.0, gamma_tt), f32::quotient(2.0, gamma_g)],
             half_phi_g: 0.5 * phi_g,
             azimuth_area: [bell_area::<B>(-PI, PI, gamma_tt), 2.0 * bell_area::<B>(-phi_g, to_back, gamma_g)],
             color_r: d.intensity_r,
             color_tt: d.intensity_tt,
             color_trt: d.intensity_trt.map(|c| (c * excess).min(f32::MAX)),
-            strength: [1.0, 1.0, 1.0 / excess, d.intensity_g / excess],
+            strength: [1.0, 1.0, f32::quotient(1.0, excess), f32::quotient(d.intensity_g, excess)],
         }
     }
 }
@@ -98,7 +98,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
     let largest = wo.x.abs().max(wo.z.abs().max(wo.y.abs()));
     let usual = L::and(c(0.25).lt(largest), largest.lt(c(4.0)));
     let none = largest.lt(least);
-    let by = L::select(usual, one, one / largest.max(least));
+    let by = L::select(usual, one, L::quotient(one, largest.max(least)));
     let x = wo.x * by;
     let y = L::select(none, one, wo.y * by);
     let z = wo.z * by;
@@ -108,7 +108,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
     // On the axis the azimuth is 0 by convention, and so it is where `plane_sq` is next to denormals and has no digits.
     let off_axis = c(1e-18).lt(plane);
     let span_plane = L::select(off_axis, plane, one);
-    let reciprocal = one / (len * span_plane);
+    let reciprocal = L::quotient(one, len * span_plane);
     let (half_inv_len, inv_plane) = (c(0.5) * (reciprocal * span_plane), reciprocal * len);
     let half_theta_o = half_atan2(x, plane, len);
     // Products of components this small would underflow; the stated bounds do not cover their last digit.

@@ -90,7 +90,7 @@ where
         largest = largest.max(L::keep(zero.lt(importance[l] * size[l]), total[l]));
         l += 1;
     }
-    let scale = L::select(zero.lt(largest), c(1.0) / largest, zero);
+    let scale = L::select(zero.lt(largest), L::quotient(c(1.0), largest), zero);
     l = 0;
     while l < 4 {
         size[l] = size[l] * (total[l] * scale);
@@ -150,7 +150,7 @@ fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [
     let mut sum = [zero; 4];
     c = 0;
     while c < 3 {
-        let relative = L::keep((most * L::splat(LEAST_CHANNEL)).lt(total[c]), most / total[c]);
+        let relative = L::keep((most * L::splat(LEAST_CHANNEL)).lt(total[c]), L::quotient(most, total[c]));
         let mut l = 0;
         while l < 4 {
             let share = intensity[3 * l + c].lanes() * relative;
@@ -211,8 +211,8 @@ impl<C, const N: usize> MatchedGather<C, N> {
         let mut l = 0;
         while l < 4 {
             let area = self.area[l].lanes();
-            by_area[l] = L::keep(L::splat(0.0).lt(area), one / area.max(L::splat(LEAST_AREA)));
-            by_extent[l] = L::keep(L::splat(0.0).lt(by_extent[l]), one / by_extent[l]);
+            by_area[l] = L::keep(L::splat(0.0).lt(area), L::quotient(one, area.max(L::splat(LEAST_AREA))));
+            by_extent[l] = L::keep(L::splat(0.0).lt(by_extent[l]), L::quotient(one, by_extent[l]));
             l += 1;
         }
         [by_area, by_extent]

@@ -134,6 +134,10 @@ impl Kernel for Estimate<'_> {
         let total = c(f32::MIN_POSITIVE).max(r + g + b);
         let most = c(f32::MAX);
         let scale = c(3.0) * sum;
-        store3([(r / total * scale).min(most), (g / total * scale).min(most), (b / total * scale).min(most)])
+        store3([
+            (L::quotient(r, total) * scale).min(most),
+            (L::quotient(g, total) * scale).min(most),
+            (L::quotient(b, total) * scale).min(most),
+        ])
     }
 }

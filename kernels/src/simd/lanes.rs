@@ -57,6 +57,19 @@ pub trait Lanes:
     /// Backends that fuse recover the rounding error of a product; others split the factors. The difference of two plain
     /// products loses every digit that cancels.
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
+    /// `a / b`. Of two `/` on one lane a compiler may make one division of four lanes, and the unused ones raise exceptions.
+    #[inline(always)]
+    #[must_use]
+    fn quotient(a: Self, b: Self) -> Self {
+        (a / b).alone()
+    }
+    /// The same number. On one lane of x86-64 a barrier for the compiler, without an instruction: the number is computed by itself,
+    /// not as one lane of several.
+    #[inline(always)]
+    #[must_use]
+    fn alone(self) -> Self {
+        self
+    }
     /// Square root, correctly rounded.
     #[must_use]
     fn sqrt(self) -> Self;

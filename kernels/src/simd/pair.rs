@@ -70,6 +70,10 @@ impl<L: Lanes> Lanes for Pair<L> {
         Self(L::difference_of_products(a.0, b.0, c.0, d.0), L::difference_of_products(a.1, b.1, c.1, d.1))
     }
     #[inline(always)]
+    fn alone(self) -> Self {
+        Self(self.0.alone(), self.1.alone())
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt(), self.1.sqrt())
     }

@@ -1,16 +1,17 @@
 //! Floating-point environments of hosts: results stay finite whichever way they are rounded, and everyday input raises no
 //! exception.
 //!
-//! The compiler takes the environment for the default one. Scalar code may therefore compute in unused lanes of a vector what
-//! raises an exception; code of eight lanes has none. Only x86-64 is tested.
+//! The compiler takes the environment for the default one. It may make vectors of scalar code, and compute in their unused lanes
+//! what raises an exception: divisions are kept from it ([`Lanes::quotient`](hairis::Lanes::quotient)), so that preparing,
+//! evaluating and albedos raise none; other arithmetic is not, and scalar samples and lobes may. Only x86-64 is tested.
 
 use crate::calls::{self, COLUMNS, Direction};
 use crate::failure::{Failure, Outcome};
-use crate::probe::{Draws, columns, hits8, packet};
+use crate::probe::{Draws, columns, hits8, packet, triples};
 use crate::subject::Subject;
 use crate::totality;
 use core::hint::black_box;
-use hairis::{Bsdf, Bsdf8, Level, Vec3x, control, set_control};
+use hairis::{Bsdf, Bsdf8, Hit, Level, Model, Vec3x, control, set_control};
 
 const NAME: &str = "results are finite however they are rounded";
 
@@ -117,8 +118,8 @@ fn slices_are_finite<S: Subject>(subject: &S) -> Outcome {
     Ok(())
 }
 
-/// Unit directions off the axis raise neither invalid nor division by zero nor overflow where eight lanes are prepared and
-/// evaluated, and in slices of values, if the material scatters at all.
+/// Unit directions off the axis raise neither invalid nor division by zero nor overflow where eight lanes are prepared, evaluated
+/// and sampled, in slices of values, and where one lane is prepared and evaluated, if the material scatters at all.
 ///
 /// # Errors
 ///
@@ -137,12 +138,16 @@ pub fn everyday_input_raises_no_exception<S: Subject>(subject: &S) -> Outcome {
             let (hits8, wi8) = (hits8(&hits), packet(&wi));
             let by_axis = [wi8.x.to_array(), wi8.y.to_array(), wi8.z.to_array()];
             let one = calls::prepare(&bsdf, hits[0]);
+            scalar_is_quiet(&bsdf, hits[0], wi[0], name)?;
+            let xi8 = triples(&core::array::from_fn(|_| draws.xi3()));
             for level in Level::available() {
                 let at = || format!("{name} on {level}, {hits:?} {wi:?}");
                 quiet("prepare8", at, || calls::prepare_packed(&packed, level, hits8))?;
                 let each = calls::prepare_packed(&packed, level, hits8);
                 quiet("eval_pdf8 of one hit", at, || calls::eval8(&one, level, &wi8))?;
                 quiet("eval_pdf8 of eight hits", at, || calls::eval_each(&each, level, &wi8))?;
+                quiet("sample8 of one hit", at, || calls::sample8(&one, level, &xi8))?;
+                quiet("sample8 of eight hits", at, || calls::sample_each(&each, level, &xi8))?;
                 quiet("lobes8", at, || calls::lobes_each(&each, &wi8))?;
                 if round % 8 == 0 {
                     quiet("albedo8", at, || calls::albedo_each(&each, level))?;
@@ -158,6 +163,16 @@ pub fn everyday_input_raises_no_exception<S: Subject>(subject: &S) -> Outcome {
         }
     }
     Ok(())
+}
+
+/// The same of one lane.
+fn scalar_is_quiet<M: Model>(bsdf: &Bsdf<M>, hit: Hit, wi: Direction, name: &str) -> Outcome {
+    let at = || format!("{name}, one lane, {hit:?} {wi:?}");
+    quiet("prepare", at, || calls::prepare(bsdf, hit))?;
+    let one = calls::prepare(bsdf, hit);
+    quiet("eval_pdf", at, || calls::eval(&one, wi))?;
+    quiet("albedo", at, || calls::albedo(&one))?;
+    quiet("conserving", at, || calls::conserving(&one).albedo())
 }
 
 #[cfg(all(test, target_arch = "x86_64"))]

@@ -136,7 +136,7 @@ fn fresnel<L: Lanes>(c: L, k: L, eta_sq: L, eta_sq_less_one: L) -> [L; 2] {
     let (across, along) = (c + k, eta_sq.mul_add(c, k));
     // An index of 1 at the very edge reflects nothing.
     let none = across.lt(tiny);
-    let inverse = one / (across.max(tiny) * along.max(tiny));
+    let inverse = L::quotient(one, across.max(tiny) * along.max(tiny));
     let (inv_across, inv_along) = (inverse * along, inverse * across);
     let (t_s, t_p) = (inv_across * inv_across, inv_along * inv_along);
     let r_s = eta_sq_less_one * t_s;
@@ -153,7 +153,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
     let (zero, one) = (c(0.0), c(1.0));
     let Direction { vector, sin_theta: sin_o, cos_theta: cos_o, .. } = Direction::normalized(hit.wo);
     let off_axis = c(1e-18).lt(cos_o);
-    let inv_cos_o = L::select(off_axis, one, zero) / L::select(off_axis, cos_o, one);
+    let inv_cos_o = L::quotient(L::select(off_axis, one, zero), L::select(off_axis, cos_o, one));
     let azimuth_o = [L::select(off_axis, vector.y * inv_cos_o, one), vector.z * inv_cos_o];
 
     // The angles about the fibre: of the hit, from its normal to wo, and of the ray inside.
@@ -163,7 +163,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
     let inside_sq = cos_o.mul_add(cos_o, eta_sq_less_one);
     // Along a fibre that does not refract, the ray inside is the one outside.
     let straight = inside_sq.lt(c(1e-30));
-    let inv_inside = one / inside_sq.max(c(1e-30)).sqrt();
+    let inv_inside = L::quotient(one, inside_sq.max(c(1e-30)).sqrt());
     let sin_gamma_t = sin_gamma_o * L::select(straight, one, (cos_o * inv_inside).min(one));
     // Of squares that are added: the difference from 1 loses the edge of a fibre that hardly refracts.
     let cos_hit = cos_o * cos_gamma_o;
@@ -182,7 +182,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
         attenuation[3 + channel] = tt.store();
         attenuation[6 + channel] = trt.store();
         // Over the loss of a passage, `1 - F T`: the light that does not return to the inside.
-        attenuation[9 + channel] = (trt * (f * t) / f.mul_add(absorbed, passed).max(c(1e-30))).store();
+        attenuation[9 + channel] = L::quotient(trt * (f * t), f.mul_add(absorbed, passed).max(c(1e-30))).store();
         channel += 1;
     }
 
@@ -208,7 +208,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
         sin_cone: store4(apart(sin_cone)),
         cos_cone: store4(apart(cos_cone)),
         concentration: store4(apart(concentration)),
-        spread: store4(apart(same(one) / concentration.max(same(c(1e-8))).sqrt())),
+        spread: store4(apart(Four::quotient(same(one), concentration.max(same(c(1e-8))).sqrt()))),
         azimuth_v: store4(apart(v * by)),
         azimuth_w: store4(apart(w * by)),
         attenuation,
@@ -246,7 +246,7 @@ pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather
         let lobes: Four<L> = channel(gather, c);
         let [r, tt, trt, rest] = apart(lobes);
         let total = (r + tt) + (trt + rest);
-        let share = lobes * same(L::keep(L::splat(f32::MIN_POSITIVE).lt(total), L::splat(1.0) / total));
+        let share = lobes * same(L::keep(L::splat(f32::MIN_POSITIVE).lt(total), L::quotient(L::splat(1.0), total)));
         sum = share.mul_add(share, sum);
         c += 1;
     }

@@ -35,7 +35,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     let (m, cos_i) = (&gather.widths, wi.cos_theta);
 
     // 1 / sqrt(cos theta_i), which the tails of the Bessel functions share.
-    let inv_root_i = one / cos_i.sqrt();
+    let inv_root_i = L::quotient(one, cos_i.sqrt());
 
     // |delta| / 2 of R, TT and TRT, from the tangent of half of it or of what it lacks of an eighth turn. The rest has no
     // azimuth: TRT's is in its place, and costs nothing.
@@ -43,7 +43,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     let (v, w) = (four(&[v[0], v[1], v[2], v[2]]), four(&[w[0], w[1], w[2], w[2]]));
     let (wi_v, wi_w) = (same(wi.vector.y), same(wi.vector.z));
     let (cross, dot) = (v.mul_sub(wi_w, w * wi_v).abs(), v.mul_add(wi_v, w * wi_w));
-    let angle = atan_eighth_turn(cross.min(dot.abs()) / (same(cos_i) + cross.max(dot.abs())));
+    let angle = atan_eighth_turn(Four::quotient(cross.min(dot.abs()), same(cos_i) + cross.max(dot.abs())));
     let half = Four::select(dot.abs().lt(cross), Four::splat(FRAC_PI_4) - angle, angle);
     let half = Four::select(dot.lt(Four::splat(0.0)), Four::splat(FRAC_PI_2) - half, half);
     let exponent = half * same(m.four_inv_scale.lanes());
@@ -51,7 +51,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     // (1 + e)^-2, by one division.
     let tail = Four::splat(1.0) + gaussian(exponent);
     let [a, b, d, _] = apart(tail * tail);
-    let (inverse, ab) = (one / (a * b * d), a * b);
+    let (inverse, ab) = (L::quotient(one, a * b * d), a * b);
     let (inv_ab, inv_d) = (inverse * d, inverse * ab);
     let logistic = Pair(Pair(inv_ab * b, inv_ab * a), Pair(inv_d, one));
     let Pair(first, Pair(trt, _)) = exponent;

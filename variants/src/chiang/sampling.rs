@@ -28,7 +28,7 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, lobe: 
     // Azimuth: the trimmed logistic by inversion; that of the rest is uniform.
     let kept = m.kept.lanes();
     let edge = (one - kept) * c(0.5);
-    let ratio = xi[0].mul_add(kept, edge) / (one - xi[0]).mul_add(kept, edge);
+    let ratio = L::quotient(xi[0].mul_add(kept, edge), (one - xi[0]).mul_add(kept, edge));
     let logistic = log2(ratio) * (m.scale.lanes() * c(0.5 * LN_2));
     let uniform = (xi[0] - c(0.5)) * c(PI);
     let half_turn = c(0.5 * PI);
