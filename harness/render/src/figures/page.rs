@@ -3,7 +3,7 @@
 use super::measure::{BySampler, Measured, Plan};
 use super::models::{self, Preset};
 use super::panel::{Column, panel};
-use super::verdict::{ERRORS, gain, sentence, visible};
+use super::verdict::{ERRORS, gain, headline, sentence, visible};
 use crate::args::Figures;
 use crate::numbers::Sequence;
 use crate::picture::exposure;
@@ -36,7 +36,7 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
     let machine = Machine::current();
     let mut report = Report::new("What samplers are worth on pictures of hair").subtitle(machine.summary());
     for measured in all {
-        report = report.finding(format!("{}: {}", measured.title(), sentence(measured)));
+        report = report.verdict(measured.title(), headline(measured));
     }
     report = report.section(Section::new("Summary").table(summary(all)));
     for measured in all {

@@ -3,7 +3,7 @@
 use super::measure::{BySampler, Measured};
 use crate::protocol::Errors;
 use hairis_harness::stats::Estimate;
-use hairis_harness::table::number::ratio_with_error;
+use hairis_harness::table::number::{ratio, ratio_with_error};
 
 /// A gain below this, or within two standard errors of 1, is none.
 const GAIN: f64 = 1.15;
@@ -31,7 +31,27 @@ fn matters(ratio: &Estimate) -> bool {
     (value > GAIN && value - 2.0 * standard_error > 1.0) || (value < 1.0 / GAIN && value + 2.0 * standard_error < 1.0)
 }
 
-/// The sentence.
+/// Whether the sampler matters.
+fn answer(measured: &Measured) -> &'static str {
+    let [others @ .., _] = measured.samplers.as_slice() else { return "" };
+    // Relative errors are what is seen.
+    let any = others.iter().any(|one| ERRORS[1..].iter().any(|(_, error)| matters(&gain(measured, one, *error))));
+    if any { "The sampler matters." } else { "The sampler does not matter: samples of the light do the work." }
+}
+
+/// The answer, with the two errors that say most in short.
+pub(super) fn headline(measured: &Measured) -> String {
+    let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
+    let [(_, square), _, (_, trimmed)] = ERRORS;
+    let one = |one: &BySampler| {
+        let [trimmed, square] = [trimmed, square].map(|error| ratio(gain(measured, one, error).value));
+        format!("{} {trimmed} ({square})", one.name)
+    };
+    let list = others.iter().map(one).collect::<Vec<String>>().join(", ");
+    format!("{} Trimmed relMSE × time (MSE × time), relative to `{}`: {list}.", answer(measured), best.name)
+}
+
+/// All errors, with their standard errors.
 pub(super) fn sentence(measured: &Measured) -> String {
     let samples = measured.samplers[0].runs[measured.shown()].samples;
     let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
@@ -47,14 +67,7 @@ pub(super) fn sentence(measured: &Measured) -> String {
         best.name,
         ERRORS.iter().map(list).collect::<Vec<String>>().join("; ")
     );
-    // Relative errors are what is seen.
-    let any = others.iter().any(|one| ERRORS[1..].iter().any(|(_, error)| matters(&gain(measured, one, *error))));
-    let answer = if any {
-        "Does the sampler matter? Yes."
-    } else {
-        "Does the sampler matter? No: samples of the light do the work."
-    };
-    format!("{answer} {numbers}")
+    format!("{} {numbers}", answer(measured))
 }
 
 /// How many rays see a light.
