@@ -16,7 +16,6 @@ mod packet;
 
 use crate::stats::percentile;
 use crate::subject::values_json;
-use core::fmt;
 use hairis::ParamError;
 use hairis_variants::{Accuracy, ModelId};
 use measure::{CodePath, LanePlace, LocatedError, measure};
@@ -44,17 +43,7 @@ impl Region {
     /// For tables.
     #[must_use]
     pub const fn label(self) -> &'static str {
-        match self {
-            Self::General => "general",
-            Self::Axis => "near the axis",
-            Self::Back => "near phi = pi",
-        }
-    }
-}
-
-impl fmt::Display for Region {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.label())
+        ["general", "near the axis", "near phi = pi"][self as usize]
     }
 }
 
@@ -84,33 +73,14 @@ impl Quantity {
     /// For tables.
     #[must_use]
     pub const fn label(self) -> &'static str {
-        match self {
-            Self::Pdf => "pdf",
-            Self::Value => "S",
-            Self::SamplePdf => "sample pdf",
-            Self::SampleValue => "sample S",
-            Self::SampleWeight => "sample weight",
-            Self::SampleCdf => "sample cdf",
-        }
+        ["pdf", "S", "sample pdf", "sample S", "sample weight", "sample cdf"][self as usize]
     }
 
     /// The largest error allowed.
     #[must_use]
     pub const fn bound(self, accuracy: &Accuracy) -> f64 {
-        match self {
-            Self::Value => accuracy.value,
-            Self::Pdf => accuracy.pdf,
-            Self::SamplePdf => accuracy.sample_pdf,
-            Self::SampleValue => accuracy.sample_value,
-            Self::SampleWeight => accuracy.sample_weight,
-            Self::SampleCdf => accuracy.cdf,
-        }
-    }
-}
-
-impl fmt::Display for Quantity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.label())
+        let Accuracy { pdf, value, sample_pdf, sample_value, sample_weight, cdf, .. } = *accuracy;
+        [pdf, value, sample_pdf, sample_value, sample_weight, cdf][self as usize]
     }
 }
 
@@ -124,16 +94,10 @@ pub struct AgreementConfig {
 }
 
 impl AgreementConfig {
-    /// A few seconds on one core.
+    /// Three quarters of a minute on one core; if `quick`, a few seconds.
     #[must_use]
-    pub const fn quick(seed: u64) -> Self {
-        Self { packets: 4_000, seed }
-    }
-
-    /// Three quarters of a minute on one core.
-    #[must_use]
-    pub const fn full(seed: u64) -> Self {
-        Self { packets: 40_000, seed }
+    pub const fn new(seed: u64, quick: bool) -> Self {
+        Self { packets: if quick { 4_000 } else { 40_000 }, seed }
     }
 }
 
@@ -214,12 +178,6 @@ pub fn run(config: &AgreementConfig) -> Result<Vec<AgreementResult>, ParamError>
     Ok(rows)
 }
 
-/// Whether every row is within its bound.
-#[must_use]
-pub fn passed(rows: &[AgreementResult]) -> bool {
-    rows.iter().all(|row| row.passed)
-}
-
 /// The rows of one model in one region; the packets are shared by all code paths.
 fn of_model(
     model: ModelId,
@@ -228,30 +186,25 @@ fn of_model(
     config: &AgreementConfig,
 ) -> Result<Vec<AgreementResult>, ParamError> {
     let paths = CodePath::all();
-    let columns = paths.len() * Quantity::ALL.len();
-    let indices: Vec<u32> = (0..config.packets).collect();
-    let parts: Vec<Vec<Column>> = indices
-        .par_chunks(500)
-        .map(|chunk| {
-            let mut part = vec![Column::default(); columns];
-            for index in chunk {
-                let packet = Packet::draw(model, formulas, region, config.seed, u64::from(*index))?;
-                for (w, path) in paths.iter().enumerate() {
-                    measure(model, region, &packet, *path, &mut |quantity, measured| {
-                        part[w * Quantity::ALL.len() + quantity as usize].add(measured);
-                    })?;
-                }
+    let empty = || vec![Column::default(); paths.len() * Quantity::ALL.len()];
+    let part = |chunk: &[u32]| -> Result<Vec<Column>, ParamError> {
+        let mut columns = empty();
+        for index in chunk {
+            let packet = Packet::draw(model, formulas, region, config.seed, u64::from(*index))?;
+            for (path, columns) in paths.iter().zip(columns.chunks_exact_mut(Quantity::ALL.len())) {
+                measure(model, region, &packet, *path, &mut |quantity, measured| {
+                    columns[quantity as usize].add(measured);
+                })?;
             }
-            Ok(part)
-        })
-        .collect::<Result<_, ParamError>>()?;
-
-    let mut all = vec![Column::default(); columns];
-    for part in parts {
-        for (column, more) in all.iter_mut().zip(part) {
-            column.join(more);
         }
-    }
+        Ok(columns)
+    };
+    let join = |mut all: Vec<Column>, part: Vec<Column>| {
+        all.iter_mut().zip(part).for_each(|(column, more)| column.join(more));
+        Ok(all)
+    };
+    let indices: Vec<u32> = (0..config.packets).collect();
+    let all = indices.par_chunks(500).map(part).try_reduce(empty, join)?;
     let labels = paths.iter().flat_map(|path| Quantity::ALL.map(|quantity| (*path, quantity)));
     // Not every model has a cdf.
     let compared =
