@@ -8,7 +8,7 @@ mod tables;
 pub use page::report;
 pub use tables::{Depth, tables};
 
-use crate::agreement::{self, AgreementConfig, AgreementResult};
+use crate::agreement::{self, AgreementResult};
 use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, SAMPLERS, SampleCosts};
 use crate::light::Environment;
 use crate::machine::Machine;
@@ -98,7 +98,7 @@ pub fn run(config: &CompareConfig<'_>, progress: &(dyn Fn(Part, f64) + Sync)) ->
     let costs = sample_costs(&Times::measure(config.seed, config.quick, None));
 
     progress(Part::Agreement, 0.0);
-    let agreement = agreement::run(&AgreementConfig::new(config.seed, config.quick))?;
+    let agreement = agreement::run(config.seed, if config.quick { 4_000 } else { 40_000 })?;
     progress(Part::Agreement, 1.0);
 
     let variance =
