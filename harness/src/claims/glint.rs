@@ -115,11 +115,11 @@ pub(super) fn interval(cells: &FoundCells) -> Result<Claim, ParamError> {
         ("growth of V, TRT and glints alone, glints on [0, π]", both(&alone, 1)),
     ]);
     // The glints that leave most of themselves behind: the widest, furthest from the viewer.
-    let widest = alone.last().map(|params| Hair::new(ModelKind::Cauchy, params, 0.0));
+    let widest = Hair::new(ModelKind::Cauchy, &alone[alone.len() - 1], 0.0);
     let at = "γ_g = 20°, φ_g = 45°, I_g = 5, Cauchy";
     let mut add = |name, number: Bounded| figures.push(Figure::new(name, Origin::Quadrature, number));
-    for (gap, hair) in GAPS.into_iter().flat_map(|gap| widest.as_ref().map(|hair| (gap, hair))) {
-        let [published, whole] = up_to(hair, gap);
+    for gap in GAPS {
+        let [published, whole] = up_to(&widest, gap);
         add(format!("V up to {gap:e} rad from π, {at}"), published);
         if gap == last {
             add(format!("the same, glints on [0, π], {at}"), whole);

@@ -1,7 +1,7 @@
 //! One cell of each table.
 
 use super::case::Case;
-use super::measure::{self, CellMoments, bias_z, is_tested, moments};
+use super::measure::{self, bias_z, is_tested, moments};
 use super::reference::exact_variance;
 use super::result::{ConvergencePoint, EfficiencyRow, MisRow, ReferenceV, SweepRow, Technique};
 use super::{EfficiencyConfig, ModelKind, Reference, stream};
@@ -29,14 +29,6 @@ fn cell(config: &EfficiencyConfig<'_>, table: u64, case: &Case, rest: &[u64]) ->
 }
 
 impl Place<'_> {
-    fn z(&self, tally: &CellMoments) -> f64 {
-        bias_z(&tally.moments, self.reference)
-    }
-
-    fn is_tested(&self, samples: usize, sampler: Sampler) -> bool {
-        is_tested(samples, self.reference.predicted(sampler))
-    }
-
     pub(super) fn row(&self, sampler: Sampler, sequence: SequenceKind) -> EfficiencyRow {
         let Self { config, case, light, index, reference } = *self;
         let budget = &config.budget;
@@ -63,8 +55,8 @@ impl Place<'_> {
             max_contribution: tally.max_in_means(),
             mean: tally.moments.mean_estimate(),
             reference: *reference,
-            z: self.z(&tally),
-            tested: self.is_tested(n * randomisations, sampler),
+            z: bias_z(&tally.moments, reference),
+            tested: is_tested(n * randomisations, reference.predicted(sampler)),
         }
     }
 
@@ -92,9 +84,9 @@ impl Place<'_> {
             max_contribution: tally.max_in_means(),
             mean: tally.moments.mean_estimate(),
             reference: *reference,
-            z: self.z(&tally),
+            z: bias_z(&tally.moments, reference),
             tested: match technique {
-                Technique::Bsdf(sampler) => self.is_tested(n, sampler),
+                Technique::Bsdf(sampler) => is_tested(n, reference.predicted(sampler)),
                 // Samples from the light hit it however small it is.
                 _ => true,
             },
@@ -116,8 +108,8 @@ impl Place<'_> {
             n,
             randomisations,
             rms: rms_error(&tally.moments, reference.value),
-            z: self.z(&tally),
-            tested: self.is_tested(n * randomisations, sampler),
+            z: bias_z(&tally.moments, reference),
+            tested: is_tested(n * randomisations, reference.predicted(sampler)),
         }
     }
 }

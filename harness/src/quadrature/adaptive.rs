@@ -1,6 +1,5 @@
 //! Globally adaptive Gauss-Kronrod integration on lines and rectangles.
 
-use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Positive nodes of the 15-point Kronrod rule, outermost first, then 0, each with its weight and that of the embedded 7-point
@@ -17,7 +16,7 @@ const RULE: [[f64; 3]; 8] = [
 ];
 
 /// Tolerance of an adaptive integral.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Absolute error allowed in each component, in the unit of the integral.
     pub absolute: f64,
