@@ -41,8 +41,7 @@ impl Region {
     pub const ALL: [Self; 3] = [Self::General, Self::Axis, Self::Back];
 
     /// For tables.
-    #[must_use]
-    pub const fn label(self) -> &'static str {
+    pub(crate) const fn label(self) -> &'static str {
         ["general", "near the axis", "near phi = pi"][self as usize]
     }
 }
@@ -71,14 +70,12 @@ impl Quantity {
         [Self::Pdf, Self::Value, Self::SamplePdf, Self::SampleValue, Self::SampleWeight, Self::SampleCdf];
 
     /// For tables.
-    #[must_use]
-    pub const fn label(self) -> &'static str {
+    pub(crate) const fn label(self) -> &'static str {
         ["pdf", "S", "sample pdf", "sample S", "sample weight", "sample cdf"][self as usize]
     }
 
     /// The largest error allowed.
-    #[must_use]
-    pub const fn bound(self, accuracy: &Accuracy) -> f64 {
+    pub(crate) const fn bound(self, accuracy: &Accuracy) -> f64 {
         let Accuracy { pdf, value, sample_pdf, sample_value, sample_weight, cdf, .. } = *accuracy;
         [pdf, value, sample_pdf, sample_value, sample_weight, cdf][self as usize]
     }

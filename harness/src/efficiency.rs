@@ -108,8 +108,7 @@ pub struct SampleCosts {
 
 impl SampleCosts {
     /// The time of a sample of `sampler` for `model`, in ns; not a number for a sampler that is not compared.
-    #[must_use]
-    pub fn ns(&self, model: ModelKind, sampler: Sampler) -> f64 {
+    pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler) -> f64 {
         of_sampler([&self.gaussian, &self.cauchy][model as usize], sampler)
     }
 }

@@ -35,14 +35,12 @@ impl Sampler {
     pub const ALL: [Self; 5] = [Self::Uniform, Self::Published, Self::Matched5, Self::Matched, Self::Matched25];
 
     /// Name in reports and in rows.
-    #[must_use]
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         ["uniform", "published", "matched-5", "matched", "matched-25"][self as usize]
     }
 
     /// Uniform numbers per sample.
-    #[must_use]
-    pub const fn dims(self) -> usize {
+    pub(crate) const fn dims(self) -> usize {
         match self {
             Self::Uniform => 2,
             _ => 3,

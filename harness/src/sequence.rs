@@ -158,8 +158,7 @@ impl SequenceKind {
     pub const ALL: [Self; 3] = [Self::Independent, Self::Halton, Self::Stratified];
 
     /// Name in reports and flags.
-    #[must_use]
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         ["independent", "halton", "stratified"][self as usize]
     }
 
@@ -170,8 +169,7 @@ impl SequenceKind {
     ///
     /// # Panics
     /// For `Halton` with more dimensions than [`HALTON_BASES`] has.
-    #[must_use]
-    pub fn source(self, seed: u64, stream: u64, dims: usize, samples: usize) -> Box<dyn XiSource + Send> {
+    pub(crate) fn source(self, seed: u64, stream: u64, dims: usize, samples: usize) -> Box<dyn XiSource + Send> {
         match self {
             Self::Independent => Box::new(Independent::new(seed, stream)),
             Self::Halton => Box::new(Halton::new(dims, seed, stream)),

@@ -98,8 +98,7 @@ pub struct SpeedConfig {
 
 impl SpeedConfig {
     /// About twenty seconds; if `quick`, four.
-    #[must_use]
-    pub const fn new(seed: u64, quick: bool) -> Self {
+    pub(crate) const fn new(seed: u64, quick: bool) -> Self {
         Self { seconds: if quick { 4.0 } else { 20.0 }, seed }
     }
 }

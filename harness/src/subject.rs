@@ -22,8 +22,7 @@ impl ModelKind {
     pub const ALL: [Self; 2] = [Self::Gaussian, Self::Cauchy];
 
     /// Name in reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         self.id().name()
     }
 
@@ -33,8 +32,7 @@ impl ModelKind {
     }
 
     /// Name in titles and sentences.
-    #[must_use]
-    pub const fn title(self) -> &'static str {
+    pub(crate) const fn title(self) -> &'static str {
         ["Gaussian", "Cauchy"][self as usize]
     }
 

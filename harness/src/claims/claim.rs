@@ -22,8 +22,7 @@ pub enum Origin {
 
 impl Origin {
     /// Name in tables.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         ["quadrature", "samples", "samples and times", "counted"][self as usize]
     }
 }

@@ -87,8 +87,7 @@ impl Reference {
     }
 
     /// V and skewness of one independent sample; not numbers for a sampler that is not compared.
-    #[must_use]
-    pub fn predicted(&self, sampler: Sampler) -> [f64; 2] {
+    pub(crate) fn predicted(&self, sampler: Sampler) -> [f64; 2] {
         [&self.v, &self.skewness].map(|each| of_sampler(each, sampler))
     }
 }
@@ -174,8 +173,7 @@ impl Technique {
     }
 
     /// Name in reports.
-    #[must_use]
-    pub fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         match self {
             Self::Light => "light only".to_owned(),
             Self::Bsdf(sampler) => format!("{} only", sampler.name()),
@@ -184,8 +182,7 @@ impl Technique {
     }
 
     /// Samples a contribution takes.
-    #[must_use]
-    pub fn samples_each(self) -> usize {
+    pub(crate) fn samples_each(self) -> usize {
         if matches!(self, Self::Mis(_)) { 2 } else { 1 }
     }
 }

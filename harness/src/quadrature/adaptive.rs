@@ -35,8 +35,7 @@ impl Default for Tolerance {
 
 impl Tolerance {
     /// The default with another relative error.
-    #[must_use]
-    pub fn relative(relative: f64) -> Self {
+    pub(crate) fn relative(relative: f64) -> Self {
         Self { relative, ..Self::default() }
     }
 

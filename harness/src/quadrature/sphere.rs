@@ -16,7 +16,7 @@ pub fn fibre_direction(theta: f64, phi: f64) -> DVec3 {
 
 /// Integrator over all directions, `d omega = cos theta dtheta dphi`.
 ///
-/// Announce each lobe by [`theta_lobe`](Self::theta_lobe) and [`phi_lobe`](Self::phi_lobe), or each edge by a plain breakpoint: then widths down to 0.01 rad
+/// Announce each lobe by `theta_lobe` and `phi_lobe`, or each edge by a plain breakpoint: then widths down to 0.01 rad
 /// and far below are resolved to the tolerance. The poles are never evaluated.
 ///
 /// # Examples
@@ -51,15 +51,13 @@ impl SphereIntegrator {
     }
 
     /// The same with another tolerance.
-    #[must_use]
-    pub fn with_tolerance(mut self, tolerance: Tolerance) -> Self {
+    pub(crate) fn with_tolerance(mut self, tolerance: Tolerance) -> Self {
         self.tolerance = tolerance;
         self
     }
 
     /// Adds a breakpoint in `theta`, in rad; one outside (-pi/2, pi/2) is dropped.
-    #[must_use]
-    pub fn theta_break(mut self, theta: f64) -> Self {
+    pub(crate) fn theta_break(mut self, theta: f64) -> Self {
         if theta.abs() < FRAC_PI_2 {
             self.theta.push(theta);
         }
@@ -67,8 +65,7 @@ impl SphereIntegrator {
     }
 
     /// Adds a breakpoint in `phi`, in rad, wrapped to [-pi, pi]; one that is not finite is dropped.
-    #[must_use]
-    pub fn phi_break(mut self, phi: f64) -> Self {
+    pub(crate) fn phi_break(mut self, phi: f64) -> Self {
         if phi.is_finite() {
             self.phi.push(phi - 2.0 * PI * (phi / (2.0 * PI)).round());
         }
@@ -78,14 +75,12 @@ impl SphereIntegrator {
     /// Adds the breakpoints of a bell in `theta`: its centre, and 3 and 12 widths either side. In rad.
     ///
     /// A bell of width `beta` in `theta_h = (theta_i + theta_o)/2` has width `2 beta` in `theta_i`, about `2 alpha - theta_o`.
-    #[must_use]
-    pub fn theta_lobe(self, centre: f64, width: f64) -> Self {
+    pub(crate) fn theta_lobe(self, centre: f64, width: f64) -> Self {
         bell_breakpoints(0.0, width).into_iter().fold(self, |q, d| q.theta_break(centre + d))
     }
 
     /// Adds the breakpoints of a bell in `phi`: its centre, and 3 and 12 widths either side, wrapped. In rad.
-    #[must_use]
-    pub fn phi_lobe(self, centre: f64, width: f64) -> Self {
+    pub(crate) fn phi_lobe(self, centre: f64, width: f64) -> Self {
         // Beyond half a turn the wrapped tails would only shred the circle.
         bell_breakpoints(0.0, width).into_iter().filter(|d| d.abs() < PI).fold(self, |q, d| q.phi_break(centre + d))
     }

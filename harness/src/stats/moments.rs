@@ -115,8 +115,7 @@ impl Moments {
     }
 
     /// Third and fourth central moments (divisor n), in the unit of the samples to the third and fourth power.
-    #[must_use]
-    pub fn higher_moments(&self) -> [f64; 2] {
+    pub(crate) fn higher_moments(&self) -> [f64; 2] {
         let n = self.count as f64;
         [self.sum_cube / n, self.sum_fourth / n]
     }
