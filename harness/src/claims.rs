@@ -19,6 +19,7 @@
 //! Figures depend on the seed and on the build, whatever the number of threads; those whose [`Origin`] is
 //! [`Timed`](Origin::Timed), all in one claim, depend on the machine as well.
 
+mod bounded;
 mod bounds;
 mod claim;
 mod energy;
@@ -41,15 +42,6 @@ use crate::subject::ModelKind;
 use hair::{Hair, HairFigures};
 use hairis::ParamError;
 use serde::Serialize;
-
-/// Settings of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ClaimsConfig {
-    /// Seed of everything that is drawn.
-    pub seed: u64,
-    /// Whether to take the 48 cells and the samples of the short study, in place of all 3024.
-    pub quick: bool,
-}
 
 /// All results; the content of `claims.json`.
 #[derive(Clone, Debug, Serialize)]
@@ -80,30 +72,26 @@ pub struct Settings {
 /// Results of quadrature for every cell and model.
 type FoundCells = [(Cell, ModelKind, HairFigures)];
 
-/// Computes the claims. Workers call `progress` with the share that is done, from 0 to 1, in no order.
+/// Computes the claims with this seed; if `quick`, on the 48 cells and with the samples of the short study, in place of all 3024.
+/// Workers call `progress` with the share that is done, from 0 to 1, in no order.
 ///
 /// # Errors
 ///
 /// Never in practice: the hair of the grid is within the accepted ranges.
-pub fn run(config: ClaimsConfig, progress: &(dyn Fn(f64) + Sync)) -> Result<Claims, ParamError> {
+pub fn run(seed: u64, quick: bool, progress: &(dyn Fn(f64) + Sync)) -> Result<Claims, ParamError> {
     let sky = Sky::default().environment();
-    let plan = Plan { seed: config.seed, quick: config.quick, environment: &sky };
+    let plan = Plan { seed, quick, environment: &sky };
     let grid = plan.grid();
     // Quadrature and sampling take about as long.
     let [first, second] =
         [0.0, 0.5].map(|begin| move |done: usize, total: usize| progress(begin + 0.5 * done as f64 / total as f64));
     let cells = by_quadrature(grid, &Progress::new(grid.len(), &first))?;
 
-    let mut claims = vec![energy::claim(), tails::claim(), uniform::claim(&plan, &cells)?, grazing::claim()];
+    let mut claims = vec![energy::claim(), tails::claim(), uniform::claim(&plan, &cells)?, grazing::claim()?];
     claims.extend(performance::claims(&plan, &Progress::new(grid.len(), &second))?);
     claims.extend([bounds::claim(&cells), glint::density(&cells)?, glint::interval(&cells)?]);
-    let settings = Settings {
-        seed: config.seed,
-        quick: config.quick,
-        cells: grid.len(),
-        samples: plan.budget().samples,
-        lights: performance::LIGHTS,
-    };
+    let lights = performance::LIGHTS.map(|[_, name]| name);
+    let settings = Settings { seed, quick, cells: grid.len(), samples: plan.budget().samples, lights };
     Ok(Claims { settings, machine: Machine::current(), claims })
 }
 
@@ -117,12 +105,4 @@ fn by_quadrature(grid: Grid, progress: &Progress<'_>) -> Result<Vec<(Cell, Model
     let cells: Vec<Cell> = (0..grid.len()).map(|index| grid.cell(index)).collect();
     let found = |cell: &Cell| ModelKind::ALL.map(|model| Ok((*cell, model, hair_of(cell, model)?.found())));
     progress.map(&cells, found).into_iter().flatten().collect()
-}
-
-impl Claims {
-    /// The claim of this name.
-    #[must_use]
-    pub fn claim(&self, id: &str) -> Option<&Claim> {
-        self.claims.iter().find(|claim| claim.id == id)
-    }
 }

@@ -36,7 +36,7 @@ fn environment(path: Option<&Path>) -> Result<(Environment, String), Error> {
     };
     let environment = Environment::load(path).map_err(Error::Environment)?;
     if environment.is_black() {
-        return Err(Error::Environment(LightError::Black(path.to_owned(), environment.repairs())));
+        return Err(Error::Environment(LightError::black(path, environment.repairs())));
     }
     environment.notes().iter().for_each(|note| say(note));
     Ok((environment, path.display().to_string()))

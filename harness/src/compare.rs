@@ -8,7 +8,7 @@ mod tables;
 pub use page::report;
 pub use tables::{Depth, tables};
 
-use crate::agreement::{self, AgreementConfig, AgreementResult};
+use crate::agreement::{self, AgreementResult};
 use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, SAMPLERS, SampleCosts};
 use crate::light::Environment;
 use crate::machine::Machine;
@@ -94,13 +94,11 @@ impl Part {
 ///
 /// Never in practice: the hair that is compared is within the accepted ranges.
 pub fn run(config: &CompareConfig<'_>, progress: &(dyn Fn(Part, f64) + Sync)) -> Result<Comparison, ParamError> {
-    let timing = if config.quick { SpeedConfig::quick(config.seed) } else { SpeedConfig::full(config.seed) };
-    let speed = speed::run(&timing, |done| progress(Part::Speed, done))?;
+    let speed = speed::run(&SpeedConfig::new(config.seed, config.quick), |done| progress(Part::Speed, done))?;
     let costs = sample_costs(&Times::measure(config.seed, config.quick, None));
 
-    let errors = if config.quick { AgreementConfig::quick(config.seed) } else { AgreementConfig::full(config.seed) };
     progress(Part::Agreement, 0.0);
-    let agreement = agreement::run(&errors)?;
+    let agreement = agreement::run(config.seed, if config.quick { 4_000 } else { 40_000 })?;
     progress(Part::Agreement, 1.0);
 
     let variance =
@@ -138,10 +136,9 @@ impl Comparison {
     /// Failures: wrong answers, errors beyond their bounds, biased estimates. Empty if there are none.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
-        let slow =
-            self.speed.rows.iter().filter(|row| !row.passed).map(|row| {
-                format!("speed: {} {} {} {} gave wrong answers", row.op, row.model, row.contender, row.level)
-            });
+        let slow = self.speed.rows.iter().filter(|row| !row.passed).map(|row| {
+            format!("speed: {} {} {} {} gave wrong answers", row.op.label(), row.model, row.contender, row.level)
+        });
         let far = self.agreement.iter().filter(|row| !row.passed).map(|row| {
             format!(
                 "agreement: {} {} {} {} {} {}: {:.2e} is beyond {:.0e}",
@@ -149,8 +146,8 @@ impl Comparison {
                 row.sampler.unwrap_or_default(),
                 row.path,
                 row.level,
-                row.region,
-                row.quantity,
+                row.region.label(),
+                row.quantity.label(),
                 row.worst,
                 row.bound
             )

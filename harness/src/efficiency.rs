@@ -35,7 +35,6 @@
 mod case;
 mod cells;
 mod measure;
-mod mis;
 mod reference;
 mod result;
 mod run;
@@ -93,9 +92,9 @@ pub const SAMPLERS: [Sampler; 3] = [Sampler::Uniform, Sampler::Published, Sample
 /// A figure of each of [`SAMPLERS`], in their order.
 pub type EachSampler<T> = [T; SAMPLERS.len()];
 
-/// The figure of one sampler; none of one that is not compared.
-fn of_sampler<T: Copy>(each: &EachSampler<T>, sampler: Sampler) -> Option<T> {
-    SAMPLERS.iter().zip(each).find(|(of, _)| **of == sampler).map(|(_, figure)| *figure)
+/// The figure of one sampler; not a number for one that is not compared.
+fn of_sampler(each: &EachSampler<f64>, sampler: Sampler) -> f64 {
+    SAMPLERS.iter().zip(each).find(|(of, _)| **of == sampler).map_or(f64::NAN, |(_, figure)| *figure)
 }
 
 /// Time of one sample of one model on the eight-lane path, in ns: set-up amortised over 16 samples, lights excluded.
@@ -109,17 +108,12 @@ pub struct SampleCosts {
 
 impl SampleCosts {
     /// The time of a sample of `sampler` for `model`, in ns; not a number for a sampler that is not compared.
-    #[must_use]
-    pub fn ns(&self, model: ModelKind, sampler: Sampler) -> f64 {
-        let each = match model {
-            ModelKind::Gaussian => &self.gaussian,
-            ModelKind::Cauchy => &self.cauchy,
-        };
-        of_sampler(each, sampler).unwrap_or(f64::NAN)
+    pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler) -> f64 {
+        of_sampler([&self.gaussian, &self.cauchy][model as usize], sampler)
     }
 }
 
-/// Numbers of samples. [`full`](Self::full) and [`quick`](Self::quick) are those of the command line.
+/// Numbers of samples. [`new`](Self::new) has those of the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Budget {
     /// Independent samples per row.
@@ -143,35 +137,20 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// About 100 s of processor time, 50 s on two idle cores.
+    /// About 100 s of processor time, 50 s on two idle cores; if `quick`, about 18 s and 9 s.
     #[must_use]
-    pub const fn full() -> Self {
+    pub fn new(quick: bool) -> Self {
+        let pick = |full: usize, short: usize| if quick { short } else { full };
         Self {
-            independent: 2_000_000,
+            independent: pick(2_000_000, 250_000),
             correlated: 64,
-            randomisations: 4_096,
-            mis: 500_000,
-            sweep: 1_000_000,
-            convergence: 256,
+            randomisations: pick(4_096, 512),
+            mis: pick(500_000, 32_768),
+            sweep: pick(1_000_000, 65_536),
+            convergence: pick(256, 64),
             convergence_n: 4_096,
-            quadrature_texels: 1024 * 512,
-            reference_passes: 256,
-        }
-    }
-
-    /// About 18 s of processor time, 9 s on two idle cores.
-    #[must_use]
-    pub const fn quick() -> Self {
-        Self {
-            independent: 250_000,
-            correlated: 64,
-            randomisations: 512,
-            mis: 32_768,
-            sweep: 65_536,
-            convergence: 64,
-            convergence_n: 4_096,
-            quadrature_texels: 128 * 64,
-            reference_passes: 64,
+            quadrature_texels: pick(1024 * 512, 128 * 64),
+            reference_passes: pick(256, 64),
         }
     }
 }
@@ -199,17 +178,11 @@ impl<'a> EfficiencyConfig<'a> {
     /// use hairis_harness::efficiency::{Budget, EfficiencyConfig};
     /// let sky = hairis_harness::light::Sky::default().environment();
     /// let config = EfficiencyConfig::new(1, true, &sky);
-    /// assert_eq!(config.budget, Budget::quick());
+    /// assert_eq!(config.budget, Budget::new(true));
     /// ```
     #[must_use]
     pub fn new(seed: u64, quick: bool, environment: &'a Environment) -> Self {
-        Self {
-            seed,
-            budget: if quick { Budget::quick() } else { Budget::full() },
-            environment,
-            params: HairParams::default(),
-            costs: None,
-        }
+        Self { seed, budget: Budget::new(quick), environment, params: HairParams::default(), costs: None }
     }
 }
 

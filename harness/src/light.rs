@@ -1,7 +1,7 @@
 //! Lights for the comparison: functions of direction alone, infinitely far away.
 //!
 //! World frame: y is up. With the fibre along world x, the fibre frame (u, v, w) is the world frame (x, y, z), and
-//! [`fibre_angles`](crate::quadrature::fibre_angles) of a world direction are its inclination and azimuth. Radiance is linear RGB with the Rec. 709 primaries, in arbitrary but common units.
+//! [`fibre_direction`](crate::quadrature::fibre_direction) gives world directions. Radiance is linear RGB with the Rec. 709 primaries, in arbitrary but common units.
 
 mod constant;
 mod environment;
@@ -28,7 +28,7 @@ use wide::f32x8;
 
 /// Luminance of a linear RGB colour with the Rec. 709 primaries, in the unit of the colour.
 #[must_use]
-pub fn luminance(rgb: [f64; 3]) -> f64 {
+pub const fn luminance(rgb: [f64; 3]) -> f64 {
     0.212_639 * rgb[0] + 0.715_169 * rgb[1] + 0.072_192 * rgb[2]
 }
 
@@ -54,13 +54,23 @@ pub struct Seen8 {
 
 /// Light arriving from infinitely far away.
 ///
-/// Directions given to `radiance` and `pdf` need not be exactly of unit length: a direction that went through `f32` is good enough.
+/// Directions given to `see` need not be exactly of unit length: a direction that went through `f32` is good enough.
 pub trait Light: Sync + Send {
     /// Name in tables and reports.
     fn name(&self) -> &str;
 
+    /// [`radiance`](Self::radiance) and [`pdf`](Self::pdf).
+    fn see(&self, dir: DVec3) -> ([f64; 3], f64);
+
     /// Radiance arriving from `dir`, linear RGB.
-    fn radiance(&self, dir: DVec3) -> [f64; 3];
+    fn radiance(&self, dir: DVec3) -> [f64; 3] {
+        self.see(dir).0
+    }
+
+    /// Density of [`sample`](Self::sample) at `dir`, per steradian; integrates to 1 over the sphere.
+    fn pdf(&self, dir: DVec3) -> f64 {
+        self.see(dir).1
+    }
 
     /// A direction drawn with density [`pdf`](Self::pdf) from two numbers of [0, 1).
     fn sample(&self, xi: [f64; 2]) -> LightSample;
@@ -70,23 +80,10 @@ pub trait Light: Sync + Send {
         xi.map(|xi| self.sample(xi))
     }
 
-    /// Density of [`sample`](Self::sample) at `dir`, per steradian; integrates to 1 over the sphere.
-    fn pdf(&self, dir: DVec3) -> f64;
-
     /// [`radiance`](Self::radiance) and [`pdf`](Self::pdf) in eight directions, one per lane: unit vectors of single precision.
     ///
     /// - Accuracy: that of `f32`; a direction within a few 1e-7 rad of an edge may be taken for one on the other side.
-    fn see8(&self, dir: &Vec3x8) -> Seen8 {
-        let (mut radiance, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
-        for lane in 0..8 {
-            let dir = dir.lane(lane).as_dvec3();
-            for (row, c) in radiance.iter_mut().zip(self.radiance(dir)) {
-                row[lane] = rounded(c);
-            }
-            pdf[lane] = rounded(self.pdf(dir));
-        }
-        Seen8 { radiance: radiance.map(f32x8::new), pdf: f32x8::new(pdf) }
-    }
+    fn see8(&self, dir: &Vec3x8) -> Seen8;
 
     /// Reference integral of `radiance * f` over the sphere, `f` per steradian and linear RGB.
     ///
@@ -116,17 +113,21 @@ pub const fn rounded(x: f64) -> f32 {
     x as f32
 }
 
-/// A colour in every lane.
-fn splat3(rgb: [f64; 3]) -> [f32x8; 3] {
-    rgb.map(|c| f32x8::splat(rounded(c)))
-}
-
 /// Channel-wise product of two colours.
-fn product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(crate) fn product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|c| a[c] * b[c])
 }
 
-/// Two unit vectors that complete the unit vector `axis` to a right-handed frame (Duff et al. 2017).
+/// The direction at the cosine and the square of the sine of an angle to the unit vector `axis`, and at azimuth `phi`, in a
+/// right-handed frame (Duff et al. 2017).
+fn about(axis: DVec3, cosine: f64, sine_sq: f64, phi: f64) -> DVec3 {
+    let [e1, e2] = tangents(axis);
+    let r = sine_sq.max(0.0).sqrt();
+    let (sin_phi, cos_phi) = phi.sin_cos();
+    cosine * axis + r * cos_phi * e1 + r * sin_phi * e2
+}
+
+/// Two unit vectors that complete `axis` to the frame.
 fn tangents(axis: DVec3) -> [DVec3; 2] {
     let sign = 1.0_f64.copysign(axis.z);
     let a = -1.0 / (sign + axis.z);

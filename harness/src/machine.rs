@@ -61,10 +61,7 @@ impl Machine {
     #[must_use]
     pub fn summary(&self) -> String {
         let commit = self.commit.get(..12).unwrap_or(self.commit);
-        let dirty = match self.dirty {
-            Some(true) => "+changes",
-            _ => "",
-        };
+        let dirty = if self.dirty == Some(true) { "+changes" } else { "" };
         let features =
             if self.target_features.is_empty() { "baseline".to_owned() } else { self.target_features.join("+") };
         format!(

@@ -14,4 +14,4 @@ mod sphere;
 
 pub use adaptive::{Integral, Tolerance, bell_breakpoints, integrate, integrate_rectangle};
 pub use legendre::GaussLegendre;
-pub use sphere::{SphereIntegrator, fibre_angles, fibre_direction};
+pub use sphere::{SphereIntegrator, fibre_direction};

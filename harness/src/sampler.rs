@@ -35,20 +35,12 @@ impl Sampler {
     pub const ALL: [Self; 5] = [Self::Uniform, Self::Published, Self::Matched5, Self::Matched, Self::Matched25];
 
     /// Name in reports and in rows.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Uniform => "uniform",
-            Self::Published => "published",
-            Self::Matched5 => "matched-5",
-            Self::Matched => "matched",
-            Self::Matched25 => "matched-25",
-        }
+    pub(crate) fn name(self) -> &'static str {
+        ["uniform", "published", "matched-5", "matched", "matched-25"][self as usize]
     }
 
     /// Uniform numbers per sample.
-    #[must_use]
-    pub const fn dims(self) -> usize {
+    pub(crate) const fn dims(self) -> usize {
         match self {
             Self::Uniform => 2,
             _ => 3,
@@ -57,12 +49,7 @@ impl Sampler {
 
     /// Bands of a sampler that is matched to the model.
     pub(crate) const fn bands(self) -> Option<usize> {
-        match self {
-            Self::Uniform | Self::Published => None,
-            Self::Matched5 => Some(5),
-            Self::Matched => Some(9),
-            Self::Matched25 => Some(25),
-        }
+        [None, None, Some(5), Some(9), Some(25)][self as usize]
     }
 
     /// Place among the streams of random numbers.

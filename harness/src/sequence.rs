@@ -87,6 +87,11 @@ pub(crate) fn unit_f64(bits: u64) -> f64 {
     (bits >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
 }
 
+/// A hash as a whole number below `bound`.
+fn below(hash: u64, bound: u64) -> u64 {
+    ((u128::from(hash) * u128::from(bound)) >> 64) as u64
+}
+
 /// Independent uniform numbers from `ChaCha8`.
 ///
 /// # Examples
@@ -122,9 +127,8 @@ impl Independent {
 
     /// A whole number below `bound` (0 when `bound` is 0), with a bias below `bound` / 2^64.
     pub fn next_below(&mut self, bound: usize) -> usize {
-        let product = u128::from(self.rng.next_u64()) * bound as u128;
-        #[expect(clippy::cast_possible_truncation, reason = "the upper half of a product is below `bound`")]
-        let index = (product >> 64) as usize;
+        #[expect(clippy::cast_possible_truncation, reason = "a number below `bound`")]
+        let index = below(self.rng.next_u64(), bound as u64) as usize;
         index
     }
 }
@@ -154,13 +158,8 @@ impl SequenceKind {
     pub const ALL: [Self; 3] = [Self::Independent, Self::Halton, Self::Stratified];
 
     /// Name in reports and flags.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Independent => "independent",
-            Self::Halton => "halton",
-            Self::Stratified => "stratified",
-        }
+    pub(crate) fn name(self) -> &'static str {
+        ["independent", "halton", "stratified"][self as usize]
     }
 
     /// A source of this kind for estimates of `samples` points of `dims` coordinates each.
@@ -170,8 +169,7 @@ impl SequenceKind {
     ///
     /// # Panics
     /// For `Halton` with more dimensions than [`HALTON_BASES`] has.
-    #[must_use]
-    pub fn source(self, seed: u64, stream: u64, dims: usize, samples: usize) -> Box<dyn XiSource + Send> {
+    pub(crate) fn source(self, seed: u64, stream: u64, dims: usize, samples: usize) -> Box<dyn XiSource + Send> {
         match self {
             Self::Independent => Box::new(Independent::new(seed, stream)),
             Self::Halton => Box::new(Halton::new(dims, seed, stream)),

@@ -16,8 +16,7 @@ mod points;
 mod threads;
 
 use crate::stats::percentile;
-use cells::{SpeedCell, SpeedCells};
-use core::fmt;
+use cells::{Contender, SpeedCell, SpeedCells};
 use core::hint::black_box;
 use hairis::{Level, ParamError};
 use hairis_benches::task::{Each, Output, Pass};
@@ -66,43 +65,25 @@ pub enum Op {
 }
 
 impl Op {
-    /// Every operation, in the order of the tables.
-    pub const ALL: [Self; 11] = [
-        Self::Prepare,
-        Self::EvalPdf,
-        Self::Sample,
-        Self::EvalPdfTails,
-        Self::SampleTails,
-        Self::PointsEval,
-        Self::PointsShared,
-        Self::PointsOf4,
-        Self::PointsOf16,
-        Self::PointsMixed,
-        Self::PointsPacked,
+    /// Every operation in the order of the tables, and its name there.
+    pub const NAMES: [(Self, &'static str); 11] = [
+        (Self::Prepare, "prepare"),
+        (Self::EvalPdf, "eval + pdf"),
+        (Self::Sample, "sample"),
+        (Self::EvalPdfTails, "eval + pdf, far tails"),
+        (Self::SampleTails, "sample, far tails"),
+        (Self::PointsEval, "prepare + eval + pdf"),
+        (Self::PointsShared, "prepare + 1 sample"),
+        (Self::PointsOf4, "prepare + 4 samples"),
+        (Self::PointsOf16, "prepare + 16 samples"),
+        (Self::PointsMixed, "prepare + 1, 8 hairs"),
+        (Self::PointsPacked, "prepare + 1, 8 hairs, packing"),
     ];
 
     /// Name of the operation in tables.
     #[must_use]
     pub const fn label(self) -> &'static str {
-        match self {
-            Self::Prepare => "prepare",
-            Self::EvalPdf => "eval + pdf",
-            Self::Sample => "sample",
-            Self::EvalPdfTails => "eval + pdf, far tails",
-            Self::SampleTails => "sample, far tails",
-            Self::PointsEval => "prepare + eval + pdf",
-            Self::PointsShared => "prepare + 1 sample",
-            Self::PointsOf4 => "prepare + 4 samples",
-            Self::PointsOf16 => "prepare + 16 samples",
-            Self::PointsMixed => "prepare + 1, 8 hairs",
-            Self::PointsPacked => "prepare + 1, 8 hairs, packing",
-        }
-    }
-}
-
-impl fmt::Display for Op {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.label())
+        Self::NAMES[self as usize].1
     }
 }
 
@@ -116,16 +97,9 @@ pub struct SpeedConfig {
 }
 
 impl SpeedConfig {
-    /// About four seconds.
-    #[must_use]
-    pub const fn quick(seed: u64) -> Self {
-        Self { seconds: 4.0, seed }
-    }
-
-    /// About twenty seconds.
-    #[must_use]
-    pub const fn full(seed: u64) -> Self {
-        Self { seconds: 20.0, seed }
+    /// About twenty seconds; if `quick`, four.
+    pub(crate) const fn new(seed: u64, quick: bool) -> Self {
+        Self { seconds: if quick { 4.0 } else { 20.0 }, seed }
     }
 }
 
@@ -180,12 +154,6 @@ pub struct SpeedReport {
 }
 
 impl SpeedReport {
-    /// Whether every contender's answers are right.
-    #[must_use]
-    pub fn passed(&self) -> bool {
-        self.rows.iter().all(|row| row.passed)
-    }
-
     /// The row of a contender, by operation, model, name and level.
     #[must_use]
     pub fn row(&self, op: Op, model: &str, contender: &str, level: &str) -> Option<&SpeedResult> {
@@ -203,11 +171,11 @@ impl SpeedReport {
 ///
 /// Never: the parameters that are drawn are within the ranges accepted.
 pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedReport, ParamError> {
-    let mut all = Vec::new();
+    let mut cells = Vec::new();
     for model in ModelId::defaults_of_names() {
-        all.extend(model.visit(SpeedCells(config.seed))?);
+        cells.extend(model.visit(SpeedCells(config.seed))?);
     }
-    let mut timings: Vec<CellTimings> = all.into_iter().map(CellTimings::calibrate).collect();
+    cells.iter_mut().flat_map(|cell| &mut cell.contenders).for_each(Contender::calibrate);
 
     let start = Instant::now();
     for round in 0.. {
@@ -216,9 +184,7 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
         if done >= 1.0 && round >= MIN_ROUNDS {
             break;
         }
-        for timing in &mut timings {
-            timing.round(round);
-        }
+        cells.iter_mut().for_each(|cell| cell.round(round));
     }
     let inputs = Inputs::draw(config.seed)?;
     let mut threads = Vec::new();
@@ -230,73 +196,62 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
         directions: DIRECTIONS,
         compiled_level: Level::portable().name(),
         detected_level: Level::detect().name(),
-        rows: timings.into_iter().flat_map(CellTimings::rows).collect(),
+        rows: cells.into_iter().flat_map(SpeedCell::rows).collect(),
         threads,
     })
 }
 
-/// The timings of one cell: one column per contender, one entry per round, ns per direction.
-struct CellTimings {
-    cell: SpeedCell,
-    passes: Vec<u32>,
-    ns: Vec<Vec<f64>>,
+impl Contender {
+    /// Finds how many passes make a stretch long enough to time.
+    fn calibrate(&mut self) {
+        let fastest = (0..5).map(|_| stretch(&mut *self.task, 1)).fold(f64::INFINITY, f64::min);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 1000")]
+        let passes = (MIN_STRETCH / fastest).ceil().clamp(1.0, 1e3) as u32;
+        self.passes = passes;
+    }
 }
 
-impl CellTimings {
-    /// Finds how many passes make a stretch long enough to time.
-    fn calibrate(mut cell: SpeedCell) -> Self {
-        let passes = cell.contenders.iter_mut().map(|contender| {
-            let fastest = (0..5).map(|_| stretch(&mut *contender.task, 1)).fold(f64::INFINITY, f64::min);
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 1000")]
-            let passes = (MIN_STRETCH / fastest).ceil().clamp(1.0, 1e3) as u32;
-            passes
-        });
-        let passes: Vec<u32> = passes.collect();
-        Self { ns: vec![Vec::new(); passes.len()], passes, cell }
-    }
-
+impl SpeedCell {
     /// Times every contender once, in an order that changes from round to round.
     fn round(&mut self, round: usize) {
-        let count = self.cell.contenders.len();
+        let count = self.contenders.len();
         for k in 0..count {
-            let k = (k + round) % count;
-            let task = &mut *self.cell.contenders[k].task;
+            let Contender { task, passes, ns, .. } = &mut self.contenders[(k + round) % count];
             // One stretch untimed: the one before was another's, and left the caches its own and the vector units asleep.
-            stretch(task, self.passes[k]);
-            let mut ns = 0.0;
-            deeper(round % FRAMES, &mut || ns = stretch(task, self.passes[k]));
-            self.ns[k].push(ns / (f64::from(self.passes[k]) * DIRECTIONS as f64));
+            stretch(&mut **task, *passes);
+            let mut time = 0.0;
+            deeper(round % FRAMES, &mut || time = stretch(&mut **task, *passes));
+            ns.push(time / (f64::from(*passes) * DIRECTIONS as f64));
         }
     }
 
-    fn rows(mut self) -> Vec<SpeedResult> {
+    fn rows(self) -> Vec<SpeedResult> {
+        let Self { op, model, contenders, truth } = self;
         // The two textbooks lead; ratios are to the faster of them.
-        let [libm, std] = [&self.ns[0], &self.ns[1]];
-        let fastest = if quartiles(std)[1] < quartiles(libm)[1] { std } else { libm };
-        let contenders = self.cell.contenders.iter_mut().zip(&self.passes).zip(&self.ns);
-        contenders
-            .map(|((contender, passes), ns)| {
-                let ratios: Vec<f64> = fastest.iter().zip(ns).map(|(textbook, ns)| textbook / ns).collect();
-                let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) = (quartiles(ns), quartiles(&ratios));
-                let wrong_share = self.cell.truth.wrong_share(&contender.task.answers());
-                SpeedResult {
-                    op: self.cell.op,
-                    model: self.cell.model,
-                    contender: contender.name,
-                    level: contender.level,
-                    rounds: ratios.len(),
-                    passes: *passes,
-                    ns,
-                    ns_q1,
-                    ns_q3,
-                    ratio,
-                    ratio_q1,
-                    ratio_q3,
-                    wrong_share,
-                    passed: wrong_share <= MAX_WRONG,
-                }
-            })
-            .collect()
+        let [libm, std] = [0, 1].map(|textbook: usize| contenders[textbook].ns.clone());
+        let fastest = if quartiles(&std)[1] < quartiles(&libm)[1] { std } else { libm };
+        let row = |mut contender: Contender| {
+            let ratios: Vec<f64> = fastest.iter().zip(&contender.ns).map(|(textbook, ns)| textbook / ns).collect();
+            let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) = (quartiles(&contender.ns), quartiles(&ratios));
+            let wrong_share = truth.wrong_share(&contender.task.answers());
+            SpeedResult {
+                op,
+                model,
+                contender: contender.name,
+                level: contender.level,
+                rounds: ratios.len(),
+                passes: contender.passes,
+                ns,
+                ns_q1,
+                ns_q3,
+                ratio,
+                ratio_q1,
+                ratio_q3,
+                wrong_share,
+                passed: wrong_share <= MAX_WRONG,
+            }
+        };
+        contenders.into_iter().map(row).collect()
     }
 }
 
@@ -364,7 +319,7 @@ mod tests {
         for cell in ModelId::KajiyaKay.visit(SpeedCells(1)).expect("accepted") {
             for mut contender in cell.contenders {
                 let wrong = cell.truth.wrong_share(&contender.task.answers());
-                assert!(wrong <= MAX_WRONG, "{} {} {}: {wrong}", cell.op, contender.name, contender.level);
+                assert!(wrong <= MAX_WRONG, "{} {} {}: {wrong}", cell.op.label(), contender.name, contender.level);
             }
         }
     }
@@ -374,7 +329,7 @@ mod tests {
         let inputs = Inputs::<HairParams>::draw(1).expect("hair within range");
         let (hair, wo) = (inputs.params[0], inputs.wo[0]);
         let gather = ModelId::Gaussian.bsdf(&hair.values()).expect("accepted").prepare(wo);
-        let points = cells::truth(ModelId::Gaussian, &hair, &[wo; DIRECTIONS]).expect("accepted");
+        let points = cells::truth::<hairis::Hair<hairis::Gaussian>>(&hair, &[wo; DIRECTIONS]).expect("accepted");
         let truth = Truth::of_directions(points, &inputs.wi);
         let mut answers = task(&packets(&inputs.wi), move |wi| gather.eval_pdf8(wi)).answers();
         assert!(truth.wrong_share(&answers) <= MAX_WRONG, "right answers");

@@ -1,6 +1,6 @@
 //! Statistics of estimators and of timings: figures with error bars from columns of numbers.
 //!
-//! - [`Moments`]: running central moments up to the fourth, mergeable; mean, variance and relative variance with their standard errors.
+//! - [`Moments`]: running central moments up to the fourth; mean, variance and relative variance with their standard errors.
 //! - [`percentile`]: order statistics.
 //! - [`sidak`]: the correction for many tests.
 //!
@@ -22,28 +22,9 @@ pub fn sidak(alpha: f64, tests: usize) -> f64 {
     -((-alpha).ln_1p() / tests.max(1) as f64).exp_m1()
 }
 
-/// Two-sided p-value of a standard normal deviate.
-///
-/// - Units: `z` in standard errors; the result is a probability.
-/// - Domain: any `z`; NaN gives NaN.
-#[must_use]
-pub fn z_p_value(z: f64) -> f64 {
-    libm::erfc(z.abs() * core::f64::consts::FRAC_1_SQRT_2)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn z_p_values_match_the_normal_table() {
-        for (z, p) in
-            [(0.0, 1.0), (1.0, 0.317_310_507_862_914), (1.959_963_984_540_054, 0.05), (4.0, 6.334_248_366_623_996e-5)]
-        {
-            assert!((z_p_value(z) - p).abs() <= 1e-12, "z {z}: {}", z_p_value(z));
-            assert_eq!(z_p_value(z), z_p_value(-z));
-        }
-    }
 
     #[test]
     fn sidak_is_between_alpha_over_n_and_alpha() {

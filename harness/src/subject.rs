@@ -22,41 +22,28 @@ impl ModelKind {
     pub const ALL: [Self; 2] = [Self::Gaussian, Self::Cauchy];
 
     /// Name in reports.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         self.id().name()
     }
 
     /// The model with the published sampler.
     pub(crate) const fn id(self) -> ModelId {
-        match self {
-            Self::Gaussian => ModelId::Gaussian,
-            Self::Cauchy => ModelId::Cauchy,
-        }
+        [ModelId::Gaussian, ModelId::Cauchy][self as usize]
     }
 
     /// Name in titles and sentences.
-    #[must_use]
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::Gaussian => "Gaussian",
-            Self::Cauchy => "Cauchy",
-        }
+    pub(crate) const fn title(self) -> &'static str {
+        ["Gaussian", "Cauchy"][self as usize]
     }
 
     /// Its bell in the reference.
     pub(crate) const fn shape(self) -> Shape {
-        match self {
-            Self::Gaussian => Shape::Gaussian,
-            Self::Cauchy => Shape::Cauchy,
-        }
+        [Shape::Gaussian, Shape::Cauchy][self as usize]
     }
 
-    pub(crate) fn index(self) -> u64 {
-        match self {
-            Self::Gaussian => 0,
-            Self::Cauchy => 1,
-        }
+    /// Place among the streams of random numbers.
+    pub(crate) const fn index(self) -> u64 {
+        self as u64
     }
 }
 

@@ -1,15 +1,15 @@
 //! The direction of each of the paper's claims: which figures are on which side, and what verdict they come to.
 
-use hairis_harness::claims::{Claim, Claims, ClaimsConfig, Figure, Origin, Role, Verdict, run, tables};
+use hairis_harness::claims::{Claim, Claims, Figure, Origin, Role, Verdict, run, tables};
 use std::sync::OnceLock;
 
 fn claims() -> &'static Claims {
     static CLAIMS: OnceLock<Claims> = OnceLock::new();
-    CLAIMS.get_or_init(|| run(ClaimsConfig { seed: 1, quick: true }, &|_| ()).unwrap())
+    CLAIMS.get_or_init(|| run(1, true, &|_| ()).unwrap())
 }
 
 fn claim(id: &str) -> &'static Claim {
-    claims().claim(id).unwrap_or_else(|| panic!("no claim {id}"))
+    claims().claims.iter().find(|claim| claim.id == id).unwrap_or_else(|| panic!("no claim {id}"))
 }
 
 /// The figures whose names contain `words`, of which there is at least one.
@@ -43,7 +43,7 @@ fn verdicts_follow_from_figures_and_thresholds() {
             assert_eq!(figure.error == 0.0, figure.origin == Origin::Counted, "{}: {figure:?}", claim.id);
         }
         assert!(!claim.quotation.is_empty() && claim.sentence.ends_with('.'), "{}", claim.id);
-        ids.push(claim.id.as_str());
+        ids.push(claim.id);
     }
     ids.sort_unstable();
     ids.dedup();
@@ -157,7 +157,7 @@ fn a_cut_glint_diverges_where_nothing_else_covers_its_tail() {
 fn every_claim_is_printed_with_its_verdict() {
     let text: String = tables(claims()).iter().map(ToString::to_string).collect();
     for claim in &claims().claims {
-        let named = text.lines().filter(|line| line.contains(&claim.id)).count();
+        let named = text.lines().filter(|line| line.contains(claim.id)).count();
         assert!(named >= 2 && text.contains(claim.quotation) && text.contains(&claim.sentence), "{}", claim.id);
         let verdict = format!("{}: {}", claim.verdict.name(), claim.sentence);
         assert!(text.contains(&verdict), "{verdict}");

@@ -102,17 +102,13 @@ pub(super) fn measure(
     for (k, (eval, sample)) in answers.iter().enumerate() {
         let (point, wi) =
             if matches!(path, CodePath::Shared(_)) { (0, packet.wi_shared[k]) } else { (k, packet.wi[k]) };
-        let place = LanePlace { values: packet.values[point], wo: packet.wo[point], h: packet.h[point], wi, xi: None };
-        let exact = |place| Exact { model, accuracy: model.accuracy(), truth: &packet.truth[point], place };
-        if region.holds(place.wo, wi) {
-            exact(place).of_eval(eval, keep)?;
-        }
-        if let Some(sample) = sample.filter(|sample| region.holds(place.wo, sample.wi)) {
-            exact(LanePlace { wi: sample.wi, xi: Some(packet.xi[k]), ..place }).of_sample(
-                packet.xi[k],
-                &sample,
-                keep,
-            )?;
+        let drawn = sample.map(|s| (s.wi, Eval { value: s.value, pdf: s.pdf }, Some(s)));
+        let compared = [(wi, *eval, None)].into_iter().chain(drawn);
+        for (wi, eval, sample) in compared.filter(|(wi, ..)| region.holds(packet.wo[point], *wi)) {
+            let (values, wo, h) = (packet.values[point], packet.wo[point], packet.h[point]);
+            let place = LanePlace { values, wo, h, wi, xi: sample.map(|_| packet.xi[k]) };
+            let exact = Exact { model, accuracy: model.accuracy(), truth: &packet.truth[point], place };
+            exact.errors(&eval, sample, keep)?;
         }
     }
     Ok(())
@@ -127,30 +123,26 @@ struct Exact<'a> {
 }
 
 impl Exact<'_> {
-    fn of_eval(&self, eval: &Eval, keep: &mut impl FnMut(Quantity, LocatedError)) -> Result<(), ParamError> {
-        let slack = self.slack()?;
-        keep(Quantity::Pdf, self.compare(Quantity::Pdf, [eval.pdf], |wi| [self.truth.pdf(wi)], self.pdf_slack(slack)));
-        keep(Quantity::Value, self.compare(Quantity::Value, eval.value, |wi| self.truth.eval(wi), slack));
-        Ok(())
-    }
-
-    fn of_sample(
+    /// Calls `keep` with the errors of what is said of the direction, and of the sample that it is.
+    fn errors(
         &self,
-        xi: [f32; 3],
-        sample: &Sample,
+        eval: &Eval,
+        sample: Option<Sample>,
         keep: &mut impl FnMut(Quantity, LocatedError),
     ) -> Result<(), ParamError> {
+        use Quantity::{Pdf, SampleCdf, SamplePdf, SampleValue, SampleWeight, Value};
+        let LanePlace { values, wo, wi, .. } = &self.place;
+        let slack = self.model.slack(values, to_f64(*wo), to_f64(*wi))?;
+        let [pdf, value] = if sample.is_some() { [SamplePdf, SampleValue] } else { [Pdf, Value] };
+        keep(pdf, self.compare(pdf, [eval.pdf], |wi| [self.truth.pdf(wi)], self.pdf_slack(slack)));
+        keep(value, self.compare(value, eval.value, |wi| self.truth.eval(wi), slack));
+        let Some(sample) = sample else { return Ok(()) };
         let over_pdf = |wi: [f64; 3]| wi[1].hypot(wi[2]) / self.truth.pdf(wi);
-        let (slack, scale) = (self.slack()?, over_pdf(to_f64(self.place.wi)));
-        let pdf = self.compare(Quantity::SamplePdf, [sample.pdf], |wi| [self.truth.pdf(wi)], self.pdf_slack(slack));
-        let value = self.compare(Quantity::SampleValue, sample.value, |wi| self.truth.eval(wi), slack);
         let weight = |wi: [f64; 3]| self.truth.eval(wi).map(|s| s * over_pdf(wi));
-        let weight = self.compare(Quantity::SampleWeight, sample.weight, weight, slack.map(|s| s * scale));
-        keep(Quantity::SamplePdf, pdf);
-        keep(Quantity::SampleValue, value);
-        keep(Quantity::SampleWeight, weight);
-        if let Some(cdf) = self.cdf(xi, sample.lobe) {
-            keep(Quantity::SampleCdf, cdf);
+        let slack = slack.map(|s| s * over_pdf(to_f64(*wi)));
+        keep(SampleWeight, self.compare(SampleWeight, sample.weight, weight, slack));
+        if let Some(cdf) = self.cdf(sample.lobe) {
+            keep(SampleCdf, cdf);
         }
         Ok(())
     }
@@ -177,22 +169,19 @@ impl Exact<'_> {
 
     /// Distance of the lobe's cdf at the direction from the numbers it was sampled with, on the circle of length 1: both
     /// ends of the cosines' cdf are the same direction.
-    fn cdf(&self, xi: [f32; 3], lobe: Lobe) -> Option<LocatedError> {
-        let wi = to_f64(self.place.wi);
+    fn cdf(&self, lobe: Lobe) -> Option<LocatedError> {
+        let (xi, wi) = (self.place.xi?, to_f64(self.place.wi));
+        let azimuth = |[_, v, w]: [f64; 3]| w.atan2(v);
         let turn = azimuth(to_f64(self.place.wo)) - azimuth(wi);
-        let phi = turn - TAU * (turn / TAU).round();
-        let cdf = self.truth.cdf(lobe, inclination(wi), phi)?;
+        let (theta_i, phi) = (wi[0].atan2(wi[1].hypot(wi[2])), turn - TAU * (turn / TAU).round());
+        let cdf = self.truth.cdf(lobe, theta_i, phi)?;
         let off = |k: usize| (cdf[k] - f64::from(xi[k + 1])).abs();
         let error = off(0).max(off(1).min((1.0 - off(1)).abs()));
         Some(LocatedError { error, unexplained: error > self.accuracy.cdf, at: self.place })
     }
 
-    /// Absolute error of a value that the model allows by design.
-    fn slack(&self) -> Result<[f64; 3], ParamError> {
-        self.model.slack(&self.place.values, to_f64(self.place.wo), to_f64(self.place.wi))
-    }
-
-    /// The same of a density. One proportional to S, as the mean of RGB, vanishes with it.
+    /// Absolute error of a density that the model allows by design, by that of S. A density proportional to S, as the mean of RGB,
+    /// vanishes with it.
     fn pdf_slack(&self, slack: [f64; 3]) -> [f64; 1] {
         if !self.accuracy.slack_in_pdf || slack == [0.0; 3] {
             return [0.0];
@@ -215,14 +204,6 @@ fn relative(got: f32, want: f64, floor: f64) -> f64 {
     } else {
         f64::INFINITY
     }
-}
-
-fn inclination([u, v, w]: [f64; 3]) -> f64 {
-    u.atan2(v.hypot(w))
-}
-
-fn azimuth([_, v, w]: [f64; 3]) -> f64 {
-    w.atan2(v)
 }
 
 /// The direction turned about the fibre by `angle` rad.

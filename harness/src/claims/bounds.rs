@@ -1,75 +1,61 @@
 //! A and B as printed, without the half: samples off the sphere.
 
 use super::FoundCells;
-use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, geometric_mean, largest, smallest};
-use super::hair::{HairFigures, Longitudinal, longitudinal_grid};
+use super::bounded::{Bounded, Spread};
+use super::claim::{Claim, Figure, Side, Statement};
+use super::hair::longitudinal_grid;
 
-const WORDS: Words = Words {
+const STATEMENT: Statement = Statement {
     id: "misprint-bounds",
     quotation: "A = atan((π/2 + θ_r − α) / β) and B = atan((−π/2 + θ_r − α) / β)",
     source: "section 3.2.1, appendix A",
-};
-
-const THRESHOLD: Threshold = Threshold {
     of: "share of the samples of a lobe with |θ_i| > 90°",
     side: Side::AtMost,
     bound: 1e-6,
     limits: "the lobe of the parameter grid that loses least",
 };
 
-/// Error of closed forms: the rounding of double precision.
-const ROUNDING: f64 = 1e-14;
-
-fn exact(value: f64) -> Bounded {
-    Bounded { value, error: ROUNDING }
+/// The spread of closed forms; their error is the rounding of double precision.
+fn spread(values: impl Iterator<Item = f64>) -> Spread {
+    values.map(|value| Bounded { value, error: 1e-14 }).collect()
 }
 
 /// The claim.
 pub(super) fn claim(cells: &FoundCells) -> Claim {
-    let lobes = || longitudinal_grid().into_iter().map(|lobe: Longitudinal| exact(1.0 - lobe.printed_mass()));
-    let (most, least) = (largest(lobes()), smallest(lobes()));
-    let lost = || cells.iter().map(|(.., found)| exact(found.lost));
+    let of_lobe = spread(longitudinal_grid().into_iter().map(|lobe| 1.0 - lobe.printed_mass()));
+    let of_hair = spread(cells.iter().map(|(.., found)| found.lost));
     // All that is drawn lands on the sphere with a density of the printed one over the share that does.
-    let bias = || lost().map(|lost| exact(lost.value / (1.0 - lost.value)));
-    let factor = |found: &HairFigures| found.printed.over(found.published);
-    let factors = || cells.iter().map(|(.., found)| factor(found));
-    let mean = geometric_mean(factors());
+    let bias = spread(cells.iter().map(|(.., found)| found.lost / (1.0 - found.lost)));
+    let factor: Spread = cells.iter().map(|(.., found)| found.printed.over(found.published)).collect();
     let sentence = format!(
         "A lobe loses {:.1}% to {:.0}% of its samples, a hair {:.1}% to {:.0}%; redrawn without renormalising they make \
          the result up to {:.0}% too bright, and counted as black they multiply the variance by {:.2} (geometric mean), \
          at most by {:.1}.",
-        100.0 * least.value,
-        100.0 * most.value,
-        100.0 * smallest(lost()).value,
-        100.0 * largest(lost()).value,
-        100.0 * largest(bias()).value,
-        mean.value,
-        largest(factors()).value,
+        100.0 * of_lobe.least.value,
+        100.0 * of_lobe.most.value,
+        100.0 * of_hair.least.value,
+        100.0 * of_hair.most.value,
+        100.0 * bias.most.value,
+        factor.mean.value,
+        factor.most.value,
     );
-    let figure = |name: &str, of| Figure::integral(name, of, "");
-    Claim::judge(
-        WORDS,
-        THRESHOLD,
-        [
-            figure("share of samples lost, most of a lobe on the grid", most),
-            figure("share of samples lost, least of a lobe on the grid", least),
-        ],
-        vec![
-            figure("share of samples lost, most of a hair", largest(lost())),
-            figure("share of samples lost, least of a hair", smallest(lost())),
-            figure("relative bias if lost samples are redrawn, most", largest(bias())),
-            figure("relative bias if lost samples are redrawn, least", smallest(bias())),
-            figure("factor on V if lost samples count, geometric mean", mean),
-            figure("factor on V if lost samples count, most", largest(factors())),
-            figure("factor on V if lost samples count, least", smallest(factors())),
-        ],
-        sentence,
-    )
+    let figures = Figure::integrals([
+        ("share of samples lost, most of a lobe on the grid", of_lobe.most),
+        ("share of samples lost, least of a lobe on the grid", of_lobe.least),
+        ("share of samples lost, most of a hair", of_hair.most),
+        ("share of samples lost, least of a hair", of_hair.least),
+        ("relative bias if lost samples are redrawn, most", bias.most),
+        ("relative bias if lost samples are redrawn, least", bias.least),
+        ("factor on V if lost samples count, geometric mean", factor.mean),
+        ("factor on V if lost samples count, most", factor.most),
+        ("factor on V if lost samples count, least", factor.least),
+    ]);
+    STATEMENT.judge(figures, sentence)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::claims::hair::Longitudinal;
     use crate::sequence::Independent;
     use core::f64::consts::FRAC_PI_2;
 

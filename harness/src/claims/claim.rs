@@ -1,6 +1,6 @@
 //! Claims: words of the paper, figures, and the verdict that follows from the figures.
 
-use crate::stats::Estimate;
+use super::bounded::Bounded;
 use serde::Serialize;
 
 /// Standard errors that a sampled figure must keep from the threshold.
@@ -22,14 +22,8 @@ pub enum Origin {
 
 impl Origin {
     /// Name in tables.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Quadrature => "quadrature",
-            Self::Sampled => "samples",
-            Self::Timed => "samples and times",
-            Self::Counted => "counted",
-        }
+    pub(crate) const fn name(self) -> &'static str {
+        ["quadrature", "samples", "samples and times", "counted"][self as usize]
     }
 }
 
@@ -63,33 +57,25 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// A figure by quadrature.
-    pub(super) fn integral(name: impl Into<String>, of: Bounded, unit: &'static str) -> Self {
-        Self {
-            name: name.into(),
-            value: of.value,
-            error: of.error,
-            unit,
-            origin: Origin::Quadrature,
-            role: Role::Further,
-        }
+    /// A figure that explains, without a unit.
+    pub(super) fn new(name: impl Into<String>, origin: Origin, number: impl Into<Bounded>) -> Self {
+        let Bounded { value, error } = number.into();
+        Self { name: name.into(), value, error, unit: "", origin, role: Role::Further }
     }
 
-    /// A figure from samples.
-    pub(super) fn sampled(name: impl Into<String>, of: Estimate, unit: &'static str) -> Self {
-        let Estimate { value, standard_error: error } = of;
-        Self { name: name.into(), value, error, unit, origin: Origin::Sampled, role: Role::Further }
+    /// Figures by quadrature.
+    pub(super) fn integrals<const N: usize>(named: [(&str, Bounded); N]) -> Vec<Self> {
+        named.map(|(name, number)| Self::new(name, Origin::Quadrature, number)).into()
     }
 
-    /// A figure that is a number of things.
-    pub(super) fn count(name: impl Into<String>, of: usize, unit: &'static str) -> Self {
-        let value = of as f64;
-        Self { name: name.into(), value, error: 0.0, unit, origin: Origin::Counted, role: Role::Further }
+    /// A number of cells.
+    pub(super) fn cells(name: &str, count: usize) -> Self {
+        Self::new(name, Origin::Counted, Bounded::exact(count as f64)).in_unit("cells")
     }
 
-    /// The same from another origin.
-    pub(super) fn by(self, origin: Origin) -> Self {
-        Self { origin, ..self }
+    /// The same in this unit.
+    pub(super) fn in_unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
     }
 
     /// Bound on the distance of the true value from the figure.
@@ -154,27 +140,46 @@ impl Verdict {
     /// Name in tables and in JSON.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Holds => "holds",
-            Self::HoldsWithinLimits => "holds within limits",
-            Self::False => "false",
-        }
+        ["holds", "holds within limits", "false"][self as usize]
     }
 }
 
-/// The words of the paper.
+/// A claim to be judged: the words of the paper, and what decides.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Words {
+pub(super) struct Statement {
     pub(super) id: &'static str,
     pub(super) quotation: &'static str,
     pub(super) source: &'static str,
+    /// The bounded quantity.
+    pub(super) of: &'static str,
+    pub(super) side: Side,
+    pub(super) bound: f64,
+    pub(super) limits: &'static str,
+}
+
+impl Statement {
+    /// The claim with the verdict that follows from its first two figures: the worst of all cases, and within the limits.
+    pub(super) fn judge(self, mut figures: Vec<Figure>, sentence: String) -> Claim {
+        let Self { id, quotation, source, of, side, bound, limits } = self;
+        let threshold = Threshold { of, side, bound, limits };
+        let is_kept = |place: usize| figures.get(place).is_some_and(|figure| threshold.is_kept_by(figure));
+        let verdict = match [is_kept(0), is_kept(1)] {
+            [true, _] => Verdict::Holds,
+            [false, true] => Verdict::HoldsWithinLimits,
+            [false, false] => Verdict::False,
+        };
+        for (figure, role) in figures.iter_mut().zip([Role::Everywhere, Role::WithinLimits]) {
+            figure.role = role;
+        }
+        Claim { id, quotation, source, figures, threshold, verdict, sentence }
+    }
 }
 
 /// A claim of the paper, and its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
     /// Name of the claim, for scripts.
-    pub id: String,
+    pub id: &'static str,
     /// The words of the paper, or its formula.
     pub quotation: &'static str,
     /// The section they are in.
@@ -189,104 +194,18 @@ pub struct Claim {
     pub sentence: String,
 }
 
-impl Claim {
-    /// The claim with the verdict that follows from its first two figures.
-    pub(super) fn judge(
-        words: Words,
-        threshold: Threshold,
-        [everywhere, within]: [Figure; 2],
-        further: Vec<Figure>,
-        sentence: String,
-    ) -> Self {
-        let verdict = if threshold.is_kept_by(&everywhere) {
-            Verdict::Holds
-        } else if threshold.is_kept_by(&within) {
-            Verdict::HoldsWithinLimits
-        } else {
-            Verdict::False
-        };
-        let deciding = [Figure { role: Role::Everywhere, ..everywhere }, Figure { role: Role::WithinLimits, ..within }];
-        Self {
-            id: words.id.to_owned(),
-            quotation: words.quotation,
-            source: words.source,
-            figures: deciding.into_iter().chain(further).collect(),
-            threshold,
-            verdict,
-            sentence,
-        }
-    }
-
-    /// The figure of this name.
-    #[must_use]
-    pub fn figure(&self, name: &str) -> Option<&Figure> {
-        self.figures.iter().find(|figure| figure.name == name)
-    }
-}
-
-/// A number and a bound estimate of its error; arithmetic carries the error to first order.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounded {
-    pub(super) value: f64,
-    pub(super) error: f64,
-}
-
-impl Bounded {
-    pub(super) fn times(self, other: Self) -> Self {
-        let error = (self.value * other.error).abs() + (other.value * self.error).abs();
-        Self { value: self.value * other.value, error }
-    }
-
-    pub(super) fn over(self, other: Self) -> Self {
-        let value = self.value / other.value;
-        Self { value, error: (self.error + (value * other.error).abs()) / other.value.abs() }
-    }
-
-    pub(super) fn plus(self, exact: f64) -> Self {
-        Self { value: self.value + exact, ..self }
-    }
-
-    pub(super) fn magnitude(self) -> Self {
-        Self { value: self.value.abs(), ..self }
-    }
-}
-
-/// The first of the largest; no number if there is none.
-pub(super) fn largest(of: impl IntoIterator<Item = Bounded>) -> Bounded {
-    let none = Bounded { value: f64::NAN, error: f64::NAN };
-    of.into_iter().fold(none, |most, next| if next.value <= most.value { most } else { next })
-}
-
-/// The first of the smallest; no number if there is none.
-pub(super) fn smallest(of: impl IntoIterator<Item = Bounded>) -> Bounded {
-    let none = Bounded { value: f64::NAN, error: f64::NAN };
-    of.into_iter().fold(none, |least, next| if next.value >= least.value { least } else { next })
-}
-
-/// Geometric mean.
-pub(super) fn geometric_mean(of: impl IntoIterator<Item = Bounded>) -> Bounded {
-    let (mut sum, mut error, mut n) = (0.0, 0.0, 0.0);
-    for Bounded { value, error: of } in of {
-        sum += value.ln();
-        error += of / value;
-        n += 1.0;
-    }
-    let value = f64::exp(sum / n);
-    Bounded { value, error: value * error / n }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn number(value: f64, error: f64) -> Figure {
-        Figure::integral("a number", Bounded { value, error }, "")
+        Figure::new("a number", Origin::Quadrature, Bounded { value, error })
     }
 
     fn verdict(side: Side, figures: [Figure; 2]) -> Verdict {
-        let words = Words { id: "id", quotation: "words", source: "section" };
-        let threshold = Threshold { of: "a number", side, bound: 1.0, limits: "here" };
-        Claim::judge(words, threshold, figures, Vec::new(), String::new()).verdict
+        let (quotation, source, of) = ("words", "section", "a number");
+        let statement = Statement { id: "id", quotation, source, of, side, bound: 1.0, limits: "here" };
+        statement.judge(figures.into(), String::new()).verdict
     }
 
     #[test]
@@ -305,21 +224,7 @@ mod tests {
         let of = |error: f64| number(0.9, error);
         assert_eq!(verdict(Side::AtMost, [of(0.05), of(0.05)]), Verdict::Holds);
         assert_eq!(verdict(Side::AtMost, [of(0.2), of(0.05)]), Verdict::HoldsWithinLimits);
-        let sampled = of(0.07).by(Origin::Sampled);
+        let sampled = Figure { origin: Origin::Sampled, ..of(0.07) };
         assert_eq!(verdict(Side::AtMost, [sampled.clone(), sampled]), Verdict::False, "within two standard errors");
-    }
-
-    #[test]
-    fn errors_are_carried() {
-        let [a, b] = [(6.0, 0.3), (2.0, 0.1)].map(|(value, error)| Bounded { value, error });
-        let near = |got: Bounded, value: f64, error: f64| {
-            assert!((got.value - value).abs() < 1e-12 && (got.error - error).abs() < 1e-12, "{got:?}");
-        };
-        near(a.times(b), 12.0, 1.2);
-        near(a.over(b), 3.0, 0.3);
-        near(b.plus(-5.0).magnitude(), 3.0, 0.1);
-        near(geometric_mean([Bounded { value: 2.0, error: 0.02 }, Bounded { value: 8.0, error: 0.08 }]), 4.0, 0.04);
-        assert_eq!([largest([b, a]), smallest([a, b])], [a, b]);
-        assert!(largest([]).value.is_nan(), "of nothing");
     }
 }

@@ -1,15 +1,19 @@
 //! The estimated energies: how far they are from the integrals they stand for.
 
-use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, largest};
+use super::bounded::{Bounded, integrals, largest};
+use super::claim::{Claim, Figure, Origin, Side, Statement};
 use super::hair::theta_h_interval;
-use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::reference::Shape;
 
-const WORDS: Words = Words {
+const STATEMENT: Statement = Statement {
     id: "energy-within-1-percent",
     quotation: "The approximation error is less than 1% for β < 30° and |α| < 20°.",
     source: "section 3.2.3",
+    of: "relative error of the longitudinal integral √(2π) β",
+    side: Side::AtMost,
+    bound: 0.01,
+    limits: "θ_o = 0°, β ≤ 10°, |α| ≤ 20°",
 };
 
 /// The claimed range, in degrees.
@@ -22,22 +26,12 @@ const THETA_O: [f64; 2] = [0.0, 75.0];
 /// Widest R, TT or TRT within the limits, in degrees.
 const NARROW: f64 = 10.0;
 
-const THRESHOLD: Threshold = Threshold {
-    of: "relative error of the longitudinal integral √(2π) β",
-    side: Side::AtMost,
-    bound: 0.01,
-    limits: "θ_o = 0°, β ≤ 10°, |α| ≤ 20°",
-};
-
 /// Relative error of the integral of a Gaussian over the whole line in place of that over `interval`; all in degrees.
 fn error(alpha: f64, beta: f64, interval: [f64; 2]) -> Bounded {
     let [alpha, beta] = [alpha, beta].map(f64::to_radians);
-    let [lo, hi] = interval;
-    let mut breaks = vec![lo, hi];
-    breaks.extend(bell_breakpoints(alpha, beta).into_iter().filter(|x| (lo..=hi).contains(x)));
-    let r = integrate(|x| [Shape::Gaussian.bell(beta, x - alpha)], &breaks, &Tolerance::default());
+    let [r] = integrals(|x| [Shape::Gaussian.bell(beta, x - alpha)], &interval, alpha, beta);
     let whole = (2.0 * PI).sqrt() * beta;
-    Bounded { value: 1.0 - r.value[0] / whole, error: f64::EPSILON + r.error[0] / whole }.magnitude()
+    Bounded { value: 1.0 - r.value / whole, error: f64::EPSILON + r.error / whole }.magnitude()
 }
 
 /// The largest error over the claimed shifts and the widths up to `beta`, in steps of half a degree.
@@ -57,7 +51,7 @@ fn shifts() -> impl Iterator<Item = f64> {
 
 /// The widest lobe of which all narrower ones, shifted as claimed, are within 1%, in degrees; 0 if none is.
 fn widest(interval: [f64; 2]) -> f64 {
-    let kept = |beta: f64| shifts().all(|alpha| error(alpha, beta, interval).value < THRESHOLD.bound);
+    let kept = |beta: f64| shifts().all(|alpha| error(alpha, beta, interval).value < STATEMENT.bound);
     steps(BETA).take_while(|beta| kept(*beta)).last().unwrap_or(0.0)
 }
 
@@ -65,11 +59,9 @@ fn widest(interval: [f64; 2]) -> f64 {
 pub(super) fn claim() -> Claim {
     let real = THETA_O.map(|theta_o| theta_h_interval(theta_o.to_radians()));
     let seen = real.map(|interval| worst(interval, BETA));
-    let widest_lobe = real.map(|interval| largest(shifts().map(|alpha| error(alpha, BETA, interval))));
+    let widest_lobe = largest(shifts().map(|alpha| error(alpha, BETA, real[1])));
     let limits = real.map(widest);
     let printed = worst([-FRAC_PI_2, FRAC_PI_2], BETA);
-    let figure = |name: &str, of| Figure::integral(name, of, "");
-    let degrees = |name: &str, value| Figure::integral(name, Bounded { value, error: 0.5 }, "°");
     let sentence = format!(
         "That is so if θ_h runs over ±90° ({:.2}%); it runs over ±45° about θ_o/2, where the error reaches {:.0}% seen \
          from 0° and {:.0}% from 75° (a narrow lobe off the sphere); from 0° it stays below 1% for β up to {}°.",
@@ -78,23 +70,19 @@ pub(super) fn claim() -> Claim {
         100.0 * seen[1].value,
         limits[0],
     );
-    Claim::judge(
-        WORDS,
-        THRESHOLD,
-        [
-            figure("largest error in the claimed range, θ_o = 0° and 75°", largest(seen)),
-            figure("largest error for β ≤ 10°, θ_o = 0°", worst(real[0], NARROW)),
-        ],
-        vec![
-            figure("largest error, θ_o = 0°", seen[0]),
-            figure("largest error, θ_o = 75°", seen[1]),
-            figure("largest error at β = 30°, θ_o = 75°", widest_lobe[1]),
-            figure("largest error if θ_h ran over ±90°", printed),
-            degrees("widest β for which it holds, θ_o = 0°", limits[0]),
-            degrees("widest β for which it holds, θ_o = 75°", limits[1]),
-        ],
-        sentence,
-    )
+    let mut figures = Figure::integrals([
+        ("largest error in the claimed range, θ_o = 0° and 75°", largest(seen)),
+        ("largest error for β ≤ 10°, θ_o = 0°", worst(real[0], NARROW)),
+        ("largest error, θ_o = 0°", seen[0]),
+        ("largest error, θ_o = 75°", seen[1]),
+        ("largest error at β = 30°, θ_o = 75°", widest_lobe),
+        ("largest error if θ_h ran over ±90°", printed),
+    ]);
+    figures.extend(limits.into_iter().zip(THETA_O).map(|(value, theta_o)| {
+        let name = format!("widest β for which it holds, θ_o = {theta_o}°");
+        Figure::new(name, Origin::Quadrature, Bounded { value, error: 0.5 }).in_unit("°")
+    }));
+    STATEMENT.judge(figures, sentence)
 }
 
 #[cfg(test)]

@@ -1,35 +1,29 @@
 //! The glint's density: printed without an end, and its end at a right angle.
 
 use super::FoundCells;
-use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, geometric_mean, largest, smallest};
-use super::hair::{Hair, HairFigures, whole_glint};
-use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
+use super::bounded::{Bounded, Spread, integrals, largest};
+use super::claim::{Claim, Figure, Origin, Side, Statement};
+use super::hair::{Hair, whole_glint};
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::reference::Parameters;
 use hairis::{HairDesc, HairParams, ParamError};
 
-const DENSITY: Words = Words {
+const DENSITY: Statement = Statement {
     id: "misprint-glint-density",
     quotation: "p(φ_i) = p(φ)/2 = γ_g / (2 (C_g − D_g) ((|φ| − φ_g)² + γ_g²))",
     source: "section 3.2.2, appendix D",
-};
-
-const DENSITY_THRESHOLD: Threshold = Threshold {
     of: "total of the density over all azimuths, less 1",
     side: Side::AtMost,
     bound: 1e-6,
     limits: "the glints of the parameter grid with the smallest excess",
 };
 
-const INTERVAL: Words = Words {
+const INTERVAL: Statement = Statement {
     id: "glint-interval",
     quotation: "Then we sample φ in the domain [0, π/2], and change its sign to its corresponding half of the lobe.",
     source: "appendix D",
-};
-
-const INTERVAL_THRESHOLD: Threshold = Threshold {
     of: "growth of V, constant light, from azimuths up to 1e-7 rad from π to those up to 1e-8 rad",
     side: Side::AtMost,
     bound: 1e-6,
@@ -44,20 +38,17 @@ fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
     let base = *HairParams::default().desc();
     let (grid, none) = (Grid::FULL, [0.0; 3]);
     let strongest = grid.intensity_g.iter().copied().fold(0.0, f32::max);
-    let mut all = Vec::new();
-    for gamma_g in grid.gamma_g_deg {
-        for phi_g in grid.phi_g_deg {
-            all.push(HairParams::new(&HairDesc {
-                gamma_g: gamma_g.to_radians(),
-                phi_g: phi_g.to_radians(),
-                intensity_g: strongest,
-                intensity_r: none,
-                intensity_tt: if tt { base.intensity_tt } else { none },
-                ..base
-            })?);
-        }
-    }
-    Ok(all)
+    let hair = |gamma_g: &f32, phi_g: &f32| {
+        HairParams::new(&HairDesc {
+            gamma_g: gamma_g.to_radians(),
+            phi_g: phi_g.to_radians(),
+            intensity_g: strongest,
+            intensity_r: none,
+            intensity_tt: if tt { base.intensity_tt } else { none },
+            ..base
+        })
+    };
+    grid.gamma_g_deg.iter().flat_map(|gamma_g| grid.phi_g_deg.iter().map(move |phi_g| hair(gamma_g, phi_g))).collect()
 }
 
 /// Total of the printed density, less 1.
@@ -65,40 +56,28 @@ fn excess(params: &HairParams) -> Bounded {
     let glint = whole_glint(&Parameters::from(params));
     let printed = |phi: f64| [glint.pdf(phi) / glint.cdf(FRAC_PI_2)];
     let d = params.desc();
-    let mut breaks = vec![0.0, FRAC_PI_2, PI];
-    breaks.extend(bell_breakpoints(f64::from(d.phi_g), f64::from(d.gamma_g)));
-    breaks.retain(|x| (0.0..=PI).contains(x));
-    let r = integrate(printed, &breaks, &Tolerance::default());
-    Bounded { value: r.value[0], error: r.error[0] }.plus(-1.0)
+    let [total] = integrals(printed, &[0.0, FRAC_PI_2, PI], f64::from(d.phi_g), f64::from(d.gamma_g));
+    total.plus(-1.0)
 }
 
 /// The printed density.
 pub(super) fn density(cells: &FoundCells) -> Result<Claim, ParamError> {
-    let glints = glints(false)?;
-    let excesses = || glints.iter().map(excess);
-    let bias = || cells.iter().map(|(.., found)| found.uncut_bias.magnitude());
-    let (most, least) = (largest(excesses()), smallest(excesses()));
+    let Spread { most, least, .. } = glints(false)?.iter().map(excess).collect();
+    let bias: Spread = cells.iter().map(|(.., found)| found.uncut_bias.magnitude()).collect();
     let sentence = format!(
         "Samples end at a right angle and the printed density does not: it totals {:.3} to {:.3}, and an estimator that \
          divides by it is up to {:.1}% too dark.",
         1.0 + least.value,
         1.0 + most.value,
-        100.0 * largest(bias()).value,
+        100.0 * bias.most.value,
     );
-    let figure = |name: &str, of| Figure::integral(name, of, "");
-    Ok(Claim::judge(
-        DENSITY,
-        DENSITY_THRESHOLD,
-        [
-            figure("total of the density above 1, most on the grid", most),
-            figure("total of the density above 1, least on the grid", least),
-        ],
-        vec![
-            figure("relative loss of an estimator that divides by it, most", largest(bias())),
-            figure("relative loss of an estimator that divides by it, least", smallest(bias())),
-        ],
-        sentence,
-    ))
+    let figures = Figure::integrals([
+        ("total of the density above 1, most on the grid", most),
+        ("total of the density above 1, least on the grid", least),
+        ("relative loss of an estimator that divides by it, most", bias.most),
+        ("relative loss of an estimator that divides by it, least", bias.least),
+    ]);
+    Ok(DENSITY.judge(figures, sentence))
 }
 
 /// V with azimuths up to `gap` from pi, of the published sampler and with glints drawn from [0, pi].
@@ -121,49 +100,37 @@ pub(super) fn interval(cells: &FoundCells) -> Result<Claim, ParamError> {
         largest(all.iter().map(|params| decade(&Hair::new(model, params, 0.0), last)[place]))
     };
     let both = |all: &[HairParams], place: usize| largest(ModelKind::ALL.map(|model| growth(model, all, place)));
-    let (worst, transmits) = (both(&alone, 0), both(&with_tt, 0));
-    // The glints that leave most of themselves behind: the widest, furthest from the viewer.
-    let widest = alone.last().map(|params| Hair::new(ModelKind::Cauchy, params, 0.0));
-    let growing = widest.map(|hair| GAPS.map(|gap| (gap, up_to(&hair, gap))));
-    let ratio = |found: &HairFigures| found.published.over(found.whole);
-    let ratios = || cells.iter().map(|(.., found)| ratio(found));
-    let mean = geometric_mean(ratios());
+    let worst = both(&alone, 0);
+    let ratio: Spread = cells.iter().map(|(.., found)| found.published.over(found.whole)).collect();
     let sentence = format!(
         "Behind a right angle TRT-g alone covers the tail of the glints and vanishes at π: without R and TT the variance \
          on the Cauchy model is infinite, V growing by {:.4} a decade; with all lobes V is {:.3} times that of glints \
          drawn from [0, π] (geometric mean; {:.2} to {:.2}).",
-        worst.value,
-        mean.value,
-        smallest(ratios()).value,
-        largest(ratios()).value,
+        worst.value, ratio.mean.value, ratio.least.value, ratio.most.value,
     );
-    let figure = |name: String, of| Figure::integral(name, of, "");
-    let mut further = vec![
-        figure("growth of V, TRT and glints alone, Gaussian".to_owned(), growth(ModelKind::Gaussian, &alone, 0)),
-        figure("growth of V, TRT and glints alone, glints on [0, π]".to_owned(), both(&alone, 1)),
-    ];
+    let mut figures = Figure::integrals([
+        ("growth of V, TRT and glints alone, most of the grid's glints", worst),
+        ("growth of V, TT besides, most of the grid's glints", both(&with_tt, 0)),
+        ("growth of V, TRT and glints alone, Gaussian", growth(ModelKind::Gaussian, &alone, 0)),
+        ("growth of V, TRT and glints alone, glints on [0, π]", both(&alone, 1)),
+    ]);
+    // The glints that leave most of themselves behind: the widest, furthest from the viewer.
+    let widest = Hair::new(ModelKind::Cauchy, &alone[alone.len() - 1], 0.0);
     let at = "γ_g = 20°, φ_g = 45°, I_g = 5, Cauchy";
-    for (gap, [published, whole]) in growing.into_iter().flatten() {
-        further.push(figure(format!("V up to {gap:e} rad from π, {at}"), published));
+    let mut add = |name, number: Bounded| figures.push(Figure::new(name, Origin::Quadrature, number));
+    for gap in GAPS {
+        let [published, whole] = up_to(&widest, gap);
+        add(format!("V up to {gap:e} rad from π, {at}"), published);
         if gap == last {
-            further.push(figure(format!("the same, glints on [0, π], {at}"), whole));
+            add(format!("the same, glints on [0, π], {at}"), whole);
         }
     }
-    further.extend([
-        figure("V over V of glints on [0, π], all lobes, geometric mean".to_owned(), mean),
-        figure("V over V of glints on [0, π], all lobes, most".to_owned(), largest(ratios())),
-        figure("V over V of glints on [0, π], all lobes, least".to_owned(), smallest(ratios())),
-    ]);
-    Ok(Claim::judge(
-        INTERVAL,
-        INTERVAL_THRESHOLD,
-        [
-            figure("growth of V, TRT and glints alone, most of the grid's glints".to_owned(), worst),
-            figure("growth of V, TT besides, most of the grid's glints".to_owned(), transmits),
-        ],
-        further,
-        sentence,
-    ))
+    figures.extend(Figure::integrals([
+        ("V over V of glints on [0, π], all lobes, geometric mean", ratio.mean),
+        ("V over V of glints on [0, π], all lobes, most", ratio.most),
+        ("V over V of glints on [0, π], all lobes, least", ratio.least),
+    ]));
+    Ok(INTERVAL.judge(figures, sentence))
 }
 
 #[cfg(test)]

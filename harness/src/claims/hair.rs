@@ -1,6 +1,6 @@
 //! One hair seen from one direction, by quadrature over the oracle: the published density beside the misprinted ones.
 
-use super::claim::Bounded;
+use super::bounded::Bounded;
 use crate::efficiency::with_beta;
 use crate::quadrature::{Tolerance, bell_breakpoints, fibre_direction, integrate_rectangle};
 use crate::study::Grid;
@@ -43,16 +43,13 @@ impl Longitudinal {
 
 /// Every M of the parameter grid: three lobes of each width of R, from each inclination.
 pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
-    let mut all = Vec::new();
-    for beta_r_deg in Grid::FULL.beta_r_deg {
-        let Ok(params) = with_beta(&HairParams::default(), *beta_r_deg) else { continue };
+    let widths = Grid::FULL.beta_r_deg.iter().filter_map(|beta_r| with_beta(&HairParams::default(), *beta_r).ok());
+    let of_width = |params: HairParams| {
         let p = Parameters::from(&params);
-        for theta_o_deg in Grid::FULL.theta_o_deg {
-            let theta_o = f64::from(*theta_o_deg).to_radians();
-            all.extend([0, 1, 2].map(|lobe| Longitudinal::of(&p, lobe, theta_o)));
-        }
-    }
-    all
+        let theta_o = Grid::FULL.theta_o_deg.iter().map(|theta_o| f64::from(*theta_o).to_radians());
+        theta_o.flat_map(move |theta_o| [0, 1, 2].map(|lobe| Longitudinal::of(&p, lobe, theta_o)))
+    };
+    widths.flat_map(of_width).collect()
 }
 
 /// The longitudinal density that A and B normalise as printed, without the half: on an interval twice as long as that of
@@ -64,6 +61,11 @@ fn printed_bounds(alpha: f64, beta: f64, theta_o: f64) -> CauchyDensity<f64> {
 /// A glint's density of `|phi|` on [0, pi]; as printed, without an end, it is this over its cdf at a right angle.
 pub(super) fn whole_glint(p: &Parameters<f64>) -> CauchyDensity<f64> {
     CauchyDensity::new(p.phi_g, p.gamma_g, 0.0, PI)
+}
+
+/// Sum over the lobes, each weighted by its share of the samples.
+fn mixture(shares: &PerLobe<f64>, of: &PerLobe<f64>) -> f64 {
+    Lobe::ALL.into_iter().map(|lobe| shares[lobe] * of[lobe]).sum()
 }
 
 /// A hair of a model seen from an inclination.
@@ -99,37 +101,32 @@ impl Hair {
 
     /// Shares of the lobes' samples that the printed A and B leave on the sphere.
     fn masses(&self) -> PerLobe<f64> {
-        let p = &self.parameters;
-        let of = |lobe: usize| Longitudinal::of(p, lobe, self.theta_o).printed_mass();
-        let mut masses = PerLobe::default();
-        masses[Lobe::R] = of(0);
-        masses[Lobe::TT] = of(1);
-        masses[Lobe::TRT] = of(2);
-        masses[Lobe::GLINT] = of(2);
-        masses
+        let [r, tt, trt] = [0, 1, 2].map(|lobe| Longitudinal::of(&self.parameters, lobe, self.theta_o).printed_mass());
+        PerLobe::padded([r, tt, trt, trt], 0.0)
     }
 
     /// Integrals, by index: y, the mean of RGB of `S cos theta_i`; its square over each density; and y times the
     /// published density over the one whose glint does not end.
     fn integrals(&self, phi: &[f64]) -> [Bounded; 6] {
         let (masses, shares) = (self.masses(), self.oracle.probabilities());
+        let mut kept = shares;
+        Lobe::ALL.into_iter().for_each(|lobe| kept[lobe] *= masses[lobe]);
         let glint = whole_glint(&self.parameters);
         let within = glint.cdf(FRAC_PI_2);
-        let sum = |of: &PerLobe<f64>| Lobe::ALL.into_iter().map(|lobe| shares[lobe] * of[lobe]).sum::<f64>();
         let integrand = |theta_i: f64, phi: f64| {
             let wi = fibre_direction(theta_i, phi).to_array();
             let cos_theta_i = theta_i.cos();
             let y = self.oracle.eval(wi).iter().sum::<f64>() / 3.0 * cos_theta_i;
             let mut pdfs = self.oracle.lobe_pdfs(wi);
-            let published = sum(&pdfs);
+            let published = mixture(&shares, &pdfs);
             if published <= 0.0 {
                 return [0.0; 6];
             }
-            let printed = Lobe::ALL.into_iter().map(|lobe| shares[lobe] * masses[lobe] * pdfs[lobe]).sum::<f64>();
+            let printed = mixture(&kept, &pdfs);
             pdfs[Lobe::GLINT] = self.oracle.pdf_theta(Lobe::TRT, theta_i) * 0.5 * glint.pdf(phi) / cos_theta_i;
-            let whole = sum(&pdfs);
+            let whole = mixture(&shares, &pdfs);
             pdfs[Lobe::GLINT] /= within;
-            let uncut = sum(&pdfs);
+            let uncut = mixture(&shares, &pdfs);
             let y_sq = y * y;
             [y, y_sq * 4.0 * PI, y_sq / published, y_sq / printed, y_sq / whole, y * (published / uncut)]
                 .map(|x| x * cos_theta_i)
@@ -141,7 +138,6 @@ impl Hair {
 
     /// All that is found of it.
     pub(super) fn found(&self) -> HairFigures {
-        let (masses, shares) = (self.masses(), self.oracle.probabilities());
         let all = self.integrals(&self.phi_breakpoints());
         let mean = all[0];
         let v = |k: usize| all[k].over(mean.times(mean)).plus(-1.0);
@@ -151,17 +147,18 @@ impl Hair {
             printed: v(3),
             whole: v(4),
             uncut_bias: all[5].over(mean).plus(-1.0),
-            lost: 1.0 - Lobe::ALL.into_iter().map(|lobe| shares[lobe] * masses[lobe]).sum::<f64>(),
+            lost: 1.0 - mixture(&self.oracle.probabilities(), &self.masses()),
         }
     }
 
     /// Contribution of azimuths between `ends`, in [0, pi], to `E[y^2] / E[y]^2`: of the published sampler, and with glints drawn
     /// from [0, pi].
     pub(super) fn second_moments(&self, ends: &[f64]) -> [Bounded; 2] {
-        let bounds = |x: &f64| ends.first().is_some_and(|lo| lo <= x) && ends.last().is_some_and(|hi| x <= hi);
         let whole = self.phi_breakpoints();
         let mean = self.integrals(&whole)[0];
-        let phi: Vec<f64> = whole.into_iter().filter(bounds).chain(ends.iter().copied()).collect();
+        let [lo, hi] = [ends[0], ends[ends.len() - 1]];
+        let inside = whole.into_iter().filter(|x| (lo..=hi).contains(x));
+        let phi: Vec<f64> = inside.chain(ends.iter().copied()).collect();
         let all = self.integrals(&phi);
         [2, 4].map(|k| all[k].over(mean.times(mean)))
     }

@@ -1,6 +1,6 @@
 //! The all-Cauchy model against the Gaussian one, each under the published sampler: the study's machinery, light by light.
 
-use super::claim::{Claim, Figure, Origin, Side, Threshold, Words};
+use super::claim::{Claim, Figure, Origin, Side, Statement};
 use crate::progress::Progress;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
@@ -10,35 +10,32 @@ use crate::subject::ModelKind;
 use crate::table::number;
 use hairis::ParamError;
 
-const QUOTATION: &str = "This new bsdf model introduces some very minor visual differences, but it is able to achieve a \
-                         better sampling performance.";
-const SOURCE: &str = "section 3.3";
-
-/// Names of the claims, in the order of the lights.
-const IDS: [&str; 5] = [
-    "cauchy-samples-better-constant",
-    "cauchy-samples-better-smooth",
-    "cauchy-samples-better-sun",
-    "cauchy-samples-better-area",
-    "cauchy-samples-better-sky",
+/// Names of the claims, and the lights in words, in the order of the study.
+pub(super) const LIGHTS: [[&str; 2]; 5] = [
+    ["cauchy-samples-better-constant", "constant light"],
+    ["cauchy-samples-better-smooth", "smooth light"],
+    ["cauchy-samples-better-sun", "a 5° sun"],
+    ["cauchy-samples-better-area", "a large area light along the fibre"],
+    ["cauchy-samples-better-sky", "the procedural sky"],
 ];
 
-/// The lights in words, in the order of the study.
-pub(super) const LIGHTS: [&str; 5] =
-    ["constant light", "smooth light", "a 5° sun", "a large area light along the fibre", "the procedural sky"];
-
-const THRESHOLD: Threshold = Threshold {
+/// The claim under one light.
+const STATEMENT: Statement = Statement {
+    id: "",
+    quotation: "This new bsdf model introduces some very minor visual differences, but it is able to achieve a \
+                better sampling performance.",
+    source: "section 3.3",
     of: "V on the Gaussian model over V on the Cauchy model, published sampler",
     side: Side::AtLeast,
     bound: 1.0,
     limits: "the geometric mean over the grid",
 };
 
-const IN_EQUAL_TIME: Threshold = Threshold {
+const IN_EQUAL_TIME: Statement = Statement {
+    id: "cauchy-samples-better-in-equal-time",
     of: "V times time, Gaussian over Cauchy, geometric mean over the grid",
-    side: Side::AtLeast,
-    bound: 1.0,
     limits: "the light under which the Cauchy model gains most",
+    ..STATEMENT
 };
 
 /// Samples of a shading point over which its set-up is spread in the comparison of times.
@@ -62,12 +59,13 @@ pub(super) fn claims(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Cla
     let cells = measure(plan, progress)?;
     let mut claims = Vec::new();
     let mut means = Vec::new();
-    for (light, (id, name)) in IDS.into_iter().zip(LIGHTS).enumerate() {
+    for (light, [id, name]) in LIGHTS.into_iter().enumerate() {
         let pairs = || cells.iter().map(move |cell| cell[light]);
         let ([mean, least, most], unsure) = gain(pairs()).map_or(([Estimate::UNKNOWN; 3], cells.len()), |gain| {
             ([gain.geometric_mean, gain.least, gain.most], gain.unsure)
         });
-        let worse = pairs().filter(|[gaussian, cauchy]| is_below_one(gaussian.ratio(cauchy))).count();
+        let is_worse = |ratio: Estimate| ratio.value + 2.0 * ratio.standard_error < 1.0;
+        let worse = pairs().filter(|[gaussian, cauchy]| is_worse(gaussian.ratio(cauchy))).count();
         let sentence = format!(
             "Under {name} the published sampler needs {} times as many samples on the Gaussian model as on the Cauchy \
              model ({} to {} over {} cells, surely below 1 in {worse}).",
@@ -76,33 +74,21 @@ pub(super) fn claims(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Cla
             number::plain(most.value, 2),
             cells.len() - unsure,
         );
-        claims.push(Claim::judge(
-            Words { id, quotation: QUOTATION, source: SOURCE },
-            THRESHOLD,
-            [
-                Figure::sampled(format!("V on Gaussian over V on Cauchy, {name}, least of the grid"), least, ""),
-                Figure::sampled(format!("V on Gaussian over V on Cauchy, {name}, geometric mean"), mean, ""),
-            ],
-            vec![
-                Figure::sampled(format!("V on Gaussian over V on Cauchy, {name}, most of the grid"), most, ""),
-                Figure::count(
-                    "cells where the Gaussian model needs fewer samples, by two standard errors",
-                    worse,
-                    "cells",
-                ),
-                Figure::count("cells left out: error of V above a quarter", unsure, "cells"),
-            ],
-            sentence,
-        ));
+        let figure = |which: &str, of: Estimate| {
+            Figure::new(format!("V on Gaussian over V on Cauchy, {name}, {which}"), Origin::Sampled, of)
+        };
+        let figures = vec![
+            figure("least of the grid", least),
+            figure("geometric mean", mean),
+            figure("most of the grid", most),
+            Figure::cells("cells where the Gaussian model needs fewer samples, by two standard errors", worse),
+            Figure::cells("cells left out: error of V above a quarter", unsure),
+        ];
+        claims.push(Statement { id, ..STATEMENT }.judge(figures, sentence));
         means.push(mean);
     }
     claims.push(in_time(plan, &means));
     Ok(claims)
-}
-
-/// By more than two standard errors.
-fn is_below_one(ratio: Estimate) -> bool {
-    ratio.value + 2.0 * ratio.standard_error < 1.0
 }
 
 /// The claim in equal time.
@@ -111,28 +97,23 @@ fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
     let [gaussian, cauchy] = ModelKind::ALL.map(|model| times.ns(model, Sampler::Published, PER_POINT));
     let faster = gaussian.ratio(&cauchy);
     let gains: Vec<Estimate> = means.iter().map(|mean| in_equal_time(*mean, faster)).collect();
-    let figure = |name: String, of| Figure::sampled(name, of, "").by(Origin::Timed);
+    let timed = |name: String, of: Estimate| Figure::new(name, Origin::Timed, of);
     let by_value = |a: &usize, b: &usize| gains[*a].value.total_cmp(&gains[*b].value);
     let known = || (0..gains.len()).filter(|light| gains[*light].value.is_finite());
     let (least, most) = (known().min_by(by_value).unwrap_or(0), known().max_by(by_value).unwrap_or(0));
     let sentence = format!(
         "A sample of the Cauchy model takes {:.2} times less time here; in equal time its variance is lower by {:.2} under \
          {} and by {:.2} under {}.",
-        faster.value, gains[most].value, LIGHTS[most], gains[least].value, LIGHTS[least],
+        faster.value, gains[most].value, LIGHTS[most][1], gains[least].value, LIGHTS[least][1],
     );
-    let mut further: Vec<Figure> =
-        gains.iter().zip(LIGHTS).map(|(gain, name)| figure(format!("gain in equal time, {name}"), *gain)).collect();
-    let ns = |name: &str, of: Estimate| Figure::sampled(name, of, "ns").by(Origin::Timed);
-    further.push(ns("time of a sample, Gaussian", gaussian));
-    further.push(ns("time of a sample, Cauchy", cauchy));
-    Claim::judge(
-        Words { id: "cauchy-samples-better-in-equal-time", quotation: QUOTATION, source: SOURCE },
-        IN_EQUAL_TIME,
-        [
-            figure("gain in equal time, least of the lights".to_owned(), gains[least]),
-            figure("gain in equal time, most of the lights".to_owned(), gains[most]),
-        ],
-        further,
-        sentence,
-    )
+    let mut figures = vec![
+        timed("gain in equal time, least of the lights".to_owned(), gains[least]),
+        timed("gain in equal time, most of the lights".to_owned(), gains[most]),
+    ];
+    figures
+        .extend(gains.iter().zip(LIGHTS).map(|(gain, [_, name])| timed(format!("gain in equal time, {name}"), *gain)));
+    for (model, ns) in ModelKind::ALL.into_iter().zip([gaussian, cauchy]) {
+        figures.push(timed(format!("time of a sample, {}", model.title()), ns).in_unit("ns"));
+    }
+    IN_EQUAL_TIME.judge(figures, sentence)
 }

@@ -1,7 +1,7 @@
 //! The claims as tables: one each, then all of them with their verdicts.
 
 use super::Claims;
-use super::claim::{Claim, Figure, Origin, Role, Side};
+use super::claim::{Claim, Figure, Origin, Role, Threshold};
 use crate::table::{Table, number};
 
 /// The tables.
@@ -11,43 +11,25 @@ pub fn tables(of: &Claims) -> Vec<Table> {
 }
 
 fn of_claim(claim: &Claim) -> Table {
-    let title = format!("{}: \"{}\" ({})", claim.id, claim.quotation, claim.source);
-    let mut table = Table::new(title).text("figure").numbers(["value", "error"]).texts(["unit", "from"]);
+    let Claim { id, quotation, source, threshold: Threshold { of, limits, .. }, .. } = claim;
+    let mut table = Table::new(format!("{id}: \"{quotation}\" ({source})"));
+    table = table.text("figure").numbers(["value", "error"]).texts(["unit", "from"]);
     for figure in &claim.figures {
-        let mark = match figure.role {
-            Role::Everywhere => " [1]",
-            Role::WithinLimits => " [2]",
-            Role::Further => "",
-        };
+        let mark = [" [1]", " [2]", ""][figure.role as usize];
         let [value, error] = shown(figure);
-        table.push([
-            format!("{}{mark}", figure.name),
-            value,
-            error,
-            figure.unit.to_owned(),
-            figure.origin.name().to_owned(),
-        ]);
+        let [unit, origin] = [figure.unit, figure.origin.name()].map(str::to_owned);
+        table.push([format!("{}{mark}", figure.name), value, error, unit, origin]);
     }
-    table.note(threshold(claim)).note(format!("{}: {}", claim.verdict.name(), claim.sentence))
+    let bound = bound(claim);
+    table
+        .note(format!("Holds if [1] keeps the threshold, within limits ({limits}) if [2] does: {of}, {bound}."))
+        .note(format!("{}: {}", claim.verdict.name(), claim.sentence))
 }
 
-/// The threshold in words.
-fn threshold(claim: &Claim) -> String {
-    let of = &claim.threshold;
-    format!(
-        "Holds if [1] keeps the threshold, within limits ({}) if [2] does: {}, {} {}.",
-        of.limits,
-        of.of,
-        side(of.side),
-        number::plain(of.bound, 1),
-    )
-}
-
-const fn side(of: Side) -> &'static str {
-    match of {
-        Side::AtMost => "at most",
-        Side::AtLeast => "at least",
-    }
+/// The bound in words.
+fn bound(claim: &Claim) -> String {
+    let Threshold { side, bound, .. } = claim.threshold;
+    format!("{} {}", ["at most", "at least"][side as usize], number::plain(bound, 1))
 }
 
 /// Value and error.
@@ -75,16 +57,10 @@ fn summary(of: &Claims) -> Table {
             let [value, error] = claim.figures.iter().find(|figure| figure.role == role).map(shown).unwrap_or_default();
             format!("{value} ± {error}")
         };
-        let threshold = format!("{} {}", side(claim.threshold.side), number::plain(claim.threshold.bound, 1));
-        table.push([
-            claim.id.clone(),
-            claim.source.to_owned(),
-            threshold,
-            of_role(Role::Everywhere),
-            of_role(Role::WithinLimits),
-            claim.threshold.limits.to_owned(),
-            claim.verdict.name().to_owned(),
-        ]);
+        let [everywhere, within] = [Role::Everywhere, Role::WithinLimits].map(of_role);
+        let [id, source, limits, verdict] =
+            [claim.id, claim.source, claim.threshold.limits, claim.verdict.name()].map(str::to_owned);
+        table.push([id, source, bound(claim), everywhere, within, limits, verdict]);
     }
     table.note(format!(
         "{} cells of the parameter grid, seed {}. Errors: standard errors of what is sampled, bound estimates of what is \

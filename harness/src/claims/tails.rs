@@ -1,19 +1,16 @@
 //! Wider tails: the cost of sampling a Gaussian factor by a Cauchy distribution of the same width.
 
-use super::claim::{Bounded, Claim, Figure, Side, Threshold, Words, largest, smallest};
+use super::bounded::{Bounded, Spread, integrals};
+use super::claim::{Claim, Figure, Side, Statement};
 use super::hair::{Longitudinal, longitudinal_grid};
-use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
 use core::f64::consts::PI;
 use hairis::reference::Shape;
 
-const WORDS: Words = Words {
+const STATEMENT: Statement = Statement {
     id: "wider-tails",
     quotation: "The fact that cauchy distributions have wider tails than gaussian guarantees that using cauchy to \
                 approximate the gaussian in importance sampling will not increase variance.",
     source: "section 3.2",
-};
-
-const THRESHOLD: Threshold = Threshold {
     of: "relative variance that one factor adds to exact sampling",
     side: Side::AtMost,
     bound: 1e-6,
@@ -25,17 +22,14 @@ const THRESHOLD: Threshold = Threshold {
 const REACH: f64 = 40.0;
 
 /// `(integral of c) (integral of g^2 / c) / (integral of g)^2 - 1` over an interval, for bells of one width and centre.
-fn added(alpha: f64, beta: f64, [lo, hi]: [f64; 2], cauchy_area: Option<f64>) -> Bounded {
-    let mut breaks = vec![lo, hi];
-    breaks.extend(bell_breakpoints(alpha, beta).into_iter().filter(|x| (lo..=hi).contains(x)));
+fn added(alpha: f64, beta: f64, interval: [f64; 2], cauchy_area: Option<f64>) -> Bounded {
     let integrand = |x: f64| {
         let [g, c] = [Shape::Gaussian, Shape::Cauchy].map(|shape| shape.bell(beta, x - alpha));
         [g, g * g / c, c]
     };
-    let r = integrate(integrand, &breaks, &Tolerance::default());
-    let of = |k: usize| Bounded { value: r.value[k], error: r.error[k] };
-    let area = cauchy_area.map_or(of(2), |value| Bounded { value, error: 0.0 });
-    area.times(of(1)).over(of(0).times(of(0))).plus(-1.0)
+    let [gaussian, weighted, cauchy] = integrals(integrand, &interval, alpha, beta);
+    let area = cauchy_area.map_or(cauchy, Bounded::exact);
+    area.times(weighted).over(gaussian.times(gaussian)).plus(-1.0)
 }
 
 /// The largest Gaussian over Cauchy, both of peak 1.
@@ -46,31 +40,26 @@ fn largest_weight() -> f64 {
 
 /// The claim.
 pub(super) fn claim() -> Claim {
-    let of_lobe = |l: &Longitudinal| added(l.alpha, l.beta, l.interval(), None);
-    let grid: Vec<Bounded> = longitudinal_grid().iter().map(of_lobe).collect();
+    let of_lobe = |l: Longitudinal| added(l.alpha, l.beta, l.interval(), None);
+    let Spread { most, least, .. } = longitudinal_grid().into_iter().map(of_lobe).collect();
     let line = added(0.0, 1.0, [-REACH, REACH], Some(PI));
     let both = line.plus(1.0).times(line.plus(1.0)).plus(-1.0);
     let weight = Bounded { value: largest_weight(), error: 1e-7 };
-    let in_means = weight.times(Bounded { value: PI / (2.0 * PI).sqrt(), error: 0.0 });
-    let (most, least) = (largest(grid.iter().copied()), smallest(grid.iter().copied()));
+    let in_means = weight.times(Bounded::exact(PI / (2.0 * PI).sqrt()));
     let sentence = format!(
         "Wider tails bound the weight, by {:.4} (bells of peak 1), but the shape still differs: each Gaussian factor adds \
          a relative variance of {:.3} on the line, {:.3} to {:.2} on the grid's intervals.",
         weight.value, line.value, least.value, most.value
     );
-    let figure = |name: &str, of| Figure::integral(name, of, "");
-    Claim::judge(
-        WORDS,
-        THRESHOLD,
-        [figure("added variance, most on the grid", most), figure("added variance, least on the grid", least)],
-        vec![
-            figure("added variance of a factor on the line", line),
-            figure("added variance of two factors on the line", both),
-            figure("largest Gaussian over Cauchy", weight),
-            figure("largest weight of a factor on the line, in means", in_means),
-        ],
-        sentence,
-    )
+    let figures = Figure::integrals([
+        ("added variance, most on the grid", most),
+        ("added variance, least on the grid", least),
+        ("added variance of a factor on the line", line),
+        ("added variance of two factors on the line", both),
+        ("largest Gaussian over Cauchy", weight),
+        ("largest weight of a factor on the line, in means", in_means),
+    ]);
+    STATEMENT.judge(figures, sentence)
 }
 
 #[cfg(test)]

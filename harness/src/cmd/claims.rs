@@ -1,6 +1,6 @@
 //! `hairis claims`: computes the paper's claims, prints them, and writes `claims.json`.
 
-use crate::claims::{self, ClaimsConfig};
+use crate::claims;
 use crate::cmd::compare::{output, write_json};
 use crate::cmd::{print_tables, say};
 use crate::config::Claims;
@@ -23,8 +23,7 @@ pub fn run(config: &Claims) -> Result<(), Error> {
     if let Ok(style) = ProgressStyle::with_template("claims {wide_bar} {percent:>3}% {elapsed} (left {eta})") {
         bar.set_style(style);
     }
-    let settings = ClaimsConfig { seed: config.seed, quick: config.quick };
-    let claims = claims::run(settings, &|done| {
+    let claims = claims::run(config.seed, config.quick, &|done| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
         bar.set_position((done.clamp(0.0, 1.0) * 1000.0) as u64);
     })?;

@@ -4,6 +4,7 @@ use super::{ModelKind, PHI_O_DEG};
 use crate::quadrature::{SphereIntegrator, Tolerance, fibre_direction};
 use crate::sampler::{Sampler, Scatter, UNIFORM_PDF};
 use crate::sequence::{XiSource, to_unit_f32};
+use core::array;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::{DVec3, Vec3};
 use hairis::HairParams;
@@ -85,24 +86,25 @@ impl Case {
             }
         }
         let sample = self.of(sampler).scatter.sample8(&xi.map(f32x8::new));
-        let at = |x: &f32x8, lane: usize| f64::from(x.as_array()[lane]);
-        Draws {
-            dir: core::array::from_fn(|lane| sample.wi.lane(lane).as_dvec3()),
-            weight: core::array::from_fn(|lane| core::array::from_fn(|c| at(&sample.weight[c], lane))),
-            pdf: sample.pdf.to_array().map(f64::from),
-        }
+        let dir = array::from_fn(|lane| sample.wi.lane(lane).as_dvec3());
+        Draws { dir, weight: colours(&sample.weight), pdf: sample.pdf.to_array().map(f64::from) }
     }
 
     /// `S cos theta_i`, linear RGB, and the density of `sampler`, at eight directions.
     pub(super) fn eval(&self, sampler: Sampler, dir: &[DVec3; 8]) -> ([[f64; 3]; 8], [f64; 8]) {
         let wi: [Vec3; 8] = dir.map(|d| d.as_vec3());
         let eval = self.of(sampler).scatter.eval_pdf8(&wi.into());
-        let value = core::array::from_fn(|lane| {
-            let cos_theta = dir[lane].y.hypot(dir[lane].z);
-            eval.value.map(|c| f64::from(c.as_array()[lane]) * cos_theta)
-        });
+        let mut value = colours(&eval.value);
+        for (colour, dir) in value.iter_mut().zip(dir) {
+            *colour = colour.map(|c| c * dir.y.hypot(dir.z));
+        }
         (value, eval.pdf.to_array().map(f64::from))
     }
+}
+
+/// The colours of eight lanes.
+fn colours(channels: &[f32x8; 3]) -> [[f64; 3]; 8] {
+    array::from_fn(|lane| channels.map(|c| f64::from(c.as_array()[lane])))
 }
 
 /// Breakpoints at each bell, at the seam of `phi` and at the glint density's end.

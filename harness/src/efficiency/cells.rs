@@ -1,21 +1,23 @@
 //! One cell of each table.
 
 use super::case::Case;
-use super::measure::{self, CellMoments, bias_z};
+use super::measure::{self, bias_z, is_tested, moments};
 use super::reference::exact_variance;
 use super::result::{ConvergencePoint, EfficiencyRow, MisRow, ReferenceV, SweepRow, Technique};
-use super::{EfficiencyConfig, ModelKind, Reference, ReferenceMethod, SAMPLERS, mis, stream};
+use super::{EfficiencyConfig, ModelKind, Reference, stream};
 use crate::light::{Constant, Light};
 use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
 use crate::stats::{Estimate, Moments};
 use hairis::HairParams;
 
-/// A light, its place in the order of reports and the reference under it.
+/// A case under a light, the light's place in the order of reports, and the reference.
 #[derive(Clone, Copy)]
-pub(super) struct Lit<'a> {
+pub(super) struct Place<'a> {
+    pub(super) config: &'a EfficiencyConfig<'a>,
+    pub(super) case: &'a Case,
     pub(super) light: &'a dyn Light,
-    pub(super) index: u64,
+    pub(super) index: usize,
     pub(super) reference: &'a Reference,
 }
 
@@ -26,111 +28,89 @@ fn cell(config: &EfficiencyConfig<'_>, table: u64, case: &Case, rest: &[u64]) ->
     [config.seed, stream(&indices)]
 }
 
-fn kind_index(kind: SequenceKind) -> u64 {
-    match kind {
-        SequenceKind::Independent => 0,
-        SequenceKind::Halton => 1,
-        SequenceKind::Stratified => 2,
+impl Place<'_> {
+    pub(super) fn row(&self, sampler: Sampler, sequence: SequenceKind) -> EfficiencyRow {
+        let Self { config, case, light, index, reference } = *self;
+        let budget = &config.budget;
+        let at = cell(config, stream::ROW, case, &[sampler.index(), sequence as u64, index as u64]);
+        let [n, randomisations] = match sequence {
+            SequenceKind::Independent => [1, budget.independent],
+            _ => [budget.correlated, budget.randomisations],
+        };
+        let tally = moments(case, Technique::Bsdf(sampler), light, at, sequence, [n, randomisations]);
+        let v = tally.moments.relative_variance().scale(n as f64);
+        EfficiencyRow {
+            model: case.model,
+            sampler,
+            sequence,
+            light: light.name().to_owned(),
+            theta_o_deg: case.theta_o_deg,
+            n,
+            randomisations,
+            v,
+            ess_per_1000: measure::effective_per_1000(&v),
+            samples_for_1_percent: v.scale(1e4),
+            efficiency: config.costs.map(|costs| measure::efficiency(&v, costs.ns(case.model, sampler))),
+            max_weight: tally.max_weight,
+            max_contribution: tally.max_in_means(),
+            mean: tally.moments.mean_estimate(),
+            reference: *reference,
+            z: bias_z(&tally.moments, reference),
+            tested: is_tested(n * randomisations, reference.predicted(sampler)),
+        }
     }
-}
 
-/// Largest contribution in means, 0 when there was none.
-fn in_means(tally: &CellMoments) -> f64 {
-    if tally.max_contribution > 0.0 { tally.max_contribution / tally.moments.mean() } else { 0.0 }
-}
-
-pub(super) fn row(
-    config: &EfficiencyConfig<'_>,
-    case: &Case,
-    sampler: Sampler,
-    sequence: SequenceKind,
-    lit: &Lit<'_>,
-) -> EfficiencyRow {
-    let budget = &config.budget;
-    let at = cell(config, stream::ROW, case, &[sampler.index(), kind_index(sequence), lit.index]);
-    let (tally, n, randomisations) = if sequence == SequenceKind::Independent {
-        (measure::independent(case, sampler, lit.light, at, budget.independent), 1, budget.independent)
-    } else {
-        let size = [budget.correlated, budget.randomisations];
-        (measure::means(case, sampler, sequence, lit.light, at, size), size[0], size[1])
-    };
-    let v = tally.moments.relative_variance().scale(n as f64);
-    EfficiencyRow {
-        model: case.model,
-        sampler,
-        sequence,
-        light: lit.light.name().to_owned(),
-        theta_o_deg: case.theta_o_deg,
-        n,
-        randomisations,
-        v,
-        ess_per_1000: measure::effective_per_1000(&v),
-        samples_for_1_percent: v.scale(1e4),
-        efficiency: config.costs.map(|costs| measure::efficiency(&v, costs.ns(case.model, sampler))),
-        max_weight: tally.max_weight,
-        max_contribution: in_means(&tally),
-        mean: tally.moments.mean_estimate(),
-        reference: *lit.reference,
-        z: bias_z(&tally.moments, lit.reference),
-        tested: measure::is_tested(n * randomisations, lit.reference.predicted(sampler)),
+    pub(super) fn mis_row(&self, technique: Technique) -> MisRow {
+        let Self { config, case, light, index, reference } = *self;
+        let n = config.budget.mis;
+        let [kind, sampler] = match technique {
+            Technique::Light => [0, 0],
+            Technique::Bsdf(sampler) => [1, sampler.index()],
+            Technique::Mis(sampler) => [2, sampler.index()],
+        };
+        let at = cell(config, stream::MIS, case, &[kind, sampler, index as u64]);
+        let tally = moments(case, technique, light, at, SequenceKind::Independent, [1, n]);
+        let v = tally.moments.relative_variance().scale(technique.samples_each() as f64);
+        MisRow {
+            model: case.model,
+            technique,
+            name: technique.name(),
+            light: light.name().to_owned(),
+            theta_o_deg: case.theta_o_deg,
+            samples_each: technique.samples_each(),
+            n,
+            v,
+            samples_for_1_percent: v.scale(1e4),
+            max_contribution: tally.max_in_means(),
+            mean: tally.moments.mean_estimate(),
+            reference: *reference,
+            z: bias_z(&tally.moments, reference),
+            tested: match technique {
+                Technique::Bsdf(sampler) => is_tested(n, reference.predicted(sampler)),
+                // Samples from the light hit it however small it is.
+                _ => true,
+            },
+        }
     }
-}
 
-pub(super) fn mis_row(config: &EfficiencyConfig<'_>, case: &Case, technique: Technique, lit: &Lit<'_>) -> MisRow {
-    let n = config.budget.mis;
-    let [kind, sampler] = match technique {
-        Technique::Light => [0, 0],
-        Technique::Bsdf(sampler) => [1, sampler.index()],
-        Technique::Mis(sampler) => [2, sampler.index()],
-    };
-    let at = cell(config, stream::MIS, case, &[kind, sampler, lit.index]);
-    let tally = mis::estimate(case, technique, lit.light, at, n);
-    let v = tally.moments.relative_variance().scale(technique.samples_each() as f64);
-    MisRow {
-        model: case.model,
-        technique,
-        name: technique.name(),
-        light: lit.light.name().to_owned(),
-        theta_o_deg: case.theta_o_deg,
-        samples_each: technique.samples_each(),
-        n,
-        v,
-        samples_for_1_percent: v.scale(1e4),
-        max_contribution: in_means(&tally),
-        mean: tally.moments.mean_estimate(),
-        reference: *lit.reference,
-        z: bias_z(&tally.moments, lit.reference),
-        // Samples from the light hit it however small it is.
-        tested: match technique {
-            Technique::Bsdf(sampler) => measure::is_tested(n, lit.reference.predicted(sampler)),
-            _ => true,
-        },
-    }
-}
-
-pub(super) fn convergence_point(
-    config: &EfficiencyConfig<'_>,
-    case: &Case,
-    sampler: Sampler,
-    sequence: SequenceKind,
-    lit: &Lit<'_>,
-    n: usize,
-) -> ConvergencePoint {
-    let randomisations = config.budget.convergence;
-    let rest = [sampler.index(), kind_index(sequence), lit.index, n as u64];
-    let at = cell(config, stream::CONVERGENCE, case, &rest);
-    let tally = measure::means(case, sampler, sequence, lit.light, at, [n, randomisations]);
-    ConvergencePoint {
-        model: case.model,
-        sampler,
-        sequence,
-        light: lit.light.name().to_owned(),
-        theta_o_deg: case.theta_o_deg,
-        n,
-        randomisations,
-        rms: rms_error(&tally.moments, lit.reference.value),
-        z: bias_z(&tally.moments, lit.reference),
-        tested: measure::is_tested(n * randomisations, lit.reference.predicted(sampler)),
+    pub(super) fn convergence_point(&self, sampler: Sampler, sequence: SequenceKind, n: usize) -> ConvergencePoint {
+        let Self { config, case, light, index, reference } = *self;
+        let randomisations = config.budget.convergence;
+        let rest = [sampler.index(), sequence as u64, index as u64, n as u64];
+        let at = cell(config, stream::CONVERGENCE, case, &rest);
+        let tally = moments(case, Technique::Bsdf(sampler), light, at, sequence, [n, randomisations]);
+        ConvergencePoint {
+            model: case.model,
+            sampler,
+            sequence,
+            light: light.name().to_owned(),
+            theta_o_deg: case.theta_o_deg,
+            n,
+            randomisations,
+            rms: rms_error(&tally.moments, reference.value),
+            z: bias_z(&tally.moments, reference),
+            tested: is_tested(n * randomisations, reference.predicted(sampler)),
+        }
     }
 }
 
@@ -152,17 +132,10 @@ fn rms_error(means: &Moments, truth: f64) -> Estimate {
 pub(super) fn sweep_row(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sampler, beta_r_deg: f32) -> SweepRow {
     let n = config.budget.sweep;
     let at = cell(config, stream::SWEEP, case, &[sampler.index(), u64::from(beta_r_deg.to_bits())]);
-    let tally = measure::independent(case, sampler, &Constant::white(), at, n);
+    let (technique, light) = (Technique::Bsdf(sampler), Constant::white());
+    let tally = moments(case, technique, &light, at, SequenceKind::Independent, [1, n]);
     let exact = exact_variance(case, sampler);
-    let v = tally.moments.relative_variance();
-    let reference = Reference {
-        value: exact.mean,
-        standard_error: 0.0,
-        quadrature_error: exact.mean_error,
-        method: ReferenceMethod::Quadrature,
-        v: [exact.intensity; SAMPLERS.len()],
-        skewness: [0.0; SAMPLERS.len()],
-    };
+    let (v, [quadrature, _]) = (tally.moments.relative_variance(), exact.v);
     SweepRow {
         model: case.model,
         sampler,
@@ -170,9 +143,9 @@ pub(super) fn sweep_row(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sam
         theta_o_deg: case.theta_o_deg,
         n,
         v,
-        quadrature: exact.intensity,
-        z_quadrature: agreement(v, exact.intensity),
-        z: bias_z(&tally.moments, &reference),
+        quadrature,
+        z_quadrature: agreement(v, quadrature),
+        z: bias_z(&tally.moments, &exact.mean),
     }
 }
 
@@ -183,18 +156,18 @@ fn agreement(v: Estimate, exact: f64) -> f64 {
 
 /// V under constant light against quadrature and, for the default hair, against its recorded figures. `v` is that of the independent row.
 pub(super) fn reference_v(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sampler, v: Estimate) -> ReferenceV {
-    let exact = exact_variance(case, sampler);
-    let recorded =
-        (config.params == HairParams::default()).then(|| recorded_v(case.model, sampler, case.theta_o_deg)).flatten();
+    let [quadrature, quadrature_luminance] = exact_variance(case, sampler).v;
+    let is_default = config.params == HairParams::default();
+    let recorded = recorded_v(case.model, sampler, case.theta_o_deg).filter(|_| is_default);
     let rounded = Estimate { standard_error: v.standard_error.hypot(ROUNDING), ..v };
     ReferenceV {
         model: case.model,
         sampler,
         theta_o_deg: case.theta_o_deg,
         v,
-        quadrature: exact.intensity,
-        z_quadrature: agreement(v, exact.intensity),
-        quadrature_luminance: exact.luminance,
+        quadrature,
+        z_quadrature: agreement(v, quadrature),
+        quadrature_luminance,
         recorded,
         z_recorded: recorded.map(|p| rounded.z_score(p)),
     }

@@ -1,16 +1,18 @@
-//! From contributions to figures: blocks of samples, moments, z-scores.
+//! From contributions to figures: blocks of samples, moments, z-scores. Light samples join those of the BSDF by the power heuristic
+//! (section 4 of the paper).
 
 use super::case::Case;
-use super::{MIN_EFFECTIVE, Reference, intensity};
-use crate::light::Light;
+use super::{MIN_EFFECTIVE, Reference, Technique, intensity};
+use crate::light::{Light, LightSample, product};
 use crate::sampler::Sampler;
 use crate::sequence::{SequenceKind, XiSource};
 use crate::stats::{Estimate, Moments};
+use core::array;
 
 /// Moments of one cell, and the largest numbers seen on the way.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CellMoments {
-    /// Of single contributions, or of the means of randomisations.
+    /// Of single contributions, of those of pairs, or of the means of randomisations.
     pub(super) moments: Moments,
     pub(super) max_weight: f64,
     pub(super) max_contribution: f64,
@@ -21,75 +23,89 @@ impl CellMoments {
         self.max_weight = self.max_weight.max(weight);
         self.max_contribution = self.max_contribution.max(contribution);
     }
+
+    /// Largest contribution in means, 0 when there was none.
+    pub(super) fn max_in_means(&self) -> f64 {
+        if self.max_contribution > 0.0 { self.max_contribution / self.moments.mean() } else { 0.0 }
+    }
 }
 
-/// Intensity of a contribution `radiance * weight`.
-pub(super) fn contribution(radiance: [f64; 3], weight: [f64; 3]) -> f64 {
-    intensity(core::array::from_fn(|c| radiance[c] * weight[c]))
+/// Balance of the power heuristic for the technique of density `mine`; 0 where it has none.
+fn power_heuristic(mine: f64, other: f64) -> f64 {
+    if mine == 0.0 {
+        return 0.0;
+    }
+    // The ratio rather than the squares: densities of narrow lights are large.
+    let ratio = other / mine;
+    1.0 / (1.0 + ratio * ratio)
 }
 
-/// Hands the contributions of the next `n` points to `each`.
-fn samples(
+/// Passes the next `n` contributions of `technique` to `each`, with the weights of the samples of the BSDF.
+fn contributions(
     case: &Case,
-    sampler: Sampler,
+    technique: Technique,
     light: &dyn Light,
     source: &mut impl XiSource,
     n: usize,
     mut each: impl FnMut(f64, f64),
 ) {
-    let mut left = n;
-    while left > 0 {
-        let lanes = left.min(8);
-        let draws = case.draw(sampler, source, lanes);
-        for lane in 0..lanes {
-            let weight = draws.weight[lane];
-            // A discarded sample counts, and contributes 0; it may have no direction to look at. A NaN is let through, for the check to find.
-            let y = if draws.pdf[lane] == 0.0 { 0.0 } else { contribution(light.radiance(draws.dir[lane]), weight) };
-            each(intensity(weight), y);
+    let (sampler, both) = match technique {
+        Technique::Light => (None, false),
+        Technique::Bsdf(sampler) => (Some(sampler), false),
+        Technique::Mis(sampler) => (Some(sampler), true),
+    };
+    for begin in (0..n).step_by(8) {
+        let lanes = (n - begin).min(8);
+        let (mut weights, mut y) = ([0.0; 8], [0.0; 8]);
+        if let Some(sampler) = sampler {
+            let draws = case.draw(sampler, source, lanes);
+            for lane in 0..lanes {
+                let (dir, pdf, weight) = (draws.dir[lane], draws.pdf[lane], draws.weight[lane]);
+                weights[lane] = intensity(weight);
+                // A discarded sample counts, and contributes 0; it may have no direction to look at. A NaN is let through, for the check to find.
+                if pdf != 0.0 {
+                    let share = if both { power_heuristic(pdf, light.pdf(dir)) } else { 1.0 };
+                    y[lane] = share * intensity(product(light.radiance(dir), weight));
+                }
+            }
         }
-        left -= lanes;
+        if both || sampler.is_none() {
+            let samples: [LightSample; 8] = array::from_fn(|_| light.sample(source.next_xi()));
+            let (value, pdf) = case.eval(sampler.unwrap_or(Sampler::Uniform), &samples.map(|s| s.dir));
+            for (lane, s) in samples.iter().enumerate().filter(|(_, s)| s.pdf != 0.0) {
+                let share = if both { power_heuristic(s.pdf, pdf[lane]) } else { 1.0 };
+                y[lane] += share * intensity(product(s.radiance, value[lane])) / s.pdf;
+            }
+        }
+        weights.into_iter().zip(y).take(lanes).for_each(|(weight, y)| each(weight, y));
     }
 }
 
-/// Moments of `n` independent contributions.
-pub(super) fn independent(
+/// Moments of the means of `n` contributions over `randomisations`; of single independent contributions for an `n` of 1.
+pub(super) fn moments(
     case: &Case,
-    sampler: Sampler,
+    technique: Technique,
     light: &dyn Light,
     [seed, stream]: [u64; 2],
-    n: usize,
-) -> CellMoments {
-    let mut source = SequenceKind::Independent.source(seed, stream, sampler.dims(), n);
-    let mut tally = CellMoments::default();
-    samples(case, sampler, light, &mut source, n, |weight, y| {
-        tally.moments.push(y);
-        tally.see(weight, y);
-    });
-    tally
-}
-
-/// Moments of the means of `n` samples over `randomisations`.
-pub(super) fn means(
-    case: &Case,
-    sampler: Sampler,
     kind: SequenceKind,
-    light: &dyn Light,
-    [seed, stream]: [u64; 2],
     [n, randomisations]: [usize; 2],
 ) -> CellMoments {
     let mut tally = CellMoments::default();
-    let mut source = kind.source(seed, stream, sampler.dims(), n);
-    for run in 0..randomisations {
-        // Every pass of the other kinds is a randomisation of its own.
-        if kind == SequenceKind::Halton && run > 0 {
-            source = kind.source(seed, super::stream(&[stream, run as u64]), sampler.dims(), n);
-        }
-        let mut sum = 0.0;
-        samples(case, sampler, light, &mut source, n, |weight, y| {
-            sum += y;
+    let dims = if let Technique::Bsdf(sampler) = technique { sampler.dims() } else { 3 };
+    // Every pass of the other kinds is a randomisation of its own.
+    let [runs, passes] = if kind == SequenceKind::Halton { [randomisations, 1] } else { [1, randomisations] };
+    for run in 0..runs {
+        let stream = if run == 0 { stream } else { super::stream(&[stream, run as u64]) };
+        let (mut sum, mut summed) = (0.0, 0);
+        contributions(case, technique, light, &mut kind.source(seed, stream, dims, n), n * passes, |weight, y| {
             tally.see(weight, y);
+            sum += y;
+            summed += 1;
+            if summed == n {
+                tally.moments.push(sum / n as f64);
+                (sum, summed) = (0.0, 0);
+            }
         });
-        tally.moments.push(sum / n as f64);
     }
     tally
 }

@@ -2,8 +2,8 @@
 
 use super::case::Case;
 use super::{Reference, ReferenceMethod, SAMPLERS, intensity, stream};
-use crate::light::{Environment, Light, luminance};
-use crate::quadrature::{SphereIntegrator, Tolerance};
+use crate::light::{Environment, Light, luminance, product};
+use crate::quadrature::SphereIntegrator;
 use crate::sampler::Sampler;
 use crate::sequence::{Stratified, XiSource};
 use crate::stats::Moments;
@@ -17,15 +17,7 @@ fn over(numerator: f64, pdf: f64) -> f64 {
 /// The integral of `light * S cos theta_i` by the light's own quadrature, without the variances; whether it converged.
 fn mean_by_quadrature(case: &Case, light: &dyn Light) -> (Reference, bool) {
     let integral = light.integrate(&|dir| case.oracle_value(dir), case.sphere(Sampler::Published));
-    let reference = Reference {
-        value: intensity(integral.value),
-        standard_error: 0.0,
-        quadrature_error: intensity(integral.error),
-        method: ReferenceMethod::Quadrature,
-        v: [f64::NAN; SAMPLERS.len()],
-        skewness: [0.0; SAMPLERS.len()],
-    };
-    (reference, integral.converged)
+    (Reference::by_quadrature(intensity(integral.value), intensity(integral.error)), integral.converged)
 }
 
 /// Second moment of a contribution when directions have a density, by the light's own quadrature.
@@ -33,8 +25,7 @@ fn second_moment(case: &Case, light: &dyn Light, sphere: &SphereIntegrator, dens
     // The light multiplies by its radiance, channel by channel: the brightest channel carries the integrand, divided by it.
     let square = |dir: DVec3| {
         let radiance = light.radiance(dir);
-        let value = case.oracle_value(dir);
-        let y = intensity(core::array::from_fn(|c| radiance[c] * value[c]));
+        let y = intensity(product(radiance, case.oracle_value(dir)));
         let brightest = (1..3).fold(0, |b, c| if radiance[c] > radiance[b] { c } else { b });
         let mut carried = [0.0; 3];
         if radiance[brightest] > 0.0 {
@@ -49,11 +40,10 @@ fn second_moment(case: &Case, light: &dyn Light, sphere: &SphereIntegrator, dens
 pub(super) fn by_quadrature(case: &Case, light: &dyn Light) -> Reference {
     let (mean, _) = mean_by_quadrature(case, light);
     let v = SAMPLERS.map(|sampler| {
-        let sphere = case.sphere(sampler).clone();
+        let mut sphere = case.sphere(sampler).clone();
         // A light that integrates over itself has edges where a matched density jumps: twenty times as many take the
         // area light 6 s and change its figure by 2e-6. Lights that cover the sphere converge long before.
-        let tolerance = Tolerance { max_panels: 2_000, ..*sphere.tolerance() };
-        let sphere = sphere.with_tolerance(tolerance);
+        sphere.tolerance.max_panels = 2_000;
         let second = second_moment(case, light, &sphere, &|dir| case.density(sampler, dir));
         second / (mean.value * mean.value) - 1.0
     });
@@ -76,9 +66,8 @@ pub(super) fn perfect_v(case: &Case, light: &dyn Light) -> f64 {
 #[cfg(test)]
 pub(super) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2] {
     let both = |dir: DVec3| case.density(sampler, dir) + light.pdf(dir);
-    let sphere = case.sphere(sampler).clone();
-    let tolerance = Tolerance { max_panels: 2_000, ..*sphere.tolerance() };
-    let sphere = sphere.with_tolerance(tolerance);
+    let mut sphere = case.sphere(sampler).clone();
+    sphere.tolerance.max_panels = 2_000;
     let share = |dir: DVec3| case.oracle_value(dir).map(|s| over(s * case.density(sampler, dir), both(dir)));
     let by_sampler = intensity(light.integrate(&share, &sphere).value);
     let mean = mean_by_quadrature(case, light).0.value;
@@ -103,8 +92,7 @@ pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, 
         let mut sum = 0.0;
         for _ in 0..cells {
             let s = map.sample(source.next_xi());
-            let value = case.oracle_value(s.dir);
-            let y = intensity(core::array::from_fn(|c| s.radiance[c] * value[c]));
+            let y = intensity(product(s.radiance, case.oracle_value(s.dir)));
             sum += over(y, s.pdf);
             for ((square, cube), sampler) in squares.iter_mut().zip(&mut cubes).zip(SAMPLERS) {
                 // Contribution of one sample of the sampler in this direction.
@@ -130,27 +118,17 @@ pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, 
             return Reference { v, skewness, ..exact };
         }
     }
-    Reference {
-        value: mean.value,
-        standard_error: mean.standard_error,
-        quadrature_error: 0.0,
-        method: ReferenceMethod::StratifiedRun,
-        v,
-        skewness,
-    }
+    let (standard_error, method) = (mean.standard_error, ReferenceMethod::StratifiedRun);
+    Reference { standard_error, method, v, skewness, ..Reference::by_quadrature(mean.value, 0.0) }
 }
 
-/// Relative variance per sample under constant light, by quadrature.
+/// The integral of `S cos theta_i` and V under constant light, by quadrature.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ExactVariance {
-    /// The integral of `S cos theta_i`, as the mean of RGB.
-    pub(super) mean: f64,
-    /// Bound estimate of its error, absolute.
-    pub(super) mean_error: f64,
-    /// V of the mean of RGB.
-    pub(super) intensity: f64,
-    /// V of the luminance of Rec. 709.
-    pub(super) luminance: f64,
+    /// The integral of the mean of RGB.
+    pub(super) mean: Reference,
+    /// V of the mean of RGB, and of the luminance of Rec. 709.
+    pub(super) v: [f64; 2],
     /// Whether the tolerance of 1e-7 was met.
     #[cfg(test)]
     pub(super) converged: bool,
@@ -166,10 +144,8 @@ pub(super) fn exact_variance(case: &Case, sampler: Sampler) -> ExactVariance {
     });
     let [m, y, m_sq, y_sq] = r.value;
     ExactVariance {
-        mean: m,
-        mean_error: r.error[0],
-        intensity: m_sq / (m * m) - 1.0,
-        luminance: y_sq / (y * y) - 1.0,
+        mean: Reference::by_quadrature(m, r.error[0]),
+        v: [m_sq / (m * m) - 1.0, y_sq / (y * y) - 1.0],
         #[cfg(test)]
         converged: r.converged,
     }

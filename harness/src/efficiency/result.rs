@@ -1,6 +1,6 @@
 //! The tables, as plain data: what reports print and JSON keeps.
 
-use super::{Budget, EachSampler, ModelKind, SampleCosts, of_sampler};
+use super::{Budget, EachSampler, ModelKind, SAMPLERS, SampleCosts, of_sampler};
 use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
 use crate::stats::Estimate;
@@ -74,10 +74,21 @@ pub struct Reference {
 }
 
 impl Reference {
+    /// An integral by quadrature, without the variances.
+    pub(super) const fn by_quadrature(value: f64, error: f64) -> Self {
+        Self {
+            value,
+            standard_error: 0.0,
+            quadrature_error: error,
+            method: ReferenceMethod::Quadrature,
+            v: [f64::NAN; SAMPLERS.len()],
+            skewness: [0.0; SAMPLERS.len()],
+        }
+    }
+
     /// V and skewness of one independent sample; not numbers for a sampler that is not compared.
-    #[must_use]
-    pub fn predicted(&self, sampler: Sampler) -> [f64; 2] {
-        [&self.v, &self.skewness].map(|each| of_sampler(each, sampler).unwrap_or(f64::NAN))
+    pub(crate) fn predicted(&self, sampler: Sampler) -> [f64; 2] {
+        [&self.v, &self.skewness].map(|each| of_sampler(each, sampler))
     }
 }
 
@@ -153,6 +164,27 @@ pub enum Technique {
     Bsdf(Sampler),
     /// As many from both, by the power heuristic of exponent 2.
     Mis(Sampler),
+}
+
+impl Technique {
+    /// Every technique, in the order of reports.
+    pub fn all() -> impl Iterator<Item = Self> {
+        [Self::Light].into_iter().chain(SAMPLERS.map(Self::Bsdf)).chain(SAMPLERS.map(Self::Mis))
+    }
+
+    /// Name in reports.
+    pub(crate) fn name(self) -> String {
+        match self {
+            Self::Light => "light only".to_owned(),
+            Self::Bsdf(sampler) => format!("{} only", sampler.name()),
+            Self::Mis(sampler) => format!("{} + light", sampler.name()),
+        }
+    }
+
+    /// Samples a contribution takes.
+    pub(crate) fn samples_each(self) -> usize {
+        if matches!(self, Self::Mis(_)) { 2 } else { 1 }
+    }
 }
 
 /// One way of drawing samples for one light, independent numbers.

@@ -1,7 +1,7 @@
 //! All the tables, cell by cell.
 
 use super::case::Case;
-use super::cells::{self, Lit};
+use super::cells::{self, Place};
 use super::reference::{by_quadrature, of_environment};
 use super::result::{Check, EfficiencyResult, EfficiencySettings, Technique};
 use super::{
@@ -12,9 +12,9 @@ use crate::light::{Constant, Light, Rectangle, Smooth};
 use crate::progress::Progress;
 use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
-use crate::stats::sidak;
+use crate::stats::{Estimate, sidak};
 use core::f64::consts::SQRT_2;
-use hairis::ParamError;
+use hairis::{HairParams, ParamError};
 use statrs::function::erf::erfc_inv;
 
 /// Places of the lights in the order of reports.
@@ -34,88 +34,67 @@ pub fn run(
     config: &EfficiencyConfig<'_>,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<EfficiencyResult, ParamError> {
-    let constant = Constant::white();
-    let smooth = Smooth::new();
-    let sun = super::sun();
-    let area = Rectangle::figure_6a();
+    let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), super::sun(), Rectangle::figure_6a());
     let lights: [&dyn Light; 5] = [&constant, &smooth, &sun, &area, config.environment];
-
-    let cases: Vec<Case> = product(&ModelKind::ALL, &THETA_O_DEG)
-        .into_iter()
-        .map(|(model, theta_o)| Case::new(model, &config.params, theta_o))
-        .collect();
-    let mut sweep_cases = Vec::new();
+    let poses = product(&ModelKind::ALL, &THETA_O_DEG);
+    let of_hair = |params: &HairParams| -> Vec<Case> {
+        poses.iter().map(|&(model, theta_o)| Case::new(model, params, theta_o)).collect()
+    };
+    let cases = of_hair(&config.params);
+    let mut sweep = Vec::new();
     for beta_r in BETA_R_DEG {
-        let params = with_beta(&config.params, beta_r)?;
-        for (model, theta_o) in product(&ModelKind::ALL, &THETA_O_DEG) {
-            sweep_cases.push((beta_r, Case::new(model, &params, theta_o)));
-        }
+        sweep.extend(of_hair(&with_beta(&config.params, beta_r)?).into_iter().map(|case| (beta_r, case)));
     }
 
-    let case_indices: Vec<usize> = (0..cases.len()).collect();
-    let reference_cells = product(&case_indices, &[0, 1, 2, 3, 4]);
+    let lit_cases = product(&cases.iter().collect::<Vec<_>>(), &[0, 1, 2, 3, 4]);
     let estimators = product(&SAMPLERS, &SequenceKind::ALL);
-    let row_cells = product(&reference_cells, &estimators);
     let techniques: Vec<Technique> = Technique::all().collect();
-    let mis_cells = product(&product(&case_indices, &[SUN, AREA, ENVIRONMENT]), &techniques);
+    let sweep_cells = product(&sweep.iter().collect::<Vec<_>>(), &SAMPLERS);
     let sizes: Vec<usize> = (2..24).map(|k| 1_usize << k).take_while(|n| *n <= config.budget.convergence_n).collect();
-    let convergence_cases: Vec<usize> =
-        case_indices.iter().copied().filter(|&c| cases[c].theta_o_deg == CONVERGENCE_THETA_O_DEG).collect();
-    let convergence_cells =
-        |lights: &[usize]| product(&product(&product(&convergence_cases, lights), &estimators), &sizes);
-    let sweep_indices: Vec<usize> = (0..sweep_cases.len()).collect();
-    let sweep_cells = product(&sweep_indices, &SAMPLERS);
-    let v_cells = product(&case_indices, &SAMPLERS);
-
-    let total = reference_cells.len()
-        + row_cells.len()
-        + mis_cells.len()
-        + convergence_cells(&[CONSTANT, AREA, ENVIRONMENT]).len()
-        + sweep_cells.len()
-        + v_cells.len();
+    let total = lit_cases.len() * (1 + estimators.len())
+        + cases.len() * (3 * techniques.len() + SAMPLERS.len())
+        + ModelKind::ALL.len() * 3 * estimators.len() * sizes.len()
+        + sweep_cells.len();
     let progress = Progress::new(total, progress);
 
     let budget = &config.budget;
-    let references: Vec<Reference> = progress.map(&reference_cells, |&(case, light)| {
+    let references: Vec<Reference> = progress.map(&lit_cases, |&(case, light)| {
         if light == ENVIRONMENT {
             let passes = budget.reference_passes;
-            of_environment(&cases[case], config.environment, budget.quadrature_texels, passes, config.seed)
+            of_environment(case, config.environment, budget.quadrature_texels, passes, config.seed)
         } else {
-            by_quadrature(&cases[case], lights[light])
+            by_quadrature(case, lights[light])
         }
     });
-    // Under a sun that few samples ever see, a curve of convergence shows which of its points have seen it.
-    let steady = |&case: &usize| references[case * lights.len() + ENVIRONMENT].v.iter().all(|v| *v < CONVERGENCE_V);
-    let mut convergence_lights = vec![CONSTANT, AREA];
-    if convergence_cases.iter().all(steady) {
-        convergence_lights.push(ENVIRONMENT);
-    }
-    let convergence_cells = convergence_cells(&convergence_lights);
-    let lit = |case: usize, light: usize| Lit {
-        light: lights[light],
-        index: light as u64,
-        reference: &references[case * lights.len() + light],
+    let place = |(&(case, index), reference)| Place { config, case, light: lights[index], index, reference };
+    let places: Vec<Place<'_>> = lit_cases.iter().zip(&references).map(place).collect();
+    let under = |shown: &[usize]| -> Vec<Place<'_>> {
+        places.iter().filter(|place| shown.contains(&place.index)).copied().collect()
     };
+    let mut converging = under(&[CONSTANT, AREA, ENVIRONMENT]);
+    converging.retain(|place| place.case.theta_o_deg == CONVERGENCE_THETA_O_DEG);
+    // Under a sun that few samples ever see, a curve of convergence shows which of its points have seen it.
+    let is_steady = |place: &Place<'_>| place.reference.v.iter().all(|v| *v < CONVERGENCE_V);
+    if !converging.iter().filter(|place| place.index == ENVIRONMENT).all(is_steady) {
+        converging.retain(|place| place.index != ENVIRONMENT);
+    }
 
-    let rows = progress.map(&row_cells, |&((case, light), (sampler, sequence))| {
-        cells::row(config, &cases[case], sampler, sequence, &lit(case, light))
+    let row_cells = product(&places, &estimators);
+    let rows = progress.map(&row_cells, |&(place, (sampler, sequence))| place.row(sampler, sequence));
+    let mis_rows = progress
+        .map(&product(&under(&[SUN, AREA, ENVIRONMENT]), &techniques), |&(place, technique)| place.mis_row(technique));
+    let convergence = progress.map(&product(&product(&converging, &estimators), &sizes), |&((place, estimator), n)| {
+        place.convergence_point(estimator.0, estimator.1, n)
     });
-    let mis_rows = progress.map(&mis_cells, |&((case, light), technique)| {
-        cells::mis_row(config, &cases[case], technique, &lit(case, light))
-    });
-    let convergence = progress.map(&convergence_cells, |&(((case, light), (sampler, sequence)), n)| {
-        cells::convergence_point(config, &cases[case], sampler, sequence, &lit(case, light), n)
-    });
-    let beta_sweep = progress.map(&sweep_cells, |&(index, sampler)| {
-        let (beta_r, case) = &sweep_cases[index];
-        cells::sweep_row(config, case, sampler, *beta_r)
-    });
-    let reference_v = progress.map(&v_cells, |&(case, sampler)| {
-        // The row of this case under constant light, independent numbers.
-        let wanted = ((case, CONSTANT), (sampler, SequenceKind::Independent));
-        let v = row_cells.iter().zip(&rows).find(|(cell, _)| **cell == wanted).map(|(_, row)| row.v);
-        v.map(|v| cells::reference_v(config, &cases[case], sampler, v))
-    });
+    let beta_sweep =
+        progress.map(&sweep_cells, |&((beta_r, case), sampler)| cells::sweep_row(config, case, sampler, *beta_r));
+    let constant = row_cells
+        .iter()
+        .zip(&rows)
+        .filter(|((place, (_, sequence)), _)| (place.index, *sequence) == (CONSTANT, SequenceKind::Independent));
+    let measured: Vec<(&Case, Sampler, Estimate)> =
+        constant.map(|((place, _), row)| (place.case, row.sampler, row.v)).collect();
+    let reference_v = progress.map(&measured, |&(case, sampler, v)| cells::reference_v(config, case, sampler, v));
 
     let mut result = EfficiencyResult {
         settings: EfficiencySettings {
@@ -128,7 +107,7 @@ pub fn run(
             lights: lights.iter().map(|light| light.name().to_owned()).collect(),
             costs: config.costs,
         },
-        reference_v: reference_v.into_iter().flatten().collect(),
+        reference_v,
         rows,
         mis_rows,
         convergence,
@@ -146,31 +125,37 @@ fn product<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
 
 /// Holds every z-score against the bound that all of them together pass with probability `1 - FALSE_ALARM`.
 pub(super) fn check(result: &EfficiencyResult) -> Check {
-    let of = |model: ModelKind, sampler: Sampler| format!("{} {}", model.name(), sampler.name());
-    let rows = result.rows.iter().map(|r| {
-        let place = format!("{} {}, {}", of(r.model, r.sampler), r.sequence.name(), r.light);
-        (r.tested, r.z, format!("{place}, theta_o {}: mean", r.theta_o_deg))
-    });
-    let mis = result.mis_rows.iter().map(|r| {
-        (r.tested, r.z, format!("{} {}, {}, theta_o {}: mean", r.model.name(), r.name, r.light, r.theta_o_deg))
-    });
-    let convergence = result.convergence.iter().map(|r| {
-        let place = format!("{} {}, {}", of(r.model, r.sampler), r.sequence.name(), r.light);
-        (r.tested, r.z, format!("{place}, means of {}: bias", r.n))
-    });
-    let (tested, left_out): (Vec<_>, Vec<_>) = rows.chain(mis).chain(convergence).partition(|(tested, ..)| *tested);
-    let untested = left_out.len();
-    let mut scores: Vec<(f64, String)> = tested.into_iter().map(|(_, z, what)| (z, what)).collect();
+    let name = |model: ModelKind, sampler: Sampler| format!("{} {}", model.name(), sampler.name());
+    let (mut scores, mut untested) = (Vec::new(), 0);
+    let mut test = |tested: bool, z: f64, what: String| {
+        if tested {
+            scores.push((z, what));
+        } else {
+            untested += 1;
+        }
+    };
+    for r in &result.rows {
+        let place = format!("{} {}, {}", name(r.model, r.sampler), r.sequence.name(), r.light);
+        test(r.tested, r.z, format!("{place}, theta_o {}: mean", r.theta_o_deg));
+    }
+    for r in &result.mis_rows {
+        let place = format!("{} {}, {}", r.model.name(), r.name, r.light);
+        test(r.tested, r.z, format!("{place}, theta_o {}: mean", r.theta_o_deg));
+    }
+    for r in &result.convergence {
+        let place = format!("{} {}, {}", name(r.model, r.sampler), r.sequence.name(), r.light);
+        test(r.tested, r.z, format!("{place}, means of {}: bias", r.n));
+    }
     for r in &result.beta_sweep {
-        let place = format!("{}, beta_r {}, theta_o {}", of(r.model, r.sampler), r.beta_r_deg, r.theta_o_deg);
-        scores.push((r.z_quadrature, format!("{place}: V against quadrature")));
-        scores.push((r.z, format!("{place}: mean")));
+        let place = format!("{}, beta_r {}, theta_o {}", name(r.model, r.sampler), r.beta_r_deg, r.theta_o_deg);
+        test(true, r.z_quadrature, format!("{place}: V against quadrature"));
+        test(true, r.z, format!("{place}: mean"));
     }
     for r in &result.reference_v {
-        let place = format!("{}, constant, theta_o {}", of(r.model, r.sampler), r.theta_o_deg);
-        scores.push((r.z_quadrature, format!("{place}: V against quadrature")));
+        let place = format!("{}, constant, theta_o {}", name(r.model, r.sampler), r.theta_o_deg);
+        test(true, r.z_quadrature, format!("{place}: V against quadrature"));
         if let Some(z) = r.z_recorded {
-            scores.push((z, format!("{place}: V against the recorded figure")));
+            test(true, z, format!("{place}: V against the recorded figure"));
         }
     }
     Check::of(&scores, untested)

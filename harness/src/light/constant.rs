@@ -1,14 +1,14 @@
 //! The same radiance from everywhere.
 
-use super::{Light, LightSample, Seen8, rounded, splat3};
+use super::{Light, LightSample, Seen8, rounded};
 use core::f64::consts::PI;
 use glam::DVec3;
 use hairis::Vec3x8;
 use wide::f32x8;
 
-/// Constant radiance, sampled uniformly on the sphere.
+/// Radiance 1, sampled uniformly on the sphere.
 ///
-/// - Integral: of the radiance, `4 pi` times it.
+/// - Integral: of the radiance, `4 pi`.
 ///
 /// # Examples
 /// ```
@@ -17,21 +17,13 @@ use wide::f32x8;
 /// assert_eq!(s.radiance, [1.0; 3]);
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Constant {
-    radiance: [f64; 3],
-}
+pub struct Constant;
 
 impl Constant {
-    /// Radiance 1 in every channel.
+    /// The light.
     #[must_use]
-    pub fn white() -> Self {
-        Self { radiance: [1.0; 3] }
-    }
-
-    /// The given radiance, linear RGB.
-    #[must_use]
-    pub fn new(radiance: [f64; 3]) -> Self {
-        Self { radiance }
+    pub const fn white() -> Self {
+        Self
     }
 }
 
@@ -40,8 +32,8 @@ impl Light for Constant {
         "constant"
     }
 
-    fn radiance(&self, _dir: DVec3) -> [f64; 3] {
-        self.radiance
+    fn see(&self, _dir: DVec3) -> ([f64; 3], f64) {
+        ([1.0; 3], 0.25 / PI)
     }
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
@@ -49,14 +41,10 @@ impl Light for Constant {
         // (1 - y)(1 + y) by its factors: no cancellation near the poles.
         let r = (4.0 * xi[0] * (1.0 - xi[0])).max(0.0).sqrt();
         let (sin_phi, cos_phi) = (2.0 * PI * xi[1]).sin_cos();
-        LightSample { dir: DVec3::new(r * cos_phi, y, r * sin_phi), radiance: self.radiance, pdf: self.pdf(DVec3::Y) }
-    }
-
-    fn pdf(&self, _dir: DVec3) -> f64 {
-        0.25 / PI
+        LightSample { dir: DVec3::new(r * cos_phi, y, r * sin_phi), radiance: [1.0; 3], pdf: 0.25 / PI }
     }
 
     fn see8(&self, _dir: &Vec3x8) -> Seen8 {
-        Seen8 { radiance: splat3(self.radiance), pdf: f32x8::splat(rounded(0.25 / PI)) }
+        Seen8 { radiance: [f32x8::splat(1.0); 3], pdf: f32x8::splat(rounded(0.25 / PI)) }
     }
 }

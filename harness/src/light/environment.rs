@@ -75,7 +75,7 @@ impl Environment {
         name: impl Into<String>,
         width: usize,
         height: usize,
-        pixels: Vec<[f32; 3]>,
+        mut pixels: Vec<[f32; 3]>,
     ) -> Result<Self, String> {
         if width == 0 || height == 0 {
             return Err(format!("the map has no pixels: {width} x {height}"));
@@ -83,23 +83,16 @@ impl Environment {
         if width.checked_mul(height) != Some(pixels.len()) {
             return Err(format!("{width} x {height} pixels expected, {} given", pixels.len()));
         }
-        Ok(Self::from_size(name, [width, height], pixels))
-    }
-
-    /// The map of a size already known to fit its pixels and to be at least 1 x 1.
-    pub(super) fn from_size(name: impl Into<String>, [width, height]: [usize; 2], mut pixels: Vec<[f32; 3]>) -> Self {
         let mut repairs = PixelRepairs::default();
         for channel in pixels.iter_mut().flatten() {
-            if channel.is_nan() {
-                repairs.nan += 1;
-                *channel = 0.0;
-            } else if *channel < 0.0 {
-                repairs.negative += 1;
-                *channel = 0.0;
-            } else if channel.is_infinite() {
-                repairs.infinite += 1;
-                *channel = INFINITE_PIXEL;
-            }
+            let (count, repaired) = match *channel {
+                x if x.is_nan() => (&mut repairs.nan, 0.0),
+                x if x < 0.0 => (&mut repairs.negative, 0.0),
+                f32::INFINITY => (&mut repairs.infinite, INFINITE_PIXEL),
+                _ => continue,
+            };
+            *count += 1;
+            *channel = repaired;
         }
         let edges: Vec<f64> =
             (0..=height).map(|j| if 2 * j == height { 0.0 } else { (PI * j as f64 / height as f64).cos() }).collect();
@@ -121,9 +114,9 @@ impl Environment {
         let name = name.into();
         let mut map = Self { name, width, height, texels, edges, rows, columns, row_guide, column_guide, repairs };
         for place in 0..map.texels.len() {
-            map.texels[place][3] = rounded(map.density(map.radiance_of([place % width, place / width])));
+            map.texels[place][3] = rounded(map.density(colour(map.texels[place])));
         }
-        map
+        Ok(map)
     }
 
     /// Width and height in texels.
@@ -164,21 +157,6 @@ impl Environment {
         self.total() == 0.0
     }
 
-    /// Integral of the radiance over the sphere: the sum over texels of radiance times solid angle, linear RGB.
-    #[must_use]
-    pub fn total_radiance(&self) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for (j, row) in self.texels.chunks_exact(self.width).enumerate() {
-            let solid_angle = self.texel_solid_angle(j);
-            for rgb in row {
-                for c in 0..3 {
-                    sum[c] += f64::from(rgb[c]) * solid_angle;
-                }
-            }
-        }
-        sum
-    }
-
     /// Digest of the map: a hash of the size and of every pixel, not of the name.
     #[must_use]
     pub fn digest(&self) -> u64 {
@@ -193,16 +171,11 @@ impl Environment {
         self.rows[self.height - 1]
     }
 
-    /// Solid angle of a texel of row `j`, in sr.
-    fn texel_solid_angle(&self, j: usize) -> f64 {
-        2.0 * PI / self.width as f64 * (self.edges[j] - self.edges[j + 1])
-    }
-
-    /// Column and row of the texel that covers `dir`.
-    fn texel(&self, dir: DVec3) -> [usize; 2] {
+    /// Place of the texel that covers `dir`.
+    fn texel(&self, dir: DVec3) -> usize {
         let polar = dir.x.hypot(dir.z).atan2(dir.y) / PI;
         let turn = 0.5 + dir.x.atan2(-dir.z) / (2.0 * PI);
-        [cell(turn, self.width), cell(polar, self.height)]
+        cell(polar, self.height) * self.width + cell(turn, self.width)
     }
 
     /// The direction at fraction `turn` of the width and polar cosine `cosine`.
@@ -210,15 +183,6 @@ impl Environment {
         let r = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
         let (sin, cos) = (2.0 * PI * (turn - 0.5)).sin_cos();
         DVec3::new(r * sin, cosine, -r * cos)
-    }
-
-    fn at(&self, [i, j]: [usize; 2]) -> [f32; 4] {
-        self.texels[j * self.width + i]
-    }
-
-    fn radiance_of(&self, texel: [usize; 2]) -> [f64; 3] {
-        let [r, g, b, _] = self.at(texel).map(f64::from);
-        [r, g, b]
     }
 
     /// Density of drawing a direction of a texel with this radiance.
@@ -230,6 +194,11 @@ impl Environment {
         // Probability luminance * (edge difference) / total, over the solid angle 2 pi / width * (edge difference).
         luminance(radiance) / total * self.width as f64 / (2.0 * PI)
     }
+}
+
+/// The radiance of a texel.
+fn colour([r, g, b, _]: [f32; 4]) -> [f64; 3] {
+    [r, g, b].map(f64::from)
 }
 
 impl Environment {
@@ -258,8 +227,8 @@ impl Environment {
             let dir = Self::direction((i as f64 + across) / self.width as f64, cosine);
             // On an edge between texels rounding may land in the next one, and value and density must be of one texel.
             let inside = |x: f64| (EDGE..1.0 - EDGE).contains(&x);
-            let [r, g, b, _] = if inside(down) && inside(across) { drawn[k] } else { self.at(self.texel(dir)) };
-            let radiance = [r, g, b].map(f64::from);
+            let texel = if inside(down) && inside(across) { drawn[k] } else { self.texels[self.texel(dir)] };
+            let radiance = colour(texel);
             LightSample { dir, radiance, pdf: self.density(radiance) }
         })
     }
@@ -270,8 +239,9 @@ impl Light for Environment {
         &self.name
     }
 
-    fn radiance(&self, dir: DVec3) -> [f64; 3] {
-        self.radiance_of(self.texel(dir))
+    fn see(&self, dir: DVec3) -> ([f64; 3], f64) {
+        let radiance = colour(self.texels[self.texel(dir)]);
+        (radiance, self.density(radiance))
     }
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
@@ -283,10 +253,6 @@ impl Light for Environment {
         self.draw(xi)
     }
 
-    fn pdf(&self, dir: DVec3) -> f64 {
-        self.density(self.radiance(dir))
-    }
-
     /// To the bit what [`radiance`](Light::radiance) and [`pdf`](Light::pdf) give in double precision, rounded.
     fn see8(&self, dir: &Vec3x8) -> Seen8 {
         let [row, column] = Level::detect().run(Places { dir, texels: [self.height as f32, self.width as f32] });
@@ -295,8 +261,7 @@ impl Light for Environment {
         let mut seen = [[0.0; 8]; 4];
         for lane in 0..8 {
             let texel = if doubt >> lane & 1 == 1 {
-                let [i, j] = self.texel(dir.lane(lane).as_dvec3());
-                j * self.width + i
+                self.texel(dir.lane(lane).as_dvec3())
             } else {
                 // Above 0 and below the size: in doubt otherwise.
                 rows[lane].unsigned_abs() as usize * self.width + columns[lane].unsigned_abs() as usize
@@ -313,34 +278,30 @@ impl Light for Environment {
     /// a texel are not resolved: `converged` compares the error with the tolerance.
     fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {
         let rules = [GaussLegendre::new(4), GaussLegendre::new(3)];
-        let (mut value, mut error, mut evaluations) = ([0.0; 3], [0.0; 3], 0);
-        for j in 0..self.height {
-            for i in 0..self.width {
-                let radiance = self.radiance_of([i, j]);
-                if radiance == [0.0; 3] {
-                    continue;
-                }
-                let mut sums = [[0.0; 3]; 2];
-                for (rule, sum) in rules.iter().zip(&mut sums) {
-                    for [cosine, w] in rule.on(self.edges[j + 1], self.edges[j]) {
-                        for [turn, v] in rule.on(i as f64 / self.width as f64, (i + 1) as f64 / self.width as f64) {
-                            let y = f(Self::direction(turn, cosine));
-                            evaluations += 1;
-                            for c in 0..3 {
-                                sum[c] += 2.0 * PI * w * v * radiance[c] * y[c];
-                            }
+        let (mut value, mut error) = ([0.0; 3], [0.0; 3]);
+        for (k, texel) in self.texels.iter().enumerate() {
+            let (i, j, radiance) = (k % self.width, k / self.width, colour(*texel));
+            if radiance == [0.0; 3] {
+                continue;
+            }
+            let sums = rules.each_ref().map(|rule| {
+                let mut sum = [0.0; 3];
+                for [cosine, w] in rule.on(self.edges[j + 1], self.edges[j]) {
+                    for [turn, v] in rule.on(i as f64 / self.width as f64, (i + 1) as f64 / self.width as f64) {
+                        let y = f(Self::direction(turn, cosine));
+                        for c in 0..3 {
+                            sum[c] += 2.0 * PI * w * v * radiance[c] * y[c];
                         }
                     }
                 }
-                for c in 0..3 {
-                    value[c] += sums[0][c];
-                    error[c] += (sums[0][c] - sums[1][c]).abs();
-                }
+                sum
+            });
+            for c in 0..3 {
+                value[c] += sums[0][c];
+                error[c] += (sums[0][c] - sums[1][c]).abs();
             }
         }
-        let tolerance = sphere.tolerance();
-        let largest = value.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-        let allowed = tolerance.absolute.max(tolerance.relative * largest);
-        Integral { value, error, evaluations, converged: error.iter().all(|e| *e <= allowed) }
+        let converged = sphere.tolerance.is_met(&value, &error);
+        Integral { value, error, converged }
     }
 }

@@ -1,47 +1,22 @@
 //! Globally adaptive Gauss-Kronrod integration on lines and rectangles.
 
-use core::cmp::Ordering;
-use serde::Serialize;
-use std::collections::BinaryHeap;
+use std::collections::BTreeMap;
 
-/// Positive Kronrod nodes of the 15-point rule, outermost first, then 0 (QUADPACK, Piessens et al. 1983).
-const NODES: [f64; 8] = [
-    0.991_455_371_120_812_639_206_854_697_526_329,
-    0.949_107_912_342_758_524_526_189_684_047_851,
-    0.864_864_423_359_769_072_789_712_788_640_926,
-    0.741_531_185_599_394_439_863_864_773_280_788,
-    0.586_087_235_467_691_130_294_144_691_258_396,
-    0.405_845_151_377_397_166_906_606_412_076_961,
-    0.207_784_955_007_898_467_600_689_403_773_245,
-    0.0,
-];
-
-/// Kronrod weights of [`NODES`].
-const KRONROD: [f64; 8] = [
-    0.022_935_322_010_529_224_963_732_008_058_970,
-    0.063_092_092_629_978_553_290_700_663_189_204,
-    0.104_790_010_322_250_183_839_876_322_541_518,
-    0.140_653_259_715_525_918_745_189_590_510_238,
-    0.169_004_726_639_267_902_826_583_426_598_550,
-    0.190_350_578_064_785_409_913_256_402_421_014,
-    0.204_432_940_075_298_892_414_161_999_234_649,
-    0.209_482_141_084_727_828_012_999_174_891_714,
-];
-
-/// Weights of the embedded 7-point Gauss rule, 0 at the nodes it lacks.
-const GAUSS: [f64; 8] = [
-    0.0,
-    0.129_484_966_168_869_693_270_611_432_679_082,
-    0.0,
-    0.279_705_391_489_276_667_901_467_771_423_780,
-    0.0,
-    0.381_830_050_505_118_944_950_369_775_488_975,
-    0.0,
-    0.417_959_183_673_469_387_755_102_040_816_327,
+/// Positive nodes of the 15-point Kronrod rule, outermost first, then 0, each with its weight and that of the embedded 7-point
+/// Gauss rule, 0 at the nodes it lacks (QUADPACK, Piessens et al. 1983).
+const RULE: [[f64; 3]; 8] = [
+    [0.991_455_371_120_812_639_206, 0.022_935_322_010_529_224_963, 0.0],
+    [0.949_107_912_342_758_524_526, 0.063_092_092_629_978_553_290, 0.129_484_966_168_869_693_270],
+    [0.864_864_423_359_769_072_789, 0.104_790_010_322_250_183_839, 0.0],
+    [0.741_531_185_599_394_439_863, 0.140_653_259_715_525_918_745, 0.279_705_391_489_276_667_901],
+    [0.586_087_235_467_691_130_294, 0.169_004_726_639_267_902_826, 0.0],
+    [0.405_845_151_377_397_166_906, 0.190_350_578_064_785_409_913, 0.381_830_050_505_118_944_950],
+    [0.207_784_955_007_898_467_600, 0.204_432_940_075_298_892_414, 0.0],
+    [0.0, 0.209_482_141_084_727_828_012, 0.417_959_183_673_469_387_755],
 ];
 
 /// Tolerance of an adaptive integral.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Absolute error allowed in each component, in the unit of the integral.
     pub absolute: f64,
@@ -60,9 +35,15 @@ impl Default for Tolerance {
 
 impl Tolerance {
     /// The default with another relative error.
-    #[must_use]
-    pub fn relative(relative: f64) -> Self {
+    pub(crate) fn relative(relative: f64) -> Self {
         Self { relative, ..Self::default() }
+    }
+
+    /// Whether an integral with these errors, all numbers, is within the tolerance.
+    pub(crate) fn is_met<const N: usize>(&self, value: &[f64; N], error: &[f64; N]) -> bool {
+        let largest = value.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+        let allowed = self.absolute.max(self.relative * largest);
+        value.iter().all(|v| v.is_finite()) && error.iter().all(|e| *e <= allowed)
     }
 }
 
@@ -73,43 +54,31 @@ pub struct Integral<const N: usize> {
     pub value: [f64; N],
     /// Bound estimate of each component's error: usually far above the true error.
     pub error: [f64; N],
-    /// Calls of the integrand.
-    pub evaluations: u64,
     /// Whether the tolerance was met.
     pub converged: bool,
 }
 
-/// A part of the domain with its integral; the heap gives the one with the largest error first.
+/// Sums of values, and sums of errors.
+type Sums<const N: usize> = [[f64; N]; 2];
+
+/// A part of the domain with its integral.
 struct Panel<const N: usize> {
     lo: [f64; 2],
     hi: [f64; 2],
-    value: [f64; N],
-    error: [f64; N],
-    worst: f64,
+    sums: Sums<N>,
+    /// The axis of the larger error.
     split: usize,
 }
 
-impl<const N: usize> PartialEq for Panel<N> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
+/// Panels in the order of their largest errors. The corner settles ties, so that the order depends on nothing else.
+type Panels<const N: usize> = BTreeMap<[u64; 3], Panel<N>>;
 
-impl<const N: usize> Eq for Panel<N> {}
-
-impl<const N: usize> PartialOrd for Panel<N> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<const N: usize> Ord for Panel<N> {
-    fn cmp(&self, other: &Self) -> Ordering {
-        // The corner settles ties, so the order of splitting never depends on the heap's history.
-        self.worst
-            .total_cmp(&other.worst)
-            .then_with(|| self.lo[0].total_cmp(&other.lo[0]))
-            .then_with(|| self.lo[1].total_cmp(&other.lo[1]))
+impl<const N: usize> Panel<N> {
+    fn key(&self) -> [u64; 3] {
+        // A NaN counts as an infinite error, so that it is split, reported and never hidden.
+        let worst = self.sums[1].iter().fold(0.0, |a: f64, &e| a.max(if e.is_nan() { f64::INFINITY } else { e }));
+        // Bits in the order of the numbers.
+        [worst, self.lo[0], self.lo[1]].map(|x| if x.is_sign_negative() { !x.to_bits() } else { x.to_bits() | 1 << 63 })
     }
 }
 
@@ -139,22 +108,19 @@ pub fn integrate<const N: usize>(
     breakpoints: &[f64],
     tolerance: &Tolerance,
 ) -> Integral<N> {
+    let nodes = nodes();
     let edges = clean(breakpoints);
-    let panels = edges.windows(2).map(|x| ([x[0], 0.0], [x[1], 0.0])).collect();
-    adapt(panels, 15, tolerance, |lo, hi| {
+    let domain = edges.windows(2).map(|x| ([x[0], 0.0], [x[1], 0.0]));
+    adapt(domain, tolerance, |lo, hi| {
         let (centre, half) = (0.5 * (lo[0] + hi[0]), 0.5 * (hi[0] - lo[0]));
-        let mut kronrod = [0.0; N];
-        let mut gauss = [0.0; N];
-        for_each_node(|x, k, g| {
+        let (mut kronrod, mut gauss) = ([0.0; N], [0.0; N]);
+        for [x, k, g] in nodes {
             let y = f(centre + half * x);
-            for c in 0..N {
-                kronrod[c] += k * y[c];
-                gauss[c] += g * y[c];
-            }
-        });
-        let value = kronrod.map(|v| v * half);
-        let error = core::array::from_fn(|c| ((kronrod[c] - gauss[c]) * half).abs());
-        panel(*lo, *hi, value, error, 0)
+            add(&mut kronrod, k, y);
+            add(&mut gauss, g, y);
+        }
+        let error = distance(kronrod, gauss).map(|e| e * half);
+        Panel { lo, hi, sums: [kronrod.map(|v| v * half), error], split: 0 }
     })
 }
 
@@ -170,59 +136,57 @@ pub fn integrate_rectangle<const N: usize>(
     y_breakpoints: &[f64],
     tolerance: &Tolerance,
 ) -> Integral<N> {
+    let nodes = nodes();
     let (xs, ys) = (clean(x_breakpoints), clean(y_breakpoints));
-    let panels = xs.windows(2).flat_map(|x| ys.windows(2).map(move |y| ([x[0], y[0]], [x[1], y[1]]))).collect();
-    adapt(panels, 225, tolerance, |lo, hi| {
+    let domain = xs.windows(2).flat_map(|x| ys.windows(2).map(move |y| ([x[0], y[0]], [x[1], y[1]])));
+    adapt(domain, tolerance, |lo, hi| {
         let centre = [0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1])];
         let half = [0.5 * (hi[0] - lo[0]), 0.5 * (hi[1] - lo[1])];
         let area = half[0] * half[1];
         let mut value = [0.0; N];
         // Errors are summed line by line in absolute value: on a tilted edge the lines' errors have both signs and would cancel.
-        let mut error_x = [0.0; N];
-        let mut error_y = [0.0; N];
-        let mut columns = [([0.0; N], [0.0; N], 0.0); 15];
-        for_each_node(|x, kx, gx| {
-            let mut kronrod = [0.0; N];
-            let mut gauss = [0.0; N];
-            let mut column = columns.iter_mut();
-            for_each_node(|y, ky, gy| {
+        let (mut error_x, mut error_y) = ([0.0; N], [0.0; N]);
+        let mut columns = [([0.0; N], [0.0; N]); 15];
+        for [x, kx, gx] in nodes {
+            let (mut kronrod, mut gauss) = ([0.0; N], [0.0; N]);
+            for ([y, ky, gy], column) in nodes.into_iter().zip(&mut columns) {
                 let v = f(centre[0] + half[0] * x, centre[1] + half[1] * y);
-                for c in 0..N {
-                    kronrod[c] += ky * v[c];
-                    gauss[c] += gy * v[c];
-                }
-                if let Some((column_kronrod, column_gauss, weight)) = column.next() {
-                    *weight = ky;
-                    for c in 0..N {
-                        column_kronrod[c] += kx * v[c];
-                        column_gauss[c] += gx * v[c];
-                    }
-                }
-            });
-            for c in 0..N {
-                value[c] += kx * kronrod[c];
-                error_y[c] += kx * (kronrod[c] - gauss[c]).abs();
+                add(&mut kronrod, ky, v);
+                add(&mut gauss, gy, v);
+                add(&mut column.0, kx, v);
+                add(&mut column.1, gx, v);
             }
-        });
-        for (kronrod, gauss, weight) in columns {
-            for c in 0..N {
-                error_x[c] += weight * (kronrod[c] - gauss[c]).abs();
-            }
+            add(&mut value, kx, kronrod);
+            add(&mut error_y, kx, distance(kronrod, gauss));
+        }
+        for ((kronrod, gauss), [_, weight, _]) in columns.into_iter().zip(nodes) {
+            add(&mut error_x, weight, distance(kronrod, gauss));
         }
         let worst = |error: &[f64; N]| error.iter().copied().fold(0.0, f64::max);
         let split = usize::from(worst(&error_y) > worst(&error_x));
         let error = core::array::from_fn(|c| area * (error_x[c] + error_y[c]));
-        panel(*lo, *hi, value.map(|v| v * area), error, split)
+        Panel { lo, hi, sums: [value.map(|v| v * area), error], split }
     })
 }
 
-/// Calls `visit(node, kronrod weight, gauss weight)` for the fifteen nodes on [-1, 1].
-fn for_each_node(mut visit: impl FnMut(f64, f64, f64)) {
-    for i in 0..7 {
-        visit(-NODES[i], KRONROD[i], GAUSS[i]);
-        visit(NODES[i], KRONROD[i], GAUSS[i]);
+/// The fifteen nodes on [-1, 1], each with its Kronrod and its Gauss weight.
+fn nodes() -> [[f64; 3]; 15] {
+    core::array::from_fn(|i| {
+        let [x, kronrod, gauss] = RULE[i / 2];
+        [if i % 2 == 0 { -x } else { x }, kronrod, gauss]
+    })
+}
+
+/// Adds `weight * y` to a sum.
+fn add<const N: usize>(sum: &mut [f64; N], weight: f64, y: [f64; N]) {
+    for c in 0..N {
+        sum[c] += weight * y[c];
     }
-    visit(0.0, KRONROD[7], GAUSS[7]);
+}
+
+/// Distances between the components.
+fn distance<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    core::array::from_fn(|c| (a[c] - b[c]).abs())
 }
 
 /// Breakpoints sorted, finite and without repeats.
@@ -233,79 +197,55 @@ fn clean(breakpoints: &[f64]) -> Vec<f64> {
     edges
 }
 
-fn panel<const N: usize>(lo: [f64; 2], hi: [f64; 2], value: [f64; N], error: [f64; N], split: usize) -> Panel<N> {
-    // A NaN counts as an infinite error, so that it is split, reported and never hidden.
-    let worst = error.iter().fold(0.0, |a: f64, &e| a.max(if e.is_nan() { f64::INFINITY } else { e }));
-    Panel { lo, hi, value, error, worst, split }
-}
-
 /// Splits the panel of the largest error until the total meets the tolerance.
 fn adapt<const N: usize>(
-    domain: Vec<([f64; 2], [f64; 2])>,
-    cost: u64,
+    domain: impl Iterator<Item = ([f64; 2], [f64; 2])>,
     tolerance: &Tolerance,
-    mut measure: impl FnMut(&[f64; 2], &[f64; 2]) -> Panel<N>,
+    mut measure: impl FnMut([f64; 2], [f64; 2]) -> Panel<N>,
 ) -> Integral<N> {
-    let mut heap: BinaryHeap<Panel<N>> = domain.iter().map(|(lo, hi)| measure(lo, hi)).collect();
-    let mut evaluations = cost * heap.len() as u64;
+    let mut panels: Panels<N> = domain.map(|(lo, hi)| measure(lo, hi)).map(|panel| (panel.key(), panel)).collect();
     // Panels too small to halve in f64 wait here with their error.
-    let mut done: Vec<Panel<N>> = Vec::new();
-    let mut running = total(&heap, &done);
+    let mut done = Panels::new();
+    let mut running = total(&panels, &done);
     loop {
-        if met(&running, tolerance) {
+        let at_limit = panels.len() + done.len() >= tolerance.max_panels;
+        if at_limit || panels.is_empty() || tolerance.is_met(&running[0], &running[1]) {
             // The running sums drift by rounding; only fresh sums decide on convergence.
-            running = total(&heap, &done);
-            if met(&running, tolerance) {
+            running = total(&panels, &done);
+            if at_limit || tolerance.is_met(&running[0], &running[1]) {
                 break;
             }
         }
-        if heap.len() + done.len() >= tolerance.max_panels {
-            running = total(&heap, &done);
-            break;
-        }
-        let Some(worst) = heap.pop() else {
-            running = total(&heap, &done);
-            break;
-        };
+        let Some((key, worst)) = panels.pop_last() else { break };
         let axis = worst.split;
         let middle = 0.5 * (worst.lo[axis] + worst.hi[axis]);
         if middle <= worst.lo[axis] || middle >= worst.hi[axis] {
-            done.push(worst);
+            done.insert(key, worst);
             continue;
         }
         let (mut left_hi, mut right_lo) = (worst.hi, worst.lo);
         left_hi[axis] = middle;
         right_lo[axis] = middle;
-        let halves = [measure(&worst.lo, &left_hi), measure(&right_lo, &worst.hi)];
-        evaluations += 2 * cost;
-        for c in 0..N {
-            running.0[c] += halves[0].value[c] + halves[1].value[c] - worst.value[c];
-            running.1[c] += halves[0].error[c] + halves[1].error[c] - worst.error[c];
+        let halves = [measure(worst.lo, left_hi), measure(right_lo, worst.hi)];
+        for (k, sum) in running.iter_mut().enumerate() {
+            for (c, sum) in sum.iter_mut().enumerate() {
+                *sum += halves[0].sums[k][c] + halves[1].sums[k][c] - worst.sums[k][c];
+            }
         }
-        heap.extend(halves);
+        panels.extend(halves.map(|panel| (panel.key(), panel)));
     }
-    Integral { value: running.0, error: running.1, evaluations, converged: met(&running, tolerance) }
+    let [value, error] = running;
+    Integral { value, error, converged: tolerance.is_met(&value, &error) }
 }
 
-/// Sums of values and errors over all panels, in an order that does not depend on the heap's.
-fn total<const N: usize>(heap: &BinaryHeap<Panel<N>>, done: &[Panel<N>]) -> ([f64; N], [f64; N]) {
-    let mut panels: Vec<&Panel<N>> = heap.iter().chain(done).collect();
-    // Ascending magnitude of error is also roughly ascending magnitude of value: small terms first.
-    panels.sort();
-    let (mut value, mut error) = ([0.0; N], [0.0; N]);
-    for p in panels {
-        for c in 0..N {
-            value[c] += p.value[c];
-            error[c] += p.error[c];
-        }
+/// Sums over all panels, by ascending error, which is also roughly ascending value: small terms first.
+fn total<const N: usize>(panels: &Panels<N>, done: &Panels<N>) -> Sums<N> {
+    let all: BTreeMap<_, _> = panels.iter().chain(done).collect();
+    let mut sums = [[0.0; N]; 2];
+    for panel in all.into_values() {
+        sums.iter_mut().zip(panel.sums).for_each(|(sum, more)| add(sum, 1.0, more));
     }
-    (value, error)
-}
-
-fn met<const N: usize>(sums: &([f64; N], [f64; N]), tolerance: &Tolerance) -> bool {
-    let largest = sums.0.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-    let allowed = tolerance.absolute.max(tolerance.relative * largest);
-    sums.0.iter().all(|v| v.is_finite()) && sums.1.iter().all(|e| *e <= allowed)
+    sums
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The Halton sequence, scrambled so that independent randomisations give honest error bars.
 
-use super::{XiSource, mix, unit_f64};
+use super::{XiSource, below, mix, unit_f64};
 
 /// The prime bases of the dimensions, in order.
 pub const HALTON_BASES: [u32; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
@@ -66,11 +66,6 @@ impl Halton {
         value += scale * unit_f64(mix(hash ^ mix(rest)));
         value.min(1.0 - f64::EPSILON / 2.0)
     }
-}
-
-/// A hash as a whole number below `bound`.
-fn below(hash: u64, bound: u64) -> u64 {
-    ((u128::from(hash) * u128::from(bound)) >> 64) as u64
 }
 
 impl XiSource for Halton {

@@ -9,19 +9,15 @@ use super::{Independent, XiSource};
 /// - Shape: `dims` elements, descending; a single 1 an axis when `samples` is 0.
 #[must_use]
 pub fn strata(samples: usize, dims: usize) -> Vec<usize> {
-    let mut counts = vec![1; dims];
-    let mut factors = Vec::new();
-    let mut rest = samples.max(1);
-    let mut p = 2;
-    while p * p <= rest {
-        while rest.is_multiple_of(p) {
+    let (mut counts, mut factors) = (vec![1; dims], Vec::new());
+    let (mut rest, mut p) = (samples.max(1), 2);
+    while rest > 1 {
+        if rest.is_multiple_of(p) {
             factors.push(p);
             rest /= p;
+        } else {
+            p += 1;
         }
-        p += 1;
-    }
-    if rest > 1 {
-        factors.push(rest);
     }
     for &f in factors.iter().rev() {
         if let Some(least) = counts.iter_mut().min() {
@@ -72,12 +68,7 @@ impl Stratified {
 
 impl XiSource for Stratified {
     fn next_point(&mut self, point: &mut [f64]) {
-        assert!(
-            point.len() <= self.counts.len(),
-            "{} coordinates asked of a stratified source with {}",
-            point.len(),
-            self.counts.len()
-        );
+        assert!(point.len() <= self.counts.len(), "more coordinates than axes: {} of {:?}", point.len(), self.counts);
         if self.next >= self.order.len() {
             for i in (1..self.order.len()).rev() {
                 let j = self.rng.next_below(i + 1);

@@ -1,9 +1,8 @@
 //! The operations, and the contenders of each.
 
-use super::Op;
 use super::check::Truth;
 use super::inputs::{DIRECTIONS, Inputs};
-use super::{points, task};
+use super::{Op, points, task};
 use crate::subject::to_f64;
 use core::marker::PhantomData;
 use glam::Vec3;
@@ -35,22 +34,35 @@ pub(super) const HITS: &str = "slices of hits";
 /// Directions of [`SHORT`].
 const FEW: usize = 8;
 
-/// Contender.
+/// Contender, and its times.
 pub(super) struct Contender {
     pub(super) name: &'static str,
     /// Instruction set of its lanes.
     pub(super) level: &'static str,
     pub(super) task: Box<dyn Pass>,
+    /// Passes in a stretch.
+    pub(super) passes: u32,
+    /// Time per direction in each round, ns.
+    pub(super) ns: Vec<f64>,
+}
+
+impl Contender {
+    fn new(name: &'static str, level: &'static str, task: Box<dyn Pass>) -> Self {
+        Self { name, level, task, passes: 1, ns: Vec::new() }
+    }
 }
 
 /// One operation of one model: a table's block of rows.
 pub(super) struct SpeedCell {
     pub(super) op: Op,
     pub(super) model: &'static str,
-    /// The two [`textbooks`] first.
+    /// The formulas in `f32` on the libm crate and on std first, then the kernel.
     pub(super) contenders: Vec<Contender>,
     pub(super) truth: Truth,
 }
+
+/// The contenders of an operation, and the answers.
+pub(super) type Timed = Result<(Contenders, Truth), ParamError>;
 
 /// All operations of one model, on inputs of this seed; none unless it is the first of its name.
 pub(super) struct SpeedCells(pub(super) u64);
@@ -63,139 +75,135 @@ impl Visitor for SpeedCells {
         if const { !ModelId::of::<M>().is_default() } {
             return Ok(Vec::new());
         }
-        let (id, inputs) = (ModelId::of::<M>(), Inputs::draw(self.0)?);
-        let timed = |op| {
+        let inputs = Inputs::draw(self.0)?;
+        let timed = |(op, _)| {
             let (contenders, truth) = match op {
-                Op::Prepare => prepare::<M>(id, &inputs)?,
-                Op::EvalPdf => eval_pdf::<M>(id, &inputs.params[0], &inputs, true)?,
-                Op::EvalPdfTails => eval_pdf::<M>(id, &inputs.narrow, &inputs, false)?,
-                Op::Sample => sample::<M>(id, &inputs.params[0], &inputs, true)?,
-                Op::SampleTails => sample::<M>(id, &inputs.narrow, &inputs, false)?,
-                Op::PointsEval => points::eval::<M>(id, &inputs)?,
-                Op::PointsShared => points::shared::<M, 1, 1>(id, &inputs)?,
-                Op::PointsOf4 => points::shared::<M, 4, 1>(id, &inputs)?,
-                Op::PointsOf16 => points::shared::<M, 16, 2>(id, &inputs)?,
-                Op::PointsMixed => points::mixed::<M>(id, &inputs, false)?,
-                Op::PointsPacked => points::mixed::<M>(id, &inputs, true)?,
-            };
-            Ok(SpeedCell { op, model: id.name(), contenders, truth })
+                Op::Prepare => prepare::<M>(&inputs),
+                Op::EvalPdf => eval_pdf::<M>(&inputs.params[0], &inputs, true),
+                Op::EvalPdfTails => eval_pdf::<M>(&inputs.narrow, &inputs, false),
+                Op::Sample => sample::<M>(&inputs.params[0], &inputs, true),
+                Op::SampleTails => sample::<M>(&inputs.narrow, &inputs, false),
+                Op::PointsEval => points::eval::<M>(&inputs),
+                Op::PointsShared => points::shared::<M, 1, 1>(&inputs),
+                Op::PointsOf4 => points::shared::<M, 4, 1>(&inputs),
+                Op::PointsOf16 => points::shared::<M, 16, 2>(&inputs),
+                Op::PointsMixed => points::mixed::<M>(&inputs, false),
+                Op::PointsPacked => points::mixed::<M>(&inputs, true),
+            }?;
+            Ok(SpeedCell { op, model: M::NAME, contenders: contenders.0, truth })
         };
-        Op::ALL.into_iter().map(timed).collect()
+        Op::NAMES.into_iter().map(timed).collect()
     }
 }
 
 /// The formulas in `f64` for these parameters, seen from each of `wo`.
-pub(super) fn truth<P: Parameters>(id: ModelId, params: &P, wo: &[Vec3]) -> Result<Vec<AnyReference<f64>>, ParamError> {
-    wo.iter().map(|wo| id.reference(&params.values(), to_f64(*wo), 0.0)).collect()
+pub(super) fn truth<M: Registered>(params: &M::Params, wo: &[Vec3]) -> Result<Vec<AnyReference<f64>>, ParamError> {
+    wo.iter().map(|wo| ModelId::of::<M>().reference(&params.values(), to_f64(*wo), 0.0)).collect()
 }
 
-pub(super) fn scalar(name: &'static str, task: Box<dyn Pass>) -> Contender {
-    Contender { name, level: "scalar", task }
+/// The contenders so far.
+pub(super) struct Contenders(Vec<Contender>);
+
+impl Contenders {
+    /// The formulas in `f32` on the libm crate and on std, and the kernel on one lane.
+    pub(super) fn new(libm: Box<dyn Pass>, std: Box<dyn Pass>, one: Box<dyn Pass>) -> Self {
+        let [libm, std] = [("scalar, libm crate", libm), ("scalar, std", std)]
+            .map(|(level, task)| Contender::new(TEXTBOOK, level, task));
+        Self(vec![libm, std, Contender::new(ONE, "scalar", one)])
+    }
+
+    /// Then one on every level of this CPU.
+    pub(super) fn levels(mut self, name: &'static str, task: impl Fn(Level) -> Box<dyn Pass>) -> Self {
+        self.0.extend(Level::available().map(|level| Contender::new(name, level.name(), task(level))));
+        self
+    }
 }
 
-/// The formulas in `f32`: on the libm crate, and on std.
-pub(super) fn textbooks(libm: Box<dyn Pass>, std: Box<dyn Pass>) -> Vec<Contender> {
-    let of = |level, task| Contender { name: TEXTBOOK, level, task };
-    vec![of("scalar, libm crate", libm), of("scalar, std", std)]
+/// A material: the kernel's, and the formulas on the libm crate and on std.
+pub(super) struct Material<M: Registered> {
+    pub(super) bsdf: Bsdf<M>,
+    pub(super) libm: M::Formulas<f32>,
+    pub(super) std: M::Formulas<Platform>,
 }
 
-/// The contenders so far, then one on every level of this CPU.
-pub(super) fn with_levels(
-    mut contenders: Vec<Contender>,
-    name: &'static str,
-    task: impl Fn(Level) -> Box<dyn Pass>,
-) -> Vec<Contender> {
-    contenders.extend(Level::available().map(|level| Contender { name, level: level.name(), task: task(level) }));
-    contenders
+impl<M: Registered> Material<M> {
+    pub(super) fn new(params: &M::Params) -> Self {
+        Self { bsdf: Bsdf::new(&M::MODEL, params), libm: M::formulas(params), std: M::formulas(params) }
+    }
+
+    /// The formulas seen from `wo`.
+    fn references(&self, wo: Vec3) -> (M::Reference<f32>, M::Reference<Platform>) {
+        let wo = wo.to_array();
+        (M::reference_at(&self.libm, wo, 0.0), M::reference_at(&self.std, platform(wo), Platform(0.0)))
+    }
 }
 
-/// The formulas seen from `wo`: on the libm crate, and on std.
-fn references<M: Registered>(params: &M::Params, wo: Vec3) -> (M::Reference<f32>, M::Reference<Platform>) {
-    let wo = wo.to_array();
-    (M::reference(params, wo, 0.0), M::reference(params, platform(wo), Platform(0.0)))
-}
-
-fn prepare<M: Registered>(id: ModelId, inputs: &Inputs<M::Params>) -> Result<(Vec<Contender>, Truth), ParamError> {
-    let params = inputs.params[0];
-    let (bsdf, wo) = (Bsdf::new(&M::MODEL, &params), arrays(&inputs.wo));
-    let (libm, std) = (M::formulas::<f32>(&params), M::formulas::<Platform>(&params));
-    let mut contenders = textbooks(
+fn prepare<M: Registered>(inputs: &Inputs<M::Params>) -> Timed {
+    let params = &inputs.params[0];
+    let Material::<M> { bsdf, libm, std } = Material::new(params);
+    let wo = arrays(&inputs.wo);
+    let contenders = Contenders::new(
         task(&wo, move |wo| Point::<_, f32>(M::reference_at(&libm, *wo, 0.0), PhantomData)),
         task(&wo, move |wo| Point(M::reference_at(&std, platform(*wo), Platform(0.0)), PhantomData)),
-    );
-    contenders.push(scalar(ONE, task(&inputs.wo, move |wo| bsdf.prepare(*wo))));
-    let contenders =
-        with_levels(contenders, EIGHT, |level| task(&packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo)));
-    Ok((contenders, Truth::of_directions(truth(id, &params, &inputs.wo)?, &[PROBE; DIRECTIONS])))
+        task(&inputs.wo, move |wo| bsdf.prepare(*wo)),
+    )
+    .levels(EIGHT, |level| task(&packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo)));
+    Ok((contenders, Truth::of_directions(truth::<M>(params, &inputs.wo)?, &[PROBE; DIRECTIONS])))
 }
 
-fn eval_pdf<M: Registered>(
-    id: ModelId,
-    params: &M::Params,
-    inputs: &Inputs<M::Params>,
-    every_way: bool,
-) -> Result<(Vec<Contender>, Truth), ParamError> {
-    let wo = inputs.wo[0];
-    let (libm, std) = references::<M>(params, wo);
-    let gather = Bsdf::new(&M::MODEL, params).prepare(wo);
-    let wi = arrays(&inputs.wi);
-    let mut contenders =
-        textbooks(task(&wi, move |wi| libm.eval_pdf(*wi)), task(&wi, move |wi| std.eval_pdf(platform(*wi))));
-    contenders.push(scalar(ONE, task(&inputs.wi, move |wi| gather.eval_pdf(*wi))));
-    let contenders =
-        with_levels(contenders, EIGHT, |level| task(&packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi)));
+fn eval_pdf<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every_way: bool) -> Timed {
+    let (wo, wi) = (inputs.wo[0], arrays(&inputs.wi));
+    let material = Material::<M>::new(params);
+    let ((libm, std), gather) = (material.references(wo), material.bsdf.prepare(wo));
     let slices = |len| {
+        let wi = &wi;
         move |level| -> Box<dyn Pass> {
             let call = move |wi: [&[f32]; 3], [r, g, b, pdf]: [&mut [f32]; 4]| {
                 gather.eval_pdf_batch_at(level, wi, EvalSlices { value: [r, g, b], pdf })
             };
-            Box::new(Slices::new(len, &arrays(&inputs.wi), call))
+            Box::new(Slices::new(len, wi, call))
         }
     };
-    let mut contenders = with_levels(contenders, SLICES, slices(DIRECTIONS));
+    let mut contenders = Contenders::new(
+        task(&wi, move |wi| libm.eval_pdf(*wi)),
+        task(&wi, move |wi| std.eval_pdf(platform(*wi))),
+        task(&inputs.wi, move |wi| gather.eval_pdf(*wi)),
+    )
+    .levels(EIGHT, |level| task(&packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi)))
+    .levels(SLICES, slices(DIRECTIONS));
     if every_way {
         let (eights, _) = inputs.wi.as_chunks::<8>();
-        contenders = with_levels(contenders, FRESH, |level| {
-            task(eights, move |wi| gather.eval_pdf8_at(level, &Vec3x8::from(*wi)))
-        });
-        contenders = with_levels(contenders, SHORT, slices(FEW));
+        let fresh = |level| task(eights, move |wi| gather.eval_pdf8_at(level, &Vec3x8::from(*wi)));
+        contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
     }
-    Ok((contenders, Truth::of_directions(truth(id, params, &[wo; DIRECTIONS])?, &inputs.wi)))
+    Ok((contenders, Truth::of_directions(truth::<M>(params, &[wo; DIRECTIONS])?, &inputs.wi)))
 }
 
-fn sample<M: Registered>(
-    id: ModelId,
-    params: &M::Params,
-    inputs: &Inputs<M::Params>,
-    every_way: bool,
-) -> Result<(Vec<Contender>, Truth), ParamError> {
-    let wo = inputs.wo[0];
-    let (libm, std) = references::<M>(params, wo);
-    let gather = Bsdf::new(&M::MODEL, params).prepare(wo);
-    let mut contenders =
-        textbooks(task(&inputs.xi, move |xi| libm.sample(*xi)), task(&inputs.xi, move |xi| std.sample(platform(*xi))));
-    contenders.push(scalar(ONE, task(&inputs.xi, move |xi| gather.sample(*xi))));
-    let contenders =
-        with_levels(contenders, EIGHT, |level| task(&xi_packets(&inputs.xi), move |xi| gather.sample8_at(level, xi)));
+fn sample<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every_way: bool) -> Timed {
+    let (wo, xi) = (inputs.wo[0], &inputs.xi);
+    let material = Material::<M>::new(params);
+    let ((libm, std), gather) = (material.references(wo), material.bsdf.prepare(wo));
     let slices = |len| {
         move |level| -> Box<dyn Pass> {
             let call = move |xi: [&[f32]; 3], [r, g, b, pdf, u, v, w, wr, wg, wb, slot]: [&mut [f32]; 11]| {
                 let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
                 gather.sample_batch_at(level, xi, out)
             };
-            Box::new(Slices::new(len, &inputs.xi, call))
+            Box::new(Slices::new(len, xi, call))
         }
     };
-    let mut contenders = with_levels(contenders, SLICES, slices(DIRECTIONS));
+    let mut contenders = Contenders::new(
+        task(xi, move |xi| libm.sample(*xi)),
+        task(xi, move |xi| std.sample(platform(*xi))),
+        task(xi, move |xi| gather.sample(*xi)),
+    )
+    .levels(EIGHT, |level| task(&xi_packets(xi), move |xi| gather.sample8_at(level, xi)))
+    .levels(SLICES, slices(DIRECTIONS));
     if every_way {
-        let (eights, _) = inputs.xi.as_chunks::<8>();
-        contenders = with_levels(contenders, FRESH, |level| {
-            task(eights, move |xi| {
-                let xi = core::array::from_fn(|k| f32x8::new(xi.map(|xi| xi[k])));
-                gather.sample8_at(level, &xi)
-            })
-        });
-        contenders = with_levels(contenders, SHORT, slices(FEW));
+        let (eights, _) = xi.as_chunks::<8>();
+        let packed = |xi: &[[f32; 3]; 8]| -> [f32x8; 3] { core::array::from_fn(|k| f32x8::new(xi.map(|xi| xi[k]))) };
+        let fresh = |level| task(eights, move |xi| gather.sample8_at(level, &packed(xi)));
+        contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
     }
-    Ok((contenders, Truth::of_samples(truth(id, params, &[wo; DIRECTIONS])?, &inputs.xi)))
+    Ok((contenders, Truth::of_samples(truth::<M>(params, &[wo; DIRECTIONS])?, xi)))
 }

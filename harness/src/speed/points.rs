@@ -1,17 +1,17 @@
 //! Shading points of their own: preparing one, and a few samples of it.
 
-use super::cells::{Contender, EIGHT, EIGHT_AT_ONE, HITS, ONE, scalar, textbooks, truth, with_levels};
+use super::cells::{Contenders, EIGHT, EIGHT_AT_ONE, HITS, Material, Timed, truth};
 use super::check::Truth;
 use super::inputs::{DIRECTIONS, Inputs, pairs};
 use super::task;
 use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, EvalColumns, HitSlices, ParamError, Sample8, SampleColumns};
+use hairis::{Bsdf8, EvalColumns, HitSlices, Sample8, SampleColumns};
 use hairis_benches::inputs::{arrays, packets, xi_packets};
 use hairis_benches::platform::{Platform, platform};
 use hairis_benches::task::{Answer, Output, Pass, Several, Slices};
-use hairis_variants::{ModelId, Registered};
+use hairis_variants::Registered;
 
 /// The first `N` samples of a packet.
 struct Leading<const N: usize>(Sample8);
@@ -34,17 +34,18 @@ fn several<I: 'static, O: Output + 'static>(
 
 /// A shading point and `N` samples of it, all on the same hair: each lane at its own point, or a point's samples in `P`
 /// packets, the last of which may have lanes to spare.
-pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
-    id: ModelId,
-    inputs: &Inputs<M::Params>,
-) -> Result<(Vec<Contender>, Truth), ParamError> {
-    let params = inputs.params[0];
-    let bsdf = Bsdf::new(&M::MODEL, &params);
-    let (libm, std) = (M::formulas::<f32>(&params), M::formulas::<Platform>(&params));
+pub(super) fn shared<M: Registered, const N: usize, const P: usize>(inputs: &Inputs<M::Params>) -> Timed {
+    let params = &inputs.params[0];
+    let Material::<M> { bsdf, libm, std } = Material::new(params);
     let (rows, _) = inputs.xi.as_chunks::<N>();
     let wo = &inputs.wo[..rows.len()];
     let in_turn = |i| i;
-    let mut contenders = textbooks(
+    let (eights, _) = rows.as_chunks::<8>();
+    let by_sample: Vec<[[f32x8; 3]; N]> =
+        eights.iter().map(|eight| core::array::from_fn(|k| xi_packets(&eight.map(|xi| xi[k]))[0])).collect();
+    // A packet holds the same sample of eight points; the directions are in the order of the points.
+    let place = |i: usize| (i / (8 * N) * 8 + i % 8) * N + i / 8 % N;
+    let mut contenders = Contenders::new(
         several(pairs(&arrays(wo), rows), in_turn, move |(wo, xi), keep| {
             let point = M::reference_at(&libm, *wo, 0.0);
             xi.iter().for_each(|xi| keep(&point.sample(*xi)));
@@ -53,57 +54,43 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
             let point = M::reference_at(&std, platform(*wo), Platform(0.0));
             xi.iter().for_each(|xi| keep(&point.sample(platform(*xi))));
         }),
-    );
-    let one = several(pairs(wo, rows), in_turn, move |(wo, xi), keep| {
-        let point = bsdf.prepare(*wo);
-        xi.iter().for_each(|xi| keep(&point.sample(*xi)));
-    });
-    contenders.push(scalar(ONE, one));
-    let (eights, _) = rows.as_chunks::<8>();
-    let by_sample: Vec<[[f32x8; 3]; N]> =
-        eights.iter().map(|eight| core::array::from_fn(|k| xi_packets(&eight.map(|xi| xi[k]))[0])).collect();
-    // A packet holds the same sample of eight points; the directions are in the order of the points.
-    let place = |i: usize| (i / (8 * N) * 8 + i % 8) * N + i / 8 % N;
-    let mut contenders = with_levels(contenders, EIGHT, |level| {
+        several(pairs(wo, rows), in_turn, move |(wo, xi), keep| {
+            let point = bsdf.prepare(*wo);
+            xi.iter().for_each(|xi| keep(&point.sample(*xi)));
+        }),
+    )
+    .levels(EIGHT, |level| {
         several(pairs(&packets(wo), &by_sample), place, move |(wo, xi), keep| {
             let points = bsdf.prepare8_at(level, wo);
             xi.iter().for_each(|xi| keep(&points.sample8_at(level, xi)));
         })
     });
     if N > 1 {
-        let packed: Vec<[[f32x8; 3]; P]> = rows
-            .iter()
-            .map(|row| {
-                let mut padded = row.to_vec();
-                padded.resize(8 * P, [0.5; 3]);
-                let packets = xi_packets(&padded);
-                core::array::from_fn(|p| packets[p])
-            })
-            .collect();
-        contenders = with_levels(contenders, EIGHT_AT_ONE, |level| {
+        let packed = |row: &[[f32; 3]; N]| -> [[f32x8; 3]; P] {
+            let mut padded = row.to_vec();
+            padded.resize(8 * P, [0.5; 3]);
+            let packets = xi_packets(&padded);
+            core::array::from_fn(|p| packets[p])
+        };
+        let packed: Vec<_> = rows.iter().map(packed).collect();
+        contenders = contenders.levels(EIGHT_AT_ONE, |level| {
             several(pairs(wo, &packed), in_turn, move |(wo, xi), keep| {
                 let point = bsdf.prepare(*wo);
                 xi.iter().for_each(|xi| keep(&Leading::<N>(point.sample8_at(level, xi))));
             })
         });
-    }
-    if N == 1 {
-        contenders = with_levels(contenders, HITS, |level| {
+    } else {
+        contenders = contenders.levels(HITS, |level| {
             let call = move |[x, y, z, a, b, c]: [&[f32]; 6], out: [&mut [f32]; 11]| {
                 let [red, green, blue, pdf, u, v, w, wr, wg, wb, slot] = out;
-                let out = SampleColumns {
-                    wi: Some([u, v, w]),
-                    value: Some([red, green, blue]),
-                    pdf: Some(pdf),
-                    weight: Some([wr, wg, wb]),
-                    slot: Some(slot),
-                };
+                let (value, weight) = (Some([red, green, blue]), Some([wr, wg, wb]));
+                let out = SampleColumns { wi: Some([u, v, w]), value, pdf: Some(pdf), weight, slot: Some(slot) };
                 bsdf.sample_hits_at(level, HitSlices { wo: [x, y, z], h: None }, [a, b, c], out)
             };
             Box::new(Slices::new(DIRECTIONS, &joined(&arrays(wo), &inputs.xi), call))
         });
     }
-    let points = truth(id, &params, wo)?.into_iter().flat_map(|point| core::iter::repeat_n(point, N)).collect();
+    let points = truth::<M>(params, wo)?.into_iter().flat_map(|point| core::iter::repeat_n(point, N)).collect();
     Ok((contenders, Truth::of_samples(points, &inputs.xi)))
 }
 
@@ -113,63 +100,51 @@ fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
 }
 
 /// A shading point and an evaluation at it, all on the same hair.
-pub(super) fn eval<M: Registered>(
-    id: ModelId,
-    inputs: &Inputs<M::Params>,
-) -> Result<(Vec<Contender>, Truth), ParamError> {
-    let params = inputs.params[0];
-    let bsdf = Bsdf::new(&M::MODEL, &params);
-    let (libm, std) = (M::formulas::<f32>(&params), M::formulas::<Platform>(&params));
+pub(super) fn eval<M: Registered>(inputs: &Inputs<M::Params>) -> Timed {
+    let params = &inputs.params[0];
+    let Material::<M> { bsdf, libm, std } = Material::new(params);
     let both = pairs(&arrays(&inputs.wo), &arrays(&inputs.wi));
-    let mut contenders = textbooks(
+    let eights = pairs(&packets(&inputs.wo), &packets(&inputs.wi));
+    let contenders = Contenders::new(
         task(&both, move |(wo, wi)| M::reference_at(&libm, *wo, 0.0).eval_pdf(*wi)),
         task(&both, move |(wo, wi)| M::reference_at(&std, platform(*wo), Platform(0.0)).eval_pdf(platform(*wi))),
-    );
-    let one = task(&pairs(&inputs.wo, &inputs.wi), move |(wo, wi)| bsdf.prepare(*wo).eval_pdf(*wi));
-    contenders.push(scalar(ONE, one));
-    let eights = pairs(&packets(&inputs.wo), &packets(&inputs.wi));
-    let contenders = with_levels(contenders, EIGHT, |level| {
-        task(&eights, move |(wo, wi)| bsdf.prepare8_at(level, wo).eval_pdf8_at(level, wi))
-    });
-    let contenders = with_levels(contenders, HITS, |level| {
+        task(&pairs(&inputs.wo, &inputs.wi), move |(wo, wi)| bsdf.prepare(*wo).eval_pdf(*wi)),
+    )
+    .levels(EIGHT, |level| task(&eights, move |(wo, wi)| bsdf.prepare8_at(level, wo).eval_pdf8_at(level, wi)))
+    .levels(HITS, |level| {
         let call = move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
             let out = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
             bsdf.eval_pdf_hits_at(level, HitSlices { wo: [x, y, z], h: None }, [u, v, w], out)
         };
         Box::new(Slices::new(DIRECTIONS, &joined(&arrays(&inputs.wo), &arrays(&inputs.wi)), call))
     });
-    Ok((contenders, Truth::of_directions(truth(id, &params, &inputs.wo)?, &inputs.wi)))
+    Ok((contenders, Truth::of_directions(truth::<M>(params, &inputs.wo)?, &inputs.wi)))
 }
 
 /// A shading point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
-pub(super) fn mixed<M: Registered>(
-    id: ModelId,
-    inputs: &Inputs<M::Params>,
-    pack_each: bool,
-) -> Result<(Vec<Contender>, Truth), ParamError> {
-    let params = inputs.params;
-    let bsdfs = params.map(|params| Bsdf::new(&M::MODEL, &params));
-    let libm = params.map(|params| M::formulas::<f32>(&params));
-    let std = params.map(|params| M::formulas::<Platform>(&params));
+pub(super) fn mixed<M: Registered>(inputs: &Inputs<M::Params>, pack_each: bool) -> Timed {
+    let materials = inputs.params.each_ref().map(Material::<M>::new);
+    let (libm, std) = (materials.each_ref().map(|of| of.libm), materials.each_ref().map(|of| of.std));
+    let bsdfs = materials.map(|of| of.bsdf);
     let numbered: Vec<(usize, Vec3)> = inputs.wo.iter().enumerate().map(|(i, wo)| (i % 8, *wo)).collect();
     let arrays: Vec<(usize, [f32; 3])> = numbered.iter().map(|(i, wo)| (*i, wo.to_array())).collect();
-    let mut contenders = textbooks(
+    let eights = pairs(&packets(&inputs.wo), &xi_packets(&inputs.xi));
+    let packed = Bsdf8::pack(bsdfs.each_ref());
+    let contenders = Contenders::new(
         task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| M::reference_at(&libm[*i], *wo, 0.0).sample(*xi)),
         task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
             M::reference_at(&std[*i], platform(*wo), Platform(0.0)).sample(platform(*xi))
         }),
-    );
-    let one = task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| bsdfs[*i].prepare(*wo).sample(*xi));
-    contenders.push(scalar(ONE, one));
-    let eights = pairs(&packets(&inputs.wo), &xi_packets(&inputs.xi));
-    let packed = Bsdf8::pack(bsdfs.each_ref());
-    let contenders = with_levels(contenders, EIGHT, |level| {
+        task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| bsdfs[*i].prepare(*wo).sample(*xi)),
+    )
+    .levels(EIGHT, |level| {
         if pack_each {
             task(&eights, move |(wo, xi)| Bsdf8::pack(bsdfs.each_ref()).prepare8_at(level, wo).sample8_at(level, xi))
         } else {
             task(&eights, move |(wo, xi)| packed.prepare8_at(level, wo).sample8_at(level, xi))
         }
     });
-    let points = numbered.iter().map(|(i, wo)| truth(id, &params[*i], &[*wo])).collect::<Result<Vec<_>, _>>()?.concat();
-    Ok((contenders, Truth::of_samples(points, &inputs.xi)))
+    let points =
+        numbered.iter().map(|(i, wo)| truth::<M>(&inputs.params[*i], &[*wo])).collect::<Result<Vec<_>, _>>()?;
+    Ok((contenders, Truth::of_samples(points.concat(), &inputs.xi)))
 }

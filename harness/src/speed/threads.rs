@@ -63,12 +63,9 @@ fn thread_counts() -> Vec<usize> {
 /// Measures evaluation and sampling of one model on every number of threads.
 pub(super) fn run(model: ModelId, inputs: &Inputs<HairParams>) -> Result<Vec<ThreadsResult>, ParamError> {
     let counts = thread_counts();
+    let pools: Result<Vec<_>, _> = counts.iter().map(|n| ThreadPoolBuilder::new().num_threads(*n).build()).collect();
     // Where the system refuses threads there is nothing to report.
-    let Ok(pools) =
-        counts.iter().map(|n| ThreadPoolBuilder::new().num_threads(*n).build()).collect::<Result<Vec<_>, _>>()
-    else {
-        return Ok(Vec::new());
-    };
+    let Ok(pools) = pools else { return Ok(Vec::new()) };
     let gather = model.bsdf(&model.defaults())?.prepare(inputs.wo[0]);
     let wi: Vec<[f32; 3]> = inputs.wi.iter().map(|wi| wi.to_array()).collect();
     let eval = time(&pools, &wi, |chunk: &mut Chunk<4>| {
@@ -81,7 +78,7 @@ pub(super) fn run(model: ModelId, inputs: &Inputs<HairParams>) -> Result<Vec<Thr
         let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
         let _ = gather.sample_batch(chunk.inputs.each_ref().map(Vec::as_slice), out);
     });
-    let rows = |op, ns: Vec<Vec<f64>>| {
+    let rows = |(op, ns): (Op, Vec<Vec<f64>>)| {
         let of = |(threads, times): (&usize, &Vec<f64>)| {
             let ratios: Vec<f64> = ns[0].iter().zip(times).map(|(one, many)| one / many).collect();
             let ([_, ns, _], [speedup_q1, speedup, speedup_q3]) = (quartiles(times), quartiles(&ratios));
@@ -90,9 +87,7 @@ pub(super) fn run(model: ModelId, inputs: &Inputs<HairParams>) -> Result<Vec<Thr
         };
         counts.iter().zip(&ns).map(of).collect::<Vec<_>>()
     };
-    let mut all = rows(Op::EvalPdf, eval);
-    all.extend(rows(Op::Sample, sample));
-    Ok(all)
+    Ok([(Op::EvalPdf, eval), (Op::Sample, sample)].into_iter().flat_map(rows).collect())
 }
 
 /// Time per direction of each pool in each round, ns; the pools take turns.

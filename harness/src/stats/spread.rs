@@ -9,22 +9,13 @@
 /// - Domain: NaN without samples.
 #[must_use]
 pub fn percentile(sorted: &[f64], p: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else {
-        return f64::NAN;
-    };
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let h = p.clamp(0.0, 1.0) * last as f64;
-    let lo = index(h.floor(), last);
-    let hi = (lo + 1).min(last);
-    let t = h - h.floor();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to `last`")]
+    let lo = h as usize;
+    let (t, hi) = (h.fract(), (lo + 1).min(last));
     // Equal neighbours must give themselves, also when they are infinite.
     if t == 0.0 || sorted[lo] == sorted[hi] { sorted[lo] } else { sorted[lo] + t * (sorted[hi] - sorted[lo]) }
-}
-
-/// A whole, non-negative number as an index no larger than `last`.
-fn index(x: f64, last: usize) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "x is whole and clamped to 0..=last")]
-    let i = x.clamp(0.0, last as f64) as usize;
-    i.min(last)
 }
 
 #[cfg(test)]

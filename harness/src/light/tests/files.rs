@@ -75,7 +75,7 @@ fn luminance_alone_is_a_grey_map() {
     let image = Image::from_channels((4, 2), channels.with_pixel_fn(|_| (0.0_f32, 0.0_f32, 1.0_f32)));
     image.write().to_file(&path).expect("written");
     let error = Environment::load(&path).expect_err("chroma");
-    assert!(matches!(&error, LightError::Unsupported(_, reason) if reason.contains("chroma")), "{error}");
+    assert!(error.to_string().contains("unsupported: luminance with chroma"), "{error}");
 }
 
 #[test]
@@ -141,10 +141,10 @@ fn each_refusal_says_why() {
     let dir = directory();
     let missing = dir.path().join("missing.hdr");
     let error = Environment::load(&missing).expect_err("missing");
-    assert!(matches!(error, LightError::Io(..)), "{error}");
+    assert!(error.to_string().contains("cannot read"), "{error}");
     one_line(&error, &missing);
     let error = Environment::load(dir.path()).expect_err("directory");
-    assert_eq!(error, LightError::Directory(dir.path().to_path_buf()));
+    assert!(error.to_string().ends_with("is a directory, not an environment map"), "{error}");
     one_line(&error, dir.path());
     let cases: [(&str, &[u8], &str); 7] = [
         ("zero.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 16\n", "no pixels"),
