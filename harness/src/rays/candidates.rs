@@ -39,7 +39,7 @@ impl LightBlocks {
 }
 
 /// Three rows of eight uniform numbers.
-pub(super) fn numbers(source: &mut Independent) -> [f32x8; 3] {
+pub(crate) fn numbers(source: &mut Independent) -> [f32x8; 3] {
     array::from_fn(|_| f32x8::new(array::from_fn(|_| source.next_f32())))
 }
 

@@ -10,6 +10,7 @@ use crate::sampler::Scatter;
 use crate::sequence::Independent;
 use crate::stats::{Estimate, Moments};
 use hairis::resample::{Choice, Choices, choose};
+use wide::f32x8;
 
 /// Candidates of both techniques.
 const ALL: usize = 2 * MOST;
@@ -41,19 +42,15 @@ impl<const S: usize> Columns<S> {
                 Candidates8::of_light(scatter, &block(packet, source)),
             ];
             for (technique, drawn) in drawn.iter().enumerate() {
+                let store = |column: &mut [f32; ALL], lanes: &f32x8| {
+                    for (lane, x) in lanes.as_array().iter().enumerate() {
+                        column[place(technique, 8 * packet + lane)] = *x;
+                    }
+                };
                 let weighed = sizes.map(|count| drawn.weigh(count));
-                for lane in 0..8 {
-                    let place = place(technique, 8 * packet + lane);
-                    for (column, channel) in columns.contribution.iter_mut().zip(&weighed[0].contribution) {
-                        column[place] = channel.as_array()[lane];
-                    }
-                    for (column, weighed) in columns.weight.iter_mut().zip(&weighed) {
-                        column[place] = weighed.weight.as_array()[lane];
-                    }
-                    for (column, pdf) in columns.pdf.iter_mut().zip(drawn.pdf()) {
-                        column[place] = pdf.as_array()[lane];
-                    }
-                }
+                (0..3).for_each(|c| store(&mut columns.contribution[c], &weighed[0].contribution[c]));
+                (0..S).for_each(|size| store(&mut columns.weight[size], &weighed[size].weight));
+                (0..2).for_each(|of| store(&mut columns.pdf[of], &drawn.pdf()[of]));
             }
         }
         columns
@@ -265,16 +262,12 @@ fn scores(plain: &Plain, pooled: &Pooled, reference: &Reference) -> Vec<BiasScor
         quadrature_error: HALF * reference.quadrature_error,
         ..*reference
     };
-    let mut scores = vec![
-        score("light only".to_owned(), &plain.light, reference),
-        score("one-sample MIS".to_owned(), &plain.mis, reference),
-    ];
-    for (count, moments) in SIZES.iter().zip(&pooled.chosen) {
-        scores.push(score(format!("{count} + {count}"), moments, reference));
-    }
-    for (size, rays) in pools() {
+    let plain = [("light only", &plain.light), ("one-sample MIS", &plain.mis)];
+    let plain = plain.map(|(name, moments)| score(name.to_owned(), moments, reference));
+    let one = |(count, moments): (&u32, &Moments)| score(format!("{count} + {count}"), moments, reference);
+    let several = |(size, rays): (usize, usize)| {
         let [count, k] = [SIZES[size], RAYS[rays]];
-        scores.push(score(format!("{k} of {count} + {count}, half visible"), &pooled.half[size][rays].0, &at_half));
-    }
-    scores
+        score(format!("{k} of {count} + {count}, half visible"), &pooled.half[size][rays].0, &at_half)
+    };
+    plain.into_iter().chain(SIZES.iter().zip(&pooled.chosen).map(one)).chain(pools().map(several)).collect()
 }

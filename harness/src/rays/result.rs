@@ -90,11 +90,11 @@ impl OneRay {
     }
 
     /// The geometric means of several.
-    pub(super) fn mean(of: &[Self]) -> Self {
-        let each = |pick: &dyn Fn(&Self) -> Estimate| geometric_mean(&of.iter().map(pick).collect::<Vec<_>>());
+    fn mean(of: &[Self]) -> Self {
+        let mean = |pick: &dyn Fn(&Self) -> Estimate| geometric_mean(&of.iter().map(pick).collect::<Vec<_>>());
         Self {
-            unoccluded: each(&|one| one.unoccluded),
-            visible: core::array::from_fn(|share| each(&|one| one.visible[share])),
+            unoccluded: mean(&|one| one.unoccluded),
+            visible: [0, 1, 2].map(|share| mean(&|one| one.visible[share])),
         }
     }
 }
@@ -127,15 +127,14 @@ pub(super) fn geometric_mean(of: &[Estimate]) -> Estimate {
 
 impl RayFigures {
     /// Geometric means; numbers of rays have arithmetic ones.
-    pub(super) fn mean(of: &[Self]) -> Self {
-        let one = |pick: &dyn Fn(&Self) -> OneRay| OneRay::mean(&of.iter().map(pick).collect::<Vec<_>>());
-        let n = of.len() as f64;
+    pub(super) fn mean(of: &[&Self]) -> Self {
+        let one = |pick: &dyn Fn(&Self) -> OneRay| OneRay::mean(&of.iter().map(|of| pick(of)).collect::<Vec<_>>());
         let half = |place: usize| {
-            let each = || of.iter().map(|figures| figures.half[place]);
+            let pools: Vec<PoolFigures> = of.iter().map(|figures| figures.half[place]).collect();
             PoolFigures {
-                traced: each().map(|pool| pool.traced).sum::<f64>() / n,
-                v: geometric_mean(&each().map(|pool| pool.v).collect::<Vec<_>>()),
-                ..of[0].half[place]
+                traced: pools.iter().map(|pool| pool.traced).sum::<f64>() / of.len() as f64,
+                v: geometric_mean(&pools.iter().map(|pool| pool.v).collect::<Vec<_>>()),
+                ..pools[0]
             }
         };
         Self {

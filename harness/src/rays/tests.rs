@@ -8,7 +8,7 @@ use crate::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, Refere
 use crate::light::{Environment, Light, Sky};
 use crate::sequence::{Independent, XiSource};
 use crate::stats::Estimate;
-use crate::study::with_built_in_lights;
+use crate::study::with_lights;
 use std::sync::OnceLock;
 
 const SMALL: Budget = Budget {
@@ -41,11 +41,7 @@ fn sky() -> &'static (Environment, EfficiencyResult) {
 }
 
 fn rows(config: &RaysConfig<'_>, subjects: &[RaySubject], references: &EfficiencyResult) -> Vec<RayRow> {
-    with_built_in_lights(|built_in| {
-        let mut lights = built_in.to_vec();
-        lights.push(config.environment);
-        run::rows(config, subjects, &lights, references, &|_, _| ())
-    })
+    with_lights(Some(config.environment), |lights| run::rows(config, subjects, lights, references, &|_, _| ()))
 }
 
 fn config<'a>(environment: &'a Environment, pools: usize) -> RaysConfig<'a> {
