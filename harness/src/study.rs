@@ -103,7 +103,7 @@ impl Plan<'_> {
     /// The cells.
     #[must_use]
     pub const fn grid(&self) -> Grid {
-        grid_of(self.quick)
+        Grid::of(self.quick)
     }
 
     /// Numbers of samples per cell.
@@ -150,10 +150,6 @@ pub(crate) fn with_lights<R>(environment: Option<&Environment>, f: impl FnOnce(&
     let mut lights: Vec<&dyn Light> = vec![&constant, &smooth, &sun, &area];
     lights.extend(environment.map(|map| map as &dyn Light));
     f(&lights)
-}
-
-const fn grid_of(quick: bool) -> Grid {
-    if quick { Grid::QUICK } else { Grid::FULL }
 }
 
 /// Computes the cells at `todo` on all cores. Workers pass each to `keep`, in no order.

@@ -176,7 +176,8 @@ mod tests {
         let found = Difference::over(Grid { theta_o_deg: &[45.0], ..Grid::QUICK }).expect("accepted");
         let mut csv = Vec::new();
         found.columns().write_csv(&mut csv).expect("written");
-        let fields: Vec<usize> = csv.split(|byte| *byte == b'\n').map(|row| row.split(|b| *b == b',').count()).collect();
+        let fields: Vec<usize> =
+            csv.split(|byte| *byte == b'\n').map(|row| row.split(|b| *b == b',').count()).collect();
         assert_eq!(fields.len(), found.rows().len() + 2, "names, rows and the end");
         assert!(fields[..=found.rows().len()].iter().all(|count| *count == fields[0]), "ragged");
         for table in found.tables() {

@@ -1,7 +1,7 @@
 //! Every model and sampler under every light.
 
 use super::result::{RayFigures, RayPose, RayRow, RaysResult};
-use super::{EqualTime, RaySubject, measure, reference, times};
+use super::{EqualTime, Lit, RaySubject, measure, reference, times};
 use crate::efficiency::{Check, EfficiencyResult, Reference, THETA_O_DEG};
 use crate::light::{Environment, Light};
 use crate::progress::Progress;
@@ -72,7 +72,8 @@ pub(super) fn rows(
         let pose = |(pose, theta_o)| {
             let at = [config.seed, stream([subject.index(), light as u64, pose as u64])];
             let reference = &references[&(subject.model(), light, pose)];
-            measure::pose(&subject.scatter(pose), lights[light], theta_o, reference, at, config.pools)
+            let lit = Lit { scatter: &subject.scatter(pose), light: lights[light] };
+            measure::pose(lit, theta_o, reference, at, config.pools)
         };
         let poses: Vec<RayPose> = THETA_O_DEG.into_iter().enumerate().map(pose).collect();
         RayRow {

@@ -4,10 +4,9 @@
 //! same shading point and light. Numbers and the light's directions are drawn beforehand, the latter into blocks that are read
 //! in a row; the preparation of the shading point is shared by all and left out.
 
-use super::candidates::{Candidates8, LightBlock, numbers};
+use super::candidates::{Candidates8, LightBlock, Lit, numbers};
 use super::{MOST, RAYS, RaySubject, SIZES};
 use crate::light::Light;
-use crate::sampler::Scatter;
 use crate::sequence::{Independent, stream_id};
 use crate::stats::Estimate;
 use crate::study::in_turns;
@@ -102,7 +101,7 @@ pub(crate) fn measure(
     for subject in subjects {
         let scatter = subject.scatter(POSE);
         for (light, blocks) in lights.iter().zip(&tables) {
-            let at = Shading { scatter: &scatter, light: *light, xi: &xi, blocks };
+            let at = Shading { lit: Lit { scatter: &scatter, light: *light }, xi: &xi, blocks };
             times.push(row(*subject, &at, rounds));
             progress(times.len());
         }
@@ -126,7 +125,7 @@ fn row(subject: RaySubject, at: &Shading<'_>, rounds: usize) -> RayTimes {
     RayTimes {
         model: subject.model(),
         sampler: subject.sampler(),
-        light: at.light.name().to_owned(),
+        light: at.lit.light.name().to_owned(),
         mis_ns: median(0).value,
         mis_ns_error: median(0).standard_error,
         pool_ns: core::array::from_fn(|size| [1, 2].map(|rays| median(2 * size + rays).value)),
@@ -136,19 +135,18 @@ fn row(subject: RaySubject, at: &Shading<'_>, rounds: usize) -> RayTimes {
 
 /// A shading point under a light, with what is drawn beforehand.
 struct Shading<'a> {
-    scatter: &'a Scatter,
-    light: &'a dyn Light,
+    lit: Lit<'a>,
     xi: &'a [[f32x8; 3]],
     blocks: &'a [LightBlock],
 }
 
 impl Shading<'_> {
     fn of_bsdf(&self, packet: usize) -> Candidates8 {
-        Candidates8::of_bsdf(self.scatter, self.light, black_box(&self.xi[packet % PACKETS]))
+        self.lit.of_bsdf(black_box(&self.xi[packet % PACKETS]))
     }
 
     fn of_light(&self, packet: usize) -> Candidates8 {
-        Candidates8::of_light(self.scatter, black_box(&self.blocks[packet % PACKETS]))
+        self.lit.of_light(black_box(&self.blocks[packet % PACKETS]))
     }
 
     /// Rays by one-sample MIS, as many of each technique; returns their number.

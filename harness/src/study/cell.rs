@@ -8,7 +8,7 @@ use super::tally::{Figures, Tally, figures, largest};
 use crate::efficiency::PHI_O_DEG;
 use crate::light::Light;
 use crate::quadrature::fibre_direction;
-use crate::rays::{LightBlocks, Unoccluded, numbers, unoccluded};
+use crate::rays::{LightBlocks, Lit, Unoccluded, numbers, unoccluded};
 use crate::sampler::{Sampler, Scatter};
 use crate::sequence::{Independent, XiSource, stream_id};
 use crate::stats::Estimate;
@@ -101,8 +101,9 @@ pub(super) fn measure(
                 };
                 if budget.pools > 0 {
                     let mut from = stream(&[3, model.index(), sampler.index(), light as u64]);
+                    let lit = Lit { scatter: &scatter, light: lights[light] };
                     let Unoccluded { mis, chosen: [small, large], bias } =
-                        unoccluded(&scatter, lights[light], &blocks[light], SIZES, figures.mean, &mut from);
+                        unoccluded(lit, &blocks[light], SIZES, figures.mean, &mut from);
                     (of.rays, of.bias) = (Some([mis, small, large]), bias);
                 }
                 found.push(of);

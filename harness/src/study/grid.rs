@@ -61,6 +61,12 @@ impl Grid {
         theta_o_deg: &[0.0, 45.0, 75.0, 85.0],
     };
 
+    /// That of the short run, or of the whole one.
+    #[must_use]
+    pub const fn of(quick: bool) -> Self {
+        if quick { Self::QUICK } else { Self::FULL }
+    }
+
     /// The cells, in order.
     pub fn cells(self) -> impl Iterator<Item = Cell> {
         (0..self.len()).map(move |index| self.cell(index))

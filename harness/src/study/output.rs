@@ -8,7 +8,7 @@ use super::rays;
 use super::rows::{Row, published, set_bounds};
 use super::times::PER_POINT;
 use super::view::{Counted, View};
-use super::{Grid, Shard, check, grid_of, report};
+use super::{Grid, Shard, check, report};
 use crate::difference::Difference;
 use crate::error::Error;
 use crate::files::{whole, write_json};
@@ -41,7 +41,7 @@ impl Study {
         let Some((first, Read { header, .. })) = parts.first() else {
             return Err(Error::Missing("no parts".to_owned()));
         };
-        let grid = grid_of(header.quick);
+        let grid = Grid::of(header.quick);
         let known = header.format == FORMAT
             && header.models.iter().map(String::as_str).eq(ModelKind::ALL.map(ModelKind::name))
             && header.samplers.iter().map(String::as_str).eq(Sampler::ALL.map(Sampler::name))
@@ -104,7 +104,7 @@ impl Study {
     /// The cells it is of.
     #[must_use]
     pub const fn grid(&self) -> Grid {
-        grid_of(self.header.quick)
+        Grid::of(self.header.quick)
     }
 
     /// Seed, and whether it is the short run: what times are measured by.

@@ -150,12 +150,6 @@ pub struct Read {
     whole: usize,
 }
 
-/// Name of the part file of a shard.
-#[must_use]
-pub fn file_name(shard: Shard) -> String {
-    format!("cells-{}-of-{}.jsonl", shard.index(), shard.of())
-}
-
 /// The part files in `dir`, by name.
 ///
 /// # Errors
@@ -246,7 +240,7 @@ impl Part {
     /// [`Error::Output`] if it cannot be written; [`Error::Part`] if it is of another study, damaged, or in use.
     pub fn open(dir: &Path, header: &Header) -> Result<(Self, Vec<Finished>), Error> {
         let shard = header.shard().map_err(Error::Usage)?;
-        let path = dir.join(file_name(shard));
+        let path = dir.join(format!("cells-{}-of-{}.jsonl", shard.index(), shard.of()));
         let output = Error::output(&path);
         let mut file = File::options().append(true).create(true).read(true).open(&path).map_err(&output)?;
         // File systems without locks go without.

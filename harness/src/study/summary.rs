@@ -1,7 +1,7 @@
 //! Summary of a study: gains over the published sampler and of the Cauchy model, as geometric means over the grid, and
 //! in how many cells.
 
-use super::equal_time::{CellCounts, in_equal_time};
+use super::equal_time::{count_cells, in_equal_time};
 use super::output::Study;
 use super::rows::{Estimator, Strategy, on_each_model, published, samplers, strategies};
 use super::times::{PER_POINT, Times};
@@ -119,7 +119,7 @@ fn median(pairs: &mut dyn Iterator<Item = [Estimate; 2]>, time: Estimate) -> Str
 
 /// Cells by what becomes of them in equal time.
 fn won_and_lost(pairs: &mut dyn Iterator<Item = [Estimate; 2]>, time: Estimate) -> String {
-    CellCounts::count(pairs.map(sure_ratio), time).to_string()
+    count_cells(pairs.map(sure_ratio), time).map(|cells| cells.to_string()).join(" / ")
 }
 
 pub(super) fn shown(of: Estimate) -> String {

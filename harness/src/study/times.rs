@@ -25,6 +25,9 @@ use wide::f32x8;
 /// Samples of a shading point over which its set-up is spread: a path tracer's, and two of direct lighting.
 pub(super) const PER_POINT: [usize; 3] = [1, 4, 16];
 
+/// Passes of a stretch of samples, by place in [`PER_POINT`]: sixteen samples of each point.
+const PASSES: [u32; PER_POINT.len()] = [16, 4, 1];
+
 /// Packets of eight shading points a pass.
 const PACKETS: usize = 64;
 
@@ -34,13 +37,8 @@ const LOOK_UP_PACKETS: usize = 512;
 /// Timed operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Timed {
-    /// A sample.
-    Sample {
-        model: ModelKind,
-        sampler: Sampler,
-        /// Samples of a shading point.
-        per_point: usize,
-    },
+    /// A sample of a model by a sampler, with so many per shading point.
+    Sample(ModelKind, Sampler, usize),
     /// A look-up of the light at this place.
     LookUp(usize),
 }
@@ -112,7 +110,7 @@ impl Times {
 
     /// Median time of a sample in ns, for 1, 4 or 16 samples per shading point; not a number for others.
     pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
-        self.median(Timed::Sample { model, sampler, per_point })
+        self.median(Timed::Sample(model, sampler, per_point))
     }
 
     /// Median time of a look-up of the light at this place in ns; not a number if it was not measured.
@@ -123,7 +121,7 @@ impl Times {
     /// The table of times of samples and look-ups; what does not apply to a row is empty.
     pub(super) fn columns(&self, lights: &[String]) -> Columns {
         let words = |(of, _): &(Timed, TimeSpread)| match *of {
-            Timed::Sample { model, sampler, per_point } => {
+            Timed::Sample(model, sampler, per_point) => {
                 [model.name().to_owned(), sampler.name().to_owned(), per_point.to_string(), String::new()]
             }
             Timed::LookUp(light) => [String::new(), String::new(), String::new(), lights[light].clone()],
@@ -141,44 +139,34 @@ impl Times {
     }
 }
 
-/// Something that is timed.
-struct Contender<'a> {
-    of: Timed,
-    pass: Box<dyn Pass + 'a>,
-    /// Directions of a pass.
-    directions: usize,
-    /// Passes of a stretch.
-    passes: u32,
-}
-
 /// Measures every sampler of every model, and every light.
 fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeSpread)> {
     let mut from = Independent::new(seed, stream_id(&[0x71e5]));
     let points: Vec<Points> = (0..PACKETS).map(|_| Points::draw(&mut from)).collect();
-    let mut contenders = Vec::new();
+    // What is timed, a pass of it, and the passes of a stretch; short ones are repeated.
+    let mut contenders: Vec<(Timed, Box<dyn Pass + '_>, u32)> = Vec::new();
     for model in ModelKind::ALL {
         for sampler in Sampler::ALL {
-            for per_point in PER_POINT {
-                contenders.push(Contender {
-                    of: Timed::Sample { model, sampler, per_point },
-                    pass: pass(model, sampler, &points, per_point),
-                    directions: 8 * PACKETS * per_point,
-                    passes: 16 / u32::try_from(per_point).unwrap_or(16),
-                });
-            }
+            contenders.extend(PER_POINT.into_iter().zip(PASSES).map(|(per_point, passes)| {
+                (Timed::Sample(model, sampler, per_point), pass(model, sampler, &points, per_point), passes)
+            }));
         }
     }
     let seen = directions(&mut from);
-    for (place, light) in lights.iter().enumerate() {
-        let pass = task(&seen, |wi| light.see8(wi));
-        contenders.push(Contender { of: Timed::LookUp(place), pass, directions: 8 * seen.len(), passes: 2 });
-    }
-    let times = in_turns(&mut contenders, rounds, |Contender { pass, directions, passes, .. }| {
-        // One stretch untimed, for the caches; short ones are repeated.
+    contenders.extend(lights.iter().enumerate().map(|(place, light)| {
+        let pass: Box<dyn Pass + '_> = task(&seen, |wi| light.see8(wi));
+        (Timed::LookUp(place), pass, 2)
+    }));
+    let times = in_turns(&mut contenders, rounds, |(of, pass, passes)| {
+        let directions = match of {
+            Timed::Sample(_, _, per_point) => PACKETS * *per_point,
+            Timed::LookUp(_) => seen.len(),
+        };
+        // One stretch untimed, for the caches.
         stretch(&mut **pass, 1);
-        stretch(&mut **pass, *passes) / (f64::from(*passes) * *directions as f64)
+        stretch(&mut **pass, *passes) / (f64::from(*passes) * (8 * directions) as f64)
     });
-    contenders.iter().map(|contender| contender.of).zip(times).collect()
+    contenders.iter().map(|(of, ..)| *of).zip(times).collect()
 }
 
 /// Directions of the published sampler on the default hair, sixteen per shading point.
@@ -211,20 +199,15 @@ impl Points {
 /// A pass over `points`, `per_point` samples each.
 fn pass<'a>(model: ModelKind, sampler: Sampler, points: &[Points], per_point: usize) -> Box<dyn Pass + 'a> {
     let bsdf = bsdf(model, sampler, &HairParams::default());
-    if sampler == Sampler::Uniform {
-        task(points, move |points| {
-            let gather = bsdf.prepare8(&points.wo);
-            each(&points.xi[..per_point], |xi| {
-                let wi = uniform8(xi);
-                uniform_sample8(wi, gather.eval_pdf8(&wi))
-            })
-        })
-    } else {
-        task(points, move |points| {
-            let gather = bsdf.prepare8(&points.wo);
-            each(&points.xi[..per_point], |xi| gather.sample8(xi))
-        })
-    }
+    task(points, move |points| {
+        let gather = bsdf.prepare8(&points.wo);
+        let uniform = |xi: &[f32x8; 3]| {
+            let wi = uniform8(xi);
+            uniform_sample8(wi, gather.eval_pdf8(&wi))
+        };
+        let xi = &points.xi[..per_point];
+        if sampler == Sampler::Uniform { each(xi, uniform) } else { each(xi, |xi| gather.sample8(xi)) }
+    })
 }
 
 /// A look-up has neither a direction of its own nor a reference: it is timed, not checked.
@@ -257,7 +240,7 @@ mod tests {
             let [q1, median, q3] = time.quartiles;
             assert!(q1 > 0.0 && q1 <= median && median <= q3 && time.standard_error >= 0.0, "{time:?}");
             let found = match *of {
-                Timed::Sample { model, sampler, per_point } => times.ns(model, sampler, per_point),
+                Timed::Sample(model, sampler, per_point) => times.ns(model, sampler, per_point),
                 Timed::LookUp(light) => times.look_up(light),
             };
             assert_eq!(found, Estimate { value: median, standard_error: time.standard_error });

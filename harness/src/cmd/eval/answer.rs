@@ -6,7 +6,7 @@ use core::array::from_fn;
 use core::ops::Index;
 use glam::Vec3;
 use hairis::reference::{Reference, ReferenceSample};
-use hairis::{EvalSlices, Hit, Lobe, LobeEval8, PerLobe, Sample, SampleSlices, Vec3x8};
+use hairis::{Eval, EvalSlices, Hit, Lobe, LobeEval8, PerLobe, Sample, SampleSlices, Vec3x8};
 use hairis_variants::{AnyBsdf8, AnyGather, ModelId};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -87,18 +87,15 @@ pub(super) fn answers(path: CodePath, block: &[Result<Request, Refusal>]) -> Vec
 /// One direction per call.
 fn scalar(request: &Request) -> Answer<f32> {
     let gather = gather(request);
-    let densities = |wi| gather.lobes(wi).0.map(|lobe| lobe.pdf);
-    let colors = || gather.lobes(request.wo).0.map(|lobe| lobe.color);
-    match request.query {
-        Query::Wi(wi) => {
-            let eval = gather.eval_pdf(wi);
-            valued(request.model, (eval.value, eval.pdf), densities(wi), colors)
-        }
+    let (found, wi) = match request.query {
+        Query::Wi(wi) => (valued(gather.eval_pdf(wi)), wi),
         Query::Xi(xi) => {
-            let sample = drawn(gather.sample(xi));
-            sampled(request.model, &sample, densities(sample.wi.into()), colors)
+            let sample = gather.sample(xi);
+            (drawn(sample), sample.map_or(request.wo, |sample| sample.wi))
         }
-    }
+    };
+    let densities = gather.lobes(wi).0.map(|lobe| lobe.pdf);
+    answer(request.model, found, densities, || gather.lobes(request.wo).0.map(|lobe| lobe.color))
 }
 
 /// Up to eight lines in a call, all of one model: every lane has its own material, shading point and query. Spare lanes repeat
@@ -119,18 +116,15 @@ fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
         Query::Xi(_) => samples.wi.lane(i),
     }));
     let (evals, lobes, at_wo) = (gathers.eval_pdf8(&wi), gathers.lobes8(&wi), gathers.lobes8(&wo));
-    let answer = |(i, request): (usize, &&Request)| {
+    let of_lane = |(i, request): (usize, &&Request)| {
+        let found = match request.query {
+            Query::Wi(_) => valued(evals.lane(i)),
+            Query::Xi(_) => drawn(samples.lane(i)),
+        };
         let colors = || at_wo.0.map(|lobe| lobe.color.map(|c| c.as_array()[i]));
-        let densities = densities_of_lane(&lobes, i);
-        match request.query {
-            Query::Wi(_) => {
-                let eval = evals.lane(i);
-                valued(request.model, (eval.value, eval.pdf), densities, colors)
-            }
-            Query::Xi(_) => sampled(request.model, &drawn(samples.lane(i)), densities, colors),
-        }
+        answer(request.model, found, densities_of_lane(&lobes, i), colors)
     };
-    group.iter().enumerate().map(answer).collect()
+    group.iter().enumerate().map(of_lane).collect()
 }
 
 /// Slices: one call for all directions, and one for all samples, of lines that share a shading point.
@@ -144,15 +138,16 @@ fn batch(run: &[&Request]) -> Vec<Answer<f32>> {
         }
     }
     let mut values = batch_values(&gather, &wi).into_iter().zip(batch_densities(&gather, &wi));
-    let samples = batch_samples(&gather, &xi);
-    let sampled_wi: Vec<Vec3> = samples.iter().map(|sample| sample.wi.into()).collect();
-    let mut samples = samples.iter().zip(batch_densities(&gather, &sampled_wi));
-    let colors = || gather.lobes(run[0].wo).0.map(|lobe| lobe.color);
-    let answer = |request: &&Request| match request.query {
-        Query::Wi(_) => values.next().map(|(eval, lobes)| valued(request.model, eval, lobes, colors)),
-        Query::Xi(_) => samples.next().map(|(sample, lobes)| sampled(request.model, sample, lobes, colors)),
+    let (wi, samples): (Vec<Vec3>, Vec<Found<f32>>) = batch_samples(&gather, &xi).into_iter().unzip();
+    let mut samples = samples.into_iter().zip(batch_densities(&gather, &wi));
+    let of_line = |request: &&Request| {
+        let (found, densities) = match request.query {
+            Query::Wi(_) => values.next()?,
+            Query::Xi(_) => samples.next()?,
+        };
+        Some(answer(request.model, found, densities, || gather.lobes(request.wo).0.map(|lobe| lobe.color)))
     };
-    run.iter().filter_map(answer).collect()
+    run.iter().filter_map(of_line).collect()
 }
 
 const ONE_LENGTH: &str = "slices of one length";
@@ -168,15 +163,15 @@ fn at(columns: &[Vec<f32>; 3], i: usize) -> [f32; 3] {
 }
 
 /// Values and densities.
-fn batch_values(gather: &AnyGather, wi: &[Vec3]) -> Vec<([f32; 3], f32)> {
+fn batch_values(gather: &AnyGather, wi: &[Vec3]) -> Vec<Found<f32>> {
     let (mut value, mut pdf) = (columns(wi), vec![0.0; wi.len()]);
     let out = EvalSlices { value: value.each_mut().map(Vec::as_mut_slice), pdf: &mut pdf };
     gather.eval_pdf_batch(columns(wi).each_ref().map(Vec::as_slice), out).expect(ONE_LENGTH);
-    (0..wi.len()).map(|i| (at(&value, i), pdf[i])).collect()
+    (0..wi.len()).map(|i| Found::Value(at(&value, i), pdf[i])).collect()
 }
 
-/// Samples.
-fn batch_samples(gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<ReferenceSample<f32>> {
+/// Samples, each after its direction.
+fn batch_samples(gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)> {
     let mut vectors: [[Vec<f32>; 3]; 3] = from_fn(|_| columns(xi));
     let (mut pdf, mut slot) = (vec![0.0; xi.len()], vec![0.0; xi.len()]);
     let [wi, value, weight] = vectors.each_mut().map(|v| v.each_mut().map(Vec::as_mut_slice));
@@ -185,7 +180,8 @@ fn batch_samples(gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<ReferenceSample<f32
     let sample = |i: usize| {
         let [wi, value, weight] = vectors.each_ref().map(|vector| at(vector, i));
         let lobe = Lobe::ALL.into_iter().zip(0_u8..).find(|(_, number)| f32::from(*number) == slot[i]);
-        drawn(lobe.map(|(lobe, _)| Sample { wi: wi.into(), value, pdf: pdf[i], weight, lobe }))
+        let sample = lobe.map(|(lobe, _)| Sample { wi: wi.into(), value, pdf: pdf[i], weight, lobe });
+        (wi.into(), drawn(sample))
     };
     (0..xi.len()).map(sample).collect()
 }
@@ -203,56 +199,61 @@ fn batch_densities(gather: &AnyGather, wi: &[Vec3]) -> Vec<[f32; 4]> {
 fn textbook(request: &Request) -> Answer<f64> {
     let Request { model, values, exact: Exact { values: exact, wo, h, query: numbers }, .. } = request;
     let point = model.exact_reference(values, exact, *wo, *h).expect("checked when it was read");
-    let densities = |wi| point.lobes(wi).0.map(|lobe| lobe.pdf);
-    let colors = || point.lobes(*wo).0.map(|lobe| lobe.color);
-    match request.query {
-        Query::Wi(_) => valued(*model, (point.eval(*numbers), point.pdf(*numbers)), densities(*numbers), colors),
+    let (found, wi) = match request.query {
+        Query::Wi(_) => (Found::Value(point.eval(*numbers), point.pdf(*numbers)), *numbers),
         Query::Xi(_) => {
             let sample = point.sample(*numbers);
-            sampled(*model, &sample, densities(sample.wi), colors)
+            (Found::Sample(sample), sample.wi)
         }
-    }
+    };
+    let densities = point.lobes(wi).0.map(|lobe| lobe.pdf);
+    answer(*model, found, densities, || point.lobes(*wo).0.map(|lobe| lobe.color))
 }
 
 fn gather(request: &Request) -> AnyGather {
     request.bsdf.prepare(Hit { wo: request.wo.into(), h: request.h })
 }
 
-/// The answer to a direction: value and density, densities of the lobes, and their colours, if the model reports them.
-fn valued<T: Copy>(
-    model: ModelId,
-    (s, pdf): ([T; 3], T),
-    densities: [T; 4],
-    colors: impl FnOnce() -> [[T; 3]; 4],
-) -> Answer<T> {
-    let lobes = model.lobes().len();
-    let colors = model.colors().map(|name| (name, colors()[..lobes].to_vec())).into_iter().collect();
-    Answer { wi: None, s, pdf, pdf_lobe: densities[..lobes].to_vec(), choice: None, colors }
+/// Result of a query: a value and its density, or a sample.
+enum Found<T> {
+    Value([T; 3], T),
+    Sample(ReferenceSample<T>),
 }
 
-/// The answer to uniform numbers.
-fn sampled<T: Copy + Default>(
-    model: ModelId,
-    sample: &ReferenceSample<T>,
-    densities: [T; 4],
-    colors: impl FnOnce() -> [[T; 3]; 4],
-) -> Answer<T> {
-    let densities = if sample.lobe.is_some() { densities } else { [T::default(); 4] };
-    let lobe = sample.lobe.map(|lobe| model.lobes()[lobe.index()]);
-    let choice = Some(Choice { lobe, weight: sample.weight });
-    Answer { wi: Some(sample.wi), choice, ..valued(model, (sample.value, sample.pdf), densities, colors) }
+const fn valued(eval: Eval) -> Found<f32> {
+    Found::Value(eval.value, eval.pdf)
 }
 
 /// A sample of the kernels, or the zeros of a discarded one.
-fn drawn(sample: Option<Sample>) -> ReferenceSample<f32> {
+fn drawn(sample: Option<Sample>) -> Found<f32> {
     let none = ReferenceSample { wi: [0.0; 3], value: [0.0; 3], pdf: 0.0, weight: [0.0; 3], lobe: None };
-    sample.map_or(none, |Sample { wi, value, pdf, weight, lobe }| ReferenceSample {
+    Found::Sample(sample.map_or(none, |Sample { wi, value, pdf, weight, lobe }| ReferenceSample {
         wi: wi.into(),
         value,
         pdf,
         weight,
         lobe: Some(lobe),
-    })
+    }))
+}
+
+/// The answer, with the densities of the model's own lobes, and their colours if it reports them.
+fn answer<T: Copy + Default>(
+    model: ModelId,
+    found: Found<T>,
+    densities: [T; 4],
+    colors: impl FnOnce() -> [[T; 3]; 4],
+) -> Answer<T> {
+    let names = model.lobes();
+    let own = |densities: [T; 4]| densities[..names.len()].to_vec();
+    let colors = model.colors().map(|name| (name, colors()[..names.len()].to_vec())).into_iter().collect();
+    match found {
+        Found::Value(s, pdf) => Answer { wi: None, s, pdf, pdf_lobe: own(densities), choice: None, colors },
+        Found::Sample(ReferenceSample { wi, value: s, pdf, weight, lobe }) => {
+            let pdf_lobe = own(if lobe.is_some() { densities } else { [T::default(); 4] });
+            let choice = Some(Choice { lobe: lobe.map(|lobe| names[lobe.index()]), weight });
+            Answer { wi: Some(wi), s, pdf, pdf_lobe, choice, colors }
+        }
+    }
 }
 
 fn densities_of_lane(lobes: &PerLobe<LobeEval8>, lane: usize) -> [f32; 4] {

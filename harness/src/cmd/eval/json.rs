@@ -2,41 +2,21 @@
 
 use super::request::Refusal;
 use core::fmt;
-use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use serde::Deserializer;
+use serde::de::{DeserializeSeed, Error, MapAccess, SeqAccess, Visitor};
 
 /// A JSON value. Objects keep the order and the repetitions of their fields, for [`Json::fields`] to check.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(untagged)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Json {
-    Number(f64),
-    Array(Vec<Json>),
-    Text(String),
-    Object(#[serde(deserialize_with = "entries")] Vec<(String, Json)>),
-    Bool(bool),
     Null,
+    Bool(bool),
+    Number(f64),
+    Text(String),
+    Array(Vec<Json>),
+    Object(Vec<(String, Json)>),
 }
 
-/// The fields of an object, repetitions included.
-fn entries<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, Json)>, D::Error> {
-    struct Entries;
-
-    impl<'de> Visitor<'de> for Entries {
-        type Value = Vec<(String, Json)>;
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str("an object")
-        }
-
-        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-            core::iter::from_fn(|| map.next_entry().transpose()).collect()
-        }
-    }
-
-    from.deserialize_map(Entries)
-}
-
-/// The fields of an object, and its path with a dot at its end; empty for the line itself.
+/// The fields of an object, and its path; empty for the line itself.
 #[derive(Debug)]
 pub(super) struct Fields {
     path: String,
@@ -49,20 +29,15 @@ impl Json {
         if line.trim_ascii().is_empty() {
             return Err(Refusal::at("line", "blank"));
         }
+        let mut path = String::new();
         let mut input = serde_json::Deserializer::from_str(line);
-        let (path, error) = match serde_path_to_error::deserialize(&mut input) {
-            Ok(json) => match input.end() {
-                Ok(()) => return Ok(json),
-                Err(error) => (String::new(), error),
-            },
-            Err(error) => (error.path().to_string(), error.into_inner()),
-        };
-        // A path ends in a question mark between two fields; that of the line is a dot.
-        let path = path.trim_end_matches('?').trim_matches('.');
-        let text = error.to_string();
-        let problem = text.rsplit_once(" at line ").map_or(&*text, |(problem, _)| problem);
-        let [field, intro] = if path.is_empty() { ["line", "not JSON: "] } else { [path, ""] };
-        Err(Refusal::at(field, format!("{intro}{problem} (column {})", error.column())))
+        let parsed = Node(&mut path).deserialize(&mut input).and_then(|json| input.end().map(|()| json));
+        parsed.map_err(|error| {
+            let text = error.to_string();
+            let problem = text.rsplit_once(" at line ").map_or(&*text, |(problem, _)| problem);
+            let [field, intro] = if path.is_empty() { ["line", "not JSON: "] } else { [&*path, ""] };
+            Refusal::at(field, format!("{intro}{problem} (column {})", error.column()))
+        })
     }
 
     /// The fields of an object at `path`, empty for that of the line: all of them `known`, and none given twice.
@@ -71,9 +46,8 @@ impl Json {
             let field = if path.is_empty() { "line" } else { path };
             return Err(Refusal::at(field, format!("must be an object, got {self}")));
         };
-        let path = if path.is_empty() { String::new() } else { format!("{path}.") };
         for (place, (name, _)) in entries.iter().enumerate() {
-            let refuse = |problem: String| Err(Refusal::at(&format!("{path}{}", shortened(name)), problem));
+            let refuse = |problem: String| Err(Refusal::at(&join(path, name), problem));
             if !known.contains(&&**name) {
                 return refuse(format!("unknown field, expected one of {}", known.join(", ")));
             }
@@ -81,7 +55,7 @@ impl Json {
                 return refuse("given twice".to_owned());
             }
         }
-        Ok(Fields { path, entries })
+        Ok(Fields { path: path.to_owned(), entries })
     }
 
     /// The text of the object's field `name`, if there is one.
@@ -109,7 +83,7 @@ impl Fields {
 
     /// A refusal of a field.
     pub(super) fn refuse(&self, name: &str, problem: impl Into<String>) -> Refusal {
-        Refusal::at(&format!("{}{name}", self.path), problem)
+        Refusal::at(&join(&self.path, name), problem)
     }
 
     /// The text of a field.
@@ -165,11 +139,86 @@ impl fmt::Display for Json {
     }
 }
 
+/// The path of a field of the object at `path`.
+fn join(path: &str, name: &str) -> String {
+    let name = shortened(name);
+    if path.is_empty() { name } else { format!("{path}.{name}") }
+}
+
 /// Enough of a text to recognise it.
 pub(super) fn shortened(text: &str) -> String {
     const LEN: usize = 40;
     match text.char_indices().nth(LEN) {
         Some((at, _)) => format!("{}...", &text[..at]),
         None => text.to_owned(),
+    }
+}
+
+/// A value about to be read, with its path: on success the path is left as it was, on failure as it is.
+struct Node<'p>(&'p mut String);
+
+impl<'de> DeserializeSeed<'de> for Node<'_> {
+    type Value = Json;
+
+    fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Json, D::Error> {
+        from.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Node<'_> {
+    type Value = Json;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("JSON")
+    }
+
+    fn visit_unit<E>(self) -> Result<Json, E> {
+        Ok(Json::Null)
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Json, E> {
+        Ok(Json::Bool(value))
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Json, E> {
+        if value.is_finite() { Ok(Json::Number(value)) } else { Err(E::custom("not a finite number")) }
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Json, E> {
+        Ok(Json::Number(value as f64))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Json, E> {
+        Ok(Json::Number(value as f64))
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Json, E> {
+        Ok(Json::Text(value.to_owned()))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Json, A::Error> {
+        let len = self.0.len();
+        let mut items = Vec::new();
+        loop {
+            self.0.push_str(&format!("[{}]", items.len()));
+            let item = seq.next_element_seed(Node(self.0))?;
+            self.0.truncate(len);
+            match item {
+                Some(item) => items.push(item),
+                None => return Ok(Json::Array(items)),
+            }
+        }
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Json, A::Error> {
+        let len = self.0.len();
+        let mut entries = Vec::new();
+        while let Some(name) = map.next_key::<String>()? {
+            *self.0 = join(self.0, &name);
+            let value = map.next_value_seed(Node(self.0))?;
+            self.0.truncate(len);
+            entries.push((name, value));
+        }
+        Ok(Json::Object(entries))
     }
 }

@@ -174,7 +174,7 @@ fn l1(difference: &Difference) -> [Summary; 2] {
 
 /// How far sampling of the hair can go under the environment: V of `published` over that of perfect sampling, and of `matched`.
 fn limit(of: &View<'_>) -> Option<String> {
-    let (light, name) = of.lights().iter().enumerate().last()?;
+    let (light, name) = of.lights().iter().enumerate().next_back()?;
     let gains = |strategy: Strategy| {
         let gain = |model| Some(times(of.gain(published((model, None)), (model, strategy), light)?.median));
         Some(format!("{} (Gaussian) and {} (Cauchy)", gain(ModelKind::Gaussian)?, gain(ModelKind::Cauchy)?))
