@@ -1,8 +1,7 @@
-//! The raw flags. [`config`](crate::config) checks the rest, beyond clap.
+//! The flags. clap checks them; the number of the shard is checked with the cells, by the command.
 
-use crate::config::Path;
 use crate::error::Error;
-use clap::{Parser, Subcommand};
+use clap::{Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Hair scattering: evaluate it line by line, and compare implementations, models and samplers.
@@ -57,8 +56,21 @@ pub enum Command {
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct Eval {
     /// The code path that computes the answers
-    #[arg(long, value_enum, default_value_t = Path::X8)]
-    pub path: Path,
+    #[arg(long, value_enum, default_value_t = CodePath::X8)]
+    pub path: CodePath,
+}
+
+/// Code path of `hairis eval`. All give the same fields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CodePath {
+    /// One direction per call, in single precision
+    Scalar,
+    /// Eight lines per call, in single precision: eight materials and shading points, one per lane
+    X8,
+    /// Slices, in single precision: neighbouring lines on the same hair with the same wo share a call
+    Batch,
+    /// The formulas line by line, in double precision, on the input as it is: the other paths round it
+    F64,
 }
 
 /// Flags of `hairis compare`.
@@ -94,8 +106,8 @@ pub struct Study {
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
     /// Compute only part I of N (I from 1 to N), for `hairis merge` to join
-    #[arg(long, value_name = "I/N")]
-    pub shard: Option<String>,
+    #[arg(long, value_name = "I/N", default_value = "1/1", hide_default_value = true)]
+    pub shard: String,
 }
 
 /// Flags of `hairis claims`.
@@ -150,4 +162,21 @@ pub fn one_line(message: &str) -> String {
     let words: Vec<&str> = first.split_whitespace().collect();
     let line = words.join(" ");
     format!("{} (see --help)", line.strip_prefix("error: ").unwrap_or(&line))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_command_overwrites_the_report_of_another() {
+        let out = |command| match Args::try_parse_from(["hairis", command]).expect("no flag is required").command {
+            Command::Compare(Compare { out, .. })
+            | Command::Study(Study { out, .. })
+            | Command::Claims(Claims { out, .. }) => out,
+            command => panic!("{command:?} writes no report"),
+        };
+        assert_ne!(out("compare"), out("study"), "both write a report.html");
+        assert_eq!(out("claims"), out("study"), "the report of the study shows the verdicts");
+    }
 }

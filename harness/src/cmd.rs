@@ -6,25 +6,26 @@ pub mod eval;
 pub mod merge;
 pub mod study;
 
-use crate::config::Run;
+use crate::args::Command;
 use crate::error::Error;
 use crate::light::{Environment, LightError, Sky};
 use crate::table::Table;
+use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Executes a checked run.
+/// Executes a command.
 ///
 /// # Errors
 ///
 /// [`Error`] if it was stopped, or if a check failed.
-pub fn run(run: &Run) -> Result<(), Error> {
-    match run {
-        Run::Eval(config) => eval::run(config),
-        Run::Compare(config) => compare::run(config),
-        Run::Study(config) => study::run(config),
-        Run::Claims(config) => claims::run(config),
-        Run::Merge(config) => merge::run(config),
+pub fn run(command: &Command) -> Result<(), Error> {
+    match command {
+        Command::Eval(flags) => eval::run(flags),
+        Command::Compare(flags) => compare::run(flags),
+        Command::Study(flags) => study::run(flags),
+        Command::Claims(flags) => claims::run(flags),
+        Command::Merge(flags) => merge::run(flags),
     }
 }
 
@@ -42,6 +43,21 @@ fn environment(path: Option<&Path>) -> Result<(Environment, String), Error> {
     Ok((environment, path.display().to_string()))
 }
 
+/// Steps of a bar that shows a share.
+const STEPS: u64 = 1000;
+
+/// Progress bar on standard error; nothing where that is no terminal.
+fn bar(steps: u64, template: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(steps).with_style(style)
+}
+
+/// Moves a bar of [`STEPS`].
+fn show_share(bar: &ProgressBar, done: f64) {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
+    bar.set_position((done.clamp(0.0, 1.0) * STEPS as f64) as u64);
+}
+
 /// Prints tables on standard output. A reader that leaves early is told the file that has them.
 fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Result<(), Error> {
     let mut out = io::stdout().lock();
@@ -55,6 +71,12 @@ fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Res
         }
     }
     Ok(())
+}
+
+/// Names the failures on standard error.
+fn report_failures(failures: &[String]) -> Result<(), Error> {
+    failures.iter().for_each(|failure| say(&format!("failed: {failure}")));
+    if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
 }
 
 /// Prints a line on standard error. Ignores write errors.

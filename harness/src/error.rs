@@ -4,7 +4,7 @@ use crate::light::LightError;
 use core::fmt;
 use hairis::ParamError;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Failure of a run; `main` prints it once, in one line.
 #[derive(Debug)]
@@ -47,20 +47,15 @@ pub enum Error {
 }
 
 impl Error {
+    /// A file or folder of results that cannot be written: for `map_err`.
+    pub fn output(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
+        |source| Self::Output { path: path.to_owned(), source }
+    }
+
     /// The exit code: 1 for a failed comparison or check, 2 for bad usage or input.
     #[must_use]
     pub const fn exit_code(&self) -> u8 {
-        match self {
-            Self::Failed(_) | Self::Params(_) => 1,
-            Self::Usage(_)
-            | Self::Read(_)
-            | Self::Write(_)
-            | Self::Environment(_)
-            | Self::Output { .. }
-            | Self::Part { .. }
-            | Self::Missing(_)
-            | Self::Malformed { .. } => 2,
-        }
+        if matches!(self, Self::Failed(_) | Self::Params(_)) { 1 } else { 2 }
     }
 }
 
@@ -82,20 +77,11 @@ impl fmt::Display for Error {
     }
 }
 
+/// Without sources: the text of each is part of the message.
+impl core::error::Error for Error {}
+
 impl From<ParamError> for Error {
     fn from(source: ParamError) -> Self {
         Self::Params(source)
-    }
-}
-
-impl core::error::Error for Error {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::Read(source) | Self::Write(source) => Some(source),
-            Self::Output { source, .. } => Some(source),
-            Self::Environment(source) => Some(source),
-            Self::Params(source) => Some(source),
-            Self::Usage(_) | Self::Part { .. } | Self::Missing(_) | Self::Failed(_) | Self::Malformed { .. } => None,
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! Atomic writes: a file exists as a whole or not at all.
 
 use crate::error::Error;
+use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -21,7 +22,19 @@ pub fn whole(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result
     attempt().map_err(|source| {
         // What there is of it is of no use. The first error is the one to report.
         let _ = fs::remove_file(&unfinished);
-        Error::Output { path: path.to_owned(), source }
+        Error::output(path)(source)
+    })
+}
+
+/// Writes a JSON file, as a whole or not at all.
+///
+/// # Errors
+///
+/// [`Error::Output`] with the file's own name.
+pub fn write_json(path: &Path, content: &impl Serialize) -> Result<(), Error> {
+    whole(path, |out| {
+        serde_json::to_writer_pretty(&mut *out, content)?;
+        out.write_all(b"\n")
     })
 }
 
@@ -39,7 +52,7 @@ pub fn writable(path: &Path) -> Result<(), Error> {
         File::create(&unfinished)?;
         fs::remove_file(&unfinished)
     };
-    attempt().map_err(|source| Error::Output { path: path.to_owned(), source })
+    attempt().map_err(Error::output(path))
 }
 
 /// Name of a file while it is not whole.

@@ -5,7 +5,6 @@ pub mod args;
 pub mod claims;
 pub mod cmd;
 pub mod compare;
-pub mod config;
 pub mod difference;
 pub mod efficiency;
 pub mod error;

@@ -1,6 +1,5 @@
 //! The command line `hairis`: parse, dispatch, exit code. All else is in the library.
 
-use hairis_harness::config::Run;
 use hairis_harness::error::Error;
 use hairis_harness::{args, cmd};
 use std::io::Write;
@@ -19,7 +18,7 @@ fn main() -> ExitCode {
 
 fn run() -> Result<(), Error> {
     match args::parse()? {
-        Some(args) => cmd::run(&Run::check(args)?),
+        Some(args) => cmd::run(&args.command),
         None => Ok(()),
     }
 }

@@ -38,7 +38,7 @@ pub use run::{RaysConfig, run};
 pub use subject::RaySubject;
 pub use times::RayTimes;
 
-pub(crate) use candidates::LightBlocks;
+pub(crate) use candidates::{LightBlocks, Lit, numbers};
 pub(crate) use measure::{Unoccluded, unoccluded};
 pub(crate) use result::occluded;
 pub(crate) use times::measure as measure_times;

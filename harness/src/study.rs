@@ -48,14 +48,17 @@ pub mod shard;
 mod summary;
 mod tally;
 mod times;
+mod view;
 
 pub use grid::{Cell, Grid};
 pub use shard::Shard;
 
 pub(crate) use equal_time::in_equal_time;
-pub(crate) use summary::gain;
+pub(crate) use times::in_turns;
+pub(crate) use view::gain;
 
 use crate::efficiency::sun;
+use crate::error::Error;
 use crate::light::{Constant, Environment, Light, Rectangle, Smooth};
 use crate::machine::Machine;
 use crate::sampler::Sampler;
@@ -65,9 +68,6 @@ use hairis::{Level, ParamError};
 use part::{Finished, Header};
 use rayon::prelude::*;
 use wide::f32x8;
-
-/// The lights, in the order of reports.
-type Light5<'a> = [&'a dyn Light; 5];
 
 /// Samples of a cell. The first two are multiples of eight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,7 +103,7 @@ impl Plan<'_> {
     /// The cells.
     #[must_use]
     pub const fn grid(&self) -> Grid {
-        grid_of(self.quick)
+        Grid::of(self.quick)
     }
 
     /// Numbers of samples per cell.
@@ -135,24 +135,21 @@ impl Plan<'_> {
             environment: part::digest(self.environment),
             models: ModelKind::ALL.iter().map(|model| model.name().to_owned()).collect(),
             samplers: Sampler::ALL.iter().map(|sampler| sampler.name().to_owned()).collect(),
-            lights: self.with_lights(|lights| lights.iter().map(|light| light.name().to_owned()).collect()),
+            lights: with_lights(Some(self.environment), |lights| {
+                lights.iter().map(|light| light.name().to_owned()).collect()
+            }),
             cells: self.grid().len(),
             shard: shard.to_string(),
         }
     }
-
-    fn with_lights<R>(&self, f: impl FnOnce(&Light5<'_>) -> R) -> R {
-        with_built_in_lights(|[constant, smooth, sun, area]| f(&[constant, smooth, sun, area, self.environment]))
-    }
 }
 
-/// The lights that need no file; the environment follows them.
-pub(crate) fn with_built_in_lights<R>(f: impl FnOnce([&dyn Light; 4]) -> R) -> R {
-    f([&Constant::white(), &Smooth::new(), &sun(), &Rectangle::figure_6a()])
-}
-
-const fn grid_of(quick: bool) -> Grid {
-    if quick { Grid::QUICK } else { Grid::FULL }
+/// The lights in the order of reports: those that need no file, then the environment, if there is one.
+pub(crate) fn with_lights<R>(environment: Option<&Environment>, f: impl FnOnce(&[&dyn Light]) -> R) -> R {
+    let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), sun(), Rectangle::figure_6a());
+    let mut lights: Vec<&dyn Light> = vec![&constant, &smooth, &sun, &area];
+    lights.extend(environment.map(|map| map as &dyn Light));
+    f(&lights)
 }
 
 /// Computes the cells at `todo` on all cores. Workers pass each to `keep`, in no order.
@@ -160,12 +157,9 @@ const fn grid_of(quick: bool) -> Grid {
 /// # Errors
 ///
 /// The first that `keep` gave, or the hair's: the cells in work are then finished, and no others begun.
-pub fn run<E>(plan: &Plan<'_>, todo: &[usize], keep: impl Fn(Finished) -> Result<(), E> + Sync) -> Result<(), E>
-where
-    E: From<ParamError> + Send,
-{
+pub fn run(plan: &Plan<'_>, todo: &[usize], keep: impl Fn(Finished) -> Result<(), Error> + Sync) -> Result<(), Error> {
     let (grid, budget) = (plan.grid(), plan.budget());
-    plan.with_lights(|lights| {
+    with_lights(Some(plan.environment), |lights| {
         todo.par_iter().with_max_len(1).try_for_each(|&index| {
             let found = cell::measure(plan.seed, budget, lights, &grid.cell(index), &Sampler::ALL)?;
             keep(Finished::of(index, &found))
@@ -173,8 +167,8 @@ where
     })
 }
 
-/// V of some samplers in one cell: models outermost, then `samplers`, then lights. With the budget of the plan, the
-/// figures of [`run`].
+/// V of some samplers in one cell: models outermost, then `samplers`, then lights; after them V of perfect sampling if its
+/// source is one of `samplers`. With the budget of the plan, the figures of [`run`].
 ///
 /// # Errors
 ///
@@ -185,6 +179,8 @@ pub(crate) fn variances(
     cell: &Cell,
     samplers: &[Sampler],
 ) -> Result<Vec<Estimate>, ParamError> {
-    let found = plan.with_lights(|lights| cell::measure(plan.seed, budget, lights, cell, samplers))?;
-    Ok(found.samplers.iter().map(|of| of.figures.v).collect())
+    with_lights(Some(plan.environment), |lights| {
+        let found = cell::measure(plan.seed, budget, lights, cell, samplers)?;
+        Ok(found.iter().map(|of| of.figures.v).collect())
+    })
 }

@@ -1,7 +1,7 @@
 //! The readers of files: what they take is sound, and what they refuse they refuse in one line.
 
+use hairis_harness::args::CodePath;
 use hairis_harness::cmd::eval;
-use hairis_harness::config::Path as CodePath;
 use hairis_harness::light::{Environment, Light};
 use hairis_harness::study::part;
 use hairis_render::formats::{Import, import_bytes};

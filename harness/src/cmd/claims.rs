@@ -1,12 +1,10 @@
 //! `hairis claims`: computes the paper's claims, prints them, and writes `claims.json`.
 
+use super::{STEPS, bar, print_tables, say, show_share};
+use crate::args::Claims;
 use crate::claims;
-use crate::cmd::compare::{output, write_json};
-use crate::cmd::{print_tables, say};
-use crate::config::Claims;
 use crate::error::Error;
-use crate::files::writable;
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::files::{writable, write_json};
 use std::fs;
 
 /// Computes the claims.
@@ -14,19 +12,13 @@ use std::fs;
 /// # Errors
 ///
 /// [`Error::Output`] before any work is done, if the folder cannot be written. A false claim is no error.
-pub fn run(config: &Claims) -> Result<(), Error> {
-    fs::create_dir_all(&config.out).map_err(|source| output(&config.out, source))?;
-    let path = config.out.join("claims.json");
+pub fn run(flags: &Claims) -> Result<(), Error> {
+    fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
+    let path = flags.out.join("claims.json");
     writable(&path)?;
 
-    let bar = ProgressBar::new(1000);
-    if let Ok(style) = ProgressStyle::with_template("claims {wide_bar} {percent:>3}% {elapsed} (left {eta})") {
-        bar.set_style(style);
-    }
-    let claims = claims::run(config.seed, config.quick, &|done| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
-        bar.set_position((done.clamp(0.0, 1.0) * 1000.0) as u64);
-    })?;
+    let bar = bar(STEPS, "claims {wide_bar} {percent:>3}% {elapsed} (left {eta})");
+    let claims = claims::run(flags.seed, flags.quick, &|done| show_share(&bar, done))?;
     bar.finish_and_clear();
 
     write_json(&path, &claims)?;

@@ -10,9 +10,9 @@ mod json;
 mod lines;
 mod request;
 
-use crate::config;
+use crate::args::{CodePath, Eval};
 use crate::error::Error;
-use answer::{Line, answers, block_len};
+use answer::{answers, block_len};
 use lines::Lines;
 use request::{Refusal, Request};
 use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Write};
@@ -27,10 +27,10 @@ const BUFFER: usize = 1 << 16;
 ///
 /// - [`Error::Malformed`] if any line was refused, after all others were answered.
 /// - [`Error::Read`] and [`Error::Write`] if a stream failed.
-pub fn run(config: &config::Eval) -> Result<(), Error> {
+pub fn run(flags: &Eval) -> Result<(), Error> {
     let input = BufReader::with_capacity(BUFFER, io::stdin().lock());
     let output = BufWriter::with_capacity(BUFFER, io::stdout().lock());
-    stream(config.path, input, output)
+    stream(flags.path, input, output)
 }
 
 /// Answers `input` on `output`: see [`run`].
@@ -38,7 +38,7 @@ pub fn run(config: &config::Eval) -> Result<(), Error> {
 /// # Errors
 ///
 /// As [`run`].
-pub fn stream<R: Read, W: Write>(path: config::Path, input: BufReader<R>, mut output: W) -> Result<(), Error> {
+pub fn stream<R: Read, W: Write>(path: CodePath, input: BufReader<R>, mut output: W) -> Result<(), Error> {
     let mut lines = Lines::new(input);
     let mut block = Vec::with_capacity(block_len(path));
     let (mut read, mut refused) = (0, 0);
@@ -48,11 +48,15 @@ pub fn stream<R: Read, W: Write>(path: config::Path, input: BufReader<R>, mut ou
         more = fill(&mut block, block_len(path), &mut lines).map_err(Error::Read)?;
         read += block.len() as u64;
         refused += block.iter().filter(|line| line.is_err()).count() as u64;
-        let written = write_block(path, &block, &mut output).and_then(|()| {
+        let mut write = || -> io::Result<()> {
+            for answer in answers(path, &block) {
+                serde_json::to_writer(&mut output, &answer)?;
+                output.write_all(b"\n")?;
+            }
             // Flush now: the caller may wait for these answers before it writes on.
             if more && lines.ready() { Ok(()) } else { output.flush() }
-        });
-        match written {
+        };
+        match write() {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => break,
             other => other.map_err(Error::Write)?,
         }
@@ -71,21 +75,4 @@ fn fill<R: Read>(block: &mut Vec<Result<Request, Refusal>>, len: usize, lines: &
             return Ok(true);
         }
     }
-}
-
-/// Answers a block, one line per request.
-fn write_block(path: config::Path, block: &[Result<Request, Refusal>], output: &mut impl Write) -> io::Result<()> {
-    let requests: Vec<&Request> = block.iter().flatten().collect();
-    let mut answers = answers(path, &requests).into_iter();
-    for line in block {
-        match line {
-            Ok(_) => {
-                let answer = answers.next().ok_or_else(|| io::Error::other("a request was left unanswered"))?;
-                serde_json::to_writer(&mut *output, &answer)?;
-            }
-            Err(refusal) => serde_json::to_writer(&mut *output, &Line::Refused { error: refusal.to_string() })?,
-        }
-        output.write_all(b"\n")?;
-    }
-    Ok(())
 }

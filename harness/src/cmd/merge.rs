@@ -1,8 +1,8 @@
 //! `hairis merge`: joins the parts of a study.
 
-use crate::cmd::study::finish;
-use crate::cmd::{environment, say};
-use crate::config::Merge;
+use super::study::finish;
+use super::{environment, say};
+use crate::args::Merge;
 use crate::error::Error;
 use crate::study::output::Study;
 use std::fs;
@@ -16,16 +16,16 @@ use std::fs;
 /// [`Error::Part`] and [`Error::Missing`] if the parts are not those of one study, all of them; [`Error::Environment`] and
 /// [`Error::Usage`] if the environment cannot be read or is not theirs; [`Error::Output`] if the tables cannot be
 /// written; [`Error::Failed`] at the end, with all files written, if a check failed.
-pub fn run(config: &Merge) -> Result<(), Error> {
-    let study = Study::read(&config.parts)?;
-    let (environment, name) = environment(config.env.as_deref())?;
+pub fn run(flags: &Merge) -> Result<(), Error> {
+    let study = Study::read(&flags.parts)?;
+    let (environment, name) = environment(flags.env.as_deref())?;
     let is_theirs = study.has_environment(&environment);
-    if !is_theirs && config.env.is_some() {
+    if !is_theirs && flags.env.is_some() {
         return Err(Error::Usage(format!("--env must be the environment of the parts, got {name}")));
     }
     if !is_theirs {
         say("the look-up of the environment is not timed; pass --env FILE to time it");
     }
-    fs::create_dir_all(&config.out).map_err(|source| Error::Output { path: config.out.clone(), source })?;
-    finish(&study, is_theirs.then_some(&environment), &config.out)
+    fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
+    finish(&study, is_theirs.then_some(&environment), &flags.out)
 }

@@ -1,14 +1,13 @@
 //! `hairis study`: runs the study, or its part; once all is there, prints its summary and writes its tables.
 
-use crate::cmd::{environment, print_tables, say};
-use crate::config::Study as Config;
+use super::{bar, environment, print_tables, report_failures, say};
+use crate::args::Study as Flags;
 use crate::difference::Difference;
 use crate::error::Error;
 use crate::light::Environment;
 use crate::study::output::{Study, Times};
 use crate::study::part::{Part, read};
 use crate::study::{self, Plan, Shard};
-use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -17,39 +16,37 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// [`Error::Environment`], [`Error::Output`] and [`Error::Part`] before any work is done, if a file cannot be read or
-/// written, or is of another study; [`Error::Failed`] at the end, with all files written, if a check failed.
-pub fn run(config: &Config) -> Result<(), Error> {
-    let (environment, _) = environment(config.env.as_deref())?;
-    let plan = Plan { seed: config.seed, quick: config.quick, environment: &environment };
+/// [`Error::Usage`], [`Error::Environment`], [`Error::Output`] and [`Error::Part`] before any work is done, if the shard is
+/// none, or a file cannot be read or written, or is of another study; [`Error::Failed`] at the end, with all files written,
+/// if a check failed.
+pub fn run(flags: &Flags) -> Result<(), Error> {
+    let shard: Shard = flags.shard.parse().map_err(|problem| Error::Usage(format!("--shard {problem}")))?;
+    let (environment, _) = environment(flags.env.as_deref())?;
+    let plan = Plan { seed: flags.seed, quick: flags.quick, environment: &environment };
     let cells = plan.grid().len();
-    if config.shard.of() > cells {
-        let shard = config.shard;
+    if shard.of() > cells {
         return Err(Error::Usage(format!("--shard N must be at most {cells}, the number of cells, got \"{shard}\"")));
     }
-    fs::create_dir_all(&config.out).map_err(|source| Error::Output { path: config.out.clone(), source })?;
-    let (part, finished) = Part::open(&config.out, &plan.header(config.shard))?;
+    fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
+    let (part, finished) = Part::open(&flags.out, &plan.header(shard))?;
 
-    let owned = || (0..plan.grid().len()).filter(|index| config.shard.owns(*index));
-    let mut done = vec![false; plan.grid().len()];
-    for cell in &finished {
-        done[cell.cell] = true;
-    }
-    let todo: Vec<usize> = owned().filter(|index| !done[*index]).collect();
+    let mut todo: Vec<usize> = (0..cells).filter(|index| shard.owns(*index)).collect();
+    let owned = todo.len();
+    todo.retain(|index| finished.iter().all(|cell| cell.cell != *index));
     if !finished.is_empty() && !todo.is_empty() {
-        say(&format!("{}: continues after {} of {} cells", part.path().display(), finished.len(), owned().count()));
+        say(&format!("{}: continues after {} of {owned} cells", part.path().display(), finished.len()));
     }
-    let bar = bar(todo.len());
+    let bar = bar(todo.len() as u64, "cells {pos:>4} of {len} {wide_bar} {elapsed} (left {eta})");
     study::run(&plan, &todo, |cell| {
         part.keep(&cell)?;
         bar.inc(1);
-        Ok::<(), Error>(())
+        Ok(())
     })?;
     bar.finish_and_clear();
 
-    if config.shard == Shard::WHOLE {
+    if shard == Shard::WHOLE {
         let study = Study::join(&[(part.path().to_owned(), read(part.path())?)])?;
-        finish(&study, Some(&environment), &config.out)
+        finish(&study, Some(&environment), &flags.out)
     } else {
         say(&format!("wrote {}; `hairis merge` joins it with the others", part.path().display()));
         Ok(())
@@ -69,37 +66,19 @@ pub(super) fn finish(study: &Study, environment: Option<&Environment>, out: &Pat
     let parquet = if cfg!(feature = "parquet") { " and .parquet" } else { "" };
     say(&format!("wrote {rows}.csv{parquet}, {} as .csv{parquet}, and {rows}.json", others.join(" and ")));
     say(&format!("wrote {} and figures/", page.display()));
-    let failures = study.failures();
-    failures.iter().for_each(|failure| say(&format!("failed: {failure}")));
-    if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
+    report_failures(&study.failures())
 }
 
 /// Result of `hairis claims` in `out`, if any and if it is of the same settings; else the reason on standard error.
 fn claims(out: &Path, study: &Study) -> Option<serde_json::Value> {
     let path = out.join("claims.json");
-    let unused = |problem: String| {
-        say(&format!("{}: left out of the report: {problem}; run `hairis claims` again", path.display()));
-        None
-    };
-    let bytes = match fs::read(&path) {
-        Ok(bytes) => bytes,
+    let claims = match fs::read(&path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return None,
-        Err(error) => return unused(format!("cannot read: {error}")),
+        Err(error) => Err(format!("cannot read: {error}")),
+        Ok(content) => study.claims(&content),
     };
-    let Ok(claims) = serde_json::from_slice::<serde_json::Value>(&bytes) else {
-        return unused("it is damaged".to_owned());
+    let unused = |problem: &String| {
+        say(&format!("{}: left out of the report: {problem}; run `hairis claims` again", path.display()));
     };
-    match study.refusal_of(&claims) {
-        Some(problem) => unused(problem),
-        None => Some(claims),
-    }
-}
-
-/// Progress bar over the remaining cells, on standard error; nothing where that is no terminal.
-fn bar(cells: usize) -> ProgressBar {
-    let bar = ProgressBar::new(cells as u64);
-    if let Ok(style) = ProgressStyle::with_template("cells {pos:>4} of {len} {wide_bar} {elapsed} (left {eta})") {
-        bar.set_style(style);
-    }
-    bar
+    claims.inspect_err(unused).ok()
 }

@@ -174,9 +174,12 @@ mod tests {
     #[test]
     fn every_row_has_every_column() {
         let found = Difference::over(Grid { theta_o_deg: &[45.0], ..Grid::QUICK }).expect("accepted");
-        let columns = found.columns();
-        assert_eq!(columns.rows(), found.rows().len());
-        assert!(columns.columns().iter().all(|(_, values)| values.len() == found.rows().len()), "ragged");
+        let mut csv = Vec::new();
+        found.columns().write_csv(&mut csv).expect("written");
+        let fields: Vec<usize> =
+            csv.split(|byte| *byte == b'\n').map(|row| row.split(|b| *b == b',').count()).collect();
+        assert_eq!(fields.len(), found.rows().len() + 2, "names, rows and the end");
+        assert!(fields[..=found.rows().len()].iter().all(|count| *count == fields[0]), "ragged");
         for table in found.tables() {
             assert!(!table.is_empty() && !table.to_plain().contains("n/a"), "{table}");
         }

@@ -39,8 +39,15 @@ impl LightBlocks {
 }
 
 /// Three rows of eight uniform numbers.
-pub(super) fn numbers(source: &mut Independent) -> [f32x8; 3] {
+pub(crate) fn numbers(source: &mut Independent) -> [f32x8; 3] {
     array::from_fn(|_| f32x8::new(array::from_fn(|_| source.next_f32())))
+}
+
+/// A shading point under a light.
+#[derive(Clone, Copy)]
+pub(crate) struct Lit<'a> {
+    pub(crate) scatter: &'a Scatter,
+    pub(crate) light: &'a dyn Light,
 }
 
 /// Eight candidates of one technique at one hit, one per lane: everything that a weight needs.
@@ -50,22 +57,24 @@ pub(super) struct Candidates8 {
     seen: Seen8,
 }
 
-impl Candidates8 {
-    /// From the BSDF. Samples bring their value and density along.
+impl Lit<'_> {
+    /// Candidates from the BSDF. Samples bring their value and density along.
     #[inline]
-    pub(super) fn of_bsdf(scatter: &Scatter, light: &dyn Light, xi: &[f32x8; 3]) -> Self {
-        let sample = scatter.sample8(xi);
+    pub(super) fn of_bsdf(&self, xi: &[f32x8; 3]) -> Candidates8 {
+        let sample = self.scatter.sample8(xi);
         let eval = Eval8 { value: sample.value, pdf: sample.pdf };
-        Self { eval, cos_theta_i: cosine(&sample.wi), seen: light.see8(&sample.wi) }
+        Candidates8 { eval, cos_theta_i: cosine(&sample.wi), seen: self.light.see8(&sample.wi) }
     }
 
-    /// From the light.
+    /// Candidates from the light.
     #[inline]
-    pub(super) fn of_light(scatter: &Scatter, block: &LightBlock) -> Self {
-        let eval = scatter.eval_pdf8(&block.wi);
-        Self { eval, cos_theta_i: cosine(&block.wi), seen: block.seen }
+    pub(super) fn of_light(&self, block: &LightBlock) -> Candidates8 {
+        let eval = self.scatter.eval_pdf8(&block.wi);
+        Candidates8 { eval, cos_theta_i: cosine(&block.wi), seen: block.seen }
     }
+}
 
+impl Candidates8 {
     /// In a pool of `count` candidates of each technique.
     #[inline]
     pub(super) fn weigh(&self, count: u32) -> Weighed8 {

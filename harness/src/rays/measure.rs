@@ -1,22 +1,21 @@
 //! Variances at one shading point.
 
-use super::candidates::{Candidates8, LightBlock, LightBlocks, PACKETS, numbers};
+use super::candidates::{LightBlock, LightBlocks, Lit, PACKETS, numbers};
 use super::reference::of_run;
 use super::result::{BiasScore, OneRay, PoolFigures, RayFigures, RayPose};
 use super::{HALF, MOST, RAYS, SIZES, pools};
 use crate::efficiency::{Reference, bias_z, is_tested};
-use crate::light::Light;
-use crate::sampler::Scatter;
 use crate::sequence::Independent;
 use crate::stats::{Estimate, Moments};
 use hairis::resample::{Choice, Choices, choose};
+use wide::f32x8;
 
 /// Candidates of both techniques.
 const ALL: usize = 2 * MOST;
 
 /// Candidates by column, weighed in pools of each of `S` sizes. Those of both techniques alternate in pairs, so that the pools
 /// of every size are adjacent.
-pub(super) struct Columns<const S: usize> {
+struct Columns<const S: usize> {
     sizes: [u32; S],
     contribution: [[f32; ALL]; 3],
     /// In pools of each size.
@@ -27,33 +26,25 @@ pub(super) struct Columns<const S: usize> {
 
 impl<const S: usize> Columns<S> {
     /// As many candidates of each technique as the largest pool has; `block` gives those of the light, packet by packet.
-    pub(super) fn draw(
-        scatter: &Scatter,
-        light: &dyn Light,
+    fn draw(
+        lit: Lit<'_>,
         sizes: [u32; S],
         source: &mut Independent,
         block: impl Fn(usize, &mut Independent) -> LightBlock,
     ) -> Self {
         let mut columns = Self { sizes, contribution: [[0.0; ALL]; 3], weight: [[0.0; ALL]; S], pdf: [[0.0; ALL]; 2] };
         for packet in 0..PACKETS {
-            let drawn = [
-                Candidates8::of_bsdf(scatter, light, &numbers(source)),
-                Candidates8::of_light(scatter, &block(packet, source)),
-            ];
+            let drawn = [lit.of_bsdf(&numbers(source)), lit.of_light(&block(packet, source))];
             for (technique, drawn) in drawn.iter().enumerate() {
+                let store = |column: &mut [f32; ALL], lanes: &f32x8| {
+                    for (lane, x) in lanes.as_array().iter().enumerate() {
+                        column[place(technique, 8 * packet + lane)] = *x;
+                    }
+                };
                 let weighed = sizes.map(|count| drawn.weigh(count));
-                for lane in 0..8 {
-                    let place = place(technique, 8 * packet + lane);
-                    for (column, channel) in columns.contribution.iter_mut().zip(&weighed[0].contribution) {
-                        column[place] = channel.as_array()[lane];
-                    }
-                    for (column, weighed) in columns.weight.iter_mut().zip(&weighed) {
-                        column[place] = weighed.weight.as_array()[lane];
-                    }
-                    for (column, pdf) in columns.pdf.iter_mut().zip(drawn.pdf()) {
-                        column[place] = pdf.as_array()[lane];
-                    }
-                }
+                (0..3).for_each(|c| store(&mut columns.contribution[c], &weighed[0].contribution[c]));
+                (0..S).for_each(|size| store(&mut columns.weight[size], &weighed[size].weight));
+                (0..2).for_each(|of| store(&mut columns.pdf[of], &drawn.pdf()[of]));
             }
         }
         columns
@@ -184,8 +175,7 @@ pub(crate) struct Unoccluded<const S: usize> {
 /// V of one ray from pools of some sizes, at most [`MOST`], by as many of the largest pools as there are `blocks` for. The
 /// errors include that of the mean, `reference`.
 pub(crate) fn unoccluded<const S: usize>(
-    scatter: &Scatter,
-    light: &dyn Light,
+    lit: Lit<'_>,
     blocks: &LightBlocks,
     sizes: [u32; S],
     reference: Estimate,
@@ -194,7 +184,7 @@ pub(crate) fn unoccluded<const S: usize>(
     let mean = reference.value;
     let (mut squares, mut chosen) = (Moments::new(), [Moments::new(); S]);
     for blocks in &blocks.0 {
-        let columns = Columns::draw(scatter, light, sizes, source, |packet, _| blocks[packet]);
+        let columns = Columns::draw(lit, sizes, source, |packet, _| blocks[packet]);
         (0..ALL).for_each(|place| squares.push(columns.squares(place, mean)[2]));
         for (size, moments) in chosen.iter_mut().enumerate() {
             for from in columns.pools(size) {
@@ -216,8 +206,7 @@ pub(crate) fn unoccluded<const S: usize>(
 
 /// Measures a shading point with `count` of the largest pools, and their parts.
 pub(super) fn pose(
-    scatter: &Scatter,
-    light: &dyn Light,
+    lit: Lit<'_>,
     theta_o_deg: f64,
     reference: &Reference,
     [seed, stream]: [u64; 2],
@@ -226,8 +215,7 @@ pub(super) fn pose(
     let mut source = Independent::new(seed, stream);
     let (mut plain, mut pooled) = (Plain::default(), Pooled::default());
     for _ in 0..count {
-        let block = |_, source: &mut Independent| LightBlock::draw(light, source);
-        let columns = Columns::draw(scatter, light, SIZES, &mut source, block);
+        let columns = Columns::draw(lit, SIZES, &mut source, |_, source| LightBlock::draw(lit.light, source));
         let visible = core::array::from_fn(|_| f64::from(source.next_f32()) < HALF);
         plain.add(&columns, reference.value);
         pooled.add(&columns, &visible, &mut source);
@@ -265,16 +253,12 @@ fn scores(plain: &Plain, pooled: &Pooled, reference: &Reference) -> Vec<BiasScor
         quadrature_error: HALF * reference.quadrature_error,
         ..*reference
     };
-    let mut scores = vec![
-        score("light only".to_owned(), &plain.light, reference),
-        score("one-sample MIS".to_owned(), &plain.mis, reference),
-    ];
-    for (count, moments) in SIZES.iter().zip(&pooled.chosen) {
-        scores.push(score(format!("{count} + {count}"), moments, reference));
-    }
-    for (size, rays) in pools() {
+    let plain = [("light only", &plain.light), ("one-sample MIS", &plain.mis)];
+    let plain = plain.map(|(name, moments)| score(name.to_owned(), moments, reference));
+    let one = |(count, moments): (&u32, &Moments)| score(format!("{count} + {count}"), moments, reference);
+    let several = |(size, rays): (usize, usize)| {
         let [count, k] = [SIZES[size], RAYS[rays]];
-        scores.push(score(format!("{k} of {count} + {count}, half visible"), &pooled.half[size][rays].0, &at_half));
-    }
-    scores
+        score(format!("{k} of {count} + {count}, half visible"), &pooled.half[size][rays].0, &at_half)
+    };
+    plain.into_iter().chain(SIZES.iter().zip(&pooled.chosen).map(one)).chain(pools().map(several)).collect()
 }

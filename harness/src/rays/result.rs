@@ -88,15 +88,6 @@ impl OneRay {
     pub(super) fn new(unoccluded: Estimate) -> Self {
         Self { unoccluded, visible: VISIBLE.map(|share| occluded(unoccluded, share)) }
     }
-
-    /// The geometric means of several.
-    pub(super) fn mean(of: &[Self]) -> Self {
-        let each = |pick: &dyn Fn(&Self) -> Estimate| geometric_mean(&of.iter().map(pick).collect::<Vec<_>>());
-        Self {
-            unoccluded: each(&|one| one.unoccluded),
-            visible: core::array::from_fn(|share| each(&|one| one.visible[share])),
-        }
-    }
 }
 
 /// V of one ray that passes with probability `share`, whatever its direction: from `E[X^2]/share` over the squared mean.
@@ -127,23 +118,22 @@ pub(super) fn geometric_mean(of: &[Estimate]) -> Estimate {
 
 impl RayFigures {
     /// Geometric means; numbers of rays have arithmetic ones.
-    pub(super) fn mean(of: &[Self]) -> Self {
-        let one = |pick: &dyn Fn(&Self) -> OneRay| OneRay::mean(&of.iter().map(pick).collect::<Vec<_>>());
-        let n = of.len() as f64;
-        let half = |place: usize| {
-            let each = || of.iter().map(|figures| figures.half[place]);
-            PoolFigures {
-                traced: each().map(|pool| pool.traced).sum::<f64>() / n,
-                v: geometric_mean(&each().map(|pool| pool.v).collect::<Vec<_>>()),
-                ..of[0].half[place]
-            }
-        };
-        Self {
-            bsdf: one(&|figures| figures.bsdf),
-            light: one(&|figures| figures.light),
-            mis: one(&|figures| figures.mis),
-            chosen: (0..of[0].chosen.len()).map(|size| one(&|figures| figures.chosen[size])).collect(),
-            half: (0..of[0].half.len()).map(half).collect(),
+    pub(super) fn mean(of: &[&Self]) -> Self {
+        let mut mean = of[0].clone();
+        for (place, estimate) in mean.estimates().enumerate() {
+            let each = of.iter().filter_map(|figures| (*figures).clone().estimates().nth(place).copied());
+            *estimate = geometric_mean(&each.collect::<Vec<_>>());
         }
+        for (place, pool) in mean.half.iter_mut().enumerate() {
+            pool.traced = of.iter().map(|figures| figures.half[place].traced).sum::<f64>() / of.len() as f64;
+        }
+        mean
+    }
+
+    /// Every V.
+    fn estimates(&mut self) -> impl Iterator<Item = &mut Estimate> {
+        let rays = [&mut self.bsdf, &mut self.light, &mut self.mis].into_iter().chain(&mut self.chosen);
+        let of_rays = rays.flat_map(|ray| [&mut ray.unoccluded].into_iter().chain(&mut ray.visible));
+        of_rays.chain(self.half.iter_mut().map(|pool| &mut pool.v))
     }
 }

@@ -1,13 +1,14 @@
 //! Every model and sampler under every light.
 
-use super::result::{RayFigures, RayRow, RaysResult};
-use super::{EqualTime, RaySubject, measure, reference, times};
+use super::result::{RayFigures, RayPose, RayRow, RaysResult};
+use super::{EqualTime, Lit, RaySubject, measure, reference, times};
 use crate::efficiency::{Check, EfficiencyResult, Reference, THETA_O_DEG};
 use crate::light::{Environment, Light};
 use crate::progress::Progress;
 use crate::sequence::stream_id;
-use crate::study::with_built_in_lights;
+use crate::study::with_lights;
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 /// Settings of a run.
 #[derive(Clone, Copy, Debug)]
@@ -47,12 +48,10 @@ pub fn run(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> RaysResult {
     let subjects: Vec<RaySubject> = RaySubject::all().collect();
-    with_built_in_lights(|built_in| {
-        let mut lights = built_in.to_vec();
-        lights.push(config.environment);
+    with_lights(Some(config.environment), |lights| {
         let cells = subjects.len() * lights.len();
-        let times = times::measure(&subjects, &lights, config.seed, config.rounds, |done| progress(done, 2 * cells));
-        let rows = rows(config, &subjects, &lights, efficiency, &|done, _| progress(cells + done, 2 * cells));
+        let times = times::measure(&subjects, lights, config.seed, config.rounds, |done| progress(done, 2 * cells));
+        let rows = rows(config, &subjects, lights, efficiency, &|done, _| progress(cells + done, 2 * cells));
         let equal_time = rows.iter().zip(&times).map(|(row, times)| EqualTime::new(row, times)).collect();
         RaysResult { pools: config.pools, check: check(&rows), rows, times, equal_time }
     })
@@ -67,70 +66,56 @@ pub(super) fn rows(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Vec<RayRow> {
     let references = references(config, subjects, lights, efficiency);
-    let mut cells = Vec::new();
-    for subject in subjects {
-        for (index, light) in lights.iter().enumerate() {
-            cells.push((*subject, index, *light));
-        }
-    }
-    Progress::new(cells.len(), progress).map(&cells, |&(subject, index, light)| {
-        let of_model = references.iter().filter(|(model, place, _)| (*model, *place) == (subject.model(), index));
-        let poses: Vec<_> = of_model
-            .zip(THETA_O_DEG)
-            .enumerate()
-            .map(|(pose, ((_, _, reference), theta_o))| {
-                let at = [config.seed, stream([subject.index(), index as u64, pose as u64])];
-                measure::pose(&subject.scatter(pose), light, theta_o, reference, at, config.pools)
-            })
-            .collect();
-        let figures: Vec<RayFigures> = poses.iter().map(|pose| pose.figures.clone()).collect();
+    let cells: Vec<(RaySubject, usize)> =
+        subjects.iter().flat_map(|subject| (0..lights.len()).map(|light| (*subject, light))).collect();
+    Progress::new(cells.len(), progress).map(&cells, |&(subject, light)| {
+        let pose = |(pose, theta_o)| {
+            let at = [config.seed, stream([subject.index(), light as u64, pose as u64])];
+            let reference = &references[&(subject.model(), light, pose)];
+            let lit = Lit { scatter: &subject.scatter(pose), light: lights[light] };
+            measure::pose(lit, theta_o, reference, at, config.pools)
+        };
+        let poses: Vec<RayPose> = THETA_O_DEG.into_iter().enumerate().map(pose).collect();
         RayRow {
             model: subject.model(),
             sampler: subject.sampler(),
-            light: light.name().to_owned(),
-            mean: RayFigures::mean(&figures),
+            light: lights[light].name().to_owned(),
+            mean: RayFigures::mean(&poses.iter().map(|pose| &pose.figures).collect::<Vec<_>>()),
             poses,
         }
     })
 }
 
-/// The reference of each model under each light, pose by pose.
-fn references<'a>(
+/// The reference of each model under the light at a place, seen from a pose.
+fn references(
     config: &RaysConfig<'_>,
     subjects: &[RaySubject],
     lights: &[&dyn Light],
     efficiency: &EfficiencyResult,
-) -> Vec<(&'a str, usize, Reference)> {
-    let mut cells: Vec<(RaySubject, usize, usize)> = Vec::new();
-    let mut last = "";
-    for subject in subjects {
-        if subject.model() != last {
-            last = subject.model();
-            for light in 0..lights.len() {
-                cells.extend((0..THETA_O_DEG.len()).map(|pose| (*subject, light, pose)));
-            }
-        }
-    }
-    let of_cell = |&(subject, index, pose): &(RaySubject, usize, usize)| {
-        let light = lights[index];
-        let known = reference::known(efficiency, subject, light.name(), pose);
-        let at = [config.seed, stream([1 << 32 | subject.index(), index as u64, 0])];
-        let reference = known.unwrap_or_else(|| reference::by_run(subject, light, pose, at, config.passes));
-        (subject.model(), index, reference)
+) -> HashMap<(&'static str, usize, usize), Reference> {
+    let of_model = |subjects: &[RaySubject]| {
+        let subject = subjects[0];
+        (0..lights.len()).flat_map(move |light| (0..THETA_O_DEG.len()).map(move |pose| (subject, light, pose)))
     };
-    cells.par_iter().with_max_len(1).map(of_cell).collect()
+    let cells: Vec<_> = subjects.chunk_by(|a, b| a.model() == b.model()).flat_map(of_model).collect();
+    let reference = |&(subject, light, pose): &(RaySubject, usize, usize)| {
+        let known = reference::known(efficiency, subject, lights[light].name(), pose);
+        let at = [config.seed, stream([1 << 32 | subject.index(), light as u64, 0])];
+        let by_run = || reference::by_run(subject, lights[light], pose, at, config.passes);
+        ((subject.model(), light, pose), known.unwrap_or_else(by_run))
+    };
+    cells.par_iter().with_max_len(1).map(reference).collect()
 }
 
 /// Holds every bias against one bound.
 pub(super) fn check(rows: &[RayRow]) -> Check {
-    let mut scores = Vec::new();
-    let mut untested = 0;
+    let (mut scores, mut untested) = (Vec::new(), 0);
     for row in rows {
         for pose in &row.poses {
             let place = format!("{} {}, {}, theta_o {}", row.model, row.sampler, row.light, pose.theta_o_deg);
-            untested += pose.z.iter().filter(|score| !score.tested).count();
-            let tested = pose.z.iter().filter(|score| score.tested);
-            scores.extend(tested.map(|score| (score.z, format!("{place}: mean of {}", score.estimator))));
+            let (tested, others): (Vec<_>, Vec<_>) = pose.z.iter().partition(|score| score.tested);
+            untested += others.len();
+            scores.extend(tested.iter().map(|score| (score.z, format!("{place}: mean of {}", score.estimator))));
         }
     }
     Check::of(&scores, untested)

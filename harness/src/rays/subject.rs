@@ -5,7 +5,6 @@ use crate::quadrature::fibre_direction;
 use crate::sampler::{Sampler, Scatter};
 use glam::Vec3;
 use hairis::Hit;
-use hairis::reference::Reference as _;
 use hairis_variants::{AnyReference, ModelId};
 
 /// Offset of the ray from the fibre's axis, for models that read it, by place in [`THETA_O_DEG`].
@@ -69,12 +68,6 @@ impl RaySubject {
         let wo = viewer(pose).as_dvec3().to_array();
         self.id.reference(&self.id.defaults(), wo, f64::from(OFFSETS[pose])).expect("defaults are accepted")
     }
-}
-
-/// `S cos theta_i` of formulas, linear RGB.
-pub(super) fn exact_value(formulas: &AnyReference<f64>, dir: [f64; 3]) -> [f64; 3] {
-    let cos_theta = dir[1].hypot(dir[2]);
-    formulas.eval(dir).map(|s| s * cos_theta)
 }
 
 fn viewer(pose: usize) -> Vec3 {

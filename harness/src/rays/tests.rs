@@ -8,7 +8,7 @@ use crate::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, Refere
 use crate::light::{Environment, Light, Sky};
 use crate::sequence::{Independent, XiSource};
 use crate::stats::Estimate;
-use crate::study::with_built_in_lights;
+use crate::study::with_lights;
 use std::sync::OnceLock;
 
 const SMALL: Budget = Budget {
@@ -41,11 +41,7 @@ fn sky() -> &'static (Environment, EfficiencyResult) {
 }
 
 fn rows(config: &RaysConfig<'_>, subjects: &[RaySubject], references: &EfficiencyResult) -> Vec<RayRow> {
-    with_built_in_lights(|built_in| {
-        let mut lights = built_in.to_vec();
-        lights.push(config.environment);
-        run::rows(config, subjects, &lights, references, &|_, _| ())
-    })
+    with_lights(Some(config.environment), |lights| run::rows(config, subjects, lights, references, &|_, _| ()))
 }
 
 fn config<'a>(environment: &'a Environment, pools: usize) -> RaysConfig<'a> {
@@ -131,7 +127,7 @@ fn rows_depend_on_the_seed_alone_and_black_maps_are_no_failures() {
     assert!(on(2, 3) != on(2, 4), "seeds do not matter");
 
     let black = Environment::from_pixels("black", 4, 2, vec![[0.0; 3]; 8]).expect("valid");
-    let pose = pose(&subjects[0].scatter(0), &black, 0.0, &reference(0.0), [1, 1], 16);
+    let pose = pose(Lit { scatter: &subjects[0].scatter(0), light: &black }, 0.0, &reference(0.0), [1, 1], 16);
     assert!(pose.z.iter().all(|score| score.z == 0.0), "{:?}", pose.z);
 }
 
@@ -150,7 +146,8 @@ fn a_wrong_mean_fails_the_check() {
     assert_eq!(run::check(&all).failures.len(), 1);
     // A reference that is 5% off.
     let light = Sky::default().environment();
-    let pose_of = |value: f64| pose(&subjects[0].scatter(1), &light, 45.0, &reference(value), [1, 1], 1024);
+    let lit = Lit { scatter: &subjects[0].scatter(1), light: &light };
+    let pose_of = |value: f64| pose(lit, 45.0, &reference(value), [1, 1], 1024);
     let right = all.iter().find(|row| row.light == map.name()).expect("the sky").poses[1].reference.value;
     let worst = |value| pose_of(value).z.iter().filter(|score| score.tested).map(|s| s.z.abs()).fold(0.0, f64::max);
     assert!(worst(right) < 5.0 && worst(1.05 * right) > 6.0, "{} {}", worst(right), worst(1.05 * right));

@@ -4,13 +4,12 @@
 //! same shading point and light. Numbers and the light's directions are drawn beforehand, the latter into blocks that are read
 //! in a row; the preparation of the shading point is shared by all and left out.
 
-use super::candidates::{Candidates8, LightBlock, numbers};
+use super::candidates::{Candidates8, LightBlock, Lit, numbers};
 use super::{MOST, RAYS, RaySubject, SIZES};
 use crate::light::Light;
-use crate::sampler::Scatter;
 use crate::sequence::{Independent, stream_id};
-use crate::speed::{median_error, quartiles};
 use crate::stats::Estimate;
+use crate::study::in_turns;
 use core::hint::black_box;
 use hairis::resample::choose;
 use serde::Serialize;
@@ -74,14 +73,15 @@ impl RayTimes {
         self.pool_ns(32, 16) / 64.0
     }
 
-    /// Time of a ray by one-sample MIS, in ns.
-    pub(crate) const fn mis(&self) -> Estimate {
-        Estimate { value: self.mis_ns, standard_error: self.mis_ns_error }
-    }
-
-    /// Time of a ray from a pool at this place of [`SIZES`], in ns.
-    pub(crate) const fn chosen(&self, size: usize) -> Estimate {
-        Estimate { value: self.pool_ns[size][0], standard_error: self.pool_ns_error[size] }
+    /// Time of one ray with its standard error, in ns: by one-sample MIS, or from a pool of so many candidates of each
+    /// technique; not a number for a pool that there is not.
+    pub(crate) fn ray(&self, candidates_each: Option<u32>) -> Estimate {
+        let Some(count) = candidates_each else {
+            return Estimate { value: self.mis_ns, standard_error: self.mis_ns_error };
+        };
+        let size = SIZES.iter().position(|of| *of == count);
+        let of = |size: usize| Estimate { value: self.pool_ns[size][0], standard_error: self.pool_ns_error[size] };
+        size.map_or(Estimate::UNKNOWN, of)
     }
 }
 
@@ -101,7 +101,7 @@ pub(crate) fn measure(
     for subject in subjects {
         let scatter = subject.scatter(POSE);
         for (light, blocks) in lights.iter().zip(&tables) {
-            let at = Shading { scatter: &scatter, light: *light, xi: &xi, blocks };
+            let at = Shading { lit: Lit { scatter: &scatter, light: *light }, xi: &xi, blocks };
             times.push(row(*subject, &at, rounds));
             progress(times.len());
         }
@@ -111,53 +111,42 @@ pub(crate) fn measure(
 
 fn row(subject: RaySubject, at: &Shading<'_>, rounds: usize) -> RayTimes {
     // One-sample MIS first, then each pool with one ray and with the most.
-    let mut ns: [Vec<f64>; 1 + 2 * SIZES.len()] = Default::default();
-    let work = |contender: usize| {
-        if contender == 0 {
-            return at.mis();
-        }
-        let count = SIZES[(contender - 1) / 2];
-        at.pools(count, if contender % 2 == 1 { 1 } else { most_rays(count) })
-    };
-    for round in 0..rounds {
-        for k in 0..ns.len() {
-            let contender = (k + round) % ns.len();
-            // Untimed, for the caches.
-            work(contender);
-            let start = Instant::now();
-            let units = work(contender);
-            ns[contender].push(start.elapsed().as_secs_f64() * 1e9 / units as f64);
-        }
-    }
-    let found = ns.map(|ns| quartiles(&ns));
-    let median = |contender: usize| found[contender][1];
-    let error = |contender: usize| median_error(found[contender], rounds);
+    let pools = SIZES.iter().flat_map(|count| [1, most_rays(*count)].map(|rays| Some((*count, rays))));
+    let mut contenders: Vec<Option<(u32, u32)>> = [None].into_iter().chain(pools).collect();
+    let found = in_turns(&mut contenders, rounds, |contender| {
+        let work = || contender.map_or_else(|| at.mis(), |(count, rays)| at.pools(count, rays));
+        // Untimed, for the caches.
+        work();
+        let start = Instant::now();
+        let units = work();
+        start.elapsed().as_secs_f64() * 1e9 / units as f64
+    });
+    let median = |contender: usize| found[contender].median();
     RayTimes {
         model: subject.model(),
         sampler: subject.sampler(),
-        light: at.light.name().to_owned(),
-        mis_ns: median(0),
-        mis_ns_error: error(0),
-        pool_ns: core::array::from_fn(|size| [1, 2].map(|rays| median(2 * size + rays))),
-        pool_ns_error: core::array::from_fn(|size| error(2 * size + 1)),
+        light: at.lit.light.name().to_owned(),
+        mis_ns: median(0).value,
+        mis_ns_error: median(0).standard_error,
+        pool_ns: core::array::from_fn(|size| [1, 2].map(|rays| median(2 * size + rays).value)),
+        pool_ns_error: core::array::from_fn(|size| median(2 * size + 1).standard_error),
     }
 }
 
 /// A shading point under a light, with what is drawn beforehand.
 struct Shading<'a> {
-    scatter: &'a Scatter,
-    light: &'a dyn Light,
+    lit: Lit<'a>,
     xi: &'a [[f32x8; 3]],
     blocks: &'a [LightBlock],
 }
 
 impl Shading<'_> {
     fn of_bsdf(&self, packet: usize) -> Candidates8 {
-        Candidates8::of_bsdf(self.scatter, self.light, black_box(&self.xi[packet % PACKETS]))
+        self.lit.of_bsdf(black_box(&self.xi[packet % PACKETS]))
     }
 
     fn of_light(&self, packet: usize) -> Candidates8 {
-        Candidates8::of_light(self.scatter, black_box(&self.blocks[packet % PACKETS]))
+        self.lit.of_light(black_box(&self.blocks[packet % PACKETS]))
     }
 
     /// Rays by one-sample MIS, as many of each technique; returns their number.

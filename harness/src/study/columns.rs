@@ -9,7 +9,7 @@ use std::io::{self, Write};
 
 /// The values of a column.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ColumnValues {
+enum ColumnValues {
     /// Words, as UTF-8.
     Text(Vec<Cow<'static, str>>),
     /// Counts, as 32-bit integers.
@@ -19,9 +19,7 @@ pub enum ColumnValues {
 }
 
 impl ColumnValues {
-    /// Number of rows.
-    #[must_use]
-    pub fn len(&self) -> usize {
+    fn len(&self) -> usize {
         match self {
             Self::Text(values) => values.len(),
             Self::Whole(values) => values.len(),
@@ -29,22 +27,17 @@ impl ColumnValues {
         }
     }
 
-    /// Whether there are no rows.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    fn write_csv(&self, row: usize, out: &mut impl Write) -> io::Result<()> {
+    /// The field of a row in CSV.
+    fn field(&self, row: usize) -> Cow<'_, str> {
         match self {
             Self::Text(values) if values[row].contains([',', '"', '\n', '\r']) => {
-                write!(out, "\"{}\"", values[row].replace('"', "\"\""))
+                format!("\"{}\"", values[row].replace('"', "\"\"")).into()
             }
-            Self::Text(values) => out.write_all(values[row].as_bytes()),
-            Self::Whole(values) => write!(out, "{}", values[row]),
+            Self::Text(values) => (&*values[row]).into(),
+            Self::Whole(values) => values[row].to_string().into(),
             // The shortest digits that read back as the same number, with an exponent where it is far from 1.
-            Self::Number(values) if values[row].is_finite() => write!(out, "{:?}", values[row]),
-            Self::Number(_) => Ok(()),
+            Self::Number(values) if values[row].is_finite() => format!("{:?}", values[row]).into(),
+            Self::Number(_) => "".into(),
         }
     }
 }
@@ -54,15 +47,7 @@ impl ColumnValues {
 pub struct Columns(Vec<(Cow<'static, str>, ColumnValues)>);
 
 impl Columns {
-    /// No columns.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// Adds a column.
-    #[must_use]
-    pub fn with(mut self, name: impl Into<Cow<'static, str>>, values: ColumnValues) -> Self {
+    fn with(mut self, name: impl Into<Cow<'static, str>>, values: ColumnValues) -> Self {
         let name = name.into();
         debug_assert!(self.0.iter().all(|(_, first)| first.len() == values.len()), "{name} has another length");
         self.0.push((name, values));
@@ -96,18 +81,6 @@ impl Columns {
         self.with(name, ColumnValues::Text(values.into_iter().map(Into::into).collect()))
     }
 
-    /// The columns, by name.
-    #[must_use]
-    pub fn columns(&self) -> &[(Cow<'static, str>, ColumnValues)] {
-        &self.0
-    }
-
-    /// Number of rows.
-    #[must_use]
-    pub fn rows(&self) -> usize {
-        self.0.first().map_or(0, |(_, values)| values.len())
-    }
-
     /// Writes it as CSV (RFC 4180, lines ended as on Unix), names first.
     ///
     /// # Errors
@@ -116,26 +89,11 @@ impl Columns {
     pub fn write_csv(&self, out: &mut impl Write) -> io::Result<()> {
         let names: Vec<&str> = self.0.iter().map(|(name, _)| &**name).collect();
         writeln!(out, "{}", names.join(","))?;
-        for row in 0..self.rows() {
-            for (place, (_, values)) in self.0.iter().enumerate() {
-                if place > 0 {
-                    out.write_all(b",")?;
-                }
-                values.write_csv(row, out)?;
-            }
-            out.write_all(b"\n")?;
+        for row in 0..self.0.first().map_or(0, |(_, values)| values.len()) {
+            let fields: Vec<Cow<'_, str>> = self.0.iter().map(|(_, values)| values.field(row)).collect();
+            writeln!(out, "{}", fields.join(","))?;
         }
         Ok(())
-    }
-
-    /// Writes it as Apache Parquet, with `notes` as its key-value metadata.
-    ///
-    /// # Errors
-    ///
-    /// Errors of `out`.
-    #[cfg(feature = "parquet")]
-    pub fn write_parquet(&self, notes: &[(String, String)], out: impl Write + Send) -> io::Result<()> {
-        parquet::write(self, notes, out)
     }
 }
 
@@ -144,7 +102,7 @@ mod tests {
     use super::*;
 
     fn example() -> Columns {
-        Columns::new()
+        Columns::default()
             .text("light", ["sun", "a \"sky\", cloudy"])
             .whole("cell", [0, 3023])
             .number("v", [1e-40, f64::NAN])
@@ -165,7 +123,7 @@ mod tests {
     fn parquet_is_the_same_bytes_each_time() {
         let bytes = || {
             let mut out = Vec::new();
-            example().write_parquet(&[("a".to_owned(), "b".to_owned())], &mut out).expect("written");
+            example().write_parquet(vec![("a".to_owned(), "b".to_owned())], &mut out).expect("written");
             out
         };
         let first = bytes();

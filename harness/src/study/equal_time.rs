@@ -1,15 +1,14 @@
 //! Variances in equal time: the gain of a sampler whose samples take longer, alone or with the work that follows them.
 
 use crate::stats::Estimate;
-use core::fmt;
 
 /// Comparison of two figures, beyond their errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sign {
     Above,
-    Below,
     /// Within two standard errors.
     Unsure,
+    Below,
 }
 
 impl Sign {
@@ -43,33 +42,14 @@ pub(crate) fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
     Estimate { value, standard_error: value * relative }
 }
 
-/// Cells by what becomes of a sampler in equal time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct CellCounts {
-    pub(super) won: usize,
-    pub(super) undecided: usize,
-    pub(super) lost: usize,
-}
-
-impl CellCounts {
-    /// Counts gains in V, those of cells that are unsure being `None`, against the ratio of the times.
-    pub(super) fn count(gains: impl Iterator<Item = Option<Estimate>>, time: Estimate) -> Self {
-        gains.fold(Self::default(), |mut cells, gain| {
-            match gain.map(|gain| Sign::of(in_equal_time(gain, time))) {
-                Some(Sign::Above) => cells.won += 1,
-                Some(Sign::Below) => cells.lost += 1,
-                Some(Sign::Unsure) | None => cells.undecided += 1,
-            }
-            cells
-        })
+/// Cells that are won, undecided and lost: gains in V, those of cells that are unsure being `None`, against the ratio of the
+/// times.
+pub(super) fn count_cells(gains: impl Iterator<Item = Option<Estimate>>, time: Estimate) -> [usize; 3] {
+    let mut cells = [0; 3];
+    for gain in gains {
+        cells[gain.map_or(Sign::Unsure, |gain| Sign::of(in_equal_time(gain, time))) as usize] += 1;
     }
-}
-
-impl fmt::Display for CellCounts {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { won, undecided, lost } = self;
-        write!(f, "{won} / {undecided} / {lost}")
-    }
+    cells
 }
 
 #[cfg(test)]
@@ -105,10 +85,7 @@ mod tests {
     #[test]
     fn cells_are_won_and_lost_beyond_the_errors_of_variance_and_time() {
         let gains = [Some(of(2.1, 0.01)), Some(of(1.9, 0.01)), Some(of(2.01, 0.01)), Some(of(2.1, 0.1)), None];
-        let cells = CellCounts::count(gains.into_iter(), of(0.5, 0.0));
-        assert_eq!(cells, CellCounts { won: 1, undecided: 3, lost: 1 });
-        assert_eq!(cells.to_string(), "1 / 3 / 1");
-        let vague = CellCounts::count(gains.into_iter(), of(0.5, 0.05));
-        assert_eq!(vague.undecided, 5, "times with errors of a tenth");
+        assert_eq!(count_cells(gains.into_iter(), of(0.5, 0.0)), [1, 3, 1]);
+        assert_eq!(count_cells(gains.into_iter(), of(0.5, 0.05)), [0, 5, 0], "times with errors of a tenth");
     }
 }

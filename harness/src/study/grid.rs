@@ -61,6 +61,17 @@ impl Grid {
         theta_o_deg: &[0.0, 45.0, 75.0, 85.0],
     };
 
+    /// That of the short run, or of the whole one.
+    #[must_use]
+    pub const fn of(quick: bool) -> Self {
+        if quick { Self::QUICK } else { Self::FULL }
+    }
+
+    /// The cells, in order.
+    pub fn cells(self) -> impl Iterator<Item = Cell> {
+        (0..self.len()).map(move |index| self.cell(index))
+    }
+
     fn axes(&self) -> [&'static [f32]; 6] {
         [self.beta_r_deg, self.gamma_tt_deg, self.gamma_g_deg, self.phi_g_deg, self.intensity_g, self.theta_o_deg]
     }
@@ -119,17 +130,15 @@ impl Cell {
     }
 }
 
+/// Names of the columns of the axes.
+const AXES: [&str; 6] = ["beta_r_deg", "gamma_tt_deg", "gamma_g_deg", "phi_g_deg", "intensity_g", "theta_o_deg"];
+
 /// The columns that say what cell a row is of.
 pub(crate) fn columns_of<'a>(cells: impl Iterator<Item = &'a Cell> + Clone) -> Columns {
-    let axis = |axis: usize| cells.clone().map(move |cell| f64::from(cell.values()[axis]));
-    Columns::new()
-        .whole("cell", cells.clone().map(|cell| cell.index))
-        .number("beta_r_deg", axis(0))
-        .number("gamma_tt_deg", axis(1))
-        .number("gamma_g_deg", axis(2))
-        .number("phi_g_deg", axis(3))
-        .number("intensity_g", axis(4))
-        .number("theta_o_deg", axis(5))
+    let columns = Columns::default().whole("cell", cells.clone().map(|cell| cell.index));
+    (0..).zip(AXES).fold(columns, |columns, (axis, name): (usize, _)| {
+        columns.number(name, cells.clone().map(|cell| f64::from(cell.values()[axis])))
+    })
 }
 
 #[cfg(test)]

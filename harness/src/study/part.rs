@@ -8,15 +8,13 @@ mod sealed;
 pub use sealed::line;
 
 use super::Shard;
-use super::cell::{Found, Measured};
-use super::rays::Rays;
+use super::cell::Measured;
 use super::tally::Figures;
 use crate::error::Error;
 use crate::light::Environment;
 use crate::stats::Estimate;
 use sealed::unseal;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -77,15 +75,10 @@ impl Header {
     /// The first field in which `other` differs, with its value here and there, if one does; the shard may.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Option<[String; 3]> {
-        let fields = |of: &Self| match serde_json::to_value(of) {
-            Ok(Value::Object(fields)) => fields,
-            _ => serde_json::Map::new(),
-        };
-        let theirs = fields(other);
-        fields(self).into_iter().find_map(|(name, here)| {
-            let there = theirs.get(&name).cloned().unwrap_or(Value::Null);
-            let differs = name != "shard" && here != there;
-            differs.then(|| [name.replace('_', " "), here.to_string(), there.to_string()])
+        let [ours, theirs] = [self, other].map(|of| serde_json::to_value(of).unwrap_or_default());
+        ours.as_object()?.iter().filter(|(name, _)| *name != "shard").find_map(|(name, here)| {
+            let there = &theirs[name];
+            (here != there).then(|| [name.replace('_', " "), here.to_string(), there.to_string()])
         })
     }
 
@@ -114,31 +107,33 @@ pub struct Finished {
 }
 
 impl Finished {
-    pub(super) fn of(cell: usize, found: &Found) -> Self {
-        let row = |m: &Measured| {
-            let Figures { mean, v, kl } = m.figures;
-            let errors = [mean, v, kl].map(|of| [of.value, of.standard_error]);
-            let [[a, b], [c, d], [e, f]] = errors;
-            let [g, h, i, j, k, l, bias] =
-                m.rays.map_or([f64::NAN; 7], |Rays { mis, chosen: [small, large], bias }| {
-                    let [[g, h], [i, j], [k, l]] = [mis, small, large].map(|of| [of.value, of.standard_error]);
-                    [g, h, i, j, k, l, bias.unwrap_or(f64::NAN)]
-                });
-            [a, b, c, d, e, f, m.max_weight, m.max_contribution, g, h, i, j, k, l, bias]
-                .map(|x| x.is_finite().then_some(x))
+    pub(super) fn of(cell: usize, rows: &[Measured]) -> Self {
+        let row = |of: &Measured| {
+            let pair = |of: Estimate| [of.value, of.standard_error];
+            let [mean, v, kl] = [of.figures.mean, of.figures.v, of.figures.kl].map(pair);
+            let [mis, small, large] = of.rays.unwrap_or([Estimate::UNKNOWN; 3]).map(pair);
+            let pairs = [mean, v, kl, [of.max_weight, of.max_contribution], mis, small, large];
+            let mut numbers = [of.bias; NUMBERS];
+            for (number, x) in numbers.iter_mut().zip(pairs.as_flattened()) {
+                *number = Some(*x);
+            }
+            numbers.map(|x| x.filter(|x| x.is_finite()))
         };
-        Self { cell, rows: found.samplers.iter().chain(&found.perfect).map(row).collect() }
+        Self { cell, rows: rows.iter().map(row).collect() }
     }
 
     pub(super) fn measured(&self) -> Vec<Measured> {
         let row = |row: &[Option<f64>; NUMBERS]| {
-            let [a, b, c, d, e, f, max_weight, max_contribution, rest @ ..] = row.map(|x| x.unwrap_or(f64::NAN));
-            let of = |value, standard_error| Estimate { value, standard_error };
-            let figures = Figures { mean: of(a, b), v: of(c, d), kl: of(e, f) };
-            let [g, h, i, j, k, l, bias] = rest;
-            let bias = bias.is_finite().then_some(bias);
-            let rays = g.is_finite().then(|| Rays { mis: of(g, h), chosen: [of(i, j), of(k, l)], bias });
-            Measured { figures, max_weight, max_contribution, rays }
+            let number = |place: usize| row[place].unwrap_or(f64::NAN);
+            let of = |place: usize| Estimate { value: number(place), standard_error: number(place + 1) };
+            Measured {
+                figures: Figures { mean: of(0), v: of(2), kl: of(4) },
+                max_weight: number(6),
+                weight_bound: None,
+                max_contribution: number(7),
+                rays: row[8].map(|_| [8, 10, 12].map(of)),
+                bias: row[14],
+            }
         };
         self.rows.iter().map(row).collect()
     }
@@ -155,27 +150,19 @@ pub struct Read {
     whole: usize,
 }
 
-/// Name of the part file of a shard.
-#[must_use]
-pub fn file_name(shard: Shard) -> String {
-    format!("cells-{}-of-{}.jsonl", shard.index(), shard.of())
-}
-
 /// The part files in `dir`, by name.
 ///
 /// # Errors
 ///
 /// [`Error::Part`] if the folder cannot be read or holds none.
 pub fn find(dir: &Path) -> Result<Vec<PathBuf>, Error> {
-    let unreadable = |source: io::Error| refuse(dir, format!("cannot read: {source}"));
-    let mut found = Vec::new();
-    for entry in fs::read_dir(dir).map_err(unreadable)? {
-        let path = entry.map_err(unreadable)?.path();
-        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        if name.starts_with("cells-") && name.ends_with(".jsonl") {
-            found.push(path);
-        }
-    }
+    let paths = |entries: fs::ReadDir| entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<PathBuf>>>();
+    let mut found =
+        fs::read_dir(dir).and_then(paths).map_err(|source| refuse(dir, format!("cannot read: {source}")))?;
+    found.retain(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with("cells-") && name.ends_with(".jsonl")
+    });
     if found.is_empty() {
         return Err(refuse(dir, "contains no part of a study (cells-I-of-N.jsonl)"));
     }
@@ -213,10 +200,8 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
     let mut finished = Vec::new();
     for (line, number) in lines.zip(2..) {
         let damaged = |problem: &str| {
-            refuse(
-                path,
-                format!("line {number} is damaged: {problem}; delete the line, and `hairis study` computes it again"),
-            )
+            let advice = "delete the line, and `hairis study` computes it again";
+            refuse(path, format!("line {number} is damaged: {problem}; {advice}"))
         };
         let (line, is_right) = unseal(line).ok_or_else(|| damaged("not a cell"))?;
         if !is_right {
@@ -234,7 +219,8 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
     Ok(Some(Read { header, finished, whole: last + 1 }))
 }
 
-fn refuse(path: &Path, problem: impl Into<String>) -> Error {
+/// A part, or a folder of them, that cannot be used.
+pub(super) fn refuse(path: &Path, problem: impl Into<String>) -> Error {
     Error::Part { path: path.to_owned(), problem: problem.into() }
 }
 
@@ -254,35 +240,31 @@ impl Part {
     /// [`Error::Output`] if it cannot be written; [`Error::Part`] if it is of another study, damaged, or in use.
     pub fn open(dir: &Path, header: &Header) -> Result<(Self, Vec<Finished>), Error> {
         let shard = header.shard().map_err(Error::Usage)?;
-        let path = dir.join(file_name(shard));
-        let output = |source| Error::Output { path: path.clone(), source };
-        let mut file = File::options().append(true).create(true).read(true).open(&path).map_err(output)?;
+        let path = dir.join(format!("cells-{}-of-{}.jsonl", shard.index(), shard.of()));
+        let output = Error::output(&path);
+        let mut file = File::options().append(true).create(true).read(true).open(&path).map_err(&output)?;
         // File systems without locks go without.
         if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
             return Err(refuse(&path, "another process is writing to it"));
         }
-        let bytes = fs::read(&path).map_err(output)?;
-        let first = line(header).map_err(output)?;
+        let bytes = fs::read(&path).map_err(&output)?;
+        let first = line(header).map_err(&output)?;
         let (whole, finished) = match parse(&path, &bytes)? {
             Some(read) => {
                 if let Some([field, was, is]) = read.header.difference(header) {
-                    return Err(refuse(
-                        &path,
-                        format!(
-                            "belongs to a run with {field} {was}, expected {is}; pass another --out or delete the file"
-                        ),
-                    ));
+                    let run = format!("belongs to a run with {field} {was}, expected {is}");
+                    return Err(refuse(&path, format!("{run}; pass another --out or delete the file")));
                 }
                 (read.whole, read.finished)
             }
             None if first.starts_with(&bytes) => (0, Vec::new()),
             None => return Err(refuse(&path, "is no part of a study")),
         };
-        file.set_len(whole as u64).map_err(output)?;
+        file.set_len(whole as u64).map_err(&output)?;
         if whole == 0 {
-            file.write_all(&first).map_err(output)?;
+            file.write_all(&first).map_err(&output)?;
         }
-        Ok((Self { path, file: Mutex::new(Ok(file)) }, finished))
+        Ok((Self { path: path.clone(), file: Mutex::new(Ok(file)) }, finished))
     }
 
     /// The file.
@@ -297,19 +279,15 @@ impl Part {
     ///
     /// [`Error::Output`] if it cannot be written.
     pub fn keep(&self, finished: &Finished) -> Result<(), Error> {
-        let output = |source| Error::Output { path: self.path.clone(), source };
-        let line = line(finished).map_err(output)?;
+        let output = Error::output(&self.path);
+        let line = line(finished).map_err(&output)?;
         let mut file = self.file.lock().map_err(|_| output(io::Error::other("another thread failed")))?;
-        let written = match &mut *file {
-            Ok(file) => file.write_all(&line),
-            // Other threads fail by the same cause: whichever is reported names it.
-            Err(cause) => Err(io::Error::new(cause.kind(), cause.to_string())),
-        };
-        written.map_err(|cause| {
-            let copy = io::Error::new(cause.kind(), cause.to_string());
-            *file = Err(copy);
-            output(cause)
-        })
+        if let Err(cause) = file.as_mut().map_or(Ok(()), |file| file.write_all(&line)) {
+            *file = Err(cause);
+        }
+        // Other threads fail by the same cause: whichever is reported names it.
+        let copy = |cause: &io::Error| output(io::Error::new(cause.kind(), cause.to_string()));
+        file.as_ref().map(|_| ()).map_err(copy)
     }
 }
 
@@ -342,8 +320,7 @@ mod tests {
         let read = read(part.path()).expect("read");
         assert_eq!((read.header, &read.finished[..]), (header.clone(), &cells[..]));
         assert!(cells[0].measured()[0].figures.v.value.is_nan(), "what is no number stays none");
-        let found = Found { samplers: cells[0].measured(), perfect: Vec::new() };
-        assert_eq!(Finished::of(3, &found), cells[0]);
+        assert_eq!(Finished::of(3, &cells[0].measured()), cells[0]);
         let again = Part::open(dir.path(), &header);
         assert!(matches!(&again, Err(Error::Part { problem, .. }) if problem.contains("another process")), "{again:?}");
         drop(part);

@@ -15,7 +15,7 @@
 //! favour bright parts of the light can be better, as tails wider than the hair's are under a small sun.
 
 use super::cell::Measured;
-use super::tally::Figures;
+use super::tally::{Figures, Sums, joined, largest};
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use wide::f64x8;
@@ -23,60 +23,18 @@ use wide::f64x8;
 /// Source of the directions: the sampler whose weights vary least.
 pub(super) const SOURCE: Sampler = Sampler::Matched25;
 
-/// Numbers whose means are estimated together.
-const N: usize = 4;
-
-/// Sums over the directions of one stratum, the sampler's or the light's, one per lane.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct PerfectTally {
-    /// Of the weight that counts for F, and of `m w r`, `m w r^2` and `m w r ln r`.
-    sums: [f64x8; N],
-    /// Of the products of each two of them, the first no earlier than the second.
-    products: [[f64x8; N]; N],
-    count: u64,
-    /// Largest `r`.
-    largest: f64x8,
-}
+/// Sums of the weight that counts for F, and of `m w r`, `m w r^2` and `m w r ln r`; the largest is an `r`.
+pub(super) type PerfectTally = Sums<4>;
 
 impl PerfectTally {
-    /// Adds eight directions drawn from the sampler, of weight `w` and contribution `y = w r`, each counted `m`.
-    pub(super) fn push_drawn(&mut self, w: f64x8, y: f64x8, m: f64x8) {
-        self.push(w, w, y, m);
-    }
-
-    /// Adds eight directions drawn from the light.
-    pub(super) fn push_lit(&mut self, w: f64x8, y: f64x8, m: f64x8) {
-        self.push(f64x8::ZERO, w, y, m);
-    }
-
-    fn push(&mut self, z: f64x8, w: f64x8, y: f64x8, m: f64x8) {
-        self.count += 8;
+    /// Adds eight directions of weight `w` and contribution `y = w r`, each counted `m`. `z` is the weight again where they
+    /// were drawn from the sampler, and 0 where they were drawn from the light.
+    pub(super) fn push(&mut self, z: f64x8, w: f64x8, y: f64x8, m: f64x8) {
         let r = w.simd_gt(f64x8::ZERO).select(y / w, f64x8::ZERO);
-        self.largest = self.largest.max(r);
+        self.see(r);
         let a = m * y;
         // The clamp keeps 0 ln 0 from being anything but 0.
-        let terms = [z, a, a * r, a * r.max(f64x8::splat(f64::MIN_POSITIVE)).ln()];
-        for (i, x) in terms.into_iter().enumerate() {
-            self.sums[i] += x;
-            for (product, other) in self.products[i].iter_mut().zip(&terms[..=i]) {
-                *product += x * *other;
-            }
-        }
-    }
-
-    /// Means of the four numbers, and the covariances of those means.
-    fn means(&self) -> ([f64; N], [[f64; N]; N]) {
-        if self.count < 2 {
-            return ([0.0; N], [[0.0; N]; N]);
-        }
-        let n = self.count as f64;
-        let mean = |sum: f64x8| sum.to_array().iter().sum::<f64>() / n;
-        let means = self.sums.map(mean);
-        let covariance = |i: usize, j: usize| {
-            let [i, j] = [i.max(j), i.min(j)];
-            (mean(self.products[i][j]) - means[i] * means[j]) / (n - 1.0)
-        };
-        (means, core::array::from_fn(|i| core::array::from_fn(|j| covariance(i, j))))
+        self.add([z, a, a * r, a * r.max(f64x8::splat(f64::MIN_POSITIVE)).ln()]);
     }
 }
 
@@ -85,17 +43,10 @@ impl PerfectTally {
 ///
 /// Standard errors are those of the delta method.
 pub(super) fn measured(strata: &[PerfectTally; 2]) -> Measured {
-    let (mut means, mut covariances) = ([0.0; N], [[0.0; N]; N]);
-    for (of, s) in strata.iter().map(PerfectTally::means) {
-        for i in 0..N {
-            means[i] += of[i];
-            covariances[i].iter_mut().zip(s[i]).for_each(|(sum, x)| *sum += x);
-        }
-    }
-    let [z, a, b, c] = means;
-    let estimate = |value, gradient: [f64; N]| {
-        let row = |i: usize| (0..N).map(|j| gradient[i] * gradient[j] * covariances[i][j]).sum::<f64>();
-        Estimate { value, standard_error: (0..N).map(row).sum::<f64>().max(0.0).sqrt() }
+    let ([z, a, b, c], covariances) = joined(strata);
+    let estimate = |value, gradient: [f64; 4]| {
+        let row = |i: usize| (0..4).map(|j| gradient[i] * gradient[j] * covariances[i][j]).sum::<f64>();
+        Estimate { value, standard_error: (0..4).map(row).sum::<f64>().max(0.0).sqrt() }
     };
     let square = a * a;
     let figures = Figures {
@@ -103,8 +54,8 @@ pub(super) fn measured(strata: &[PerfectTally; 2]) -> Measured {
         v: estimate(z * b / square - 1.0, [b / square, -2.0 * z * b / (square * a), z / square, 0.0]),
         kl: estimate(c / a + z.ln() - a.ln(), [1.0 / z, -(c / a + 1.0) / a, 0.0, 1.0 / a]),
     };
-    let brightest = strata.iter().flat_map(|tally| tally.largest.to_array()).fold(0.0, f64::max);
-    Measured { figures, max_weight: z, max_contribution: z * brightest / a, rays: None }
+    let max_contribution = z * largest(strata) / a;
+    Measured { figures, max_weight: z, weight_bound: None, max_contribution, rays: None, bias: None }
 }
 
 #[cfg(test)]
@@ -141,11 +92,11 @@ mod tests {
         for _ in 0..500 {
             // The root of x/2 + x^2/2 = xi.
             let [w, y, m] = of(core::array::from_fn(|_| (0.25 + 2.0 * from.next_f64()).sqrt() - 0.5), 1.0);
-            strata[0].push_drawn(w, y, m);
+            strata[0].push(w, w, y, m);
         }
         for _ in 0..500 * ratio {
             let [w, y, m] = of(core::array::from_fn(|_| LIT * from.next_f64()), c);
-            strata[1].push_lit(w, y, m);
+            strata[1].push(f64x8::ZERO, w, y, m);
         }
         measured(&strata)
     }
@@ -172,13 +123,13 @@ mod tests {
     fn nothing_seen_is_no_number_and_light_from_everywhere_leaves_nothing() {
         let mut tally = PerfectTally::default();
         let one = f64x8::splat(1.0);
-        tally.push_drawn(one, f64x8::ZERO, one);
+        tally.push(one, one, f64x8::ZERO, one);
         let dark = measured(&[tally, PerfectTally::default()]).figures;
         assert!(dark.mean.value == 0.0 && dark.v.value.is_nan() && dark.kl.value.is_nan(), "{dark:?}");
         let mut tally = PerfectTally::default();
         for k in 1..9 {
             let w = f64x8::new(core::array::from_fn(|lane| 1.0 / (lane + k) as f64));
-            tally.push_drawn(w, w + w, one);
+            tally.push(w, w, w + w, one);
         }
         let even = measured(&[tally, PerfectTally::default()]).figures;
         assert!(even.v.value.abs() < 1e-14 && even.v.standard_error < 1e-7, "{even:?}");

@@ -2,140 +2,146 @@
 
 use super::cell::Measured;
 use super::columns::Columns;
-use super::grid::{Cell, Grid, columns_of};
+use super::grid::{Cell, columns_of};
+use super::output::Study;
 use super::rays;
 use crate::sampler::{Sampler, weight_bound};
+use crate::stats::Estimate;
 use crate::subject::ModelKind;
-use rayon::prelude::*;
 
-/// Sampling strategy of a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Strategy {
-    /// By a sampler.
-    By(Sampler),
-    /// Perfect sampling of the hair: see [`perfect`](super::perfect).
-    Perfect,
+/// The sampler of a row; `None`: perfect sampling of the hair, see [`perfect`](super::perfect).
+pub(super) type Strategy = Option<Sampler>;
+
+/// A model, and how its directions are drawn.
+pub(super) type Estimator = (ModelKind, Strategy);
+
+/// Every strategy, in the order of reports.
+pub(super) fn strategies() -> impl Iterator<Item = Strategy> + Clone {
+    samplers().chain([None])
 }
 
-impl Strategy {
-    /// Every one, in the order of reports.
-    pub(super) const ALL: [Self; Sampler::ALL.len() + 1] = {
-        let mut all = [Self::Perfect; Sampler::ALL.len() + 1];
-        let mut i = 0;
-        while i < Sampler::ALL.len() {
-            all[i] = Self::By(Sampler::ALL[i]);
-            i += 1;
-        }
-        all
-    };
-
-    /// Name in reports and in rows.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::By(sampler) => sampler.name(),
-            Self::Perfect => "perfect",
-        }
-    }
-
-    /// The sampler, if one draws them.
-    pub(super) const fn sampler(self) -> Option<Sampler> {
-        match self {
-            Self::By(sampler) => Some(sampler),
-            Self::Perfect => None,
-        }
-    }
+/// Those that can be run.
+pub(super) fn samplers() -> impl Iterator<Item = Strategy> + Clone {
+    Sampler::ALL.into_iter().map(Some)
 }
 
-impl From<Sampler> for Strategy {
-    fn from(sampler: Sampler) -> Self {
-        Self::By(sampler)
-    }
+/// Each of some strategies on each model.
+pub(super) fn on_each_model(of: impl Iterator<Item = Strategy> + Clone) -> impl Iterator<Item = Estimator> + Clone {
+    ModelKind::ALL.into_iter().flat_map(move |model| of.clone().map(move |strategy| (model, strategy)))
+}
+
+/// Name in reports and in rows.
+pub(super) fn name(strategy: Strategy) -> &'static str {
+    strategy.map_or("perfect", Sampler::name)
+}
+
+/// The published sampler of the same model, which gains are measured against.
+pub(super) const fn published((model, _): Estimator) -> Estimator {
+    (model, Some(Sampler::Published))
 }
 
 /// A row: its identity and its figures.
+#[derive(Clone, Copy)]
 pub(super) struct Row<'a> {
     pub(super) cell: Cell,
-    pub(super) model: ModelKind,
-    pub(super) strategy: Strategy,
+    pub(super) of: Estimator,
     /// Place of the light.
     pub(super) light: usize,
     pub(super) measured: &'a Measured,
-    /// The proven bound on the weights; not a number where there is none.
-    pub(super) weight_bound: f64,
 }
 
-/// The proven bounds on the weights, computed once: they depend on no light.
-#[derive(Clone, Debug)]
-pub(super) struct Bounds(Vec<f64>);
-
-impl Bounds {
-    /// The bounds of a grid.
-    pub(super) fn over(grid: Grid) -> Self {
-        let of_cell = |index: usize| {
-            let cell = grid.cell(index);
-            let (params, theta_o) = (cell.params().ok(), f64::from(cell.theta_o_deg).to_radians());
-            let all = ModelKind::ALL.into_iter().flat_map(|model| Sampler::ALL.map(|sampler| (model, sampler)));
-            let bound = move |(model, sampler)| weight_bound(model, sampler, params.as_ref()?, theta_o);
-            all.map(move |of| bound(of).unwrap_or(f64::NAN))
-        };
-        Self((0..grid.len()).into_par_iter().flat_map_iter(of_cell).collect())
-    }
-
-    /// The bound of a sampler in a cell; NaN where there is none.
-    pub(super) fn of(&self, cell: usize, model: ModelKind, sampler: Sampler) -> f64 {
-        self.0[cell * ModelKind::ALL.len() * Sampler::ALL.len() + place(model, sampler, 0, 1)]
+impl Row<'_> {
+    pub(super) fn v(&self) -> Estimate {
+        self.measured.figures.v
     }
 }
 
 /// Place of a row within its cell: perfect sampling comes after all samplers of all models.
-pub(super) fn place(model: ModelKind, strategy: impl Into<Strategy>, light: usize, lights: usize) -> usize {
-    let at = |found: Option<usize>| found.unwrap_or_default();
-    let model = at(ModelKind::ALL.iter().position(|of| *of == model));
-    let samplers = Sampler::ALL.len();
-    let line = match strategy.into() {
-        Strategy::By(sampler) => model * samplers + at(Sampler::ALL.iter().position(|of| *of == sampler)),
-        Strategy::Perfect => ModelKind::ALL.len() * samplers + model,
+const fn place((model, strategy): Estimator, light: usize, lights: usize) -> usize {
+    let line = match strategy {
+        Some(sampler) => model as usize * Sampler::ALL.len() + sampler as usize,
+        None => ModelKind::ALL.len() * Sampler::ALL.len() + model as usize,
     };
     line * lights + light
 }
 
-/// Every row, in order: cells outermost, then models, samplers (perfect sampling last) and lights.
-pub(super) fn rows<'a>(grid: Grid, cells: &'a [Vec<Measured>], bounds: &Bounds, lights: usize) -> Vec<Row<'a>> {
-    let mut rows = Vec::new();
-    for (index, measured) in cells.iter().enumerate() {
-        let cell = grid.cell(index);
-        for model in ModelKind::ALL {
-            for strategy in Strategy::ALL {
-                let weight_bound = strategy.sampler().map_or(f64::NAN, |sampler| bounds.of(index, model, sampler));
-                for light in 0..lights {
-                    let measured = &measured[place(model, strategy, light, lights)];
-                    rows.push(Row { cell, model, strategy, light, measured, weight_bound });
-                }
-            }
-        }
+/// Sets the proven bounds on the weights in a cell: they depend on no light.
+pub(super) fn set_bounds(cell: &Cell, measured: &mut [Measured], lights: usize) {
+    let (params, theta_o) = (cell.params().ok(), f64::from(cell.theta_o_deg).to_radians());
+    for (model, strategy) in on_each_model(samplers()) {
+        let bound = strategy.zip(params.as_ref()).and_then(|(of, params)| weight_bound(model, of, params, theta_o));
+        let first = place((model, strategy), 0, lights);
+        measured[first..first + lights].iter_mut().for_each(|row| row.weight_bound = bound);
     }
-    rows
 }
 
-/// The columns that identify a row.
-pub(super) fn keys(rows: &[Row<'_>], lights: &[String]) -> Columns {
-    columns_of(rows.iter().map(|row| &row.cell))
-        .text("model", rows.iter().map(|row| row.model.name()))
-        .text("sampler", rows.iter().map(|row| row.strategy.name()))
-        .text("light", rows.iter().map(|row| lights[row.light].clone()))
-}
+impl Study {
+    /// Names of the lights.
+    pub(super) fn lights(&self) -> &[String] {
+        &self.header.lights
+    }
 
-/// The columns of the study.
-pub(super) fn columns(rows: &[Row<'_>], lights: &[String]) -> Columns {
-    let figures = |of: fn(&Measured) -> f64| rows.iter().map(move |row| of(row.measured));
-    let columns = keys(rows, lights)
-        .estimate("mean", rows.iter().map(|row| row.measured.figures.mean))
-        .estimate("v", rows.iter().map(|row| row.measured.figures.v))
-        .number("ess_per_1000", figures(|m| 1_000.0 / (1.0 + m.figures.v.value)))
-        .number("samples_for_1_percent", figures(|m| m.figures.v.value * 1e4))
-        .number("max_weight", figures(|m| m.max_weight))
-        .number("weight_bound", rows.iter().map(|row| row.weight_bound))
-        .number("max_contribution", figures(|m| m.max_contribution))
-        .estimate("kl", rows.iter().map(|row| row.measured.figures.kl));
-    rays::columns(columns, rows)
+    pub(super) fn measured(&self, cell: usize, of: Estimator, light: usize) -> &Measured {
+        &self.cells[cell][place(of, light, self.lights().len())]
+    }
+
+    /// The rows of one estimator under one light, one per cell.
+    pub(super) fn rows_of(&self, of: Estimator, light: usize) -> impl Iterator<Item = Row<'_>> {
+        let row = move |cell: Cell| Row { cell, of, light, measured: self.measured(cell.index, of, light) };
+        self.grid().cells().take(self.cells.len()).map(row)
+    }
+
+    /// Every row, in order: cells outermost, then models, strategies and lights.
+    pub(super) fn rows(&self) -> Vec<Row<'_>> {
+        let of_cell = |cell: Cell| {
+            let each =
+                on_each_model(strategies()).flat_map(|of| (0..self.lights().len()).map(move |light| (of, light)));
+            each.map(move |(of, light)| Row { cell, of, light, measured: self.measured(cell.index, of, light) })
+        };
+        self.grid().cells().take(self.cells.len()).flat_map(of_cell).collect()
+    }
+
+    /// The columns that identify a row.
+    pub(super) fn keys(&self, rows: &[Row<'_>]) -> Columns {
+        columns_of(rows.iter().map(|row| &row.cell))
+            .text("model", rows.iter().map(|row| row.of.0.name()))
+            .text("sampler", rows.iter().map(|row| name(row.of.1)))
+            .text("light", rows.iter().map(|row| self.lights()[row.light].clone()))
+    }
+
+    /// The rows: what depends on the plan and the build alone.
+    ///
+    /// The sampler `perfect` would draw with a density proportional to the mean of RGB of `S cos theta_i`: all of its
+    /// weights are the albedo.
+    ///
+    /// | column | what it is |
+    /// |---|---|
+    /// | `cell` .. `light` | what the row is of; widths, `phi_g` and `theta_o` in degrees |
+    /// | `mean`, `mean_se` | integral of `L S cos theta_i`, mean of RGB, with its standard error |
+    /// | `v`, `v_se` | relative variance of one sample |
+    /// | `ess_per_1000` | effective sample size of 1000 samples, `1000 / (1 + v)` |
+    /// | `samples_for_1_percent` | samples to a relative error of 1%, `v / 1e-4` |
+    /// | `max_weight`, `weight_bound` | largest mean of RGB of a weight, whatever the light, and its proven bound where there is one; of `perfect` the estimate of the albedo |
+    /// | `max_contribution` | largest contribution, in means; under constant light the largest weight in means |
+    /// | `kl`, `kl_se` | Kullback-Leibler divergence of the density from the normalised integrand, nats; under constant light that from `S cos theta_i` |
+    /// | `v_mis`, `v_mis_se` | V of one ray of direct light by one-sample MIS, without occlusion |
+    /// | `v_4_4`, `v_8_8` and their `_se` | the same of a ray chosen from 4 + 4 and from 8 + 8 candidates |
+    /// | `v_mis_visible_25` .. `v_8_8_visible_75` | the same with 25, 50 and 75% of the directions visible: `(V + 1)/v - 1` |
+    /// | `pool_bias` | bias of the mean of the estimates from 8 + 8 candidates against `mean`, in standard errors; empty where too few pools decide it |
+    #[must_use]
+    pub fn columns(&self) -> Columns {
+        let rows = self.rows();
+        let figures = |of: fn(&Measured) -> f64| rows.iter().map(move |row| of(row.measured));
+        let columns = self
+            .keys(&rows)
+            .estimate("mean", rows.iter().map(|row| row.measured.figures.mean))
+            .estimate("v", rows.iter().map(Row::v))
+            .number("ess_per_1000", figures(|m| 1_000.0 / (1.0 + m.figures.v.value)))
+            .number("samples_for_1_percent", figures(|m| m.figures.v.value * 1e4))
+            .number("max_weight", figures(|m| m.max_weight))
+            .number("weight_bound", figures(|m| m.weight_bound.unwrap_or(f64::NAN)))
+            .number("max_contribution", figures(|m| m.max_contribution))
+            .estimate("kl", rows.iter().map(|row| row.measured.figures.kl));
+        rays::columns(columns, &rows)
+    }
 }

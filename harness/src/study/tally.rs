@@ -7,16 +7,22 @@
 //! `p / (p + c q)` among the sampler's and `c p / (p + c q)` among the light's.
 
 use crate::stats::Estimate;
+use core::array::from_fn;
 use wide::f64x8;
 
-/// Sums over the directions of one stratum, the sampler's or the light's, one per lane.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tally {
-    /// Of a, b, c, aa, ab, bb, ac, cc, where a is `m y`, b is `m y^2` and c is `m y ln y`.
-    sums: [f64x8; 8],
+/// Sums over the directions of one stratum, the sampler's or the light's, one per lane: of `N` terms, and of the product of
+/// each two of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sums<const N: usize> {
+    sums: [f64x8; N],
+    /// The first term no earlier than the second.
+    products: [[f64x8; N]; N],
     count: u64,
     largest: f64x8,
 }
+
+/// Sums of `m y`, `m y^2` and `m y ln y`.
+pub(super) type Tally = Sums<3>;
 
 /// Figures of a sampler under a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,39 +36,75 @@ pub(super) struct Figures {
     pub(super) kl: Estimate,
 }
 
+impl<const N: usize> Default for Sums<N> {
+    fn default() -> Self {
+        let zero = [f64x8::ZERO; N];
+        Self { sums: zero, products: [zero; N], count: 0, largest: f64x8::ZERO }
+    }
+}
+
+impl<const N: usize> Sums<N> {
+    /// Counts eight directions, the largest of them by `x`.
+    #[inline]
+    pub(super) fn see(&mut self, x: f64x8) {
+        self.count += 8;
+        self.largest = self.largest.max(x);
+    }
+
+    /// Adds the terms of eight directions.
+    #[inline]
+    pub(super) fn add(&mut self, terms: [f64x8; N]) {
+        for (i, x) in terms.into_iter().enumerate() {
+            self.sums[i] += x;
+            for (product, other) in self.products[i].iter_mut().zip(&terms[..=i]) {
+                *product += x * *other;
+            }
+        }
+    }
+
+    /// Means of the terms, and the covariances of those means.
+    fn means(&self) -> ([f64; N], [[f64; N]; N]) {
+        if self.count < 2 {
+            return ([0.0; N], [[0.0; N]; N]);
+        }
+        let n = self.count as f64;
+        let mean = |sum: f64x8| sum.to_array().iter().sum::<f64>() / n;
+        let means = self.sums.map(mean);
+        let covariance =
+            |i: usize, j: usize| (mean(self.products[i.max(j)][i.min(j)]) - means[i] * means[j]) / (n - 1.0);
+        (means, from_fn(|i| from_fn(|j| covariance(i, j))))
+    }
+}
+
+/// Means and covariances of all strata together.
+pub(super) fn joined<const N: usize>(strata: &[Sums<N>]) -> ([f64; N], [[f64; N]; N]) {
+    let (mut means, mut covariances) = ([0.0; N], [[0.0; N]; N]);
+    for (m, s) in strata.iter().map(Sums::means) {
+        for i in 0..N {
+            means[i] += m[i];
+            covariances[i].iter_mut().zip(s[i]).for_each(|(sum, x)| *sum += x);
+        }
+    }
+    (means, covariances)
+}
+
+/// The largest number that was counted.
+pub(super) fn largest<const N: usize>(strata: &[Sums<N>]) -> f64 {
+    strata.iter().flat_map(|sums| sums.largest.to_array()).fold(0.0, f64::max)
+}
+
 impl Tally {
     /// Adds eight directions of contribution `y`, each counted `m`.
     #[inline]
     pub(super) fn push(&mut self, y: f64x8, m: f64x8) {
-        self.count += 8;
-        self.largest = self.largest.max(y);
+        self.see(y);
         // Most directions miss a small light: they count, and add nothing.
         if !y.simd_gt(f64x8::ZERO).any() {
             return;
         }
         let a = m * y;
-        let b = a * y;
         // The clamp keeps 0 ln 0 from being anything but 0.
-        let c = a * y.max(f64x8::splat(f64::MIN_POSITIVE)).ln();
-        for (sum, x) in self.sums.iter_mut().zip([a, b, c, a * a, a * b, b * b, a * c, c * c]) {
-            *sum += x;
-        }
-    }
-
-    /// The largest contribution.
-    pub(super) fn largest(&self) -> f64 {
-        self.largest.to_array().into_iter().fold(0.0, f64::max)
-    }
-
-    /// Means of a, b and c, and the variances and covariances of those means: aa, ab, bb, ac, cc.
-    fn means(&self) -> ([f64; 3], [f64; 5]) {
-        if self.count < 2 {
-            return ([0.0; 3], [0.0; 5]);
-        }
-        let n = self.count as f64;
-        let [a, b, c, aa, ab, bb, ac, cc] = self.sums.map(|sum| sum.to_array().iter().sum::<f64>() / n);
-        let covariances = [aa - a * a, ab - a * b, bb - b * b, ac - a * c, cc - c * c];
-        ([a, b, c], covariances.map(|s| s / (n - 1.0)))
+        self.add([a, a * y, a * y.max(f64x8::splat(f64::MIN_POSITIVE)).ln()]);
     }
 }
 
@@ -70,27 +112,15 @@ impl Tally {
 ///
 /// Standard errors are those of the delta method.
 pub(super) fn figures(strata: &[Tally]) -> Figures {
-    let (mut m, mut s) = ([0.0; 3], [0.0; 5]);
-    for tally in strata {
-        let (means, covariances) = tally.means();
-        m.iter_mut().zip(means).for_each(|(sum, x)| *sum += x);
-        s.iter_mut().zip(covariances).for_each(|(sum, x)| *sum += x);
-    }
-    let ([a, b, c], [aa, ab, bb, ac, cc]) = (m, s);
-    let error = |variance: f64| variance.max(0.0).sqrt();
+    let ([a, b, c], [[aa, ab, ac], [_, bb, _], [_, _, cc]]) = joined(strata);
+    let of = |value, variance: f64| Estimate { value, standard_error: variance.max(0.0).sqrt() };
     // Gradients of b/a^2 - 1 and of c/a - ln a, by the means they depend on.
     let (v_a, v_b) = (-2.0 * b / (a * a * a), 1.0 / (a * a));
     let (kl_a, kl_c) = (-(c / a + 1.0) / a, 1.0 / a);
     Figures {
-        mean: Estimate { value: a, standard_error: error(aa) },
-        v: Estimate {
-            value: b / (a * a) - 1.0,
-            standard_error: error(v_a * v_a * aa + 2.0 * v_a * v_b * ab + v_b * v_b * bb),
-        },
-        kl: Estimate {
-            value: c / a - a.ln(),
-            standard_error: error(kl_a * kl_a * aa + 2.0 * kl_a * kl_c * ac + kl_c * kl_c * cc),
-        },
+        mean: of(a, aa),
+        v: of(b / (a * a) - 1.0, v_a * v_a * aa + 2.0 * v_a * v_b * ab + v_b * v_b * bb),
+        kl: of(c / a - a.ln(), kl_a * kl_a * aa + 2.0 * kl_a * kl_c * ac + kl_c * kl_c * cc),
     }
 }
 
@@ -101,7 +131,7 @@ pub(super) mod tests {
     use crate::stats::Moments;
 
     fn draw(from: &mut Independent) -> f64x8 {
-        f64x8::new(core::array::from_fn(|_| -(1.0 - from.next_f64()).ln()))
+        f64x8::new(from_fn(|_| -(1.0 - from.next_f64()).ln()))
     }
 
     #[test]
@@ -139,7 +169,7 @@ pub(super) mod tests {
     /// A light of radiance 1 on [0, 0.1) of [0, 1), under the density `p = 1/2 + x`; `ratio` directions of the light to one of the sampler.
     fn small_light(run: u64, ratio: u64) -> Figures {
         let mut from = Independent::new(3, run);
-        let mut uniform = || f64x8::new(core::array::from_fn(|_| from.next_f64()));
+        let mut uniform = || f64x8::new(from_fn(|_| from.next_f64()));
         let [half, c, q] = [0.5, ratio as f64, 10.0].map(f64x8::splat);
         let mut strata = [Tally::default(); 2];
         for _ in 0..500 {

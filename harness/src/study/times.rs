@@ -9,13 +9,14 @@
 //! whatever cache holds all of it.
 
 use super::columns::Columns;
-use crate::light::{Light, Seen8};
+use super::with_lights;
+use crate::light::{Environment, Light, Seen8};
+use crate::rays::{RaySubject, RayTimes, measure_times, numbers};
 use crate::sampler::{Sampler, bsdf, uniform_sample8, uniform8};
 use crate::sequence::{Independent, stream_id};
 use crate::speed::{median_error, quartiles, stretch, task};
 use crate::stats::Estimate;
-use crate::subject::ModelKind;
-use crate::subject::uniform_direction;
+use crate::subject::{ModelKind, uniform_direction};
 use core::hint::black_box;
 use hairis::{HairParams, Sample8, Vec3x8};
 use hairis_benches::task::{Answer, Output, Pass};
@@ -23,6 +24,9 @@ use wide::f32x8;
 
 /// Samples of a shading point over which its set-up is spread: a path tracer's, and two of direct lighting.
 pub(super) const PER_POINT: [usize; 3] = [1, 4, 16];
+
+/// Passes of a stretch of samples, by place in [`PER_POINT`]: sixteen samples of each point.
+const PASSES: [u32; PER_POINT.len()] = [16, 4, 1];
 
 /// Packets of eight shading points a pass.
 const PACKETS: usize = 64;
@@ -32,97 +36,137 @@ const LOOK_UP_PACKETS: usize = 512;
 
 /// Timed operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Timed {
-    /// A sample.
-    Sample {
-        model: ModelKind,
-        sampler: Sampler,
-        /// Samples of a shading point.
-        per_point: usize,
-    },
+enum Timed {
+    /// A sample of a model by a sampler, with so many per shading point.
+    Sample(ModelKind, Sampler, usize),
     /// A look-up of the light at this place.
     LookUp(usize),
 }
 
-/// Time of one direction.
+/// A time in ns over the rounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Time {
-    pub(super) of: Timed,
-    /// First quartile, median and third quartile over the rounds, in ns.
-    pub(super) quartiles: [f64; 3],
-    /// Standard error of the median, in ns: that of a normal spread of the same quartiles.
-    pub(super) standard_error: f64,
+pub(crate) struct TimeSpread {
+    /// First quartile, median and third quartile.
+    quartiles: [f64; 3],
+    /// Standard error of the median: that of a normal spread of the same quartiles.
+    standard_error: f64,
 }
 
-/// Median time in ns; not a number if it was not measured.
-fn median(times: &[Time], of: Timed) -> Estimate {
-    let found = |time: &Time| Estimate { value: time.quartiles[1], standard_error: time.standard_error };
-    times.iter().find(|time| time.of == of).map_or(Estimate::UNKNOWN, found)
+impl TimeSpread {
+    /// The median.
+    pub(crate) const fn median(&self) -> Estimate {
+        Estimate { value: self.quartiles[1], standard_error: self.standard_error }
+    }
 }
 
-/// Time of a sample.
-pub(super) fn ns(times: &[Time], model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
-    median(times, Timed::Sample { model, sampler, per_point })
+/// Times contenders in turn, in an order that changes from round to round; `time` gives the ns of a stretch of one.
+pub(crate) fn in_turns<C>(contenders: &mut [C], rounds: usize, mut time: impl FnMut(&mut C) -> f64) -> Vec<TimeSpread> {
+    let count = contenders.len();
+    let mut ns = vec![Vec::with_capacity(rounds); count];
+    for round in 0..rounds {
+        for k in 0..count {
+            let k = (k + round) % count;
+            ns[k].push(time(&mut contenders[k]));
+        }
+    }
+    let spread = |ns: &Vec<f64>| {
+        let quartiles = quartiles(ns);
+        TimeSpread { quartiles, standard_error: median_error(quartiles, rounds) }
+    };
+    ns.iter().map(spread).collect()
 }
 
-/// Time of a look-up of the light at this place.
-pub(super) fn look_up(times: &[Time], light: usize) -> Estimate {
-    median(times, Timed::LookUp(light))
+/// Times of a sample, of a look-up of the light and, on request, of a ray without its tracing, measured on this machine.
+#[derive(Clone, Debug)]
+pub struct Times {
+    of_samples: Vec<(Timed, TimeSpread)>,
+    pub(super) of_rays: Vec<RayTimes>,
 }
 
-/// Something that is timed, and its times so far.
-struct TimedSampler<'a> {
-    of: Timed,
-    pass: Box<dyn Pass + 'a>,
-    /// Directions of a pass.
-    directions: usize,
-    /// Passes of a stretch.
-    passes: u32,
-    ns: Vec<f64>,
+impl Times {
+    /// Measures them, with nothing else at work: in about three seconds, or less than one if `quick`. Without an
+    /// environment its look-up is not known.
+    #[must_use]
+    pub fn measure(seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
+        let rounds = if quick { 15 } else { 75 };
+        let of_samples = with_lights(environment, |lights| measure(seed, rounds, lights));
+        Self { of_samples, of_rays: Vec::new() }
+    }
+
+    /// Measures those of rays as well: in about five seconds, or one if `quick`.
+    #[must_use]
+    pub fn with_rays(self, seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
+        let is_measured = |of: &RaySubject| ModelKind::ALL.iter().any(|model| model.name() == of.model());
+        let subjects: Vec<RaySubject> = RaySubject::all().filter(is_measured).collect();
+        let rounds = if quick { 9 } else { 75 };
+        let of_rays = with_lights(environment, |lights| measure_times(&subjects, lights, seed, rounds, |_| ()));
+        Self { of_rays, ..self }
+    }
+
+    /// Median in ns; not a number if it was not measured.
+    fn median(&self, of: Timed) -> Estimate {
+        self.of_samples.iter().find(|(timed, _)| *timed == of).map_or(Estimate::UNKNOWN, |(_, time)| time.median())
+    }
+
+    /// Median time of a sample in ns, for 1, 4 or 16 samples per shading point; not a number for others.
+    pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler, per_point: usize) -> Estimate {
+        self.median(Timed::Sample(model, sampler, per_point))
+    }
+
+    /// Median time of a look-up of the light at this place in ns; not a number if it was not measured.
+    pub(super) fn look_up(&self, light: usize) -> Estimate {
+        self.median(Timed::LookUp(light))
+    }
+
+    /// The table of times of samples and look-ups; what does not apply to a row is empty.
+    pub(super) fn columns(&self, lights: &[String]) -> Columns {
+        let words = |(of, _): &(Timed, TimeSpread)| match *of {
+            Timed::Sample(model, sampler, per_point) => {
+                [model.name().to_owned(), sampler.name().to_owned(), per_point.to_string(), String::new()]
+            }
+            Timed::LookUp(light) => [String::new(), String::new(), String::new(), lights[light].clone()],
+        };
+        let word = |k: usize| self.of_samples.iter().map(move |time| words(time)[k].clone());
+        let quartile = |k: usize| self.of_samples.iter().map(move |(_, time)| time.quartiles[k]);
+        Columns::default()
+            .text("model", word(0))
+            .text("sampler", word(1))
+            .text("samples_per_point", word(2))
+            .text("look_up", word(3))
+            .estimate("ns", self.of_samples.iter().map(|(_, time)| time.median()))
+            .number("ns_q1", quartile(0))
+            .number("ns_q3", quartile(2))
+    }
 }
 
 /// Measures every sampler of every model, and every light.
-pub(super) fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<Time> {
+fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeSpread)> {
     let mut from = Independent::new(seed, stream_id(&[0x71e5]));
     let points: Vec<Points> = (0..PACKETS).map(|_| Points::draw(&mut from)).collect();
-    let mut contenders = Vec::new();
+    // What is timed, a pass of it, and the passes of a stretch; short ones are repeated.
+    let mut contenders: Vec<(Timed, Box<dyn Pass + '_>, u32)> = Vec::new();
     for model in ModelKind::ALL {
         for sampler in Sampler::ALL {
-            for per_point in PER_POINT {
-                contenders.push(TimedSampler {
-                    of: Timed::Sample { model, sampler, per_point },
-                    pass: pass(model, sampler, &points, per_point),
-                    directions: 8 * PACKETS * per_point,
-                    passes: 16 / u32::try_from(per_point).unwrap_or(16),
-                    ns: Vec::with_capacity(rounds),
-                });
-            }
+            contenders.extend(PER_POINT.into_iter().zip(PASSES).map(|(per_point, passes)| {
+                (Timed::Sample(model, sampler, per_point), pass(model, sampler, &points, per_point), passes)
+            }));
         }
     }
     let seen = directions(&mut from);
-    for (place, light) in lights.iter().enumerate() {
-        contenders.push(TimedSampler {
-            of: Timed::LookUp(place),
-            pass: task(&seen, |wi| light.see8(wi)),
-            directions: 8 * seen.len(),
-            passes: 2,
-            ns: Vec::with_capacity(rounds),
-        });
-    }
-    for round in 0..rounds {
-        let count = contenders.len();
-        for k in 0..count {
-            let TimedSampler { pass, directions, passes, ns, .. } = &mut contenders[(k + round) % count];
-            // One stretch untimed, for the caches; short ones are repeated.
-            stretch(&mut **pass, 1);
-            ns.push(stretch(&mut **pass, *passes) / (f64::from(*passes) * *directions as f64));
-        }
-    }
-    let time = |TimedSampler { of, ns, .. }: TimedSampler<'_>| {
-        let quartiles = quartiles(&ns);
-        Time { of, quartiles, standard_error: median_error(quartiles, rounds) }
-    };
-    contenders.into_iter().map(time).collect()
+    contenders.extend(lights.iter().enumerate().map(|(place, light)| {
+        let pass: Box<dyn Pass + '_> = task(&seen, |wi| light.see8(wi));
+        (Timed::LookUp(place), pass, 2)
+    }));
+    let times = in_turns(&mut contenders, rounds, |(of, pass, passes)| {
+        let directions = match of {
+            Timed::Sample(_, _, per_point) => PACKETS * *per_point,
+            Timed::LookUp(_) => seen.len(),
+        };
+        // One stretch untimed, for the caches.
+        stretch(&mut **pass, 1);
+        stretch(&mut **pass, *passes) / (f64::from(*passes) * (8 * directions) as f64)
+    });
+    contenders.iter().map(|(of, ..)| *of).zip(times).collect()
 }
 
 /// Directions of the published sampler on the default hair, sixteen per shading point.
@@ -147,9 +191,7 @@ impl Points {
     fn draw(from: &mut Independent) -> Self {
         Self {
             wo: core::array::from_fn(|_| uniform_direction(from)).into(),
-            xi: core::array::from_fn(|_| {
-                core::array::from_fn(|_| f32x8::new(core::array::from_fn(|_| from.next_f32())))
-            }),
+            xi: core::array::from_fn(|_| numbers(from)),
         }
     }
 }
@@ -157,20 +199,15 @@ impl Points {
 /// A pass over `points`, `per_point` samples each.
 fn pass<'a>(model: ModelKind, sampler: Sampler, points: &[Points], per_point: usize) -> Box<dyn Pass + 'a> {
     let bsdf = bsdf(model, sampler, &HairParams::default());
-    if sampler == Sampler::Uniform {
-        task(points, move |points| {
-            let gather = bsdf.prepare8(&points.wo);
-            each(&points.xi[..per_point], |xi| {
-                let wi = uniform8(xi);
-                uniform_sample8(wi, gather.eval_pdf8(&wi))
-            })
-        })
-    } else {
-        task(points, move |points| {
-            let gather = bsdf.prepare8(&points.wo);
-            each(&points.xi[..per_point], |xi| gather.sample8(xi))
-        })
-    }
+    task(points, move |points| {
+        let gather = bsdf.prepare8(&points.wo);
+        let uniform = |xi: &[f32x8; 3]| {
+            let wi = uniform8(xi);
+            uniform_sample8(wi, gather.eval_pdf8(&wi))
+        };
+        let xi = &points.xi[..per_point];
+        if sampler == Sampler::Uniform { each(xi, uniform) } else { each(xi, |xi| gather.sample8(xi)) }
+    })
 }
 
 /// A look-up has neither a direction of its own nor a reference: it is timed, not checked.
@@ -189,27 +226,6 @@ fn each(xi: &[[f32x8; 3]], sample: impl Fn(&[f32x8; 3]) -> Sample8) -> Sample8 {
     last
 }
 
-/// The table of times; what does not apply to a row is empty.
-pub(super) fn columns(times: &[Time], lights: &[String]) -> Columns {
-    let quartile = |k: usize| times.iter().map(move |time| time.quartiles[k]);
-    let words = |time: &Time| match time.of {
-        Timed::Sample { model, sampler, per_point } => {
-            [model.name().to_owned(), sampler.name().to_owned(), per_point.to_string(), String::new()]
-        }
-        Timed::LookUp(light) => [String::new(), String::new(), String::new(), lights[light].clone()],
-    };
-    let word = |k: usize| times.iter().map(move |time| words(time)[k].clone());
-    Columns::new()
-        .text("model", word(0))
-        .text("sampler", word(1))
-        .text("samples_per_point", word(2))
-        .text("look_up", word(3))
-        .number("ns", quartile(1))
-        .number("ns_se", times.iter().map(|time| time.standard_error))
-        .number("ns_q1", quartile(0))
-        .number("ns_q3", quartile(2))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -218,19 +234,19 @@ mod tests {
     #[test]
     fn every_sampler_and_light_is_timed() {
         let (constant, smooth) = (Constant::white(), Smooth::new());
-        let times = measure(1, 3, &[&constant, &smooth]);
-        assert_eq!(times.len(), ModelKind::ALL.len() * Sampler::ALL.len() * PER_POINT.len() + 2);
-        for time in &times {
+        let times = Times { of_samples: measure(1, 3, &[&constant, &smooth]), of_rays: Vec::new() };
+        assert_eq!(times.of_samples.len(), ModelKind::ALL.len() * Sampler::ALL.len() * PER_POINT.len() + 2);
+        for (of, time) in &times.of_samples {
             let [q1, median, q3] = time.quartiles;
             assert!(q1 > 0.0 && q1 <= median && median <= q3 && time.standard_error >= 0.0, "{time:?}");
-            let found = match time.of {
-                Timed::Sample { model, sampler, per_point } => ns(&times, model, sampler, per_point),
-                Timed::LookUp(light) => look_up(&times, light),
+            let found = match *of {
+                Timed::Sample(model, sampler, per_point) => times.ns(model, sampler, per_point),
+                Timed::LookUp(light) => times.look_up(light),
             };
             assert_eq!(found, Estimate { value: median, standard_error: time.standard_error });
         }
-        assert!(ns(&times, ModelKind::Gaussian, Sampler::Published, 2).value.is_nan(), "not measured");
-        assert!(look_up(&times, 2).value.is_nan(), "no such light");
+        assert!(times.ns(ModelKind::Gaussian, Sampler::Published, 2).value.is_nan(), "not measured");
+        assert!(times.look_up(2).value.is_nan(), "no such light");
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! The answers, computed along the chosen path.
 
-use super::request::{Exact, Query, Request};
-use crate::config::Path;
+use super::request::{Exact, Query, Refusal, Request};
+use crate::args::CodePath;
 use core::array::from_fn;
+use core::ops::Index;
 use glam::Vec3;
-use hairis::reference::Reference;
+use hairis::reference::{Reference, ReferenceSample};
 use hairis::{Eval, EvalSlices, Hit, Lobe, LobeEval8, PerLobe, Sample, SampleSlices, Vec3x8};
 use hairis_variants::{AnyBsdf8, AnyGather, ModelId};
 use serde::Serialize;
@@ -23,155 +24,166 @@ pub(super) enum Line {
     Refused { error: String },
 }
 
-/// The answer to a request.
+/// The answer to a request. `pdf_lobe` has one number per lobe of the model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Answer<T> {
+    /// The direction of a sample.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wi: Option<[T; 3]>,
+    s: [T; 3],
+    pdf: T,
+    pdf_lobe: Vec<T>,
     #[serde(flatten)]
-    what: What<T>,
+    choice: Option<Choice<T>>,
     /// Colours of the lobes, under the name that the model gives them.
     #[serde(flatten)]
     colors: BTreeMap<&'static str, Vec<[T; 3]>>,
 }
 
-/// The answer to one of the two queries. `pdf_lobe` has one number per lobe of the model.
+/// The rest of the answer to uniform numbers. A discarded sample has no lobe, and 0 everywhere else.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-enum What<T> {
-    /// To a direction.
-    Value { s: [T; 3], pdf: T, pdf_lobe: Vec<T> },
-    /// To uniform numbers. A discarded sample has no lobe, and 0 everywhere else.
-    Sample { wi: [T; 3], s: [T; 3], pdf: T, pdf_lobe: Vec<T>, lobe: Option<&'static str>, weight: [T; 3] },
+struct Choice<T> {
+    lobe: Option<&'static str>,
+    weight: [T; 3],
 }
 
 /// Number of lines that a path takes at once.
-pub(super) const fn block_len(path: Path) -> usize {
+pub(super) const fn block_len(path: CodePath) -> usize {
     match path {
-        Path::Scalar | Path::F64 => 1,
-        Path::X8 => 8,
-        Path::Batch => 256,
+        CodePath::Scalar | CodePath::F64 => 1,
+        CodePath::X8 => 8,
+        CodePath::Batch => 256,
     }
 }
 
-/// The answers to a block of requests, in order.
-pub(super) fn answers(path: Path, requests: &[&Request]) -> Vec<Line> {
-    if path == Path::F64 {
-        return requests.iter().map(|request| Line::Double(textbook(request))).collect();
+/// The answers to a block of lines, in order.
+pub(super) fn answers(path: CodePath, block: &[Result<Request, Refusal>]) -> Vec<Line> {
+    let mut answers = Vec::with_capacity(block.len());
+    for (at, line) in block.iter().enumerate() {
+        match line {
+            Err(refusal) => answers.push((at, Line::Refused { error: refusal.to_string() })),
+            Ok(request) if path == CodePath::F64 => answers.push((at, Line::Double(textbook(request)))),
+            Ok(_) => {}
+        }
     }
     // The requests of each model together; the answers then go back to their places.
-    let mut answers = Vec::with_capacity(requests.len());
-    for model in ModelId::ALL {
-        let of_model = requests.iter().enumerate().filter(|(_, request)| request.model == *model);
-        let (at, requests): (Vec<usize>, Vec<&Request>) = of_model.map(|(at, request)| (at, *request)).unzip();
-        let found = match path {
-            Path::X8 => eight(&requests),
-            Path::Batch => batch(&requests),
-            Path::Scalar | Path::F64 => requests.iter().map(|request| scalar(request)).collect(),
+    for model in ModelId::ALL.iter().filter(|_| path != CodePath::F64) {
+        let requests = block.iter().enumerate().filter_map(|(at, line)| Some((at, line.as_ref().ok()?)));
+        let (at, requests): (Vec<usize>, Vec<&Request>) = requests.filter(|(_, of)| of.model == *model).unzip();
+        let found: Vec<_> = match path {
+            CodePath::X8 => requests.chunks(8).flat_map(eight).collect(),
+            CodePath::Batch => {
+                let is_shared = |a: &&Request, b: &&Request| (a.wo, a.h) == (b.wo, b.h) && a.values == b.values;
+                requests.chunk_by(is_shared).flat_map(batch).collect()
+            }
+            CodePath::Scalar | CodePath::F64 => requests.into_iter().map(scalar).collect(),
         };
-        answers.extend(at.into_iter().zip(found));
+        answers.extend(at.into_iter().zip(found.into_iter().map(Line::Single)));
     }
     answers.sort_unstable_by_key(|(at, _)| *at);
-    answers.into_iter().map(|(_, answer)| Line::Single(answer)).collect()
+    answers.into_iter().map(|(_, answer)| answer).collect()
 }
 
 /// One direction per call.
 fn scalar(request: &Request) -> Answer<f32> {
     let gather = gather(request);
-    let densities = |wi| gather.lobes(wi).0.map(|lobe| lobe.pdf);
-    let colors = || gather.lobes(request.wo).0.map(|lobe| lobe.color);
-    match request.query {
-        Query::Wi(wi) => valued(request, gather.eval_pdf(wi), densities(wi), colors),
-        Query::Xi(xi) => sampled(request, gather.sample(xi), densities, colors),
-    }
-}
-
-/// Eight lines per call, all of one model: every lane has its own material, shading point and query. Spare lanes repeat the
-/// last line.
-fn eight(requests: &[&Request]) -> Vec<Answer<f32>> {
-    let mut answers = Vec::with_capacity(requests.len());
-    for group in requests.chunks(8) {
-        let lane = |i: usize| group[i.min(group.len() - 1)];
-        let materials = AnyBsdf8::pack(from_fn(|i| &lane(i).bsdf)).expect("requests of one model");
-        let wo = Vec3x8::from(from_fn(|i| lane(i).wo));
-        let gathers = materials.prepare8(Hit { wo, h: f32x8::new(from_fn(|i| lane(i).h)) });
-        // A lane whose line has no xi samples as well; its sample is ignored.
-        let xi: [[f32; 3]; 8] = from_fn(|i| match lane(i).query {
-            Query::Wi(_) => [0.5; 3],
-            Query::Xi(xi) => xi,
-        });
-        let samples = gathers.sample8(&from_fn(|row| f32x8::new(xi.map(|xi| xi[row]))));
-        let wi = Vec3x8::from(from_fn(|i| match lane(i).query {
-            Query::Wi(wi) => wi,
-            Query::Xi(_) => samples.wi.lane(i),
-        }));
-        let (evals, lobes) = (gathers.eval_pdf8(&wi), gathers.lobes8(&wi));
-        let at_wo = gathers.lobes8(&wo);
-        answers.extend(group.iter().enumerate().map(|(i, request)| {
-            let colors = || at_wo.0.map(|lobe| lobe.color.map(|c| c.as_array()[i]));
-            match request.query {
-                Query::Wi(_) => valued(request, evals.lane(i), densities_of_lane(&lobes, i), colors),
-                Query::Xi(_) => sampled(request, samples.lane(i), |_| densities_of_lane(&lobes, i), colors),
-            }
-        }));
-    }
-    answers
-}
-
-/// Slices: one call for all directions, and one for all samples, of neighbouring lines that share a shading
-/// point.
-fn batch(requests: &[&Request]) -> Vec<Answer<f32>> {
-    let mut answers = Vec::with_capacity(requests.len());
-    for run in requests.chunk_by(|a, b| (a.wo, a.h) == (b.wo, b.h) && a.values == b.values) {
-        let gather = gather(run[0]);
-        let mut wi = Vec::new();
-        let mut xi = Vec::new();
-        for request in run {
-            match request.query {
-                Query::Wi(direction) => wi.push(direction),
-                Query::Xi(numbers) => xi.push(numbers),
-            }
+    let (found, wi) = match request.query {
+        Query::Wi(wi) => (valued(gather.eval_pdf(wi)), wi),
+        Query::Xi(xi) => {
+            let sample = gather.sample(xi);
+            (drawn(sample), sample.map_or(request.wo, |sample| sample.wi))
         }
-        let mut values = batch_values(run[0], &gather, &wi).into_iter();
-        let mut samples = batch_samples(run[0], &gather, &xi).into_iter();
-        answers.extend(run.iter().filter_map(|request| match request.query {
-            Query::Wi(_) => values.next(),
-            Query::Xi(_) => samples.next(),
-        }));
+    };
+    let densities = gather.lobes(wi).0.map(|lobe| lobe.pdf);
+    answer(request.model, found, densities, || gather.lobes(request.wo).0.map(|lobe| lobe.color))
+}
+
+/// Up to eight lines in a call, all of one model: every lane has its own material, shading point and query. Spare lanes repeat
+/// the last line.
+fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
+    let lane = |i: usize| group[i.min(group.len() - 1)];
+    let materials = AnyBsdf8::pack(from_fn(|i| &lane(i).bsdf)).expect("requests of one model");
+    let wo = Vec3x8::from(from_fn(|i| lane(i).wo));
+    let gathers = materials.prepare8(Hit { wo, h: f32x8::new(from_fn(|i| lane(i).h)) });
+    // A lane whose line has no xi samples as well; its sample is ignored.
+    let xi: [[f32; 3]; 8] = from_fn(|i| match lane(i).query {
+        Query::Wi(_) => [0.5; 3],
+        Query::Xi(xi) => xi,
+    });
+    let samples = gathers.sample8(&from_fn(|row| f32x8::new(xi.map(|xi| xi[row]))));
+    let wi = Vec3x8::from(from_fn(|i| match lane(i).query {
+        Query::Wi(wi) => wi,
+        Query::Xi(_) => samples.wi.lane(i),
+    }));
+    let (evals, lobes, at_wo) = (gathers.eval_pdf8(&wi), gathers.lobes8(&wi), gathers.lobes8(&wo));
+    let of_lane = |(i, request): (usize, &&Request)| {
+        let found = match request.query {
+            Query::Wi(_) => valued(evals.lane(i)),
+            Query::Xi(_) => drawn(samples.lane(i)),
+        };
+        let colors = || at_wo.0.map(|lobe| lobe.color.map(|c| c.as_array()[i]));
+        answer(request.model, found, densities_of_lane(&lobes, i), colors)
+    };
+    group.iter().enumerate().map(of_lane).collect()
+}
+
+/// Slices: one call for all directions, and one for all samples, of lines that share a shading point.
+fn batch(run: &[&Request]) -> Vec<Answer<f32>> {
+    let gather = gather(run[0]);
+    let (mut wi, mut xi) = (Vec::new(), Vec::new());
+    for request in run {
+        match request.query {
+            Query::Wi(direction) => wi.push(direction),
+            Query::Xi(numbers) => xi.push(numbers),
+        }
     }
-    answers
+    let mut values = batch_values(&gather, &wi).into_iter().zip(batch_densities(&gather, &wi));
+    let (wi, samples): (Vec<Vec3>, Vec<Found<f32>>) = batch_samples(&gather, &xi).into_iter().unzip();
+    let mut samples = samples.into_iter().zip(batch_densities(&gather, &wi));
+    let of_line = |request: &&Request| {
+        let (found, densities) = match request.query {
+            Query::Wi(_) => values.next()?,
+            Query::Xi(_) => samples.next()?,
+        };
+        Some(answer(request.model, found, densities, || gather.lobes(request.wo).0.map(|lobe| lobe.color)))
+    };
+    run.iter().filter_map(of_line).collect()
 }
 
 const ONE_LENGTH: &str = "slices of one length";
 
-fn batch_values(request: &Request, gather: &AnyGather, wi: &[Vec3]) -> Vec<Answer<f32>> {
-    let len = wi.len();
-    let [u, v, w]: [Vec<f32>; 3] = from_fn(|row| wi.iter().map(|wi| wi[row]).collect());
-    let (mut value, mut pdf) = ([vec![0.0; len], vec![0.0; len], vec![0.0; len]], vec![0.0; len]);
-    let out = EvalSlices { value: value.each_mut().map(Vec::as_mut_slice), pdf: &mut pdf };
-    gather.eval_pdf_batch([&u, &v, &w], out).expect(ONE_LENGTH);
-    let lobes = batch_densities(gather, wi);
-    let colors = || gather.lobes(request.wo).0.map(|lobe| lobe.color);
-    let answer = |i: usize| valued(request, Eval { value: from_fn(|c| value[c][i]), pdf: pdf[i] }, lobes[i], colors);
-    (0..len).map(answer).collect()
+/// Three numbers of each item, by column.
+fn columns<V: Index<usize, Output = f32>>(of: &[V]) -> [Vec<f32>; 3] {
+    from_fn(|row| of.iter().map(|item| item[row]).collect())
 }
 
-fn batch_samples(request: &Request, gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<Answer<f32>> {
-    let len = xi.len();
-    let [lobe, theta, phi]: [Vec<f32>; 3] = from_fn(|row| xi.iter().map(|xi| xi[row]).collect());
-    let mut vectors: [[Vec<f32>; 3]; 3] = from_fn(|_| from_fn(|_| vec![0.0; len]));
-    let (mut pdf, mut slot) = (vec![0.0; len], vec![0.0; len]);
+/// The three numbers at a place of columns.
+fn at(columns: &[Vec<f32>; 3], i: usize) -> [f32; 3] {
+    columns.each_ref().map(|column| column[i])
+}
+
+/// Values and densities.
+fn batch_values(gather: &AnyGather, wi: &[Vec3]) -> Vec<Found<f32>> {
+    let (mut value, mut pdf) = (columns(wi), vec![0.0; wi.len()]);
+    let out = EvalSlices { value: value.each_mut().map(Vec::as_mut_slice), pdf: &mut pdf };
+    gather.eval_pdf_batch(columns(wi).each_ref().map(Vec::as_slice), out).expect(ONE_LENGTH);
+    (0..wi.len()).map(|i| Found::Value(at(&value, i), pdf[i])).collect()
+}
+
+/// Samples, each after its direction.
+fn batch_samples(gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)> {
+    let mut vectors: [[Vec<f32>; 3]; 3] = from_fn(|_| columns(xi));
+    let (mut pdf, mut slot) = (vec![0.0; xi.len()], vec![0.0; xi.len()]);
     let [wi, value, weight] = vectors.each_mut().map(|v| v.each_mut().map(Vec::as_mut_slice));
     let out = SampleSlices { wi, value, pdf: &mut pdf, weight, slot: &mut slot };
-    gather.sample_batch([&lobe, &theta, &phi], out).expect(ONE_LENGTH);
-    let at = |vector: usize, i: usize| -> [f32; 3] { from_fn(|row| vectors[vector][row][i]) };
-    let wi: Vec<Vec3> = (0..len).map(|i| at(0, i).into()).collect();
-    let lobes = batch_densities(gather, &wi);
-    let colors = || gather.lobes(request.wo).0.map(|lobe| lobe.color);
-    let answer = |i: usize| {
+    gather.sample_batch(columns(xi).each_ref().map(Vec::as_slice), out).expect(ONE_LENGTH);
+    let sample = |i: usize| {
+        let [wi, value, weight] = vectors.each_ref().map(|vector| at(vector, i));
         let lobe = Lobe::ALL.into_iter().zip(0_u8..).find(|(_, number)| f32::from(*number) == slot[i]);
-        let sample = lobe.map(|(lobe, _)| Sample { wi: wi[i], value: at(1, i), pdf: pdf[i], weight: at(2, i), lobe });
-        sampled(request, sample, |_| lobes[i], colors)
+        let sample = lobe.map(|(lobe, _)| Sample { wi: wi.into(), value, pdf: pdf[i], weight, lobe });
+        (wi.into(), drawn(sample))
     };
-    (0..len).map(answer).collect()
+    (0..xi.len()).map(sample).collect()
 }
 
 /// Densities of the lobes: they have no slice call, so eight directions per call.
@@ -187,74 +199,63 @@ fn batch_densities(gather: &AnyGather, wi: &[Vec3]) -> Vec<[f32; 4]> {
 fn textbook(request: &Request) -> Answer<f64> {
     let Request { model, values, exact: Exact { values: exact, wo, h, query: numbers }, .. } = request;
     let point = model.exact_reference(values, exact, *wo, *h).expect("checked when it was read");
-    let densities = |wi| pdf_lobe(*model, point.lobes(wi).0.map(|lobe| lobe.pdf));
-    let what = match request.query {
-        Query::Wi(_) => {
-            What::Value { s: point.eval(*numbers), pdf: point.pdf(*numbers), pdf_lobe: densities(*numbers) }
-        }
+    let (found, wi) = match request.query {
+        Query::Wi(_) => (Found::Value(point.eval(*numbers), point.pdf(*numbers)), *numbers),
         Query::Xi(_) => {
-            let drawn = point.sample(*numbers);
-            What::Sample {
-                wi: drawn.wi,
-                s: drawn.value,
-                pdf: drawn.pdf,
-                pdf_lobe: densities(drawn.wi),
-                lobe: drawn.lobe.map(|lobe| name(*model, lobe)),
-                weight: drawn.weight,
-            }
+            let sample = point.sample(*numbers);
+            (Found::Sample(sample), sample.wi)
         }
     };
-    Answer { what, colors: colors(*model, || point.lobes(*wo).0.map(|lobe| lobe.color)) }
+    let densities = point.lobes(wi).0.map(|lobe| lobe.pdf);
+    answer(*model, found, densities, || point.lobes(*wo).0.map(|lobe| lobe.color))
 }
 
 fn gather(request: &Request) -> AnyGather {
     request.bsdf.prepare(Hit { wo: request.wo.into(), h: request.h })
 }
 
-fn valued(request: &Request, eval: Eval, densities: [f32; 4], color: impl FnOnce() -> [[f32; 3]; 4]) -> Answer<f32> {
-    let pdf_lobe = pdf_lobe(request.model, densities);
-    let what = What::Value { s: eval.value, pdf: eval.pdf, pdf_lobe };
-    Answer { what, colors: colors(request.model, color) }
+/// Result of a query: a value and its density, or a sample.
+enum Found<T> {
+    Value([T; 3], T),
+    Sample(ReferenceSample<T>),
 }
 
-fn sampled(
-    request: &Request,
-    sample: Option<Sample>,
-    densities: impl FnOnce(Vec3) -> [f32; 4],
-    color: impl FnOnce() -> [[f32; 3]; 4],
-) -> Answer<f32> {
-    let zero = [0.0; 3];
-    let what = match sample {
-        None => {
-            let pdf_lobe = pdf_lobe(request.model, [0.0; 4]);
-            What::Sample { wi: zero, s: zero, pdf: 0.0, pdf_lobe, lobe: None, weight: zero }
+const fn valued(eval: Eval) -> Found<f32> {
+    Found::Value(eval.value, eval.pdf)
+}
+
+/// A sample of the kernels, or the zeros of a discarded one.
+fn drawn(sample: Option<Sample>) -> Found<f32> {
+    let none = ReferenceSample { wi: [0.0; 3], value: [0.0; 3], pdf: 0.0, weight: [0.0; 3], lobe: None };
+    Found::Sample(sample.map_or(none, |Sample { wi, value, pdf, weight, lobe }| ReferenceSample {
+        wi: wi.into(),
+        value,
+        pdf,
+        weight,
+        lobe: Some(lobe),
+    }))
+}
+
+/// The answer, with the densities of the model's own lobes, and their colours if it reports them.
+fn answer<T: Copy + Default>(
+    model: ModelId,
+    found: Found<T>,
+    densities: [T; 4],
+    colors: impl FnOnce() -> [[T; 3]; 4],
+) -> Answer<T> {
+    let names = model.lobes();
+    let own = |densities: [T; 4]| densities[..names.len()].to_vec();
+    let colors = model.colors().map(|name| (name, colors()[..names.len()].to_vec())).into_iter().collect();
+    match found {
+        Found::Value(s, pdf) => Answer { wi: None, s, pdf, pdf_lobe: own(densities), choice: None, colors },
+        Found::Sample(ReferenceSample { wi, value: s, pdf, weight, lobe }) => {
+            let pdf_lobe = own(if lobe.is_some() { densities } else { [T::default(); 4] });
+            let choice = Some(Choice { lobe: lobe.map(|lobe| names[lobe.index()]), weight });
+            Answer { wi: Some(wi), s, pdf, pdf_lobe, choice, colors }
         }
-        Some(s) => What::Sample {
-            wi: s.wi.into(),
-            s: s.value,
-            pdf: s.pdf,
-            pdf_lobe: pdf_lobe(request.model, densities(s.wi)),
-            lobe: Some(name(request.model, s.lobe)),
-            weight: s.weight,
-        },
-    };
-    Answer { what, colors: colors(request.model, color) }
-}
-
-/// The densities of the model's own lobes.
-fn pdf_lobe<T: Copy>(model: ModelId, densities: [T; 4]) -> Vec<T> {
-    densities[..model.lobes().len()].to_vec()
-}
-
-/// The colours of the model's own lobes, if they are reported.
-fn colors<T>(model: ModelId, all: impl FnOnce() -> [[T; 3]; 4]) -> BTreeMap<&'static str, Vec<[T; 3]>> {
-    model.colors().map(|name| (name, all().into_iter().take(model.lobes().len()).collect())).into_iter().collect()
+    }
 }
 
 fn densities_of_lane(lobes: &PerLobe<LobeEval8>, lane: usize) -> [f32; 4] {
     lobes.0.map(|lobe| lobe.pdf.as_array()[lane])
-}
-
-fn name(model: ModelId, lobe: Lobe) -> &'static str {
-    model.lobes()[lobe.index()]
 }

@@ -2,8 +2,8 @@
 
 use super::request::Refusal;
 use core::fmt;
-use serde::Deserializer as _;
-use serde::de::{DeserializeSeed, MapAccess, SeqAccess, Visitor};
+use serde::Deserializer;
+use serde::de::{DeserializeSeed, Error, MapAccess, SeqAccess, Visitor};
 
 /// A JSON value. Objects keep the order and the repetitions of their fields, for [`Json::fields`] to check.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +16,13 @@ pub(super) enum Json {
     Object(Vec<(String, Json)>),
 }
 
+/// The fields of an object, and its path; empty for the line itself.
+#[derive(Debug)]
+pub(super) struct Fields {
+    path: String,
+    entries: Vec<(String, Json)>,
+}
+
 impl Json {
     /// Parses a line; a refusal names the innermost field that was being read.
     pub(super) fn parse(line: &str) -> Result<Self, Refusal> {
@@ -24,37 +31,31 @@ impl Json {
         }
         let mut path = String::new();
         let mut input = serde_json::Deserializer::from_str(line);
-        let parsed = input.deserialize_any(Node(&mut path)).and_then(|json| input.end().map(|()| json));
+        let parsed = Node(&mut path).deserialize(&mut input).and_then(|json| input.end().map(|()| json));
         parsed.map_err(|error| {
             let text = error.to_string();
             let problem = text.rsplit_once(" at line ").map_or(&*text, |(problem, _)| problem);
-            let column = error.column();
-            match &*path {
-                "" => Refusal::at("line", format!("not JSON: {problem} (column {column})")),
-                field => Refusal::at(field, format!("{problem} (column {column})")),
-            }
+            let [field, intro] = if path.is_empty() { ["line", "not JSON: "] } else { [&*path, ""] };
+            Refusal::at(field, format!("{intro}{problem} (column {})", error.column()))
         })
     }
 
-    /// The fields of an object in the order of `known`, `None` for one that is not there.
-    ///
-    /// `path` is the object's own, empty for that of the line.
-    pub(super) fn fields(self, path: &str, known: &[&str]) -> Result<Vec<Option<Self>>, Refusal> {
+    /// The fields of an object at `path`, empty for that of the line: all of them `known`, and none given twice.
+    pub(super) fn fields(self, path: &str, known: &[&str]) -> Result<Fields, Refusal> {
         let Self::Object(entries) = self else {
             let field = if path.is_empty() { "line" } else { path };
             return Err(Refusal::at(field, format!("must be an object, got {self}")));
         };
-        let mut found = vec![None; known.len()];
-        for (name, value) in entries {
-            let Some(slot) = known.iter().position(|known| *known == name) else {
-                let expected = known.join(", ");
-                return Err(Refusal::at(&join(path, &name), format!("unknown field, expected one of {expected}")));
-            };
-            if found[slot].replace(value).is_some() {
-                return Err(Refusal::at(&join(path, &name), "given twice"));
+        for (place, (name, _)) in entries.iter().enumerate() {
+            let refuse = |problem: String| Err(Refusal::at(&join(path, name), problem));
+            if !known.contains(&&**name) {
+                return refuse(format!("unknown field, expected one of {}", known.join(", ")));
+            }
+            if entries[..place].iter().any(|(other, _)| other == name) {
+                return refuse("given twice".to_owned());
             }
         }
-        Ok(found)
+        Ok(Fields { path: path.to_owned(), entries })
     }
 
     /// The text of the object's field `name`, if there is one.
@@ -65,42 +66,62 @@ impl Json {
             _ => None,
         })
     }
+}
 
-    /// The text of a field that may be missing.
-    pub(super) fn text(json: Option<Self>, field: &str) -> Result<Option<String>, Refusal> {
-        match json {
-            None => Ok(None),
-            Some(Self::Text(text)) => Ok(Some(text)),
-            Some(other) => Err(Refusal::at(field, format!("must be a string, got {other}"))),
+impl Fields {
+    /// Whether there is such a field.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.entries.iter().any(|(field, _)| field == name)
+    }
+
+    /// The value of a field, once.
+    pub(super) fn take(&mut self, name: &str) -> Result<Json, Refusal> {
+        let place = self.entries.iter().position(|(field, _)| field == name);
+        let place = place.ok_or_else(|| self.refuse(name, "missing"))?;
+        Ok(self.entries.swap_remove(place).1)
+    }
+
+    /// A refusal of a field.
+    pub(super) fn refuse(&self, name: &str, problem: impl Into<String>) -> Refusal {
+        Refusal::at(&join(&self.path, name), problem)
+    }
+
+    /// The text of a field.
+    pub(super) fn text(&mut self, name: &str) -> Result<String, Refusal> {
+        match self.take(name)? {
+            Json::Text(text) => Ok(text),
+            other => Err(self.refuse(name, format!("must be a string, got {other}"))),
         }
     }
 
     /// The number of a field.
-    pub(super) fn number(json: Option<Self>, field: &str) -> Result<f64, Refusal> {
+    pub(super) fn number(&mut self, name: &str) -> Result<f64, Refusal> {
+        let json = self.take(name)?;
+        self.number_at(name, &json)
+    }
+
+    fn number_at(&self, name: &str, json: &Json) -> Result<f64, Refusal> {
         match json {
-            None => Err(Refusal::at(field, "missing")),
-            Some(Self::Number(number)) => Ok(number),
-            Some(other) => Err(Refusal::at(field, format!("must be a number, got {other}"))),
+            Json::Number(number) => Ok(*number),
+            other => Err(self.refuse(name, format!("must be a number, got {other}"))),
+        }
+    }
+
+    /// The `len` numbers of a field.
+    pub(super) fn numbers(&mut self, name: &str, len: usize) -> Result<Vec<f64>, Refusal> {
+        match self.take(name)? {
+            Json::Array(items) if items.len() == len => {
+                items.iter().zip(0..).map(|(json, i)| self.number_at(&format!("{name}[{i}]"), json)).collect()
+            }
+            Json::Array(items) => Err(self.refuse(name, format!("must have {len} numbers, got {}", items.len()))),
+            other => Err(self.refuse(name, format!("must be an array of {len} numbers, got {other}"))),
         }
     }
 
     /// The three numbers of a field.
-    pub(super) fn three(json: Option<Self>, field: &str) -> Result<[f64; 3], Refusal> {
-        let numbers = Self::numbers(json, field, 3)?;
+    pub(super) fn three(&mut self, name: &str) -> Result<[f64; 3], Refusal> {
+        let numbers = self.numbers(name, 3)?;
         Ok([numbers[0], numbers[1], numbers[2]])
-    }
-
-    /// The `len` numbers of a field.
-    pub(super) fn numbers(json: Option<Self>, field: &str, len: usize) -> Result<Vec<f64>, Refusal> {
-        let items = match json {
-            None => return Err(Refusal::at(field, "missing")),
-            Some(Self::Array(items)) => items,
-            Some(other) => return Err(Refusal::at(field, format!("must be an array of {len} numbers, got {other}"))),
-        };
-        if items.len() != len {
-            return Err(Refusal::at(field, format!("must have {len} numbers, got {}", items.len())));
-        }
-        items.into_iter().zip(0..).map(|(json, i)| Self::number(Some(json), &format!("{field}[{i}]"))).collect()
     }
 }
 
@@ -139,8 +160,8 @@ struct Node<'p>(&'p mut String);
 impl<'de> DeserializeSeed<'de> for Node<'_> {
     type Value = Json;
 
-    fn deserialize<D: serde::Deserializer<'de>>(self, deserializer: D) -> Result<Json, D::Error> {
-        deserializer.deserialize_any(self)
+    fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Json, D::Error> {
+        from.deserialize_any(self)
     }
 }
 
@@ -159,7 +180,7 @@ impl<'de> Visitor<'de> for Node<'_> {
         Ok(Json::Bool(value))
     }
 
-    fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<Json, E> {
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Json, E> {
         if value.is_finite() { Ok(Json::Number(value)) } else { Err(E::custom("not a finite number")) }
     }
 

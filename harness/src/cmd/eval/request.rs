@@ -1,6 +1,6 @@
 //! One line of the input, checked.
 
-use super::json::{Json, shortened};
+use super::json::{Fields, Json, shortened};
 use core::fmt;
 use glam::Vec3;
 use hairis::ParamError;
@@ -83,36 +83,30 @@ impl Request {
         let first = line.peek("model").and_then(|name| ModelId::find(name, None)).unwrap_or(ModelId::ALL[0]);
         let choice = first.choice().map(|(field, _)| field);
         let h = first.is_near_field().then_some("h");
-        let known: Vec<&str> = ["model"].into_iter().chain(choice).chain(["params"]).chain(h).collect();
-        let mut found = line.fields("", &[&known, &["wo", "wi", "xi"][..]].concat())?.into_iter();
-        let mut next = |is_there: bool| if is_there { found.next().flatten() } else { None };
+        let known = ["model"].into_iter().chain(choice).chain(["params"]).chain(h).chain(["wo", "wi", "xi"]);
+        let mut line = line.fields("", &known.collect::<Vec<_>>())?;
 
-        let name = Json::text(next(true), "model")?.ok_or_else(|| Refusal::at("model", "missing"))?;
+        let name = line.text("model")?;
         named("model", &name, &ModelId::defaults_of_names().map(ModelId::name).collect::<Vec<_>>())?;
-        let word = match (choice, next(choice.is_some())) {
-            (Some(field), json @ Some(_)) => Json::text(json, field)?.map(|word| (field, word)),
-            _ => None,
+        let model = match choice.filter(|field| line.has(field)) {
+            Some(field) => chosen(first.name(), field, &line.text(field)?)?,
+            None => first,
         };
-        let model = word.map_or(Ok(first), |(field, word)| chosen(first.name(), field, &word))?;
-        let params = next(true).ok_or_else(|| Refusal::at("params", "missing"))?;
-        let (values, exact) = read(model.defaults(), params)?;
+        let (values, exact) = read(model.defaults(), line.take("params")?)?;
         let bsdf = model.bsdf(&values).map_err(|error| refused(model.fields(), &error, &exact))?;
-        let h = match next(h.is_some()) {
-            None => 0.0,
-            json => Json::number(json, "h")?.clamp(-1.0, 1.0),
-        };
-        let wo = direction(next(true), "wo")?;
-        let (query, numbers) = match (next(true), next(true)) {
-            (Some(wi), None) => {
-                let wi = direction(Some(wi), "wi")?;
+        let h = if line.has("h") { line.number("h")?.clamp(-1.0, 1.0) } else { 0.0 };
+        let wo = direction(&mut line, "wo")?;
+        let (query, numbers) = match [line.has("wi"), line.has("xi")] {
+            [true, false] => {
+                let wi = direction(&mut line, "wi")?;
                 (Query::Wi(single3(wi)), wi)
             }
-            (None, Some(xi)) => {
-                let xi = uniform(Some(xi), "xi")?;
+            [false, true] => {
+                let xi = uniform(&mut line, "xi")?;
                 (Query::Xi(single_xi(xi)), xi)
             }
-            (None, None) => return Err(Refusal::at("wi", "missing; give wi or xi")),
-            (Some(_), Some(_)) => return Err(Refusal::at("wi", "given together with xi; give one of them")),
+            [false, false] => return Err(line.refuse("wi", "missing; give wi or xi")),
+            [true, true] => return Err(line.refuse("wi", "given together with xi; give one of them")),
         };
         let exact = Exact { values: exact, wo, h, query: numbers };
         Ok(Self { model, values, bsdf, wo: single3(wo), h: single(h), query, exact })
@@ -137,20 +131,19 @@ fn named(field: &str, name: &str, names: &[&str]) -> Result<usize, Refusal> {
 /// The values that `params` gives in place of the defaults, rounded, and as they are in the input.
 fn read(mut values: Values, params: Json) -> Result<(Values, Values<f64>), Refusal> {
     let fields = values.fields();
-    let names: Vec<&str> = fields.iter().map(|field| field.name).collect();
-    let given = params.fields("params", &names)?;
+    let mut given = params.fields("params", &fields.iter().map(|field| field.name).collect::<Vec<_>>())?;
     for field in fields.iter().filter(|field| field.instead_of.is_none()) {
         one_of_group(field.name, fields, &given)?;
     }
     let mut exact = values.map(f64::from);
-    for (field, json) in fields.iter().zip(given) {
-        if json.is_none() && (field.optional || in_group(field, fields)) {
+    for field in fields {
+        if !given.has(field.name) && (field.optional || in_group(field, fields)) {
             continue;
         }
         if let Some(other) = field.instead_of {
             (values, exact) = (values.without(other), exact.without(other));
         }
-        let numbers = numbers(field, json)?;
+        let numbers = numbers(field, &mut given)?;
         exact = exact.with(field.name, &numbers);
         values = values.with(field.name, &numbers.iter().map(|x| single(*x)).collect::<Vec<_>>());
     }
@@ -163,35 +156,30 @@ fn in_group(field: &Field, fields: &[Field]) -> bool {
 }
 
 /// Refuses the group of `head` if not exactly one of its fields is given; a field alone may be missing for now.
-fn one_of_group(head: &str, fields: &[Field], given: &[Option<Json>]) -> Result<(), Refusal> {
-    let group = fields.iter().zip(given).filter(|(field, _)| field.name == head || field.instead_of == Some(head));
-    let (found, missing): (Vec<_>, Vec<_>) = group.partition(|(_, json)| json.is_some());
-    let names = |of: &[(&Field, &Option<Json>)]| of.iter().map(|(field, _)| field.name).collect::<Vec<_>>().join(", ");
-    let path = format!("params.{}", found.first().map_or(head, |(field, _)| field.name));
-    match (found.len(), missing.len()) {
-        (0, 2..) => {
-            let others = names(&missing[1..]);
-            Err(Refusal::at(&path, format!("missing; give one of {head}, {others}")))
+fn one_of_group(head: &str, fields: &[Field], given: &Fields) -> Result<(), Refusal> {
+    let group = fields.iter().filter(|field| field.name == head || field.instead_of == Some(head));
+    let (found, missing): (Vec<&str>, Vec<&str>) = group.map(|field| field.name).partition(|name| given.has(name));
+    match (&*found, &*missing) {
+        ([], [_, others @ ..]) if !others.is_empty() => {
+            Err(given.refuse(head, format!("missing; give one of {head}, {}", others.join(", "))))
         }
-        (2.., _) => {
-            let others = names(&found[1..]);
-            Err(Refusal::at(&path, format!("given together with {others}; give one of them")))
+        ([first, others @ ..], _) if !others.is_empty() => {
+            Err(given.refuse(first, format!("given together with {}; give one of them", others.join(", "))))
         }
         _ => Ok(()),
     }
 }
 
 /// The numbers of a field of `params`; for a word its index.
-fn numbers(field: &Field, json: Option<Json>) -> Result<Vec<f64>, Refusal> {
-    let path = format!("params.{}", field.name);
+fn numbers(field: &Field, given: &mut Fields) -> Result<Vec<f64>, Refusal> {
     match field.kind {
-        Kind::Number => Ok(vec![Json::number(json, &path)?]),
+        Kind::Number => Ok(vec![given.number(field.name)?]),
         Kind::Word(words) => {
-            let word = Json::text(json, &path)?.ok_or_else(|| Refusal::at(&path, "missing"))?;
+            let word = given.text(field.name)?;
             #[expect(clippy::cast_precision_loss, reason = "a few words")]
-            named(&path, &word, words).map(|place| vec![place as f64])
+            named(&format!("params.{}", field.name), &word, words).map(|place| vec![place as f64])
         }
-        kind => Json::numbers(json, &path, kind.width()),
+        kind => given.numbers(field.name, kind.width()),
     }
 }
 
@@ -215,8 +203,8 @@ fn refused(fields: &[Field], error: &ParamError, exact: &Values<f64>) -> Refusal
 }
 
 /// A direction, normalised.
-fn direction(json: Option<Json>, field: &str) -> Result<[f64; 3], Refusal> {
-    let [u, v, w] = Json::three(json, field)?;
+fn direction(line: &mut Fields, field: &str) -> Result<[f64; 3], Refusal> {
+    let [u, v, w] = line.three(field)?;
     let length = u.hypot(v).hypot(w);
     if (length - 1.0).abs() <= ROUNDED {
         Ok([u, v, w])
@@ -228,8 +216,8 @@ fn direction(json: Option<Json>, field: &str) -> Result<[f64; 3], Refusal> {
 }
 
 /// Three numbers in `[0, 1)`.
-fn uniform(json: Option<Json>, field: &str) -> Result<[f64; 3], Refusal> {
-    let xi = Json::three(json, field)?;
+fn uniform(line: &mut Fields, field: &str) -> Result<[f64; 3], Refusal> {
+    let xi = line.three(field)?;
     for (i, x) in xi.iter().enumerate() {
         if !(0.0..1.0).contains(x) {
             return Err(Refusal::at(&format!("{field}[{i}]"), format!("must be in [0, 1), got {x}")));

@@ -1,10 +1,10 @@
 //! The plots of a study: variance, efficiency, gains and weights.
 
 use super::super::Cell;
-use super::super::rows::Strategy;
-use super::super::summary::Gain;
+use super::super::rows::{Estimator, Row, name, published, samplers, strategies};
+use super::super::summary::on_gaussian;
 use super::super::times::PER_POINT;
-use super::view::{Counted, Estimator, MANY, TOLD, View, ess};
+use super::super::view::{Counted, Gain, MANY, TOLD, View, ess, mean_of, mean_v};
 use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, ReferenceLine, Series};
 use crate::report::Drawing;
 use crate::sampler::Sampler;
@@ -14,124 +14,92 @@ use crate::subject::ModelKind;
 /// The light that everything sees.
 const CONSTANT: usize = 0;
 
-/// An axis of the grid that variances are shown over.
-struct Over {
-    slug: &'static str,
-    label: &'static str,
-    values: &'static [f32],
-    of: fn(&Cell) -> f32,
+/// A chart of lines.
+pub(super) fn lines(title: impl Into<String>, x: Axis, y: Axis, series: impl IntoIterator<Item = Series>) -> LineChart {
+    series.into_iter().fold(LineChart::new(title, x, y), LineChart::series)
 }
 
-/// V of every sampler over the width of R, and over the inclination.
-pub(super) fn variances(of: &View<'_>) -> Vec<Drawing> {
-    let axes = [
-        Over { slug: "width", label: "width of R, β_R (°)", values: of.grid.beta_r_deg, of: |cell| cell.beta_r_deg },
-        Over {
-            slug: "inclination",
-            label: "inclination of the viewer, θₒ (°)",
-            values: of.grid.theta_o_deg,
-            of: |cell| cell.theta_o_deg,
-        },
-    ];
-    let mut figures = Vec::new();
-    for over in &axes {
-        for model in ModelKind::ALL {
-            let title = format!("Variance over the {}, {} model", over.slug, model.title());
-            let y = Axis::log("relative variance of a sample, V");
-            let mut chart = LineChart::new(title, Axis::linear(over.label).from_zero(), y);
-            for sampler in Sampler::ALL {
-                let point = |value: &f32| {
-                    let v = of.mean_v((model, sampler), CONSTANT, |cell| (over.of)(cell) == *value)?;
-                    Some(Point::new(f64::from(*value), v.value).with_error(v.standard_error))
-                };
-                chart = chart.series(Series::new(sampler.name(), over.values.iter().filter_map(point)));
-            }
-            let caption = format!(
-                "Relative variance of a sample under {} light by sampler: geometric means over the other axes of the \
-                 grid. Bars are one standard error, mostly smaller than the marks. An error of 1% takes 10⁴ V samples.",
-                of.lights[CONSTANT]
-            );
-            figures.push(Drawing::new(chart.svg(), caption).named(format!("v-by-{}-{}", over.slug, model.name())));
-        }
-    }
-    figures
+/// A chart of each model.
+fn each_model(chart: impl Fn(ModelKind) -> Drawing) -> Vec<Drawing> {
+    ModelKind::ALL.map(chart).into()
 }
 
+/// The runnable samplers on a model.
+pub(super) fn samplers_on(model: ModelKind) -> impl Iterator<Item = Estimator> + Clone {
+    samplers().map(move |strategy| (model, strategy))
+}
+
+/// A bar with its standard error.
 fn bar(of: Option<Estimate>) -> Bar {
     of.map_or(Bar::new(f64::NAN), |of| Bar::new(of.value).with_error(of.standard_error))
 }
 
+/// A bar of a median, with the quartiles of its cells, times a factor.
+pub(super) fn median_bar(of: Option<Gain>, factor: f64) -> Bar {
+    of.map_or(Bar::new(f64::NAN), |gain| {
+        let [low, high] = gain.quartiles.map(|ratio| ratio * factor);
+        Bar::new(gain.median.value * factor).with_interval(low, high)
+    })
+}
+
+/// V of every sampler over the width of R, and over the inclination.
+pub(super) fn variances(of: &View<'_>) -> Vec<Drawing> {
+    type Over = (&'static str, &'static str, &'static [f32], fn(&Cell) -> f32);
+    let grid = of.grid();
+    let axes: [Over; 2] = [
+        ("width", "width of R, β_R (°)", grid.beta_r_deg, |cell| cell.beta_r_deg),
+        ("inclination", "inclination of the viewer, θₒ (°)", grid.theta_o_deg, |cell| cell.theta_o_deg),
+    ];
+    let chart = |(slug, label, values, axis): Over| {
+        each_model(|model| {
+            let series = samplers_on(model).map(|estimator| {
+                let point = |value: &f32| {
+                    let rows = of.rows_of(estimator, CONSTANT).filter(|row| axis(&row.cell) == *value);
+                    mean_v(rows).map(|v| Point::new(f64::from(*value), v.value).with_error(v.standard_error))
+                };
+                Series::new(name(estimator.1), values.iter().filter_map(point))
+            });
+            let title = format!("Variance over the {slug}, {} model", model.title());
+            let y = Axis::log("relative variance of a sample, V");
+            let caption = format!(
+                "Relative variance of a sample under {} light by sampler: geometric means over the other axes of the \
+                 grid. Bars are one standard error, mostly smaller than the marks. An error of 1% takes 10⁴ V samples.",
+                of.lights()[CONSTANT]
+            );
+            let chart = lines(title, Axis::linear(label).from_zero(), y, series);
+            Drawing::new(chart.svg(), caption).named(format!("v-by-{slug}-{}", model.name()))
+        })
+    };
+    axes.into_iter().flat_map(chart).collect()
+}
+
 /// Efficiency by samples per shading point.
 pub(super) fn efficiencies(of: &View<'_>) -> Vec<Drawing> {
-    let figure = |model: ModelKind| {
-        let title = format!("Efficiency under {} light, {} model", of.lights[CONSTANT], model.title());
+    each_model(|model| {
+        let title = format!("Efficiency under {} light, {} model", of.lights()[CONSTANT], model.title());
         let groups = PER_POINT.map(|n| format!("{n} per shading point"));
-        let mut chart = BarChart::new(title, Axis::log("1 / (V · µs)"), groups);
-        for sampler in Sampler::ALL {
-            let bars = PER_POINT.map(|n| bar(of.efficiency((model, sampler), CONSTANT, n)));
-            chart = chart.series(sampler.name(), bars);
-        }
+        let chart =
+            samplers_on(model).fold(BarChart::new(title, Axis::log("1 / (V · µs)"), groups), |chart, estimator| {
+                let bars = PER_POINT.map(|n| bar(of.efficiency(estimator, CONSTANT, n)));
+                chart.series(name(estimator.1), bars)
+            });
         let caption = "Geometric mean over the grid of 1 / (V · time of a sample), the set-up of a shading point spread \
                        over 1, 4 or 16 samples; eight lanes, one thread, this machine. Whiskers are one standard error, \
                        that of the times included. Twice the efficiency is half the time to the same error squared.";
         Drawing::new(chart.svg(), caption).named(format!("efficiency-{}", model.name()))
-    };
-    ModelKind::ALL.map(figure).into()
+    })
 }
-
-/// A bar of a median, with the quartiles of its cells.
-fn median_bar(of: Option<Gain>, time: Option<Estimate>) -> Bar {
-    match (of, time) {
-        (Some(gain), Some(time)) => {
-            let [low, high] = gain.quartiles.map(|ratio| ratio * time.value);
-            Bar::new(gain.median.value * time.value).with_interval(low, high)
-        }
-        _ => Bar::new(f64::NAN),
-    }
-}
-
-/// Bars of V of one estimator over V of another, by light.
-fn by_light(of: &View<'_>, base: Estimator, other: (ModelKind, Strategy), time: Timing) -> Vec<Bar> {
-    let bar = |light| {
-        let ratio = match (time, other.1.sampler()) {
-            (None, _) => Some(Estimate::exact(1.0)),
-            (Some(counted), Some(sampler)) => of.time_ratio(base, (other.0, sampler), light, counted),
-            (Some(_), None) => None,
-        };
-        median_bar(of.gain(base, other, light), ratio)
-    };
-    (0..of.lights.len()).map(bar).collect()
-}
-
-/// Time that a gain counts; `None` for samples alone.
-type Timing = Option<Counted>;
 
 /// The verdicts in one plot: the Cauchy model against the Gaussian one, by light.
 pub(super) fn summary(of: &View<'_>) -> Drawing {
-    let title = "Samples: Gaussian model over Cauchy model";
-    let mut chart = BarChart::new(title, Axis::log("V Gaussian / V Cauchy"), of.light_labels()).narrow();
-    for sampler in TOLD {
-        let gain = |light| of.gain((ModelKind::Gaussian, sampler), (ModelKind::Cauchy, sampler), light);
-        let bar = |light| Bar::new(gain(light).map_or(f64::NAN, |gain| gain.median.value));
-        chart = chart.series(sampler.name(), (0..of.lights.len()).map(bar));
-    }
+    let told = TOLD.into_iter().map(|sampler| (ModelKind::Cauchy, Some(sampler)));
+    let axis = Axis::log("V Gaussian / V Cauchy");
+    let chart = of.by_light("Samples: Gaussian model over Cauchy model", axis, told, |cauchy, light| {
+        Bar::new(of.gain(on_gaussian(cauchy), cauchy, light).map_or(f64::NAN, |gain| gain.median.value))
+    });
     let caption = "By what factor the Cauchy model needs fewer samples (above 1) or more (below), by light: medians over the \
                    grid. The spread over its cells is shown below.";
-    Drawing::new(chart.level(1.0).svg(), caption).named("summary")
-}
-
-/// Gains over `published` by light, a chart for each model: in samples, up to that of perfect sampling, or in equal time.
-fn over_published(of: &View<'_>, time: Timing, strategies: &[Strategy], words: [&str; 4]) -> Vec<Drawing> {
-    let [title, axis, slug, caption] = words;
-    let figure = |model: ModelKind| {
-        let mut chart = BarChart::new(format!("{title}, {} model", model.title()), Axis::log(axis), of.light_labels());
-        for strategy in strategies.iter().filter(|strategy| strategy.sampler() != Some(Sampler::Published)) {
-            chart = chart.series(strategy.name(), by_light(of, (model, Sampler::Published), (model, *strategy), time));
-        }
-        let caption = format!("{caption} Medians over the grid; whiskers go from the first to the third quartile.");
-        Drawing::new(chart.level(1.0).svg(), caption).named(format!("{slug}-{}", model.name()))
-    };
-    ModelKind::ALL.map(figure).into()
+    Drawing::new(chart.narrow().level(1.0).svg(), caption).named("summary")
 }
 
 /// Gains in V by light, over `published`, up to that of perfect sampling.
@@ -140,32 +108,41 @@ pub(super) fn limits(of: &View<'_>) -> Vec<Drawing> {
                    time a sample may take before it loses in equal time. `perfect` draws in proportion to S cos θᵢ, blind to \
                    the light. Under constant light nothing is left of its variance: no bar.";
     let words = ["Fewer samples than the published sampler", "V published / V (×)", "fewer-samples-by-light", caption];
-    over_published(of, None, &Strategy::ALL, words)
+    over_published(of, None, words)
+}
+
+/// Gains over `published` by light, a chart for each model: in samples, up to that of perfect sampling, or in equal time.
+fn over_published(of: &View<'_>, time: Option<Counted>, [title, axis, slug, caption]: [&str; 4]) -> Vec<Drawing> {
+    each_model(|model| {
+        let others = strategies().map(|strategy| (model, strategy)).filter(|other| *other != published(*other));
+        let others = others.filter(|(_, strategy)| time.is_none() || strategy.is_some());
+        let title = format!("{title}, {} model", model.title());
+        let chart = of.by_light(&title, Axis::log(axis), others, |other, light| {
+            let factor = time.map_or(1.0, |time| of.time_ratio([published(other), other], light, MANY, time).value);
+            median_bar(of.gain(published(other), other, light), factor)
+        });
+        let caption = format!("{caption} Medians over the grid; whiskers go from the first to the third quartile.");
+        Drawing::new(chart.level(1.0).svg(), caption).named(format!("{slug}-{}", model.name()))
+    })
 }
 
 /// Gains in equal time, by light: over `published`, without and with the look-up, then of the Cauchy model.
 pub(super) fn gains(of: &View<'_>) -> Vec<Drawing> {
-    let samplers = Sampler::ALL.map(Strategy::By);
     let axis = "gain over the published sampler in equal time (×)";
+    let title = "Less variance than the published sampler in equal time";
     let caption = format!(
         "By what factor less variance than the published sampler has in the same time, by light, at {MANY} samples per \
          shading point."
     );
-    let with = format!("{caption} The time of a look-up of the light is added; one that was not timed has no bars.");
-    let title = "Less variance than the published sampler in equal time";
-    let mut figures = over_published(of, Some(Counted::Sample), &samplers, [title, axis, "gain-by-light", &caption]);
-    let title = "Less variance than the published sampler in equal time, look-up included";
-    figures.extend(over_published(of, Some(Counted::LookUp), &samplers, [title, axis, "gain-by-light-look-up", &with]));
-    let mut chart = BarChart::new(
-        "Less variance on the Cauchy model in equal time",
-        Axis::log("Gaussian / Cauchy in equal time (×)"),
-        of.light_labels(),
-    );
-    for sampler in Sampler::ALL {
-        let pair = [(ModelKind::Gaussian, sampler), (ModelKind::Cauchy, sampler)];
-        let bars = by_light(of, pair[0], (pair[1].0, sampler.into()), Some(Counted::Sample));
-        chart = chart.series(sampler.name(), bars);
-    }
+    let mut figures = over_published(of, Some(Counted::Sample), [title, axis, "gain-by-light", &caption]);
+    let title = format!("{title}, look-up included");
+    let caption = format!("{caption} The time of a look-up of the light is added; one that was not timed has no bars.");
+    figures.extend(over_published(of, Some(Counted::LookUp), [&title, axis, "gain-by-light-look-up", &caption]));
+    let (title, axis) = ("Less variance on the Cauchy model in equal time", "Gaussian / Cauchy in equal time (×)");
+    let chart = of.by_light(title, Axis::log(axis), samplers_on(ModelKind::Cauchy), |cauchy, light| {
+        let pair = [on_gaussian(cauchy), cauchy];
+        median_bar(of.gain(pair[0], pair[1], light), of.time_ratio(pair, light, MANY, Counted::Sample).value)
+    });
     let caption = format!(
         "Variance on the Gaussian model over that on the Cauchy model with the same sampler in the same time, by light, at \
          {MANY} samples per shading point. Medians over the grid; whiskers go from the first to the third quartile."
@@ -179,127 +156,104 @@ fn of_sampler(sampler: Sampler, series: Series) -> Series {
     series.styled(sampler.color(), Dash::of(sampler.color()))
 }
 
-/// The share of cells whose gain is at most x.
-fn distribution(name: &str, mut gains: Vec<f64>) -> Series {
+/// The share of cells in which V of `base` over V of `other` is at most x.
+fn distribution(of: &View<'_>, label: &str, base: Estimator, other: Estimator, light: usize) -> Series {
+    let mut gains: Vec<f64> = of.pairs(base, other, light).map(|[base, other]| base.value / other.value).collect();
     gains.retain(|gain| gain.is_finite() && *gain > 0.0);
     gains.sort_by(f64::total_cmp);
     let n = gains.len() as f64;
     // A few hundred points say as much as thousands.
     let every = gains.len().div_ceil(300).max(1);
     let points = gains.iter().enumerate().filter(|(i, _)| i % every == 0 || i + 1 == gains.len());
-    let points: Vec<(f64, f64)> = points.map(|(i, gain)| (*gain, 100.0 * (i as f64 + 0.5) / n)).collect();
-    Series::curve(name, points)
+    Series::curve(label, points.map(|(i, gain)| (*gain, 100.0 * (i as f64 + 0.5) / n)))
 }
 
 /// How gains spread over the cells.
 pub(super) fn distributions(of: &View<'_>) -> Vec<Drawing> {
-    let ratios = |base: Estimator, other: Estimator, light: usize| -> Vec<f64> {
-        let ratio = |cell: Cell| of.v(cell.index, base, light).value / of.v(cell.index, other, light).value;
-        of.each_cell().map(ratio).collect()
+    let even = Series::curve("as good", [(1.0, 0.0), (1.0, 100.0)]).styled(5, Dash::Dotted);
+    let chart = |title: String, axis: &str, series: &mut dyn Iterator<Item = Series>| {
+        let share = Axis::linear("cells with at most as much (%)").range(0.0, 100.0).step(20.0);
+        lines(title, Axis::log(axis), share, series.chain([even.clone()])).svg()
     };
-    let share = || Axis::linear("cells with at most as much (%)").range(0.0, 100.0).step(20.0);
-    let even = || Series::curve("as good", [(1.0, 0.0), (1.0, 100.0)]).styled(5, Dash::Dotted);
-    let mut figures = Vec::new();
-    for sampler in TOLD {
+    let cells = of.cells.len();
+    let of_cauchy = TOLD.map(|sampler| {
+        let cauchy = (ModelKind::Cauchy, Some(sampler));
+        let of_light = |(light, name): (usize, &String)| distribution(of, name, on_gaussian(cauchy), cauchy, light);
         let title = format!("Variance, Gaussian over Cauchy, with {}", sampler.name());
-        let mut chart = LineChart::new(title, Axis::log("V Gaussian / V Cauchy"), share());
-        let pair = ModelKind::ALL.map(|model| (model, sampler));
-        for (light, name) in of.lights.iter().enumerate() {
-            chart = chart.series(distribution(name, ratios(pair[0], pair[1], light)));
-        }
+        let chart = chart(title, "V Gaussian / V Cauchy", &mut of.lights().iter().enumerate().map(of_light));
         let caption = format!(
-            "How the gain of the Cauchy model spreads over the {} cells of the grid with `{}`, by light: a line left of 1 \
+            "How the gain of the Cauchy model spreads over the {cells} cells of the grid with `{}`, by light: a line left of 1 \
              (the upright) is a cell where the Cauchy model needs more samples. The time of a sample is not in it.",
-            of.cells.len(),
             sampler.name()
         );
-        let figure = Drawing::new(chart.series(even()).svg(), caption);
-        figures.push(figure.named(format!("cauchy-gain-over-cells-{}", sampler.name())));
-    }
-    for model in ModelKind::ALL {
+        Drawing::new(chart, caption).named(format!("cauchy-gain-over-cells-{}", sampler.name()))
+    });
+    let of_samplers = each_model(|model| {
+        let others = Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Published);
+        let mut series = others.map(|sampler| {
+            let other = (model, Some(sampler));
+            of_sampler(sampler, distribution(of, sampler.name(), published(other), other, CONSTANT))
+        });
         let title = format!("Variance of the published sampler over that of another, {} model", model.title());
-        let mut chart = LineChart::new(title, Axis::log("V published / V sampler"), share());
-        for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Published) {
-            let gains = ratios((model, Sampler::Published), (model, sampler), CONSTANT);
-            chart = chart.series(of_sampler(sampler, distribution(sampler.name(), gains)));
-        }
+        let chart = chart(title, "V published / V sampler", &mut series);
         let caption = format!(
-            "How the gain over the published sampler spreads over the {} cells of the grid under {} light: left of 1 (the \
+            "How the gain over the published sampler spreads over the {cells} cells of the grid under {} light: left of 1 (the \
              upright) the sampler needs more samples than `published`. The time of a sample is not in it.",
-            of.cells.len(),
-            of.lights[CONSTANT]
+            of.lights()[CONSTANT]
         );
-        let figure = Drawing::new(chart.series(even()).svg(), caption);
-        figures.push(figure.named(format!("gain-over-cells-{}", model.name())));
-    }
-    figures
+        Drawing::new(chart, caption).named(format!("gain-over-cells-{}", model.name()))
+    });
+    of_cauchy.into_iter().chain(of_samplers).collect()
 }
 
 /// Effective samples and largest weights.
 pub(super) fn weights(of: &View<'_>) -> Vec<Drawing> {
-    let mut figures = Vec::new();
-    for model in ModelKind::ALL {
+    let effective = each_model(|model| {
         let title = format!("Effective samples in 1000, {} model", model.title());
-        let y = Axis::linear("effective samples in 1000");
-        let mut chart = BarChart::new(title, y, of.light_labels());
-        for strategy in Strategy::ALL {
-            let mean = |light| Some(of.mean_of((model, strategy), light, ess));
-            chart = chart.series(strategy.name(), (0..of.lights.len()).map(|light| bar(mean(light))));
-        }
+        let all = strategies().map(|strategy| (model, strategy));
+        let chart = of.by_light(&title, Axis::linear("effective samples in 1000"), all, |estimator, light| {
+            bar(Some(mean_of(of.rows_of(estimator, light), ess)))
+        });
         let caption = "1000 / (1 + V): how many samples without variance are worth as much as 1000 of the sampler. \
                        `perfect` would draw in proportion to S cos θᵢ, blind to the light. Means over the grid; whiskers \
                        are one standard error.";
-        figures.push(Drawing::new(chart.svg(), caption).named(format!("effective-samples-{}", model.name())));
-    }
-    for model in ModelKind::ALL {
+        Drawing::new(chart.svg(), caption).named(format!("effective-samples-{}", model.name()))
+    });
+    let largest = each_model(|model| {
+        let series = Sampler::ALL.map(|sampler| {
+            let relative = |row: &Row<'_>| Some(row.measured.max_weight / row.measured.figures.mean.value);
+            Series::new(sampler.name(), worst(of, (model, Some(sampler)), relative))
+        });
         let title = format!("Largest weight, {} model", model.title());
         let x = Axis::linear("inclination of the viewer, θₒ (°)").from_zero();
-        let mut chart = LineChart::new(title, x, Axis::log("largest weight / albedo"));
-        for sampler in Sampler::ALL {
-            let worst = |theta_o: &f32| {
-                let cells = of.each_cell().filter(|cell| cell.theta_o_deg == *theta_o);
-                let most = cells.map(|cell| {
-                    let found = of.measured(cell.index, (model, sampler), CONSTANT);
-                    found.max_weight / found.figures.mean.value
-                });
-                (f64::from(*theta_o), most.fold(0.0, f64::max))
-            };
-            chart = chart.series(Series::new(sampler.name(), of.grid.theta_o_deg.iter().map(worst)));
-        }
+        let chart = lines(title, x, Axis::log("largest weight / albedo"), series);
         let caption = "The largest weight S cos θᵢ / pdf of any sample in the worst cell of each inclination, in units of \
                        the albedo: what a firefly under constant light would be. It is the largest of those drawn, and \
                        so has no error bar; more samples can only raise it.";
-        figures.push(Drawing::new(chart.svg(), caption).named(format!("largest-weight-{}", model.name())));
-    }
-    figures.extend(bounds(of));
-    figures
-}
-
-/// Largest weights over their proven bounds, a chart for each model.
-fn bounds(of: &View<'_>) -> Vec<Drawing> {
-    let chart = |model: ModelKind| {
+        Drawing::new(chart.svg(), caption).named(format!("largest-weight-{}", model.name()))
+    });
+    let bounds = each_model(|model| {
+        let series = Sampler::ALL.into_iter().filter_map(|sampler| {
+            let share = |row: &Row<'_>| Some(row.measured.max_weight / row.measured.weight_bound?);
+            let points = worst(of, (model, Some(sampler)), share);
+            (!points.is_empty()).then(|| of_sampler(sampler, Series::new(sampler.name(), points)))
+        });
         let title = format!("Largest weight over its proven bound, {} model", model.title());
-        let mut chart = LineChart::new(title, Axis::linear("θₒ (°)"), Axis::linear("largest weight / bound"));
-        for sampler in Sampler::ALL {
-            let share = |cell: &Cell| {
-                let share = of.measured(cell.index, (model, sampler), CONSTANT).max_weight
-                    / of.bounds.of(cell.index, model, sampler);
-                share.is_finite().then_some(share)
-            };
-            let worst = |theta_o: &f32| {
-                let cells = of.each_cell().filter(|cell| cell.theta_o_deg == *theta_o);
-                let most = cells.filter_map(|cell| share(&cell)).reduce(f64::max)?;
-                Some((f64::from(*theta_o), most))
-            };
-            let points: Vec<(f64, f64)> = of.grid.theta_o_deg.iter().filter_map(worst).collect();
-            if !points.is_empty() {
-                chart = chart.series(of_sampler(sampler, Series::new(sampler.name(), points)));
-            }
-        }
         let line = ReferenceLine::Level { label: "the bound".to_owned(), y: 1.0 };
+        let chart = lines(title, Axis::linear("θₒ (°)"), Axis::linear("largest weight / bound"), series);
         let caption = "For samplers with a bound in closed form: the largest weight drawn over the bound, in the worst cell of \
                        each inclination. A point above 1 would fail the run.";
         Drawing::new(chart.reference(line).svg(), caption).named(format!("weight-bound-{}", model.name()))
+    });
+    [effective, largest, bounds].concat()
+}
+
+/// The largest figure of the cells of each inclination, under constant light; none where there is no figure.
+fn worst(of: &View<'_>, estimator: Estimator, figure: impl Fn(&Row<'_>) -> Option<f64>) -> Vec<(f64, f64)> {
+    let of_inclination = |theta_o: &f32| {
+        let rows = of.rows_of(estimator, CONSTANT).filter(|row| row.cell.theta_o_deg == *theta_o);
+        let most = rows.filter_map(|row| figure(&row)).reduce(f64::max)?;
+        Some((f64::from(*theta_o), most))
     };
-    ModelKind::ALL.map(chart).into()
+    of.grid().theta_o_deg.iter().filter_map(of_inclination).collect()
 }

@@ -1,10 +1,11 @@
 //! The plots of how different the models look.
 
-use super::view::View;
-use crate::difference::{Differences, Summary, Width, albedo_ratio};
+use super::charts::lines;
+use crate::difference::{Difference, DifferenceRow, Differences, Summary, Width, albedo_ratio};
 use crate::figures;
-use crate::plot::{Axis, LineChart, Point, Series};
+use crate::plot::{Axis, Point, Series};
 use crate::report::Drawing;
+use crate::study::Cell;
 use hairis::HairParams;
 use hairis_variants::Cauchy;
 
@@ -29,77 +30,74 @@ pub(super) fn pictures() -> Vec<Drawing> {
 }
 
 /// The differences over the grid.
-pub(super) fn charts(of: &View<'_>) -> Vec<Drawing> {
-    let x = || Axis::linear("width of R, β_R (°)").from_zero();
-    let percent = |label: &str| Axis::linear(label.to_owned()).from_zero();
-    let over = |width: Width, figure: fn(&Differences) -> f64| {
-        of.grid.beta_r_deg.iter().map(move |beta| {
-            let rows = of.difference.of(width).filter(|row| row.cell.beta_r_deg == *beta);
-            (f64::from(*beta), Summary::of(rows.map(|row| 100.0 * figure(&row.figures))))
-        })
-    };
-    let mut by_width = LineChart::new(
-        "How far the Cauchy model is from the Gaussian one",
-        x(),
-        percent("difference of S cos θᵢ, L1 (%)"),
-    );
-    for width in Width::ALL {
-        let points = over(width, |f| f.plain.l1).map(|(beta, found)| (beta, found.median));
-        by_width = by_width.series(Series::new(named(of, width), points));
-    }
-    let mut by_kind = LineChart::new(
-        "The same widths: as they are, by shape, and blurred",
-        x(),
-        percent("difference of S cos θᵢ, L1 (%)"),
-    );
+pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
+    let width = || Axis::linear("width of R, β_R (°)").from_zero();
+    let l1 = || Axis::linear("difference of S cos θᵢ, L1 (%)").from_zero();
+    let beta_r = |cell: &Cell| cell.beta_r_deg;
+    let by_factor = Width::ALL.map(|width| {
+        let points = over(of, width, beta_r, |f| 100.0 * f.plain.l1).map(|(beta, found)| (beta, found.median));
+        Series::new(named(of, width), points)
+    });
     let kinds: [NamedDifference; 4] = [
-        ("as they are", |f| f.plain.l1),
-        ("shape alone", |f| f.shape.l1),
-        ("blurred by 10°", |f| f.blurred.l1),
-        ("shape alone, blurred", |f| f.blurred_shape.l1),
+        ("as they are", |f| 100.0 * f.plain.l1),
+        ("shape alone", |f| 100.0 * f.shape.l1),
+        ("blurred by 10°", |f| 100.0 * f.blurred.l1),
+        ("shape alone, blurred", |f| 100.0 * f.blurred_shape.l1),
     ];
-    for (name, figure) in kinds {
+    let by_kind = kinds.map(|(name, figure)| {
+        let points = over(of, Width::Paper, beta_r, figure);
+        Series::new(name, points.map(|(x, found)| Point::new(x, found.median).with_interval(found.least, found.most)))
+    });
+    let albedos = Width::ALL.map(|width| {
+        let points = over(of, width, |cell| cell.theta_o_deg, albedo_ratio);
         let point =
-            |(beta, found): (f64, Summary)| Point::new(beta, found.median).with_interval(found.least, found.most);
-        by_kind = by_kind.series(Series::new(name, over(Width::Paper, figure).map(point)));
-    }
-    let mut albedo = LineChart::new(
-        "Albedo of the Cauchy model over that of the Gaussian one",
-        Axis::linear("inclination of the viewer, θₒ (°)").from_zero(),
-        Axis::linear("ratio of the albedos"),
-    );
-    for width in Width::ALL {
-        let point = |theta_o: &f32| {
-            let rows = of.difference.of(width).filter(|row| row.cell.theta_o_deg == *theta_o);
-            let found = Summary::of(rows.map(|row| albedo_ratio(&row.figures)));
-            Point::new(f64::from(*theta_o), found.geometric_mean).with_interval(found.least, found.most)
-        };
-        albedo = albedo.series(Series::new(named(of, width), of.grid.theta_o_deg.iter().map(point)));
-    }
-    vec![
-        Drawing::new(
-            by_width.svg(),
+            |(x, found): (f64, Summary)| Point::new(x, found.geometric_mean).with_interval(found.least, found.most);
+        Series::new(named(of, width), points.map(point))
+    });
+    let theta_o = Axis::linear("inclination of the viewer, θₒ (°)").from_zero();
+    let ratio = Axis::linear("ratio of the albedos");
+    [
+        (
+            "difference-by-k",
+            lines("How far the Cauchy model is from the Gaussian one", width(), l1(), by_factor),
             "Integral over the sphere of |S cos θᵢ of the Cauchy model − that of the Gaussian model|, relative to the \
              albedo of the latter, by the factor k on the Cauchy model's widths: medians over the other axes of the grid. \
              By quadrature, exact to less than 0.1% of each figure.",
-        )
-        .named("difference-by-k"),
-        Drawing::new(
-            by_kind.svg(),
+        ),
+        (
+            "difference-by-kind",
+            lines("The same widths: as they are, by shape, and blurred", width(), l1(), by_kind),
             "The same for k = 1: as the models are, with the Cauchy model scaled to the Gaussian one's albedo, and after a \
              blur of 10°. Marks are medians, bars go from the least to the most of the cells.",
-        )
-        .named("difference-by-kind"),
-        Drawing::new(
-            albedo.svg(),
+        ),
+        (
+            "albedo",
+            lines("Albedo of the Cauchy model over that of the Gaussian one", theta_o, ratio, albedos),
             "Directional albedos, the integrals of S cos θᵢ: geometric means over the other axes of the grid; bars go from \
              the least to the most of the cells.",
-        )
-        .named("albedo"),
+        ),
     ]
+    .map(|(name, chart, caption)| Drawing::new(chart.svg(), caption).named(name))
+    .into()
+}
+
+/// Summaries of a figure of one choice of widths, by the values of an axis of the grid.
+fn over(
+    of: &Difference,
+    width: Width,
+    axis: fn(&Cell) -> f32,
+    figure: fn(&Differences) -> f64,
+) -> impl Iterator<Item = (f64, Summary)> {
+    let mut values: Vec<f32> = of.of(width).map(|row| axis(&row.cell)).collect();
+    values.sort_by(f32::total_cmp);
+    values.dedup();
+    values.into_iter().map(move |value| {
+        let rows = of.of(width).filter(|row: &&DifferenceRow| axis(&row.cell) == value);
+        (f64::from(value), Summary::of(rows.map(|row| figure(&row.figures))))
+    })
 }
 
 /// A choice of widths with its factor.
-fn named(of: &View<'_>, width: Width) -> String {
-    format!("{}, k = {}", width.name(), of.difference.factor(width))
+fn named(of: &Difference, width: Width) -> String {
+    format!("{}, k = {}", width.name(), of.factor(width))
 }

@@ -1,20 +1,17 @@
 //! The section on rays chosen from candidates.
 
-use super::super::cell::Measured;
-use super::super::equal_time::{CellCounts, in_equal_time};
-use super::super::rays::{By, half_visible, times_at, v};
-use super::super::summary::{Gain, gain, shown, sure_ratio};
-use super::view::{Estimator, View};
-use crate::plot::{Axis, Bar, BarChart};
+use super::super::equal_time::{count_cells, in_equal_time};
+use super::super::rays::{MIS, POOLS, RAYS, half_visible, times_at, v};
+use super::super::rows::{Estimator, on_each_model, samplers};
+use super::super::summary::shown;
+use super::super::view::{Gain, View, gain, sure_ratio};
+use super::charts::{median_bar, samplers_on};
+use crate::plot::Axis;
 use crate::rays::{PRICES_US, VISIBLE, occluded};
 use crate::report::{Drawing, Section};
-use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::table::{Table, number};
-
-/// The pools, by place.
-const POOLS: [By; 2] = [By::Pool(0), By::Pool(1)];
 
 pub(super) fn section(of: &View<'_>) -> Section {
     let section = Section::new("Rays from candidates").paragraph(
@@ -26,53 +23,31 @@ pub(super) fn section(of: &View<'_>) -> Section {
     section.table(variances(of)).table(equal_time(of))
 }
 
-/// V of `base` over V of `other`, cell by cell.
-fn ratio(of: &View<'_>, one: Estimator, light: usize, [base, other]: [By; 2]) -> Option<Gain> {
-    gain(pairs(of, one, light, |measured| [v(measured, base), v(measured, other)]))
-}
-
-/// A pair of figures of every cell.
-fn pairs(
-    of: &View<'_>,
-    one: Estimator,
-    light: usize,
-    pair: impl Fn(&Measured) -> [Estimate; 2],
-) -> impl Iterator<Item = [Estimate; 2]> {
-    (0..of.cells.len()).map(move |index| pair(of.measured(index, one, light)))
-}
-
-/// Every sampler under every light.
-fn each(of: &View<'_>) -> impl Iterator<Item = (Estimator, usize, Vec<String>)> {
-    let samplers = ModelKind::ALL.into_iter().flat_map(|model| Sampler::ALL.map(|sampler| (model, sampler)));
-    samplers.flat_map(|one| {
-        of.lights.iter().enumerate().map(move |(light, name)| {
-            (one, light, vec![one.0.name().to_owned(), one.1.name().to_owned(), name.clone()])
-        })
-    })
-}
-
-fn keys(title: &str) -> Table {
-    Table::new(title).texts(["model", "sampler", "light"])
+/// V of a ray by `base` over V of a ray by `other`, cell by cell.
+fn ratio(of: &View<'_>, one: Estimator, light: usize, [base, other]: [usize; 2]) -> Option<Gain> {
+    gain(of.rows_of(one, light).map(|row| [base, other].map(|by| v(row.measured, by))))
 }
 
 /// Medians of V and of its ratios to that of MIS.
 fn variances(of: &View<'_>) -> Table {
-    let mut table = keys("V of one ray, medians over the grid").numbers(By::ALL.map(By::name));
-    table = table.numbers(POOLS.map(|by| format!("{} / MIS", by.name()))).number("cells with less");
-    table = table.numbers(VISIBLE.map(|share| format!("8 + 8 / MIS, {:.0}% visible", 100.0 * share)));
-    for (one, light, mut row) in each(of) {
-        let median = |by| gain(pairs(of, one, light, |measured| [v(measured, by), Estimate::exact(1.0)]));
-        let cell = |found: Option<Gain>| found.map_or_else(String::new, |found| shown(found.median));
-        row.extend(By::ALL.map(|by| cell(median(by))));
-        row.extend(POOLS.map(|by| cell(ratio(of, one, light, [by, By::Mis]))));
-        let less = POOLS.map(|by| ratio(of, one, light, [by, By::Mis]));
-        row.push(less.map(|found| found.map_or_else(String::new, |found| number::percent(found.shares[1]))).join(", "));
-        row.extend(VISIBLE.map(|share| {
-            let visible = |measured: &Measured| [By::Pool(1), By::Mis].map(|by| occluded(v(measured, by), share));
-            cell(gain(pairs(of, one, light, visible)))
-        }));
-        table.push(row);
-    }
+    let headers = RAYS.iter().map(|by| by.name.to_owned());
+    let headers = headers.chain(POOLS.map(|by| format!("{} / MIS", RAYS[by].name)));
+    let headers = headers.chain(["cells with less".to_owned()]);
+    let headers = headers.chain(VISIBLE.map(|share| format!("8 + 8 / MIS, {:.0}% visible", 100.0 * share)));
+    let title = "V of one ray, medians over the grid";
+    let table = of.table(title, headers, on_each_model(samplers()), |one, light| {
+        let rows = || of.rows_of(one, light);
+        let median = |found: &Option<Gain>| found.as_ref().map_or_else(String::new, |found| shown(found.median));
+        let plain = |by| gain(rows().map(|row| [v(row.measured, by), Estimate::exact(1.0)]));
+        let of_mis = POOLS.map(|by| ratio(of, one, light, [by, MIS]));
+        let less = |found: &Option<Gain>| found.as_ref().map_or_else(String::new, |of| number::percent(of.shares[1]));
+        let visible = |share| gain(rows().map(|row| [POOLS[1], MIS].map(|by| occluded(v(row.measured, by), share))));
+        let mut cells: Vec<String> = (0..RAYS.len()).map(|by| median(&plain(by))).collect();
+        cells.extend(of_mis.each_ref().map(median));
+        cells.push(of_mis.each_ref().map(less).join(", "));
+        cells.extend(VISIBLE.map(|share| median(&visible(share))));
+        cells
+    });
     table.note(
         "Without occlusion but for the last columns. Cells with less: than MIS beyond two standard errors, of 4 + 4 and of 8 + 8. \
          ±: one standard error of the median cell.",
@@ -81,29 +56,28 @@ fn variances(of: &View<'_>) -> Table {
 
 /// Gains over MIS in equal time, by the price of a ray.
 fn equal_time(of: &View<'_>) -> Table {
-    let mut table = keys("Rays from candidates over MIS in equal time, half of the directions visible");
-    table = table.numbers(By::ALL.map(|by| format!("{}, ns", by.name())));
-    for by in POOLS {
-        table = table.numbers(PRICES_US.map(|price| format!("{}, {price} µs", by.name())));
-    }
-    for (one, light, mut row) in each(of) {
-        let ns = |by| of.times.ray_ns(one, &of.lights[light], by);
-        let is_timed = ns(By::Mis).value.is_finite();
-        let cell = |text: String| if is_timed { text } else { "not timed".to_owned() };
-        row.extend(By::ALL.map(|by| cell(number::plain(ns(by).value, 3))));
+    let prices = POOLS.map(|by| PRICES_US.map(|price| format!("{}, {price} µs", RAYS[by].name)));
+    let headers = RAYS.iter().map(|by| format!("{}, ns", by.name)).chain(prices.into_iter().flatten());
+    let title = "Rays from candidates over MIS in equal time, half of the directions visible";
+    let table = of.table(title, headers, on_each_model(samplers()), |one, light| {
+        let ns = [0, 1, 2].map(|by| of.ray_ns(one, light, by));
+        if !ns[MIS].value.is_finite() {
+            return vec!["not timed".to_owned(); RAYS.len() + POOLS.len() * PRICES_US.len()];
+        }
+        let mut cells: Vec<String> = ns.iter().map(|ns| number::plain(ns.value, 3)).collect();
         for by in POOLS {
-            let half = |measured: &Measured| [By::Mis, by].map(|by| half_visible(measured, by));
-            let median = gain(pairs(of, one, light, half)).map(|gain| gain.median);
-            row.extend(PRICES_US.map(|price| {
-                let time = times_at([ns(By::Mis), ns(by)], price);
-                let won = CellCounts::count(pairs(of, one, light, half).map(sure_ratio), time).won;
+            let pairs = || of.rows_of(one, light).map(|row| [MIS, by].map(|by| half_visible(row.measured, by)));
+            let median = gain(pairs()).map(|gain| gain.median);
+            cells.extend(PRICES_US.map(|price| {
+                let time = times_at([ns[MIS], ns[by]], price);
+                let [won, ..] = count_cells(pairs().map(sure_ratio), time);
                 let share = number::percent(won as f64 / of.cells.len() as f64);
                 let gain = |median| format!("{} ({share})", number::ratio(in_equal_time(median, time).value));
-                cell(median.map_or_else(String::new, gain))
+                median.map_or_else(String::new, gain)
             }));
         }
-        table.push(row);
-    }
+        cells
+    });
     table.note(
         "Efficiency 1 / (V · time) over one-sample MIS at the same price of a ray: median, and the share of cells won beyond two \
          standard errors. Times of candidates, weights, look-ups of the light and the choice, of the default hair on one \
@@ -114,17 +88,9 @@ fn equal_time(of: &View<'_>) -> Table {
 /// V of MIS over V of a ray from 8 + 8 candidates, by light.
 fn chart(of: &View<'_>, model: ModelKind) -> Drawing {
     let title = format!("Variance of MIS over that of a ray from 8 + 8 candidates, {} model", model.title());
-    let mut chart = BarChart::new(title, Axis::log("V MIS / V 8 + 8 (×)"), of.light_labels());
-    for sampler in Sampler::ALL {
-        let bar = |light| {
-            let found = ratio(of, (model, sampler), light, [By::Mis, By::Pool(1)]);
-            found.map_or(Bar::new(f64::NAN), |gain| {
-                let [low, high] = gain.quartiles;
-                Bar::new(gain.median.value).with_interval(low, high)
-            })
-        };
-        chart = chart.series(sampler.name(), (0..of.lights.len()).map(bar));
-    }
+    let chart = of.by_light(&title, Axis::log("V MIS / V 8 + 8 (×)"), samplers_on(model), |one, light| {
+        median_bar(ratio(of, one, light, [MIS, POOLS[1]]), 1.0)
+    });
     let caption = "By what factor less variance one ray has that is chosen from 8 + 8 candidates, without occlusion, by light. \
                    Medians over the grid; whiskers go from the first to the third quartile.";
     Drawing::new(chart.level(1.0).svg(), caption).named(format!("rays-from-candidates-{}", model.name()))

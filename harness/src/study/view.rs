@@ -1,0 +1,241 @@
+//! Queries to a finished study: variances, gains and times by model, sampler and light.
+
+use super::cell::Measured;
+use super::equal_time::{NOTHING, Sign, in_equal_time, time_ratio};
+use super::output::Study;
+use super::rays::RAYS;
+use super::rows::{Estimator, Row, name};
+use super::times::Times;
+use crate::plot::{Axis, Bar, BarChart};
+use crate::rays::RayTimes;
+use crate::sampler::Sampler;
+use crate::stats::Estimate;
+use crate::table::Table;
+use core::ops::Deref;
+
+/// Relative standard error of V beyond which a cell is left out: the light was hardly hit.
+pub(super) const MAX_RELATIVE_ERROR: f64 = 0.25;
+
+/// Ratios of V over the cells of a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Gain {
+    pub(crate) geometric_mean: Estimate,
+    /// The middle cell, with its own standard error: that of the median is smaller.
+    pub(crate) median: Estimate,
+    /// First and third quartile.
+    pub(crate) quartiles: [f64; 2],
+    /// Shares of the cells that are above 1 and below it by more than two standard errors.
+    pub(crate) shares: [f64; 2],
+    pub(crate) least: Estimate,
+    pub(crate) most: Estimate,
+    /// Cells left out.
+    pub(crate) unsure: usize,
+}
+
+/// The first V over the second; `None` if one of them is unsure.
+pub(super) fn sure_ratio([base, other]: [Estimate; 2]) -> Option<Estimate> {
+    let sure = |v: &Estimate| v.value > 0.0 && v.standard_error <= MAX_RELATIVE_ERROR * v.value;
+    (sure(&base) && sure(&other)).then(|| base.ratio(&other))
+}
+
+/// The first of two lists of V over the second, cell by cell.
+///
+/// The standard error of the geometric mean is that of its figures, for this grid. Both samplers use the same directions of
+/// the light: errors of the ratios are, if anything, overestimated.
+pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
+    let (mut ratios, mut unsure) = (Vec::new(), 0);
+    for pair in pairs {
+        match sure_ratio(pair) {
+            Some(ratio) => ratios.push(ratio),
+            None => unsure += 1,
+        }
+    }
+    ratios.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let (least, most) = (*ratios.first()?, *ratios.last()?);
+    let n = ratios.len() as f64;
+    let at = |quarter: usize| ratios[(ratios.len() - 1) * quarter / 4];
+    let share = |sign| ratios.iter().filter(|ratio| Sign::of(**ratio) == sign).count() as f64 / (n + unsure as f64);
+    let logarithm = ratios.iter().map(|ratio| ratio.value.ln()).sum::<f64>() / n;
+    let error = ratios.iter().map(|ratio| (ratio.standard_error / ratio.value).powi(2)).sum::<f64>().sqrt() / n;
+    let value = logarithm.exp();
+    Some(Gain {
+        geometric_mean: Estimate { value, standard_error: value * error },
+        median: at(2),
+        quartiles: [at(1), at(3)].map(|ratio| ratio.value),
+        shares: [Sign::Above, Sign::Below].map(share),
+        least,
+        most,
+        unsure,
+    })
+}
+
+/// Parts of a sample whose time is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Counted {
+    /// The sampler's alone.
+    Sample,
+    /// That and the look-up of the light.
+    LookUp,
+}
+
+/// Samples per shading point of figures and sentences that give one number of them: direct lighting.
+pub(super) const MANY: usize = 16;
+
+/// The samplers that are told apart in sentences: the published one, and the matched one that a renderer takes unless it
+/// knows better.
+pub(super) const TOLD: [Sampler; 2] = [Sampler::Published, Sampler::Matched];
+
+/// A finished study with the times of this machine.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) study: &'a Study,
+    pub(super) times: &'a Times,
+}
+
+impl Deref for View<'_> {
+    type Target = Study;
+
+    fn deref(&self) -> &Study {
+        self.study
+    }
+}
+
+impl View<'_> {
+    /// V of `base` and of `other` in every cell.
+    pub(super) fn pairs(&self, base: Estimator, other: Estimator, light: usize) -> impl Iterator<Item = [Estimate; 2]> {
+        self.rows_of(base, light).zip(self.rows_of(other, light)).map(|(base, other)| [base.v(), other.v()])
+    }
+
+    /// V of `base` over V of `other`; `None` if no cell is sure.
+    pub(super) fn gain(&self, base: Estimator, other: Estimator, light: usize) -> Option<Gain> {
+        gain(self.pairs(base, other, light))
+    }
+
+    /// Time of a sample in ns, its shading point's set-up shared by `per_point`; not a number for perfect sampling.
+    pub(super) fn ns(&self, (model, strategy): Estimator, per_point: usize) -> Estimate {
+        strategy.map_or(Estimate::UNKNOWN, |sampler| self.times.ns(model, sampler, per_point))
+    }
+
+    /// Time of a look-up of the light in ns; not a number if it was not timed.
+    pub(super) fn look_up(&self, light: usize) -> Estimate {
+        self.times.look_up(light)
+    }
+
+    /// Time counted beside that of a sample, in ns.
+    pub(super) fn more(&self, light: usize, counted: Counted) -> Estimate {
+        if counted == Counted::LookUp { self.look_up(light) } else { NOTHING }
+    }
+
+    /// Time of a ray without its tracing, in ns, by its place in [`RAYS`]; not a number if it was not measured.
+    pub(super) fn ray_ns(&self, (model, strategy): Estimator, light: usize, by: usize) -> Estimate {
+        let key = (model.name(), name(strategy), &*self.lights()[light]);
+        let is = |of: &&RayTimes| (of.model, of.sampler, &*of.light) == key;
+        self.times.of_rays.iter().find(is).map_or(Estimate::UNKNOWN, |of| of.ray(RAYS[by].candidates_each))
+    }
+
+    /// Time of a sample of `base` over that of one of `other`.
+    pub(super) fn time_ratio(
+        &self,
+        [base, other]: [Estimator; 2],
+        light: usize,
+        per_point: usize,
+        counted: Counted,
+    ) -> Estimate {
+        time_ratio(self.ns(base, per_point), self.ns(other, per_point), self.more(light, counted))
+    }
+
+    /// How many times the variance `base` has of `other` in equal time, [`MANY`] samples per shading point: median over
+    /// the cells. `None` if no cell is sure, or a time unknown.
+    pub(super) fn equal_time(&self, pair: [Estimator; 2], light: usize, counted: Counted) -> Option<Estimate> {
+        let median = self.gain(pair[0], pair[1], light)?.median;
+        let gain = in_equal_time(median, self.time_ratio(pair, light, MANY, counted));
+        gain.value.is_finite().then_some(gain)
+    }
+
+    /// Geometric mean over the cells of `1 / (V µs)`.
+    pub(super) fn efficiency(&self, of: Estimator, light: usize, per_point: usize) -> Option<Estimate> {
+        let one = Estimate::exact(1e3).ratio(&mean_v(self.rows_of(of, light))?);
+        Some(one.ratio(&self.ns(of, per_point)))
+    }
+
+    /// A table with a row for each of these estimators under each light, of numbers that `cells` gives.
+    pub(super) fn table<H: Into<String>>(
+        &self,
+        title: &str,
+        headers: impl IntoIterator<Item = H>,
+        of: impl Iterator<Item = Estimator>,
+        cells: impl Fn(Estimator, usize) -> Vec<String>,
+    ) -> Table {
+        let mut table = Table::new(title).texts(["model", "sampler", "light"]).numbers(headers);
+        for (model, strategy) in of {
+            for (light, title) in self.lights().iter().enumerate() {
+                let keys = [model.name(), name(strategy), title].map(str::to_owned);
+                table.push(keys.into_iter().chain(cells((model, strategy), light)));
+            }
+        }
+        table
+    }
+
+    /// A chart with a bar for each light of each of these estimators.
+    pub(super) fn by_light(
+        &self,
+        title: &str,
+        axis: Axis,
+        of: impl Iterator<Item = Estimator>,
+        bar: impl Fn(Estimator, usize) -> Bar,
+    ) -> BarChart {
+        // A file's name in words.
+        let labels = self.lights().iter().map(|name| name.replace(['-', '_'], " "));
+        of.fold(BarChart::new(title, axis, labels), |chart, (model, strategy)| {
+            chart.series(name(strategy), (0..self.lights().len()).map(|light| bar((model, strategy), light)))
+        })
+    }
+}
+
+/// Geometric mean of V over some cells.
+pub(super) fn mean_v<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Estimate> {
+    gain(rows.map(|row| [row.v(), Estimate::exact(1.0)])).map(|gain| gain.geometric_mean)
+}
+
+/// Mean over some cells of a figure; cells where it is no number are left out.
+pub(super) fn mean_of<'a>(rows: impl Iterator<Item = Row<'a>>, figure: impl Fn(&Measured) -> Estimate) -> Estimate {
+    let figures = rows.map(|row| figure(row.measured));
+    let (mut n, mut sum, mut square) = (0.0, 0.0, 0.0);
+    for figure in figures.filter(|figure| figure.value.is_finite() && figure.standard_error.is_finite()) {
+        (n, sum, square) = (n + 1.0, sum + figure.value, square + figure.standard_error.powi(2));
+    }
+    Estimate { value: sum / n, standard_error: f64::sqrt(square) / n }
+}
+
+/// Effective samples in 1000.
+pub(super) fn ess(of: &Measured) -> Estimate {
+    let v = of.figures.v;
+    let value = 1e3 / (1.0 + v.value);
+    Estimate { value, standard_error: value * v.standard_error / (1.0 + v.value) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn v(value: f64, standard_error: f64) -> Estimate {
+        Estimate { value, standard_error }
+    }
+
+    #[test]
+    fn gains_are_geometric_and_leave_out_what_is_unsure() {
+        let nan = v(f64::NAN, f64::NAN);
+        let pairs = [
+            [v(2.0, 0.02), v(1.0, 0.0)],
+            [v(8.0, 0.08), v(1.0, 0.0)],
+            [v(1.0, 0.0), v(100.0, 30.0)],
+            [nan, v(1.0, 0.0)],
+        ];
+        let gain = gain(pairs.into_iter()).expect("two cells");
+        assert!((gain.geometric_mean.value - 4.0).abs() < 1e-12);
+        assert!((gain.geometric_mean.standard_error - 4.0 * 0.01 / 2.0_f64.sqrt()).abs() < 1e-12);
+        assert_eq!((gain.least.value, gain.most.value, gain.unsure), (2.0, 8.0, 2));
+        assert_eq!((gain.median.value, gain.quartiles, gain.shares), (2.0, [2.0, 2.0], [0.5, 0.0]));
+        assert_eq!(super::gain([[nan, nan]].into_iter()), None, "nothing is sure");
+    }
+}
