@@ -2,7 +2,7 @@
 //! `figures/`.
 
 use crate::cmd::{environment, print_tables};
-use crate::compare::{self, CompareConfig, Comparison, Depth, Part};
+use crate::compare::{self, CompareConfig, Comparison, Depth};
 use crate::config::Compare;
 use crate::error::Error;
 use crate::files::{whole, writable};
@@ -65,7 +65,7 @@ fn print(comparison: &Comparison, page: &Path) -> Result<(), Error> {
 }
 
 /// Progress bars, one per part, on standard error; nothing where that is no terminal.
-struct Bar(Mutex<(ProgressBar, Option<Part>)>);
+struct Bar(Mutex<(ProgressBar, Option<&'static str>)>);
 
 impl Bar {
     fn new() -> Self {
@@ -76,11 +76,11 @@ impl Bar {
         Self(Mutex::new((bar, None)))
     }
 
-    fn show(&self, part: Part, done: f64) {
+    fn show(&self, part: &'static str, done: f64) {
         let Ok(mut state) = self.0.lock() else { return };
         if state.1 != Some(part) {
             state.0.reset();
-            state.0.set_message(part.label());
+            state.0.set_message(part);
             state.1 = Some(part);
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]

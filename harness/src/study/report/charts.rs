@@ -5,7 +5,7 @@ use super::super::rows::Strategy;
 use super::super::summary::Gain;
 use super::super::times::PER_POINT;
 use super::view::{Counted, Estimator, MANY, TOLD, View, ess};
-use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, ReferenceLine, Series};
+use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Series};
 use crate::report::Drawing;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
@@ -42,7 +42,7 @@ pub(super) fn variances(of: &View<'_>) -> Vec<Drawing> {
             for sampler in Sampler::ALL {
                 let point = |value: &f32| {
                     let v = of.mean_v((model, sampler), CONSTANT, |cell| (over.of)(cell) == *value)?;
-                    Some(Point::new(f64::from(*value), v.value).with_error(v.standard_error))
+                    Some((f64::from(*value), v))
                 };
                 chart = chart.series(Series::new(sampler.name(), over.values.iter().filter_map(point)));
             }
@@ -109,7 +109,7 @@ type Timing = Option<Counted>;
 /// The verdicts in one plot: the Cauchy model against the Gaussian one, by light.
 pub(super) fn summary(of: &View<'_>) -> Drawing {
     let title = "Samples: Gaussian model over Cauchy model";
-    let mut chart = BarChart::new(title, Axis::log("V Gaussian / V Cauchy"), of.light_labels()).narrow();
+    let mut chart = BarChart::new(title, Axis::log("V Gaussian / V Cauchy"), of.light_labels());
     for sampler in TOLD {
         let gain = |light| of.gain((ModelKind::Gaussian, sampler), (ModelKind::Cauchy, sampler), light);
         let bar = |light| Bar::new(gain(light).map_or(f64::NAN, |gain| gain.median.value));
@@ -296,10 +296,10 @@ fn bounds(of: &View<'_>) -> Vec<Drawing> {
                 chart = chart.series(of_sampler(sampler, Series::new(sampler.name(), points)));
             }
         }
-        let line = ReferenceLine::Level { label: "the bound".to_owned(), y: 1.0 };
         let caption = "For samplers with a bound in closed form: the largest weight drawn over the bound, in the worst cell of \
                        each inclination. A point above 1 would fail the run.";
-        Drawing::new(chart.reference(line).svg(), caption).named(format!("weight-bound-{}", model.name()))
+        Drawing::new(chart.reference("the bound", 0.0, (1.0, 1.0)).svg(), caption)
+            .named(format!("weight-bound-{}", model.name()))
     };
     ModelKind::ALL.map(chart).into()
 }

@@ -3,7 +3,7 @@
 use super::view::View;
 use crate::difference::{Differences, Summary, Width, albedo_ratio};
 use crate::figures;
-use crate::plot::{Axis, LineChart, Point, Series};
+use crate::plot::{Axis, Bar, LineChart, Series};
 use crate::report::Drawing;
 use hairis::HairParams;
 use hairis_variants::Cauchy;
@@ -60,7 +60,7 @@ pub(super) fn charts(of: &View<'_>) -> Vec<Drawing> {
     ];
     for (name, figure) in kinds {
         let point =
-            |(beta, found): (f64, Summary)| Point::new(beta, found.median).with_interval(found.least, found.most);
+            |(beta, found): (f64, Summary)| (beta, Bar::new(found.median).with_interval(found.least, found.most));
         by_kind = by_kind.series(Series::new(name, over(Width::Paper, figure).map(point)));
     }
     let mut albedo = LineChart::new(
@@ -72,7 +72,7 @@ pub(super) fn charts(of: &View<'_>) -> Vec<Drawing> {
         let point = |theta_o: &f32| {
             let rows = of.difference.of(width).filter(|row| row.cell.theta_o_deg == *theta_o);
             let found = Summary::of(rows.map(|row| albedo_ratio(&row.figures)));
-            Point::new(f64::from(*theta_o), found.geometric_mean).with_interval(found.least, found.most)
+            (f64::from(*theta_o), Bar::new(found.geometric_mean).with_interval(found.least, found.most))
         };
         albedo = albedo.series(Series::new(named(of, width), of.grid.theta_o_deg.iter().map(point)));
     }
