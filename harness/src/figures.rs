@@ -73,22 +73,23 @@ fn reflected(gather: &AnyGather, theta: f64, phi: f64) -> f64 {
 #[must_use]
 pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) -> Drawing {
     let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params)).prepare(fibre_direction(theta_o, 0.0).as_vec3());
-    let panel = |title: &str, lobes, angles: &dyn Fn(&AnyGather, [f32; 3]) -> Option<[f64; 2]>| {
+    let panel = |title: &str, lobes, is_uniform| {
         let gather = gather.with_lobes(lobes);
+        let angles = |xi: &[f32; 3]| {
+            let [_, a, b] = xi.map(f64::from);
+            let uniform = [(2.0 * a - 1.0).asin(), 2.0 * PI * b];
+            if is_uniform { Some(uniform) } else { Some(fibre_angles(gather.sample(*xi)?.wi.as_dvec3())) }
+        };
         let density = SphereGrid::sample(Projection::EqualArea, (80, 160), |theta, phi| reflected(&gather, theta, phi));
-        let points = xi.iter().filter_map(|xi| angles(&gather, *xi)).collect();
-        ScatterPanel { title: title.to_owned(), points, density }
+        ScatterPanel { title: title.to_owned(), points: xi.iter().filter_map(angles).collect(), density }
     };
-    let uniform = |[_, a, b]: [f64; 3]| [(2.0 * a - 1.0).asin(), 2.0 * PI * b];
-    let by_lobes =
-        |title, lobes| panel(title, lobes, &|gather, xi| Some(fibre_angles(gather.sample(xi)?.wi.as_dvec3())));
     let panels = vec![
-        panel("(a) uniform", LobeMask::ALL, &|_, xi| Some(uniform(xi.map(f64::from)))),
-        by_lobes("(b) all lobes", LobeMask::ALL),
-        by_lobes("(c) R", LobeMask::of(&[Lobe::R])),
-        by_lobes("(d) TT", LobeMask::of(&[Lobe::TT])),
-        by_lobes("(e) TRT without glint", LobeMask::of(&[Lobe::TRT])),
-        by_lobes("(f) glint", LobeMask::of(&[Lobe::GLINT])),
+        panel("(a) uniform", LobeMask::ALL, true),
+        panel("(b) all lobes", LobeMask::ALL, false),
+        panel("(c) R", LobeMask::of(&[Lobe::R]), false),
+        panel("(d) TT", LobeMask::of(&[Lobe::TT]), false),
+        panel("(e) TRT without glint", LobeMask::of(&[Lobe::TRT]), false),
+        panel("(f) glint", LobeMask::of(&[Lobe::GLINT]), false),
     ];
     let mark = (format!("direction to the viewer, θₒ = {:.0}°", theta_o.to_degrees()), [theta_o, 0.0]);
     let map = ScatterMap { title: "Sample distributions over S cos θᵢ".to_owned(), panels, mark };

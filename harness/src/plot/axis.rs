@@ -159,6 +159,8 @@ impl Fitted<'_> {
 
     pub(super) fn ticks(&self) -> Vec<Tick> {
         match self.axis.scale {
+            // So short an axis has few multiples of a power of ten.
+            Scale::Log if self.high - self.low < 0.5 => self.linear_ticks(self.value(0.0), self.value(1.0)),
             Scale::Log => self.log_ticks(),
             Scale::Linear => self.linear_ticks(self.low, self.high),
             // Its ends are those of the sphere.

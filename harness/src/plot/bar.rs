@@ -79,7 +79,7 @@ impl BarChart {
                 let (half, end) = (0.44 * bar_width, y.within(bar.value));
                 swatch(&mut canvas, (center - half, end), (center + half, base), s);
                 bar.whiskers(&mut canvas, center, &y, INK);
-                if bar_width > 30.0 {
+                if bar_width > 26.0 {
                     // A bar that hangs from its level has its number below.
                     let ends = [end, y.within(bar.low), y.within(bar.high)];
                     let at = if end > base {
@@ -94,7 +94,7 @@ impl BarChart {
         canvas.line(&[(x.start, base), (x.end, base)], THIN);
         canvas.line(&[(x.start, y.start), (x.start, y.end)], THIN);
         let names: Vec<&str> = self.series.iter().map(|(name, _)| name.as_str()).collect();
-        let bottom = legend(&mut canvas, &names, (x.start, below), |canvas, s, (x, y)| {
+        let bottom = legend(&mut canvas, &names, below, |canvas, s, (x, y)| {
             swatch(canvas, (x + 6.0, y - 7.0), (x + 30.0, y + 7.0), s);
         });
         canvas.finish(&self.values_in_words(), bottom + 10.0)

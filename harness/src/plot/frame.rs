@@ -98,19 +98,15 @@ pub(super) fn draw_axis(canvas: &mut Canvas, axis: &Fitted, across: &Fitted, upr
 }
 
 /// Draws a legend below `top`, each entry with its mark, and returns where it ends.
-pub(super) fn legend(
-    canvas: &mut Canvas,
-    names: &[&str],
-    (left, top): Place,
-    mark: impl Fn(&mut Canvas, usize, Place),
-) -> f64 {
+pub(super) fn legend(canvas: &mut Canvas, names: &[&str], top: f64, mark: impl Fn(&mut Canvas, usize, Place)) -> f64 {
+    const LEFT: f64 = 12.0;
     let widest = names.iter().map(|name| 58.0 + LABEL.width(name)).fold(1.0, f64::max);
-    let fit = (1..=names.len()).rev().find(|n| left + *n as f64 * widest <= WIDTH).unwrap_or(1);
+    let fit = (1..=names.len()).rev().find(|n| LEFT + *n as f64 * widest <= WIDTH).unwrap_or(1);
     // As few rows as fit, evenly filled.
     let rows = names.len().div_ceil(fit);
     let columns = names.len().div_ceil(rows.max(1)).max(1);
     for (i, name) in names.iter().enumerate() {
-        let x = left + (i % columns) as f64 * widest;
+        let x = LEFT + (i % columns) as f64 * widest;
         let y = top + ((i / columns) as f64 + 0.5) * LEGEND_LINE;
         mark(canvas, i, (x, y));
         canvas.text(name, (x + 42.0, y), Type { anchor: "start", ..LABEL });

@@ -140,7 +140,7 @@ impl LineChart {
         }
         let mut names: Vec<&str> = self.series.iter().map(|s| s.name.as_str()).collect();
         names.extend(self.references.iter().map(|line| line.name.as_str()));
-        let bottom = legend(&mut canvas, &names, (x.start, y.start + 52.0), |canvas, i, (x, y)| {
+        let bottom = legend(&mut canvas, &names, y.start + 52.0, |canvas, i, (x, y)| {
             let series = self.series.get(i);
             let pen = series.map_or(Reference::PEN, |series| series.pen(i));
             canvas.line(&[(x, y), (x + 36.0, y)], pen);

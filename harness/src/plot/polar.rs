@@ -49,12 +49,12 @@ impl PolarChart {
         let (mut canvas, mut y) = Canvas::new(&self.title);
         for panel in &self.panels {
             panel.draw(&mut canvas, (0.5 * WIDTH, y + 52.0 + RADIUS));
-            y += 2.0 * RADIUS + 112.0;
+            y += 2.0 * RADIUS + 116.0;
         }
         canvas.text(&self.radius, (0.5 * WIDTH, y + 4.0), LABEL);
         let series = self.panels.first().into_iter().flat_map(|panel| &panel.series);
         let names: Vec<&str> = series.map(|(name, _)| name.as_str()).collect();
-        let bottom = legend(&mut canvas, &names, (20.0, y + 18.0), |canvas, i, (x, y)| {
+        let bottom = legend(&mut canvas, &names, y + 18.0, |canvas, i, (x, y)| {
             canvas.line(&[(x, y), (x + 36.0, y)], pen(i));
         });
         let panels: Vec<&str> = self.panels.iter().map(|panel| panel.title.as_str()).collect();

@@ -215,8 +215,8 @@ impl ScatterMap {
     /// The figure as SVG.
     #[must_use]
     pub fn svg(&self) -> String {
-        const LEFT: [f64; 2] = [64.0, 324.0];
-        const SIZE: Place = (186.0, 120.0);
+        const LEFT: [f64; 2] = [64.0, 316.0];
+        const SIZE: Place = (182.0, 120.0);
         let (mut canvas, mut top) = Canvas::new(&self.title);
         for row in self.panels.chunks(LEFT.len()) {
             for ((panel, left), name) in row.iter().zip(LEFT).zip(["inclination θ (°)", ""]) {
@@ -234,7 +234,7 @@ impl ScatterMap {
                     canvas.marker(place(x, y, self.mark.1), CROSS, MARK);
                 });
             }
-            top += SIZE.1 + 76.0;
+            top += SIZE.1 + 82.0;
         }
         canvas.marker((LEFT[0] + 6.0, top + 8.0), CROSS, MARK);
         canvas.text(&self.mark.0, (LEFT[0] + 18.0, top + 8.0), Type { anchor: "start", ..TICK });
