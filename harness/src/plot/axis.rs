@@ -160,7 +160,7 @@ impl Fitted<'_> {
     pub(super) fn ticks(&self) -> Vec<Tick> {
         match self.axis.scale {
             // So short an axis has few multiples of a power of ten.
-            Scale::Log if self.high - self.low < 0.5 => self.linear_ticks(self.value(0.0), self.value(1.0)),
+            Scale::Log if self.high - self.low < 0.9 => self.linear_ticks(self.value(0.0), self.value(1.0)),
             Scale::Log => self.log_ticks(),
             Scale::Linear => self.linear_ticks(self.low, self.high),
             // Its ends are those of the sphere.
@@ -182,12 +182,7 @@ impl Fitted<'_> {
         let decades = self.high - self.low;
         let room = ((self.end - self.start).abs() / 55.0).max(2.0);
         let every = (decades / room).ceil().max(1.0);
-        // With few decades 2 and 5 are labelled too, with less than one nearly every digit.
-        let labelled: &[f64] = match decades {
-            d if d < 0.9 => &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0],
-            d if d < 2.5 => &[1.0, 2.0, 5.0],
-            _ => &[1.0],
-        };
+        let labelled: &[f64] = if decades < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let digits = if decades < 12.0 { &DIGITS[..] } else { &DIGITS[..1] };
         let mut ticks = Vec::new();
         let mut exponent = self.low.floor();

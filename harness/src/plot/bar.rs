@@ -81,12 +81,8 @@ impl BarChart {
                 bar.whiskers(&mut canvas, center, &y, INK);
                 if bar_width > 26.0 {
                     // A bar that hangs from its level has its number below.
-                    let ends = [end, y.within(bar.low), y.within(bar.high)];
-                    let at = if end > base {
-                        ends.into_iter().fold(end, f64::max) + 9.0
-                    } else {
-                        ends.into_iter().fold(end, f64::min) - 9.0
-                    };
+                    let ends = [end, y.within(bar.low), y.within(bar.high)].into_iter();
+                    let at = if end > base { ends.fold(end, f64::max) + 9.0 } else { ends.fold(end, f64::min) - 9.0 };
                     canvas.text(&number::plain(bar.value, 3), (center, at), Type { color: INK, ..TICK });
                 }
             }
