@@ -5,9 +5,10 @@ mod looks;
 pub use looks::{difference_map, maps, polar};
 
 use crate::plot::{Axis, Dash, LineChart, Projection, ScatterMap, ScatterPanel, Series, SphereGrid};
-use crate::quadrature::{fibre_angles, fibre_direction};
+use crate::quadrature::fibre_direction;
 use crate::report::Drawing;
 use core::f64::consts::{PI, SQRT_2};
+use glam::Vec3;
 use hairis::{Bsdf, Gaussian, Hair, HairParams, Lobe, LobeMask};
 use hairis_variants::{AnyBsdf, AnyGather};
 
@@ -66,6 +67,12 @@ fn reflected(gather: &AnyGather, theta: f64, phi: f64) -> f64 {
     (r + g + b) / 3.0 * theta.cos()
 }
 
+/// Inclination and azimuth of a direction.
+fn angles_of(wi: Vec3) -> [f64; 2] {
+    let [u, v, w] = wi.as_dvec3().to_array();
+    [u.atan2(v.hypot(w)), w.atan2(v)]
+}
+
 /// The paper's figure 5: where uniform sampling, the mixture and each lobe alone put their samples, over
 /// `S cos theta_i`, seen from the inclination `theta_o` (radians) at azimuth 0.
 ///
@@ -78,7 +85,7 @@ pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) 
         let angles = |xi: &[f32; 3]| {
             let [_, a, b] = xi.map(f64::from);
             let uniform = [(2.0 * a - 1.0).asin(), 2.0 * PI * b];
-            if is_uniform { Some(uniform) } else { Some(fibre_angles(gather.sample(*xi)?.wi.as_dvec3())) }
+            if is_uniform { Some(uniform) } else { Some(angles_of(gather.sample(*xi)?.wi)) }
         };
         let density = SphereGrid::sample(Projection::EqualArea, (80, 160), |theta, phi| reflected(&gather, theta, phi));
         ScatterPanel { title: title.to_owned(), points: xi.iter().filter_map(angles).collect(), density }
