@@ -62,64 +62,30 @@ pub struct CompareSettings {
     pub environment_notes: Vec<String>,
 }
 
-/// The parts of a comparison, in the order in which they run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// Timing; nothing else runs meanwhile.
-    Speed,
-    /// Errors against the oracle.
-    Agreement,
-    /// Variances.
-    Efficiency,
-    /// Rays chosen from candidates; they are timed first, and nothing else runs meanwhile.
-    Rays,
-}
-
-impl Part {
-    /// Name in a progress bar.
-    #[must_use]
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Speed => "speed",
-            Self::Agreement => "agreement",
-            Self::Efficiency => "sample efficiency",
-            Self::Rays => "rays",
-        }
-    }
-}
-
-/// Runs the comparison. `progress` is told the part and the share of it that is done, from 0 to 1.
+/// Runs the comparison. `progress` is called with the name of the part that runs and the share of it that is done, from 0
+/// to 1. Nothing else runs while speed is measured, and while rays are timed, which comes first among theirs.
 ///
 /// # Errors
 ///
 /// Never in practice: the hair that is compared is within the accepted ranges.
-pub fn run(config: &CompareConfig<'_>, progress: &(dyn Fn(Part, f64) + Sync)) -> Result<Comparison, ParamError> {
-    let speed = speed::run(&SpeedConfig::new(config.seed, config.quick), |done| progress(Part::Speed, done))?;
-    let costs = sample_costs(&Times::measure(config.seed, config.quick, None));
+pub fn run(
+    config: &CompareConfig<'_>,
+    progress: &(dyn Fn(&'static str, f64) + Sync),
+) -> Result<Comparison, ParamError> {
+    let CompareConfig { seed, quick, environment, environment_name } = *config;
+    let share = |part| move |done: usize, total: usize| progress(part, done as f64 / total as f64);
+    let speed = speed::run(&SpeedConfig::new(seed, quick), |done| progress("speed", done))?;
+    let costs = sample_costs(&Times::measure(seed, quick, None));
 
-    progress(Part::Agreement, 0.0);
-    let agreement = agreement::run(config.seed, if config.quick { 4_000 } else { 40_000 })?;
-    progress(Part::Agreement, 1.0);
+    progress("agreement", 0.0);
+    let agreement = agreement::run(seed, if quick { 4_000 } else { 40_000 })?;
+    progress("agreement", 1.0);
 
-    let variance =
-        EfficiencyConfig { costs: Some(costs), ..EfficiencyConfig::new(config.seed, config.quick, config.environment) };
-    let efficiency = efficiency::run(&variance, &|done, total| {
-        #[expect(clippy::cast_precision_loss, reason = "counts of cells, below a thousand")]
-        progress(Part::Efficiency, done as f64 / total as f64);
-    })?;
-
-    let settings_of_rays = RaysConfig::new(config.seed, config.quick, config.environment);
-    let rays = ray_figures::run(&settings_of_rays, &efficiency, &|done, total| {
-        #[expect(clippy::cast_precision_loss, reason = "counts of cells, below a thousand")]
-        progress(Part::Rays, done as f64 / total as f64);
-    });
-
-    let settings = CompareSettings {
-        seed: config.seed,
-        quick: config.quick,
-        environment: config.environment_name.to_owned(),
-        environment_notes: config.environment.notes(),
-    };
+    let variance = EfficiencyConfig { costs: Some(costs), ..EfficiencyConfig::new(seed, quick, environment) };
+    let efficiency = efficiency::run(&variance, &share("sample efficiency"))?;
+    let rays = ray_figures::run(&RaysConfig::new(seed, quick, environment), &efficiency, &share("rays"));
+    let environment_notes = environment.notes();
+    let settings = CompareSettings { seed, quick, environment: environment_name.to_owned(), environment_notes };
     Ok(Comparison { settings, machine: Machine::current(), speed, agreement, efficiency, rays })
 }
 
@@ -140,20 +106,25 @@ impl Comparison {
             format!("speed: {} {} {} {} gave wrong answers", row.op.label(), row.model, row.contender, row.level)
         });
         let far = self.agreement.iter().filter(|row| !row.passed).map(|row| {
+            let AgreementResult { model, path, level, region, quantity, worst, bound, .. } = row;
+            let (region, quantity, sampler) = (region.label(), quantity.label(), row.sampler.unwrap_or_default());
             format!(
-                "agreement: {} {} {} {} {} {}: {:.2e} is beyond {:.0e}",
-                row.model,
-                row.sampler.unwrap_or_default(),
-                row.path,
-                row.level,
-                row.region.label(),
-                row.quantity.label(),
-                row.worst,
-                row.bound
+                "agreement: {model} {sampler} {path} {level} {region} {quantity}: {worst:.2e} is beyond {bound:.0e}"
             )
         });
         let biased = self.efficiency.check.failures.iter().map(|what| format!("efficiency: {what}"));
         let rays = self.rays.check.failures.iter().map(|what| format!("rays: {what}"));
         slow.chain(far).chain(biased).chain(rays).collect()
     }
+}
+
+/// The values without repetitions, in the order in which they first occur.
+fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
+    let mut all = Vec::new();
+    for value in values {
+        if !all.contains(&value) {
+            all.push(value);
+        }
+    }
+    all
 }

@@ -90,7 +90,10 @@ pub struct DifferenceRow {
 /// The differences over a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    rows: Vec<DifferenceRow>,
+    /// The grid.
+    pub grid: Grid,
+    /// Cells outermost, in the order of the grid, then [`Width::ALL`].
+    pub rows: Vec<DifferenceRow>,
 }
 
 impl Difference {
@@ -103,7 +106,7 @@ impl Difference {
         let cells: Vec<Cell> = (0..grid.len()).map(|index| grid.cell(index)).collect();
         let hair: Vec<HairValues> = cells.par_iter().map(hair).collect::<Result<_, ParamError>>()?;
         let best_of_grid = best::least(|k| {
-            let squares: Vec<f64> = hair.par_iter().map(|hair| hair.square_error(Kind::cauchy(k))).collect();
+            let squares: Vec<f64> = hair.par_iter().map(|hair| hair.square_error(k)).collect();
             squares.iter().sum()
         });
         let blur = Blur::new(SIGMA_DEG.to_radians(), LATITUDES, LATITUDES);
@@ -113,18 +116,12 @@ impl Difference {
                 Width::HalfWidth => f64::from(Cauchy::HALF_WIDTH.width_factor()),
                 Width::Area => f64::from(Cauchy::AREA.width_factor()),
                 Width::BestOfGrid => best_of_grid,
-                Width::BestOfCell => best::least(|k| hair.square_error(Kind::cauchy(k))),
+                Width::BestOfCell => best::least(|k| hair.square_error(k)),
             });
             let found = hair.figures(&factors.map(Kind::cauchy), &blur);
             Width::ALL.into_iter().zip(found).map(|(width, figures)| DifferenceRow { cell: *cell, width, figures })
         });
-        Ok(Self { rows: rows.collect() })
-    }
-
-    /// The rows: cells outermost, in the order of the grid, then [`Width::ALL`].
-    #[must_use]
-    pub fn rows(&self) -> &[DifferenceRow] {
-        &self.rows
+        Ok(Self { grid, rows: rows.collect() })
     }
 
     /// The rows of one choice of widths.
@@ -164,12 +161,12 @@ mod tests {
     #[test]
     fn the_best_factors_are_the_best_in_their_norm() {
         let found = Difference::over(Grid::QUICK).expect("accepted");
-        assert_eq!(found.rows().len(), Grid::QUICK.len() * Width::ALL.len());
+        assert_eq!(found.rows.len(), Grid::QUICK.len() * Width::ALL.len());
         let squares = |width| found.of(width).map(|row| row.figures.plain.l2.powi(2)).sum::<f64>();
         for width in [Width::Paper, Width::HalfWidth, Width::Area] {
             assert!(squares(Width::BestOfGrid) < squares(width), "over the grid, {width:?}");
         }
-        for rows in found.rows().chunks(Width::ALL.len()) {
+        for rows in found.rows.chunks(Width::ALL.len()) {
             let [others @ .., best] = rows else { panic!("no rows") };
             for other in others {
                 assert!(best.figures.plain.l2 <= other.figures.plain.l2 + 1e-9, "{best:?} {other:?}");

@@ -5,8 +5,8 @@ mod looks;
 pub use looks::{difference_map, maps, polar};
 
 use crate::plot::{Axis, Dash, LineChart, Projection, ScatterMap, ScatterPanel, Series, SphereGrid};
+use crate::quadrature::fibre_direction;
 use crate::report::Drawing;
-use core::f32::consts::TAU as TAU_F32;
 use core::f64::consts::{PI, SQRT_2};
 use glam::Vec3;
 use hairis::{Bsdf, Gaussian, Hair, HairParams, Lobe, LobeMask};
@@ -24,13 +24,13 @@ const BELLS: [Bell; 2] = [
     ("Cauchy", |x| 1.0 / (x * x + 1.0), |x| 2.0 * x.atan()),
 ];
 
-fn bells(title: &str, y: Axis, span: f64, height: impl Fn(&Bell, f64, f64) -> f64) -> String {
-    let x = Axis::linear("distance from the centre (°)").range(-span, span).step(span / 6.0);
-    let mut chart = LineChart::new(title, x, y);
+/// The bells, each with its peak or its area scaled to 1 by `height`.
+fn bells(title: &str, y: &str, height: impl Fn(&Bell, f64, f64) -> f64) -> String {
+    let x = Axis::linear("distance from the centre (°)").range(-90.0, 90.0).step(15.0);
+    let mut chart = LineChart::new(title, x, Axis::linear(y).from_zero());
     for (bell, dash) in BELLS.iter().zip([Dash::Solid, Dash::Dashed]) {
         for (color, width) in WIDTHS.into_iter().enumerate() {
-            let at = |i: i32| f64::from(i) * span / 360.0;
-            let points = (-360..=360).map(at).map(|x| (x, height(bell, x, width)));
+            let points = (-360..=360).map(|i| f64::from(i) / 4.0).map(|x| (x, height(bell, x, width)));
             chart = chart.series(Series::curve(format!("{} {width}°", bell.0), points).styled(color, dash));
         }
     }
@@ -40,8 +40,8 @@ fn bells(title: &str, y: Axis, span: f64, height: impl Fn(&Bell, f64, f64) -> f6
 /// The paper's figure 4: Gaussians and Cauchys of the same widths, each of area 1 on `[-pi/2, pi/2]`.
 #[must_use]
 pub fn normalised_bells() -> Drawing {
-    let y = Axis::linear("density (1/rad)").from_zero();
-    let svg = bells("Gaussian and Cauchy of the same width, area 1", y, 90.0, |(_, at, area), x, width| {
+    let title = "Gaussian and Cauchy of the same width, area 1";
+    let svg = bells(title, "density (1/rad)", |(_, at, area), x, width| {
         at(x / width) / (width.to_radians() * area(90.0 / width))
     });
     let caption = "Gaussian (unbroken) and Cauchy (dashed) distributions of the same width and offset, both \
@@ -53,81 +53,67 @@ pub fn normalised_bells() -> Drawing {
 /// The same bells as the scattering function has them: of peak 1.
 #[must_use]
 pub fn unit_bells() -> Drawing {
-    let y = Axis::linear("bell (no unit)").from_zero();
-    let svg = bells("Gaussian and Cauchy of the same width, peak 1", y, 90.0, |(_, at, _), x, width| at(x / width));
+    let title = "Gaussian and Cauchy of the same width, peak 1";
+    let svg = bells(title, "bell (no unit)", |(_, at, _), x, width| at(x / width));
     let caption = "The same bells with peak 1, as the lobes of the published model (Gaussian) and of the all-Cauchy \
                    variant use them. At the same width parameter the Cauchy is narrower at half height (1 width \
                    against 1.177) and far higher in the tails: 1/10 against 1/90 three widths out.";
     Drawing::new(svg, caption).named("bells-of-peak-1")
 }
 
-/// The unit vector of an inclination and an azimuth.
-fn direction(theta: f64, phi: f64) -> Vec3 {
-    let (sin_theta, cos_theta) = theta.sin_cos();
-    let (sin_phi, cos_phi) = phi.sin_cos();
-    glam::DVec3::new(sin_theta, cos_theta * cos_phi, cos_theta * sin_phi).as_vec3()
-}
-
-fn angles(w: Vec3) -> (f64, f64) {
-    let [u, v, w] = w.as_dvec3().to_array();
-    (u.atan2(v.hypot(w)), w.atan2(v))
-}
-
 /// `S cos theta_i`, the mean of the channels.
 fn reflected(gather: &AnyGather, theta: f64, phi: f64) -> f64 {
-    let [r, g, b] = gather.eval(direction(theta, phi)).map(f64::from);
+    let [r, g, b] = gather.eval(fibre_direction(theta, phi).as_vec3()).map(f64::from);
     (r + g + b) / 3.0 * theta.cos()
+}
+
+/// Inclination and azimuth of a direction.
+fn angles_of(wi: Vec3) -> [f64; 2] {
+    let [u, v, w] = wi.as_dvec3().to_array();
+    [u.atan2(v.hypot(w)), w.atan2(v)]
 }
 
 /// The paper's figure 5: where uniform sampling, the mixture and each lobe alone put their samples, over
 /// `S cos theta_i`, seen from the inclination `theta_o` (radians) at azimuth 0.
 ///
-/// `xi` gives the points of the unit cube, the same ones to all six maps: a Halton sequence, as in the paper.
+/// `xi` are the points of the unit cube, the same ones for all six maps: a Halton sequence, as in the paper.
 #[must_use]
-pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: impl Iterator<Item = [f32; 3]> + Clone) -> Drawing {
-    const CELLS: (u16, u16) = (80, 160);
-    let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params)).prepare(direction(theta_o, 0.0));
-    let count = xi.clone().count();
-    let uniform = xi.clone().map(|[_, a, b]| angles(uniform_direction(a, b)));
-    let mut map = ScatterMap::new("Sample distributions over S cos θᵢ", Projection::EqualArea);
-    let background = |gather: &AnyGather| {
-        SphereGrid::sample(Projection::EqualArea, CELLS, |theta, phi| reflected(gather, theta, phi))
+pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) -> Drawing {
+    let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params)).prepare(fibre_direction(theta_o, 0.0).as_vec3());
+    let panel = |title: &str, lobes, is_uniform| {
+        let gather = gather.with_lobes(lobes);
+        let angles = |xi: &[f32; 3]| {
+            let [_, a, b] = xi.map(f64::from);
+            let uniform = [(2.0 * a - 1.0).asin(), 2.0 * PI * b];
+            if is_uniform { Some(uniform) } else { Some(angles_of(gather.sample(*xi)?.wi)) }
+        };
+        let density = SphereGrid::sample(Projection::EqualArea, (80, 160), |theta, phi| reflected(&gather, theta, phi));
+        ScatterPanel { title: title.to_owned(), points: xi.iter().filter_map(angles).collect(), density }
     };
-    map = map.panel(ScatterPanel::new("(a) uniform", uniform).with_density(background(&gather)));
-    let lobes = [
-        ("(b) all lobes", LobeMask::ALL),
-        ("(c) R", LobeMask::of(&[Lobe::R])),
-        ("(d) TT", LobeMask::of(&[Lobe::TT])),
-        ("(e) TRT without glint", LobeMask::of(&[Lobe::TRT])),
-        ("(f) glint", LobeMask::of(&[Lobe::GLINT])),
+    let panels = vec![
+        panel("(a) uniform", LobeMask::ALL, true),
+        panel("(b) all lobes", LobeMask::ALL, false),
+        panel("(c) R", LobeMask::of(&[Lobe::R]), false),
+        panel("(d) TT", LobeMask::of(&[Lobe::TT]), false),
+        panel("(e) TRT without glint", LobeMask::of(&[Lobe::TRT]), false),
+        panel("(f) glint", LobeMask::of(&[Lobe::GLINT]), false),
     ];
-    for (name, mask) in lobes {
-        let gather = gather.with_lobes(mask);
-        let points = xi.clone().filter_map(|xi| gather.sample(xi)).map(|sample| angles(sample.wi));
-        map = map.panel(ScatterPanel::new(name, points).with_density(background(&gather)));
-    }
-    let degrees = theta_o.to_degrees();
-    let svg = map.mark(format!("direction to the viewer, θₒ = {degrees:.0}°"), theta_o, 0.0).svg();
+    let mark = (format!("direction to the viewer, θₒ = {:.0}°", theta_o.to_degrees()), [theta_o, 0.0]);
+    let map = ScatterMap { title: "Sample distributions over S cos θᵢ".to_owned(), panels, mark };
     let caption = format!(
-        "{count} samples a map in equal-area maps of the sphere, as figure 5 of the paper: (a) uniform sampling, (b) the \
+        "{} samples a map in equal-area maps of the sphere, as figure 5 of the paper: (a) uniform sampling, (b) the \
          mixture, (c) to (f) each lobe alone. The background is S cos θᵢ of the same lobes (square root; darker is \
-         more), so samples should lie where it is dark. TT surrounds φ = ±180°, the direction away from the viewer."
+         more), so samples should lie where it is dark. TT surrounds φ = ±180°, the direction away from the viewer.",
+        xi.len()
     );
-    Drawing::new(svg, caption).named("sample-distributions")
-}
-
-fn uniform_direction(a: f32, b: f32) -> Vec3 {
-    let sin_theta = 2.0 * a - 1.0;
-    let cos_theta = (1.0 - sin_theta * sin_theta).max(0.0).sqrt();
-    let (sin, cos) = (TAU_F32 * b).sin_cos();
-    Vec3::new(sin_theta, cos_theta * cos, cos_theta * sin)
+    Drawing::new(map.svg(), caption).named("sample-distributions")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::markup::well_formed;
-    use crate::plot::{Bar, BarChart, HeatMap, Point, ReferenceLine};
+    use crate::plot::{Bar, BarChart, HeatMap};
     use crate::report::{Report, Section};
     use crate::table::{Table, number};
     use hairis::HairDesc;
@@ -137,8 +123,8 @@ mod tests {
         HairParams::new(&HairDesc::default()).expect("the default is legal")
     }
 
-    fn halton(n: u32) -> impl Iterator<Item = [f32; 3]> + Clone {
-        (1..=n).map(|i| [2_u32, 3, 5].map(|base| radical_inverse(i, base)))
+    fn halton(n: u32) -> Vec<[f32; 3]> {
+        (1..=n).map(|i| [2_u32, 3, 5].map(|base| radical_inverse(i, base))).collect()
     }
 
     fn radical_inverse(mut i: u32, base: u32) -> f32 {
@@ -154,7 +140,7 @@ mod tests {
     fn all() -> Vec<Drawing> {
         let params = default_hair();
         let theta_o = 20.0_f64.to_radians();
-        let samples = sample_distributions(&params, theta_o, halton(2000));
+        let samples = sample_distributions(&params, theta_o, &halton(2000));
         vec![normalised_bells(), unit_bells(), samples, polar(&params, theta_o, &[("Cauchy", Cauchy::PAPER)])]
     }
 
@@ -187,19 +173,18 @@ mod tests {
         }
         let n = |i: i32| 4.0_f64.powi(i);
         let decay =
-            |c: f64| (1..9).map(move |i| (n(i), c / n(i).sqrt())).map(|(n, e)| Point::new(n, e).with_error(0.12 * e));
+            |c: f64| (1..9).map(move |i| (n(i), c / n(i).sqrt())).map(|(n, e)| (n, Bar::new(e).with_error(0.12 * e)));
         let mut chart =
             LineChart::new("Convergence (made up)", Axis::log("samples N"), Axis::log("relative RMS error"));
         for (i, name) in ["uniform", "published", "matched", "light", "MIS", "quasi-MC"].into_iter().enumerate() {
             chart = chart.series(Series::new(name, decay(1.0 / n(i32::try_from(i).unwrap_or(0)).sqrt())));
         }
-        let slope = ReferenceLine::Power { label: "slope −1/2".into(), slope: -0.5, through: (4.0, 0.6) };
         let band = (0..50)
             .map(|i| f64::from(i) / 10.0)
-            .map(|x| Point::new(x, x.sin()).with_interval(x.sin() - 0.2, x.sin() + 0.1));
+            .map(|x| (x, Bar::new(x.sin()).with_interval(x.sin() - 0.2, x.sin() + 0.1)));
         let bands = LineChart::new("Intervals (made up)", Axis::linear("x (rad)"), Axis::linear("y"))
-            .series(Series::curve("sine", band))
-            .reference(ReferenceLine::Level { label: "zero".into(), y: 0.0 });
+            .series(Series::new("sine", band))
+            .reference("zero", 0.0, (1.0, 0.0));
         let bar = |v: f64| Bar::new(v).with_error(0.04 * v);
         let bars = BarChart::new(
             "Speed (made up)",
@@ -214,31 +199,31 @@ mod tests {
             .series("uniform", [0.706, 0.931, 2.268].map(bar))
             .series("published", [0.209, 0.189, 0.290].map(bar))
             .series("matched", [0.018, 0.009, 0.006].map(bar));
-        let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), &default_hair())).prepare(direction(0.35, 0.0));
+        let gather =
+            AnyBsdf::from(Bsdf::new(&Hair(Gaussian), &default_hair())).prepare(fibre_direction(0.35, 0.0).as_vec3());
         let grid = SphereGrid::sample(Projection::EqualAngle, (90, 180), |theta, phi| reflected(&gather, theta, phi));
         let heat =
             HeatMap::new("S cos θᵢ of the default hair, θₒ = 20°", Axis::linear("S cos θᵢ (1/sr)"), grid.clone());
         let heat_log = HeatMap::new("The same, logarithmic", Axis::log("S cos θᵢ (1/sr)").range(1e-4, 2.0), grid);
-        let table = Table::new("Relative variance V under constant light")
-            .text("sampler")
-            .numbers(["θₒ = 0°", "θₒ = 45°", "θₒ = 75°", "gain over uniform"])
-            .row([
-                "uniform".into(),
-                number::with_error(0.706, 0.003),
-                number::with_error(0.931, 0.004),
-                number::with_error(2.268, 0.011),
-                number::ratio(1.0),
-            ])
-            .row([
-                "published".into(),
-                number::with_error(0.209, 0.001),
-                number::with_error(0.189, 0.001),
-                number::with_error(0.29, 0.002),
-                number::ratio(7.82),
-            ])
-            .note("2²⁰ samples a cell; ± is one standard error.");
-        println!("{}", table.to_width(80));
-        for svg in [chart.reference(slope).svg(), bands.svg(), bars.svg(), logs.svg(), heat.svg(), heat_log.svg()] {
+        let mut table = Table::new("Relative variance V under constant light").text("sampler").numbers([
+            "θₒ = 0°",
+            "θₒ = 45°",
+            "θₒ = 75°",
+            "gain over uniform",
+        ]);
+        for (sampler, v, gain) in [("uniform", [0.706, 0.931, 2.268], 1.0), ("published", [0.209, 0.189, 0.29], 7.82)] {
+            let cells = v.map(|v| number::with_error(v, 0.005 * v));
+            table.push([sampler.to_owned()].into_iter().chain(cells).chain([number::ratio(gain)]));
+        }
+        let table = table.note("2²⁰ samples a cell; ± is one standard error.");
+        for svg in [
+            chart.reference("slope −1/2", -0.5, (4.0, 0.6)).svg(),
+            bands.svg(),
+            bars.svg(),
+            logs.svg(),
+            heat.svg(),
+            heat_log.svg(),
+        ] {
             section = section.figure(Drawing::new(svg, "Made up."));
         }
         let page = Report::new("hairis: scalar against SIMD, Gaussian against Cauchy").subtitle("A gallery")

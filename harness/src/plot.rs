@@ -3,31 +3,28 @@
 //! Charts take any number: NaN and infinities, and values of 0 and below on a logarithmic axis, are left out. Colours
 //! are those of Okabe and Ito; lines differ in their dashes and markers too, so that a chart survives grey printing.
 //! Each SVG has a white sheet, a name and a description for screen readers, and no ids, so that many can stand in one
-//! page.
+//! page. All are of one width, so that letters have one size on a page, and can be read on a phone.
 
 mod axis;
 mod bar;
 mod canvas;
 mod frame;
-mod grid;
-mod heat;
 mod line;
 mod palette;
 #[cfg(feature = "png")]
 mod png;
 mod polar;
-mod scatter;
+mod sphere;
 
-pub use axis::{Axis, Scale};
-pub use bar::{Bar, BarChart};
-pub use grid::{Projection, SphereGrid};
-pub use heat::HeatMap;
-pub use line::{LineChart, Point, ReferenceLine, Series};
+pub use axis::Axis;
+pub use bar::BarChart;
+pub use frame::Bar;
+pub use line::{LineChart, Series};
 pub use palette::Dash;
 #[cfg(feature = "png")]
 pub use png::png;
-pub use polar::{PolarChart, PolarPanel, PolarSeries};
-pub use scatter::{ScatterMap, ScatterPanel};
+pub use polar::{PolarChart, PolarPanel};
+pub use sphere::{HeatMap, Projection, ScatterMap, ScatterPanel, SphereGrid};
 
 #[cfg(test)]
 mod tests;

@@ -35,8 +35,8 @@ pub struct Report {
     summary: Option<Drawing>,
     findings: Vec<String>,
     sections: Vec<Section>,
+    method: Section,
     facts: Vec<[String; 2]>,
-    method: Vec<String>,
 }
 
 /// A part of a report, under a heading of its own and in the table of contents.
@@ -52,6 +52,7 @@ enum Block {
     Paragraph(String),
     Table(Table),
     Drawing(Drawing),
+    Facts(Vec<[String; 2]>),
 }
 
 /// A drawing with its caption.
@@ -77,6 +78,17 @@ impl Drawing {
     pub fn named(self, name: impl Into<String>) -> Self {
         Self { name: name.into(), ..self }
     }
+
+    /// The figure, with the number after `last`.
+    fn html(&self, last: &mut usize) -> String {
+        *last += 1;
+        format!(
+            "<figure id=\"figure-{last}\">\n<div class=\"plot\">\n{}</div>\n\
+             <figcaption><strong>Figure {last}.</strong> {}</figcaption>\n</figure>\n",
+            self.svg,
+            inline(&self.caption)
+        )
+    }
 }
 
 impl Section {
@@ -89,29 +101,41 @@ impl Section {
     /// Adds a heading within the section.
     #[must_use]
     pub fn heading(self, text: impl Into<String>) -> Self {
-        self.with(Block::Heading(text.into()))
+        self.with([Block::Heading(text.into())])
     }
 
     /// Adds a paragraph.
     #[must_use]
     pub fn paragraph(self, text: impl Into<String>) -> Self {
-        self.with(Block::Paragraph(text.into()))
+        self.with([Block::Paragraph(text.into())])
     }
 
     /// Adds a table.
     #[must_use]
     pub fn table(self, table: Table) -> Self {
-        self.with(Block::Table(table))
+        self.tables([table])
+    }
+
+    /// Adds tables.
+    #[must_use]
+    pub fn tables(self, tables: impl IntoIterator<Item = Table>) -> Self {
+        self.with(tables.into_iter().map(Block::Table))
     }
 
     /// Adds a figure; figures are numbered through the report.
     #[must_use]
     pub fn figure(self, figure: Drawing) -> Self {
-        self.with(Block::Drawing(figure))
+        self.figures([figure])
     }
 
-    fn with(mut self, block: Block) -> Self {
-        self.blocks.push(block);
+    /// Adds figures.
+    #[must_use]
+    pub fn figures(self, figures: impl IntoIterator<Item = Drawing>) -> Self {
+        self.with(figures.into_iter().map(Block::Drawing))
+    }
+
+    fn with(mut self, blocks: impl IntoIterator<Item = Block>) -> Self {
+        self.blocks.extend(blocks);
         self
     }
 }
@@ -120,14 +144,13 @@ impl Report {
     /// A page without content.
     #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), ..Self::default() }
+        Self { title: title.into(), method: Section::new("Method and machine"), ..Self::default() }
     }
 
     /// The line under the title, such as when and where it was made.
     #[must_use]
-    pub fn subtitle(mut self, text: impl Into<String>) -> Self {
-        self.subtitle = text.into();
-        self
+    pub fn subtitle(self, text: impl Into<String>) -> Self {
+        Self { subtitle: text.into(), ..self }
     }
 
     /// Adds the verdict on a use case; they come first.
@@ -159,9 +182,8 @@ impl Report {
 
     /// Adds a paragraph to "Method and machine", the last section.
     #[must_use]
-    pub fn method(mut self, text: impl Into<String>) -> Self {
-        self.method.push(text.into());
-        self
+    pub fn method(self, text: impl Into<String>) -> Self {
+        Self { method: self.method.paragraph(text), ..self }
     }
 
     /// Adds a fact to "Method and machine": the CPU, the seed, the commit.
@@ -174,49 +196,41 @@ impl Report {
     /// The page.
     #[must_use]
     pub fn html(&self) -> String {
-        let title = escape(&self.title);
-        let mut page = format!(
+        let mut figure = 0;
+        let mut verdicts = String::new();
+        if !self.verdicts.is_empty() {
+            let summary: String = self.summary.iter().map(|drawing| drawing.html(&mut figure)).collect();
+            let sentences = definitions(&self.verdicts);
+            verdicts = format!("<section id=\"verdicts\" class=\"verdicts\">\n{sentences}{summary}</section>\n");
+        }
+        let mut findings: String = self.findings.iter().map(|text| format!("<li>{}</li>\n", answer(text))).collect();
+        if !findings.is_empty() {
+            findings = format!("<section id=\"findings\">\n<h2>In figures</h2>\n<ul>\n{findings}</ul>\n</section>\n");
+        }
+        let (mut contents, mut sections) = (String::new(), String::new());
+        let method = self.method.clone().with([Block::Facts(self.facts.clone())]);
+        for (i, section) in (1..).zip(self.sections.iter().chain([&method])) {
+            let title = inline(&section.title);
+            let blocks: String = section.blocks.iter().map(|block| block.html(&mut figure)).collect();
+            contents += &format!("<li><a href=\"#section-{i}\">{title}</a></li>\n");
+            sections += &format!("<section id=\"section-{i}\">\n<h2>{title}</h2>\n{blocks}</section>\n");
+        }
+        let (title, subtitle) = (escape(&self.title), inline(&self.subtitle));
+        format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n\
-             </head>\n<body>\n<header>\n<h1>{title}</h1>\n<p class=\"subtitle\">{}</p>\n</header>\n<main>\n",
-            inline(&self.subtitle)
-        );
-        let mut figures = 0;
-        if !self.verdicts.is_empty() {
-            let item =
-                |[case, sentence]: &[String; 2]| format!("<dt>{}</dt><dd>{}</dd>\n", inline(case), inline(sentence));
-            let items: String = self.verdicts.iter().map(item).collect();
-            page.push_str(&format!("<section id=\"verdicts\" class=\"verdicts\">\n<dl>\n{items}</dl>\n"));
-            self.summary.iter().for_each(|figure| figure.write(&mut page, &mut figures));
-            page.push_str("</section>\n");
-        }
-        self.contents(&mut page);
-        if !self.findings.is_empty() {
-            let items: String = self.findings.iter().map(|text| format!("<li>{}</li>\n", answer(text))).collect();
-            page.push_str(&format!("<section id=\"findings\">\n<h2>In figures</h2>\n<ul>\n{items}</ul>\n</section>\n"));
-        }
-        for (i, section) in self.sections.iter().enumerate() {
-            page.push_str(&format!("<section id=\"section-{}\">\n<h2>{}</h2>\n", i + 1, inline(&section.title)));
-            section.blocks.iter().for_each(|block| block.write(&mut page, &mut figures));
-            page.push_str("</section>\n");
-        }
-        if self.has_method() {
-            page.push_str("<section id=\"method\">\n<h2>Method and machine</h2>\n");
-            self.method.iter().for_each(|text| paragraph(&mut page, text));
-            let fact = |[name, value]: &[String; 2]| format!("<dt>{}</dt><dd>{}</dd>\n", inline(name), inline(value));
-            let facts: String = self.facts.iter().map(fact).collect();
-            page.push_str(&format!("<dl>\n{facts}</dl>\n</section>\n"));
-        }
-        page.push_str("</main>\n</body>\n</html>\n");
-        page
+             </head>\n<body>\n<header>\n<h1>{title}</h1>\n<p class=\"subtitle\">{subtitle}</p>\n</header>\n<main>\n\
+             {verdicts}<nav aria-label=\"Contents\">\n<ol>\n{contents}</ol>\n</nav>\n{findings}{sections}</main>\n\
+             </body>\n</html>\n"
+        )
     }
 
-    /// The figures, each with its number.
-    pub fn figures(&self) -> impl Iterator<Item = (usize, &Drawing)> {
+    /// The figures in their order.
+    fn figures(&self) -> impl Iterator<Item = &Drawing> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
         let figures = blocks.filter_map(|block| if let Block::Drawing(figure) = block { Some(figure) } else { None });
-        (1..).zip(self.summary.iter().chain(figures))
+        self.summary.iter().chain(figures)
     }
 
     /// Writes the page to `report.html` in `dir`, and every figure to `figures/NAME-NUMBER-....svg`, with feature `png` to
@@ -229,7 +243,7 @@ impl Report {
         whole(&dir.join("report.html"), |out| out.write_all(self.html().as_bytes()))?;
         let folder = dir.join("figures");
         fs::create_dir_all(&folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
-        let figures: Vec<(usize, &Drawing)> = self.figures().collect();
+        let figures: Vec<(usize, &Drawing)> = (1..).zip(self.figures()).collect();
         figures.par_iter().try_for_each(|(number, figure)| {
             let hyphen = if figure.name.is_empty() { "" } else { "-" };
             let stem = format!("{name}-{number:02}{hyphen}{}", figure.name);
@@ -239,55 +253,26 @@ impl Report {
             Ok(())
         })
     }
-
-    fn has_method(&self) -> bool {
-        !(self.method.is_empty() && self.facts.is_empty())
-    }
-
-    fn contents(&self, page: &mut String) {
-        if self.sections.is_empty() && !self.has_method() {
-            return;
-        }
-        page.push_str("<nav aria-label=\"Contents\">\n<ol>\n");
-        for (i, section) in self.sections.iter().enumerate() {
-            page.push_str(&format!("<li><a href=\"#section-{}\">{}</a></li>\n", i + 1, inline(&section.title)));
-        }
-        if self.has_method() {
-            page.push_str("<li><a href=\"#method\">Method and machine</a></li>\n");
-        }
-        page.push_str("</ol>\n</nav>\n");
-    }
 }
 
 impl Block {
-    fn write(&self, page: &mut String, figures: &mut usize) {
+    fn html(&self, figure: &mut usize) -> String {
         match self {
-            Self::Heading(text) => page.push_str(&format!("<h3>{}</h3>\n", inline(text))),
-            Self::Paragraph(text) => paragraph(page, text),
+            Self::Heading(text) => format!("<h3>{}</h3>\n", inline(text)),
+            Self::Paragraph(text) => format!("<p>{}</p>\n", inline(text)),
             Self::Table(table) => {
                 let title = escape(table.title());
-                page.push_str(&format!("<details><summary>{title}</summary>\n{}</details>\n", table.to_html()));
+                format!("<details><summary>{title}</summary>\n{}</details>\n", table.to_html())
             }
-            Self::Drawing(figure) => figure.write(page, figures),
+            Self::Drawing(drawing) => drawing.html(figure),
+            Self::Facts(facts) => definitions(facts),
         }
     }
 }
 
-impl Drawing {
-    fn write(&self, page: &mut String, figures: &mut usize) {
-        *figures += 1;
-        page.push_str(&format!(
-            "<figure id=\"figure-{figures}\">\n<div class=\"plot\">\n{}</div>\n\
-             <figcaption><strong>Figure {figures}.</strong> {}</figcaption>\n",
-            self.svg,
-            inline(&self.caption)
-        ));
-        page.push_str("</figure>\n");
-    }
-}
-
-fn paragraph(page: &mut String, text: &str) {
-    page.push_str(&format!("<p>{}</p>\n", inline(text)));
+fn definitions(pairs: &[[String; 2]]) -> String {
+    let item = |[name, text]: &[String; 2]| format!("<dt>{}</dt><dd>{}</dd>\n", inline(name), inline(text));
+    format!("<dl>\n{}</dl>\n", pairs.iter().map(item).collect::<String>())
 }
 
 /// A finding: the question that it begins with, if any, stands out.
@@ -322,8 +307,9 @@ mod tests {
 
     fn full(text: &str) -> Report {
         let chart = LineChart::new(text, Axis::linear(text), Axis::log(text)).series(Series::curve(text, [(1.0, 2.0)]));
-        let table = || Table::new(text).text(text).number(text).row([text, text]).note(text);
-        let section = Section::new(text).heading(text).paragraph(text).table(table());
+        let mut table = Table::new(text).text(text).number(text).note(text);
+        table.push([text, text]);
+        let section = Section::new(text).heading(text).paragraph(text).table(table);
         let section = section.figure(Drawing::new(chart.svg(), text)).figure(Drawing::new(chart.svg(), text));
         let summary = Drawing::new(chart.svg(), text).named("summary");
         let report = Report::new(text).subtitle(text).verdict(text, text).summary(summary).finding(text);

@@ -4,35 +4,24 @@ pub mod number;
 
 use crate::markup;
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, TableStyle};
-use core::fmt;
-
-/// Where a column's cells stand.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Align {
-    /// Text.
-    #[default]
-    Left,
-    /// Numbers.
-    Right,
-}
+use core::iter;
 
 /// A table: cells are text, formatted once (see [`number`]), so that its forms cannot differ.
 ///
 /// ```
 /// use hairis_harness::table::{Table, number};
-/// let table = Table::new("Variance at θ_o = 0°")
-///     .text("sampler")
-///     .number("V (relative variance)")
-///     .row(["uniform".into(), number::with_error(0.706, 0.002)])
-///     .row(["published".into(), number::with_error(0.209, 0.001)])
-///     .note("2²⁰ samples each.");
+/// let mut table = Table::new("Variance at θ_o = 0°").text("sampler").number("V (relative variance)");
+/// table.push(["uniform".into(), number::with_error(0.706, 0.002)]);
+/// table.push(["published".into(), number::with_error(0.209, 0.001)]);
+/// let table = table.note("2²⁰ samples each.");
 /// assert!(table.to_html().contains("<td class=\"number\">0.2090 ± 0.0010</td>"));
 /// assert!(table.to_plain().contains("0.2090 ± 0.0010"));
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     title: String,
-    headers: Vec<(String, Align)>,
+    /// The names of the columns, and whether they hold numbers, which stand to the right.
+    headers: Vec<(String, bool)>,
     rows: Vec<Vec<String>>,
     notes: Vec<String>,
 }
@@ -44,45 +33,33 @@ impl Table {
         Self { title: title.into(), ..Self::default() }
     }
 
-    /// Adds a column.
-    #[must_use]
-    pub fn column(mut self, header: impl Into<String>, align: Align) -> Self {
-        self.headers.push((header.into(), align));
-        self
-    }
-
     /// Adds a column of text.
     #[must_use]
     pub fn text(self, header: impl Into<String>) -> Self {
-        self.column(header, Align::Left)
+        self.texts([header])
     }
 
     /// Adds a column of numbers. Put the unit in the header.
     #[must_use]
     pub fn number(self, header: impl Into<String>) -> Self {
-        self.column(header, Align::Right)
+        self.numbers([header])
     }
 
     /// Adds columns of text.
     #[must_use]
-    pub fn texts<S: Into<String>>(self, headers: impl IntoIterator<Item = S>) -> Self {
-        headers.into_iter().fold(self, Self::text)
+    pub fn texts<S: Into<String>>(mut self, headers: impl IntoIterator<Item = S>) -> Self {
+        self.headers.extend(headers.into_iter().map(|header| (header.into(), false)));
+        self
     }
 
     /// Adds columns of numbers.
     #[must_use]
-    pub fn numbers<S: Into<String>>(self, headers: impl IntoIterator<Item = S>) -> Self {
-        headers.into_iter().fold(self, Self::number)
-    }
-
-    /// Adds a row; cells that it lacks are empty, and those beyond the last column are left out.
-    #[must_use]
-    pub fn row<S: Into<String>>(mut self, cells: impl IntoIterator<Item = S>) -> Self {
-        self.push(cells);
+    pub fn numbers<S: Into<String>>(mut self, headers: impl IntoIterator<Item = S>) -> Self {
+        self.headers.extend(headers.into_iter().map(|header| (header.into(), true)));
         self
     }
 
-    /// As [`row`](Self::row), in a loop.
+    /// Adds a row; cells that it lacks are empty, and those beyond the last column are left out.
     pub fn push<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
         let mut row: Vec<String> = cells.into_iter().map(Into::into).collect();
         row.resize(self.headers.len(), String::new());
@@ -111,89 +88,60 @@ impl Table {
     /// For standard output: as wide as the terminal allows if it is one, else as [`to_plain`](Self::to_plain).
     #[must_use]
     pub fn to_terminal(&self) -> String {
-        let tty = self.comfy().is_tty();
-        if tty { self.layout(None, true) } else { self.to_plain() }
+        let is_tty = comfy_table::Table::new().is_tty();
+        self.layout(is_tty, None)
     }
 
     /// With every row on one line, however long.
     #[must_use]
     pub fn to_plain(&self) -> String {
-        self.layout(None, false)
+        self.layout(false, None)
     }
 
-    /// With cells broken so that no line is longer than `width` characters.
-    #[must_use]
-    pub fn to_width(&self, width: u16) -> String {
-        self.layout(Some(width), true)
-    }
-
-    fn comfy(&self) -> comfy_table::Table {
-        let mut table = comfy_table::Table::new();
+    /// Lines of text; if `wrap`, with cells broken so that none is longer than `width` characters, or the terminal is wide.
+    fn layout(&self, wrap: bool, width: Option<u16>) -> String {
         let line = || LineStyle::none().fill('─').junction('─');
+        let mut table = comfy_table::Table::new();
         table.load_style(TableStyle::new().header_separator(line()).bottom_border(line()));
-        table
-    }
-
-    fn layout(&self, width: Option<u16>, wrap: bool) -> String {
-        let mut table = self.comfy();
         table.set_content_arrangement(if wrap { ContentArrangement::Dynamic } else { ContentArrangement::Disabled });
         if let Some(width) = width {
             table.set_width(width);
         }
-        let cells = |row: &[String]| row.iter().map(|cell| markup::clean(cell)).collect::<Vec<_>>();
         table.set_header(self.headers.iter().map(|(header, _)| markup::clean(header)));
         for row in &self.rows {
-            table.add_row(cells(row));
+            table.add_row(row.iter().map(|cell| markup::clean(cell)));
         }
-        for (column, (_, align)) in table.column_iter_mut().zip(&self.headers) {
-            column.set_cell_alignment(match align {
-                Align::Left => CellAlignment::Left,
-                Align::Right => CellAlignment::Right,
-            });
+        for (column, (_, is_number)) in table.column_iter_mut().zip(&self.headers) {
+            column.set_cell_alignment(if *is_number { CellAlignment::Right } else { CellAlignment::Left });
         }
-        let mut text = format!("{}\n", markup::clean(&self.title));
-        for line in table.to_string().lines() {
-            text.push_str(line.trim_end());
-            text.push('\n');
-        }
-        for note in &self.notes {
-            text.push_str(&markup::clean(note));
-            text.push('\n');
-        }
-        text
+        let body = table.to_string();
+        let title = markup::clean(&self.title);
+        let notes: Vec<String> = self.notes.iter().map(|note| markup::clean(note)).collect();
+        let lines = [title.as_str()].into_iter().chain(body.lines()).chain(notes.iter().map(String::as_str));
+        lines.map(|line| format!("{}\n", line.trim_end())).collect()
     }
 
     /// As HTML, in a box of its own that scrolls sideways.
     #[must_use]
     pub fn to_html(&self) -> String {
-        let class = |align: Align| if align == Align::Right { " class=\"number\"" } else { "" };
-        let mut html = String::from("<div class=\"table-box\" role=\"region\" tabindex=\"0\" aria-label=\"");
-        html.push_str(&markup::escape(&self.title));
-        html.push_str("\"><table>\n");
-        html.push_str("<thead><tr>");
-        for (header, align) in &self.headers {
-            html.push_str(&format!("<th scope=\"col\"{}>{}</th>", class(*align), markup::escape(header)));
-        }
-        html.push_str("</tr></thead>\n<tbody>\n");
-        for row in &self.rows {
-            html.push_str("<tr>");
-            for (i, (cell, (_, align))) in row.iter().zip(&self.headers).enumerate() {
-                let (open, close) = if i == 0 { ("th scope=\"row\"", "th") } else { ("td", "td") };
-                html.push_str(&format!("<{open}{}>{}</{close}>", class(*align), markup::escape(cell)));
-            }
-            html.push_str("</tr>\n");
-        }
-        html.push_str("</tbody></table></div>\n");
-        for note in &self.notes {
-            html.push_str(&format!("<p class=\"note\">{}</p>\n", markup::escape(note)));
-        }
-        html
-    }
-}
-
-impl fmt::Display for Table {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.to_plain())
+        let cell = |tag: &str, (text, (_, is_number)): (&String, &(String, bool))| {
+            let class = if *is_number { " class=\"number\"" } else { "" };
+            let name = &tag[..2];
+            format!("<{tag}{class}>{}</{name}>", markup::escape(text))
+        };
+        let head: String = self.headers.iter().map(|header| cell("th scope=\"col\"", (&header.0, header))).collect();
+        let row = |row: &Vec<String>| {
+            let tags = ["th scope=\"row\""].into_iter().chain(iter::repeat("td"));
+            let cells: String = tags.zip(row.iter().zip(&self.headers)).map(|(tag, of)| cell(tag, of)).collect();
+            format!("<tr>{cells}</tr>\n")
+        };
+        let rows: String = self.rows.iter().map(row).collect();
+        let note = |note: &String| format!("<p class=\"note\">{}</p>\n", markup::escape(note));
+        let (title, notes) = (markup::escape(&self.title), self.notes.iter().map(note).collect::<String>());
+        format!(
+            "<div class=\"table-box\" role=\"region\" tabindex=\"0\" aria-label=\"{title}\"><table>\n\
+             <thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n{notes}"
+        )
     }
 }
 
@@ -202,8 +150,11 @@ mod tests {
     use super::*;
 
     fn example() -> Table {
-        let table = Table::new("Speed <of> \"hair\"").text("kernel").number("time (ns)").number("ratio");
-        table.row(["eval & sample", "8.31 ± 0.02", "13.4×"]).row(["short"]).row(["long", "1", "2", "dropped"])
+        let mut table = Table::new("Speed <of> \"hair\"").text("kernel").number("time (ns)").number("ratio");
+        table.push(["eval & sample", "8.31 ± 0.02", "13.4×"]);
+        table.push(["short"]);
+        table.push(["long", "1", "2", "dropped"]);
+        table
     }
 
     #[test]
@@ -232,7 +183,7 @@ mod tests {
         assert_eq!(ends[0], ends[1], "numbers end where their header does: {plain}");
         let mut wide = Table::new("t").text("a").text("b");
         wide.push(["word ".repeat(30), "other ".repeat(30)]);
-        let text = wide.to_width(60);
+        let text = wide.layout(true, Some(60));
         assert!(text.lines().all(|l| l.chars().count() <= 60), "{text}");
         assert!(wide.to_plain().lines().any(|l| l.chars().count() > 200), "nothing is broken off a terminal");
         assert!(!Table::new("a\u{1b}[31m").to_plain().contains('\u{1b}'), "no escape sequences get through");

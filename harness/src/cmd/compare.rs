@@ -25,9 +25,9 @@ pub fn run(flags: &Compare) -> Result<(), Error> {
     let settings =
         CompareConfig { seed: flags.seed, quick: flags.quick, environment: &environment, environment_name: &name };
     let comparison = compare::run(&settings, &|part, done| {
-        if bar.message() != part.label() {
+        if bar.message() != part {
             bar.reset();
-            bar.set_message(part.label());
+            bar.set_message(part);
         }
         show_share(&bar, done);
     })?;

@@ -2,7 +2,7 @@
 
 use super::{Comparison, Depth};
 use crate::light::in_words;
-use crate::plot::{Axis, LineChart, Point as PlotPoint, ReferenceLine, Series};
+use crate::plot::{Axis, LineChart, Series};
 use crate::rays::{EqualTime, OneRay, PRICES_US, RayRow, RayTimes, SIZES, VISIBLE, equal_time};
 use crate::report::Drawing;
 use crate::table::{Table, number};
@@ -34,6 +34,19 @@ fn environment(of: &Comparison) -> &str {
 
 fn under_environment(of: &Comparison) -> impl Iterator<Item = Measured<'_>> {
     measured(of).filter(|(row, ..)| row.light == environment(of))
+}
+
+fn example(of: &Comparison) -> Option<Measured<'_>> {
+    under_environment(of).find(|(row, ..)| [row.model, row.sampler] == EXAMPLE)
+}
+
+/// A table whose rows begin with the model, the sampler and the light.
+fn by_light(title: &str) -> Table {
+    Table::new(title).texts(["model", "sampler", "light"])
+}
+
+fn keys(row: &RayRow) -> Vec<String> {
+    [row.model, row.sampler, &row.light].map(str::to_owned).to_vec()
 }
 
 /// The tables.
@@ -68,10 +81,11 @@ fn microseconds(price: f64) -> String {
 }
 
 fn break_even(price: Option<f64>) -> String {
-    price.map_or_else(
-        || "never".to_owned(),
-        |price| if price > 0.0 { number::plain(price, 2) } else { "any".to_owned() },
-    )
+    match price {
+        Some(price) if price > 0.0 => number::plain(price, 2),
+        Some(_) => "any".to_owned(),
+        None => "never".to_owned(),
+    }
 }
 
 fn summary(of: &Comparison) -> Table {
@@ -97,11 +111,10 @@ fn best_gain(equal: &EqualTime, price: f64) -> String {
 }
 
 fn unoccluded(of: &Comparison) -> Table {
-    let mut table =
-        Table::new("V of one ray without occlusion").texts(["model", "sampler", "light"]).numbers(v_headers());
+    let mut table = by_light("V of one ray without occlusion").numbers(v_headers());
     table = table.numbers(SHOWN.map(|count| format!("MIS / {}", pool_name(count))));
     for (row, ..) in measured(of) {
-        let mut cells = vec![row.model.to_owned(), row.sampler.to_owned(), row.light.clone()];
+        let mut cells = keys(row);
         cells.extend(v_cells(row, |one| number::estimate(&one.unoccluded)));
         let gain = |count| Some(row.mean.mis.unoccluded.ratio(&chosen(row, count)?.unoccluded));
         cells.extend(SHOWN.map(|count| gain(count).map_or_else(String::new, |gain| number::estimate(&gain))));
@@ -113,11 +126,11 @@ fn unoccluded(of: &Comparison) -> Table {
 }
 
 fn visible(of: &Comparison) -> Table {
-    let mut table = Table::new("V of one ray with visibility").texts(["model", "sampler", "light", "visible"]);
-    table = table.numbers(v_headers()).number("16 rays of 32 + 32");
+    let mut table = by_light("V of one ray with visibility").text("visible").numbers(v_headers());
+    table = table.number("16 rays of 32 + 32");
     for (row, ..) in measured(of) {
         for (place, share) in VISIBLE.into_iter().enumerate() {
-            let mut cells = [row.model, row.sampler, &row.light].map(str::to_owned).to_vec();
+            let mut cells = keys(row);
             cells.push(number::percent(share));
             cells.extend(v_cells(row, |one| number::estimate(&one.visible[place])));
             let sixteen = row.mean.half.iter().find(|pool| (pool.candidates_each, pool.rays) == (32, 16));
@@ -133,23 +146,18 @@ fn visible(of: &Comparison) -> Table {
 }
 
 fn in_equal_time(of: &Comparison) -> Table {
-    let mut table =
-        Table::new("Rays in equal time, half of the directions visible").texts(["model", "sampler", "light"]);
-    table = table.numbers(["MIS, ns", "candidate, ns", "of 32 + 32, 16 rays"]);
-    table = table.numbers(PRICES_US.map(|price| format!("8 + 8, {}", microseconds(price))));
-    table = table.numbers(PRICES_US.map(|price| format!("best, {}", microseconds(price))));
-    table = table.numbers(["4 + 4 from, µs", "8 + 8 from, µs", "any pool from, µs"]);
+    let mut table = by_light("Rays in equal time, half of the directions visible")
+        .numbers(["MIS, ns", "candidate, ns", "of 32 + 32, 16 rays"])
+        .numbers(PRICES_US.map(|price| format!("8 + 8, {}", microseconds(price))))
+        .numbers(PRICES_US.map(|price| format!("best, {}", microseconds(price))))
+        .numbers(["4 + 4 from, µs", "8 + 8 from, µs", "any pool from, µs"]);
     for (row, times, equal) in measured(of) {
-        let mut cells = [row.model, row.sampler, &row.light].map(str::to_owned).to_vec();
+        let mut cells = keys(row);
         cells.extend([times.mis_ns, times.candidate_ns(), times.shared_candidate_ns()].map(|ns| number::plain(ns, 3)));
-        let eight = equal.pool(8, 1);
-        cells.extend(
-            (0..PRICES_US.len()).map(|place| eight.map_or_else(String::new, |eight| number::ratio(eight.gain[place]))),
-        );
-        cells.extend(PRICES_US.map(|price| {
-            let point = equal.best(price);
-            point.map_or_else(String::new, |point| format!("{} ({})", best_gain(equal, price), point_name(point)))
-        }));
+        let eight = equal.pool(8, 1).map_or([const { String::new() }; 4], |eight| eight.gain.map(number::ratio));
+        cells.extend(eight);
+        let best = |point| format!(" ({})", point_name(point));
+        cells.extend(PRICES_US.map(|price| best_gain(equal, price) + &equal.best(price).map_or(String::new(), best)));
         cells.extend([4, 8].map(|count| break_even(equal.pool(count, 1).and_then(|point| point.break_even_us))));
         let first = equal.pools.iter().filter_map(|point| point.break_even_us).min_by(f64::total_cmp);
         cells.push(break_even(first));
@@ -189,29 +197,28 @@ fn fronts(of: &Comparison) -> Table {
 
 /// Gains over one-sample MIS against the price of a ray.
 pub(super) fn chart(of: &Comparison) -> Option<Drawing> {
-    let (row, _, equal) = under_environment(of).find(|(row, ..)| [row.model, row.sampler] == EXAMPLE)?;
+    let (row, _, equal) = example(of)?;
     let words = in_words(&row.light);
     let title = format!("Efficiency over one-sample MIS, {} model, {words}", row.model);
     let mut chart = LineChart::new(title, Axis::log("price of a ray (µs)"), Axis::log("times as efficient (×)"));
     let prices = || (0..=48).map(|step| 10.0_f64.powf(-3.0 + f64::from(step) / 12.0));
     for point in PLOTTED.iter().filter_map(|[count, rays]| equal.pool(*count, *rays)) {
-        let gains = prices().map(|price| PlotPoint::new(price, point.gain_over(&equal.mis[0], price)));
+        let gains = prices().map(|price| (price, point.gain_over(&equal.mis[0], price)));
         let rays = if point.rays == 1 { "ray" } else { "rays" };
         let name = format!("{}, {} {rays}", pool_name(point.candidates_each), point.rays);
         chart = chart.series(Series::curve(name, gains));
     }
-    let level = ReferenceLine::Level { label: "one-sample MIS".to_owned(), y: 1.0 };
     let caption = format!(
         "Rays chosen from pools of candidates against rays by one-sample MIS in equal time, by the price of a ray: {} model, {} \
          sampler, {words}, half of the directions visible, geometric mean over the inclinations.",
         row.model, row.sampler
     );
-    Some(Drawing::new(chart.reference(level).svg(), caption).named("rays-by-price"))
+    Some(Drawing::new(chart.reference("one-sample MIS", 0.0, (1.0, 1.0)).svg(), caption).named("rays-by-price"))
 }
 
 /// The answer in a sentence.
 pub(super) fn finding(of: &Comparison) -> Option<String> {
-    let (row, _, equal) = under_environment(of).find(|(row, ..)| [row.model, row.sampler] == EXAMPLE)?;
+    let (row, _, equal) = example(of)?;
     let [four, eight] = [4, 8].map(|count| Some(row.mean.mis.unoccluded.ratio(&chosen(row, count)?.unoccluded)));
     Some(format!(
         "A ray chosen from 4 + 4 candidates has 1/{} of the variance of one-sample MIS under {}, from 8 + 8 candidates 1/{} \

@@ -1,12 +1,12 @@
 //! The tables of a comparison, the same for the terminal and for the page.
 
-use super::{Comparison, rays};
-use crate::agreement::{Quantity, Region};
+use super::page::predicted;
+use super::{Comparison, distinct, rays};
+use crate::agreement::{AgreementResult, Quantity, Region};
 use crate::efficiency::{EfficiencyRow, MisRow, SAMPLERS, Technique};
 use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
 use crate::speed::Op;
-use crate::subject::ModelKind;
 use crate::table::{Table, number};
 use hairis_variants::{Accuracy, ModelId};
 
@@ -37,22 +37,17 @@ pub struct Tables {
 pub fn tables(of: &Comparison, depth: Depth) -> Tables {
     let mut efficiency = vec![reference(of), variance(of)];
     if depth == Depth::Full {
-        efficiency.push(correlated(of));
-        efficiency.extend([effective(of), samples(of), self::efficiency(of)]);
+        efficiency.extend([correlated(of), effective(of), samples(of), self::efficiency(of)]);
     }
     efficiency.push(light_sampling(of, depth));
-    let mut speed: Vec<Table> = ModelId::defaults_of_names().map(|model| speed(of, model, depth)).collect();
-    speed.push(threads(of));
+    let speed = ModelId::defaults_of_names().map(|model| speed(of, model, depth)).chain([threads(of)]).collect();
     Tables { speed, agreement: vec![agreement(of, depth)], efficiency, rays: rays::tables(of, depth) }
 }
 
 fn speed(of: &Comparison, model: ModelId, depth: Depth) -> Table {
     let title = format!("Time a direction, {} model", model.name());
-    let mut table = Table::new(title).texts(["operation", "contender", "instruction set"]).numbers([
-        "ns",
-        "quartiles, ns",
-        "against the faster textbook",
-    ]);
+    let mut table = Table::new(title).texts(["operation", "contender", "instruction set"]);
+    table = table.numbers(["ns", "quartiles, ns", "against the faster textbook"]);
     for row in of.speed.rows.iter().filter(|row| row.model == model.name()) {
         if depth == Depth::Summary && matches!(row.op, Op::PointsOf4 | Op::PointsPacked | Op::SampleTails) {
             continue;
@@ -75,12 +70,8 @@ fn speed(of: &Comparison, model: ModelId, depth: Depth) -> Table {
 }
 
 fn threads(of: &Comparison) -> Table {
-    let mut table = Table::new("Slices on several threads").texts(["model", "operation", "instruction set"]).numbers([
-        "threads",
-        "million directions a second",
-        "against one thread",
-        "quartiles",
-    ]);
+    let mut table = Table::new("Slices on several threads").texts(["model", "operation", "instruction set"]);
+    table = table.numbers(["threads", "million directions a second", "against one thread", "quartiles"]);
     for row in &of.speed.threads {
         table.push([
             row.model.to_owned(),
@@ -97,35 +88,16 @@ fn threads(of: &Comparison) -> Table {
 
 fn agreement(of: &Comparison, depth: Depth) -> Table {
     let shown = [Quantity::Pdf, Quantity::Value, Quantity::SamplePdf, Quantity::SampleCdf];
-    let mut table = Table::new("Largest relative error against f64 (99.9th percentile)").texts([
-        "model",
-        "sampler",
-        "path",
-        "instruction set",
-        "region",
-    ]);
-    table = table.numbers(shown.map(Quantity::label));
-    let mut seen = Vec::new();
-    for first in &of.agreement {
-        let key = (first.model, first.sampler, first.path, first.level, first.region);
-        if seen.contains(&key) || (depth == Depth::Summary && first.region != Region::General) {
-            continue;
-        }
-        seen.push(key);
-        let same = |row: &&_| -> bool {
-            let row: &crate::agreement::AgreementResult = row;
-            (row.model, row.sampler, row.path, row.level, row.region) == key
-        };
-        let (model, sampler, path, level, region) = key;
-        let mut cells: Vec<String> =
-            [model, sampler.unwrap_or_default(), path, level, region.label()].map(str::to_owned).into();
-        for quantity in shown {
-            let row = of.agreement.iter().filter(same).find(|row| row.quantity == quantity);
-            cells.push(row.map_or_else(String::new, |row| format!("{:.1e} ({:.1e})", row.worst, row.p999)));
-        }
-        table.push(cells);
-    }
-    table.note(format!(
+    let table = Table::new("Largest relative error against f64 (99.9th percentile)")
+        .texts(["model", "sampler", "path", "instruction set", "region"])
+        .numbers(shown.map(Quantity::label));
+    let rows = of.agreement.iter().filter(|row| depth == Depth::Full || row.region == Region::General);
+    let words = |row: &AgreementResult| {
+        let sampler = row.sampler.unwrap_or_default();
+        [row.model, sampler, row.path, row.level, row.region.label()].map(str::to_owned).into()
+    };
+    let cell = |row: &AgreementResult| format!("{:.1e} ({:.1e})", row.worst, row.p999);
+    pivot(table, rows, words, &shown, |row| row.quantity, cell).note(format!(
         "Bounds, further than 1e-3 rad from the fibre's axis: {}. The cdf is the distance from the number a sample was drawn \
          with.",
         bounds()
@@ -150,13 +122,8 @@ fn bounds() -> String {
 }
 
 fn reference(of: &Comparison) -> Table {
-    let mut table = Table::new("V of the default set under constant light").texts(["model", "sampler"]).numbers([
-        "θₒ, °",
-        "V",
-        "quadrature",
-        "recorded",
-        "z",
-    ]);
+    let mut table = Table::new("V of the default set under constant light").texts(["model", "sampler"]);
+    table = table.numbers(["θₒ, °", "V", "quadrature", "recorded", "z"]);
     for row in &of.efficiency.reference_v {
         table.push([
             row.model.name().to_owned(),
@@ -171,6 +138,26 @@ fn reference(of: &Comparison) -> Table {
     table.note("V is the variance of one sample over the squared mean; z is its distance from the quadrature in standard errors; recorded, where there is one, is another implementation's.")
 }
 
+/// Adds a line for each group of rows that have the same words at its beginning, with the cell of the row of each column.
+fn pivot<'a, R: 'a, C: PartialEq>(
+    mut table: Table,
+    rows: impl Iterator<Item = &'a R>,
+    words: impl Fn(&R) -> Vec<String>,
+    columns: &[C],
+    column: impl Fn(&'a R) -> C,
+    cell: impl Fn(&R) -> String,
+) -> Table {
+    let rows: Vec<(Vec<String>, &R)> = rows.map(|row| (words(row), row)).collect();
+    for line in distinct(rows.iter().map(|(words, _)| words)) {
+        let cells = columns.iter().map(|wanted| {
+            let row = rows.iter().find(|(words, row)| words == line && column(row) == *wanted);
+            row.map_or_else(String::new, |(_, row)| cell(row))
+        });
+        table.push(line.iter().cloned().chain(cells));
+    }
+    table
+}
+
 /// A table with a row for each light, inclination and model, and a column for each sampler.
 fn by_light(
     of: &Comparison,
@@ -183,35 +170,31 @@ fn by_light(
         table = table.text("numbers");
     }
     table = table.text("model").numbers(SAMPLERS.map(Sampler::name));
-    let rows = &of.efficiency.rows;
-    for light in &of.efficiency.settings.lights {
-        for theta_o in of.efficiency.settings.theta_o_deg {
-            for sequence in sequences {
-                for model in ModelKind::ALL {
-                    let mut cells = vec![light.clone(), number::plain(theta_o, 3)];
-                    if sequences.len() > 1 {
-                        cells.push(sequence.name().to_owned());
-                    }
-                    cells.push(model.name().to_owned());
-                    for sampler in SAMPLERS {
-                        let row = rows.iter().find(|row| {
-                            (row.model, row.sampler, row.sequence) == (model, sampler, *sequence)
-                                && row.light == *light
-                                && row.theta_o_deg == theta_o
-                        });
-                        cells.push(row.map_or_else(String::new, &cell));
-                    }
-                    table.push(cells);
-                }
-            }
-        }
-    }
-    table
+    let lights = &of.efficiency.settings.lights;
+    let mut rows: Vec<&EfficiencyRow> = of.efficiency.rows.iter().collect();
+    rows.retain(|row| sequences.contains(&row.sequence));
+    rows.sort_by_key(|row| {
+        let light = lights.iter().position(|light| *light == row.light);
+        let sequence = sequences.iter().position(|sequence| *sequence == row.sequence);
+        (light, row.theta_o_deg.to_bits(), sequence, row.model.index())
+    });
+    let words = |row: &EfficiencyRow| {
+        let mut words = vec![row.light.clone(), number::plain(row.theta_o_deg, 3)];
+        words.extend((sequences.len() > 1).then(|| row.sequence.name().to_owned()));
+        words.push(row.model.name().to_owned());
+        words
+    };
+    pivot(table, rows.into_iter(), words, &SAMPLERS, |row| row.sampler, cell)
+}
+
+/// What was measured, or what the reference predicts where too few samples see the light to measure it.
+fn tested_or(row: &EfficiencyRow, measured: String, predict: impl Fn(f64) -> String) -> String {
+    if row.tested { measured } else { format!("≈ {}", predict(predicted(row, row.sampler))) }
 }
 
 fn variance(of: &Comparison) -> Table {
     by_light(of, "Relative variance of one sample, independent numbers", &[SequenceKind::Independent], |row| {
-        if row.tested { number::estimate(&row.v) } else { format!("≈ {}", number::plain(predicted(row), 3)) }
+        tested_or(row, number::estimate(&row.v), |v| number::plain(v, 3))
     })
     .note("± one standard error; ≈ predicted from the reference, where too few samples see the light to measure it. Samples for an error of 1%: 10⁴ V.")
 }
@@ -227,22 +210,16 @@ fn correlated(of: &Comparison) -> Table {
 
 fn effective(of: &Comparison) -> Table {
     by_light(of, "Effective samples in 1000", &[SequenceKind::Independent], |row| {
-        if row.tested {
-            number::estimate(&row.ess_per_1000)
-        } else {
-            format!("≈ {}", number::plain(1e3 / (1.0 + predicted(row)), 3))
-        }
+        tested_or(row, number::estimate(&row.ess_per_1000), |v| number::plain(1e3 / (1.0 + v), 3))
     })
     .note("1000 / (1 + V): how many samples without variance in the weights carry as much.")
 }
 
 fn samples(of: &Comparison) -> Table {
     by_light(of, "Samples for an error of 1%", &[SequenceKind::Independent], |row| {
-        if !row.tested {
-            return format!("≈ {}", number::si(1e4 * predicted(row), ""));
-        }
         let n = row.samples_for_1_percent;
-        if n.value < 1e5 { number::estimate(&n) } else { number::si(n.value, "") }
+        let measured = if n.value < 1e5 { number::estimate(&n) } else { number::si(n.value) };
+        tested_or(row, measured, |v| number::si(1e4 * v))
     })
     .note("10⁴ V.")
 }
@@ -260,49 +237,23 @@ fn efficiency(of: &Comparison) -> Table {
 
 /// The summary leaves out what the table of variances has: each sampler alone.
 fn light_sampling(of: &Comparison, depth: Depth) -> Table {
-    let shown = |row: &&MisRow| -> bool { depth == Depth::Full || !matches!(row.technique, Technique::Bsdf(_)) };
-    let mut names: Vec<&str> = Vec::new();
-    for row in of.efficiency.mis_rows.iter().filter(shown) {
-        if !names.contains(&row.name.as_str()) {
-            names.push(&row.name);
-        }
-    }
-    let mut table = Table::new("Light sampling and multiple importance sampling: relative variance a sample")
+    let is_shown = |row: &&MisRow| depth == Depth::Full || !matches!(row.technique, Technique::Bsdf(_));
+    let rows = &of.efficiency.mis_rows;
+    let names = distinct(rows.iter().filter(is_shown).map(|row| row.name.as_str()));
+    let table = Table::new("Light sampling and multiple importance sampling: relative variance a sample")
         .texts(["model", "light"])
-        .number("θₒ, °");
-    table = table.numbers(names.iter().copied());
-    let mut seen = Vec::new();
-    for first in &of.efficiency.mis_rows {
-        let key = (first.model, &first.light, first.theta_o_deg.to_bits());
-        if seen.contains(&key) {
-            continue;
+        .number("θₒ, °")
+        .numbers(names.iter().copied());
+    let words = |row: &MisRow| vec![row.model.name().to_owned(), row.light.clone(), number::plain(row.theta_o_deg, 3)];
+    let cell = |row: &MisRow| match row.technique {
+        Technique::Bsdf(sampler) if !row.tested => {
+            format!("≈ {}", number::plain(row.reference.predicted(sampler)[0], 3))
         }
-        seen.push(key);
-        let mut cells = vec![first.model.name().to_owned(), first.light.clone(), number::plain(first.theta_o_deg, 3)];
-        for name in &names {
-            let row = of
-                .efficiency
-                .mis_rows
-                .iter()
-                .find(|row| (row.model, &row.light, row.theta_o_deg.to_bits()) == key && row.name == *name);
-            cells.push(row.map_or_else(String::new, |row| match row.technique {
-                Technique::Bsdf(sampler) if !row.tested => {
-                    format!("≈ {}", number::plain(row.reference.predicted(sampler)[0], 3))
-                }
-                _ => number::estimate(&row.v),
-            }));
-        }
-        table.push(cells);
-    }
+        _ => number::estimate(&row.v),
+    };
     let alone =
         if depth == Depth::Full { " ≈ predicted, as above." } else { " Each sampler alone is in the table above." };
-    table.note(format!(
+    pivot(table, rows.iter(), words, &names, |row| row.name.as_str(), cell).note(format!(
         "Combined with the power heuristic; every column spends the same number of samples in all.{alone}"
     ))
-}
-
-/// V of a row as the reference predicts it.
-fn predicted(row: &EfficiencyRow) -> f64 {
-    let [v, _] = row.reference.predicted(row.sampler);
-    v
 }

@@ -8,7 +8,7 @@
 //!
 //! Functions are even in `phi`, so that `cos(m phi)` is all they need.
 
-use super::lobes::{BellValues, Rule, TERMS};
+use super::lobes::{BellValues, Rule, TERMS, dot};
 use crate::quadrature::GaussLegendre;
 use core::f64::consts::{PI, SQRT_2};
 
@@ -87,14 +87,10 @@ fn factors(kappa: f64, last: usize) -> Vec<f64> {
         }
     }
     ratios[0] = 1.0;
-    let mut product = 1.0;
+    for degree in 1..=last {
+        ratios[degree] *= ratios[degree - 1];
+    }
     ratios
-        .iter()
-        .map(|ratio| {
-            product *= ratio;
-            product
-        })
-        .collect()
 }
 
 impl Blur {
@@ -115,49 +111,38 @@ impl Blur {
 
     /// The harmonics of several functions, blurred.
     pub(super) fn harmonics(&self, rule: &Rule, functions: &[BellValues]) -> Vec<Harmonics> {
-        let width = TERMS * functions.len();
-        // Along the fibre: every Legendre function with every product of every function.
-        let mut along = vec![0.0; COEFFICIENTS * width];
-        let mut at = vec![0.0; width];
-        for (place, [theta, weight]) in rule.along.0.iter().enumerate() {
-            for (at, of) in at.chunks_exact_mut(TERMS).zip(functions) {
-                at.iter_mut().zip(of.along[place]).for_each(|(at, value)| *at = weight * value);
+        let legendre: Vec<Vec<f64>> = rule.along.iter().map(|[theta, _]| legendre(*theta)).collect();
+        let add = |sums: &mut [f64; TERMS], factor: f64, values: &[f64; TERMS]| {
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += factor * value);
+        };
+        let blurred = |of: &BellValues| {
+            let mut along = vec![[0.0; TERMS]; COEFFICIENTS];
+            for (([_, weight], values), legendre) in rule.along.iter().zip(&of.along).zip(&legendre) {
+                let values = values.map(|value| weight * value);
+                along.iter_mut().zip(legendre).for_each(|(sums, p)| add(sums, *p, &values));
             }
-            for (sums, p) in along.chunks_exact_mut(width).zip(legendre(*theta)) {
-                sums.iter_mut().zip(&at).for_each(|(sum, value)| *sum += p * value);
-            }
-        }
-        let mut all = Vec::with_capacity(functions.len());
-        for (number, of) in functions.iter().enumerate() {
-            let mut around = vec![[0.0; TERMS]; DEGREE + 1];
-            for ([phi, weight], values) in rule.around.0.iter().zip(&of.around) {
-                for (order, sums) in around.iter_mut().enumerate() {
-                    let c = weight * (order as f64 * phi).cos();
-                    sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += c * value);
-                }
+            let mut around = [[0.0; TERMS]; DEGREE + 1];
+            for ([phi, weight], values) in rule.around.iter().zip(&of.around) {
+                let sums = around.iter_mut().enumerate();
+                sums.for_each(|(order, sums)| add(sums, weight * (order as f64 * phi).cos(), values));
             }
             let mut coefficients = vec![0.0; COEFFICIENTS];
             for (order, range) in orders() {
                 for (place, degree) in range.zip(order..) {
-                    let along = &along[place * width + TERMS * number..][..TERMS];
-                    let sum: f64 = along.iter().zip(around[order]).map(|(a, b)| a * b).sum();
-                    coefficients[place] = self.factors[degree] * sum;
+                    coefficients[place] = self.factors[degree] * dot(&along[place], &around[order]);
                 }
             }
-            all.push(Harmonics(coefficients));
-        }
-        all
+            Harmonics(coefficients)
+        };
+        functions.iter().map(blurred).collect()
     }
 
     /// The values of a blurred function at the directions, each with its weight: those of one latitude after the other.
     pub(super) fn values(&self, of: &Harmonics) -> Vec<f64> {
         let mut values = Vec::with_capacity(self.latitudes.len() * self.cosines.len());
         for (_, legendre) in &self.latitudes {
-            let mut sums = [0.0; DEGREE + 1];
-            for (order, range) in orders() {
-                sums[order] = legendre[range.clone()].iter().zip(&of.0[range]).map(|(p, c)| p * c).sum();
-            }
-            values.extend(self.cosines.iter().map(|c| c.iter().zip(sums).map(|(c, s)| c * s).sum::<f64>()));
+            let sums = of.on_latitude(legendre);
+            values.extend(self.cosines.iter().map(|cosines| dot(cosines, &sums)));
         }
         values
     }
@@ -188,14 +173,19 @@ impl Harmonics {
         self.0[0] * (4.0 * PI).sqrt()
     }
 
+    /// The coefficients of the cosines on a latitude, of which these are the Legendre functions.
+    fn on_latitude(&self, legendre: &[f64]) -> [f64; DEGREE + 1] {
+        let mut sums = [0.0; DEGREE + 1];
+        for (order, range) in orders() {
+            sums[order] = dot(&legendre[range.clone()], &self.0[range]);
+        }
+        sums
+    }
+
     /// The blurred function's value in a direction.
     pub(super) fn at(&self, theta: f64, phi: f64) -> f64 {
-        let legendre = legendre(theta);
-        let order = |(order, range): (usize, core::ops::Range<usize>)| {
-            let sum: f64 = legendre[range.clone()].iter().zip(&self.0[range]).map(|(p, c)| p * c).sum();
-            sum * (order as f64 * phi).cos()
-        };
-        orders().map(order).sum()
+        let sums = self.on_latitude(&legendre(theta));
+        (0..).zip(sums).map(|(order, sum)| sum * (f64::from(order) * phi).cos()).sum()
     }
 }
 
@@ -214,11 +204,11 @@ mod tests {
     /// A rule without lobes, and a function of `theta` alone on it.
     fn plain(f: impl Fn(f64) -> f64) -> (Rule, BellValues) {
         let rule = GaussLegendre::new(128);
-        let along = Nodes(rule.on(-FRAC_PI_2, FRAC_PI_2).map(|[x, w]| [x, w * x.cos()]).collect());
-        let around = Nodes(rule.on(0.0, PI).map(|[x, w]| [x, 2.0 * w]).collect());
+        let along: Nodes = rule.on(-FRAC_PI_2, FRAC_PI_2).map(|[x, w]| [x, w * x.cos()]).collect();
+        let around: Nodes = rule.on(0.0, PI).map(|[x, w]| [x, 2.0 * w]).collect();
         let values = BellValues {
-            along: along.0.iter().map(|[theta, _]| [f(*theta), 0.0, 0.0]).collect(),
-            around: vec![[1.0, 0.0, 0.0]; around.0.len()],
+            along: along.iter().map(|[theta, _]| [f(*theta), 0.0, 0.0]).collect(),
+            around: vec![[1.0, 0.0, 0.0]; around.len()],
         };
         (Rule { along, around }, values)
     }
@@ -267,8 +257,8 @@ mod tests {
             for (theta, phi) in [(-0.9, 0.0), (-0.5, 0.6), (0.4, 2.0), (-1.0, PI), (-1.5, 1.0)] {
                 let centre = fibre_direction(theta, phi);
                 let mut want = 0.0;
-                for ([theta_i, w_theta], along) in rule.along.0.iter().zip(&values.along) {
-                    for ([phi_i, w_phi], around) in rule.around.0.iter().zip(&values.around) {
+                for ([theta_i, w_theta], along) in rule.along.iter().zip(&values.along) {
+                    for ([phi_i, w_phi], around) in rule.around.iter().zip(&values.around) {
                         let value: f64 = along.iter().zip(around).map(|(a, b)| a * b).sum();
                         for side in [-1.0, 1.0] {
                             let cos = centre.dot(fibre_direction(*theta_i, side * phi_i));

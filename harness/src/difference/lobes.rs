@@ -8,6 +8,7 @@
 //! so that integrals of S, and of products of two S, are sums of products of integrals on a line.
 
 use crate::quadrature::GaussLegendre;
+use core::array;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::HairParams;
 use hairis::reference::{Parameters, Shape};
@@ -40,8 +41,7 @@ pub(super) struct ViewedHair {
 }
 
 /// Points of a quadrature rule and their weights.
-#[derive(Clone, Debug)]
-pub(super) struct Nodes(pub(super) Vec<[f64; 2]>);
+pub(super) type Nodes = Vec<[f64; 2]>;
 
 /// The points at which a hair is integrated. They serve every [`Kind`] whose factor is near 1.
 #[derive(Clone, Debug)]
@@ -59,8 +59,10 @@ pub(super) struct BellValues {
     pub(super) around: Vec<[f64; TERMS]>,
 }
 
-/// The 3 by 3 integrals of the products of two models' terms.
-type Gram = [[f64; TERMS]; TERMS];
+/// The sum of products.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
 
 impl ViewedHair {
     /// The hair seen from `theta_o`, in rad, within (-pi/2, pi/2).
@@ -107,7 +109,7 @@ impl ViewedHair {
         around.extend(DISTANCES.map(|d| PI - d.abs() * p.gamma_tt));
         let along = panels(&rule, along, [-FRAC_PI_2, FRAC_PI_2]).map(|[x, w]| [x, w * x.cos()]).collect();
         let around = panels(&rule, around, [0.0, PI]).map(|[x, w]| [x, 2.0 * w]).collect();
-        Rule { along: Nodes(along), around: Nodes(around) }
+        Rule { along, around }
     }
 }
 
@@ -123,42 +125,33 @@ impl Rule {
     /// The values of a model at its points.
     pub(super) fn values(&self, view: &ViewedHair, kind: Kind) -> BellValues {
         BellValues {
-            along: self.along.0.iter().map(|[theta, _]| view.along(kind, *theta)).collect(),
-            around: self.around.0.iter().map(|[phi, _]| view.around(kind, *phi)).collect(),
+            along: self.along.iter().map(|[theta, _]| view.along(kind, *theta)).collect(),
+            around: self.around.iter().map(|[phi, _]| view.around(kind, *phi)).collect(),
         }
     }
 
     /// The integral of `S cos theta_i` over the sphere: the directional albedo, the mean of RGB.
     pub(super) fn albedo(&self, of: &BellValues) -> f64 {
-        let (along, around) = (self.along.integral(&of.along), self.around.integral(&of.around));
-        along.iter().zip(around).map(|(a, b)| a * b).sum()
+        let integral = |nodes: &Nodes, values: &[[f64; TERMS]]| -> [f64; TERMS] {
+            array::from_fn(|j| nodes.iter().zip(values).map(|([_, weight], value)| weight * value[j]).sum())
+        };
+        dot(&integral(&self.along, &of.along), &integral(&self.around, &of.around))
     }
 
     /// The integral of the product of two models' `S cos theta_i` over the sphere.
     pub(super) fn product(&self, a: &BellValues, b: &BellValues) -> f64 {
-        let (along, around) = (self.along.gram(&a.along, &b.along), self.around.gram(&a.around, &b.around));
-        along.as_flattened().iter().zip(around.as_flattened()).map(|(x, y)| x * y).sum()
+        let (along, around) = (gram(&self.along, &a.along, &b.along), gram(&self.around, &a.around, &b.around));
+        dot(along.as_flattened(), around.as_flattened())
     }
 }
 
-impl Nodes {
-    fn integral(&self, values: &[[f64; TERMS]]) -> [f64; TERMS] {
-        let mut sum = [0.0; TERMS];
-        for ([_, weight], value) in self.0.iter().zip(values) {
-            sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += weight * value);
-        }
-        sum
-    }
-
-    fn gram(&self, a: &[[f64; TERMS]], b: &[[f64; TERMS]]) -> Gram {
-        let mut sum = Gram::default();
-        for (([_, weight], a), b) in self.0.iter().zip(a).zip(b) {
-            for (row, a) in sum.iter_mut().zip(a) {
-                row.iter_mut().zip(b).for_each(|(sum, b)| *sum += weight * a * b);
-            }
-        }
-        sum
-    }
+/// The integrals of the products of two models' terms.
+fn gram(nodes: &Nodes, a: &[[f64; TERMS]], b: &[[f64; TERMS]]) -> [[f64; TERMS]; TERMS] {
+    let integral = |i: usize, j: usize| {
+        let values = a.iter().zip(b).map(|(a, b)| (a[i], b[j]));
+        nodes.iter().zip(values).map(|([_, weight], (a, b))| weight * a * b).sum()
+    };
+    array::from_fn(|i| array::from_fn(|j| integral(i, j)))
 }
 
 #[cfg(test)]

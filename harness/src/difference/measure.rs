@@ -1,7 +1,7 @@
 //! One cell: the distance of a Cauchy model from the Gaussian one.
 
 use super::blur::Blur;
-use super::lobes::{BellValues, Kind, Rule, TERMS, ViewedHair};
+use super::lobes::{BellValues, Kind, Rule, ViewedHair, dot};
 
 /// Differences between a Cauchy model and the Gaussian one of the same hair: of `S cos theta_i`, the mean of RGB, over
 /// the sphere, relative to the same norm of the Gaussian model alone.
@@ -53,10 +53,9 @@ impl HairValues {
         Self { view, rule, fine: view.rule(2 * order), gaussian, square }
     }
 
-    /// The square of the relative L2 difference of `kind`.
-    pub(super) fn square_error(&self, kind: Kind) -> f64 {
-        let other = self.rule.values(&self.view, kind);
-        self.square_of(&other, 1.0)
+    /// The square of the relative L2 difference of the Cauchy model with its widths times `k`.
+    pub(super) fn square_error(&self, k: f64) -> f64 {
+        self.square_of(&self.rule.values(&self.view, Kind::cauchy(k)), 1.0)
     }
 
     fn square_of(&self, other: &BellValues, scale: f64) -> f64 {
@@ -101,20 +100,14 @@ impl HairValues {
         let kinds = [Kind::GAUSSIAN].iter().chain(kinds);
         let models: Vec<BellValues> = kinds.map(|kind| self.fine.values(&self.view, *kind)).collect();
         let mut sums = vec![[0.0; 2]; models.len() - 1];
-        let columns = self.fine.around.0.len();
-        // One row of the map per model.
-        let mut rows = vec![vec![0.0; columns]; models.len()];
-        for (place, [_, weight]) in self.fine.along.0.iter().enumerate() {
-            for (row, model) in rows.iter_mut().zip(&models) {
-                let along: [f64; TERMS] = model.along[place];
-                for (value, around) in row.iter_mut().zip(&model.around) {
-                    *value = along[0] * around[0] + along[1] * around[1] + along[2] * around[2];
-                }
-            }
+        for (place, [_, weight]) in self.fine.along.iter().enumerate() {
+            // The models on one latitude.
+            let row = |model: &BellValues| model.around.iter().map(|around| dot(&model.along[place], around)).collect();
+            let rows: Vec<Vec<f64>> = models.iter().map(row).collect();
             for (n, sums) in sums.iter_mut().enumerate() {
                 let scale = albedos[0] / albedos[n + 1];
                 let mut row = [0.0; 2];
-                for (([_, w], a), b) in self.fine.around.0.iter().zip(&rows[0]).zip(&rows[n + 1]) {
+                for (([_, w], a), b) in self.fine.around.iter().zip(&rows[0]).zip(&rows[n + 1]) {
                     row[0] += w * (a - b).abs();
                     row[1] += w * (a - scale * b).abs();
                 }
@@ -167,7 +160,7 @@ mod tests {
         let desc = HairDesc { beta_r: 0.002, intensity_tt: black, intensity_trt: black, ..HairDesc::default() };
         let hair = HairValues::new(ViewedHair::new(&HairParams::new(&desc).expect("accepted"), 0.3), ORDER);
         for k in [1.0, 0.797_884_6, 1.177_41] {
-            let got = hair.square_error(Kind::cauchy(k)).sqrt();
+            let got = hair.square_error(k).sqrt();
             // Integrals over the line, in widths: of g^2, of c^2 and of g c.
             let squares = [PI.sqrt(), 0.5 * PI * k];
             let cross = k * PI * (0.5 * k * k).exp() * Real::erfc(k / 2.0_f64.sqrt());

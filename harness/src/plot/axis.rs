@@ -4,11 +4,13 @@ use crate::table::number;
 
 /// How values are spread along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
+enum Scale {
     /// Equal steps.
     Linear,
     /// Equal ratios; values of 0 and below have no place on it and are left out.
     Log,
+    /// Equal steps of the sine of an angle in degrees.
+    Sine,
 }
 
 /// One axis of a chart.
@@ -22,7 +24,7 @@ pub enum Scale {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     pub(super) label: String,
-    pub(super) scale: Scale,
+    scale: Scale,
     range: Option<(f64, f64)>,
     step: Option<f64>,
     from_zero: bool,
@@ -41,152 +43,158 @@ impl Axis {
         Self { scale: Scale::Log, ..Self::linear(label) }
     }
 
+    /// An axis of angles in degrees, spread by their sine.
+    pub(super) fn sine(label: impl Into<String>) -> Self {
+        Self { scale: Scale::Sine, ..Self::linear(label) }
+    }
+
     /// The values to span, in place of those of the data; what lies outside is cut off.
     #[must_use]
-    pub fn range(mut self, low: f64, high: f64) -> Self {
-        self.range = Some((low, high));
-        self
+    pub fn range(self, low: f64, high: f64) -> Self {
+        Self { range: Some((low, high)), ..self }
     }
 
     /// The distance between labels of a linear axis.
     #[must_use]
-    pub fn step(mut self, step: f64) -> Self {
-        self.step = Some(step);
-        self
+    pub fn step(self, step: f64) -> Self {
+        Self { step: Some(step), ..self }
     }
 
     /// Spans 0 whatever the data.
     #[must_use]
-    pub fn from_zero(mut self) -> Self {
-        self.from_zero = true;
-        self
+    pub fn from_zero(self) -> Self {
+        Self { from_zero: true, ..self }
     }
 
     /// The axis with a range if it has none yet.
-    pub(super) fn or_range(mut self, low: f64, high: f64) -> Self {
-        self.range = self.range.or(Some((low, high)));
-        self
+    pub(super) fn or_range(self, low: f64, high: f64) -> Self {
+        Self { range: self.range.or(Some((low, high))), ..self }
     }
 
     /// Whether `value` has a place on the axis.
     pub(super) fn shows(&self, value: f64) -> bool {
-        value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
+        value.is_finite() && (self.scale != Scale::Log || value > 0.0)
+    }
+
+    /// `value` in units that have equal lengths on the axis.
+    fn scaled(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => value,
+            Scale::Log => value.max(1e-305).log10(),
+            Scale::Sine => value.to_radians().sin(),
+        }
     }
 
     /// The axis laid along the pixels from `start` to `end`, wide enough for `values`.
-    pub(super) fn fit(&self, values: impl Iterator<Item = f64>, start: f64, end: f64) -> Fitted {
-        let usable = |(low, high): &(f64, f64)| {
-            let spans = self.shows(*low) && self.shows(*high) && low < high && (high - low).is_finite();
-            spans && (self.scale == Scale::Linear || (high / low).is_finite())
-        };
+    pub(super) fn fit(&self, values: impl Iterator<Item = f64>, start: f64, end: f64) -> Fitted<'_> {
+        let usable = |(low, high): &(f64, f64)| self.shows(*low) && self.shows(*high) && low < high;
         if let Some((low, high)) = self.range.filter(usable) {
-            return Fitted { scale: self.scale, low, high, start, end, step: self.step };
+            return Fitted { axis: self, low: self.scaled(low), high: self.scaled(high), start, end };
         }
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for value in values.filter(|v| self.shows(*v)) {
-            (low, high) = (low.min(value), high.max(value));
+        // The difference of the ends must stay finite, and for a logarithmic axis their ratio.
+        let most = if self.scale == Scale::Log { 140.0 } else { 1e300 };
+        let values = values.filter(|v| self.shows(*v)).map(|v| self.scaled(v).clamp(-most, most));
+        let ends = |(low, high): (f64, f64), v: f64| (low.min(v), high.max(v));
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+        let (low, high) = if low > high { (0.0, 1.0) } else { (low, high) };
+        if self.scale == Scale::Log {
+            let room = (0.05 * (high - low)).max(0.08);
+            return Fitted { axis: self, low: low - room, high: high + room, start, end };
         }
-        if low > high {
-            (low, high) = if self.scale == Scale::Log { (1.0, 10.0) } else { (0.0, 1.0) };
-        }
-        match self.scale {
-            Scale::Log => {
-                // The ratio of the ends must stay finite.
-                (low, high) = (low.clamp(1e-140, 1e140), high.clamp(1e-140, 1e140));
-                let room = ((high / low).log10() * 0.05).max(0.08);
-                (low, high) = (low * 10.0_f64.powf(-room), high * 10.0_f64.powf(room));
-            }
-            Scale::Linear => {
-                (low, high) = (low.max(-1e300), high.min(1e300));
-                if self.from_zero {
-                    (low, high) = (low.min(0.0), high.max(0.0));
-                }
-                let size = low.abs().max(high.abs());
-                let room = if high - low > 1e-9 * size { 0.05 * (high - low) } else { (0.5 * size).max(0.5) };
-                let (floor, ceiling) = (self.from_zero && low == 0.0, self.from_zero && high == 0.0);
-                low -= if floor { 0.0 } else { room };
-                high += if ceiling { 0.0 } else { room };
-            }
-        }
-        Fitted { scale: self.scale, low, high, start, end, step: self.step }
+        let (low, high) = if self.from_zero { (low.min(0.0), high.max(0.0)) } else { (low, high) };
+        let size = low.abs().max(high.abs());
+        let room = if high - low > 1e-9 * size { 0.05 * (high - low) } else { (0.5 * size).max(0.5) };
+        let beyond = |end: f64| if self.from_zero && end == 0.0 { 0.0 } else { room };
+        Fitted { axis: self, low: low - beyond(low), high: high + beyond(high), start, end }
     }
 }
 
-/// An axis with its values and its pixels.
+/// An axis with its range, in scaled units, and its pixels.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fitted {
-    scale: Scale,
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(super) struct Fitted<'a> {
+    pub(super) axis: &'a Axis,
+    low: f64,
+    high: f64,
     pub(super) start: f64,
     pub(super) end: f64,
-    step: Option<f64>,
 }
 
-/// A grid line: where, and its label if it has one.
+/// A grid line: its pixel, and its label if it has one.
 pub(super) struct Tick {
-    pub(super) value: f64,
+    pub(super) at: f64,
     pub(super) label: Option<String>,
 }
 
-impl Fitted {
+impl Fitted<'_> {
+    /// The place of a value from 0 at the start of the axis to 1 at its end.
+    pub(super) fn share(&self, value: f64) -> f64 {
+        (self.axis.scaled(value) - self.low) / (self.high - self.low)
+    }
+
     /// The pixel of a value, which may lie outside of the axis, but not by more than a thousand lengths.
     pub(super) fn pixel(&self, value: f64) -> f64 {
-        let t = match self.scale {
-            Scale::Linear => (value - self.low) / (self.high - self.low),
-            Scale::Log => (value.max(1e-305) / self.low).ln() / (self.high / self.low).ln(),
-        };
-        self.start + t.clamp(-1e3, 1e3) * (self.end - self.start)
+        self.start + self.share(value).clamp(-1e3, 1e3) * (self.end - self.start)
     }
 
     /// The pixel of a value, moved onto the axis.
     pub(super) fn within(&self, value: f64) -> f64 {
-        self.pixel(value.clamp(self.low, self.high))
+        self.start + self.share(value).clamp(0.0, 1.0) * (self.end - self.start)
+    }
+
+    /// Whether the axis spans a value.
+    pub(super) fn spans(&self, value: f64) -> bool {
+        self.axis.shows(value) && (0.0..=1.0).contains(&self.share(value))
+    }
+
+    /// The value a share `t` of the way along a linear or logarithmic axis.
+    pub(super) fn value(&self, t: f64) -> f64 {
+        let scaled = self.low + t * (self.high - self.low);
+        if self.axis.scale == Scale::Log { 10.0_f64.powf(scaled) } else { scaled }
+    }
+
+    /// Half of the way along the axis.
+    pub(super) fn middle(&self) -> f64 {
+        0.5 * (self.start + self.end)
     }
 
     pub(super) fn ticks(&self) -> Vec<Tick> {
-        match self.scale {
-            Scale::Linear => self.linear_ticks(),
+        match self.axis.scale {
+            // So short an axis has few multiples of a power of ten.
+            Scale::Log if self.high - self.low < 0.9 => self.linear_ticks(self.value(0.0), self.value(1.0)),
             Scale::Log => self.log_ticks(),
+            Scale::Linear => self.linear_ticks(self.low, self.high),
+            // Its ends are those of the sphere.
+            Scale::Sine => self.linear_ticks(-90.0, 90.0),
         }
     }
 
-    fn linear_ticks(&self) -> Vec<Tick> {
+    fn linear_ticks(&self, low: f64, high: f64) -> Vec<Tick> {
         let room = (self.end - self.start).abs() / 70.0;
-        let step = self.step.filter(|s| *s > 0.0 && (self.high - self.low) / s < 100.0);
-        let step = step.unwrap_or_else(|| nice_step((self.high - self.low) / room.clamp(2.0, 10.0)));
-        let (first, last) = ((self.low / step - 1e-6).ceil(), (self.high / step + 1e-6).floor());
-        let mut ticks = Vec::new();
-        let mut at = first;
-        while at <= last && ticks.len() < 200 {
-            let value = if at == 0.0 { 0.0 } else { at * step };
-            ticks.push(Tick { value, label: Some(number::tick(value, step)) });
-            at += 1.0;
-        }
-        ticks
+        let step = self.axis.step.filter(|s| *s > 0.0 && (high - low) / s < 100.0);
+        let step = step.unwrap_or_else(|| nice_step((high - low) / room.clamp(2.0, 10.0)));
+        let first = (low / step - 1e-6).ceil();
+        let values = (0..200).map(|n| (first + f64::from(n)) * step).take_while(|v| *v <= high + 1e-6 * step);
+        values.map(|value| Tick { at: self.pixel(value), label: Some(number::tick(value + 0.0, step)) }).collect()
     }
 
     fn log_ticks(&self) -> Vec<Tick> {
-        let decades = (self.high / self.low).log10();
+        const DIGITS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
+        let decades = self.high - self.low;
         let room = ((self.end - self.start).abs() / 55.0).max(2.0);
         let every = (decades / room).ceil().max(1.0);
-        // With few decades 2 and 5 are labelled too, with less than one every digit.
-        let labelled: &[f64] = match decades {
-            d if d < 0.9 => &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0],
-            d if d < 2.5 => &[1.0, 2.0, 5.0],
-            _ => &[1.0],
-        };
+        let labelled: &[f64] = if decades < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let digits = if decades < 12.0 { &DIGITS[..] } else { &DIGITS[..1] };
         let mut ticks = Vec::new();
-        let mut exponent = self.low.log10().floor();
-        while exponent <= self.high.log10() {
-            let digits: &[f64] = if decades < 12.0 { &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0] } else { &[1.0] };
+        let mut exponent = self.low.floor();
+        while exponent <= self.high {
+            let is_labelled = exponent.rem_euclid(every) == 0.0;
             for digit in digits {
-                let value = digit * 10.0_f64.powf(exponent);
-                if value < self.low * (1.0 - 1e-9) || value > self.high * (1.0 + 1e-9) {
-                    continue;
+                let scaled = exponent + digit.log10();
+                if (self.low - 1e-9..=self.high + 1e-9).contains(&scaled) {
+                    let shown = is_labelled && labelled.contains(digit);
+                    let label = shown.then(|| number::power(*digit, exponent));
+                    ticks.push(Tick { at: self.within(10.0_f64.powf(scaled)), label });
                 }
-                let wanted = labelled.contains(digit) && exponent.rem_euclid(every) == 0.0;
-                ticks.push(Tick { value, label: wanted.then(|| number::power(*digit, exponent)) });
             }
             exponent += 1.0;
         }

@@ -1,38 +1,10 @@
 //! Grouped bars.
 
-use super::axis::{Axis, Scale};
-use super::canvas::{Hang, Pen, Type, sheet, wrap};
-use super::frame::{self, Key};
-use super::palette::{Dash, INK, series_color};
+use super::axis::Axis;
+use super::canvas::{THIN, TICK, Type};
+use super::frame::{Bar, legend, plot, swatch};
+use super::palette::INK;
 use crate::table::number;
-
-/// The height of one bar, with whiskers if they differ from it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bar {
-    value: f64,
-    low: f64,
-    high: f64,
-}
-
-impl Bar {
-    /// A bar without whiskers.
-    #[must_use]
-    pub const fn new(value: f64) -> Self {
-        Self { value, low: value, high: value }
-    }
-
-    /// The same bar with a standard error.
-    #[must_use]
-    pub const fn with_error(self, error: f64) -> Self {
-        self.with_interval(self.value - error, self.value + error)
-    }
-
-    /// The same bar with an interval, such as that of the quartiles.
-    #[must_use]
-    pub const fn with_interval(self, low: f64, high: f64) -> Self {
-        Self { low, high, ..self }
-    }
-}
 
 /// Bars in groups, one bar per series in each, with their values at their ends. They start at the level of the chart if it
 /// has one, else at 0 or at the lower end of a logarithmic axis.
@@ -52,7 +24,6 @@ pub struct BarChart {
     groups: Vec<String>,
     series: Vec<(String, Vec<Bar>)>,
     level: Option<f64>,
-    width: f64,
 }
 
 impl BarChart {
@@ -60,7 +31,7 @@ impl BarChart {
     #[must_use]
     pub fn new<S: Into<String>>(title: impl Into<String>, y: Axis, groups: impl IntoIterator<Item = S>) -> Self {
         let groups = groups.into_iter().map(Into::into).collect();
-        Self { title: title.into(), y: y.from_zero(), groups, series: vec![], level: None, width: frame::WIDTH }
+        Self { title: title.into(), y: y.from_zero(), groups, series: vec![], level: None }
     }
 
     /// Adds a bar to each group, in order.
@@ -72,15 +43,8 @@ impl BarChart {
 
     /// Starts the bars at `y`, such as at a ratio of 1.
     #[must_use]
-    pub fn level(mut self, y: f64) -> Self {
-        self.level = Some(y);
-        self
-    }
-
-    /// Draws the chart narrower: for a column of a page, and for a phone.
-    #[must_use]
-    pub fn narrow(self) -> Self {
-        Self { width: 520.0, ..self }
+    pub fn level(self, y: f64) -> Self {
+        Self { level: Some(y), ..self }
     }
 
     fn values_in_words(&self) -> String {
@@ -96,67 +60,39 @@ impl BarChart {
     /// The chart as SVG.
     #[must_use]
     pub fn svg(&self) -> String {
-        let names: Vec<&str> = self.series.iter().map(|(name, _)| name.as_str()).collect();
-        let top = frame::title_height(&self.title, self.width);
-        let bottom = top + 340.0;
         let bars = self.series.iter().flat_map(|(_, bars)| bars);
         let ends = bars.flat_map(|b| [b.value, b.low, b.high]).chain(self.level);
-        let y = self.y.fit(ends.filter(|v| self.y.shows(*v)), bottom, top);
-        let left = frame::left_margin(&y);
-        let x = Axis::linear("").range(0.0, 1.0).fit(core::iter::empty(), left, self.width - 16.0);
-        let lanes = |n: usize| f64::from(u32::try_from(n.max(1)).unwrap_or(u32::MAX));
-        let group_width = (x.end - x.start) / lanes(self.groups.len());
-        let bar_width = (0.8 * group_width / lanes(self.series.len())).min(90.0);
-        let labels: Vec<Vec<String>> = self.groups.iter().map(|g| wrap(g, group_width - 4.0, frame::TICK)).collect();
-        let label_height = labels.iter().map(Vec::len).map(lanes).fold(1.0, f64::max) * 17.0;
-        let legend_top = bottom + 14.0 + label_height;
-        let height = legend_top + frame::legend_height(&names, x.end - left) + 10.0;
-        sheet((self.width, height), &self.title, &self.values_in_words(), |canvas| {
-            frame::title(canvas, &self.title, self.width);
-            frame::vertical(canvas, &self.y, &x, &y);
-            let level = self.level.filter(|level| self.y.shows(*level));
-            let base = match level {
-                Some(level) => y.within(level),
-                None if self.y.scale == Scale::Log => y.start,
-                None => y.within(0.0),
-            };
-            for (g, label) in labels.iter().enumerate() {
-                let middle = left + (lanes(g + 1) - 0.5) * group_width;
-                for (i, line) in label.iter().enumerate() {
-                    let below = bottom + 16.0 + 17.0 * (lanes(i + 1) - 1.0);
-                    canvas.text(line, (middle, below), Type::new(frame::TICK, Hang::Center));
-                }
-                for (s, (_, bars)) in self.series.iter().enumerate() {
-                    let Some(bar) = bars.get(g).filter(|b| self.y.shows(b.value)) else { continue };
-                    let offset = lanes(s + 1) - 0.5 - 0.5 * lanes(self.series.len());
-                    let (center, end) = (middle + offset * bar_width, y.within(bar.value));
-                    let half = 0.44 * bar_width;
-                    let corners = ((center - half, end), (center + half, base));
-                    frame::swatch(canvas, corners.0, corners.1, series_color(s), s);
-                    let (mut top, mut bottom) = (end.min(base), end.max(base));
-                    if bar.high > bar.low && bar.high.is_finite() {
-                        let low = if self.y.shows(bar.low) { bar.low } else { y.low };
-                        let (low, high) = (y.within(low), y.within(bar.high));
-                        let pen = Pen::new(INK, 1.5);
-                        canvas.line(&[(center, low), (center, high)], pen, Dash::Solid);
-                        for at in [low, high] {
-                            canvas.line(&[(center - 4.0, at), (center + 4.0, at)], pen, Dash::Solid);
-                        }
-                        (top, bottom) = (top.min(high), bottom.max(low));
-                    }
-                    if bar_width > 30.0 {
-                        let text = number::plain(bar.value, 3);
-                        // A bar that hangs from its level has its number below.
-                        let at = if end > base { bottom + 9.0 } else { top - 9.0 };
-                        canvas.text(&text, (center, at), Type::new(12.5, Hang::Center));
-                    }
+        let x = Axis::linear("").range(0.0, self.groups.len().max(1) as f64);
+        let (mut canvas, x, y) = plot(&self.title, 320.0, (&x, [].into_iter()), (&self.y, ends));
+        let group_width = x.pixel(1.0) - x.pixel(0.0);
+        let bar_width = (0.8 * group_width / self.series.len().max(1) as f64).min(90.0);
+        let level = self.level.filter(|level| self.y.shows(*level));
+        // 0 is the lower end of a logarithmic axis.
+        let base = y.within(level.unwrap_or(0.0));
+        let mut below = y.start + 16.0;
+        for (g, group) in self.groups.iter().enumerate() {
+            let middle = x.pixel(g as f64 + 0.5);
+            below = below.max(canvas.lines(group, (middle, y.start + 16.0), group_width - 4.0, TICK));
+            for (s, (_, bars)) in self.series.iter().enumerate() {
+                let Some(bar) = bars.get(g).filter(|b| self.y.shows(b.value)) else { continue };
+                let center = middle + (s as f64 + 0.5 - 0.5 * self.series.len() as f64) * bar_width;
+                let (half, end) = (0.44 * bar_width, y.within(bar.value));
+                swatch(&mut canvas, (center - half, end), (center + half, base), s);
+                bar.whiskers(&mut canvas, center, &y, INK);
+                if bar_width > 26.0 {
+                    // A bar that hangs from its level has its number below.
+                    let ends = [end, y.within(bar.low), y.within(bar.high)].into_iter();
+                    let at = if end > base { ends.fold(end, f64::max) + 9.0 } else { ends.fold(end, f64::min) - 9.0 };
+                    canvas.text(&number::plain(bar.value, 3), (center, at), Type { color: INK, ..TICK });
                 }
             }
-            canvas.line(&[(x.start, base), (x.end, base)], Pen::new(INK, 1.2), Dash::Solid);
-            canvas.line(&[(x.start, y.start), (x.start, y.end)], Pen::new(INK, 1.0), Dash::Solid);
-            let key = |s| Key { color: series_color(s), line: None, marker: None, swatch: Some(s) };
-            let keys: Vec<Key> = (0..names.len()).map(key).collect();
-            frame::legend(canvas, &names, &keys, (left, legend_top), x.end - left);
-        })
+        }
+        canvas.line(&[(x.start, base), (x.end, base)], THIN);
+        canvas.line(&[(x.start, y.start), (x.start, y.end)], THIN);
+        let names: Vec<&str> = self.series.iter().map(|(name, _)| name.as_str()).collect();
+        let bottom = legend(&mut canvas, &names, below, |canvas, s, (x, y)| {
+            swatch(canvas, (x + 6.0, y - 7.0), (x + 30.0, y + 7.0), s);
+        });
+        canvas.finish(&self.values_in_words(), bottom + 10.0)
     }
 }

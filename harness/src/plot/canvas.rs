@@ -1,66 +1,62 @@
 //! SVG sheet that charts draw on. Coordinates are written in tenths of a pixel, as whole numbers; consecutive marks of one
 //! style become one path.
 
-use super::palette::{Color, Dash, Marker};
+use super::palette::{Color, Dash, FAINT_INK, INK, MARKERS, PAPER};
 use crate::markup::escape;
+
+/// Width of every sheet, in pixels: half of a wide page, and not much more than a phone, so that letters stay readable there.
+pub(super) const WIDTH: f64 = 520.0;
 
 /// Units of the drawing per pixel.
 const FINE: f64 = 10.0;
 
-/// Where a text hangs from its point.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Hang {
-    Left,
-    Center,
-    Right,
-}
-
 /// How a text is set.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Type {
-    pub(crate) size: f64,
-    pub(crate) hang: Hang,
-    pub(crate) bold: bool,
+pub(super) struct Type {
+    pub(super) size: f64,
+    /// Which part of the text is at its place: `start`, `middle` or `end`.
+    pub(super) anchor: &'static str,
+    pub(super) bold: bool,
     /// Reads from the bottom to the top.
-    pub(crate) upright: bool,
-    pub(crate) color: Color,
+    pub(super) upright: bool,
+    pub(super) color: Color,
 }
 
-impl Type {
-    pub(crate) const fn new(size: f64, hang: Hang) -> Self {
-        Self { size, hang, bold: false, upright: false, color: super::palette::INK }
-    }
-}
+/// Names of axes and entries of legends.
+pub(super) const LABEL: Type = Type { size: 15.5, anchor: "middle", bold: false, upright: false, color: INK };
+/// Labels of ticks, and notes.
+pub(super) const TICK: Type = Type { size: 14.0, color: FAINT_INK, ..LABEL };
+/// Titles of panels.
+pub(super) const HEADING: Type = Type { bold: true, ..LABEL };
+const TITLE: Type = Type { size: 17.0, ..HEADING };
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pen {
-    pub(crate) color: Color,
-    pub(crate) width: f64,
-    pub(crate) alpha: f64,
+pub(super) struct Pen {
+    pub(super) color: Color,
+    pub(super) width: f64,
+    pub(super) dash: Dash,
+    pub(super) alpha: f64,
 }
 
 impl Pen {
-    pub(crate) const fn new(color: Color, width: f64) -> Self {
-        Self { color, width, alpha: 1.0 }
-    }
-
-    pub(crate) const fn faded(self, alpha: f64) -> Self {
-        Self { alpha, ..self }
-    }
-
-    fn style(self) -> String {
-        let Self { color, width, alpha } = self;
-        format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"{}\"{}", fine(width), opacity(alpha))
+    pub(super) const fn new(color: Color, width: f64) -> Self {
+        Self { color, width, dash: Dash::Solid, alpha: 1.0 }
     }
 }
 
+/// Frames and ticks.
+pub(super) const THIN: Pen = Pen::new(INK, 1.0);
+/// Grid lines, which let colours through.
+pub(super) const GRID: Pen = Pen { alpha: 0.14, ..THIN };
+
 /// A place on the sheet, pixels from its top left.
-pub(crate) type Place = (f64, f64);
+pub(super) type Place = (f64, f64);
 
 /// The drawing so far, and the path that is being gathered: its style and its data.
 #[derive(Default)]
-pub(crate) struct Canvas {
+pub(super) struct Canvas {
+    title: String,
     svg: String,
     style: String,
     path: String,
@@ -80,29 +76,29 @@ fn path_data(points: &[Place]) -> String {
     format!("M{}", points.join(" "))
 }
 
-/// An SVG of `width` by `height` pixels with an accessible name and description, drawn by `paint`.
-///
-/// It has no ids at all, so that any number of them can stand in one page.
-pub(crate) fn sheet(
-    (width, height): (f64, f64),
-    title: &str,
-    description: &str,
-    paint: impl FnOnce(&mut Canvas),
-) -> String {
-    let (title, description, right, bottom) = (escape(title), escape(description), fine(width), fine(height));
-    let head = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{title}\" width=\"{width:.0}\" \
-         height=\"{height:.0}\" viewBox=\"0 0 {right} {bottom}\" font-family=\"sans-serif\" stroke-linejoin=\"round\">\n\
-         <title>{title}</title>\n<desc>{description}</desc>\n",
-    );
-    let mut canvas = Canvas { svg: head, ..Canvas::default() };
-    canvas.block((0.0, 0.0), (width, height), super::palette::PAPER, 1.0);
-    paint(&mut canvas);
-    canvas.flush();
-    canvas.svg + "</svg>\n"
-}
-
 impl Canvas {
+    /// A sheet with its title, and the height below which it is empty.
+    pub(super) fn new(title: &str) -> (Self, f64) {
+        let mut canvas = Self { title: escape(title), ..Self::default() };
+        let bottom = canvas.lines(title, (0.5 * WIDTH, 20.0), WIDTH - 24.0, TITLE);
+        (canvas, bottom)
+    }
+
+    /// The SVG, cut off at `height`, with a description for those who do not see it.
+    ///
+    /// It has no ids at all, so that any number of them can stand in one page.
+    pub(super) fn finish(mut self, description: &str, height: f64) -> String {
+        self.flush();
+        let Self { title, svg, .. } = self;
+        let (description, right, bottom) = (escape(description), fine(WIDTH), fine(height));
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"chart\" role=\"img\" aria-label=\"{title}\" width=\"{WIDTH}\" \
+             height=\"{height:.0}\" viewBox=\"0 0 {right} {bottom}\" font-family=\"sans-serif\" \
+             stroke-linejoin=\"round\">\n<title>{title}</title>\n<desc>{description}</desc>\n\
+             <path fill=\"{PAPER}\" d=\"M0 0h{right}v{bottom}h-{right}z\"/>\n{svg}</svg>\n"
+        )
+    }
+
     /// Adds to the path of this style.
     fn add(&mut self, style: String, data: &str) {
         if style != self.style {
@@ -119,116 +115,89 @@ impl Canvas {
         self.path.clear();
     }
 
-    pub(crate) fn line(&mut self, points: &[Place], pen: Pen, dash: Dash) {
+    pub(super) fn line(&mut self, points: &[Place], Pen { color, width, dash, alpha }: Pen) {
         if points.len() < 2 {
             return;
         }
         let pattern: Vec<String> = dash.pattern().iter().map(|length| fine(*length).to_string()).collect();
         let dashes =
             if pattern.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", pattern.join(" ")) };
-        // Crossing lines that let paper through would not darken each other within one path.
-        if pen.alpha < 1.0 {
-            self.flush();
-        }
-        self.add(pen.style() + &dashes, &path_data(points));
+        let (width, opacity) = (fine(width), opacity(alpha));
+        let style = format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\"{opacity}{dashes}");
+        self.add(style, &path_data(points));
     }
 
-    pub(crate) fn polygon(&mut self, points: &[Place], color: Color, alpha: f64) {
-        if points.len() > 2 {
-            self.add(format!("fill=\"{color}\"{}", opacity(alpha)), &(path_data(points) + "z"));
-        }
+    pub(super) fn block(&mut self, (x0, y0): Place, (x1, y1): Place, color: Color, alpha: f64) {
+        let (left, top) = (fine(x0.min(x1)), fine(y0.min(y1)));
+        let (width, height) = (fine(x0.max(x1)) - left, fine(y0.max(y1)) - top);
+        self.add(format!("fill=\"{color}\"{}", opacity(alpha)), &format!("M{left} {top}h{width}v{height}h-{width}z"));
     }
 
-    pub(crate) fn block(&mut self, (x0, y0): Place, (x1, y1): Place, color: Color, alpha: f64) {
-        let (left, right) = (fine(x0.min(x1)), fine(x0.max(x1)));
-        let (top, bottom) = (fine(y0.min(y1)), fine(y0.max(y1)));
-        let (width, height) = (right - left, bottom - top);
-        if width > 0 || height > 0 {
-            let data = format!("M{left} {top}h{width}v{height}h-{width}z");
-            self.add(format!("fill=\"{color}\"{}", opacity(alpha)), &data);
-        }
+    pub(super) fn frame(&mut self, (x0, y0): Place, (x1, y1): Place, pen: Pen) {
+        self.line(&[(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], pen);
     }
 
-    pub(crate) fn frame(&mut self, (x0, y0): Place, (x1, y1): Place, pen: Pen) {
-        self.line(&[(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], pen, Dash::Solid);
-    }
-
-    pub(crate) fn dot(&mut self, (x, y): Place, radius: f64, color: Color, alpha: f64) {
+    pub(super) fn dot(&mut self, (x, y): Place, radius: f64, color: Color, alpha: f64) {
         // A line of no length with round ends is a disc.
         let width = fine(2.0 * radius);
         let style = format!("stroke=\"{color}\" stroke-width=\"{width}\" stroke-linecap=\"round\"{}", opacity(alpha));
         self.add(style, &format!("M{} {}h0", fine(x), fine(y)));
     }
 
-    pub(crate) fn ring(&mut self, (x, y): Place, radius: f64, pen: Pen) {
-        let (x, y, r) = (fine(x), fine(y), fine(radius));
-        self.add(pen.style(), &format!("M{} {y}a{r} {r} 0 1 0 {} 0a{r} {r} 0 1 0 -{} 0z", x - r, 2 * r, 2 * r));
-    }
-
-    pub(crate) fn marker(&mut self, (x, y): Place, marker: Marker, size: f64, color: Color) {
-        let corners: &[Place] = match marker {
-            Marker::Circle => return self.dot((x, y), size, color, 1.0),
-            Marker::Square => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
-            Marker::Triangle => &[(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)],
-            Marker::Diamond => &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
-            Marker::Inverted => &[(0.0, 1.2), (1.1, -0.8), (-1.1, -0.8)],
-            Marker::Cross => &[(-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)],
-        };
-        let corners: Vec<Place> = corners.iter().map(|(dx, dy)| (x + dx * size, y + dy * size)).collect();
-        if marker == Marker::Cross {
-            for stroke in corners.chunks(2) {
-                self.line(stroke, Pen::new(color, size * 0.55), Dash::Solid);
-            }
-        } else {
-            self.polygon(&corners, color, 1.0);
+    /// The marker of the series number `index`.
+    pub(super) fn marker(&mut self, (x, y): Place, index: usize, color: Color) {
+        const SIZE: f64 = 4.2;
+        let shape = MARKERS[index % MARKERS.len()];
+        if shape.is_empty() {
+            return self.dot((x, y), SIZE, color, 1.0);
         }
+        let corners: Vec<Place> = shape.chunks_exact(2).map(|at| (x + SIZE * at[0], y + SIZE * at[1])).collect();
+        self.add(format!("fill=\"{color}\""), &(path_data(&corners) + "z"));
     }
 
     /// A text whose middle height is at `place`.
-    pub(crate) fn text(&mut self, text: &str, (x, y): Place, set: Type) {
+    pub(super) fn text(&mut self, text: &str, (x, y): Place, set: Type) {
         self.flush();
-        let anchor = match set.hang {
-            Hang::Left => "",
-            Hang::Center => " text-anchor=\"middle\"",
-            Hang::Right => " text-anchor=\"end\"",
-        };
+        let Type { size, anchor, bold, upright, color } = set;
         // From the middle of the letters to their base line.
-        let drop = 0.35 * set.size;
-        let (x, y) = if set.upright { (fine(x + drop), fine(y)) } else { (fine(x), fine(y + drop)) };
-        let turn = if set.upright { format!(" transform=\"rotate(270, {x}, {y})\"") } else { String::new() };
-        let weight = if set.bold { " font-weight=\"bold\"" } else { "" };
+        let drop = 0.35 * size;
+        let (x, y) = if upright { (fine(x + drop), fine(y)) } else { (fine(x), fine(y + drop)) };
+        let turn = if upright { format!(" transform=\"rotate(270, {x}, {y})\"") } else { String::new() };
+        let weight = if bold { " font-weight=\"bold\"" } else { "" };
+        let (size, text) = (fine(size), escape(text));
         self.svg.push_str(&format!(
-            "<text x=\"{x}\" y=\"{y}\"{anchor} font-size=\"{}\"{weight} fill=\"{}\"{turn}>{}</text>\n",
-            fine(set.size),
-            set.color,
-            escape(text)
+            "<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" font-size=\"{size}\"{weight} fill=\"{color}\"{turn}>\
+             {text}</text>\n"
         ));
     }
-}
 
-/// Width of a text in pixels, as an estimate a little on the safe side.
-pub(crate) fn text_width(text: &str, size: f64) -> f64 {
-    let wide = |c: char| match c {
-        'i' | 'j' | 'l' | 'I' | '|' | '.' | ',' | ':' | ';' | '\'' | ' ' | '(' | ')' => 0.36,
-        'm' | 'w' | 'M' | 'W' => 0.9,
-        _ if c.is_uppercase() => 0.7,
-        _ => 0.6,
-    };
-    text.chars().map(wide).sum::<f64>() * size
-}
-
-/// `text` in lines no wider than `width` pixels, as far as words allow.
-pub(crate) fn wrap(text: &str, width: f64, size: f64) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.is_empty() => line.push_str(word),
-            Some(line) if text_width(line, size) + text_width(word, size) + 0.36 * size <= width => {
-                line.push(' ');
-                line.push_str(word);
+    /// A text in lines no wider than `width` pixels, as far as words allow, and the middle height of the line below it.
+    pub(super) fn lines(&mut self, text: &str, (x, mut y): Place, width: f64, set: Type) -> f64 {
+        let mut line = String::new();
+        for word in text.split_whitespace() {
+            let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+            if !line.is_empty() && set.width(&longer) > width {
+                self.text(&line, (x, y), set);
+                y += 1.3 * set.size;
+                line = word.to_owned();
+            } else {
+                line = longer;
             }
-            _ => lines.push(word.to_owned()),
         }
+        self.text(&line, (x, y), set);
+        y + 1.3 * set.size
     }
-    lines
+}
+
+impl Type {
+    /// Width of a text in pixels, as an estimate a little on the safe side.
+    pub(super) fn width(self, text: &str) -> f64 {
+        let wide = |c: char| match c {
+            'i' | 'j' | 'l' | 'I' | '|' | '.' | ',' | ':' | ';' | '\'' | ' ' | '(' | ')' => 0.36,
+            'm' | 'w' | 'M' | 'W' => 0.9,
+            _ if c.is_uppercase() => 0.7,
+            _ => 0.6,
+        };
+        text.chars().map(wide).sum::<f64>() * self.size * if self.bold { 1.05 } else { 1.0 }
+    }
 }

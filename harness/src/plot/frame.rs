@@ -1,172 +1,145 @@
-//! Parts common to all charts: the title, the axes with their grid, and the legend.
+//! Parts common to charts: the axes with their grid, bars of errors, and the legend.
 
 use super::axis::{Axis, Fitted};
-use super::canvas::{Canvas, Hang, Pen, Place, Type, text_width, wrap};
-use super::palette::{Color, Dash, FAINT_GRID, FAINT_INK, GRID, INK, Marker};
+use super::canvas::{Canvas, GRID, LABEL, Pen, Place, THIN, TICK, Type, WIDTH};
+use super::palette::{Color, series_color};
+use crate::stats::Estimate;
+use core::iter;
 
-/// Width of a chart, pixels.
-pub(super) const WIDTH: f64 = 640.0;
-/// Size of titles, axis labels and legends; tick labels.
-const TITLE: f64 = 17.0;
-pub(super) const LABEL: f64 = 15.0;
-pub(super) const TICK: f64 = 13.5;
+/// Distance of the entries of a legend.
 const LEGEND_LINE: f64 = 23.0;
 
-/// Mark that a legend shows beside a name.
-#[derive(Clone, Copy)]
-pub(super) struct Key {
-    pub(super) color: Color,
-    /// A line in this dash.
-    pub(super) line: Option<Dash>,
-    pub(super) marker: Option<Marker>,
-    /// A filled swatch, as of a bar.
-    pub(super) swatch: Option<usize>,
+/// A value, as the height of a bar or of a point, with whiskers if they differ from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bar {
+    pub(super) value: f64,
+    pub(super) low: f64,
+    pub(super) high: f64,
 }
 
-/// Draws the title and returns the height it takes.
-pub(super) fn title(canvas: &mut Canvas, text: &str, width: f64) -> f64 {
-    let lines = wrap(text, width - 24.0, TITLE * 1.05);
-    let mut y = 8.0;
-    for line in &lines {
-        let set = Type { bold: true, ..Type::new(TITLE, Hang::Center) };
-        canvas.text(line, (width / 2.0, y + 12.0), set);
-        y += 22.0;
+impl Bar {
+    /// A bar without whiskers.
+    #[must_use]
+    pub const fn new(value: f64) -> Self {
+        Self { value, low: value, high: value }
     }
-    y + 4.0
-}
 
-/// The height of a title.
-pub(super) fn title_height(text: &str, width: f64) -> f64 {
-    let mut y = 12.0;
-    wrap(text, width - 24.0, TITLE * 1.05).iter().for_each(|_| y += 22.0);
-    y
-}
-
-/// The places of a legend's entries in columns of one width, as few rows as fit, evenly filled.
-fn legend_places(names: &[&str], width: f64) -> Vec<Place> {
-    let widest = names.iter().map(|name| 44.0 + text_width(name, LABEL) + 18.0).fold(1.0, f64::max);
-    let fit = (1..names.len()).take_while(|n| f64::from(u32::try_from(n + 1).unwrap_or(u32::MAX)) * widest <= width);
-    let columns = names.len().div_ceil(names.len().div_ceil(fit.count() + 1).max(1)).max(1);
-    let mut place = (0.0, 0.0);
-    let mut places = Vec::new();
-    for i in 0..names.len() {
-        if i > 0 && i.is_multiple_of(columns) {
-            place = (0.0, place.1 + LEGEND_LINE);
-        }
-        places.push(place);
-        place.0 += widest;
+    /// The same bar with a standard error.
+    #[must_use]
+    pub const fn with_error(self, error: f64) -> Self {
+        self.with_interval(self.value - error, self.value + error)
     }
-    places
+
+    /// The same bar with an interval, such as that of the quartiles.
+    #[must_use]
+    pub const fn with_interval(self, low: f64, high: f64) -> Self {
+        Self { low, high, ..self }
+    }
+
+    /// Draws its whiskers, cut to the plot, at the pixel `x`.
+    pub(super) fn whiskers(&self, canvas: &mut Canvas, x: f64, y: &Fitted, color: Color) {
+        if self.high > self.low {
+            let (pen, low, high) = (Pen::new(color, 1.5), y.within(self.low), y.within(self.high));
+            canvas.line(&[(x, low), (x, high)], pen);
+            for end in [low, high] {
+                canvas.line(&[(x - 4.0, end), (x + 4.0, end)], pen);
+            }
+        }
+    }
 }
 
-/// The height of a legend.
-pub(super) fn legend_height(names: &[&str], width: f64) -> f64 {
-    legend_places(names, width).last().map_or(0.0, |place| place.1 + LEGEND_LINE)
-}
-
-/// Draws a legend from `place` (its top left) in rows no wider than `width`.
-pub(super) fn legend(canvas: &mut Canvas, names: &[&str], keys: &[Key], place: Place, width: f64) {
-    let places = legend_places(names, width);
-    for ((name, key), (x, y)) in names.iter().zip(keys).zip(places) {
-        let (x, y) = (place.0 + x, place.1 + y + LEGEND_LINE / 2.0);
-        if let Some(dash) = key.line {
-            canvas.line(&[(x, y), (x + 36.0, y)], Pen::new(key.color, 2.2), dash);
-        }
-        if let Some(marker) = key.marker {
-            canvas.marker((x + 18.0, y), marker, 4.2, key.color);
-        }
-        if let Some(index) = key.swatch {
-            swatch(canvas, (x + 8.0, y - 7.0), (x + 34.0, y + 7.0), key.color, index);
-        }
-        canvas.text(name, (x + 42.0, y), Type::new(LABEL, Hang::Left));
+impl From<f64> for Bar {
+    fn from(value: f64) -> Self {
+        Self::new(value)
     }
 }
 
-/// A bar: filled, framed, and hatched differently for each series so that it survives grey printing.
-pub(super) fn swatch(canvas: &mut Canvas, (x0, y0): Place, (x1, y1): Place, color: Color, index: usize) {
-    let (top, bottom) = (y0.min(y1), y0.max(y1));
-    canvas.block((x0, top), (x1, bottom), color, if index == 0 { 1.0 } else { 0.55 });
-    let hatch = Pen::new(color, 1.4);
-    let slope = match index % 4 {
-        1 => 1.0,
-        2 => -1.0,
-        3 => 0.0,
-        _ => f64::NAN,
-    };
-    let width = x1 - x0;
-    let mut y = bottom + width;
-    while slope.is_finite() && y > top - width {
-        // The line from (x0, y) to (x1, y - slope * width), cut to the bar.
-        let (from, to) = (y, y - slope * width);
-        let x_at = |level: f64| if slope == 0.0 { x0 } else { x0 + (from - level) / slope };
-        let cut = |x: f64, level: f64| match level {
-            l if l < top => (x_at(top), top),
-            l if l > bottom => (x_at(bottom), bottom),
-            l => (x, l),
-        };
-        if from.max(to) > top && from.min(to) < bottom {
-            canvas.line(&[cut(x0, from), cut(x1, to)], hatch, Dash::Solid);
+impl From<Estimate> for Bar {
+    fn from(estimate: Estimate) -> Self {
+        Self::new(estimate.value).with_error(estimate.standard_error)
+    }
+}
+
+/// A sheet with its title, and the axes of a plot of `height` below it, wide enough for their values.
+pub(super) fn plot<'a>(
+    title: &str,
+    height: f64,
+    (x, xs): (&'a Axis, impl Iterator<Item = f64>),
+    (y, ys): (&'a Axis, impl Iterator<Item = f64>),
+) -> (Canvas, Fitted<'a>, Fitted<'a>) {
+    let (mut canvas, top) = Canvas::new(title);
+    let y = y.fit(ys, top + height, top);
+    let x = x.fit(xs, 42.0 + widest_label(&y), WIDTH - 16.0);
+    draw_axis(&mut canvas, &y, &x, true);
+    (canvas, x, y)
+}
+
+fn widest_label(axis: &Fitted) -> f64 {
+    axis.ticks().iter().filter_map(|tick| tick.label.as_deref()).map(|label| TICK.width(label)).fold(20.0, f64::max)
+}
+
+/// Draws an axis at the start of another one, with its grid lines across to the end of that.
+pub(super) fn draw_axis(canvas: &mut Canvas, axis: &Fitted, across: &Fitted, upright: bool) {
+    let place = |along: f64, across: f64| if upright { (across, along) } else { (along, across) };
+    let base = across.start;
+    let (outwards, anchor) = if upright { (-1.0, "end") } else { (1.0, "middle") };
+    let ticks = axis.ticks();
+    for tick in &ticks {
+        let pen = if tick.label.is_some() { GRID } else { Pen { alpha: 0.5 * GRID.alpha, ..GRID } };
+        canvas.line(&[place(tick.at, base), place(tick.at, across.end)], pen);
+    }
+    for (at, label) in ticks.iter().filter_map(|tick| Some((tick.at, tick.label.as_deref()?))) {
+        canvas.line(&[place(at, base), place(at, base + 5.0 * outwards)], THIN);
+        let gap = if upright { -9.0 } else { 15.0 };
+        canvas.text(label, place(at, base + gap), Type { anchor, ..TICK });
+    }
+    let gap = if upright { -22.0 - widest_label(axis) } else { 36.0 };
+    canvas.text(&axis.axis.label, place(axis.middle(), base + gap), Type { upright, ..LABEL });
+}
+
+/// Draws a legend below `top`, each entry with its mark, and returns where it ends.
+pub(super) fn legend(canvas: &mut Canvas, names: &[&str], top: f64, mark: impl Fn(&mut Canvas, usize, Place)) -> f64 {
+    const LEFT: f64 = 12.0;
+    let widest = names.iter().map(|name| 58.0 + LABEL.width(name)).fold(1.0, f64::max);
+    let fit = (1..=names.len()).rev().find(|n| LEFT + *n as f64 * widest <= WIDTH).unwrap_or(1);
+    // As few rows as fit, evenly filled.
+    let rows = names.len().div_ceil(fit);
+    let columns = names.len().div_ceil(rows.max(1)).max(1);
+    for (i, name) in names.iter().enumerate() {
+        let x = LEFT + (i % columns) as f64 * widest;
+        let y = top + ((i / columns) as f64 + 0.5) * LEGEND_LINE;
+        mark(canvas, i, (x, y));
+        canvas.text(name, (x + 42.0, y), Type { anchor: "start", ..LABEL });
+    }
+    top + rows as f64 * LEGEND_LINE
+}
+
+/// A bar of the series number `index`: filled, framed, and hatched differently for each so that it survives grey printing.
+pub(super) fn swatch(canvas: &mut Canvas, (x0, y0): Place, (x1, y1): Place, index: usize) {
+    let color = series_color(index);
+    let (low, high) = ((x0, y0.min(y1)), (x1, y0.max(y1)));
+    canvas.block(low, high, color, if index == 0 { 1.0 } else { 0.55 });
+    if let Some(slope) = [None, Some(1.0), Some(-1.0), Some(0.0)][index % 4] {
+        let width = x1 - x0;
+        let starts = iter::successors(Some(low.1 - width), |y| Some(y + 7.0)).take_while(|y| *y < high.1 + width);
+        for stroke in starts.filter_map(|y| clip([(x0, y), (x1, y + slope * width)], low, high)) {
+            canvas.line(&stroke, Pen::new(color, 1.4));
         }
-        y -= 7.0;
     }
-    canvas.frame((x0, top), (x1, bottom), Pen::new(color, 1.2));
+    canvas.frame(low, high, Pen::new(color, 1.2));
 }
 
-/// The axes of a plot whose corners are the ends of `x` and `y`.
-pub(super) fn axes(canvas: &mut Canvas, labels: (&Axis, &Axis), x: &Fitted, y: &Fitted) {
-    vertical(canvas, labels.1, x, y);
-    for tick in x.ticks() {
-        let at = x.pixel(tick.value);
-        let color = if tick.label.is_some() { GRID } else { FAINT_GRID };
-        canvas.line(&[(at, y.start), (at, y.end)], Pen::new(color, 1.0), Dash::Solid);
-    }
-    for tick in x.ticks() {
-        let at = x.pixel(tick.value);
-        if let Some(label) = tick.label {
-            canvas.line(&[(at, y.start), (at, y.start + 5.0)], Pen::new(INK, 1.0), Dash::Solid);
-            canvas.text(&label, (at, y.start + 15.0), Type { color: FAINT_INK, ..Type::new(TICK, Hang::Center) });
-        }
-    }
-    canvas.frame((x.start, y.end), (x.end, y.start), Pen::new(INK, 1.0));
-    let middle = (0.5 * (x.start + x.end), y.start + 38.0);
-    canvas.text(&labels.0.label, middle, Type::new(LABEL, Hang::Center));
-}
-
-/// The vertical axis alone, with its grid lines across the plot.
-pub(super) fn vertical(canvas: &mut Canvas, axis: &Axis, x: &Fitted, y: &Fitted) {
-    for tick in y.ticks() {
-        let at = y.pixel(tick.value);
-        let color = if tick.label.is_some() { GRID } else { FAINT_GRID };
-        canvas.line(&[(x.start, at), (x.end, at)], Pen::new(color, 1.0), Dash::Solid);
-        if let Some(label) = tick.label {
-            canvas.line(&[(x.start - 5.0, at), (x.start, at)], Pen::new(INK, 1.0), Dash::Solid);
-            canvas.text(&label, (x.start - 9.0, at), Type { color: FAINT_INK, ..Type::new(TICK, Hang::Right) });
-        }
-    }
-    let middle = (18.0, 0.5 * (y.start + y.end));
-    canvas.text(&axis.label, middle, Type { upright: true, ..Type::new(LABEL, Hang::Center) });
-}
-
-/// Room that the labels of a vertical axis need, with its own label.
-pub(super) fn left_margin(y: &Fitted) -> f64 {
-    let widest = y.ticks().iter().filter_map(|t| t.label.as_deref().map(|l| text_width(l, TICK))).fold(0.0, f64::max);
-    38.0 + widest.max(20.0)
-}
-
-/// The part of the segment from `a` to `b` inside of the rectangle of `low` and `high`.
-pub(super) fn clip(a: Place, b: Place, low: Place, high: Place) -> Option<(Place, Place)> {
+/// The part of a segment inside of the rectangle from `low` to `high`.
+pub(super) fn clip([a, b]: [Place; 2], low: Place, high: Place) -> Option<[Place; 2]> {
     let (mut t0, mut t1) = (0.0_f64, 1.0_f64);
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     for (from, step, low, high) in [(a.0, dx, low.0, high.0), (a.1, dy, low.1, high.1)] {
-        if step == 0.0 {
-            if from < low || from > high {
-                return None;
-            }
+        if step == 0.0 && (low..=high).contains(&from) {
             continue;
         }
         let (enter, leave) = ((low - from) / step, (high - from) / step);
         (t0, t1) = (t0.max(enter.min(leave)), t1.min(enter.max(leave)));
     }
     let at = |t: f64| (a.0 + t * dx, a.1 + t * dy);
-    (t0 <= t1).then(|| (at(t0), at(t1)))
+    (t0 <= t1).then(|| [at(t0), at(t1)])
 }

@@ -1,120 +1,85 @@
 //! Lines through points with errors.
 
 use super::axis::{Axis, Fitted};
-use super::canvas::{Canvas, Hang, Pen, Place, Type, sheet};
-use super::frame::{self, Key};
-use super::palette::{Dash, FAINT_INK, Marker, series_color};
-
-/// One point of a series.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
-    x: f64,
-    y: f64,
-    low: f64,
-    high: f64,
-}
-
-impl Point {
-    /// A point without error.
-    #[must_use]
-    pub const fn new(x: f64, y: f64) -> Self {
-        Self { x, y, low: y, high: y }
-    }
-
-    /// The same point with a standard error of `y`, drawn as a bar of one error to either side.
-    #[must_use]
-    pub const fn with_error(self, error: f64) -> Self {
-        Self { low: self.y - error, high: self.y + error, ..self }
-    }
-
-    /// The same point with an interval of `y`.
-    #[must_use]
-    pub const fn with_interval(self, low: f64, high: f64) -> Self {
-        Self { low, high, ..self }
-    }
-}
-
-impl From<(f64, f64)> for Point {
-    fn from((x, y): (f64, f64)) -> Self {
-        Self::new(x, y)
-    }
-}
+use super::canvas::{Canvas, LABEL, Pen, Place, THIN};
+use super::frame::{Bar, clip, draw_axis, legend, plot};
+use super::palette::{Dash, FAINT_INK, series_color};
 
 /// A named line of a [`LineChart`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     name: String,
-    points: Vec<Point>,
+    points: Vec<(f64, Bar)>,
     markers: bool,
     group: Option<(usize, Dash)>,
 }
 
 impl Series {
-    /// A line with a marker at each point, for measured values.
+    /// A line with a marker at each point `(x, y)`, for measured values; their errors are drawn as bars.
     #[must_use]
-    pub fn new<P: Into<Point>>(name: impl Into<String>, points: impl IntoIterator<Item = P>) -> Self {
-        let points = points.into_iter().map(Into::into).collect();
+    pub fn new<B: Into<Bar>>(name: impl Into<String>, points: impl IntoIterator<Item = (f64, B)>) -> Self {
+        let points = points.into_iter().map(|(x, y)| (x, y.into())).collect();
         Self { name: name.into(), points, markers: true, group: None }
     }
 
     /// A line without markers, for functions.
     #[must_use]
-    pub fn curve<P: Into<Point>>(name: impl Into<String>, points: impl IntoIterator<Item = P>) -> Self {
+    pub fn curve(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self { markers: false, ..Self::new(name, points) }
     }
 
     /// The colour number and the dash, in place of the next ones: for series that belong together.
     #[must_use]
-    pub fn styled(mut self, color: usize, dash: Dash) -> Self {
-        self.group = Some((color, dash));
-        self
+    pub fn styled(self, color: usize, dash: Dash) -> Self {
+        Self { group: Some((color, dash)), ..self }
     }
-}
 
-/// A line that data are compared with.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ReferenceLine {
-    /// `y = y0 (x / x0)^slope`: a straight line when both axes are logarithmic, such as the -1/2 of Monte Carlo.
-    Power {
-        /// Meaning of the line.
-        label: String,
-        /// The exponent.
-        slope: f64,
-        /// A point `(x0, y0)` of the line.
-        through: (f64, f64),
-    },
-    /// `y` is the same everywhere.
-    Level {
-        /// Meaning of the line.
-        label: String,
-        /// The value.
-        y: f64,
-    },
-}
+    /// The pen of the series number `index`.
+    fn pen(&self, index: usize) -> Pen {
+        let (color, dash) = self.group.unwrap_or((index, Dash::of(index)));
+        Pen { dash, ..Pen::new(series_color(color), 2.2) }
+    }
 
-impl ReferenceLine {
-    fn label(&self) -> &str {
-        match self {
-            Self::Power { label, .. } | Self::Level { label, .. } => label,
+    fn draw(&self, canvas: &mut Canvas, index: usize, x: &Fitted, y: &Fitted) {
+        let pen = self.pen(index);
+        let place = |(at, bar): &(f64, Bar)| (x.pixel(*at), y.pixel(bar.value));
+        // What cannot be shown breaks the line.
+        for run in self.points.split(|(at, bar)| !x.axis.shows(*at) || !y.axis.shows(bar.value)) {
+            clipped(canvas, &run.iter().map(place).collect::<Vec<_>>(), pen, x, y);
+            for point in run.iter().filter(|(at, _)| x.spans(*at)) {
+                point.1.whiskers(canvas, x.pixel(point.0), y, pen.color);
+                if y.spans(point.1.value) && (self.markers || run.len() == 1) {
+                    canvas.marker(place(point), if self.markers { index } else { 0 }, pen.color);
+                }
+            }
         }
     }
+}
+
+/// A line that data are compared with: `y = y0 (x / x0)^slope`.
+#[derive(Clone, Debug, PartialEq)]
+struct Reference {
+    name: String,
+    slope: f64,
+    through: (f64, f64),
+}
+
+impl Reference {
+    const PEN: Pen = Pen { dash: Dash::Dotted, ..Pen::new(FAINT_INK, 1.8) };
 
     fn at(&self, x: f64) -> f64 {
-        match self {
-            Self::Power { slope, through: (x0, y0), .. } => y0 * (x / x0).powf(*slope),
-            Self::Level { y, .. } => *y,
-        }
+        self.through.1 * (x / self.through.0).powf(self.slope)
     }
 }
 
 /// Series of points over two axes.
 ///
 /// ```
-/// use hairis_harness::plot::{Axis, LineChart, Point, ReferenceLine, Series};
-/// let errors = [(16.0, 0.25), (64.0, 0.12), (256.0, 0.063)].map(|(n, e)| Point::new(n, e).with_error(0.1 * e));
+/// use hairis_harness::plot::{Axis, Bar, LineChart, Series};
+/// let errors = [(16.0, 0.25), (64.0, 0.12), (256.0, 0.063)].map(|(n, e)| (n, Bar::new(e).with_error(0.1 * e)));
 /// let svg = LineChart::new("Convergence", Axis::log("samples N"), Axis::log("relative RMS error"))
 ///     .series(Series::new("published", errors))
-///     .reference(ReferenceLine::Power { label: "slope −1/2".into(), slope: -0.5, through: (16.0, 0.25) })
+///     .reference("slope −1/2", -0.5, (16.0, 0.25))
 ///     .svg();
 /// assert!(svg.starts_with("<svg"));
 /// ```
@@ -124,7 +89,7 @@ pub struct LineChart {
     x: Axis,
     y: Axis,
     series: Vec<Series>,
-    references: Vec<ReferenceLine>,
+    references: Vec<Reference>,
 }
 
 impl LineChart {
@@ -141,115 +106,63 @@ impl LineChart {
         self
     }
 
-    /// Adds a line to compare with.
+    /// Adds the line `y = y0 (x / x0)^slope` through `(x0, y0)` to compare with: straight when both axes are logarithmic, such as
+    /// the -1/2 of Monte Carlo; a level if `slope` is 0.
     #[must_use]
-    pub fn reference(mut self, reference: ReferenceLine) -> Self {
-        self.references.push(reference);
+    pub fn reference(mut self, name: impl Into<String>, slope: f64, through: (f64, f64)) -> Self {
+        self.references.push(Reference { name: name.into(), slope, through });
         self
     }
 
     /// The chart as SVG.
     #[must_use]
     pub fn svg(&self) -> String {
-        let mut names: Vec<&str> = self.series.iter().map(|s| s.name.as_str()).collect();
-        names.extend(self.references.iter().map(ReferenceLine::label));
-        let description = format!("{} against {}: {}.", self.y.label, self.x.label, names.join(", "));
-        let top = frame::title_height(&self.title, frame::WIDTH);
-        let bottom = top + 400.0;
-        let shown = |p: &&Point| self.x.shows(p.x) && self.y.shows(p.y);
-        let points = || self.series.iter().flat_map(|s| &s.points).filter(shown);
-        let levels = self.references.iter().filter_map(|r| match r {
-            ReferenceLine::Level { y, .. } => Some(*y),
-            ReferenceLine::Power { .. } => None,
-        });
-        let y = self.y.fit(points().flat_map(|p| [p.y, p.low, p.high]).chain(levels), bottom, top);
-        let left = frame::left_margin(&y);
-        let x = self.x.fit(points().map(|p| p.x), left, frame::WIDTH - 22.0);
-        let legend_width = frame::WIDTH - left - 10.0;
-        let height = bottom + 56.0 + frame::legend_height(&names, legend_width) + 8.0;
-        sheet((frame::WIDTH, height), &self.title, &description, |canvas| {
-            frame::title(canvas, &self.title, frame::WIDTH);
-            frame::axes(canvas, (&self.x, &self.y), &x, &y);
-            let grey = Pen::new(FAINT_INK, 1.5);
-            for reference in &self.references {
-                let ends: Vec<Place> = (0..=64)
-                    .map(|i| value_at(&x, f64::from(i) / 64.0, self.x.scale))
-                    .map(|at| (at, reference.at(at)))
-                    .filter(|(_, level)| self.y.shows(*level))
-                    .map(|(at, level)| (x.pixel(at), y.pixel(level)))
-                    .collect();
-                clipped(canvas, &ends, grey, Dash::Dotted, &x, &y);
-            }
-            for (i, series) in self.series.iter().enumerate() {
-                self.draw(canvas, series, i, &x, &y);
-            }
-            let mut keys: Vec<Key> = self.series.iter().enumerate().map(|(i, s)| key(s, i)).collect();
-            let key = Key { color: FAINT_INK, line: Some(Dash::Dotted), marker: None, swatch: None };
-            keys.resize(names.len(), key);
-            frame::legend(canvas, &names, &keys, (left, bottom + 54.0), legend_width);
-            if points().next().is_none() {
-                let middle = (0.5 * (x.start + x.end), 0.5 * (y.start + y.end));
-                canvas.text("no data", middle, Type { color: FAINT_INK, ..Type::new(frame::LABEL, Hang::Center) });
-            }
-        })
-    }
-
-    fn draw(&self, canvas: &mut Canvas, series: &Series, index: usize, x: &Fitted, y: &Fitted) {
-        let Key { color, line, marker, .. } = key(series, index);
-        let place = |p: &Point| (x.pixel(p.x), y.pixel(p.y));
-        let shown = |p: &Point| self.x.shows(p.x) && self.y.shows(p.y);
-        // What cannot be shown breaks the line.
-        for run in series.points.split(|p| !shown(p)) {
-            let spread = |p: &Point| {
-                let bound = |v: f64| if self.y.shows(v) { y.within(v) } else { y.start };
-                let high = if p.high.is_finite() { bound(p.high) } else { y.within(p.y) };
-                (bound(if p.low.is_nan() { p.y } else { p.low }), high)
-            };
-            let inside = |p: &&Point| (x.low..=x.high).contains(&p.x) && p.high > p.low;
-            for p in run.iter().filter(inside) {
-                let ((low, high), at, pen) = (spread(p), x.pixel(p.x), Pen::new(color, 1.5));
-                canvas.line(&[(at, low), (at, high)], pen, Dash::Solid);
-                for end in [low, high] {
-                    canvas.line(&[(at - 4.0, end), (at + 4.0, end)], pen, Dash::Solid);
-                }
-            }
-            if let Some(dash) = line {
-                clipped(canvas, &run.iter().map(place).collect::<Vec<_>>(), Pen::new(color, 2.2), dash, x, y);
-            }
-            let inside = |p: &&Point| (x.low..=x.high).contains(&p.x) && (y.low..=y.high).contains(&p.y);
-            let lone = run.len() == 1;
-            for p in run.iter().filter(inside).filter(|_| lone || marker.is_some()) {
-                canvas.marker(place(p), marker.unwrap_or(Marker::Circle), 4.2, color);
-            }
+        let all = self.series.iter().flat_map(|series| &series.points);
+        let shown: Vec<&(f64, Bar)> = all.filter(|(x, y)| self.x.shows(*x) && self.y.shows(y.value)).collect();
+        let levels = self.references.iter().filter(|line| line.slope == 0.0).map(|line| line.through.1);
+        let ys = shown.iter().flat_map(|(_, y)| [y.value, y.low, y.high]).chain(levels);
+        let (mut canvas, x, y) = plot(&self.title, 360.0, (&self.x, shown.iter().map(|(x, _)| *x)), (&self.y, ys));
+        draw_axis(&mut canvas, &x, &y, false);
+        canvas.frame((x.start, y.end), (x.end, y.start), THIN);
+        for reference in &self.references {
+            let values = (0..=64).map(|i| x.value(f64::from(i) / 64.0)).map(|at| (at, reference.at(at)));
+            let path: Vec<Place> = values
+                .filter(|(_, level)| self.y.shows(*level))
+                .map(|(at, level)| (x.pixel(at), y.pixel(level)))
+                .collect();
+            clipped(&mut canvas, &path, Reference::PEN, &x, &y);
         }
-    }
-}
-
-fn key(series: &Series, index: usize) -> Key {
-    let (number, dash) = series.group.unwrap_or((index, Dash::of(index)));
-    let marker = series.markers.then(|| Marker::of(index));
-    Key { color: series_color(number), line: Some(dash), marker, swatch: None }
-}
-
-/// The value a share `t` of the way along the axis.
-fn value_at(axis: &Fitted, t: f64, scale: super::Scale) -> f64 {
-    match scale {
-        super::Scale::Linear => axis.low + t * (axis.high - axis.low),
-        super::Scale::Log => axis.low * (axis.high / axis.low).powf(t),
+        for (i, series) in self.series.iter().enumerate() {
+            series.draw(&mut canvas, i, &x, &y);
+        }
+        if shown.is_empty() {
+            canvas.text("no data", (x.middle(), y.middle()), LABEL);
+        }
+        let mut names: Vec<&str> = self.series.iter().map(|s| s.name.as_str()).collect();
+        names.extend(self.references.iter().map(|line| line.name.as_str()));
+        let bottom = legend(&mut canvas, &names, y.start + 52.0, |canvas, i, (x, y)| {
+            let series = self.series.get(i);
+            let pen = series.map_or(Reference::PEN, |series| series.pen(i));
+            canvas.line(&[(x, y), (x + 36.0, y)], pen);
+            if series.is_some_and(|series| series.markers) {
+                canvas.marker((x + 18.0, y), i, pen.color);
+            }
+        });
+        let description = format!("{} against {}: {}.", self.y.label, self.x.label, names.join(", "));
+        canvas.finish(&description, bottom + 8.0)
     }
 }
 
 /// Draws the part of a path that lies in the plot.
-fn clipped(canvas: &mut Canvas, path: &[Place], pen: Pen, dash: Dash, x: &Fitted, y: &Fitted) {
-    let (low, high) = ((x.start, y.end), (x.end, y.start));
+fn clipped(canvas: &mut Canvas, path: &[Place], pen: Pen, x: &Fitted, y: &Fitted) {
     let mut part: Vec<Place> = Vec::new();
     for pair in path.windows(2) {
-        let Some((a, b)) = frame::clip(pair[0], pair[1], low, high) else { continue };
+        let Some([a, b]) = clip([pair[0], pair[1]], (x.start, y.end), (x.end, y.start)) else { continue };
         if part.last() != Some(&a) {
-            canvas.line(&part, pen, dash);
+            canvas.line(&part, pen);
             part = vec![a];
         }
         part.push(b);
     }
-    canvas.line(&part, pen, dash);
+    canvas.line(&part, pen);
 }

@@ -4,7 +4,7 @@ use core::fmt;
 
 /// A colour of sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Color(u8, u8, u8);
+pub(super) struct Color(u8, u8, u8);
 
 impl fmt::Display for Color {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -25,12 +25,10 @@ impl Color {
 pub(super) const INK: Color = Color(34, 34, 34);
 /// Tick labels and notes.
 pub(super) const FAINT_INK: Color = Color(85, 85, 85);
-/// Grid lines.
-pub(super) const GRID: Color = Color(222, 222, 222);
-/// Grid lines between the labelled ones.
-pub(super) const FAINT_GRID: Color = Color(240, 240, 240);
 /// The sheet itself: always white, so that a plot stays readable on a dark page.
 pub(super) const PAPER: Color = Color(255, 255, 255);
+/// Marks one direction on a map.
+pub(super) const MARK: Color = Color(170, 0, 60);
 
 /// The colours of Okabe and Ito (2008), darkest contrasts first; the yellow, too pale for lines on white, is last.
 const SERIES: [Color; 7] = [
@@ -48,9 +46,6 @@ pub(super) fn series_color(index: usize) -> Color {
     SERIES[index % SERIES.len()]
 }
 
-/// Marks one direction on a map.
-pub(super) const MARK: Color = Color(170, 0, 60);
-
 /// Matplotlib's viridis at nine equal steps.
 const VIRIDIS: [Color; 9] = [
     Color(68, 1, 84),
@@ -64,34 +59,27 @@ const VIRIDIS: [Color; 9] = [
     Color(253, 231, 37),
 ];
 
-fn share(t: f64) -> f64 {
-    if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 }
-}
-
 /// Perceptually uniform (viridis), dark to bright as `t` goes from 0 to 1.
 pub(super) fn scale_color(t: f64) -> Color {
-    let t = 8.0 * share(t);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 7")]
-    let step = t.min(7.0) as usize;
-    VIRIDIS[step].mix(VIRIDIS[step + 1], t - step as f64)
+    let step = (8.0 * t).clamp(0.0, 7.0) as usize;
+    VIRIDIS[step].mix(VIRIDIS[step + 1], 8.0 * t - step as f64)
 }
 
 /// Blue below 0.5, white there, vermilion above: both ends as dark, and apart for everyone.
 pub(super) fn signed_color(t: f64) -> Color {
-    let t = if t.is_finite() { 2.0 * share(t) - 1.0 } else { 0.0 };
-    PAPER.mix(SERIES[usize::from(t >= 0.0)], t.abs())
+    PAPER.mix(SERIES[usize::from(t >= 0.5)], (2.0 * t - 1.0).abs())
 }
 
 /// A pale background that dark dots stand out from: white to a soft ochre.
 pub(super) fn soft_color(t: f64) -> Color {
-    PAPER.mix(Color(240, 178, 70), share(t))
+    PAPER.mix(Color(240, 178, 70), t)
 }
 
 /// How a line is broken.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dash {
     /// Unbroken.
-    #[default]
     Solid,
     /// Long strokes.
     Dashed,
@@ -121,20 +109,18 @@ impl Dash {
     }
 }
 
-/// The shape of a mark.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Marker {
-    Circle,
-    Square,
-    Triangle,
-    Diamond,
-    Inverted,
-    Cross,
-}
+/// The number of the marker that is a cross.
+pub(super) const CROSS: usize = 4;
 
-impl Marker {
-    /// The marker of the series number `index`.
-    pub(crate) const fn of(index: usize) -> Self {
-        [Self::Circle, Self::Square, Self::Triangle, Self::Diamond, Self::Cross, Self::Inverted][index % 6]
-    }
-}
+/// Corners of the markers, x and y in turn: disc (without corners), square, triangle, diamond, cross, inverted triangle.
+pub(super) const MARKERS: [&[f64]; 6] = [
+    &[],
+    &[-0.9, -0.9, 0.9, -0.9, 0.9, 0.9, -0.9, 0.9],
+    &[0.0, -1.2, 1.1, 0.8, -1.1, 0.8],
+    &[0.0, -1.3, 1.3, 0.0, 0.0, 1.3, -1.3, 0.0],
+    &[
+        0.0, -0.4, 0.7, -1.1, 1.1, -0.7, 0.4, 0.0, 1.1, 0.7, 0.7, 1.1, 0.0, 0.4, -0.7, 1.1, -1.1, 0.7, -0.4, 0.0, -1.1,
+        -0.7, -0.7, -1.1,
+    ],
+    &[0.0, 1.2, 1.1, -0.8, -1.1, -0.8],
+];

@@ -17,16 +17,14 @@ fn check(svg: &str, what: &str) {
 
 #[test]
 fn line_charts_take_any_data() {
-    let pairs = || ODD.into_iter().flat_map(|x| ODD.map(|y| Point::new(x, y).with_error(y)));
-    let reference = || ReferenceLine::Power { label: "p".into(), slope: -0.5, through: (0.0, f64::NAN) };
+    let pairs = || ODD.into_iter().flat_map(|x| ODD.map(|y| (x, Bar::new(y).with_error(y))));
     for x in [Axis::linear("x"), Axis::log("x"), Axis::linear("x").range(-1.0, 1.0)] {
         for y in [Axis::linear("y"), Axis::log("y"), Axis::log("y").range(1.0, 10.0)] {
             for n in [0, 1, 2, 9, 40, 81] {
                 let series = Series::new("a", pairs().take(n));
                 let chart = LineChart::new("t", x.clone(), y.clone()).series(series.clone()).series(series);
-                check(&chart.clone().reference(reference()).svg(), &format!("{x:?} {y:?} {n}"));
-                let level = ReferenceLine::Level { label: "l".into(), y: ODD[n % 9] };
-                check(&chart.reference(level).svg(), &format!("{x:?} {y:?} {n} with a level"));
+                check(&chart.clone().reference("p", -0.5, (0.0, f64::NAN)).svg(), &format!("{x:?} {y:?} {n}"));
+                check(&chart.reference("l", 0.0, (1.0, ODD[n % 9])).svg(), &format!("{x:?} {y:?} {n} with a level"));
             }
         }
     }
@@ -46,20 +44,23 @@ fn other_charts_take_any_data() {
     let grid = SphereGrid::sample(Projection::EqualArea, (9, 13), |_, _| odd.next().unwrap_or(0.0));
     for value in [Axis::linear("v"), Axis::log("v")] {
         check(&HeatMap::new("t", value.clone(), grid.clone()).svg(), "an odd heat map");
-        check(&HeatMap::new("t", value.clone(), grid.clone()).signed().svg(), "an odd map of differences");
+        check(&HeatMap::signed("t", value.clone(), grid.clone()).svg(), "an odd map of differences");
         let flat = SphereGrid::sample(Projection::EqualAngle, (3, 5), |_, _| 0.0);
         check(&HeatMap::new("t", value.clone(), flat).svg(), "a flat heat map");
         let none = SphereGrid::sample(Projection::EqualAngle, (0, 0), |_, _| 0.0);
         check(&HeatMap::new("t", value, none).svg(), "an empty heat map");
     }
     let pairs: Vec<(f64, f64)> = ODD.into_iter().flat_map(|x| ODD.map(|y| (x, y))).collect();
-    let map = ScatterMap::new("t", Projection::EqualArea).mark("m", f64::NAN, 0.0);
-    check(&map.svg(), "no maps");
-    check(&map.panel(ScatterPanel::new("p", pairs.clone()).with_density(grid)).svg(), "odd directions");
-    let chart = PolarChart::new("t", "r");
-    check(&chart.svg(), "no circles");
-    let panel = PolarPanel::new("p", "a").series(PolarSeries::new("s", pairs)).arrow("o", f64::INFINITY);
-    check(&chart.panel(panel.clone()).panel(panel).svg(), "odd angles");
+    let panel = ScatterPanel { title: "p".into(), points: pairs.iter().map(|p| [p.0, p.1]).collect(), density: grid };
+    for panels in [vec![], vec![panel]] {
+        let mark = ("m".into(), [f64::NAN, 0.0]);
+        check(&ScatterMap { title: "t".into(), panels, mark }.svg(), "odd directions");
+    }
+    let series = vec![("s".into(), pairs)];
+    let panel = PolarPanel { title: "p".into(), angle: "a".into(), series, arrow: ("o".into(), f64::INFINITY) };
+    for panels in [vec![], vec![panel.clone(), panel]] {
+        check(&PolarChart { title: "t".into(), radius: "r".into(), panels }.svg(), "odd angles");
+    }
 }
 
 #[test]

@@ -16,12 +16,10 @@ pub fn with_error(value: f64, error: f64) -> String {
         return plain(value, 4);
     }
     let size = value.abs().max(error);
-    if !(1e-4..1e6).contains(&size) {
-        let exponent = size.log10().floor();
-        let unit = 10.0_f64.powf(exponent);
+    if !is_plain(size) {
+        let (unit, power) = power_of_ten(size.log10().floor());
         let places = error_places(error / unit).min(5);
-        let value = format!("({:.places$} ± {:.places$})", value / unit, error / unit);
-        return minus(&format!("{value}×10{}", superscript(exponent)));
+        return minus(&format!("({:.places$} ± {:.places$})×{power}", value / unit, error / unit));
     }
     let places = error_places(error);
     if places > self::places(size, 6) {
@@ -44,14 +42,13 @@ pub fn plain(value: f64, digits: usize) -> String {
         return "0".to_owned();
     }
     if !value.is_finite() {
-        return odd(value);
+        return if value.is_nan() { "n/a".to_owned() } else { minus(&value.to_string()).replace("inf", "∞") };
     }
-    if !(1e-4..1e6).contains(&value.abs()) {
+    if !is_plain(value) {
         // Rounding may carry into one more digit: 9.96e-5 to one digit is 10^-4.
-        let half = 0.5 * 10.0_f64.powf(-f64::from(u32::try_from(digits).unwrap_or(17)));
-        let exponent = (value.abs() / (1.0 - half)).log10().floor();
-        let places = digits.saturating_sub(1);
-        return minus(&format!("{:.places$}×10{}", value / 10.0_f64.powf(exponent), superscript(exponent)));
+        let half = 0.5 * 10.0_f64.powf(-(digits as f64));
+        let (unit, power) = power_of_ten((value.abs() / (1.0 - half)).log10().floor());
+        return minus(&format!("{:.*}×{power}", digits.saturating_sub(1), value / unit));
     }
     let places = places(value, digits);
     minus(&format!("{value:.places$}"))
@@ -73,16 +70,15 @@ pub fn ratio_with_error(value: f64, error: f64) -> String {
     }
 }
 
-/// A big count to three digits with an SI prefix: `12.3 M`, and `12.3 Msamples/s` with the unit `samples/s`.
+/// A big number to three digits with an SI prefix: `12.3 M`.
 #[must_use]
-pub fn si(value: f64, unit: &str) -> String {
-    const PREFIXES: [(f64, &str); 5] = [(1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, "")];
+pub fn si(value: f64) -> String {
+    const PREFIXES: [(f64, &str); 4] = [(1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")];
     // 999.5 and above would round to 1000 of the smaller unit.
-    let large = PREFIXES.into_iter().find(|(size, _)| value.abs() >= size * 0.9995);
-    let (size, prefix) = large.unwrap_or((1.0, ""));
-    let text = if value.fract() == 0.0 && value.abs() < 1e3 { plain(value, 3) } else { plain(value / size, 3) };
-    let text = if value.fract() == 0.0 && size == 1.0 { minus(&format!("{value}")) } else { text };
-    if prefix.is_empty() && unit.is_empty() { text } else { format!("{text} {prefix}{unit}") }
+    match PREFIXES.into_iter().find(|(size, _)| value.abs() >= size * 0.9995) {
+        Some((size, prefix)) => format!("{} {prefix}", plain(value / size, 3)),
+        None => plain(value, 3),
+    }
 }
 
 /// A share as a percentage to three digits.
@@ -91,22 +87,11 @@ pub fn percent(share: f64) -> String {
     format!("{} %", plain(share * 100.0, 3))
 }
 
-/// A time in seconds, in the unit that suits it: `8.31 ns`.
-#[must_use]
-pub fn seconds(value: f64) -> String {
-    const UNITS: [(f64, &str); 4] = [(1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")];
-    let unit = UNITS.into_iter().find(|(size, _)| value.abs() >= size * 0.9995);
-    let (size, name) = unit.unwrap_or(if value == 0.0 { (1.0, "s") } else { (1e-9, "ns") });
-    format!("{} {name}", plain(value / size, 3))
-}
-
 /// A label of a linear axis whose labels are `step` apart.
 pub(crate) fn tick(value: f64, step: f64) -> String {
-    if value != 0.0 && !(1e-4..1e6).contains(&value.abs()) {
-        let exponent = value.abs().log10().floor();
-        let unit = 10.0_f64.powf(exponent);
-        let places = places(step / unit, 1).min(6);
-        return minus(&format!("{:.places$}×10{}", value / unit, superscript(exponent)));
+    if value != 0.0 && !is_plain(value) {
+        let (unit, power) = power_of_ten(value.abs().log10().floor());
+        return minus(&format!("{:.*}×{power}", places(step / unit, 1).min(6), value / unit));
     }
     let places = places(step, 1).min(9);
     minus(&format!("{value:.places$}"))
@@ -117,8 +102,8 @@ pub(crate) fn power(digit: f64, exponent: f64) -> String {
     if (-3.0..=3.0).contains(&exponent) {
         return plain(digit * 10.0_f64.powf(exponent), 1);
     }
-    let ten = format!("10{}", superscript(exponent));
-    if digit == 1.0 { ten } else { format!("{digit}×{ten}") }
+    let (_, power) = power_of_ten(exponent);
+    if digit == 1.0 { power } else { format!("{digit}×{power}") }
 }
 
 /// Decimal places that a standard error deserves: rounding to one digit is too coarse for 1 to 3.
@@ -130,32 +115,31 @@ fn error_places(error: f64) -> usize {
 /// Decimal places that show `digits` significant digits of `value`.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0 .. 17 before the cast")]
 fn places(value: f64, digits: usize) -> usize {
-    let digits = f64::from(u32::try_from(digits).unwrap_or(17));
+    let digits = digits as f64;
     // Rounding may carry into one more digit: 0.0996 to two digits is 0.10.
     let exponent = (value.abs() * (1.0 + 0.5 * 10.0_f64.powf(-digits))).log10().floor();
     let places = digits - 1.0 - exponent;
     if places.is_finite() { places.clamp(0.0, 17.0) as usize } else { 0 }
 }
 
-fn odd(value: f64) -> String {
-    match value {
-        v if v.is_nan() => "n/a".to_owned(),
-        v if v > 0.0 => "∞".to_owned(),
-        _ => "−∞".to_owned(),
-    }
-}
-
 fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
-fn superscript(exponent: f64) -> String {
+/// Whether a number is read best without a power of ten.
+fn is_plain(value: f64) -> bool {
+    (1e-4..1e6).contains(&value.abs())
+}
+
+/// A power of ten, and how it is written.
+fn power_of_ten(exponent: f64) -> (f64, String) {
     let raised = |c: char| match c {
         '-' => '⁻',
         '0'..='9' => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][usize::from(c as u8 - b'0')],
         other => other,
     };
-    format!("{exponent:.0}").chars().map(raised).collect()
+    let exponent_text: String = format!("{exponent:.0}").chars().map(raised).collect();
+    (10.0_f64.powf(exponent), format!("10{exponent_text}"))
 }
 
 #[cfg(test)]
@@ -185,11 +169,7 @@ mod tests {
     fn numbers_have_their_units() {
         assert_eq!(ratio(13.42), "13.4×", "a ratio");
         assert_eq!(ratio_with_error(13.42, 0.21), "13.42× ± 0.21", "a ratio with an error");
-        assert_eq!(si(123.0, "samples"), "123 samples", "a small count is exact");
-        assert_eq!(si(12_345_678.0, "samples/s"), "12.3 Msamples/s", "a large one is not");
-        assert_eq!(si(999_999.0, ""), "1.00 M", "no 1000 k");
-        assert_eq!(seconds(8.312e-9), "8.31 ns", "a time");
-        assert_eq!(seconds(0.0), "0 s", "no time");
+        assert_eq!([si(123.4), si(12_345_678.0), si(999_999.0)], ["123", "12.3 M", "1.00 M"], "no 1000 k");
         assert_eq!(percent(0.123_4), "12.3 %", "a share");
         assert_eq!(plain(f64::NEG_INFINITY, 3), "−∞", "infinite");
         assert_eq!(plain(0.000_012_3, 2), "1.2×10⁻⁵", "small");

@@ -12,7 +12,7 @@ use crate::transport::Integrator;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::machine::Machine;
-use hairis_harness::plot::{Axis, LineChart, Point, ReferenceLine, Series};
+use hairis_harness::plot::{Axis, LineChart, Series};
 use hairis_harness::report::{Drawing, Report, Section};
 use hairis_harness::stats::Estimate;
 use hairis_harness::table::{Table, number};
@@ -154,15 +154,12 @@ fn panel_of<'a>(measured: &'a Measured, pick: impl Fn(&'a BySampler) -> &'a Runs
 fn convergence(measured: &Measured) -> String {
     let mut chart = LineChart::new("Convergence", Axis::log("samples per pixel"), Axis::log("relMSE"));
     for sampler in &measured.samplers {
-        let point = |runs: &Runs| {
-            let error = runs.mean(|errors| errors.relative);
-            Point::new(f64::from(runs.samples), error.value).with_error(error.standard_error)
-        };
+        let point = |runs: &Runs| (f64::from(runs.samples), runs.mean(|errors| errors.relative));
         chart = chart.series(Series::new(sampler.name, sampler.runs.iter().map(point)));
     }
     if let Some(runs) = measured.samplers.last().and_then(|sampler| sampler.runs.first()) {
         let through = (f64::from(runs.samples), runs.mean(|errors| errors.relative).value);
-        chart = chart.reference(ReferenceLine::Power { label: "slope −1".to_owned(), slope: -1.0, through });
+        chart = chart.reference("slope −1", -1.0, through);
     }
     chart.svg()
 }

@@ -5,7 +5,7 @@ use super::super::rows::{Estimator, Row, name, published, samplers, strategies};
 use super::super::summary::on_gaussian;
 use super::super::times::PER_POINT;
 use super::super::view::{Counted, Gain, MANY, TOLD, View, ess, mean_of, mean_v};
-use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Point, ReferenceLine, Series};
+use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Series};
 use crate::report::Drawing;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
@@ -55,7 +55,7 @@ pub(super) fn variances(of: &View<'_>) -> Vec<Drawing> {
             let series = samplers_on(model).map(|estimator| {
                 let point = |value: &f32| {
                     let rows = of.rows_of(estimator, CONSTANT).filter(|row| axis(&row.cell) == *value);
-                    mean_v(rows).map(|v| Point::new(f64::from(*value), v.value).with_error(v.standard_error))
+                    mean_v(rows).map(|v| (f64::from(*value), v))
                 };
                 Series::new(name(estimator.1), values.iter().filter_map(point))
             });
@@ -99,7 +99,7 @@ pub(super) fn summary(of: &View<'_>) -> Drawing {
     });
     let caption = "By what factor the Cauchy model needs fewer samples (above 1) or more (below), by light: medians over the \
                    grid. The spread over its cells is shown below.";
-    Drawing::new(chart.narrow().level(1.0).svg(), caption).named("summary")
+    Drawing::new(chart.level(1.0).svg(), caption).named("summary")
 }
 
 /// Gains in V by light, over `published`, up to that of perfect sampling.
@@ -239,11 +239,11 @@ pub(super) fn weights(of: &View<'_>) -> Vec<Drawing> {
             (!points.is_empty()).then(|| of_sampler(sampler, Series::new(sampler.name(), points)))
         });
         let title = format!("Largest weight over its proven bound, {} model", model.title());
-        let line = ReferenceLine::Level { label: "the bound".to_owned(), y: 1.0 };
         let chart = lines(title, Axis::linear("θₒ (°)"), Axis::linear("largest weight / bound"), series);
         let caption = "For samplers with a bound in closed form: the largest weight drawn over the bound, in the worst cell of \
                        each inclination. A point above 1 would fail the run.";
-        Drawing::new(chart.reference(line).svg(), caption).named(format!("weight-bound-{}", model.name()))
+        Drawing::new(chart.reference("the bound", 0.0, (1.0, 1.0)).svg(), caption)
+            .named(format!("weight-bound-{}", model.name()))
     });
     [effective, largest, bounds].concat()
 }

@@ -3,7 +3,7 @@
 use super::charts::lines;
 use crate::difference::{Difference, DifferenceRow, Differences, Summary, Width, albedo_ratio};
 use crate::figures;
-use crate::plot::{Axis, Point, Series};
+use crate::plot::{Axis, Bar, Series};
 use crate::report::Drawing;
 use crate::study::Cell;
 use hairis::HairParams;
@@ -46,12 +46,12 @@ pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
     ];
     let by_kind = kinds.map(|(name, figure)| {
         let points = over(of, Width::Paper, beta_r, figure);
-        Series::new(name, points.map(|(x, found)| Point::new(x, found.median).with_interval(found.least, found.most)))
+        Series::new(name, points.map(|(x, found)| (x, Bar::new(found.median).with_interval(found.least, found.most))))
     });
     let albedos = Width::ALL.map(|width| {
         let points = over(of, width, |cell| cell.theta_o_deg, albedo_ratio);
         let point =
-            |(x, found): (f64, Summary)| Point::new(x, found.geometric_mean).with_interval(found.least, found.most);
+            |(x, found): (f64, Summary)| (x, Bar::new(found.geometric_mean).with_interval(found.least, found.most));
         Series::new(named(of, width), points.map(point))
     });
     let theta_o = Axis::linear("inclination of the viewer, θₒ (°)").from_zero();
