@@ -13,6 +13,7 @@ command -v objdump > /dev/null || { apt-get update -qq && apt-get install -qqy b
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 
+# Level 3 comes last: .ci/calls.sh builds it meanwhile, and `built` is its folder below.
 for level in s z 3; do
   built=$(.ci/release.sh $level)
   cp "$built/entry" "$dir/entry-$level"

@@ -42,7 +42,11 @@ impl Region {
 
     /// For tables.
     pub(crate) const fn label(self) -> &'static str {
-        ["general", "near the axis", "near phi = pi"][self as usize]
+        match self {
+            Self::General => "general",
+            Self::Axis => "near the axis",
+            Self::Back => "near phi = pi",
+        }
     }
 }
 
@@ -71,13 +75,26 @@ impl Quantity {
 
     /// For tables.
     pub(crate) const fn label(self) -> &'static str {
-        ["pdf", "S", "sample pdf", "sample S", "sample weight", "sample cdf"][self as usize]
+        match self {
+            Self::Pdf => "pdf",
+            Self::Value => "S",
+            Self::SamplePdf => "sample pdf",
+            Self::SampleValue => "sample S",
+            Self::SampleWeight => "sample weight",
+            Self::SampleCdf => "sample cdf",
+        }
     }
 
     /// The largest error allowed.
     pub(crate) const fn bound(self, accuracy: &Accuracy) -> f64 {
-        let Accuracy { pdf, value, sample_pdf, sample_value, sample_weight, cdf, .. } = *accuracy;
-        [pdf, value, sample_pdf, sample_value, sample_weight, cdf][self as usize]
+        match self {
+            Self::Pdf => accuracy.pdf,
+            Self::Value => accuracy.value,
+            Self::SamplePdf => accuracy.sample_pdf,
+            Self::SampleValue => accuracy.sample_value,
+            Self::SampleWeight => accuracy.sample_weight,
+            Self::SampleCdf => accuracy.cdf,
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::args::Command;
 use crate::error::Error;
 use crate::light::{Environment, LightError, Sky};
 use crate::table::Table;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -45,12 +45,6 @@ fn environment(path: Option<&Path>) -> Result<(Environment, String), Error> {
 
 /// Steps of a bar that shows a share.
 const STEPS: u64 = 1000;
-
-/// Progress bar on standard error; nothing where that is no terminal.
-fn bar(steps: u64, template: &str) -> ProgressBar {
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(steps).with_style(style)
-}
 
 /// Moves a bar of [`STEPS`].
 fn show_share(bar: &ProgressBar, done: f64) {

@@ -109,7 +109,11 @@ pub struct SampleCosts {
 impl SampleCosts {
     /// The time of a sample of `sampler` for `model`, in ns; not a number for a sampler that is not compared.
     pub(crate) fn ns(&self, model: ModelKind, sampler: Sampler) -> f64 {
-        of_sampler([&self.gaussian, &self.cauchy][model as usize], sampler)
+        let each = match model {
+            ModelKind::Gaussian => &self.gaussian,
+            ModelKind::Cauchy => &self.cauchy,
+        };
+        of_sampler(each, sampler)
     }
 }
 

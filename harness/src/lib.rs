@@ -14,7 +14,7 @@ pub mod light;
 pub mod machine;
 pub mod markup;
 pub mod plot;
-mod progress;
+pub mod progress;
 pub mod quadrature;
 pub mod rays;
 pub mod report;

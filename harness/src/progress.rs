@@ -1,7 +1,15 @@
-//! Parallel work with a count of what is done.
+//! Progress: bars, and parallel work with a count of what is done.
 
 use core::sync::atomic::{AtomicUsize, Ordering};
+use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
+
+/// Progress bar on standard error; nothing where that is no terminal.
+#[must_use]
+pub fn bar(steps: u64, template: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(steps).with_style(style)
+}
 
 /// Cells done so far, out of all.
 pub(crate) struct Progress<'a> {

@@ -36,7 +36,13 @@ impl Sampler {
 
     /// Name in reports and in rows.
     pub(crate) fn name(self) -> &'static str {
-        ["uniform", "published", "matched-5", "matched", "matched-25"][self as usize]
+        match self {
+            Self::Uniform => "uniform",
+            Self::Published => "published",
+            Self::Matched5 => "matched-5",
+            Self::Matched => "matched",
+            Self::Matched25 => "matched-25",
+        }
     }
 
     /// Uniform numbers per sample.
@@ -49,7 +55,12 @@ impl Sampler {
 
     /// Bands of a sampler that is matched to the model.
     pub(crate) const fn bands(self) -> Option<usize> {
-        [None, None, Some(5), Some(9), Some(25)][self as usize]
+        match self {
+            Self::Uniform | Self::Published => None,
+            Self::Matched5 => Some(5),
+            Self::Matched => Some(9),
+            Self::Matched25 => Some(25),
+        }
     }
 
     /// Place among the streams of random numbers.

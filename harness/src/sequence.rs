@@ -159,7 +159,11 @@ impl SequenceKind {
 
     /// Name in reports and flags.
     pub(crate) fn name(self) -> &'static str {
-        ["independent", "halton", "stratified"][self as usize]
+        match self {
+            Self::Independent => "independent",
+            Self::Halton => "halton",
+            Self::Stratified => "stratified",
+        }
     }
 
     /// A source of this kind for estimates of `samples` points of `dims` coordinates each.

@@ -65,25 +65,37 @@ pub enum Op {
 }
 
 impl Op {
-    /// Every operation in the order of the tables, and its name there.
-    pub const NAMES: [(Self, &'static str); 11] = [
-        (Self::Prepare, "prepare"),
-        (Self::EvalPdf, "eval + pdf"),
-        (Self::Sample, "sample"),
-        (Self::EvalPdfTails, "eval + pdf, far tails"),
-        (Self::SampleTails, "sample, far tails"),
-        (Self::PointsEval, "prepare + eval + pdf"),
-        (Self::PointsShared, "prepare + 1 sample"),
-        (Self::PointsOf4, "prepare + 4 samples"),
-        (Self::PointsOf16, "prepare + 16 samples"),
-        (Self::PointsMixed, "prepare + 1, 8 hairs"),
-        (Self::PointsPacked, "prepare + 1, 8 hairs, packing"),
+    /// Every operation, in the order of the tables.
+    pub const ALL: [Self; 11] = [
+        Self::Prepare,
+        Self::EvalPdf,
+        Self::Sample,
+        Self::EvalPdfTails,
+        Self::SampleTails,
+        Self::PointsEval,
+        Self::PointsShared,
+        Self::PointsOf4,
+        Self::PointsOf16,
+        Self::PointsMixed,
+        Self::PointsPacked,
     ];
 
     /// Name of the operation in tables.
     #[must_use]
     pub const fn label(self) -> &'static str {
-        Self::NAMES[self as usize].1
+        match self {
+            Self::Prepare => "prepare",
+            Self::EvalPdf => "eval + pdf",
+            Self::Sample => "sample",
+            Self::EvalPdfTails => "eval + pdf, far tails",
+            Self::SampleTails => "sample, far tails",
+            Self::PointsEval => "prepare + eval + pdf",
+            Self::PointsShared => "prepare + 1 sample",
+            Self::PointsOf4 => "prepare + 4 samples",
+            Self::PointsOf16 => "prepare + 16 samples",
+            Self::PointsMixed => "prepare + 1, 8 hairs",
+            Self::PointsPacked => "prepare + 1, 8 hairs, packing",
+        }
     }
 }
 

@@ -28,17 +28,26 @@ impl ModelKind {
 
     /// The model with the published sampler.
     pub(crate) const fn id(self) -> ModelId {
-        [ModelId::Gaussian, ModelId::Cauchy][self as usize]
+        match self {
+            Self::Gaussian => ModelId::Gaussian,
+            Self::Cauchy => ModelId::Cauchy,
+        }
     }
 
     /// Name in titles and sentences.
     pub(crate) const fn title(self) -> &'static str {
-        ["Gaussian", "Cauchy"][self as usize]
+        match self {
+            Self::Gaussian => "Gaussian",
+            Self::Cauchy => "Cauchy",
+        }
     }
 
     /// Its bell in the reference.
     pub(crate) const fn shape(self) -> Shape {
-        [Shape::Gaussian, Shape::Cauchy][self as usize]
+        match self {
+            Self::Gaussian => Shape::Gaussian,
+            Self::Cauchy => Shape::Cauchy,
+        }
     }
 
     /// Place among the streams of random numbers.

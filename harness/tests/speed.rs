@@ -13,13 +13,14 @@ fn every_contender_is_timed_and_right() {
     // hits where it has one.
     let levels = Level::available().count();
     let models = ModelId::defaults_of_names().count();
-    assert_eq!(report.rows.len(), models * (Op::NAMES.len() * (3 + levels) + 12 * levels), "a row is missing");
+    assert_eq!(report.rows.len(), models * (Op::ALL.len() * (3 + levels) + 12 * levels), "a row is missing");
     assert!(last >= 1.0, "progress ended at {last}");
     for row in &report.rows {
         assert!(row.passed, "wrong answers: {row:?}");
         assert!(row.rounds == 15 && row.ns > 0.0 && row.ns_q1 <= row.ns && row.ns <= row.ns_q3, "{row:?}");
     }
-    for (op, name) in Op::NAMES {
+    for op in Op::ALL {
+        let name = op.label();
         for model in ModelId::defaults_of_names() {
             let textbooks = report.rows.iter().filter(|row| row.contender == "textbook");
             let ratios = textbooks.filter(|row| (row.op, row.model) == (op, model.name())).map(|row| row.ratio);

@@ -85,10 +85,10 @@ impl LobeModel for LambertFiber {
         let c = L::splat;
         let width = point.material.width.lanes();
         let off = wi.sin_theta + point.sin_theta_o.lanes();
-        let bell = width / off.mul_add(off, width * width) * c(0.5 * FRAC_1_PI);
+        let bell = L::quotient(width, off.mul_add(off, width * width)) * c(0.5 * FRAC_1_PI);
         let (kd, ks) = (lanes3(&point.material.kd), lanes3(&point.material.ks));
         let diffuse = LobeEval { value: c(FRAC_1_PI * FRAC_1_PI), color: kd, pdf: c(0.25 * FRAC_1_PI) };
-        let cone = LobeEval { value: bell * c(FRAC_1_PI), color: ks, pdf: bell / point.span.lanes() };
+        let cone = LobeEval { value: bell * c(FRAC_1_PI), color: ks, pdf: L::quotient(bell, point.span.lanes()) };
         PerLobe::padded([diffuse, cone], LobeEval::none())
     }
 
@@ -100,7 +100,7 @@ impl LobeModel for LambertFiber {
         let (s, c) = sin_cos_half_turn(xi[1] * point.span.lanes() * L::splat(0.5));
         let (sin, cos) = ((s + s) * c, c * c - s * s);
         let lo = sin_theta_o - one;
-        let x = width * lo.mul_add(cos, width * sin) / width.mul_add(cos, -(lo * sin));
+        let x = L::quotient(width * lo.mul_add(cos, width * sin), width.mul_add(cos, -(lo * sin)));
         let cone = (-one).max(one.min(x - sin_theta_o));
         let sin = L::select(L::is_index(lobe, DIFFUSE.index()), xi[1] + xi[1] - one, cone);
         Direction::with_uniform_azimuth([sin, ((one - sin) * (one + sin)).sqrt()], xi[2])

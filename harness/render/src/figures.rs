@@ -13,8 +13,8 @@ use crate::args::Figures;
 use crate::cmd::environment;
 use crate::scenes::Name;
 use hairis_harness::error::Error;
+use hairis_harness::progress::bar;
 use hairis_variants::ModelId;
-use indicatif::{ProgressBar, ProgressStyle};
 use measure::{Measured, Plan};
 use models::Preset;
 use std::fs;
@@ -64,10 +64,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     let scenes: Vec<_> = (0..).zip(scenes).filter(|(place, _)| owns(*place)).map(|(_, scene)| scene).collect();
     let presets: Vec<_> = (count..).zip(presets).filter(|(place, _)| owns(*place)).map(|(_, name)| *name).collect();
     let steps = plan.steps(scenes.len()) + presets.len() * ModelId::defaults_of_names().count();
-    let bar = ProgressBar::new(steps as u64);
-    if let Ok(style) = ProgressStyle::with_template("{msg:>30} {wide_bar} {percent:>3}% {elapsed} (left {eta})") {
-        bar.set_style(style);
-    }
+    let bar = bar(steps as u64, "{msg:>30} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
     let step = |what: &str| {
         bar.set_message(what.to_owned());
         bar.inc(1);

@@ -23,7 +23,12 @@ pub enum Origin {
 impl Origin {
     /// Name in tables.
     pub(crate) const fn name(self) -> &'static str {
-        ["quadrature", "samples", "samples and times", "counted"][self as usize]
+        match self {
+            Self::Quadrature => "quadrature",
+            Self::Sampled => "samples",
+            Self::Timed => "samples and times",
+            Self::Counted => "counted",
+        }
     }
 }
 
@@ -140,7 +145,11 @@ impl Verdict {
     /// Name in tables and in JSON.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        ["holds", "holds within limits", "false"][self as usize]
+        match self {
+            Self::Holds => "holds",
+            Self::HoldsWithinLimits => "holds within limits",
+            Self::False => "false",
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The claims as tables: one each, then all of them with their verdicts.
 
 use super::Claims;
-use super::claim::{Claim, Figure, Origin, Role, Threshold};
+use super::claim::{Claim, Figure, Origin, Role, Side, Threshold};
 use crate::table::{Table, number};
 
 /// The tables.
@@ -15,7 +15,11 @@ fn of_claim(claim: &Claim) -> Table {
     let mut table = Table::new(format!("{id}: \"{quotation}\" ({source})"));
     table = table.text("figure").numbers(["value", "error"]).texts(["unit", "from"]);
     for figure in &claim.figures {
-        let mark = [" [1]", " [2]", ""][figure.role as usize];
+        let mark = match figure.role {
+            Role::Everywhere => " [1]",
+            Role::WithinLimits => " [2]",
+            Role::Further => "",
+        };
         let [value, error] = shown(figure);
         let [unit, origin] = [figure.unit, figure.origin.name()].map(str::to_owned);
         table.push([format!("{}{mark}", figure.name), value, error, unit, origin]);
@@ -29,7 +33,11 @@ fn of_claim(claim: &Claim) -> Table {
 /// The bound in words.
 fn bound(claim: &Claim) -> String {
     let Threshold { side, bound, .. } = claim.threshold;
-    format!("{} {}", ["at most", "at least"][side as usize], number::plain(bound, 1))
+    let side = match side {
+        Side::AtMost => "at most",
+        Side::AtLeast => "at least",
+    };
+    format!("{side} {}", number::plain(bound, 1))
 }
 
 /// Value and error.

@@ -1,10 +1,11 @@
 //! `hairis claims`: computes the paper's claims, prints them, and writes `claims.json`.
 
-use super::{STEPS, bar, print_tables, say, show_share};
+use super::{STEPS, print_tables, say, show_share};
 use crate::args::Claims;
 use crate::claims;
 use crate::error::Error;
 use crate::files::{writable, write_json};
+use crate::progress::bar;
 use std::fs;
 
 /// Computes the claims.

@@ -1,11 +1,12 @@
 //! `hairis compare`: runs the comparison, prints its tables, and writes `compare.json`, `report.html` and
 //! `figures/`.
 
-use super::{STEPS, bar, environment, print_tables, report_failures, say, show_share};
+use super::{STEPS, environment, print_tables, report_failures, say, show_share};
 use crate::args::Compare;
 use crate::compare::{self, CompareConfig, Depth};
 use crate::error::Error;
 use crate::files::{writable, write_json};
+use crate::progress::bar;
 use std::fs;
 
 /// Runs the comparison.

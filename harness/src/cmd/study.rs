@@ -1,10 +1,11 @@
 //! `hairis study`: runs the study, or its part; once all is there, prints its summary and writes its tables.
 
-use super::{bar, environment, print_tables, report_failures, say};
+use super::{environment, print_tables, report_failures, say};
 use crate::args::Study as Flags;
 use crate::difference::Difference;
 use crate::error::Error;
 use crate::light::Environment;
+use crate::progress::bar;
 use crate::study::output::{Study, Times};
 use crate::study::part::{Part, read};
 use crate::study::{self, Plan, Shard};

@@ -187,7 +187,7 @@ fn by_light(
     pivot(table, rows.into_iter(), words, &SAMPLERS, |row| row.sampler, cell)
 }
 
-/// What was measured, or what the reference predicts where too few samples see the light to measure it.
+/// The measured figure, or the reference's where too few samples meet the light to measure it.
 fn tested_or(row: &EfficiencyRow, measured: String, predict: impl Fn(f64) -> String) -> String {
     if row.tested { measured } else { format!("≈ {}", predict(predicted(row, row.sampler))) }
 }

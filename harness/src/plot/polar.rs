@@ -33,7 +33,7 @@ pub struct PolarPanel {
 pub struct PolarChart {
     /// The title.
     pub title: String,
-    /// What the distances are.
+    /// Quantity of the distances from the centre.
     pub radius: String,
     /// The circles.
     pub panels: Vec<PolarPanel>,

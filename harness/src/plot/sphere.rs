@@ -183,7 +183,7 @@ impl HeatMap {
 /// One map of a [`ScatterMap`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatterPanel {
-    /// What is shown.
+    /// Title of the map.
     pub title: String,
     /// Directions as `theta` and `phi` in radians.
     pub points: Vec<[f64; 2]>,

@@ -76,7 +76,7 @@ impl Visitor for SpeedCells {
             return Ok(Vec::new());
         }
         let inputs = Inputs::draw(self.0)?;
-        let timed = |(op, _)| {
+        let timed = |op: Op| {
             let (contenders, truth) = match op {
                 Op::Prepare => prepare::<M>(&inputs),
                 Op::EvalPdf => eval_pdf::<M>(&inputs.params[0], &inputs, true),
@@ -92,7 +92,7 @@ impl Visitor for SpeedCells {
             }?;
             Ok(SpeedCell { op, model: M::NAME, contenders: contenders.0, truth })
         };
-        Op::NAMES.into_iter().map(timed).collect()
+        Op::ALL.into_iter().map(timed).collect()
     }
 }
 

@@ -61,7 +61,7 @@ impl Grid {
         theta_o_deg: &[0.0, 45.0, 75.0, 85.0],
     };
 
-    /// That of the short run, or of the whole one.
+    /// Grid of the short run, or of the whole one.
     #[must_use]
     pub const fn of(quick: bool) -> Self {
         if quick { Self::QUICK } else { Self::FULL }

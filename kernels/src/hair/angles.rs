@@ -106,6 +106,7 @@ impl<L: Lanes> Angles<L> {
         let x_r = (self.half_theta_i + view.shift[0].lanes()) * hair.inv_beta[0].lanes();
         let x_tt = (self.half_theta_i + view.shift[1].lanes()) * hair.inv_beta[1].lanes();
         let x_trt = (self.half_theta_i + view.shift[2].lanes()) * hair.inv_beta[2].lanes();
+        // Alone: in vectors of them and numbers next to them in memory, squares that nobody uses overflow.
         let y_tt = (self.half_back * hair.inv_half_gamma[0].lanes()).alone();
         let y_g = ((self.half_phi - hair.half_phi_g.lanes()) * hair.inv_half_gamma[1].lanes()).alone();
         let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);

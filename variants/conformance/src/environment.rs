@@ -11,7 +11,7 @@ use crate::probe::{Draws, columns, hits8, packet, triples};
 use crate::subject::Subject;
 use crate::totality;
 use core::hint::black_box;
-use hairis::{Bsdf, Bsdf8, Hit, Level, Model, Vec3x, control, set_control};
+use hairis::{Bsdf, Bsdf8, Gather, Hit, Level, Model, Vec3x, control, set_control};
 
 const NAME: &str = "results are finite however they are rounded";
 
@@ -138,7 +138,7 @@ pub fn everyday_input_raises_no_exception<S: Subject>(subject: &S) -> Outcome {
             let (hits8, wi8) = (hits8(&hits), packet(&wi));
             let by_axis = [wi8.x.to_array(), wi8.y.to_array(), wi8.z.to_array()];
             let one = calls::prepare(&bsdf, hits[0]);
-            scalar_is_quiet(&bsdf, hits[0], wi[0], name)?;
+            scalar_is_quiet(&bsdf, &one, hits[0], wi[0], name)?;
             let xi8 = triples(&core::array::from_fn(|_| draws.xi3()));
             for level in Level::available() {
                 let at = || format!("{name} on {level}, {hits:?} {wi:?}");
@@ -166,13 +166,12 @@ pub fn everyday_input_raises_no_exception<S: Subject>(subject: &S) -> Outcome {
 }
 
 /// The same of one lane.
-fn scalar_is_quiet<M: Model>(bsdf: &Bsdf<M>, hit: Hit, wi: Direction, name: &str) -> Outcome {
+fn scalar_is_quiet<M: Model>(bsdf: &Bsdf<M>, one: &Gather<M>, hit: Hit, wi: Direction, name: &str) -> Outcome {
     let at = || format!("{name}, one lane, {hit:?} {wi:?}");
     quiet("prepare", at, || calls::prepare(bsdf, hit))?;
-    let one = calls::prepare(bsdf, hit);
-    quiet("eval_pdf", at, || calls::eval(&one, wi))?;
-    quiet("albedo", at, || calls::albedo(&one))?;
-    quiet("conserving", at, || calls::conserving(&one).albedo())
+    quiet("eval_pdf", at, || calls::eval(one, wi))?;
+    quiet("albedo", at, || calls::albedo(one))?;
+    quiet("conserving", at, || calls::conserving(one).albedo())
 }
 
 #[cfg(all(test, target_arch = "x86_64"))]

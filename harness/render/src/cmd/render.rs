@@ -16,8 +16,8 @@ use core::time::Duration;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::light::Environment;
+use hairis_harness::progress::bar;
 use hairis_harness::study::Shard;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -197,10 +197,7 @@ fn passes(
     part: &mut Part,
     part_path: &Path,
 ) -> Result<(), Error> {
-    let bar = ProgressBar::new(1000);
-    if let Ok(style) = ProgressStyle::with_template("{msg:>12} {wide_bar} {percent:>3}% {elapsed} (left {eta})") {
-        bar.set_style(style);
-    }
+    let bar = bar(1000, "{msg:>12} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
     let show = |share: f64| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
         bar.set_position((share * 1000.0) as u64);

@@ -47,14 +47,14 @@ fn listed(words: &[String]) -> Option<String> {
     Some(if rest.is_empty() { last.clone() } else { format!("{} and {last}", rest.join(", ")) })
 }
 
-/// What `words` makes of each light, listed; it is given the light's place and its name.
+/// Calls `words` with the place and the name of each light, and lists the results.
 fn by_light(of: &View<'_>, words: impl Fn(usize, &str) -> Option<String>) -> Option<String> {
     let words: Vec<String> =
         of.lights().iter().enumerate().filter_map(|(light, name)| words(light, said(name))).collect();
     listed(&words)
 }
 
-/// What `words` makes of each sampler that is told of; it is given the name and the sampler on the Cauchy model.
+/// Calls `words` with the name of each sampler of [`TOLD`], and with the sampler on the Cauchy model.
 fn of_told(words: impl Fn(&str, Estimator) -> Option<String>) -> Vec<String> {
     TOLD.into_iter().filter_map(|sampler| words(sampler.name(), (ModelKind::Cauchy, Some(sampler)))).collect()
 }
