@@ -12,15 +12,16 @@
 # Debian's packages, of which only Bochs and xorriso are installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+unset RUSTFLAGS
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 
 # The programs.
 mkdir -p "$dir/files/tests"
-RUSTFLAGS='' cargo build -q --release --locked --target-dir "$target" -p hairis-benches --bin entry
+cargo build -q --release --locked --target-dir "$target" -p hairis-benches --bin entry
 cp "$target/release/entry" "$dir/files/tests/"
-RUSTFLAGS='' cargo test -q --release --locked --target-dir "$target" -p hairis -p hairis-variants --all-features \
+cargo test -q --release --locked --target-dir "$target" -p hairis -p hairis-variants --all-features \
   --test main --no-run --message-format=json > "$dir/built"
 python3 - "$dir" <<'END'
 import json, re, shutil, sys

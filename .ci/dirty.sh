@@ -4,6 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")/dirty
 cd .ci/dirty
-RUSTFLAGS='' cargo build -q --release --locked --target-dir "$target"
+unset RUSTFLAGS
+cargo build -q --release --locked --target-dir "$target"
 [ "${1:-}" != --build ] || exit 0
 "$target/release/hairis-dirty" "$@"

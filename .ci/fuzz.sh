@@ -18,9 +18,10 @@ features=''
 
 # Counters of branches and comparisons, as cargo-fuzz has them; --target keeps build scripts out of it. Memory is
 # .ci/memory.sh's: AddressSanitizer would double the build.
-flags='-Cpasses=sancov-module -Ccodegen-units=16'
-for option in level=4 inline-8bit-counters pc-table trace-compares; do flags+=" -Cllvm-args=-sanitizer-coverage-$option"; done
-RUSTFLAGS="$flags" cargo build -q --release --locked --features "$features" --target "$host" --target-dir "$target"
+flags='"-Cpasses=sancov-module", "-Ccodegen-units=16"'
+for option in level=4 inline-8bit-counters pc-table trace-compares; do flags+=", \"-Cllvm-args=-sanitizer-coverage-$option\""; done
+unset RUSTFLAGS
+cargo build -q --release --locked --config "build.rustflags=[$flags]" --features "$features" --target "$host" --target-dir "$target"
 fuzzer=$target/$host/release/hairis-fuzz
 
 mkdir -p "$target/failed" "$target/found"

@@ -17,7 +17,8 @@ for round in $(seq "${1:-1}"); do
 done
 if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
   # A target folder of its own, so that neither build discards the other's work.
-  CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-target}/v3 RUSTFLAGS=-Ctarget-cpu=x86-64-v3 cargo test -q -p hairis --all-features || failed=1
+  CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-target}/v3 cargo test -q -p hairis --all-features \
+    --config 'build.rustflags=["-Ctarget-cpu=x86-64-v3"]' || failed=1
 fi
 cargo test -q --locked -p hairis-harness --lib -- --ignored || failed=1
 cargo test -q --locked --release -p hairis-render --test main -- --ignored || failed=1

@@ -17,7 +17,8 @@ watched() { # watched NAME COMMAND...: passes, and fails on the access that it m
 }
 
 # RUSTC_BOOTSTRAP for this command alone: the sanitizer is no stable option. --target keeps build scripts out of it.
-RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address cargo build -q --release --locked --target "$host" --target-dir "$target/asan"
+unset RUSTFLAGS
+RUSTC_BOOTSTRAP=1 cargo build -q --release --locked --config 'build.rustflags=["-Zsanitizer=address"]' --target "$host" --target-dir "$target/asan"
 watched AddressSanitizer "$target/asan/$host/release/hairis-memory"
-RUSTFLAGS='' cargo build -q --release --locked --target-dir "$target/plain"
+cargo build -q --release --locked --target-dir "$target/plain"
 watched valgrind valgrind -q --error-exitcode=9 "$target/plain/release/hairis-memory"

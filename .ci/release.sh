@@ -10,7 +10,7 @@ case $level in
   3) what='-p hairis-harness -p hairis-benches --bin hairis --bin entry --features hairis-harness/parquet,hairis-harness/png' value=3 ;;
   *) what='-p hairis-benches --bin entry' value="\"$level\"" ;;
 esac
-# The newer mangling keeps the types of generic functions in their names.
-RUSTFLAGS='-Csymbol-mangling-version=v0' cargo build -q --release --locked $what \
+unset RUSTFLAGS
+cargo build -q --release --locked $what \
   --config "profile.release.opt-level=$value" --target-dir "$target" >&2
 echo "$target/release"

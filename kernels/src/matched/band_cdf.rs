@@ -75,7 +75,7 @@ impl<P: Lanes> Longitude<P> {
 macro_rules! for_each {
     ($j:ident < $n:expr, $body:block) => { for_each!(@$j ($n) $body 0 1 2 3 4 5 6 7 8 9 10 11) };
     (@$j:ident $n:tt $body:block $($i:literal)*) => {
-        $(if $i < $n {
+        $(if const { $i < $n } {
             let $j = $i;
             $body
         })*
@@ -130,12 +130,10 @@ pub(super) fn integrate_bands<B: MatchedBell, L: Lanes, P: Hemispheres<L, K>, co
         for_each!(k < K, {
             of_lobes[k] = lobes[k].pass::<B, L, K>(band.half_inner, height, minus_slope);
         });
-        for_each!(above < 2, {
-            let at = if above == 0 { j } else { N - 1 - j };
-            cdf.height[at] = height.apart()[above].store();
-            cdf.slope[at] = minus_slope.abs().apart()[above].store();
-            cdf.offset[at] = shared4(P::lobes_apart(of_lobes)[above]);
-        });
+        let (heights, slopes, offsets) = (height.apart(), minus_slope.abs().apart(), P::lobes_apart(of_lobes));
+        (cdf.height[j], cdf.height[N - 1 - j]) = (heights[0].store(), heights[1].store());
+        (cdf.slope[j], cdf.slope[N - 1 - j]) = (slopes[0].store(), slopes[1].store());
+        (cdf.offset[j], cdf.offset[N - 1 - j]) = (shared4(offsets[0]), shared4(offsets[1]));
     });
     let cos_sq: P = const { bands(N) }[N / 2].cos_sq_theta_d(theta_o);
     let height = height.max(height.swapped()).max(P::splat(1.0) / cos_sq);

@@ -25,7 +25,7 @@ macro_rules! each {
     };
     ($i:ident < $n:ident, $body:expr, $($column:literal)*) => {
         $(
-            if $column < $n {
+            if const { $column < $n } {
                 let $i = $column;
                 $body;
             }
