@@ -146,7 +146,12 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     let span = [r.span, tt.span, trt.span];
 
     // 1 / (2 span beta) of the three, from one division; each is at least 1e-9.
-    let range = [span[0] * hair.beta[0].lanes(), span[1] * hair.beta[1].lanes(), span[2] * hair.beta[2].lanes()];
+    // Alone: in vectors with the squares of an evaluation that follows, unused lanes hold denormals, which take twice the time.
+    let range = [
+        (span[0] * hair.beta[0].lanes()).alone(),
+        (span[1] * hair.beta[1].lanes()).alone(),
+        (span[2] * hair.beta[2].lanes()).alone(),
+    ];
     let first_two = range[0] * range[1];
     let reciprocal = L::quotient(c(0.5), first_two * range[2]);
     let (of_trt, rest) = (reciprocal * first_two, reciprocal * range[2]);
