@@ -12,7 +12,7 @@
 # Debian's packages, of which only Bochs and xorriso are installed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-unset RUSTFLAGS
+. .ci/flags
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT

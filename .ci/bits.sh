@@ -11,9 +11,9 @@
 # installed. wasm needs node. Hashes are left in target/bits.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. .ci/flags
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 tools=${TOOLS:-$target/tools}
-unset RUSTFLAGS
 out=$target/bits
 mkdir -p "$out" "$tools"
 rm -f "$out"/*.txt
@@ -36,13 +36,12 @@ wrapped() { # wrapped DIR PROGRAM [ARGUMENT...]: a script that starts it with it
     "$dir/usr/lib/x86_64-linux-gnu:$dir/lib/x86_64-linux-gnu:$dir/usr/lib/x86_64-linux-gnu/pulseaudio" "$dir/$2 ${*:3}" > "$name"
   chmod +x "$name"
 }
-cross() { # cross NAME TARGET [FLAG]: builds core and the program; prints the program's path
+cross() { # cross NAME TARGET RUSTFLAGS: builds core and the program; prints the program's path
   unpack rust rustc-web rust-web-src
   wrapped rust usr/bin/rustc
   local lld; lld=$(rustc --print sysroot)/lib/rustlib/x86_64-unknown-linux-gnu/bin/rust-lld
-  local flags="build.rustflags=[${3:+'$3', }'-Clinker=$lld', '-Crelocation-model=static']"
-  RUSTC=$tools/rustc RUSTC_BOOTSTRAP=1 "${build[@]}" --config "$flags" --target "$2" \
-    -Zbuild-std=core -Zbuild-std-features=compiler-builtins-mem --target-dir "$target/bits-$1"
+  RUSTC=$tools/rustc RUSTC_BOOTSTRAP=1 RUSTFLAGS="$3 -Clinker=$lld -Crelocation-model=static" "${build[@]}" \
+    --target "$2" -Zbuild-std=core -Zbuild-std-features=compiler-builtins-mem --target-dir "$target/bits-$1"
   echo "$target/bits-$1/$2/release/hairis-nostd"
 }
 linux() { # linux NAME TARGET EMULATOR
@@ -56,7 +55,7 @@ run() {
       "$target/bits-x86-64/release/hairis-nostd" > "$out/x86-64.txt" ;;
     x86-64-v3)
       if ! grep -qw avx2 /proc/cpuinfo || ! grep -qw fma /proc/cpuinfo; then echo "x86-64-v3: this CPU has no AVX2"; return; fi
-      "${build[@]}" --config 'build.rustflags=["-Ctarget-cpu=x86-64-v3"]' --target-dir "$target/bits-x86-64-v3"
+      RUSTFLAGS="$RUSTFLAGS -Ctarget-cpu=x86-64-v3" "${build[@]}" --target-dir "$target/bits-x86-64-v3"
       "$target/bits-x86-64-v3/release/hairis-nostd" > "$out/x86-64-v3.txt" ;;
     aarch64) linux aarch64 aarch64-unknown-linux-gnu aarch64 ;;
     armv7) linux armv7 armv7-unknown-linux-gnueabihf arm ;;
@@ -69,7 +68,7 @@ run() {
     thumb)
       unpack qemu-system qemu-system-arm
       wrapped qemu-system usr/bin/qemu-system-arm -L "$tools/qemu-system/usr/share/qemu"
-      local program; program=$(cross thumb thumbv7em-none-eabihf)
+      local program; program=$(cross thumb thumbv7em-none-eabihf '')
       timeout 600 "$tools/qemu-system-arm" -M mps2-an386 -cpu cortex-m4 -nographic -monitor none -serial none \
         -semihosting-config enable=on,target=native -kernel "$program" 2> "$out/thumb.txt" ;;
     wasm|wasm-simd)

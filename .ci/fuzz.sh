@@ -10,6 +10,7 @@
 # fails is left in target/fuzz/failed; the program takes its name and runs it again.
 set -euo pipefail
 cd "$(dirname "$0")/fuzz"
+. ../flags
 command -v g++ > /dev/null || { apt-get update -qq && apt-get install -qqy g++; }
 target=$(realpath -m "${CARGO_TARGET_DIR:-../../target}")/fuzz
 host=$(rustc -vV | sed -n 's/^host: //p')
@@ -18,10 +19,9 @@ features=''
 
 # Counters of branches and comparisons, as cargo-fuzz has them; --target keeps build scripts out of it. Memory is
 # .ci/memory.sh's: AddressSanitizer would double the build.
-flags='"-Cpasses=sancov-module", "-Ccodegen-units=16"'
-for option in level=4 inline-8bit-counters pc-table trace-compares; do flags+=", \"-Cllvm-args=-sanitizer-coverage-$option\""; done
-unset RUSTFLAGS
-cargo build -q --release --locked --config "build.rustflags=[$flags]" --features "$features" --target "$host" --target-dir "$target"
+flags='-Cpasses=sancov-module -Ccodegen-units=16'
+for option in level=4 inline-8bit-counters pc-table trace-compares; do flags+=" -Cllvm-args=-sanitizer-coverage-$option"; done
+RUSTFLAGS="$RUSTFLAGS $flags" cargo build -q --release --locked --features "$features" --target "$host" --target-dir "$target"
 fuzzer=$target/$host/release/hairis-fuzz
 
 mkdir -p "$target/failed" "$target/found"

@@ -9,6 +9,7 @@
 # HAIRIS_SEED=N cargo test ... repeats a round. Each chi-square test fails once in a hundred rounds by chance; no other may.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. .ci/flags
 failed=0
 for round in $(seq "${1:-1}"); do
   seed=$(od -An -N8 -tu8 /dev/urandom | tr -d ' ')
@@ -17,8 +18,7 @@ for round in $(seq "${1:-1}"); do
 done
 if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then
   # A target folder of its own, so that neither build discards the other's work.
-  CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-target}/v3 cargo test -q -p hairis --all-features \
-    --config 'build.rustflags=["-Ctarget-cpu=x86-64-v3"]' || failed=1
+  CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-target}/v3 RUSTFLAGS="$RUSTFLAGS -Ctarget-cpu=x86-64-v3" cargo test -q -p hairis --all-features || failed=1
 fi
 cargo test -q --locked -p hairis-harness --lib -- --ignored || failed=1
 cargo test -q --locked --release -p hairis-render --test main -- --ignored || failed=1

@@ -3,6 +3,7 @@
 # level. AddressSanitizer watches every level of this CPU, valgrind those that it emulates (not AVX-512).
 set -euo pipefail
 cd "$(dirname "$0")/memory"
+. ../flags
 command -v valgrind > /dev/null || { apt-get update -qq && apt-get install -qqy valgrind; }
 target=$(realpath -m "${CARGO_TARGET_DIR:-../../target}")/memory
 host=$(rustc -vV | sed -n 's/^host: //p')
@@ -17,8 +18,7 @@ watched() { # watched NAME COMMAND...: passes, and fails on the access that it m
 }
 
 # RUSTC_BOOTSTRAP for this command alone: the sanitizer is no stable option. --target keeps build scripts out of it.
-unset RUSTFLAGS
-RUSTC_BOOTSTRAP=1 cargo build -q --release --locked --config 'build.rustflags=["-Zsanitizer=address"]' --target "$host" --target-dir "$target/asan"
+RUSTC_BOOTSTRAP=1 RUSTFLAGS="$RUSTFLAGS -Zsanitizer=address" cargo build -q --release --locked --target "$host" --target-dir "$target/asan"
 watched AddressSanitizer "$target/asan/$host/release/hairis-memory"
 cargo build -q --release --locked --target-dir "$target/plain"
 watched valgrind valgrind -q --error-exitcode=9 "$target/plain/release/hairis-memory"

@@ -3,12 +3,12 @@
 # contains neither; a program that uses one of them does not link.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. .ci/flags
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")/nostd
 cd .ci/nostd
-unset RUSTFLAGS
 
-prove() { # prove NAME [CARGO ARGUMENT...]
-  cargo build -q --release --locked "${@:2}" --target-dir "$target/$1"
+prove() { # prove NAME RUSTFLAGS
+  RUSTFLAGS="$RUSTFLAGS $2" cargo build -q --release --locked --target-dir "$target/$1"
   local program=$target/$1/release/hairis-nostd
   local undefined
   undefined=$(nm -u "$program")
@@ -25,7 +25,7 @@ refused() { # refused FEATURE WORDS
   echo "refused, as it must be: $1"
 }
 
-prove x86-64
-if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then prove x86-64-v3 --config 'build.rustflags=["-Ctarget-cpu=x86-64-v3"]'; fi
+prove x86-64 ''
+if grep -qw avx2 /proc/cpuinfo && grep -qw fma /proc/cpuinfo; then prove x86-64-v3 '-C target-cpu=x86-64-v3'; fi
 refused neg-std 'panic_impl'
 refused neg-alloc 'no global memory allocator'

@@ -4,13 +4,13 @@
 # differ would compile the kernels again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. .ci/flags
 level=${1:-3}
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")/opt-$level
 case $level in
   3) what='-p hairis-harness -p hairis-benches --bin hairis --bin entry --features hairis-harness/parquet,hairis-harness/png' value=3 ;;
   *) what='-p hairis-benches --bin entry' value="\"$level\"" ;;
 esac
-unset RUSTFLAGS
 cargo build -q --release --locked $what \
   --config "profile.release.opt-level=$value" --target-dir "$target" >&2
 echo "$target/release"
