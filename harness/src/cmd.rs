@@ -10,7 +10,6 @@ use crate::args::Command;
 use crate::error::Error;
 use crate::light::{Environment, LightError, Sky};
 use crate::table::Table;
-use indicatif::ProgressBar;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -41,15 +40,6 @@ fn environment(path: Option<&Path>) -> Result<(Environment, String), Error> {
     }
     environment.notes().iter().for_each(|note| say(note));
     Ok((environment, path.display().to_string()))
-}
-
-/// Steps of a bar that shows a share.
-const STEPS: u64 = 1000;
-
-/// Moves a bar of [`STEPS`].
-fn show_share(bar: &ProgressBar, done: f64) {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
-    bar.set_position((done.clamp(0.0, 1.0) * STEPS as f64) as u64);
 }
 
 /// Prints tables on standard output. A reader that leaves early is told the file that has them.

@@ -11,6 +11,21 @@ pub fn bar(steps: u64, template: &str) -> ProgressBar {
     ProgressBar::new(steps).with_style(style)
 }
 
+/// Steps of a bar that shows a share.
+const STEPS: u64 = 1000;
+
+/// Progress bar that [`show_share`] moves.
+#[must_use]
+pub fn share_bar(template: &str) -> ProgressBar {
+    bar(STEPS, template)
+}
+
+/// Moves a [`share_bar`] to the share that is done, 0 to 1.
+pub fn show_share(bar: &ProgressBar, done: f64) {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
+    bar.set_position((done.clamp(0.0, 1.0) * STEPS as f64) as u64);
+}
+
 /// Cells done so far, out of all.
 pub(crate) struct Progress<'a> {
     done: AtomicUsize,

@@ -1,11 +1,11 @@
 //! `hairis claims`: computes the paper's claims, prints them, and writes `claims.json`.
 
-use super::{STEPS, print_tables, say, show_share};
+use super::{print_tables, say};
 use crate::args::Claims;
 use crate::claims;
 use crate::error::Error;
 use crate::files::{writable, write_json};
-use crate::progress::bar;
+use crate::progress::{share_bar, show_share};
 use std::fs;
 
 /// Computes the claims.
@@ -18,7 +18,7 @@ pub fn run(flags: &Claims) -> Result<(), Error> {
     let path = flags.out.join("claims.json");
     writable(&path)?;
 
-    let bar = bar(STEPS, "claims {wide_bar} {percent:>3}% {elapsed} (left {eta})");
+    let bar = share_bar("claims {wide_bar} {percent:>3}% {elapsed} (left {eta})");
     let claims = claims::run(flags.seed, flags.quick, &|done| show_share(&bar, done))?;
     bar.finish_and_clear();
 

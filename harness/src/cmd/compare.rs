@@ -1,12 +1,12 @@
 //! `hairis compare`: runs the comparison, prints its tables, and writes `compare.json`, `report.html` and
 //! `figures/`.
 
-use super::{STEPS, environment, print_tables, report_failures, say, show_share};
+use super::{environment, print_tables, report_failures, say};
 use crate::args::Compare;
 use crate::compare::{self, CompareConfig, Depth};
 use crate::error::Error;
 use crate::files::{writable, write_json};
-use crate::progress::bar;
+use crate::progress::{share_bar, show_share};
 use std::fs;
 
 /// Runs the comparison.
@@ -22,7 +22,7 @@ pub fn run(flags: &Compare) -> Result<(), Error> {
     writable(&json)?;
     writable(&page)?;
 
-    let bar = bar(STEPS, "{msg:>18} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
+    let bar = share_bar("{msg:>18} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
     let settings =
         CompareConfig { seed: flags.seed, quick: flags.quick, environment: &environment, environment_name: &name };
     let comparison = compare::run(&settings, &|part, done| {

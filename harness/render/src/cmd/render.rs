@@ -16,7 +16,7 @@ use core::time::Duration;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::light::Environment;
-use hairis_harness::progress::bar;
+use hairis_harness::progress::{share_bar, show_share};
 use hairis_harness::study::Shard;
 use std::fs;
 use std::io::{self, Write as _};
@@ -197,11 +197,8 @@ fn passes(
     part: &mut Part,
     part_path: &Path,
 ) -> Result<(), Error> {
-    let bar = bar(1000, "{msg:>12} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
-    let show = |share: f64| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
-        bar.set_position((share * 1000.0) as u64);
-    };
+    let bar = share_bar("{msg:>12} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
+    let show = |share: f64| show_share(&bar, share);
     if settings.integrator == Integrator::Gather {
         transport::render(scene, settings, &mut part.film, samples, &show);
         bar.finish_and_clear();
