@@ -2,6 +2,7 @@
 
 use super::measure::{BySampler, Measured};
 use crate::protocol::Errors;
+use core::cmp::Ordering;
 use hairis_harness::stats::Estimate;
 use hairis_harness::table::number::{ratio, ratio_with_error};
 
@@ -18,6 +19,9 @@ pub(super) const ERRORS: [(&str, Error); 3] = [
     ("trimmed relMSE", |errors| errors.trimmed),
 ];
 
+/// The two that say most: what is seen of most pixels, and what the brightest errors add to it.
+const HEADLINE: [(&str, Error); 2] = [ERRORS[2], ERRORS[0]];
+
 /// How many times as large an error times time is with a sampler as with the last, at the count that pictures show.
 pub(super) fn gain(measured: &Measured, sampler: &BySampler, error: Error) -> Estimate {
     let shown = measured.shown();
@@ -25,26 +29,47 @@ pub(super) fn gain(measured: &Measured, sampler: &BySampler, error: Error) -> Es
     sampler.runs[shown].ratio(&best.runs[shown], error, true)
 }
 
-/// Whether a ratio is a gain or a loss, by what is left of it within two standard errors.
-fn matters(ratio: &Estimate) -> bool {
+/// Whether a ratio is above 1 by a gain, is below it by one, or is neither, by what is left of it within two standard errors.
+fn side(ratio: &Estimate) -> Ordering {
     let Estimate { value, standard_error, .. } = *ratio;
-    (value > GAIN && value - 2.0 * standard_error > 1.0) || (value < 1.0 / GAIN && value + 2.0 * standard_error < 1.0)
+    if value > GAIN && value - 2.0 * standard_error > 1.0 {
+        Ordering::Greater
+    } else if value < 1.0 / GAIN && value + 2.0 * standard_error < 1.0 {
+        Ordering::Less
+    } else {
+        Ordering::Equal
+    }
 }
 
-/// Whether the sampler matters.
-fn answer(measured: &Measured) -> &'static str {
-    let [others @ .., _] = measured.samplers.as_slice() else { return "" };
-    // Relative errors are what is seen.
-    let any = others.iter().any(|one| ERRORS[1..].iter().any(|(_, error)| matters(&gain(measured, one, *error))));
-    if any { "The sampler matters." } else { "The sampler does not matter: samples of the light do the work." }
+/// Names the samplers that the last one beats, loses to and equals, by the two errors that say most.
+fn answer(measured: &Measured) -> String {
+    use Ordering::{Equal, Greater, Less};
+    let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
+    let sides = |one: &BySampler| HEADLINE.map(|(_, error)| side(&gain(measured, one, error)));
+    let of = |verb: &str, is: fn([Ordering; 2]) -> bool| {
+        let names: Vec<&str> = others.iter().filter(|one| is(sides(one))).map(|one| one.name).collect();
+        (!names.is_empty()).then(|| format!("{verb} {}", names.join(" and ")))
+    };
+    let parts: Vec<String> = [
+        of("beats", |sides| sides.contains(&Greater) && !sides.contains(&Less)),
+        of("loses to", |sides| sides.contains(&Less) && !sides.contains(&Greater)),
+        of("equals", |sides| sides == [Equal; 2]),
+        of("by one error beats, by the other loses to", |sides| sides.contains(&Greater) && sides.contains(&Less)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    if others.iter().all(|one| sides(one) == [Equal; 2]) {
+        return "The sampler does not matter: samples of the light do the work.".to_owned();
+    }
+    format!("`{}` {}.", best.name, parts.join("; "))
 }
 
 /// The answer, with the two errors that say most in short.
 pub(super) fn headline(measured: &Measured) -> String {
     let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
-    let [(_, square), _, (_, trimmed)] = ERRORS;
     let one = |one: &BySampler| {
-        let [trimmed, square] = [trimmed, square].map(|error| ratio(gain(measured, one, error).value));
+        let [trimmed, square] = HEADLINE.map(|(_, error)| ratio(gain(measured, one, error).value));
         format!("{} {trimmed} ({square})", one.name)
     };
     let list = others.iter().map(one).collect::<Vec<String>>().join(", ");
