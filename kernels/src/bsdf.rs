@@ -2,7 +2,7 @@
 
 use crate::model::{Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Sample, Sample8};
 use crate::packet::{Albedo, EvalPdf, Lobes, Prepare, SampleWi};
-use crate::{LaneStruct, Level, LobeMask, Model, PerLobe, Vec3x, Vec3x8};
+use crate::{LaneStruct, Lanes, Level, LobeMask, Model, PerLobe, Vec3x, Vec3x8};
 use core::f32::consts::FRAC_PI_2;
 use core::fmt;
 use glam::Vec3;
@@ -72,7 +72,8 @@ impl<M: Model> Bsdf<M> {
     #[inline]
     #[must_use]
     pub fn prepare(&self, hit: impl Into<Hit>) -> Gather<M> {
-        Gather { inner: M::prepare_one(&self.material, hit.into()) }
+        let Hit { wo, h } = hit.into();
+        Gather { inner: M::prepare_one(&self.material, Hit { wo: wo.alone(), h: h.alone() }) }
     }
 
     /// Eight shading points on this material, one per lane: a [`Hit8`], or eight `wo`.
@@ -207,14 +208,14 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn eval_pdf(&self, wi: impl Into<Vec3x<f32>>) -> Eval {
-        M::eval::<f32, f32>(&self.inner, wi.into())
+        M::eval::<f32, f32>(&self.inner, wi.into().alone())
     }
 
     /// Each lobe's value, colour and own density.
     #[inline]
     #[must_use]
     pub fn lobes(&self, wi: impl Into<Vec3x<f32>>) -> PerLobe<LobeEval> {
-        M::lobes::<f32, f32>(&self.inner, wi.into())
+        M::lobes::<f32, f32>(&self.inner, wi.into().alone())
     }
 
     /// A direction for three uniform numbers in `[0, 1)`; the first chooses the lobe.
@@ -224,7 +225,7 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: [f32; 3]) -> Option<Sample> {
-        Sample::from_drawn(&M::sample::<f32, f32>(&self.inner, xi))
+        Sample::from_drawn(&M::sample::<f32, f32>(&self.inner, xi.map(Lanes::alone)))
     }
 
     /// As [`eval_pdf`](Self::eval_pdf), for eight directions.

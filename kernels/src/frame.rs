@@ -39,6 +39,13 @@ impl<L: Lanes> Vec3x<L> {
         self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
     }
 
+    /// The same vector, its components read and computed one by one: see [`Lanes::alone`].
+    #[inline(always)]
+    #[must_use]
+    pub(crate) fn alone(self) -> Self {
+        Self::new(self.x.alone(), self.y.alone(), self.z.alone())
+    }
+
     /// The vector times a number per lane.
     #[inline(always)]
     #[must_use]

@@ -103,18 +103,19 @@ impl<L: Lanes> Angles<L> {
         let one = c(1.0);
         // Distances from the centres of the bells in widths, squared.
         let hair = &view.lobes;
-        let x_r = (self.half_theta_i + view.shift[0].lanes()) * hair.inv_beta[0].lanes();
-        let x_tt = (self.half_theta_i + view.shift[1].lanes()) * hair.inv_beta[1].lanes();
-        let x_trt = (self.half_theta_i + view.shift[2].lanes()) * hair.inv_beta[2].lanes();
         // Alone: in vectors of them and numbers next to them in memory, squares that nobody uses overflow.
+        let x_r = ((self.half_theta_i + view.shift[0].lanes()) * hair.inv_beta[0].lanes()).alone();
+        let x_tt = ((self.half_theta_i + view.shift[1].lanes()) * hair.inv_beta[1].lanes()).alone();
+        let x_trt = ((self.half_theta_i + view.shift[2].lanes()) * hair.inv_beta[2].lanes()).alone();
         let y_tt = (self.half_back * hair.inv_half_gamma[0].lanes()).alone();
         let y_g = ((self.half_phi - hair.half_phi_g.lanes()) * hair.inv_half_gamma[1].lanes()).alone();
         let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);
 
         // The Cauchy value of each, from two divisions. Each of the five is at most 1e9, so that four of them
         // multiplied stay below the largest float.
-        let (d_r, d_tt_x, d_trt) = (x_r.mul_add(x_r, one), x_tt.mul_add(x_tt, one), x_trt.mul_add(x_trt, one));
-        let (d_tt_y, d_g_y) = (y_tt.mul_add(y_tt, one), y_g.mul_add(y_g, one));
+        let above_one = |x: L| x.mul_add(x, one).alone();
+        let (d_r, d_tt_x, d_trt) = (above_one(x_r), above_one(x_tt), above_one(x_trt));
+        let (d_tt_y, d_g_y) = (above_one(y_tt), above_one(y_g));
         let (d_tt, d_g) = (d_tt_x * d_tt_y, d_trt * d_g_y);
         let inv_tt_g = L::quotient(one, d_tt * d_g);
         let (cauchy_tt, cauchy_g) = (inv_tt_g * d_g, inv_tt_g * d_tt);
@@ -124,7 +125,7 @@ impl<L: Lanes> Angles<L> {
         let half = c(0.5);
         let mean_u = self.sin_theta_i.mul_add(half, view.half_sin_theta_o.lanes());
         let mean_c = self.cos_theta_i.mul_add(half, view.half_cos_theta_o.lanes());
-        let cos_sq_theta_d = mean_u.mul_add(mean_u, mean_c * mean_c);
+        let cos_sq_theta_d = mean_u.mul_add(mean_u, (mean_c * mean_c).alone()).alone();
         let inv_r = L::quotient(one, d_r * cos_sq_theta_d);
         let cauchy_r = inv_r * cos_sq_theta_d;
 

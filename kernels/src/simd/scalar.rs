@@ -21,18 +21,32 @@ fn split(x: f32) -> [f32; 2] {
 }
 
 /// Square root: the instruction. That of `libm` stays a call where the compiler saves space.
+///
+/// In place: written to another register, it would wait for what was there before, which may be a result of the last call.
 #[inline(always)]
 fn sqrt(x: f32) -> f32 {
-    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+    #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]
     {
-        #[cfg(target_arch = "x86")]
+        let mut root = x;
+        // SAFETY: the program is compiled for CPUs that have the instruction, which reads and writes a register.
+        unsafe {
+            #[cfg(not(target_feature = "avx"))]
+            core::arch::asm!("sqrtss {0}, {0}", inout(xmm_reg) root, options(pure, nomem, nostack, preserves_flags));
+            #[cfg(target_feature = "avx")]
+            core::arch::asm!("vsqrtss {0}, {0}, {0}", inout(xmm_reg) root, options(pure, nomem, nostack, preserves_flags));
+        }
+        root
+    }
+    #[cfg(all(target_arch = "x86", target_feature = "sse2"))]
+    {
         use core::arch::x86::{_mm_cvtss_f32, _mm_set_ss, _mm_sqrt_ss};
-        #[cfg(target_arch = "x86_64")]
-        use core::arch::x86_64::{_mm_cvtss_f32, _mm_set_ss, _mm_sqrt_ss};
         // SAFETY: the program is compiled for CPUs that have SSE2.
         unsafe { _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(x))) }
     }
-    #[cfg(not(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2")))]
+    #[cfg(not(any(
+        all(target_arch = "x86_64", target_feature = "sse2", not(miri)),
+        all(target_arch = "x86", target_feature = "sse2")
+    )))]
     libm::sqrtf(x)
 }
 

@@ -67,6 +67,6 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     let root = same(inv_root_i) * four(&gather.spread);
     let bessel = Four::select(small, polynomial(x * x, SERIES), polynomial(root * root, TAIL) * root);
     let sum = chord_sq.mul_add(four(&m.inv_variance), exponent) + Four::keep(small, x + x);
-    let densities = gaussian(sum) * bessel * (logistic * four(&m.norm));
+    let densities = gaussian(sum).alone() * bessel * (logistic * four(&m.norm));
     (apart(densities), inv_root_i * inv_root_i)
 }

@@ -4,11 +4,12 @@
 //! - `entry run NAME PASSES`: passes over the inputs and nothing else: their cost is the difference of two runs with
 //!   different numbers of passes.
 //! - `entry time NAME SECONDS`: ns per direction, the median of stretches of a millisecond.
-//!
+//! - `entry exceptions`: which calls on one lane raise floating-point exceptions; fails if one does.
 //! - `entry keep`: runs nothing; keeps the functions whose size `.ci/sizes.sh` reports in the program.
 //!
 //! A name that ends in `*` selects all with that prefix. `run` prints the number of calls per pass.
 
+mod exceptions;
 mod outlined;
 
 use hairis_benches::{Name, Op, Task, Visitor, entries};
@@ -31,8 +32,11 @@ fn main() -> ExitCode {
             outlined::keep();
             return ExitCode::SUCCESS;
         }
+        ["exceptions"] => return ExitCode::from(u8::from(!exceptions::check())),
         _ => {
-            eprintln!("usage: entry keep | entry list | entry run NAME PASSES | entry time NAME SECONDS");
+            eprintln!(
+                "usage: entry keep | entry exceptions | entry list | entry run NAME PASSES | entry time NAME SECONDS"
+            );
             return ExitCode::from(2);
         }
     };
