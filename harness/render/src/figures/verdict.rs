@@ -46,23 +46,28 @@ fn answer(measured: &Measured) -> String {
     use Ordering::{Equal, Greater, Less};
     let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
     let sides = |one: &BySampler| HEADLINE.map(|(_, error)| side(&gain(measured, one, error)));
-    let of = |verb: &str, is: fn([Ordering; 2]) -> bool| {
-        let names: Vec<&str> = others.iter().filter(|one| is(sides(one))).map(|one| one.name).collect();
-        (!names.is_empty()).then(|| format!("{verb} {}", names.join(" and ")))
-    };
-    let parts: Vec<String> = [
-        of("beats", |sides| sides.contains(&Greater) && !sides.contains(&Less)),
-        of("loses to", |sides| sides.contains(&Less) && !sides.contains(&Greater)),
-        of("equals", |sides| sides == [Equal; 2]),
-        of("by one error beats, by the other loses to", |sides| sides.contains(&Greater) && sides.contains(&Less)),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
     if others.iter().all(|one| sides(one) == [Equal; 2]) {
         return "The sampler does not matter: samples of the light do the work.".to_owned();
     }
-    format!("`{}` {}.", best.name, parts.join("; "))
+    let of = |before: &str, is: fn([Ordering; 2]) -> bool, behind: &str| {
+        let names: Vec<&str> = others.iter().filter(|one| is(sides(one))).map(|one| one.name).collect();
+        (!names.is_empty()).then(|| format!("{before} {}{behind}", listed(&names)))
+    };
+    let parts = [
+        of("beats", |sides| sides.contains(&Greater) && !sides.contains(&Less), ""),
+        of("loses to", |sides| sides.contains(&Less) && !sides.contains(&Greater), ""),
+        of("equals", |sides| sides == [Equal; 2], ""),
+        of("against", |sides| sides.contains(&Greater) && sides.contains(&Less), ", it depends on the error"),
+    ];
+    format!("`{}` {}.", best.name, parts.into_iter().flatten().collect::<Vec<String>>().join("; "))
+}
+
+/// "a", "a and b", "a, b and c".
+fn listed(names: &[&str]) -> String {
+    match names {
+        [others @ .., last] if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+        _ => names.concat(),
+    }
 }
 
 /// The answer, with the two errors that say most in short.
