@@ -39,7 +39,8 @@ impl<L: Lanes> Vec3x<L> {
         self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
     }
 
-    /// The same vector, its components read and computed one by one: see [`Lanes::alone`].
+    /// The same vector, its components read one by one: see [`Lanes::alone`]. Callers have often just written them; what is read
+    /// across two such writes waits until both have left the CPU's queue.
     #[inline(always)]
     #[must_use]
     pub(crate) fn alone(self) -> Self {

@@ -67,6 +67,7 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     let root = same(inv_root_i) * four(&gather.spread);
     let bessel = Four::select(small, polynomial(x * x, SERIES), polynomial(root * root, TAIL) * root);
     let sum = chord_sq.mul_add(four(&m.inv_variance), exponent) + Four::keep(small, x + x);
+    // Alone: in vectors of three lobes, what nobody uses overflows.
     let densities = gaussian(sum).alone() * bessel * (logistic * four(&m.norm));
     (apart(densities), inv_root_i * inv_root_i)
 }
