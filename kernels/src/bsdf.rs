@@ -225,7 +225,7 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: [f32; 3]) -> Option<Sample> {
-        Sample::from_drawn(&M::sample::<f32, f32>(&self.inner, xi.map(Lanes::alone)))
+        Sample::from_drawn(&M::sample::<f32, f32>(&self.inner, [xi[0].alone(), xi[1].alone(), xi[2].alone()]))
     }
 
     /// As [`eval_pdf`](Self::eval_pdf), for eight directions.

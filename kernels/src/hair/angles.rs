@@ -113,9 +113,8 @@ impl<L: Lanes> Angles<L> {
 
         // The Cauchy value of each, from two divisions. Each of the five is at most 1e9, so that four of them
         // multiplied stay below the largest float.
-        let above_one = |x: L| x.mul_add(x, one).alone();
-        let (d_r, d_tt_x, d_trt) = (above_one(x_r), above_one(x_tt), above_one(x_trt));
-        let (d_tt_y, d_g_y) = (above_one(y_tt), above_one(y_g));
+        let (d_r, d_tt_x, d_trt) = (one_plus_square(x_r), one_plus_square(x_tt), one_plus_square(x_trt));
+        let (d_tt_y, d_g_y) = (one_plus_square(y_tt), one_plus_square(y_g));
         let (d_tt, d_g) = (d_tt_x * d_tt_y, d_trt * d_g_y);
         let inv_tt_g = L::quotient(one, d_tt * d_g);
         let (cauchy_tt, cauchy_g) = (inv_tt_g * d_g, inv_tt_g * d_tt);
@@ -144,6 +143,12 @@ impl<L: Lanes> Angles<L> {
             inv_cos_sq_theta_d: inv_r * d_r,
         }
     }
+}
+
+/// `1 + x^2`, alone.
+#[inline(always)]
+fn one_plus_square<L: Lanes>(x: L) -> L {
+    x.mul_add(x, L::splat(1.0)).alone()
 }
 
 /// `pi/2` minus an angle.
