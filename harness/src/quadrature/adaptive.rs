@@ -1,5 +1,6 @@
 //! Globally adaptive Gauss-Kronrod integration on lines and rectangles.
 
+use core::array;
 use std::collections::BTreeMap;
 
 /// Positive nodes of the 15-point Kronrod rule, outermost first, then 0, each with its weight and that of the embedded 7-point
@@ -40,7 +41,7 @@ impl Tolerance {
     }
 
     /// Whether an integral with these errors, all numbers, is within the tolerance.
-    pub(crate) fn is_met<const N: usize>(&self, value: &[f64; N], error: &[f64; N]) -> bool {
+    pub(crate) fn is_met(&self, value: &[f64], error: &[f64]) -> bool {
         let largest = value.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
         let allowed = self.absolute.max(self.relative * largest);
         value.iter().all(|v| v.is_finite()) && error.iter().all(|e| *e <= allowed)
@@ -58,22 +59,28 @@ pub struct Integral<const N: usize> {
     pub converged: bool,
 }
 
+/// Most components of an integrand.
+const MOST: usize = 6;
+
+/// Components of an integrand, the rest 0: rules of one size are compiled once for all integrands.
+type Components = [f64; MOST];
+
 /// Sums of values, and sums of errors.
-type Sums<const N: usize> = [[f64; N]; 2];
+type Sums = [Components; 2];
 
 /// A part of the domain with its integral.
-struct Panel<const N: usize> {
+struct Panel {
     lo: [f64; 2],
     hi: [f64; 2],
-    sums: Sums<N>,
+    sums: Sums,
     /// The axis of the larger error.
     split: usize,
 }
 
 /// Panels in the order of their largest errors. The corner settles ties, so that the order depends on nothing else.
-type Panels<const N: usize> = BTreeMap<[u64; 3], Panel<N>>;
+type Panels = BTreeMap<[u64; 3], Panel>;
 
-impl<const N: usize> Panel<N> {
+impl Panel {
     fn key(&self) -> [u64; 3] {
         // A NaN counts as an infinite error, so that it is split, reported and never hidden.
         let worst = self.sums[1].iter().fold(0.0, |a: f64, &e| a.max(if e.is_nan() { f64::INFINITY } else { e }));
@@ -95,7 +102,7 @@ pub fn bell_breakpoints(centre: f64, width: f64) -> [f64; 5] {
 /// Gauss-Kronrod 7-15 on each interval between breakpoints, then on halves of the worst panel until the summed error estimate meets the tolerance. The ends
 /// are never evaluated.
 ///
-/// - Shape: `breakpoints` in any order, at least two that differ; else the integral is 0.
+/// - Shape: `breakpoints` in any order, at least two that differ; else the integral is 0. At most 6 components.
 ///
 /// # Examples
 /// ```
@@ -108,20 +115,9 @@ pub fn integrate<const N: usize>(
     breakpoints: &[f64],
     tolerance: &Tolerance,
 ) -> Integral<N> {
-    let nodes = nodes();
     let edges = clean(breakpoints);
-    let domain = edges.windows(2).map(|x| ([x[0], 0.0], [x[1], 0.0]));
-    adapt(domain, tolerance, |lo, hi| {
-        let (centre, half) = (0.5 * (lo[0] + hi[0]), 0.5 * (hi[0] - lo[0]));
-        let (mut kronrod, mut gauss) = ([0.0; N], [0.0; N]);
-        for [x, k, g] in nodes {
-            let y = f(centre + half * x);
-            add(&mut kronrod, k, y);
-            add(&mut gauss, g, y);
-        }
-        let error = distance(kronrod, gauss).map(|e| e * half);
-        Panel { lo, hi, sums: [kronrod.map(|v| v * half), error], split: 0 }
-    })
+    let domain: Vec<_> = edges.windows(2).map(|x| ([x[0], 0.0], [x[1], 0.0])).collect();
+    adapt(&domain, tolerance, &mut |lo, hi| on_line(&mut |x| padded(f(x)), lo, hi)).leading()
 }
 
 /// Integral of `f(x, y)` over the rectangle spanned by two sets of breakpoints.
@@ -136,57 +132,87 @@ pub fn integrate_rectangle<const N: usize>(
     y_breakpoints: &[f64],
     tolerance: &Tolerance,
 ) -> Integral<N> {
-    let nodes = nodes();
     let (xs, ys) = (clean(x_breakpoints), clean(y_breakpoints));
-    let domain = xs.windows(2).flat_map(|x| ys.windows(2).map(move |y| ([x[0], y[0]], [x[1], y[1]])));
-    adapt(domain, tolerance, |lo, hi| {
-        let centre = [0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1])];
-        let half = [0.5 * (hi[0] - lo[0]), 0.5 * (hi[1] - lo[1])];
-        let area = half[0] * half[1];
-        let mut value = [0.0; N];
-        // Errors are summed line by line in absolute value: on a tilted edge the lines' errors have both signs and would cancel.
-        let (mut error_x, mut error_y) = ([0.0; N], [0.0; N]);
-        let mut columns = [([0.0; N], [0.0; N]); 15];
-        for [x, kx, gx] in nodes {
-            let (mut kronrod, mut gauss) = ([0.0; N], [0.0; N]);
-            for ([y, ky, gy], column) in nodes.into_iter().zip(&mut columns) {
-                let v = f(centre[0] + half[0] * x, centre[1] + half[1] * y);
-                add(&mut kronrod, ky, v);
-                add(&mut gauss, gy, v);
-                add(&mut column.0, kx, v);
-                add(&mut column.1, gx, v);
-            }
-            add(&mut value, kx, kronrod);
-            add(&mut error_y, kx, distance(kronrod, gauss));
+    let domain: Vec<_> = xs.windows(2).flat_map(|x| ys.windows(2).map(move |y| ([x[0], y[0]], [x[1], y[1]]))).collect();
+    adapt(&domain, tolerance, &mut |lo, hi| on_rectangle(&mut |x, y| padded(f(x, y)), lo, hi)).leading()
+}
+
+impl Integral<MOST> {
+    /// The components that the integrand has.
+    fn leading<const N: usize>(&self) -> Integral<N> {
+        let [value, error] = [self.value, self.error].map(|all| array::from_fn(|c| all[c]));
+        Integral { value, error, converged: self.converged }
+    }
+}
+
+/// The components of an integrand among the most.
+fn padded<const N: usize>(y: [f64; N]) -> Components {
+    const { assert!(N <= MOST, "too many components") };
+    array::from_fn(|c| if c < N { y[c] } else { 0.0 })
+}
+
+/// The rule on a part of a line.
+fn on_line(f: &mut dyn FnMut(f64) -> Components, lo: [f64; 2], hi: [f64; 2]) -> Panel {
+    let (centre, half) = (0.5 * (lo[0] + hi[0]), 0.5 * (hi[0] - lo[0]));
+    let (mut kronrod, mut gauss) = ([0.0; MOST], [0.0; MOST]);
+    for [x, k, g] in nodes() {
+        let y = f(centre + half * x);
+        add(&mut kronrod, k, y);
+        add(&mut gauss, g, y);
+    }
+    let error = distance(kronrod, gauss).map(|e| e * half);
+    Panel { lo, hi, sums: [kronrod.map(|v| v * half), error], split: 0 }
+}
+
+/// The product rule on a cell.
+fn on_rectangle(f: &mut dyn FnMut(f64, f64) -> Components, lo: [f64; 2], hi: [f64; 2]) -> Panel {
+    let nodes = nodes();
+    let centre = [0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1])];
+    let half = [0.5 * (hi[0] - lo[0]), 0.5 * (hi[1] - lo[1])];
+    let area = half[0] * half[1];
+    let mut value = [0.0; MOST];
+    // Errors are summed line by line in absolute value: on a tilted edge the lines' errors have both signs and would cancel.
+    let (mut error_x, mut error_y) = ([0.0; MOST], [0.0; MOST]);
+    let mut columns = [([0.0; MOST], [0.0; MOST]); 15];
+    for [x, kx, gx] in nodes {
+        let (mut kronrod, mut gauss) = ([0.0; MOST], [0.0; MOST]);
+        for ([y, ky, gy], column) in nodes.into_iter().zip(&mut columns) {
+            let v = f(centre[0] + half[0] * x, centre[1] + half[1] * y);
+            add(&mut kronrod, ky, v);
+            add(&mut gauss, gy, v);
+            add(&mut column.0, kx, v);
+            add(&mut column.1, gx, v);
         }
-        for ((kronrod, gauss), [_, weight, _]) in columns.into_iter().zip(nodes) {
-            add(&mut error_x, weight, distance(kronrod, gauss));
-        }
-        let worst = |error: &[f64; N]| error.iter().copied().fold(0.0, f64::max);
-        let split = usize::from(worst(&error_y) > worst(&error_x));
-        let error = core::array::from_fn(|c| area * (error_x[c] + error_y[c]));
-        Panel { lo, hi, sums: [value.map(|v| v * area), error], split }
-    })
+        add(&mut value, kx, kronrod);
+        add(&mut error_y, kx, distance(kronrod, gauss));
+    }
+    for ((kronrod, gauss), [_, weight, _]) in columns.into_iter().zip(nodes) {
+        add(&mut error_x, weight, distance(kronrod, gauss));
+    }
+    let worst = |error: &Components| error.iter().copied().fold(0.0, f64::max);
+    let split = usize::from(worst(&error_y) > worst(&error_x));
+    let error = array::from_fn(|c| area * (error_x[c] + error_y[c]));
+    Panel { lo, hi, sums: [value.map(|v| v * area), error], split }
 }
 
 /// The fifteen nodes on [-1, 1], each with its Kronrod and its Gauss weight.
 fn nodes() -> [[f64; 3]; 15] {
-    core::array::from_fn(|i| {
+    array::from_fn(|i| {
         let [x, kronrod, gauss] = RULE[i / 2];
         [if i % 2 == 0 { -x } else { x }, kronrod, gauss]
     })
 }
 
 /// Adds `weight * y` to a sum.
-fn add<const N: usize>(sum: &mut [f64; N], weight: f64, y: [f64; N]) {
-    for c in 0..N {
-        sum[c] += weight * y[c];
+fn add(sum: &mut Components, weight: f64, y: Components) {
+    for (sum, y) in sum.iter_mut().zip(y) {
+        *sum += weight * y;
     }
 }
 
 /// Distances between the components.
-fn distance<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
-    core::array::from_fn(|c| (a[c] - b[c]).abs())
+fn distance(a: Components, b: Components) -> Components {
+    array::from_fn(|c| (a[c] - b[c]).abs())
 }
 
 /// Breakpoints sorted, finite and without repeats.
@@ -198,12 +224,13 @@ fn clean(breakpoints: &[f64]) -> Vec<f64> {
 }
 
 /// Splits the panel of the largest error until the total meets the tolerance.
-fn adapt<const N: usize>(
-    domain: impl Iterator<Item = ([f64; 2], [f64; 2])>,
+fn adapt(
+    domain: &[([f64; 2], [f64; 2])],
     tolerance: &Tolerance,
-    mut measure: impl FnMut([f64; 2], [f64; 2]) -> Panel<N>,
-) -> Integral<N> {
-    let mut panels: Panels<N> = domain.map(|(lo, hi)| measure(lo, hi)).map(|panel| (panel.key(), panel)).collect();
+    measure: &mut dyn FnMut([f64; 2], [f64; 2]) -> Panel,
+) -> Integral<MOST> {
+    let mut panels = Panels::new();
+    panels.extend(domain.iter().map(|(lo, hi)| measure(*lo, *hi)).map(|panel| (panel.key(), panel)));
     // Panels too small to halve in f64 wait here with their error.
     let mut done = Panels::new();
     let mut running = total(&panels, &done);
@@ -239,9 +266,9 @@ fn adapt<const N: usize>(
 }
 
 /// Sums over all panels, by ascending error, which is also roughly ascending value: small terms first.
-fn total<const N: usize>(panels: &Panels<N>, done: &Panels<N>) -> Sums<N> {
+fn total(panels: &Panels, done: &Panels) -> Sums {
     let all: BTreeMap<_, _> = panels.iter().chain(done).collect();
-    let mut sums = [[0.0; N]; 2];
+    let mut sums = [[0.0; MOST]; 2];
     for panel in all.into_values() {
         sums.iter_mut().zip(panel.sums).for_each(|(sum, more)| add(sum, 1.0, more));
     }
