@@ -3,6 +3,7 @@
 use core::sync::atomic::{AtomicUsize, Ordering};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
+use std::sync::OnceLock;
 
 /// Progress bar on standard error; nothing where that is no terminal.
 #[must_use]
@@ -40,14 +41,21 @@ impl<'a> Progress<'a> {
     }
 
     /// Computes `f` on every cell, on all cores; results keep the order of the cells.
-    pub(crate) fn map<C: Sync, R: Send>(&self, cells: &[C], f: impl Fn(&C) -> R + Sync) -> Vec<R> {
-        let each = |cell| {
-            let result = f(cell);
+    pub(crate) fn map<C: Sync, R: Send + Sync>(&self, cells: &[C], f: impl Fn(&C) -> R + Sync) -> Vec<R> {
+        let results: Vec<OnceLock<R>> = cells.iter().map(|_| OnceLock::new()).collect();
+        self.each(cells.len(), &|index| {
+            results[index].get_or_init(|| f(&cells[index]));
+        });
+        results.into_iter().filter_map(OnceLock::into_inner).collect()
+    }
+
+    /// Does the work of every cell by its place: compiled once for all kinds of cells.
+    fn each(&self, count: usize, work: &(dyn Fn(usize) + Sync)) {
+        // One cell at a time: they differ in length by a factor of a hundred.
+        (0..count).into_par_iter().with_max_len(1).for_each(|index| {
+            work(index);
             let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
             (self.report)(done, self.total);
-            result
-        };
-        // One cell at a time: they differ in length by a factor of a hundred.
-        cells.par_iter().with_max_len(1).map(each).collect()
+        });
     }
 }
