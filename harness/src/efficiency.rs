@@ -48,6 +48,7 @@ pub use result::{
 pub use run::run;
 
 pub(crate) use measure::{bias_z, is_tested};
+pub(crate) use reference::stratified;
 pub(crate) use run::z_bound;
 
 #[cfg(test)]
@@ -230,7 +231,7 @@ pub(crate) fn ray_v(
 }
 
 /// The mean of a colour, on which all figures are based.
-fn intensity(rgb: [f64; 3]) -> f64 {
+pub(crate) fn intensity(rgb: [f64; 3]) -> f64 {
     (rgb[0] + rgb[1] + rgb[2]) / 3.0
 }
 

@@ -24,7 +24,6 @@
 mod candidates;
 pub mod equal_time;
 mod measure;
-mod reference;
 mod result;
 mod run;
 mod subject;

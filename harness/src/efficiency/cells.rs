@@ -55,7 +55,7 @@ impl Place<'_> {
             max_contribution: tally.max_in_means(),
             mean: tally.moments.mean_estimate(),
             reference: *reference,
-            z: bias_z(&tally.moments, reference),
+            z: bias_z(&tally.moments, reference.estimate()),
             tested: is_tested(n * randomisations, reference.predicted(sampler)),
         }
     }
@@ -84,7 +84,7 @@ impl Place<'_> {
             max_contribution: tally.max_in_means(),
             mean: tally.moments.mean_estimate(),
             reference: *reference,
-            z: bias_z(&tally.moments, reference),
+            z: bias_z(&tally.moments, reference.estimate()),
             tested: match technique {
                 Technique::Bsdf(sampler) => is_tested(n, reference.predicted(sampler)),
                 // Samples from the light hit it however small it is.
@@ -108,7 +108,7 @@ impl Place<'_> {
             n,
             randomisations,
             rms: rms_error(&tally.moments, reference.value),
-            z: bias_z(&tally.moments, reference),
+            z: bias_z(&tally.moments, reference.estimate()),
             tested: is_tested(n * randomisations, reference.predicted(sampler)),
         }
     }
@@ -132,7 +132,7 @@ fn rms_error(means: &Moments, truth: f64) -> Estimate {
 pub(super) fn sweep_row(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sampler, beta_r_deg: f32) -> SweepRow {
     let n = config.budget.sweep;
     let at = cell(config, stream::SWEEP, case, &[sampler.index(), u64::from(beta_r_deg.to_bits())]);
-    let (technique, light) = (Technique::Bsdf(sampler), Constant::white());
+    let (technique, light) = (Technique::Bsdf(sampler), Constant);
     let tally = moments(case, technique, &light, at, SequenceKind::Independent, [1, n]);
     let exact = exact_variance(case, sampler);
     let (v, [quadrature, _]) = (tally.moments.relative_variance(), exact.v);
@@ -145,7 +145,7 @@ pub(super) fn sweep_row(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sam
         v,
         quadrature,
         z_quadrature: agreement(v, quadrature),
-        z: bias_z(&tally.moments, &exact.mean),
+        z: bias_z(&tally.moments, exact.mean),
     }
 }
 

@@ -2,7 +2,7 @@
 //! (section 4 of the paper).
 
 use super::case::Case;
-use super::{MIN_EFFECTIVE, Reference, Technique, intensity};
+use super::{MIN_EFFECTIVE, Technique, intensity};
 use crate::light::{Light, LightSample, product};
 use crate::sampler::Sampler;
 use crate::sequence::{SequenceKind, XiSource};
@@ -117,7 +117,7 @@ pub(super) fn moments(
 ///
 /// - Source: Hall 1992, On the removal of skewness by transformation, equation (3).
 /// - Domain: 0 when the mean is exactly the reference; infinite when it differs without any spread; NaN when a contribution was NaN.
-pub(crate) fn bias_z(moments: &Moments, reference: &Reference) -> f64 {
+pub(crate) fn bias_z(moments: &Moments, reference: Estimate) -> f64 {
     let mean = moments.mean_estimate();
     let difference = mean.value - reference.value;
     if difference == 0.0 {

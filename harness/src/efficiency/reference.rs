@@ -2,11 +2,11 @@
 
 use super::case::Case;
 use super::{Reference, ReferenceMethod, SAMPLERS, intensity, stream};
-use crate::light::{Environment, Light, luminance, product};
+use crate::light::{Environment, Light, LightSample, luminance, product};
 use crate::quadrature::SphereIntegrator;
 use crate::sampler::Sampler;
 use crate::sequence::{Stratified, XiSource};
-use crate::stats::Moments;
+use crate::stats::{Estimate, Moments};
 use glam::DVec3;
 
 /// `numerator / pdf`, 0 where nothing is drawn: the contribution is 0 there too.
@@ -76,6 +76,28 @@ pub(super) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2
     [2.0 * second / (mean * mean) - 1.0, (second - squares) / (mean * mean)]
 }
 
+/// Strata of a pass, across and down.
+const STRATA: [usize; 2] = [64, 64];
+
+/// Directions of a pass.
+const PASS: usize = STRATA[0] * STRATA[1];
+
+/// The integral of `y` over the sphere, by stratified passes over directions drawn from a light.
+pub(crate) fn stratified(
+    light: &dyn Light,
+    [seed, stream]: [u64; 2],
+    passes: usize,
+    y: &mut dyn FnMut(&LightSample) -> f64,
+) -> Estimate {
+    let mut source = Stratified::new(&STRATA, seed, stream);
+    let mut term = || {
+        let sample = light.sample(source.next_xi());
+        over(y(&sample), sample.pdf)
+    };
+    let means: Moments = (0..passes).map(|_| (0..PASS).map(|_| term()).sum::<f64>() / PASS as f64).collect();
+    means.mean_estimate()
+}
+
 /// Mean and variances under an environment map: the mean by quadrature while the map has at most `max_texels`, all else by a stratified run over the oracle.
 ///
 /// Quadrature texel by texel does not resolve lobes much narrower than a texel: unless it converges, or its error is below
@@ -84,27 +106,18 @@ pub(super) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2
 /// The run draws from the map, `passes` randomisations of 64 x 64 strata; only the map's own sampling is shared with what it is a reference for.
 pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, passes: usize, seed: u64) -> Reference {
     let id = stream(&[stream::REFERENCE, case.model.index(), case.theta_o_deg.to_bits()]);
-    let mut source = Stratified::new(&[64, 64], seed, id);
-    let cells = source.cells();
-    let mut means = Moments::new();
     let (mut squares, mut cubes) = ([0.0; SAMPLERS.len()], [0.0; SAMPLERS.len()]);
-    for _ in 0..passes {
-        let mut sum = 0.0;
-        for _ in 0..cells {
-            let s = map.sample(source.next_xi());
-            let y = intensity(product(s.radiance, case.oracle_value(s.dir)));
-            sum += over(y, s.pdf);
-            for ((square, cube), sampler) in squares.iter_mut().zip(&mut cubes).zip(SAMPLERS) {
-                // Contribution of one sample of the sampler in this direction.
-                let contribution = over(y, case.density(sampler, s.dir));
-                *square += over(y * contribution, s.pdf);
-                *cube += over(y * contribution * contribution, s.pdf);
-            }
+    let mean = stratified(map, [seed, id], passes, &mut |s| {
+        let y = intensity(product(s.radiance, case.oracle_value(s.dir)));
+        for ((square, cube), sampler) in squares.iter_mut().zip(&mut cubes).zip(SAMPLERS) {
+            // Contribution of one sample of the sampler in this direction.
+            let contribution = over(y, case.density(sampler, s.dir));
+            *square += over(y * contribution, s.pdf);
+            *cube += over(y * contribution * contribution, s.pdf);
         }
-        means.push(sum / cells as f64);
-    }
-    let mean = means.mean_estimate();
-    let n = (passes * cells) as f64;
+        y
+    });
+    let n = (passes * PASS) as f64;
     let v = squares.map(|square| square / n / (mean.value * mean.value) - 1.0);
     // The third central moment over the cube of the deviation, both over powers of the mean.
     let skewness = core::array::from_fn(|i| {
@@ -126,7 +139,7 @@ pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ExactVariance {
     /// The integral of the mean of RGB.
-    pub(super) mean: Reference,
+    pub(super) mean: Estimate,
     /// V of the mean of RGB, and of the luminance of Rec. 709.
     pub(super) v: [f64; 2],
     /// Whether the tolerance of 1e-7 was met.
@@ -144,7 +157,7 @@ pub(super) fn exact_variance(case: &Case, sampler: Sampler) -> ExactVariance {
     });
     let [m, y, m_sq, y_sq] = r.value;
     ExactVariance {
-        mean: Reference::by_quadrature(m, r.error[0]),
+        mean: Estimate::exact(m),
         v: [m_sq / (m * m) - 1.0, y_sq / (y * y) - 1.0],
         #[cfg(test)]
         converged: r.converged,

@@ -86,6 +86,11 @@ impl Reference {
         }
     }
 
+    /// The integral with its standard error.
+    pub(crate) const fn estimate(&self) -> Estimate {
+        Estimate { value: self.value, standard_error: self.standard_error }
+    }
+
     /// V and skewness of one independent sample; not numbers for a sampler that is not compared.
     pub(crate) fn predicted(&self, sampler: Sampler) -> [f64; 2] {
         [&self.v, &self.skewness].map(|each| of_sampler(each, sampler))

@@ -34,8 +34,7 @@ pub fn run(
     config: &EfficiencyConfig<'_>,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<EfficiencyResult, ParamError> {
-    let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), super::sun(), Rectangle::figure_6a());
-    let lights: [&dyn Light; 5] = [&constant, &smooth, &sun, &area, config.environment];
+    let lights: [&dyn Light; 5] = [&Constant, &Smooth, &super::sun(), &Rectangle, config.environment];
     let poses = product(&ModelKind::ALL, &THETA_O_DEG);
     let of_hair = |params: &HairParams| -> Vec<Case> {
         poses.iter().map(|&(model, theta_o)| Case::new(model, params, theta_o)).collect()
@@ -120,7 +119,9 @@ pub fn run(
 
 /// Every pair of an `a` and a `b`, the latter running faster.
 fn product<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
-    a.iter().flat_map(|&x| b.iter().map(move |&y| (x, y))).collect()
+    let mut pairs = Vec::with_capacity(a.len() * b.len());
+    a.iter().for_each(|&x| pairs.extend(b.iter().map(|&y| (x, y))));
+    pairs
 }
 
 /// Holds every z-score against the bound that all of them together pass with probability `1 - FALSE_ALARM`.

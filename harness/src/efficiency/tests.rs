@@ -74,7 +74,7 @@ fn the_recorded_figures_are_of_the_mean_of_rgb() {
 #[test]
 fn measured_variance_is_that_of_quadrature_and_of_the_table() {
     for (k, (case, sampler)) in cases().enumerate() {
-        let tally = independent(&case, Technique::Bsdf(sampler), &Constant::white(), [21, k as u64], 400_000);
+        let tally = independent(&case, Technique::Bsdf(sampler), &Constant, [21, k as u64], 400_000);
         let v = tally.moments.relative_variance();
         let exact = exact_variance(&case, sampler).v[0];
         // 36 comparisons: 3.5 standard errors is 1.7% of false alarms over all of them.
@@ -92,9 +92,7 @@ fn measured_variance_is_that_of_quadrature_and_of_the_table() {
 
 #[test]
 fn every_estimator_agrees_with_quadrature() {
-    let (smooth, area, sun) = (Smooth::new(), Rectangle::figure_6a(), sun());
-    let constant = Constant::white();
-    let lights: [&dyn Light; 4] = [&constant, &smooth, &area, &sun];
+    let lights: [&dyn Light; 4] = [&Constant, &Smooth, &Rectangle, &sun()];
     let theta_o = [45.0, 75.0];
     let mut worst = 0.0_f64;
     for (k, light) in lights.into_iter().enumerate() {
@@ -105,7 +103,7 @@ fn every_estimator_agrees_with_quadrature() {
                 // 1e6 samples hit the sun about 480 times.
                 let n = if k == 3 { 1_000_000 } else { 200_000 };
                 let tally = independent(&case, technique, light, [31, (16 * k + t) as u64], n);
-                let z = bias_z(&tally.moments, &reference);
+                let z = bias_z(&tally.moments, reference.estimate());
                 worst = worst.max(z.abs());
                 assert!(z.abs() < 4.0, "{} {model:?} {}: z {z}", light.name(), technique.name());
                 if let Technique::Bsdf(sampler) = technique {
@@ -210,7 +208,7 @@ fn maps_of_few_texels_raise_no_alarm() {
     // The one texel is a constant light, whose integral is known.
     let one = Environment::from_pixels("one", 1, 1, vec![[1.0; 3]]).expect("valid");
     let case = Case::new(ModelKind::Gaussian, &HairParams::default(), 45.0);
-    let [got, exact] = [reference::of_environment(&case, &one, 128, 16, 1), by_quadrature(&case, &Constant::white())];
+    let [got, exact] = [reference::of_environment(&case, &one, 128, 16, 1), by_quadrature(&case, &Constant)];
     assert_eq!(got.method, ReferenceMethod::StratifiedRun);
     assert!((got.value - exact.value).abs() < 5.0 * got.standard_error, "{got:?}, {exact:?}");
 }
@@ -230,28 +228,21 @@ fn black_hair_and_black_maps_are_no_failures() {
     let reference = reference::of_environment(&case, &map, 8, 1, 0);
     for technique in Technique::all() {
         let tally = independent(&case, technique, &map, [61, 0], 1_000);
-        assert_eq!(bias_z(&tally.moments, &reference), 0.0, "{}", technique.name());
+        assert_eq!(bias_z(&tally.moments, reference.estimate()), 0.0, "{}", technique.name());
     }
 }
 
 #[test]
 fn the_bias_score_is_normal_where_hits_are_rare() {
     // Poisson hits, 25 expected a run: a plain z exceeds 3 below the mean three times too often, this one does not.
-    let reference = Reference {
-        value: 0.0025,
-        standard_error: 0.0,
-        quadrature_error: 0.0,
-        method: ReferenceMethod::Quadrature,
-        v: [399.0; 3],
-        skewness: [0.0; 3],
-    };
+    let reference = Estimate::exact(0.0025);
     let mut xi = Independent::new(51, 0);
     let mut plain = 0;
     let mut corrected = 0;
     for _ in 0..4_000 {
         let m: Moments = (0..10_000).map(|_| f64::from(u8::from(xi.next_f64() < 0.0025))).collect();
         plain += usize::from(m.mean_estimate().z_score(0.0025).abs() > 2.576);
-        corrected += usize::from(bias_z(&m, &reference).abs() > 2.576);
+        corrected += usize::from(bias_z(&m, reference).abs() > 2.576);
     }
     // 1% of 4000 are 40, give or take 6.3.
     assert!((18..=65).contains(&corrected), "{corrected} of 4000 beyond 1%, a plain z has {plain}");

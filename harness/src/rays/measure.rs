@@ -1,10 +1,9 @@
 //! Variances at one shading point.
 
 use super::candidates::{LightBlock, LightBlocks, Lit, PACKETS, numbers};
-use super::reference::of_run;
 use super::result::{BiasScore, OneRay, PoolFigures, RayFigures, RayPose};
 use super::{HALF, MOST, RAYS, SIZES, pools};
-use crate::efficiency::{Reference, bias_z, is_tested};
+use crate::efficiency::{bias_z, is_tested};
 use crate::sequence::Independent;
 use crate::stats::{Estimate, Moments};
 use hairis::resample::{Choice, Choices, choose};
@@ -195,8 +194,7 @@ pub(crate) fn unoccluded<const S: usize>(
     let mis = squares.mean_estimate().scale(1.0 / (mean * mean));
     // V about a mean that is off: its derivative by the mean is -2 V over the mean.
     let of_mean = 2.0 * mis.value * reference.standard_error / mean;
-    let expected = of_run(reference);
-    let bias = chosen.last().map(|moments| score(String::new(), moments, &expected));
+    let bias = chosen.last().map(|moments| score(String::new(), moments, reference));
     Unoccluded {
         mis: Estimate { standard_error: mis.standard_error.hypot(of_mean), ..mis },
         chosen: chosen.map(|moments| moments.relative_variance()),
@@ -208,7 +206,7 @@ pub(crate) fn unoccluded<const S: usize>(
 pub(super) fn pose(
     lit: Lit<'_>,
     theta_o_deg: f64,
-    reference: &Reference,
+    reference: Estimate,
     [seed, stream]: [u64; 2],
     count: usize,
 ) -> RayPose {
@@ -233,32 +231,26 @@ pub(super) fn pose(
     });
     RayPose {
         theta_o_deg,
-        reference: Estimate { value: reference.value, standard_error: reference.standard_error },
+        reference,
         figures: RayFigures { bsdf, light: from_light, mis, chosen, half: half.collect() },
         z: scores(&plain, &pooled, reference),
     }
 }
 
-fn score(estimator: String, moments: &Moments, reference: &Reference) -> BiasScore {
+fn score(estimator: String, moments: &Moments, reference: Estimate) -> BiasScore {
     let deviation = moments.variance().sqrt();
     let shape = [moments.relative_variance().value, moments.higher_moments()[0] / deviation.powi(3)];
     let count = usize::try_from(moments.count()).unwrap_or(usize::MAX);
     BiasScore { estimator, z: bias_z(moments, reference), tested: is_tested(count, shape) }
 }
 
-fn scores(plain: &Plain, pooled: &Pooled, reference: &Reference) -> Vec<BiasScore> {
-    let at_half = Reference {
-        value: HALF * reference.value,
-        standard_error: HALF * reference.standard_error,
-        quadrature_error: HALF * reference.quadrature_error,
-        ..*reference
-    };
+fn scores(plain: &Plain, pooled: &Pooled, reference: Estimate) -> Vec<BiasScore> {
     let plain = [("light only", &plain.light), ("one-sample MIS", &plain.mis)];
     let plain = plain.map(|(name, moments)| score(name.to_owned(), moments, reference));
     let one = |(count, moments): (&u32, &Moments)| score(format!("{count} + {count}"), moments, reference);
     let several = |(size, rays): (usize, usize)| {
         let [count, k] = [SIZES[size], RAYS[rays]];
-        score(format!("{k} of {count} + {count}, half visible"), &pooled.half[size][rays].0, &at_half)
+        score(format!("{k} of {count} + {count}, half visible"), &pooled.half[size][rays].0, reference.scale(HALF))
     };
     plain.into_iter().chain(SIZES.iter().zip(&pooled.chosen).map(one)).chain(pools().map(several)).collect()
 }

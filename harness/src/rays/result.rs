@@ -120,9 +120,12 @@ impl RayFigures {
     /// Geometric means; numbers of rays have arithmetic ones.
     pub(super) fn mean(of: &[&Self]) -> Self {
         let mut mean = of[0].clone();
-        for (place, estimate) in mean.estimates().enumerate() {
-            let each = of.iter().filter_map(|figures| (*figures).clone().estimates().nth(place).copied());
-            *estimate = geometric_mean(&each.collect::<Vec<_>>());
+        let each: Vec<Vec<Estimate>> = of
+            .iter()
+            .map(|figures| (*figures).clone().estimates().into_iter().map(|estimate| *estimate).collect())
+            .collect();
+        for (place, estimate) in mean.estimates().into_iter().enumerate() {
+            *estimate = geometric_mean(&each.iter().map(|figures| figures[place]).collect::<Vec<_>>());
         }
         for (place, pool) in mean.half.iter_mut().enumerate() {
             pool.traced = of.iter().map(|figures| figures.half[place].traced).sum::<f64>() / of.len() as f64;
@@ -131,9 +134,13 @@ impl RayFigures {
     }
 
     /// Every V.
-    fn estimates(&mut self) -> impl Iterator<Item = &mut Estimate> {
-        let rays = [&mut self.bsdf, &mut self.light, &mut self.mis].into_iter().chain(&mut self.chosen);
-        let of_rays = rays.flat_map(|ray| [&mut ray.unoccluded].into_iter().chain(&mut ray.visible));
-        of_rays.chain(self.half.iter_mut().map(|pool| &mut pool.v))
+    fn estimates(&mut self) -> Vec<&mut Estimate> {
+        let mut all = Vec::new();
+        for ray in [&mut self.bsdf, &mut self.light, &mut self.mis].into_iter().chain(&mut self.chosen) {
+            all.push(&mut ray.unoccluded);
+            all.extend(&mut ray.visible);
+        }
+        all.extend(self.half.iter_mut().map(|pool| &mut pool.v));
+        all
     }
 }

@@ -1,13 +1,14 @@
 //! Every model and sampler under every light.
 
 use super::result::{RayFigures, RayPose, RayRow, RaysResult};
-use super::{EqualTime, Lit, RaySubject, measure, reference, times};
-use crate::efficiency::{Check, EfficiencyResult, Reference, THETA_O_DEG};
-use crate::light::{Environment, Light};
+use super::{EqualTime, Lit, RaySubject, measure, times};
+use crate::efficiency::{Check, EfficiencyResult, THETA_O_DEG, intensity, stratified};
+use crate::light::{Environment, Light, product};
 use crate::progress::Progress;
 use crate::sequence::stream_id;
+use crate::stats::Estimate;
 use crate::study::with_lights;
-use rayon::prelude::*;
+use hairis::reference::Reference as _;
 use std::collections::HashMap;
 
 /// Settings of a run.
@@ -71,7 +72,7 @@ pub(super) fn rows(
     Progress::new(cells.len(), progress).map(&cells, |&(subject, light)| {
         let pose = |(pose, theta_o)| {
             let at = [config.seed, stream([subject.index(), light as u64, pose as u64])];
-            let reference = &references[&(subject.model(), light, pose)];
+            let reference = references[&(subject.model(), light, pose)];
             let lit = Lit { scatter: &subject.scatter(pose), light: lights[light] };
             measure::pose(lit, theta_o, reference, at, config.pools)
         };
@@ -92,19 +93,29 @@ fn references(
     subjects: &[RaySubject],
     lights: &[&dyn Light],
     efficiency: &EfficiencyResult,
-) -> HashMap<(&'static str, usize, usize), Reference> {
+) -> HashMap<(&'static str, usize, usize), Estimate> {
     let of_model = |subjects: &[RaySubject]| {
         let subject = subjects[0];
         (0..lights.len()).flat_map(move |light| (0..THETA_O_DEG.len()).map(move |pose| (subject, light, pose)))
     };
     let cells: Vec<_> = subjects.chunk_by(|a, b| a.model() == b.model()).flat_map(of_model).collect();
     let reference = |&(subject, light, pose): &(RaySubject, usize, usize)| {
-        let known = reference::known(efficiency, subject, lights[light].name(), pose);
+        let key = (subject.model(), lights[light].name(), THETA_O_DEG[pose]);
+        let known = efficiency.rows.iter().find(|row| (row.model.name(), &*row.light, row.theta_o_deg) == key);
         let at = [config.seed, stream([1 << 32 | subject.index(), light as u64, 0])];
-        let by_run = || reference::by_run(subject, lights[light], pose, at, config.passes);
-        ((subject.model(), light, pose), known.unwrap_or_else(by_run))
+        let by_run = || by_run(subject, lights[light], pose, at, config.passes);
+        ((subject.model(), light, pose), known.map_or_else(by_run, |row| row.reference.estimate()))
     };
-    cells.par_iter().with_max_len(1).map(reference).collect()
+    Progress::new(cells.len(), &|_, _| ()).map(&cells, reference).into_iter().collect()
+}
+
+/// The mean of RGB by a stratified run over the formulas in double precision, drawn from the light.
+fn by_run(subject: RaySubject, light: &dyn Light, pose: usize, [seed, stream]: [u64; 2], passes: usize) -> Estimate {
+    let formulas = subject.formulas(pose);
+    stratified(light, [seed, stream_id(&[stream, pose as u64])], passes, &mut |sample| {
+        let (value, cos_theta) = (formulas.eval(sample.dir.to_array()), sample.dir.y.hypot(sample.dir.z));
+        intensity(product(sample.radiance, value.map(|s| s * cos_theta)))
+    })
 }
 
 /// Holds every bias against one bound.

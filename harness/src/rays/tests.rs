@@ -4,7 +4,7 @@ use super::equal_time::PRICES_US;
 use super::measure::pose;
 use super::result::{geometric_mean, occluded};
 use super::*;
-use crate::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, Reference, ReferenceMethod, THETA_O_DEG};
+use crate::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, THETA_O_DEG};
 use crate::light::{Environment, Light, Sky};
 use crate::sequence::{Independent, XiSource};
 use crate::stats::Estimate;
@@ -127,13 +127,8 @@ fn rows_depend_on_the_seed_alone_and_black_maps_are_no_failures() {
     assert!(on(2, 3) != on(2, 4), "seeds do not matter");
 
     let black = Environment::from_pixels("black", 4, 2, vec![[0.0; 3]; 8]).expect("valid");
-    let pose = pose(Lit { scatter: &subjects[0].scatter(0), light: &black }, 0.0, &reference(0.0), [1, 1], 16);
+    let pose = pose(Lit { scatter: &subjects[0].scatter(0), light: &black }, 0.0, Estimate::exact(0.0), [1, 1], 16);
     assert!(pose.z.iter().all(|score| score.z == 0.0), "{:?}", pose.z);
-}
-
-fn reference(value: f64) -> Reference {
-    let method = ReferenceMethod::Quadrature;
-    Reference { value, standard_error: 0.0, quadrature_error: 0.0, method, v: [f64::NAN; 3], skewness: [f64::NAN; 3] }
 }
 
 #[test]
@@ -147,7 +142,7 @@ fn a_wrong_mean_fails_the_check() {
     // A reference that is 5% off.
     let light = Sky::default().environment();
     let lit = Lit { scatter: &subjects[0].scatter(1), light: &light };
-    let pose_of = |value: f64| pose(lit, 45.0, &reference(value), [1, 1], 1024);
+    let pose_of = |value: f64| pose(lit, 45.0, Estimate::exact(value), [1, 1], 1024);
     let right = all.iter().find(|row| row.light == map.name()).expect("the sky").poses[1].reference.value;
     let worst = |value| pose_of(value).z.iter().filter(|score| score.tested).map(|s| s.z.abs()).fold(0.0, f64::max);
     assert!(worst(right) < 5.0 && worst(1.05 * right) > 6.0, "{} {}", worst(right), worst(1.05 * right));
