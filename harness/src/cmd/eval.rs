@@ -14,7 +14,7 @@ use crate::args::{CodePath, Eval};
 use crate::error::Error;
 use answer::{answers, block_len};
 use lines::Lines;
-use request::{Refusal, Request};
+use request::Request;
 use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Write};
 
 const BUFFER: usize = 1 << 16;
@@ -49,9 +49,8 @@ pub fn stream<R: Read, W: Write>(path: CodePath, input: BufReader<R>, mut output
         read += block.len() as u64;
         refused += block.iter().filter(|line| line.is_err()).count() as u64;
         let mut write = || -> io::Result<()> {
-            for answer in answers(path, &block) {
-                serde_json::to_writer(&mut output, &answer)?;
-                output.write_all(b"\n")?;
+            for answer in answers(path, &block)? {
+                writeln!(output, "{answer}")?;
             }
             // Flush now: the caller may wait for these answers before it writes on.
             if more && lines.ready() { Ok(()) } else { output.flush() }
@@ -65,7 +64,7 @@ pub fn stream<R: Read, W: Write>(path: CodePath, input: BufReader<R>, mut output
 }
 
 /// Reads up to `len` lines, fewer where no more are ready; false at the end of the input.
-fn fill<R: Read>(block: &mut Vec<Result<Request, Refusal>>, len: usize, lines: &mut Lines<R>) -> io::Result<bool> {
+fn fill<R: Read>(block: &mut Vec<Result<Request, String>>, len: usize, lines: &mut Lines<R>) -> io::Result<bool> {
     loop {
         match lines.next()? {
             None => return Ok(false),

@@ -1,6 +1,6 @@
 //! The answers, computed along the chosen path.
 
-use super::request::{Exact, Query, Refusal, Request};
+use super::request::{Exact, Query, Request};
 use crate::args::CodePath;
 use core::array::from_fn;
 use core::ops::Index;
@@ -9,24 +9,13 @@ use hairis::reference::{Reference, ReferenceSample};
 use hairis::{Eval, EvalSlices, Hit, Lobe, LobeEval8, PerLobe, Sample, SampleSlices, Vec3x8};
 use hairis_variants::{AnyBsdf8, AnyGather, ModelId};
 use serde::Serialize;
+use serde_json::json;
 use std::collections::BTreeMap;
 use wide::f32x8;
 
-/// One line of the output. Numbers have as few digits as reading them back in the same precision allows.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub(super) enum Line {
-    /// An answer in single precision.
-    Single(Answer<f32>),
-    /// An answer in double precision.
-    Double(Answer<f64>),
-    /// Answer to a refused line.
-    Refused { error: String },
-}
-
 /// The answer to a request. `pdf_lobe` has one number per lobe of the model.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Answer<T> {
+#[derive(Debug, Serialize)]
+struct Answer<T> {
     /// The direction of a sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     wi: Option<[T; 3]>,
@@ -41,7 +30,7 @@ pub(super) struct Answer<T> {
 }
 
 /// The rest of the answer to uniform numbers. A discarded sample has no lobe, and 0 everywhere else.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Debug, Serialize)]
 struct Choice<T> {
     lobe: Option<&'static str>,
     weight: [T; 3],
@@ -56,20 +45,20 @@ pub(super) const fn block_len(path: CodePath) -> usize {
     }
 }
 
-/// The answers to a block of lines, in order.
-pub(super) fn answers(path: CodePath, block: &[Result<Request, Refusal>]) -> Vec<Line> {
-    let mut answers = Vec::with_capacity(block.len());
-    for (at, line) in block.iter().enumerate() {
-        match line {
-            Err(refusal) => answers.push((at, Line::Refused { error: refusal.to_string() })),
-            Ok(request) if path == CodePath::F64 => answers.push((at, Line::Double(textbook(request)))),
+/// The answers to a block of lines, in order. Numbers have as few digits as reading them back in the same precision allows.
+pub(super) fn answers(path: CodePath, block: &[Result<Request, String>]) -> serde_json::Result<Vec<String>> {
+    let mut lines = vec![String::new(); block.len()];
+    for (line, request) in lines.iter_mut().zip(block) {
+        match request {
+            Err(error) => *line = json!({ "error": error }).to_string(),
+            Ok(request) if path == CodePath::F64 => *line = serde_json::to_string(&textbook(request))?,
             Ok(_) => {}
         }
     }
     // The requests of each model together; the answers then go back to their places.
     for model in ModelId::ALL.iter().filter(|_| path != CodePath::F64) {
         let requests = block.iter().enumerate().filter_map(|(at, line)| Some((at, line.as_ref().ok()?)));
-        let (at, requests): (Vec<usize>, Vec<&Request>) = requests.filter(|(_, of)| of.model == *model).unzip();
+        let (places, requests): (Vec<usize>, Vec<&Request>) = requests.filter(|(_, of)| of.model == *model).unzip();
         let found: Vec<_> = match path {
             CodePath::X8 => requests.chunks(8).flat_map(eight).collect(),
             CodePath::Batch => {
@@ -78,10 +67,11 @@ pub(super) fn answers(path: CodePath, block: &[Result<Request, Refusal>]) -> Vec
             }
             CodePath::Scalar | CodePath::F64 => requests.into_iter().map(scalar).collect(),
         };
-        answers.extend(at.into_iter().zip(found.into_iter().map(Line::Single)));
+        for (at, answer) in places.into_iter().zip(&found) {
+            lines[at] = serde_json::to_string(answer)?;
+        }
     }
-    answers.sort_unstable_by_key(|(at, _)| *at);
-    answers.into_iter().map(|(_, answer)| answer).collect()
+    Ok(lines)
 }
 
 /// One direction per call.
@@ -95,7 +85,7 @@ fn scalar(request: &Request) -> Answer<f32> {
         }
     };
     let densities = gather.lobes(wi).0.map(|lobe| lobe.pdf);
-    answer(request.model, found, densities, || gather.lobes(request.wo).0.map(|lobe| lobe.color))
+    answer(request.model, found, densities, &|| gather.lobes(request.wo).0.map(|lobe| lobe.color))
 }
 
 /// Up to eight lines in a call, all of one model: every lane has its own material, shading point and query. Spare lanes repeat
@@ -122,7 +112,7 @@ fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
             Query::Xi(_) => drawn(samples.lane(i)),
         };
         let colors = || at_wo.0.map(|lobe| lobe.color.map(|c| c.as_array()[i]));
-        answer(request.model, found, densities_of_lane(&lobes, i), colors)
+        answer(request.model, found, densities_of_lane(&lobes, i), &colors)
     };
     group.iter().enumerate().map(of_lane).collect()
 }
@@ -145,7 +135,7 @@ fn batch(run: &[&Request]) -> Vec<Answer<f32>> {
             Query::Wi(_) => values.next()?,
             Query::Xi(_) => samples.next()?,
         };
-        Some(answer(request.model, found, densities, || gather.lobes(request.wo).0.map(|lobe| lobe.color)))
+        Some(answer(request.model, found, densities, &|| gather.lobes(request.wo).0.map(|lobe| lobe.color)))
     };
     run.iter().filter_map(of_line).collect()
 }
@@ -207,7 +197,7 @@ fn textbook(request: &Request) -> Answer<f64> {
         }
     };
     let densities = point.lobes(wi).0.map(|lobe| lobe.pdf);
-    answer(*model, found, densities, || point.lobes(*wo).0.map(|lobe| lobe.color))
+    answer(*model, found, densities, &|| point.lobes(*wo).0.map(|lobe| lobe.color))
 }
 
 fn gather(request: &Request) -> AnyGather {
@@ -240,20 +230,21 @@ fn drawn(sample: Option<Sample>) -> Found<f32> {
 fn answer<T: Copy + Default>(
     model: ModelId,
     found: Found<T>,
-    densities: [T; 4],
-    colors: impl FnOnce() -> [[T; 3]; 4],
+    mut densities: [T; 4],
+    colors: &dyn Fn() -> [[T; 3]; 4],
 ) -> Answer<T> {
     let names = model.lobes();
-    let own = |densities: [T; 4]| densities[..names.len()].to_vec();
-    let colors = model.colors().map(|name| (name, colors()[..names.len()].to_vec())).into_iter().collect();
-    match found {
-        Found::Value(s, pdf) => Answer { wi: None, s, pdf, pdf_lobe: own(densities), choice: None, colors },
-        Found::Sample(ReferenceSample { wi, value: s, pdf, weight, lobe }) => {
-            let pdf_lobe = own(if lobe.is_some() { densities } else { [T::default(); 4] });
-            let choice = Some(Choice { lobe: lobe.map(|lobe| names[lobe.index()]), weight });
-            Answer { wi: Some(wi), s, pdf, pdf_lobe, choice, colors }
+    let (wi, s, pdf, choice) = match found {
+        Found::Value(s, pdf) => (None, s, pdf, None),
+        Found::Sample(ReferenceSample { wi, value, pdf, weight, lobe }) => {
+            if lobe.is_none() {
+                densities = [T::default(); 4];
+            }
+            (Some(wi), value, pdf, Some(Choice { lobe: lobe.map(|lobe| names[lobe.index()]), weight }))
         }
-    }
+    };
+    let colors = model.colors().map(|name| (name, colors()[..names.len()].to_vec())).into_iter().collect();
+    Answer { wi, s, pdf, pdf_lobe: densities[..names.len()].to_vec(), choice, colors }
 }
 
 fn densities_of_lane(lobes: &PerLobe<LobeEval8>, lane: usize) -> [f32; 4] {

@@ -1,6 +1,6 @@
 //! The lines of a stream, with a bound on their length.
 
-use super::request::Refusal;
+use super::request::refusal;
 use std::io::{self, BufRead, BufReader, Read};
 
 /// Longest line taken, in bytes: a thousand times what a request needs.
@@ -23,7 +23,7 @@ impl<R: Read> Lines<R> {
     }
 
     /// The next line without its end, or its refusal; `None` at the end of the input. A last line needs no end.
-    pub(super) fn next(&mut self) -> io::Result<Option<Result<&str, Refusal>>> {
+    pub(super) fn next(&mut self) -> io::Result<Option<Result<&str, String>>> {
         self.line.clear();
         // One byte more than the longest line, for its end.
         let read = self.input.by_ref().take(LONGEST as u64 + 1).read_until(b'\n', &mut self.line)?;
@@ -34,10 +34,10 @@ impl<R: Read> Lines<R> {
             self.line.pop();
         } else if self.line.len() > LONGEST {
             self.input.skip_until(b'\n')?;
-            return Ok(Some(Err(Refusal::at("line", format!("longer than {LONGEST} bytes")))));
+            return Ok(Some(Err(refusal("line", format!("longer than {LONGEST} bytes")))));
         }
         let text = core::str::from_utf8(&self.line)
-            .map_err(|error| Refusal::at("line", format!("not UTF-8 after byte {}", error.valid_up_to())));
+            .map_err(|error| refusal("line", format!("not UTF-8 after byte {}", error.valid_up_to())));
         Ok(Some(text))
     }
 }

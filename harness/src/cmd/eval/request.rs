@@ -1,7 +1,6 @@
 //! One line of the input, checked.
 
-use super::json::{Fields, Json, shortened};
-use core::fmt;
+use super::json::{Json, join};
 use glam::Vec3;
 use hairis::ParamError;
 use hairis_variants::{AnyBsdf, Field, Kind, ModelId, Values};
@@ -12,34 +11,16 @@ const LENGTH_TOLERANCE: f64 = 1e-3;
 /// for the same direction.
 const ROUNDED: f64 = 2e-7;
 
-/// Refusal of a line: the path of the field at fault, and the problem.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Refusal {
-    field: String,
-    problem: String,
+/// Refusal of a line: the path of the field at fault, and the problem. A line of the input is echoed in part.
+pub(super) fn refusal(field: &str, problem: impl Into<String>) -> String {
+    format!("{}: {}", cut(field, 80), cut(&problem.into(), 240))
 }
 
-impl Refusal {
-    pub(super) fn at(field: &str, problem: impl Into<String>) -> Self {
-        Self { field: cut(field.to_owned(), LONGEST_FIELD), problem: cut(problem.into(), LONGEST_PROBLEM) }
-    }
-}
-
-/// Longest path of a field and longest problem in a refusal, in characters: a line of the input is echoed in part.
-const LONGEST_FIELD: usize = 80;
-const LONGEST_PROBLEM: usize = 240;
-
-fn cut(mut text: String, longest: usize) -> String {
-    if let Some((at, _)) = text.char_indices().nth(longest) {
-        text.truncate(at);
-        text.push_str("...");
-    }
-    text
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.field, self.problem)
+/// The first `longest` characters of a text.
+pub(super) fn cut(text: &str, longest: usize) -> String {
+    match text.char_indices().nth(longest) {
+        Some((at, _)) => format!("{}...", &text[..at]),
+        None => text.to_owned(),
     }
 }
 
@@ -77,118 +58,93 @@ pub(super) struct Exact {
 
 impl Request {
     /// Reads a line.
-    pub(super) fn parse(line: &str) -> Result<Self, Refusal> {
+    pub(super) fn parse(line: &str) -> Result<Self, String> {
         let line = Json::parse(line)?;
         // The fields of a line are those of its model; of the first, where the name is not that of any.
         let first = line.peek("model").and_then(|name| ModelId::find(name, None)).unwrap_or(ModelId::ALL[0]);
         let choice = first.choice().map(|(field, _)| field);
         let h = first.is_near_field().then_some("h");
         let known = ["model"].into_iter().chain(choice).chain(["params"]).chain(h).chain(["wo", "wi", "xi"]);
-        let mut line = line.fields("", &known.collect::<Vec<_>>())?;
+        let line = line.fields("", &known.collect::<Vec<_>>())?;
+        let given = |name: &str| line.get(name).ok_or_else(|| refusal(name, "missing"));
 
-        let name = line.text("model")?;
-        named("model", &name, &ModelId::defaults_of_names().map(ModelId::name).collect::<Vec<_>>())?;
-        let model = match choice.filter(|field| line.has(field)) {
-            Some(field) => chosen(first.name(), field, &line.text(field)?)?,
-            None => first,
-        };
-        let (values, exact) = read(model.defaults(), line.take("params")?)?;
+        let names: Vec<_> = ModelId::defaults_of_names().map(ModelId::name).collect();
+        word("model", given("model")?, &names)?;
+        let mut model = first;
+        if let Some((field, json)) = choice.and_then(|field| Some((field, line.get(field)?))) {
+            let of_name = ModelId::ALL.iter().filter(|id| id.name() == first.name());
+            let words: Vec<_> = of_name.filter_map(|id| id.choice()).map(|(_, word)| word).collect();
+            model = ModelId::find(first.name(), Some(words[word(field, json, &words)?])).unwrap_or(first);
+        }
+        let (values, exact) = read(model.defaults(), given("params")?.clone())?;
         let bsdf = model.bsdf(&values).map_err(|error| refused(model.fields(), &error, &exact))?;
-        let h = if line.has("h") { line.number("h")?.clamp(-1.0, 1.0) } else { 0.0 };
-        let wo = direction(&mut line, "wo")?;
-        let (query, numbers) = match [line.has("wi"), line.has("xi")] {
-            [true, false] => {
-                let wi = direction(&mut line, "wi")?;
+        let h = line.get("h").map_or(Ok(0.0), |json| number("h", json))?.clamp(-1.0, 1.0);
+        let wo = direction("wo", given("wo")?)?;
+        let (query, numbers) = match [line.get("wi"), line.get("xi")] {
+            [Some(wi), None] => {
+                let wi = direction("wi", wi)?;
                 (Query::Wi(single3(wi)), wi)
             }
-            [false, true] => {
-                let xi = uniform(&mut line, "xi")?;
+            [None, Some(xi)] => {
+                let xi = uniform("xi", xi)?;
                 (Query::Xi(single_xi(xi)), xi)
             }
-            [false, false] => return Err(line.refuse("wi", "missing; give wi or xi")),
-            [true, true] => return Err(line.refuse("wi", "given together with xi; give one of them")),
+            [None, None] => return Err(refusal("wi", "missing; give wi or xi")),
+            [Some(_), Some(_)] => return Err(refusal("wi", "given together with xi; give one of them")),
         };
         let exact = Exact { values: exact, wo, h, query: numbers };
         Ok(Self { model, values, bsdf, wo: single3(wo), h: single(h), query, exact })
     }
 }
 
-/// The model of this name and of this word in the field of its choice.
-fn chosen(name: &str, field: &str, word: &str) -> Result<ModelId, Refusal> {
-    let of_name = ModelId::ALL.iter().filter(|id| id.name() == name);
-    named(field, word, &of_name.filter_map(|id| id.choice()).map(|(_, word)| word).collect::<Vec<_>>())?;
-    ModelId::find(name, Some(word)).ok_or_else(|| Refusal::at(field, "not of this model"))
-}
-
-/// The place of `name` in `names`.
-fn named(field: &str, name: &str, names: &[&str]) -> Result<usize, Refusal> {
-    names.iter().position(|one| *one == name).ok_or_else(|| {
-        let names: Vec<String> = names.iter().map(|one| format!("\"{one}\"")).collect();
-        Refusal::at(field, format!("must be {}, got \"{}\"", names.join(" or "), shortened(name)))
-    })
-}
-
 /// The values that `params` gives in place of the defaults, rounded, and as they are in the input.
-fn read(mut values: Values, params: Json) -> Result<(Values, Values<f64>), Refusal> {
+fn read(mut values: Values, params: Json) -> Result<(Values, Values<f64>), String> {
     let fields = values.fields();
-    let mut given = params.fields("params", &fields.iter().map(|field| field.name).collect::<Vec<_>>())?;
-    for field in fields.iter().filter(|field| field.instead_of.is_none()) {
-        one_of_group(field.name, fields, &given)?;
+    let given = params.fields("params", &fields.iter().map(|field| field.name).collect::<Vec<_>>())?;
+    for head in fields.iter().filter(|field| field.instead_of.is_none()).map(|field| field.name) {
+        // A group of fields, exactly one of which is given; a field alone may be missing for now.
+        let group = fields.iter().filter(|field| field.name == head || field.instead_of == Some(head));
+        let group: Vec<&str> = group.map(|field| field.name).collect();
+        let found: Vec<&str> = group.iter().copied().filter(|name| given.contains_key(*name)).collect();
+        if found.is_empty() && group.len() > 1 {
+            return Err(refusal(&join("params", head), format!("missing; give one of {}", group.join(", "))));
+        }
+        if let [first, others @ ..] = &*found
+            && !others.is_empty()
+        {
+            let problem = format!("given together with {}; give one of them", others.join(", "));
+            return Err(refusal(&join("params", first), problem));
+        }
     }
     let mut exact = values.map(f64::from);
     for field in fields {
-        if !given.has(field.name) && (field.optional || in_group(field, fields)) {
-            continue;
-        }
+        let at = join("params", field.name);
+        let is_grouped = || fields.iter().any(|other| other.instead_of == Some(field.name));
+        let json = match given.get(field.name) {
+            None if field.optional || field.instead_of.is_some() || is_grouped() => continue,
+            json => json.ok_or_else(|| refusal(&at, "missing"))?,
+        };
         if let Some(other) = field.instead_of {
             (values, exact) = (values.without(other), exact.without(other));
         }
-        let numbers = numbers(field, &mut given)?;
+        let numbers = match field.kind {
+            Kind::Number => vec![number(&at, json)?],
+            #[expect(clippy::cast_precision_loss, reason = "a few words")]
+            Kind::Word(words) => vec![word(&at, json, words)? as f64],
+            kind => numbers(&at, json, kind.width())?,
+        };
         exact = exact.with(field.name, &numbers);
         values = values.with(field.name, &numbers.iter().map(|x| single(*x)).collect::<Vec<_>>());
     }
     Ok((values, exact))
 }
 
-/// Whether `field` replaces another, or another replaces it.
-fn in_group(field: &Field, fields: &[Field]) -> bool {
-    field.instead_of.is_some() || fields.iter().any(|other| other.instead_of == Some(field.name))
-}
-
-/// Refuses the group of `head` if not exactly one of its fields is given; a field alone may be missing for now.
-fn one_of_group(head: &str, fields: &[Field], given: &Fields) -> Result<(), Refusal> {
-    let group = fields.iter().filter(|field| field.name == head || field.instead_of == Some(head));
-    let (found, missing): (Vec<&str>, Vec<&str>) = group.map(|field| field.name).partition(|name| given.has(name));
-    match (&*found, &*missing) {
-        ([], [_, others @ ..]) if !others.is_empty() => {
-            Err(given.refuse(head, format!("missing; give one of {head}, {}", others.join(", "))))
-        }
-        ([first, others @ ..], _) if !others.is_empty() => {
-            Err(given.refuse(first, format!("given together with {}; give one of them", others.join(", "))))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// The numbers of a field of `params`; for a word its index.
-fn numbers(field: &Field, given: &mut Fields) -> Result<Vec<f64>, Refusal> {
-    match field.kind {
-        Kind::Number => Ok(vec![given.number(field.name)?]),
-        Kind::Word(words) => {
-            let word = given.text(field.name)?;
-            #[expect(clippy::cast_precision_loss, reason = "a few words")]
-            named(&format!("params.{}", field.name), &word, words).map(|place| vec![place as f64])
-        }
-        kind => given.numbers(field.name, kind.width()),
-    }
-}
-
 /// A refusal with the text of [`ParamError`], and the field's name and value as they are in the input.
-fn refused(fields: &[Field], error: &ParamError, exact: &Values<f64>) -> Refusal {
+fn refused(fields: &[Field], error: &ParamError, exact: &Values<f64>) -> String {
     let text = error.to_string();
     let rule = text.split_once(" must ").and_then(|(_, rest)| rest.rsplit_once(", got "));
     let (Some((field, number)), Some((rule, value))) = (Field::refused(fields, error), rule) else {
-        return Refusal::at("params", text);
+        return refusal("params", text);
     };
     let is_list = field.kind.width() > 1;
     let item = number.filter(|_| is_list).map_or_else(String::new, |number| format!("[{number}]"));
@@ -199,31 +155,57 @@ fn refused(fields: &[Field], error: &ParamError, exact: &Values<f64>) -> Refusal
         Some(value) => format!("must {rule}, got {value}"),
         None => format!("must {rule}, got {value}"),
     };
-    Refusal::at(&format!("params.{}{item}", field.name), problem)
+    refusal(&format!("params.{}{item}", field.name), problem)
 }
 
-/// A direction, normalised.
-fn direction(line: &mut Fields, field: &str) -> Result<[f64; 3], Refusal> {
-    let [u, v, w] = line.three(field)?;
-    let length = u.hypot(v).hypot(w);
-    if (length - 1.0).abs() <= ROUNDED {
-        Ok([u, v, w])
-    } else if (length - 1.0).abs() <= LENGTH_TOLERANCE {
-        Ok([u / length, v / length, w / length])
-    } else {
-        Err(Refusal::at(field, format!("must be a unit vector (to {LENGTH_TOLERANCE}), got length {length}")))
+/// The place among `words` of the one at `path`.
+fn word(path: &str, json: &Json, words: &[&str]) -> Result<usize, String> {
+    let Json::Text(text) = json else {
+        return Err(refusal(path, format!("must be a string, got {json}")));
+    };
+    words.iter().position(|word| word == text).ok_or_else(|| {
+        let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+        refusal(path, format!("must be {}, got {json}", words.join(" or ")))
+    })
+}
+
+/// The number at `path`.
+fn number(path: &str, json: &Json) -> Result<f64, String> {
+    match json {
+        Json::Number(number) => Ok(*number),
+        other => Err(refusal(path, format!("must be a number, got {other}"))),
     }
 }
 
-/// Three numbers in `[0, 1)`.
-fn uniform(line: &mut Fields, field: &str) -> Result<[f64; 3], Refusal> {
-    let xi = line.three(field)?;
-    for (i, x) in xi.iter().enumerate() {
-        if !(0.0..1.0).contains(x) {
-            return Err(Refusal::at(&format!("{field}[{i}]"), format!("must be in [0, 1), got {x}")));
+/// The `len` numbers at `path`.
+fn numbers(path: &str, json: &Json, len: usize) -> Result<Vec<f64>, String> {
+    match json {
+        Json::Array(items) if items.len() == len => {
+            items.iter().zip(0..).map(|(json, i)| number(&format!("{path}[{i}]"), json)).collect()
         }
+        Json::Array(items) => Err(refusal(path, format!("must have {len} numbers, got {}", items.len()))),
+        other => Err(refusal(path, format!("must be an array of {len} numbers, got {other}"))),
     }
-    Ok(xi)
+}
+
+/// The direction at `path`, normalised.
+fn direction(path: &str, json: &Json) -> Result<[f64; 3], String> {
+    let numbers = numbers(path, json, 3)?;
+    let length = numbers[0].hypot(numbers[1]).hypot(numbers[2]);
+    if (length - 1.0).abs() > LENGTH_TOLERANCE {
+        return Err(refusal(path, format!("must be a unit vector (to {LENGTH_TOLERANCE}), got length {length}")));
+    }
+    let divisor = if (length - 1.0).abs() <= ROUNDED { 1.0 } else { length };
+    Ok([0, 1, 2].map(|row| numbers[row] / divisor))
+}
+
+/// The three numbers in `[0, 1)` at `path`.
+fn uniform(path: &str, json: &Json) -> Result<[f64; 3], String> {
+    let xi = numbers(path, json, 3)?;
+    match xi.iter().position(|x| !(0.0..1.0).contains(x)) {
+        Some(i) => Err(refusal(&format!("{path}[{i}]"), format!("must be in [0, 1), got {}", xi[i]))),
+        None => Ok([xi[0], xi[1], xi[2]]),
+    }
 }
 
 /// The nearest number of single precision.
@@ -250,9 +232,9 @@ mod tests {
 
     /// The parameters that a text gives, or the refusal.
     fn params<P: Parameters>(text: &str) -> Result<P, String> {
-        let json = Json::parse(text).map_err(|refusal| refusal.to_string())?;
-        let (values, exact) = read(P::default().values(), json).map_err(|refusal| refusal.to_string())?;
-        P::from_values(&values).map_err(|error| refused(P::FIELDS, &error, &exact).to_string())
+        let json = Json::parse(text)?;
+        let (values, exact) = read(P::default().values(), json)?;
+        P::from_values(&values).map_err(|error| refused(P::FIELDS, &error, &exact))
     }
 
     #[test]
