@@ -102,7 +102,7 @@ fn hair_of(cell: &Cell, model: ModelKind) -> Result<Hair, ParamError> {
 
 /// Integrates every cell of `grid` on all cores.
 fn by_quadrature(grid: Grid, progress: &Progress<'_>) -> Result<Vec<(Cell, ModelKind, HairFigures)>, ParamError> {
-    let cells: Vec<Cell> = (0..grid.len()).map(|index| grid.cell(index)).collect();
+    let cells: Vec<Cell> = grid.cells().collect();
     let found = |cell: &Cell| ModelKind::ALL.map(|model| Ok((*cell, model, hair_of(cell, model)?.found())));
     progress.map(&cells, found).into_iter().flatten().collect()
 }

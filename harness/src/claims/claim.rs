@@ -75,12 +75,7 @@ impl Figure {
 
     /// A number of cells.
     pub(super) fn cells(name: &str, count: usize) -> Self {
-        Self::new(name, Origin::Counted, Bounded::exact(count as f64)).in_unit("cells")
-    }
-
-    /// The same in this unit.
-    pub(super) fn in_unit(self, unit: &'static str) -> Self {
-        Self { unit, ..self }
+        Self { unit: "cells", ..Self::new(name, Origin::Counted, Bounded::exact(count as f64)) }
     }
 
     /// Bound on the distance of the true value from the figure.

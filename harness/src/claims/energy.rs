@@ -80,7 +80,7 @@ pub(super) fn claim() -> Claim {
     ]);
     figures.extend(limits.into_iter().zip(THETA_O).map(|(value, theta_o)| {
         let name = format!("widest β for which it holds, θ_o = {theta_o}°");
-        Figure::new(name, Origin::Quadrature, Bounded { value, error: 0.5 }).in_unit("°")
+        Figure { unit: "°", ..Figure::new(name, Origin::Quadrature, Bounded { value, error: 0.5 }) }
     }));
     STATEMENT.judge(figures, sentence)
 }

@@ -28,15 +28,12 @@ impl Longitudinal {
         Self { alpha: p.alpha[lobe], beta: p.beta[lobe], theta_o }
     }
 
-    /// The interval of `theta_h`.
-    pub(super) fn interval(&self) -> [f64; 2] {
-        theta_h_interval(self.theta_o)
-    }
-
-    /// The share of the printed sampler's `theta_i` that are inclinations.
+    /// The share of the printed sampler's `theta_i` that are inclinations. As printed, without the half, A and B normalise the
+    /// density on an interval twice as long as that of `theta_h`.
     pub(super) fn printed_mass(&self) -> f64 {
-        let printed = printed_bounds(self.alpha, self.beta, self.theta_o);
-        let [lo, hi] = self.interval();
+        let Self { alpha, beta, theta_o } = *self;
+        let printed = CauchyDensity::new(alpha, beta, theta_o - FRAC_PI_2, theta_o + FRAC_PI_2);
+        let [lo, hi] = theta_h_interval(theta_o);
         printed.cdf(hi) - printed.cdf(lo)
     }
 }
@@ -50,12 +47,6 @@ pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
         theta_o.flat_map(move |theta_o| [0, 1, 2].map(|lobe| Longitudinal::of(&p, lobe, theta_o)))
     };
     widths.flat_map(of_width).collect()
-}
-
-/// The longitudinal density that A and B normalise as printed, without the half: on an interval twice as long as that of
-/// `theta_h`.
-fn printed_bounds(alpha: f64, beta: f64, theta_o: f64) -> CauchyDensity<f64> {
-    CauchyDensity::new(alpha, beta, theta_o - FRAC_PI_2, theta_o + FRAC_PI_2)
 }
 
 /// A glint's density of `|phi|` on [0, pi]; as printed, without an end, it is this over its cdf at a right angle.

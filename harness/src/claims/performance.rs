@@ -46,7 +46,7 @@ type Pairs = [[Estimate; 2]; 5];
 
 /// Measures every cell.
 fn measure(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Pairs>, ParamError> {
-    let cells: Vec<Cell> = (0..plan.grid().len()).map(|index| plan.grid().cell(index)).collect();
+    let cells: Vec<Cell> = plan.grid().cells().collect();
     let pairs = |cell: &Cell| {
         let v = variances(plan, plan.budget(), cell, &[Sampler::Published])?;
         Ok(core::array::from_fn(|light| [v[light], v[LIGHTS.len() + light]]))
@@ -113,7 +113,7 @@ fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
     figures
         .extend(gains.iter().zip(LIGHTS).map(|(gain, [_, name])| timed(format!("gain in equal time, {name}"), *gain)));
     for (model, ns) in ModelKind::ALL.into_iter().zip([gaussian, cauchy]) {
-        figures.push(timed(format!("time of a sample, {}", model.title()), ns).in_unit("ns"));
+        figures.push(Figure { unit: "ns", ..timed(format!("time of a sample, {}", model.title()), ns) });
     }
     IN_EQUAL_TIME.judge(figures, sentence)
 }

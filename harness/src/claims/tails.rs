@@ -2,7 +2,7 @@
 
 use super::bounded::{Bounded, Spread, integrals};
 use super::claim::{Claim, Figure, Side, Statement};
-use super::hair::{Longitudinal, longitudinal_grid};
+use super::hair::{Longitudinal, longitudinal_grid, theta_h_interval};
 use core::f64::consts::PI;
 use hairis::reference::Shape;
 
@@ -40,7 +40,7 @@ fn largest_weight() -> f64 {
 
 /// The claim.
 pub(super) fn claim() -> Claim {
-    let of_lobe = |l: Longitudinal| added(l.alpha, l.beta, l.interval(), None);
+    let of_lobe = |l: Longitudinal| added(l.alpha, l.beta, theta_h_interval(l.theta_o), None);
     let Spread { most, least, .. } = longitudinal_grid().into_iter().map(of_lobe).collect();
     let line = added(0.0, 1.0, [-REACH, REACH], Some(PI));
     let both = line.plus(1.0).times(line.plus(1.0)).plus(-1.0);

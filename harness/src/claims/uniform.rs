@@ -25,7 +25,7 @@ const NARROW: f32 = 10.0;
 /// The example: rough hair with wide glints, all else as in the default hair.
 fn example() -> Cell {
     let is = |cell: &Cell| cell.values() == [20.0, 45.0, 20.0, 35.0, 0.5, 0.0];
-    (0..Grid::FULL.len()).map(|index| Grid::FULL.cell(index)).find(is).expect("a cell of the grid")
+    Grid::FULL.cells().find(is).expect("a cell of the grid")
 }
 
 /// V of uniform sampling and of the published sampler on the example, Gaussian model, from samples.
