@@ -31,7 +31,7 @@ pub use measure::{Differences, Norms};
 pub(crate) use output::{Summary, albedo_ratio};
 
 use crate::study::{Cell, Grid};
-use blur::Blur;
+use blur::{Blur, Harmonics};
 use hairis::{Bell, HairParams, ParamError};
 use hairis_variants::Cauchy;
 use lobes::{Kind, ViewedHair};
@@ -103,7 +103,7 @@ impl Difference {
     ///
     /// Never for [`Grid::FULL`] and [`Grid::QUICK`]: their hair is accepted.
     pub fn over(grid: Grid) -> Result<Self, ParamError> {
-        let cells: Vec<Cell> = (0..grid.len()).map(|index| grid.cell(index)).collect();
+        let cells: Vec<Cell> = grid.cells().collect();
         let hair: Vec<HairValues> = cells.par_iter().map(hair).collect::<Result<_, ParamError>>()?;
         let best_of_grid = best::least(|k| {
             let squares: Vec<f64> = hair.par_iter().map(|hair| hair.square_error(k)).collect();
@@ -130,20 +130,13 @@ impl Difference {
     }
 }
 
-/// `S cos theta_i` of the Gaussian model after the blur, and what a Cauchy model with its widths times `k` has more, as
-/// functions of `theta_i` and of `phi`, in rad, seen from `theta_o`.
-pub(crate) fn blurred_difference(
-    params: &HairParams,
-    theta_o: f64,
-    k: f64,
-) -> (impl Fn(f64, f64) -> f64, impl Fn(f64, f64) -> f64) {
+/// `S cos theta_i` after the blur, seen from `theta_o` in rad: of the Gaussian model, and of a Cauchy model with its widths
+/// times `k`.
+pub(crate) fn blurred(params: &HairParams, theta_o: f64, k: f64) -> Vec<Harmonics> {
     let view = ViewedHair::new(params, theta_o);
     let rule = view.rule(ORDER);
     let values = [Kind::GAUSSIAN, Kind::cauchy(k)].map(|kind| rule.values(&view, kind));
-    let blurred = Blur::new(SIGMA_DEG.to_radians(), 1, 1).harmonics(&rule, &values);
-    let gaussian = blurred[0].clone();
-    let more = move |theta, phi| blurred[1].at(theta, phi) - blurred[0].at(theta, phi);
-    (move |theta, phi| gaussian.at(theta, phi), more)
+    Blur::new(SIGMA_DEG.to_radians(), 1, 1).harmonics(&rule, &values)
 }
 
 fn hair(cell: &Cell) -> Result<HairValues, ParamError> {

@@ -27,5 +27,5 @@ pub fn run(flags: &Merge) -> Result<(), Error> {
         say("the look-up of the environment is not timed; pass --env FILE to time it");
     }
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
-    finish(&study, is_theirs.then_some(&environment), &flags.out)
+    finish(study, is_theirs.then_some(&environment), &flags.out)
 }

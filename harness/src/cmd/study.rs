@@ -6,7 +6,7 @@ use crate::difference::Difference;
 use crate::error::Error;
 use crate::light::Environment;
 use crate::progress::bar;
-use crate::study::output::{Study, Times};
+use crate::study::output::Study;
 use crate::study::part::{Part, read};
 use crate::study::{self, Plan, Shard};
 use std::fs;
@@ -47,7 +47,7 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
 
     if shard == Shard::WHOLE {
         let study = Study::join(&[(part.path().to_owned(), read(part.path())?)])?;
-        finish(&study, Some(&environment), &flags.out)
+        finish(study, Some(&environment), &flags.out)
     } else {
         say(&format!("wrote {}; `hairis merge` joins it with the others", part.path().display()));
         Ok(())
@@ -55,14 +55,13 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
 }
 
 /// Measures times, computes how different the models look, writes the tables and prints the summary.
-pub(super) fn finish(study: &Study, environment: Option<&Environment>, out: &Path) -> Result<(), Error> {
-    let (seed, quick) = study.settings();
-    let times = Times::measure(seed, quick, environment).with_rays(seed, quick, environment);
+pub(super) fn finish(mut study: Study, environment: Option<&Environment>, out: &Path) -> Result<(), Error> {
+    study.time(environment);
     let difference = Difference::over(study.grid())?;
-    study.write(out, &times, &difference)?;
-    study.report(&times, &difference, claims(out, study).as_ref()).write(out, "study")?;
+    study.write(out, &difference)?;
+    study.report(&difference, claims(out, &study).as_ref()).write(out, "study")?;
     let page = out.join("report.html");
-    print_tables(study.summary(&times).iter().chain(&difference.tables()), &page)?;
+    print_tables(study.summary().iter().chain(&difference.tables()), &page)?;
     let [rows, others @ ..] = ["study", "efficiency", "difference"].map(|name| out.join(name).display().to_string());
     let parquet = if cfg!(feature = "parquet") { " and .parquet" } else { "" };
     say(&format!("wrote {rows}.csv{parquet}, {} as .csv{parquet}, and {rows}.json", others.join(" and ")));

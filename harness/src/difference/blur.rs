@@ -27,7 +27,7 @@ pub(super) const REST: f64 = 1e-9;
 
 /// The coefficients of a blurred function: orders outermost, degrees from the order upwards.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Harmonics(Vec<f64>);
+pub(crate) struct Harmonics(Vec<f64>);
 
 /// The blur, and the directions at which blurred functions are evaluated.
 #[derive(Debug)]
@@ -183,7 +183,7 @@ impl Harmonics {
     }
 
     /// The blurred function's value in a direction.
-    pub(super) fn at(&self, theta: f64, phi: f64) -> f64 {
+    pub(crate) fn at(&self, theta: f64, phi: f64) -> f64 {
         let sums = self.on_latitude(&legendre(theta));
         (0..).zip(sums).map(|(order, sum)| sum * (f64::from(order) * phi).cos()).sum()
     }

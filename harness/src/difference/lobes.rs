@@ -107,18 +107,18 @@ impl ViewedHair {
         let mut around = vec![0.0, FRAC_PI_2, PI];
         around.extend(DISTANCES.map(|d| p.phi_g + d * p.gamma_g));
         around.extend(DISTANCES.map(|d| PI - d.abs() * p.gamma_tt));
-        let along = panels(&rule, along, [-FRAC_PI_2, FRAC_PI_2]).map(|[x, w]| [x, w * x.cos()]).collect();
-        let around = panels(&rule, around, [0.0, PI]).map(|[x, w]| [x, 2.0 * w]).collect();
+        let along = panels(&rule, along, [-FRAC_PI_2, FRAC_PI_2]).into_iter().map(|[x, w]| [x, w * x.cos()]).collect();
+        let around = panels(&rule, around, [0.0, PI]).into_iter().map(|[x, w]| [x, 2.0 * w]).collect();
         Rule { along, around }
     }
 }
 
 /// A rule on each panel between the breakpoints within the interval.
-fn panels(rule: &GaussLegendre, mut breaks: Vec<f64>, [lo, hi]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
+fn panels(rule: &GaussLegendre, mut breaks: Vec<f64>, [lo, hi]: [f64; 2]) -> Nodes {
     breaks.retain(|x| (lo..=hi).contains(x));
     breaks.sort_by(f64::total_cmp);
     breaks.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    breaks.windows(2).flat_map(|ends| rule.on(ends[0], ends[1]).collect::<Vec<_>>()).collect::<Vec<_>>().into_iter()
+    breaks.windows(2).flat_map(|ends| rule.on(ends[0], ends[1])).collect()
 }
 
 impl Rule {

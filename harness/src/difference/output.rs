@@ -2,9 +2,8 @@
 
 use super::{Difference, Differences, Width};
 use crate::stats::percentile;
-use crate::study::Cell;
 use crate::study::columns::Columns;
-use crate::study::grid::columns_of;
+use crate::study::grid::{GridAxis, columns_of};
 use crate::table::{Table, number};
 
 /// A figure of a row: its column, its name in tables, and its value.
@@ -74,12 +73,17 @@ impl Difference {
 
     /// The summary of a figure over the cells of one choice of widths.
     pub(crate) fn summary(&self, width: Width, of: fn(&Differences) -> f64) -> Summary {
-        self.summary_where(width, |_| true, of)
+        Summary::of(self.of(width).map(|row| of(&row.figures)))
     }
 
-    /// The same over those cells that are `wanted`.
-    fn summary_where(&self, width: Width, wanted: impl Fn(&Cell) -> bool, of: fn(&Differences) -> f64) -> Summary {
-        Summary::of(self.of(width).filter(|row| wanted(&row.cell)).map(|row| of(&row.figures)))
+    /// The same for each value of an axis of the grid.
+    pub(crate) fn along(&self, axis: GridAxis, width: Width, of: fn(&Differences) -> f64) -> Vec<(f64, Summary)> {
+        let (values, value_of) = axis;
+        let summary = |value: &f32| {
+            let rows = self.of(width).filter(|row| value_of(&row.cell) == *value);
+            (f64::from(*value), Summary::of(rows.map(|row| of(&row.figures))))
+        };
+        values.iter().map(summary).collect()
     }
 
     /// The factor of a choice of widths; for that of each cell its range, in words.
@@ -117,10 +121,10 @@ impl Difference {
             .number("β_R, °")
             .text("widths")
             .numbers(shown.map(|(_, name, _)| name));
-        for beta in self.grid.beta_r_deg {
+        for (place, beta) in self.grid.beta_r_deg.iter().enumerate() {
             for width in Width::ALL {
                 let cell = |(_, _, of)| {
-                    let found = self.summary_where(width, |cell| cell.beta_r_deg == *beta, of);
+                    let (_, found) = self.along(self.grid.widths(), width, of)[place];
                     format!("{} ({})", number::percent(found.geometric_mean), number::percent(found.most))
                 };
                 let words = [number::plain(f64::from(*beta), 3), width.name().to_owned()];
@@ -133,9 +137,9 @@ impl Difference {
     fn by_inclination(&self) -> Table {
         let title = "Albedo of the Cauchy model over that of the Gaussian one: geometric mean (least to most)";
         let mut table = Table::new(title).numbers(["θₒ, °", "albedo, Gaussian"]).numbers(Width::ALL.map(Width::name));
-        for theta_o in self.grid.theta_o_deg {
+        for (place, theta_o) in self.grid.theta_o_deg.iter().enumerate() {
             let cell = |width, of| {
-                let found = self.summary_where(width, |cell| cell.theta_o_deg == *theta_o, of);
+                let (_, found) = self.along(self.grid.inclinations(), width, of)[place];
                 let [mean, least, most] = [found.geometric_mean, found.least, found.most].map(|x| number::plain(x, 3));
                 format!("{mean} ({least} to {most})")
             };

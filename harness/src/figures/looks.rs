@@ -1,6 +1,6 @@
 //! Looks of the two models around a fibre: sections, and maps of the sphere.
 
-use crate::difference::{SIGMA_DEG, blurred_difference};
+use crate::difference::{SIGMA_DEG, blurred};
 use crate::plot::{Axis, HeatMap, PolarChart, PolarPanel, Projection, SphereGrid};
 use crate::quadrature::fibre_direction;
 use crate::report::Drawing;
@@ -104,10 +104,12 @@ pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Drawing; 3] {
 /// A map of what a Cauchy model has more of `S cos theta_i` after the blur of [`difference`](crate::difference).
 #[must_use]
 pub fn difference_map(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> Drawing {
-    let (gaussian, more) = blurred_difference(params, theta_o, f64::from(cauchy.width_factor()));
-    let most = grid(gaussian).range().map_or(f64::NAN, |(_, high)| high);
+    let blurred = blurred(params, theta_o, f64::from(cauchy.width_factor()));
+    let at = |model: usize, theta, phi| blurred[model].at(theta, phi);
+    let most = grid(|theta, phi| at(0, theta, phi)).range().map_or(f64::NAN, |(_, high)| high);
+    let more = grid(|theta, phi| at(1, theta, phi) - at(0, theta, phi));
     let title = format!("S cos θᵢ blurred by {SIGMA_DEG}°, Cauchy less Gaussian");
-    let map = HeatMap::signed(title, Axis::linear("difference of S cos θᵢ (1/sr)"), grid(more));
+    let map = HeatMap::signed(title, Axis::linear("difference of S cos θᵢ (1/sr)"), more);
     let caption = format!(
         "The difference of S cos θᵢ after a blur of {SIGMA_DEG}°: what is left of it in a light that wide. The Gaussian \
          model alone, blurred, reaches {most:.2}."

@@ -26,7 +26,7 @@ impl Sign {
 pub(super) const NOTHING: Estimate = Estimate::exact(0.0);
 
 /// The time of `base` over that of `other` when each is followed by the same `more`.
-pub(super) fn time_ratio(base: Estimate, other: Estimate, more: Estimate) -> Estimate {
+pub(super) fn time_ratio([base, other]: [Estimate; 2], more: Estimate) -> Estimate {
     let [a, b] = [base, other].map(|of| of.value + more.value);
     let value = a / b;
     // An error of what follows moves both times, and the ratio by the difference.
@@ -71,14 +71,14 @@ mod tests {
     #[test]
     fn what_follows_brings_times_together_and_its_error_nearly_cancels() {
         let (base, other) = (of(10.0, 0.1), of(20.0, 0.1));
-        let alone = time_ratio(base, other, NOTHING);
+        let alone = time_ratio([base, other], NOTHING);
         assert_eq!(alone, base.ratio(&other));
-        let with = time_ratio(base, other, of(20.0, 0.0));
+        let with = time_ratio([base, other], of(20.0, 0.0));
         assert!((with.value - 0.75).abs() < 1e-15, "{with:?}");
         assert!((with.standard_error / 0.75 - (0.1_f64 / 30.0).hypot(0.1 / 40.0)).abs() < 1e-15, "{with:?}");
         // By what the ratio changes when the time that follows is one error longer.
-        let moved = time_ratio(base, other, of(20.001, 0.0)).value - with.value;
-        let error = time_ratio(of(10.0, 0.0), of(20.0, 0.0), of(20.0, 0.001)).standard_error;
+        let moved = time_ratio([base, other], of(20.001, 0.0)).value - with.value;
+        let error = time_ratio([of(10.0, 0.0), of(20.0, 0.0)], of(20.0, 0.001)).standard_error;
         assert!((error / moved.abs() - 1.0).abs() < 1e-4, "{error} {moved}");
     }
 

@@ -40,6 +40,9 @@ pub struct Cell {
     pub theta_o_deg: f32,
 }
 
+/// The values of an axis, and that of a cell.
+pub(crate) type GridAxis = (&'static [f32], fn(&Cell) -> f32);
+
 impl Grid {
     /// All 3024 cells.
     pub const FULL: Self = Self {
@@ -70,6 +73,16 @@ impl Grid {
     /// The cells, in order.
     pub fn cells(self) -> impl Iterator<Item = Cell> {
         (0..self.len()).map(move |index| self.cell(index))
+    }
+
+    /// The axis of the width of R.
+    pub(crate) fn widths(&self) -> GridAxis {
+        (self.beta_r_deg, |cell| cell.beta_r_deg)
+    }
+
+    /// The axis of the inclination of the viewer.
+    pub(crate) fn inclinations(&self) -> GridAxis {
+        (self.theta_o_deg, |cell| cell.theta_o_deg)
     }
 
     fn axes(&self) -> [&'static [f32]; 6] {

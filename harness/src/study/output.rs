@@ -7,8 +7,8 @@ use super::part::{self, FORMAT, Finished, Header, Read, refuse};
 use super::rays;
 use super::rows::{Row, published, set_bounds};
 use super::times::PER_POINT;
-use super::view::{Counted, View};
-use super::{Grid, Shard, check, report};
+use super::view::Counted;
+use super::{Grid, Shard, report};
 use crate::difference::Difference;
 use crate::error::Error;
 use crate::files::{whole, write_json};
@@ -28,6 +28,8 @@ pub use super::times::Times;
 pub struct Study {
     pub(super) header: Header,
     pub(super) cells: Vec<Vec<Measured>>,
+    /// Times on this machine; unknown until [`time`](Self::time).
+    pub(super) times: Times,
 }
 
 impl Study {
@@ -82,7 +84,8 @@ impl Study {
             set_bounds(&grid.cell(cell.cell), &mut measured, header.lights.len());
             measured
         });
-        Ok(Self { cells: cells.collect(), header: Header { shard: Shard::WHOLE.to_string(), ..header.clone() } })
+        let header = Header { shard: Shard::WHOLE.to_string(), ..header.clone() };
+        Ok(Self { cells: cells.collect(), header, times: Times::default() })
     }
 
     /// Reads every part file in `dirs` and joins them.
@@ -107,10 +110,10 @@ impl Study {
         Grid::of(self.header.quick)
     }
 
-    /// Seed, and whether it is the short run: what times are measured by.
-    #[must_use]
-    pub const fn settings(&self) -> (u64, bool) {
-        (self.header.seed, self.header.quick)
+    /// Measures the times of this machine, with nothing else at work. Without an environment its look-up is not known.
+    pub fn time(&mut self, environment: Option<&Environment>) {
+        let Header { seed, quick, .. } = self.header;
+        self.times = Times::measure(seed, quick, environment).with_rays(seed, quick, environment);
     }
 
     /// The content of a `claims.json` for the report of this study.
@@ -154,29 +157,29 @@ impl Study {
     /// Of `perfect`, which has no time, the first two lines alone, without a break-even where its V is 0. A look-up that was
     /// not timed ([`Times::measure`]) leaves its columns empty.
     #[must_use]
-    pub fn efficiencies(&self, times: &Times) -> Columns {
-        let (view, rows) = (View { study: self, times }, self.rows());
+    pub fn efficiencies(&self) -> Columns {
+        let rows = self.rows();
         // Against itself: exactly 1.
         let is_published = |row: &Row<'_>| row.of == published(row.of);
         let against_published = |row: &Row<'_>| match is_published(row) {
             true => Estimate::exact(1.0),
-            false => self.measured(row.cell.index, published(row.of), row.light).figures.v.ratio(&row.v()),
+            false => self.row(row.cell, published(row.of), row.light).v().ratio(&row.v()),
         };
         let gains: Vec<Estimate> = rows.iter().map(against_published).collect();
-        let look_up = |row: &Row<'_>| row.of.1.map_or(Estimate::UNKNOWN, |_| times.look_up(row.light));
+        let look_up = |row: &Row<'_>| row.of.1.map_or(Estimate::UNKNOWN, |_| self.times.look_up(row.light));
         let mut columns = self
             .keys(&rows)
             .estimate("v", rows.iter().map(Row::v))
             .estimate("break_even", gains.iter().copied())
             .estimate("look_up_ns", rows.iter().map(look_up));
         for per_point in PER_POINT {
-            let ns = |row: &Row<'_>| view.ns(row.of, per_point).value;
+            let ns = |row: &Row<'_>| self.ns(row.of, per_point).value;
             columns = columns.number(format!("ns_at_{per_point}"), rows.iter().map(ns));
             for (prefix, counted) in [("", Counted::Sample), ("look_up_", Counted::LookUp)] {
                 let efficiency =
-                    |row: &Row<'_>| 1e9 / (row.v().value * (ns(row) + view.more(row.light, counted).value));
+                    |row: &Row<'_>| 1e9 / (row.v().value * (ns(row) + self.more(row.light, counted).value));
                 let gain = |(row, gain): (&Row<'_>, &Estimate)| {
-                    let time = view.time_ratio([published(row.of), row.of], row.light, per_point, counted);
+                    let time = self.time_ratio([published(row.of), row.of], row.light, per_point, counted);
                     if is_published(row) && !time.value.is_nan() { *gain } else { in_equal_time(*gain, time) }
                 };
                 columns = columns
@@ -184,13 +187,7 @@ impl Study {
                     .estimate(&format!("{prefix}gain_at_{per_point}"), rows.iter().zip(&gains).map(gain));
             }
         }
-        rays::efficiencies(columns, &rows, view)
-    }
-
-    /// Errors in the figures: weights beyond their proven bound, and samplers whose means disagree.
-    #[must_use]
-    pub fn failures(&self) -> Vec<String> {
-        check::failures(&self.rows(), self.lights())
+        rays::efficiencies(columns, &rows, self)
     }
 
     /// Writes `study.csv` (the rows), `efficiency.csv`, `difference.csv` (how far apart the models are), `times.csv` and
@@ -200,10 +197,10 @@ impl Study {
     /// # Errors
     ///
     /// [`Error::Output`] for the first that cannot be written.
-    pub fn write(&self, dir: &Path, times: &Times, difference: &Difference) -> Result<(), Error> {
-        whole(&dir.join("times.csv"), |out| times.columns(self.lights()).write_csv(out))?;
+    pub fn write(&self, dir: &Path, difference: &Difference) -> Result<(), Error> {
+        whole(&dir.join("times.csv"), |out| self.times.columns(self.lights()).write_csv(out))?;
         let tables =
-            [("study", self.columns()), ("efficiency", self.efficiencies(times)), ("difference", difference.columns())];
+            [("study", self.columns()), ("efficiency", self.efficiencies()), ("difference", difference.columns())];
         for (name, columns) in tables {
             whole(&dir.join(format!("{name}.csv")), |out| columns.write_csv(out))?;
             #[cfg(feature = "parquet")]

@@ -3,8 +3,8 @@
 use super::cell::Measured;
 use super::columns::Columns;
 use super::equal_time::{in_equal_time, time_ratio};
+use super::output::Study;
 use super::rows::Row;
-use super::view::View;
 use crate::rays::{HALF, PRICES_US, VISIBLE, occluded};
 use crate::stats::Estimate;
 
@@ -53,8 +53,8 @@ pub(super) fn columns(mut columns: Columns, rows: &[Row<'_>]) -> Columns {
 }
 
 /// Adds the columns of times and of gains over one-sample MIS in equal time, half of the directions visible.
-pub(super) fn efficiencies(mut columns: Columns, rows: &[Row<'_>], view: View<'_>) -> Columns {
-    let ns: Vec<_> = rows.iter().map(|row| [0, 1, 2].map(|by| view.ray_ns(row.of, row.light, by))).collect();
+pub(super) fn efficiencies(mut columns: Columns, rows: &[Row<'_>], study: &Study) -> Columns {
+    let ns: Vec<_> = rows.iter().map(|row| [0, 1, 2].map(|by| study.ray_ns(row.of, row.light, by))).collect();
     for (by, By { column, .. }) in RAYS.iter().enumerate() {
         columns = columns.estimate(&format!("ray_ns_{column}"), ns.iter().map(|ns| ns[by]));
     }
@@ -72,6 +72,6 @@ pub(super) fn efficiencies(mut columns: Columns, rows: &[Row<'_>], view: View<'_
 }
 
 /// Time of a ray by the first over that by the second, each with its tracing at this price.
-pub(super) fn times_at([base, other]: [Estimate; 2], price_us: f64) -> Estimate {
-    time_ratio(base, other, Estimate::exact(1e3 * price_us))
+pub(super) fn times_at(pair: [Estimate; 2], price_us: f64) -> Estimate {
+    time_ratio(pair, Estimate::exact(1e3 * price_us))
 }

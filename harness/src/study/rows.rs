@@ -81,24 +81,25 @@ impl Study {
         &self.header.lights
     }
 
-    pub(super) fn measured(&self, cell: usize, of: Estimator, light: usize) -> &Measured {
-        &self.cells[cell][place(of, light, self.lights().len())]
+    /// The row of one estimator under one light in a cell.
+    pub(super) fn row(&self, cell: Cell, of: Estimator, light: usize) -> Row<'_> {
+        Row { cell, of, light, measured: &self.cells[cell.index][place(of, light, self.lights().len())] }
     }
 
     /// The rows of one estimator under one light, one per cell.
     pub(super) fn rows_of(&self, of: Estimator, light: usize) -> impl Iterator<Item = Row<'_>> {
-        let row = move |cell: Cell| Row { cell, of, light, measured: self.measured(cell.index, of, light) };
-        self.grid().cells().take(self.cells.len()).map(row)
+        self.grid().cells().take(self.cells.len()).map(move |cell| self.row(cell, of, light))
     }
 
     /// Every row, in order: cells outermost, then models, strategies and lights.
     pub(super) fn rows(&self) -> Vec<Row<'_>> {
-        let of_cell = |cell: Cell| {
-            let each =
-                on_each_model(strategies()).flat_map(|of| (0..self.lights().len()).map(move |light| (of, light)));
-            each.map(move |(of, light)| Row { cell, of, light, measured: self.measured(cell.index, of, light) })
-        };
-        self.grid().cells().take(self.cells.len()).flat_map(of_cell).collect()
+        let mut rows = Vec::new();
+        for cell in self.grid().cells().take(self.cells.len()) {
+            for of in on_each_model(strategies()) {
+                rows.extend((0..self.lights().len()).map(|light| self.row(cell, of, light)));
+            }
+        }
+        rows
     }
 
     /// The columns that identify a row.

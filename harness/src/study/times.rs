@@ -77,7 +77,7 @@ pub(crate) fn in_turns<C>(contenders: &mut [C], rounds: usize, mut time: impl Fn
 }
 
 /// Times of a sample, of a look-up of the light and, on request, of a ray without its tracing, measured on this machine.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Times {
     of_samples: Vec<(Timed, TimeSpread)>,
     pub(super) of_rays: Vec<RayTimes>,

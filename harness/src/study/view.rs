@@ -5,13 +5,11 @@ use super::equal_time::{NOTHING, Sign, in_equal_time, time_ratio};
 use super::output::Study;
 use super::rays::RAYS;
 use super::rows::{Estimator, Row, name};
-use super::times::Times;
 use crate::plot::{Axis, Bar, BarChart};
 use crate::rays::RayTimes;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
 use crate::table::Table;
-use core::ops::Deref;
 
 /// Relative standard error of V beyond which a cell is left out: the light was hardly hit.
 pub(super) const MAX_RELATIVE_ERROR: f64 = 0.25;
@@ -85,30 +83,15 @@ pub(super) const MANY: usize = 16;
 /// knows better.
 pub(super) const TOLD: [Sampler; 2] = [Sampler::Published, Sampler::Matched];
 
-/// A finished study with the times of this machine.
-#[derive(Clone, Copy)]
-pub(super) struct View<'a> {
-    pub(super) study: &'a Study,
-    pub(super) times: &'a Times,
-}
-
-impl Deref for View<'_> {
-    type Target = Study;
-
-    fn deref(&self) -> &Study {
-        self.study
-    }
-}
-
-impl View<'_> {
+impl Study {
     /// V of `base` and of `other` in every cell.
-    pub(super) fn pairs(&self, base: Estimator, other: Estimator, light: usize) -> impl Iterator<Item = [Estimate; 2]> {
+    pub(super) fn pairs(&self, [base, other]: [Estimator; 2], light: usize) -> impl Iterator<Item = [Estimate; 2]> {
         self.rows_of(base, light).zip(self.rows_of(other, light)).map(|(base, other)| [base.v(), other.v()])
     }
 
     /// V of `base` over V of `other`; `None` if no cell is sure.
-    pub(super) fn gain(&self, base: Estimator, other: Estimator, light: usize) -> Option<Gain> {
-        gain(self.pairs(base, other, light))
+    pub(super) fn gain(&self, pair: [Estimator; 2], light: usize) -> Option<Gain> {
+        gain(self.pairs(pair, light))
     }
 
     /// Time of a sample in ns, its shading point's set-up shared by `per_point`; not a number for perfect sampling.
@@ -116,14 +99,9 @@ impl View<'_> {
         strategy.map_or(Estimate::UNKNOWN, |sampler| self.times.ns(model, sampler, per_point))
     }
 
-    /// Time of a look-up of the light in ns; not a number if it was not timed.
-    pub(super) fn look_up(&self, light: usize) -> Estimate {
-        self.times.look_up(light)
-    }
-
     /// Time counted beside that of a sample, in ns.
     pub(super) fn more(&self, light: usize, counted: Counted) -> Estimate {
-        if counted == Counted::LookUp { self.look_up(light) } else { NOTHING }
+        if counted == Counted::LookUp { self.times.look_up(light) } else { NOTHING }
     }
 
     /// Time of a ray without its tracing, in ns, by its place in [`RAYS`]; not a number if it was not measured.
@@ -136,18 +114,18 @@ impl View<'_> {
     /// Time of a sample of `base` over that of one of `other`.
     pub(super) fn time_ratio(
         &self,
-        [base, other]: [Estimator; 2],
+        pair: [Estimator; 2],
         light: usize,
         per_point: usize,
         counted: Counted,
     ) -> Estimate {
-        time_ratio(self.ns(base, per_point), self.ns(other, per_point), self.more(light, counted))
+        time_ratio(pair.map(|one| self.ns(one, per_point)), self.more(light, counted))
     }
 
     /// How many times the variance `base` has of `other` in equal time, [`MANY`] samples per shading point: median over
     /// the cells. `None` if no cell is sure, or a time unknown.
     pub(super) fn equal_time(&self, pair: [Estimator; 2], light: usize, counted: Counted) -> Option<Estimate> {
-        let median = self.gain(pair[0], pair[1], light)?.median;
+        let median = self.gain(pair, light)?.median;
         let gain = in_equal_time(median, self.time_ratio(pair, light, MANY, counted));
         gain.value.is_finite().then_some(gain)
     }
@@ -159,12 +137,12 @@ impl View<'_> {
     }
 
     /// A table with a row for each of these estimators under each light, of numbers that `cells` gives.
-    pub(super) fn table<H: Into<String>>(
+    pub(super) fn table(
         &self,
         title: &str,
-        headers: impl IntoIterator<Item = H>,
+        headers: impl IntoIterator<Item = impl Into<String>>,
         of: impl Iterator<Item = Estimator>,
-        cells: impl Fn(Estimator, usize) -> Vec<String>,
+        cells: &dyn Fn(Estimator, usize) -> Vec<String>,
     ) -> Table {
         let mut table = Table::new(title).texts(["model", "sampler", "light"]).numbers(headers);
         for (model, strategy) in of {
@@ -182,7 +160,7 @@ impl View<'_> {
         title: &str,
         axis: Axis,
         of: impl Iterator<Item = Estimator>,
-        bar: impl Fn(Estimator, usize) -> Bar,
+        bar: &dyn Fn(Estimator, usize) -> Bar,
     ) -> BarChart {
         // A file's name in words.
         let labels = self.lights().iter().map(|name| name.replace(['-', '_'], " "));
@@ -198,7 +176,7 @@ pub(super) fn mean_v<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Estimate
 }
 
 /// Mean over some cells of a figure; cells where it is no number are left out.
-pub(super) fn mean_of<'a>(rows: impl Iterator<Item = Row<'a>>, figure: impl Fn(&Measured) -> Estimate) -> Estimate {
+pub(super) fn mean_of<'a>(rows: impl Iterator<Item = Row<'a>>, figure: &dyn Fn(&Measured) -> Estimate) -> Estimate {
     let figures = rows.map(|row| figure(row.measured));
     let (mut n, mut sum, mut square) = (0.0, 0.0, 0.0);
     for figure in figures.filter(|figure| figure.value.is_finite() && figure.standard_error.is_finite()) {

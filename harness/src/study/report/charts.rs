@@ -1,10 +1,11 @@
 //! The plots of a study: variance, efficiency, gains and weights.
 
-use super::super::Cell;
+use super::super::grid::GridAxis;
+use super::super::output::Study;
 use super::super::rows::{Estimator, Row, name, published, samplers, strategies};
 use super::super::summary::on_gaussian;
 use super::super::times::PER_POINT;
-use super::super::view::{Counted, Gain, MANY, TOLD, View, ess, mean_of, mean_v};
+use super::super::view::{Counted, Gain, MANY, TOLD, mean_v};
 use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Series};
 use crate::report::Drawing;
 use crate::sampler::Sampler;
@@ -14,24 +15,22 @@ use crate::subject::ModelKind;
 /// The light that everything sees.
 const CONSTANT: usize = 0;
 
+/// The last sentence of captions of bars of [`median_bar`].
+const MEDIANS: &str = "Medians over the grid; whiskers go from the first to the third quartile.";
+
 /// A chart of lines.
 pub(super) fn lines(title: impl Into<String>, x: Axis, y: Axis, series: impl IntoIterator<Item = Series>) -> LineChart {
     series.into_iter().fold(LineChart::new(title, x, y), LineChart::series)
 }
 
-/// A chart of each model.
-fn each_model(chart: impl Fn(ModelKind) -> Drawing) -> Vec<Drawing> {
-    ModelKind::ALL.map(chart).into()
+/// A drawing for each model, whose name ends that of its files.
+fn each_model(slug: &str, caption: &str, svg: &dyn Fn(ModelKind) -> String) -> Vec<Drawing> {
+    ModelKind::ALL.map(|model| Drawing::new(svg(model), caption).named(format!("{slug}-{}", model.name()))).into()
 }
 
 /// The runnable samplers on a model.
 pub(super) fn samplers_on(model: ModelKind) -> impl Iterator<Item = Estimator> + Clone {
     samplers().map(move |strategy| (model, strategy))
-}
-
-/// A bar with its standard error.
-fn bar(of: Option<Estimate>) -> Bar {
-    of.map_or(Bar::new(f64::NAN), |of| Bar::new(of.value).with_error(of.standard_error))
 }
 
 /// A bar of a median, with the quartiles of its cells, times a factor.
@@ -43,15 +42,18 @@ pub(super) fn median_bar(of: Option<Gain>, factor: f64) -> Bar {
 }
 
 /// V of every sampler over the width of R, and over the inclination.
-pub(super) fn variances(of: &View<'_>) -> Vec<Drawing> {
-    type Over = (&'static str, &'static str, &'static [f32], fn(&Cell) -> f32);
-    let grid = of.grid();
-    let axes: [Over; 2] = [
-        ("width", "width of R, β_R (°)", grid.beta_r_deg, |cell| cell.beta_r_deg),
-        ("inclination", "inclination of the viewer, θₒ (°)", grid.theta_o_deg, |cell| cell.theta_o_deg),
+pub(super) fn variances(of: &Study) -> Vec<Drawing> {
+    let axes = [
+        ("width", "width of R, β_R (°)", of.grid().widths()),
+        ("inclination", "inclination of the viewer, θₒ (°)", of.grid().inclinations()),
     ];
-    let chart = |(slug, label, values, axis): Over| {
-        each_model(|model| {
+    let caption = format!(
+        "Relative variance of a sample under {} light by sampler: geometric means over the other axes of the grid. Bars are \
+         one standard error, mostly smaller than the marks. An error of 1% takes 10⁴ V samples.",
+        of.lights()[CONSTANT]
+    );
+    let charts = |(slug, label, (values, axis)): (&str, &str, GridAxis)| {
+        each_model(&format!("v-by-{slug}"), &caption, &|model| {
             let series = samplers_on(model).map(|estimator| {
                 let point = |value: &f32| {
                     let rows = of.rows_of(estimator, CONSTANT).filter(|row| axis(&row.cell) == *value);
@@ -60,42 +62,36 @@ pub(super) fn variances(of: &View<'_>) -> Vec<Drawing> {
                 Series::new(name(estimator.1), values.iter().filter_map(point))
             });
             let title = format!("Variance over the {slug}, {} model", model.title());
-            let y = Axis::log("relative variance of a sample, V");
-            let caption = format!(
-                "Relative variance of a sample under {} light by sampler: geometric means over the other axes of the \
-                 grid. Bars are one standard error, mostly smaller than the marks. An error of 1% takes 10⁴ V samples.",
-                of.lights()[CONSTANT]
-            );
-            let chart = lines(title, Axis::linear(label).from_zero(), y, series);
-            Drawing::new(chart.svg(), caption).named(format!("v-by-{slug}-{}", model.name()))
+            lines(title, Axis::linear(label).from_zero(), Axis::log("relative variance of a sample, V"), series).svg()
         })
     };
-    axes.into_iter().flat_map(chart).collect()
+    axes.into_iter().flat_map(charts).collect()
 }
 
 /// Efficiency by samples per shading point.
-pub(super) fn efficiencies(of: &View<'_>) -> Vec<Drawing> {
-    each_model(|model| {
+pub(super) fn efficiencies(of: &Study) -> Vec<Drawing> {
+    let caption = "Geometric mean over the grid of 1 / (V · time of a sample), the set-up of a shading point spread over 1, 4 or \
+                   16 samples; eight lanes, one thread, this machine. Whiskers are one standard error, that of the times \
+                   included. Twice the efficiency is half the time to the same error squared.";
+    each_model("efficiency", caption, &|model| {
         let title = format!("Efficiency under {} light, {} model", of.lights()[CONSTANT], model.title());
         let groups = PER_POINT.map(|n| format!("{n} per shading point"));
-        let chart =
-            samplers_on(model).fold(BarChart::new(title, Axis::log("1 / (V · µs)"), groups), |chart, estimator| {
-                let bars = PER_POINT.map(|n| bar(of.efficiency(estimator, CONSTANT, n)));
-                chart.series(name(estimator.1), bars)
-            });
-        let caption = "Geometric mean over the grid of 1 / (V · time of a sample), the set-up of a shading point spread \
-                       over 1, 4 or 16 samples; eight lanes, one thread, this machine. Whiskers are one standard error, \
-                       that of the times included. Twice the efficiency is half the time to the same error squared.";
-        Drawing::new(chart.svg(), caption).named(format!("efficiency-{}", model.name()))
+        let mut chart = BarChart::new(title, Axis::log("1 / (V · µs)"), groups);
+        for estimator in samplers_on(model) {
+            let found = PER_POINT.map(|n| of.efficiency(estimator, CONSTANT, n).unwrap_or(Estimate::UNKNOWN));
+            let bars = found.map(|found| Bar::new(found.value).with_error(found.standard_error));
+            chart = chart.series(name(estimator.1), bars);
+        }
+        chart.svg()
     })
 }
 
 /// The verdicts in one plot: the Cauchy model against the Gaussian one, by light.
-pub(super) fn summary(of: &View<'_>) -> Drawing {
+pub(super) fn summary(of: &Study) -> Drawing {
     let told = TOLD.into_iter().map(|sampler| (ModelKind::Cauchy, Some(sampler)));
     let axis = Axis::log("V Gaussian / V Cauchy");
-    let chart = of.by_light("Samples: Gaussian model over Cauchy model", axis, told, |cauchy, light| {
-        Bar::new(of.gain(on_gaussian(cauchy), cauchy, light).map_or(f64::NAN, |gain| gain.median.value))
+    let chart = of.by_light("Samples: Gaussian model over Cauchy model", axis, told, &|cauchy, light| {
+        Bar::new(of.gain([on_gaussian(cauchy), cauchy], light).map_or(f64::NAN, |gain| gain.median.value))
     });
     let caption = "By what factor the Cauchy model needs fewer samples (above 1) or more (below), by light: medians over the \
                    grid. The spread over its cells is shown below.";
@@ -103,7 +99,7 @@ pub(super) fn summary(of: &View<'_>) -> Drawing {
 }
 
 /// Gains in V by light, over `published`, up to that of perfect sampling.
-pub(super) fn limits(of: &View<'_>) -> Vec<Drawing> {
+pub(super) fn limits(of: &Study) -> Vec<Drawing> {
     let caption = "By what factor fewer samples than the published sampler needs, by light. That is also how many times its \
                    time a sample may take before it loses in equal time. `perfect` draws in proportion to S cos θᵢ, blind to \
                    the light. Under constant light nothing is left of its variance: no bar.";
@@ -112,22 +108,21 @@ pub(super) fn limits(of: &View<'_>) -> Vec<Drawing> {
 }
 
 /// Gains over `published` by light, a chart for each model: in samples, up to that of perfect sampling, or in equal time.
-fn over_published(of: &View<'_>, time: Option<Counted>, [title, axis, slug, caption]: [&str; 4]) -> Vec<Drawing> {
-    each_model(|model| {
+fn over_published(of: &Study, time: Option<Counted>, [title, axis, slug, caption]: [&str; 4]) -> Vec<Drawing> {
+    each_model(slug, &format!("{caption} {MEDIANS}"), &|model| {
         let others = strategies().map(|strategy| (model, strategy)).filter(|other| *other != published(*other));
         let others = others.filter(|(_, strategy)| time.is_none() || strategy.is_some());
         let title = format!("{title}, {} model", model.title());
-        let chart = of.by_light(&title, Axis::log(axis), others, |other, light| {
-            let factor = time.map_or(1.0, |time| of.time_ratio([published(other), other], light, MANY, time).value);
-            median_bar(of.gain(published(other), other, light), factor)
+        let chart = of.by_light(&title, Axis::log(axis), others, &|other, light| {
+            let pair = [published(other), other];
+            median_bar(of.gain(pair, light), time.map_or(1.0, |time| of.time_ratio(pair, light, MANY, time).value))
         });
-        let caption = format!("{caption} Medians over the grid; whiskers go from the first to the third quartile.");
-        Drawing::new(chart.level(1.0).svg(), caption).named(format!("{slug}-{}", model.name()))
+        chart.level(1.0).svg()
     })
 }
 
 /// Gains in equal time, by light: over `published`, without and with the look-up, then of the Cauchy model.
-pub(super) fn gains(of: &View<'_>) -> Vec<Drawing> {
+pub(super) fn gains(of: &Study) -> Vec<Drawing> {
     let axis = "gain over the published sampler in equal time (×)";
     let title = "Less variance than the published sampler in equal time";
     let caption = format!(
@@ -139,13 +134,13 @@ pub(super) fn gains(of: &View<'_>) -> Vec<Drawing> {
     let caption = format!("{caption} The time of a look-up of the light is added; one that was not timed has no bars.");
     figures.extend(over_published(of, Some(Counted::LookUp), [&title, axis, "gain-by-light-look-up", &caption]));
     let (title, axis) = ("Less variance on the Cauchy model in equal time", "Gaussian / Cauchy in equal time (×)");
-    let chart = of.by_light(title, Axis::log(axis), samplers_on(ModelKind::Cauchy), |cauchy, light| {
+    let chart = of.by_light(title, Axis::log(axis), samplers_on(ModelKind::Cauchy), &|cauchy, light| {
         let pair = [on_gaussian(cauchy), cauchy];
-        median_bar(of.gain(pair[0], pair[1], light), of.time_ratio(pair, light, MANY, Counted::Sample).value)
+        median_bar(of.gain(pair, light), of.time_ratio(pair, light, MANY, Counted::Sample).value)
     });
     let caption = format!(
         "Variance on the Gaussian model over that on the Cauchy model with the same sampler in the same time, by light, at \
-         {MANY} samples per shading point. Medians over the grid; whiskers go from the first to the third quartile."
+         {MANY} samples per shading point. {MEDIANS}"
     );
     figures.push(Drawing::new(chart.level(1.0).svg(), caption).named("cauchy-gain-by-light"));
     figures
@@ -157,8 +152,8 @@ fn of_sampler(sampler: Sampler, series: Series) -> Series {
 }
 
 /// The share of cells in which V of `base` over V of `other` is at most x.
-fn distribution(of: &View<'_>, label: &str, base: Estimator, other: Estimator, light: usize) -> Series {
-    let mut gains: Vec<f64> = of.pairs(base, other, light).map(|[base, other]| base.value / other.value).collect();
+fn distribution(of: &Study, label: &str, pair: [Estimator; 2], light: usize) -> Series {
+    let mut gains: Vec<f64> = of.pairs(pair, light).map(|[base, other]| base.value / other.value).collect();
     gains.retain(|gain| gain.is_finite() && *gain > 0.0);
     gains.sort_by(f64::total_cmp);
     let n = gains.len() as f64;
@@ -169,87 +164,72 @@ fn distribution(of: &View<'_>, label: &str, base: Estimator, other: Estimator, l
 }
 
 /// How gains spread over the cells.
-pub(super) fn distributions(of: &View<'_>) -> Vec<Drawing> {
-    let even = Series::curve("as good", [(1.0, 0.0), (1.0, 100.0)]).styled(5, Dash::Dotted);
-    let chart = |title: String, axis: &str, series: &mut dyn Iterator<Item = Series>| {
+pub(super) fn distributions(of: &Study) -> Vec<Drawing> {
+    let chart = |title: String, axis: &str, mut series: Vec<Series>| {
+        series.push(Series::curve("as good", [(1.0, 0.0), (1.0, 100.0)]).styled(5, Dash::Dotted));
         let share = Axis::linear("cells with at most as much (%)").range(0.0, 100.0).step(20.0);
-        lines(title, Axis::log(axis), share, series.chain([even.clone()])).svg()
+        lines(title, Axis::log(axis), share, series).svg()
     };
     let cells = of.cells.len();
     let of_cauchy = TOLD.map(|sampler| {
-        let cauchy = (ModelKind::Cauchy, Some(sampler));
-        let of_light = |(light, name): (usize, &String)| distribution(of, name, on_gaussian(cauchy), cauchy, light);
-        let title = format!("Variance, Gaussian over Cauchy, with {}", sampler.name());
-        let chart = chart(title, "V Gaussian / V Cauchy", &mut of.lights().iter().enumerate().map(of_light));
+        let (name, cauchy) = (sampler.name(), (ModelKind::Cauchy, Some(sampler)));
+        let of_light = |(light, name): (usize, &String)| distribution(of, name, [on_gaussian(cauchy), cauchy], light);
+        let series = of.lights().iter().enumerate().map(of_light).collect();
+        let svg = chart(format!("Variance, Gaussian over Cauchy, with {name}"), "V Gaussian / V Cauchy", series);
         let caption = format!(
-            "How the gain of the Cauchy model spreads over the {cells} cells of the grid with `{}`, by light: a line left of 1 \
-             (the upright) is a cell where the Cauchy model needs more samples. The time of a sample is not in it.",
-            sampler.name()
+            "How the gain of the Cauchy model spreads over the {cells} cells of the grid with `{name}`, by light: a line left \
+             of 1 (the upright) is a cell where the Cauchy model needs more samples. The time of a sample is not in it."
         );
-        Drawing::new(chart, caption).named(format!("cauchy-gain-over-cells-{}", sampler.name()))
+        Drawing::new(svg, caption).named(format!("cauchy-gain-over-cells-{name}"))
     });
-    let of_samplers = each_model(|model| {
+    let caption = format!(
+        "How the gain over the published sampler spreads over the {cells} cells of the grid under {} light: left of 1 (the \
+         upright) the sampler needs more samples than `published`. The time of a sample is not in it.",
+        of.lights()[CONSTANT]
+    );
+    let of_samplers = each_model("gain-over-cells", &caption, &|model| {
         let others = Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Published);
-        let mut series = others.map(|sampler| {
+        let series = others.map(|sampler| {
             let other = (model, Some(sampler));
-            of_sampler(sampler, distribution(of, sampler.name(), published(other), other, CONSTANT))
+            of_sampler(sampler, distribution(of, sampler.name(), [published(other), other], CONSTANT))
         });
         let title = format!("Variance of the published sampler over that of another, {} model", model.title());
-        let chart = chart(title, "V published / V sampler", &mut series);
-        let caption = format!(
-            "How the gain over the published sampler spreads over the {cells} cells of the grid under {} light: left of 1 (the \
-             upright) the sampler needs more samples than `published`. The time of a sample is not in it.",
-            of.lights()[CONSTANT]
-        );
-        Drawing::new(chart, caption).named(format!("gain-over-cells-{}", model.name()))
+        chart(title, "V published / V sampler", series.collect())
     });
     of_cauchy.into_iter().chain(of_samplers).collect()
 }
 
-/// Effective samples and largest weights.
-pub(super) fn weights(of: &View<'_>) -> Vec<Drawing> {
-    let effective = each_model(|model| {
-        let title = format!("Effective samples in 1000, {} model", model.title());
-        let all = strategies().map(|strategy| (model, strategy));
-        let chart = of.by_light(&title, Axis::linear("effective samples in 1000"), all, |estimator, light| {
-            bar(Some(mean_of(of.rows_of(estimator, light), ess)))
-        });
-        let caption = "1000 / (1 + V): how many samples without variance are worth as much as 1000 of the sampler. \
-                       `perfect` would draw in proportion to S cos θᵢ, blind to the light. Means over the grid; whiskers \
-                       are one standard error.";
-        Drawing::new(chart.svg(), caption).named(format!("effective-samples-{}", model.name()))
-    });
-    let largest = each_model(|model| {
+/// Largest weights, relative to the albedo and to their bounds.
+pub(super) fn weights(of: &Study) -> Vec<Drawing> {
+    let caption = "The largest weight S cos θᵢ / pdf of any sample in the worst cell of each inclination, in units of the albedo: \
+                   what a firefly under constant light would be. It is the largest of those drawn, and so has no error bar; \
+                   more samples can only raise it.";
+    let largest = each_model("largest-weight", caption, &|model| {
         let series = Sampler::ALL.map(|sampler| {
             let relative = |row: &Row<'_>| Some(row.measured.max_weight / row.measured.figures.mean.value);
-            Series::new(sampler.name(), worst(of, (model, Some(sampler)), relative))
+            Series::new(sampler.name(), worst(of, (model, Some(sampler)), &relative))
         });
-        let title = format!("Largest weight, {} model", model.title());
         let x = Axis::linear("inclination of the viewer, θₒ (°)").from_zero();
-        let chart = lines(title, x, Axis::log("largest weight / albedo"), series);
-        let caption = "The largest weight S cos θᵢ / pdf of any sample in the worst cell of each inclination, in units of \
-                       the albedo: what a firefly under constant light would be. It is the largest of those drawn, and \
-                       so has no error bar; more samples can only raise it.";
-        Drawing::new(chart.svg(), caption).named(format!("largest-weight-{}", model.name()))
+        let title = format!("Largest weight, {} model", model.title());
+        lines(title, x, Axis::log("largest weight / albedo"), series).svg()
     });
-    let bounds = each_model(|model| {
+    let caption = "For samplers with a bound in closed form: the largest weight drawn over the bound, in the worst cell of each \
+                   inclination. A point above 1 would fail the run.";
+    let bounds = each_model("weight-bound", caption, &|model| {
         let series = Sampler::ALL.into_iter().filter_map(|sampler| {
             let share = |row: &Row<'_>| Some(row.measured.max_weight / row.measured.weight_bound?);
-            let points = worst(of, (model, Some(sampler)), share);
+            let points = worst(of, (model, Some(sampler)), &share);
             (!points.is_empty()).then(|| of_sampler(sampler, Series::new(sampler.name(), points)))
         });
         let title = format!("Largest weight over its proven bound, {} model", model.title());
         let chart = lines(title, Axis::linear("θₒ (°)"), Axis::linear("largest weight / bound"), series);
-        let caption = "For samplers with a bound in closed form: the largest weight drawn over the bound, in the worst cell of \
-                       each inclination. A point above 1 would fail the run.";
-        Drawing::new(chart.reference("the bound", 0.0, (1.0, 1.0)).svg(), caption)
-            .named(format!("weight-bound-{}", model.name()))
+        chart.reference("the bound", 0.0, (1.0, 1.0)).svg()
     });
-    [effective, largest, bounds].concat()
+    [largest, bounds].concat()
 }
 
 /// The largest figure of the cells of each inclination, under constant light; none where there is no figure.
-fn worst(of: &View<'_>, estimator: Estimator, figure: impl Fn(&Row<'_>) -> Option<f64>) -> Vec<(f64, f64)> {
+fn worst(of: &Study, estimator: Estimator, figure: &dyn Fn(&Row<'_>) -> Option<f64>) -> Vec<(f64, f64)> {
     let of_inclination = |theta_o: &f32| {
         let rows = of.rows_of(estimator, CONSTANT).filter(|row| row.cell.theta_o_deg == *theta_o);
         let most = rows.filter_map(|row| figure(&row)).reduce(f64::max)?;

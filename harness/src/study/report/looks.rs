@@ -1,11 +1,10 @@
 //! The plots of how different the models look.
 
 use super::charts::lines;
-use crate::difference::{Difference, DifferenceRow, Differences, Summary, Width, albedo_ratio};
+use crate::difference::{Difference, Differences, Summary, Width, albedo_ratio};
 use crate::figures;
 use crate::plot::{Axis, Bar, Series};
 use crate::report::Drawing;
-use crate::study::Cell;
 use hairis::HairParams;
 use hairis_variants::Cauchy;
 
@@ -33,10 +32,10 @@ pub(super) fn pictures() -> Vec<Drawing> {
 pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
     let width = || Axis::linear("width of R, β_R (°)").from_zero();
     let l1 = || Axis::linear("difference of S cos θᵢ, L1 (%)").from_zero();
-    let beta_r = |cell: &Cell| cell.beta_r_deg;
+    let (widths, inclinations) = (of.grid.widths(), of.grid.inclinations());
     let by_factor = Width::ALL.map(|width| {
-        let points = over(of, width, beta_r, |f| 100.0 * f.plain.l1).map(|(beta, found)| (beta, found.median));
-        Series::new(named(of, width), points)
+        let points = of.along(widths, width, |f| 100.0 * f.plain.l1).into_iter();
+        Series::new(named(of, width), points.map(|(beta, found)| (beta, found.median)))
     });
     let kinds: [NamedDifference; 4] = [
         ("as they are", |f| 100.0 * f.plain.l1),
@@ -44,15 +43,14 @@ pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
         ("blurred by 10°", |f| 100.0 * f.blurred.l1),
         ("shape alone, blurred", |f| 100.0 * f.blurred_shape.l1),
     ];
+    let bar = |middle: f64, found: Summary| Bar::new(middle).with_interval(found.least, found.most);
     let by_kind = kinds.map(|(name, figure)| {
-        let points = over(of, Width::Paper, beta_r, figure);
-        Series::new(name, points.map(|(x, found)| (x, Bar::new(found.median).with_interval(found.least, found.most))))
+        let points = of.along(widths, Width::Paper, figure).into_iter();
+        Series::new(name, points.map(|(x, found)| (x, bar(found.median, found))))
     });
     let albedos = Width::ALL.map(|width| {
-        let points = over(of, width, |cell| cell.theta_o_deg, albedo_ratio);
-        let point =
-            |(x, found): (f64, Summary)| (x, Bar::new(found.geometric_mean).with_interval(found.least, found.most));
-        Series::new(named(of, width), points.map(point))
+        let points = of.along(inclinations, width, albedo_ratio).into_iter();
+        Series::new(named(of, width), points.map(|(x, found)| (x, bar(found.geometric_mean, found))))
     });
     let theta_o = Axis::linear("inclination of the viewer, θₒ (°)").from_zero();
     let ratio = Axis::linear("ratio of the albedos");
@@ -79,22 +77,6 @@ pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
     ]
     .map(|(name, chart, caption)| Drawing::new(chart.svg(), caption).named(name))
     .into()
-}
-
-/// Summaries of a figure of one choice of widths, by the values of an axis of the grid.
-fn over(
-    of: &Difference,
-    width: Width,
-    axis: fn(&Cell) -> f32,
-    figure: fn(&Differences) -> f64,
-) -> impl Iterator<Item = (f64, Summary)> {
-    let mut values: Vec<f32> = of.of(width).map(|row| axis(&row.cell)).collect();
-    values.sort_by(f32::total_cmp);
-    values.dedup();
-    values.into_iter().map(move |value| {
-        let rows = of.of(width).filter(|row: &&DifferenceRow| axis(&row.cell) == value);
-        (f64::from(value), Summary::of(rows.map(|row| figure(&row.figures))))
-    })
 }
 
 /// A choice of widths with its factor.

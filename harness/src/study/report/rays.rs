@@ -1,10 +1,11 @@
 //! The section on rays chosen from candidates.
 
 use super::super::equal_time::{count_cells, in_equal_time};
+use super::super::output::Study;
 use super::super::rays::{MIS, POOLS, RAYS, half_visible, times_at, v};
 use super::super::rows::{Estimator, on_each_model, samplers};
 use super::super::summary::shown;
-use super::super::view::{Gain, View, gain, sure_ratio};
+use super::super::view::{Gain, gain, sure_ratio};
 use super::charts::{median_bar, samplers_on};
 use crate::plot::Axis;
 use crate::rays::{PRICES_US, VISIBLE, occluded};
@@ -13,7 +14,7 @@ use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::table::{Table, number};
 
-pub(super) fn section(of: &View<'_>) -> Section {
+pub(super) fn section(of: &Study) -> Section {
     let section = Section::new("Rays from candidates").paragraph(
         "A ray of direct light by one-sample MIS (BSDF or light, the balance heuristic), or chosen by `hairis::resample` from \
          4 + 4 or 8 + 8 candidates of the BSDF and of the light. V is that of one ray; where a share v of the directions is \
@@ -24,18 +25,18 @@ pub(super) fn section(of: &View<'_>) -> Section {
 }
 
 /// V of a ray by `base` over V of a ray by `other`, cell by cell.
-fn ratio(of: &View<'_>, one: Estimator, light: usize, [base, other]: [usize; 2]) -> Option<Gain> {
+fn ratio(of: &Study, one: Estimator, light: usize, [base, other]: [usize; 2]) -> Option<Gain> {
     gain(of.rows_of(one, light).map(|row| [base, other].map(|by| v(row.measured, by))))
 }
 
 /// Medians of V and of its ratios to that of MIS.
-fn variances(of: &View<'_>) -> Table {
+fn variances(of: &Study) -> Table {
     let headers = RAYS.iter().map(|by| by.name.to_owned());
     let headers = headers.chain(POOLS.map(|by| format!("{} / MIS", RAYS[by].name)));
     let headers = headers.chain(["cells with less".to_owned()]);
     let headers = headers.chain(VISIBLE.map(|share| format!("8 + 8 / MIS, {:.0}% visible", 100.0 * share)));
     let title = "V of one ray, medians over the grid";
-    let table = of.table(title, headers, on_each_model(samplers()), |one, light| {
+    let table = of.table(title, headers, on_each_model(samplers()), &|one, light| {
         let rows = || of.rows_of(one, light);
         let median = |found: &Option<Gain>| found.as_ref().map_or_else(String::new, |found| shown(found.median));
         let plain = |by| gain(rows().map(|row| [v(row.measured, by), Estimate::exact(1.0)]));
@@ -55,11 +56,11 @@ fn variances(of: &View<'_>) -> Table {
 }
 
 /// Gains over MIS in equal time, by the price of a ray.
-fn equal_time(of: &View<'_>) -> Table {
+fn equal_time(of: &Study) -> Table {
     let prices = POOLS.map(|by| PRICES_US.map(|price| format!("{}, {price} µs", RAYS[by].name)));
     let headers = RAYS.iter().map(|by| format!("{}, ns", by.name)).chain(prices.into_iter().flatten());
     let title = "Rays from candidates over MIS in equal time, half of the directions visible";
-    let table = of.table(title, headers, on_each_model(samplers()), |one, light| {
+    let table = of.table(title, headers, on_each_model(samplers()), &|one, light| {
         let ns = [0, 1, 2].map(|by| of.ray_ns(one, light, by));
         if !ns[MIS].value.is_finite() {
             return vec!["not timed".to_owned(); RAYS.len() + POOLS.len() * PRICES_US.len()];
@@ -86,9 +87,9 @@ fn equal_time(of: &View<'_>) -> Table {
 }
 
 /// V of MIS over V of a ray from 8 + 8 candidates, by light.
-fn chart(of: &View<'_>, model: ModelKind) -> Drawing {
+fn chart(of: &Study, model: ModelKind) -> Drawing {
     let title = format!("Variance of MIS over that of a ray from 8 + 8 candidates, {} model", model.title());
-    let chart = of.by_light(&title, Axis::log("V MIS / V 8 + 8 (×)"), samplers_on(model), |one, light| {
+    let chart = of.by_light(&title, Axis::log("V MIS / V 8 + 8 (×)"), samplers_on(model), &|one, light| {
         median_bar(ratio(of, one, light, [MIS, POOLS[1]]), 1.0)
     });
     let caption = "By what factor less variance one ray has that is chosen from 8 + 8 candidates, without occlusion, by light. \

@@ -1,60 +1,55 @@
 //! Tables that only the report has.
 
+use super::super::output::Study;
 use super::super::rows::{name, on_each_model, published, samplers, strategies};
 use super::super::summary::shown;
 use super::super::times::PER_POINT;
-use super::super::view::{View, ess, mean_of, mean_v};
+use super::super::view::{ess, mean_of, mean_v};
 use crate::table::{Table, number};
 use serde_json::Value;
 
-/// V, effective samples, divergence and largest weight of every sampler under every light.
-pub(super) fn quality(of: &View<'_>) -> Table {
+/// Quality and times of every sampler, and times of the look-ups.
+pub(super) fn all(of: &Study) -> [Table; 3] {
     let headers = ["V", "effective samples in 1000", "divergence, nats", "largest contribution, means"];
     let title = "Every sampler under every light, over the grid";
-    let table = of.table(title, headers, on_each_model(strategies()), |one, light| {
+    let quality = of.table(title, headers, on_each_model(strategies()), &|one, light| {
         let rows = || of.rows_of(one, light);
         // V that is 0 in every cell has no geometric mean.
         let is_even = rows().all(|row| row.v().value == 0.0);
         let v = if is_even { "0".to_owned() } else { mean_v(rows()).map_or_else(String::new, shown) };
-        let means = [mean_of(rows(), ess), mean_of(rows(), |measured| measured.figures.kl)].map(shown);
+        let means = [mean_of(rows(), &ess), mean_of(rows(), &|measured| measured.figures.kl)].map(shown);
         let most = rows().map(|row| row.measured.max_contribution).fold(0.0, f64::max);
         [vec![v], means.into(), vec![number::plain(most, 3)]].concat()
     });
-    table.note(
-        "V: geometric mean. Effective samples and divergence (Kullback-Leibler, of the sampler's density from the \
-         normalised integrand): means. Largest contribution: of any cell, in units of its mean. ±: one standard error.",
-    )
-}
-
-/// Times of a look-up.
-pub(super) fn look_ups(of: &View<'_>) -> Table {
-    let mut table = Table::new("Time of a look-up of the light in a direction, ns").text("light").number("ns");
-    for (light, name) in of.lights().iter().enumerate() {
-        let ns = of.look_up(light);
-        table.push([name.clone(), if ns.value.is_finite() { shown(ns) } else { "not timed".to_owned() }]);
-    }
-    table.note(
-        "Radiance and the light's density in 65536 directions of the published sampler, many shading points in turn; eight \
-         lanes, one thread, medians; ±: one standard error.",
-    )
-}
-
-/// Times of a sample.
-pub(super) fn times(of: &View<'_>) -> Table {
-    let table = Table::new("Time of a sample, ns").texts(["model", "sampler"]);
-    let mut table = table.numbers(PER_POINT.map(|n| format!("{n} per shading point")));
+    let times = Table::new("Time of a sample, ns").texts(["model", "sampler"]);
+    let mut times = times.numbers(PER_POINT.map(|n| format!("{n} per shading point")));
     for one in on_each_model(samplers()) {
         let keys = [one.0.name(), name(one.1)].map(str::to_owned);
-        table.push(keys.into_iter().chain(PER_POINT.map(|n| {
+        times.push(keys.into_iter().chain(PER_POINT.map(|n| {
             let [ns, base] = [one, published(one)].map(|one| of.ns(one, n));
             format!("{} ({})", shown(ns), number::ratio(ns.value / base.value))
         })));
     }
-    table.note(
-        "Set-up included, the default hair, eight lanes, one thread, medians; ±: one standard error. In brackets: over that \
-         of the published sampler. A sampler pays in equal time while that is below V of the published sampler over its \
-         own V.",
-    )
+    let mut look_ups = Table::new("Time of a look-up of the light in a direction, ns").text("light").number("ns");
+    for (light, name) in of.lights().iter().enumerate() {
+        let ns = of.times.look_up(light);
+        look_ups.push([name.clone(), if ns.value.is_finite() { shown(ns) } else { "not timed".to_owned() }]);
+    }
+    [
+        quality.note(
+            "V: geometric mean. Effective samples and divergence (Kullback-Leibler, of the sampler's density from the \
+             normalised integrand): means. Largest contribution: of any cell, in units of its mean. ±: one standard error.",
+        ),
+        times.note(
+            "Set-up included, the default hair, eight lanes, one thread, medians; ±: one standard error. In brackets: over \
+             that of the published sampler. A sampler pays in equal time while that is below V of the published sampler over \
+             its own V.",
+        ),
+        look_ups.note(
+            "Radiance and the light's density in 65536 directions of the published sampler, many shading points in turn; \
+             eight lanes, one thread, medians; ±: one standard error.",
+        ),
+    ]
 }
 
 /// The verdicts in a `claims.json`; `None` if it holds none.
