@@ -66,17 +66,14 @@ fn worth(of: &Study) -> String {
     let parts = of_told(&|sampler, pair| {
         let lights = by_light(of, &|light, name| {
             let gain = of.equal_time(pair, light, Counted::Sample)?;
-            Some(match Sign::of(gain) {
-                Sign::Above => format!("{} less under {name}", times(gain)),
-                Sign::Below => format!("{} more under {name}", times(Estimate::exact(1.0).ratio(&gain))),
-                Sign::Unsure => format!("as much under {name}, within the errors"),
-            })
+            let unsure = if Sign::of(gain) == Sign::Unsure { ", no difference within the errors" } else { "" };
+            Some(format!("{} under {name}{unsure}", times(gain)))
         });
         Some(format!("with `{sampler}` {lights}"))
     });
     format!(
-        "Is the Cauchy model worth it? Its variance against that of the Gaussian model in equal time, {MANY} samples per \
-         shading point, medians over the grid: {}.",
+        "Is the Cauchy model worth it? Variance on the Gaussian model over that on the Cauchy model in equal time, {MANY} \
+         samples per shading point, medians over the grid: {}.",
         parts.join("; ")
     )
 }
