@@ -16,7 +16,7 @@ use crate::subject::ModelKind;
 const CONSTANT: usize = 0;
 
 /// The last sentence of captions of bars of [`median_bar`].
-const MEDIANS: &str = "Medians over the grid; whiskers go from the first to the third quartile.";
+pub(super) const MEDIANS: &str = "Medians over the grid; whiskers go from the first to the third quartile.";
 
 /// A chart of lines.
 pub(super) fn lines(title: impl Into<String>, x: Axis, y: Axis, series: impl IntoIterator<Item = Series>) -> LineChart {
@@ -24,7 +24,7 @@ pub(super) fn lines(title: impl Into<String>, x: Axis, y: Axis, series: impl Int
 }
 
 /// A drawing for each model, whose name ends that of its files.
-fn each_model(slug: &str, caption: &str, svg: &dyn Fn(ModelKind) -> String) -> Vec<Drawing> {
+pub(super) fn each_model(slug: &str, caption: &str, svg: &dyn Fn(ModelKind) -> String) -> Vec<Drawing> {
     ModelKind::ALL.map(|model| Drawing::new(svg(model), caption).named(format!("{slug}-{}", model.name()))).into()
 }
 

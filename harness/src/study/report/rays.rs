@@ -6,12 +6,11 @@ use super::super::rays::{MIS, POOLS, RAYS, half_visible, times_at, v};
 use super::super::rows::{Estimator, on_each_model, samplers};
 use super::super::summary::shown;
 use super::super::view::{Gain, gain, sure_ratio};
-use super::charts::{median_bar, samplers_on};
+use super::charts::{MEDIANS, each_model, median_bar, samplers_on};
 use crate::plot::Axis;
 use crate::rays::{PRICES_US, VISIBLE, occluded};
 use crate::report::{Drawing, Section};
 use crate::stats::Estimate;
-use crate::subject::ModelKind;
 use crate::table::{Table, number};
 
 pub(super) fn section(of: &Study) -> Section {
@@ -20,8 +19,7 @@ pub(super) fn section(of: &Study) -> Section {
          4 + 4 or 8 + 8 candidates of the BSDF and of the light. V is that of one ray; where a share v of the directions is \
          visible it is (V + 1)/v − 1.",
     );
-    let section = ModelKind::ALL.into_iter().fold(section, |section, model| section.figure(chart(of, model)));
-    section.table(variances(of)).table(equal_time(of))
+    section.figures(charts(of)).tables([variances(of), equal_time(of)])
 }
 
 /// V of a ray by `base` over V of a ray by `other`, cell by cell.
@@ -87,12 +85,14 @@ fn equal_time(of: &Study) -> Table {
 }
 
 /// V of MIS over V of a ray from 8 + 8 candidates, by light.
-fn chart(of: &Study, model: ModelKind) -> Drawing {
-    let title = format!("Variance of MIS over that of a ray from 8 + 8 candidates, {} model", model.title());
-    let chart = of.by_light(&title, Axis::log("V MIS / V 8 + 8 (×)"), samplers_on(model), &|one, light| {
-        median_bar(ratio(of, one, light, [MIS, POOLS[1]]), 1.0)
-    });
-    let caption = "By what factor less variance one ray has that is chosen from 8 + 8 candidates, without occlusion, by light. \
-                   Medians over the grid; whiskers go from the first to the third quartile.";
-    Drawing::new(chart.level(1.0).svg(), caption).named(format!("rays-from-candidates-{}", model.name()))
+fn charts(of: &Study) -> Vec<Drawing> {
+    let caption =
+        "By what factor less variance one ray has that is chosen from 8 + 8 candidates, without occlusion, by light.";
+    each_model("rays-from-candidates", &format!("{caption} {MEDIANS}"), &|model| {
+        let title = format!("Variance of MIS over that of a ray from 8 + 8 candidates, {} model", model.title());
+        let chart = of.by_light(&title, Axis::log("V MIS / V 8 + 8 (×)"), samplers_on(model), &|one, light| {
+            median_bar(ratio(of, one, light, [MIS, POOLS[1]]), 1.0)
+        });
+        chart.level(1.0).svg()
+    })
 }
