@@ -7,6 +7,7 @@ fn main() {
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
     set("RUSTC", &run(&rustc, &["--version"]).unwrap_or_else(unknown));
     set("OPT_LEVEL", &std::env::var("OPT_LEVEL").unwrap_or_else(|_| unknown()));
+    set("TARGET_FEATURES", &std::env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default());
 
     // Only a repository that tracks this very file counts: an unpacked copy may lie inside another one.
     let ours = run("git", &["ls-files", "--error-unmatch", "build.rs"]).is_some();

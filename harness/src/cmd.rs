@@ -46,7 +46,7 @@ fn environment(path: Option<&Path>) -> Result<(Environment, String), Error> {
 fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Result<(), Error> {
     let mut out = io::stdout().lock();
     for table in tables {
-        match writeln!(out, "{}", table.to_terminal()).and_then(|()| out.flush()) {
+        match writeln!(out, "{}", table.to_text(None)).and_then(|()| out.flush()) {
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
                 say(&format!("standard output was closed; the tables are in {}", file.display()));
                 return Ok(());

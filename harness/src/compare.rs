@@ -6,7 +6,7 @@ mod rays;
 mod tables;
 
 pub use page::report;
-pub use tables::{Depth, tables};
+pub use tables::summary as summary_tables;
 
 use crate::agreement::{self, AgreementResult};
 use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, SAMPLERS, SampleCosts};
@@ -18,19 +18,6 @@ use crate::study::output::Times;
 use crate::subject::ModelKind;
 use hairis::ParamError;
 use serde::Serialize;
-
-/// Settings of a comparison.
-#[derive(Clone, Copy, Debug)]
-pub struct CompareConfig<'a> {
-    /// Seed of everything that is drawn.
-    pub seed: u64,
-    /// A tenth of the samples: for a first look, and for tests.
-    pub quick: bool,
-    /// The environment light.
-    pub environment: &'a Environment,
-    /// Description of the environment in the report: a file, or the procedural sky.
-    pub environment_name: &'a str,
-}
 
 /// Everything that was found; `compare.json` is this.
 #[derive(Clone, Debug, Serialize)]
@@ -49,14 +36,14 @@ pub struct Comparison {
     pub rays: RaysResult,
 }
 
-/// The settings of a comparison.
+/// Settings of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CompareSettings {
     /// Seed of everything that is drawn.
     pub seed: u64,
-    /// Whether it was the short run.
+    /// A tenth of the samples: for a first look, and for tests.
     pub quick: bool,
-    /// The environment light.
+    /// Description of the environment light: a file, or the procedural sky.
     pub environment: String,
     /// Repairs to the environment, and remarks on it.
     pub environment_notes: Vec<String>,
@@ -69,10 +56,11 @@ pub struct CompareSettings {
 ///
 /// Never in practice: the hair that is compared is within the accepted ranges.
 pub fn run(
-    config: &CompareConfig<'_>,
+    settings: CompareSettings,
+    environment: &Environment,
     progress: &(dyn Fn(&'static str, f64) + Sync),
 ) -> Result<Comparison, ParamError> {
-    let CompareConfig { seed, quick, environment, environment_name } = *config;
+    let CompareSettings { seed, quick, .. } = settings;
     let share = |part| move |done: usize, total: usize| progress(part, done as f64 / total as f64);
     let speed = speed::run(&SpeedConfig::new(seed, quick), |done| progress("speed", done))?;
     let costs = sample_costs(&Times::measure(seed, quick, None));
@@ -84,8 +72,6 @@ pub fn run(
     let variance = EfficiencyConfig { costs: Some(costs), ..EfficiencyConfig::new(seed, quick, environment) };
     let efficiency = efficiency::run(&variance, &share("sample efficiency"))?;
     let rays = ray_figures::run(&RaysConfig::new(seed, quick, environment), &efficiency, &share("rays"));
-    let environment_notes = environment.notes();
-    let settings = CompareSettings { seed, quick, environment: environment_name.to_owned(), environment_notes };
     Ok(Comparison { settings, machine: Machine::current(), speed, agreement, efficiency, rays })
 }
 

@@ -2,9 +2,9 @@
 
 mod looks;
 
-pub use looks::{difference_map, maps, polar};
+pub use looks::{maps, polar};
 
-use crate::plot::{Axis, Dash, LineChart, Projection, ScatterMap, ScatterPanel, Series, SphereGrid};
+use crate::plot::{Axis, ScatterPanel, Series, SphereGrid, lines, scatter_maps};
 use crate::quadrature::fibre_direction;
 use crate::report::Drawing;
 use core::f64::consts::{PI, SQRT_2};
@@ -24,41 +24,42 @@ const BELLS: [Bell; 2] = [
     ("Cauchy", |x| 1.0 / (x * x + 1.0), |x| 2.0 * x.atan()),
 ];
 
-/// The bells, each with its peak or its area scaled to 1 by `height`.
-fn bells(title: &str, y: &str, height: impl Fn(&Bell, f64, f64) -> f64) -> String {
+/// The bells, each divided by what `scale` gives for it and its width.
+fn bells_over(title: &str, y: &str, scale: fn(&Bell, f64) -> f64) -> String {
     let x = Axis::linear("distance from the centre (°)").range(-90.0, 90.0).step(15.0);
-    let mut chart = LineChart::new(title, x, Axis::linear(y).from_zero());
-    for (bell, dash) in BELLS.iter().zip([Dash::Solid, Dash::Dashed]) {
+    let mut series = Vec::new();
+    for (dash, bell) in BELLS.iter().enumerate() {
         for (color, width) in WIDTHS.into_iter().enumerate() {
-            let points = (-360..=360).map(|i| f64::from(i) / 4.0).map(|x| (x, height(bell, x, width)));
-            chart = chart.series(Series::curve(format!("{} {width}°", bell.0), points).styled(color, dash));
+            let points = (-360..=360).map(|i| f64::from(i) / 4.0).map(|x| (x, bell.1(x / width) / scale(bell, width)));
+            series.push(Series::curve(format!("{} {width}°", bell.0), points).styled(color, dash));
         }
     }
-    chart.svg()
+    lines(title, x, Axis::linear(y), &series)
 }
 
-/// The paper's figure 4: Gaussians and Cauchys of the same widths, each of area 1 on `[-pi/2, pi/2]`.
+/// Gaussians and Cauchys of the same widths: each of area 1 on `[-pi/2, pi/2]`, the paper's figure 4, then as the
+/// scattering function has them, of peak 1.
 #[must_use]
-pub fn normalised_bells() -> Drawing {
+pub fn bells() -> [Drawing; 2] {
     let title = "Gaussian and Cauchy of the same width, area 1";
-    let svg = bells(title, "density (1/rad)", |(_, at, area), x, width| {
-        at(x / width) / (width.to_radians() * area(90.0 / width))
-    });
-    let caption = "Gaussian (unbroken) and Cauchy (dashed) distributions of the same width and offset, both \
-                   normalised on [−90°, 90°], as figure 4 of the paper: these are the densities that the sampler draws \
-                   from and those it stands in for. The Cauchy's tails are wider and its peak is lower.";
-    Drawing::new(svg, caption).named("bells-of-area-1")
-}
-
-/// The same bells as the scattering function has them: of peak 1.
-#[must_use]
-pub fn unit_bells() -> Drawing {
-    let title = "Gaussian and Cauchy of the same width, peak 1";
-    let svg = bells(title, "bell (no unit)", |(_, at, _), x, width| at(x / width));
-    let caption = "The same bells with peak 1, as the lobes of the published model (Gaussian) and of the all-Cauchy \
-                   variant use them. At the same width parameter the Cauchy is narrower at half height (1 width \
-                   against 1.177) and far higher in the tails: 1/10 against 1/90 three widths out.";
-    Drawing::new(svg, caption).named("bells-of-peak-1")
+    let of_area_1 = bells_over(title, "density (1/rad)", |(_, _, area), width| width.to_radians() * area(90.0 / width));
+    let of_peak_1 = bells_over("Gaussian and Cauchy of the same width, peak 1", "bell (no unit)", |_, _| 1.0);
+    [
+        Drawing::new(
+            "bells-of-area-1",
+            of_area_1,
+            "Gaussian (unbroken) and Cauchy (dashed) distributions of the same width and offset, both normalised on \
+             [−90°, 90°], as figure 4 of the paper: these are the densities that the sampler draws from and those it \
+             stands in for. The Cauchy's tails are wider and its peak is lower.",
+        ),
+        Drawing::new(
+            "bells-of-peak-1",
+            of_peak_1,
+            "The same bells with peak 1, as the lobes of the published model (Gaussian) and of the all-Cauchy variant \
+             use them. At the same width parameter the Cauchy is narrower at half height (1 width against 1.177) and \
+             far higher in the tails: 1/10 against 1/90 three widths out.",
+        ),
+    ]
 }
 
 /// `S cos theta_i`, the mean of the channels.
@@ -80,40 +81,41 @@ fn angles_of(wi: Vec3) -> [f64; 2] {
 #[must_use]
 pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) -> Drawing {
     let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params)).prepare(fibre_direction(theta_o, 0.0).as_vec3());
-    let panel = |title: &str, lobes, is_uniform| {
+    let panel = |(title, lobes, is_uniform): (&str, LobeMask, bool)| {
         let gather = gather.with_lobes(lobes);
         let angles = |xi: &[f32; 3]| {
             let [_, a, b] = xi.map(f64::from);
             let uniform = [(2.0 * a - 1.0).asin(), 2.0 * PI * b];
             if is_uniform { Some(uniform) } else { Some(angles_of(gather.sample(*xi)?.wi)) }
         };
-        let density = SphereGrid::sample(Projection::EqualArea, (80, 160), |theta, phi| reflected(&gather, theta, phi));
+        let density = SphereGrid::sample((80, 160), &mut |theta, phi| reflected(&gather, theta, phi));
         ScatterPanel { title: title.to_owned(), points: xi.iter().filter_map(angles).collect(), density }
     };
-    let panels = vec![
-        panel("(a) uniform", LobeMask::ALL, true),
-        panel("(b) all lobes", LobeMask::ALL, false),
-        panel("(c) R", LobeMask::of(&[Lobe::R]), false),
-        panel("(d) TT", LobeMask::of(&[Lobe::TT]), false),
-        panel("(e) TRT without glint", LobeMask::of(&[Lobe::TRT]), false),
-        panel("(f) glint", LobeMask::of(&[Lobe::GLINT]), false),
-    ];
-    let mark = (format!("direction to the viewer, θₒ = {:.0}°", theta_o.to_degrees()), [theta_o, 0.0]);
-    let map = ScatterMap { title: "Sample distributions over S cos θᵢ".to_owned(), panels, mark };
+    let panels = [
+        ("(a) uniform", LobeMask::ALL, true),
+        ("(b) all lobes", LobeMask::ALL, false),
+        ("(c) R", LobeMask::of(&[Lobe::R]), false),
+        ("(d) TT", LobeMask::of(&[Lobe::TT]), false),
+        ("(e) TRT without glint", LobeMask::of(&[Lobe::TRT]), false),
+        ("(f) glint", LobeMask::of(&[Lobe::GLINT]), false),
+    ]
+    .map(panel);
+    let mark = format!("direction to the viewer, θₒ = {:.0}°", theta_o.to_degrees());
+    let maps = scatter_maps("Sample distributions over S cos θᵢ", &panels, &mark, [theta_o, 0.0]);
     let caption = format!(
         "{} samples a map in equal-area maps of the sphere, as figure 5 of the paper: (a) uniform sampling, (b) the \
          mixture, (c) to (f) each lobe alone. The background is S cos θᵢ of the same lobes (square root; darker is \
          more), so samples should lie where it is dark. TT surrounds φ = ±180°, the direction away from the viewer.",
         xi.len()
     );
-    Drawing::new(map.svg(), caption).named("sample-distributions")
+    Drawing::new("sample-distributions", maps, caption)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::markup::well_formed;
-    use crate::plot::{Bar, BarChart, HeatMap};
+    use crate::plot::{Bar, bars, heat_map};
     use crate::report::{Report, Section};
     use crate::table::{Table, number};
     use hairis::HairDesc;
@@ -141,7 +143,8 @@ mod tests {
         let params = default_hair();
         let theta_o = 20.0_f64.to_radians();
         let samples = sample_distributions(&params, theta_o, &halton(2000));
-        vec![normalised_bells(), unit_bells(), samples, polar(&params, theta_o, &[("Cauchy", Cauchy::PAPER)])]
+        let [area, peak] = bells();
+        vec![area, peak, samples, polar(&params, theta_o, &[("Cauchy", Cauchy::PAPER)])]
     }
 
     #[test]
@@ -167,69 +170,73 @@ mod tests {
     /// Writes a page with every kind of chart; set `HAIRIS_GALLERY` to a folder to look at it.
     #[test]
     fn a_gallery_of_every_chart_is_a_page() {
-        let mut section = Section::new("Figures").paragraph("Every kind of chart, with made-up numbers where needed.");
-        for figure in all() {
-            section = section.figure(figure);
-        }
         let n = |i: i32| 4.0_f64.powi(i);
-        let decay =
-            |c: f64| (1..9).map(move |i| (n(i), c / n(i).sqrt())).map(|(n, e)| (n, Bar::new(e).with_error(0.12 * e)));
-        let mut chart =
-            LineChart::new("Convergence (made up)", Axis::log("samples N"), Axis::log("relative RMS error"));
-        for (i, name) in ["uniform", "published", "matched", "light", "MIS", "quasi-MC"].into_iter().enumerate() {
-            chart = chart.series(Series::new(name, decay(1.0 / n(i32::try_from(i).unwrap_or(0)).sqrt())));
-        }
-        let band = (0..50)
-            .map(|i| f64::from(i) / 10.0)
-            .map(|x| (x, Bar::new(x.sin()).with_interval(x.sin() - 0.2, x.sin() + 0.1)));
-        let bands = LineChart::new("Intervals (made up)", Axis::linear("x (rad)"), Axis::linear("y"))
-            .series(Series::new("sine", band))
-            .reference("zero", 0.0, (1.0, 0.0));
-        let bar = |v: f64| Bar::new(v).with_error(0.04 * v);
-        let bars = BarChart::new(
+        let exact = |value: f64, error: f64| Bar { value, low: value - error, high: value + error };
+        let decay = |c: f64| (1..9).map(move |i| (n(i), c / n(i).sqrt())).map(|(n, e)| (n, exact(e, 0.12 * e)));
+        let names = ["uniform", "published", "matched", "light", "MIS", "quasi-MC"];
+        let mut series: Vec<Series> =
+            (0..).zip(names).map(|(i, name)| Series::new(name, decay(1.0 / n(i).sqrt()))).collect();
+        series.push(Series::guide("slope −1/2", [(4.0, 0.6), (4096.0, 0.6 / 32.0)]));
+        let chart = lines("Convergence (made up)", Axis::log("samples N"), Axis::log("relative RMS error"), &series);
+        let interval = |y: f64| Bar { value: y, low: y - 0.2, high: y + 0.1 };
+        let band = (0..50).map(|i| f64::from(i) / 10.0).map(|x| (x, interval(x.sin())));
+        let band = [Series::new("sine", band), Series::guide("zero", [(0.0, 0.0), (5.0, 0.0)])];
+        let bands = lines("Intervals (made up)", Axis::linear("x (rad)"), Axis::linear("y"), &band);
+        let bar = |v: &f64| exact(*v, 0.04 * v);
+        let made_up = |title: &str, axis: Axis, groups: &[&str], rows: &[(&str, &[f64])], level: f64| {
+            let groups: Vec<String> = groups.iter().map(|group| (*group).to_owned()).collect();
+            let series: Vec<(String, Vec<Bar>)> =
+                rows.iter().map(|(name, values)| ((*name).to_owned(), values.iter().map(bar).collect())).collect();
+            bars(title, axis, &groups, &series, level)
+        };
+        let speed = made_up(
             "Speed (made up)",
             Axis::linear("speed relative to scalar (×)"),
-            ["eval", "sample", "sample and eval, one shading point", "prepare"],
-        )
-        .series("8 lanes, portable", [2.1, 2.4, 2.2, 1.4].map(bar))
-        .series("8 lanes, AVX2 and FMA", [7.4, 6.1, 6.6, 3.9].map(bar))
-        .series("batch", [7.9, 6.6, 7.0, 4.2].map(bar))
-        .level(1.0);
-        let logs = BarChart::new("Variance (made up)", Axis::log("V (relative variance)"), ["0°", "45°", "75°"])
-            .series("uniform", [0.706, 0.931, 2.268].map(bar))
-            .series("published", [0.209, 0.189, 0.290].map(bar))
-            .series("matched", [0.018, 0.009, 0.006].map(bar));
+            &["eval", "sample", "sample and eval, one shading point", "prepare"],
+            &[
+                ("8 lanes, portable", &[2.1, 2.4, 2.2, 1.4]),
+                ("8 lanes, AVX2 and FMA", &[7.4, 6.1, 6.6, 3.9]),
+                ("batch", &[7.9, 6.6, 7.0, 4.2]),
+            ],
+            1.0,
+        );
+        let variance = made_up(
+            "Variance (made up)",
+            Axis::log("V (relative variance)"),
+            &["0°", "45°", "75°"],
+            &[
+                ("uniform", &[0.706, 0.931, 2.268]),
+                ("published", &[0.209, 0.189, 0.290]),
+                ("matched", &[0.018, 0.009, 0.006]),
+            ],
+            0.0,
+        );
         let gather =
             AnyBsdf::from(Bsdf::new(&Hair(Gaussian), &default_hair())).prepare(fibre_direction(0.35, 0.0).as_vec3());
-        let grid = SphereGrid::sample(Projection::EqualAngle, (90, 180), |theta, phi| reflected(&gather, theta, phi));
-        let heat =
-            HeatMap::new("S cos θᵢ of the default hair, θₒ = 20°", Axis::linear("S cos θᵢ (1/sr)"), grid.clone());
-        let heat_log = HeatMap::new("The same, logarithmic", Axis::log("S cos θᵢ (1/sr)").range(1e-4, 2.0), grid);
-        let mut table = Table::new("Relative variance V under constant light").text("sampler").numbers([
-            "θₒ = 0°",
-            "θₒ = 45°",
-            "θₒ = 75°",
-            "gain over uniform",
-        ]);
+        let grid = SphereGrid::sample((90, 180), &mut |theta, phi| reflected(&gather, theta, phi));
+        let heat = heat_map("S cos θᵢ of the default hair, θₒ = 20°", Axis::linear("S cos θᵢ (1/sr)"), &grid);
+        let heat_log = heat_map("The same, logarithmic", Axis::log("S cos θᵢ (1/sr)").range(1e-4, 2.0), &grid);
+        let numbers = ["θₒ = 0°", "θₒ = 45°", "θₒ = 75°", "gain over uniform"];
+        let mut table = Table::new("Relative variance V under constant light").texts(["sampler"]).numbers(numbers);
         for (sampler, v, gain) in [("uniform", [0.706, 0.931, 2.268], 1.0), ("published", [0.209, 0.189, 0.29], 7.82)] {
             let cells = v.map(|v| number::with_error(v, 0.005 * v));
             table.push([sampler.to_owned()].into_iter().chain(cells).chain([number::ratio(gain)]));
         }
         let table = table.note("2²⁰ samples a cell; ± is one standard error.");
-        for svg in [
-            chart.reference("slope −1/2", -0.5, (4.0, 0.6)).svg(),
-            bands.svg(),
-            bars.svg(),
-            logs.svg(),
-            heat.svg(),
-            heat_log.svg(),
-        ] {
-            section = section.figure(Drawing::new(svg, "Made up."));
+        let charts = [chart, bands, speed, variance, heat, heat_log].map(|svg| Drawing::new("", svg, "Made up."));
+        let text = "Some text that is long enough to fill more than a line, so that its measure can be judged on screens of any width.";
+        let page = Report {
+            title: "hairis: scalar against SIMD, Gaussian against Cauchy".to_owned(),
+            subtitle: "A gallery".to_owned(),
+            findings: vec!["Eight lanes are 7.1× as fast as one (`sample`, AVX2).".to_owned()],
+            sections: vec![
+                Section::new("Variance").paragraph(text).tables([table]),
+                Section::new("Figures").paragraph("Every kind of chart.").figures(all()).figures(charts),
+                Section::new("Method").facts(&[["CPU", "Example CPU @ 3.00 GHz"]]),
+            ],
+            ..Report::default()
         }
-        let page = Report::new("hairis: scalar against SIMD, Gaussian against Cauchy").subtitle("A gallery")
-            .finding("Eight lanes are 7.1× as fast as one (`sample`, AVX2).").finding("The published sampler's variance is 0.29 to 0.22 of …")
-            .section(Section::new("Variance").paragraph("Some text that is long enough to fill more than a line, so that its measure can be judged on screens of any width.").table(table))
-            .section(section).method("Each figure is a mean over 30 runs.").fact("CPU", "Example CPU @ 3.00 GHz").fact("commit", "0123456789abcdef0123456789abcdef01234567").html();
+        .html();
         well_formed(&page).expect("the page nests");
         let folder = tempfile::tempdir().expect("a folder");
         let folder = std::env::var_os("HAIRIS_GALLERY").map_or(folder.path().to_owned(), Into::into);

@@ -92,21 +92,10 @@ fn name_in_cpuinfo(text: &str) -> Option<String> {
 
 /// Compiled target features, of those the kernels' speed may depend on.
 fn target_features() -> Vec<&'static str> {
-    let known = [
-        ("sse2", cfg!(target_feature = "sse2")),
-        ("sse4.1", cfg!(target_feature = "sse4.1")),
-        ("sse4.2", cfg!(target_feature = "sse4.2")),
-        ("avx", cfg!(target_feature = "avx")),
-        ("avx2", cfg!(target_feature = "avx2")),
-        ("fma", cfg!(target_feature = "fma")),
-        ("bmi2", cfg!(target_feature = "bmi2")),
-        ("avx512f", cfg!(target_feature = "avx512f")),
-        ("avx512vl", cfg!(target_feature = "avx512vl")),
-        ("neon", cfg!(target_feature = "neon")),
-        ("sve", cfg!(target_feature = "sve")),
-        ("simd128", cfg!(target_feature = "simd128")),
-    ];
-    known.into_iter().filter_map(|(name, on)| on.then_some(name)).collect()
+    const KNOWN: [&str; 12] =
+        ["sse2", "sse4.1", "sse4.2", "avx", "avx2", "fma", "bmi2", "avx512f", "avx512vl", "neon", "sve", "simd128"];
+    let compiled: Vec<&str> = env!("HAIRIS_BUILD_TARGET_FEATURES").split(',').collect();
+    KNOWN.into_iter().filter(|name| compiled.contains(name)).collect()
 }
 
 #[cfg(test)]

@@ -17,14 +17,13 @@ mod polar;
 mod sphere;
 
 pub use axis::Axis;
-pub use bar::BarChart;
+pub use bar::bars;
 pub use frame::Bar;
-pub use line::{LineChart, Series};
-pub use palette::Dash;
+pub use line::{Series, lines};
 #[cfg(feature = "png")]
 pub use png::png;
-pub use polar::{PolarChart, PolarPanel};
-pub use sphere::{HeatMap, Projection, ScatterMap, ScatterPanel, SphereGrid};
+pub use polar::{PolarPanel, polar};
+pub use sphere::{ScatterPanel, SphereGrid, heat_map, scatter_maps};
 
 #[cfg(test)]
 mod tests;

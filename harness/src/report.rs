@@ -13,34 +13,40 @@ use std::path::Path;
 
 const STYLE: &str = include_str!("report/style.css");
 
-/// A page under construction: verdicts and one plot, then findings, then sections of plots with their tables folded away,
-/// then the method.
+/// A page: verdicts and one plot, then findings, then sections of plots with their tables folded away.
 ///
 /// Texts are plain: everything in them is escaped, and what stands between `` ` `` marks is set as code.
 ///
 /// ```
 /// use hairis_harness::report::{Report, Section};
-/// let html = Report::new("Comparison")
-///     .verdict("Speed", "Eight lanes are `7.1×` as fast as one.")
-///     .section(Section::new("Speed").paragraph("Measured on an idle machine."))
-///     .fact("CPU", "Example <9000>")
-///     .html();
+/// let html = Report {
+///     title: "Comparison".to_owned(),
+///     verdicts: vec![["Speed".to_owned(), "Eight lanes are `7.1×` as fast as one.".to_owned()]],
+///     sections: vec![Section::new("Machine").facts(&[["CPU", "Example <9000>"]])],
+///     ..Report::default()
+/// }
+/// .html();
 /// assert!(html.contains("<code>7.1×</code>") && html.contains("Example &lt;9000&gt;"));
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
-    title: String,
-    subtitle: String,
-    verdicts: Vec<[String; 2]>,
-    summary: Option<Drawing>,
-    findings: Vec<String>,
-    sections: Vec<Section>,
-    method: Section,
-    facts: Vec<[String; 2]>,
+    /// The title.
+    pub title: String,
+    /// The line under the title, such as when and where it was made.
+    pub subtitle: String,
+    /// Use cases with a sentence each; they come first.
+    pub verdicts: Vec<[String; 2]>,
+    /// The plot beside the verdicts.
+    pub summary: Option<Drawing>,
+    /// Sentences that follow the verdicts; the question that one begins with, if any, stands out.
+    pub findings: Vec<String>,
+    /// The sections, the last about the method.
+    pub sections: Vec<Section>,
 }
 
 /// A part of a report, under a heading of its own and in the table of contents.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[must_use]
 pub struct Section {
     title: String,
     blocks: Vec<Block>,
@@ -48,17 +54,14 @@ pub struct Section {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Block {
-    Heading(String),
-    Paragraph(String),
-    Table(Table),
-    Drawing(Drawing),
-    Facts(Vec<[String; 2]>),
+    Html(String),
+    Figure(Drawing),
 }
 
 /// A drawing with its caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// Name of its files, without the end; empty for none.
+    /// Name of its files, without the end: letters, digits and hyphens; empty for none.
     pub name: String,
     /// A complete `<svg>` element, as those of [`crate::plot`]: it goes into the page as it is.
     pub svg: String,
@@ -67,153 +70,85 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// A drawing with its caption.
+    /// A drawing with its name and its caption.
     #[must_use]
-    pub fn new(svg: impl Into<String>, caption: impl Into<String>) -> Self {
-        Self { name: String::new(), svg: svg.into(), caption: caption.into() }
-    }
-
-    /// Names its files: letters, digits and hyphens.
-    #[must_use]
-    pub fn named(self, name: impl Into<String>) -> Self {
-        Self { name: name.into(), ..self }
-    }
-
-    /// The figure, with the number after `last`.
-    fn html(&self, last: &mut usize) -> String {
-        *last += 1;
-        format!(
-            "<figure id=\"figure-{last}\">\n<div class=\"plot\">\n{}</div>\n\
-             <figcaption><strong>Figure {last}.</strong> {}</figcaption>\n</figure>\n",
-            self.svg,
-            inline(&self.caption)
-        )
+    pub fn new(name: impl Into<String>, svg: String, caption: impl Into<String>) -> Self {
+        Self { name: name.into(), svg, caption: caption.into() }
     }
 }
 
 impl Section {
     /// A section without content.
-    #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
         Self { title: title.into(), blocks: Vec::new() }
     }
 
     /// Adds a heading within the section.
-    #[must_use]
-    pub fn heading(self, text: impl Into<String>) -> Self {
-        self.with([Block::Heading(text.into())])
+    pub fn heading(self, text: &str) -> Self {
+        self.html(format!("<h3>{}</h3>\n", inline(text)))
     }
 
     /// Adds a paragraph.
-    #[must_use]
-    pub fn paragraph(self, text: impl Into<String>) -> Self {
-        self.with([Block::Paragraph(text.into())])
+    pub fn paragraph(self, text: impl AsRef<str>) -> Self {
+        self.html(format!("<p>{}</p>\n", inline(text.as_ref())))
     }
 
-    /// Adds a table.
-    #[must_use]
-    pub fn table(self, table: Table) -> Self {
-        self.tables([table])
-    }
-
-    /// Adds tables.
-    #[must_use]
+    /// Adds tables, each behind its title.
     pub fn tables(self, tables: impl IntoIterator<Item = Table>) -> Self {
-        self.with(tables.into_iter().map(Block::Table))
+        tables.into_iter().fold(self, |section, table| {
+            let title = escape(table.title());
+            section.html(format!("<details><summary>{title}</summary>\n{}</details>\n", table.to_html()))
+        })
     }
 
-    /// Adds a figure; figures are numbered through the report.
-    #[must_use]
-    pub fn figure(self, figure: Drawing) -> Self {
-        self.figures([figure])
+    /// Adds names with their values: the CPU, the seed, the commit.
+    pub fn facts<S: AsRef<str>>(self, facts: &[[S; 2]]) -> Self {
+        self.html(definitions(facts))
     }
 
-    /// Adds figures.
-    #[must_use]
-    pub fn figures(self, figures: impl IntoIterator<Item = Drawing>) -> Self {
-        self.with(figures.into_iter().map(Block::Drawing))
+    /// Adds figures, which are numbered through the report.
+    pub fn figures(mut self, figures: impl IntoIterator<Item = Drawing>) -> Self {
+        self.blocks.extend(figures.into_iter().map(Block::Figure));
+        self
     }
 
-    fn with(mut self, blocks: impl IntoIterator<Item = Block>) -> Self {
-        self.blocks.extend(blocks);
+    fn html(mut self, html: String) -> Self {
+        self.blocks.push(Block::Html(html));
         self
     }
 }
 
 impl Report {
-    /// A page without content.
-    #[must_use]
-    pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), method: Section::new("Method and machine"), ..Self::default() }
-    }
-
-    /// The line under the title, such as when and where it was made.
-    #[must_use]
-    pub fn subtitle(self, text: impl Into<String>) -> Self {
-        Self { subtitle: text.into(), ..self }
-    }
-
-    /// Adds the verdict on a use case; they come first.
-    #[must_use]
-    pub fn verdict(mut self, case: impl Into<String>, sentence: impl Into<String>) -> Self {
-        self.verdicts.push([case.into(), sentence.into()]);
-        self
-    }
-
-    /// Sets the plot beside the verdicts.
-    #[must_use]
-    pub fn summary(self, figure: Drawing) -> Self {
-        Self { summary: Some(figure), ..self }
-    }
-
-    /// Adds a finding; they follow the verdicts.
-    #[must_use]
-    pub fn finding(mut self, text: impl Into<String>) -> Self {
-        self.findings.push(text.into());
-        self
-    }
-
-    /// Adds a section.
-    #[must_use]
-    pub fn section(mut self, section: Section) -> Self {
-        self.sections.push(section);
-        self
-    }
-
-    /// Adds a paragraph to "Method and machine", the last section.
-    #[must_use]
-    pub fn method(self, text: impl Into<String>) -> Self {
-        Self { method: self.method.paragraph(text), ..self }
-    }
-
-    /// Adds a fact to "Method and machine": the CPU, the seed, the commit.
-    #[must_use]
-    pub fn fact(mut self, name: impl Into<String>, value: impl Into<String>) -> Self {
-        self.facts.push([name.into(), value.into()]);
-        self
-    }
-
     /// The page.
     #[must_use]
     pub fn html(&self) -> String {
-        let mut figure = 0;
-        let mut verdicts = String::new();
-        if !self.verdicts.is_empty() {
-            let summary: String = self.summary.iter().map(|drawing| drawing.html(&mut figure)).collect();
-            let sentences = definitions(&self.verdicts);
-            verdicts = format!("<section id=\"verdicts\" class=\"verdicts\">\n{sentences}{summary}</section>\n");
-        }
+        let mut last = 0;
+        let mut figure = |Drawing { svg, caption, .. }: &Drawing| {
+            last += 1;
+            let caption = inline(caption);
+            format!(
+                "<figure id=\"figure-{last}\">\n<div class=\"plot\">\n{svg}</div>\n\
+                 <figcaption><strong>Figure {last}.</strong> {caption}</figcaption>\n</figure>\n"
+            )
+        };
+        let summary = self.summary.as_ref().map(&mut figure).unwrap_or_default();
+        let verdicts = definitions(&self.verdicts);
         let mut findings: String = self.findings.iter().map(|text| format!("<li>{}</li>\n", answer(text))).collect();
         if !findings.is_empty() {
             findings = format!("<section id=\"findings\">\n<h2>In figures</h2>\n<ul>\n{findings}</ul>\n</section>\n");
         }
         let (mut contents, mut sections) = (String::new(), String::new());
-        let method = self.method.clone().with([Block::Facts(self.facts.clone())]);
-        for (i, section) in (1..).zip(self.sections.iter().chain([&method])) {
+        for (i, section) in (1..).zip(&self.sections) {
             let title = inline(&section.title);
-            let blocks: String = section.blocks.iter().map(|block| block.html(&mut figure)).collect();
             contents += &format!("<li><a href=\"#section-{i}\">{title}</a></li>\n");
-            sections += &format!("<section id=\"section-{i}\">\n<h2>{title}</h2>\n{blocks}</section>\n");
+            sections += &format!("<section id=\"section-{i}\">\n<h2>{title}</h2>\n");
+            for block in &section.blocks {
+                sections += &match block {
+                    Block::Html(html) => html.clone(),
+                    Block::Figure(drawing) => figure(drawing),
+                };
+            }
+            sections += "</section>\n";
         }
         let (title, subtitle) = (escape(&self.title), inline(&self.subtitle));
         format!(
@@ -221,15 +156,15 @@ impl Report {
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n\
              </head>\n<body>\n<header>\n<h1>{title}</h1>\n<p class=\"subtitle\">{subtitle}</p>\n</header>\n<main>\n\
-             {verdicts}<nav aria-label=\"Contents\">\n<ol>\n{contents}</ol>\n</nav>\n{findings}{sections}</main>\n\
-             </body>\n</html>\n"
+             <section id=\"verdicts\" class=\"verdicts\">\n{verdicts}{summary}</section>\n\
+             <nav aria-label=\"Contents\">\n<ol>\n{contents}</ol>\n</nav>\n{findings}{sections}</main>\n</body>\n</html>\n"
         )
     }
 
     /// The figures in their order.
     fn figures(&self) -> impl Iterator<Item = &Drawing> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
-        let figures = blocks.filter_map(|block| if let Block::Drawing(figure) = block { Some(figure) } else { None });
+        let figures = blocks.filter_map(|block| if let Block::Figure(figure) = block { Some(figure) } else { None });
         self.summary.iter().chain(figures)
     }
 
@@ -242,11 +177,11 @@ impl Report {
     pub fn write(&self, dir: &Path, name: &str) -> Result<(), Error> {
         whole(&dir.join("report.html"), |out| out.write_all(self.html().as_bytes()))?;
         let folder = dir.join("figures");
-        fs::create_dir_all(&folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
+        fs::create_dir_all(&folder).map_err(Error::output(&folder))?;
         let figures: Vec<(usize, &Drawing)> = (1..).zip(self.figures()).collect();
         figures.par_iter().try_for_each(|(number, figure)| {
-            let hyphen = if figure.name.is_empty() { "" } else { "-" };
-            let stem = format!("{name}-{number:02}{hyphen}{}", figure.name);
+            let stem = format!("{name}-{number:02}-{}", figure.name);
+            let stem = stem.trim_end_matches('-');
             whole(&folder.join(format!("{stem}.svg")), |out| out.write_all(figure.svg.as_bytes()))?;
             #[cfg(feature = "png")]
             whole(&folder.join(format!("{stem}.png")), |out| out.write_all(&png(&figure.svg)?))?;
@@ -255,23 +190,9 @@ impl Report {
     }
 }
 
-impl Block {
-    fn html(&self, figure: &mut usize) -> String {
-        match self {
-            Self::Heading(text) => format!("<h3>{}</h3>\n", inline(text)),
-            Self::Paragraph(text) => format!("<p>{}</p>\n", inline(text)),
-            Self::Table(table) => {
-                let title = escape(table.title());
-                format!("<details><summary>{title}</summary>\n{}</details>\n", table.to_html())
-            }
-            Self::Drawing(drawing) => drawing.html(figure),
-            Self::Facts(facts) => definitions(facts),
-        }
-    }
-}
-
-fn definitions(pairs: &[[String; 2]]) -> String {
-    let item = |[name, text]: &[String; 2]| format!("<dt>{}</dt><dd>{}</dd>\n", inline(name), inline(text));
+fn definitions<S: AsRef<str>>(pairs: &[[S; 2]]) -> String {
+    let item =
+        |[name, text]: &[S; 2]| format!("<dt>{}</dt><dd>{}</dd>\n", inline(name.as_ref()), inline(text.as_ref()));
     format!("<dl>\n{}</dl>\n", pairs.iter().map(item).collect::<String>())
 }
 
@@ -301,19 +222,25 @@ fn inline(text: &str) -> String {
 mod tests {
     use super::*;
     use crate::markup::well_formed;
-    use crate::plot::{Axis, LineChart, Series};
+    use crate::plot::{Axis, Series, lines};
 
     const HOSTILE: &str = "`<img src=x onerror=alert(1)>`\"'</style></section>&amp;`\u{0}";
 
     fn full(text: &str) -> Report {
-        let chart = LineChart::new(text, Axis::linear(text), Axis::log(text)).series(Series::curve(text, [(1.0, 2.0)]));
-        let mut table = Table::new(text).text(text).number(text).note(text);
+        let svg = || lines(text, Axis::linear(text), Axis::log(text), &[Series::curve(text, [(1.0, 2.0)])]);
+        let mut table = Table::new(text).texts([text]).numbers([text]).note(text);
         table.push([text, text]);
-        let section = Section::new(text).heading(text).paragraph(text).table(table);
-        let section = section.figure(Drawing::new(chart.svg(), text)).figure(Drawing::new(chart.svg(), text));
-        let summary = Drawing::new(chart.svg(), text).named("summary");
-        let report = Report::new(text).subtitle(text).verdict(text, text).summary(summary).finding(text);
-        report.section(section).method(text).fact(text, text)
+        let section = Section::new(text).heading(text).paragraph(text).tables([table]).facts(&[[text, text]]);
+        let section = section.figures([Drawing::new("", svg(), text), Drawing::new("", svg(), text)]);
+        let text = text.to_owned();
+        Report {
+            title: text.clone(),
+            subtitle: text.clone(),
+            verdicts: vec![[text.clone(), text.clone()]],
+            summary: Some(Drawing::new("summary", svg(), text.clone())),
+            findings: vec![text.clone()],
+            sections: vec![section, Section::new(text.clone()).paragraph(text)],
+        }
     }
 
     #[test]
@@ -346,12 +273,12 @@ mod tests {
     fn figures_are_written_by_number_and_name() {
         let dir = tempfile::TempDir::new().expect("a folder");
         let mut report = full("text");
-        let chart = LineChart::new("t", Axis::linear("x"), Axis::linear("y"));
-        report = report.section(Section::new("s").figure(Drawing::new(chart.svg(), "c").named("last")));
+        let svg = lines("t", Axis::linear("x"), Axis::linear("y"), &[]);
+        report.sections.push(Section::new("s").figures([Drawing::new("last", svg.clone(), "c")]));
         report.write(dir.path(), "example").expect("written");
         let read = |name: &str| fs::read(dir.path().join(name)).expect("there");
         assert_eq!(read("report.html"), report.html().as_bytes());
-        assert_eq!(read("figures/example-04-last.svg"), chart.svg().as_bytes());
+        assert_eq!(read("figures/example-04-last.svg"), svg.as_bytes());
         let has_png = cfg!(feature = "png");
         assert!(!has_png || read("figures/example-02.png").starts_with(b"\x89PNG"), "a PNG beside each SVG");
         let files = fs::read_dir(dir.path().join("figures")).expect("a folder").count();
@@ -360,6 +287,6 @@ mod tests {
 
     #[test]
     fn an_empty_report_is_a_page() {
-        well_formed(&Report::new("").html()).expect("the page nests");
+        well_formed(&Report::default().html()).expect("the page nests");
     }
 }

@@ -155,7 +155,7 @@ fn a_cut_glint_diverges_where_nothing_else_covers_its_tail() {
 
 #[test]
 fn every_claim_is_printed_with_its_verdict() {
-    let text: String = tables(claims()).iter().map(|table| table.to_plain()).collect();
+    let text: String = tables(claims()).iter().map(|table| table.to_text(Some(u16::MAX))).collect();
     for claim in &claims().claims {
         let named = text.lines().filter(|line| line.contains(claim.id)).count();
         assert!(named >= 2 && text.contains(claim.quotation) && text.contains(&claim.sentence), "{}", claim.id);

@@ -13,7 +13,7 @@ pub fn tables(of: &Claims) -> Vec<Table> {
 fn of_claim(claim: &Claim) -> Table {
     let Claim { id, quotation, source, threshold: Threshold { of, limits, .. }, .. } = claim;
     let mut table = Table::new(format!("{id}: \"{quotation}\" ({source})"));
-    table = table.text("figure").numbers(["value", "error"]).texts(["unit", "from"]);
+    table = table.texts(["figure"]).numbers(["value", "error"]).texts(["unit", "from"]);
     for figure in &claim.figures {
         let mark = match figure.role {
             Role::Everywhere => " [1]",

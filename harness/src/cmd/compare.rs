@@ -3,7 +3,7 @@
 
 use super::{environment, print_tables, report_failures, say};
 use crate::args::Compare;
-use crate::compare::{self, CompareConfig, Depth};
+use crate::compare::{self, CompareSettings};
 use crate::error::Error;
 use crate::files::{writable, write_json};
 use crate::progress::{share_bar, show_share};
@@ -23,9 +23,9 @@ pub fn run(flags: &Compare) -> Result<(), Error> {
     writable(&page)?;
 
     let bar = share_bar("{msg:>18} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
-    let settings =
-        CompareConfig { seed: flags.seed, quick: flags.quick, environment: &environment, environment_name: &name };
-    let comparison = compare::run(&settings, &|part, done| {
+    let environment_notes = environment.notes();
+    let settings = CompareSettings { seed: flags.seed, quick: flags.quick, environment: name, environment_notes };
+    let comparison = compare::run(settings, &environment, &|part, done| {
         if bar.message() != part {
             bar.reset();
             bar.set_message(part);
@@ -36,8 +36,7 @@ pub fn run(flags: &Compare) -> Result<(), Error> {
 
     write_json(&json, &comparison)?;
     compare::report(&comparison).write(&flags.out, "compare")?;
-    let tables = compare::tables(&comparison, Depth::Summary);
-    print_tables(tables.speed.iter().chain(&tables.agreement).chain(&tables.efficiency).chain(&tables.rays), &page)?;
+    print_tables(compare::summary_tables(&comparison).iter(), &page)?;
     say(&format!("wrote {} and {}", page.display(), json.display()));
     report_failures(&comparison.failures())
 }

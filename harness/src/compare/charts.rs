@@ -1,10 +1,10 @@
 //! The plots of a comparison.
 
-use super::page::v_gain;
+use super::page::{THETA_O_DEG, v_gain};
 use super::{Comparison, distinct};
 use crate::efficiency::SAMPLERS;
 use crate::figures;
-use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Series};
+use crate::plot::{Axis, Bar, Series, bars, lines};
 use crate::report::Drawing;
 use crate::sampler::Sampler;
 use crate::sequence::{SequenceKind, XiSource};
@@ -16,64 +16,63 @@ use hairis_variants::{Cauchy, ModelId};
 /// Points of each panel of the sample distributions.
 const POINTS: usize = 2000;
 
-/// The Gaussian and the Cauchy bells, and the models made of them.
-pub(super) fn models() -> Vec<Drawing> {
-    let params = HairParams::default();
-    vec![
-        figures::normalised_bells(),
-        figures::unit_bells(),
-        figures::polar(&params, 20_f64.to_radians(), &[("Cauchy (same widths)", Cauchy::PAPER)]),
-    ]
+/// The Gaussian and the Cauchy bells, the models made of them, and where samples go: the paper's figure 5.
+pub(super) fn models(of: &Comparison) -> Vec<Drawing> {
+    let (params, theta_o) = (HairParams::default(), 20_f64.to_radians());
+    let mut numbers = SequenceKind::Halton.source(of.settings.seed, 0, 3, POINTS);
+    let xi: Vec<[f32; 3]> = (0..POINTS).map(|_| numbers.next_xi_f32()).collect();
+    let mut all = figures::bells().to_vec();
+    all.push(figures::polar(&params, theta_o, &[("Cauchy (same widths)", Cauchy::PAPER)]));
+    all.push(figures::sample_distributions(&params, theta_o, &xi));
+    all
 }
 
 /// The verdicts in one plot: ratios of variances by light.
 pub(super) fn summary(of: &Comparison) -> Drawing {
     let lights = &of.efficiency.settings.lights;
-    let labels = lights.iter().map(|light| light.replace(['-', '_'], " "));
-    let title = "Fewer samples than the published sampler on the Gaussian model";
-    let mut chart = BarChart::new(title, Axis::log("V / V (×)"), labels).level(1.0);
-    for (name, other) in [
+    let labels: Vec<String> = lights.iter().map(|light| light.replace(['-', '_'], " ")).collect();
+    let series = [
         ("Cauchy, published", (ModelKind::Cauchy, Sampler::Published)),
         ("Gaussian, matched", (ModelKind::Gaussian, Sampler::Matched)),
         ("Cauchy, matched", (ModelKind::Cauchy, Sampler::Matched)),
-    ] {
-        chart = chart.series(name, lights.iter().map(|light| Bar::new(v_gain(of, light, other).unwrap_or(f64::NAN))));
-    }
+    ]
+    .map(|(name, other)| {
+        let gains = lights.iter().map(|light| v_gain(of, light, other).unwrap_or(f64::NAN).into());
+        (name.to_owned(), gains.collect())
+    });
+    let title = "Fewer samples than the published sampler on the Gaussian model";
+    let chart = bars(title, Axis::log("V / V (×)"), &labels, &series, 1.0);
     let caption = format!(
-        "By what factor the number of samples falls (above 1) or grows (below), by light; default hair seen from {}°.",
-        super::page::THETA_O_DEG
+        "By what factor the number of samples falls (above 1) or grows (below), by light; default hair seen from \
+         {THETA_O_DEG}°."
     );
-    Drawing::new(chart.svg(), caption).named("summary")
-}
-
-/// Where samples go: the paper's figure 5.
-pub(super) fn distributions(of: &Comparison) -> Drawing {
-    let mut numbers = SequenceKind::Halton.source(of.settings.seed, 0, 3, POINTS);
-    let xi: Vec<[f32; 3]> = (0..POINTS).map(|_| numbers.next_xi_f32()).collect();
-    figures::sample_distributions(&HairParams::default(), 20_f64.to_radians(), &xi)
+    Drawing::new("summary", chart, caption)
 }
 
 /// Speed against the textbook, a chart per model.
 pub(super) fn speeds(of: &Comparison) -> Vec<Drawing> {
     let ops = [Op::Prepare, Op::EvalPdf, Op::Sample, Op::PointsMixed];
+    let groups = ops.map(|op| op.label().to_owned());
     // The rest is in the table.
     let shown = |contender| ["one lane", "eight lanes", "slices"].contains(&contender);
-    let contenders =
-        of.speed.rows.iter().map(|row| (row.contender, row.level)).filter(|(contender, _)| shown(*contender));
+    let contenders = of.speed.rows.iter().filter(|row| shown(row.contender)).map(|row| (row.contender, row.level));
     let contenders = distinct(contenders);
     let figure = |model: ModelId| {
         let title = format!("Speed against the faster textbook in f32, {} model", model.name());
-        let mut chart = BarChart::new(title, Axis::log("times as fast (×)"), ops.map(Op::label)).level(1.0);
-        for (contender, level) in &contenders {
-            let bar = |op| {
-                let row = of.speed.row(op, model.name(), contender, level);
-                row.map_or(Bar::new(f64::NAN), |row| Bar::new(row.ratio).with_interval(row.ratio_q1, row.ratio_q3))
-            };
-            chart = chart.series(format!("{contender}, {level}"), ops.map(bar));
-        }
+        let series: Vec<(String, Vec<Bar>)> = contenders
+            .iter()
+            .map(|(contender, level)| {
+                let bar = |op| {
+                    let row = of.speed.row(op, model.name(), contender, level);
+                    row.map_or(f64::NAN.into(), |row| Bar { value: row.ratio, low: row.ratio_q1, high: row.ratio_q3 })
+                };
+                (format!("{contender}, {level}"), ops.map(bar).to_vec())
+            })
+            .collect();
+        let chart = bars(&title, Axis::log("times as fast (×)"), &groups, &series, 1.0);
         let caption = "How many times as fast as the model's formulas in scalar f32 on the faster of two libraries, by operation: medians over the rounds, \
                        whiskers from the first to the third quartile.";
-        Drawing::new(chart.svg(), caption).named(format!("speed-{}", model.name()))
+        Drawing::new(format!("speed-{}", model.name()), chart, caption)
     };
     ModelId::defaults_of_names().map(figure).collect()
 }
@@ -81,24 +80,24 @@ pub(super) fn speeds(of: &Comparison) -> Vec<Drawing> {
 /// V against the width of the primary highlight.
 pub(super) fn widths(of: &Comparison) -> Vec<Drawing> {
     let figure = |theta_o: &f64| {
-        let title = format!("Variance against width, θₒ = {theta_o}°");
-        let y = Axis::log("relative variance of one sample V");
-        let mut chart = LineChart::new(title, Axis::linear("β_R (°)").from_zero(), y);
+        let mut series = Vec::new();
         for (dash, model) in ModelKind::ALL.into_iter().enumerate() {
             for sampler in SAMPLERS {
-                let rows = of.efficiency.beta_sweep.iter().filter(|row| row.theta_o_deg == *theta_o);
-                let points = rows
-                    .filter(|row| (row.model, row.sampler) == (model, sampler))
-                    .map(|row| (f64::from(row.beta_r_deg), row.v));
-                let series = Series::new(format!("{}, {}", model.name(), sampler.name()), points);
-                chart = chart.series(series.styled(sampler.color(), Dash::of(dash)));
+                let key = (*theta_o, model, sampler);
+                let rows = of.efficiency.beta_sweep.iter();
+                let rows = rows.filter(|row| (row.theta_o_deg, row.model, row.sampler) == key);
+                let points = rows.map(|row| (f64::from(row.beta_r_deg), row.v));
+                let name = format!("{}, {}", model.name(), sampler.name());
+                series.push(Series::new(name, points).styled(sampler.color(), dash));
             }
         }
+        let title = format!("Variance against width, θₒ = {theta_o}°");
+        let (x, y) = (Axis::linear("β_R (°)"), Axis::log("relative variance of one sample V"));
         let caption = format!(
             "Relative variance of one sample under constant light, seen from {theta_o}°, with β_TT = β_R/2 and \
              β_TRT = 2 β_R; error bars are one standard error."
         );
-        Drawing::new(chart.svg(), caption).named(format!("variance-by-width-{theta_o}"))
+        Drawing::new(format!("variance-by-width-{theta_o}"), lines(&title, x, y, &series), caption)
     };
     of.efficiency.settings.theta_o_deg.iter().take(3).map(figure).collect()
 }
@@ -107,30 +106,29 @@ pub(super) fn widths(of: &Comparison) -> Vec<Drawing> {
 pub(super) fn convergence(of: &Comparison) -> Vec<Drawing> {
     let all = &of.efficiency.convergence;
     let figure = |light: &str, model: ModelKind| {
-        let points = |sampler, sequence| {
-            let of_line = (model, sampler, sequence);
-            let rows = all.iter().filter(move |p| (p.model, p.sampler, p.sequence) == of_line && p.light == light);
-            rows.map(|p| (p.n as f64, p.rms))
-        };
-        let title = format!("Convergence, {} model, {light}", model.name());
-        let mut chart = LineChart::new(title, Axis::log("samples N"), Axis::log("root mean square relative error"));
+        let shown = || all.iter().filter(|point| (&*point.light, point.model) == (light, model));
+        let mut series = Vec::new();
         for sampler in SAMPLERS {
             for (dash, sequence) in SequenceKind::ALL.into_iter().enumerate() {
+                let rows = shown().filter(|point| (point.sampler, point.sequence) == (sampler, sequence));
                 let name = format!("{}, {}", sampler.name(), sequence.name());
-                let series = Series::new(name, points(sampler, sequence));
-                chart = chart.series(series.styled(sampler.color(), Dash::of(dash)));
+                series.push(Series::new(name, rows.map(|p| (p.n as f64, p.rms))).styled(sampler.color(), dash));
             }
         }
-        if let Some(first) = all.iter().find(|p| (p.model, p.light.as_str()) == (model, light)) {
-            chart = chart.reference("slope −1/2", -0.5, (first.n as f64, first.rms.value));
+        if let Some(first) = shown().next() {
+            let (n, rms) = (first.n as f64, first.rms.value);
+            let last = shown().map(|point| point.n as f64).fold(n, f64::max);
+            series.push(Series::guide("slope −1/2", [(n, rms), (last, rms * (n / last).sqrt())]));
         }
+        let title = format!("Convergence, {} model, {light}", model.name());
+        let chart = lines(&title, Axis::log("samples N"), Axis::log("root mean square relative error"), &series);
         let caption = format!(
             "Error of the mean of N samples, {} model, light: {light}, θₒ = {}°, over independent randomisations; error \
              bars are one standard error.",
             model.name(),
             of.efficiency.settings.convergence_theta_o_deg
         );
-        Drawing::new(chart.svg(), caption).named(format!("convergence-{}-{}", model.name(), slug(light)))
+        Drawing::new(format!("convergence-{}-{}", model.name(), slug(light)), chart, caption)
     };
     let lights = distinct(all.iter().map(|point| point.light.as_str()));
     lights.into_iter().flat_map(|light| ModelKind::ALL.map(|model| figure(light, model))).collect()

@@ -1,33 +1,20 @@
 //! The report of a comparison.
 
-use super::{Comparison, Depth, charts, distinct, rays, tables};
+use super::tables::{self, Depth};
+use super::{CompareSettings, Comparison, charts, distinct, rays};
 use crate::efficiency::EfficiencyRow;
 use crate::light::in_words;
 use crate::report::{Report, Section};
 use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
 use crate::speed::Op;
-use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use crate::table::number;
 
 /// The page.
 #[must_use]
 pub fn report(of: &Comparison) -> Report {
-    let tables = tables(of, Depth::Full);
-    let command = format!("hairis compare{}", if of.settings.quick { " --quick" } else { "" });
-    let (seed, environment) = (of.settings.seed, &of.settings.environment);
-    let mut page = Report::new("Hair scattering: eight lanes, and Cauchy for Gaussian")
-        .subtitle(format!("{command}, seed {seed}, environment: {environment}"))
-        .summary(charts::summary(of));
-    for [case, sentence] in verdicts(of) {
-        page = page.verdict(case, sentence);
-    }
-    for finding in findings(of) {
-        page = page.finding(finding);
-    }
-
-    let speed = Section::new("Speed").figures(charts::speeds(of)).tables(tables.speed);
+    let speed = Section::new("Speed").figures(charts::speeds(of)).tables(tables::speed(of, Depth::Full));
     let efficiency = Section::new("Sample efficiency")
         .paragraph(
             "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. Directions are drawn \
@@ -38,62 +25,65 @@ pub fn report(of: &Comparison) -> Report {
         .figures(charts::widths(of))
         .heading("Against the number of samples")
         .figures(charts::convergence(of))
-        .tables(tables.efficiency);
+        .tables(tables::efficiency(of, Depth::Full));
     let chosen = Section::new("One ray for many candidates")
         .paragraph(
             "Directions are drawn from the BSDF and from the light, weighed by the light that they would bring, and a few are \
              traced (`hairis::resample`). One-sample MIS traces each direction that it draws.",
         )
         .figures(rays::chart(of))
-        .tables(tables.rays);
+        .tables(rays::tables(of, Depth::Full));
     let models = Section::new("The two models")
         .paragraph(
             "The published model is made of Gaussians of unit peak. The all-Cauchy variant replaces each by a Cauchy bell \
              of the same width, which is what the published sampler draws from.",
         )
-        .figures(charts::models())
-        .figure(charts::distributions(of));
+        .figures(charts::models(of));
     let agreement = Section::new("Agreement")
         .paragraph(
             "Scalar and eight lanes against the paper's formulas in double precision, on random hair (widths of 1° to \
              30°, all lanes different), by region.",
         )
-        .tables(tables.agreement);
-
+        .tables([tables::agreement(of, Depth::Full)]);
     let check = &of.efficiency.check;
-    let (tests, bound) = (check.tests, check.bound);
-    page = [speed, efficiency, chosen, models, agreement].into_iter().fold(page, Report::section);
-    page = page
-        .method(
+    let machine = of.machine.summary();
+    let mut facts = vec![
+        ["eight lanes run on", of.speed.detected_level],
+        ["the program was compiled for", of.speed.compiled_level],
+        ["machine", &machine],
+    ];
+    facts.extend(of.settings.environment_notes.iter().map(|note| ["environment note", note.as_str()]));
+    let method = Section::new("Method and machine")
+        .paragraph(
             "Every estimate is of the reflected radiance, the mean of red, green and blue, on a fibre along the world's \
              x axis, y up. Random numbers come from ChaCha8 with a stream for each cell, so that results depend on the seed \
              alone; Halton numbers are scrambled after Owen.",
         )
-        .method(format!(
-            "{tests} estimates were tested against their references; with so many, |z| up to {bound:.2} is chance \
-             (false alarm {}), and the largest was {:.2}.",
+        .paragraph(format!(
+            "{} estimates were tested against their references; with so many, |z| up to {:.2} is chance (false alarm {}), \
+             and the largest was {:.2}.",
+            check.tests,
+            check.bound,
             number::percent(check.false_alarm),
             check.largest_z
         ))
-        .fact("command", command)
-        .fact("seed", seed.to_string())
-        .fact("environment", environment)
-        .fact("CPU", &of.machine.cpu)
-        .fact("eight lanes run on", of.speed.detected_level)
-        .fact("the program was compiled for", of.speed.compiled_level)
-        .fact("machine", of.machine.summary());
-    of.settings.environment_notes.iter().fold(page, |page, note| page.fact("environment note", note))
+        .facts(&facts);
+    let CompareSettings { seed, quick, environment, .. } = &of.settings;
+    let quick = if *quick { " --quick" } else { "" };
+    Report {
+        title: "Hair scattering: eight lanes, and Cauchy for Gaussian".to_owned(),
+        subtitle: format!("hairis compare{quick}, seed {seed}, environment: {environment}"),
+        verdicts: verdicts(of),
+        summary: Some(charts::summary(of)),
+        findings: findings(of),
+        sections: vec![speed, efficiency, chosen, models, agreement, method],
+    }
 }
 
 /// How many times as fast as the textbook eight lanes are.
 fn speed_ratio(of: &Comparison, op: Op, model: ModelKind) -> Option<String> {
     let row = of.speed.row(op, model.name(), "eight lanes", of.speed.detected_level)?;
     Some(number::ratio(row.ratio))
-}
-
-/// The largest error of any path, as a share of its bound.
-fn largest_error(of: &Comparison) -> String {
-    number::percent(of.agreement.iter().map(|row| row.worst / row.bound).fold(0.0, f64::max))
 }
 
 /// A verdict for each use case: the case and the sentence.
@@ -113,12 +103,12 @@ fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
         let sentence = format!("Cauchy takes {cauchy} samples; `matched` in place of `published` takes {matched}.");
         verdicts.push([format!("Under {}", in_words(light)), sentence]);
     }
+    let largest = number::percent(of.agreement.iter().map(|row| row.worst / row.bound).fold(0.0, f64::max));
     let checks = match of.failures().len() {
         0 => "all checks pass".to_owned(),
-        failed => format!("{failed} checks failed"),
+        failed => format!("{failed} checks failed; they are in compare.json and on the terminal"),
     };
-    let sentence = format!("Largest error: {} of its bound; {checks}.", largest_error(of));
-    verdicts.push(["Accuracy".to_owned(), sentence]);
+    verdicts.push(["Accuracy".to_owned(), format!("Largest error: {largest} of its bound; {checks}.")]);
     verdicts
 }
 
@@ -154,6 +144,33 @@ pub(super) fn predicted(row: &EfficiencyRow, sampler: Sampler) -> f64 {
     row.reference.predicted(sampler)[0]
 }
 
+/// What the verdicts leave out, in sentences with figures.
+fn findings(of: &Comparison) -> Vec<String> {
+    [under_constant_light(of), worse_than_uniform(of), rays::finding(of), more_speed(of)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+fn under_constant_light(of: &Comparison) -> Option<String> {
+    use ModelKind::{Cauchy, Gaussian};
+    use Sampler::{Matched, Published, Uniform};
+    let v = |key| {
+        let mut rows = of.efficiency.reference_v.iter().filter(|row| row.theta_o_deg == 0.0);
+        rows.find(|row| (row.model, row.sampler) == key).map(|row| row.v)
+    };
+    let gain = |from, to| Some(number::estimate(&v(from)?.ratio(&v(to)?)));
+    Some(format!(
+        "Under constant light, seen from the side, uniform sampling of the Gaussian model takes {} times as many samples as \
+         `published`, and that {} times as many as on the Cauchy model. `published` takes {} times as many as `matched` on \
+         the Gaussian model, and {} times as many on the Cauchy model.",
+        gain((Gaussian, Uniform), (Gaussian, Published))?,
+        gain((Gaussian, Published), (Cauchy, Published))?,
+        gain((Gaussian, Published), (Gaussian, Matched))?,
+        gain((Cauchy, Published), (Cauchy, Matched))?,
+    ))
+}
+
 /// Where a sampler of the BSDF does worse than uniform directions.
 fn worse_than_uniform(of: &Comparison) -> Option<String> {
     let is_worse = |row: &&EfficiencyRow| predicted(row, row.sampler) > 1.05 * predicted(row, Sampler::Uniform);
@@ -167,63 +184,12 @@ fn worse_than_uniform(of: &Comparison) -> Option<String> {
     })
 }
 
-/// The answer first, in sentences with figures.
-fn findings(of: &Comparison) -> Vec<String> {
-    let mut findings = Vec::new();
-    let v = |model, sampler| {
-        let mut rows = of.efficiency.reference_v.iter();
-        Some(rows.find(|row| (row.model, row.sampler, row.theta_o_deg) == (model, sampler, 0.0))?.v)
-    };
-    if let (Some(uniform), Some(published), Some(cauchy), Some(matched), Some(cauchy_matched)) = (
-        v(ModelKind::Gaussian, Sampler::Uniform),
-        v(ModelKind::Gaussian, Sampler::Published),
-        v(ModelKind::Cauchy, Sampler::Published),
-        v(ModelKind::Gaussian, Sampler::Matched),
-        v(ModelKind::Cauchy, Sampler::Matched),
-    ) {
-        let shown = |v: &Estimate| number::estimate(v);
-        let gain = |from: &Estimate, to: &Estimate| number::estimate(&from.ratio(to));
-        findings.push(format!(
-            "Under constant light, seen from the side, the published sampler needs {} times fewer samples than \
-             uniform sampling on the Gaussian model (V {} against {}).",
-            gain(&uniform, &published),
-            shown(&published),
-            shown(&uniform),
-        ));
-        findings.push(format!(
-            "The all-Cauchy model needs {} times fewer samples still with the same sampler (V {}).",
-            gain(&published, &cauchy),
-            shown(&cauchy),
-        ));
-        findings.push(format!(
-            "The matched sampler needs {} times fewer samples than the published one on the Gaussian model (V {}), and {} \
-             times fewer on the Cauchy model (V {}).",
-            gain(&published, &matched),
-            shown(&matched),
-            gain(&cauchy, &cauchy_matched),
-            shown(&cauchy_matched),
-        ));
-    }
-    findings.extend(worse_than_uniform(of));
-    findings.extend(rays::finding(of));
-    if let (Some(eval), Some(cauchy), Some(sample), Some(points)) = (
-        speed_ratio(of, Op::EvalPdf, ModelKind::Gaussian),
-        speed_ratio(of, Op::EvalPdf, ModelKind::Cauchy),
-        speed_ratio(of, Op::Sample, ModelKind::Gaussian),
-        speed_ratio(of, Op::PointsMixed, ModelKind::Gaussian),
-    ) {
-        findings.push(format!(
-            "Eight lanes on {} evaluate the Gaussian model {eval} and the Cauchy model {cauchy} as fast as the paper's \
-             formulas in scalar f32, and sample {sample} as fast; on eight different shading points, preparation included, \
-             {points}.",
-            of.speed.detected_level
-        ));
-    }
-    findings
-        .push(format!("The largest error of any path against double precision is {} of its bound.", largest_error(of)));
-    findings.push(match of.failures().len() {
-        0 => format!("All {} estimates agree with their references.", of.efficiency.check.tests + of.rays.check.tests),
-        n => format!("{n} checks failed; they are listed on the terminal and in compare.json."),
-    });
-    findings
+fn more_speed(of: &Comparison) -> Option<String> {
+    Some(format!(
+        "Eight lanes on {} evaluate the Cauchy model {} as fast as the paper's formulas in scalar f32, and sample the Gaussian \
+         model on eight different shading points, preparation included, {} as fast.",
+        of.speed.detected_level,
+        speed_ratio(of, Op::EvalPdf, ModelKind::Cauchy)?,
+        speed_ratio(of, Op::PointsMixed, ModelKind::Gaussian)?
+    ))
 }

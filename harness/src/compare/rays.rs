@@ -1,11 +1,14 @@
 //! Tables and the plot of one ray for many candidates.
 
-use super::{Comparison, Depth};
+use super::Comparison;
+use super::tables::Depth;
 use crate::light::in_words;
-use crate::plot::{Axis, LineChart, Series};
-use crate::rays::{EqualTime, OneRay, PRICES_US, RayRow, RayTimes, SIZES, VISIBLE, equal_time};
+use crate::plot::{Axis, Series, lines};
+use crate::rays::{EqualTime, HALF, OneRay, PRICES_US, RayRow, RayTimes, SIZES, VISIBLE, equal_time};
 use crate::report::Drawing;
+use crate::stats::Estimate;
 use crate::table::{Table, number};
+use core::iter;
 
 /// Candidates of each technique whose V is shown.
 const SHOWN: [u32; 3] = [4, 8, 16];
@@ -27,57 +30,73 @@ fn measured(of: &Comparison) -> impl Iterator<Item = Measured<'_>> {
     rays.rows.iter().zip(&rays.times).zip(&rays.equal_time).map(|((row, times), equal)| (row, times, equal))
 }
 
-/// Name of the environment light.
-fn environment(of: &Comparison) -> &str {
-    of.efficiency.settings.lights.last().map_or("", String::as_str)
-}
-
 fn under_environment(of: &Comparison) -> impl Iterator<Item = Measured<'_>> {
-    measured(of).filter(|(row, ..)| row.light == environment(of))
+    let environment = of.efficiency.settings.lights.last();
+    measured(of).filter(move |(row, ..)| Some(&row.light) == environment)
 }
 
 fn example(of: &Comparison) -> Option<Measured<'_>> {
     under_environment(of).find(|(row, ..)| [row.model, row.sampler] == EXAMPLE)
 }
 
-/// A table whose rows begin with the model, the sampler and the light.
-fn by_light(title: &str) -> Table {
-    Table::new(title).texts(["model", "sampler", "light"])
-}
-
-fn keys(row: &RayRow) -> Vec<String> {
-    [row.model, row.sampler, &row.light].map(str::to_owned).to_vec()
-}
-
-/// The tables.
+/// The tables; the summary has those samplers that most use, under the environment.
 pub(super) fn tables(of: &Comparison, depth: Depth) -> Vec<Table> {
-    match depth {
-        Depth::Summary => vec![summary(of)],
-        Depth::Full => vec![unoccluded(of), visible(of), in_equal_time(of), fronts(of)],
+    if depth == Depth::Summary {
+        let rows = under_environment(of).filter(|(row, ..)| DEFAULTS.contains(&row.sampler));
+        let rows: Vec<Measured<'_>> = rows.collect();
+        return vec![variances(&rows, &[1.0]), in_equal_time(&rows)];
     }
+    let rows: Vec<Measured<'_>> = measured(of).collect();
+    let shares: Vec<f64> = iter::once(1.0).chain(VISIBLE).collect();
+    vec![variances(&rows, &shares), in_equal_time(&rows), fronts(of)]
 }
 
-fn chosen(row: &RayRow, candidates_each: u32) -> Option<&OneRay> {
-    let size = SIZES.iter().position(|count| *count == candidates_each)?;
-    row.mean.chosen.get(size)
+fn keys(row: &RayRow) -> [String; 3] {
+    [row.model, row.sampler, &row.light].map(str::to_owned)
 }
 
 fn pool_name(candidates_each: u32) -> String {
     format!("{candidates_each} + {candidates_each}")
 }
 
-/// Headers of V of one ray, and their cells.
-fn v_headers() -> impl Iterator<Item = String> {
-    ["BSDF", "light", "MIS"].map(str::to_owned).into_iter().chain(SHOWN.map(pool_name))
+/// One ray of the BSDF, of the light, of MIS, and from the pools of [`SHOWN`].
+fn shown(row: &RayRow) -> Vec<&OneRay> {
+    let pools = SIZES.iter().zip(&row.mean.chosen).filter(|(size, _)| SHOWN.contains(size)).map(|(_, one)| one);
+    [&row.mean.bsdf, &row.mean.light, &row.mean.mis].into_iter().chain(pools).collect()
 }
 
-fn v_cells(row: &RayRow, digits: impl Fn(&OneRay) -> String) -> Vec<String> {
-    let plain = [&row.mean.bsdf, &row.mean.light, &row.mean.mis];
-    plain.into_iter().chain(SHOWN.iter().filter_map(|count| chosen(row, *count))).map(digits).collect()
+/// V of MIS over V from each pool of [`SHOWN`], given V of [`shown`].
+fn over_pools(v: &[Estimate]) -> impl Iterator<Item = Estimate> {
+    v.iter().skip(3).map(|pool| v[2].ratio(pool))
 }
 
-fn microseconds(price: f64) -> String {
-    format!("{} µs", number::plain(price, 1))
+/// V of one ray where these shares of the directions are visible.
+fn variances(rows: &[Measured<'_>], shares: &[f64]) -> Table {
+    let mut table = Table::new("V of one ray")
+        .texts(["model", "sampler", "light", "visible"])
+        .numbers(["BSDF", "light", "MIS"])
+        .numbers(SHOWN.map(pool_name))
+        .numbers(SHOWN.map(|count| format!("MIS / {}", pool_name(count))))
+        .numbers(["16 rays of 32 + 32"]);
+    for (row, ..) in rows {
+        for (place, share) in shares.iter().enumerate() {
+            let v = |one: &OneRay| place.checked_sub(1).map_or(one.unoccluded, |place| one.visible[place]);
+            let v: Vec<Estimate> = shown(row).into_iter().map(v).collect();
+            let sixteen = row.mean.half.iter().find(|pool| (pool.candidates_each, pool.rays) == (32, 16));
+            let per_ray = sixteen.filter(|_| *share == HALF).map(|pool| pool.v.scale(16.0));
+            let estimates = v.iter().copied().chain(over_pools(&v)).chain(per_ray).map(|v| number::estimate(&v));
+            table.push(keys(row).into_iter().chain([number::percent(*share)]).chain(estimates));
+        }
+    }
+    table.note(
+        "Relative variance of direct light from one ray, geometric mean over the inclinations, ± one standard error. A ray passes \
+         with the probability visible, drawn for each direction on its own: its V is (V + 1)/v − 1, exactly. Of sixteen rays \
+         from a pool it is measured; V times 16, to be compared with one ray.",
+    )
+}
+
+fn best_gain(equal: &EqualTime, price: f64) -> String {
+    equal.best(price).map_or_else(String::new, |point| number::ratio(point.gain_over(&equal.mis[0], price)))
 }
 
 fn break_even(price: Option<f64>) -> String {
@@ -88,85 +107,28 @@ fn break_even(price: Option<f64>) -> String {
     }
 }
 
-fn summary(of: &Comparison) -> Table {
-    let title = format!("One ray for many candidates, under {}", in_words(environment(of)));
-    let mut table = Table::new(title).texts(["model", "sampler"]).numbers(v_headers());
-    table = table.numbers(PRICES_US.map(microseconds)).number("from, µs");
-    for (row, _, equal) in under_environment(of).filter(|(row, ..)| DEFAULTS.contains(&row.sampler)) {
-        let mut cells = vec![row.model.to_owned(), row.sampler.to_owned()];
-        cells.extend(v_cells(row, |one| number::plain(one.unoccluded.value, 3)));
-        cells.extend(PRICES_US.map(|price| best_gain(equal, price)));
-        cells.push(break_even(equal.pool(8, 1).and_then(|point| point.break_even_us)));
-        table.push(cells);
-    }
-    table.note(
-        "V of direct light from one ray without occlusion, geometric mean over the inclinations: drawn from the BSDF, from the \
-         light, by one-sample MIS, and chosen from a pool. Then, with half of the directions visible, the efficiency of the best \
-         pool over one-sample MIS at this price of a ray; from what price on one ray of 8 + 8 candidates is ahead.",
-    )
-}
-
-fn best_gain(equal: &EqualTime, price: f64) -> String {
-    equal.best(price).map_or_else(String::new, |point| number::ratio(point.gain_over(&equal.mis[0], price)))
-}
-
-fn unoccluded(of: &Comparison) -> Table {
-    let mut table = by_light("V of one ray without occlusion").numbers(v_headers());
-    table = table.numbers(SHOWN.map(|count| format!("MIS / {}", pool_name(count))));
-    for (row, ..) in measured(of) {
-        let mut cells = keys(row);
-        cells.extend(v_cells(row, |one| number::estimate(&one.unoccluded)));
-        let gain = |count| Some(row.mean.mis.unoccluded.ratio(&chosen(row, count)?.unoccluded));
-        cells.extend(SHOWN.map(|count| gain(count).map_or_else(String::new, |gain| number::estimate(&gain))));
-        table.push(cells);
-    }
-    table.note(
-        "Relative variance of direct light from one ray, geometric mean over the inclinations, ± one standard error.",
-    )
-}
-
-fn visible(of: &Comparison) -> Table {
-    let mut table = by_light("V of one ray with visibility").text("visible").numbers(v_headers());
-    table = table.number("16 rays of 32 + 32");
-    for (row, ..) in measured(of) {
-        for (place, share) in VISIBLE.into_iter().enumerate() {
-            let mut cells = keys(row);
-            cells.push(number::percent(share));
-            cells.extend(v_cells(row, |one| number::estimate(&one.visible[place])));
-            let sixteen = row.mean.half.iter().find(|pool| (pool.candidates_each, pool.rays) == (32, 16));
-            let per_ray = sixteen.filter(|_| share == crate::rays::HALF).map(|pool| pool.v.scale(16.0));
-            cells.push(per_ray.map_or_else(String::new, |v| number::estimate(&v)));
-            table.push(cells);
-        }
-    }
-    table.note(
-        "A ray passes with this probability, drawn for each direction on its own: V of one ray is (V + 1)/v − 1, exactly. Of \
-         sixteen rays from a pool it is measured; V times 16, to be compared with one ray.",
-    )
-}
-
-fn in_equal_time(of: &Comparison) -> Table {
-    let mut table = by_light("Rays in equal time, half of the directions visible")
+fn in_equal_time(rows: &[Measured<'_>]) -> Table {
+    let mut table = Table::new("Rays in equal time, half of the directions visible")
+        .texts(["model", "sampler", "light"])
         .numbers(["MIS, ns", "candidate, ns", "of 32 + 32, 16 rays"])
-        .numbers(PRICES_US.map(|price| format!("8 + 8, {}", microseconds(price))))
-        .numbers(PRICES_US.map(|price| format!("best, {}", microseconds(price))))
+        .numbers(PRICES_US.map(|price| format!("8 + 8, {price} µs")))
+        .numbers(PRICES_US.map(|price| format!("best, {price} µs")))
         .numbers(["4 + 4 from, µs", "8 + 8 from, µs", "any pool from, µs"]);
-    for (row, times, equal) in measured(of) {
-        let mut cells = keys(row);
-        cells.extend([times.mis_ns, times.candidate_ns(), times.shared_candidate_ns()].map(|ns| number::plain(ns, 3)));
+    for (row, times, equal) in rows {
+        let ns = [times.mis_ns, times.candidate_ns(), times.shared_candidate_ns()].map(|ns| number::plain(ns, 3));
         let eight = equal.pool(8, 1).map_or([const { String::new() }; 4], |eight| eight.gain.map(number::ratio));
-        cells.extend(eight);
-        let best = |point| format!(" ({})", point_name(point));
-        cells.extend(PRICES_US.map(|price| best_gain(equal, price) + &equal.best(price).map_or(String::new(), best)));
-        cells.extend([4, 8].map(|count| break_even(equal.pool(count, 1).and_then(|point| point.break_even_us))));
+        let name = |price| equal.best(price).map_or_else(String::new, point_name);
+        let best = PRICES_US.map(|price| format!("{} ({})", best_gain(equal, price), name(price)));
         let first = equal.pools.iter().filter_map(|point| point.break_even_us).min_by(f64::total_cmp);
-        cells.push(break_even(first));
-        table.push(cells);
+        let [four, eight_from] = [4, 8].map(|count| equal.pool(count, 1).and_then(|point| point.break_even_us));
+        let from = [four, eight_from, first].map(break_even);
+        table.push(keys(row).into_iter().chain(ns).chain(eight).chain(best).chain(from));
     }
     table.note(
         "Efficiency 1 / (V · time) over one-sample MIS at the same price of a ray. Times are those of candidates, weights, \
-         look-ups of the light and the choice on one thread, per candidate of 16 + 16 with one ray and of 32 + 32 with 16 rays; numbers, the light's directions and the preparation of the shading \
-         point are left out of both. In brackets: candidates, and rays chosen from them.",
+         look-ups of the light and the choice on one thread, per candidate of 16 + 16 with one ray and of 32 + 32 with 16 \
+         rays; numbers, the light's directions and the preparation of the shading point are left out of both. In brackets: \
+         candidates, and rays chosen from them.",
     )
 }
 
@@ -178,15 +140,19 @@ fn point_name(point: &equal_time::Point) -> String {
 }
 
 fn fronts(of: &Comparison) -> Table {
-    let title = format!("Pareto fronts of time and V, under {}", in_words(environment(of)));
-    let mut table = Table::new(title).texts(["model", "sampler", "price of a ray", "front"]);
+    let mut table = Table::new("Pareto fronts of time and V under the environment").texts([
+        "model",
+        "sampler",
+        "price of a ray",
+        "front",
+    ]);
     for (row, _, equal) in under_environment(of) {
         for (place, price) in PRICES_US.into_iter().enumerate() {
-            let mut front: Vec<_> =
-                equal.mis.iter().chain(&equal.pools).filter(|point| point.on_front[place]).collect();
+            let points = equal.mis.iter().chain(&equal.pools);
+            let mut front: Vec<_> = points.filter(|point| point.on_front[place]).collect();
             front.sort_by(|a, b| a.time_ns(price).total_cmp(&b.time_ns(price)));
             let names: Vec<String> = front.into_iter().map(point_name).collect();
-            table.push([row.model.to_owned(), row.sampler.to_owned(), microseconds(price), names.join(", ")]);
+            table.push([row.model, row.sampler, &format!("{price} µs"), &names.join(", ")]);
         }
     }
     table.note(
@@ -199,34 +165,36 @@ fn fronts(of: &Comparison) -> Table {
 pub(super) fn chart(of: &Comparison) -> Option<Drawing> {
     let (row, _, equal) = example(of)?;
     let words = in_words(&row.light);
-    let title = format!("Efficiency over one-sample MIS, {} model, {words}", row.model);
-    let mut chart = LineChart::new(title, Axis::log("price of a ray (µs)"), Axis::log("times as efficient (×)"));
-    let prices = || (0..=48).map(|step| 10.0_f64.powf(-3.0 + f64::from(step) / 12.0));
+    let mut series = Vec::new();
     for point in PLOTTED.iter().filter_map(|[count, rays]| equal.pool(*count, *rays)) {
-        let gains = prices().map(|price| (price, point.gain_over(&equal.mis[0], price)));
+        let prices = (0..=48).map(|step| 10.0_f64.powf(-3.0 + f64::from(step) / 12.0));
+        let gains = prices.map(|price| (price, point.gain_over(&equal.mis[0], price)));
         let rays = if point.rays == 1 { "ray" } else { "rays" };
-        let name = format!("{}, {} {rays}", pool_name(point.candidates_each), point.rays);
-        chart = chart.series(Series::curve(name, gains));
+        series.push(Series::curve(format!("{}, {} {rays}", pool_name(point.candidates_each), point.rays), gains));
     }
+    series.push(Series::guide("one-sample MIS", [(1e-3, 1.0), (10.0, 1.0)]));
+    let title = format!("Efficiency over one-sample MIS, {} model, {words}", row.model);
+    let chart = lines(&title, Axis::log("price of a ray (µs)"), Axis::log("times as efficient (×)"), &series);
     let caption = format!(
         "Rays chosen from pools of candidates against rays by one-sample MIS in equal time, by the price of a ray: {} model, {} \
          sampler, {words}, half of the directions visible, geometric mean over the inclinations.",
         row.model, row.sampler
     );
-    Some(Drawing::new(chart.reference("one-sample MIS", 0.0, (1.0, 1.0)).svg(), caption).named("rays-by-price"))
+    Some(Drawing::new("rays-by-price", chart, caption))
 }
 
 /// The answer in a sentence.
 pub(super) fn finding(of: &Comparison) -> Option<String> {
     let (row, _, equal) = example(of)?;
-    let [four, eight] = [4, 8].map(|count| Some(row.mean.mis.unoccluded.ratio(&chosen(row, count)?.unoccluded)));
+    let v: Vec<Estimate> = shown(row).iter().map(|one| one.unoccluded).collect();
+    let mut gains = over_pools(&v).map(|gain| number::plain(gain.value, 3));
     Some(format!(
         "A ray chosen from 4 + 4 candidates has 1/{} of the variance of one-sample MIS under {}, from 8 + 8 candidates 1/{} \
          ({} model, {} sampler, without occlusion); with half of the directions visible, pools are {} as efficient where a ray \
          costs 1 µs.",
-        number::plain(four?.value, 3),
+        gains.next()?,
         in_words(&row.light),
-        number::plain(eight?.value, 3),
+        gains.next()?,
         row.model,
         row.sampler,
         best_gain(equal, 1.0)

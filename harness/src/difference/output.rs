@@ -95,9 +95,9 @@ impl Difference {
 
     fn by_width(&self) -> Table {
         let mut table = Table::new("How far the Cauchy model is from the Gaussian one, over the grid")
-            .text("widths")
-            .number("k")
-            .text("difference")
+            .texts(["widths"])
+            .numbers(["k"])
+            .texts(["difference"])
             .numbers(["geometric mean", "median", "worst"]);
         for width in Width::ALL {
             for (_, name, of) in NORMS {
@@ -118,8 +118,8 @@ impl Difference {
     fn by_roughness(&self) -> Table {
         let shown = [NORMS[0], NORMS[1], NORMS[2], NORMS[4], NORMS[6]];
         let mut table = Table::new("The same by the width of R: geometric mean (worst)")
-            .number("β_R, °")
-            .text("widths")
+            .numbers(["β_R, °"])
+            .texts(["widths"])
             .numbers(shown.map(|(_, name, _)| name));
         for (place, beta) in self.grid.beta_r_deg.iter().enumerate() {
             for width in Width::ALL {
@@ -177,7 +177,7 @@ mod tests {
         assert_eq!(fields.len(), found.rows.len() + 2, "names, rows and the end");
         assert!(fields[..=found.rows.len()].iter().all(|count| *count == fields[0]), "ragged");
         for table in found.tables() {
-            let text = table.to_plain();
+            let text = table.to_text(Some(u16::MAX));
             assert!(text.lines().count() > 4 && !text.contains("n/a"), "{text}");
         }
     }

@@ -22,23 +22,21 @@ enum Scale {
 /// # let _ = (samples, angle);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Axis {
     pub(super) label: String,
     scale: Scale,
     range: Option<(f64, f64)>,
     step: Option<f64>,
-    from_zero: bool,
 }
 
 impl Axis {
-    /// A linear axis. Put the unit in the label.
-    #[must_use]
+    /// A linear axis. Put the unit in the label. It spans 0 unless the values are close together and far from it.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Linear, range: None, step: None, from_zero: false }
+        Self { label: label.into(), scale: Scale::Linear, range: None, step: None }
     }
 
     /// A logarithmic axis. Put the unit in the label.
-    #[must_use]
     pub fn log(label: impl Into<String>) -> Self {
         Self { scale: Scale::Log, ..Self::linear(label) }
     }
@@ -49,21 +47,13 @@ impl Axis {
     }
 
     /// The values to span, in place of those of the data; what lies outside is cut off.
-    #[must_use]
     pub fn range(self, low: f64, high: f64) -> Self {
         Self { range: Some((low, high)), ..self }
     }
 
     /// The distance between labels of a linear axis.
-    #[must_use]
     pub fn step(self, step: f64) -> Self {
         Self { step: Some(step), ..self }
-    }
-
-    /// Spans 0 whatever the data.
-    #[must_use]
-    pub fn from_zero(self) -> Self {
-        Self { from_zero: true, ..self }
     }
 
     /// The axis with a range if it has none yet.
@@ -86,33 +76,44 @@ impl Axis {
     }
 
     /// The axis laid along the pixels from `start` to `end`, wide enough for `values`.
-    pub(super) fn fit(&self, values: impl Iterator<Item = f64>, start: f64, end: f64) -> Fitted<'_> {
+    pub(super) fn fit(self, values: &[f64], start: f64, end: f64) -> Fitted {
+        let (low, high) = self.ends(values);
+        Fitted { axis: self, low, high, start, end }
+    }
+
+    /// The ends of an axis wide enough for `values`, in scaled units.
+    fn ends(&self, values: &[f64]) -> (f64, f64) {
         let usable = |(low, high): &(f64, f64)| self.shows(*low) && self.shows(*high) && low < high;
         if let Some((low, high)) = self.range.filter(usable) {
-            return Fitted { axis: self, low: self.scaled(low), high: self.scaled(high), start, end };
+            return (self.scaled(low), self.scaled(high));
         }
+        let is_log = self.scale == Scale::Log;
         // The difference of the ends must stay finite, and for a logarithmic axis their ratio.
-        let most = if self.scale == Scale::Log { 140.0 } else { 1e300 };
-        let values = values.filter(|v| self.shows(*v)).map(|v| self.scaled(v).clamp(-most, most));
-        let ends = |(low, high): (f64, f64), v: f64| (low.min(v), high.max(v));
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), ends);
-        let (low, high) = if low > high { (0.0, 1.0) } else { (low, high) };
-        if self.scale == Scale::Log {
-            let room = (0.05 * (high - low)).max(0.08);
-            return Fitted { axis: self, low: low - room, high: high + room, start, end };
+        let most = if is_log { 140.0 } else { 1e300 };
+        let mut ends: Option<(f64, f64)> = None;
+        for value in values.iter().filter(|value| self.shows(**value)) {
+            let value = self.scaled(*value).clamp(-most, most);
+            ends = Some(ends.map_or((value, value), |(low, high)| (low.min(value), high.max(value))));
         }
-        let (low, high) = if self.from_zero { (low.min(0.0), high.max(0.0)) } else { (low, high) };
+        let (mut low, mut high) = ends.unwrap_or((0.0, 1.0));
+        if is_log {
+            let room = (0.05 * (high - low)).max(0.08);
+            return (low - room, high + room);
+        }
         let size = low.abs().max(high.abs());
+        if high - low > 0.5 * size {
+            (low, high) = (low.min(0.0), high.max(0.0));
+        }
         let room = if high - low > 1e-9 * size { 0.05 * (high - low) } else { (0.5 * size).max(0.5) };
-        let beyond = |end: f64| if self.from_zero && end == 0.0 { 0.0 } else { room };
-        Fitted { axis: self, low: low - beyond(low), high: high + beyond(high), start, end }
+        let beyond = |end: f64| if end == 0.0 && high > low { 0.0 } else { room };
+        (low - beyond(low), high + beyond(high))
     }
 }
 
 /// An axis with its range, in scaled units, and its pixels.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Fitted<'a> {
-    pub(super) axis: &'a Axis,
+#[derive(Clone, Debug)]
+pub(super) struct Fitted {
+    pub(super) axis: Axis,
     low: f64,
     high: f64,
     pub(super) start: f64,
@@ -120,25 +121,22 @@ pub(super) struct Fitted<'a> {
 }
 
 /// A grid line: its pixel, and its label if it has one.
-pub(super) struct Tick {
-    pub(super) at: f64,
-    pub(super) label: Option<String>,
-}
+pub(super) type Tick = (f64, Option<String>);
 
-impl Fitted<'_> {
+impl Fitted {
     /// The place of a value from 0 at the start of the axis to 1 at its end.
     pub(super) fn share(&self, value: f64) -> f64 {
         (self.axis.scaled(value) - self.low) / (self.high - self.low)
     }
 
-    /// The pixel of a value, which may lie outside of the axis, but not by more than a thousand lengths.
-    pub(super) fn pixel(&self, value: f64) -> f64 {
-        self.start + self.share(value).clamp(-1e3, 1e3) * (self.end - self.start)
+    /// The pixel a share `t` of the way along the axis.
+    pub(super) fn along(&self, t: f64) -> f64 {
+        self.start + t * (self.end - self.start)
     }
 
     /// The pixel of a value, moved onto the axis.
-    pub(super) fn within(&self, value: f64) -> f64 {
-        self.start + self.share(value).clamp(0.0, 1.0) * (self.end - self.start)
+    pub(super) fn pixel(&self, value: f64) -> f64 {
+        self.along(self.share(value).clamp(0.0, 1.0))
     }
 
     /// Whether the axis spans a value.
@@ -146,54 +144,46 @@ impl Fitted<'_> {
         self.axis.shows(value) && (0.0..=1.0).contains(&self.share(value))
     }
 
-    /// The value a share `t` of the way along a linear or logarithmic axis.
-    pub(super) fn value(&self, t: f64) -> f64 {
-        let scaled = self.low + t * (self.high - self.low);
-        if self.axis.scale == Scale::Log { 10.0_f64.powf(scaled) } else { scaled }
-    }
-
-    /// Half of the way along the axis.
-    pub(super) fn middle(&self) -> f64 {
-        0.5 * (self.start + self.end)
+    /// The values at the ends of a linear or logarithmic axis.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        let ends = [self.low, self.high];
+        if self.axis.scale == Scale::Log { ends.map(|end| 10.0_f64.powf(end)) } else { ends }
     }
 
     pub(super) fn ticks(&self) -> Vec<Tick> {
         match self.axis.scale {
-            // So short an axis has few multiples of a power of ten.
-            Scale::Log if self.high - self.low < 0.9 => self.linear_ticks(self.value(0.0), self.value(1.0)),
-            Scale::Log => self.log_ticks(),
-            Scale::Linear => self.linear_ticks(self.low, self.high),
+            // A shorter axis has few multiples of a power of ten.
+            Scale::Log if self.high - self.low >= 0.9 => self.log_ticks(),
             // Its ends are those of the sphere.
-            Scale::Sine => self.linear_ticks(-90.0, 90.0),
+            Scale::Sine => self.linear_ticks([-90.0, 90.0]),
+            _ => self.linear_ticks(self.ends()),
         }
     }
 
-    fn linear_ticks(&self, low: f64, high: f64) -> Vec<Tick> {
+    fn linear_ticks(&self, [low, high]: [f64; 2]) -> Vec<Tick> {
         let room = (self.end - self.start).abs() / 70.0;
         let step = self.axis.step.filter(|s| *s > 0.0 && (high - low) / s < 100.0);
         let step = step.unwrap_or_else(|| nice_step((high - low) / room.clamp(2.0, 10.0)));
         let first = (low / step - 1e-6).ceil();
         let values = (0..200).map(|n| (first + f64::from(n)) * step).take_while(|v| *v <= high + 1e-6 * step);
-        values.map(|value| Tick { at: self.pixel(value), label: Some(number::tick(value + 0.0, step)) }).collect()
+        values.map(|value| (self.pixel(value), Some(number::tick(value + 0.0, step)))).collect()
     }
 
     fn log_ticks(&self) -> Vec<Tick> {
-        const DIGITS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
         let decades = self.high - self.low;
         let room = ((self.end - self.start).abs() / 55.0).max(2.0);
         let every = (decades / room).ceil().max(1.0);
-        let labelled: &[f64] = if decades < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
-        let digits = if decades < 12.0 { &DIGITS[..] } else { &DIGITS[..1] };
+        let labelled: &[i32] = if decades < 2.5 { &[1, 2, 5] } else { &[1] };
+        let digits = if decades < 12.0 { 1..10 } else { 1..2 };
         let mut ticks = Vec::new();
         let mut exponent = self.low.floor();
         while exponent <= self.high {
-            let is_labelled = exponent.rem_euclid(every) == 0.0;
-            for digit in digits {
-                let scaled = exponent + digit.log10();
+            for digit in digits.clone() {
+                let scaled = exponent + f64::from(digit).log10();
                 if (self.low - 1e-9..=self.high + 1e-9).contains(&scaled) {
-                    let shown = is_labelled && labelled.contains(digit);
-                    let label = shown.then(|| number::power(*digit, exponent));
-                    ticks.push(Tick { at: self.within(10.0_f64.powf(scaled)), label });
+                    let shown = exponent.rem_euclid(every) == 0.0 && labelled.contains(&digit);
+                    let label = shown.then(|| number::power(digit, exponent));
+                    ticks.push((self.pixel(10.0_f64.powf(scaled)), label));
                 }
             }
             exponent += 1.0;
@@ -214,12 +204,12 @@ mod tests {
     use super::*;
 
     fn labels(axis: &Axis, values: &[f64]) -> Vec<String> {
-        axis.fit(values.iter().copied(), 0.0, 500.0).ticks().into_iter().filter_map(|t| t.label).collect()
+        axis.clone().fit(values, 0.0, 500.0).ticks().into_iter().filter_map(|tick| tick.1).collect()
     }
 
     #[test]
     fn labels_are_round_numbers() {
-        assert_eq!(labels(&Axis::linear("x").from_zero(), &[0.0, 0.93]), ["0.0", "0.2", "0.4", "0.6", "0.8"], "fifths");
+        assert_eq!(labels(&Axis::linear("x"), &[0.0, 0.93]), ["0.0", "0.2", "0.4", "0.6", "0.8"], "fifths");
         assert_eq!(
             labels(&Axis::linear("x").range(-90.0, 90.0).step(45.0), &[]),
             ["−90", "−45", "0", "45", "90"],
@@ -231,9 +221,9 @@ mod tests {
     #[test]
     fn any_data_gives_a_usable_axis() {
         let odd = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -1.0, 1e308, -1e308, 1e-308, 5e-324];
-        for axis in [Axis::linear("x"), Axis::log("x"), Axis::linear("x").from_zero(), Axis::log("x").range(0.0, 1.0)] {
+        for axis in [Axis::linear("x"), Axis::log("x"), Axis::log("x").range(0.0, 1.0)] {
             for n in 0..odd.len() {
-                let fitted = axis.fit(odd[n..].iter().copied(), 10.0, 90.0);
+                let fitted = axis.clone().fit(&odd[n..], 10.0, 90.0);
                 assert!(fitted.low < fitted.high && (fitted.high - fitted.low).is_finite(), "{axis:?} {fitted:?}");
                 for value in odd {
                     assert!(value.is_nan() || fitted.pixel(value).is_finite(), "{value} {fitted:?}");

@@ -1,7 +1,7 @@
 //! SVG sheet that charts draw on. Coordinates are written in tenths of a pixel, as whole numbers; consecutive marks of one
 //! style become one path.
 
-use super::palette::{Color, Dash, FAINT_INK, INK, MARKERS, PAPER};
+use super::palette::{Color, DASHES, FAINT_INK, INK, MARKERS, PAPER};
 use crate::markup::escape;
 
 /// Width of every sheet, in pixels: half of a wide page, and not much more than a phone, so that letters stay readable there.
@@ -31,17 +31,18 @@ pub(super) const HEADING: Type = Type { bold: true, ..LABEL };
 const TITLE: Type = Type { size: 17.0, ..HEADING };
 
 /// How a line is drawn.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pen {
     pub(super) color: Color,
     pub(super) width: f64,
-    pub(super) dash: Dash,
+    /// Its number among the dashes.
+    pub(super) dash: usize,
     pub(super) alpha: f64,
 }
 
 impl Pen {
     pub(super) const fn new(color: Color, width: f64) -> Self {
-        Self { color, width, dash: Dash::Solid, alpha: 1.0 }
+        Self { color, width, dash: 0, alpha: 1.0 }
     }
 }
 
@@ -65,10 +66,6 @@ pub(super) struct Canvas {
 #[expect(clippy::cast_possible_truncation, reason = "sheets are far smaller than 2^31 and `as` saturates")]
 fn fine(pixels: f64) -> i32 {
     (pixels * FINE).round() as i32
-}
-
-fn opacity(alpha: f64) -> String {
-    if alpha < 1.0 { format!(" opacity=\"{alpha}\"") } else { String::new() }
 }
 
 fn path_data(points: &[Place]) -> String {
@@ -119,18 +116,17 @@ impl Canvas {
         if points.len() < 2 {
             return;
         }
-        let pattern: Vec<String> = dash.pattern().iter().map(|length| fine(*length).to_string()).collect();
-        let dashes =
-            if pattern.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", pattern.join(" ")) };
-        let (width, opacity) = (fine(width), opacity(alpha));
-        let style = format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\"{opacity}{dashes}");
+        let (width, dashes) = (fine(width), DASHES[dash % DASHES.len()]);
+        let style = format!(
+            "fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" stroke-dasharray=\"{dashes}\" opacity=\"{alpha}\""
+        );
         self.add(style, &path_data(points));
     }
 
     pub(super) fn block(&mut self, (x0, y0): Place, (x1, y1): Place, color: Color, alpha: f64) {
         let (left, top) = (fine(x0.min(x1)), fine(y0.min(y1)));
         let (width, height) = (fine(x0.max(x1)) - left, fine(y0.max(y1)) - top);
-        self.add(format!("fill=\"{color}\"{}", opacity(alpha)), &format!("M{left} {top}h{width}v{height}h-{width}z"));
+        self.add(format!("fill=\"{color}\" opacity=\"{alpha}\""), &format!("M{left} {top}h{width}v{height}h-{width}z"));
     }
 
     pub(super) fn frame(&mut self, (x0, y0): Place, (x1, y1): Place, pen: Pen) {
@@ -140,7 +136,7 @@ impl Canvas {
     pub(super) fn dot(&mut self, (x, y): Place, radius: f64, color: Color, alpha: f64) {
         // A line of no length with round ends is a disc.
         let width = fine(2.0 * radius);
-        let style = format!("stroke=\"{color}\" stroke-width=\"{width}\" stroke-linecap=\"round\"{}", opacity(alpha));
+        let style = format!("stroke=\"{color}\" stroke-width=\"{width}\" stroke-linecap=\"round\" opacity=\"{alpha}\"");
         self.add(style, &format!("M{} {}h0", fine(x), fine(y)));
     }
 

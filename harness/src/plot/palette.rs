@@ -2,112 +2,72 @@
 
 use core::fmt;
 
-/// A colour of sRGB.
+/// A colour of sRGB, `0xRRGGBB`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Color(u8, u8, u8);
+pub(super) struct Color(u32);
 
 impl fmt::Display for Color {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "#{:02X}{:02X}{:02X}", self.0, self.1, self.2)
+        write!(f, "#{:06X}", self.0)
     }
 }
 
-impl Color {
-    /// From this colour at 0 to `end` at 1.
-    fn mix(self, end: Self, t: f64) -> Self {
+/// From `start` at 0 to `end` at 1.
+fn mix(start: u32, end: u32, t: f64) -> Color {
+    let channel = |shift: u32| {
+        let [a, b] = [start, end].map(|color| f64::from((color >> shift) & 0xFF));
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
-        let channel = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * t).round() as u8;
-        Self(channel(self.0, end.0), channel(self.1, end.1), channel(self.2, end.2))
-    }
+        let mixed = (a + (b - a) * t).round() as u32;
+        mixed << shift
+    };
+    Color(channel(16) | channel(8) | channel(0))
 }
+
+const WHITE: u32 = 0xFF_FFFF;
 
 /// Text and axes.
-pub(super) const INK: Color = Color(34, 34, 34);
+pub(super) const INK: Color = Color(0x22_2222);
 /// Tick labels and notes.
-pub(super) const FAINT_INK: Color = Color(85, 85, 85);
+pub(super) const FAINT_INK: Color = Color(0x55_5555);
 /// The sheet itself: always white, so that a plot stays readable on a dark page.
-pub(super) const PAPER: Color = Color(255, 255, 255);
+pub(super) const PAPER: Color = Color(WHITE);
 /// Marks one direction on a map.
-pub(super) const MARK: Color = Color(170, 0, 60);
+pub(super) const MARK: Color = Color(0xAA_003C);
 
 /// The colours of Okabe and Ito (2008), darkest contrasts first; the yellow, too pale for lines on white, is last.
-const SERIES: [Color; 7] = [
-    Color(0, 114, 178),
-    Color(213, 94, 0),
-    Color(0, 158, 115),
-    Color(204, 121, 167),
-    Color(86, 180, 233),
-    Color(34, 34, 34),
-    Color(230, 159, 0),
-];
+const SERIES: [u32; 7] = [0x00_72B2, 0xD5_5E00, 0x00_9E73, 0xCC_79A7, 0x56_B4E9, 0x22_2222, 0xE6_9F00];
 
 /// The colour of the series number `index`.
-pub(super) fn series_color(index: usize) -> Color {
-    SERIES[index % SERIES.len()]
+pub(super) const fn series_color(index: usize) -> Color {
+    Color(SERIES[index % SERIES.len()])
 }
 
 /// Matplotlib's viridis at nine equal steps.
-const VIRIDIS: [Color; 9] = [
-    Color(68, 1, 84),
-    Color(71, 44, 122),
-    Color(59, 81, 139),
-    Color(44, 113, 142),
-    Color(33, 144, 141),
-    Color(39, 173, 129),
-    Color(92, 200, 99),
-    Color(170, 220, 50),
-    Color(253, 231, 37),
-];
+const VIRIDIS: [u32; 9] =
+    [0x44_0154, 0x47_2C7A, 0x3B_518B, 0x2C_718E, 0x21_908D, 0x27_AD81, 0x5C_C863, 0xAA_DC32, 0xFD_E725];
 
 /// Perceptually uniform (viridis), dark to bright as `t` goes from 0 to 1.
 pub(super) fn scale_color(t: f64) -> Color {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 7")]
     let step = (8.0 * t).clamp(0.0, 7.0) as usize;
-    VIRIDIS[step].mix(VIRIDIS[step + 1], 8.0 * t - step as f64)
+    mix(VIRIDIS[step], VIRIDIS[step + 1], 8.0 * t - step as f64)
 }
 
 /// Blue below 0.5, white there, vermilion above: both ends as dark, and apart for everyone.
 pub(super) fn signed_color(t: f64) -> Color {
-    PAPER.mix(SERIES[usize::from(t >= 0.5)], (2.0 * t - 1.0).abs())
+    mix(WHITE, SERIES[usize::from(t >= 0.5)], (2.0 * t - 1.0).abs())
 }
 
 /// A pale background that dark dots stand out from: white to a soft ochre.
 pub(super) fn soft_color(t: f64) -> Color {
-    PAPER.mix(Color(240, 178, 70), t)
+    mix(WHITE, 0xF0_B246, t)
 }
 
-/// How a line is broken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dash {
-    /// Unbroken.
-    Solid,
-    /// Long strokes.
-    Dashed,
-    /// Points.
-    Dotted,
-    /// Strokes and points in turn.
-    DashDot,
-    /// Very long strokes.
-    Long,
-}
+/// Lengths drawn and left out in turn, in tenths of a pixel: none, dashes, dashes and dots, dots, long dashes.
+pub(super) const DASHES: [&str; 5] = ["none", "80 40", "90 30 20 30", "20 30", "160 50"];
 
-impl Dash {
-    /// The dash of the series number `index`.
-    pub(crate) const fn of(index: usize) -> Self {
-        [Self::Solid, Self::Dashed, Self::DashDot, Self::Dotted, Self::Long][index % 5]
-    }
-
-    /// Pixels drawn and left out in turn.
-    pub(super) const fn pattern(self) -> &'static [f64] {
-        match self {
-            Self::Solid => &[],
-            Self::Dashed => &[8.0, 4.0],
-            Self::Dotted => &[2.0, 3.0],
-            Self::DashDot => &[9.0, 3.0, 2.0, 3.0],
-            Self::Long => &[16.0, 5.0],
-        }
-    }
-}
+/// The number of dots among the dashes.
+pub(super) const DOTS: usize = 3;
 
 /// The number of the marker that is a cross.
 pub(super) const CROSS: usize = 4;

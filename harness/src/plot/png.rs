@@ -20,9 +20,9 @@ const FONTS: [&[u8]; 2] = [include_bytes!("font/DejaVuSans.ttf"), include_bytes!
 /// If `svg` is no drawing, or one without extent: never for those of this module.
 ///
 /// ```
-/// use hairis_harness::plot::{Axis, LineChart, Series, png};
-/// let chart = LineChart::new("t", Axis::linear("x"), Axis::linear("y")).series(Series::curve("s", [(0.0, 1.0)]));
-/// assert!(png(&chart.svg())?.starts_with(b"\x89PNG"));
+/// use hairis_harness::plot::{Axis, Series, lines, png};
+/// let svg = lines("t", Axis::linear("x"), Axis::linear("y"), &[Series::curve("s", [(0.0, 1.0)])]);
+/// assert!(png(&svg)?.starts_with(b"\x89PNG"));
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn png(svg: &str) -> io::Result<Vec<u8>> {

@@ -17,49 +17,51 @@ fn check(svg: &str, what: &str) {
 
 #[test]
 fn line_charts_take_any_data() {
-    let pairs = || ODD.into_iter().flat_map(|x| ODD.map(|y| (x, Bar::new(y).with_error(y))));
+    let bar = |y: f64| Bar { value: y, low: 0.0, high: 2.0 * y };
+    let pairs = || ODD.into_iter().flat_map(|x| ODD.map(|y| (x, bar(y))));
     for x in [Axis::linear("x"), Axis::log("x"), Axis::linear("x").range(-1.0, 1.0)] {
         for y in [Axis::linear("y"), Axis::log("y"), Axis::log("y").range(1.0, 10.0)] {
             for n in [0, 1, 2, 9, 40, 81] {
                 let series = Series::new("a", pairs().take(n));
-                let chart = LineChart::new("t", x.clone(), y.clone()).series(series.clone()).series(series);
-                check(&chart.clone().reference("p", -0.5, (0.0, f64::NAN)).svg(), &format!("{x:?} {y:?} {n}"));
-                check(&chart.reference("l", 0.0, (1.0, ODD[n % 9])).svg(), &format!("{x:?} {y:?} {n} with a level"));
+                for guide in [[(0.0, f64::NAN), (1.0, ODD[n % 9])], [(1.0, ODD[n % 9]), (f64::INFINITY, 2.0)]] {
+                    let all = [series.clone(), series.clone(), Series::guide("p", guide)];
+                    check(&lines("t", x.clone(), y.clone(), &all), &format!("{x:?} {y:?} {n}"));
+                }
             }
         }
     }
-    check(&LineChart::new("", Axis::linear(""), Axis::log("")).svg(), "an empty chart");
+    check(&lines("", Axis::linear(""), Axis::log(""), &[]), "an empty chart");
 }
 
 #[test]
 fn other_charts_take_any_data() {
+    let groups: Vec<String> = "abcdefghi".chars().map(String::from).collect();
     for y in [Axis::linear("y"), Axis::log("y")] {
-        let chart = BarChart::new("t", y, "abcdefghi".chars());
-        let chart = chart.level(f64::NAN);
-        check(&chart.clone().svg(), "no bars");
-        let bars = ODD.map(|v| Bar::new(v).with_error(1.0 - v));
-        check(&chart.series("a", bars).series("b", bars.into_iter().take(2)).svg(), "odd bars");
+        check(&bars("t", y.clone(), &groups, &[], f64::NAN), "no bars");
+        let odd = ODD.map(|v| Bar { value: v, low: 2.0 * v - 1.0, high: 1.0 });
+        let series = [("a".to_owned(), odd.to_vec()), ("b".to_owned(), odd[..2].to_vec())];
+        check(&bars("t", y.clone(), &groups, &series, f64::NAN), "odd bars");
+        check(&bars("t", y, &groups[..1], &[("a".to_owned(), vec![0.0.into()])], 0.0), "nothing but 0");
     }
     let mut odd = ODD.into_iter().cycle();
-    let grid = SphereGrid::sample(Projection::EqualArea, (9, 13), |_, _| odd.next().unwrap_or(0.0));
+    let grid = SphereGrid::sample((9, 13), &mut |_, _| odd.next().unwrap_or(0.0));
+    let positive = SphereGrid::sample((9, 13), &mut |_, _| odd.next().unwrap_or(0.0).abs());
+    let flat = SphereGrid::sample((3, 5), &mut |_, _| 0.0);
+    let none = SphereGrid::sample((0, 0), &mut |_, _| 0.0);
     for value in [Axis::linear("v"), Axis::log("v")] {
-        check(&HeatMap::new("t", value.clone(), grid.clone()).svg(), "an odd heat map");
-        check(&HeatMap::signed("t", value.clone(), grid.clone()).svg(), "an odd map of differences");
-        let flat = SphereGrid::sample(Projection::EqualAngle, (3, 5), |_, _| 0.0);
-        check(&HeatMap::new("t", value.clone(), flat).svg(), "a flat heat map");
-        let none = SphereGrid::sample(Projection::EqualAngle, (0, 0), |_, _| 0.0);
-        check(&HeatMap::new("t", value, none).svg(), "an empty heat map");
+        for (name, grid) in [("differences", &grid), ("values", &positive), ("zeros", &flat), ("nothing", &none)] {
+            check(&heat_map("t", value.clone(), grid), &format!("a map of {name}"));
+        }
     }
     let pairs: Vec<(f64, f64)> = ODD.into_iter().flat_map(|x| ODD.map(|y| (x, y))).collect();
     let panel = ScatterPanel { title: "p".into(), points: pairs.iter().map(|p| [p.0, p.1]).collect(), density: grid };
     for panels in [vec![], vec![panel]] {
-        let mark = ("m".into(), [f64::NAN, 0.0]);
-        check(&ScatterMap { title: "t".into(), panels, mark }.svg(), "odd directions");
+        check(&scatter_maps("t", &panels, "m", [f64::NAN, 0.0]), "odd directions");
     }
-    let series = vec![("s".into(), pairs)];
-    let panel = PolarPanel { title: "p".into(), angle: "a".into(), series, arrow: ("o".into(), f64::INFINITY) };
+    let arrow = ("o".into(), f64::INFINITY);
+    let panel = PolarPanel { title: "p".into(), angle: "a".into(), lines: vec![pairs], arrow };
     for panels in [vec![], vec![panel.clone(), panel]] {
-        check(&PolarChart { title: "t".into(), radius: "r".into(), panels }.svg(), "odd angles");
+        check(&polar("t", "r", &["s"], &panels), "odd angles");
     }
 }
 
@@ -67,16 +69,17 @@ fn other_charts_take_any_data() {
 fn text_is_escaped() {
     let hostile = "</text><script>\"&'\u{0}\u{7}";
     let axis = || Axis::linear(hostile);
-    let svg = LineChart::new(hostile, axis(), axis()).series(Series::curve(hostile, [(0.0, 1.0), (1.0, 2.0)])).svg();
+    let svg = lines(hostile, axis(), axis(), &[Series::curve(hostile, [(0.0, 1.0), (1.0, 2.0)])]);
     check(&svg, "a hostile chart");
     assert!(!svg.contains("<script") && !svg.contains(['\u{0}', '\u{7}']), "{svg}");
 }
 
 #[test]
 fn a_line_lies_where_its_points_are() {
-    // The diagonal of the plot, given by points far outside of it, ends in two corners of the frame.
+    // The diagonal of the plot ends in two corners of the frame; points outside of it are left out.
     let axes = (Axis::linear("x").range(0.0, 10.0), Axis::linear("y").range(0.0, 1.0));
-    let svg = LineChart::new("t", axes.0, axes.1).series(Series::curve("s", [(-10.0, -1.0), (20.0, 2.0)])).svg();
+    let points = [(-10.0, -1.0), (0.0, 0.0), (10.0, 1.0), (20.0, 2.0)];
+    let svg = lines("t", axes.0, axes.1, &[Series::curve("s", points)]);
     let path = |line: &str| -> Vec<i32> {
         let data = line.rsplit(" d=\"M").next().unwrap_or_default();
         data.split(|c: char| !c.is_ascii_digit()).filter_map(|n| n.parse().ok()).collect()

@@ -23,39 +23,30 @@ impl Study {
     pub fn report(&self, difference: &Difference, claims: Option<&Value>) -> Report {
         let header = &self.header;
         let quick = if header.quick { " --quick" } else { "" };
-        let mut page = Report::new("Hair scattering: is the all-Cauchy model worth it?").subtitle(format!(
+        let subtitle = format!(
             "hairis study{quick}, seed {}: {} cells of hair and viewing angle, {} samplers of two models, {} lights{}",
             header.seed,
             header.cells,
             header.samplers.len(),
             header.lights.len(),
             findings::map(&header.lights).map_or_else(String::new, |map| format!(", of which the map is {map}"))
-        ));
-        for [case, sentence] in findings::verdicts(self, difference) {
-            page = page.verdict(case, sentence);
+        );
+        let claims = claims.and_then(tables::claims);
+        let method = self.method(claims.is_some());
+        let mut sections = self.sections(difference);
+        sections.extend(claims.map(|table| Section::new("The paper's claims").tables([table])));
+        sections.push(method);
+        Report {
+            title: "Hair scattering: is the all-Cauchy model worth it?".to_owned(),
+            subtitle,
+            verdicts: findings::verdicts(self, difference),
+            summary: Some(charts::summary(self)),
+            findings: findings::findings(self, difference),
+            sections,
         }
-        page = page.summary(charts::summary(self));
-        page = findings::findings(self, difference).into_iter().fold(page, Report::finding);
-        page = self.sections(difference).into_iter().fold(page, Report::section);
-        if let Some(table) = claims.and_then(tables::claims) {
-            page = page.section(Section::new("The paper's claims").table(table));
-        }
-        self.method(claims.is_some())
-            .into_iter()
-            .fold(page, Report::method)
-            .fact("command", format!("hairis study{quick}"))
-            .fact("seed", header.seed.to_string())
-            .fact(
-                "samples",
-                format!("{} a sampler and cell, {} a light and cell", header.samples, header.light_samples),
-            )
-            .fact("cells computed by", format!("version {}, commit {}", header.version, header.commit))
-            .fact("cells computed on", header.level.clone())
-            .fact("environment", format!("digest {}", header.environment))
-            .fact("times measured on", Machine::current().summary())
     }
 
-    fn sections(&self, difference: &Difference) -> [Section; 7] {
+    fn sections(&self, difference: &Difference) -> Vec<Section> {
         let variance = "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. `published` \
                         is the published sampler, `uniform` draws from the whole sphere, and the samplers named `matched` \
                         follow each model's own bells. The Cauchy model has the widths of the Gaussian one (k = 1). `perfect` \
@@ -72,7 +63,7 @@ impl Study {
              the best for the grid and the best for each cell, both in L2. The blur is by a von Mises-Fisher density of \
              {SIGMA_DEG}°: what is left of a difference in a light that wide."
         );
-        [
+        vec![
             Section::new("Variance").paragraph(variance).figures(charts::variances(self)).figures(charts::limits(self)),
             Section::new("Efficiency").paragraph(time).figures(charts::efficiencies(self)).figures(charts::gains(self)),
             Section::new("How the gains spread").figures(charts::distributions(self)),
@@ -89,7 +80,7 @@ impl Study {
         ]
     }
 
-    fn method(&self, has_claims: bool) -> Vec<String> {
+    fn method(&self, has_claims: bool) -> Section {
         let header = &self.header;
         let cells = format!(
             "Each of the {} cells is a hair (the widths of R, of TT and of the glints, the glints' distance and strength) seen \
@@ -113,6 +104,15 @@ impl Study {
             claims,
         ];
         let others = &others[..others.len() - usize::from(has_claims)];
-        [cells].into_iter().chain(others.iter().map(|text| (*text).to_owned())).collect()
+        let section = Section::new("Method and machine").paragraph(cells);
+        others.iter().fold(section, Section::paragraph).facts(&[
+            ["command", &format!("hairis study{}", if header.quick { " --quick" } else { "" })],
+            ["seed", &header.seed.to_string()],
+            ["samples", &format!("{} a sampler and cell, {} a light and cell", header.samples, header.light_samples)],
+            ["cells computed by", &format!("version {}, commit {}", header.version, header.commit)],
+            ["cells computed on", &header.level],
+            ["environment", &format!("digest {}", header.environment)],
+            ["times measured on", &Machine::current().summary()],
+        ])
     }
 }

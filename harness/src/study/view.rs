@@ -5,7 +5,7 @@ use super::equal_time::{NOTHING, Sign, in_equal_time, time_ratio};
 use super::output::Study;
 use super::rays::RAYS;
 use super::rows::{Estimator, Row, name};
-use crate::plot::{Axis, Bar, BarChart};
+use crate::plot::{Axis, Bar, bars};
 use crate::rays::RayTimes;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
@@ -154,19 +154,21 @@ impl Study {
         table
     }
 
-    /// A chart with a bar for each light of each of these estimators.
+    /// A chart with a bar for each light of each of these estimators, from `level` on.
     pub(super) fn by_light(
         &self,
         title: &str,
         axis: Axis,
-        of: impl Iterator<Item = Estimator>,
+        level: f64,
+        of: &mut dyn Iterator<Item = Estimator>,
         bar: &dyn Fn(Estimator, usize) -> Bar,
-    ) -> BarChart {
+    ) -> String {
         // A file's name in words.
-        let labels = self.lights().iter().map(|name| name.replace(['-', '_'], " "));
-        of.fold(BarChart::new(title, axis, labels), |chart, (model, strategy)| {
-            chart.series(name(strategy), (0..self.lights().len()).map(|light| bar((model, strategy), light)))
-        })
+        let labels: Vec<String> = self.lights().iter().map(|name| name.replace(['-', '_'], " ")).collect();
+        let lights = 0..labels.len();
+        let series: Vec<_> =
+            of.map(|one| (name(one.1).to_owned(), lights.clone().map(|light| bar(one, light)).collect())).collect();
+        bars(title, axis, &labels, &series, level)
     }
 }
 

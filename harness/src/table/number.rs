@@ -16,17 +16,14 @@ pub fn with_error(value: f64, error: f64) -> String {
         return plain(value, 4);
     }
     let size = value.abs().max(error);
-    if !is_plain(size) {
-        let (unit, power) = power_of_ten(size.log10().floor());
-        let places = error_places(error / unit).min(5);
-        return minus(&format!("({:.places$} ± {:.places$})×{power}", value / unit, error / unit));
-    }
-    let places = error_places(error);
-    if places > self::places(size, 6) {
+    let (unit, power) = unit(size, 6);
+    let places = error_places(error / unit);
+    if places > self::places(size / unit, 6) {
         // The error is below the last digit shown.
         return plain(value, 6);
     }
-    minus(&format!("{value:.places$} ± {error:.places$}"))
+    let text = minus(&format!("{:.places$} ± {:.places$}", value / unit, error / unit));
+    if power.is_empty() { text } else { format!("({text}){power}") }
 }
 
 /// [`with_error`] of an estimate.
@@ -38,20 +35,16 @@ pub fn estimate(of: &Estimate) -> String {
 /// `value` to `digits` significant digits; powers of ten outside of 10^-4 .. 10^6.
 #[must_use]
 pub fn plain(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
+    match value {
+        0.0 => "0".to_owned(),
+        value if value.is_nan() => "n/a".to_owned(),
+        value if value.is_infinite() => minus(&value.to_string()).replace("inf", "∞"),
+        value => {
+            let (unit, power) = unit(value, digits);
+            let places = places(value / unit, digits);
+            minus(&format!("{:.places$}{power}", value / unit))
+        }
     }
-    if !value.is_finite() {
-        return if value.is_nan() { "n/a".to_owned() } else { minus(&value.to_string()).replace("inf", "∞") };
-    }
-    if !is_plain(value) {
-        // Rounding may carry into one more digit: 9.96e-5 to one digit is 10^-4.
-        let half = 0.5 * 10.0_f64.powf(-(digits as f64));
-        let (unit, power) = power_of_ten((value.abs() / (1.0 - half)).log10().floor());
-        return minus(&format!("{:.*}×{power}", digits.saturating_sub(1), value / unit));
-    }
-    let places = places(value, digits);
-    minus(&format!("{value:.places$}"))
 }
 
 /// A ratio: `13.4×`.
@@ -70,17 +63,6 @@ pub fn ratio_with_error(value: f64, error: f64) -> String {
     }
 }
 
-/// A big number to three digits with an SI prefix: `12.3 M`.
-#[must_use]
-pub fn si(value: f64) -> String {
-    const PREFIXES: [(f64, &str); 4] = [(1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")];
-    // 999.5 and above would round to 1000 of the smaller unit.
-    match PREFIXES.into_iter().find(|(size, _)| value.abs() >= size * 0.9995) {
-        Some((size, prefix)) => format!("{} {prefix}", plain(value / size, 3)),
-        None => plain(value, 3),
-    }
-}
-
 /// A share as a percentage to three digits.
 #[must_use]
 pub fn percent(share: f64) -> String {
@@ -89,21 +71,18 @@ pub fn percent(share: f64) -> String {
 
 /// A label of a linear axis whose labels are `step` apart.
 pub(crate) fn tick(value: f64, step: f64) -> String {
-    if value != 0.0 && !is_plain(value) {
-        let (unit, power) = power_of_ten(value.abs().log10().floor());
-        return minus(&format!("{:.*}×{power}", places(step / unit, 1).min(6), value / unit));
-    }
-    let places = places(step, 1).min(9);
-    minus(&format!("{value:.places$}"))
+    let (unit, power) = unit(value, 17);
+    let places = places(step / unit, 1).min(9);
+    minus(&format!("{:.places$}{power}", value / unit))
 }
 
 /// A label of a logarithmic axis: `digit` times ten to the `exponent`.
-pub(crate) fn power(digit: f64, exponent: f64) -> String {
+pub(crate) fn power(digit: i32, exponent: f64) -> String {
     if (-3.0..=3.0).contains(&exponent) {
-        return plain(digit * 10.0_f64.powf(exponent), 1);
+        return plain(f64::from(digit) * 10.0_f64.powf(exponent), 1);
     }
-    let (_, power) = power_of_ten(exponent);
-    if digit == 1.0 { power } else { format!("{digit}×{power}") }
+    let power = power_of_ten(exponent);
+    if digit == 1 { power } else { format!("{digit}×{power}") }
 }
 
 /// Decimal places that a standard error deserves: rounding to one digit is too coarse for 1 to 3.
@@ -126,20 +105,26 @@ fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
-/// Whether a number is read best without a power of ten.
-fn is_plain(value: f64) -> bool {
-    (1e-4..1e6).contains(&value.abs())
+/// Unit in which a number is written to `digits` digits: 1, or a power of ten outside of 10^-4 .. 10^6, with its text.
+fn unit(value: f64, digits: usize) -> (f64, String) {
+    let size = value.abs();
+    if size == 0.0 || (1e-4..1e6).contains(&size) {
+        return (1.0, String::new());
+    }
+    // Rounding may carry into one more digit: 9.96e-5 to one digit is 10^-4.
+    let half = 0.5 * 10.0_f64.powf(-(digits as f64));
+    let exponent = (size / (1.0 - half)).log10().floor();
+    (10.0_f64.powf(exponent), format!("×{}", power_of_ten(exponent)))
 }
 
-/// A power of ten, and how it is written.
-fn power_of_ten(exponent: f64) -> (f64, String) {
+/// A power of ten as it is written.
+fn power_of_ten(exponent: f64) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
         '0'..='9' => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][usize::from(c as u8 - b'0')],
         other => other,
     };
-    let exponent_text: String = format!("{exponent:.0}").chars().map(raised).collect();
-    (10.0_f64.powf(exponent), format!("10{exponent_text}"))
+    format!("10{}", format!("{exponent:.0}").chars().map(raised).collect::<String>())
 }
 
 #[cfg(test)]
@@ -169,7 +154,6 @@ mod tests {
     fn numbers_have_their_units() {
         assert_eq!(ratio(13.42), "13.4×", "a ratio");
         assert_eq!(ratio_with_error(13.42, 0.21), "13.42× ± 0.21", "a ratio with an error");
-        assert_eq!([si(123.4), si(12_345_678.0), si(999_999.0)], ["123", "12.3 M", "1.00 M"], "no 1000 k");
         assert_eq!(percent(0.123_4), "12.3 %", "a share");
         assert_eq!(plain(f64::NEG_INFINITY, 3), "−∞", "infinite");
         assert_eq!(plain(0.000_012_3, 2), "1.2×10⁻⁵", "small");

@@ -95,13 +95,13 @@ pub(super) fn section(presets: &[Preset]) -> std::io::Result<Section> {
              darker, red brighter (full colour at 100 %).",
             preset.name
         );
-        section = section.figure(Drawing::new(drawing, caption));
+        section = section.figures([Drawing::new("", drawing, caption)]);
     }
     table = table.note(
         "Brightness: ratio of mean luminances. Look: root of the mean of (a − b)² / (b² + (0.1 mean)²) in luminance, the noise of \
          both pictures subtracted.",
     );
-    Ok(section.table(table))
+    Ok(section.tables([table]))
 }
 
 fn column<'a>(preset: &Preset, first: &Reference, name: &str, of: &'a Reference) -> Column<'a> {

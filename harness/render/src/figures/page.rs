@@ -12,7 +12,7 @@ use crate::transport::Integrator;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::machine::Machine;
-use hairis_harness::plot::{Axis, Bar, BarChart, LineChart, Series};
+use hairis_harness::plot::{Axis, Series, bars, lines};
 use hairis_harness::report::{Drawing, Report, Section};
 use hairis_harness::stats::Estimate;
 use hairis_harness::table::{Table, number};
@@ -34,56 +34,59 @@ pub(super) fn write(
 
 fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> std::io::Result<Report> {
     let machine = Machine::current();
-    let mut report = Report::new("What samplers are worth on pictures of hair").subtitle(machine.summary());
+    let mut sections = vec![Section::new("Summary").tables([summary(all)])];
     for measured in all {
-        report = report.verdict(measured.title(), headline(measured));
-    }
-    report = report.summary(overview(all)).section(Section::new("Summary").table(summary(all)));
-    for measured in all {
-        report = report.section(section(measured)?);
+        sections.push(section(measured)?);
     }
     if !presets.is_empty() {
-        report = report.section(models::section(presets)?);
+        sections.push(models::section(presets)?);
     }
     let Plan { side, strands, runs, sequence, .. } = plan;
-    Ok(report
-        .method(format!(
+    let method = Section::new("Method and machine")
+        .paragraph(format!(
             "Pictures of {side} by {side} pixels, procedural hair of {strands} strands, published model, sampled by \
              {}; light and BSDF samples are combined by the power heuristic. Each error is the mean over {runs} pictures of \
              different seeds, with a standard error by the jackknife.",
             numbers(*sequence)
         ))
-        .method(
+        .paragraph(
             "Scenes of direct light have one fixed shading point per pixel, and as many light as BSDF samples there; all pictures, \
              and the reference, share the camera rays. In scenes of paths, each sample has a camera ray of its own.",
         )
-        .method("Visible: the share of rays towards lights that reach them, with light and BSDF samples of `matched`.")
-        .method(
+        .paragraph("Visible: the share of rays towards lights that reach them, with light and BSDF samples of `matched`.")
+        .paragraph(
             "relMSE is the mean of (a − b)² / (b² + (0.1 mean)²) in luminance; the noise of the reference, known from two \
              halves of it, is subtracted. Uniform sampling has few pixels of very large error, so that its relMSE is uncertain: \
              the trimmed one leaves out the worst 0.1 % of the pixels. Time is that of the threads, the least of all pictures.",
         )
-        .fact("Machine", machine.summary())
-        .fact("Seed", flags.seed.to_string()))
+        .facts(&[["Machine", &machine.summary()], ["Seed", &flags.seed.to_string()]]);
+    sections.push(method);
+    Ok(Report {
+        title: "What samplers are worth on pictures of hair".to_owned(),
+        subtitle: machine.summary(),
+        verdicts: all.iter().map(|measured| [measured.title(), headline(measured)]).collect(),
+        summary: Some(overview(all)),
+        sections,
+        ..Report::default()
+    })
 }
 
 /// The error of each sampler in each scene.
 fn overview(all: &[Measured]) -> Drawing {
     let (name, error) = ERRORS[2];
     let axis = Axis::linear(format!("{name} × time, relative to matched (×)"));
-    let mut chart = BarChart::new("Samplers in each scene", axis, all.iter().map(Measured::title)).level(1.0);
+    let scenes: Vec<String> = all.iter().map(Measured::title).collect();
     // All scenes have the same samplers; the last is the one that the others are relative to.
     let samplers = all.first().map_or(&[][..], |first| first.samplers.as_slice());
     let others = samplers.len().saturating_sub(1);
-    for (place, sampler) in samplers.iter().take(others).enumerate() {
-        let of = |measured: &Measured| {
-            let Estimate { value, standard_error, .. } = gain(measured, &measured.samplers[place], error);
-            Bar::new(value).with_error(standard_error)
-        };
-        chart = chart.series(sampler.name, all.iter().map(of));
-    }
+    let of_sampler = |(place, sampler): (usize, &BySampler)| {
+        let gains = all.iter().map(|measured| gain(measured, &measured.samplers[place], error).into());
+        (sampler.name.to_owned(), gains.collect())
+    };
+    let series: Vec<_> = samplers.iter().take(others).enumerate().map(of_sampler).collect();
     Drawing::new(
-        chart.svg(),
+        "",
+        bars("Samplers in each scene", axis, &scenes, &series, 1.0),
         "Bars above 1: `matched` is ahead. Trimmed: without the worst 0.1 % of the pixels, where uniform \
                                sampling has most of its squared error.",
     )
@@ -146,10 +149,12 @@ fn section(measured: &Measured) -> std::io::Result<Section> {
     Ok(Section::new(title.clone())
         .paragraph(format!("Light: {}; hair: `{}`. {}", kind(measured), measured.preset, visible(measured)))
         .paragraph(sentence(measured))
-        .figure(Drawing::new(equal_samples, format!("Equal samples: {samples} per pixel. {caption}")))
-        .figure(Drawing::new(equal_time, format!("Equal time. {caption}")))
-        .figure(Drawing::new(convergence(measured), "relMSE against samples; bars are one standard error."))
-        .table(table(measured)))
+        .figures([
+            Drawing::new("", equal_samples, format!("Equal samples: {samples} per pixel. {caption}")),
+            Drawing::new("", equal_time, format!("Equal time. {caption}")),
+            Drawing::new("", convergence(measured), "relMSE against samples; bars are one standard error."),
+        ])
+        .tables([table(measured)]))
 }
 
 fn panel_of<'a>(measured: &'a Measured, pick: impl Fn(&'a BySampler) -> &'a Runs) -> std::io::Result<String> {
@@ -174,20 +179,18 @@ fn panel_of<'a>(measured: &'a Measured, pick: impl Fn(&'a BySampler) -> &'a Runs
 }
 
 fn convergence(measured: &Measured) -> String {
-    let mut chart = LineChart::new("Convergence", Axis::log("samples per pixel"), Axis::log("relMSE"));
-    for sampler in &measured.samplers {
-        let point = |runs: &Runs| (f64::from(runs.samples), runs.mean(|errors| errors.relative));
-        chart = chart.series(Series::new(sampler.name, sampler.runs.iter().map(point)));
+    let point = |runs: &Runs| (f64::from(runs.samples), runs.mean(|errors| errors.relative));
+    let of_sampler = |sampler: &BySampler| Series::new(sampler.name, sampler.runs.iter().map(point));
+    let mut series: Vec<Series> = measured.samplers.iter().map(of_sampler).collect();
+    if let Some([first, .., last]) = measured.samplers.last().map(|sampler| &sampler.runs[..]) {
+        let [(n, error), (end, _)] = [first, last].map(point);
+        series.push(Series::guide("slope −1", [(n, error.value), (end, error.value * n / end)]));
     }
-    if let Some(runs) = measured.samplers.last().and_then(|sampler| sampler.runs.first()) {
-        let through = (f64::from(runs.samples), runs.mean(|errors| errors.relative).value);
-        chart = chart.reference("slope −1", -1.0, through);
-    }
-    chart.svg()
+    lines("Convergence", Axis::log("samples per pixel"), Axis::log("relMSE"), &series)
 }
 
 fn table(measured: &Measured) -> Table {
-    let mut table = Table::new("Errors").text("sampler").numbers([
+    let mut table = Table::new("Errors").texts(["sampler"]).numbers([
         "samples",
         "relMSE",
         "trimmed",

@@ -6,7 +6,7 @@ use super::super::rows::{Estimator, Row, name, published, samplers, strategies};
 use super::super::summary::on_gaussian;
 use super::super::times::PER_POINT;
 use super::super::view::{Counted, Gain, MANY, TOLD, mean_v};
-use crate::plot::{Axis, Bar, BarChart, Dash, LineChart, Series};
+use crate::plot::{Axis, Bar, Series, bars, lines};
 use crate::report::Drawing;
 use crate::sampler::Sampler;
 use crate::stats::Estimate;
@@ -18,14 +18,9 @@ const CONSTANT: usize = 0;
 /// The last sentence of captions of bars of [`median_bar`].
 pub(super) const MEDIANS: &str = "Medians over the grid; whiskers go from the first to the third quartile.";
 
-/// A chart of lines.
-pub(super) fn lines(title: impl Into<String>, x: Axis, y: Axis, series: impl IntoIterator<Item = Series>) -> LineChart {
-    series.into_iter().fold(LineChart::new(title, x, y), LineChart::series)
-}
-
 /// A drawing for each model, whose name ends that of its files.
 pub(super) fn each_model(slug: &str, caption: &str, svg: &dyn Fn(ModelKind) -> String) -> Vec<Drawing> {
-    ModelKind::ALL.map(|model| Drawing::new(svg(model), caption).named(format!("{slug}-{}", model.name()))).into()
+    ModelKind::ALL.map(|model| Drawing::new(format!("{slug}-{}", model.name()), svg(model), caption)).into()
 }
 
 /// The runnable samplers on a model.
@@ -35,9 +30,10 @@ pub(super) fn samplers_on(model: ModelKind) -> impl Iterator<Item = Estimator> +
 
 /// A bar of a median, with the quartiles of its cells, times a factor.
 pub(super) fn median_bar(of: Option<Gain>, factor: f64) -> Bar {
-    of.map_or(Bar::new(f64::NAN), |gain| {
-        let [low, high] = gain.quartiles.map(|ratio| ratio * factor);
-        Bar::new(gain.median.value * factor).with_interval(low, high)
+    of.map_or(f64::NAN.into(), |Gain { median, quartiles: [low, high], .. }| Bar {
+        value: median.value * factor,
+        low: low * factor,
+        high: high * factor,
     })
 }
 
@@ -61,8 +57,9 @@ pub(super) fn variances(of: &Study) -> Vec<Drawing> {
                 };
                 Series::new(name(estimator.1), values.iter().filter_map(point))
             });
+            let series: Vec<Series> = series.collect();
             let title = format!("Variance over the {slug}, {} model", model.title());
-            lines(title, Axis::linear(label).from_zero(), Axis::log("relative variance of a sample, V"), series).svg()
+            lines(&title, Axis::linear(label), Axis::log("relative variance of a sample, V"), &series)
         })
     };
     axes.into_iter().flat_map(charts).collect()
@@ -76,26 +73,24 @@ pub(super) fn efficiencies(of: &Study) -> Vec<Drawing> {
     each_model("efficiency", caption, &|model| {
         let title = format!("Efficiency under {} light, {} model", of.lights()[CONSTANT], model.title());
         let groups = PER_POINT.map(|n| format!("{n} per shading point"));
-        let mut chart = BarChart::new(title, Axis::log("1 / (V · µs)"), groups);
-        for estimator in samplers_on(model) {
-            let found = PER_POINT.map(|n| of.efficiency(estimator, CONSTANT, n).unwrap_or(Estimate::UNKNOWN));
-            let bars = found.map(|found| Bar::new(found.value).with_error(found.standard_error));
-            chart = chart.series(name(estimator.1), bars);
-        }
-        chart.svg()
+        let bar = |found: Option<Estimate>| Bar::from(found.unwrap_or(Estimate::UNKNOWN));
+        let series: Vec<_> = samplers_on(model)
+            .map(|one| (name(one.1).to_owned(), PER_POINT.map(|n| bar(of.efficiency(one, CONSTANT, n))).to_vec()))
+            .collect();
+        bars(&title, Axis::log("1 / (V · µs)"), &groups, &series, 0.0)
     })
 }
 
 /// The verdicts in one plot: the Cauchy model against the Gaussian one, by light.
 pub(super) fn summary(of: &Study) -> Drawing {
-    let told = TOLD.into_iter().map(|sampler| (ModelKind::Cauchy, Some(sampler)));
+    let mut told = TOLD.into_iter().map(|sampler| (ModelKind::Cauchy, Some(sampler)));
     let axis = Axis::log("V Gaussian / V Cauchy");
-    let chart = of.by_light("Samples: Gaussian model over Cauchy model", axis, told, &|cauchy, light| {
-        Bar::new(of.gain([on_gaussian(cauchy), cauchy], light).map_or(f64::NAN, |gain| gain.median.value))
+    let chart = of.by_light("Samples: Gaussian model over Cauchy model", axis, 1.0, &mut told, &|cauchy, light| {
+        of.gain([on_gaussian(cauchy), cauchy], light).map_or(f64::NAN, |gain| gain.median.value).into()
     });
     let caption = "By what factor the Cauchy model needs fewer samples (above 1) or more (below), by light: medians over the \
                    grid. The spread over its cells is shown below.";
-    Drawing::new(chart.level(1.0).svg(), caption).named("summary")
+    Drawing::new("summary", chart, caption)
 }
 
 /// Gains in V by light, over `published`, up to that of perfect sampling.
@@ -111,13 +106,12 @@ pub(super) fn limits(of: &Study) -> Vec<Drawing> {
 fn over_published(of: &Study, time: Option<Counted>, [title, axis, slug, caption]: [&str; 4]) -> Vec<Drawing> {
     each_model(slug, &format!("{caption} {MEDIANS}"), &|model| {
         let others = strategies().map(|strategy| (model, strategy)).filter(|other| *other != published(*other));
-        let others = others.filter(|(_, strategy)| time.is_none() || strategy.is_some());
+        let mut others = others.filter(|(_, strategy)| time.is_none() || strategy.is_some());
         let title = format!("{title}, {} model", model.title());
-        let chart = of.by_light(&title, Axis::log(axis), others, &|other, light| {
+        of.by_light(&title, Axis::log(axis), 1.0, &mut others, &|other, light| {
             let pair = [published(other), other];
             median_bar(of.gain(pair, light), time.map_or(1.0, |time| of.time_ratio(pair, light, MANY, time).value))
-        });
-        chart.level(1.0).svg()
+        })
     })
 }
 
@@ -134,7 +128,8 @@ pub(super) fn gains(of: &Study) -> Vec<Drawing> {
     let caption = format!("{caption} The time of a look-up of the light is added; one that was not timed has no bars.");
     figures.extend(over_published(of, Some(Counted::LookUp), [&title, axis, "gain-by-light-look-up", &caption]));
     let (title, axis) = ("Less variance on the Cauchy model in equal time", "Gaussian / Cauchy in equal time (×)");
-    let chart = of.by_light(title, Axis::log(axis), samplers_on(ModelKind::Cauchy), &|cauchy, light| {
+    let mut on_cauchy = samplers_on(ModelKind::Cauchy);
+    let chart = of.by_light(title, Axis::log(axis), 1.0, &mut on_cauchy, &|cauchy, light| {
         let pair = [on_gaussian(cauchy), cauchy];
         median_bar(of.gain(pair, light), of.time_ratio(pair, light, MANY, Counted::Sample).value)
     });
@@ -142,13 +137,13 @@ pub(super) fn gains(of: &Study) -> Vec<Drawing> {
         "Variance on the Gaussian model over that on the Cauchy model with the same sampler in the same time, by light, at \
          {MANY} samples per shading point. {MEDIANS}"
     );
-    figures.push(Drawing::new(chart.level(1.0).svg(), caption).named("cauchy-gain-by-light"));
+    figures.push(Drawing::new("cauchy-gain-by-light", chart, caption));
     figures
 }
 
 /// A line in the colour that the sampler has in every chart.
 fn of_sampler(sampler: Sampler, series: Series) -> Series {
-    series.styled(sampler.color(), Dash::of(sampler.color()))
+    series.styled(sampler.color(), sampler.color())
 }
 
 /// The share of cells in which V of `base` over V of `other` is at most x.
@@ -166,9 +161,9 @@ fn distribution(of: &Study, label: &str, pair: [Estimator; 2], light: usize) -> 
 /// How gains spread over the cells.
 pub(super) fn distributions(of: &Study) -> Vec<Drawing> {
     let chart = |title: String, axis: &str, mut series: Vec<Series>| {
-        series.push(Series::curve("as good", [(1.0, 0.0), (1.0, 100.0)]).styled(5, Dash::Dotted));
+        series.push(Series::guide("as good", [(1.0, 0.0), (1.0, 100.0)]));
         let share = Axis::linear("cells with at most as much (%)").range(0.0, 100.0).step(20.0);
-        lines(title, Axis::log(axis), share, series).svg()
+        lines(&title, Axis::log(axis), share, &series)
     };
     let cells = of.cells.len();
     let of_cauchy = TOLD.map(|sampler| {
@@ -180,7 +175,7 @@ pub(super) fn distributions(of: &Study) -> Vec<Drawing> {
             "How the gain of the Cauchy model spreads over the {cells} cells of the grid with `{name}`, by light: a line left \
              of 1 (the upright) is a cell where the Cauchy model needs more samples. The time of a sample is not in it."
         );
-        Drawing::new(svg, caption).named(format!("cauchy-gain-over-cells-{name}"))
+        Drawing::new(format!("cauchy-gain-over-cells-{name}"), svg, caption)
     });
     let caption = format!(
         "How the gain over the published sampler spreads over the {cells} cells of the grid under {} light: left of 1 (the \
@@ -209,9 +204,9 @@ pub(super) fn weights(of: &Study) -> Vec<Drawing> {
             let relative = |row: &Row<'_>| Some(row.measured.max_weight / row.measured.figures.mean.value);
             Series::new(sampler.name(), worst(of, (model, Some(sampler)), &relative))
         });
-        let x = Axis::linear("inclination of the viewer, θₒ (°)").from_zero();
+        let x = Axis::linear("inclination of the viewer, θₒ (°)");
         let title = format!("Largest weight, {} model", model.title());
-        lines(title, x, Axis::log("largest weight / albedo"), series).svg()
+        lines(&title, x, Axis::log("largest weight / albedo"), &series)
     });
     let caption = "For samplers with a bound in closed form: the largest weight drawn over the bound, in the worst cell of each \
                    inclination. A point above 1 would fail the run.";
@@ -222,8 +217,9 @@ pub(super) fn weights(of: &Study) -> Vec<Drawing> {
             (!points.is_empty()).then(|| of_sampler(sampler, Series::new(sampler.name(), points)))
         });
         let title = format!("Largest weight over its proven bound, {} model", model.title());
-        let chart = lines(title, Axis::linear("θₒ (°)"), Axis::linear("largest weight / bound"), series);
-        chart.reference("the bound", 0.0, (1.0, 1.0)).svg()
+        let ends = of.grid().theta_o_deg.iter().map(|theta_o| (f64::from(*theta_o), 1.0));
+        let series: Vec<Series> = series.chain([Series::guide("the bound", ends)]).collect();
+        lines(&title, Axis::linear("θₒ (°)"), Axis::linear("largest weight / bound"), &series)
     });
     [largest, bounds].concat()
 }

@@ -1,9 +1,8 @@
 //! The plots of how different the models look.
 
-use super::charts::lines;
 use crate::difference::{Difference, Differences, Summary, Width, albedo_ratio};
 use crate::figures;
-use crate::plot::{Axis, Bar, Series};
+use crate::plot::{Axis, Bar, Series, lines};
 use crate::report::Drawing;
 use hairis::HairParams;
 use hairis_variants::Cauchy;
@@ -24,14 +23,13 @@ pub(super) fn pictures() -> Vec<Drawing> {
     ];
     let mut all = vec![figures::polar(&hair, theta_o, &variants)];
     all.extend(figures::maps(&hair, theta_o, Cauchy::PAPER));
-    all.push(figures::difference_map(&hair, theta_o, Cauchy::PAPER));
     all
 }
 
 /// The differences over the grid.
 pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
-    let width = || Axis::linear("width of R, β_R (°)").from_zero();
-    let l1 = || Axis::linear("difference of S cos θᵢ, L1 (%)").from_zero();
+    let width = || Axis::linear("width of R, β_R (°)");
+    let l1 = || Axis::linear("difference of S cos θᵢ, L1 (%)");
     let (widths, inclinations) = (of.grid.widths(), of.grid.inclinations());
     let by_factor = Width::ALL.map(|width| {
         let points = of.along(widths, width, |f| 100.0 * f.plain.l1).into_iter();
@@ -43,7 +41,7 @@ pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
         ("blurred by 10°", |f| 100.0 * f.blurred.l1),
         ("shape alone, blurred", |f| 100.0 * f.blurred_shape.l1),
     ];
-    let bar = |middle: f64, found: Summary| Bar::new(middle).with_interval(found.least, found.most);
+    let bar = |value: f64, found: Summary| Bar { value, low: found.least, high: found.most };
     let by_kind = kinds.map(|(name, figure)| {
         let points = of.along(widths, Width::Paper, figure).into_iter();
         Series::new(name, points.map(|(x, found)| (x, bar(found.median, found))))
@@ -52,30 +50,30 @@ pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
         let points = of.along(inclinations, width, albedo_ratio).into_iter();
         Series::new(named(of, width), points.map(|(x, found)| (x, bar(found.geometric_mean, found))))
     });
-    let theta_o = Axis::linear("inclination of the viewer, θₒ (°)").from_zero();
+    let theta_o = Axis::linear("inclination of the viewer, θₒ (°)");
     let ratio = Axis::linear("ratio of the albedos");
     [
         (
             "difference-by-k",
-            lines("How far the Cauchy model is from the Gaussian one", width(), l1(), by_factor),
+            lines("How far the Cauchy model is from the Gaussian one", width(), l1(), &by_factor),
             "Integral over the sphere of |S cos θᵢ of the Cauchy model − that of the Gaussian model|, relative to the \
              albedo of the latter, by the factor k on the Cauchy model's widths: medians over the other axes of the grid. \
              By quadrature, exact to less than 0.1% of each figure.",
         ),
         (
             "difference-by-kind",
-            lines("The same widths: as they are, by shape, and blurred", width(), l1(), by_kind),
+            lines("The same widths: as they are, by shape, and blurred", width(), l1(), &by_kind),
             "The same for k = 1: as the models are, with the Cauchy model scaled to the Gaussian one's albedo, and after a \
              blur of 10°. Marks are medians, bars go from the least to the most of the cells.",
         ),
         (
             "albedo",
-            lines("Albedo of the Cauchy model over that of the Gaussian one", theta_o, ratio, albedos),
+            lines("Albedo of the Cauchy model over that of the Gaussian one", theta_o, ratio, &albedos),
             "Directional albedos, the integrals of S cos θᵢ: geometric means over the other axes of the grid; bars go from \
              the least to the most of the cells.",
         ),
     ]
-    .map(|(name, chart, caption)| Drawing::new(chart.svg(), caption).named(name))
+    .map(|(name, chart, caption)| Drawing::new(name, chart, caption))
     .into()
 }
 

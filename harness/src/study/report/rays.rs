@@ -90,9 +90,9 @@ fn charts(of: &Study) -> Vec<Drawing> {
         "By what factor less variance one ray has that is chosen from 8 + 8 candidates, without occlusion, by light.";
     each_model("rays-from-candidates", &format!("{caption} {MEDIANS}"), &|model| {
         let title = format!("Variance of MIS over that of a ray from 8 + 8 candidates, {} model", model.title());
-        let chart = of.by_light(&title, Axis::log("V MIS / V 8 + 8 (×)"), samplers_on(model), &|one, light| {
+        let axis = Axis::log("V MIS / V 8 + 8 (×)");
+        of.by_light(&title, axis, 1.0, &mut samplers_on(model), &|one, light| {
             median_bar(ratio(of, one, light, [MIS, POOLS[1]]), 1.0)
-        });
-        chart.level(1.0).svg()
+        })
     })
 }

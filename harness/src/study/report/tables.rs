@@ -30,7 +30,7 @@ pub(super) fn all(of: &Study) -> [Table; 3] {
             format!("{} ({})", shown(ns), number::ratio(ns.value / base.value))
         })));
     }
-    let mut look_ups = Table::new("Time of a look-up of the light in a direction, ns").text("light").number("ns");
+    let mut look_ups = Table::new("Time of a look-up of the light in a direction, ns").texts(["light"]).numbers(["ns"]);
     for (light, name) in of.lights().iter().enumerate() {
         let ns = of.times.look_up(light);
         look_ups.push([name.clone(), if ns.value.is_finite() { shown(ns) } else { "not timed".to_owned() }]);
@@ -79,7 +79,7 @@ mod tests {
     fn claims_are_shown_with_their_verdicts_or_not_at_all() {
         let claim = json!({ "quotation": "always", "source": "5", "verdict": "false", "sentence": "not here" });
         let table = claims(&json!({ "claims": [claim], "machine": { "commit": "abc" } })).expect("one claim");
-        let text = table.to_plain();
+        let text = table.to_text(Some(u16::MAX));
         assert!(
             ["always", "(5)", "false", "not here", "commit abc"].iter().all(|words| text.contains(words)),
             "{text}"
