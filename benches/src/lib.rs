@@ -4,7 +4,10 @@
 //! program `entry` runs one of them for callgrind and for timing by hand.
 
 pub mod check;
+pub mod cpu;
 pub mod entries;
+#[cfg(target_arch = "x86_64")]
+pub mod hand;
 pub mod inputs;
 pub mod math;
 pub mod platform;

@@ -7,6 +7,7 @@
 use core::error::Error;
 use core::fmt::Write;
 use hairis::Level;
+use hairis_benches::cpu;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -15,7 +16,7 @@ use std::{env, fs};
 fn main() -> ExitCode {
     let words: Vec<String> = env::args().skip(1).collect();
     let done = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["cpu"] => Ok(slug(&cpu()) + "\n"),
+        ["cpu"] => Ok(slug(&cpu::name()) + "\n"),
         [folder] => record(Path::new(folder)),
         _ => Err("usage: record FOLDER | record cpu".into()),
     };
@@ -40,7 +41,7 @@ fn record(folder: &Path) -> Result<String, Box<dyn Error>> {
     rows.sort();
     let modified = if output("git", &["status", "--porcelain"])?.is_empty() { "" } else { ", modified" };
     let mut text = String::new();
-    writeln!(text, "# CPU: {}", cpu())?;
+    writeln!(text, "# CPU: {}", cpu::name())?;
     for line in output("rustc", &["-vV"])?.lines().filter(|line| !line.is_empty()) {
         writeln!(text, "# {line}")?;
     }
@@ -101,24 +102,6 @@ fn output(program: &str, words: &[&str]) -> Result<String, Box<dyn Error>> {
         return Err(format!("{program} {words:?}: {}", done.status).into());
     }
     Ok(String::from_utf8(done.stdout)?)
-}
-
-/// Name of the CPU with its numbers: names alone are often meaningless on rented machines.
-fn cpu() -> String {
-    let Ok(info) = fs::read_to_string("/proc/cpuinfo") else {
-        return env::consts::ARCH.to_owned();
-    };
-    let field = |name: &str| {
-        let line = info.lines().find(|line| line.split(':').next().is_some_and(|key| key.trim() == name));
-        line.and_then(|line| line.split(':').nth(1)).map_or("", str::trim)
-    };
-    format!(
-        "{} family {} model {} stepping {}",
-        field("model name"),
-        field("cpu family"),
-        field("model"),
-        field("stepping")
-    )
 }
 
 /// The same as the name of a folder.
