@@ -145,12 +145,12 @@ mod x86 {
 
     /// The first eight numbers of each column.
     #[inline(always)]
-    fn eight<'a>(columns: [&'a [f32]; 3]) -> [&'a [f32; 8]; 3] {
+    fn eight(columns: [&[f32]; 3]) -> [&[f32; 8]; 3] {
         columns.map(|column| column.first_chunk().expect("eight rows"))
     }
 
     #[inline(always)]
-    fn eight_mut<'a, const N: usize>(columns: [&'a mut [f32]; N]) -> [&'a mut [f32; 8]; N] {
+    fn eight_mut<const N: usize>(columns: [&mut [f32]; N]) -> [&mut [f32; 8]; N] {
         columns.map(|column| column.first_chunk_mut().expect("eight rows"))
     }
 
