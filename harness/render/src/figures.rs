@@ -32,11 +32,8 @@ const QUICK: [Name; 4] = [Name::Area, Name::AreaHead, Name::Box, Name::Head];
 ///
 /// # Errors
 ///
-/// If a map cannot be read or a file cannot be written; before anything is rendered.
+/// If paths do not converge in a scene, a map cannot be read or a file cannot be written; before anything is rendered.
 pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
-    let maps = flags.env.iter().map(|path| environment(path)).collect::<Result<Vec<_>, _>>()?;
-    prepare(&flags.out)?;
-    let store = Store::new(&flags.out)?;
     let plan = if flags.quick { Plan::QUICK } else { Plan::FULL };
     let plan = Plan { integrator: flags.integrator, sequence: flags.xi, ..plan };
     let chosen: &[Name] = match (flags.scene.as_slice(), flags.quick) {
@@ -44,6 +41,10 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         ([], false) => &SCENES,
         (scenes, _) => scenes,
     };
+    chosen.iter().try_for_each(|name| plan.check(*name))?;
+    let maps = flags.env.iter().map(|path| environment(path)).collect::<Result<Vec<_>, _>>()?;
+    prepare(&flags.out)?;
+    let store = Store::new(&flags.out)?;
     let mut scenes = Vec::new();
     for name in chosen {
         if *name == Name::Env && !maps.is_empty() {

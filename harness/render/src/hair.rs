@@ -1,6 +1,7 @@
 //! Hair by name: model, sampler and preset.
 
 use crate::material::{Hair, Sampling, Scale};
+use crate::transport::{Integrator, Settings};
 use hairis_harness::error::Error;
 use hairis_variants::{ModelId, Values};
 
@@ -106,6 +107,21 @@ pub fn samplers(model: &str) -> Vec<&'static str> {
     let own = ModelId::ALL.iter().filter(|id| id.name() == model);
     let words = own.filter_map(|id| id.choice().map(|(_, word)| word));
     [UNIFORM, PUBLISHED].into_iter().chain(words).collect()
+}
+
+/// Refuses hair of which paths do not converge. `remedy` ends the line.
+///
+/// # Errors
+///
+/// If paths scatter several times in hair of a mean albedo of [`MOST_MEAN_ALBEDO`] or above.
+pub fn check_paths(hair: &Hair, settings: &Settings, preset: &str, remedy: &str) -> Result<(), Error> {
+    let [mean, _] = hair.mean_and_worst_albedo();
+    if settings.integrator == Integrator::Path && settings.multiple && mean >= MOST_MEAN_ALBEDO {
+        return Err(Error::Usage(format!(
+            "paths need hair of a mean albedo below {MOST_MEAN_ALBEDO}, got {mean:.3} of {preset}: {remedy}"
+        )));
+    }
+    Ok(())
 }
 
 /// The parameters of a preset.

@@ -2,7 +2,7 @@
 
 use super::store::Store;
 use crate::film::Crop;
-use crate::hair::{Choice, Energy, MATCHED, PUBLISHED, UNIFORM};
+use crate::hair::{Choice, Energy, MATCHED, PUBLISHED, UNIFORM, check_paths};
 use crate::layers::Beside;
 use crate::numbers::Sequence;
 use crate::picture;
@@ -76,6 +76,20 @@ impl Plan {
         format!("scene={} model={model} hair={preset} side={side} strands={strands}", name.word())
     }
 
+    /// How the samplers' pictures of a scene are made, but for what is their own.
+    fn settings(&self, name: Name, seed: u64) -> Settings {
+        let defaults = name.defaults();
+        let integrator = self.integrator.unwrap_or(defaults.integrator);
+        Settings { integrator, multiple: defaults.multiple, seed, ..Settings::default() }
+    }
+
+    /// Refuses a scene with hair that paths do not converge in.
+    pub(super) fn check(&self, name: Name) -> Result<(), Error> {
+        let (preset, settings) = (name.defaults().preset, self.settings(name, 1));
+        let remedy = format!("leave out scene {}, or use --integrator gather", name.word());
+        check_paths(&Choice::find(MODEL, BEST, preset)?.hair(Energy::Raw)?, &settings, preset, &remedy)
+    }
+
     /// Steps of progress for a count of scenes.
     pub(super) fn steps(&self, scenes: usize) -> usize {
         scenes * (2 + SAMPLERS.len() * (self.samples[0].len() + 1))
@@ -130,8 +144,8 @@ impl Measured {
         let parts = Parts { strands, imported: false, hair: hair(BEST)?, env: map, size: [plan.side; 2], turn: 0.0 };
         step(&format!("{}: tree", name.word()));
         let mut scene: Scene = scenes::build(name, parts)?;
-        let integrator = plan.integrator.unwrap_or(defaults.integrator);
-        let settings = Settings { integrator, multiple: defaults.multiple, seed, ..Settings::default() };
+        let settings = plan.settings(name, seed);
+        let integrator = settings.integrator;
         let kind = usize::from(integrator != Integrator::Gather);
         let halves = plan.reference[kind];
         let of_scene = format!("{} env={digest:016x} reference={halves}", plan.scene(name, MODEL, defaults.preset));

@@ -3,7 +3,7 @@
 use super::measure::Plan;
 use super::panel::{Column, panel};
 use super::store::Store;
-use crate::hair::{Choice, Energy, default_sampler};
+use crate::hair::{Choice, Energy, check_paths, default_sampler};
 use crate::picture::exposure;
 use crate::protocol::Reference;
 use crate::scenes::{self, Name, Parts};
@@ -48,6 +48,7 @@ impl Preset {
             Settings { integrator: defaults.integrator, multiple: defaults.multiple, seed, ..Settings::default() };
         let mut models = Vec::new();
         for (model, hair) in hairs {
+            check_paths(&hair, &settings, name, &format!("model {model} cannot be compared"))?;
             step(&format!("{name}: {model}"));
             scene.hair = hair;
             let of_model = plan.scene(Name::Head, model, name);

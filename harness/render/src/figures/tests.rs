@@ -5,6 +5,7 @@ use super::models::Preset;
 use super::store::Store;
 use crate::protocol::Runs;
 use crate::scenes::Name;
+use crate::transport::Integrator;
 use core::cell::Cell;
 use core::panic::AssertUnwindSafe;
 use std::panic::catch_unwind;
@@ -77,4 +78,15 @@ fn pictures_of_models_are_kept() {
     assert_eq!(render(), 0);
     let models = hairis_variants::ModelId::defaults_of_names().count();
     assert_eq!(render(), 2 * models, "two halves each");
+}
+
+#[test]
+fn hair_that_paths_do_not_converge_in_is_refused() {
+    let paths = Plan { integrator: Some(Integrator::Path), ..TINY };
+    let message = paths.check(Name::AreaSoft).expect_err("refused").to_string();
+    assert!(message.contains("area-soft") && message.contains("default") && message.contains("0.98"), "{message}");
+    for name in super::SCENES {
+        TINY.check(name).expect("its own integrator");
+    }
+    paths.check(Name::Env).expect("blond hair");
 }
