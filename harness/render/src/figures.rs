@@ -1,9 +1,12 @@
 //! `hairis-render figures`: samplers side by side, as pictures and as numbers, on one page.
 
+mod csv;
+mod map;
 mod measure;
 mod models;
 mod page;
 mod panel;
+mod rates;
 mod store;
 #[cfg(test)]
 mod tests;
@@ -23,11 +26,11 @@ use std::path::Path;
 use store::Store;
 
 /// The scenes that are compared, without maps of the caller's.
-const SCENES: [Name; 6] = [Name::Area, Name::AreaSoft, Name::AreaHead, Name::Env, Name::Box, Name::Head];
-/// Scenes of a quick run.
-const QUICK: [Name; 4] = [Name::Area, Name::AreaHead, Name::Box, Name::Head];
+const SCENES: [Name; 7] =
+    [Name::Area, Name::AreaSoft, Name::AreaHead, Name::Env, Name::BoxSingle, Name::Box, Name::Head];
 
-/// Compares samplers on every scene, and writes `report.html` with an EXR file of each picture beside it. A run that was
+/// Compares samplers on every scene, and writes `report.html` with its figures as `figures.csv` and an EXR file of
+/// each picture beside it. A run that was
 /// stopped goes on from the measurements that it had finished.
 ///
 /// # Errors
@@ -36,11 +39,7 @@ const QUICK: [Name; 4] = [Name::Area, Name::AreaHead, Name::Box, Name::Head];
 pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     let plan = if flags.quick { Plan::QUICK } else { Plan::FULL };
     let plan = Plan { integrator: flags.integrator, sequence: flags.xi, ..plan };
-    let chosen: &[Name] = match (flags.scene.as_slice(), flags.quick) {
-        ([], true) => &QUICK,
-        ([], false) => &SCENES,
-        (scenes, _) => scenes,
-    };
+    let chosen: &[Name] = if flags.scene.is_empty() { &SCENES } else { &flags.scene };
     chosen.iter().try_for_each(|name| plan.check(*name))?;
     let maps = flags.env.iter().map(|path| environment(path)).collect::<Result<Vec<_>, _>>()?;
     prepare(&flags.out)?;
@@ -80,12 +79,14 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         all.push(measured);
         // After every scene, so that a run that is stopped leaves a page.
         page::write(&all, &[], &plan, flags, &flags.out)?;
+        csv::write(&all, &[], &plan, flags, &flags.out)?;
     }
     let mut compared = Vec::new();
     for name in presets {
         compared.push(Preset::render(name, &plan, flags.seed, &store, &step)?);
         if flags.shard.is_none() {
             page::write(&all, &compared, &plan, flags, &flags.out)?;
+            csv::write(&all, &compared, &plan, flags, &flags.out)?;
         }
     }
     bar.finish_and_clear();

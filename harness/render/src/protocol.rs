@@ -1,20 +1,77 @@
 //! Comparison of samplers: references, errors, and errors of errors.
 
-use crate::film::{Crop, Film, Picture};
-use crate::scene::Scene;
-use crate::transport::{Settings, film};
-use hairis_harness::stats::Estimate;
+mod rate;
+mod runs;
+
+pub use rate::{Reach, crossing, jackknife, reach, slope, slope_of};
+pub use runs::Runs;
+
+use crate::film::Picture;
 
 /// Share of the pixels, those of the largest errors, that trimmed errors leave out.
 pub const TRIMMED: f64 = 0.001;
 /// Relative errors are relative to the luminance, but at least to this share of the mean: black pixels count little.
 const FLOOR: f64 = 0.1;
 
+/// An error of a picture: a mean over its pixels of the squared error in luminance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Mean square error.
+    Mse,
+    /// The same without the pixels of the largest errors: see [`TRIMMED`].
+    TrimmedMse,
+    /// Relative mean square error.
+    RelMse,
+    /// The same without the pixels of the largest errors.
+    TrimmedRelMse,
+}
+
+impl Measure {
+    /// All, in their order.
+    pub const ALL: [Self; 4] = [Self::Mse, Self::TrimmedMse, Self::RelMse, Self::TrimmedRelMse];
+
+    /// Its name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mse => "MSE",
+            Self::TrimmedMse => "trimmed MSE",
+            Self::RelMse => "relMSE",
+            Self::TrimmedRelMse => "trimmed relMSE",
+        }
+    }
+}
+
+/// Errors of a picture, in the order of [`Measure::ALL`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// The errors; what noise of the reference adds is subtracted.
+    pub values: [f64; 4],
+    /// What was subtracted.
+    pub own: [f64; 4],
+}
+
+impl Errors {
+    /// An error.
+    #[must_use]
+    pub fn value(&self, measure: Measure) -> f64 {
+        self.values[measure as usize]
+    }
+
+    /// The part of an error that was due to noise of the reference.
+    #[must_use]
+    pub fn own(&self, measure: Measure) -> f64 {
+        self.own[measure as usize]
+    }
+}
+
 /// A picture that others are compared with, and how noisy it is.
 #[derive(Clone, Debug)]
 pub struct Reference {
     /// Mean of two pictures that share no numbers.
     pub picture: Picture,
+    /// Time of both, in seconds of a thread, if it is known; 0 else.
+    pub seconds: f64,
     /// Luminances.
     luminances: Vec<f64>,
     /// Variance of each luminance, from how much the two pictures differ.
@@ -34,7 +91,13 @@ impl Reference {
         let variances = a.luminances().iter().zip(b.luminances()).map(|(a, b)| 0.25 * (a - b) * (a - b)).collect();
         let luminances = picture.luminances();
         let mean = luminances.iter().sum::<f64>() / luminances.len().max(1) as f64;
-        Self { picture, luminances, variances, mean }
+        Self { picture, seconds: 0.0, luminances, variances, mean }
+    }
+
+    /// The same, made in a time in seconds of a thread.
+    #[must_use]
+    pub fn with_seconds(self, seconds: f64) -> Self {
+        Self { seconds, ..self }
     }
 
     /// Divisor that makes squared errors of a pixel relative.
@@ -42,11 +105,22 @@ impl Reference {
         self.luminances[pixel].powi(2) + (FLOOR * self.mean).powi(2)
     }
 
-    /// Signed relative error of every pixel of a picture.
+    /// Signed error in luminance of every pixel of a picture.
     #[must_use]
     pub fn signed(&self, picture: &Picture) -> Vec<f64> {
-        let luminances = picture.luminances().into_iter().enumerate();
-        luminances.map(|(k, l)| (l - self.luminances[k]) / self.unit(k).sqrt()).collect()
+        picture.luminances().iter().zip(&self.luminances).map(|(a, b)| a - b).collect()
+    }
+
+    /// Signed errors in luminance, one per pixel, as relative errors.
+    #[must_use]
+    pub fn relative(&self, errors: &[f64]) -> Vec<f64> {
+        errors.iter().enumerate().map(|(k, error)| error / self.unit(k).sqrt()).collect()
+    }
+
+    /// Squared errors in luminance, one per pixel, as squared relative errors.
+    #[must_use]
+    pub fn relative_squares(&self, squares: &[f64]) -> Vec<f64> {
+        squares.iter().enumerate().map(|(k, square)| square / self.unit(k)).collect()
     }
 
     /// How another scene looks beside this one: the ratio of the mean luminances, and the root of the mean squared relative
@@ -65,139 +139,29 @@ impl Reference {
     /// Errors of a picture; what the reference's own noise adds is subtracted.
     #[must_use]
     pub fn errors(&self, picture: &Picture) -> Errors {
-        let luminances = picture.luminances();
-        let of = |unit: &dyn Fn(usize) -> f64| {
-            let square = |k: usize| (luminances[k] - self.luminances[k]).powi(2) / unit(k);
-            let mut squares: Vec<f64> = (0..luminances.len()).map(square).collect();
-            squares.sort_by(f64::total_cmp);
-            let own = (0..squares.len()).map(|k| self.variances[k] / unit(k)).sum::<f64>() / squares.len() as f64;
-            let mean = |squares: &[f64]| squares.iter().sum::<f64>() / squares.len().max(1) as f64 - own;
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
-            let kept = squares.len() - (squares.len() as f64 * TRIMMED).ceil() as usize;
-            (mean(&squares), mean(&squares[..kept]), own)
-        };
-        let (square, _, _) = of(&|_| 1.0);
-        let (relative, trimmed, own) = of(&|k| self.unit(k));
-        Errors { square, relative, trimmed, own }
-    }
-}
-
-/// Mean errors of a picture's luminance, squared.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errors {
-    /// Mean square error.
-    pub square: f64,
-    /// Relative mean square error.
-    pub relative: f64,
-    /// The same without the pixels of the largest errors: see [`TRIMMED`].
-    pub trimmed: f64,
-    /// Relative error due to noise of the reference, which was subtracted.
-    pub own: f64,
-}
-
-/// Renders with one sampler at one count of samples, each with a seed of its own.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Runs {
-    /// Samples of a pixel.
-    pub samples: u32,
-    /// Time of the fastest, in seconds of a thread.
-    pub seconds: f64,
-    /// Errors of each; none for half of a reference.
-    pub errors: Vec<Errors>,
-    /// The first picture.
-    pub picture: Picture,
-}
-
-impl Runs {
-    /// Renders half of a reference: 0 or 1.
-    #[must_use]
-    pub fn half(scene: &Scene, settings: &Settings, samples: u32, half: u64) -> Self {
-        let seed = (settings.seed ^ 0x7265_6665_7265_6e63).wrapping_add(half);
-        let film = film(scene, &Settings { seed, ..*settings }, Crop::whole(scene.camera.size()), samples);
-        Self { samples, seconds: film.seconds(), errors: Vec::new(), picture: film.picture() }
-    }
-
-    /// Renders `runs` pictures and compares them with a reference.
-    #[must_use]
-    pub fn render(scene: &Scene, settings: &Settings, reference: &Reference, samples: u32, runs: u32) -> Self {
-        let whole = Crop::whole(scene.camera.size());
-        let one = |run: u32| -> Film {
-            let seed = settings.seed.wrapping_mul(1000).wrapping_add(u64::from(run));
-            film(scene, &Settings { seed, ..*settings }, whole, samples)
-        };
-        let films: Vec<Film> = (0..runs.max(1)).map(one).collect();
-        let pictures: Vec<Picture> = films.iter().map(Film::picture).collect();
-        Self {
-            samples,
-            seconds: films.iter().map(Film::seconds).fold(f64::INFINITY, f64::min),
-            errors: pictures.iter().map(|picture| reference.errors(picture)).collect(),
-            picture: pictures[0].clone(),
+        let signed = self.signed(picture);
+        let mut errors = Errors::default();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
+        let kept = signed.len() - (signed.len() as f64 * TRIMMED).ceil() as usize;
+        for is_relative in [false, true] {
+            let unit = |k: usize| if is_relative { self.unit(k) } else { 1.0 };
+            let pixel = |(k, error): (usize, &f64)| [error * error / unit(k), self.variances[k] / unit(k)];
+            let mut pixels: Vec<[f64; 2]> = signed.iter().enumerate().map(pixel).collect();
+            pixels.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            let measures = if is_relative {
+                [Measure::RelMse, Measure::TrimmedRelMse]
+            } else {
+                [Measure::Mse, Measure::TrimmedMse]
+            };
+            for (measure, count) in measures.into_iter().zip([pixels.len(), kept]) {
+                let mean = |part: usize| pixels[..count].iter().map(|pixel| pixel[part]).sum::<f64>() / count as f64;
+                let own = mean(1);
+                errors.values[measure as usize] = mean(0) - own;
+                errors.own[measure as usize] = own;
+            }
         }
+        errors
     }
-
-    /// Mean of an error over the pictures, with its standard error.
-    #[must_use]
-    pub fn mean(&self, error: impl Fn(&Errors) -> f64) -> Estimate {
-        jackknife(self.errors.len(), |kept| average(self.errors.iter().map(&error).enumerate(), kept))
-    }
-
-    /// How many times as large an error times time is here as in `other`, with its standard error.
-    #[must_use]
-    pub fn ratio(&self, other: &Self, error: impl Fn(&Errors) -> f64, with_time: bool) -> Estimate {
-        let by = if with_time { self.seconds / other.seconds } else { 1.0 };
-        let runs = self.errors.len().min(other.errors.len());
-        jackknife(runs, |kept| {
-            let mean = |runs: &Self| average(runs.errors.iter().map(&error).enumerate(), kept);
-            by * mean(self) / mean(other)
-        })
-    }
-
-    /// Whether the error is too small for the noise of the reference.
-    #[must_use]
-    pub fn is_below_reference(&self) -> bool {
-        self.mean(|errors| errors.relative).value < 2.0 * self.errors[0].own
-    }
-
-    /// Samples that fit into a time, in seconds of a thread: at least 1.
-    #[must_use]
-    pub fn samples_in(&self, seconds: f64) -> u32 {
-        let samples = f64::from(self.samples) * seconds / self.seconds.max(1e-9);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-        let samples = samples.round().clamp(1.0, 1e6) as u32;
-        samples
-    }
-}
-
-/// Mean of values but for that of one place.
-fn average(values: impl Iterator<Item = (usize, f64)>, left_out: Option<usize>) -> f64 {
-    let (sum, count) = values
-        .filter(|(place, _)| Some(*place) != left_out)
-        .fold((0.0, 0.0), |(sum, count), (_, value)| (sum + value, count + 1.0));
-    sum / count
-}
-
-/// A statistic of `count` runs with its standard error, from the statistic without each of them.
-///
-/// The error of a mean is the usual one; that of a ratio of means counts how they vary together.
-#[must_use]
-pub fn jackknife(count: usize, statistic: impl Fn(Option<usize>) -> f64) -> Estimate {
-    let value = statistic(None);
-    let without: Vec<f64> = (0..count).map(|run| statistic(Some(run))).collect();
-    let n = count as f64;
-    let mean = without.iter().sum::<f64>() / n;
-    let squares: f64 = without.iter().map(|one| (one - mean).powi(2)).sum();
-    let standard_error = if count < 2 { f64::NAN } else { ((n - 1.0) / n * squares).sqrt() };
-    Estimate { value, standard_error }
-}
-
-/// Slope of `log y` against `log x`.
-#[must_use]
-pub fn slope(points: &[(f64, f64)]) -> f64 {
-    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
-    let n = logs.len() as f64;
-    let (x, y) = logs.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
-    let (xy, xx) = logs.iter().fold((0.0, 0.0), |(a, b), l| (a + (l.0 - x) * (l.1 - y), b + (l.0 - x).powi(2)));
-    xy / xx
 }
 
 #[cfg(test)]
@@ -205,35 +169,45 @@ mod tests {
     use super::*;
     use hairis_harness::sequence::Independent;
 
-    #[test]
-    fn the_jackknife_of_a_mean_is_its_standard_error() {
-        let values = [1.0, 2.0, 4.0, 7.0];
-        let estimate = jackknife(4, |kept| average(values.into_iter().enumerate(), kept));
-        assert_eq!(estimate.value, 3.5);
-        let expected = (values.iter().map(|v| (v - 3.5_f64).powi(2)).sum::<f64>() / 3.0 / 4.0).sqrt();
-        assert!((estimate.standard_error - expected).abs() < 1e-12);
-        assert!((slope(&[(1.0, 8.0), (2.0, 2.0), (4.0, 0.5)]) + 2.0).abs() < 1e-12);
+    /// Pictures about 1; a sum of twelve uniform numbers has variance 1.
+    pub(super) fn noisy(xi: &mut Independent, deviation: f64) -> Picture {
+        let mut picture = Picture::black([200, 100]);
+        for pixel in &mut picture.pixels {
+            *pixel = [1.0 + deviation * ((0..12).map(|_| xi.next_f64()).sum::<f64>() - 6.0); 3];
+        }
+        picture
     }
 
     #[test]
     fn noise_of_the_reference_is_subtracted() {
-        // Pictures of deviation 0.1 about 1, compared with a reference of two pictures of deviation 0.2.
+        // Pictures of deviation 0.1, compared with a reference of two pictures of deviation 0.2.
         let mut xi = Independent::new(1, 0);
-        let mut noisy = |deviation: f64| {
-            let mut picture = Picture::black([200, 100]);
-            for pixel in &mut picture.pixels {
-                // A sum of twelve numbers has variance 1.
-                *pixel = [1.0 + deviation * ((0..12).map(|_| xi.next_f64()).sum::<f64>() - 6.0); 3];
-            }
-            picture
-        };
-        let reference = Reference::new(&noisy(0.2), &noisy(0.2));
-        let errors = reference.errors(&noisy(0.1));
-        assert!((errors.square / 0.01 - 1.0).abs() < 0.15, "{errors:?}");
-        assert!((errors.own / 0.02 - 1.0).abs() < 0.1, "{errors:?}");
-        assert!(errors.trimmed < errors.relative);
-        let exact = Reference::new(&noisy(0.0), &noisy(0.0));
+        let reference = Reference::new(&noisy(&mut xi, 0.2), &noisy(&mut xi, 0.2));
+        let errors = reference.errors(&noisy(&mut xi, 0.1));
+        assert!((errors.value(Measure::Mse) / 0.01 - 1.0).abs() < 0.15, "{errors:?}");
+        assert!((errors.own(Measure::Mse) / 0.02 - 1.0).abs() < 0.1, "{errors:?}");
+        for [all, trimmed] in [[Measure::Mse, Measure::TrimmedMse], [Measure::RelMse, Measure::TrimmedRelMse]] {
+            assert!(errors.value(trimmed) < errors.value(all), "{errors:?}");
+        }
+        let exact = Reference::new(&noisy(&mut xi, 0.0), &noisy(&mut xi, 0.0));
         let brighter = Picture { size: [200, 100], pixels: vec![[1.1; 3]; 20_000] };
-        assert!(exact.signed(&brighter).iter().all(|error| (error - 0.1 / 1.01_f64.sqrt()).abs() < 1e-9));
+        let signed = exact.signed(&brighter);
+        assert!(exact.relative(&signed).iter().all(|error| (error - 0.1 / 1.01_f64.sqrt()).abs() < 1e-9));
+        let squares: Vec<f64> = signed.iter().map(|error| error * error).collect();
+        assert!(exact.relative_squares(&squares).iter().all(|square| (square - 0.01 / 1.01).abs() < 1e-9));
+    }
+
+    #[test]
+    fn trimmed_errors_leave_the_worst_pixels_out() {
+        let black = Picture { size: [200, 100], pixels: vec![[1.0; 3]; 20_000] };
+        let mut picture = black.clone();
+        picture.pixels.iter_mut().for_each(|pixel| *pixel = [1.1; 3]);
+        picture.pixels[..20].iter_mut().for_each(|pixel| *pixel = [101.0; 3]);
+        let errors = Reference::new(&black, &black).errors(&picture);
+        assert!((errors.value(Measure::TrimmedMse) - 0.01).abs() < 1e-9, "{errors:?}");
+        assert!(
+            (errors.value(Measure::Mse) - 10.01).abs() < 1e-3,
+            "20 of 20,000 pixels with a square of 10,000: {errors:?}"
+        );
     }
 }

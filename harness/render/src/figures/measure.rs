@@ -1,10 +1,11 @@
 //! Measurements on a scene.
 
 use super::store::Store;
-use crate::film::Crop;
+use crate::film::{Crop, Picture};
 use crate::hair::{Choice, Energy, MATCHED, PUBLISHED, UNIFORM, check_paths};
 use crate::layers::Beside;
 use crate::numbers::Sequence;
+use crate::part::build;
 use crate::picture;
 use crate::protocol::{Reference, Runs};
 use crate::scene::Scene;
@@ -12,6 +13,7 @@ use crate::scenes::{self, Name, Parts};
 use crate::transport::{Integrator, Mis, Settings, film};
 use hairis_harness::error::Error;
 use hairis_harness::light::Environment;
+use hairis_harness::machine::Machine;
 use std::path::Path;
 
 /// The model of the scenes.
@@ -19,7 +21,7 @@ const MODEL: &str = "gaussian";
 /// The sampler that references are made with, and that others are compared with.
 pub(super) const BEST: &str = MATCHED;
 /// Rays chosen from candidates, those of the hair drawn by [`BEST`].
-const RESAMPLED: &str = "resampled";
+pub(super) const RESAMPLED: &str = "resampled";
 /// The samplers, in the order of the page.
 pub(super) const SAMPLERS: [&str; 4] = [UNIFORM, PUBLISHED, RESAMPLED, BEST];
 
@@ -118,6 +120,12 @@ pub(super) struct Measured {
     pub(super) integrator: Integrator,
     /// The preset of the hair.
     pub(super) preset: &'static str,
+    /// What the pictures depend on, but for samplers and samples.
+    of_scene: String,
+    /// Seed of the samples.
+    seed: u64,
+    /// Samples of each half of the reference.
+    halves: u32,
     /// Share of the rays towards lights that reach them, with [`BEST`].
     pub(super) visible: f64,
     /// Picture that the others are compared with.
@@ -178,7 +186,8 @@ impl Measured {
             let equal_time = measure(&mut scene, sampler, runs[shown].samples_in(least))?;
             samplers.push(BySampler { name: sampler, runs, equal_time });
         }
-        Ok(Self { name, map: title, integrator, preset: defaults.preset, visible, reference, samplers })
+        let (map, preset) = (title, defaults.preset);
+        Ok(Self { name, map, integrator, preset, of_scene, seed, halves, visible, reference, samplers })
     }
 
     /// Name of the scene on the page.
@@ -192,22 +201,39 @@ impl Measured {
         shown(self.samplers[0].runs.len())
     }
 
-    /// Writes the pictures as files.
+    /// Writes the pictures as files: the reference, and each sampler's at equal samples and at equal time.
     pub(super) fn write_pictures(&self, out: &Path) -> Result<(), Error> {
         let exposure = picture::exposure(&self.reference.picture);
         let stem = self.title().replace(|c: char| !c.is_ascii_alphanumeric(), "-");
-        let file = |what: &str| out.join(format!("{stem}-{what}.exr"));
-        picture::write(&self.reference.picture, &Beside::default(), &file("reference"), exposure)?;
-        for sampler in &self.samplers {
-            let runs = &sampler.runs[self.shown()];
-            picture::write(
-                &runs.picture,
-                &Beside::default(),
-                &file(&format!("{}-{}", sampler.name, runs.samples)),
-                exposure,
-            )?;
+        let write = |what: &str, picture: &Picture, sampler: &str, samples: u32, seconds: f64| {
+            let path = out.join(format!("{stem}-{what}.exr"));
+            picture::write(picture, &self.beside(sampler, samples, seconds), &path, exposure)
+        };
+        let Reference { picture, seconds, .. } = &self.reference;
+        write("reference", picture, BEST, 2 * self.halves, *seconds)?;
+        for BySampler { name, runs, equal_time } in &self.samplers {
+            let equal_samples = &runs[self.shown()];
+            for (what, runs) in
+                [(equal_samples.samples.to_string(), equal_samples), ("equal-time".to_owned(), equal_time)]
+            {
+                write(&format!("{name}-{what}"), &runs.picture, name, runs.samples, runs.seconds)?;
+            }
         }
         Ok(())
+    }
+
+    /// Attributes of a picture's file. Samplers' times are those of the fastest of several pictures.
+    fn beside(&self, sampler: &str, samples: u32, seconds: f64) -> Beside {
+        let machine = Machine::current();
+        let attributes = vec![
+            ("run", format!("{} sampler={sampler} {}", self.of_scene, build())),
+            ("seed", self.seed.to_string()),
+            ("commit", machine.commit.to_owned()),
+            ("machine", machine.summary()),
+            ("samplesPerPixel", samples.to_string()),
+            ("secondsOfCpuTime", format!("{seconds:.3}")),
+        ];
+        Beside { attributes, ..Beside::default() }
     }
 }
 

@@ -1,7 +1,8 @@
 //! One head of hair by every model, side by side.
 
+use super::map::Map;
 use super::measure::Plan;
-use super::panel::{Column, panel};
+use super::panel::{Column, crops, panel};
 use super::store::Store;
 use crate::hair::{Choice, Energy, check_paths, default_sampler};
 use crate::picture::exposure;
@@ -57,8 +58,18 @@ impl Preset {
         Ok(Self { name, samples, models })
     }
 
+    /// The preset.
+    pub(super) fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Samples of each model's picture.
+    pub(super) fn samples(&self) -> u32 {
+        2 * self.samples
+    }
+
     /// Brightness and look of each model beside the first.
-    fn differences(&self) -> impl Iterator<Item = (&'static str, f64, f64)> {
+    pub(super) fn differences(&self) -> impl Iterator<Item = (&'static str, f64, f64)> {
         let first = self.models.first().map(|(_, first)| first);
         let rest = self.models.iter().skip(1);
         rest.filter_map(move |(name, other)| {
@@ -88,14 +99,24 @@ pub(super) fn section(presets: &[Preset]) -> std::io::Result<Section> {
             ]);
         }
         let Some((_, first)) = preset.models.first() else { continue };
-        let column = |(name, of)| column(preset, first, name, of);
-        let columns: Vec<Column<'_>> = preset.models.iter().map(|(name, of)| (*name, of)).map(column).collect();
-        let drawing = panel(&columns, exposure(&first.picture))?;
-        let caption = format!(
-            "Hair: {}. Below: the brightest part, 4 times as large; and the difference of each pixel from the published model, blue \
-             darker, red brighter (full colour at 100 %).",
-            preset.name
+        let mut columns = Vec::new();
+        let mut squares = vec![0.0; first.picture.pixels.len()];
+        for (name, of) in &preset.models {
+            let signed = first.relative(&first.signed(&of.picture));
+            squares.iter_mut().zip(&signed).for_each(|(sum, difference)| *sum += difference * difference);
+            let remark = format!("{}, {} samples", preset.name, preset.samples());
+            // Legends take the place of the first one's difference from itself.
+            let errors = if columns.is_empty() { Vec::new() } else { vec![signed] };
+            columns.push(Column { title: (*name).to_owned(), remark, picture: &of.picture, errors });
+        }
+        let map = Map::signed(
+            "relative difference from the published model",
+            1.0,
+            &["blue: darker, red: brighter", "white: none"],
         );
+        let places = crops(&first.picture, &squares);
+        let drawing = panel(&columns, &places, &[map], exposure(&first.picture))?;
+        let caption = format!("Hair: {}. B: where the models differ most.", preset.name);
         section = section.figures([Drawing::new("", drawing, caption)]);
     }
     table = table.note(
@@ -103,13 +124,4 @@ pub(super) fn section(presets: &[Preset]) -> std::io::Result<Section> {
          both pictures subtracted.",
     );
     Ok(section.tables([table]))
-}
-
-fn column<'a>(preset: &Preset, first: &Reference, name: &str, of: &'a Reference) -> Column<'a> {
-    Column {
-        title: name.to_owned(),
-        remark: format!("{}, {} samples", preset.name, 2 * preset.samples),
-        picture: &of.picture,
-        errors: Some(first.signed(&of.picture)),
-    }
 }

@@ -1,20 +1,22 @@
 //! The page.
 
-use super::measure::{BySampler, Measured, Plan};
+use super::map::{Map, scale};
+use super::measure::{Measured, Plan};
 use super::models::{self, Preset};
-use super::panel::{Column, panel};
-use super::verdict::{ERRORS, gain, headline, sentence, visible};
+use super::panel::{Column, crops, panel};
+use super::rates;
+use super::verdict::{self, BELOW, Gain, MEASURES, gain, headline, sentence, visible};
 use crate::args::Figures;
+use crate::film::Crop;
 use crate::numbers::Sequence;
 use crate::picture::exposure;
-use crate::protocol::{Runs, slope};
+use crate::protocol::{Measure, Runs};
 use crate::transport::Integrator;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::machine::Machine;
-use hairis_harness::plot::{Axis, Series, bars, lines};
+use hairis_harness::plot::{Axis, Bar, Series, bars, lines};
 use hairis_harness::report::{Drawing, Report, Section};
-use hairis_harness::stats::Estimate;
 use hairis_harness::table::{Table, number};
 use std::io::Write as _;
 use std::path::Path;
@@ -42,6 +44,8 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
         sections.push(models::section(presets)?);
     }
     let Plan { side, strands, runs, sequence, .. } = plan;
+    let mut verdicts = vec![["Where the sampler does not matter".to_owned(), verdict::scenes(all)]];
+    verdicts.extend(all.iter().map(|measured| [measured.title(), headline(measured)]));
     let method = Section::new("Method and machine")
         .paragraph(format!(
             "Pictures of {side} by {side} pixels, procedural hair of {strands} strands, published model, sampled by \
@@ -64,7 +68,7 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
     Ok(Report {
         title: "What samplers are worth on pictures of hair".to_owned(),
         subtitle: machine.summary(),
-        verdicts: all.iter().map(|measured| [measured.title(), headline(measured)]).collect(),
+        verdicts,
         summary: Some(overview(all)),
         sections,
         ..Report::default()
@@ -73,23 +77,33 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
 
 /// The error of each sampler in each scene.
 fn overview(all: &[Measured]) -> Drawing {
-    let (name, error) = ERRORS[2];
-    let axis = Axis::linear(format!("{name} × time, relative to matched (×)"));
+    let measure = Measure::TrimmedRelMse;
+    let axis = Axis::linear(format!("{} × time, relative to matched (×)", measure.name()));
     let scenes: Vec<String> = all.iter().map(Measured::title).collect();
+    let (mut series, mut left_out) = (Vec::new(), Vec::new());
     // All scenes have the same samplers; the last is the one that the others are relative to.
     let samplers = all.first().map_or(&[][..], |first| first.samplers.as_slice());
     let others = samplers.len().saturating_sub(1);
-    let of_sampler = |(place, sampler): (usize, &BySampler)| {
-        let gains = all.iter().map(|measured| gain(measured, &measured.samplers[place], error).into());
-        (sampler.name.to_owned(), gains.collect())
-    };
-    let series: Vec<_> = samplers.iter().take(others).enumerate().map(of_sampler).collect();
-    Drawing::new(
-        "",
-        bars("Samplers in each scene", axis, &scenes, &series, 1.0),
-        "Bars above 1: `matched` is ahead. Trimmed: without the worst 0.1 % of the pixels, where uniform \
-                               sampling has most of its squared error.",
-    )
+    for (place, sampler) in samplers.iter().take(others).enumerate() {
+        let mut gains: Vec<Bar> = Vec::new();
+        for measured in all {
+            let Gain { ratio, is_below } = gain(measured, &measured.samplers[place], measure);
+            if is_below {
+                left_out.push(format!("{} in {}", sampler.name, measured.title()));
+            }
+            gains.push(if is_below { f64::NAN.into() } else { ratio.into() });
+        }
+        series.push((sampler.name.to_owned(), gains));
+    }
+    let caption = "Bars above 1: `matched` is ahead. Trimmed: without the worst 0.1 % of the pixels, where uniform sampling has \
+                   most of its squared error.";
+    let chart = bars("Samplers in each scene", axis, &scenes, &series, 1.0);
+    Drawing::new("", chart, format!("{caption}{}", left_out_text(&left_out)))
+}
+
+/// Names the points that a chart leaves out.
+fn left_out_text(names: &[String]) -> String {
+    if names.is_empty() { String::new() } else { format!(" Left out, below the reference: {}.", names.join(", ")) }
 }
 
 /// How many times as large errors times time are, scene by scene.
@@ -98,7 +112,7 @@ fn summary(all: &[Measured]) -> Table {
         Table::new("Error × time, relative to matched").texts(["scene", "light"]).numbers(["visible", "samples"]);
     let Some(first) = all.first() else { return table };
     for sampler in first.samplers.iter().rev().skip(1).rev() {
-        table = table.numbers(ERRORS.map(|(error, _)| format!("{}, {error}", sampler.name)));
+        table = table.numbers(MEASURES.map(|measure| format!("{}, {}", sampler.name, measure.name())));
     }
     for measured in all {
         let shown = measured.shown();
@@ -106,7 +120,7 @@ fn summary(all: &[Measured]) -> Table {
         let visible = format!("{:.0} %", 100.0 * measured.visible);
         let mut row = vec![measured.title(), kind(measured).to_owned(), visible, best.runs[shown].samples.to_string()];
         for sampler in measured.samplers.iter().rev().skip(1).rev() {
-            row.extend(ERRORS.map(|(_, error)| ratio(gain(measured, sampler, error))));
+            row.extend(MEASURES.map(|measure| gain(measured, sampler, measure).text()));
         }
         table.push(row);
     }
@@ -122,7 +136,7 @@ fn numbers(sequence: Sequence) -> &'static str {
     }
 }
 
-fn kind(measured: &Measured) -> &'static str {
+pub(super) fn kind(measured: &Measured) -> &'static str {
     match measured.integrator {
         Integrator::Gather => "direct, at shading points",
         Integrator::Direct => "direct",
@@ -130,100 +144,137 @@ fn kind(measured: &Measured) -> &'static str {
     }
 }
 
-fn ratio(estimate: Estimate) -> String {
-    number::ratio_with_error(estimate.value, estimate.standard_error)
-}
-
-fn estimate(estimate: Estimate) -> String {
-    number::with_error(estimate.value, estimate.standard_error)
+/// A number from an error, marked if the error is below the reference.
+fn marked(runs: &Runs, measure: Measure, text: String) -> String {
+    if runs.is_below_reference(measure) { text + BELOW } else { text }
 }
 
 fn section(measured: &Measured) -> std::io::Result<Section> {
     let title = measured.title();
     let shown = measured.shown();
-    let equal_samples = panel_of(measured, |sampler| &sampler.runs[shown])?;
-    let equal_time = panel_of(measured, |sampler| &sampler.equal_time)?;
+    let at_samples: Vec<&Runs> = measured.samplers.iter().map(|sampler| &sampler.runs[shown]).collect();
+    let at_time: Vec<&Runs> = measured.samplers.iter().map(|sampler| &sampler.equal_time).collect();
+    let maps = Maps::new(measured, &[at_samples.as_slice(), &at_time].concat());
     let samples = measured.samplers[0].runs[shown].samples;
-    let caption = "Below: the brightest part, 4 times as large; and the relative error of each pixel, blue too dark, red too \
-                   bright, on one scale on this page (full colour at 100 %).";
-    Ok(Section::new(title.clone())
+    let caption = format!(
+        "Squares: the parts that are shown below. Bias and noise are over {} pictures, relative to the reference, and on one scale \
+         for all samplers and both figures of this scene.",
+        at_samples[0].errors.len()
+    );
+    let (equal_samples, equal_time) = (maps.panel(measured, &at_samples)?, maps.panel(measured, &at_time)?);
+    let (chart, left_out) = convergence(measured);
+    let convergence = format!("relMSE against samples; bars are one standard error.{}", left_out_text(&left_out));
+    Ok(Section::new(title)
         .paragraph(format!("Light: {}; hair: `{}`. {}", kind(measured), measured.preset, visible(measured)))
         .paragraph(sentence(measured))
         .figures([
             Drawing::new("", equal_samples, format!("Equal samples: {samples} per pixel. {caption}")),
             Drawing::new("", equal_time, format!("Equal time. {caption}")),
-            Drawing::new("", convergence(measured), "relMSE against samples; bars are one standard error."),
+            Drawing::new("", chart, convergence),
         ])
-        .tables([table(measured)]))
+        .tables([rates::table(measured), table(measured)]))
 }
 
-fn panel_of<'a>(measured: &'a Measured, pick: impl Fn(&'a BySampler) -> &'a Runs) -> std::io::Result<String> {
-    let reference = &measured.reference;
-    let mut columns = vec![Column {
-        title: "reference".to_owned(),
-        remark: String::new(),
-        picture: &reference.picture,
-        errors: None,
-    }];
-    for sampler in &measured.samplers {
-        let runs = pick(sampler);
-        let error = runs.mean(|errors| errors.relative).value;
-        columns.push(Column {
-            title: sampler.name.to_owned(),
-            remark: format!("{} samples, relMSE {}", runs.samples, number::plain(error, 3)),
-            picture: &runs.picture,
-            errors: Some(reference.signed(&runs.picture)),
-        });
+/// What the panels of a scene have in common.
+struct Maps {
+    crops: [Crop; 2],
+    maps: [Map; 2],
+}
+
+impl Maps {
+    /// Scales that cover the errors of all runs.
+    fn new(measured: &Measured, all: &[&Runs]) -> Self {
+        let reference = &measured.reference;
+        let bias: Vec<f64> = all.iter().flat_map(|runs| reference.relative(&runs.bias)).collect();
+        let squares: Vec<f64> = all.iter().flat_map(|runs| reference.relative_squares(&runs.squares)).collect();
+        let mut sums = vec![0.0; reference.picture.pixels.len()];
+        for runs in all {
+            sums.iter_mut().zip(&runs.squares).for_each(|(sum, square)| *sum += square);
+        }
+        let signed = Map::signed(
+            "bias: the mean of all pictures, minus the reference",
+            scale(bias.iter()),
+            &["blue: too dark, red: too bright;", "what noise leaves has both signs"],
+        );
+        let squared =
+            Map::squared("noise: mean squared error of all pictures", scale(squares.iter()), &["by its logarithm"]);
+        Self { crops: crops(&reference.picture, &sums), maps: [signed, squared] }
     }
-    panel(&columns, exposure(&reference.picture))
+
+    fn panel(&self, measured: &Measured, of: &[&Runs]) -> std::io::Result<String> {
+        let reference = &measured.reference;
+        let (title, remark) = ("reference".to_owned(), String::new());
+        let mut columns = vec![Column { title, remark, picture: &reference.picture, errors: Vec::new() }];
+        for (sampler, runs) in measured.samplers.iter().zip(of) {
+            let error = number::plain(runs.mean(Measure::RelMse).value, 3);
+            columns.push(Column {
+                title: sampler.name.to_owned(),
+                remark: marked(runs, Measure::RelMse, format!("{} samples, relMSE {error}", runs.samples)),
+                picture: &runs.picture,
+                errors: vec![reference.relative(&runs.bias), reference.relative_squares(&runs.squares)],
+            });
+        }
+        panel(&columns, &self.crops, &self.maps, exposure(&reference.picture))
+    }
 }
 
-fn convergence(measured: &Measured) -> String {
-    let point = |runs: &Runs| (f64::from(runs.samples), runs.mean(|errors| errors.relative));
-    let of_sampler = |sampler: &BySampler| Series::new(sampler.name, sampler.runs.iter().map(point));
-    let mut series: Vec<Series> = measured.samplers.iter().map(of_sampler).collect();
+/// The chart, and the points that are below the reference.
+fn convergence(measured: &Measured) -> (String, Vec<String>) {
+    let measure = Measure::RelMse;
+    let point = |runs: &Runs| (f64::from(runs.samples), runs.mean(measure));
+    let (mut series, mut left_out) = (Vec::new(), Vec::new());
+    for sampler in &measured.samplers {
+        let (below, clear): (Vec<&Runs>, Vec<&Runs>) =
+            sampler.runs.iter().partition(|runs| runs.is_below_reference(measure));
+        left_out.extend(below.iter().map(|runs| format!("{} at {} samples", sampler.name, runs.samples)));
+        series.push(Series::new(sampler.name, clear.into_iter().map(point)));
+    }
     if let Some([first, .., last]) = measured.samplers.last().map(|sampler| &sampler.runs[..]) {
         let [(n, error), (end, _)] = [first, last].map(point);
         series.push(Series::guide("slope −1", [(n, error.value), (end, error.value * n / end)]));
     }
-    lines("Convergence", Axis::log("samples per pixel"), Axis::log("relMSE"), &series)
+    (lines("Convergence", Axis::log("samples per pixel"), Axis::log(measure.name()), &series), left_out)
 }
 
 fn table(measured: &Measured) -> Table {
     let mut table = Table::new("Errors").texts(["sampler"]).numbers([
         "samples",
-        "relMSE",
-        "trimmed",
-        "RMSE",
         "time (s)",
+        "RMSE",
+        "trimmed RMSE",
+        "relMSE",
+        "trimmed relMSE",
+        "variance per sample",
         "MSE, relative to matched",
         "MSE × time, relative to matched",
         "relMSE × time, relative to matched",
-        "trimmed × time, relative to matched",
-        "slope",
+        "trimmed relMSE × time, relative to matched",
     ]);
     for sampler in &measured.samplers {
         for (place, runs) in sampler.runs.iter().enumerate() {
             let best = measured.samplers.last().map_or(runs, |best| &best.runs[place]);
-            let below = if runs.is_below_reference() { " (below the reference)" } else { "" };
-            let points: Vec<(f64, f64)> = sampler.runs[..=place]
-                .iter()
-                .map(|runs| (f64::from(runs.samples), runs.mean(|errors| errors.relative).value))
-                .collect();
-            let with_time = ERRORS.map(|(_, error)| ratio(runs.ratio(best, error, true)));
+            let root = |measure| {
+                let root = runs.mean(measure).value.max(0.0).sqrt();
+                marked(runs, measure, number::plain(root, 3))
+            };
+            let error = |measure| marked(runs, measure, number::estimate(&runs.mean(measure)));
             let numbers = [
                 sampler.name.to_owned(),
                 runs.samples.to_string(),
-                estimate(runs.mean(|errors| errors.relative)) + below,
-                estimate(runs.mean(|errors| errors.trimmed)),
-                number::plain(runs.mean(|errors| errors.square).value.max(0.0).sqrt(), 3),
                 number::plain(runs.seconds, 3),
-                ratio(runs.ratio(best, |errors| errors.square, false)),
+                root(Measure::Mse),
+                root(Measure::TrimmedMse),
+                error(Measure::RelMse),
+                error(Measure::TrimmedRelMse),
+                number::estimate(&runs.variance),
+                Gain::new(runs, best, Measure::Mse, false).text(),
             ];
-            let slope = if place == 0 { String::new() } else { number::plain(slope(&points), 3) };
-            table.push(numbers.into_iter().chain(with_time).chain([slope]));
+            let with_time = MEASURES.map(|measure| Gain::new(runs, best, measure, true).text());
+            table.push(numbers.into_iter().chain(with_time));
         }
     }
-    table
-        .note("Slope: of log relMSE against log samples, from the first count to this one; −1 for independent samples.")
+    table.note(
+        "Variance per sample: of a pixel's luminance over the pictures, mean over the pixels, times the samples. Below the reference: \
+         less than twice what noise of the reference adds.",
+    )
 }

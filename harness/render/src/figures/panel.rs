@@ -1,5 +1,6 @@
 //! Pictures side by side as one drawing that needs no other file.
 
+use super::map::Map;
 use crate::film::{Crop, Picture};
 use crate::picture::{png, preview};
 use base64::Engine as _;
@@ -16,48 +17,89 @@ const LABEL: u32 = 18;
 /// Magnification of crops.
 const ZOOM: u32 = 4;
 
-/// A column: a title, a remark, a picture, and the signed relative error of every pixel.
+/// A column: a title, a remark, a picture, and a number per pixel for each map; without any, legends take their places.
 pub(super) struct Column<'a> {
     pub(super) title: String,
     pub(super) remark: String,
     pub(super) picture: &'a Picture,
-    pub(super) errors: Option<Vec<f64>>,
+    pub(super) errors: Vec<Vec<f64>>,
 }
 
-/// Columns of picture, crop and error map, as SVG. The crop is the brightest part of the first picture.
-pub(super) fn panel(columns: &[Column], exposure: f64) -> io::Result<String> {
+/// Rows of pictures, of crops and of error maps, as SVG.
+pub(super) fn panel(columns: &[Column], crops: &[Crop; 2], maps: &[Map], exposure: f64) -> io::Result<String> {
     let Some(first) = columns.first() else { return Ok(String::new()) };
     let [width, height] = first.picture.size;
-    let place = brightest(first.picture);
     let shown = WIDTH * height / width.max(1);
     let total: u32 = columns.iter().map(|_| WIDTH + GAP).sum();
-    let rows = 3 * (shown + GAP) + 3 * LABEL;
+    let step = LABEL + shown + GAP;
+    let parts = ["the brightest part", "the part of the largest squared error"];
+    let parts = ["A", "B"].into_iter().zip(parts).map(|(name, part)| format!("{name}: {part}, {ZOOM} times as large"));
+    let names: Vec<String> =
+        [String::new()].into_iter().chain(parts).chain(maps.iter().map(|map| map.name.to_owned())).collect();
+    let rows = LABEL + step * u32::try_from(names.len()).unwrap_or(0);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{total}\" height=\"{rows}\" viewBox=\"0 0 {total} {rows}\" \
          role=\"img\" font-family=\"sans-serif\" font-size=\"12\">\n<title>Pictures side by side</title>\n\
          <rect width=\"{total}\" height=\"{rows}\" fill=\"#fff\"/>\n"
     );
+    for (row, name) in (0..).zip(&names) {
+        text(&mut svg, [0, LABEL + row * step + 12], "fill=\"#444\"", name);
+    }
+    let place = |row: u32| 2 * LABEL + row * step;
     for (x, column) in (0..).step_by((WIDTH + GAP) as usize).zip(columns) {
-        svg.push_str(&format!(
-            "<text x=\"{x}\" y=\"13\" font-weight=\"bold\">{}</text>\n<text x=\"{x}\" y=\"{}\" fill=\"#444\">{}</text>\n",
-            escape(&column.title),
-            LABEL + 12,
-            escape(&column.remark)
-        ));
+        text(&mut svg, [x, 13], "font-weight=\"bold\"", &column.title);
+        text(&mut svg, [x, LABEL + 12], "fill=\"#444\"", &column.remark);
         let image = preview(column.picture, exposure);
-        let crop = crop_imm(&image, place[0], place[1], width / ZOOM, height / ZOOM).to_image();
-        let mut images = vec![enlarge(&image), enlarge(&crop)];
-        images.extend(column.errors.as_ref().map(|errors| enlarge(&map(errors, column.picture.size))));
-        for (y, image) in (2 * LABEL..).step_by((shown + GAP) as usize).zip(&images) {
-            svg.push_str(&format!(
-                "<image x=\"{x}\" y=\"{y}\" width=\"{WIDTH}\" height=\"{shown}\" style=\"image-rendering:pixelated\" \
-                 href=\"data:image/png;base64,{}\"/>\n",
-                STANDARD.encode(png(image)?)
-            ));
+        let part = |crop: &Crop| crop_imm(&image, crop.x, crop.y, crop.width, crop.height).to_image();
+        let maps = maps.iter().zip(&column.errors).map(|(map, errors)| map.image(errors, column.picture.size));
+        let images = [image.clone()].into_iter().chain(crops.iter().map(part)).chain(maps);
+        for (row, image) in (0..).zip(images) {
+            let size = [WIDTH, shown];
+            picture(&mut svg, [x, place(row)], size, &enlarge(&image))?;
+        }
+    }
+    let scale = f64::from(WIDTH) / f64::from(width.max(1));
+    for (crop, name) in crops.iter().zip(["A", "B"]) {
+        let [x, y, w, h] = [crop.x, crop.y, crop.width, crop.height].map(|side| f64::from(side) * scale);
+        let y = y + f64::from(place(0));
+        svg.push_str(&format!(
+            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" fill=\"none\" stroke=\"#ffd500\" \
+             stroke-width=\"1.5\"/>\n<text x=\"{:.1}\" y=\"{:.1}\" fill=\"#ffd500\" font-weight=\"bold\">{name}</text>\n",
+            x + 4.0,
+            y + 13.0
+        ));
+    }
+    if first.errors.is_empty() {
+        for (row, map) in (3..).zip(maps) {
+            let y = place(row);
+            picture(&mut svg, [0, y], [WIDTH, 16], &map.legend(WIDTH))?;
+            for (share, anchor, label) in map.ticks() {
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a width")]
+                let x = (share * f64::from(WIDTH)) as u32;
+                text(&mut svg, [x, y + 30], &format!("text-anchor=\"{anchor}\""), &label);
+            }
+            for (line, remark) in (0..).zip(map.remarks) {
+                text(&mut svg, [0, y + 52 + 16 * line], "fill=\"#444\"", remark);
+            }
         }
     }
     svg.push_str("</svg>\n");
     Ok(svg)
+}
+
+fn text(svg: &mut String, [x, y]: [u32; 2], style: &str, text: &str) {
+    if !text.is_empty() {
+        svg.push_str(&format!("<text x=\"{x}\" y=\"{y}\" {style}>{}</text>\n", escape(text)));
+    }
+}
+
+fn picture(svg: &mut String, [x, y]: [u32; 2], [width, height]: [u32; 2], image: &RgbImage) -> io::Result<()> {
+    svg.push_str(&format!(
+        "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
+         style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>\n",
+        STANDARD.encode(png(image)?)
+    ));
+    Ok(())
 }
 
 /// At least as many pixels as are shown, each a square: viewers that smooth what they enlarge then keep the pixels.
@@ -66,28 +108,23 @@ fn enlarge(image: &RgbImage) -> RgbImage {
     resize(image, image.width() * by, image.height() * by, FilterType::Nearest)
 }
 
-/// Upper left corner of the brightest part of `1 / ZOOM` the size.
-fn brightest(picture: &Picture) -> [u32; 2] {
+/// Two parts of `1 / ZOOM` the size that do not overlap: the brightest, and that of the largest squared error.
+pub(super) fn crops(picture: &Picture, squares: &[f64]) -> [Crop; 2] {
     let [width, height] = picture.size.map(|side| (side / ZOOM).max(1));
-    let luminances = picture.luminances();
-    let sum = |[x0, y0]: [u32; 2]| -> f64 {
-        let part = Crop { x: x0, y: y0, width, height };
-        part.pixels().map(|[x, y]| luminances[(y * picture.size[0] + x) as usize]).sum()
-    };
     let starts = |side: u32, part: u32| (0..=side.saturating_sub(part)).step_by((part / 2).max(1) as usize);
-    let places = starts(picture.size[1], height).flat_map(|y| starts(picture.size[0], width).map(move |x| [x, y]));
-    places.max_by(|a, b| sum(*a).total_cmp(&sum(*b))).unwrap_or_default()
-}
-
-/// Signed errors as colours: blue for too dark, red for too bright, white for none; full at 1.
-fn map(errors: &[f64], [width, height]: [u32; 2]) -> RgbImage {
-    RgbImage::from_fn(width, height, |x, y| {
-        let error = errors[(y * width + x) as usize].clamp(-1.0, 1.0);
-        let full = if error < 0.0 { [0.02, 0.19, 0.38] } else { [0.40, 0.0, 0.12] };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a byte")]
-        let byte = |end: f64| (255.0 * (1.0 + (end - 1.0) * error.abs().sqrt())) as u8;
-        image::Rgb(full.map(byte))
-    })
+    let places: Vec<Crop> = starts(picture.size[1], height)
+        .flat_map(|y| starts(picture.size[0], width).map(move |x| Crop { x, y, width, height }))
+        .collect();
+    let most = |values: &[f64], taken: Option<Crop>| {
+        let sum = |part: &Crop| part.pixels().map(|at| values[Crop::whole(picture.size).index(at)]).sum::<f64>();
+        let apart = |part: &&Crop| {
+            taken.is_none_or(|taken| part.x.abs_diff(taken.x) >= width || part.y.abs_diff(taken.y) >= height)
+        };
+        let free = places.iter().filter(apart);
+        free.max_by(|a, b| sum(a).total_cmp(&sum(b))).copied().unwrap_or(Crop::whole([width, height]))
+    };
+    let brightest = most(&picture.luminances(), None);
+    [brightest, most(squares, Some(brightest))]
 }
 
 #[cfg(test)]
@@ -96,21 +133,29 @@ mod tests {
 
     #[test]
     fn a_panel_needs_no_other_file() {
-        let mut picture = Picture::black([16, 16]);
-        picture.pixels[16 * 9 + 13] = [1.0; 3];
-        let column = Column { title: "<b>".to_owned(), remark: String::new(), picture: &picture, errors: None };
-        let svg = panel(&[column], 1.0).expect("a drawing");
-        assert!(svg.contains("&lt;b&gt;") && svg.matches("data:image/png;base64,").count() == 2);
+        let picture = Picture::black([16, 16]);
+        let column = |errors| Column { title: "<b>".to_owned(), remark: String::new(), picture: &picture, errors };
+        let columns = [column(vec![]), column(vec![vec![0.5; 256], vec![0.25; 256]])];
+        let maps = [Map::signed("bias", 1.0, &["blue"]), Map::squared("noise", 1.0, &[])];
+        let svg = panel(&columns, &crops(&picture, &[0.0; 256]), &maps, 1.0).expect("a drawing");
+        // Picture and two crops of both, two legends, two maps.
+        assert!(svg.contains("&lt;b&gt;") && svg.matches("data:image/png;base64,").count() == 10, "{svg}");
         assert!(!svg.replace("http://www.w3.org/2000/svg", "").contains("http"));
-        let [x, y] = brightest(&picture);
-        assert!((x..x + 4).contains(&13) && (y..y + 4).contains(&9), "{x} {y}");
     }
 
     #[test]
-    fn errors_have_a_sign() {
-        let image = map(&[-1.0, 0.0, 1.0], [3, 1]);
-        assert_eq!(image.get_pixel(1, 0).0, [255; 3]);
-        assert!(image.get_pixel(0, 0).0[2] > image.get_pixel(0, 0).0[0]);
-        assert!(image.get_pixel(2, 0).0[0] > image.get_pixel(2, 0).0[2]);
+    fn crops_show_the_brightest_and_the_worst_part_apart() {
+        let mut picture = Picture::black([16, 16]);
+        picture.pixels[16 * 9 + 13] = [1.0; 3];
+        let holds = |crop: &Crop, pixel| crop.pixels().any(|at| at == pixel);
+        let mut squares = vec![0.0; 256];
+        squares[16 * 2 + 3] = 1.0;
+        let [brightest, worst] = crops(&picture, &squares);
+        assert!(holds(&brightest, [13, 9]) && holds(&worst, [3, 2]), "{brightest:?} {worst:?}");
+        // The largest error lies in the brightest part: the next largest is shown.
+        squares[16 * 9 + 13] = 2.0;
+        let [brightest, worst] = crops(&picture, &squares);
+        assert!(brightest.pixels().all(|pixel| !holds(&worst, pixel)), "{brightest:?} {worst:?}");
+        assert!(holds(&worst, [3, 2]), "{worst:?}");
     }
 }

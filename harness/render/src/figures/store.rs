@@ -8,13 +8,16 @@ use crate::transport::Settings;
 use core::cell::{Cell, RefCell};
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
+use hairis_harness::stats::Estimate;
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
+/// First line of a file, but for the number of the format.
+const FORMAT: &str = "hairis-render measurement ";
 /// First line of a file.
-const MAGIC: &str = "hairis-render measurement 1";
+const MAGIC: &str = "hairis-render measurement 2";
 
 /// A folder of finished measurements.
 ///
@@ -34,10 +37,14 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// If there can be no such folder.
+    /// If there can be no such folder, or if it holds measurements in another format.
     pub(super) fn new(out: &Path) -> Result<Self, Error> {
         let folder = out.join("unfinished");
-        fs::create_dir_all(&folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
+        let refuse = |source| Error::Output { path: folder.clone(), source };
+        fs::create_dir_all(&folder).map_err(refuse)?;
+        for entry in fs::read_dir(&folder).map_err(refuse)? {
+            check_format(&entry.map_err(refuse)?.path())?;
+        }
         Ok(Self { folder, build: build(), used: RefCell::default(), resumed: Cell::new(0) })
     }
 
@@ -79,7 +86,8 @@ impl Store {
             let of_half = format!("{of_scene} samples={samples} half={half} {settings:?}");
             self.get(&format!("{name}-reference-{half}"), &of_half, || Runs::half(scene, settings, samples, half))
         };
-        Ok(Reference::new(&half(0)?.picture, &half(1)?.picture))
+        let (a, b) = (half(0)?, half(1)?);
+        Ok(Reference::new(&a.picture, &b.picture).with_seconds(a.seconds + b.seconds))
     }
 
     /// Where the files are.
@@ -103,6 +111,18 @@ impl Store {
     }
 }
 
+/// Refuses a measurement in another format, by name.
+fn check_format(path: &Path) -> Result<(), Error> {
+    let mut first = String::new();
+    // What cannot be read or is no text is damaged, or no measurement.
+    let line = fs::File::open(path).map(|file| BufReader::new(file.take(80)).read_line(&mut first));
+    if line.is_ok() && first.starts_with(FORMAT) && first.trim_end() != MAGIC {
+        let (path, got) = (path.display(), first.trim_end());
+        return Err(Error::Usage(format!("{path}: expected \"{MAGIC}\", got \"{got}\": remove the file")));
+    }
+    Ok(())
+}
+
 /// Reads a file; `None`, and a remark, if it is damaged.
 fn read(path: &Path, key: &str) -> Option<Runs> {
     let problem = match fs::read(path) {
@@ -120,16 +140,15 @@ fn read(path: &Path, key: &str) -> Option<Runs> {
 
 /// Two lines of text, the numbers, and a digest of all that.
 fn bytes(measured: &Runs, key: &str) -> Vec<u8> {
-    let Runs { samples, seconds, errors, picture } = measured;
+    let Runs { samples, seconds, errors, variance, picture, bias, squares } = measured;
     let mut bytes = format!("{MAGIC}\n{key}\n").into_bytes();
     bytes.extend(samples.to_le_bytes());
-    bytes.extend(seconds.to_le_bytes());
     bytes.extend((errors.len() as u64).to_le_bytes());
-    for Errors { square, relative, trimmed, own } in errors {
-        bytes.extend([square, relative, trimmed, own].into_iter().flat_map(|error| error.to_le_bytes()));
-    }
     bytes.extend(picture.size.into_iter().flat_map(u32::to_le_bytes));
-    bytes.extend(picture.pixels.iter().flatten().flat_map(|channel| channel.to_le_bytes()));
+    let times = [*seconds, variance.value, variance.standard_error];
+    let errors = errors.iter().flat_map(|Errors { values, own }| values.iter().chain(own)).copied();
+    let pixels = picture.pixels.iter().flatten().chain(bias).chain(squares).copied();
+    bytes.extend(times.into_iter().chain(errors).chain(pixels).flat_map(f64::to_le_bytes));
     let check = digest(&bytes);
     bytes.extend(check.to_le_bytes());
     bytes
@@ -143,18 +162,32 @@ fn parse(bytes: &[u8], key: &str) -> Option<Runs> {
         return None;
     }
     let mut rest = Reader::new(rest);
-    let (samples, seconds) = (rest.number()?, rest.double()?);
-    let mut errors = Vec::new();
-    for _ in 0..u64::from_le_bytes(rest.bytes()?) {
-        let (square, relative) = (rest.double()?, rest.double()?);
-        errors.push(Errors { square, relative, trimmed: rest.double()?, own: rest.double()? });
-    }
+    let (samples, pictures) = (rest.number()?, u64::from_le_bytes(rest.bytes()?));
     let size = [rest.number()?, rest.number()?];
-    let mut pixels = Vec::new();
-    for _ in 0..Crop::whole(size).len() {
-        pixels.push([rest.double()?, rest.double()?, rest.double()?]);
+    let seconds = rest.double()?;
+    let variance = Estimate { value: rest.double()?, standard_error: rest.double()? };
+    let mut errors = Vec::new();
+    for _ in 0..pictures {
+        let mut measured = Errors::default();
+        for error in measured.values.iter_mut().chain(&mut measured.own) {
+            *error = rest.double()?;
+        }
+        errors.push(measured);
     }
-    rest.is_empty().then_some(Runs { samples, seconds, errors, picture: Picture { size, pixels } })
+    let count = Crop::whole(size).len();
+    let mut doubles = |count: usize| (0..count).map(|_| rest.double()).collect::<Option<Vec<f64>>>();
+    let pixels = doubles(3 * count)?.as_chunks::<3>().0.to_vec();
+    let mapped = if pictures == 0 { 0 } else { count };
+    let (bias, squares) = (doubles(mapped)?, doubles(mapped)?);
+    rest.is_empty().then_some(Runs {
+        samples,
+        seconds,
+        errors,
+        variance,
+        picture: Picture { size, pixels },
+        bias,
+        squares,
+    })
 }
 
 #[cfg(test)]
@@ -162,9 +195,17 @@ mod tests {
     use super::*;
 
     fn runs() -> Runs {
-        let errors = [1.0, 3.0].map(|x| Errors { square: x, relative: 0.5 * x, trimmed: 0.25 * x, own: 1e-9 });
+        let errors = [1.0, 3.0].map(|x| Errors { values: [x, 0.7 * x, 0.5 * x, 0.25 * x], own: [1e-9; 4] });
         let pixels = (0..12_u8).map(|k| [1.0, 0.1, 1.0 / 3.0].map(|x| x * f64::from(k))).collect();
-        Runs { samples: 16, seconds: 0.75, errors: errors.to_vec(), picture: Picture { size: [4, 3], pixels } }
+        Runs {
+            samples: 16,
+            seconds: 0.75,
+            errors: errors.to_vec(),
+            variance: Estimate { value: 2.0, standard_error: 0.25 },
+            picture: Picture { size: [4, 3], pixels },
+            bias: vec![-0.125; 12],
+            squares: vec![0.1; 12],
+        }
     }
 
     fn only_file(store: &Store) -> PathBuf {
@@ -195,6 +236,18 @@ mod tests {
         other.remove();
         again.remove();
         assert!(!folder.path().join("unfinished").exists(), "both have left nothing");
+    }
+
+    #[test]
+    fn other_formats_are_refused_by_name() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let store = Store::new(folder.path()).expect("a folder");
+        store.get("area", "seed=1", runs).expect("written");
+        Store::new(folder.path()).expect("the same format");
+        let path = store.folder.join("box-uniform-4-0123.part");
+        fs::write(&path, "hairis-render measurement 1\nscene=box\n\u{0}").expect("written");
+        let message = Store::new(folder.path()).expect_err("refused").to_string();
+        assert!(message.contains("box-uniform-4-0123.part") && message.contains("measurement 1\""), "{message}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
-//! The sentence that follows from the numbers of a scene.
+//! The sentences that follow from the numbers of a scene.
 
-use super::measure::{BySampler, Measured};
-use crate::protocol::Errors;
+use super::measure::{BySampler, Measured, RESAMPLED};
+use crate::protocol::{Measure, Runs};
 use core::cmp::Ordering;
 use hairis_harness::stats::Estimate;
 use hairis_harness::table::number::{ratio, ratio_with_error};
@@ -9,46 +9,81 @@ use hairis_harness::table::number::{ratio, ratio_with_error};
 /// A gain below this, or within two standard errors of 1, is none.
 const GAIN: f64 = 1.15;
 
-/// An error of pictures.
-pub(super) type Error = fn(&Errors) -> f64;
-
-/// The errors that are compared, by name: the last without the pixels of the largest.
-pub(super) const ERRORS: [(&str, Error); 3] = [
-    ("MSE", |errors| errors.square),
-    ("relMSE", |errors| errors.relative),
-    ("trimmed relMSE", |errors| errors.trimmed),
-];
-
+/// The errors that are compared.
+pub(super) const MEASURES: [Measure; 3] = [Measure::Mse, Measure::RelMse, Measure::TrimmedRelMse];
 /// The two that say most: what is seen of most pixels, and what the brightest errors add to it.
-const HEADLINE: [(&str, Error); 2] = [ERRORS[2], ERRORS[0]];
+const HEADLINE: [Measure; 2] = [Measure::TrimmedRelMse, Measure::Mse];
 
-/// How many times as large an error times time is with a sampler as with the last, at the count that pictures show.
-pub(super) fn gain(measured: &Measured, sampler: &BySampler, error: Error) -> Estimate {
-    let shown = measured.shown();
-    let best = measured.samplers.last().unwrap_or(sampler);
-    sampler.runs[shown].ratio(&best.runs[shown], error, true)
+/// A mark behind errors that cannot be told from noise of the reference.
+pub(super) const BELOW: &str = " (below the reference)";
+
+/// A ratio of errors, and whether one of them is below the reference.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gain {
+    pub(super) ratio: Estimate,
+    pub(super) is_below: bool,
 }
 
-/// Whether a ratio is above 1 by a gain, is below it by one, or is neither, by what is left of it within two standard errors.
-fn side(ratio: &Estimate) -> Ordering {
-    let Estimate { value, standard_error, .. } = *ratio;
-    if value > GAIN && value - 2.0 * standard_error > 1.0 {
-        Ordering::Greater
-    } else if value < 1.0 / GAIN && value + 2.0 * standard_error < 1.0 {
-        Ordering::Less
-    } else {
-        Ordering::Equal
+impl Gain {
+    /// How many times as large an error is in `runs` as in `best`.
+    pub(super) fn new(runs: &Runs, best: &Runs, measure: Measure, with_time: bool) -> Self {
+        let is_below = runs.is_below_reference(measure) || best.is_below_reference(measure);
+        Self { ratio: runs.ratio(best, measure, with_time), is_below }
     }
+
+    /// In words.
+    pub(super) fn text(&self) -> String {
+        let mark = if self.is_below { BELOW } else { "" };
+        ratio_with_error(self.ratio.value, self.ratio.standard_error) + mark
+    }
+
+    /// Whether it is above 1 by a gain, is below it by one, or is neither, by what is left of it within two standard errors.
+    fn side(&self) -> Ordering {
+        let Estimate { value, standard_error, .. } = self.ratio;
+        if self.is_below {
+            Ordering::Equal
+        } else if value > GAIN && value - 2.0 * standard_error > 1.0 {
+            Ordering::Greater
+        } else if value < 1.0 / GAIN && value + 2.0 * standard_error < 1.0 {
+            Ordering::Less
+        } else {
+            Ordering::Equal
+        }
+    }
+
+    /// Whether it lies between 1 / `GAIN` and `GAIN` with two standard errors to spare: there is no gain, rather than none found.
+    fn is_none(&self) -> bool {
+        let Estimate { value, standard_error, .. } = self.ratio;
+        let spare = 2.0 * standard_error;
+        !self.is_below && value + spare < GAIN && value - spare > 1.0 / GAIN
+    }
+}
+
+/// How many times as large an error times time is with a sampler as with the last, at the count that pictures show.
+pub(super) fn gain(measured: &Measured, sampler: &BySampler, measure: Measure) -> Gain {
+    let shown = measured.shown();
+    let best = measured.samplers.last().unwrap_or(sampler);
+    Gain::new(&sampler.runs[shown], &best.runs[shown], measure, true)
+}
+
+fn headline_gains(measured: &Measured, sampler: &BySampler) -> [Gain; 2] {
+    HEADLINE.map(|measure| gain(measured, sampler, measure))
+}
+
+/// Whether it matters how directions are drawn: with every sampler that draws them, both errors times time are those of the last.
+/// Rays chosen from candidates are another way to choose rays, and do not count here.
+fn matters(measured: &Measured) -> bool {
+    let drawn = measured.samplers.iter().rev().skip(1).filter(|one| one.name != RESAMPLED);
+    !drawn.flat_map(|one| headline_gains(measured, one)).all(|gain| gain.is_none())
 }
 
 /// Names the samplers that the last one beats, loses to and equals, by the two errors that say most.
 fn answer(measured: &Measured) -> String {
     use Ordering::{Equal, Greater, Less};
     let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
-    let sides = |one: &BySampler| HEADLINE.map(|(_, error)| side(&gain(measured, one, error)));
-    if others.iter().all(|one| sides(one) == [Equal; 2]) {
-        return "The sampler does not matter: samples of the light do the work.".to_owned();
-    }
+    let matters = matters(measured);
+    let others: Vec<&BySampler> = others.iter().filter(|one| matters || one.name == RESAMPLED).collect();
+    let sides = |one: &BySampler| headline_gains(measured, one).map(|gain| gain.side());
     let of = |before: &str, is: fn([Ordering; 2]) -> bool, behind: &str| {
         let names: Vec<&str> = others.iter().filter(|one| is(sides(one))).map(|one| one.name).collect();
         (!names.is_empty()).then(|| format!("{before} {}{behind}", listed(&names)))
@@ -56,10 +91,15 @@ fn answer(measured: &Measured) -> String {
     let parts = [
         of("beats", |sides| sides.contains(&Greater) && !sides.contains(&Less), ""),
         of("loses to", |sides| sides.contains(&Less) && !sides.contains(&Greater), ""),
-        of("equals", |sides| sides == [Equal; 2], ""),
+        of("does not differ measurably from", |sides| sides == [Equal; 2], ""),
         of("against", |sides| sides.contains(&Greater) && sides.contains(&Less), ", it depends on the error"),
     ];
-    format!("`{}` {}.", best.name, parts.into_iter().flatten().collect::<Vec<String>>().join("; "))
+    let compared = format!("`{}` {}.", best.name, parts.into_iter().flatten().collect::<Vec<String>>().join("; "));
+    if matters {
+        compared
+    } else {
+        format!("The sampler does not matter: uniform, published and matched directions do equally well. {compared}")
+    }
 }
 
 /// "a", "a and b", "a, b and c".
@@ -70,12 +110,33 @@ fn listed(names: &[&str]) -> String {
     }
 }
 
+/// The scenes where the sampler does not matter, and the rule.
+pub(super) fn scenes(all: &[Measured]) -> String {
+    let (yes, no): (Vec<&Measured>, Vec<&Measured>) = all.iter().partition(|measured| matters(measured));
+    let names = |scenes: &[&Measured]| {
+        let titles: Vec<String> = scenes.iter().map(|measured| format!("`{}`", measured.title())).collect();
+        listed(&titles.iter().map(String::as_str).collect::<Vec<&str>>())
+    };
+    let rule = format!(
+        "Rule: with uniform and published directions, error × time is within {:.0} % of that with matched ones, by MSE and by \
+         trimmed relMSE, with two standard errors to spare.",
+        100.0 * (GAIN - 1.0)
+    );
+    match (no.as_slice(), yes.as_slice()) {
+        ([], _) => format!("In none of these scenes. {rule}"),
+        (no, []) => format!("In all of these scenes: {}. {rule}", names(no)),
+        (no, yes) => format!("In {}. It matters in {}. {rule}", names(no), names(yes)),
+    }
+}
+
 /// The answer, with the two errors that say most in short.
 pub(super) fn headline(measured: &Measured) -> String {
     let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
     let one = |one: &BySampler| {
-        let [trimmed, square] = HEADLINE.map(|(_, error)| ratio(gain(measured, one, error).value));
-        format!("{} {trimmed} ({square})", one.name)
+        let gains = headline_gains(measured, one);
+        let [trimmed, square] = gains.map(|gain| ratio(gain.ratio.value));
+        let mark = if gains.iter().any(|gain| gain.is_below) { BELOW } else { "" };
+        format!("{} {trimmed} ({square}){mark}", one.name)
     };
     let list = others.iter().map(one).collect::<Vec<String>>().join(", ");
     format!("{} Trimmed relMSE × time (MSE × time), relative to `{}`: {list}.", answer(measured), best.name)
@@ -85,17 +146,14 @@ pub(super) fn headline(measured: &Measured) -> String {
 pub(super) fn sentence(measured: &Measured) -> String {
     let samples = measured.samplers[0].runs[measured.shown()].samples;
     let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
-    let list = |(name, error): &(&str, Error)| {
-        let one = |one: &BySampler| {
-            let gain = gain(measured, one, *error);
-            format!("{} with {}", ratio_with_error(gain.value, gain.standard_error), one.name)
-        };
-        format!("{name} {}", others.iter().map(one).collect::<Vec<String>>().join(", "))
+    let list = |measure: Measure| {
+        let one = |one: &BySampler| format!("{} with {}", gain(measured, one, measure).text(), one.name);
+        format!("{} {}", measure.name(), others.iter().map(one).collect::<Vec<String>>().join(", "))
     };
     let numbers = format!(
         "At {samples} samples, error × time relative to `{}`: {}. Trimmed: without the worst 0.1 % of the pixels.",
         best.name,
-        ERRORS.iter().map(list).collect::<Vec<String>>().join("; ")
+        MEASURES.map(list).join("; ")
     );
     format!("{} {numbers}", answer(measured))
 }
@@ -103,4 +161,22 @@ pub(super) fn sentence(measured: &Measured) -> String {
 /// How many rays see a light.
 pub(super) fn visible(measured: &Measured) -> String {
     format!("{:.0} % of the rays towards lights reach them.", 100.0 * measured.visible)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_gain_is_not_the_same_as_none_found() {
+        let gain = |value, standard_error, is_below| Gain { ratio: Estimate { value, standard_error }, is_below };
+        assert!(gain(1.07, 0.01, false).is_none() && gain(0.9, 0.01, false).is_none());
+        for unclear in [gain(1.07, 0.1, false), gain(3.0, 1.5, false), gain(1.07, 0.01, true), gain(0.9, 0.03, false)] {
+            assert!(!unclear.is_none() && unclear.side() == Ordering::Equal, "{unclear:?}");
+        }
+        assert_eq!(gain(1.3, 0.1, false).side(), Ordering::Greater);
+        assert_eq!(gain(0.5, 0.1, false).side(), Ordering::Less);
+        assert!(gain(1.3, 0.1, true).text().ends_with(BELOW));
+        assert!(!gain(1.0, f64::NAN, false).is_none(), "an error that is not known");
+    }
 }
