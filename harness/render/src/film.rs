@@ -133,6 +133,13 @@ impl Film {
         self
     }
 
+    /// Whether it covers the same part of the picture with the same tiles.
+    #[must_use]
+    pub fn has_tiles_of(&self, other: &Self) -> bool {
+        let places = |film: &Self| film.tiles.iter().map(|tile| tile.place).collect::<Vec<_>>();
+        self.crop == other.crop && places(self) == places(other)
+    }
+
     /// Samples that every pixel has.
     #[must_use]
     pub fn samples(&self) -> u32 {

@@ -68,20 +68,21 @@ impl Part {
         parse(&bytes).ok_or_else(|| refuse("not a part of a picture, or cut short".to_owned()))
     }
 
-    /// Reads a file of a given run.
+    /// Reads a file of the same run, with the same tiles, as `expected`.
     ///
     /// # Errors
     ///
-    /// As [`read`](Self::read), and if it belongs to another run.
-    pub fn read_of(path: &Path, run: &str) -> Result<Self, Error> {
+    /// As [`read`](Self::read), and if it belongs to another run or to another shard.
+    pub fn read_of(path: &Path, expected: &Self) -> Result<Self, Error> {
         let part = Self::read(path)?;
-        if part.run == run {
+        let other = if part.run != expected.run {
+            format!("another run ({})", difference(&part.run, &expected.run).unwrap_or_default())
+        } else if !part.film.has_tiles_of(&expected.film) {
+            "another shard".to_owned()
+        } else {
             return Ok(part);
-        }
-        let problem = format!(
-            "belongs to another run ({}): remove it, or choose another --out",
-            difference(&part.run, run).unwrap_or_default()
-        );
+        };
+        let problem = format!("belongs to {other}: remove it, or choose another --out");
         Err(Error::Part { path: path.to_owned(), problem })
     }
 
@@ -223,8 +224,13 @@ mod tests {
         let path = folder.path().join("a.part");
         part().write(&path).expect("written");
         assert_eq!(Part::read(&path).expect("read"), part());
-        let other = Part::read_of(&path, "scene=head seed=2").expect_err("another run").to_string();
+        let read_of = |expected: &Part| Part::read_of(&path, expected).map_err(|error| error.to_string());
+        assert_eq!(read_of(&part()), Ok(part()));
+        let other = read_of(&Part { run: "scene=head seed=2".to_owned(), ..part() }).expect_err("another run");
         assert!(other.contains("seed=1, expected seed=2"), "{other}");
+        let mut shard = part();
+        shard.film.tiles.remove(1);
+        assert!(read_of(&shard).expect_err("another shard").contains("another shard"));
         let bytes = fs::read(&path).expect("there");
         for length in (0..bytes.len()).step_by(97) {
             let cut = parse(&bytes[..length]);

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod bits;
+mod cli;
 mod furnace;
 mod groom;
 mod import;

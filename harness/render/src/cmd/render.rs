@@ -1,5 +1,7 @@
 //! `hairis-render render`.
 
+mod description;
+
 use crate::args::Render;
 use crate::film::Film;
 use crate::formats::{Follow, Import, import, write_mitsuba};
@@ -7,12 +9,13 @@ use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, MOST_MEAN_ALBEDO, default_sampler};
 use crate::layers::Beside;
 use crate::material::Hair;
-use crate::part::{self, Part, build, digest};
+use crate::part::{self, Part};
 use crate::picture;
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
 use crate::transport::{self, Integrator, Settings};
 use core::time::Duration;
+use description::describe;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::light::Environment;
@@ -58,7 +61,7 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     if let Some(path) = &flags.export {
         whole(path, |out| write_mitsuba(&strands, out))?;
     }
-    let run = describe(flags, &settings, env.as_ref())?;
+    let run = describe(flags, &settings, crop, env.as_ref())?;
     let parts = Parts { strands, imported: flags.import.is_some(), hair, env, size: flags.size.0, turn: flags.turn };
     let backdrop = flags.backdrop.map(glam::Vec3::splat);
     let scene = Scene { backdrop, ..scenes::build(flags.scene, parts)? };
@@ -68,11 +71,8 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         Some(shard) => out.with_extension(format!("{}-of-{}.part", shard.index(), shard.of())),
         None => part::path(&out),
     };
-    let film = match part_path.exists() {
-        true => Part::read_of(&part_path, &run)?.film,
-        false => Film::new(crop).shard(shard),
-    };
-    let mut part = Part { run, film };
+    let fresh = Part { run, film: Film::new(crop).shard(shard) };
+    let mut part = if part_path.exists() { Part::read_of(&part_path, &fresh)? } else { fresh };
     let samples = flags.spp.unwrap_or(defaults.samples);
     passes(flags, &scene, &settings, samples, &mut part, &part_path)?;
     if flags.profile {
@@ -99,32 +99,6 @@ pub(super) fn finish(film: &Film, beside: &Beside, out: &Path, exposure: Option<
     let line =
         format!("wrote {}: {samples} samples, mean {r:.5} {g:.5} {b:.5}, {seconds:.1} s of CPU time\n", out.display());
     io::stdout().write_all(line.as_bytes()).map_err(Error::Write)
-}
-
-/// Everything that the sums of a picture depend on, but the count of samples of paths.
-fn describe(flags: &Render, settings: &Settings, env: Option<&Environment>) -> Result<String, Error> {
-    let Render { scene, hair, model, sampler, energy, size, strands, import, scale, radius, up, turn, .. } = flags;
-    let Render { follow, spread, backdrop, .. } = flags;
-    let Settings { integrator, sequence, seed, mis, depth, multiple, rays, .. } = settings;
-    let file = match import {
-        Some(path) => digest(&fs::read(path).map_err(|source| unreadable(path, &source))?),
-        None => 0,
-    };
-    let gathered = if *integrator == Integrator::Gather { flags.spp.unwrap_or(0) } else { 0 };
-    Ok(format!(
-        "scene={scene:?} model={model} sampler={sampler:?} hair={hair:?} energy={energy:?} size={}x{} strands={strands} turn={turn} \
-         import={file:016x} scale={scale:?} radius={radius:?} up={up:?} follow={follow} spread={spread} backdrop={backdrop:?} env={:016x} integrator={integrator:?} gathered={gathered} xi={sequence:?} seed={seed} mis={mis:?} \
-         depth={depth} multiple={multiple} aa={rays} {}",
-        size.0[0],
-        size.0[1],
-        env.map_or(0, Environment::digest),
-        build(),
-    ))
-}
-
-/// A file that cannot be read.
-fn unreadable(path: &Path, source: &io::Error) -> Error {
-    Error::Usage(format!("{}: cannot read: {source}", path.display()))
 }
 
 /// The hair that the flags ask for.

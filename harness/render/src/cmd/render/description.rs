@@ -1,0 +1,80 @@
+//! The line that tells runs apart.
+
+use crate::args::{Render, Size};
+use crate::film::Crop;
+use crate::part::{build, digest};
+use crate::transport::{Integrator, Settings};
+use hairis_harness::error::Error;
+use hairis_harness::light::Environment;
+use std::fs;
+
+/// Everything that the sums of a picture depend on, but for the count of samples and the shard: parts of equal lines may be
+/// continued and joined.
+///
+/// # Errors
+///
+/// If the file of hair cannot be read.
+pub(super) fn describe(
+    flags: &Render,
+    settings: &Settings,
+    crop: Crop,
+    env: Option<&Environment>,
+) -> Result<String, Error> {
+    // Without `..`: whoever adds a flag decides whether it shapes the sums.
+    let Render {
+        scene,
+        hair,
+        model,
+        sampler,
+        energy,
+        size: Size([columns, rows]),
+        strands,
+        import,
+        scale,
+        radius,
+        up,
+        follow,
+        spread,
+        turn,
+        backdrop,
+        // In the settings, the crop and the environment.
+        integrator: _,
+        xi: _,
+        mis: _,
+        depth: _,
+        no_multiple: _,
+        aa: _,
+        seed: _,
+        crop: _,
+        env: _,
+        // How much is rendered, what else is done, and where files lie.
+        spp: _,
+        time: _,
+        shard: _,
+        profile: _,
+        exposure: _,
+        export: _,
+        out: _,
+    } = flags;
+    let Settings { integrator, sequence, seed, mis, depth, roulette, multiple, rays, profile: _ } = settings;
+    let Crop { x, y, width, height } = crop;
+    let file = match import {
+        Some(path) => {
+            let unreadable = |source| Error::Usage(format!("{}: cannot read: {source}", path.display()));
+            digest(&fs::read(path).map_err(unreadable)?)
+        }
+        None => 0,
+    };
+    let env = env.map_or(0, Environment::digest);
+    let gathered = if *integrator == Integrator::Gather { flags.spp.unwrap_or(0) } else { 0 };
+    let words = [
+        format!("scene={scene:?} model={model} sampler={sampler:?} hair={hair:?} energy={energy:?}"),
+        format!("size={columns}x{rows} crop={x},{y},{width},{height} turn={turn} backdrop={backdrop:?} env={env:016x}"),
+        format!("strands={strands} import={file:016x} scale={scale:?} radius={radius:?} up={up:?}"),
+        format!("follow={follow} spread={spread}"),
+        format!("integrator={integrator:?} gathered={gathered} xi={sequence:?} seed={seed} mis={mis:?}"),
+        format!("depth={depth} roulette={roulette} multiple={multiple} aa={rays}"),
+        build(),
+    ];
+    Ok(words.join(" "))
+}
