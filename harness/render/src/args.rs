@@ -237,6 +237,10 @@ impl Render {
         if let Some(time) = self.time.filter(|time| !(*time > 0.0 && time.is_finite())) {
             return refuse("--time", "a number of seconds above 0", &time);
         }
+        if self.time.is_some() && self.shard.is_some() {
+            let problem = "--time must not be given with --shard, whose parts need one count of samples: use --spp";
+            return Err(Error::Usage(problem.to_owned()));
+        }
         if let Some(exposure) = self.exposure.filter(|exposure| !(*exposure > 0.0 && exposure.is_finite())) {
             return refuse("--exposure", "a number above 0", &exposure);
         }

@@ -33,6 +33,14 @@ pub enum Integrator {
     Path,
 }
 
+impl Integrator {
+    /// Samples of a pass over a picture that grows. With [`Gather`](Self::Gather), each pass finds its shading points again.
+    #[must_use]
+    pub fn pass(self) -> u32 {
+        if self == Self::Gather { resampled::POOL } else { PASS }
+    }
+}
+
 /// Which samples count where light and BSDF samples both find a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Mis {
@@ -122,11 +130,10 @@ const PASS: u32 = 4;
 
 /// Adds samples to a film until every pixel has `samples`. `progress` is called with the share that is done.
 ///
-/// The film has the same bits for any number of threads, and whether samples are added at once or bit by bit; but a film
-/// of [`Integrator::Gather`] is made at once.
+/// The film has the same bits for any number of threads, and whether samples are added at once or bit by bit.
 pub fn render(scene: &Scene, settings: &Settings, film: &mut Film, samples: u32, progress: &(dyn Fn(f64) + Sync)) {
     let total = film.tiles.len().max(1);
-    let tables = Tables::new(&scene.sky, settings.seed, resampled::length(settings.integrator, samples));
+    let tables = Tables::new(&scene.sky, settings.seed, resampled::length(settings.integrator));
     let done = AtomicUsize::new(0);
     let whole = Mutex::new(Profile::default());
     film.tiles.par_iter_mut().for_each(|tile| {

@@ -28,8 +28,6 @@ use std::time::Instant;
 
 /// Time between two previews.
 const PREVIEW: Duration = Duration::from_secs(10);
-/// Samples of a pass over all tiles.
-const PASS: u32 = 4;
 
 /// Renders a scene.
 ///
@@ -173,17 +171,13 @@ fn passes(
 ) -> Result<(), Error> {
     let bar = share_bar("{msg:>12} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
     let show = |share: f64| show_share(&bar, share);
-    if settings.integrator == Integrator::Gather {
-        transport::render(scene, settings, &mut part.film, samples, &show);
-        bar.finish_and_clear();
-        return Ok(());
-    }
+    let pass = settings.integrator.pass();
     let start = Instant::now();
     let mut written = start;
     let mut done = part.film.samples();
     let is_over = |done: u32| flags.time.map_or(done >= samples, |time| start.elapsed().as_secs_f64() >= time);
     while !is_over(done) {
-        let next = if flags.time.is_some() { done + PASS } else { (done + PASS).min(samples) };
+        let next = if flags.time.is_some() { done + pass } else { (done + pass).min(samples) };
         let share = |part: f64| match flags.time {
             Some(time) => (start.elapsed().as_secs_f64() / time).min(1.0),
             None => (f64::from(done) + part * f64::from(next - done)) / f64::from(samples),

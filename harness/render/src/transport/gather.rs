@@ -2,10 +2,10 @@
 
 use super::path::leave;
 use super::profile::{Phase, lap};
-use super::resampled::{Candidates, Place, Streams};
+use super::resampled::{Candidates, PER_TABLE, POOL, Place, Streams};
 use super::{Mis, Settings, key, sees};
-use crate::film::Tile;
-use crate::lights::{Table, Tables};
+use crate::film::{Sums, Tile};
+use crate::lights::Tables;
 use crate::material::Prepared;
 use crate::numbers::{Numbers, Sequence};
 use crate::scene::{Met, Scene};
@@ -23,41 +23,70 @@ struct Point {
     origin: Vec3,
     frame: FiberFrame8,
     prepared: Prepared,
+    /// Key of its uniform numbers.
+    key: u64,
 }
 
-/// Estimates the direct light of hair at `samples` light and as many BSDF samples per camera ray. What is no hair is
-/// black, but for lights that the camera sees.
+/// Samples that are drawn side by side: whole pools of candidates.
+const STEP: usize = POOL as usize;
+
+/// Adds estimates of the direct light of hair until there are `samples` of each pixel. A sample is the mean over the camera
+/// rays of one light and one BSDF sample each, or of one resampled ray each. Pixels without hair are black, except for lights
+/// that the camera sees.
+///
+/// The last pool of resampled rays is smaller unless the count is a multiple of [`POOL`]. A tile that ends in such a pool is
+/// made again from the first sample.
 pub(super) fn tile(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile: &mut Tile, samples: u32) {
+    if tile.samples >= samples {
+        return;
+    }
+    let resampled = settings.mis == Mis::Resampled;
+    if resampled && !tile.samples.is_multiple_of(POOL) {
+        tile.sums.fill(Sums::default());
+        tile.samples = 0;
+    }
     let mut candidates = Candidates::default();
+    let mut points = Vec::new();
     for (pixel, sums) in tile.place.pixels().zip(&mut tile.sums) {
-        *sums = Default::default();
-        for ray in 0..settings.rays {
-            let [x, y, ..] = Numbers::new(Sequence::Sobol, CAMERA_SEED, key(pixel), ray).four();
-            let ray_of = scene.camera.ray(pixel[0] as f32 + x, pixel[1] as f32 + y);
-            lap(Phase::Numbers);
-            let met = scene.closest(&ray_of);
-            lap(Phase::Rays);
-            match met {
-                Met::Hair(hit) => {
-                    let point = Point::new(scene, &ray_of, hit);
-                    let first = ray * samples;
-                    sums.add(if settings.mis == Mis::Resampled {
-                        let mut numbers = Numbers::new(settings.sequence, settings.seed, key(pixel), first);
-                        point.resampled(scene, tables.of_pass(0), &Streams::new(&mut numbers), samples, &mut candidates)
-                    } else {
-                        point.light(scene, settings, key(pixel), first..first + samples) / samples as f32
-                    });
+        let beside = points_of(scene, settings, pixel, &mut points);
+        for first in (tile.samples..samples).step_by(STEP) {
+            let mut radiances = [beside; STEP];
+            let radiances = &mut radiances[..(samples - first).min(POOL) as usize];
+            for point in &points {
+                if resampled {
+                    point.resampled(scene, tables, settings, first, &mut candidates, radiances);
+                } else {
+                    point.light(scene, settings, first, radiances);
                 }
-                met => sums.add(scene.see_from_camera(&ray_of, &met).unwrap_or_default()),
             }
+            radiances.iter().for_each(|radiance| sums.add(*radiance / settings.rays as f32));
             lap(Phase::Rest);
         }
     }
-    tile.samples = settings.rays;
+    tile.samples = samples;
+}
+
+/// Finds where the camera rays of a pixel meet hair. Returns the sum of what the others see.
+fn points_of(scene: &Scene, settings: &Settings, pixel: [u32; 2], points: &mut Vec<Point>) -> Vec3 {
+    points.clear();
+    let mut beside = Vec3::ZERO;
+    for ray in 0..settings.rays {
+        let [x, y, ..] = Numbers::new(Sequence::Sobol, CAMERA_SEED, key(pixel), ray).four();
+        let camera_ray = scene.camera.ray(pixel[0] as f32 + x, pixel[1] as f32 + y);
+        lap(Phase::Numbers);
+        let met = scene.closest(&camera_ray);
+        lap(Phase::Rays);
+        match met {
+            // Pixels have 14 bits a side, and rays 12: keys differ.
+            Met::Hair(hit) => points.push(Point::new(scene, &camera_ray, hit, key(pixel) | u64::from(ray) << 16)),
+            met => beside += scene.see_from_camera(&camera_ray, &met).unwrap_or_default(),
+        }
+    }
+    beside
 }
 
 impl Point {
-    fn new(scene: &Scene, ray: &Ray, hit: tree::Hit) -> Self {
+    fn new(scene: &Scene, ray: &Ray, hit: tree::Hit, key: u64) -> Self {
         let wo = -ray.direction;
         let frame = FiberFrame::from_tangent_normal(scene.strands.tangent(hit.segment, hit.s), wo);
         let origin = scene.strands.position(hit.segment, hit.s);
@@ -65,19 +94,16 @@ impl Point {
         lap(Phase::Frames);
         let prepared = scene.hair.prepare(local);
         lap(Phase::Kernels);
-        Self { hit, origin, frame: eight, prepared }
+        Self { hit, origin, frame: eight, prepared, key }
     }
 
-    /// Sum over samples of the radiance towards the camera.
-    fn light(&self, scene: &Scene, settings: &Settings, pixel: u64, samples: core::ops::Range<u32>) -> Vec3 {
-        let mut sum = Vec3::ZERO;
-        let mut next = samples.start;
-        while next < samples.end {
-            let count = (samples.end - next).min(8) as usize;
+    /// Adds the radiance towards the camera of each sample from `first` on.
+    fn light(&self, scene: &Scene, settings: &Settings, first: u32, radiances: &mut [Vec3]) {
+        for (radiances, first) in radiances.chunks_mut(8).zip((first..).step_by(8)) {
             let mut xi_light = [[0.0; 8]; 3];
             let mut xi = [[0.0; 8]; 3];
-            for (lane, sample) in (next..samples.end).take(8).enumerate() {
-                let mut numbers = Numbers::new(settings.sequence, settings.seed, pixel, sample);
+            for (lane, sample) in (first..).take(radiances.len()).enumerate() {
+                let mut numbers = Numbers::new(settings.sequence, settings.seed, self.key, sample);
                 let [x, y, choice, _] = numbers.four();
                 (xi_light[0][lane], xi_light[1][lane], xi_light[2][lane]) = (x, y, choice);
                 let [lobe, theta, phi, _] = numbers.four();
@@ -85,73 +111,70 @@ impl Point {
             }
             lap(Phase::Numbers);
             if settings.mis != Mis::Bsdf {
-                sum += self.by_light(scene, settings, &xi_light, count);
+                self.by_light(scene, settings, &xi_light, radiances);
             }
             if settings.mis != Mis::Light {
-                sum += self.by_bsdf(scene, settings, &xi, count);
+                self.by_bsdf(scene, settings, &xi, radiances);
             }
-            next += 8.min(samples.end - next);
         }
-        sum
     }
 
-    /// Light of as many rays as samples, chosen from candidates.
+    /// Adds the light of a pool of rays, chosen from candidates. Each ray's light times their count is a sample.
     fn resampled(
         &self,
         scene: &Scene,
-        table: Option<&Table>,
-        streams: &Streams,
-        rays: u32,
+        tables: &Tables<'_>,
+        settings: &Settings,
+        first: u32,
         candidates: &mut Candidates,
-    ) -> Vec3 {
+        radiances: &mut [Vec3],
+    ) {
         let Self { origin, frame, prepared, .. } = self;
-        let mut sum = Vec3::ZERO;
-        candidates.pools(
-            &Place { scene, table, origin: *origin, frame, prepared },
-            streams,
-            rays,
-            |candidate, radiance| {
-                let ray = leave(scene, &self.hit, *origin, candidate.direction, candidate.cos);
-                if sees(scene, &Ray { t_max: candidate.distance, ..ray }) {
-                    sum += radiance;
-                }
-                lap(Phase::Rays);
-            },
-        );
-        sum
+        let streams = Streams::new(&mut Numbers::new(settings.sequence, settings.seed, self.key, 0));
+        let table = tables.of_pass(first / PER_TABLE);
+        let count = radiances.len() as f32;
+        let place = Place { scene, table, origin: *origin, frame, prepared };
+        let mut radiances = radiances.iter_mut();
+        candidates.pool(&place, &streams, first / POOL, radiances.len(), |candidate, radiance| {
+            let ray = leave(scene, &self.hit, *origin, candidate.direction, candidate.cos);
+            let sample = radiances.next();
+            if sees(scene, &Ray { t_max: candidate.distance, ..ray })
+                && let Some(sample) = sample
+            {
+                *sample += count * radiance;
+            }
+            lap(Phase::Rays);
+        });
     }
 
-    fn by_light(&self, scene: &Scene, settings: &Settings, xi: &[[f32; 8]; 3], count: usize) -> Vec3 {
+    fn by_light(&self, scene: &Scene, settings: &Settings, xi: &[[f32; 8]; 3], radiances: &mut [Vec3]) {
         let lights = scene.sample_lights8(|_| self.origin, xi, None);
         lap(Phase::Light);
         let wi = self.frame.to_local(&lights.direction);
         lap(Phase::Frames);
         let (eval, cos) = (self.prepared.eval8(&wi), cosine(&wi).to_array());
         lap(Phase::Kernels);
-        let mut sum = Vec3::ZERO;
-        for (lane, cos) in cos.into_iter().enumerate().take(count) {
+        for (sum, (lane, cos)) in radiances.iter_mut().zip(cos.into_iter().enumerate()) {
             let Some(light) = lights.lane(lane, 1.0) else { continue };
             let eval = eval.lane(lane);
             let weight = settings.mis.of_light(light.pdf, eval.pdf) * cos / light.pdf;
             let radiance = light.radiance * Vec3::from_array(eval.value) * weight;
             let ray = leave(scene, &self.hit, self.origin, light.direction, cos);
             if radiance.max_element() > 0.0 && sees(scene, &Ray { t_max: light.distance, ..ray }) {
-                sum += radiance;
+                *sum += radiance;
             }
         }
         lap(Phase::Rays);
-        sum
     }
 
-    fn by_bsdf(&self, scene: &Scene, settings: &Settings, xi: &[[f32; 8]; 3], count: usize) -> Vec3 {
+    fn by_bsdf(&self, scene: &Scene, settings: &Settings, xi: &[[f32; 8]; 3], radiances: &mut [Vec3]) {
         let sample = self.prepared.sample8(xi);
         lap(Phase::Kernels);
         let (cos, directions) = (cosine(&sample.wi).to_array(), self.frame.to_world(&sample.wi));
         lap(Phase::Frames);
         let lights = scene.lights_along(self.origin, &directions);
         lap(Phase::Light);
-        let mut sum = Vec3::ZERO;
-        for (lane, cos) in cos.into_iter().enumerate().take(count) {
+        for (sum, (lane, cos)) in radiances.iter_mut().zip(cos.into_iter().enumerate()) {
             let pdf = sample.pdf.as_array()[lane];
             if pdf <= 0.0 {
                 continue;
@@ -162,10 +185,9 @@ impl Point {
             let radiance = light.radiance * of_bsdf * weight;
             let ray = leave(scene, &self.hit, self.origin, light.direction, cos);
             if radiance.max_element() > 0.0 && sees(scene, &Ray { t_max: light.distance, ..ray }) {
-                sum += radiance;
+                *sum += radiance;
             }
         }
         lap(Phase::Rays);
-        sum
     }
 }

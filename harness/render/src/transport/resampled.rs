@@ -37,15 +37,17 @@ pub(super) struct Candidate {
 }
 
 /// Rays of a pool, at most: a shading point of more rays has several pools.
-const POOL: u32 = 32;
+pub(super) const POOL: u32 = 32;
+/// Rays of a shading point that read one table of the sky.
+pub(super) const PER_TABLE: u32 = 16 * POOL;
 /// Candidates of a pool, at most.
 const MOST: usize = 2 * (PER_RAY * POOL) as usize;
 
-/// Directions of a table of the sky: many times as many as a shading point reads, of which each sees some. 0.5 MB, and 128 kB for a pass
-/// of paths.
-pub(super) fn length(integrator: Integrator, samples: u32) -> usize {
+/// Directions of a table of the sky: ten times as many as the rays of a shading point read, of which each point sees some. 0.5 MB,
+/// and 128 kB for a pass of paths.
+pub(super) fn length(integrator: Integrator) -> usize {
     match integrator {
-        Integrator::Gather => (8 * PER_RAY as usize * samples as usize).max(1 << 14),
+        Integrator::Gather => 1 << 14,
         Integrator::Direct | Integrator::Path => 1 << 12,
     }
 }
@@ -85,22 +87,22 @@ pub(super) struct Place<'a> {
 }
 
 impl Candidates {
-    /// Calls `trace` with the directions that are worth one of `rays` rays, and the radiance that each brings unless it is blocked.
-    pub(super) fn pools(
+    /// Calls `trace` with the directions that are worth one of the `rays` rays of a pool, and the radiance that each brings unless it
+    /// is blocked. Their sum is an estimate of the light of the point.
+    pub(super) fn pool(
         &mut self,
         place: &Place<'_>,
         streams: &Streams,
-        rays: u32,
+        pool: u32,
+        rays: usize,
         mut trace: impl FnMut(Candidate, Vec3),
     ) {
-        for pool in 0..rays.div_ceil(POOL) {
-            let of_pool = POOL.min(rays - pool * POOL);
-            self.draw(place, streams, pool * POOL * PER_RAY, of_pool * PER_RAY);
-            let share = of_pool as f32 / rays as f32;
-            lap(Phase::Rest);
-            for (candidate, radiance) in self.choose(of_pool, streams.choice.at(pool)[0]) {
-                trace(candidate, share * radiance);
-            }
+        #[expect(clippy::cast_possible_truncation, reason = "at most POOL")]
+        let rays = rays as u32;
+        self.draw(place, streams, pool * POOL * PER_RAY, rays * PER_RAY);
+        lap(Phase::Rest);
+        for (candidate, radiance) in self.choose(rays, streams.choice.at(pool)[0]) {
+            trace(candidate, radiance);
         }
     }
 

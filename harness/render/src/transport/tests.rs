@@ -34,7 +34,7 @@ fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f
     let mut moments = Moments::new();
     for seed in 0..200 {
         let settings = Settings { integrator, mis, seed, ..Settings::default() };
-        let length = resampled::length(integrator, samples);
+        let length = resampled::length(integrator);
         let mut tables = Tables::new(&scene.sky, seed, length);
         if factor != 1.0 {
             let mut table = Table::draw(&scene.sky, seed, length);

@@ -3,7 +3,7 @@
 use crate::args::{Render, Size};
 use crate::film::Crop;
 use crate::part::{build, digest};
-use crate::transport::{Integrator, Settings};
+use crate::transport::Settings;
 use hairis_harness::error::Error;
 use hairis_harness::light::Environment;
 use std::fs;
@@ -66,13 +66,12 @@ pub(super) fn describe(
         None => 0,
     };
     let env = env.map_or(0, Environment::digest);
-    let gathered = if *integrator == Integrator::Gather { flags.spp.unwrap_or(0) } else { 0 };
     let words = [
         format!("scene={scene:?} model={model} sampler={sampler:?} hair={hair:?} energy={energy:?}"),
         format!("size={columns}x{rows} crop={x},{y},{width},{height} turn={turn} backdrop={backdrop:?} env={env:016x}"),
         format!("strands={strands} import={file:016x} scale={scale:?} radius={radius:?} up={up:?}"),
         format!("follow={follow} spread={spread}"),
-        format!("integrator={integrator:?} gathered={gathered} xi={sequence:?} seed={seed} mis={mis:?}"),
+        format!("integrator={integrator:?} xi={sequence:?} seed={seed} mis={mis:?}"),
         format!("depth={depth} roulette={roulette} multiple={multiple} aa={rays}"),
         build(),
     ];
