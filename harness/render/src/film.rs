@@ -64,6 +64,16 @@ impl Crop {
             })
         })
     }
+
+    /// Whether it is one of the [`tiles`](Self::tiles) of `whole`.
+    #[must_use]
+    pub fn is_tile_of(self, whole: Self) -> bool {
+        let one_axis = |from: u32, count: u32, start: u32, all: u32| {
+            let Some(offset) = from.checked_sub(start) else { return false };
+            offset < all && offset.is_multiple_of(TILE) && count == TILE.min(all - offset)
+        };
+        one_axis(self.x, self.width, whole.x, whole.width) && one_axis(self.y, self.height, whole.y, whole.height)
+    }
 }
 
 /// Sums over the samples of a pixel.
@@ -222,6 +232,9 @@ mod tests {
         let crop = Crop { x: 5, y: 3, width: 70, height: 33 };
         let film = Film::new(crop);
         assert_eq!(film.tiles.len(), 6);
+        let is_tile = |x, y, width, height| Crop { x, y, width, height }.is_tile_of(crop);
+        assert!(film.tiles.iter().all(|tile| tile.place.is_tile_of(crop)));
+        assert!(!is_tile(6, 3, 32, 32) && !is_tile(5, 3, 32, 31) && !is_tile(5, 67, 32, 1) && !is_tile(0, 3, 32, 32));
         let mut pixels: Vec<[u32; 2]> = film.tiles.iter().flat_map(|tile| tile.place.pixels()).collect();
         pixels.sort_unstable();
         let mut expected: Vec<[u32; 2]> = crop.pixels().collect();

@@ -1,17 +1,22 @@
 //! Unfinished pictures as files: what a run that was stopped goes on from, and what shards leave for `merge`.
 
+mod sealed;
+
+pub(crate) use sealed::{Reader, digest};
+
 use crate::film::{Crop, Film, Sums, Tile};
 use hairis::Level;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::machine::Machine;
-use hairis_harness::sequence::mix;
+use sealed::{seal, unseal};
+use std::collections::HashMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// First line of a file.
-const MAGIC: &str = "hairis-render part 1";
+const MAGIC: &str = "hairis-render part 2";
 
 /// Sums of tiles, and of which run they are.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,25 +41,18 @@ impl Part {
     /// If it cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         let Crop { x, y, width, height } = self.film.crop();
-        whole(path, |out| {
-            out.write_all(format!("{MAGIC}\n{}\n", self.run).as_bytes())?;
-            for number in [x, y, width, height] {
-                out.write_all(&number.to_le_bytes())?;
+        let mut bytes = format!("{MAGIC}\n{}\n", self.run).into_bytes();
+        bytes.extend([x, y, width, height].into_iter().flat_map(u32::to_le_bytes));
+        for Tile { place, sums, samples, seconds } in &self.film.tiles {
+            let Crop { x, y, width, height } = *place;
+            bytes.extend([x, y, width, height, *samples].into_iter().flat_map(u32::to_le_bytes));
+            bytes.extend(seconds.to_le_bytes());
+            for Sums { radiance: [r, g, b], luminance_sq } in sums {
+                bytes.extend([r, g, b, luminance_sq].into_iter().flat_map(|sum| sum.to_le_bytes()));
             }
-            for tile in &self.film.tiles {
-                let Crop { x, y, width, height } = tile.place;
-                for number in [x, y, width, height, tile.samples] {
-                    out.write_all(&number.to_le_bytes())?;
-                }
-                out.write_all(&tile.seconds.to_le_bytes())?;
-                for Sums { radiance: [r, g, b], luminance_sq } in &tile.sums {
-                    for sum in [r, g, b, luminance_sq] {
-                        out.write_all(&sum.to_le_bytes())?;
-                    }
-                }
-            }
-            Ok(())
-        })
+        }
+        seal(&mut bytes);
+        whole(path, |out| out.write_all(&bytes))
     }
 
     /// Reads a file.
@@ -65,7 +63,7 @@ impl Part {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let refuse = |problem: String| Error::Part { path: path.to_owned(), problem };
         let bytes = fs::read(path).map_err(|source| refuse(format!("cannot read: {source}")))?;
-        parse(&bytes).ok_or_else(|| refuse("not a part of a picture, or cut short".to_owned()))
+        parse(&bytes).ok_or_else(|| refuse("damaged, or not a part of a picture: remove it".to_owned()))
     }
 
     /// Reads a file of the same run, with the same tiles, as `expected`.
@@ -93,36 +91,38 @@ impl Part {
     /// If parts belong to different runs, or tiles are missing.
     pub fn merge(parts: Vec<(PathBuf, Self)>) -> Result<Self, Error> {
         let mut parts = parts.into_iter();
-        let Some((_, mut first)) = parts.next() else { return Err(Error::Missing("no parts".to_owned())) };
-        for (path, part) in parts {
-            if part.run != first.run || part.film.crop() != first.film.crop() {
-                let problem = format!(
-                    "belongs to another run than the first ({})",
-                    difference(&part.run, &first.run).unwrap_or_default()
-                );
-                return Err(Error::Part { path, problem });
+        let Some((first_path, first)) = parts.next() else { return Err(Error::Missing("no parts".to_owned())) };
+        let (run, crop, samples) = (first.run, first.film.crop(), first.film.samples());
+        let mut tiles: HashMap<[u32; 2], Tile> = HashMap::new();
+        let mut add = |film: Film| {
+            for tile in film.tiles {
+                tiles.entry([tile.place.x, tile.place.y]).or_insert(tile);
             }
-            first.film.tiles.extend(part.film.tiles);
+        };
+        add(first.film);
+        for (path, part) in parts {
+            let problem = if part.run != run || part.film.crop() != crop {
+                let words = difference(&part.run, &run).unwrap_or_default();
+                format!("belongs to another run than {} ({words})", first_path.display())
+            } else if part.film.samples() != samples {
+                let got = part.film.samples();
+                format!(
+                    "has {got} samples, expected {samples} as in {}: render it to the same --spp",
+                    first_path.display()
+                )
+            } else {
+                add(part.film);
+                continue;
+            };
+            return Err(Error::Part { path, problem });
         }
-        let crop = first.film.crop();
-        let found = |place| first.film.tiles.iter().find(|one| one.place == place && one.samples > 0);
-        let tiles: Vec<Tile> = crop.tiles().filter_map(found).cloned().collect();
-        let (all, there) = (crop.tiles().count(), tiles.len());
-        if there < all {
-            return Err(Error::Missing(format!("{} of {all} tiles are in no part", all - there)));
+        let all = crop.tiles().count();
+        let tiles: Vec<Tile> = crop.tiles().filter_map(|place| tiles.remove(&[place.x, place.y])).collect();
+        if tiles.len() < all {
+            return Err(Error::Missing(format!("{} of {all} tiles are in no part", all - tiles.len())));
         }
-        if tiles.iter().any(|tile| tile.samples != tiles[0].samples) {
-            return Err(Error::Missing("parts have different counts of samples".to_owned()));
-        }
-        Ok(Self { run: first.run, film: Film::of(crop, tiles) })
+        Ok(Self { run, film: Film::of(crop, tiles) })
     }
-}
-
-/// A number that differs where bytes do, but by chance.
-pub(crate) fn digest(bytes: &[u8]) -> u64 {
-    bytes.chunks(8).fold(bytes.len() as u64, |hash, chunk| {
-        mix(hash ^ chunk.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)))
-    })
 }
 
 /// What the sums of a picture depend on beside flags: the build, and whether the CPU fuses multiply and add.
@@ -145,53 +145,25 @@ fn difference(found: &str, expected: &str) -> Option<String> {
     Some(format!("{found}, expected {expected}"))
 }
 
-/// Takes numbers from the front.
-pub(crate) struct Reader<'a>(&'a [u8]);
-
-impl<'a> Reader<'a> {
-    pub(crate) fn new(bytes: &'a [u8]) -> Self {
-        Self(bytes)
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    pub(crate) fn bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (first, rest) = self.0.split_first_chunk()?;
-        self.0 = rest;
-        Some(*first)
-    }
-
-    pub(crate) fn number(&mut self) -> Option<u32> {
-        self.bytes().map(u32::from_le_bytes)
-    }
-
-    pub(crate) fn double(&mut self) -> Option<f64> {
-        self.bytes().map(f64::from_le_bytes)
-    }
-
-    fn crop(&mut self) -> Option<Crop> {
-        let [x, y, width, height] = [self.number()?, self.number()?, self.number()?, self.number()?];
-        let fits = |from: u32, count: u32| from.checked_add(count).is_some_and(|end| end <= 1 << 14);
-        (fits(x, width) && fits(y, height)).then_some(Crop { x, y, width, height })
-    }
+/// A part of a picture, if it lies within the largest.
+fn crop(reader: &mut Reader<'_>) -> Option<Crop> {
+    let [x, y, width, height] = [reader.number()?, reader.number()?, reader.number()?, reader.number()?];
+    let fits = |from: u32, count: u32| from.checked_add(count).is_some_and(|end| end <= 1 << 14);
+    (fits(x, width) && fits(y, height)).then_some(Crop { x, y, width, height })
 }
 
+/// The two lines of text, then the numbers, then a digest of all that.
 fn parse(bytes: &[u8]) -> Option<Part> {
-    let mut lines = bytes.splitn(3, |byte| *byte == b'\n');
+    let mut lines = unseal(bytes)?.splitn(3, |byte| *byte == b'\n');
     if lines.next()? != MAGIC.as_bytes() {
         return None;
     }
     let run = core::str::from_utf8(lines.next()?).ok()?.to_owned();
     let mut rest = Reader::new(lines.next()?);
-    let crop = rest.crop()?;
+    let whole = crop(&mut rest)?;
     let mut tiles = Vec::new();
     while !rest.is_empty() {
-        let place = rest.crop()?;
-        if !crop.tiles().any(|tile| tile == place) {
-            return None;
-        }
+        let place = crop(&mut rest).filter(|place| place.is_tile_of(whole))?;
         let (samples, seconds) = (rest.number()?, rest.double()?);
         let mut sums = Vec::new();
         for _ in 0..place.len() {
@@ -200,7 +172,7 @@ fn parse(bytes: &[u8]) -> Option<Part> {
         }
         tiles.push(Tile { place, sums, samples, seconds });
     }
-    Some(Part { run, film: Film::of(crop, tiles) })
+    Some(Part { run, film: Film::of(whole, tiles) })
 }
 
 #[cfg(test)]
@@ -232,10 +204,14 @@ mod tests {
         shard.film.tiles.remove(1);
         assert!(read_of(&shard).expect_err("another shard").contains("another shard"));
         let bytes = fs::read(&path).expect("there");
-        for length in (0..bytes.len()).step_by(97) {
-            let cut = parse(&bytes[..length]);
-            // A cut between tiles leaves fewer of them, which `merge` finds.
-            assert!(cut.is_none_or(|cut| cut.film.tiles.len() < part().film.tiles.len()), "cut at {length}");
+        // Cuts between tiles among them.
+        for length in 0..bytes.len() {
+            assert_eq!(parse(&bytes[..length]), None, "cut at {length}");
+        }
+        for byte in (0..bytes.len()).step_by(97) {
+            let mut damaged = bytes.clone();
+            damaged[byte] ^= 4;
+            assert_eq!(parse(&damaged), None, "byte {byte} changed");
         }
         assert!(Part::read(&folder.path().join("none")).is_err());
     }
@@ -249,6 +225,10 @@ mod tests {
         assert_eq!(Part::merge(vec![named("b", &b), named("a", &a)]).expect("whole"), part());
         let message = |parts| Part::merge(parts).expect_err("refused").to_string();
         assert!(message(vec![named("a", &a)]).contains("2 of 3 tiles"));
+        let mut more = b.clone();
+        more.film.tiles.iter_mut().for_each(|tile| tile.samples = 8);
+        let refused = message(vec![named("a", &a), named("more", &more)]);
+        assert!(refused.contains("more: has 8 samples, expected 4 as in a"), "{refused}");
         b.run = "scene=box seed=1".to_owned();
         assert!(message(vec![named("a", &a), named("b", &b)]).contains("scene=box, expected scene=head"));
     }

@@ -1,0 +1,49 @@
+//! Files of numbers that end in a digest of the rest.
+
+use hairis_harness::sequence::mix;
+
+/// A number that differs where bytes do, but by chance.
+pub(crate) fn digest(bytes: &[u8]) -> u64 {
+    bytes.chunks(8).fold(bytes.len() as u64, |hash, chunk| {
+        mix(hash ^ chunk.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)))
+    })
+}
+
+/// Puts a digest of all bytes behind them.
+pub(super) fn seal(bytes: &mut Vec<u8>) {
+    let check = digest(bytes);
+    bytes.extend(check.to_le_bytes());
+}
+
+/// What stands before the digest; `None` if that is wrong.
+pub(super) fn unseal(bytes: &[u8]) -> Option<&[u8]> {
+    let (content, check) = bytes.split_last_chunk()?;
+    (digest(content) == u64::from_le_bytes(*check)).then_some(content)
+}
+
+/// Takes numbers from the front.
+pub(crate) struct Reader<'a>(&'a [u8]);
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        Self(bytes)
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub(crate) fn bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (first, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(*first)
+    }
+
+    pub(crate) fn number(&mut self) -> Option<u32> {
+        self.bytes().map(u32::from_le_bytes)
+    }
+
+    pub(crate) fn double(&mut self) -> Option<f64> {
+        self.bytes().map(f64::from_le_bytes)
+    }
+}
