@@ -28,7 +28,7 @@ pub struct Args {
 pub enum Command {
     /// Render a scene: an EXR file and a PNG preview; a run that was stopped goes on
     Render(Render),
-    /// Join the parts of a picture that was rendered in shards, into the same file as one run
+    /// Join the parts of a picture that was rendered in shards: the pixels and layers of one run
     Merge(Merge),
     /// Compare samplers on all scenes, at equal samples and at equal time: one page; a run that was stopped goes on
     Figures(Figures),
@@ -52,7 +52,7 @@ pub struct Render {
     /// How light is estimated [default: that of the scene]
     #[arg(long, value_enum)]
     pub integrator: Option<Integrator>,
-    /// Samples of a pixel [default: that of the scene]
+    /// Samples of a pixel; more than a finished picture has are added to it [default: that of the scene]
     #[arg(long, value_name = "N", conflicts_with = "time")]
     pub spp: Option<u32>,
     /// Seconds after which no further pass begins, in place of a count of samples

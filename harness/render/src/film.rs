@@ -108,6 +108,9 @@ pub struct Tile {
     pub samples: u32,
     /// Time that a thread worked on it, in seconds.
     pub seconds: f64,
+    /// Albedo (3) and tangent (3) of what the ray through each pixel's centre meets first: see
+    /// [`layers::look`](crate::layers::look). Empty where nobody has looked.
+    pub first: Vec<[f32; 6]>,
 }
 
 /// The sums of a picture. Tiles share nothing, so that threads may work on them in any order.
@@ -124,7 +127,13 @@ impl Film {
     /// No samples yet.
     #[must_use]
     pub fn new(crop: Crop) -> Self {
-        let tile = |place: Crop| Tile { place, sums: vec![Sums::default(); place.len()], samples: 0, seconds: 0.0 };
+        let tile = |place: Crop| Tile {
+            place,
+            sums: vec![Sums::default(); place.len()],
+            samples: 0,
+            seconds: 0.0,
+            first: Vec::new(),
+        };
         Self::of(crop, crop.tiles().map(tile).collect())
     }
 

@@ -1,11 +1,11 @@
 //! Layers and attributes of the file of a picture.
 
-use crate::film::{Crop, Film};
+use crate::film::Film;
 use crate::scene::{Met, Scene};
 use glam::Vec3;
 use hairis_harness::light::{luminance, rounded};
 use hairis_harness::machine::Machine;
-use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
+use rayon::iter::{IntoParallelRefMutIterator as _, ParallelIterator as _};
 
 /// One channel of a layer, row by row from the upper left corner.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub struct Beside {
 
 impl Beside {
     /// Layers of a film's sums: `variance`, that of a pixel's mean luminance, supposing independent samples; and `samples`, their
-    /// count. The attributes of a run.
+    /// count. Further layers if [`look`] has been called. The attributes of a run.
     #[must_use]
     pub fn film(film: &Film, run: &str) -> Self {
         let crop = film.crop();
@@ -41,8 +41,20 @@ impl Beside {
                 samples[place] = rounded(f64::from(tile.samples));
             }
         }
-        let channels =
+        let mut channels =
             vec![Channel { name: "variance", pixels: variance }, Channel { name: "samples", pixels: samples }];
+        if film.tiles.iter().any(|tile| !tile.first.is_empty()) {
+            let names = ["albedo.R", "albedo.G", "albedo.B", "tangent.X", "tangent.Y", "tangent.Z"];
+            channels.extend(names.into_iter().enumerate().map(|(k, name)| {
+                let mut pixels = vec![0.0; crop.len()];
+                for tile in &film.tiles {
+                    for (pixel, first) in tile.place.pixels().zip(&tile.first) {
+                        pixels[crop.index(pixel)] = first[k];
+                    }
+                }
+                Channel { name, pixels }
+            }));
+        }
         let attributes = vec![
             ("run", run.to_owned()),
             ("machine", Machine::current().summary()),
@@ -51,18 +63,15 @@ impl Beside {
         ];
         Self { channels, attributes }
     }
+}
 
-    /// Adds layers of the first object along the ray through each pixel's centre: `albedo`, the directional albedo of hair and
-    /// the albedo of surfaces; and `tangent`, the direction of the fibre from root to tip. Both are 0 elsewhere.
-    #[must_use]
-    pub fn scene(mut self, scene: &Scene, crop: Crop) -> Self {
-        let pixels: Vec<[u32; 2]> = crop.pixels().collect();
-        let met: Vec<[f32; 6]> = pixels.par_iter().map(|pixel| first(scene, *pixel)).collect();
-        let names = ["albedo.R", "albedo.G", "albedo.B", "tangent.X", "tangent.Y", "tangent.Z"];
-        let channel = |(k, name)| Channel { name, pixels: met.iter().map(|numbers| numbers[k]).collect() };
-        self.channels.extend(names.into_iter().enumerate().map(channel));
-        self
-    }
+/// Sees what the ray through each pixel's centre meets first, where that is not known yet: for the layers `albedo`, the
+/// directional albedo of hair and the albedo of surfaces; and `tangent`, the direction of the fibre from root to tip. Both are 0
+/// elsewhere.
+pub fn look(scene: &Scene, film: &mut Film) {
+    film.tiles.par_iter_mut().filter(|tile| tile.first.is_empty()).for_each(|tile| {
+        tile.first = tile.place.pixels().map(|pixel| first(scene, pixel)).collect();
+    });
 }
 
 /// Albedo and tangent of what the ray through a pixel's centre meets first.
@@ -84,6 +93,7 @@ fn first(scene: &Scene, [x, y]: [u32; 2]) -> [f32; 6] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::Crop;
 
     #[test]
     fn variance_is_that_of_the_mean() {

@@ -13,10 +13,10 @@ use sealed::{seal, unseal};
 use std::collections::HashMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::{env, fs};
+use std::{env, fs, io};
 
 /// First line of a file.
-const MAGIC: &str = "hairis-render part 2";
+const MAGIC: &str = "hairis-render part 3";
 
 /// Sums of tiles, and of which run they are.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +25,8 @@ pub struct Part {
     pub run: String,
     /// The sums.
     pub film: Film,
+    /// Whether the picture has been written: a run with other settings may begin anew, then.
+    pub finished: bool,
 }
 
 /// Where the part of a picture lies while it is unfinished.
@@ -42,14 +44,16 @@ impl Part {
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         let Crop { x, y, width, height } = self.film.crop();
         let mut bytes = format!("{MAGIC}\n{}\n", self.run).into_bytes();
-        bytes.extend([x, y, width, height].into_iter().flat_map(u32::to_le_bytes));
-        for Tile { place, sums, samples, seconds } in &self.film.tiles {
+        bytes.extend([x, y, width, height, u32::from(self.finished)].into_iter().flat_map(u32::to_le_bytes));
+        for Tile { place, sums, samples, seconds, first } in &self.film.tiles {
             let Crop { x, y, width, height } = *place;
             bytes.extend([x, y, width, height, *samples].into_iter().flat_map(u32::to_le_bytes));
             bytes.extend(seconds.to_le_bytes());
             for Sums { radiance: [r, g, b], luminance_sq } in sums {
                 bytes.extend([r, g, b, luminance_sq].into_iter().flat_map(|sum| sum.to_le_bytes()));
             }
+            bytes.extend(u32::from(!first.is_empty()).to_le_bytes());
+            bytes.extend(first.iter().flatten().flat_map(|number| number.to_le_bytes()));
         }
         seal(&mut bytes);
         whole(path, |out| out.write_all(&bytes))
@@ -66,21 +70,35 @@ impl Part {
         parse(&bytes).ok_or_else(|| refuse("damaged, or not a part of a picture: remove it".to_owned()))
     }
 
-    /// Reads a file of the same run, with the same tiles, as `expected`.
+    /// Goes on from a file, if there is one and it belongs to the same run and tiles as `fresh`; otherwise `fresh`. A finished
+    /// picture that the run cannot continue is no obstacle: the run begins anew, as a remark says.
     ///
     /// # Errors
     ///
-    /// As [`read`](Self::read), and if it belongs to another run or to another shard.
-    pub fn read_of(path: &Path, expected: &Self) -> Result<Self, Error> {
+    /// As [`read`](Self::read), and if the file belongs to an unfinished picture of another run, of another shard, or with more
+    /// than `samples` samples.
+    pub fn resume(path: &Path, fresh: Self, samples: Option<u32>) -> Result<Self, Error> {
+        if !path.exists() {
+            return Ok(fresh);
+        }
         let part = Self::read(path)?;
-        let other = if part.run != expected.run {
-            format!("another run ({})", difference(&part.run, &expected.run).unwrap_or_default())
-        } else if !part.film.has_tiles_of(&expected.film) {
-            "another shard".to_owned()
+        let got = part.film.samples();
+        let other = if part.run != fresh.run {
+            let words = difference(&part.run, &fresh.run).unwrap_or_default();
+            format!("belongs to another run ({words})")
+        } else if !part.film.has_tiles_of(&fresh.film) {
+            "belongs to another shard".to_owned()
+        } else if let Some(samples) = samples.filter(|samples| *samples < got) {
+            format!("has {got} samples, more than --spp {samples}")
         } else {
             return Ok(part);
         };
-        let problem = format!("belongs to {other}: remove it, or choose another --out");
+        if part.finished {
+            // Ignore write errors: this is a remark.
+            let _ = writeln!(io::stderr(), "{}: {other}; the picture is begun anew", path.display());
+            return Ok(fresh);
+        }
+        let problem = format!("{other}: remove it, or choose another --out");
         Err(Error::Part { path: path.to_owned(), problem })
     }
 
@@ -121,7 +139,7 @@ impl Part {
         if tiles.len() < all {
             return Err(Error::Missing(format!("{} of {all} tiles are in no part", all - tiles.len())));
         }
-        Ok(Self { run, film: Film::of(crop, tiles) })
+        Ok(Self { run, film: Film::of(crop, tiles), finished: false })
     }
 }
 
@@ -161,6 +179,7 @@ fn parse(bytes: &[u8]) -> Option<Part> {
     let run = core::str::from_utf8(lines.next()?).ok()?.to_owned();
     let mut rest = Reader::new(lines.next()?);
     let whole = crop(&mut rest)?;
+    let finished = rest.number()? != 0;
     let mut tiles = Vec::new();
     while !rest.is_empty() {
         let place = crop(&mut rest).filter(|place| place.is_tile_of(whole))?;
@@ -170,9 +189,19 @@ fn parse(bytes: &[u8]) -> Option<Part> {
             let radiance = [rest.double()?, rest.double()?, rest.double()?];
             sums.push(Sums { radiance, luminance_sq: rest.double()? });
         }
-        tiles.push(Tile { place, sums, samples, seconds });
+        let mut first = Vec::new();
+        if rest.number()? != 0 {
+            for _ in 0..place.len() {
+                let mut numbers = [0.0; 6];
+                for number in &mut numbers {
+                    *number = f32::from_le_bytes(rest.bytes()?);
+                }
+                first.push(numbers);
+            }
+        }
+        tiles.push(Tile { place, sums, samples, seconds, first });
     }
-    Some(Part { run, film: Film::of(whole, tiles) })
+    Some(Part { run, film: Film::of(whole, tiles), finished })
 }
 
 #[cfg(test)]
@@ -185,9 +214,10 @@ mod tests {
         for (k, tile) in (0_u16..).zip(&mut film.tiles) {
             tile.samples = 4;
             tile.seconds = 0.5;
+            tile.first = vec![[0.1, 0.2, 0.3, 1.0, 0.0, f32::from(k)]; if k == 1 { 0 } else { tile.sums.len() }];
             tile.sums.iter_mut().for_each(|sums| sums.add(Vec3::splat(1.0 / f32::from(k + 3))));
         }
-        Part { run: "scene=head seed=1".to_owned(), film }
+        Part { run: "scene=head seed=1".to_owned(), film, finished: false }
     }
 
     #[test]
@@ -196,13 +226,6 @@ mod tests {
         let path = folder.path().join("a.part");
         part().write(&path).expect("written");
         assert_eq!(Part::read(&path).expect("read"), part());
-        let read_of = |expected: &Part| Part::read_of(&path, expected).map_err(|error| error.to_string());
-        assert_eq!(read_of(&part()), Ok(part()));
-        let other = read_of(&Part { run: "scene=head seed=2".to_owned(), ..part() }).expect_err("another run");
-        assert!(other.contains("seed=1, expected seed=2"), "{other}");
-        let mut shard = part();
-        shard.film.tiles.remove(1);
-        assert!(read_of(&shard).expect_err("another shard").contains("another shard"));
         let bytes = fs::read(&path).expect("there");
         // Cuts between tiles among them.
         for length in 0..bytes.len() {
@@ -214,6 +237,29 @@ mod tests {
             assert_eq!(parse(&damaged), None, "byte {byte} changed");
         }
         assert!(Part::read(&folder.path().join("none")).is_err());
+    }
+
+    #[test]
+    fn runs_go_on_from_their_own_parts() {
+        let folder = tempfile::TempDir::new().expect("a folder");
+        let path = folder.path().join("a.part");
+        let fresh = |run: &str| Part { run: run.to_owned(), film: Film::new(part().film.crop()), finished: false };
+        let (same, other) = ("scene=head seed=1", "scene=head seed=2");
+        let resume = |fresh, samples| Part::resume(&path, fresh, samples).map_err(|error| error.to_string());
+        assert_eq!(resume(fresh(same), Some(8)), Ok(fresh(same)), "there is no file");
+        part().write(&path).expect("written");
+        assert_eq!(resume(fresh(same), Some(4)), Ok(part()));
+        assert_eq!(resume(fresh(same), None), Ok(part()));
+        let refused = |fresh, samples| resume(fresh, samples).expect_err("refused");
+        assert!(refused(fresh(other), None).contains("seed=1, expected seed=2"));
+        assert!(refused(fresh(same), Some(3)).contains("has 4 samples, more than --spp 3"));
+        let mut shard = fresh(same);
+        shard.film.tiles.remove(1);
+        assert!(refused(shard, None).contains("another shard"));
+        Part { finished: true, ..part() }.write(&path).expect("written");
+        assert_eq!(resume(fresh(other), Some(4)), Ok(fresh(other)), "a finished picture");
+        assert_eq!(resume(fresh(same), Some(3)), Ok(fresh(same)));
+        assert!(resume(fresh(same), Some(8)).expect("its own").finished);
     }
 
     #[test]

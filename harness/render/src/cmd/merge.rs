@@ -14,6 +14,6 @@ use hairis_harness::error::Error;
 pub(super) fn run(flags: &Merge) -> Result<(), Error> {
     check_out(&flags.out)?;
     let parts = flags.parts.iter().map(|path| Ok((path.clone(), Part::read(path)?))).collect::<Result<_, Error>>()?;
-    let Part { run, film } = Part::merge(parts)?;
+    let Part { run, film, .. } = Part::merge(parts)?;
     finish(&film, &Beside::film(&film, &run), &flags.out, None)
 }

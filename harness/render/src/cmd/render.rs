@@ -7,7 +7,7 @@ use crate::film::Film;
 use crate::formats::{Follow, Import, import, write_mitsuba};
 use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, MOST_MEAN_ALBEDO, default_sampler};
-use crate::layers::Beside;
+use crate::layers::{self, Beside};
 use crate::material::Hair;
 use crate::part::{self, Part};
 use crate::picture;
@@ -69,9 +69,11 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         Some(shard) => out.with_extension(format!("{}-of-{}.part", shard.index(), shard.of())),
         None => part::path(&out),
     };
-    let fresh = Part { run, film: Film::new(crop).shard(shard) };
-    let mut part = if part_path.exists() { Part::read_of(&part_path, &fresh)? } else { fresh };
+    let fresh = Part { run, film: Film::new(crop).shard(shard), finished: false };
     let samples = flags.spp.unwrap_or(defaults.samples);
+    let most = flags.time.is_none().then_some(samples);
+    let mut part = Part::resume(&part_path, fresh, most)?;
+    layers::look(&scene, &mut part.film);
     passes(flags, &scene, &settings, samples, &mut part, &part_path)?;
     if flags.profile {
         writeln!(io::stdout(), "time: {}", part.film.profile).map_err(Error::Write)?;
@@ -81,11 +83,10 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         let line = format!("wrote {}: join the parts by `hairis-render merge`\n", part_path.display());
         return io::stdout().write_all(line.as_bytes()).map_err(Error::Write);
     }
-    let beside = Beside::film(&part.film, &part.run).scene(&scene, crop);
-    finish(&part.film, &beside, &out, flags.exposure)?;
-    // Where nothing was stopped there is none.
-    let _ = fs::remove_file(&part_path);
-    Ok(())
+    finish(&part.film, &Beside::film(&part.film, &part.run), &out, flags.exposure)?;
+    // A larger --spp goes on from it.
+    part.finished = true;
+    part.write(&part_path)
 }
 
 /// Writes a picture that is whole, and says so.
@@ -160,7 +161,7 @@ fn read_hair(flags: &Render, path: &Path) -> Result<Strands, Error> {
     Ok(imported.strands)
 }
 
-/// Renders pass by pass; from time to time writes what there is, and a preview of it.
+/// Renders pass by pass; from time to time writes what there is: the part, and the picture with its preview.
 fn passes(
     flags: &Render,
     scene: &Scene,
@@ -189,7 +190,8 @@ fn passes(
             part.write(part_path)?;
             let picture = part.film.picture();
             let exposure = flags.exposure.unwrap_or_else(|| picture::exposure(&picture));
-            picture::write_preview(&picture, &part_path.with_extension("png"), exposure)?;
+            let growing = part_path.with_extension("exr");
+            picture::write(&picture, &Beside::film(&part.film, &part.run), &growing, exposure)?;
             written = Instant::now();
         }
     }
