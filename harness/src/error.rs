@@ -24,14 +24,14 @@ pub enum Error {
         /// The cause.
         source: io::Error,
     },
-    /// A part of a study, or a folder of them, could not be used.
+    /// A part of a study or of a picture, or a folder of them, could not be used.
     Part {
         /// The file or folder.
         path: PathBuf,
         /// The cause.
         problem: String,
     },
-    /// Parts of a study were joined, but some are missing: their names.
+    /// Parts of a study or of a picture were joined, but some are missing.
     Missing(String),
     /// Hair that the program itself made was refused: a bug.
     Params(ParamError),
@@ -68,7 +68,7 @@ impl fmt::Display for Error {
             Self::Environment(source) => write!(f, "{source}"),
             Self::Output { path, source } => write!(f, "cannot write {}: {source}", path.display()),
             Self::Part { path, problem } => write!(f, "{}: {problem}", path.display()),
-            Self::Missing(what) => write!(f, "the study is not complete: {what}"),
+            Self::Missing(what) => write!(f, "not complete: {what}"),
             Self::Params(source) => write!(f, "{source}"),
             Self::Failed(1) => f.write_str("1 check failed"),
             Self::Failed(checks) => write!(f, "{checks} checks failed"),
