@@ -108,7 +108,10 @@ impl Part {
     ///
     /// If parts belong to different runs, or tiles are missing.
     pub fn merge(parts: Vec<(PathBuf, Self)>) -> Result<Self, Error> {
-        let mut parts = parts.into_iter();
+        // A small picture may have shards without a tile, whose count of samples says nothing.
+        let is_counted = |part: &Self| !part.film.tiles.is_empty();
+        let (counted, empty): (Vec<_>, Vec<_>) = parts.into_iter().partition(|(_, part)| is_counted(part));
+        let mut parts = counted.into_iter().chain(empty);
         let Some((first_path, first)) = parts.next() else { return Err(Error::Missing("no parts".to_owned())) };
         let (run, crop, samples) = (first.run, first.film.crop(), first.film.samples());
         let mut tiles: HashMap<[u32; 2], Tile> = HashMap::new();
@@ -122,7 +125,7 @@ impl Part {
             let problem = if part.run != run || part.film.crop() != crop {
                 let words = difference(&part.run, &run).unwrap_or_default();
                 format!("belongs to another run than {} ({words})", first_path.display())
-            } else if part.film.samples() != samples {
+            } else if is_counted(&part) && part.film.samples() != samples {
                 let got = part.film.samples();
                 format!(
                     "has {got} samples, expected {samples} as in {}: render it to the same --spp",
@@ -271,6 +274,9 @@ mod tests {
         assert_eq!(Part::merge(vec![named("b", &b), named("a", &a)]).expect("whole"), part());
         let message = |parts| Part::merge(parts).expect_err("refused").to_string();
         assert!(message(vec![named("a", &a)]).contains("2 of 3 tiles"));
+        let mut none = b.clone();
+        none.film.tiles.clear();
+        assert_eq!(Part::merge(vec![named("none", &none), named("b", &b), named("a", &a)]).expect("whole"), part());
         let mut more = b.clone();
         more.film.tiles.iter_mut().for_each(|tile| tile.samples = 8);
         let refused = message(vec![named("a", &a), named("more", &more)]);

@@ -26,7 +26,7 @@ fn parts_of_other_runs_are_refused_by_name() {
 fn time_ends_every_estimate() {
     let folder = TempDir::new().expect("a folder");
     for (integrator, pass) in [("gather", 32_u16), ("path", 4)] {
-        let wrote = render(&folder, &["area", "--integrator", integrator, "--time", "0.05", "--out", "a.exr"]);
+        let wrote = render(&folder, &["head", "--integrator", integrator, "--time", "0.05", "--out", "a.exr"]);
         let all = channels(&folder, "a.exr");
         let samples = &all.iter().find(|(name, _)| name == "samples").expect("a layer").1;
         let count = f32::from_bits(samples[0]);
@@ -89,7 +89,7 @@ fn finished_pictures_are_replaced() {
 #[test]
 fn killed_runs_go_on() {
     let folder = TempDir::new().expect("a folder");
-    let flags = ["render", "head", "--out", "a.exr", "--spp", "8000", "--strands", "300", "--size", "24x24"];
+    let flags = ["render", "head", "--out", "a.exr", "--spp", "1000000", "--strands", "300", "--size", "24x24"];
     let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_hairis-render"))
         .args(flags)
         .current_dir(folder.path())
