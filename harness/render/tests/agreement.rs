@@ -23,10 +23,16 @@ fn samplers_weightings_and_sequences_agree() {
         (Name::AreaHead, Integrator::Direct, "brown", 1500, 16),
         (Name::Env, Integrator::Gather, "brown", 1500, 8),
         (Name::Box, Integrator::Path, "brown", 1500, 8),
+        (Name::Area, Integrator::Gather, "glossy", 400, 16),
+        (Name::BoxSingle, Integrator::Path, "brown", 800, 8),
+        (Name::Head, Integrator::Path, "brown", 800, 8),
+        (Name::FurnaceOne, Integrator::Path, "brown", 1, 8),
+        (Name::FurnaceIso, Integrator::Path, "brown", 400, 8),
     ];
     for (name, integrator, preset, strands, samples) in cases {
         let mut one = scene(name, hair("gaussian", "matched", preset), strands, 16);
-        let base = Settings { integrator, seed: 1, ..Settings::default() };
+        let multiple = name.defaults().multiple;
+        let base = Settings { integrator, multiple, seed: 1, ..Settings::default() };
         let expected = mean(&one, &base, 2 * samples, RUNS, 1);
         let mut seed = 1;
         let mut check = |one: &Scene, what: &str, settings: Settings| {
