@@ -6,14 +6,14 @@ use crate::args::Render;
 use crate::film::Film;
 use crate::formats::{Follow, Import, import, write_mitsuba};
 use crate::geometry::Strands;
-use crate::hair::{Choice, Energy, MOST_MEAN_ALBEDO, default_sampler};
+use crate::hair::{Choice, Energy, check_paths, default_sampler};
 use crate::layers::{self, Beside};
 use crate::material::Hair;
 use crate::part::{self, Part};
 use crate::picture;
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
-use crate::transport::{self, Integrator, Settings};
+use crate::transport::{self, Settings};
 use core::time::Duration;
 use description::describe;
 use hairis_harness::error::Error;
@@ -113,11 +113,8 @@ fn hair(flags: &Render, settings: &Settings) -> Result<Hair, Error> {
     let [mean, worst] = hair.mean_and_worst_albedo();
     // Ignore write errors: this is a remark.
     let _ = writeln!(io::stderr(), "albedo of the hair: mean {mean:.3}, largest {worst:.3}");
-    let bounces = settings.integrator == Integrator::Path && settings.multiple;
-    if bounces && mean >= MOST_MEAN_ALBEDO && flags.energy.is_none() {
-        return Err(Error::Usage(format!(
-            "paths need hair of a mean albedo below {MOST_MEAN_ALBEDO}, got {mean:.3} of {preset}: use --energy per-wo"
-        )));
+    if flags.energy.is_none() {
+        check_paths(&hair, settings, preset, "use --energy per-wo")?;
     }
     Ok(hair)
 }
