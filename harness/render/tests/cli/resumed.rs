@@ -39,13 +39,13 @@ fn time_ends_every_estimate() {
 /// A picture has the same bits in every channel however it came to be.
 #[test]
 fn more_samples_and_shards_make_the_picture_of_one_run() {
-    let folder = TempDir::new().expect("a folder");
     let scenes: [&[&str]; 3] = [
         &["box", "--integrator", "path", "--mis", "resampled"],
         &["area-head", "--integrator", "gather"],
         &["env", "--integrator", "gather", "--mis", "resampled"],
     ];
     for scene in scenes {
+        let folder = TempDir::new().expect("a folder");
         let image = |name: &str, flags: &[&str]| {
             render(&folder, &[scene, &["--out", name], flags].concat());
         };
