@@ -60,7 +60,7 @@ pub struct Integral<const N: usize> {
 }
 
 /// Most components of an integrand.
-const MOST: usize = 6;
+const MOST: usize = 8;
 
 /// Components of an integrand, the rest 0: rules of one size are compiled once for all integrands.
 type Components = [f64; MOST];
