@@ -43,3 +43,30 @@ fn eight_lanes_round_as_sums_do_in_every_build() {
         }
     }
 }
+
+#[test]
+fn frames_of_eight_hits_are_those_of_one_at_a_time() {
+    let mut draws = Draws(58);
+    let mut unit = || loop {
+        let v = Vec3::from_array([draws.xi(), draws.xi(), draws.xi()].map(|x| 2.0 * x - 1.0));
+        if v.length_squared() > 1e-6 {
+            return v.normalize();
+        }
+    };
+    for turn in 0..2000 {
+        let u: [Vec3; 8] = core::array::from_fn(|_| unit());
+        let mut wo: [Vec3; 8] = core::array::from_fn(|_| unit());
+        if turn % 10 == 0 {
+            (wo[2], wo[3], wo[5]) = (-u[2], u[3], (u[5] + 1e-3 * wo[5]).normalize());
+        }
+        let frames = FiberFrame8::from_tangents_normals(&u.into(), &wo.into());
+        for lane in 0..8 {
+            let (tangent, v, w) = (frames.u.lane(lane), frames.v.lane(lane), frames.w.lane(lane));
+            let off = [v.length() - 1.0, tangent.dot(v), (tangent.cross(v) - w).length()];
+            assert!(tangent == u[lane] && off.iter().all(|x| x.abs() < 1e-6), "{tangent} {v} {w}");
+            let one = FiberFrame::from_tangent_normal(u[lane], wo[lane]);
+            let along = u[lane].cross(wo[lane]).length() < 1e-2;
+            assert!(along || (one.v - v).length() < 1e-4, "{} {v}", one.v);
+        }
+    }
+}

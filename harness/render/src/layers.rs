@@ -3,6 +3,7 @@
 use crate::film::Film;
 use crate::scene::{Met, Scene};
 use glam::Vec3;
+use hairis::Level;
 use hairis_harness::light::{luminance, rounded};
 use hairis_harness::machine::Machine;
 use rayon::iter::{IntoParallelRefMutIterator as _, ParallelIterator as _};
@@ -57,12 +58,20 @@ impl Beside {
         }
         let attributes = vec![
             ("run", run.to_owned()),
+            ("command", command()),
+            ("level", Level::detect().name().to_owned()),
             ("machine", Machine::current().summary()),
             ("samplesPerPixel", film.samples().to_string()),
             ("secondsOfCpuTime", format!("{:.1}", film.seconds())),
         ];
         Self { channels, attributes }
     }
+}
+
+/// The command line of this process. Paths are as they were given.
+fn command() -> String {
+    let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// Sees what the ray through each pixel's centre meets first, where that is not known yet: for the layers `albedo`, the

@@ -18,7 +18,6 @@ pub mod cmd;
 mod figures;
 pub mod film;
 pub mod formats;
-pub mod frames;
 pub mod geometry;
 pub mod hair;
 pub mod layers;

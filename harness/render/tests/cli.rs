@@ -1,5 +1,6 @@
 //! The program, as it is run from a shell.
 
+mod refused;
 mod resumed;
 
 use exr::prelude::{FlatSamples, read_all_flat_layers_from_file};

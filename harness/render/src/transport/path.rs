@@ -3,14 +3,13 @@
 use super::profile::{Phase, lap};
 use super::wave::{Path, Shadow, Wave};
 use super::{Integrator, Mis, PASS, Settings, resampled, sees};
-use crate::frames::frames8;
 use crate::lights::Tables;
 use crate::scene::{Met, Scene};
 use crate::tree::{self, Ray, Skip};
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Hit8, Vec3x8};
+use hairis::{FiberFrame8, Hit8, Vec3x8};
 use hairis_harness::sampler::cosine;
 
 /// Scatterings before paths may end at random.
@@ -119,7 +118,7 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
         let wo: [Vec3; 8] = core::array::from_fn(|lane| -at(lane).0.ray.direction);
         let tangents: [Vec3; 8] = core::array::from_fn(|lane| scene.strands.tangent(at(lane).1.segment, at(lane).1.s));
         let wo = Vec3x8::from(wo);
-        let frames = frames8(&tangents.into(), &wo);
+        let frames = FiberFrame8::from_tangents_normals(&tangents.into(), &wo);
         let h = f32x8::new(core::array::from_fn(|lane| at(lane).1.h));
         let origins: [Vec3; 8] = core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
         let hits = Hit8::new(frames.to_local(&wo), h);

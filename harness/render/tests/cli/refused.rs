@@ -1,0 +1,58 @@
+//! Bad input: exit code 2, and one line that names it, before anything is rendered.
+
+use super::{refuse, run};
+use std::fs;
+use tempfile::TempDir;
+
+/// Flags that clap refuses: it names the flag, the value and what may stand there.
+#[test]
+fn bad_flags_are_refused() {
+    let folder = TempDir::new().expect("a folder");
+    for (flags, words) in [
+        (&["render", "nowhere"][..], &["nowhere", "head"][..]),
+        (&["render", "head", "--size", "0x40"], &["--size", "0x40", "1 to 16384"]),
+        (&["render", "head", "--size", "20000x40"], &["--size", "20000x40", "1 to 16384"]),
+        (&["render", "head", "--mis", "all"], &["--mis", "all", "both"]),
+        (&["figures", "--shard", "3/2"], &["--shard", "3/2"]),
+    ] {
+        let output = run(&folder, flags);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{flags:?}: {errors}");
+        assert!(words.iter().all(|word| errors.contains(word)), "{flags:?}: {errors}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).expect("there").count(), 0, "nothing is written");
+}
+
+#[test]
+fn bad_values_are_refused_in_one_line() {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("file"), "no folder").expect("written");
+    fs::write(folder.path().join("cut.hair"), b"HAIR\x01\0\0\0").expect("written");
+    fs::write(folder.path().join("cut.tfx"), [0; 90]).expect("written");
+    fs::write(folder.path().join("cut.hdr"), "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n\x02\x02")
+        .expect("written");
+    for (flags, words) in [
+        (&["--spp", "0"][..], &["--spp", "got 0"][..]),
+        (&["--aa", "0"], &["--aa", "got 0"]),
+        (&["--depth", "0"], &["--depth", "got 0"]),
+        (&["--time", "-1"], &["--time"]),
+        (&["--exposure", "nan"], &["--exposure", "NaN"]),
+        (&["--crop", "0,0,9999,1"], &["--crop"]),
+        (&["--hair", "green"], &["green", "blond"]),
+        (&["--model", "phong"], &["phong", "gaussian"]),
+        (&["--sampler", "best"], &["best", "matched"]),
+        (&["--strands", "0"], &["strands", "0"]),
+        (&["--out", "file/a.exr"], &["file"]),
+        (&["--out", "a.png"], &[".exr", "a.png"]),
+        (&["--import", "none.hair"], &["none.hair"]),
+        (&["--import", "cut.hair"], &["cut.hair"]),
+        (&["--import", "cut.tfx"], &["cut.tfx"]),
+        (&["--env", "cut.hdr"], &["cut.hdr"]),
+        (&["--hair", "default", "--integrator", "path"], &["default", "--energy per-wo"]),
+    ] {
+        let all: Vec<&str> = ["render", "head"].iter().chain(flags).copied().collect();
+        let line = refuse(&folder, &all);
+        assert!(words.iter().all(|word| line.contains(word)), "{flags:?}: {line}");
+    }
+    assert!(!folder.path().join("out/render/head.exr").exists(), "nothing is rendered");
+}
