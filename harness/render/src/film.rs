@@ -108,9 +108,9 @@ pub struct Tile {
     pub samples: u32,
     /// Time that a thread worked on it, in seconds.
     pub seconds: f64,
-    /// Albedo (3) and tangent (3) of what the ray through each pixel's centre meets first: see
+    /// Albedo (3), tangent (3) and distance of what the ray through each pixel's centre meets first: see
     /// [`layers::look`](crate::layers::look). Empty where nobody has looked.
-    pub first: Vec<[f32; 6]>,
+    pub first: Vec<[f32; 7]>,
 }
 
 /// The sums of a picture. Tiles share nothing, so that threads may work on them in any order.

@@ -45,7 +45,7 @@ impl Beside {
         let mut channels =
             vec![Channel { name: "variance", pixels: variance }, Channel { name: "samples", pixels: samples }];
         if film.tiles.iter().any(|tile| !tile.first.is_empty()) {
-            let names = ["albedo.R", "albedo.G", "albedo.B", "tangent.X", "tangent.Y", "tangent.Z"];
+            let names = ["albedo.R", "albedo.G", "albedo.B", "tangent.X", "tangent.Y", "tangent.Z", "Z"];
             channels.extend(names.into_iter().enumerate().map(|(k, name)| {
                 let mut pixels = vec![0.0; crop.len()];
                 for tile in &film.tiles {
@@ -75,28 +75,28 @@ fn command() -> String {
 }
 
 /// Sees what the ray through each pixel's centre meets first, where that is not known yet: for the layers `albedo`, the
-/// directional albedo of hair and the albedo of surfaces; and `tangent`, the direction of the fibre from root to tip. Both are 0
-/// elsewhere.
+/// directional albedo of hair and the albedo of surfaces; and `tangent`, the direction of the fibre from root to tip; and
+/// `Z`, the distance along the ray in cm. All are 0 elsewhere.
 pub fn look(scene: &Scene, film: &mut Film) {
     film.tiles.par_iter_mut().filter(|tile| tile.first.is_empty()).for_each(|tile| {
         tile.first = tile.place.pixels().map(|pixel| first(scene, pixel)).collect();
     });
 }
 
-/// Albedo and tangent of what the ray through a pixel's centre meets first.
-fn first(scene: &Scene, [x, y]: [u32; 2]) -> [f32; 6] {
+/// Albedo, tangent and distance of what the ray through a pixel's centre meets first.
+fn first(scene: &Scene, [x, y]: [u32; 2]) -> [f32; 7] {
     let ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
-    let (albedo, tangent) = match scene.closest(&ray) {
+    let (albedo, tangent, distance) = match scene.closest(&ray) {
         Met::Hair(hit) => {
             let tangent = scene.strands.tangent(hit.segment, hit.s).normalize_or_zero();
             let theta_o = (-ray.direction.dot(tangent)).clamp(-1.0, 1.0).asin();
-            (scene.hair.albedo(theta_o, hit.h), tangent)
+            (scene.hair.albedo(theta_o, hit.h), tangent, hit.t)
         }
-        Met::Surface(_, _, albedo) => (albedo.to_array(), Vec3::ZERO),
-        Met::Nothing | Met::Light(_) => ([0.0; 3], Vec3::ZERO),
+        Met::Surface(point, _, albedo) => (albedo.to_array(), Vec3::ZERO, point.distance(ray.origin)),
+        Met::Nothing | Met::Light(_) => ([0.0; 3], Vec3::ZERO, 0.0),
     };
     let [r, g, b] = albedo;
-    [r, g, b, tangent.x, tangent.y, tangent.z]
+    [r, g, b, tangent.x, tangent.y, tangent.z, distance]
 }
 
 #[cfg(test)]

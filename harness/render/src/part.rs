@@ -195,7 +195,7 @@ fn parse(bytes: &[u8]) -> Option<Part> {
         let mut first = Vec::new();
         if rest.number()? != 0 {
             for _ in 0..place.len() {
-                let mut numbers = [0.0; 6];
+                let mut numbers = [0.0; 7];
                 for number in &mut numbers {
                     *number = f32::from_le_bytes(rest.bytes()?);
                 }
@@ -217,7 +217,7 @@ mod tests {
         for (k, tile) in (0_u16..).zip(&mut film.tiles) {
             tile.samples = 4;
             tile.seconds = 0.5;
-            tile.first = vec![[0.1, 0.2, 0.3, 1.0, 0.0, f32::from(k)]; if k == 1 { 0 } else { tile.sums.len() }];
+            tile.first = vec![[0.1, 0.2, 0.3, 1.0, 0.0, 0.0, f32::from(k)]; if k == 1 { 0 } else { tile.sums.len() }];
             tile.sums.iter_mut().for_each(|sums| sums.add(Vec3::splat(1.0 / f32::from(k + 3))));
         }
         Part { run: "scene=head seed=1".to_owned(), film, finished: false }

@@ -53,7 +53,10 @@ fn more_samples_and_shards_make_the_picture_of_one_run() {
         let once = channels(&folder, "once.exr");
         let names: Vec<&str> = once.iter().map(|(name, _)| name.as_str()).collect();
         assert!(
-            names.contains(&"albedo.G") && names.contains(&"tangent.X") && names.contains(&"variance"),
+            names.contains(&"albedo.G")
+                && names.contains(&"tangent.X")
+                && names.contains(&"Z")
+                && names.contains(&"variance"),
             "{names:?}"
         );
         image("more.exr", &["--spp", "8"]);
