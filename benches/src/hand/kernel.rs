@@ -166,7 +166,7 @@ fn gaussian<V: Vector>(s: V) -> V {
     p * n.shift_23()
 }
 
-/// What the lobes depend on.
+/// Angles and distances that the lobes are functions of.
 struct Angles<V> {
     half_theta_i: V,
     sin_theta_i: V,

@@ -47,7 +47,7 @@ impl Measure {
 pub struct Errors {
     /// The errors; what noise of the reference adds is subtracted.
     pub values: [f64; 4],
-    /// What was subtracted.
+    /// Noise of the reference, which was subtracted.
     pub own: [f64; 4],
 }
 

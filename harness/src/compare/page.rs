@@ -144,7 +144,7 @@ pub(super) fn predicted(row: &EfficiencyRow, sampler: Sampler) -> f64 {
     row.reference.predicted(sampler)[0]
 }
 
-/// What the verdicts leave out, in sentences with figures.
+/// Findings beyond the verdicts, in sentences with figures.
 fn findings(of: &Comparison) -> Vec<String> {
     [under_constant_light(of), worse_than_uniform(of), rays::finding(of), more_speed(of)]
         .into_iter()

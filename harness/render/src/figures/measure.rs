@@ -120,7 +120,7 @@ pub(super) struct Measured {
     pub(super) integrator: Integrator,
     /// The preset of the hair.
     pub(super) preset: &'static str,
-    /// What the pictures depend on, but for samplers and samples.
+    /// Settings of the pictures, but for samplers and samples.
     of_scene: String,
     /// Seed of the samples.
     seed: u64,

@@ -175,7 +175,7 @@ fn section(measured: &Measured) -> std::io::Result<Section> {
         .tables([rates::table(measured), table(measured)]))
 }
 
-/// What the panels of a scene have in common.
+/// Crops and error maps that all panels of a scene share.
 struct Maps {
     crops: [Crop; 2],
     maps: [Map; 2],

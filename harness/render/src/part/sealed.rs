@@ -15,7 +15,7 @@ pub(super) fn seal(bytes: &mut Vec<u8>) {
     bytes.extend(check.to_le_bytes());
 }
 
-/// What stands before the digest; `None` if that is wrong.
+/// The bytes before the digest; `None` if that is wrong.
 pub(super) fn unseal(bytes: &[u8]) -> Option<&[u8]> {
     let (content, check) = bytes.split_last_chunk()?;
     (digest(content) == u64::from_le_bytes(*check)).then_some(content)
