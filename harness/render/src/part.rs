@@ -2,14 +2,13 @@
 
 mod sealed;
 
-pub(crate) use sealed::{Reader, digest};
+pub(crate) use sealed::{Reader, digest, seal, unseal};
 
 use crate::film::{Crop, Film, Sums, Tile};
 use hairis::Level;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::machine::Machine;
-use sealed::{seal, unseal};
 use std::collections::HashMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

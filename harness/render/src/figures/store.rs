@@ -1,7 +1,7 @@
 //! Finished measurements as files, for a run that is started again after it was stopped.
 
 use crate::film::{Crop, Picture};
-use crate::part::{Reader, build, digest};
+use crate::part::{Reader, build, digest, seal, unseal};
 use crate::protocol::{Errors, Reference, Runs};
 use crate::scene::Scene;
 use crate::transport::Settings;
@@ -149,18 +149,13 @@ fn bytes(measured: &Runs, key: &str) -> Vec<u8> {
     let errors = errors.iter().flat_map(|Errors { values, own }| values.iter().chain(own)).copied();
     let pixels = picture.pixels.iter().flatten().chain(bias).chain(squares).copied();
     bytes.extend(times.into_iter().chain(errors).chain(pixels).flat_map(f64::to_le_bytes));
-    let check = digest(&bytes);
-    bytes.extend(check.to_le_bytes());
+    seal(&mut bytes);
     bytes
 }
 
 fn parse(bytes: &[u8], key: &str) -> Option<Runs> {
-    let (text, check) = bytes.split_last_chunk()?;
-    let rest = text.strip_prefix(MAGIC.as_bytes())?.strip_prefix(b"\n")?;
+    let rest = unseal(bytes)?.strip_prefix(MAGIC.as_bytes())?.strip_prefix(b"\n")?;
     let rest = rest.strip_prefix(key.as_bytes())?.strip_prefix(b"\n")?;
-    if digest(text) != u64::from_le_bytes(*check) {
-        return None;
-    }
     let mut rest = Reader::new(rest);
     let (samples, pictures) = (rest.number()?, u64::from_le_bytes(rest.bytes()?));
     let size = [rest.number()?, rest.number()?];

@@ -10,13 +10,13 @@ pub(crate) fn digest(bytes: &[u8]) -> u64 {
 }
 
 /// Puts a digest of all bytes behind them.
-pub(super) fn seal(bytes: &mut Vec<u8>) {
+pub(crate) fn seal(bytes: &mut Vec<u8>) {
     let check = digest(bytes);
     bytes.extend(check.to_le_bytes());
 }
 
 /// The bytes before the digest; `None` if that is wrong.
-pub(super) fn unseal(bytes: &[u8]) -> Option<&[u8]> {
+pub(crate) fn unseal(bytes: &[u8]) -> Option<&[u8]> {
     let (content, check) = bytes.split_last_chunk()?;
     (digest(content) == u64::from_le_bytes(*check)).then_some(content)
 }
