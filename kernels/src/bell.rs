@@ -82,8 +82,8 @@ impl Bell for Gaussian {
     // Interleaved step by step: each constant is read once for all four, and no dependency chain waits alone.
     #[inline(always)]
     fn four<L: Lanes>(r: [L; 2], tt: [L; 5], trt: [L; 2], glint: [L; 5]) -> [L; 4] {
-        let Pair(Pair(r, tt), Pair(trt, glint)) =
-            gaussian(Pair(Pair(r[0], tt[0] + tt[1]), Pair(trt[0], glint[0] + glint[1])));
+        let Pair(r, tt) = gaussian(Pair(r[0], tt[0] + tt[1]));
+        let Pair(trt, glint) = gaussian(Pair(trt[0], glint[0] + glint[1]));
         [r, tt, trt, glint]
     }
 }

@@ -33,6 +33,23 @@ pub fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     odd.mul_add(x, even)
 }
 
+/// A polynomial of up to ten coefficients, the constant first, by Horner's rule: the fewest instructions and registers, for
+/// where other work fills its waits.
+#[inline(always)]
+pub fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
+    let mut sum = L::splat(coefficients[N - 1]);
+    macro_rules! steps {
+        ($($i:literal)*) => { $(
+            if $i + 1 < N {
+                sum = sum.mul_add(x, L::splat(coefficients[$i]));
+            }
+        )* };
+    }
+    const { assert!(N <= 10, "every coefficient has a step") };
+    steps!(8 7 6 5 4 3 2 1 0);
+    sum
+}
+
 /// `log2(e) / 2`, negative: from a squared distance to the exponent of a Gaussian.
 const TO_EXPONENT: f32 = -0.5 * LOG2_E;
 /// Least exponent of [`gaussian`].
@@ -55,7 +72,7 @@ pub fn gaussian<L: Lanes>(s: L) -> L {
     let n = s.mul_add(to_exponent, magic);
     let f = s.mul_add(to_exponent, magic - n);
     const SCALE: f32 = 4096.0;
-    let p = polynomial(
+    let p = horner(
         f,
         [
             SCALE,
@@ -102,7 +119,7 @@ pub fn gaussian_and_complement<L: Lanes>(s: L) -> (L, L) {
 #[inline(always)]
 pub fn atan_unit<L: Lanes>(t: L) -> L {
     let z = (t * t).interleaved();
-    let p = polynomial(
+    let p = horner(
         z,
         [
             -0.333_329_856_395_721_44,
@@ -118,17 +135,53 @@ pub fn atan_unit<L: Lanes>(t: L) -> L {
     p.mul_add(z * t, t)
 }
 
+/// Half of the angle in `[-pi/2, pi/2]` whose sine and cosine are given, on the unit circle.
+///
+/// Half the angle over its sine is a smooth function of its cosine: no division. It is taken less 1, so that the largest term of the
+/// angle is the sine itself, which is not rounded.
+#[inline(always)]
+pub fn half_angle<L: Lanes>(sin: L, cos: L) -> L {
+    // The constant is a float, and the others are fitted to it.
+    let less_one = horner(
+        cos.interleaved(),
+        [
+            -0.214_601_829_648_017_88,
+            -0.499_999_500_396_212_94,
+            0.392_663_637_608_987_15,
+            -0.332_720_478_606_108_8,
+            0.289_589_927_825_948_5,
+            -0.244_078_159_261_104_4,
+            0.180_320_774_712_520_7,
+            -0.101_908_158_322_096_08,
+            0.036_975_211_674_533_444,
+            -0.006_241_406_884_139_656,
+        ],
+    );
+    less_one.mul_add(sin, sin)
+}
+
 /// Half of `atan2(y, x)` for `x >= 0`, an angle in `[-pi/4, pi/4]`; `length` is that of `(x, y)`. Zero length gives NaN.
 ///
 /// The half-angle tangent of the angle or of its complement, whichever is smaller: half as far off as [`atan_unit`] of
 /// `y / (length + x)` is at the ends.
 #[inline(always)]
 pub fn half_atan2<L: Lanes>(y: L, x: L, length: L) -> L {
+    let [quarter, rest] = half_atan2_parts(y, x, length);
+    quarter + rest
+}
+
+/// [`half_atan2`] as a sum of two: `pi/4` with the sign of the angle beyond 56 degrees, else 0; and what is left, with more digits
+/// than the sum.
+#[inline(always)]
+pub fn half_atan2_parts<L: Lanes>(y: L, x: L, length: L) -> [L; 2] {
     let c = L::splat;
     let across = y.abs();
     let half = atan_eighth_turn(L::quotient(across.min(x), length + across.max(x)));
-    let rest = (c(FRAC_PI_4) - half) + c(0.5 * FRAC_PI_2_LOW);
-    L::select(x.lt(across), rest, half).times_sign(y)
+    let (steep, quarter) = (x.lt(across), c(FRAC_PI_4));
+    let less = c(0.5 * FRAC_PI_2_LOW) - half;
+    let near = (x * c(1.5)).lt(across);
+    let rest = L::select(near, less, L::select(steep, quarter + less, half));
+    [L::keep(near, quarter).times_sign(y), rest.times_sign(y)]
 }
 
 /// `atan t` for `|t| <= tan(pi/8)`.
@@ -150,8 +203,8 @@ pub fn atan2_upper<L: Lanes>(y: L, x: L) -> L {
     let steep = across.lt(y);
     let (small, large) = (L::select(steep, across, y), L::select(steep, y, across));
     let a = atan_unit(L::quotient(small, large.max(c(f32::MIN_POSITIVE))));
-    let a = L::select(steep, (c(FRAC_PI_2) - a) + c(FRAC_PI_2_LOW), a);
-    L::select(x.lt(c(0.0)), (c(PI) - a) + c(2.0 * FRAC_PI_2_LOW), a)
+    let a = L::select(steep, c(FRAC_PI_2) - (a - c(FRAC_PI_2_LOW)), a);
+    L::select(x.lt(c(0.0)), c(PI) - (a - c(2.0 * FRAC_PI_2_LOW)), a)
 }
 
 /// `(sin x, cos x)` for `|x| <= pi/2`.
@@ -171,23 +224,31 @@ pub fn sin_cos_twice<L: Lanes>(x: L) -> (L, L) {
 
 /// `(sin x, cos x)` for `|x| <= pi/2` to an absolute error: a third less work than [`sin_cos_twice`], whose cosine
 /// keeps its digits where it vanishes.
-///
-/// For inversion: an error of 2e-7 in the angle that a number is mapped to is one of 2e-7 in the number.
 #[inline(always)]
 pub fn sin_cos_absolute<L: Lanes>(x: L) -> (L, L) {
     let z = (x * x).interleaved();
-    let p = polynomial(
+    let p = horner(
         z,
         [-0.499_999_314_546_584_9, 0.041_663_989_424_705_51, -0.001_385_592_622_682_452_2, 2.319_435_589_015_484e-5],
     );
     (sin_half_turn(x), p.mul_add(z, L::splat(1.0)))
 }
 
+/// Numerator and denominator of `tan x` for `|x| <= pi/2`.
+///
+/// For inversion: an error of 1e-7 in the angle that a number is mapped to is one of 1e-7 in the number.
+#[inline(always)]
+pub fn tan_half_turn<L: Lanes>(x: L) -> (L, L) {
+    let z = (x * x).interleaved();
+    let numerator = horner(z, [1.000_000_1, -0.112_152_473, 0.001_132_496_5]);
+    (x * numerator, horner(z, [1.0, -0.445_485, 0.016_292_556_6]))
+}
+
 /// `sin x` for `|x| <= pi/2`.
 #[inline(always)]
 pub fn sin_half_turn<L: Lanes>(x: L) -> L {
     let z = x * x;
-    let p = polynomial(
+    let p = horner(
         z,
         [-0.166_666_612_029_075_62, 0.008_333_072_066_307_068, -0.000_198_096_604_435_704_65, 2.606_138_195_915_264e-6],
     );

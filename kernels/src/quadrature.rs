@@ -36,17 +36,17 @@ pub const GAUSS_LEGENDRE_32: [(f32, f32); 32] = [
     (0.998631930925, 0.00350930500474),
 ];
 
-/// Nodes of [`GRADED`].
-const NODES: usize = 72;
-
 /// A rule whose nodes crowd towards both ends, as `v^5 / (v^5 + (1 - v)^5)` does for even `v`: each node, 1 less it, and its
 /// weight.
 ///
 /// For integrands that change on any scale next to an end: the nodes next to it are 2e-11 away.
-pub(crate) const GRADED: [[f32; 3]; NODES] = graded();
+pub(crate) const GRADED: [[f32; 3]; 72] = graded();
+
+/// The same rule with two thirds of the nodes: a digit less.
+pub(crate) const COARSE: [[f32; 3]; 48] = graded();
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "rounding to a float is the purpose")]
-const fn graded() -> [[f32; 3]; NODES] {
+const fn graded<const NODES: usize>() -> [[f32; 3]; NODES] {
     let mut nodes = [[0.0; 3]; NODES];
     let mut k = 0;
     while k < NODES {

@@ -1,7 +1,7 @@
 //! The Cauchy distribution cut to an interval: the published sampler's longitude, TT azimuth and glint azimuth.
 
 use crate::Lanes;
-use crate::math::{atan2_upper, sin_cos_absolute};
+use crate::math::{atan2_upper, tan_half_turn};
 
 /// A Cauchy distribution of width 1 centred on 0 and cut to `[lo, hi]`, as the angles of its ends: with
 /// `x = tan y`, `y` is uniform on an interval of length `span` about `mid`.
@@ -13,9 +13,8 @@ use crate::math::{atan2_upper, sin_cos_absolute};
 /// their digits where the interval lies far from the centre, as it does for a narrow lobe shifted past the pole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TruncatedCauchy<L> {
-    /// Sine of the middle angle, and its cosine, times a positive number: only their ratio is read.
-    pub(crate) sin_mid: L,
-    pub(crate) cos_mid: L,
+    /// Tangent of the middle angle.
+    pub(crate) tan_mid: L,
     pub(crate) span: L,
 }
 
@@ -32,19 +31,21 @@ impl<L: Lanes> TruncatedCauchy<L> {
         let inside = L::splat(0.0).lt(cos_sum);
         let large = r + cos_sum.abs();
         Self {
-            sin_mid: L::select(inside, sin_sum, large.times_sign(sin_sum)),
-            cos_mid: L::select(inside, large, sin_sum.abs()),
+            tan_mid: L::quotient(
+                L::select(inside, sin_sum, large.times_sign(sin_sum)),
+                L::select(inside, large, sin_sum.abs()),
+            ),
             span: atan2_upper(width * (hi - lo), lo.mul_add(hi, width_sq)),
         }
     }
 
-    /// The value at cdf `xi`, in widths.
+    /// The value at cdf `1/2 + from_middle`, in widths.
     ///
     /// The ends of every interval of the models are less than `1e5` widths from the centre, so that the denominator
     /// stays further above 0 than it is rounded.
     #[inline(always)]
-    pub(crate) fn invert(self, xi: L) -> L {
-        let (sin, cos) = sin_cos_absolute((xi - L::splat(0.5)) * self.span);
-        L::quotient(self.cos_mid.mul_add(sin, self.sin_mid * cos), self.cos_mid.mul_sub(cos, self.sin_mid * sin))
+    pub(crate) fn invert(self, from_middle: L) -> L {
+        let (n, d) = tan_half_turn(from_middle * self.span);
+        L::quotient(self.tan_mid.mul_add(d, n), self.tan_mid.mul_add(-n, d))
     }
 }

@@ -4,8 +4,9 @@ use crate::support::{Draws, LargestError, narrow};
 use crate::tolerance as bound;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use hairis::math::{
-    atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_and_complement, half_atan2, log2, log2_one_plus,
-    normal_tail_inverse, normal_tail_ratio, sin_cos_absolute, sin_cos_twice,
+    atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_and_complement, half_angle, half_atan2,
+    half_atan2_parts, log2, log2_one_plus, normal_tail_inverse, normal_tail_ratio, sin_cos_absolute, sin_cos_twice,
+    tan_half_turn,
 };
 use hairis::reference::Real;
 use hairis::wide::f32x8;
@@ -82,6 +83,15 @@ fn sin_absolute<L: Lanes>([x, _]: [L; 2]) -> L {
 }
 fn cos_absolute<L: Lanes>([x, _]: [L; 2]) -> L {
     sin_cos_absolute(x).1
+}
+fn half_of<L: Lanes>([sin, cos]: [L; 2]) -> L {
+    half_angle(sin, cos)
+}
+fn numerator<L: Lanes>([x, _]: [L; 2]) -> L {
+    tan_half_turn(x).0
+}
+fn denominator<L: Lanes>([x, _]: [L; 2]) -> L {
+    tan_half_turn(x).1
 }
 
 #[test]
@@ -184,6 +194,56 @@ fn half_atan2_is_accurate_at_both_ends() {
     absolute.check("HALF_ATAN2_RAD", bound::HALF_ATAN2_RAD);
     lanes.check("HALF_ATAN2_LANES", bound::HALF_ATAN2_LANES);
     assert_eq!([half_atan2(0.0_f32, 1.0, 1.0), half_atan2(-1.0_f32, 0.0, 1.0)], [0.0, -FRAC_PI_4], "the ends");
+}
+
+/// Next to a quarter turn the parts have the digits that their sum has lost.
+#[test]
+fn the_parts_of_half_atan2_are_accurate_next_to_a_quarter_turn() {
+    let mut worst = LargestError::default();
+    let mut draws = Draws(7);
+    for _ in 0..POINTS {
+        let (y, x) = (narrow(draws.sign()), narrow(draws.scale(1e-9, 0.02)));
+        let [base, rest] = half_atan2_parts(y, x, (x * x + y * y).sqrt());
+        assert_eq!(base, FRAC_PI_4 * y, "y {y} x {x:e}");
+        let want = 0.5 * f64::from(y).atan2(f64::from(x));
+        worst.see((f64::from(base) + f64::from(rest) - want).abs(), || format!("y {y} x {x:e}"));
+    }
+    worst.check("HALF_ATAN2_PARTS_RAD", bound::HALF_ATAN2_PARTS_RAD);
+}
+
+#[test]
+fn half_of_an_angle_from_its_sine_and_cosine_is_accurate() {
+    let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
+    let mut draws = Draws(8);
+    for i in 0..POINTS {
+        let angle = draws.sign()
+            * match i % 3 {
+                0 => draws.scale(1e-9, 1.0),
+                1 => f64::from(FRAC_PI_2) - draws.scale(1e-9, 1.0),
+                _ => draws.between(0.0, f64::from(FRAC_PI_2)),
+            };
+        let (sin, cos) = (narrow(angle.sin()), narrow(angle.cos()));
+        let (got, want) = (both([sin, cos], half_of, half_of, &mut lanes), 0.5 * f64::from(sin).atan2(f64::from(cos)));
+        worst.see((f64::from(got) - want).abs(), || format!("{angle:e}"));
+    }
+    worst.check("HALF_ANGLE_RAD, the rounding of sine and cosine included", bound::HALF_ANGLE_RAD);
+    lanes.check("HALF_ANGLE_LANES", bound::HALF_ANGLE_LANES);
+    assert_eq!(half_angle(0.0_f32, 1.0), 0.0, "the middle");
+    assert!(half_angle(f32::NAN, 0.0).is_nan() && half_angle(0.5, f32::NAN).is_nan(), "NaN");
+}
+
+#[test]
+fn numerator_and_denominator_of_a_tangent_are_accurate() {
+    let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
+    for x in scan(-FRAC_PI_2, FRAC_PI_2) {
+        let n = both([x, 0.0], numerator, numerator, &mut lanes);
+        let d = both([x, 0.0], denominator, denominator, &mut LargestError::default());
+        worst.see((f64::from(n).atan2(f64::from(d)) - f64::from(x)).abs(), || format!("{x:e}"));
+    }
+    worst.check("TAN_HALF_TURN_RAD", bound::TAN_HALF_TURN_RAD);
+    lanes.check("TAN_HALF_TURN_LANES", bound::MATH_LANES);
+    assert_eq!(tan_half_turn(0.0_f32), (0.0, 1.0), "at 0");
+    assert!(tan_half_turn(f32::NAN).0.is_nan(), "NaN");
 }
 
 #[test]

@@ -5,8 +5,8 @@ use hairis_conformance::published::Rows;
 
 /// The published sampler.
 pub(crate) const PUBLISHED: Rows = Rows {
-    // 4.6e-5, 8.8e-6, 7.3e-5, 8.7e-6: the efficiency grid, and the presets
-    grid: [6e-5, 1e-5, 1e-4, 1e-5],
+    // 2.0e-5, 8.8e-6, 7.3e-5, 8.7e-6: the efficiency grid, and the presets
+    grid: [2.6e-5, 1e-5, 1e-4, 1e-5],
     // 2.0e-4, 2.0e-5, 2.0e-4, 2.2e-5: every width 0.5 degrees
     narrow: [2.5e-4, 2.5e-5, 2.5e-4, 2.8e-5],
     // 7.7e-7, 7.1e-7, 2.0e-6, 9.3e-7: every width 60 degrees
@@ -53,8 +53,8 @@ pub(crate) const PUBLISHED: Rows = Rows {
 
 /// The matched samplers.
 pub(crate) const MATCHED: Rows = Rows {
-    // 1.5e-5, 1.4e-5, 4.3e-5, 4.3e-5
-    grid: [1.9e-5, 1.9e-5, 5.6e-5, 5.6e-5],
+    // 2.0e-5 (S is that of the published sampler's model), 1.4e-5, 4.3e-5, 4.3e-5
+    grid: [2.6e-5, 1.9e-5, 5.6e-5, 5.6e-5],
     // 1e-4, 1e-4, 1.6e-4, 1.6e-4
     narrow: [1.4e-4, 1.4e-4, 2.1e-4, 2.1e-4],
     // 6.7e-7, 9e-7, 1.9e-6, 1.9e-6

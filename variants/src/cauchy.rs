@@ -1,7 +1,7 @@
 //! The all-Cauchy variant: a bell with wider tails that the published sampler follows exactly.
 
 use core::f32::consts::FRAC_PI_2;
-use hairis::math::{atan_unit, sin_cos_absolute};
+use hairis::math::{atan_unit, tan_half_turn};
 use hairis::{Bell, Hair, Lanes, Matched, MatchedBell, ParamError};
 
 /// The bell `1 / (1 + s)`, a Cauchy whose scale is the width: every Gaussian of the published model becomes this.
@@ -107,7 +107,7 @@ impl MatchedBell for Cauchy {
 
     #[inline(always)]
     fn invert<L: Lanes>(origin: L, sum: L) -> L {
-        let (sin, cos) = sin_cos_absolute(sum);
-        L::quotient(origin.mul_add(cos, sin), origin.mul_add(-sin, cos))
+        let (n, d) = tan_half_turn(sum);
+        L::quotient(origin.mul_add(d, n), origin.mul_add(-n, d))
     }
 }

@@ -239,10 +239,10 @@ struct Math(f32x8, f32x8);
 
 impl Kernel for Math {
     type Constant = f32x8;
-    type Output = [f32x8; 16];
+    type Output = [f32x8; 18];
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 16]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 18]
     where
         f32x8: Broadcast<L>,
     {
@@ -251,6 +251,7 @@ impl Kernel for Math {
         let (gaussian, complement) = math::gaussian_and_complement(y * L::splat(90.0));
         let [(a, b), (c, d), (e, f)] =
             [math::sin_cos_half_turn(x), math::sin_cos_twice(x * L::splat(0.5)), math::sin_cos_absolute(x)];
+        let (tan, over) = math::tan_half_turn(x);
         let above = y + L::splat(1e-7);
         [
             math::gaussian(y * L::splat(170.0)).store(),
@@ -264,6 +265,8 @@ impl Kernel for Math {
             c.store(),
             d.store(),
             (e + f).store(),
+            (tan / over).store(),
+            math::half_angle(x, y).store(),
             math::sin_half_turn(x).store(),
             math::log2(above).store(),
             math::log2_one_plus(x * L::splat(0.2)).store(),

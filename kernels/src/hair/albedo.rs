@@ -2,7 +2,7 @@
 
 use super::{HairLobes, HairView};
 use crate::math::{FRAC_PI_2_LOW, half_atan2, sin_cos_half_turn};
-use crate::quadrature::GRADED;
+use crate::quadrature::{COARSE, GRADED};
 use crate::{Bell, Broadcast, Lanes, PerLobe};
 use crate::{lanes3, store3};
 use core::f32::consts::FRAC_PI_2;
@@ -69,7 +69,7 @@ pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> 
     let (r, tt, trt) = (lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt));
     // The azimuthal term of R and TRT-g, cos(phi / 2), has an area of 4.
     let four = L::splat(4.0);
-    let area = longitudes::<B, L, C>(view);
+    let area = longitudes::<B, L, C, _>(view, &GRADED);
     PerLobe([
         lobe(view, 0, area[0] * four, r),
         lobe(view, 1, area[1] * hair.azimuth_area[0].lanes(), tt),
@@ -87,12 +87,12 @@ fn lobe<L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize, area: L, color:
     [(albedo * color[0]).min(most), (albedo * color[1]).min(most), (albedo * color[2]).min(most)]
 }
 
-/// The view terms with each channel of the lobes divided by its albedo where that is above 1, to within 1e-4.
+/// The view terms with each channel of the lobes divided by its albedo where that is above 1, to within 2e-4.
 #[inline(always)]
 pub(crate) fn conserve<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> HairView<L::Stored> {
     let hair = &view.lobes;
     let (four, most) = (L::splat(4.0), L::splat(f32::MAX));
-    let [r, tt, trt] = longitudes::<B, L, L::Stored>(view);
+    let [r, tt, trt] = longitudes::<B, L, L::Stored, _>(view, &COARSE);
     let glints = hair.azimuth_area[1].lanes() * hair.strength[3].lanes();
     let r = r * four * hair.strength[0].lanes();
     let tt = tt * hair.azimuth_area[0].lanes() * hair.strength[1].lanes();
@@ -115,8 +115,12 @@ pub(crate) fn conserve<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> HairVie
 
 /// [`longitudinal`] of R, TT and TRT.
 #[inline(always)]
-fn longitudes<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> [L; 3] {
-    [longitudinal::<B, L, C>(view, 0), longitudinal::<B, L, C>(view, 1), longitudinal::<B, L, C>(view, 2)]
+fn longitudes<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(view: &HairView<C>, rule: &[[f32; 3]; N]) -> [L; 3] {
+    [
+        longitudinal::<B, L, C, N>(view, 0, rule),
+        longitudinal::<B, L, C, N>(view, 1, rule),
+        longitudinal::<B, L, C, N>(view, 2, rule),
+    ]
 }
 
 /// Integral of `M cos^2 theta_i / cos^2 theta_d` over `theta_i`.
@@ -124,7 +128,11 @@ fn longitudes<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> [L; 3] 
 /// Angles are distances in `theta_h` from the nearer pole, and cosines products of what does not cancel: no digit of a small one
 /// is lost.
 #[inline(always)]
-fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize) -> L {
+fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(
+    view: &HairView<C>,
+    l: usize,
+    rule: &[[f32; 3]; N],
+) -> L {
     let c = L::splat;
     let (zero, one, two) = (c(0.0), c(1.0), c(2.0));
     let (beta, inv_beta) = (view.lobes.beta[l].lanes(), view.lobes.inv_beta[l].lanes());
@@ -140,8 +148,8 @@ fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize
     let (sin_pole, cos_pole) = sin_cos_half_turn(to_pole);
     let mut sum = zero;
     let mut k = 0;
-    while k < GRADED.len() {
-        let (x, dx) = nodes.at(GRADED[k]);
+    while k < N {
+        let (x, dx) = nodes.at(rule[k]);
         let (above, below) = ((x - from) * beta, (to - x) * beta);
         let (near, far) = sin_cos_half_turn(zero.max(above.min(below)));
         let is_low = above.lt(below);

@@ -2,26 +2,27 @@
 
 use super::{GRAZING, HairView};
 use crate::lanes3;
-use crate::math::{FRAC_PI_2_LOW, atan_unit, half_atan2};
+use crate::math::{atan_unit, half_angle};
 use crate::{Bell, Broadcast, Lanes, Vec3x};
 use core::f32::consts::FRAC_PI_2;
 
 /// Angles of a direction relative to the shading point.
 #[derive(Clone, Copy)]
 pub(crate) struct Angles<L: Lanes> {
-    /// Half of `theta_i`.
-    pub(crate) half_theta_i: L,
+    /// Half of `theta_i`, plus [`HairView::quarter_o`].
+    pub(super) half_theta_i_plus_quarter: L,
     pub(crate) sin_theta_i: L,
     pub(crate) cos_theta_i: L,
     /// `1 / cos theta_i`.
     pub(crate) inv_cos_theta_i: L,
-    /// Half of `|phi|`, and half of `pi - |phi|` formed without a difference where it is small.
-    half_phi: L,
-    half_back: L,
+    /// Half of `|phi|`, or of `pi - |phi|`: the smaller of both has digits where it vanishes.
+    pub(super) half: L,
+    /// Mask of the lanes where it is half of `|phi|`.
+    pub(super) of_phi: L::Mask,
     /// `cos(phi / 2)`.
-    cos_half_phi: L,
+    pub(super) cos_half_phi: L,
     /// Mask of `|phi| < pi/2`.
-    front: L::Mask,
+    pub(super) front: L::Mask,
 }
 
 /// Lobe terms at these angles.
@@ -55,45 +56,25 @@ impl<L: Lanes> Angles<L> {
         // 2 is no direction; the comparison is false for the infinities of a sum that overflowed.
         let sound = L::and((cos_o * c(GRAZING)).lt(reach), wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)));
 
-        // A division of its own: next to opposite poles theta_i and theta_o cancel, and each digit counts.
-        let half_theta_i = half_atan2(wi.x, cos_theta_i, one);
+        // Next to opposite poles theta_i and theta_o cancel: the large terms first, without rounding there.
+        let half_theta_i_plus_quarter = half_angle(wi.x, cos_theta_i) + view.quarter_o.lanes();
         let reciprocal = L::quotient(one, far * reach);
         let inv_far = reciprocal * reach;
         let tau = cross * inv_far;
         let inv_reach = reciprocal * far;
         let cos_half = (far * inv_reach * c(0.5)).sqrt();
-        let inv_cos = inv_reach * cos_o;
         let front = c(0.0).lt(dot);
-        let sin_cos = [tau * cos_half, cos_half];
-        let half = atan_unit(tau);
-        let angles =
-            Self::from_parts(half_theta_i, wi.x, cos_theta_i, inv_cos, [half, complement(half)], sin_cos, front);
-        (angles, sound)
-    }
-
-    /// The angles of `theta_i` and of an azimuth. The azimuth is given by half of the smaller of `|phi|` and `pi - |phi|`, its
-    /// complement, its sine and its cosine.
-    #[inline(always)]
-    pub(super) fn from_parts(
-        half_theta_i: L,
-        sin_theta_i: L,
-        cos_theta_i: L,
-        inv_cos_theta_i: L,
-        [half, rest]: [L; 2],
-        [sin_half, cos_half]: [L; 2],
-        front: L::Mask,
-    ) -> Self {
-        let (half_phi, half_back) = L::swap(front, half, rest);
-        Self {
-            half_theta_i,
-            sin_theta_i,
+        let angles = Self {
+            half_theta_i_plus_quarter,
+            sin_theta_i: wi.x,
             cos_theta_i,
-            inv_cos_theta_i,
-            half_phi,
-            half_back,
-            cos_half_phi: L::select(front, cos_half, sin_half),
+            inv_cos_theta_i: inv_reach * cos_o,
+            half: atan_unit(tau),
+            of_phi: front,
+            cos_half_phi: L::select(front, cos_half, tau * cos_half),
             front,
-        }
+        };
+        (angles, sound)
     }
 
     /// The lobe terms at these angles.
@@ -103,12 +84,16 @@ impl<L: Lanes> Angles<L> {
         let one = c(1.0);
         // Distances from the centres of the bells in widths, squared.
         let hair = &view.lobes;
+        let half_theta_i = self.half_theta_i_plus_quarter;
         // Alone: in vectors of them and numbers next to them in memory, squares that nobody uses overflow.
-        let x_r = ((self.half_theta_i + view.shift[0].lanes()) * hair.inv_beta[0].lanes()).alone();
-        let x_tt = ((self.half_theta_i + view.shift[1].lanes()) * hair.inv_beta[1].lanes()).alone();
-        let x_trt = ((self.half_theta_i + view.shift[2].lanes()) * hair.inv_beta[2].lanes()).alone();
-        let y_tt = (self.half_back * hair.inv_half_gamma[0].lanes()).alone();
-        let y_g = ((self.half_phi - hair.half_phi_g.lanes()) * hair.inv_half_gamma[1].lanes()).alone();
+        let x_r = ((half_theta_i + view.shift[0].lanes()) * hair.inv_beta[0].lanes()).alone();
+        let x_tt = ((half_theta_i + view.shift[1].lanes()) * hair.inv_beta[1].lanes()).alone();
+        let x_trt = ((half_theta_i + view.shift[2].lanes()) * hair.inv_beta[2].lanes()).alone();
+        // Their signs are not used: where `half` is of |phi| its distance from pi/2 is that of TT.
+        let from_tt = self.half - L::keep(self.of_phi, c(FRAC_PI_2));
+        let from_glint = self.half - L::select(self.of_phi, hair.half_phi_g.lanes(), hair.half_back_g.lanes());
+        let y_tt = (from_tt * hair.inv_half_gamma[0].lanes()).alone();
+        let y_g = (from_glint * hair.inv_half_gamma[1].lanes()).alone();
         let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);
 
         // The Cauchy value of each, from two divisions. Each of the five is at most 1e9, so that four of them
@@ -149,12 +134,6 @@ impl<L: Lanes> Angles<L> {
 #[inline(always)]
 fn one_plus_square<L: Lanes>(x: L) -> L {
     x.mul_add(x, L::splat(1.0)).alone()
-}
-
-/// `pi/2` minus an angle.
-#[inline(always)]
-pub(super) fn complement<L: Lanes>(angle: L) -> L {
-    (L::splat(FRAC_PI_2) - angle) + L::splat(FRAC_PI_2_LOW)
 }
 
 impl<L: Lanes> LobeTerms<L> {

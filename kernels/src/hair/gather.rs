@@ -9,11 +9,8 @@ use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 crate::lane_struct! {
     /// The published sampler's constants of a material; arrays of two are TT and the glints.
     pub struct HairSampler {
-        /// The azimuth's truncated Cauchy on one side: sine of the middle of its angles, to a
-        /// common scale with the cosine.
-        pub azimuth_sin: [C; 2],
-        /// Cosine of the middle.
-        pub azimuth_cos: [C; 2],
+        /// The azimuth's truncated Cauchy on one side: tangent of the middle of its angles.
+        pub azimuth_middle: [C; 2],
         /// Angle from end to end, rad; below 0 for TT, whose cdf runs towards its centre.
         pub azimuth_span: [C; 2],
         /// Normalisation of the azimuthal density, per rad.
@@ -40,10 +37,8 @@ crate::lane_struct! {
     pub struct HairGather {
         /// The lobes as seen from `wo`.
         pub view: (HairView<C>),
-        /// The longitude's truncated Cauchy: sine of the middle of its angles, to a common scale with the cosine.
-        pub longitude_sin: [C; 4],
-        /// Cosine of the middle.
-        pub longitude_cos: [C; 4],
+        /// The longitude's truncated Cauchy: tangent of the middle of its angles.
+        pub longitude_middle: [C; 4],
         /// Angle from end to end (A - B in the paper), rad.
         pub longitude_span: [C; 4],
         /// Density of each lobe but for its shape and for `1 / cos theta_i`.
@@ -90,8 +85,7 @@ impl HairMaterial<f32> {
         let [b_r, b_tt, b_trt, _] = lobes.beta;
         let (p, bounds, _) = selection(energies(&[b_r, b_tt, b_trt], gamma_tt, gamma_g, params));
         let sampler = HairSampler {
-            azimuth_sin: [tt.sin_mid, glint.sin_mid],
-            azimuth_cos: [tt.cos_mid, glint.cos_mid],
+            azimuth_middle: [tt.tan_mid, glint.tan_mid],
             azimuth_span: [-tt.span, glint.span],
             azimuth_density: [f32::quotient(0.5, tt.span * gamma_tt), f32::quotient(0.5, glint.span * gamma_g)],
             selection: p,
@@ -125,11 +119,10 @@ fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -
     energy.map(|e| if e > 0.0 { (e / largest).max(LEAST_SHARE) as f32 } else { 0.0 })
 }
 
-/// Truncated Cauchy of a lobe's longitude, with `shift = theta_o / 2 - alpha`.
+/// Truncated Cauchy of a lobe's longitude: the ends are those of all lobes, but for the shift.
 #[inline(always)]
-fn longitude<L: Lanes, C: Broadcast<L>>(shift: L, beta: C) -> TruncatedCauchy<L> {
-    let quarter = L::splat(FRAC_PI_4);
-    TruncatedCauchy::new(shift - quarter, shift + quarter, beta.lanes())
+fn longitude<L: Lanes, C: Broadcast<L>>([lo, hi]: [L; 2], shift: L, beta: C) -> TruncatedCauchy<L> {
+    TruncatedCauchy::new(lo + shift, hi + shift, beta.lanes())
 }
 
 /// The shading point of a material seen from `wo`.
@@ -138,10 +131,12 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
     let c = L::splat;
     let (hair, sampler) = (&m.lobes, &m.sampler);
     let view = view::prepare(hair, wo);
+    let quarter_o = view.quarter_o.lanes();
+    let ends = [quarter_o - c(FRAC_PI_4), quarter_o + c(FRAC_PI_4)];
     let [r, tt, trt] = [
-        longitude::<L, C>(view.shift[0].lanes(), hair.beta[0]),
-        longitude::<L, C>(view.shift[1].lanes(), hair.beta[1]),
-        longitude::<L, C>(view.shift[2].lanes(), hair.beta[2]),
+        longitude::<L, C>(ends, view.shift[0].lanes(), hair.beta[0]),
+        longitude::<L, C>(ends, view.shift[1].lanes(), hair.beta[1]),
+        longitude::<L, C>(ends, view.shift[2].lanes(), hair.beta[2]),
     ];
     let span = [r.span, tt.span, trt.span];
 
@@ -168,8 +163,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
 
     HairGather {
         view,
-        longitude_sin: store4([r.sin_mid, tt.sin_mid, trt.sin_mid, trt.sin_mid]),
-        longitude_cos: store4([r.cos_mid, tt.cos_mid, trt.cos_mid, trt.cos_mid]),
+        longitude_middle: store4([r.tan_mid, tt.tan_mid, trt.tan_mid, trt.tan_mid]),
         longitude_span: store4([span[0], span[1], span[2], span[2]]),
         density: store4(density),
         weight: store4(weight),

@@ -1,9 +1,8 @@
 //! The published sampler: a lobe by its energy, then longitude and azimuth by inversion (section 3.2 of the paper).
 
-use super::angles::complement;
 use super::{Angles, HairGather, HairView};
 use crate::lanes3;
-use crate::math::{atan_unit, sin_cos_absolute, sin_cos_twice};
+use crate::math::{half_angle, sin_cos_absolute, sin_cos_twice};
 use crate::simd::pair::Pair;
 use crate::truncated::TruncatedCauchy;
 use crate::{Broadcast, Lanes, Vec3x};
@@ -13,7 +12,7 @@ use core::f32::consts::FRAC_PI_4;
 #[inline(always)]
 pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> (Vec3x<L>, L::Index, Angles<L>) {
     let c = L::splat;
-    let (zero, one) = (c(0.0), c(1.0));
+    let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
     let (view, hair, sampler) = (&gather.view, &gather.view.lobes, &gather.sampler);
     let choice = L::search(xi[0], lanes3(&sampler.bounds), 3);
     // The second operand wins over NaN: that of a number stays, and the sample has no inclination, or no density.
@@ -22,15 +21,17 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
     // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Interleaved with the azimuth.
     let folded = FoldedXi::of(xi[2]);
     let both = TruncatedCauchy {
-        sin_mid: Pair(C::look_up_three(&gather.longitude_sin, choice), C::look_up_half(&sampler.azimuth_sin, choice)),
-        cos_mid: Pair(C::look_up_three(&gather.longitude_cos, choice), C::look_up_half(&sampler.azimuth_cos, choice)),
+        tan_mid: Pair(
+            C::look_up_three(&gather.longitude_middle, choice),
+            C::look_up_half(&sampler.azimuth_middle, choice),
+        ),
         span: Pair(C::look_up_three(&gather.longitude_span, choice), C::look_up_half(&sampler.azimuth_span, choice)),
     };
-    let Pair(x, y) = both.invert(Pair(along, one - folded.across));
-    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&view.shift, choice));
+    let Pair(x, y) = both.invert(Pair(along - half, half - folded.across));
+    let from_quarter = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&view.shift, choice));
     let center = L::keep(L::is_index(choice, 3), hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
-    let (wi, angles) = direction_from_angles(view, choice, half_theta_i, folded, psi);
+    let (wi, angles) = direction_from_angles(view, choice, from_quarter, folded, psi);
     (wi, choice, angles)
 }
 
@@ -52,17 +53,17 @@ impl<L: Lanes> FoldedXi<L> {
     }
 }
 
-/// The direction at half a longitude and at an azimuth, and its angles. Angles that keep their digits in the direction are
+/// The direction at half a longitude, less `quarter_o`, and at an azimuth, and its angles. Angles that keep their digits in the direction are
 /// reused, not recomputed from it.
 ///
 /// The azimuth is on the side of `folded`. `psi` is half of `|phi|` for the glints and half of `pi - |phi|` for TT; R and TRT-g
-/// take it from `folded` alone. Where bells are narrow, rounding may take it a little out of `[0, pi/2]`: the magnitude of its
-/// cosine folds it at one end, and `rotation` turns it back at the other.
+/// take it from `folded` alone. Where bells are narrow, rounding may take it a little out of `[0, pi/2]`: the cosine is cut at one
+/// end, and `rotation` turns it back at the other.
 #[inline(always)]
 pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     view: &HairView<C>,
     choice: L::Index,
-    half_theta_i: L,
+    from_quarter: L,
     FoldedXi { side, across }: FoldedXi<L>,
     psi: L,
 ) -> (Vec3x<L>, Angles<L>) {
@@ -71,7 +72,9 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let is_tt = L::is_index(choice, 1);
     let is_glint = L::is_index(choice, 3);
     let is_bell = L::or(is_tt, is_glint);
-    let (half_theta_i, psi) = L::interleave(half_theta_i, psi);
+    let (from_quarter, psi) = L::interleave(from_quarter, psi);
+    let quarter_o = view.quarter_o.lanes();
+    let half_theta_i = from_quarter - quarter_o;
     let (sin_theta_i, cos_theta_i) = sin_cos_twice(half_theta_i);
     // Rounding may take the last of a tail past the pole: no direction, and no density.
     let cos_theta_i = zero.max(cos_theta_i);
@@ -79,21 +82,20 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     // R and TRT-g need no arcsine: sin(phi/2) = 2 xi - 1.
     let (sin_bell, cos_bell) = sin_cos_absolute(psi);
     let sin_psi = L::select(is_bell, sin_bell, across);
-    let cos_psi = L::select(is_bell, cos_bell.abs(), (one - across * across).sqrt());
-
-    // Half of |phi| or of pi - |phi|, whichever is smaller: psi itself, or from the sine and cosine that the direction is made
-    // of. Next to pi R and TRT-g vanish, and take all of its digits; so do glints, whose psi is then next to pi/2, where the
-    // cosine has few. A division of its own: nothing here waits for the longitude.
-    let (small, large) = (sin_psi.min(cos_psi), sin_psi.max(cos_psi));
+    let cos_psi = L::select(is_bell, zero.max(cos_bell), (one - across * across).sqrt());
+    let (cos_half_phi, sin_half_phi) = L::swap(is_tt, sin_psi, cos_psi);
+    // Half of |phi| or of pi - |phi|, whichever is smaller: psi itself, or from the sine and cosine that the direction is made of.
+    // Next to pi R and TRT-g vanish, and TT takes all of the digits there; so it does for a glint, whose psi is next to pi/2.
     let as_drawn = L::and(is_bell, psi.lt(c(FRAC_PI_4)));
-    let angle = L::select(as_drawn, psi, atan_unit(L::quotient(small, large)));
+    let (small, large) = (sin_psi.min(cos_psi), sin_psi.max(cos_psi));
+    let half = L::select(as_drawn, psi, half_angle(small + small, large));
+    let of_phi = sin_half_phi.lt(cos_half_phi);
 
     // The direction, from the double angle; phi_i = phi_o - phi. The sides of R and TRT-g are the other way round.
     let sin_psi_sq = sin_psi * sin_psi;
     let sin_twice = (sin_psi + sin_psi) * cos_psi;
-    let cos_twice = cos_psi.mul_sub(cos_psi, sin_psi_sq);
+    let cos_phi = L::negate(is_tt, cos_psi.mul_sub(cos_psi, sin_psi_sq));
     let sin_phi = sin_twice.times_sign(L::negate(is_bell, side));
-    let cos_phi = L::negate(is_tt, cos_twice);
     // The length absorbs the distance of sine and cosine from the unit circle.
     let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;
     let [v_o, w_o, cos_o] = lanes3(&view.plane_o);
@@ -102,20 +104,21 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by;
     let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by;
 
-    // The angle, rotated by the rounding error of the direction.
+    // Half of |phi|, rotated by the rounding error of the direction. A division of its own: nothing before it waits for it.
     let inv_reach = L::quotient(one, c(f32::MIN_POSITIVE).max(cos_theta_i * cos_o));
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
-    let rotation = cross.mul_sub(cos_twice.abs(), dot.abs() * sin_twice) * (inv_reach * c(0.5));
-    let angles = Angles::from_parts(
-        half_theta_i,
+    let rotation = cross.mul_sub(cos_phi, dot * sin_twice) * (inv_reach * c(0.5));
+    let angles = Angles {
+        half_theta_i_plus_quarter: half_theta_i + quarter_o,
         sin_theta_i,
         cos_theta_i,
-        inv_reach * cos_o,
-        [angle + rotation, complement(angle) - rotation],
+        inv_cos_theta_i: inv_reach * cos_o,
+        half: half - L::negate(of_phi, rotation),
+        of_phi,
         // On the seam the two may cancel to below 0.
-        [zero.max(rotation.mul_add(large, small)), large],
-        zero.lt(dot),
-    );
+        cos_half_phi: zero.max(rotation.mul_add(-sin_half_phi, cos_half_phi)),
+        front: zero.lt(dot),
+    };
     (Vec3x::new(sin_theta_i, v, w), angles)
 }

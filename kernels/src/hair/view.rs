@@ -1,7 +1,7 @@
 //! Lobes of a material, and the view terms of a shading point: shared by all samplers of the published model.
 
 use super::albedo::bell_area;
-use crate::math::{FRAC_PI_2_LOW, half_atan2};
+use crate::math::{FRAC_PI_2_LOW, half_atan2_parts};
 use crate::{Bell, Broadcast, HairParams, Lanes, Lobe, LobeMask, Vec3x};
 use crate::{store3, store4};
 use core::f32::consts::PI;
@@ -23,6 +23,8 @@ crate::lane_struct! {
         pub inv_half_gamma: [C; 2],
         /// Half of the angle between a glint and `wo`, rad.
         pub half_phi_g: C,
+        /// `pi/2` less that.
+        pub half_back_g: C,
         /// Integral of the azimuthal term over the circle, rad.
         pub azimuth_area: [C; 2],
         /// Colour of R, linear RGB.
@@ -48,7 +50,10 @@ crate::lane_struct! {
         pub plane_o: [C; 3],
         /// One over that length.
         pub inv_plane_o: C,
-        /// `theta_o / 2 - alpha`: added to `theta_i / 2` it is `theta_h - alpha`.
+        /// `pi/4` with the sign of `theta_o` where that is next to a pole, else 0.
+        pub quarter_o: C,
+        /// `theta_o / 2 - alpha` less that: small, and with more digits than the sum. Both added to `theta_i / 2` are
+        /// `theta_h - alpha`.
         pub shift: [C; 4],
         /// The lobes of the material.
         pub lobes: (HairLobes<C>),
@@ -77,6 +82,7 @@ impl HairLobes<f32> {
             half_gamma: [0.5 * gamma_tt, 0.5 * gamma_g],
             inv_half_gamma: [f32::quotient(2.0, gamma_tt), f32::quotient(2.0, gamma_g)],
             half_phi_g: 0.5 * phi_g,
+            half_back_g: 0.5 * to_back,
             azimuth_area: [bell_area::<B>(-PI, PI, gamma_tt), 2.0 * bell_area::<B>(-phi_g, to_back, gamma_g)],
             color_r: d.intensity_r,
             color_tt: d.intensity_tt,
@@ -110,17 +116,14 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
     let span_plane = L::select(off_axis, plane, one);
     let reciprocal = L::quotient(one, len * span_plane);
     let (half_inv_len, inv_plane) = (c(0.5) * (reciprocal * span_plane), reciprocal * len);
-    let half_theta_o = half_atan2(x, plane, len);
+    let [quarter_o, half_rest] = half_atan2_parts(x, plane, len);
     // Products of components this small would underflow; the stated bounds do not cover their last digit.
     let near_axis = plane.lt(c(1e-4));
     let cos_phi_o = L::select(off_axis, y * inv_plane, one);
     let sin_phi_o = z * inv_plane;
 
-    let [r, tt, trt] = [
-        half_theta_o - lobes.alpha[0].lanes(),
-        half_theta_o - lobes.alpha[1].lanes(),
-        half_theta_o - lobes.alpha[2].lanes(),
-    ];
+    let [r, tt, trt] =
+        [half_rest - lobes.alpha[0].lanes(), half_rest - lobes.alpha[1].lanes(), half_rest - lobes.alpha[2].lanes()];
 
     HairView {
         half_sin_theta_o: (x * half_inv_len).store(),
@@ -133,6 +136,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
             len.mul_add(zero, L::select(near_axis, one, plane)),
         ]),
         inv_plane_o: L::select(near_axis, one, inv_plane).store(),
+        quarter_o: quarter_o.store(),
         shift: store4([r, tt, trt, trt]),
         lobes: lobes.spread::<L>(),
     }

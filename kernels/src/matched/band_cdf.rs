@@ -22,33 +22,34 @@ struct Longitude<P> {
 impl<P: Lanes> Longitude<P> {
     /// At the poles.
     #[inline(always)]
-    fn at_poles<B: MatchedBell, L, const K: usize>(shift: P, inv_beta: P) -> Self
+    fn at_poles<B: MatchedBell, L, const K: usize>(quarter_o: P, shift: P, inv_beta: P) -> Self
     where
         P: Hemispheres<L, K>,
     {
         let (none, quarter) = (P::splat(0.0), P::splat(FRAC_PI_4));
-        let origin = B::origin((shift - quarter) * inv_beta, (shift + quarter) * inv_beta);
+        let [lo, hi] = [(quarter_o - quarter) + shift, (quarter_o + quarter) + shift];
+        let origin = B::origin(lo * inv_beta, hi * inv_beta);
         let this = Self { shift, inv_beta, origin, integral: none, area: none };
-        Self { integral: this.integral_to::<B, L, K>(FRAC_PI_4), ..this }
+        Self { integral: this.integral_to::<B, L, K>(quarter_o + P::outwards(FRAC_PI_4)), ..this }
     }
 
-    /// The integrals up to half an inclination in either hemisphere.
+    /// The integrals up to half an inclination, plus `quarter_o`, in either hemisphere.
     #[inline(always)]
-    fn integral_to<B: MatchedBell, L, const K: usize>(&self, half_theta_i: f32) -> P
+    fn integral_to<B: MatchedBell, L, const K: usize>(&self, to: P) -> P
     where
         P: Hemispheres<L, K>,
     {
-        B::integral(self.origin, (self.shift + P::outwards(half_theta_i)) * self.inv_beta).negate_above()
+        B::integral(self.origin, (to + self.shift) * self.inv_beta).negate_above()
     }
 
     /// Advances through a band. Returns the offset of its line.
     #[inline(always)]
-    fn pass<B: MatchedBell, L, const K: usize>(&mut self, half_theta_i: f32, height: P, minus_slope: P) -> P
+    fn pass<B: MatchedBell, L, const K: usize>(&mut self, to: P, height: P, minus_slope: P) -> P
     where
         P: Hemispheres<L, K>,
     {
         let offset = self.offset(minus_slope);
-        let next = self.integral_to::<B, L, K>(half_theta_i);
+        let next = self.integral_to::<B, L, K>(to);
         self.area = (next - self.integral).abs().mul_add(height, self.area);
         self.integral = next;
         offset
@@ -96,15 +97,16 @@ pub(super) struct BandCdf<L: Lanes, const N: usize> {
 /// Integrates over all bands, from both poles to the middle.
 #[inline(always)]
 pub(super) fn integrate_bands<B: MatchedBell, L: Lanes, P: Hemispheres<L, K>, const K: usize, const N: usize>(
+    quarter_o: L,
     shift: [L; 3],
     inv_beta: [L; 3],
     theta_o: [L; 2],
 ) -> BandCdf<L, N> {
     let none = L::splat(0.0);
-    let (shift, inv_beta) = (P::of_lobes(shift), P::of_lobes(inv_beta));
-    let mut lobes = [Longitude::at_poles::<B, L, K>(shift[0], inv_beta[0]); K];
+    let (quarter_o, shift, inv_beta) = (P::of(quarter_o), P::of_lobes(shift), P::of_lobes(inv_beta));
+    let mut lobes = [Longitude::at_poles::<B, L, K>(quarter_o, shift[0], inv_beta[0]); K];
     for_each!(k < K, {
-        lobes[k] = Longitude::at_poles::<B, L, K>(shift[k], inv_beta[k]);
+        lobes[k] = Longitude::at_poles::<B, L, K>(quarter_o, shift[k], inv_beta[k]);
     });
     let mut of_lobes = [P::splat(0.0); K];
     for_each!(k < K, {
@@ -127,8 +129,9 @@ pub(super) fn integrate_bands<B: MatchedBell, L: Lanes, P: Hemispheres<L, K>, co
         let cos_sq: P = band.cos_sq_theta_d(theta_o);
         height = height.max(P::splat(band.cos_sq_theta_i()) / cos_sq);
         minus_slope = minus_slope.max(cos_sq * P::splat(-1.0 / band.cos_sq_theta_i()));
+        let to = quarter_o + P::outwards(band.half_inner);
         for_each!(k < K, {
-            of_lobes[k] = lobes[k].pass::<B, L, K>(band.half_inner, height, minus_slope);
+            of_lobes[k] = lobes[k].pass::<B, L, K>(to, height, minus_slope);
         });
         let (heights, slopes, offsets) = (height.apart(), minus_slope.abs().apart(), P::lobes_apart(of_lobes));
         (cdf.height[j], cdf.height[N - 1 - j]) = (heights[0].store(), heights[1].store());

@@ -76,7 +76,7 @@ where
     let view = prepare_view(hair, wo);
     let theta_o = [view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes()];
     let (shift, inv_beta) = (lanes3(&[view.shift[0], view.shift[1], view.shift[2]]), lanes3(&hair.inv_beta));
-    let cdf = integrate_bands::<B, L, P, K, N>(shift, inv_beta, theta_o);
+    let cdf = integrate_bands::<B, L, P, K, N>(view.quarter_o.lanes(), shift, inv_beta, theta_o);
     // The glints share the longitude of TRT.
     let [r, tt, trt] = cdf.area;
     let total = [r, tt, trt, trt];

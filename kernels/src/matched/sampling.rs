@@ -54,10 +54,10 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     // NaN if any number is, or infinite: the sample has no inclination then, and no density. Rounding may take another past
     // the pole, where it has none either.
     let shift = (xi[0] + xi[1] + xi[2]).mul_add(zero, C::look_up_three(&view.shift, choice));
-    let half_theta_i = x.mul_sub(C::look_up_three(&hair.beta, choice), shift);
+    let from_quarter = x.mul_sub(C::look_up_three(&hair.beta, choice), shift);
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
-    let (wi, angles) = direction_from_angles(view, choice, half_theta_i, folded, psi);
+    let (wi, angles) = direction_from_angles(view, choice, from_quarter, folded, psi);
     (wi, choice, angles)
 }
 

@@ -213,19 +213,18 @@ pub(crate) fn difference_fused<L: Lanes>(a: L, b: L, c: L, d: L) -> L {
     a.mul_sub(b, product) - left_out
 }
 
-/// [`Lanes::difference_of_products`] from factors split in two halves of 12 bits, after Dekker.
+/// [`Lanes::difference_of_products`] from the factors and their halves of 12 bits, after Dekker.
 #[inline(always)]
-pub(crate) fn difference_split<L: Lanes>(a: [L; 2], b: [L; 2], c: [L; 2], d: [L; 2]) -> L {
-    let (left, right) = (product_split(a, b), product_split(c, d));
-    (left[0] - right[0]) + (left[1] - right[1])
+pub(crate) fn difference_split<L: Lanes>([a, b, c, d]: [L; 4], halves: [[L; 2]; 4]) -> L {
+    let (left, right) = (a * b, c * d);
+    (left - right) + (rounding_error(left, halves[0], halves[1]) - rounding_error(right, halves[2], halves[3]))
 }
 
-/// A product and its rounding error: exact, as the products of halves are.
+/// What a product of two factors is rounded by: exact, as the products of halves are.
 #[inline(always)]
-fn product_split<L: Lanes>(a: [L; 2], b: [L; 2]) -> [L; 2] {
-    let product = (a[0] + a[1]) * (b[0] + b[1]);
+fn rounding_error<L: Lanes>(product: L, a: [L; 2], b: [L; 2]) -> L {
     let left_out = ((a[0] * b[0] - product) + a[0] * b[1]) + a[1] * b[0];
-    [product, left_out + a[1] * b[1]]
+    left_out + a[1] * b[1]
 }
 
 /// Bits of the sign, the exponent and the upper 11 of the fraction.

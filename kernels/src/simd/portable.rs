@@ -96,7 +96,11 @@ impl Lanes for f32x8 {
     }
     #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
-        if FUSES { difference_fused(a, b, c, d) } else { difference_split(split(a), split(b), split(c), split(d)) }
+        if FUSES {
+            difference_fused(a, b, c, d)
+        } else {
+            difference_split([a, b, c, d], [split(a), split(b), split(c), split(d)])
+        }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

@@ -74,7 +74,7 @@ impl Lanes for f32 {
     }
     #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
-        difference_split(split(a), split(b), split(c), split(d))
+        difference_split([a, b, c, d], [split(a), split(b), split(c), split(d)])
     }
     // Code that is none, and that a compiler takes for one instruction. Miri runs no assembly.
     #[cfg(all(target_arch = "x86_64", target_feature = "sse2", not(miri)))]

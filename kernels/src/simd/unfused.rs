@@ -56,7 +56,7 @@ impl Lanes for Unfused {
     #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
         let halves = |x: Self| split(x.0).map(Self);
-        difference_split(halves(a), halves(b), halves(c), halves(d))
+        difference_split([a, b, c, d], [halves(a), halves(b), halves(c), halves(d)])
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
