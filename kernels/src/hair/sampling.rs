@@ -53,10 +53,10 @@ impl<L: Lanes> FoldedXi<L> {
     }
 }
 
-/// The direction at half a longitude, less `quarter_o`, and at an azimuth, and its angles. Angles that keep their digits in the direction are
-/// reused, not recomputed from it.
+/// The direction at a longitude and at an azimuth, and its angles. Angles that keep their digits in the direction are reused, not
+/// recomputed from it.
 ///
-/// The azimuth is on the side of `folded`. `psi` is half of `|phi|` for the glints and half of `pi - |phi|` for TT; R and TRT-g
+/// `from_quarter` is half of `theta_i` plus `quarter_o`. The azimuth is on the side of `folded`. `psi` is half of `|phi|` for the glints and half of `pi - |phi|` for TT; R and TRT-g
 /// take it from `folded` alone. Where bells are narrow, rounding may take it a little out of `[0, pi/2]`: the cosine is cut at one
 /// end, and `rotation` turns it back at the other.
 #[inline(always)]
