@@ -97,9 +97,21 @@ impl Name {
 ///
 /// If there are too many.
 pub fn grow(name: Name, count: usize) -> Result<Strands, Error> {
+    groom(name, count).grow(&Flattening::default()).map_err(|problem| Error::Usage(problem.to_string()))
+}
+
+/// About how many segments [`grow`] will make.
+///
+/// # Errors
+///
+/// If there are too many strands.
+pub fn estimate_segments(name: Name, count: usize) -> Result<u64, Error> {
+    groom(name, count).estimate_segments(&Flattening::default()).map_err(|problem| Error::Usage(problem.to_string()))
+}
+
+fn groom(name: Name, count: usize) -> Groom {
     let groom = Groom::new(name.kind(), count);
-    let groom = if groom.kind == Kind::Single { Groom { length: 400.0, radius: 10.0, ..groom } } else { groom };
-    groom.grow(&Flattening::default()).map_err(|problem| Error::Usage(problem.to_string()))
+    if groom.kind == Kind::Single { Groom { length: 400.0, radius: 10.0, ..groom } } else { groom }
 }
 
 /// Parts of a scene beside its name.

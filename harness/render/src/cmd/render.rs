@@ -9,6 +9,7 @@ use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, check_paths, default_sampler};
 use crate::layers::{self, Beside};
 use crate::material::Hair;
+use crate::memory;
 use crate::part::{self, Part};
 use crate::picture;
 use crate::scene::Scene;
@@ -52,9 +53,17 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     let out = flags.out.clone().unwrap_or_else(|| PathBuf::from(format!("out/render/{}.exr", flags.scene.word())));
     let hair = hair(flags, &settings)?;
     let env = flags.env.as_deref().map(environment).transpose()?;
+    let pixels = crop.len() as u64;
     let strands = match &flags.import {
-        Some(path) => read_hair(flags, path)?,
-        None => scenes::grow(flags.scene, flags.strands)?,
+        Some(path) => {
+            let strands = read_hair(flags, path)?;
+            memory::check(strands.segments() as u64, pixels)?;
+            strands
+        }
+        None => {
+            memory::check(scenes::estimate_segments(flags.scene, flags.strands)?, pixels)?;
+            scenes::grow(flags.scene, flags.strands)?
+        }
     };
     if let Some(path) = &flags.export {
         whole(path, |out| write_mitsuba(&strands, out))?;

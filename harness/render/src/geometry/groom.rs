@@ -152,30 +152,46 @@ impl Groom {
     /// If a setting is out of its range.
     pub fn grow(&self, flattening: &Flattening) -> Result<Strands, GeometryError> {
         self.check()?;
+        let polylines: Vec<_> = (0..self.strands).into_par_iter().map(self.polylines(flattening)).collect();
+        let mut builder = Strands::builder();
+        for polyline in polylines {
+            builder.push(polyline)?;
+        }
+        Ok(builder.finish())
+    }
+
+    /// About how many segments the hair will have: by some of its strands, without growing the rest.
+    ///
+    /// # Errors
+    ///
+    /// If a setting is out of its range.
+    pub fn estimate_segments(&self, flattening: &Flattening) -> Result<u64, GeometryError> {
+        self.check()?;
+        let strands = self.strands.min(256);
+        let nodes: usize = (0..strands).map(self.polylines(flattening)).map(|polyline| polyline.len()).sum();
+        Ok(nodes as u64 * self.strands as u64 / strands as u64)
+    }
+
+    /// The flattened nodes of a strand, each with its radius.
+    fn polylines<'a>(&'a self, flattening: &'a Flattening) -> impl Fn(usize) -> Vec<(Vec3, f32)> + Send + Sync + 'a {
         // Doubled ends take a sixth of the distance of two nodes from either end.
-        let grow: Box<dyn Fn(usize) -> Vec<Vec3> + Sync> = match self.kind {
+        let grow: Box<dyn Fn(usize) -> Vec<Vec3> + Send + Sync + 'a> = match self.kind {
             Kind::Straight | Kind::Wavy | Kind::Curly | Kind::Fur => {
                 let head = head::HeadGroom::new(*self);
                 Box::new(move |strand| head.strand(strand))
             }
-            Kind::Patch => Box::new(|strand| sheet::strand(self, strand)),
-            Kind::Single => Box::new(|_| [Vec3::NEG_X, Vec3::X].map(|end| 0.75 * self.length * end).to_vec()),
+            Kind::Patch => Box::new(move |strand| sheet::strand(self, strand)),
+            Kind::Single => Box::new(move |_| [Vec3::NEG_X, Vec3::X].map(|end| 0.75 * self.length * end).to_vec()),
         };
-        let radius = |s: f32| self.radius * (1.0 - self.taper * s * s * s);
-        let flatten = |strand: usize| {
+        let radius = move |s: f32| self.radius * (1.0 - self.taper * s * s * s);
+        move |strand: usize| {
             let nodes = grow(strand);
             let mut polyline = Vec::with_capacity(4 * nodes.len());
             if let Some(spline) = Spline::new(&nodes, Basis::BSpline) {
                 flattening.append(&spline, radius, &mut polyline);
             }
             polyline
-        };
-        let polylines: Vec<_> = (0..self.strands).into_par_iter().map(flatten).collect();
-        let mut builder = Strands::builder();
-        for polyline in polylines {
-            builder.push(polyline)?;
         }
-        Ok(builder.finish())
     }
 
     fn check(&self) -> Result<(), GeometryError> {
