@@ -61,14 +61,6 @@ functions! {
     SinCosAbsolute, "sin_cos_absolute", [[-1.57, 1.57], [0.0, 1.0]];
     |x, _y| { let (sin, cos) = math::sin_cos_absolute(x); [sin, cos] };
     libm::sincosf(x).into(); x.sin_cos().into();
-    /// `tan x`, as numerator and denominator.
-    TanHalfTurn, "tan_half_turn", [[-1.57, 1.57], [0.0, 1.0]];
-    |x, zero| { let (n, d) = math::tan_half_turn(x); [n / d, zero] };
-    [libm::tanf(x), zero]; [x.tan(), zero];
-    /// Half of `asin x`, from `x` and the cosine.
-    HalfAngle, "half_angle", [[-1.0, 1.0], [0.0, 1.0]];
-    |x, zero| [math::half_angle(x, (-x).mul_add(x, L::splat(1.0)).sqrt()), zero];
-    [0.5 * libm::asinf(x), zero]; [0.5 * x.asin(), zero];
 }
 
 /// A function on eight pairs of arguments.

@@ -79,7 +79,8 @@ impl Bell for Gaussian {
         Self::one(s + t, s)
     }
 
-    // Interleaved step by step: each constant is read once for all four, and no dependency chain waits alone.
+    // Interleaved in pairs: each constant is read once for two, and no dependency chain waits alone. Four at a time would need more
+    // registers than AVX2 has.
     #[inline(always)]
     fn four<L: Lanes>(r: [L; 2], tt: [L; 5], trt: [L; 2], glint: [L; 5]) -> [L; 4] {
         let Pair(r, tt) = gaussian(Pair(r[0], tt[0] + tt[1]));

@@ -58,7 +58,8 @@ impl<M: Model> Kernel for Conserve<'_, M> {
 /// model reciprocal.
 ///
 /// - Accuracy: the albedo is at most 1.001.
-/// - Cost: two thirds of the time of [`Gather::albedo`](crate::Gather::albedo) for every shading point; packets of eight take a tenth per hit.
+/// - Cost: two thirds of the time of [`Gather::albedo`](crate::Gather::albedo) for every shading point; packets of eight take a
+///   tenth per hit.
 ///
 /// ```
 /// use glam::Vec3;

@@ -1,4 +1,4 @@
-//! What a picture takes in memory, and what there is.
+//! Memory that a picture needs, and memory that is left.
 
 use hairis_harness::error::Error;
 use std::fs;
@@ -24,7 +24,7 @@ fn check_within(segments: u64, pixels: u64, available: u64) -> Result<(), Error>
     }
     let gigabytes = |bytes: u64| bytes as f64 / 1e9;
     Err(Error::Usage(format!(
-        "{segments} segments and {pixels} pixels take up to {:.1} GB of memory, and {:.1} GB are left: lower --strands or --size",
+        "{segments} segments and {pixels} pixels take up to {:.1} GB of memory, and {:.1} GB are left: render fewer strands or a smaller --size",
         gigabytes(need),
         gigabytes(available)
     )))

@@ -84,11 +84,11 @@ impl<L: Lanes> Angles<L> {
         let one = c(1.0);
         // Distances from the centres of the bells in widths, squared.
         let hair = &view.lobes;
-        let half_theta_i = self.half_theta_i_plus_quarter;
+        let plus_quarter = self.half_theta_i_plus_quarter;
         // Alone: in vectors of them and numbers next to them in memory, squares that nobody uses overflow.
-        let x_r = ((half_theta_i + view.shift[0].lanes()) * hair.inv_beta[0].lanes()).alone();
-        let x_tt = ((half_theta_i + view.shift[1].lanes()) * hair.inv_beta[1].lanes()).alone();
-        let x_trt = ((half_theta_i + view.shift[2].lanes()) * hair.inv_beta[2].lanes()).alone();
+        let x_r = ((plus_quarter + view.shift[0].lanes()) * hair.inv_beta[0].lanes()).alone();
+        let x_tt = ((plus_quarter + view.shift[1].lanes()) * hair.inv_beta[1].lanes()).alone();
+        let x_trt = ((plus_quarter + view.shift[2].lanes()) * hair.inv_beta[2].lanes()).alone();
         // Their signs are not used: where `half` is of |phi| its distance from pi/2 is that of TT.
         let from_tt = self.half - L::keep(self.of_phi, c(FRAC_PI_2));
         let from_glint = self.half - L::select(self.of_phi, hair.half_phi_g.lanes(), hair.half_back_g.lanes());

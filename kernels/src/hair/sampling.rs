@@ -110,6 +110,7 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
     let rotation = cross.mul_sub(cos_phi, dot * sin_twice) * (inv_reach * c(0.5));
     let angles = Angles {
+        // Not `from_quarter`: the direction is that of the rounded half.
         half_theta_i_plus_quarter: half_theta_i + quarter_o,
         sin_theta_i,
         cos_theta_i,

@@ -220,7 +220,7 @@ pub(crate) fn difference_split<L: Lanes>([a, b, c, d]: [L; 4], halves: [[L; 2]; 
     (left - right) + (rounding_error(left, halves[0], halves[1]) - rounding_error(right, halves[2], halves[3]))
 }
 
-/// What a product of two factors is rounded by: exact, as the products of halves are.
+/// Rounding error of a product of two factors: exact, as the products of halves are.
 #[inline(always)]
 fn rounding_error<L: Lanes>(product: L, a: [L; 2], b: [L; 2]) -> L {
     let left_out = ((a[0] * b[0] - product) + a[0] * b[1]) + a[1] * b[0];
