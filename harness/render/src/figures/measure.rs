@@ -60,13 +60,13 @@ impl Plan {
         integrator: None,
         sequence: Sequence::Sobol,
     };
-    /// Settings of the published figures: half an hour on two idle cores, two thirds of it for `box` and the models. A reference
-    /// has as many samples as 32 of the pictures with the most, so that it has about 3% of their variance.
+    /// Settings of the published figures: an hour on two idle cores. A reference has as many samples as 32 of the pictures with the
+    /// most, so that it has about 3% of their variance.
     pub(super) const FULL: Self = Self {
         side: 192,
         strands: 30_000,
-        samples: [&[4, 16, 64, 256], &[4, 16, 64]],
-        reference: [4096, 1024],
+        samples: [&[4, 16, 64, 256, 1024], &[4, 16, 64]],
+        reference: [16384, 1024],
         runs: 8,
         integrator: None,
         sequence: Sequence::Sobol,
