@@ -12,35 +12,45 @@ use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 /// `pi/2 - FRAC_PI_2`, the rounding error of the constant.
 pub const FRAC_PI_2_LOW: f32 = -4.371_139e-8;
 
-/// A polynomial of up to nine coefficients, the constant first; its even and odd halves are apart: half the dependency chain
+/// A polynomial of up to ten coefficients, the constant first; its even and odd halves are apart: half the dependency chain
 /// of Horner's rule.
+#[inline(always)]
+pub fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
+    halves::<L, N, 0>(x, coefficients)
+}
+
+/// [`polynomial`] of the coefficients from `FIRST` on, 0 or 2.
 ///
 /// Written out, not a loop: compilers that save space leave it one, over coefficients in memory.
 #[inline(always)]
-pub fn polynomial<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
+fn halves<L: Lanes, const N: usize, const FIRST: usize>(x: L, coefficients: [f32; N]) -> L {
     let square = x * x;
     let mut even = L::splat(coefficients[(N - 1) & !1]);
     let mut odd = L::splat(coefficients[(N - 2) | 1]);
     macro_rules! steps {
         ($($half:ident $i:literal)*) => { $(
-            if $i + 2 < N {
+            if $i + 2 < N && $i >= FIRST {
                 $half = $half.mul_add(square, L::splat(coefficients[$i]));
             }
         )* };
     }
-    const { assert!(N <= 9, "every coefficient has a step") };
-    steps!(even 6 odd 5 even 4 odd 3 even 2 odd 1 even 0);
+    const { assert!(N <= 10, "every coefficient has a step") };
+    steps!(odd 7 even 6 odd 5 even 4 odd 3 even 2 odd 1 even 0);
     odd.mul_add(x, even)
 }
 
-/// A polynomial of up to ten coefficients, the constant first, by Horner's rule: the fewest instructions and registers, for
-/// where other work fills its waits.
+/// A polynomial of up to ten coefficients, the constant first, by Horner's rule: the fewest instructions and registers, and the
+/// smallest error, for where other work fills its waits.
+///
+/// Without fused products a step is two instructions that wait for each other, and a long chain is more than other work fills: all
+/// but the first two steps then take the even and odd halves apart.
 #[inline(always)]
 pub fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
-    let mut sum = L::splat(coefficients[N - 1]);
+    let apart = !L::FUSES && N > 7;
+    let mut sum = if apart { halves::<L, N, 2>(x, coefficients) } else { L::splat(coefficients[N - 1]) };
     macro_rules! steps {
         ($($i:literal)*) => { $(
-            if $i + 1 < N {
+            if $i + 1 < N && ($i < 2 || !apart) {
                 sum = sum.mul_add(x, L::splat(coefficients[$i]));
             }
         )* };
@@ -48,6 +58,17 @@ pub fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     const { assert!(N <= 10, "every coefficient has a step") };
     steps!(8 7 6 5 4 3 2 1 0);
     sum
+}
+
+/// `[a / x, b / y]`. Lanes that fuse share one division: beside fused products, it is the slowest. Others have the time for two.
+#[inline(always)]
+pub(crate) fn quotients<L: Lanes>([a, x]: [L; 2], [b, y]: [L; 2]) -> [L; 2] {
+    if L::FUSES {
+        let both = L::quotient(L::splat(1.0), x * y);
+        [a * (both * y), b * (both * x)]
+    } else {
+        [L::quotient(a, x), L::quotient(b, y)]
+    }
 }
 
 /// `log2(e) / 2`, negative: from a squared distance to the exponent of a Gaussian.

@@ -2,7 +2,7 @@
 
 use super::{GRAZING, HairView};
 use crate::lanes3;
-use crate::math::{atan_unit, half_angle};
+use crate::math::{atan_unit, half_angle, quotients};
 use crate::{Bell, Broadcast, Lanes, Vec3x};
 use core::f32::consts::FRAC_PI_2;
 
@@ -42,7 +42,6 @@ impl<L: Lanes> Angles<L> {
     #[inline(always)]
     pub(crate) fn from_direction<C: Broadcast<L>>(view: &HairView<C>, wi: Vec3x<L>) -> (Self, L::Mask) {
         let c = L::splat;
-        let one = c(1.0);
         let plane_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
         let cos_theta_i = plane_sq.sqrt();
         // Azimuth relative to wo, folded: tau is the tangent of half of |phi| or of pi - |phi|, at most 1.
@@ -58,17 +57,14 @@ impl<L: Lanes> Angles<L> {
 
         // Next to opposite poles theta_i and theta_o cancel: the large terms first, without rounding there.
         let half_theta_i_plus_quarter = half_angle(wi.x, cos_theta_i) + view.quarter_o.lanes();
-        let reciprocal = L::quotient(one, far * reach);
-        let inv_far = reciprocal * reach;
-        let tau = cross * inv_far;
-        let inv_reach = reciprocal * far;
-        let cos_half = (far * inv_reach * c(0.5)).sqrt();
+        let [tau, half_inv_reach] = quotients([cross, far], [c(0.5), reach]);
+        let cos_half = (far * half_inv_reach).sqrt();
         let front = c(0.0).lt(dot);
         let angles = Self {
             half_theta_i_plus_quarter,
             sin_theta_i: wi.x,
             cos_theta_i,
-            inv_cos_theta_i: inv_reach * cos_o,
+            inv_cos_theta_i: half_inv_reach * (cos_o + cos_o),
             half: atan_unit(tau),
             of_phi: front,
             cos_half_phi: L::select(front, cos_half, tau * cos_half),
@@ -96,13 +92,12 @@ impl<L: Lanes> Angles<L> {
         let y_g = (from_glint * hair.inv_half_gamma[1].lanes()).alone();
         let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);
 
-        // The Cauchy value of each, from two divisions. Each of the five is at most 1e9, so that four of them
+        // The Cauchy value of each. Each of the five is at most 1e9, so that four of them
         // multiplied stay below the largest float.
         let (d_r, d_tt_x, d_trt) = (one_plus_square(x_r), one_plus_square(x_tt), one_plus_square(x_trt));
         let (d_tt_y, d_g_y) = (one_plus_square(y_tt), one_plus_square(y_g));
         let (d_tt, d_g) = (d_tt_x * d_tt_y, d_trt * d_g_y);
-        let inv_tt_g = L::quotient(one, d_tt * d_g);
-        let (cauchy_tt, cauchy_g) = (inv_tt_g * d_g, inv_tt_g * d_tt);
+        let [cauchy_tt, cauchy_g] = quotients([one, d_tt], [one, d_g]);
         let cauchy_trt = cauchy_g * d_g_y;
         // Cos^2 theta_d is the squared length of the mean of the two directions in the meridian plane: exact where both
         // are near opposite poles, where 1 + cos cos + sin sin cancels.
@@ -110,8 +105,7 @@ impl<L: Lanes> Angles<L> {
         let mean_u = self.sin_theta_i.mul_add(half, view.half_sin_theta_o.lanes());
         let mean_c = self.cos_theta_i.mul_add(half, view.half_cos_theta_o.lanes());
         let cos_sq_theta_d = mean_u.mul_add(mean_u, (mean_c * mean_c).alone()).alone();
-        let inv_r = L::quotient(one, d_r * cos_sq_theta_d);
-        let cauchy_r = inv_r * cos_sq_theta_d;
+        let [cauchy_r, inv_cos_sq_theta_d] = quotients([one, d_r], [one, cos_sq_theta_d]);
 
         let of_tt = [s_tt, t_tt, cauchy_tt, cauchy_tt * d_tt_y, cauchy_tt * d_tt_x];
         let of_g = [s_trt, t_g, cauchy_g, cauchy_trt, cauchy_g * d_trt];
@@ -125,7 +119,7 @@ impl<L: Lanes> Angles<L> {
                 // The sampler cuts the glints at pi/2: ERRATA E3.
                 L::keep(self.front, cauchy_g),
             ],
-            inv_cos_sq_theta_d: inv_r * d_r,
+            inv_cos_sq_theta_d,
         }
     }
 }
@@ -137,14 +131,13 @@ fn one_plus_square<L: Lanes>(x: L) -> L {
 }
 
 impl<L: Lanes> LobeTerms<L> {
-    /// S before the final bound, linear RGB.
+    /// S times `cos^2 theta_d`, linear RGB.
     #[inline(always)]
     pub(crate) fn sum_lobes<C: Broadcast<L>>(&self, view: &HairView<C>) -> [L; 3] {
         let hair = &view.lobes;
         let trt = self.value[2] * hair.strength[2].lanes();
-        let secondary = self.value[3].mul_add(hair.strength[3].lanes(), trt);
-        let (f_r, f_tt) = (self.value[0] * self.inv_cos_sq_theta_d, self.value[1] * self.inv_cos_sq_theta_d);
-        let f_trt = secondary * self.inv_cos_sq_theta_d;
+        let (f_r, f_tt) = (self.value[0], self.value[1]);
+        let f_trt = self.value[3].mul_add(hair.strength[3].lanes(), trt);
         let (r, tt, trt) = (lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt));
         [
             f_r.mul_add(r[0], f_tt.mul_add(tt[0], f_trt * trt[0])),

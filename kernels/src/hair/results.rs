@@ -15,9 +15,10 @@ fn limit<L: Lanes>(sound: L::Mask) -> L {
     L::keep(sound, L::splat(f32::MAX))
 }
 
+/// `x` times `by`, at most `limit`.
 #[inline(always)]
-fn min3<L: Lanes>(x: [L; 3], limit: L) -> [L; 3] {
-    [x[0].min(limit), x[1].min(limit), x[2].min(limit)]
+fn scale3<L: Lanes>(x: [L; 3], by: L, limit: L) -> [L; 3] {
+    [(x[0] * by).min(limit), (x[1] * by).min(limit), (x[2] * by).min(limit)]
 }
 
 /// The density of a mixture of lobes, from the shape of each lobe's density and its weight.
@@ -38,7 +39,8 @@ pub(crate) fn finish_eval<L: Lanes, C: Broadcast<L>>(
     density: L,
 ) -> Eval<L> {
     let limit = limit::<L>(sound);
-    Eval { value: min3(terms.sum_lobes(view), limit), pdf: (density * angles.inv_cos_theta_i).min(limit) }
+    let value = scale3(terms.sum_lobes(view), terms.inv_cos_sq_theta_d, limit);
+    Eval { value, pdf: (density * angles.inv_cos_theta_i).min(limit) }
 }
 
 /// Each lobe at these angles, of its own `density` times `cos theta_i`.
@@ -81,14 +83,15 @@ pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
     let cos = angles.cos_theta_i;
     let sound = L::and(L::splat(GRAZING).lt(cos), L::splat(LEAST_DENSITY).lt(density));
     let limit = limit::<L>(sound);
-    let value = min3(terms.sum_lobes(view), limit);
-    // weight = S cos theta_i / pdf, and pdf = density / cos theta_i.
-    let by = L::quotient(cos * cos, density);
+    let (sum, inv_cos_sq_theta_d) = (terms.sum_lobes(view), terms.inv_cos_sq_theta_d);
+    // weight = S cos theta_i / pdf, and pdf = density / cos theta_i. The product before the division is at most 4, and rounding
+    // down takes a density of 0 below it.
+    let by = L::quotient(cos * cos * inv_cos_sq_theta_d, density.max(L::splat(LEAST_DENSITY)));
     Drawn {
         wi,
-        value,
+        value: scale3(sum, inv_cos_sq_theta_d, limit),
         pdf: (density * angles.inv_cos_theta_i).min(limit),
-        weight: min3([value[0] * by, value[1] * by, value[2] * by], limit),
+        weight: scale3(sum, by, limit),
         slot: L::select(sound, L::index_number(choice), L::splat(-1.0)),
     }
 }

@@ -53,6 +53,9 @@ impl<L: Lanes> FoldedXi<L> {
     }
 }
 
+/// Far below that of any sample: it has a reciprocal, and products of that do not overflow.
+const LEAST_COSINE: f32 = 1e-20;
+
 /// The direction at a longitude and at an azimuth, and its angles. Angles that keep their digits in the direction are reused, not
 /// recomputed from it.
 ///
@@ -98,23 +101,23 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let sin_phi = sin_twice.times_sign(L::negate(is_bell, side));
     // The length absorbs the distance of sine and cosine from the unit circle.
     let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;
-    let [v_o, w_o, cos_o] = lanes3(&view.plane_o);
-    let by = view.inv_plane_o.lanes();
-    let by = (by - by * off_unit) * cos_theta_i;
+    let [v_o, w_o, _] = lanes3(&view.plane_o);
+    let inv_plane_o = view.inv_plane_o.lanes();
+    let by = (inv_plane_o - inv_plane_o * off_unit) * cos_theta_i;
     let v = v_o.mul_add(cos_phi, w_o * sin_phi) * by;
     let w = w_o.mul_sub(cos_phi, v_o * sin_phi) * by;
 
     // Half of |phi|, rotated by the rounding error of the direction. A division of its own: nothing before it waits for it.
-    let inv_reach = L::quotient(one, c(f32::MIN_POSITIVE).max(cos_theta_i * cos_o));
+    let inv_cos_theta_i = L::quotient(one, c(LEAST_COSINE).max(cos_theta_i));
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
-    let rotation = cross.mul_sub(cos_phi, dot * sin_twice) * (inv_reach * c(0.5));
+    let rotation = cross.mul_sub(cos_phi, dot * sin_twice) * (inv_cos_theta_i * (inv_plane_o * c(0.5)));
     let angles = Angles {
         // Not `from_quarter`: the direction is that of the rounded half.
         half_theta_i_plus_quarter: half_theta_i + quarter_o,
         sin_theta_i,
         cos_theta_i,
-        inv_cos_theta_i: inv_reach * cos_o,
+        inv_cos_theta_i,
         half: half - L::negate(of_phi, rotation),
         of_phi,
         // On the seam the two may cancel to below 0.

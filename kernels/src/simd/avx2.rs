@@ -63,6 +63,7 @@ impl Lanes for Avx2 {
     type Mask = __m256;
     type Index = Indices;
     type Stored = f32x8;
+    const FUSES: bool = true;
 
     #[inline(always)]
     fn splat(x: f32) -> Self {

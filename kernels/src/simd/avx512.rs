@@ -62,6 +62,7 @@ impl Lanes for Avx512 {
     type Index = Indices16;
     // Only columns run in sixteen lanes: nothing is kept in them between calls.
     type Stored = Self;
+    const FUSES: bool = true;
 
     #[inline(always)]
     fn splat(x: f32) -> Self {

@@ -41,6 +41,8 @@ pub trait Lanes:
     type Index: Copy;
     /// Storage of the lanes between calls: `f32` for one, `wide::f32x8` for eight.
     type Stored: Broadcast<Self>;
+    /// Whether [`mul_add`](Self::mul_add) rounds once.
+    const FUSES: bool;
 
     /// The same number in every lane.
     fn splat(x: f32) -> Self;

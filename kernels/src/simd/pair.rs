@@ -48,6 +48,7 @@ impl<L: Lanes> Lanes for Pair<L> {
     type Index = (L::Index, L::Index);
     // Only columns run in pairs: nothing is kept in them between calls.
     type Stored = Self;
+    const FUSES: bool = L::FUSES;
 
     #[inline(always)]
     fn splat(x: f32) -> Self {

@@ -76,6 +76,7 @@ impl Lanes for f32x8 {
     /// Where the chosen number is at least each of the three bounds.
     type Index = [f32x8; 3];
     type Stored = f32x8;
+    const FUSES: bool = FUSES;
 
     #[inline(always)]
     fn splat(x: f32) -> Self {

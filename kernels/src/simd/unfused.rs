@@ -36,6 +36,7 @@ impl Lanes for Unfused {
     type Mask = f32x8;
     type Index = [f32x8; 3];
     type Stored = Self;
+    const FUSES: bool = false;
 
     #[inline(always)]
     fn splat(x: f32) -> Self {
