@@ -4,12 +4,13 @@ mod resample;
 
 use crate::check::{Asked, Given, check};
 use crate::inputs::{DIRECTIONS, Inputs, arrays, materials, packets, params, xi_packets};
-use crate::task::{Each, PROBE, Point, Slices, Task};
+use crate::task::{Answer, Each, PROBE, Point, Slices, Task};
 use core::fmt;
 use core::hint::black_box;
 use core::marker::PhantomData;
+use glam::Vec3;
 use hairis::reference::Reference;
-use hairis::{Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Level, SampleSlices};
+use hairis::{Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Level, SampleSlices, SampleWeightSlices};
 use hairis_variants::{ModelId, Parameters, Registered};
 use std::sync::LazyLock;
 
@@ -303,6 +304,18 @@ impl<M: Registered> Of<'_, M> {
             self.show(visitor, "sample8-points", label(level), lane, || {
                 let gather = self.gather8(level);
                 Each::new(8, xi_packets(&inputs.xi), move |xi| gather.sample8_at(level, xi))
+            });
+            self.show(visitor, "sample_weight_batch", label(level), one, || {
+                let gather = self.gather();
+                Slices::new(DIRECTIONS, &inputs.xi, move |xi, [u, v, w, pdf, r, g, b]: [&mut [f32]; 7]| {
+                    let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [r, g, b] };
+                    gather.sample_weight_batch_at(level, xi, out)
+                })
+                .read_by(|[u, v, w, pdf, ..]| Answer {
+                    wi: Some(Vec3::new(u, v, w)),
+                    value: None,
+                    pdf: Some(pdf),
+                })
             });
             for (entry, len) in [("sample_batch", DIRECTIONS), ("sample_batch-short", SHORT)] {
                 self.show(visitor, entry, label(level), one, || {

@@ -4,9 +4,9 @@
 //! on many CPUs: a load waits for an earlier store whose address has the same lower twelve bits. A few unused numbers
 //! between columns avoid it.
 
-use crate::packet::{AtGather, Pdf, Samples, Value, ValuePdf};
+use crate::packet::{AtGather, Pdf, Samples, Value, ValuePdf, Weights};
 use crate::simd::dispatch::clean_upper_halves;
-use crate::slices::{EvalSlices, LengthError, SampleSlices, WI, XI, check_columns};
+use crate::slices::{EvalSlices, LengthError, SampleSlices, SampleWeightSlices, WI, XI, check_columns};
 use crate::{Gather, Level, Model};
 
 impl<M: Model> Gather<M> {
@@ -42,8 +42,7 @@ impl<M: Model> Gather<M> {
     pub fn eval_pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
         clean_upper_halves();
         let [r, g, b] = out.value;
-        let mut out = [r, g, b, out.pdf];
-        let columns = check_columns(&WI, &wi, &["value.r", "value.g", "value.b", "pdf"], &mut out)?;
+        let columns = check_columns(&WI, wi, &["value.r", "value.g", "value.b", "pdf"], [r, g, b, out.pdf])?;
         level.run_columns(AtGather::<M, ValuePdf>::new(&self.inner), &columns);
         Ok(())
     }
@@ -66,8 +65,7 @@ impl<M: Model> Gather<M> {
     #[inline]
     pub fn eval_batch_at(&self, level: Level, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError> {
         clean_upper_halves();
-        let mut out = value;
-        let columns = check_columns(&WI, &wi, &["value.r", "value.g", "value.b"], &mut out)?;
+        let columns = check_columns(&WI, wi, &["value.r", "value.g", "value.b"], value)?;
         level.run_columns(AtGather::<M, Value>::new(&self.inner), &columns);
         Ok(())
     }
@@ -90,8 +88,7 @@ impl<M: Model> Gather<M> {
     #[inline]
     pub fn pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError> {
         clean_upper_halves();
-        let mut out = [pdf];
-        let columns = check_columns(&WI, &wi, &["pdf"], &mut out)?;
+        let columns = check_columns(&WI, wi, &["pdf"], [pdf])?;
         level.run_columns(AtGather::<M, Pdf>::new(&self.inner), &columns);
         Ok(())
     }
@@ -115,9 +112,38 @@ impl<M: Model> Gather<M> {
     pub fn sample_batch_at(&self, level: Level, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
         clean_upper_halves();
         let ([u, v, w], [r, g, b], [wr, wg, wb]) = (out.wi, out.value, out.weight);
-        let mut out = [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot];
-        let columns = check_columns(&XI, &xi, &SAMPLE, &mut out)?;
+        let columns = check_columns(&XI, xi, &SAMPLE, [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot])?;
         level.run_columns(AtGather::<M, Samples>::new(&self.inner), &columns);
+        Ok(())
+    }
+
+    /// Many samples as a path tracer uses them, without value and slot: the same numbers as of
+    /// [`sample_batch`](Self::sample_batch), in less time.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then.
+    #[inline]
+    pub fn sample_weight_batch(&self, xi: [&[f32]; 3], out: SampleWeightSlices<'_>) -> Result<(), LengthError> {
+        self.sample_weight_batch_at(Level::detect(), xi, out)
+    }
+
+    /// As [`sample_weight_batch`](Self::sample_weight_batch), on a given instruction set.
+    ///
+    /// # Errors
+    ///
+    /// If the slices differ in length; nothing is written then.
+    #[inline]
+    pub fn sample_weight_batch_at(
+        &self,
+        level: Level,
+        xi: [&[f32]; 3],
+        out: SampleWeightSlices<'_>,
+    ) -> Result<(), LengthError> {
+        clean_upper_halves();
+        let ([u, v, w], [wr, wg, wb]) = (out.wi, out.weight);
+        let columns = check_columns(&XI, xi, &WEIGHTS, [u, v, w, out.pdf, wr, wg, wb])?;
+        level.run_columns(AtGather::<M, Weights>::new(&self.inner), &columns);
         Ok(())
     }
 }
@@ -125,3 +151,5 @@ impl<M: Model> Gather<M> {
 /// Names of the slices of samples.
 const SAMPLE: [&str; 11] =
     ["wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf", "weight.r", "weight.g", "weight.b", "slot"];
+/// The same without value and slot.
+const WEIGHTS: [&str; 7] = ["wi.u", "wi.v", "wi.w", "pdf", "weight.r", "weight.g", "weight.b"];

@@ -114,7 +114,7 @@ pub use simd::dispatch::{Constant, Kernel, Level};
 pub(crate) use simd::lanes::fresh_lanes3;
 pub use simd::lanes::{Broadcast, LaneStruct, Lanes, Scalar, lanes3, lanes4, store3, store4};
 pub use simd::pair::Pair;
-pub use slices::{EvalColumns, EvalSlices, HitSlices, LengthError, SampleColumns, SampleSlices};
+pub use slices::{EvalColumns, EvalSlices, HitSlices, LengthError, SampleColumns, SampleSlices, SampleWeightSlices};
 
 #[doc(hidden)]
 pub use wide;

@@ -164,6 +164,20 @@ impl<M: Model> Row<3, 11> for AtGather<'_, M, Samples> {
     }
 }
 
+/// Columns of samples without value and slot, which are not computed.
+pub(crate) struct Weights;
+impl<M: Model> Row<3, 7> for AtGather<'_, M, Weights> {
+    #[inline(always)]
+    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 7]
+    where
+        f32: Broadcast<L>,
+    {
+        let s = M::sample::<L, f32>(self.gather, xi);
+        let [r, g, b] = s.weight;
+        [s.wi.x, s.wi.y, s.wi.z, s.pdf, r, g, b]
+    }
+}
+
 /// The numbers of a sample in the order of its slices.
 #[inline(always)]
 fn columns<L>(s: Drawn<L>) -> [L; 11] {

@@ -206,8 +206,7 @@ impl<M: Model> Gather<M> {
     #[inline]
     pub fn propose_batch_at(&self, level: Level, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
         clean_upper_halves();
-        let mut out = wi;
-        let columns = check_columns(&XI, &xi, &WI, &mut out)?;
+        let columns = check_columns(&XI, xi, &WI, wi)?;
         level.run_columns(Proposals::<M>::new(&self.inner), &columns);
         Ok(())
     }
@@ -246,8 +245,7 @@ impl<M: Model> Gather<M> {
         let CandidateSlices { wi, radiance, pdf_light } = candidates;
         let ([u, v, w], [r, g, b], [fr, fg, fb]) = (wi, radiance, out.contribution);
         let inputs = [u, v, w, r, g, b, pdf_light];
-        let mut out = [fr, fg, fb, out.weight];
-        let columns = check_columns(&CANDIDATE, &inputs, &WEIGHT, &mut out)?;
+        let columns = check_columns(&CANDIDATE, inputs, &WEIGHT, [fr, fg, fb, out.weight])?;
         let row = Weighs::<M>::new(&self.inner, Weighing::new(counts, partition));
         level.run_columns(row, &columns);
         Ok(())

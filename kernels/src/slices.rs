@@ -48,6 +48,18 @@ pub struct SampleSlices<'a> {
     pub slot: &'a mut [f32],
 }
 
+/// Output of [`Gather::sample_weight_batch`](crate::Gather::sample_weight_batch): one entry per sample, all 0 but the direction for a
+/// discarded one.
+#[derive(Debug)]
+pub struct SampleWeightSlices<'a> {
+    /// Towards the light, in the fibre's frame: u, v, w.
+    pub wi: [&'a mut [f32]; 3],
+    /// Density, per steradian.
+    pub pdf: &'a mut [f32],
+    /// `S cos theta_i / pdf`, red, green and blue.
+    pub weight: [&'a mut [f32]; 3],
+}
+
 /// Hits by column, one entry per hit.
 #[derive(Clone, Copy, Debug)]
 pub struct HitSlices<'a> {
@@ -141,35 +153,32 @@ fn lens3(names: [&'static str; 3], columns: Option<&[&mut [f32]; 3]>) -> [(&'sta
     [(names[0], len(0)), (names[1], len(1)), (names[2], len(2))]
 }
 
-/// Columns of one length. Names and lengths of those that differ are put together only for the error: the check is most of what
-/// a short slice costs.
+/// Columns of one length. The lengths of those that differ are put together only for the error: the check is most of what a short
+/// slice costs.
 #[inline(always)]
 pub(crate) fn check_columns<'a, const I: usize, const N: usize>(
     in_names: &'static [&'static str; I],
-    inputs: &[&'a [f32]; I],
+    inputs: [&'a [f32]; I],
     out_names: &'static [&'static str; N],
-    outputs: &'a mut [&mut [f32]; N],
+    outputs: [&'a mut [f32]; N],
 ) -> Result<Columns<'a, I, N>, LengthError> {
-    Columns::all(inputs, outputs).map_err(|outputs| first_that_differs(in_names, inputs, out_names, outputs))
+    // By value: columns that a cold call refers to would be copied to memory before every check.
+    let lens = (inputs.map(<[f32]>::len), outputs.each_ref().map(|column| column.len()));
+    Columns::all(inputs, outputs).ok_or_else(|| first_that_differs(in_names, lens.0, out_names, lens.1))
 }
 
 /// The first of the slices that is not of the length of the first input.
 #[cold]
-fn first_that_differs(
-    in_names: &[&'static str],
-    inputs: &[&[f32]],
-    out_names: &[&'static str],
-    outputs: &[&mut [f32]],
+fn first_that_differs<const I: usize, const N: usize>(
+    in_names: &[&'static str; I],
+    inputs: [usize; I],
+    out_names: &[&'static str; N],
+    outputs: [usize; N],
 ) -> LengthError {
-    let inputs = in_names.iter().zip(inputs.iter().map(|column| column.len()));
-    let outputs = out_names.iter().zip(outputs.iter().map(|column| column.len()));
-    let expected = inputs.clone().next().map_or(0, |(_, len)| len);
-    let differs = inputs.chain(outputs).find(|(_, len)| *len != expected);
-    differs.map_or(LengthError { field: "", len: expected, expected }, |(field, len)| LengthError {
-        field,
-        len,
-        expected,
-    })
+    let expected = inputs[0];
+    let mut all = in_names.iter().zip(inputs).chain(out_names.iter().zip(outputs));
+    let (field, len) = all.find(|(_, len)| *len != expected).unwrap_or((&"", expected));
+    LengthError { field, len, expected }
 }
 
 /// Refuses the first column that has a length, and not the expected one.

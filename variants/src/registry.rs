@@ -19,7 +19,7 @@ use {
     hairis::wide::f32x8,
     hairis::{
         Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level, LobeEval, LobeEval8,
-        LobeMask, Sample, Sample8, SampleSlices, Vec3x8,
+        LobeMask, Sample, Sample8, SampleSlices, SampleWeightSlices, Vec3x8,
     },
 };
 

@@ -4,7 +4,10 @@
 //! With the argument `bad` it reads one float behind a slice: the tool must report that.
 
 use hairis::wide::f32x8;
-use hairis::{Bsdf, EvalSlices, Gather, Gaussian, Hair, HairParams, Level, Matched, Model, SampleSlices, Vec3x8};
+use hairis::{
+    Bsdf, EvalSlices, Gather, Gaussian, Hair, HairParams, Level, Matched, Model, SampleSlices, SampleWeightSlices,
+    Vec3x8,
+};
 
 /// Numbers in [0, 1), by a linear congruence.
 struct Numbers(u32);
@@ -38,7 +41,10 @@ fn slices<M: Model>(gather: &Gather<M>, numbers: &mut Numbers) -> u64 {
                 assert!(same, "{len} entries from {offset} on {level}");
                 let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [x, y, z], slot };
                 gather.sample_batch_at(level, input, out).expect("one length");
-                calls += 4;
+                let [u, v, w, pdf, x, y, z, ..] = output.each_mut().map(|block| &mut block[offset..]);
+                let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [x, y, z] };
+                gather.sample_weight_batch_at(level, input, out).expect("one length");
+                calls += 5;
             }
         }
     }

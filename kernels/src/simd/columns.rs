@@ -51,14 +51,11 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         Self::new(inputs, outputs)
     }
 
-    /// Columns of one length, or the outputs again.
+    /// Columns, if they are of one length.
     #[inline(always)]
-    pub(crate) fn all<'o>(
-        inputs: &[&'a [f32]; I],
-        outputs: &'a mut [&'o mut [f32]; N],
-    ) -> Result<Self, &'a mut [&'o mut [f32]; N]> {
-        let columns = Self::new(inputs, outputs);
-        if columns.absent == 0 { Ok(columns) } else { Err(outputs) }
+    pub(crate) fn all(inputs: [&'a [f32]; I], mut outputs: [&'a mut [f32]; N]) -> Option<Self> {
+        let columns = Self::new(&inputs, &mut outputs);
+        (columns.absent == 0).then_some(columns)
     }
 
     /// The outputs are to be borrowed as long as the columns.

@@ -255,7 +255,7 @@ impl Level {
     ) {
         if R::OPTIONAL {
             self.run_columns(row, &Columns::some(&inputs, outputs));
-        } else if let Ok(columns) = Columns::all(&inputs, outputs) {
+        } else if let Some(columns) = Columns::all(inputs, outputs.each_mut().map(|column| &mut **column)) {
             self.run_columns(row, &columns);
         }
     }

@@ -3,7 +3,7 @@
 use hairis::wide::f32x8;
 use hairis::{
     Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, Level, LobeEval, LobeEval8, LobeMask, Model,
-    PerLobe, Sample, Sample8, SampleSlices, Vec3x, Vec3x8,
+    PerLobe, Sample, Sample8, SampleSlices, SampleWeightSlices, Vec3x, Vec3x8,
 };
 
 /// A direction, or any vector, in the fibre's frame.
@@ -49,6 +49,20 @@ pub(crate) fn eval_slices<M: Model>(
     let [r, g, b, pdf] = out;
     gather.eval_pdf_batch_at(level, wi, EvalSlices { value: [r, g, b], pdf })
 }
+
+/// Direction, density and weight of many samples.
+pub(crate) fn weight_slices<M: Model>(
+    gather: &Gather<M>,
+    level: Level,
+    xi: [&[f32]; 3],
+    out: [&mut [f32]; WEIGHT_COLUMNS.len()],
+) -> Result<(), hairis::LengthError> {
+    let [u, v, w, pdf, wr, wg, wb] = out;
+    gather.sample_weight_batch_at(level, xi, SampleWeightSlices { wi: [u, v, w], pdf, weight: [wr, wg, wb] })
+}
+
+/// Those of [`sample_slices`] that [`weight_slices`] has.
+pub(crate) const WEIGHT_COLUMNS: [usize; 7] = [0, 1, 2, 6, 7, 8, 9];
 
 /// Columns of a sample in slices: direction, value, density, weight, slot.
 pub(crate) const COLUMNS: usize = 11;

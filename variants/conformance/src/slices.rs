@@ -1,11 +1,11 @@
 //! Slices give the bits of packets, whatever their length and alignment, and nothing is written beyond them.
 
-use crate::calls::{self, COLUMNS, Direction};
+use crate::calls::{self, COLUMNS, Direction, WEIGHT_COLUMNS};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
 use crate::probe::{Draws, packet, triples};
 use crate::subject::Subject;
-use hairis::{Bsdf, EvalSlices, Gather, LengthError, Level, Model, SampleSlices};
+use hairis::{Bsdf, EvalSlices, Gather, LengthError, Level, Model, SampleSlices, SampleWeightSlices};
 
 const NAME: &str = "slices give the bits of packets";
 /// Content of a slice that is not to be written.
@@ -128,7 +128,11 @@ impl Expected {
         densities.check(&pdfs, "density alone", at)?;
         let mut samples = Room::<COLUMNS>::new(offset, len);
         calls::sample_slices(gather, level, xi, samples.slices()).map_err(refused)?;
-        samples.check(&self.samples, "samples", at)
+        samples.check(&self.samples, "samples", at)?;
+        let mut weights = Room::<{ WEIGHT_COLUMNS.len() }>::new(offset, len);
+        calls::weight_slices(gather, level, xi, weights.slices()).map_err(refused)?;
+        let some: Vec<_> = self.samples.iter().map(|sample| WEIGHT_COLUMNS.map(|column| sample[column])).collect();
+        weights.check(&some, "weights of samples", at)
     }
 }
 
@@ -181,6 +185,12 @@ fn lengths_are_checked<M: Model>(gather: &Gather<M>) -> Outcome {
                 let mut out: [Vec<f32>; COLUMNS] = core::array::from_fn(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
                 let got = calls::sample_slices(gather, level, read, out.each_mut().map(|c| &mut c[..]));
                 check(name, got, &out)?;
+                // Weights alone have some of the slices.
+                if wrong < 3 || WEIGHT_COLUMNS.contains(&(wrong - 3)) {
+                    let mut out = WEIGHT_COLUMNS.map(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
+                    let got = calls::weight_slices(gather, level, read, out.each_mut().map(|c| &mut c[..]));
+                    check(name, got, &out)?;
+                }
             }
         }
     }
@@ -200,7 +210,12 @@ fn found_level_is_default<M: Model>(gather: &Gather<M>, inputs: &[[Vec<f32>; 3];
     let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = samples.slices();
     let slices = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
     gather.sample_batch(xi, slices).map_err(refused)?;
-    if found.columns == default.columns && found_samples.columns == samples.columns {
+    let mut weights = Room::<{ WEIGHT_COLUMNS.len() }>::new(0, 13);
+    let [u, v, w, pdf, wr, wg, wb] = weights.slices();
+    let slices = SampleWeightSlices { wi: [u, v, w], pdf, weight: [wr, wg, wb] };
+    gather.sample_weight_batch(xi, slices).map_err(refused)?;
+    let same = WEIGHT_COLUMNS.iter().zip(&weights.columns).all(|(n, column)| samples.columns[*n] == *column);
+    if found.columns == default.columns && found_samples.columns == samples.columns && same {
         return Ok(());
     }
     Err(Failure::new(NAME, "without a level they differ from those on the level found"))

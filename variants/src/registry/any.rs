@@ -26,6 +26,34 @@ macro_rules! each {
 }
 pub(super) use each;
 
+/// Calls on slices of three columns, on the level found and on a given one.
+#[cfg(feature = "any")]
+macro_rules! slices {
+    ($variants:tt $($doc:literal $name:ident, $at:ident: $input:ident, $output:ident: $Output:ty;)*) => { $(
+        #[doc = $doc]
+        ///
+        /// # Errors
+        ///
+        /// If the slices differ in length; nothing is written then.
+        #[inline]
+        pub fn $name(&self, $input: [&[f32]; 3], $output: $Output) -> Result<(), LengthError> {
+            self.$at(Level::detect(), $input, $output)
+        }
+
+        any::each! { $variants
+            #[doc = concat!("As [`", stringify!($name), "`](Self::", stringify!($name), "), on a given instruction set.")]
+            ///
+            /// # Errors
+            ///
+            /// If the slices differ in length; nothing is written then.
+            #[inline(never)]
+            pub fn $at(level: Level, $input: [&[f32]; 3], $output: $Output) -> Result<(), LengthError>;
+        }
+    )* };
+}
+#[cfg(feature = "any")]
+pub(super) use slices;
+
 /// The enum of a handle, and its conversions.
 #[cfg(feature = "any")]
 macro_rules! handle {
@@ -196,44 +224,17 @@ macro_rules! handles {
                 self.sample8_at(Level::detect(), xi)
             }
 
-            /// Value and density of many directions: see [`Gather::eval_pdf_batch`].
-            ///
-            /// # Errors
-            ///
-            /// If the slices differ in length; nothing is written then.
-            #[inline]
-            pub fn eval_pdf_batch(&self, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
-                self.eval_pdf_batch_at(Level::detect(), wi, out)
-            }
-
-            /// Value of many directions: see [`Gather::eval_batch`].
-            ///
-            /// # Errors
-            ///
-            /// If the slices differ in length; nothing is written then.
-            #[inline]
-            pub fn eval_batch(&self, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError> {
-                self.eval_batch_at(Level::detect(), wi, value)
-            }
-
-            /// Density of many directions: see [`Gather::pdf_batch`].
-            ///
-            /// # Errors
-            ///
-            /// If the slices differ in length; nothing is written then.
-            #[inline]
-            pub fn pdf_batch(&self, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError> {
-                self.pdf_batch_at(Level::detect(), wi, pdf)
-            }
-
-            /// Many samples: see [`Gather::sample_batch`].
-            ///
-            /// # Errors
-            ///
-            /// If the slices differ in length; nothing is written then.
-            #[inline]
-            pub fn sample_batch(&self, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
-                self.sample_batch_at(Level::detect(), xi, out)
+            any::slices! { $variants
+                "Value and density of many directions: see [`Gather::eval_pdf_batch`]."
+                eval_pdf_batch, eval_pdf_batch_at: wi, out: EvalSlices<'_>;
+                "Value of many directions: see [`Gather::eval_batch`]."
+                eval_batch, eval_batch_at: wi, value: [&mut [f32]; 3];
+                "Density of many directions: see [`Gather::pdf_batch`]."
+                pdf_batch, pdf_batch_at: wi, pdf: &mut [f32];
+                "Many samples: see [`Gather::sample_batch`]."
+                sample_batch, sample_batch_at: xi, out: SampleSlices<'_>;
+                "Direction, density and weight of many samples: see [`Gather::sample_weight_batch`]."
+                sample_weight_batch, sample_weight_batch_at: xi, out: SampleWeightSlices<'_>;
             }
 
             any::each! { $variants
@@ -273,34 +274,6 @@ macro_rules! handles {
                 #[inline(never)]
                 #[must_use]
                 pub fn albedo() -> PerLobe<[f32; 3]>;
-                /// As [`eval_pdf_batch`](Self::eval_pdf_batch), on a given instruction set.
-                ///
-                /// # Errors
-                ///
-                /// If the slices differ in length; nothing is written then.
-                #[inline(never)]
-                pub fn eval_pdf_batch_at(level: Level, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError>;
-                /// As [`eval_batch`](Self::eval_batch), on a given instruction set.
-                ///
-                /// # Errors
-                ///
-                /// If the slices differ in length; nothing is written then.
-                #[inline(never)]
-                pub fn eval_batch_at(level: Level, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError>;
-                /// As [`pdf_batch`](Self::pdf_batch), on a given instruction set.
-                ///
-                /// # Errors
-                ///
-                /// If the slices differ in length; nothing is written then.
-                #[inline(never)]
-                pub fn pdf_batch_at(level: Level, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError>;
-                /// As [`sample_batch`](Self::sample_batch), on a given instruction set.
-                ///
-                /// # Errors
-                ///
-                /// If the slices differ in length; nothing is written then.
-                #[inline(never)]
-                pub fn sample_batch_at(level: Level, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError>;
             }
         }
 
