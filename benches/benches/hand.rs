@@ -17,7 +17,7 @@ mod x86 {
     use core::hint::black_box;
     use glam::Vec3;
     use hairis::wide::f32x8;
-    use hairis::{Bell, Bsdf, EvalSlices, Gather, Gaussian, Hair, HairParams, Level, SampleSlices, Vec3x};
+    use hairis::{Bell, Bsdf, EvalSlices, Gather, Gaussian, Hair, HairParams, Level, SampleWeightSlices, Vec3x};
     use hairis_benches::cpu;
     use hairis_benches::hand::{Constants, Set};
     use hairis_benches::inputs::{Column, DIRECTIONS, Inputs};
@@ -225,10 +225,10 @@ mod x86 {
 
     fn sample(run: Run<'_>, set: Set, inputs: &Inputs) {
         let (gather, constants) = &gather(Gaussian, inputs);
-        let (level, same, xi) = (run.level, [0, 1, 2, 6, 7, 8, 9], &inputs.xi);
-        let ours = |from: [&[f32]; 3], [u, v, w, r, g, b, pdf, wr, wg, wb, slot]: [&mut [f32]; 11]| {
-            let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
-            black_box(gather.sample_batch_at(level, from, out).is_ok());
+        let (level, same, xi) = (run.level, [0, 1, 2, 3, 4, 5, 6], &inputs.xi);
+        let ours = |from: [&[f32]; 3], [u, v, w, pdf, r, g, b]: [&mut [f32]; 7]| {
+            let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [r, g, b] };
+            black_box(gather.sample_weight_batch_at(level, from, out).is_ok());
         };
         run.columns("slices", (xi, DIRECTIONS, same), ours, |from, to| set.sample::<false>(constants, from, to));
         run.columns("slices of eight", (xi, 8, same), ours, |from, to| {

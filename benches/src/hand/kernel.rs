@@ -10,8 +10,13 @@ use hairis::HairDesc;
 pub struct Constants {
     sin_theta_o: f32,
     cos_theta_o: f32,
+    inv_cos_theta_o: f32,
+    /// The part of `wo` across the fibre, with the digits that it has: next to `phi = pi` they decide.
     v_o: f32,
     w_o: f32,
+    /// The same of unit length.
+    v_unit: f32,
+    w_unit: f32,
     /// From half of `theta_i` to the distances from the centres of R, TT and TRT in widths: a factor and a term.
     to_x: [[f32; 2]; 3],
     /// From `pi/4 - |phi|/2` to those of TT and the glints.
@@ -67,8 +72,11 @@ impl Constants {
         Self {
             sin_theta_o: wo[0] as f32,
             cos_theta_o: plane as f32,
-            v_o: (wo[1] / plane) as f32,
-            w_o: (wo[2] / plane) as f32,
+            inv_cos_theta_o: (1.0 / plane) as f32,
+            v_o: wo[1] as f32,
+            w_o: wo[2] as f32,
+            v_unit: (wo[1] / plane) as f32,
+            w_unit: (wo[2] / plane) as f32,
             to_x: [0, 1, 2].map(|l: usize| [1.0 / beta[l], shift[l] / beta[l]].map(|x| x as f32)),
             to_y: [
                 [2.0 / gamma[0], QUARTER * 2.0 / gamma[0]].map(|x| x as f32),
@@ -235,10 +243,10 @@ pub(super) fn eval<V: Vector, const CAUCHY: bool>(c: &Constants, [x, y, z]: [V; 
     // The tangent of half of |phi| or of pi - |phi|, whichever is smaller.
     let dot = y.mul_add(k(c.v_o), z * k(c.w_o));
     let cross = V::cross(k(c.v_o), z, k(c.w_o), y).abs();
-    let far = cos + dot.abs();
+    let far = cos.mul_add(k(c.cos_theta_o), dot.abs());
     let inv_cos = one.over(cos);
     let tau = cross.over(far);
-    let root = (far * inv_cos).sqrt();
+    let root = (far * (inv_cos * k(c.inv_cos_theta_o))).sqrt();
     let from_side = (k(FRAC_PI_4) - atan(tau)).times_sign(dot);
     let cos_half_phi = root * V::select(dot.below_zero(), tau, one);
     let at = Angles { half_theta_i, sin_theta_i: x, cos_theta_i: cos, from_side, cos_half_phi };
@@ -284,16 +292,29 @@ pub(super) fn sample<V: Vector>(c: &Constants, xi: [V; 3]) -> [V; 7] {
     let (n, d) = (V::select(is_bell, n, across), V::select(is_bell, d, cosine));
     let n_sq = n * n;
     let by = two.over(d.mul_add(d, n_sq));
-    let sin_phi = (n * d * by).times_sign(V::negate(is_bell, side));
+    let sin_abs = n * d * by;
+    let sin_phi = sin_abs.times_sign(V::negate(is_bell, side));
     let cos_phi = V::negate(is_tt, n_sq.sub_from(by, one));
-    let cos_half_phi = V::select(is_tt, n, d) * by.sqrt();
+    let root = by.sqrt();
+    let (cos_half_phi, sin_half_phi) = (V::select(is_tt, n, d) * root, V::select(is_tt, d, n) * root);
     // Half of |phi| for the glints, of pi - |phi| for the others.
     let from_side = V::negate(is_glint, psi - k(FRAC_PI_4));
 
-    let v = cos_phi.mul_add(k(c.v_o), sin_phi * k(c.w_o)) * cos_theta_i;
-    let w = cos_phi.mul_sub(k(c.w_o), sin_phi * k(c.v_o)) * cos_theta_i;
-    let at = Angles { half_theta_i, sin_theta_i, cos_theta_i, from_side, cos_half_phi };
+    let v = cos_phi.mul_add(k(c.v_unit), sin_phi * k(c.w_unit)) * cos_theta_i;
+    let w = cos_phi.mul_sub(k(c.w_unit), sin_phi * k(c.v_unit)) * cos_theta_i;
+    // The angle of the rounded direction: half of |phi| is larger by this much.
+    let inv_cos = one.over(cos_theta_i);
+    let dot = v.mul_add(k(c.v_o), w * k(c.w_o));
+    let cross = V::cross(k(c.v_o), w, k(c.w_o), v).abs();
+    let rotation = cross.mul_sub(cos_phi, dot * sin_abs) * (inv_cos * k(0.5 * c.inv_cos_theta_o));
+    let at = Angles {
+        half_theta_i,
+        sin_theta_i,
+        cos_theta_i,
+        from_side: from_side - rotation,
+        cos_half_phi: rotation.sub_from(sin_half_phi, cos_half_phi).max(k(0.0)),
+    };
     let Lobes { value: [r, g, b], length_sq, density } = lobes::<V, false>(c, &at);
     let by = (cos_theta_i * cos_theta_i).over(length_sq * density);
-    [sin_theta_i, v, w, density.over(cos_theta_i), r * by, g * by, b * by]
+    [sin_theta_i, v, w, density * inv_cos, r * by, g * by, b * by]
 }

@@ -334,9 +334,13 @@ impl Vector for Sse2 {
         // Factors in halves of 12 bits, whose products are exact; those of constants are split before the loop.
         cross(a: Self, b: Self, c: Self, d: Self) -> Self = {
             let upper = |x: Self| Self(_mm_and_ps(x.0, _mm_castsi128_ps(_mm_set1_epi32(-4096))));
-            let (a_upper, b_upper, c_upper, d_upper) = (upper(a), upper(b), upper(c), upper(d));
-            let rest = (a_upper * (b - b_upper) - c_upper * (d - d_upper)) + ((a - a_upper) * b - (c - c_upper) * d);
-            (a_upper * b_upper - c_upper * d_upper) + rest
+            let rest = |x: Self, y: Self, product: Self| {
+                let (x_upper, y_upper) = (upper(x), upper(y));
+                let (x_lower, y_lower) = (x - x_upper, y - y_upper);
+                (((x_upper * y_upper - product) + x_upper * y_lower) + x_lower * y_upper) + x_lower * y_lower
+            };
+            let (first, second) = (a * b, c * d);
+            (first - second) + (rest(a, b, first) - rest(c, d, second))
         };
         sqrt(self: Self) -> Self = Self(_mm_sqrt_ps(self.0));
         abs(self: Self) -> Self = Self(_mm_andnot_ps(_mm_set1_ps(-0.0), self.0));
