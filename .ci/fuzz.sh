@@ -6,8 +6,8 @@
 #   .ci/fuzz.sh all SECONDS        the kernels and every reader of files; by hand: it takes minutes to compile
 #   .ci/fuzz.sh all SECONDS keep   adds the inputs that reach new branches to the corpus
 #
-# The first byte of an input names its target: k the kernels, e JSON lines, p part files, m maps, h hair files. An input that
-# fails is left in target/fuzz/failed; the program takes its name and runs it again.
+# The first byte of an input names its target: k the kernels, e JSON lines, p part files, m maps, h hair files, r parts of
+# pictures. An input that fails is left in target/fuzz/failed; the program takes its name and runs it again.
 set -euo pipefail
 cd "$(dirname "$0")/fuzz"
 . ../flags

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Eval, EvalSlices, Hit, Level, Lobe, LobeMask, Model, SampleSlices, Vec3x8};
+use hairis::{Bsdf, Eval, EvalSlices, Hit, Level, Lobe, LobeMask, Model, SampleSlices, SampleWeightSlices, Vec3x8};
 use hairis_variants::{ModelId, Parameters, Registered, Visitor};
 
 /// Numbers from bytes, zeros at their end.
@@ -121,6 +121,15 @@ fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
         let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [x, y, z], slot };
         gather.sample_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out).expect("one length");
         rows[3..10].iter().for_each(|row| sound(row));
+        let mut weights = [[0.0; 8]; 7];
+        let [u, v, w, pdf, x, y, z] = weights.each_mut().map(|row| &mut row[..len]);
+        let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [x, y, z] };
+        gather.sample_weight_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out).expect("one length");
+        let same = weights
+            .iter()
+            .zip([0, 1, 2, 6, 7, 8, 9])
+            .all(|(row, n)| row.map(f32::to_bits) == rows[n].map(f32::to_bits));
+        assert!(same, "{len} weights on {level}");
     }
 }
 

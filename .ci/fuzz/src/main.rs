@@ -22,6 +22,8 @@ fuzz_target!(|input: &[u8]| {
         b'm' => readers::map(data),
         #[cfg(feature = "readers")]
         b'h' => readers::hair(data),
+        #[cfg(feature = "readers")]
+        b'r' => readers::picture(data),
         _ => {}
     }
 });

@@ -5,6 +5,7 @@ use hairis_harness::cmd::eval;
 use hairis_harness::light::{Environment, Light};
 use hairis_harness::study::part;
 use hairis_render::formats::{Import, import_bytes};
+use hairis_render::part::{Part, seal};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -40,6 +41,21 @@ pub fn parts(data: &[u8]) {
     match part::read(&file("cells-1-of-1.jsonl", data)) {
         Ok(part) => assert!(part.finished.iter().all(|cell| cell.cell < part.header.cells), "cells of the grid"),
         Err(error) => one_line(&error.to_string()),
+    }
+}
+
+/// The content of a picture's part, under its digest: a part that survives being written and joined with itself, or refused.
+pub fn picture(data: &[u8]) {
+    let mut bytes = data.to_vec();
+    seal(&mut bytes);
+    let Some(part) = Part::from_bytes(&bytes) else { return };
+    assert!(part.run.lines().count() <= 1, "one line: {:?}", part.run);
+    assert!(
+        Part::from_bytes(&part.to_bytes()).is_some_and(|again| again.to_bytes() == part.to_bytes()),
+        "written and read"
+    );
+    if let Err(error) = Part::merge(vec![("a".into(), part.clone()), ("b".into(), part)]) {
+        one_line(&error.to_string());
     }
 }
 

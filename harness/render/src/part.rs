@@ -2,7 +2,8 @@
 
 mod sealed;
 
-pub(crate) use sealed::{Reader, digest, seal, unseal};
+pub use sealed::seal;
+pub(crate) use sealed::{Reader, digest, unseal};
 
 use crate::film::{Crop, Film, Sums, Tile};
 use hairis::Level;
@@ -41,6 +42,13 @@ impl Part {
     ///
     /// If it cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
+        let bytes = self.to_bytes();
+        whole(path, |out| out.write_all(&bytes))
+    }
+
+    /// The bytes of the file.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
         let Crop { x, y, width, height } = self.film.crop();
         let mut bytes = format!("{MAGIC}\n{}\n", self.run).into_bytes();
         bytes.extend([x, y, width, height, u32::from(self.finished)].into_iter().flat_map(u32::to_le_bytes));
@@ -55,7 +63,7 @@ impl Part {
             bytes.extend(first.iter().flatten().flat_map(|number| number.to_le_bytes()));
         }
         seal(&mut bytes);
-        whole(path, |out| out.write_all(&bytes))
+        bytes
     }
 
     /// Reads a file.
@@ -66,7 +74,13 @@ impl Part {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let refuse = |problem: String| Error::Part { path: path.to_owned(), problem };
         let bytes = fs::read(path).map_err(|source| refuse(format!("cannot read: {source}")))?;
-        parse(&bytes).ok_or_else(|| refuse("damaged, or not a part of a picture: remove it".to_owned()))
+        Self::from_bytes(&bytes).ok_or_else(|| refuse("damaged, or not a part of a picture: remove it".to_owned()))
+    }
+
+    /// Reads the bytes of a file; `None` if they are damaged, or none of a part.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        parse(unseal(bytes)?)
     }
 
     /// Goes on from a file, if there is one and it belongs to the same run and tiles as `fresh`; otherwise `fresh`. A finished
@@ -172,9 +186,9 @@ fn crop(reader: &mut Reader<'_>) -> Option<Crop> {
     (fits(x, width) && fits(y, height)).then_some(Crop { x, y, width, height })
 }
 
-/// The two lines of text, then the numbers, then a digest of all that.
-fn parse(bytes: &[u8]) -> Option<Part> {
-    let mut lines = unseal(bytes)?.splitn(3, |byte| *byte == b'\n');
+/// The two lines of text, then the numbers.
+fn parse(content: &[u8]) -> Option<Part> {
+    let mut lines = content.splitn(3, |byte| *byte == b'\n');
     if lines.next()? != MAGIC.as_bytes() {
         return None;
     }
@@ -231,12 +245,12 @@ mod tests {
         let bytes = fs::read(&path).expect("there");
         // Cuts between tiles among them.
         for length in 0..bytes.len() {
-            assert_eq!(parse(&bytes[..length]), None, "cut at {length}");
+            assert_eq!(Part::from_bytes(&bytes[..length]), None, "cut at {length}");
         }
         for byte in (0..bytes.len()).step_by(97) {
             let mut damaged = bytes.clone();
             damaged[byte] ^= 4;
-            assert_eq!(parse(&damaged), None, "byte {byte} changed");
+            assert_eq!(Part::from_bytes(&damaged), None, "byte {byte} changed");
         }
         assert!(Part::read(&folder.path().join("none")).is_err());
     }
