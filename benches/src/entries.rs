@@ -312,7 +312,8 @@ impl<M: Registered> Of<'_, M> {
                     gather.sample_weight_batch_at(level, xi, out)
                 })
                 .read_by(|[u, v, w, pdf, ..]| Answer {
-                    wi: Some(Vec3::new(u, v, w)),
+                    // No direction where the sample is discarded.
+                    wi: Some(if pdf > 0.0 { Vec3::new(u, v, w) } else { Vec3::ZERO }),
                     value: None,
                     pdf: Some(pdf),
                 })

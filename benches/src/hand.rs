@@ -1,8 +1,8 @@
 //! Kernels written by hand for one model and one task each: the bound that a port of the published model could reach.
 //!
-//! They call nothing of `hairis`; only the coefficients of a Gaussian are the same. Nor do they keep what its kernels promise beyond the
-//! stated accuracy: no lobe masks, no rules for NaN or for the axis, no slots, no values with samples. Directions have unit length.
-//! Next to `phi = pi` samples report the density of the angle that they were drawn at, not of the rounded direction.
+//! They call nothing of `hairis`; only the coefficients of a Gaussian are the same. They keep the stated accuracy, next to `phi = pi` as
+//! well, and nothing else of what its kernels promise: no lobe masks, no rules for NaN or for the axis, no slots, no values with
+//! samples. Directions have unit length.
 
 #![allow(
     unsafe_code,

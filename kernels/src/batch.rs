@@ -117,7 +117,7 @@ impl<M: Model> Gather<M> {
         Ok(())
     }
 
-    /// Many samples as a path tracer uses them, without value and slot: the same numbers as of
+    /// Many samples as a path tracer uses them, without value and slot: the same bits as
     /// [`sample_batch`](Self::sample_batch), in less time.
     ///
     /// # Errors

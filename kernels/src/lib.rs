@@ -25,7 +25,7 @@
 //! | describe | material | [`HairDesc`] and [`HairParams::new`], a preset, or [`HairParams::from_artist`] |
 //! | build | material | [`Bsdf::new`]; eight different ones: [`Bsdf8::pack`] |
 //! | prepare | hit | [`Bsdf::prepare`]; eight hits: [`Bsdf::prepare8`], [`Bsdf8::prepare8`] |
-//! | evaluate, sample | direction | [`Gather::eval_pdf`], [`Gather::sample`]; eight directions at one hit: [`Gather::eval_pdf8`], [`Gather::sample8`]; one at each of eight hits: [`Gather8::eval_pdf8`], [`Gather8::sample8`]; slices: [`Gather::eval_pdf_batch`], [`Gather::sample_batch`] |
+//! | evaluate, sample | direction | [`Gather::eval_pdf`], [`Gather::sample`]; eight directions at one hit: [`Gather::eval_pdf8`], [`Gather::sample8`]; one at each of eight hits: [`Gather8::eval_pdf8`], [`Gather8::sample8`]; slices: [`Gather::eval_pdf_batch`], [`Gather::sample_batch`], [`Gather::sample_weight_batch`] |
 //! | both in one | hit and direction | slices of hits: [`Bsdf::eval_pdf_hits`], [`Bsdf::sample_hits`]; a material per hit: [`MaterialTable`] |
 //!
 //! # Conventions

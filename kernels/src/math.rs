@@ -42,8 +42,8 @@ fn halves<L: Lanes, const N: usize, const FIRST: usize>(x: L, coefficients: [f32
 /// A polynomial of up to ten coefficients, the constant first, by Horner's rule: the fewest instructions and registers, and the
 /// smallest error, for where other work fills its waits.
 ///
-/// Without fused products a step is two instructions that wait for each other, and a long chain is more than other work fills: all
-/// but the first two steps then take the even and odd halves apart.
+/// Without fused products a step is two instructions that wait for each other, and a long chain is more than other work fills. Long
+/// polynomials then have their even and odd halves apart, but for the two lowest coefficients, for the sake of the error.
 #[inline(always)]
 pub fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     let apart = !L::FUSES && N > 7;
@@ -60,7 +60,7 @@ pub fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     sum
 }
 
-/// `[a / x, b / y]`. Lanes that fuse share one division: beside fused products, it is the slowest. Others have the time for two.
+/// `[a / x, b / y]`. Lanes that fuse share one division, the slowest instruction there; others have the time for two.
 #[inline(always)]
 pub(crate) fn quotients<L: Lanes>([a, x]: [L; 2], [b, y]: [L; 2]) -> [L; 2] {
     if L::FUSES {

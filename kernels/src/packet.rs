@@ -164,7 +164,7 @@ impl<M: Model> Row<3, 11> for AtGather<'_, M, Samples> {
     }
 }
 
-/// Columns of samples without value and slot, which are not computed.
+/// Columns of samples without value and slot.
 pub(crate) struct Weights;
 impl<M: Model> Row<3, 7> for AtGather<'_, M, Weights> {
     #[inline(always)]

@@ -42,14 +42,14 @@ pub struct SampleSlices<'a> {
     pub value: [&'a mut [f32]; 3],
     /// Density, per steradian.
     pub pdf: &'a mut [f32],
-    /// `value * cos theta_i / pdf`, red, green and blue.
+    /// `S cos theta_i / pdf`, red, green and blue.
     pub weight: [&'a mut [f32]; 3],
     /// Slot of the chosen lobe as a number, -1 for a discarded sample.
     pub slot: &'a mut [f32],
 }
 
 /// Output of [`Gather::sample_weight_batch`](crate::Gather::sample_weight_batch): one entry per sample, all 0 but the direction for a
-/// discarded one.
+/// discarded one: its density is 0.
 #[derive(Debug)]
 pub struct SampleWeightSlices<'a> {
     /// Towards the light, in the fibre's frame: u, v, w.

@@ -101,7 +101,9 @@ struct Worst {
 }
 
 fn relative(got: f32, want: f64) -> f64 {
-    if want < NEGLIGIBLE { 0.0 } else { (f64::from(got) / want - 1.0).abs() }
+    let error = if want < NEGLIGIBLE { 0.0 } else { (f64::from(got) / want - 1.0).abs() };
+    // `max` does not see NaN.
+    if got.is_finite() { error } else { f64::INFINITY }
 }
 
 /// A hit of the tests, with some rows at it.
@@ -227,12 +229,22 @@ fn samples_are_within_the_bounds() {
             let gather = Bsdf::new(&Hair(Gaussian), hit.params).prepare(Vec3::from_array(hit.wo));
             let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [r, g, b] };
             gather.sample_weight_batch_at(hit.level, hit.columns, out).expect("one length");
+            // The kernels of eight.
+            let mut eight = [[0.0; 8]; 7];
+            let first = hit.columns.map(|column| column.first_chunk().expect("at least eight"));
+            hit.set.sample8::<false>(hit.constants, first, eight.each_mut());
+            for (column, eight) in by_hand.iter().zip(eight) {
+                for (a, b) in column.iter().zip(eight) {
+                    assert!((a - b).abs() <= 1e-4 * a.abs() + 1e-6, "{a} of a slice, {b} of a packet");
+                }
+            }
             for i in 0..ROWS {
                 let xi = hit.columns.map(|column| f64::from(column[i]));
                 let want = hit.reference.sample(xi);
                 for (out, worst) in [&by_hand, &ours].into_iter().zip(&mut *worst) {
                     let [u, v, w, pdf, r, g, b] = row(out, i);
                     let wi = [u, v, w].map(f64::from);
+                    assert!(wi.iter().all(|x| x.is_finite()), "{wi:?}");
                     let apart = wi.iter().zip(want.wi).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
                     // Next to its ends 1 less twice the last number has few digits of the angle.
                     if (1e-3..0.999).contains(&xi[2]) {

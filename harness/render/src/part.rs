@@ -77,7 +77,7 @@ impl Part {
         Self::from_bytes(&bytes).ok_or_else(|| refuse("damaged, or not a part of a picture: remove it".to_owned()))
     }
 
-    /// Reads the bytes of a file; `None` if they are damaged, or none of a part.
+    /// Reads the bytes of a file; `None` if they are damaged, or not those of a part.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         parse(unseal(bytes)?)

@@ -29,7 +29,7 @@ pub fn bars(title: &str, y: Axis, groups: &[String], series: &[(String, Vec<Bar>
     let mut description = format!("{}.", y.axis.label);
     for (g, group) in groups.iter().enumerate() {
         let middle = x.pixel(g as f64 + 0.5);
-        below = below.max(canvas.lines(group, (middle, y.start + 16.0), group_width - 4.0, TICK));
+        below = below.max(canvas.lines(group, (middle, y.start + 16.0), group_width - 12.0, TICK));
         for (s, (name, bars)) in series.iter().enumerate() {
             let Some(bar) = bars.get(g).filter(|b| y.axis.shows(b.value)) else { continue };
             let number = number::plain(bar.value, 3);

@@ -167,17 +167,21 @@ impl Canvas {
         ));
     }
 
-    /// A text in lines no wider than `width` pixels, as far as words allow, and the middle height of the line below it.
+    /// A text in lines no wider than `width` pixels, as far as words and hyphens allow, and the middle height of the line below it.
     pub(super) fn lines(&mut self, text: &str, (x, mut y): Place, width: f64, set: Type) -> f64 {
         let mut line = String::new();
         for word in text.split_whitespace() {
-            let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
-            if !line.is_empty() && set.width(&longer) > width {
-                self.text(&line, (x, y), set);
-                y += 1.3 * set.size;
-                line = word.to_owned();
-            } else {
-                line = longer;
+            let mut space = if line.is_empty() { "" } else { " " };
+            for part in word.split_inclusive('-') {
+                let longer = format!("{line}{space}{part}");
+                if !line.is_empty() && set.width(&longer) > width {
+                    self.text(&line, (x, y), set);
+                    y += 1.3 * set.size;
+                    line = part.to_owned();
+                } else {
+                    line = longer;
+                }
+                space = "";
             }
         }
         self.text(&line, (x, y), set);

@@ -84,8 +84,8 @@ pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
     let sound = L::and(L::splat(GRAZING).lt(cos), L::splat(LEAST_DENSITY).lt(density));
     let limit = limit::<L>(sound);
     let (sum, inv_cos_sq_theta_d) = (terms.sum_lobes(view), terms.inv_cos_sq_theta_d);
-    // weight = S cos theta_i / pdf, and pdf = density / cos theta_i. The product before the division is at most 4, and rounding
-    // down takes a density of 0 below it.
+    // weight = S cos theta_i / pdf, and pdf = density / cos theta_i. The product before the division is at most 4. Where results
+    // are rounded down, a density of 0 may be -0, and a quotient by it -infinity.
     let by = L::quotient(cos * cos * inv_cos_sq_theta_d, density.max(L::splat(LEAST_DENSITY)));
     Drawn {
         wi,

@@ -53,7 +53,7 @@ impl<L: Lanes> FoldedXi<L> {
     }
 }
 
-/// Far below that of any sample: it has a reciprocal, and products of that do not overflow.
+/// Far below the cosine of any kept sample. Its reciprocal is finite, and so are products with it.
 const LEAST_COSINE: f32 = 1e-20;
 
 /// The direction at a longitude and at an azimuth, and its angles. Angles that keep their digits in the direction are reused, not
