@@ -79,20 +79,25 @@ fn matters(measured: &Measured) -> bool {
 
 /// Names the samplers that the last one beats, loses to and equals, by the two errors that say most.
 fn answer(measured: &Measured) -> String {
-    use Ordering::{Equal, Greater, Less};
+    use Ordering::{Greater, Less};
     let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
     let matters = matters(measured);
     let others: Vec<&BySampler> = others.iter().filter(|one| matters || one.name == RESAMPLED).collect();
-    let sides = |one: &BySampler| headline_gains(measured, one).map(|gain| gain.side());
-    let of = |before: &str, is: fn([Ordering; 2]) -> bool, behind: &str| {
-        let names: Vec<&str> = others.iter().filter(|one| is(sides(one))).map(|one| one.name).collect();
-        (!names.is_empty()).then(|| format!("{before} {}{behind}", listed(&names)))
+    let of = |before: &str, is: &dyn Fn([Gain; 2]) -> bool, behind: &str| {
+        let named: Vec<&str> =
+            others.iter().filter(|one| is(headline_gains(measured, one))).map(|one| one.name).collect();
+        (!named.is_empty()).then(|| format!("{before} {}{behind}", listed(&named)))
     };
+    let has = |gains: [Gain; 2], side: Ordering| gains.iter().any(|gain| gain.side() == side);
+    let is_equal = |gains: [Gain; 2]| !has(gains, Greater) && !has(gains, Less);
+    let is_none = |gains: [Gain; 2]| gains.iter().all(Gain::is_none);
+    let within = format!("is within {:.0} % of", 100.0 * (GAIN - 1.0));
     let parts = [
-        of("beats", |sides| sides.contains(&Greater) && !sides.contains(&Less), ""),
-        of("loses to", |sides| sides.contains(&Less) && !sides.contains(&Greater), ""),
-        of("does not differ measurably from", |sides| sides == [Equal; 2], ""),
-        of("against", |sides| sides.contains(&Greater) && sides.contains(&Less), ", it depends on the error"),
+        of("beats", &|gains| has(gains, Greater) && !has(gains, Less), ""),
+        of("loses to", &|gains| has(gains, Less) && !has(gains, Greater), ""),
+        of(&within, &|gains| is_none(gains), ""),
+        of("does not differ measurably from", &|gains| is_equal(gains) && !is_none(gains), ""),
+        of("against", &|gains| has(gains, Greater) && has(gains, Less), ", it depends on the error"),
     ];
     let compared = format!("`{}` {}.", best.name, parts.into_iter().flatten().collect::<Vec<String>>().join("; "));
     if matters {
