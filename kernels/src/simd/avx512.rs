@@ -158,10 +158,10 @@ impl Lanes for Avx512 {
             if count > 2 { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[2].0) } else { 0 },
         ]);
         let number = avx512!({
-            let one = _mm512_set1_epi32(1);
-            let first = _mm512_maskz_mov_epi32(at_least[0], one);
-            let second = _mm512_mask_add_epi32(first, at_least[1], first, one);
-            _mm512_mask_add_epi32(second, at_least[2], second, one)
+            // Not a sum of masks, which the compiler makes one of bytes.
+            let first = _mm512_maskz_set1_epi32(at_least[0], 1);
+            let second = _mm512_mask_mov_epi32(first, at_least[1], _mm512_set1_epi32(2));
+            _mm512_mask_mov_epi32(second, at_least[2], _mm512_set1_epi32(3))
         });
         Indices16 { number, at_least }
     }
