@@ -53,13 +53,13 @@ def main():
     rows = []
     for address, (name, size) in table.items():
         key = entry(name)
-        if key is None or key[2] not in ("avx2", "avx512"):
+        if key is None or key[2] not in ("portable", "avx2", "avx512"):
             continue
         lines = code(program, address, size)
         if "batch" in key[0]:
             lines = main_loop(lines)
         many, one = simulate(lines, cpu, 100), simulate(lines, cpu, 1)
-        lanes = {"avx2": 16, "avx512": 32}[key[2]] if "batch" in key[0] else 8
+        lanes = {"portable": 8, "avx2": 16, "avx512": 32}[key[2]] if "batch" in key[0] else 8
         share = many[3] / many[4]
         bound = "ports" if share > 0.85 else "ports and latency" if share > 0.65 else "latency"
         instructions, uops, port, *cycles = many

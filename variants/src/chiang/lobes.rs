@@ -65,7 +65,9 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     let small = x.lt(Four::splat(SEAM));
     // 1 / sqrt(x).
     let root = same(inv_root_i) * four(&gather.spread);
-    let bessel = Four::select(small, polynomial(x * x, SERIES), polynomial(root * root, TAIL) * root);
+    // Either is held within bounds that it keeps where it is chosen: elsewhere powers would overflow.
+    let (below, above) = (x.min(Four::splat(8.0)), root.min(Four::splat(1.0)));
+    let bessel = Four::select(small, polynomial(below * below, SERIES), polynomial(above * above, TAIL) * root);
     let sum = chord_sq.mul_add(four(&m.inv_variance), exponent) + Four::keep(small, x + x);
     // Alone: in vectors of three lobes, what nobody uses overflows.
     let densities = gaussian(sum).alone() * bessel * (logistic * four(&m.norm));
