@@ -14,6 +14,7 @@ ROWS = {
     "Value": "eval_batch",
     "Pdf": "pdf_batch",
     "Samples": "sample_batch",
+    "Weights": "sample_weight_batch",
     "Proposed": "propose_batch",
 }
 PACKETS = {
