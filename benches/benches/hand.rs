@@ -90,20 +90,20 @@ mod x86 {
             println!("{},{call},{},{ns:.3},{hand:.3},{ratio:.3},{low:.3},{high:.3}", self.task, self.level);
         }
 
-        /// Calls on columns of `len` rows; the columns `same` of ours must hold what those of `hand` do.
-        fn columns<const N: usize, const K: usize>(
+        /// Calls on columns of `len` rows, which must give the same.
+        fn columns<const N: usize>(
             self,
             call: &str,
-            (rows, len, same): (&[[f32; 3]], usize, [usize; K]),
+            (rows, len): (&[[f32; 3]], usize),
             ours: impl Fn([&[f32]; 3], [&mut [f32]; N]),
-            hand: impl Fn([&[f32]; 3], [&mut [f32]; K]),
+            hand: impl Fn([&[f32]; 3], [&mut [f32]; N]),
         ) {
             let from: [Column; 3] = from_fn(|k| Column::new(k, rows.iter().map(|row| row[k])));
             let mut to: [Column; N] = from_fn(|k| Column::new(3 + k, []));
-            let mut to_hand: [Column; K] = from_fn(|k| Column::new(3 + k, []));
+            let mut to_hand: [Column; N] = from_fn(|k| Column::new(3 + k, []));
             self.compare(call, || pass(&from, &mut to, len, &ours), || pass(&from, &mut to_hand, len, &hand));
-            for (column, same) in to_hand.iter().zip(same) {
-                let (a, b) = (column.part(0, DIRECTIONS), to[same].part(0, DIRECTIONS));
+            for (by_hand, ours) in to_hand.iter().zip(&to) {
+                let (a, b) = (by_hand.part(0, DIRECTIONS), ours.part(0, DIRECTIONS));
                 let agree = |(a, b): &(&f32, &f32)| (*a - *b).abs() <= TOLERANCE * b.abs() + 1e-7;
                 let wrong = a.iter().zip(b).filter(|pair| !agree(pair)).count();
                 // Next to the boundary of two lobes either may be chosen.
@@ -187,13 +187,13 @@ mod x86 {
     fn eval<B: Bell, const CAUCHY: bool>(run: Run<'_>, set: Set, bell: B, inputs: &Inputs) {
         let (gather, constants) = &gather(bell, inputs);
         let wi: Vec<[f32; 3]> = inputs.wi.iter().map(Vec3::to_array).collect();
-        let (level, same) = (run.level, [0, 1, 2, 3]);
+        let level = run.level;
         let ours = |from: [&[f32]; 3], [r, g, b, pdf]: [&mut [f32]; 4]| {
             let done = gather.eval_pdf_batch_at(level, from, EvalSlices { value: [r, g, b], pdf });
             black_box(done.is_ok());
         };
-        run.columns("slices", (&wi, DIRECTIONS, same), ours, |from, to| set.eval::<CAUCHY>(constants, from, to));
-        run.columns("slices of eight", (&wi, 8, same), ours, |from, to| {
+        run.columns("slices", (&wi, DIRECTIONS), ours, |from, to| set.eval::<CAUCHY>(constants, from, to));
+        run.columns("slices of eight", (&wi, 8), ours, |from, to| {
             set.eval8::<CAUCHY>(constants, eight(from), eight_mut(to));
         });
         let (rows, _) = wi.as_chunks::<8>();
@@ -225,13 +225,13 @@ mod x86 {
 
     fn sample(run: Run<'_>, set: Set, inputs: &Inputs) {
         let (gather, constants) = &gather(Gaussian, inputs);
-        let (level, same, xi) = (run.level, [0, 1, 2, 3, 4, 5, 6], &inputs.xi);
+        let (level, xi) = (run.level, &inputs.xi);
         let ours = |from: [&[f32]; 3], [u, v, w, pdf, r, g, b]: [&mut [f32]; 7]| {
             let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [r, g, b] };
             black_box(gather.sample_weight_batch_at(level, from, out).is_ok());
         };
-        run.columns("slices", (xi, DIRECTIONS, same), ours, |from, to| set.sample::<false>(constants, from, to));
-        run.columns("slices of eight", (xi, 8, same), ours, |from, to| {
+        run.columns("slices", (xi, DIRECTIONS), ours, |from, to| set.sample::<false>(constants, from, to));
+        run.columns("slices of eight", (xi, 8), ours, |from, to| {
             set.sample8::<false>(constants, eight(from), eight_mut(to));
         });
         let (rows, _) = xi.as_chunks::<8>();

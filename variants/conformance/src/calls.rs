@@ -61,7 +61,7 @@ pub(crate) fn weight_slices<M: Model>(
     gather.sample_weight_batch_at(level, xi, SampleWeightSlices { wi: [u, v, w], pdf, weight: [wr, wg, wb] })
 }
 
-/// Those of [`sample_slices`] that [`weight_slices`] has.
+/// Places of the columns of [`weight_slices`] among those of [`sample_slices`].
 pub(crate) const WEIGHT_COLUMNS: [usize; 7] = [0, 1, 2, 6, 7, 8, 9];
 
 /// Columns of a sample in slices: direction, value, density, weight, slot.

@@ -77,6 +77,11 @@ fn matters(measured: &Measured) -> bool {
     !drawn.flat_map(|one| headline_gains(measured, one)).all(|gain| gain.is_none())
 }
 
+/// The margin of [`Gain::is_none`], in words.
+fn within() -> String {
+    format!("within {:.0} % of", 100.0 * (GAIN - 1.0))
+}
+
 /// Names the samplers that the last one beats, loses to and equals, by the two errors that say most.
 fn answer(measured: &Measured) -> String {
     use Ordering::{Greater, Less};
@@ -91,7 +96,7 @@ fn answer(measured: &Measured) -> String {
     let has = |gains: [Gain; 2], side: Ordering| gains.iter().any(|gain| gain.side() == side);
     let is_equal = |gains: [Gain; 2]| !has(gains, Greater) && !has(gains, Less);
     let is_none = |gains: [Gain; 2]| gains.iter().all(Gain::is_none);
-    let within = format!("is within {:.0} % of", 100.0 * (GAIN - 1.0));
+    let within = format!("is {}", within());
     let parts = [
         of("beats", &|gains| has(gains, Greater) && !has(gains, Less), ""),
         of("loses to", &|gains| has(gains, Less) && !has(gains, Greater), ""),
@@ -123,9 +128,9 @@ pub(super) fn scenes(all: &[Measured]) -> String {
         listed(&titles.iter().map(String::as_str).collect::<Vec<&str>>())
     };
     let rule = format!(
-        "Rule: with uniform and published directions, error × time is within {:.0} % of that with matched ones, by MSE and by \
-         trimmed relMSE, with two standard errors to spare.",
-        100.0 * (GAIN - 1.0)
+        "Rule: with uniform and published directions, error × time is {} that with matched ones, by MSE and by trimmed relMSE, \
+         with two standard errors to spare.",
+        within()
     );
     match (no.as_slice(), yes.as_slice()) {
         ([], _) => format!("In none of these scenes. {rule}"),
