@@ -84,12 +84,17 @@ const FURTHEST: f32 = 0.999_98 * LEAST_EXPONENT / -TO_EXPONENT;
 /// one: denormals cost as much as the rest of the model. NaN gives 0.
 #[inline(always)]
 pub fn gaussian<L: Lanes>(s: L) -> L {
+    // The second operand of `min` wins over NaN.
+    gaussian_within(s.min(L::splat(FURTHEST)))
+}
+
+/// [`gaussian`] for `s` up to [`FURTHEST`].
+#[inline(always)]
+fn gaussian_within<L: Lanes>(s: L) -> L {
     // Adding 2^23 rounds to an integer and leaves it in the low bits, biased as an exponent is. The bias is 12 short,
     // so that the exponent reaches 0, and with it the power, at -115 already; the polynomial makes up for it.
     let magic = L::splat(8_388_608.0 + LEAST_EXPONENT);
     let to_exponent = L::splat(TO_EXPONENT);
-    // The second operand of `min` wins over NaN.
-    let s = s.min(L::splat(FURTHEST));
     let n = s.mul_add(to_exponent, magic);
     let f = s.mul_add(to_exponent, magic - n);
     const SCALE: f32 = 4096.0;
@@ -314,26 +319,25 @@ pub fn log2_one_plus<L: Lanes>(f: L) -> L {
     log2_near_one(L::splat(1.0) + f, f)
 }
 
-/// The probability of a standard normal number above `x`, over the density's shape there: `Q(x) exp(x^2 / 2)`, for
-/// `0 <= x <= 12.7`. Beyond it falls on towards 0, never below it.
+/// The probability that a standard normal number is above `x`, for `x >= 0`; exactly 0 from about 12.6 up. NaN gives 0.
+#[inline(always)]
+pub fn normal_tail<L: Lanes>(x: L) -> L {
+    // The square root of `FURTHEST`. The second operand of `min` wins over NaN.
+    let x = x.min(L::splat(12.625_9));
+    normal_tail_ratio(x) * gaussian_within(x * x)
+}
+
+/// [`normal_tail`] over the density's shape there: `Q(x) exp(x^2 / 2)`, for `0 <= x <= 12.7`. Beyond it falls on towards 0, never
+/// below it, up to 1e9.
+///
+/// The coefficients are floats, chosen together so that rounding adds least to the error.
 #[inline(always)]
 pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
     let c = L::splat;
-    let t = L::quotient(c(1.0), x.mul_add(c(0.3), c(1.0))).interleaved();
-    let p = polynomial(
-        t,
-        [
-            0.119_621_267_223_862_63,
-            0.120_875_357_762_763_05,
-            0.099_164_887_784_612_63,
-            0.131_007_390_920_877_43,
-            -0.058_268_525_771_945_66,
-            0.211_301_025_252_051_52,
-            -0.160_058_261_081_965_58,
-            0.036_356_806_536_821_06,
-        ],
-    );
-    p * t
+    let over = horner(x, [11.961_291_3, 8.593_118_7, 2.821_643_8, 0.398_885_7]);
+    // The leading coefficient is 1.
+    let under = (x + c(7.067_357_5)).mul_add(x, c(22.627_039)).mul_add(x, c(36.273_33)).mul_add(x, c(23.922_586_4));
+    L::quotient(over, under)
 }
 
 /// The number that a standard normal one is above with probability `q`, for `0 < q <= 1/2`; finite for any other.

@@ -5,8 +5,8 @@ use crate::tolerance as bound;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use hairis::math::{
     atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_and_complement, half_angle, half_atan2,
-    half_atan2_parts, log2, log2_one_plus, normal_tail_inverse, normal_tail_ratio, sin_cos_absolute, sin_cos_twice,
-    tan_half_turn,
+    half_atan2_parts, log2, log2_one_plus, normal_tail, normal_tail_inverse, normal_tail_ratio, sin_cos_absolute,
+    sin_cos_twice, tan_half_turn,
 };
 use hairis::reference::Real;
 use hairis::wide::f32x8;
@@ -296,6 +296,9 @@ fn logarithm<L: Lanes>([x, _]: [L; 2]) -> L {
 fn tail_ratio<L: Lanes>([x, _]: [L; 2]) -> L {
     normal_tail_ratio(x)
 }
+fn tail<L: Lanes>([x, _]: [L; 2]) -> L {
+    normal_tail(x)
+}
 fn tail_inverse<L: Lanes>([q, _]: [L; 2]) -> L {
     normal_tail_inverse(q)
 }
@@ -314,6 +317,7 @@ fn logarithm_and_normal_tails_are_accurate() {
         let want = above(f64::from(x)) * (f64::from(x).powi(2) / 2.0).exp();
         let got = both([x, 0.0], tail_ratio, tail_ratio, &mut lanes);
         worst[1].see((f64::from(got) / want - 1.0).abs(), || format!("{x}"));
+        assert_eq!(both([x, 0.0], tail, tail, &mut lanes), got * gaussian(x * x), "tail of {x}");
         // Probabilities evenly, and evenly by their logarithm.
         for q in [0.5 * share, (-1.0 - 115.0 * share).exp2()] {
             let q = narrow(q);
@@ -331,8 +335,11 @@ fn logarithm_and_normal_tails_are_accurate() {
     for x in [0.0, f32::from_bits(1), 0.5, 0.500_000_1] {
         assert!(normal_tail_inverse(x).is_finite(), "inverse tail of {x}");
     }
-    for x in [12.7, 1e3, 1e5, 1e30] {
+    for x in [12.7, 1e3, 1e5, 1e9] {
         assert!(normal_tail_ratio(x) >= 0.0, "tail ratio of {x}");
+    }
+    for x in [12.63, 1e3, 1e30, f32::MAX, f32::INFINITY, f32::NAN] {
+        assert_eq!(normal_tail(x), 0.0, "tail of {x}");
     }
 }
 

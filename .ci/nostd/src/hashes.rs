@@ -270,7 +270,7 @@ impl Kernel for Math {
             math::sin_half_turn(x).store(),
             math::log2(above).store(),
             math::log2_one_plus(x * L::splat(0.2)).store(),
-            math::normal_tail_ratio(y * L::splat(9.0)).store(),
+            math::normal_tail(y * L::splat(9.0)).store(),
             math::normal_tail_inverse(above * L::splat(0.5)).store(),
         ]
     }

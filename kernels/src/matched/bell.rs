@@ -1,6 +1,6 @@
 //! Bells whose distribution on an interval is known in closed form: the extension point of the matched samplers.
 
-use crate::math::{gaussian, normal_tail_inverse, normal_tail_ratio};
+use crate::math::{normal_tail, normal_tail_inverse};
 use crate::{Bell, Gaussian, Lanes};
 
 /// A [`Bell`] that [`Matched`](crate::Matched) draws from: one whose integral is known, and its inverse.
@@ -37,7 +37,7 @@ impl MatchedBell for Gaussian {
 
     #[inline(always)]
     fn integral<L: Lanes>(origin: L, x: L) -> L {
-        let tail = normal_tail_ratio(x.abs()) * gaussian(x * x);
+        let tail = normal_tail(x.abs());
         L::select(x.lt(L::splat(0.0)), tail, origin - tail)
     }
 
