@@ -10,6 +10,8 @@ use core::ptr;
 pub trait Row<const I: usize, const N: usize>: Copy {
     /// Whether columns may be left out. An empty input but the first then reads as 0, and an empty output is not written.
     const OPTIONAL: bool = false;
+    /// Whether two packets are computed side by side. Not where their code together would be larger than the CPU's cache for it.
+    const PAIRS: bool = true;
 
     /// The numbers of each lane. Mark it `#[inline(always)]`, and all it calls.
     fn row<L: Lanes>(self, input: [L; I]) -> [L; N]

@@ -220,8 +220,10 @@ rows! {
     /// One packet, what is left of longer ones or all of a short slice. It has no loop, before which the compiler would expand
     /// all constants in memory.
     eight_avx2 packet "avx2,fma" Avx2, 8;
-    rows_avx2 packets "avx2,fma" Pair<Avx2>, 16;
-    rows_avx512 packets "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw" Pair<Avx512>, 32;
+    rows_avx2 packets "avx2,fma" Avx2, 8;
+    rows_avx512 packets "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw" Avx512, 16;
+    pairs_avx2 packets "avx2,fma" Pair<Avx2>, 16;
+    pairs_avx512 packets "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw" Pair<Avx512>, 32;
 }
 
 impl Level {
@@ -268,10 +270,18 @@ impl Level {
             let mut done = 0;
             if self.0 == Kind::Avx512 {
                 // SAFETY: a `Level` of this kind is made only where these features were found; there are as many packets.
-                done = columns.in_packets::<32>(done, |columns, packets| unsafe { rows_avx512(row, columns, packets) });
+                done = if R::PAIRS {
+                    columns.in_packets::<32>(done, |columns, packets| unsafe { pairs_avx512(row, columns, packets) })
+                } else {
+                    columns.in_packets::<16>(done, |columns, packets| unsafe { rows_avx512(row, columns, packets) })
+                };
             }
             // SAFETY: as above, and a level with AVX-512 has those of AVX2.
-            done = columns.in_packets::<16>(done, |columns, packets| unsafe { rows_avx2(row, columns, packets) });
+            done = if R::PAIRS {
+                columns.in_packets::<16>(done, |columns, packets| unsafe { pairs_avx2(row, columns, packets) })
+            } else {
+                columns.in_packets::<8>(done, |columns, packets| unsafe { rows_avx2(row, columns, packets) })
+            };
             // SAFETY: as above; there are eight rows.
             columns.in_eights(done, |columns, at| unsafe { eight_avx2(row, columns, at) });
             return;
