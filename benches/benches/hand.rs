@@ -1,4 +1,5 @@
-//! Time of slices, fresh packets and slices of eight over that of kernels written by hand, in one run.
+//! Time of slices, fresh packets and slices of eight over that of kernels written by hand, in one run; and of slices of hits over
+//! that of slices of one hit.
 //!
 //! `cargo bench -p hairis-benches --bench hand` prints a record. Both are called in turns, stretch by stretch; a ratio is the median
 //! of those of all turns, with its quartiles.
@@ -17,10 +18,11 @@ mod x86 {
     use core::hint::black_box;
     use glam::Vec3;
     use hairis::wide::f32x8;
-    use hairis::{Bell, Bsdf, EvalSlices, Gather, Gaussian, Hair, HairParams, Level, SampleWeightSlices, Vec3x};
+    use hairis::{Bell, Bsdf, EvalColumns, EvalSlices, Gather, Gaussian, Hair, HairParams, HitSlices, Level, Matched};
+    use hairis::{Model, SampleColumns, SampleWeightSlices, Vec3x};
     use hairis_benches::cpu;
     use hairis_benches::hand::{Constants, Set};
-    use hairis_benches::inputs::{Column, DIRECTIONS, Inputs};
+    use hairis_benches::inputs::{Column, DIRECTIONS, Inputs, arrays};
     use hairis_variants::Cauchy;
     use std::env;
     use std::time::Instant;
@@ -37,7 +39,7 @@ mod x86 {
         let turns = if env::args().any(|word| word == "--bench") { TURNS } else { 1 };
         println!("# CPU: {}", cpu::name());
         println!("# compiled for {}", Level::portable());
-        println!("task,call,level,ns,hand_ns,ratio,ratio_low,ratio_high");
+        println!("task,call,level,ns,base_ns,ratio,ratio_low,ratio_high");
         let inputs = Inputs::draw();
         for level in Level::available() {
             let Some(set) = Set::of(level) else { continue };
@@ -45,6 +47,8 @@ mod x86 {
             eval::<_, false>(run("eval-gaussian"), set, Gaussian, &inputs);
             eval::<_, true>(run("eval-cauchy"), set, Cauchy::PAPER, &inputs);
             sample(run("sample-gaussian"), set, &inputs);
+            hits(Run { task: "published", level, turns }, &Hair(Gaussian), &inputs);
+            hits(Run { task: "matched", level, turns }, &Matched::<_>(Gaussian), &inputs);
         }
     }
 
@@ -260,6 +264,58 @@ mod x86 {
                     used(&mut sum, to.each_ref());
                 }
                 black_box(sum);
+            },
+        );
+    }
+    /// Columns of as many numbers, from the place `first` on.
+    fn columns<const N: usize>(first: usize, rows: &[[f32; N]]) -> [Column; N] {
+        from_fn(|k| Column::new(first + k, rows.iter().map(|row| row[k])))
+    }
+
+    fn parts<const N: usize>(columns: &[Column; N]) -> [&[f32]; N] {
+        from_fn(|k| columns[k].part(0, DIRECTIONS))
+    }
+
+    fn parts_mut<const N: usize>(columns: &mut [Column; N]) -> [&mut [f32]; N] {
+        columns.each_mut().map(|column| column.part_mut(0, DIRECTIONS))
+    }
+
+    /// Slices of hits, each with a `wo` of its own, beside slices of the published model at one hit: the columns of a path tracer.
+    fn hits<M: Model<Params = HairParams>>(run: Run<'_>, model: &M, inputs: &Inputs) {
+        let (level, params) = (run.level, HairParams::default());
+        let bsdf = Bsdf::new(model, &params);
+        let one = Bsdf::new(&Hair(Gaussian), &params).prepare(inputs.wo[0]);
+        let wo: [Column; 3] = columns(0, &arrays(&inputs.wo));
+        let wi: [Column; 3] = columns(3, &arrays(&inputs.wi));
+        let xi: [Column; 3] = columns(3, &inputs.xi);
+        let hits = HitSlices { wo: parts(&wo), h: None };
+        let rows = vec![[0.0; 7]; DIRECTIONS];
+        let (mut of_hits, mut of_one): ([Column; 7], [Column; 7]) = (columns(6, &rows), columns(6, &rows));
+        run.compare(
+            "hits, eval",
+            || {
+                let [r, g, b, pdf, ..] = parts_mut(&mut of_hits);
+                let out = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
+                black_box(bsdf.eval_pdf_hits_at(level, black_box(hits), parts(&wi), out).is_ok());
+            },
+            || {
+                let [r, g, b, pdf, ..] = parts_mut(&mut of_one);
+                let out = EvalSlices { value: [r, g, b], pdf };
+                black_box(one.eval_pdf_batch_at(level, black_box(parts(&wi)), out).is_ok());
+            },
+        );
+        run.compare(
+            "hits, sample",
+            || {
+                let [u, v, w, pdf, r, g, b] = parts_mut(&mut of_hits);
+                let (wi, weight) = (Some([u, v, w]), Some([r, g, b]));
+                let out = SampleColumns { wi, pdf: Some(pdf), weight, ..SampleColumns::default() };
+                black_box(bsdf.sample_hits_at(level, black_box(hits), parts(&xi), out).is_ok());
+            },
+            || {
+                let [u, v, w, pdf, r, g, b] = parts_mut(&mut of_one);
+                let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [r, g, b] };
+                black_box(one.sample_weight_batch_at(level, black_box(parts(&xi)), out).is_ok());
             },
         );
     }
