@@ -292,7 +292,7 @@ mod x86 {
         let rows = vec![[0.0; 7]; DIRECTIONS];
         let (mut of_hits, mut of_one): ([Column; 7], [Column; 7]) = (columns(6, &rows), columns(6, &rows));
         run.compare(
-            "hits, eval",
+            "hits: eval",
             || {
                 let [r, g, b, pdf, ..] = parts_mut(&mut of_hits);
                 let out = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
@@ -305,7 +305,7 @@ mod x86 {
             },
         );
         run.compare(
-            "hits, sample",
+            "hits: sample",
             || {
                 let [u, v, w, pdf, r, g, b] = parts_mut(&mut of_hits);
                 let (wi, weight) = (Some([u, v, w]), Some([r, g, b]));
