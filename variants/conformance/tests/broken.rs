@@ -128,12 +128,12 @@ fn shapes<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, wi: Vec3x<L>) -> ([LobeE
     let off = wi.x + gather.sin_theta_o.lanes();
     // NaN where wo is no direction.
     let sound = L::and(sound, off.abs().lt(c(4.0)));
-    let bell = width / off.mul_add(off, width * width);
+    let bell = L::quotient(width, off.mul_add(off, width * width));
     let diffuse = LobeEval { value: c(FRAC_1_PI * FRAC_1_PI), color: lanes3(&gather.kd), pdf: c(0.25 * FRAC_1_PI) };
     let cone = LobeEval {
         value: bell * c(0.5 * FRAC_1_PI * FRAC_1_PI),
         color: lanes3(&gather.ks),
-        pdf: bell * c(0.5 * FRAC_1_PI) / gather.span.lanes(),
+        pdf: L::quotient(bell * c(0.5 * FRAC_1_PI), gather.span.lanes()),
     };
     ([diffuse, cone], cos, sound)
 }
@@ -145,7 +145,7 @@ fn cone_sine<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, xi: L) -> L {
     let (s, c) = sin_cos_half_turn(xi * gather.span.lanes() * L::splat(0.5));
     let (sin, cos) = ((s + s) * c, c * c - s * s);
     let lo = sin_theta_o - one;
-    let x = width * lo.mul_add(cos, width * sin) / width.mul_add(cos, -(lo * sin));
+    let x = L::quotient(width * lo.mul_add(cos, width * sin), width.mul_add(cos, -(lo * sin)));
     (-one).max(one.min(x - sin_theta_o))
 }
 
@@ -221,9 +221,10 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
     ) -> Faulty<FAULT, Point<L::Stored>> {
         let (zero, one, tiny) = (L::splat(0.0), L::splat(1.0), L::splat(1e-30));
         let largest = hit.wo.x.abs().max(hit.wo.y.abs().max(hit.wo.z.abs())).max(tiny);
-        let wo = Vec3x::new(hit.wo.x / largest, hit.wo.y / largest, hit.wo.z / largest);
+        let Vec3x { x, y, z } = hit.wo;
+        let wo = Vec3x::new(L::quotient(x, largest), L::quotient(y, largest), L::quotient(z, largest));
         let length = wo.dot(wo).sqrt();
-        let mut sin_theta_o = L::select(tiny.lt(length), wo.x / length, zero);
+        let mut sin_theta_o = L::select(tiny.lt(length), L::quotient(wo.x, length), zero);
         if FAULT == READS_H {
             let h = (-one).max(one.min(hit.h));
             sin_theta_o = sin_theta_o * h.mul_add(L::splat(0.1), L::splat(0.9));
@@ -302,9 +303,9 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
         if FAULT == DISCARDS {
             sound = L::and(sound, c(0.05).lt(xi[2]));
         }
-        let mut by = L::select(sound, cos / pdf, zero);
+        let mut by = L::select(sound, L::quotient(cos, pdf), zero);
         if FAULT == WEIGHT_WITHOUT_COSINE {
-            by = L::select(sound, one / pdf, zero);
+            by = L::select(sound, L::quotient(one, pdf), zero);
         }
         if FAULT == HEAVY_WEIGHT {
             by = L::select(c(0.999).lt(xi[1]), by * c(20.0), by);
