@@ -47,13 +47,13 @@ fn wo(degrees: f32) -> Vec3 {
 }
 
 fn double(v: Vec3) -> [f64; 3] {
-    v.to_array().map(f64::from)
+    [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 
 /// `theta_i` and `phi_o - phi_i` in (-pi, pi].
 fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
     let ([_, v_o, w_o], [u, v, w]) = (double(wo), double(wi));
-    [u.atan2(v.hypot(w)), (v * w_o - w * v_o).atan2(v * v_o + w * w_o)]
+    [u.atan2((v * v + w * w).sqrt()), (v * w_o - w * v_o).atan2(v * v_o + w * w_o)]
 }
 
 /// Samples of some lobes of a shading point.
