@@ -3,6 +3,7 @@
 use crate::film::Crop;
 use crate::formats::Up;
 use crate::hair::Energy;
+use crate::lights::RectangleSampling;
 use crate::numbers::Sequence;
 use crate::scenes::Name;
 use crate::transport::{Integrator, Mis};
@@ -61,6 +62,9 @@ pub struct Render {
     /// Where uniform numbers come from
     #[arg(long, value_enum, default_value_t = Sequence::Sobol)]
     pub xi: Sequence,
+    /// How directions towards rectangular lights are drawn
+    #[arg(long, value_enum, default_value_t = RectangleSampling::SolidAngle)]
+    pub rectangles: RectangleSampling,
     /// Which samples count where both find a light
     #[arg(long, value_enum, default_value_t = Mis::Both)]
     pub mis: Mis,
@@ -164,6 +168,9 @@ pub struct Figures {
     /// Where uniform numbers come from
     #[arg(long, value_enum, default_value_t = Sequence::Sobol)]
     pub xi: Sequence,
+    /// How directions towards rectangular lights are drawn
+    #[arg(long, value_enum, default_value_t = RectangleSampling::SolidAngle)]
+    pub rectangles: RectangleSampling,
     /// Compare the models, too, where --scene is given
     #[arg(long)]
     pub models: bool,

@@ -3,7 +3,7 @@
 mod rectangle;
 mod table;
 
-pub use rectangle::{Rectangle, View};
+pub use rectangle::{Rectangle, RectangleSampling, View};
 pub use table::{Table, Tables};
 
 use core::f32::consts::{PI, TAU};

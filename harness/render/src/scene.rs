@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::geometry::Strands;
-use crate::lights::{LightSample, LightSample8, Rectangle, Seen, Sky, View};
+use crate::lights::{LightSample, LightSample8, Rectangle, RectangleSampling, Seen, Sky, View};
 use crate::material::Hair;
 use crate::tree::{self, Ray, Tree};
 use glam::Vec3;
@@ -82,6 +82,8 @@ pub struct Scene {
     pub head: Option<Head>,
     /// Walls and lights.
     pub rectangles: Vec<Rectangle>,
+    /// How directions towards rectangles that emit are drawn.
+    pub rectangle_sampling: RectangleSampling,
     /// Light from infinitely far away.
     pub sky: Sky,
     /// Radiance that the camera sees where there is nothing, in place of the sky.
@@ -144,6 +146,12 @@ impl Scene {
         self.rectangles.iter().enumerate().filter(|(_, one)| one.emission != Vec3::ZERO).map(|(index, _)| index)
     }
 
+    /// How a lamp is seen from a point; `None` from behind.
+    #[inline]
+    fn view(&self, lamp: usize, origin: Vec3) -> Option<View> {
+        self.rectangles[lamp].view(origin, self.rectangle_sampling)
+    }
+
     /// Probability of each light: all are equally likely.
     fn share(&self) -> f32 {
         let lights = self.lamps().count() + usize::from(!self.sky.is_black());
@@ -166,7 +174,7 @@ impl Scene {
     #[must_use]
     pub fn sample_light(&self, origin: Vec3, [x, y, choice]: [f32; 3]) -> Option<LightSample> {
         let sample = match self.lamp(choice) {
-            Some(lamp) => self.rectangles[lamp].sample(origin, [x, y]),
+            Some(lamp) => self.view(lamp, origin).map(|view| view.sample([x, y])),
             None => self.sky.sample([x, y]),
         }?;
         Some(LightSample { pdf: sample.pdf * self.share(), ..sample })
@@ -211,7 +219,7 @@ impl Scene {
             let (lamp, distance) = self.lamp_along(origin, direction);
             let Seen { radiance, pdf } = match lamp {
                 Some(lamp) => {
-                    Seen { radiance: self.rectangles[lamp].emission, pdf: views.of(self, lamp, origin)?.pdf() }
+                    Seen { radiance: self.rectangles[lamp].emission, pdf: views.of(self, lamp, origin)?.pdf(direction) }
                 }
                 None => self.sky.see(direction),
             };
@@ -226,10 +234,10 @@ impl Scene {
         let seen = match met {
             Met::Hair(_) | Met::Surface(..) => return None,
             Met::Nothing => self.sky.see(ray.direction),
-            Met::Light(index) => {
-                let lamp = &self.rectangles[*index];
-                Seen { radiance: lamp.emission, pdf: lamp.pdf(ray.origin) }
-            }
+            Met::Light(index) => Seen {
+                radiance: self.rectangles[*index].emission,
+                pdf: self.view(*index, ray.origin)?.pdf(ray.direction),
+            },
         };
         (seen.pdf > 0.0).then_some(Seen { pdf: seen.pdf * self.share(), ..seen })
     }
@@ -268,7 +276,7 @@ impl Views {
         match self.0 {
             Some((last, from, view)) if last == lamp && from == origin => view,
             _ => {
-                let view = scene.rectangles[lamp].view(origin);
+                let view = scene.view(lamp, origin);
                 self.0 = Some((lamp, origin, view));
                 view
             }

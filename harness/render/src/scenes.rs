@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::geometry::{Flattening, Groom, HEAD, Kind, Strands};
-use crate::lights::{Rectangle, Sky};
+use crate::lights::{Rectangle, RectangleSampling, Sky};
 use crate::material::Hair;
 use crate::scene::{Head, Scene};
 use crate::transport::Integrator;
@@ -172,7 +172,9 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
     let camera = camera.orbit(centre, turn);
     let on_head = !imported && matches!(name.kind(), Kind::Straight | Kind::Wavy);
     let head = on_head.then_some(Head { radii: 0.995 * HEAD, albedo: Vec3::new(0.45, 0.32, 0.25) });
-    Ok(Scene { strands, tree, hair, head, rectangles, sky, backdrop: None, camera, gap: 1e-3 * scale })
+    let rectangle_sampling = RectangleSampling::default();
+    let gap = 1e-3 * scale;
+    Ok(Scene { strands, tree, hair, head, rectangles, rectangle_sampling, sky, backdrop: None, camera, gap })
 }
 
 /// A box of 60 cm with a light below its ceiling, open towards the camera.

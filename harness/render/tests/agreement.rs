@@ -4,7 +4,7 @@ use crate::support::{distance, film, hair, mean, scene};
 use glam::Vec3;
 use hairis_render::camera::Camera;
 use hairis_render::geometry::Strands;
-use hairis_render::lights::Rectangle;
+use hairis_render::lights::{Rectangle, RectangleSampling};
 use hairis_render::material::{Hair, Sampling, Scale};
 use hairis_render::numbers::Sequence;
 use hairis_render::scene::Scene;
@@ -51,6 +51,13 @@ fn samplers_weightings_and_sequences_agree() {
         }
         for sequence in [Sequence::Independent, Sequence::Halton, Sequence::Stratified] {
             check(&one, &format!("{sequence:?}"), Settings { sequence, ..base });
+        }
+        if !one.rectangles.is_empty() {
+            one.rectangle_sampling = RectangleSampling::Area;
+            for mis in [Mis::Both, Mis::Light, Mis::Resampled] {
+                check(&one, &format!("by area, {mis:?}"), Settings { mis, ..base });
+            }
+            one.rectangle_sampling = RectangleSampling::SolidAngle;
         }
         for sampler in ["uniform", "ou", "matched-5", "matched-25"] {
             one.hair = hair("gaussian", sampler, preset);

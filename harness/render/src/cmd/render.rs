@@ -27,8 +27,8 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Time between two previews.
-const PREVIEW: Duration = Duration::from_secs(10);
+/// Least and most time between two previews: half of the time so far, between these.
+const PREVIEW: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
 
 /// Renders a scene.
 ///
@@ -71,7 +71,7 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     let run = describe(flags, &settings, crop, env.as_ref())?;
     let parts = Parts { strands, imported: flags.import.is_some(), hair, env, size: flags.size.0, turn: flags.turn };
     let backdrop = flags.backdrop.map(glam::Vec3::splat);
-    let scene = Scene { backdrop, ..scenes::build(flags.scene, parts)? };
+    let scene = Scene { backdrop, rectangle_sampling: flags.rectangles, ..scenes::build(flags.scene, parts)? };
     check_out(&out)?;
     let shard = flags.shard.unwrap_or(Shard::WHOLE);
     let part_path = match flags.shard {
@@ -192,7 +192,8 @@ fn passes(
         bar.set_message(format!("{done} samples"));
         transport::render(scene, settings, &mut part.film, next, &|part| show(share(part)));
         done = next;
-        if written.elapsed() >= PREVIEW && !is_over(done) {
+        let [least, most] = PREVIEW;
+        if written.elapsed() >= (start.elapsed() / 2).clamp(least, most) && !is_over(done) {
             part.write(part_path)?;
             let picture = part.film.picture();
             let exposure = flags.exposure.unwrap_or_else(|| picture::exposure(&picture));

@@ -6,6 +6,7 @@ use super::page::kind;
 use super::rates::level;
 use super::verdict::Gain;
 use crate::args::Figures;
+use crate::lights::RectangleSampling;
 use crate::numbers::Sequence;
 use crate::protocol::{Measure, Reach, Runs, reach, slope_of};
 use clap::ValueEnum as _;
@@ -68,6 +69,9 @@ fn command(flags: &Figures) -> String {
     );
     if flags.xi != Sequence::Sobol {
         words.extend(flags.xi.to_possible_value().map(|one| format!("--xi {}", word(one))));
+    }
+    if flags.rectangles != RectangleSampling::SolidAngle {
+        words.extend(flags.rectangles.to_possible_value().map(|one| format!("--rectangles {}", word(one))));
     }
     words.extend(flags.models.then(|| "--models".to_owned()));
     words.push(format!("--seed {}", flags.seed));

@@ -4,6 +4,7 @@ use super::store::Store;
 use crate::film::{Crop, Picture};
 use crate::hair::{Choice, Energy, MATCHED, PUBLISHED, UNIFORM, check_paths};
 use crate::layers::Beside;
+use crate::lights::RectangleSampling;
 use crate::numbers::Sequence;
 use crate::part::build;
 use crate::picture;
@@ -47,6 +48,8 @@ pub(super) struct Plan {
     pub(super) integrator: Option<Integrator>,
     /// Where the samplers' uniform numbers come from; references are of Sobol' points.
     pub(super) sequence: Sequence,
+    /// How directions towards rectangular lights are drawn.
+    pub(super) rectangles: RectangleSampling,
 }
 
 impl Plan {
@@ -59,6 +62,7 @@ impl Plan {
         runs: 8,
         integrator: None,
         sequence: Sequence::Sobol,
+        rectangles: RectangleSampling::SolidAngle,
     };
     /// Settings of the published figures: an hour on two idle cores. A reference has as many samples as 32 of the pictures with the
     /// most, so that it has about 3% of their variance.
@@ -70,12 +74,14 @@ impl Plan {
         runs: 8,
         integrator: None,
         sequence: Sequence::Sobol,
+        rectangles: RectangleSampling::SolidAngle,
     };
 
     /// What a scene with hair of a model depends on, but for the light.
     pub(super) fn scene(&self, name: Name, model: &str, preset: &str) -> String {
-        let Self { side, strands, .. } = self;
-        format!("scene={} model={model} hair={preset} side={side} strands={strands}", name.word())
+        let Self { side, strands, rectangles, .. } = self;
+        let name = name.word();
+        format!("scene={name} model={model} hair={preset} side={side} strands={strands} rectangles={rectangles:?}")
     }
 
     /// How the samplers' pictures of a scene are made, but for what is their own.
@@ -151,7 +157,7 @@ impl Measured {
         let strands = scenes::grow(name, plan.strands)?;
         let parts = Parts { strands, imported: false, hair: hair(BEST)?, env: map, size: [plan.side; 2], turn: 0.0 };
         step(&format!("{}: tree", name.word()));
-        let mut scene: Scene = scenes::build(name, parts)?;
+        let mut scene = Scene { rectangle_sampling: plan.rectangles, ..scenes::build(name, parts)? };
         let settings = plan.settings(name, seed);
         let integrator = settings.integrator;
         let kind = usize::from(integrator != Integrator::Gather);

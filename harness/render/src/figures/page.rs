@@ -8,6 +8,7 @@ use super::rates;
 use super::verdict::{self, BELOW, Gain, MEASURES, gain, headline, sentence, visible};
 use crate::args::Figures;
 use crate::film::Crop;
+use crate::lights::RectangleSampling;
 use crate::numbers::Sequence;
 use crate::picture::exposure;
 use crate::protocol::{Measure, Runs};
@@ -43,15 +44,16 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
     if !presets.is_empty() {
         sections.push(models::section(presets)?);
     }
-    let Plan { side, strands, runs, sequence, .. } = plan;
+    let Plan { side, strands, runs, sequence, rectangles, .. } = plan;
     let mut verdicts = vec![["Where the sampler does not matter".to_owned(), verdict::scenes(all)]];
     verdicts.extend(all.iter().map(|measured| [measured.title(), headline(measured)]));
     let method = Section::new("Method and machine")
         .paragraph(format!(
             "Pictures of {side} by {side} pixels, procedural hair of {strands} strands, published model, sampled by \
-             {}; light and BSDF samples are combined by the power heuristic. Each error is the mean over {runs} pictures of \
+             {}; light and BSDF samples are combined by the power heuristic, and rectangular lights are sampled {}. Each error is the mean over {runs} pictures of \
              different seeds, with a standard error by the jackknife.",
-            numbers(*sequence)
+            numbers(*sequence),
+            by(*rectangles)
         ))
         .paragraph(
             "Scenes of direct light have one fixed shading point per pixel, and as many light as BSDF samples there; all pictures, \
@@ -133,6 +135,13 @@ fn numbers(sequence: Sequence) -> &'static str {
         Sequence::Halton => "scrambled Halton points",
         Sequence::Sobol => "Owen-scrambled Sobol' points",
         Sequence::Stratified => "stratified points",
+    }
+}
+
+fn by(sampling: RectangleSampling) -> &'static str {
+    match sampling {
+        RectangleSampling::SolidAngle => "by solid angle",
+        RectangleSampling::Area => "by area",
     }
 }
 

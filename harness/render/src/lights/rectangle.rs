@@ -1,6 +1,7 @@
-//! Rectangles: walls, and lights that are sampled by solid angle.
+//! Rectangles: walls, and lights.
 
 use super::LightSample;
+use clap::ValueEnum;
 use core::f64::consts::PI;
 use glam::{DVec3, Vec3};
 use hairis_harness::light::rounded;
@@ -8,15 +9,29 @@ use hairis_harness::light::rounded;
 /// Below this solid angle, in sr, the difference of its corners' angles keeps no digits: points are drawn by area.
 const SMALL: f64 = 1e-7;
 
+/// How directions towards rectangles are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum RectangleSampling {
+    /// Uniform in solid angle
+    #[default]
+    SolidAngle,
+    /// Points uniform over the area
+    Area,
+}
+
 /// A rectangle in any frame. It emits on the side of its normal, and reflects on both.
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis_render::lights::Rectangle;
+/// use hairis_render::lights::{Rectangle, RectangleSampling};
 /// let lamp = Rectangle::light(Vec3::new(-1.0, 1.0, -1.0), 2.0 * Vec3::X, 2.0 * Vec3::Z, Vec3::ONE);
 /// assert_eq!(lamp.normal(), Vec3::NEG_Y);
 /// let sixth = 4.0 * core::f32::consts::PI / 6.0; // a face of a cube, from its centre
-/// assert!((1.0 / lamp.pdf(Vec3::ZERO) - sixth).abs() < 1e-5);
+/// let view = lamp.view(Vec3::ZERO, RectangleSampling::SolidAngle).expect("in front");
+/// assert!((1.0 / view.pdf(Vec3::Y) - sixth).abs() < 1e-5);
+/// // By area: the squared distance over the area and the cosine at the lamp.
+/// let view = lamp.view(Vec3::ZERO, RectangleSampling::Area).expect("in front");
+/// assert!((view.pdf(Vec3::Y) - 0.25).abs() < 1e-6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
@@ -38,6 +53,13 @@ pub struct View {
     hi: [f64; 2],
     /// Distance of the plane, above 0.
     height: f64,
+    /// What is projected on the sphere; `None` where points are drawn by area.
+    projected: Option<Projected>,
+}
+
+/// A rectangle projected on the unit sphere.
+#[derive(Clone, Copy, Debug)]
+struct Projected {
     solid_angle: f64,
     /// `2 pi` less the angles at the two corners of low x.
     start: f64,
@@ -93,23 +115,9 @@ impl Rectangle {
         (t > t_min && t < f32::INFINITY && within(self.edges[0]) && within(self.edges[1])).then_some(t)
     }
 
-    /// Density of a direction that meets it, per steradian: 1 over the solid angle. 0 from behind.
-    #[must_use]
-    pub fn pdf(&self, origin: Vec3) -> f32 {
-        self.view(origin).map_or(0.0, |view| view.pdf())
-    }
-
-    /// A direction drawn from two uniform numbers, uniform in solid angle; `None` from behind.
-    ///
-    /// - Source: Urena, Fajardo and King 2013.
-    #[must_use]
-    pub fn sample(&self, origin: Vec3, xi: [f32; 2]) -> Option<LightSample> {
-        Some(self.view(origin)?.sample(xi))
-    }
-
     /// How it is seen from a point: several directions from there cost half as much so. `None` from behind.
     #[must_use]
-    pub fn view(&self, origin: Vec3) -> Option<View> {
+    pub fn view(&self, origin: Vec3, sampling: RectangleSampling) -> Option<View> {
         let corner = (self.corner - origin).as_dvec3();
         let edges = self.edges.map(Vec3::as_dvec3);
         let normal = self.normal.as_dvec3();
@@ -121,20 +129,11 @@ impl Rectangle {
         let axes = [edges[0] / lengths[0], edges[1] / lengths[1], normal];
         let lo = [corner.dot(axes[0]), corner.dot(axes[1])];
         let hi = [lo[0] + lengths[0], lo[1] + lengths[1]];
-        // Components of the normals of the planes through the origin and a side.
-        let slope = |side: f64| side / length(side, height);
-        let ([x0, y0], [x1, y1]) = (lo.map(slope), hi.map(slope));
-        // The spherical rectangle's angles, whose sum exceeds 2 pi by its area.
-        let angles = [(x1 * y0).acos(), (-x1 * y1).acos(), (x0 * y1).acos(), (-x0 * y0).acos()];
-        let start = 2.0 * PI - angles[2] - angles[3];
-        let solid_angle = angles[0] + angles[1] - start;
-        let solid_angle = if solid_angle > SMALL {
-            solid_angle
-        } else {
-            let centre = DVec3::new(0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), height);
-            (lengths[0] * lengths[1] * height / centre.length().powi(3)).min(SMALL)
+        let projected = match sampling {
+            RectangleSampling::SolidAngle => Projected::new(lo, hi, height),
+            RectangleSampling::Area => None,
         };
-        Some(View { emission: self.emission, axes, lo, hi, height, solid_angle, start, normals: [-y0, y1] })
+        Some(View { emission: self.emission, axes, lo, hi, height, projected })
     }
 }
 
@@ -144,15 +143,42 @@ fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
 
+impl Projected {
+    /// `None` if it is small.
+    ///
+    /// - Source: Urena, Fajardo and King 2013.
+    fn new(lo: [f64; 2], hi: [f64; 2], height: f64) -> Option<Self> {
+        // Components of the normals of the planes through the origin and a side.
+        let slope = |side: f64| side / length(side, height);
+        let ([x0, y0], [x1, y1]) = (lo.map(slope), hi.map(slope));
+        // The spherical rectangle's angles, whose sum exceeds 2 pi by its area.
+        let angles = [(x1 * y0).acos(), (-x1 * y1).acos(), (x0 * y1).acos(), (-x0 * y0).acos()];
+        let start = 2.0 * PI - angles[2] - angles[3];
+        let solid_angle = angles[0] + angles[1] - start;
+        (solid_angle > SMALL).then_some(Self { solid_angle, start, normals: [-y0, y1] })
+    }
+}
+
 impl View {
-    /// Density of a direction, per steradian.
+    /// Density of a direction that meets the rectangle, per steradian.
     #[inline]
     #[must_use]
-    pub fn pdf(&self) -> f32 {
-        rounded(1.0 / self.solid_angle)
+    pub fn pdf(&self, direction: Vec3) -> f32 {
+        self.pdf_at(-direction.as_dvec3().dot(self.axes[2]))
     }
 
-    /// A direction drawn from two uniform numbers, uniform in solid angle.
+    /// Density of a direction at a cosine to the normal, per steradian. By area it is `distance^2 / (area cosine)`.
+    #[inline]
+    fn pdf_at(&self, cosine: f64) -> f32 {
+        let area = (self.hi[0] - self.lo[0]) * (self.hi[1] - self.lo[1]);
+        rounded(match &self.projected {
+            Some(projected) => 1.0 / projected.solid_angle,
+            None if cosine > 0.0 => (self.height * self.height / (area * cosine.powi(3))).min(f32::MAX.into()),
+            None => 0.0,
+        })
+    }
+
+    /// A direction drawn from two uniform numbers.
     #[must_use]
     pub fn sample(&self, xi: [f32; 2]) -> LightSample {
         let [x, y] = self.point(xi.map(f64::from));
@@ -162,18 +188,17 @@ impl View {
             direction: (towards / distance).as_vec3(),
             distance: rounded(distance),
             radiance: self.emission,
-            pdf: self.pdf(),
+            pdf: self.pdf_at(self.height / distance),
         }
     }
 
     /// A point of the rectangle, in its frame.
     fn point(&self, xi: [f64; 2]) -> [f64; 2] {
-        if self.solid_angle <= SMALL {
+        let Some(Projected { solid_angle, start, normals: [below, above] }) = self.projected else {
             return [0, 1].map(|k| self.lo[k] + xi[k] * (self.hi[k] - self.lo[k]));
-        }
+        };
         // The x up to which the solid angle is its share `xi`.
-        let [below, above] = self.normals;
-        let (sin, cos) = (xi[0] * self.solid_angle + self.start).sin_cos();
+        let (sin, cos) = (xi[0] * solid_angle + start).sin_cos();
         let f = (cos * below - above) / sin;
         let c = (1.0_f64.copysign(f) / length(f, below)).clamp(-1.0, 1.0);
         let x = (c * self.height / (1.0 - c * c).sqrt()).clamp(self.lo[0], self.hi[0]);
@@ -188,13 +213,19 @@ impl View {
 
 #[cfg(test)]
 mod tests {
+    use super::RectangleSampling::{Area, SolidAngle};
     use super::*;
     use hairis_conformance::statistics::chi_square;
     use hairis_harness::sequence::{Independent, XiSource as _};
+    use hairis_harness::stats::Moments;
 
     fn tilted() -> Rectangle {
         let (a, b) = (Vec3::new(3.0, 1.0, 0.0), Vec3::new(-1.0, 3.0, 2.0).cross(Vec3::new(3.0, 1.0, 0.0)).normalize());
         Rectangle::light(Vec3::new(-2.0, 2.0, 1.0), a, 1.5 * b, Vec3::ONE)
+    }
+
+    fn solid_angle(lamp: &Rectangle, origin: Vec3) -> f64 {
+        1.0 / f64::from(lamp.view(origin, SolidAngle).expect("in front").pdf(Vec3::Y))
     }
 
     #[test]
@@ -214,55 +245,78 @@ mod tests {
             }
             let area = f64::from(a.length() * b.length());
             let expected = sum * area / f64::from(steps).powi(2);
-            let got = 1.0 / f64::from(lamp.pdf(origin));
+            let got = solid_angle(&lamp, origin);
             assert!((got / expected - 1.0).abs() < 2e-4, "{origin}: {got} for {expected}");
         }
     }
 
     #[test]
-    fn samples_are_uniform_in_solid_angle() {
-        // Share of the solid angle of a part of the rectangle, and of samples that fall on it.
+    fn samples_follow_their_density() {
         let lamp = tilted();
         let origin = Vec3::new(-1.0, 0.5, 0.7);
-        let mut expected = Vec::new();
-        for i in 0..6 {
-            for j in 0..6 {
-                let part = |k: u16| f32::from(k) / 6.0;
-                let corner = lamp.corner + part(i) * lamp.edges[0] + part(j) * lamp.edges[1];
-                let part = Rectangle { corner, edges: lamp.edges.map(|edge| edge / 6.0), ..lamp };
-                expected.push(60_000.0 * f64::from(lamp.pdf(origin) / part.pdf(origin)));
+        let whole = solid_angle(&lamp, origin);
+        for sampling in [SolidAngle, Area] {
+            // Share of a part of the rectangle, and of samples that fall on it.
+            let mut expected = Vec::new();
+            for i in 0..6 {
+                for j in 0..6 {
+                    let at = |k: u16| f32::from(k) / 6.0;
+                    let corner = lamp.corner + at(i) * lamp.edges[0] + at(j) * lamp.edges[1];
+                    let part = Rectangle { corner, edges: lamp.edges.map(|edge| edge / 6.0), ..lamp };
+                    let share = if sampling == Area { 1.0 / 36.0 } else { solid_angle(&part, origin) / whole };
+                    expected.push(60_000.0 * share);
+                }
             }
+            let mut counts = vec![0; 36];
+            let mut inverse = Moments::new();
+            let mut xi = Independent::new(5, 0);
+            let view = lamp.view(origin, sampling).expect("in front");
+            for _ in 0..60_000 {
+                let sample = view.sample(xi.next_xi_f32());
+                let place = origin + sample.distance * sample.direction - lamp.corner;
+                let cell = |edge: Vec3| {
+                    (0..6_usize).rev().find(|k| place.dot(edge) / edge.length_squared() * 6.0 >= *k as f32)
+                };
+                counts[6 * cell(lamp.edges[0]).unwrap_or(0) + cell(lamp.edges[1]).unwrap_or(0)] += 1;
+                // Rounding may put a sample of the rim outside.
+                let on_rim = [lamp.edges[0], lamp.edges[1]].iter().any(|edge| {
+                    let share = place.dot(*edge) / edge.length_squared();
+                    share.min(1.0 - share) < 1e-5
+                });
+                let met = lamp.meet(origin, sample.direction, 0.0);
+                assert!(on_rim || met.is_some_and(|t| (t / sample.distance - 1.0).abs() < 1e-4), "{sample:?} misses");
+                assert!((view.pdf(sample.direction) / sample.pdf - 1.0).abs() < 1e-5, "{sample:?}");
+                inverse.push(1.0 / f64::from(sample.pdf));
+            }
+            let p = chi_square(&counts, &expected, 5.0).p_value;
+            assert!(p > 1e-3, "{sampling:?}: p {p}");
+            let mean = inverse.mean_estimate();
+            let apart = (mean.value - whole).abs();
+            assert!(apart < 4.0 * mean.standard_error + 1e-6 * whole, "{sampling:?}: {mean:?} for {whole}");
         }
-        let mut counts = vec![0; 36];
-        let mut xi = Independent::new(5, 0);
-        for _ in 0..60_000 {
-            let sample = lamp.sample(origin, xi.next_xi_f32()).expect("in front");
-            let place = origin + sample.distance * sample.direction - lamp.corner;
-            let cell =
-                |edge: Vec3| (0..6_usize).rev().find(|k| place.dot(edge) / edge.length_squared() * 6.0 >= *k as f32);
-            counts[6 * cell(lamp.edges[0]).unwrap_or(0) + cell(lamp.edges[1]).unwrap_or(0)] += 1;
-            // Rounding may put a sample of the rim outside.
-            let on_rim = [lamp.edges[0], lamp.edges[1]].iter().any(|edge| {
-                let share = place.dot(*edge) / edge.length_squared();
-                share.min(1.0 - share) < 1e-5
-            });
-            let met = lamp.meet(origin, sample.direction, 0.0);
-            assert!(on_rim || met.is_some_and(|t| (t / sample.distance - 1.0).abs() < 1e-4), "{sample:?} misses");
-        }
-        let p = chi_square(&counts, &expected, 5.0).p_value;
-        assert!(p > 1e-3, "p {p}");
+    }
+
+    #[test]
+    fn a_tiny_solid_angle_has_the_density_of_its_area() {
+        let lamp = Rectangle::light(Vec3::new(-1.0, 9000.0, -1.0), 2.0 * Vec3::X, 2.0 * Vec3::Z, Vec3::ONE);
+        let [by_angle, by_area] = [SolidAngle, Area].map(|sampling| lamp.view(Vec3::ZERO, sampling).expect("in front"));
+        assert_eq!(by_angle.sample([0.25, 0.75]), by_area.sample([0.25, 0.75]));
+        assert!((by_angle.pdf(Vec3::Y) / (9000.0_f32.powi(2) / 4.0) - 1.0).abs() < 1e-6);
+        assert_eq!(by_area.pdf(Vec3::NEG_Y), 0.0);
     }
 
     #[test]
     fn a_light_is_black_from_behind_and_mirrors() {
         let lamp = tilted();
         let behind = lamp.corner - 5.0 * lamp.normal;
-        assert!(lamp.sample(behind, [0.5; 2]).is_none() && lamp.pdf(behind) == 0.0);
         let mirrored = lamp.mirrored();
         let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
-        let a = lamp.sample(Vec3::X, [0.3, 0.6]).expect("in front");
-        let b = mirrored.sample(Vec3::NEG_X, [0.7, 0.6]).expect("in front");
-        assert!((mirror(a.direction) - b.direction).length() < 1e-5, "{a:?} {b:?}");
-        assert!((mirrored.pdf(mirror(Vec3::X)) / lamp.pdf(Vec3::X) - 1.0).abs() < 1e-5);
+        for sampling in [SolidAngle, Area] {
+            assert!(lamp.view(behind, sampling).is_none(), "{sampling:?}");
+            let [a, b] = [lamp.view(Vec3::X, sampling), mirrored.view(Vec3::NEG_X, sampling)].map(Option::unwrap);
+            let (a, b) = (a.sample([0.3, 0.6]), b.sample([0.7, 0.6]));
+            assert!((mirror(a.direction) - b.direction).length() < 1e-5, "{a:?} {b:?}");
+            assert!((a.pdf / b.pdf - 1.0).abs() < 1e-5, "{a:?} {b:?}");
+        }
     }
 }

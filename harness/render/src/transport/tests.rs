@@ -8,6 +8,7 @@ use glam::Vec3;
 use hairis_harness::light::Environment;
 use hairis_harness::sequence::{Independent, XiSource as _};
 use hairis_harness::stats::{Estimate, Moments};
+use rayon::prelude::*;
 
 /// A few strands on a head under a map with bright texels; with two lamps as well.
 fn under_map(lamps: bool) -> Scene {
@@ -31,8 +32,7 @@ fn under_map(lamps: bool) -> Scene {
 
 /// Mean luminance of pictures of many seeds, whose first tables have densities that are wrong by a factor.
 fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f32) -> Estimate {
-    let mut moments = Moments::new();
-    for seed in 0..200 {
+    let luminance = |seed: u64| -> f64 {
         let settings = Settings { integrator, mis, seed, ..Settings::default() };
         let length = resampled::length(integrator);
         let mut tables = Tables::new(&scene.sky, seed, length);
@@ -48,9 +48,10 @@ fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f
                 Integrator::Direct | Integrator::Path => paths(scene, &tables, &settings, tile, samples),
             }
         }
-        moments.push(film.picture().luminances().iter().sum());
-    }
-    moments.mean_estimate()
+        film.picture().luminances().iter().sum()
+    };
+    let all: Vec<f64> = (0..200).into_par_iter().map(luminance).collect();
+    all.into_iter().collect::<Moments>().mean_estimate()
 }
 
 /// Distance of two estimates in standard errors.

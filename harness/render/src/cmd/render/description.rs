@@ -37,6 +37,7 @@ pub(super) fn describe(
         spread,
         turn,
         backdrop,
+        rectangles,
         // In the settings, the crop and the environment.
         integrator: _,
         xi: _,
@@ -70,7 +71,7 @@ pub(super) fn describe(
         format!("scene={scene:?} model={model} sampler={sampler:?} hair={hair:?} energy={energy:?}"),
         format!("size={columns}x{rows} crop={x},{y},{width},{height} turn={turn} backdrop={backdrop:?} env={env:016x}"),
         format!("strands={strands} import={file:016x} scale={scale:?} radius={radius:?} up={up:?}"),
-        format!("follow={follow} spread={spread}"),
+        format!("follow={follow} spread={spread} rectangles={rectangles:?}"),
         format!("integrator={integrator:?} xi={sequence:?} seed={seed} mis={mis:?}"),
         format!("depth={depth} roulette={roulette} multiple={multiple} aa={rays}"),
         build(),
