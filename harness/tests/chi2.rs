@@ -7,7 +7,7 @@ use glam::Vec3;
 use hairis::reference::{HairReference, MatchedReference, Parameters, Shape};
 use hairis::wide::f32x8;
 use hairis::{Bsdf, Gaussian, HairDesc, HairParams, Lobe, LobeMask, Matched, Model, PerLobe, Sample8};
-use hairis_conformance::statistics::{ChiSquare, chi_square, ks_statistic};
+use hairis_conformance::statistics::{ChiSquare, angle_order, chi_square, ks_statistic};
 use hairis_harness::sequence::Independent;
 use hairis_harness::stats::sidak;
 use hairis_variants::{Cauchy, ModelId, Parameters as _};
@@ -50,10 +50,15 @@ fn double(v: Vec3) -> [f64; 3] {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 
+/// Sine and cosine of `theta_i` and of `phi_o - phi_i`, each pair times a length.
+fn sides(wo: Vec3, wi: Vec3) -> [[f64; 2]; 2] {
+    let ([_, v_o, w_o], [u, v, w]) = (double(wo), double(wi));
+    [[u, (v * v + w * w).sqrt()], [v * w_o - w * v_o, v * v_o + w * w_o]]
+}
+
 /// `theta_i` and `phi_o - phi_i` in (-pi, pi].
 fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
-    let ([_, v_o, w_o], [u, v, w]) = (double(wo), double(wi));
-    [u.atan2((v * v + w * w).sqrt()), (v * w_o - w * v_o).atan2(v * v_o + w * w_o)]
+    sides(wo, wi).map(|[sin, cos]| sin.atan2(cos))
 }
 
 /// Samples of some lobes of a shading point.
@@ -133,6 +138,8 @@ fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedR
 struct SphereCells {
     theta: Vec<f64>,
     phi: Vec<f64>,
+    /// The same edges by [`angle_order`].
+    ordered: [Vec<f64>; 2],
     /// Row by row, then one for the caps, whose samples are discarded.
     expected: Vec<f64>,
 }
@@ -180,12 +187,14 @@ impl SphereCells {
             let caps = reference.cdf_theta(lobe, -inner) + 1.0 - reference.cdf_theta(lobe, inner);
             *expected.last_mut().unwrap() += number * caps;
         }
-        Self { theta, phi, expected }
+        let ordered = [&theta, &phi].map(|edges| edges.iter().map(|x| angle_order(x.sin_cos().into())).collect());
+        Self { theta, phi, ordered, expected }
     }
 
-    fn index(&self, theta: f64, phi: f64) -> usize {
-        let row = self.theta.partition_point(|edge| *edge <= theta);
-        let column = self.phi.partition_point(|edge| *edge <= phi).clamp(1, self.phi.len() - 1);
+    fn index(&self, wo: Vec3, wi: Vec3) -> usize {
+        let [theta, phi] = sides(wo, wi).map(angle_order);
+        let row = self.ordered[0].partition_point(|edge| *edge <= theta);
+        let column = self.ordered[1].partition_point(|edge| *edge <= phi).clamp(1, self.phi.len() - 1);
         let inside = (1..self.theta.len()).contains(&row);
         if inside { (row - 1) * (self.phi.len() - 1) + column - 1 } else { self.expected.len() - 1 }
     }
@@ -194,10 +203,7 @@ impl SphereCells {
     fn test(&self, draw: &Draw, wo: Vec3, stream: u64) -> (ChiSquare, Vec<u64>) {
         let mut observed = vec![0; self.expected.len()];
         for_each_sample(draw, stream, |wi| {
-            let cell = wi.map_or(self.expected.len() - 1, |wi| {
-                let [theta, phi] = angles(wo, wi);
-                self.index(theta, phi)
-            });
+            let cell = wi.map_or(self.expected.len() - 1, |wi| self.index(wo, wi));
             observed[cell] += 1;
         });
         (chi_square(&observed, &self.expected, 5.0), observed)

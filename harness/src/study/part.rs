@@ -329,6 +329,27 @@ mod tests {
     }
 
     #[test]
+    fn a_part_goes_on_from_any_byte() {
+        let dir = tempfile::TempDir::new().expect("a folder");
+        let header = header(1);
+        let keep = |part: &Part, cell| part.keep(&finished(cell, &header)).expect("written");
+        let path = {
+            let (part, _) = Part::open(dir.path(), &header).expect("new");
+            [0, 1].into_iter().for_each(|cell| keep(&part, cell));
+            part.path().to_owned()
+        };
+        let whole = fs::read(&path).expect("read");
+        for cut in 0..=whole.len() {
+            fs::write(&path, &whole[..cut]).expect("written");
+            let (part, before) = Part::open(dir.path(), &header).expect("goes on");
+            let lines = whole[..cut].iter().filter(|byte| **byte == b'\n').count();
+            assert_eq!(before.len(), lines.saturating_sub(1), "cut at {cut}");
+            (before.len()..2).for_each(|cell| keep(&part, cell));
+            assert!(fs::read(&path).expect("read") == whole, "cut at {cut}");
+        }
+    }
+
+    #[test]
     fn headers_tell_runs_apart_but_for_the_shard() {
         let (one, two) = (header(1), header(2));
         assert_eq!(one.difference(&two), Some(["seed".to_owned(), "1".to_owned(), "2".to_owned()]));

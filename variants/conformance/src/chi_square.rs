@@ -38,8 +38,8 @@ pub fn samples_follow_density<S: Subject>(subject: &S) -> Outcome {
             let expected = Integral::density(&gather, &mesh).mass;
             let mut observed = vec![0_u32; rows * width];
             let mut live = 0_u32;
-            for ([theta, phi], _) in Samples::draw(&gather, columns(claims.samples, |_| draws.xi3())).live() {
-                let [i, j] = mesh.find([theta, phi]);
+            for direction in Samples::draw(&gather, columns(claims.samples, |_| draws.xi3())).live() {
+                let [i, j] = mesh.find(direction);
                 observed[i * width + j] += 1;
                 live += 1;
             }

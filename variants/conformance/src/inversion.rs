@@ -35,8 +35,8 @@ pub fn even_points_invert_density<S: Subject>(subject: &S) -> Outcome {
                 // Drawn less expected.
                 let mut mass: Vec<f64> = Integral::density(&gather, &mesh).mass.iter().map(|mass| -mass).collect();
                 let share = 1.0 / f64::from(claims.points);
-                for (angles, _) in Samples::draw(&gather, points.clone()).live() {
-                    let [i, j] = mesh.find(angles);
+                for direction in Samples::draw(&gather, points.clone()).live() {
+                    let [i, j] = mesh.find(direction);
                     mass[i * width + j] += share;
                 }
                 // Sums over all rectangles up to a row and a column.

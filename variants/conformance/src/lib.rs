@@ -25,7 +25,7 @@
 //! }
 //!
 //! hairis_conformance::conformance!(published, Published);
-//! # hairis_conformance::integral::density_integrates_to_one(&Published).unwrap();
+//! # hairis_conformance::not_numbers::inputs_that_are_no_numbers_are_black(&Published).unwrap();
 //! ```
 //!
 //! The last line declares the module `published` with a `#[test]` for each property:

@@ -5,7 +5,8 @@
 //! too. Only where the edges lie depends on the samples; what they enclose is integrated from the density alone.
 
 use crate::calls::{self, COLUMNS};
-use crate::probe::{angles, columns, slots, sobol};
+use crate::probe::{angles, columns, sides, slots, sobol};
+use crate::statistics::angle_order;
 use crate::subject::{ParamsOf, Subject};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::{Gather, Hit, Level, LobeMask, Model};
@@ -23,6 +24,8 @@ const CLOSEST: f64 = 1e-6;
 pub(crate) struct Mesh {
     pub(crate) theta: Vec<f64>,
     pub(crate) phi: Vec<f64>,
+    /// All edges but the ends, by [`angle_order`].
+    inner: [Vec<f64>; 2],
 }
 
 impl Mesh {
@@ -38,16 +41,21 @@ impl Mesh {
         for lobe in slots::<S::Model>().filter(|lobe| mask.contains(*lobe)) {
             let alone = calls::with_lobes(gather, LobeMask::of(&[lobe]));
             let samples = Samples::draw(&alone, columns(SAMPLES, sobol));
-            theta.extend(quantiles(samples.live().map(|([theta, _], _)| theta).collect()));
-            phi.extend(quantiles(samples.live().map(|([_, phi], _)| phi).collect()));
+            let drawn: Vec<[f64; 2]> = samples.live().map(angles).collect();
+            theta.extend(quantiles(drawn.iter().map(|[theta, _]| *theta).collect()));
+            phi.extend(quantiles(drawn.iter().map(|[_, phi]| *phi).collect()));
         }
-        Self { theta: graded(theta, FRAC_PI_2), phi: graded(phi, PI) }
+        let (theta, phi) = (graded(theta, FRAC_PI_2), graded(phi, PI));
+        let inner = [&theta, &phi]
+            .map(|edges| edges[1..edges.len() - 1].iter().map(|x| angle_order(x.sin_cos().into())).collect());
+        Self { theta, phi, inner }
     }
 
-    /// The rectangle that contains these angles, or the nearest one.
-    pub(crate) fn find(&self, [theta, phi]: [f64; 2]) -> [usize; 2] {
-        let at = |edges: &[f64], x: f64| edges[1..edges.len() - 1].partition_point(|edge| *edge <= x);
-        [at(&self.theta, theta), at(&self.phi, phi)]
+    /// The rectangle that contains a direction.
+    pub(crate) fn find(&self, direction: [f64; 3]) -> [usize; 2] {
+        let [theta, phi] = sides(direction).map(angle_order);
+        let at = |edges: &[f64], x: f64| edges.partition_point(|edge| *edge <= x);
+        [at(&self.inner[0], theta), at(&self.inner[1], phi)]
     }
 
     /// Number of intervals of each angle.
@@ -77,11 +85,11 @@ impl Samples {
         slot.iter().filter(|slot| **slot >= 0.0).count() as f64 / slot.len() as f64
     }
 
-    /// Angles and slot of each sample that was not discarded.
-    pub(crate) fn live(&self) -> impl Iterator<Item = ([f64; 2], f32)> {
+    /// Directions of the samples that were not discarded.
+    pub(crate) fn live(&self) -> impl Iterator<Item = [f64; 3]> {
         let [u, v, w, .., slot] = &self.columns;
         let live = (0..slot.len()).filter(|n| slot[*n] >= 0.0);
-        live.map(|n| (angles([u[n], v[n], w[n]].map(f64::from)), slot[n]))
+        live.map(|n| [u[n], v[n], w[n]].map(f64::from))
     }
 }
 

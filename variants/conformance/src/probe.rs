@@ -90,12 +90,17 @@ pub(crate) fn double(v: Direction) -> [f64; 3] {
 
 /// Cosine of the inclination of a unit vector.
 pub(crate) fn cos_theta(v: Direction) -> f64 {
-    f64::from(v.y).hypot(f64::from(v.z))
+    (f64::from(v.y).powi(2) + f64::from(v.z).powi(2)).sqrt()
+}
+
+/// Sine and cosine of the inclination and of the azimuth, each pair times a length.
+pub(crate) fn sides([u, v, w]: [f64; 3]) -> [[f64; 2]; 2] {
+    [[u, (v * v + w * w).sqrt()], [w, v]]
 }
 
 /// Inclination and azimuth.
-pub(crate) fn angles([u, v, w]: [f64; 3]) -> [f64; 2] {
-    [u.atan2(v.hypot(w)), w.atan2(v)]
+pub(crate) fn angles(direction: [f64; 3]) -> [f64; 2] {
+    sides(direction).map(|[sin, cos]| sin.atan2(cos))
 }
 
 /// Distance between two vectors.
