@@ -55,8 +55,12 @@ impl Worst {
         if error <= self.tolerance {
             return Ok(());
         }
-        let Self { what, tolerance, .. } = self;
-        Err(Failure::new(self.property, format!("{what} is off by {error:.3e}, allowed {tolerance:.1e}: {}", at())))
+        Err(self.failure(error, &at()))
+    }
+
+    fn failure(&self, error: f64, at: &str) -> Failure {
+        let Self { property, what, tolerance, .. } = self;
+        Failure::new(property, format!("{what} is off by {error:.3e}, allowed {tolerance:.1e}: {at}"))
     }
 
     /// Prints the worst case, for the record of a tolerance.

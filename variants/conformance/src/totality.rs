@@ -122,7 +122,7 @@ pub fn results_are_finite<S: Subject>(subject: &S) -> Outcome {
 }
 
 /// The same for so many packets per material, of these directions.
-pub(crate) fn sweep<S: Subject>(subject: &S, rounds: usize, vector: impl Fn(&mut Draws) -> Direction) -> Outcome {
+pub(crate) fn sweep<S: Subject>(subject: &S, rounds: usize, vector: fn(&mut Draws) -> Direction) -> Outcome {
     let mut draws = Draws(0x0707);
     let masks = masks();
     for (name, params) in subject.materials().into_iter().chain(subject.extremes()) {
