@@ -71,20 +71,12 @@ fn assert_refused(run: &Run, words: &str) {
 }
 
 #[test]
-fn rows_do_not_depend_on_the_number_of_threads() {
-    let dir = TempDir::new().unwrap();
-    let run = study(dir.path(), "2", &[]);
-    assert_eq!(run.code, Some(0), "{:?}", run.err);
-    assert_same_rows(dir.path(), "two threads");
-}
-
-#[test]
-fn a_run_that_was_stopped_goes_on() {
+fn rows_do_not_depend_on_the_number_of_threads_or_on_stops() {
     let part = fs::read(reference().join(WHOLE)).unwrap();
     let ends: Vec<usize> = (0..part.len()).filter(|i| part[*i] == b'\n').collect();
     assert_eq!(ends.len(), CELLS + 1, "a line a cell, and one above");
     let dir = TempDir::new().unwrap();
-    // Before the end of the first line, and of a cell's, after another's, and whole.
+    // Before the end of the first line, which runs all cells; before the end of a cell's, after another's, and whole.
     for cut in [ends[0], ends[20] - 300, ends[30] + 1, part.len()] {
         fs::write(dir.path().join(WHOLE), &part[..cut]).unwrap();
         let run = study(dir.path(), "2", &[]);

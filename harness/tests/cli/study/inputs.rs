@@ -2,6 +2,7 @@
 
 use super::{CELLS, assert_refused, finish, merge, reference};
 use crate::cli::{command, run};
+use hairis_harness::study::output::Study;
 use image::{ImageFormat, Rgb32FImage};
 use serde_json::{Value, json};
 use std::fs;
@@ -67,14 +68,18 @@ fn claims_of_another_run_stay_out_of_the_report() {
         claims["settings"][field] = value;
         claims.to_string()
     };
+    let study = Study::read(&[reference().to_owned()]).unwrap();
     for (text, problem) in [
-        (claims().to_string(), None),
-        (with("seed", json!(2)), Some("it belongs to a run with seed 2, expected 1")),
-        (with("quick", json!(false)), Some("it belongs to a run with quick false, expected true")),
-        (with("cells", json!(3024)), Some("it belongs to a run with cells 3024, expected 48")),
-        ("{\"claims\":[{\"quo".to_owned(), Some("it is damaged")),
-        ("{\"claims\":7}".to_owned(), Some("it is damaged")),
+        (with("quick", json!(false)), "it belongs to a run with quick false, expected true"),
+        (with("cells", json!(3024)), "it belongs to a run with cells 3024, expected 48"),
+        ("{\"claims\":[{\"quo".to_owned(), "it is damaged"),
+        ("{\"claims\":7}".to_owned(), "it is damaged"),
     ] {
+        assert_eq!(study.claims(text.as_bytes()), Err(problem.to_owned()), "{text}");
+    }
+    for (text, problem) in
+        [(claims().to_string(), None), (with("seed", json!(2)), Some("it belongs to a run with seed 2, expected 1"))]
+    {
         let dir = TempDir::new().unwrap();
         fs::write(dir.path().join("claims.json"), &text).unwrap();
         let run = merge(dir.path(), &[reference()]);
