@@ -138,7 +138,7 @@ fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedR
 struct SphereCells {
     theta: Vec<f64>,
     phi: Vec<f64>,
-    /// The same edges by [`angle_order`].
+    /// The same edges as values of [`angle_order`].
     ordered: [Vec<f64>; 2],
     /// Row by row, then one for the caps, whose samples are discarded.
     expected: Vec<f64>,

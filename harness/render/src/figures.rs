@@ -38,7 +38,7 @@ const SCENES: [Name; 7] =
 /// If paths do not converge in a scene, a map cannot be read or a file cannot be written; before anything is rendered.
 pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     let plan = if flags.quick { Plan::QUICK } else { Plan::FULL };
-    let plan = Plan { integrator: flags.integrator, sequence: flags.xi, rectangles: flags.rectangles, ..plan };
+    let plan = Plan { integrator: flags.integrator, sequence: flags.xi, rectangle_sampling: flags.rectangles, ..plan };
     let chosen: &[Name] = if flags.scene.is_empty() { &SCENES } else { &flags.scene };
     chosen.iter().try_for_each(|name| plan.check(*name))?;
     let maps = flags.env.iter().map(|path| environment(path)).collect::<Result<Vec<_>, _>>()?;

@@ -287,8 +287,35 @@ impl Views {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hair::{Choice, Energy};
     use crate::lights::uniform_direction;
+    use crate::scenes::{self, Name, Parts};
     use hairis_harness::sequence::{Independent, XiSource as _};
+
+    #[test]
+    fn a_direction_has_one_density() {
+        let hair =
+            Choice::find("gaussian", "matched", "blond").and_then(|hair| hair.hair(Energy::Raw)).expect("listed");
+        let strands = scenes::grow(Name::Area, 1).expect("one");
+        let parts = Parts { strands, imported: false, hair, env: None, size: [1; 2], turn: 0.0 };
+        let scene = scenes::build(Name::Area, parts).expect("a scene");
+        let mut numbers = Independent::new(8, 0);
+        for rectangle_sampling in [RectangleSampling::SolidAngle, RectangleSampling::Area] {
+            let scene = Scene { rectangle_sampling, ..scene.clone() };
+            for _ in 0..1000 {
+                let origin = 5.0 * uniform_direction(numbers.next_xi_f32());
+                // Off the rim, which rounding may miss.
+                let xi = numbers.next_xi_f32::<3>().map(|x| 0.001 + 0.998 * x);
+                let one = scene.sample_light(origin, xi).expect("in front");
+                let seen = scene.see(&Ray::new(origin, one.direction), &Met::Light(0)).expect("in front");
+                let eight = scene.sample_lights8(|_| origin, &xi.map(|x| [x; 8]), None);
+                let along = scene.lights_along(origin, &[one.direction; 8].into());
+                for pdf in [seen.pdf, eight.pdf.as_array()[0], along.pdf.as_array()[0]] {
+                    assert!((pdf / one.pdf - 1.0).abs() < 1e-4, "{rectangle_sampling:?}: {pdf} for {}", one.pdf);
+                }
+            }
+        }
+    }
 
     #[test]
     fn eight_rays_meet_the_head_as_one_does() {

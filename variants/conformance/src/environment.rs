@@ -46,7 +46,7 @@ fn raised<T>(f: impl FnOnce() -> T) -> u32 {
     after & (FLAGS[0].0 | FLAGS[1].0 | FLAGS[2].0)
 }
 
-/// Names of exceptions. Compiled once, as is all that needs no model.
+/// Names of exceptions. Not generic, so compiled once.
 fn names(flags: u32) -> String {
     let names: Vec<&str> = FLAGS.into_iter().filter(|(flag, _)| flags & flag != 0).map(|(_, name)| name).collect();
     names.join(", ")

@@ -24,7 +24,7 @@ const CLOSEST: f64 = 1e-6;
 pub(crate) struct Mesh {
     pub(crate) theta: Vec<f64>,
     pub(crate) phi: Vec<f64>,
-    /// All edges but the ends, by [`angle_order`].
+    /// All edges but the ends, as values of [`angle_order`].
     inner: [Vec<f64>; 2],
 }
 
@@ -51,7 +51,7 @@ impl Mesh {
         Self { theta, phi, inner }
     }
 
-    /// The rectangle that contains a direction.
+    /// The rectangle that contains a direction. One along the axis counts in the first column.
     pub(crate) fn find(&self, direction: [f64; 3]) -> [usize; 2] {
         let [theta, phi] = sides(direction).map(angle_order);
         let at = |edges: &[f64], x: f64| edges.partition_point(|edge| *edge <= x);

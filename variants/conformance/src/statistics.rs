@@ -181,6 +181,7 @@ mod tests {
         let all = (-1000..=1000).map(|k| f64::from(k) * core::f64::consts::PI / 1000.0);
         let order: Vec<f64> = all.map(|x| angle_order([3.0 * x.sin(), 3.0 * x.cos()])).collect();
         assert!(order.is_sorted_by(|a, b| a < b), "{order:?}");
+        assert_eq!([[0.0, -1.0], [-0.0, -1.0]].map(angle_order), [2.0, -2.0], "the seam");
         assert_eq!(
             [order[0], order[500], order[1000], order[1500], order[2000]].map(f64::round),
             [-2.0, -1.0, 0.0, 1.0, 2.0]

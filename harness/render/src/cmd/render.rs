@@ -27,7 +27,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Least and most time between two previews: half of the time so far, between these.
+/// Bounds of the time between two previews, which is half of the time since the start.
 const PREVIEW: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
 
 /// Renders a scene.
@@ -89,6 +89,10 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     }
     if flags.shard.is_some() {
         part.write(&part_path)?;
+        for preview in ["exr", "png"] {
+            // Ignore errors: a short run has left none.
+            let _ = fs::remove_file(part_path.with_extension(preview));
+        }
         let line = format!("wrote {}: join the parts by `hairis-render merge`\n", part_path.display());
         return io::stdout().write_all(line.as_bytes()).map_err(Error::Write);
     }

@@ -49,7 +49,7 @@ pub(super) struct Plan {
     /// Where the samplers' uniform numbers come from; references are of Sobol' points.
     pub(super) sequence: Sequence,
     /// How directions towards rectangular lights are drawn.
-    pub(super) rectangles: RectangleSampling,
+    pub(super) rectangle_sampling: RectangleSampling,
 }
 
 impl Plan {
@@ -62,7 +62,7 @@ impl Plan {
         runs: 8,
         integrator: None,
         sequence: Sequence::Sobol,
-        rectangles: RectangleSampling::SolidAngle,
+        rectangle_sampling: RectangleSampling::SolidAngle,
     };
     /// Settings of the published figures: an hour on two idle cores. A reference has as many samples as 32 of the pictures with the
     /// most, so that it has about 3% of their variance.
@@ -74,12 +74,12 @@ impl Plan {
         runs: 8,
         integrator: None,
         sequence: Sequence::Sobol,
-        rectangles: RectangleSampling::SolidAngle,
+        rectangle_sampling: RectangleSampling::SolidAngle,
     };
 
     /// What a scene with hair of a model depends on, but for the light.
     pub(super) fn scene(&self, name: Name, model: &str, preset: &str) -> String {
-        let Self { side, strands, rectangles, .. } = self;
+        let Self { side, strands, rectangle_sampling: rectangles, .. } = self;
         let name = name.word();
         format!("scene={name} model={model} hair={preset} side={side} strands={strands} rectangles={rectangles:?}")
     }
@@ -157,7 +157,7 @@ impl Measured {
         let strands = scenes::grow(name, plan.strands)?;
         let parts = Parts { strands, imported: false, hair: hair(BEST)?, env: map, size: [plan.side; 2], turn: 0.0 };
         step(&format!("{}: tree", name.word()));
-        let mut scene = Scene { rectangle_sampling: plan.rectangles, ..scenes::build(name, parts)? };
+        let mut scene = Scene { rectangle_sampling: plan.rectangle_sampling, ..scenes::build(name, parts)? };
         let settings = plan.settings(name, seed);
         let integrator = settings.integrator;
         let kind = usize::from(integrator != Integrator::Gather);

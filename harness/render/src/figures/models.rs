@@ -44,7 +44,7 @@ impl Preset {
         let hairs = names.map(|model| Ok((model, hair(model)?))).collect::<Result<Vec<_>, Error>>()?;
         let Some((_, first)) = hairs.first() else { return Ok(Self { name, samples, models: Vec::new() }) };
         let parts = Parts { strands, imported: false, hair: *first, env: None, size: [plan.side; 2], turn: 0.0 };
-        let mut scene = Scene { rectangle_sampling: plan.rectangles, ..scenes::build(scene, parts)? };
+        let mut scene = Scene { rectangle_sampling: plan.rectangle_sampling, ..scenes::build(scene, parts)? };
         let defaults = Name::Head.defaults();
         let settings =
             Settings { integrator: defaults.integrator, multiple: defaults.multiple, seed, ..Settings::default() };

@@ -44,7 +44,7 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
     if !presets.is_empty() {
         sections.push(models::section(presets)?);
     }
-    let Plan { side, strands, runs, sequence, rectangles, .. } = plan;
+    let Plan { side, strands, runs, sequence, rectangle_sampling, .. } = plan;
     let mut verdicts = vec![["Where the sampler does not matter".to_owned(), verdict::scenes(all)]];
     verdicts.extend(all.iter().map(|measured| [measured.title(), headline(measured)]));
     let method = Section::new("Method and machine")
@@ -53,7 +53,7 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
              {}; light and BSDF samples are combined by the power heuristic, and rectangular lights are sampled {}. Each error is the mean over {runs} pictures of \
              different seeds, with a standard error by the jackknife.",
             numbers(*sequence),
-            by(*rectangles)
+            sampled(*rectangle_sampling)
         ))
         .paragraph(
             "Scenes of direct light have one fixed shading point per pixel, and as many light as BSDF samples there; all pictures, \
@@ -138,7 +138,7 @@ fn numbers(sequence: Sequence) -> &'static str {
     }
 }
 
-fn by(sampling: RectangleSampling) -> &'static str {
+fn sampled(sampling: RectangleSampling) -> &'static str {
     match sampling {
         RectangleSampling::SolidAngle => "by solid angle",
         RectangleSampling::Area => "by area",

@@ -62,7 +62,7 @@ fn other_settings_use_no_results_of_a_run() {
     assert_eq!(resumed(&TINY, 1), 0);
     assert_eq!(resumed(&TINY, 2), 0, "another seed");
     assert_eq!(resumed(&Plan { strands: 201, ..TINY }, 1), 0, "other hair");
-    assert_eq!(resumed(&Plan { rectangles: RectangleSampling::Area, ..TINY }, 1), 0, "lights drawn otherwise");
+    assert_eq!(resumed(&Plan { rectangle_sampling: RectangleSampling::Area, ..TINY }, 1), 0, "lights drawn otherwise");
     assert_eq!(resumed(&Plan { side: 13, ..TINY }, 1), 0, "another size");
     assert_eq!(resumed(&Plan { reference: [9, 4], ..TINY }, 1), 0, "another reference");
     // The halves of the reference are those of the first run.

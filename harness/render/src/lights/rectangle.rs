@@ -53,7 +53,7 @@ pub struct View {
     hi: [f64; 2],
     /// Distance of the plane, above 0.
     height: f64,
-    /// What is projected on the sphere; `None` where points are drawn by area.
+    /// Projection on the unit sphere; `None` if points are drawn by area.
     projected: Option<Projected>,
 }
 
@@ -115,7 +115,7 @@ impl Rectangle {
         (t > t_min && t < f32::INFINITY && within(self.edges[0]) && within(self.edges[1])).then_some(t)
     }
 
-    /// How it is seen from a point: several directions from there cost half as much so. `None` from behind.
+    /// View from a point, to be shared by all directions drawn there. `None` from behind.
     #[must_use]
     pub fn view(&self, origin: Vec3, sampling: RectangleSampling) -> Option<View> {
         let corner = (self.corner - origin).as_dvec3();
@@ -260,8 +260,8 @@ mod tests {
             let mut expected = Vec::new();
             for i in 0..6 {
                 for j in 0..6 {
-                    let at = |k: u16| f32::from(k) / 6.0;
-                    let corner = lamp.corner + at(i) * lamp.edges[0] + at(j) * lamp.edges[1];
+                    let share = |k: u16| f32::from(k) / 6.0;
+                    let corner = lamp.corner + share(i) * lamp.edges[0] + share(j) * lamp.edges[1];
                     let part = Rectangle { corner, edges: lamp.edges.map(|edge| edge / 6.0), ..lamp };
                     let share = if sampling == Area { 1.0 / 36.0 } else { solid_angle(&part, origin) / whole };
                     expected.push(60_000.0 * share);

@@ -14,6 +14,7 @@ fn parts_of_other_runs_are_refused_by_name() {
         (&["--crop", "0,0,20,20"][..], "crop=0,0,40,40, expected crop=0,0,20,20"),
         (&["--seed", "2"], "seed=1, expected seed=2"),
         (&["--turn", "3"], "turn=0, expected turn=3"),
+        (&["--rectangles", "area"], "rectangles=SolidAngle, expected rectangles=Area"),
         (&["--no-multiple"], "multiple=true, expected multiple=false"),
     ] {
         let refused = refuse(&folder, &[&["render"], &flags[..], &SMALL, other].concat());
