@@ -10,8 +10,6 @@
 )]
 
 mod kernel;
-#[cfg(test)]
-mod tests;
 mod two;
 mod vector;
 

@@ -6,4 +6,6 @@ mod cases;
 mod chi2;
 mod claims;
 mod cli;
+#[cfg(target_arch = "x86_64")]
+mod hand;
 mod speed;

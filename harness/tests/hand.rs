@@ -1,13 +1,15 @@
-//! The hand-written kernels and those of the package against the formulas in `f64`, within the same bounds.
+//! The hand-written kernels of the benches and those of the package against the formulas in `f64`, within the same bounds.
+//!
+//! They are here and not in the benches: `cargo test` would compile Criterion for them alone.
 
-use super::{Constants, Set};
 use core::f64::consts::PI;
 use glam::Vec3;
 use hairis::reference::{HairReference, Parameters, Shape};
 use hairis::{Bell, Bsdf, EvalSlices, Gaussian, Hair, HairDesc, HairParams, Level, SampleWeightSlices};
+use hairis_benches::hand::{Constants, Set};
 use hairis_variants::Cauchy;
 use rand_chacha::ChaCha8Rng;
-use rand_core::SeedableRng;
+use rand_chacha::rand_core::SeedableRng as _;
 
 /// Rows per hit.
 const ROWS: usize = 64;
