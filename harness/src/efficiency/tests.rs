@@ -201,7 +201,7 @@ fn maps_of_few_texels_raise_no_alarm() {
         let pixels = (0..width * height).map(|k| [1.0, 0.5 + f32::from(k), 2.0]).collect();
         Environment::from_pixels("few", usize::from(width), usize::from(height), pixels).expect("valid")
     };
-    for map in [gradient(2, 1), gradient(8, 4)] {
+    for map in [Environment::from_pixels("one", 1, 1, vec![[1.0; 3]]).expect("valid"), gradient(2, 1), gradient(8, 4)] {
         let result = run(&small(&map), &|_, _| ()).expect("valid hair");
         assert!(result.check.passed(), "{:?}: {:?}", map.size(), result.check.failures);
     }
