@@ -63,7 +63,7 @@ pub struct Render {
     #[arg(long, value_enum, default_value_t = Sequence::Sobol)]
     pub xi: Sequence,
     /// How directions towards rectangular lights are drawn
-    #[arg(long, value_enum, default_value_t = RectangleSampling::SolidAngle)]
+    #[arg(long, value_enum, default_value_t)]
     pub rectangles: RectangleSampling,
     /// Which samples count where both find a light
     #[arg(long, value_enum, default_value_t = Mis::Both)]
@@ -169,7 +169,7 @@ pub struct Figures {
     #[arg(long, value_enum, default_value_t = Sequence::Sobol)]
     pub xi: Sequence,
     /// How directions towards rectangular lights are drawn
-    #[arg(long, value_enum, default_value_t = RectangleSampling::SolidAngle)]
+    #[arg(long, value_enum, default_value_t)]
     pub rectangles: RectangleSampling,
     /// Compare the models, too, where --scene is given
     #[arg(long)]

@@ -218,9 +218,7 @@ impl Scene {
             let direction = direction.lane(lane);
             let (lamp, distance) = self.lamp_along(origin, direction);
             let Seen { radiance, pdf } = match lamp {
-                Some(lamp) => {
-                    Seen { radiance: self.rectangles[lamp].emission, pdf: views.of(self, lamp, origin)?.pdf(direction) }
-                }
+                Some(lamp) => views.of(self, lamp, origin)?.see(direction),
                 None => self.sky.see(direction),
             };
             (pdf > 0.0).then_some(LightSample { direction, distance, radiance, pdf: pdf * share })
@@ -234,10 +232,7 @@ impl Scene {
         let seen = match met {
             Met::Hair(_) | Met::Surface(..) => return None,
             Met::Nothing => self.sky.see(ray.direction),
-            Met::Light(index) => Seen {
-                radiance: self.rectangles[*index].emission,
-                pdf: self.view(*index, ray.origin)?.pdf(ray.direction),
-            },
+            Met::Light(index) => self.view(*index, ray.origin)?.see(ray.direction),
         };
         (seen.pdf > 0.0).then_some(Seen { pdf: seen.pdf * self.share(), ..seen })
     }

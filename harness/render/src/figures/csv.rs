@@ -9,7 +9,7 @@ use crate::args::Figures;
 use crate::lights::RectangleSampling;
 use crate::numbers::Sequence;
 use crate::protocol::{Measure, Reach, Runs, reach, slope_of};
-use clap::ValueEnum as _;
+use clap::ValueEnum;
 use hairis_harness::error::Error;
 use hairis_harness::files::whole;
 use hairis_harness::machine::Machine;
@@ -58,24 +58,26 @@ fn head(plan: &Plan, flags: &Figures) -> Vec<String> {
 /// The command line, with the names of maps alone, and without folders.
 fn command(flags: &Figures) -> String {
     let mut words = vec!["hairis-render figures".to_owned()];
-    let word = |value: clap::builder::PossibleValue| value.get_name().to_owned();
     words.extend(flags.quick.then(|| "--quick".to_owned()));
     for map in &flags.env {
         words.push(format!("--env {}", map.file_name().unwrap_or_default().display()));
     }
     words.extend(flags.scene.iter().map(|scene| format!("--scene {}", scene.word())));
-    words.extend(
-        flags.integrator.and_then(|one| one.to_possible_value()).map(|one| format!("--integrator {}", word(one))),
-    );
+    words.extend(flags.integrator.and_then(|one| flag("integrator", one)));
     if flags.xi != Sequence::Sobol {
-        words.extend(flags.xi.to_possible_value().map(|one| format!("--xi {}", word(one))));
+        words.extend(flag("xi", flags.xi));
     }
-    if flags.rectangles != RectangleSampling::SolidAngle {
-        words.extend(flags.rectangles.to_possible_value().map(|one| format!("--rectangles {}", word(one))));
+    if flags.rectangles != RectangleSampling::default() {
+        words.extend(flag("rectangles", flags.rectangles));
     }
     words.extend(flags.models.then(|| "--models".to_owned()));
     words.push(format!("--seed {}", flags.seed));
     words.join(" ")
+}
+
+/// A flag and its value.
+fn flag(name: &str, value: impl ValueEnum) -> Option<String> {
+    value.to_possible_value().map(|value| format!("--{name} {}", value.get_name()))
 }
 
 /// Adds the rows of a scene.

@@ -50,8 +50,8 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
     let method = Section::new("Method and machine")
         .paragraph(format!(
             "Pictures of {side} by {side} pixels, procedural hair of {strands} strands, published model, sampled by \
-             {}; light and BSDF samples are combined by the power heuristic, and rectangular lights are sampled {}. Each error is the mean over {runs} pictures of \
-             different seeds, with a standard error by the jackknife.",
+             {}; light and BSDF samples are combined by the power heuristic, and rectangular lights are sampled {}. Each error \
+             is the mean over {runs} pictures of different seeds, with a standard error by the jackknife.",
             numbers(*sequence),
             sampled(*rectangle_sampling)
         ))

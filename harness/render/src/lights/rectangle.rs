@@ -1,6 +1,6 @@
 //! Rectangles: walls, and lights.
 
-use super::LightSample;
+use super::{LightSample, Seen};
 use clap::ValueEnum;
 use core::f64::consts::PI;
 use glam::{DVec3, Vec3};
@@ -170,12 +170,21 @@ impl View {
     /// Density of a direction at a cosine to the normal, per steradian. By area it is `distance^2 / (area cosine)`.
     #[inline]
     fn pdf_at(&self, cosine: f64) -> f32 {
-        let area = (self.hi[0] - self.lo[0]) * (self.hi[1] - self.lo[1]);
         rounded(match &self.projected {
             Some(projected) => 1.0 / projected.solid_angle,
-            None if cosine > 0.0 => (self.height * self.height / (area * cosine.powi(3))).min(f32::MAX.into()),
+            None if cosine > 0.0 => {
+                let area = (self.hi[0] - self.lo[0]) * (self.hi[1] - self.lo[1]);
+                (self.height * self.height / (area * cosine.powi(3))).min(f32::MAX.into())
+            }
             None => 0.0,
         })
+    }
+
+    /// What a ray that meets the rectangle sees of it.
+    #[inline]
+    #[must_use]
+    pub fn see(&self, direction: Vec3) -> Seen {
+        Seen { radiance: self.emission, pdf: self.pdf(direction) }
     }
 
     /// A direction drawn from two uniform numbers.
