@@ -7,7 +7,7 @@ use glam::Vec3;
 use hairis::reference::{HairReference, MatchedReference, Parameters, Shape};
 use hairis::wide::f32x8;
 use hairis::{Bsdf, Gaussian, HairDesc, HairParams, Lobe, LobeMask, Matched, Model, PerLobe, Sample8};
-use hairis_conformance::statistics::{ChiSquare, angle_order, chi_square, ks_statistic};
+use hairis_conformance::statistics::{AngleEdges, ChiSquare, chi_square, ks_statistic};
 use hairis_harness::sequence::Independent;
 use hairis_harness::stats::sidak;
 use hairis_variants::{Cauchy, ModelId, Parameters as _};
@@ -138,8 +138,8 @@ fn matched(shape: Shape, bands: usize) -> impl Fn(&HairParams, Vec3) -> MatchedR
 struct SphereCells {
     theta: Vec<f64>,
     phi: Vec<f64>,
-    /// The same edges as values of [`angle_order`].
-    ordered: [Vec<f64>; 2],
+    /// The same edges.
+    edges: [AngleEdges; 2],
     /// Row by row, then one for the caps, whose samples are discarded.
     expected: Vec<f64>,
 }
@@ -187,14 +187,14 @@ impl SphereCells {
             let caps = reference.cdf_theta(lobe, -inner) + 1.0 - reference.cdf_theta(lobe, inner);
             *expected.last_mut().unwrap() += number * caps;
         }
-        let ordered = [&theta, &phi].map(|edges| edges.iter().map(|x| angle_order(x.sin_cos().into())).collect());
-        Self { theta, phi, ordered, expected }
+        let edges = [AngleEdges::new(&theta), AngleEdges::new(&phi)];
+        Self { theta, phi, edges, expected }
     }
 
     fn index(&self, wo: Vec3, wi: Vec3) -> usize {
-        let [theta, phi] = sides(wo, wi).map(angle_order);
-        let row = self.ordered[0].partition_point(|edge| *edge <= theta);
-        let column = self.ordered[1].partition_point(|edge| *edge <= phi).clamp(1, self.phi.len() - 1);
+        let [theta, phi] = sides(wo, wi);
+        let row = self.edges[0].below(theta);
+        let column = self.edges[1].below(phi).clamp(1, self.phi.len() - 1);
         let inside = (1..self.theta.len()).contains(&row);
         if inside { (row - 1) * (self.phi.len() - 1) + column - 1 } else { self.expected.len() - 1 }
     }

@@ -6,7 +6,7 @@
 
 use crate::calls::{self, COLUMNS};
 use crate::probe::{angles, columns, sides, slots, sobol};
-use crate::statistics::angle_order;
+use crate::statistics::AngleEdges;
 use crate::subject::{ParamsOf, Subject};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::{Gather, Hit, Level, LobeMask, Model};
@@ -24,8 +24,8 @@ const CLOSEST: f64 = 1e-6;
 pub(crate) struct Mesh {
     pub(crate) theta: Vec<f64>,
     pub(crate) phi: Vec<f64>,
-    /// All edges but the ends, as values of [`angle_order`].
-    inner: [Vec<f64>; 2],
+    /// All edges but the ends.
+    inner: [AngleEdges; 2],
 }
 
 impl Mesh {
@@ -46,16 +46,14 @@ impl Mesh {
             phi.extend(quantiles(drawn.iter().map(|[_, phi]| *phi).collect()));
         }
         let (theta, phi) = (graded(theta, FRAC_PI_2), graded(phi, PI));
-        let inner = [&theta, &phi]
-            .map(|edges| edges[1..edges.len() - 1].iter().map(|x| angle_order(x.sin_cos().into())).collect());
+        let inner = [&theta, &phi].map(|edges| AngleEdges::new(&edges[1..edges.len() - 1]));
         Self { theta, phi, inner }
     }
 
     /// The rectangle that contains a direction. One along the axis counts in the first column.
     pub(crate) fn find(&self, direction: [f64; 3]) -> [usize; 2] {
-        let [theta, phi] = sides(direction).map(angle_order);
-        let at = |edges: &[f64], x: f64| edges.partition_point(|edge| *edge <= x);
-        [at(&self.inner[0], theta), at(&self.inner[1], phi)]
+        let [theta, phi] = sides(direction);
+        [self.inner[0].below(theta), self.inner[1].below(phi)]
     }
 
     /// Number of intervals of each angle.

@@ -8,13 +8,31 @@ pub(crate) fn chi_square_tail(x: f64, freedom: usize) -> f64 {
     if x == 0.0 { 1.0 } else { gamma_ur(0.5 * freedom as f64, 0.5 * x) }
 }
 
-/// Ascends with the angle of a sine and a cosine, both times one length: from -2 at -pi to 2 at pi. Finds the cell of an angle
-/// without its arc tangent, which takes longer than the sample.
-///
-/// - Domain: not both 0, finite.
+/// Edges between cells of an angle, which find its cell without the arc tangent: that takes longer than to draw a sample.
+#[derive(Clone, Debug)]
+pub struct AngleEdges(Vec<f64>);
+
+impl AngleEdges {
+    /// Edges by their angles.
+    ///
+    /// - Units: radians.
+    /// - Domain: ascending, from -pi to pi.
+    #[must_use]
+    pub fn new(angles: &[f64]) -> Self {
+        Self(angles.iter().map(|x| angle_order(x.sin_cos().into())).collect())
+    }
+
+    /// Number of edges at or below the angle of a sine and a cosine, both times one length; 0 if both are 0.
+    #[must_use]
+    pub fn below(&self, sides: [f64; 2]) -> usize {
+        let order = angle_order(sides);
+        self.0.partition_point(|edge| *edge <= order)
+    }
+}
+
+/// Ascends with the angle of a sine and a cosine, both times one length: from -2 at -pi to 2 at pi.
 #[inline]
-#[must_use]
-pub fn angle_order([sin, cos]: [f64; 2]) -> f64 {
+fn angle_order([sin, cos]: [f64; 2]) -> f64 {
     let quarter = sin / (sin.abs() + cos.abs());
     if cos >= 0.0 { quarter } else { 2.0_f64.copysign(sin) - quarter }
 }
