@@ -1,23 +1,22 @@
 //! Energy and weights: albedo, furnace, bounds of weights, reciprocity.
 
-use crate::calls;
+use crate::erased::{ErasedGather, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::integral::Integral;
 use crate::mesh::Mesh;
 use crate::near::Nearby;
-use crate::probe::{Draws, cos_theta, direction, hits, hits_and, masks, slots, triples};
-use crate::subject::Subject;
+use crate::probe::{Draws, cos_theta, direction, hits, hits_and, masks, triples};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::{Bsdf, Eval, Gather, Hit, Level, LobeMask, Model};
+use hairis::{Eval, Hit, Level, LobeMask};
 
 /// Integral of `S cos theta_i` of one channel.
-fn reflected<M: Model>(gather: &Gather<M>, mesh: &Mesh, channel: usize) -> Integral {
+fn reflected(gather: &dyn ErasedGather, mesh: &Mesh, channel: usize) -> Integral {
     Integral::new(mesh, |wi, out| {
         let mut value = [const { Vec::new() }; 3].map(|mut v: Vec<f32>| {
             v.resize(out.len(), 0.0);
             v
         });
-        let written = gather.eval_batch_at(Level::detect(), wi, value.each_mut().map(|v| &mut v[..]));
+        let written = gather.value_slices(Level::detect(), wi, value.each_mut().map(|v| &mut v[..]));
         assert!(written.is_ok(), "slices of one length are accepted: {written:?}");
         for (n, x) in out.iter_mut().enumerate() {
             *x = value[channel][n] * wi[1][n].hypot(wi[2][n]);
@@ -30,24 +29,24 @@ fn reflected<M: Model>(gather: &Gather<M>, mesh: &Mesh, channel: usize) -> Integ
 /// # Errors
 ///
 /// At the first lobe where it is not.
-pub fn albedo_is_the_integral<S: Subject>(subject: &S) -> Outcome {
+pub fn albedo_is_the_integral(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "albedo is the integral of S cos theta_i";
     let claims = subject.claims();
     let mut worst = Worst::new(NAME, "albedo", claims.albedo);
-    for (name, params) in subject.materials() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::Everyday).iter() {
+        let name = material.name();
         for hit in hits() {
-            let gather = calls::prepare(&bsdf, hit);
-            let albedo = calls::albedo(&gather);
-            for lobe in slots::<S::Model>() {
+            let gather = material.prepare(hit);
+            let albedo = gather.albedo();
+            for lobe in subject.slots() {
                 let mask = LobeMask::of(&[lobe]);
-                let alone = calls::with_lobes(&gather, mask);
-                let mesh = Mesh::new(subject, &params, &hit, &alone, mask);
+                let alone = gather.with_lobes(mask);
+                let mesh = Mesh::new(subject, material, &hit, &*alone, mask);
                 for c in 0..3 {
                     if c > 0 && albedo[lobe][c] == albedo[lobe][c - 1] {
                         continue;
                     }
-                    let (got, want) = (f64::from(albedo[lobe][c]), reflected(&alone, &mesh, c).total());
+                    let (got, want) = (f64::from(albedo[lobe][c]), reflected(&*alone, &mesh, c).total());
                     // A lobe that lies off the sphere returns next to nothing.
                     worst.see((got - want).abs() / want.max(1e-3), || {
                         format!("{got}, integral {want}: channel {c} of {lobe:?}, {name} {hit:?}")
@@ -65,28 +64,29 @@ pub fn albedo_is_the_integral<S: Subject>(subject: &S) -> Outcome {
 /// # Errors
 ///
 /// At the first hit where they do not, or if the model claims it without a white material.
-pub fn white_furnace<S: Subject>(subject: &S) -> Outcome {
+pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "white materials return all light";
     let Some(tolerance) = subject.claims().furnace else { return Ok(()) };
-    if subject.white().is_empty() {
+    let white = subject.set(Which::White);
+    if white.len() == 0 {
         return Err(Failure::new(NAME, "the subject has no white material to test it on"));
     }
     let mut worst = Worst::new(NAME, "the sum of albedos", tolerance);
     let mut integral = Worst::new(NAME, "the integral of S cos theta_i", tolerance.max(subject.claims().integral));
     let mut draws = Draws(0xf00d);
-    for (name, params) in subject.white() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in white.iter() {
+        let name = material.name();
         for hit in hits_and(100, &mut draws) {
-            let albedo = calls::albedo(&calls::prepare(&bsdf, hit)).0;
+            let albedo = material.prepare(hit).albedo().0;
             for c in 0..3 {
                 let sum: f64 = albedo.iter().map(|lobe| f64::from(lobe[c])).sum();
                 worst.see((sum - 1.0).abs(), || format!("{sum}: channel {c}, {name} {hit:?}"))?;
             }
         }
         for hit in hits() {
-            let gather = calls::prepare(&bsdf, hit);
-            let mesh = Mesh::new(subject, &params, &hit, &gather, LobeMask::ALL);
-            let sum = reflected(&gather, &mesh, 0).total();
+            let gather = material.prepare(hit);
+            let mesh = Mesh::new(subject, material, &hit, &*gather, LobeMask::ALL);
+            let sum = reflected(&*gather, &mesh, 0).total();
             integral.see((sum - 1.0).abs(), || format!("{sum}: {name} {hit:?}"))?;
         }
     }
@@ -99,18 +99,18 @@ pub fn white_furnace<S: Subject>(subject: &S) -> Outcome {
 /// # Errors
 ///
 /// At the first weight above its bound.
-pub fn weights_are_bounded<S: Subject>(subject: &S) -> Outcome {
+pub fn weights_are_bounded(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "weights are below their bound";
     const PACKETS: usize = 64;
     let mut draws = Draws(0xb0d5);
     let masks = masks();
     let (mut closest, mut seen) = (0.0_f64, 0_usize);
-    for (name, params) in subject.materials() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::Everyday).iter() {
+        let name = material.name();
         for (round, hit) in hits_and(50, &mut draws).into_iter().enumerate() {
             let mask = if round % 2 == 0 { LobeMask::ALL } else { masks[round / 2 % 15 + 1] };
-            let Some(bound) = subject.weight_bound(&params, &hit, mask) else { continue };
-            let gather = calls::with_lobes(&calls::prepare(&bsdf, hit), mask);
+            let Some(bound) = material.weight_bound(&hit, mask) else { continue };
+            let gather = material.prepare(hit).with_lobes(mask);
             for packet in 0..PACKETS {
                 let mut xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
                 if packet % 4 == 0 {
@@ -118,7 +118,7 @@ pub fn weights_are_bounded<S: Subject>(subject: &S) -> Outcome {
                     xi[packet / 4 % 8][1 + packet % 2] = if packet % 8 == 0 { 0.0 } else { crate::probe::LAST };
                 }
                 for level in Level::available() {
-                    let eight = calls::sample8(&gather, level, &triples(&xi));
+                    let eight = gather.sample8(level, &triples(&xi));
                     for s in (0..8).filter_map(|lane| eight.lane(lane)) {
                         let most = s.weight.into_iter().fold(0.0, f32::max);
                         (closest, seen) = (closest.max(f64::from(most) / bound), seen + 1);
@@ -143,26 +143,26 @@ pub fn weights_are_bounded<S: Subject>(subject: &S) -> Outcome {
 /// # Errors
 ///
 /// At the first pair of directions where it is not.
-pub fn eval_is_reciprocal<S: Subject>(subject: &S) -> Outcome {
+pub fn eval_is_reciprocal(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "S is reciprocal";
     let claims = subject.claims();
     let Some(tolerance) = claims.reciprocal else { return Ok(()) };
     let mut worst = Worst::new(NAME, "S with its directions exchanged", tolerance);
     let mut draws = Draws(0x4ec1);
-    for (name, params) in subject.materials() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::Everyday).iter() {
+        let name = material.name();
         for round in 0..2000 {
             let mut any = || direction(draws.between(-FRAC_PI_2, FRAC_PI_2), draws.between(-PI, PI));
             let (a, mut b) = (any(), any());
-            let here = Nearby::new(&bsdf, Hit { wo: a, h: 0.0 }, claims.near_field);
+            let here = Nearby::new(material, Hit { wo: a, h: 0.0 }, claims.near_field);
             if round % 2 == 0 {
-                b = calls::sample(here.gather(), draws.xi3()).map_or(b, |s| s.wi.into());
+                b = here.gather().sample(draws.xi3()).map_or(b, |s| s.wi.into());
             }
             if cos_theta(a).min(cos_theta(b)) < 1e-3 {
                 continue;
             }
-            let there = calls::prepare(&bsdf, Hit { wo: b, h: 0.0 });
-            let (forth, back) = (calls::eval(here.gather(), b), calls::eval(&there, a));
+            let there = material.prepare(Hit { wo: b, h: 0.0 });
+            let (forth, back) = (here.gather().eval(b), there.eval(a));
             // Densities are not reciprocal.
             let error = here.error(Eval { pdf: 0.0, ..back }, Eval { pdf: 0.0, ..forth }, b);
             worst.see(error, || format!("{forth:?} and {back:?}: {name} {a:?} {b:?}"))?;

@@ -1,13 +1,12 @@
 //! Random samples follow the density (chi-square test).
 
-use crate::calls;
+use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
 use crate::integral::Integral;
 use crate::mesh::{Mesh, Samples};
 use crate::probe::{Draws, columns, hits};
 use crate::statistics::chi_square_tail;
-use crate::subject::Subject;
-use hairis::{Bsdf, LobeMask};
+use hairis::LobeMask;
 
 /// Chance that a sound model fails, over all its runs.
 const SIGNIFICANCE: f64 = 0.01;
@@ -22,23 +21,23 @@ const SHARE: f64 = 1.0 / 256.0;
 /// # Errors
 ///
 /// If a run is less probable than that, with its worst cells.
-pub fn samples_follow_density<S: Subject>(subject: &S) -> Outcome {
+pub fn samples_follow_density(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "samples follow the density";
-    let (claims, materials) = (subject.claims(), subject.materials());
+    let (claims, materials) = (subject.claims(), subject.set(Which::Everyday));
     let runs = (materials.len() * hits().len()) as f64;
     let least = 1.0 - (1.0 - SIGNIFICANCE).powf(1.0 / runs);
     let mut draws = Draws(0x5eed);
     let mut worst = 1.0_f64;
-    for (name, params) in &materials {
-        let bsdf = Bsdf::new(&subject.model(), params);
+    for material in materials.iter() {
+        let name = material.name();
         for hit in hits() {
-            let gather = calls::prepare(&bsdf, hit);
-            let mesh = Mesh::new(subject, params, &hit, &gather, LobeMask::ALL);
+            let gather = material.prepare(hit);
+            let mesh = Mesh::new(subject, material, &hit, &*gather, LobeMask::ALL);
             let [rows, width] = mesh.size();
-            let expected = Integral::density(&gather, &mesh).mass;
+            let expected = Integral::density(&*gather, &mesh).mass;
             let mut observed = vec![0_u32; rows * width];
             let mut live = 0_u32;
-            for direction in Samples::draw(&gather, columns(claims.samples, |_| draws.xi3())).live() {
+            for direction in Samples::draw(&*gather, columns(claims.samples, |_| draws.xi3())).live() {
                 let [i, j] = mesh.find(direction);
                 observed[i * width + j] += 1;
                 live += 1;

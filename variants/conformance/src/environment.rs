@@ -5,13 +5,12 @@
 //! in their unused lanes what raises an exception; divisions are kept from it ([`Lanes::quotient`](hairis::Lanes::quotient)). Run
 //! these properties in a release build too. Only x86-64 is tested.
 
-use crate::calls::{self, COLUMNS, Direction};
+use crate::erased::{COLUMNS, Direction, ErasedGather, ErasedSubject, Material, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, columns, hits8, packet, triples};
-use crate::subject::Subject;
 use crate::totality;
 use core::hint::black_box;
-use hairis::{Bsdf, Bsdf8, Gather, Hit, Level, Model, Vec3x, control, set_control};
+use hairis::{Hit, Level, Vec3x, control, set_control};
 
 const NAME: &str = "results are finite however they are rounded";
 
@@ -84,7 +83,7 @@ fn unit(draws: &mut Draws) -> Direction {
 /// # Errors
 ///
 /// At the first result that is not.
-pub fn any_rounding_is_finite<S: Subject>(subject: &S) -> Outcome {
+pub fn any_rounding_is_finite(subject: &dyn ErasedSubject) -> Outcome {
     for mode in MODES {
         let in_mode = |failure: Failure| Failure { message: format!("mode {mode:#x}: {}", failure.message), ..failure };
         with_mode(mode, || totality::sweep(subject, ROUNDS, unit)).map_err(in_mode)?;
@@ -93,10 +92,10 @@ pub fn any_rounding_is_finite<S: Subject>(subject: &S) -> Outcome {
     Ok(())
 }
 
-fn slices_are_finite<S: Subject>(subject: &S) -> Outcome {
+fn slices_are_finite(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0xf1);
-    for (name, params) in subject.materials().into_iter().chain(subject.extremes()) {
-        let gather = calls::prepare(&Bsdf::new(&subject.model(), &params), draws.hit());
+    for material in subject.set(Which::All).iter() {
+        let (name, gather) = (material.name(), material.prepare(draws.hit()));
         let rows: Vec<(Direction, [f32; 3])> = (0..69).map(|_| (unit(&mut draws), draws.xi3())).collect();
         let wi = columns(69, |n| {
             let (wi, _) = rows[n as usize];
@@ -105,14 +104,13 @@ fn slices_are_finite<S: Subject>(subject: &S) -> Outcome {
         let xi = columns(69, |n| rows[n as usize].1);
         for level in Level::available() {
             let (mut evals, mut samples) = ([const { [0.0_f32; 69] }; 4], [const { [0.0_f32; 69] }; COLUMNS]);
-            let lengths =
-                calls::eval_slices(&gather, level, wi.each_ref().map(|c| &c[..]), evals.each_mut().map(|c| &mut c[..]))
-                    .and(calls::sample_slices(
-                        &gather,
-                        level,
-                        xi.each_ref().map(|c| &c[..]),
-                        samples.each_mut().map(|c| &mut c[..]),
-                    ));
+            let lengths = gather
+                .eval_slices(Some(level), wi.each_ref().map(|c| &c[..]), evals.each_mut().map(|c| &mut c[..]))
+                .and(gather.sample_slices(
+                    Some(level),
+                    xi.each_ref().map(|c| &c[..]),
+                    samples.each_mut().map(|c| &mut c[..]),
+                ));
             let [u, v, w, numbers @ .., _] = &samples;
             let sound = |x: &f32| x.is_finite() && *x >= 0.0;
             if lengths.is_err()
@@ -132,41 +130,40 @@ fn slices_are_finite<S: Subject>(subject: &S) -> Outcome {
 /// # Errors
 ///
 /// At the first call that raises one.
-pub fn everyday_input_raises_no_exception<S: Subject>(subject: &S) -> Outcome {
+pub fn everyday_input_raises_no_exception(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0xfe);
-    for (name, params) in subject.materials() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
-        if calls::albedo(&calls::prepare(&bsdf, draws.hit())).0.as_flattened().iter().all(|albedo| *albedo == 0.0) {
+    for material in subject.set(Which::Everyday).iter() {
+        let name = material.name();
+        if material.prepare(draws.hit()).albedo().0.as_flattened().iter().all(|albedo| *albedo == 0.0) {
             continue;
         }
-        let packed = Bsdf8::pack([&bsdf; 8]);
         for round in 0..EVERYDAY {
             let hits = core::array::from_fn(|_| draws.hit());
             let wi: [Direction; 8] = core::array::from_fn(|_| draws.direction());
             let (hits8, wi8) = (hits8(&hits), packet(&wi));
             let by_axis = [wi8.x.to_array(), wi8.y.to_array(), wi8.z.to_array()];
-            let one = calls::prepare(&bsdf, hits[0]);
+            let one = material.prepare(hits[0]);
             let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
             let xi8 = triples(&xi);
-            scalar_is_quiet(&bsdf, &one, hits[0], (wi[0], xi[0]), name)?;
+            scalar_is_quiet(material, &*one, hits[0], (wi[0], xi[0]))?;
             for level in Level::available() {
                 let at = || format!("{name} on {level}, {hits:?} {wi:?}");
-                quiet("prepare8", at, || calls::prepare_packed(&packed, level, hits8))?;
-                let each = calls::prepare_packed(&packed, level, hits8);
-                quiet("eval_pdf8 of one hit", at, || calls::eval8(&one, level, &wi8))?;
-                quiet("eval_pdf8 of eight hits", at, || calls::eval_each(&each, level, &wi8))?;
-                quiet("sample8 of one hit", at, || calls::sample8(&one, level, &xi8))?;
-                quiet("sample8 of eight hits", at, || calls::sample_each(&each, level, &xi8))?;
-                quiet("lobes8", at, || calls::lobes_each(&each, &wi8))?;
+                quiet("prepare8", at, || Material::prepare_packed([material; 8], level, hits8))?;
+                let each = Material::prepare_packed([material; 8], level, hits8);
+                quiet("eval_pdf8 of one hit", at, || one.eval8(level, &wi8))?;
+                quiet("eval_pdf8 of eight hits", at, || each.eval(level, &wi8))?;
+                quiet("sample8 of one hit", at, || one.sample8(level, &xi8))?;
+                quiet("sample8 of eight hits", at, || each.sample(level, &xi8))?;
+                quiet("lobes8", at, || each.lobes(&wi8))?;
                 if round % 8 == 0 {
-                    quiet("albedo8", at, || calls::albedo_each(&each, level))?;
-                    quiet("conserving", at, || calls::conserving_each(&each, level))?;
+                    quiet("albedo8", at, || each.albedo(level))?;
+                    quiet("conserving", at, || each.conserving(level))?;
                 }
                 let mut room = [[0.0; 8]; 4];
                 let len = round % 9;
                 quiet("eval_pdf_batch", at, || {
                     let out = room.each_mut().map(|column| &mut column[..len]);
-                    calls::eval_slices(&one, level, by_axis.each_ref().map(|column| &column[..len]), out)
+                    one.eval_slices(Some(level), by_axis.each_ref().map(|column| &column[..len]), out)
                 })?;
             }
         }
@@ -175,20 +172,19 @@ pub fn everyday_input_raises_no_exception<S: Subject>(subject: &S) -> Outcome {
 }
 
 /// The same of one lane.
-fn scalar_is_quiet<M: Model>(
-    bsdf: &Bsdf<M>,
-    one: &Gather<M>,
+fn scalar_is_quiet(
+    material: Material<'_>,
+    one: &dyn ErasedGather,
     hit: Hit,
     (wi, xi): (Direction, [f32; 3]),
-    name: &str,
 ) -> Outcome {
-    let at = || format!("{name}, one lane, {hit:?} {wi:?} {xi:?}");
-    quiet("prepare", at, || calls::prepare(bsdf, hit))?;
-    quiet("eval_pdf", at, || calls::eval(one, wi))?;
-    quiet("lobes", at, || calls::lobes(one, wi))?;
-    quiet("sample", at, || calls::sample(one, xi))?;
-    quiet("albedo", at, || calls::albedo(one))?;
-    quiet("conserving", at, || calls::conserving(one).albedo())
+    let at = || format!("{}, one lane, {hit:?} {wi:?} {xi:?}", material.name());
+    quiet("prepare", at, || material.prepare(hit))?;
+    quiet("eval_pdf", at, || one.eval(wi))?;
+    quiet("lobes", at, || one.lobes(wi))?;
+    quiet("sample", at, || one.sample(xi))?;
+    quiet("albedo", at, || one.albedo())?;
+    quiet("conserving", at, || one.conserving().albedo())
 }
 
 #[cfg(all(test, target_arch = "x86_64"))]

@@ -1,15 +1,13 @@
 //! Slices of hits give the bits of packets, whatever their length, alignment, materials and columns.
 
-use crate::calls::{self, COLUMNS, Direction};
 use crate::environment::{DOWN, with_mode};
+use crate::erased::hits::{Columns, HitsSet, HitsSubject, Of};
+use crate::erased::{COLUMNS, Direction, Material, MaterialSet};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
 use crate::probe::{Draws, hits8, packet, triples};
 use crate::slices::{Room, UNTOUCHED};
-use crate::subject::Subject;
-use hairis::{
-    Bsdf, Bsdf8, EvalColumns, Hit, HitSlices, HitsError, LengthError, Level, MaterialTable, Model, SampleColumns,
-};
+use hairis::{EvalColumns, Hit, HitSlices, HitsError, LengthError, Level, SampleColumns};
 
 const NAME: &str = "slices of hits give the bits of packets";
 /// Two packets of the widest level, and some.
@@ -23,7 +21,7 @@ const SAMPLE_CHOICES: [[bool; 5]; 4] = [
     [false; 5],
 ];
 
-/// Slices of hits give the bits that [`Bsdf8::prepare8`] and then eight lanes give: on one material, and on a table of
+/// Slices of hits give the bits that [`Bsdf8::prepare8`](hairis::Bsdf8::prepare8) and then eight lanes give: on one material, and on a table of
 /// materials in runs and at random; without `h`, they are hits on the axis. Columns that are left out are not written, nor is
 /// anything beyond a slice. Slices of different lengths and indices beyond the table are refused, and then nothing is written.
 /// Where the host rounds down and takes denormals for 0, results are finite and not negative.
@@ -31,52 +29,44 @@ const SAMPLE_CHOICES: [[bool; 5]; 4] = [
 /// # Errors
 ///
 /// At the first entry that differs.
-pub fn hits_equal_packets<S: Subject>(subject: &S) -> Outcome {
+pub fn hits_equal_packets(subject: &dyn HitsSubject) -> Outcome {
     let mut draws = Draws(0x417);
-    let all = subject.materials().into_iter().chain(subject.extremes());
-    let materials: Vec<Bsdf<S::Model>> = all.map(|(_, params)| Bsdf::new(&subject.model(), &params)).collect();
+    let set = &*subject.hits();
+    let materials: Vec<_> = (set as &dyn MaterialSet).iter().collect();
     for level in Level::available() {
-        for (len, one) in (0..=LONGEST).zip(materials.iter().cycle()) {
+        for (len, one) in (0..=LONGEST).zip((0..materials.len()).cycle()) {
             let rows: Vec<Row> = (0..len).map(|_| Row::new(&mut draws)).collect();
             let at = format!("{len} hits on {level}");
             let slices = Slices::new(&rows, len % 8, len % 3 != 1);
-            let expected = Expected::new(&vec![one; len], level, &slices.rows);
-            slices.check(&expected, len, &format!("one material, {at}"), |xi, out| match out {
-                Columns::Eval(out) => one.eval_pdf_hits_at(level, slices.hits(), xi, out).map_err(HitsError::from),
-                Columns::Sample(out) => one.sample_hits_at(level, slices.hits(), xi, out).map_err(HitsError::from),
+            let expected = Expected::new(&vec![materials[one]; len], level, &slices.rows);
+            slices.check(&expected, len, &format!("one material, {at}"), |xi, out| {
+                set.call(Of::One(one), level, slices.hits(), xi, out)
             })?;
             let index = indices(&mut draws, len, materials.len());
-            let each: Vec<_> = index.iter().map(|i| &materials[*i as usize]).collect();
-            let table = MaterialTable { materials: &materials, index: &index };
+            let each: Vec<_> = index.iter().map(|i| materials[*i as usize]).collect();
             let expected = Expected::new(&each, level, &slices.rows);
-            slices.check(&expected, len, &format!("materials {index:?}, {at}"), |xi, out| match out {
-                Columns::Eval(out) => table.eval_pdf_hits_at(level, slices.hits(), xi, out),
-                Columns::Sample(out) => table.sample_hits_at(level, slices.hits(), xi, out),
+            slices.check(&expected, len, &format!("materials {index:?}, {at}"), |xi, out| {
+                set.call(Of::Each(&index), level, slices.hits(), xi, out)
             })?;
         }
     }
-    with_mode(DOWN, || any_rounding_is_finite(&materials))?;
-    arguments_are_checked(&materials)
+    with_mode(DOWN, || any_rounding_is_finite(set))?;
+    arguments_are_checked(set)
 }
 
 /// Values, densities and weights are finite and not negative.
-fn any_rounding_is_finite<M: Model>(materials: &[Bsdf<M>]) -> Outcome {
+fn any_rounding_is_finite(set: &dyn HitsSet) -> Outcome {
     let mut draws = Draws(0x418);
     let rows: Vec<Row> = (0..LONGEST).map(|_| Row::new(&mut draws)).collect();
-    let index = indices(&mut draws, LONGEST, materials.len());
+    let index = indices(&mut draws, LONGEST, set.len());
     let slices = Slices::new(&rows, 0, true);
     for level in Level::available() {
         let mut all = [const { [0.0; LONGEST] }; 8];
         let [r, g, b, pdf, wr, wg, wb, density] = all.each_mut().map(|column| &mut column[..]);
         let evals = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
         let samples = SampleColumns { weight: Some([wr, wg, wb]), pdf: Some(density), ..SampleColumns::default() };
-        let table = MaterialTable { materials, index: &index };
-        let lengths = table.eval_pdf_hits_at(level, slices.hits(), slices.three(4), evals).and(table.sample_hits_at(
-            level,
-            slices.hits(),
-            slices.three(7),
-            samples,
-        ));
+        let call = |xi, out| set.call(Of::Each(&index), level, slices.hits(), xi, out);
+        let lengths = call(slices.three(4), Columns::Eval(evals)).and(call(slices.three(7), Columns::Sample(samples)));
         if lengths.is_err() || !all.iter().flatten().all(|x| x.is_finite() && *x >= 0.0) {
             return Err(Failure::new(NAME, format!("rounded down on {level}: {all:?}")));
         }
@@ -108,12 +98,6 @@ impl Row {
     fn new(draws: &mut Draws) -> Self {
         Self { hit: draws.hit(), wi: draws.direction(), xi: draws.xi3() }
     }
-}
-
-/// The columns of a call that are asked for.
-enum Columns<'a> {
-    Eval(EvalColumns<'a>),
-    Sample(SampleColumns<'a>),
 }
 
 /// Rows by column: `wo`, `h`, `wi` and `xi`, each with some room before it.
@@ -191,15 +175,15 @@ struct Expected {
 }
 
 impl Expected {
-    fn new<M: Model>(materials: &[&Bsdf<M>], level: Level, rows: &[Row]) -> Self {
+    fn new(materials: &[Material<'_>], level: Level, rows: &[Row]) -> Self {
         let mut all = Self { evals: Vec::new(), samples: Vec::new() };
         for (materials, rows) in materials.chunks(8).zip(rows.chunks(8)) {
             let lane = |lane: usize| lane % rows.len();
-            let bsdf = Bsdf8::pack(core::array::from_fn(|i| materials[lane(i)]));
+            let of = core::array::from_fn(|i| materials[lane(i)]);
             let row: [Row; 8] = core::array::from_fn(|i| rows[lane(i)]);
-            let gather = calls::prepare_packed(&bsdf, level, hits8(&row.map(|row| row.hit)));
-            let evals = calls::eval_each(&gather, level, &packet(&row.map(|row| row.wi)));
-            let samples = calls::sample_each(&gather, level, &triples(&row.map(|row| row.xi)));
+            let gather = Material::prepare_packed(of, level, hits8(&row.map(|row| row.hit)));
+            let evals = gather.eval(level, &packet(&row.map(|row| row.wi)));
+            let samples = gather.sample(level, &triples(&row.map(|row| row.xi)));
             for lane in 0..rows.len() {
                 all.evals.push(eval_bits(evals.lane(lane)));
                 all.samples.push(sample_bits(&samples, lane));
@@ -210,7 +194,7 @@ impl Expected {
 }
 
 /// A slice of another length is refused by its name, an index by its place, and nothing is written.
-fn arguments_are_checked<M: Model>(materials: &[Bsdf<M>]) -> Outcome {
+fn arguments_are_checked(set: &dyn HitsSet) -> Outcome {
     const NAMES: [&str; 8] = ["index", "wo.v", "wo.w", "h", "wi.u", "wi.v", "wi.w", "pdf"];
     let refused_as = |want: HitsError, lens: [usize; 8], index: u32| {
         let columns = lens.map(|len| vec![0.5; len]);
@@ -220,9 +204,8 @@ fn arguments_are_checked<M: Model>(materials: &[Bsdf<M>]) -> Outcome {
         if let Some(last) = all.last_mut() {
             *last = index;
         }
-        let table = MaterialTable { materials, index: &all };
         let out = EvalColumns { pdf: Some(&mut pdf), ..EvalColumns::default() };
-        let got = table.eval_pdf_hits(HitSlices { wo: [&u, v, w], h: Some(h) }, [x, y, z], out);
+        let got = set.eval_at_default(&all, HitSlices { wo: [&u, v, w], h: Some(h) }, [x, y, z], out);
         if got == Err(want) && pdf.iter().all(|x| *x == UNTOUCHED) {
             return Ok(());
         }
@@ -236,7 +219,7 @@ fn arguments_are_checked<M: Model>(materials: &[Bsdf<M>]) -> Outcome {
             refused_as(LengthError { field, len, expected: EXPECTED }.into(), lens, 0)?;
         }
     }
-    let (materials, most) = (materials.len(), u32::MAX);
+    let (materials, most) = (set.len(), u32::MAX);
     for index in [u32::try_from(materials).unwrap_or(most), most] {
         refused_as(HitsError::Material { hit: EXPECTED - 1, index, materials }, [EXPECTED; 8], index)?;
     }

@@ -1,11 +1,10 @@
 //! The density integrates to the share of samples that are kept: of all lobes, and of each alone.
 
-use crate::calls::{self, Direction};
+use crate::erased::{Direction, ErasedGather, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::mesh::{Mesh, Samples};
-use crate::probe::{columns, hits, narrow, slots, sobol};
-use crate::subject::Subject;
-use hairis::{Bsdf, Gather, Level, LobeMask, Model};
+use crate::probe::{columns, hits, narrow, sobol};
+use hairis::Level;
 
 /// Kronrod's extension of Gauss' rule of three points, from -1 to 1: node, weight, and Gauss' weight.
 const RULE: [[f64; 3]; 7] = [
@@ -106,9 +105,9 @@ impl Integral {
     }
 
     /// The density of a shading point.
-    pub(crate) fn density<M: Model>(gather: &Gather<M>, mesh: &Mesh) -> Self {
+    pub(crate) fn density(gather: &dyn ErasedGather, mesh: &Mesh) -> Self {
         Self::new(mesh, |wi, out| {
-            let written = gather.pdf_batch_at(Level::detect(), wi, out);
+            let written = gather.pdf_slice(Level::detect(), wi, out);
             assert!(written.is_ok(), "slices of one length are accepted: {written:?}");
         })
     }
@@ -138,38 +137,33 @@ impl Rectangle {
     }
 }
 
-/// Each lobe alone, and all together.
-pub(crate) fn parts<M: Model>() -> impl Iterator<Item = LobeMask> {
-    slots::<M>().map(|lobe| LobeMask::of(&[lobe])).chain([LobeMask::ALL])
-}
-
 /// The density of each lobe alone, and of all together, integrates to the share of samples that are not discarded, and
 /// few are.
 ///
 /// # Errors
 ///
 /// At the first hit where it does not.
-pub fn density_integrates_to_one<S: Subject>(subject: &S) -> Outcome {
+pub fn density_integrates_to_one(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "the density integrates to 1";
     let claims = subject.claims();
     let points = columns(claims.points, sobol);
     let mut worst = Worst::new(NAME, "the integral", claims.integral);
     let mut discarded = Worst::new(NAME, "the share of samples that are kept", claims.discarded);
-    for (name, params) in subject.materials() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::Everyday).iter() {
+        let name = material.name();
         for hit in hits() {
-            let all = calls::prepare(&bsdf, hit);
-            for mask in parts::<S::Model>() {
-                let gather = calls::with_lobes(&all, mask);
+            let all = material.prepare(hit);
+            for mask in subject.parts() {
+                let gather = all.with_lobes(mask);
                 let at = || format!("{name} {mask:?} {hit:?}");
-                let mesh = Mesh::new(subject, &params, &hit, &gather, mask);
-                let integral = Integral::density(&gather, &mesh);
+                let mesh = Mesh::new(subject, material, &hit, &*gather, mask);
+                let integral = Integral::density(&*gather, &mesh);
                 if integral.unresolved > claims.integral {
                     let message =
                         format!("quadrature left {:.1e} unresolved: state the edges. {}", integral.unresolved, at());
                     return Err(Failure::new(NAME, message));
                 }
-                let kept = Samples::draw(&gather, points.clone()).kept();
+                let kept = Samples::draw(&*gather, points.clone()).kept();
                 let got = integral.total();
                 // A lobe without energy scatters nothing.
                 if got == 0.0 && kept == 0.0 {

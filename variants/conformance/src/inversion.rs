@@ -1,13 +1,11 @@
 //! Samples of Sobol points have the distribution of the density, to the evenness of the points: far sharper than random
 //! samples.
 
-use crate::calls;
+use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Outcome, Worst};
-use crate::integral::{Integral, parts};
+use crate::integral::Integral;
 use crate::mesh::{Mesh, Samples};
 use crate::probe::{columns, hits, sobol};
-use crate::subject::Subject;
-use hairis::Bsdf;
 
 /// Points are less even in two dimensions than in one.
 const BOTH: f64 = 4.0;
@@ -18,24 +16,24 @@ const BOTH: f64 = 4.0;
 /// # Errors
 ///
 /// At the first hit where it is not.
-pub fn even_points_invert_density<S: Subject>(subject: &S) -> Outcome {
+pub fn even_points_invert_density(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "even points invert the density";
     let claims = subject.claims();
     let points = columns(claims.points, sobol);
     let mut worst = Worst::new(NAME, "the cdf of one angle", claims.inversion);
     let mut joint = Worst::new(NAME, "the cdf of both angles", BOTH * claims.inversion);
-    for (name, params) in subject.materials() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::Everyday).iter() {
+        let name = material.name();
         for hit in hits() {
-            let all = calls::prepare(&bsdf, hit);
-            for mask in parts::<S::Model>() {
-                let gather = calls::with_lobes(&all, mask);
-                let mesh = Mesh::new(subject, &params, &hit, &gather, mask);
+            let all = material.prepare(hit);
+            for mask in subject.parts() {
+                let gather = all.with_lobes(mask);
+                let mesh = Mesh::new(subject, material, &hit, &*gather, mask);
                 let [rows, width] = mesh.size();
                 // Drawn less expected.
-                let mut mass: Vec<f64> = Integral::density(&gather, &mesh).mass.iter().map(|mass| -mass).collect();
+                let mut mass: Vec<f64> = Integral::density(&*gather, &mesh).mass.iter().map(|mass| -mass).collect();
                 let share = 1.0 / f64::from(claims.points);
-                for direction in Samples::draw(&gather, points.clone()).live() {
+                for direction in Samples::draw(&*gather, points.clone()).live() {
                     let [i, j] = mesh.find(direction);
                     mass[i * width + j] += share;
                 }

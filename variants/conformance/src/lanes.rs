@@ -1,68 +1,66 @@
 //! Eight lanes give the results of one, whatever their position and on every level.
 
-use crate::calls::{self, Direction};
+use crate::erased::{Direction, ErasedGather8, ErasedSubject, Material, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::near::{Nearby, sample_is_near};
 use crate::probe::{Draws, cos_theta, hits8, packet, relative, triples};
-use crate::subject::{Claims, Subject};
+use crate::subject::Claims;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, Eval, Gather8, Hit, Level, Lobe, Model, PerLobe, Sample8};
+use hairis::{Eval, Hit, Level, Lobe, PerLobe, Sample8};
 
 /// Packets of mixed materials.
 const ROUNDS: usize = 2000;
 
 /// Eight materials, each with its hit, a direction and three numbers.
-struct Mixed<'a, M: Model> {
-    material: [&'a Bsdf<M>; 8],
-    names: [&'a str; 8],
+struct Mixed<'a> {
+    material: [Material<'a>; 8],
     hits: [Hit; 8],
     wi: [Direction; 8],
     xi: [[f32; 3]; 8],
 }
 
-impl<'a, M: Model> Mixed<'a, M> {
-    fn new(materials: &'a [(&'static str, Bsdf<M>)], draws: &mut Draws) -> Self {
-        let chosen: [_; 8] = core::array::from_fn(|_| draws.pick(materials));
+impl<'a> Mixed<'a> {
+    fn new(materials: &[Material<'a>], draws: &mut Draws) -> Self {
+        let material: [_; 8] = core::array::from_fn(|_| *draws.pick(materials));
         let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
         // Half of the directions where the lobes are, half anywhere.
         let wi = core::array::from_fn(|lane| {
             let any = draws.direction();
-            let drawn = calls::sample(&calls::prepare(&chosen[lane].1, hits[lane]), draws.xi3());
+            let drawn = material[lane].prepare(hits[lane]).sample(draws.xi3());
             if lane % 2 == 0 { drawn.map_or(any, |s| s.wi.into()) } else { any }
         });
         let xi = core::array::from_fn(|_| draws.xi3());
-        Self { material: chosen.map(|(_, bsdf)| bsdf), names: chosen.map(|(name, _)| *name), hits, wi, xi }
+        Self { material, hits, wi, xi }
     }
 
     fn permuted(&self, order: [usize; 8]) -> Self {
         Self {
             material: order.map(|i| self.material[i]),
-            names: order.map(|i| self.names[i]),
             hits: order.map(|i| self.hits[i]),
             wi: order.map(|i| self.wi[i]),
             xi: order.map(|i| self.xi[i]),
         }
     }
 
-    fn prepare(&self, level: Level) -> Gather8<M> {
-        calls::prepare_packed(&Bsdf8::pack(self.material), level, hits8(&self.hits))
+    fn prepare(&self, level: Level) -> Box<dyn ErasedGather8> {
+        Material::prepare_packed(self.material, level, hits8(&self.hits))
     }
 
     fn at(&self, lane: usize, level: Level) -> String {
-        let Self { names, hits, wi, xi, .. } = self;
-        format!("{} lane {lane} on {level} {:?} {:?} xi {:?}", names[lane], hits[lane], wi[lane], xi[lane])
+        let Self { material, hits, wi, xi } = self;
+        format!("{} lane {lane} on {level} {:?} {:?} xi {:?}", material[lane].name(), hits[lane], wi[lane], xi[lane])
     }
 }
 
 /// Eight materials of the subject at a time, `rounds` times.
-fn each_mixed<S: Subject>(
-    subject: &S,
+fn each_mixed(
+    subject: &dyn ErasedSubject,
     seed: u64,
     rounds: usize,
-    mut see: impl FnMut(&Mixed<'_, S::Model>, &mut Draws, usize) -> Outcome,
+    mut see: impl FnMut(&Mixed<'_>, &mut Draws, usize) -> Outcome,
 ) -> Outcome {
-    let all: Vec<_> = subject.materials().into_iter().chain(subject.extremes()).collect();
-    let materials: Vec<_> = all.iter().map(|(name, params)| (*name, Bsdf::new(&subject.model(), params))).collect();
+    let set = subject.set(Which::All);
+    let materials: Vec<_> = set.iter().collect();
     let mut draws = Draws(seed);
     for round in 0..rounds {
         see(&Mixed::new(&materials, &mut draws), &mut draws, round)?;
@@ -92,7 +90,7 @@ fn same_bits(claims: &Claims, level: Level) -> bool {
 /// # Errors
 ///
 /// At the first lane that differs.
-pub fn lanes_equal_scalar<S: Subject>(subject: &S) -> Outcome {
+pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "eight lanes give the results of one";
     let claims = subject.claims();
     let mut worst = Worst::new(NAME, "value or density of a lane", claims.lanes);
@@ -100,20 +98,20 @@ pub fn lanes_equal_scalar<S: Subject>(subject: &S) -> Outcome {
         for level in Level::available() {
             let each = m.prepare(level);
             let (wi, xi) = (packet(&m.wi), triples(&m.xi));
-            let (evals, samples) = (calls::eval_each(&each, level, &wi), calls::sample_each(&each, level, &xi));
+            let (evals, samples) = (each.eval(level, &wi), each.sample(level, &xi));
             for lane in 0..8 {
                 let at = || m.at(lane, level);
                 let nearby = Nearby::new(m.material[lane], m.hits[lane], claims.near_field);
                 let one = nearby.gather();
-                let eight = calls::eval8(one, level, &wi);
+                let eight = one.eval8(level, &wi);
                 let of_lane = each.lane(lane);
-                let apart = calls::eval8(&of_lane, level, &wi);
+                let apart = of_lane.eval8(level, &wi);
                 if eval_bits(apart.lane(lane)) != eval_bits(evals.lane(lane)) {
                     let message =
                         format!("`lane` gives {:?}, the packet {:?}: {}", apart.lane(lane), evals.lane(lane), at());
                     return Err(Failure::new(NAME, message));
                 }
-                let want = calls::eval(one, m.wi[lane]);
+                let want = one.eval(m.wi[lane]);
                 for got in [evals.lane(lane), eight.lane(lane)] {
                     if same_bits(&claims, level) {
                         if eval_bits(got) != eval_bits(want) {
@@ -125,8 +123,8 @@ pub fn lanes_equal_scalar<S: Subject>(subject: &S) -> Outcome {
                         })?;
                     }
                 }
-                let want = calls::sample(one, m.xi[lane]);
-                let at_one = calls::sample8(one, level, &xi);
+                let want = one.sample(m.xi[lane]);
+                let at_one = one.sample8(level, &xi);
                 for got in [samples.lane(lane), at_one.lane(lane)] {
                     let close = if same_bits(&claims, level) {
                         got == want
@@ -149,7 +147,7 @@ pub fn lanes_equal_scalar<S: Subject>(subject: &S) -> Outcome {
 /// # Errors
 ///
 /// At the first lane that differs.
-pub fn lanes_permute<S: Subject>(subject: &S) -> Outcome {
+pub fn lanes_permute(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "permuted lanes permute the results";
     each_mixed(subject, 0x9e44, ROUNDS, |m, draws, _| {
         let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
@@ -160,9 +158,8 @@ pub fn lanes_permute<S: Subject>(subject: &S) -> Outcome {
         let p = m.permuted(order);
         for level in Level::available() {
             let (g, h) = (m.prepare(level), p.prepare(level));
-            let (a, b) = (calls::eval_each(&g, level, &packet(&m.wi)), calls::eval_each(&h, level, &packet(&p.wi)));
-            let (s, t) =
-                (calls::sample_each(&g, level, &triples(&m.xi)), calls::sample_each(&h, level, &triples(&p.xi)));
+            let (a, b) = (g.eval(level, &packet(&m.wi)), h.eval(level, &packet(&p.wi)));
+            let (s, t) = (g.sample(level, &triples(&m.xi)), h.sample(level, &triples(&p.xi)));
             for (to, from) in order.into_iter().enumerate() {
                 let same =
                     eval_bits(a.lane(from)) == eval_bits(b.lane(to)) && sample_bits(&s, from) == sample_bits(&t, to);
@@ -185,26 +182,18 @@ pub fn lanes_permute<S: Subject>(subject: &S) -> Outcome {
 /// # Errors
 ///
 /// At the first lane that differs.
-pub fn levels_agree<S: Subject>(subject: &S) -> Outcome {
+pub fn levels_agree(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "packed and shared materials, and levels that fuse alike, agree";
     each_mixed(subject, 0x1e7e, ROUNDS / 2, |m, _, round| {
         let (wi, xi) = (packet(&m.wi), triples(&m.xi));
-        let mut by_level: Vec<(Level, Gather8<S::Model>)> = Vec::new();
+        let mut by_level: Vec<(Level, Box<dyn ErasedGather8>)> = Vec::new();
         for level in Level::available() {
-            let (bsdf, hits) = (m.material[round % 8], hits8(&[m.hits[round % 8]; 8]));
-            let packed = calls::prepare_packed(&Bsdf8::pack([bsdf; 8]), level, hits);
-            let shared = calls::prepare8(bsdf, level, hits);
+            let (material, hits) = (m.material[round % 8], hits8(&[m.hits[round % 8]; 8]));
+            let packed = Material::prepare_packed([material; 8], level, hits);
+            let shared = material.prepare8(level, hits);
             let lane = packed.lane(3);
-            let evals = [
-                calls::eval_each(&packed, level, &wi),
-                calls::eval_each(&shared, level, &wi),
-                calls::eval8(&lane, level, &wi),
-            ];
-            let samples = [
-                calls::sample_each(&packed, level, &xi),
-                calls::sample_each(&shared, level, &xi),
-                calls::sample8(&lane, level, &xi),
-            ];
+            let evals = [packed.eval(level, &wi), shared.eval(level, &wi), lane.eval8(level, &wi)];
+            let samples = [packed.sample(level, &xi), shared.sample(level, &xi), lane.sample8(level, &xi)];
             for n in 0..8 {
                 let e = evals.each_ref().map(|e| eval_bits(e.lane(n)));
                 let s = samples.each_ref().map(|s| sample_bits(s, n));
@@ -216,8 +205,7 @@ pub fn levels_agree<S: Subject>(subject: &S) -> Outcome {
             by_level.push((level, m.prepare(level)));
         }
         for pair in by_level.windows(2).filter(|pair| pair[0].0.fuses() == pair[1].0.fuses()) {
-            let [a, b] = [&pair[0], &pair[1]]
-                .map(|(level, g)| (calls::eval_each(g, *level, &wi), calls::sample_each(g, *level, &xi)));
+            let [a, b] = [&pair[0], &pair[1]].map(|(level, g)| (g.eval(*level, &wi), g.sample(*level, &xi)));
             for n in 0..8 {
                 if eval_bits(a.0.lane(n)) != eval_bits(b.0.lane(n)) || sample_bits(&a.1, n) != sample_bits(&b.1, n) {
                     return Err(Failure::new(
@@ -236,7 +224,7 @@ pub fn levels_agree<S: Subject>(subject: &S) -> Outcome {
 /// # Errors
 ///
 /// At the first lane that differs.
-pub fn lobes_and_albedo_equal_scalar<S: Subject>(subject: &S) -> Outcome {
+pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "lobes and albedo of eight lanes are those of one";
     let claims = subject.claims();
     let level = Level::detect();
@@ -244,11 +232,11 @@ pub fn lobes_and_albedo_equal_scalar<S: Subject>(subject: &S) -> Outcome {
     each_mixed(subject, 0x10be, ROUNDS / 4, |m, _, _| {
         let each = m.prepare(level);
         let wi = packet(&m.wi);
-        let (lobes, albedo) = (calls::lobes_each(&each, &wi), calls::albedo_each(&each, level));
+        let (lobes, albedo) = (each.lobes(&wi), each.albedo(level));
         for lane in 0..8 {
             let at = || m.at(lane, level);
             let one = each.lane(lane);
-            let (alone, one_albedo) = (calls::lobes8(&one, &wi), calls::albedo(&one));
+            let (alone, one_albedo) = (one.lobes8(&wi), one.albedo());
             for lobe in Lobe::ALL {
                 let bits = |l: &PerLobe<hairis::LobeEval8>| {
                     let l = &l[lobe];
@@ -266,9 +254,9 @@ pub fn lobes_and_albedo_equal_scalar<S: Subject>(subject: &S) -> Outcome {
                 }
             }
             if !claims.near_field {
-                let [a, b] = [-0.9, 0.4].map(|h| calls::prepare(m.material[lane], Hit { h, ..m.hits[lane] }));
-                let same_eval = eval_bits(calls::eval(&a, m.wi[lane])) == eval_bits(calls::eval(&b, m.wi[lane]));
-                if !same_eval || calls::sample(&a, m.xi[lane]) != calls::sample(&b, m.xi[lane]) {
+                let [a, b] = [-0.9, 0.4].map(|h| m.material[lane].prepare(Hit { h, ..m.hits[lane] }));
+                let same_eval = eval_bits(a.eval(m.wi[lane])) == eval_bits(b.eval(m.wi[lane]));
+                if !same_eval || a.sample(m.xi[lane]) != b.sample(m.xi[lane]) {
                     return Err(Failure::new(NAME, format!("h changes the results, but is not claimed to: {}", at())));
                 }
             }

@@ -65,9 +65,9 @@
 //! [`Subject::edges`] names it. Relative accuracy within 1e-3 rad of the axis is left to the model's own tests.
 
 pub mod bounds;
-mod calls;
 pub mod chi_square;
 pub mod environment;
+mod erased;
 mod failure;
 mod formula_reference;
 pub mod hits;
@@ -94,6 +94,9 @@ pub mod statistics;
 mod subject;
 pub mod totality;
 
+pub use erased::ErasedSubject;
+pub use erased::hits::HitsSubject;
+pub use erased::light::LitSubject;
 pub use failure::{Failure, Outcome};
 pub use formula_reference::FormulaReference;
 pub use subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subject, Tolerance};

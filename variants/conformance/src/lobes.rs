@@ -1,10 +1,9 @@
 //! Lobes sum to the value, and masks select them.
 
-use crate::calls;
+use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
-use crate::probe::{Draws, hits8, masks, packet, relative, slots, triples};
-use crate::subject::Subject;
-use hairis::{Bsdf, Eval, Level, Lobe, LobeMask, Model};
+use crate::probe::{Draws, hits8, masks, packet, relative, triples};
+use hairis::{Eval, Level, Lobe, LobeMask};
 
 /// Hits per material.
 const ROUNDS: usize = 120;
@@ -15,29 +14,29 @@ const ROUNDS: usize = 120;
 /// # Errors
 ///
 /// At the first direction where they do not.
-pub fn lobes_sum_to_value<S: Subject>(subject: &S) -> Outcome {
+pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "lobes sum to the value";
     let claims = subject.claims();
     let mut worst = Worst::new(NAME, "the sum of the lobes", claims.lobe_sum);
     let mut alone_worst = Worst::new(NAME, "a lobe alone", claims.lobe_sum);
     let mut draws = Draws(0x10b5);
-    for (name, params) in subject.materials() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::Everyday).iter() {
+        let name = material.name();
         for round in 0..ROUNDS {
             let hit = draws.hit();
-            let gather = calls::prepare(&bsdf, hit);
+            let gather = material.prepare(hit);
             let any = draws.direction();
-            let drawn = calls::sample(&gather, draws.xi3()).map_or(any, |s| s.wi.into());
+            let drawn = gather.sample(draws.xi3()).map_or(any, |s| s.wi.into());
             let wi = if round % 3 == 0 { any } else { drawn };
-            let (whole, lobes) = (calls::eval(&gather, wi), calls::lobes(&gather, wi));
+            let (whole, lobes) = (gather.eval(wi), gather.lobes(wi));
             let at = || format!("{name} {hit:?} {wi:?} {lobes:?}, whole {whole:?}");
             for c in 0..3 {
                 let sum = lobes.0.iter().map(|l| f64::from(l.value) * f64::from(l.color[c])).sum();
                 worst.see(relative(f64::from(whole.value[c]), sum, 1e-20), at)?;
             }
             let mut densities = Vec::new();
-            for lobe in slots::<S::Model>() {
-                let alone = calls::eval(&calls::with_lobes(&gather, LobeMask::of(&[lobe])), wi);
+            for lobe in subject.slots() {
+                let alone = gather.with_lobes(LobeMask::of(&[lobe])).eval(wi);
                 for (value, color) in alone.value.into_iter().zip(lobes[lobe].color) {
                     let want = f64::from(lobes[lobe].value) * f64::from(color);
                     alone_worst.see(relative(f64::from(value), want, 1e-20), || {
@@ -71,26 +70,25 @@ pub fn lobes_sum_to_value<S: Subject>(subject: &S) -> Outcome {
 /// # Errors
 ///
 /// At the first mask that leaks.
-pub fn masks_select_lobes<S: Subject>(subject: &S) -> Outcome {
+pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "masks select lobes";
     let claims = subject.claims();
     let mut worst = Worst::new(NAME, "the value with some lobes", claims.lobe_sum);
     let mut nested = Worst::new(NAME, "the density with a mask of a mask", claims.lobe_sum);
     let mut draws = Draws(0x3a5c);
     let level = Level::detect();
-    for (name, params) in subject.materials().into_iter().chain(subject.extremes()) {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::All).iter() {
+        let name = material.name();
         for _ in 0..ROUNDS / 4 {
             let hit = draws.hit();
-            let (gather, each) = (calls::prepare(&bsdf, hit), calls::prepare8(&bsdf, level, hits8(&[hit; 8])));
+            let (gather, each) = (material.prepare(hit), material.prepare8(level, hits8(&[hit; 8])));
             let wi = core::array::from_fn(|_| draws.direction());
             let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
-            let single: Vec<(Lobe, Eval)> = slots::<S::Model>()
-                .map(|lobe| (lobe, calls::eval(&calls::with_lobes(&gather, LobeMask::of(&[lobe])), wi[0])))
-                .collect();
+            let single: Vec<(Lobe, Eval)> =
+                subject.slots().map(|lobe| (lobe, gather.with_lobes(LobeMask::of(&[lobe])).eval(wi[0]))).collect();
             for mask in masks() {
-                let (part, part8) = (calls::with_lobes(&gather, mask), calls::with_lobes_each(&each, mask));
-                let (e, eight) = (calls::eval(&part, wi[0]), calls::eval_each(&part8, level, &packet(&wi)));
+                let (part, part8) = (gather.with_lobes(mask), each.with_lobes(mask));
+                let (e, eight) = (part.eval(wi[0]), part8.eval(level, &packet(&wi)));
                 let at = || format!("{name} {mask:?} {hit:?} {:?}", wi[0]);
                 for got in [e, eight.lane(0)] {
                     for c in 0..3 {
@@ -111,15 +109,15 @@ pub fn masks_select_lobes<S: Subject>(subject: &S) -> Outcome {
                     }
                 }
                 for lobe in Lobe::ALL.into_iter().filter(|lobe| !mask.contains(*lobe)) {
-                    let l = calls::lobes(&part, wi[0])[lobe];
+                    let l = part.lobes(wi[0])[lobe];
                     if l.value * l.color.iter().sum::<f32>() != 0.0 {
                         return Err(Failure::new(NAME, format!("{lobe:?} is masked, yet scatters {l:?}: {}", at())));
                     }
                 }
-                let samples = calls::sample_each(&part8, level, &triples(&xi));
+                let samples = part8.sample(level, &triples(&xi));
                 for (lane, xi) in xi.into_iter().enumerate() {
-                    for s in [calls::sample(&part, xi), samples.lane(lane)].into_iter().flatten() {
-                        if !mask.contains(s.lobe) || s.lobe.index() >= S::Model::LOBES.len() {
+                    for s in [part.sample(xi), samples.lane(lane)].into_iter().flatten() {
+                        if !mask.contains(s.lobe) || s.lobe.index() >= subject.lobe_count() {
                             return Err(Failure::new(NAME, format!("{s:?} is of a masked lobe, xi {xi:?}: {}", at())));
                         }
                     }
@@ -127,8 +125,8 @@ pub fn masks_select_lobes<S: Subject>(subject: &S) -> Outcome {
                 let other = *draws.pick(&masks());
                 let common: Vec<Lobe> =
                     Lobe::ALL.into_iter().filter(|lobe| mask.contains(*lobe) && other.contains(*lobe)).collect();
-                let twice = calls::eval(&calls::with_lobes(&part, other), wi[0]);
-                let once = calls::eval(&calls::with_lobes(&gather, LobeMask::of(&common)), wi[0]);
+                let twice = part.with_lobes(other).eval(wi[0]);
+                let once = gather.with_lobes(LobeMask::of(&common)).eval(wi[0]);
                 let error = relative(f64::from(twice.pdf), f64::from(once.pdf), 1e-20);
                 nested.see(error, || format!("{twice:?}, at once {once:?}: {} then {other:?}", at()))?;
             }

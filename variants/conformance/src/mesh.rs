@@ -4,12 +4,11 @@
 //! on a sphere misses lobes below a degree. From there the mesh widens by a constant factor, so that tails are resolved,
 //! too. Only where the edges lie depends on the samples; what they enclose is integrated from the density alone.
 
-use crate::calls::{self, COLUMNS};
-use crate::probe::{angles, columns, sides, slots, sobol};
+use crate::erased::{COLUMNS, ErasedGather, ErasedSubject, Material};
+use crate::probe::{angles, columns, sides, sobol};
 use crate::statistics::AngleEdges;
-use crate::subject::{ParamsOf, Subject};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::{Gather, Hit, Level, LobeMask, Model};
+use hairis::{Hit, Level, LobeMask};
 
 /// Samples per lobe that edges are taken from.
 const SAMPLES: u32 = 4096;
@@ -30,17 +29,17 @@ pub(crate) struct Mesh {
 
 impl Mesh {
     /// A mesh for the density of a shading point: of all its lobes, or of those in `mask`.
-    pub(crate) fn new<S: Subject>(
-        subject: &S,
-        params: &ParamsOf<S>,
+    pub(crate) fn new(
+        subject: &dyn ErasedSubject,
+        material: Material<'_>,
         hit: &Hit,
-        gather: &Gather<S::Model>,
+        gather: &dyn ErasedGather,
         mask: LobeMask,
     ) -> Self {
-        let [mut theta, mut phi] = subject.edges(params, hit);
-        for lobe in slots::<S::Model>().filter(|lobe| mask.contains(*lobe)) {
-            let alone = calls::with_lobes(gather, LobeMask::of(&[lobe]));
-            let samples = Samples::draw(&alone, columns(SAMPLES, sobol));
+        let [mut theta, mut phi] = material.edges(hit);
+        for lobe in subject.slots().filter(|lobe| mask.contains(*lobe)) {
+            let alone = gather.with_lobes(LobeMask::of(&[lobe]));
+            let samples = Samples::draw(&*alone, columns(SAMPLES, sobol));
             let drawn: Vec<[f64; 2]> = samples.live().map(angles).collect();
             theta.extend(quantiles(drawn.iter().map(|[theta, _]| *theta).collect()));
             phi.extend(quantiles(drawn.iter().map(|[_, phi]| *phi).collect()));
@@ -69,10 +68,10 @@ pub(crate) struct Samples {
 
 impl Samples {
     /// The samples that these numbers give.
-    pub(crate) fn draw<M: Model>(gather: &Gather<M>, xi: [Vec<f32>; 3]) -> Self {
+    pub(crate) fn draw(gather: &dyn ErasedGather, xi: [Vec<f32>; 3]) -> Self {
         let mut columns: [Vec<f32>; COLUMNS] = core::array::from_fn(|_| vec![0.0; xi[0].len()]);
         let inputs = xi.each_ref().map(|column| &column[..]);
-        let written = calls::sample_slices(gather, Level::detect(), inputs, columns.each_mut().map(|c| &mut c[..]));
+        let written = gather.sample_slices(Some(Level::detect()), inputs, columns.each_mut().map(|c| &mut c[..]));
         assert!(written.is_ok(), "slices of one length are accepted: {written:?}");
         Self { columns }
     }

@@ -1,8 +1,8 @@
 //! Effect of rounded inputs on results: the difference allowed between two evaluations of one formula.
 
-use crate::calls::{self, Direction};
+use crate::erased::{Direction, ErasedGather, Material};
 use crate::probe::{cos_theta, distance, narrow, rounded};
-use hairis::{Bsdf, Eval, Gather, Hit, Model, Sample};
+use hairis::{Eval, Hit, Sample};
 
 /// A rounding of an angle, or of a uniform number, as arithmetic in single precision adds up to.
 const ROUNDING: f64 = 4e-7;
@@ -11,38 +11,38 @@ const ROUNDING: f64 = 4e-7;
 const FLOOR: f64 = 1e-20;
 
 /// A shading point, and those of the hits that its hit may be taken for once it is rounded.
-pub(crate) struct Nearby<'a, M: Model> {
-    bsdf: &'a Bsdf<M>,
+pub(crate) struct Nearby<'a> {
+    material: Material<'a>,
     hit: Hit,
     near_field: bool,
-    gather: Gather<M>,
+    gather: Box<dyn ErasedGather>,
 }
 
-impl<'a, M: Model> Nearby<'a, M> {
-    pub(crate) fn new(bsdf: &'a Bsdf<M>, hit: Hit, near_field: bool) -> Self {
-        Self { bsdf, hit, near_field, gather: calls::prepare(bsdf, hit) }
+impl<'a> Nearby<'a> {
+    pub(crate) fn new(material: Material<'a>, hit: Hit, near_field: bool) -> Self {
+        Self { material, hit, near_field, gather: material.prepare(hit) }
     }
 
-    pub(crate) fn gather(&self) -> &Gather<M> {
-        &self.gather
+    pub(crate) fn gather(&self) -> &dyn ErasedGather {
+        &*self.gather
     }
 
     /// The shading points of rounded hits.
-    fn gathers(&self) -> impl Iterator<Item = Gather<M>> {
+    fn gathers(&self) -> impl Iterator<Item = Box<dyn ErasedGather>> {
         let Hit { wo, h } = self.hit;
         let moved = rounded(wo, ROUNDING).map(|wo| Hit { wo, h });
         let by = if self.near_field { narrow(ROUNDING) } else { 0.0 };
         let across = [h + by, h - by].map(|h| Hit { wo, h });
-        moved.into_iter().chain(across).map(|hit| calls::prepare(self.bsdf, hit))
+        moved.into_iter().chain(across).map(|hit| self.material.prepare(hit))
     }
 
     /// The largest change of value and density as `wi` and the hit are rounded.
     fn spread(&self, wi: Direction) -> [f64; 4] {
         let numbers = |e: Eval| [e.value[0], e.value[1], e.value[2], e.pdf].map(f64::from);
-        let centre = numbers(calls::eval(&self.gather, wi));
-        let moved = rounded(wi, ROUNDING).map(|wi| calls::eval(&self.gather, wi));
+        let centre = numbers(self.gather.eval(wi));
+        let moved = rounded(wi, ROUNDING).map(|wi| self.gather.eval(wi));
         let mut spread = [0.0; 4];
-        for e in moved.into_iter().chain(self.gathers().map(|gather| calls::eval(&gather, wi))) {
+        for e in moved.into_iter().chain(self.gathers().map(|gather| gather.eval(wi))) {
             for ((most, x), c) in spread.iter_mut().zip(numbers(e)).zip(centre) {
                 *most = f64::max(*most, (x - c).abs());
             }
@@ -65,10 +65,10 @@ impl<'a, M: Model> Nearby<'a, M> {
 }
 
 /// Whether a sample is that of one lane, or could be with numbers and a hit that are rounded.
-pub(crate) fn sample_is_near<M: Model>(
+pub(crate) fn sample_is_near(
     got: Option<Sample>,
     want: Option<Sample>,
-    nearby: &Nearby<'_, M>,
+    nearby: &Nearby<'_>,
     xi: [f32; 3],
     direction: f64,
 ) -> bool {
@@ -86,10 +86,10 @@ pub(crate) fn sample_is_near<M: Model>(
         for by in [-2.0, -1.0, -0.5, 0.5, 1.0, 2.0] {
             let mut xi = xi;
             xi[axis] = (xi[axis] + by * narrow(ROUNDING)).clamp(0.0, 1.0 - f32::EPSILON / 2.0);
-            moved.push(calls::sample(nearby.gather(), xi));
+            moved.push(nearby.gather().sample(xi));
         }
     }
-    moved.extend(nearby.gathers().map(|gather| calls::sample(&gather, xi)));
+    moved.extend(nearby.gathers().map(|gather| gather.sample(xi)));
     // As far as rounding moves the sample of its lobe.
     let reach = moved.iter().flatten().filter_map(|a| {
         let of_lobe = |b: &Sample| b.lobe == a.lobe;

@@ -1,11 +1,10 @@
 //! NaN and infinite inputs give nothing: no value, no density, and samples that are discarded.
 
-use crate::calls::{self, Direction};
+use crate::erased::{COLUMNS, Direction, ErasedGather, ErasedGather8, ErasedSubject, Material, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, hits8, packet, triples};
-use crate::subject::Subject;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, Eval, Gather, Gather8, Hit, Level, Model, Sample8};
+use hairis::{Eval, Hit, Level, Sample8};
 
 const NAME: &str = "inputs that are no numbers are black";
 
@@ -55,39 +54,39 @@ fn no_lobes(lobes: &[[f32x8; 2]]) -> bool {
 }
 
 /// Describes any result other than zero at this direction, or of these numbers.
-fn at_one<M: Model>(gather: &Gather<M>, wi: Option<Direction>, xi: Option<[f32; 3]>) -> Option<String> {
+fn at_one(gather: &dyn ErasedGather, wi: Option<Direction>, xi: Option<[f32; 3]>) -> Option<String> {
     if let Some(wi) = wi {
-        let e = calls::eval(gather, wi);
-        let lobes = calls::lobes(gather, wi);
+        let e = gather.eval(wi);
+        let lobes = gather.lobes(wi);
         if !black(e) || lobes.0.iter().any(|lobe| lobe.value != 0.0 || lobe.pdf != 0.0) {
             return Some(format!("{e:?} {lobes:?}, one lane"));
         }
     }
-    let sample = xi.and_then(|xi| calls::sample(gather, xi));
+    let sample = xi.and_then(|xi| gather.sample(xi));
     if sample.is_some() {
         return Some(format!("{sample:?}, one lane"));
     }
     for level in Level::available() {
         if let Some(wi) = wi {
-            let (e, lobes) = (calls::eval8(gather, level, &packet(&[wi; 8])), calls::lobes8(gather, &packet(&[wi; 8])));
+            let (e, lobes) = (gather.eval8(level, &packet(&[wi; 8])), gather.lobes8(&packet(&[wi; 8])));
             if !(0..8).all(|lane| black(e.lane(lane))) || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf])) {
                 return Some(format!("{e:?} {lobes:?}, {level}"));
             }
             let mut out = [const { [1.0; ROWS] }; 4];
             let written =
-                calls::eval_slices(gather, level, [&[wi.x; ROWS], &[wi.y; ROWS], &[wi.z; ROWS]], slices(&mut out));
+                gather.eval_slices(Some(level), [&[wi.x; ROWS], &[wi.y; ROWS], &[wi.z; ROWS]], slices(&mut out));
             if written.is_err() || out.as_flattened().iter().any(|x| *x != 0.0) {
                 return Some(format!("{out:?}, slices on {level}"));
             }
         }
         if let Some(xi) = xi {
-            let s = calls::sample8(gather, level, &triples(&[xi; 8]));
+            let s = gather.sample8(level, &triples(&[xi; 8]));
             if !discarded(&s) {
                 return Some(format!("{s:?}, {level}"));
             }
-            let mut out = [const { [1.0; ROWS] }; calls::COLUMNS];
+            let mut out = [const { [1.0; ROWS] }; COLUMNS];
             let written =
-                calls::sample_slices(gather, level, [&[xi[0]; ROWS], &[xi[1]; ROWS], &[xi[2]; ROWS]], slices(&mut out));
+                gather.sample_slices(Some(level), [&[xi[0]; ROWS], &[xi[1]; ROWS], &[xi[2]; ROWS]], slices(&mut out));
             let nothing =
                 out[3..10].as_flattened().iter().all(|x| *x == 0.0) && out[10].iter().all(|slot| *slot == -1.0);
             if written.is_err() || !nothing {
@@ -103,19 +102,19 @@ fn slices<const N: usize>(out: &mut [[f32; ROWS]; N]) -> [&mut [f32]; N] {
 }
 
 /// Describes any result other than zero at eight shading points.
-fn at_each<M: Model>(
-    each: &Gather8<M>,
+fn at_each(
+    each: &dyn ErasedGather8,
     level: Level,
     wi: Option<[Direction; 8]>,
     xi: Option<[[f32; 3]; 8]>,
 ) -> Option<String> {
     if let Some(wi) = wi {
-        let (e, lobes) = (calls::eval_each(each, level, &packet(&wi)), calls::lobes_each(each, &packet(&wi)));
+        let (e, lobes) = (each.eval(level, &packet(&wi)), each.lobes(&packet(&wi)));
         if !(0..8).all(|lane| black(e.lane(lane))) || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf])) {
             return Some(format!("{e:?} {lobes:?}, eight hits on {level}"));
         }
     }
-    let sample = xi.map(|xi| calls::sample_each(each, level, &triples(&xi)));
+    let sample = xi.map(|xi| each.sample(level, &triples(&xi)));
     sample.filter(|s| !discarded(s)).map(|s| format!("{s:?}, eight hits on {level}"))
 }
 
@@ -125,10 +124,10 @@ fn at_each<M: Model>(
 /// # Errors
 ///
 /// At the first input where something is not 0, or a sample is kept.
-pub fn inputs_that_are_no_numbers_are_black<S: Subject>(subject: &S) -> Outcome {
+pub fn inputs_that_are_no_numbers_are_black(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0x7a7a);
-    for (name, params) in subject.materials().into_iter().chain(subject.extremes()) {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::All).iter() {
+        let name = material.name();
         for _ in 0..ROUNDS {
             let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
             let odd_hits = hits.map(|hit| Hit { wo: vector(&mut draws), ..hit });
@@ -136,24 +135,23 @@ pub fn inputs_that_are_no_numbers_are_black<S: Subject>(subject: &S) -> Outcome 
             let odd_wi: [Direction; 8] = core::array::from_fn(|_| vector(&mut draws));
             let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
             let odd_xi: [[f32; 3]; 8] = core::array::from_fn(|_| numbers(&mut draws));
-            let seen = calls::prepare(&bsdf, hits[0]);
-            let unseen = calls::prepare(&bsdf, odd_hits[0]);
+            let seen = material.prepare(hits[0]);
+            let unseen = material.prepare(odd_hits[0]);
             let mut faults = vec![
-                at_one(&unseen, Some(wi[0]), Some(xi[0])),
-                at_one(&unseen, Some(odd_wi[0]), Some(odd_xi[0])),
-                at_one(&seen, Some(odd_wi[0]), Some(odd_xi[0])),
+                at_one(&*unseen, Some(wi[0]), Some(xi[0])),
+                at_one(&*unseen, Some(odd_wi[0]), Some(odd_xi[0])),
+                at_one(&*seen, Some(odd_wi[0]), Some(odd_xi[0])),
             ];
-            let albedo = calls::albedo(&unseen);
+            let albedo = unseen.albedo();
             if albedo.0 != [[0.0; 3]; 4] {
                 faults.push(Some(format!("albedo {albedo:?}")));
             }
             for level in Level::available() {
-                let packed = Bsdf8::pack([&bsdf; 8]);
-                let unseen = calls::prepare_packed(&packed, level, hits8(&odd_hits));
-                faults.push(at_each(&unseen, level, Some(wi), Some(xi)));
-                let seen = calls::prepare8(&bsdf, level, hits8(&hits));
-                faults.push(at_each(&seen, level, Some(odd_wi), Some(odd_xi)));
-                let albedo = calls::albedo_each(&unseen, level);
+                let unseen = Material::prepare_packed([material; 8], level, hits8(&odd_hits));
+                faults.push(at_each(&*unseen, level, Some(wi), Some(xi)));
+                let seen = material.prepare8(level, hits8(&hits));
+                faults.push(at_each(&*seen, level, Some(odd_wi), Some(odd_xi)));
+                let albedo = unseen.albedo(level);
                 if albedo.0.as_flattened().iter().any(|x| x.to_array() != [0.0; 8]) {
                     faults.push(Some(format!("albedos {albedo:?}, {level}")));
                 }

@@ -1,9 +1,9 @@
 //! Numbers, directions and hits to test at, and lanes out of them.
 
-use crate::calls::Direction;
+use crate::erased::Direction;
 use core::f64::consts::PI;
 use hairis::wide::f32x8;
-use hairis::{Hit, Hit8, Lobe, LobeMask, Model, Vec3x, Vec3x8};
+use hairis::{Hit, Hit8, Lobe, LobeMask, Vec3x, Vec3x8};
 use std::sync::OnceLock;
 
 /// The largest uniform number.
@@ -148,11 +148,6 @@ pub(crate) fn hits() -> [Hit; 7] {
 /// The same, and `count` from anywhere.
 pub(crate) fn hits_and(count: usize, draws: &mut Draws) -> Vec<Hit> {
     hits().into_iter().chain((0..count).map(|_| draws.hit())).collect()
-}
-
-/// The slots that a model names.
-pub(crate) fn slots<M: Model>() -> impl Iterator<Item = Lobe> {
-    Lobe::ALL.into_iter().take(M::LOBES.len())
 }
 
 /// Every subset of the slots, the empty one first and all of them last.

@@ -33,9 +33,9 @@ use hairis::{Hair, HairParams, Matched, MatchedBell, Model};
 /// A model of the family.
 pub trait Published: Sync {
     /// The model.
-    type Model: Model<Params = HairParams>;
+    type Model: Model<Params = HairParams> + 'static;
     /// Its bell.
-    type Bell: MatchedBell;
+    type Bell: MatchedBell + 'static;
 
     /// The bell.
     fn bell() -> Self::Bell;

@@ -1,10 +1,10 @@
 //! The model agrees with its reference in double precision.
 
-use crate::calls::{self, Direction};
+use crate::erased::{Direction, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::probe::{Draws, cos_theta, double, hits_and, packet, relative, rounded, triples};
-use crate::subject::{Reference, ReferenceSample, Subject, Tolerance};
-use hairis::{Bsdf, Eval, Level, Lobe, Sample};
+use crate::subject::{Reference, ReferenceSample, Tolerance};
+use hairis::{Eval, Level, Lobe, Sample};
 
 const NAME: &str = "the model agrees with its reference";
 
@@ -29,40 +29,38 @@ fn excess(got: f64, at: impl Fn([f64; 3]) -> f64, wi: Direction, relative_to: f6
 /// # Errors
 ///
 /// At the first result that differs.
-pub fn agrees_with_reference<S: Subject>(subject: &S) -> Outcome {
-    let random = subject.random_materials().into_iter().map(|params| ("a random material", params));
+pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0x4ef5);
     let mut worst = ["S", "density", "lobe"].map(|what| Worst::new(NAME, what, 1.0));
     let mut compared = 0_usize;
-    for (name, params) in subject.materials().into_iter().chain(random) {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::Random).iter() {
+        let name = material.name();
         for hit in hits_and(HITS, &mut draws) {
-            let Some(reference) = subject.reference(&params, &hit) else { return Ok(()) };
+            let Some(reference) = material.reference(&hit) else { return Ok(()) };
             let tolerance = reference.tolerance();
-            let gather = calls::prepare(&bsdf, hit);
+            let gather = material.prepare(hit);
             for n in 0..PACKETS {
                 let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
                 let wi: [Direction; 8] = core::array::from_fn(|lane| {
                     let any = draws.direction();
-                    let drawn = calls::sample(&gather, draws.xi3()).map_or(any, |s| s.wi.into());
+                    let drawn = gather.sample(draws.xi3()).map_or(any, |s| s.wi.into());
                     if (lane + n) % 2 == 0 { any } else { drawn }
                 });
                 let levels = Level::available().map(|level| {
-                    let (e, s) =
-                        (calls::eval8(&gather, level, &packet(&wi)), calls::sample8(&gather, level, &triples(&xi)));
+                    let (e, s) = (gather.eval8(level, &packet(&wi)), gather.sample8(level, &triples(&xi)));
                     (e, s, level.name())
                 });
                 let levels: Vec<_> = levels.collect();
                 for lane in (0..8).filter(|lane| cos_theta(wi[*lane]) > 1e-3) {
                     let lanes = levels.iter().map(|(e, s, level)| (e.lane(lane), s.lane(lane), *level));
-                    let one = (calls::eval(&gather, wi[lane]), calls::sample(&gather, xi[lane]), "one lane");
+                    let one = (gather.eval(wi[lane]), gather.sample(xi[lane]), "one lane");
                     for (e, s, level) in lanes.chain([one]) {
                         let at = || format!("{name} {hit:?} {:?} xi {:?} on {level}", wi[lane], xi[lane]);
                         see_eval(&mut worst, &*reference, e, wi[lane], &tolerance, &at)?;
                         compare_sample(&*reference, s, xi[lane], &tolerance, &at)?;
                         compared += 1;
                     }
-                    let lobes = calls::lobes(&gather, wi[lane]);
+                    let lobes = gather.lobes(wi[lane]);
                     if reference.lobes(double(wi[lane])).is_none() {
                         continue;
                     }

@@ -1,15 +1,14 @@
 //! Resampled estimates of direct light have the mean of plain ones.
 
-use crate::calls;
 use crate::environment::{DOWN, with_mode};
+use crate::erased::light::{LitGather, LitGather8, LitSubject};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, hits8, packet, triples};
-use crate::subject::Subject;
 use core::f32::consts::PI;
 use glam::Vec3;
 use hairis::resample::{Counts, Partition, Pool, Reservoir8};
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Gather, Gather8, Hit, Level, Model};
+use hairis::{Hit, Level};
 
 const NAME: &str = "resampling is unbiased";
 /// Estimates per cell.
@@ -89,16 +88,16 @@ fn mean(rgb: [f32; 3]) -> f64 {
 }
 
 /// One-sample estimates of what a direction brings by both techniques at once, in double precision and without a pool.
-struct Plain<'a, M: Model> {
-    gather: &'a Gather<M>,
+struct Plain<'a> {
+    gather: &'a dyn LitGather,
     light: Light,
 }
 
-impl<M: Model> Plain<'_, M> {
+impl Plain<'_> {
     /// `f V`, and the densities of the BSDF and of the light.
     fn terms(&self, wi: Vec3) -> [f64; 3] {
         let (radiance, pdf_light) = self.light.look_up(wi);
-        let eval = calls::eval(self.gather, wi.into());
+        let eval = self.gather.eval(wi.into());
         let cos = f64::from(wi.y).hypot(f64::from(wi.z));
         let f = (0..3).map(|c| f64::from(eval.value[c]) * f64::from(radiance[c])).sum::<f64>() / 3.0;
         [f * cos * visible(wi), f64::from(eval.pdf), f64::from(pdf_light)]
@@ -106,7 +105,7 @@ impl<M: Model> Plain<'_, M> {
 
     fn estimate(&self, draws: &mut Draws) -> f64 {
         let over = |[f, bsdf, light]: [f64; 3]| if f > 0.0 { f / (bsdf + light) } else { 0.0 };
-        let from_bsdf = calls::sample(self.gather, draws.xi3()).map_or(0.0, |sample| over(self.terms(sample.wi)));
+        let from_bsdf = self.gather.sample(draws.xi3()).map_or(0.0, |sample| over(self.terms(sample.wi)));
         from_bsdf + over(self.terms(self.light.draw(draws)))
     }
 
@@ -115,14 +114,14 @@ impl<M: Model> Plain<'_, M> {
         let mut pool = Pool::<16>::new(counts, partition).expect("16 candidates at most");
         let xi: Vec<[f32; 3]> = (0..counts.bsdf).map(|_| draws.xi3()).collect();
         let xi = [0, 1, 2].map(|axis| xi.iter().map(|xi| xi[axis]).collect::<Vec<_>>());
-        pool.propose(self.gather, xi.each_ref().map(|column| &column[..])).expect("of one length");
+        self.gather.propose(&mut pool, xi.each_ref().map(|column| &column[..]));
         for i in 0..counts.light as usize {
             let wi = self.light.draw(draws);
             let (radiance, pdf) = self.light.look_up(wi);
             pool.set_light(i, wi, radiance, pdf);
         }
         pool.look_up(|wi| self.light.look_up(wi));
-        pool.weigh(self.gather);
+        self.gather.weigh(&mut pool);
         let chosen: Vec<_> = pool.choose(k, draws.xi()).collect();
         let count: u32 = chosen.iter().map(|(_, choice)| choice.count).sum();
         assert!(chosen.is_empty() || count == k, "{count} of {k} choices");
@@ -132,7 +131,7 @@ impl<M: Model> Plain<'_, M> {
     /// The light's share by resampling, and the rest where a path's next direction meets it.
     fn path(&self, partition: Partition, draws: &mut Draws) -> f64 {
         let direct = self.pooled(Counts { bsdf: 0, light: 8 }, partition, 1, draws);
-        let Some(next) = calls::sample(self.gather, draws.xi3()) else { return direct };
+        let Some(next) = self.gather.sample(draws.xi3()) else { return direct };
         let ([f, bsdf, _], (_, pdf_light)) = (self.terms(next.wi), self.light.look_up(next.wi));
         let rest = 1.0 - f64::from(partition.light_share(pdf_light, next.pdf));
         direct + if f > 0.0 { rest * f / bsdf } else { 0.0 }
@@ -140,18 +139,18 @@ impl<M: Model> Plain<'_, M> {
 }
 
 /// Estimates of eight hits with a reservoir each: the candidates in two reservoirs that are merged.
-fn reservoirs<M: Model>(gather: &Gather8<M>, light: Light, level: Level, draws: &mut Draws) -> [f64; 8] {
+fn reservoirs(gather: &dyn LitGather8, light: Light, level: Level, draws: &mut Draws) -> [f64; 8] {
     let counts = Counts { bsdf: 4, light: 4 };
     let mut kept = [Reservoir8::default(); 2];
     for i in 0..8 {
         let wi = if i < 4 {
-            gather.propose8_at(level, &triples(&core::array::from_fn(|_| draws.xi3())))
+            gather.propose(level, &triples(&core::array::from_fn(|_| draws.xi3())))
         } else {
             packet(&core::array::from_fn(|_| light.draw(draws).into()))
         };
         let found: [([f32; 3], f32); 8] = core::array::from_fn(|lane| light.look_up(wi.lane(lane)));
         let (radiance, pdf) = (triples(&found.map(|(rgb, _)| rgb)), f32x8::new(found.map(|(_, pdf)| pdf)));
-        let weighed = gather.weigh8_at(level, &wi, &radiance, &pdf, counts, Partition::All);
+        let weighed = gather.weigh(level, &wi, &radiance, &pdf, counts);
         kept[i % 2].add_at(level, &wi, &weighed, &f32x8::new(core::array::from_fn(|_| draws.xi())));
     }
     let [mut all, other] = kept;
@@ -194,7 +193,7 @@ impl Sums {
 /// # Errors
 ///
 /// If more cells lie apart than chance allows, or all lie to one side on average.
-pub fn resampling_is_unbiased<S: Subject>(subject: &S) -> Outcome {
+pub fn resampling_is_unbiased(subject: &dyn LitSubject) -> Outcome {
     any_rounding_is_finite(subject)?;
     check(subject, 1.0)
 }
@@ -205,20 +204,20 @@ pub fn resampling_is_unbiased<S: Subject>(subject: &S) -> Outcome {
 ///
 /// As there.
 #[doc(hidden)]
-pub fn check<S: Subject>(subject: &S, factor: f64) -> Outcome {
+pub fn check(subject: &dyn LitSubject, factor: f64) -> Outcome {
     let mut draws = Draws(0x2e5a);
     let mut errors: Vec<f64> = Vec::new();
-    for (_, params) in subject.materials() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    let set = subject.lit();
+    for index in 0..set.len() {
         let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
         for light in Light::all(&mut draws) {
             // Errors of a cell: its resampled estimates, from their number, against plain ones.
             let mut cell = |hit: Hit, draws: &mut Draws, resampled: &dyn Fn(usize, &mut Draws) -> Sums| {
-                let gather = calls::prepare(&bsdf, hit);
+                let gather = set.lit(index, hit);
                 let apart = |count: usize, draws: &mut Draws| {
                     let resampled = resampled(count, draws);
                     // Drawn for each cell alone, so that the cells' errors are independent.
-                    let plain = Sums::of(4 * count, || Plain { gather: &gather, light }.estimate(draws));
+                    let plain = Sums::of(4 * count, || Plain { gather: &*gather, light }.estimate(draws));
                     let ([a, a_var], [b, b_var]) = (resampled.mean(), plain.mean());
                     let error = (a_var + b_var).sqrt();
                     // Estimates without any spread, and hits that see next to nothing, are left out.
@@ -229,8 +228,8 @@ pub fn check<S: Subject>(subject: &S, factor: f64) -> Outcome {
                 errors.extend(if far { apart(AGAIN * ESTIMATES, draws) } else { first });
             };
             for (n, hit) in hits.into_iter().enumerate() {
-                let gather = calls::prepare(&bsdf, hit);
-                let one = Plain { gather: &gather, light };
+                let gather = set.lit(index, hit);
+                let one = Plain { gather: &*gather, light };
                 let estimate = |draws: &mut Draws| match n % 4 {
                     0 => one.pooled(Counts { bsdf: 4, light: 4 }, Partition::All, 1, draws),
                     1 => one.pooled(Counts { bsdf: 6, light: 10 }, Partition::All, 4, draws),
@@ -240,9 +239,9 @@ pub fn check<S: Subject>(subject: &S, factor: f64) -> Outcome {
                 cell(hit, &mut draws, &|count, draws| Sums::of(count, || estimate(draws)));
             }
             for (level, lane) in Level::available().zip(0..) {
-                let gather = calls::prepare8(&bsdf, level, hits8(&hits));
+                let gather = set.lit8(index, level, hits8(&hits));
                 cell(hits[lane], &mut draws, &|count, draws| {
-                    Sums::of(count, || reservoirs(&gather, light, level, draws)[lane])
+                    Sums::of(count, || reservoirs(&*gather, light, level, draws)[lane])
                 });
             }
         }
@@ -260,19 +259,20 @@ pub fn check<S: Subject>(subject: &S, factor: f64) -> Outcome {
 }
 
 /// Estimates are finite and not negative where the host rounds down and takes denormals for 0.
-fn any_rounding_is_finite<S: Subject>(subject: &S) -> Outcome {
+fn any_rounding_is_finite(subject: &dyn LitSubject) -> Outcome {
     let mut draws = Draws(0xd0);
-    for (name, params) in subject.materials() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    let set = subject.lit();
+    for index in 0..set.len() {
+        let name = set.name(index);
         let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
         for light in Light::all(&mut draws) {
             let estimates = with_mode(DOWN, || {
-                let one = Plain { gather: &calls::prepare(&bsdf, hits[0]), light };
+                let one = Plain { gather: &*set.lit(index, hits[0]), light };
                 let mut all = vec![one.pooled(Counts { bsdf: 6, light: 10 }, Partition::All, 4, &mut draws)];
                 all.push(one.path(Partition::Power, &mut draws));
                 for level in Level::available() {
-                    let gather = calls::prepare8(&bsdf, level, hits8(&hits));
-                    all.extend(reservoirs(&gather, light, level, &mut draws));
+                    let gather = set.lit8(index, level, hits8(&hits));
+                    all.extend(reservoirs(&*gather, light, level, &mut draws));
                 }
                 all
             });

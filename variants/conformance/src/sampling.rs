@@ -1,11 +1,10 @@
 //! A sample reports the value and the density of its direction.
 
-use crate::calls;
+use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::near::Nearby;
 use crate::probe::{Draws, cos_theta, triples};
-use crate::subject::Subject;
-use hairis::{Bsdf, Eval, Level};
+use hairis::{Eval, Level};
 
 /// Hits per material, and packets per hit.
 const HITS: usize = 150;
@@ -17,26 +16,26 @@ const PACKETS: usize = 4;
 /// # Errors
 ///
 /// At the first sample that reports otherwise.
-pub fn samples_agree_with_eval<S: Subject>(subject: &S) -> Outcome {
+pub fn samples_agree_with_eval(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "samples agree with evaluation";
     let claims = subject.claims();
     let mut worst = Worst::new(NAME, "value or density of a sample", claims.sample_eval);
     let mut weights = Worst::new(NAME, "weight of a sample", claims.weight);
     let mut draws = Draws(0xa94e);
     let mut live = 0_usize;
-    for (name, params) in subject.materials() {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::Everyday).iter() {
+        let name = material.name();
         for _ in 0..HITS {
             let hit = draws.hit();
-            let nearby = Nearby::new(&bsdf, hit, claims.near_field);
+            let nearby = Nearby::new(material, hit, claims.near_field);
             let gather = nearby.gather();
             for _ in 0..PACKETS {
                 let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
                 let packets = Level::available().flat_map(|level| {
-                    let eight = calls::sample8(gather, level, &triples(&xi));
+                    let eight = gather.sample8(level, &triples(&xi));
                     (0..8).map(move |lane| (eight.lane(lane), lane, level.name()))
                 });
-                let scalar = (0..8).map(|lane| (calls::sample(gather, xi[lane]), lane, "one lane"));
+                let scalar = (0..8).map(|lane| (gather.sample(xi[lane]), lane, "one lane"));
                 for (sample, lane, level) in packets.chain(scalar) {
                     let Some(s) = sample else { continue };
                     live += 1;
@@ -53,10 +52,10 @@ pub fn samples_agree_with_eval<S: Subject>(subject: &S) -> Outcome {
                     if cos < 1e-3 {
                         continue;
                     }
-                    let e = calls::eval(gather, wi);
+                    let e = gather.eval(wi);
                     let error = nearby.error(Eval { value: s.value, pdf: s.pdf }, e, wi);
                     worst.see(error, || format!("evaluation gives {e:?}: {}", at()))?;
-                    if calls::lobes(gather, wi)[s.lobe].pdf <= 0.0 {
+                    if gather.lobes(wi)[s.lobe].pdf <= 0.0 {
                         return Err(Failure::new(NAME, format!("its own lobe has no density there: {}", at())));
                     }
                 }

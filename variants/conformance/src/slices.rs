@@ -1,11 +1,10 @@
 //! Slices give the bits of packets, whatever their length and alignment, and nothing is written beyond them.
 
-use crate::calls::{self, COLUMNS, Direction, WEIGHT_COLUMNS};
+use crate::erased::{COLUMNS, Direction, ErasedGather, ErasedSubject, WEIGHT_COLUMNS, Which};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
 use crate::probe::{Draws, packet, triples};
-use crate::subject::Subject;
-use hairis::{Bsdf, EvalSlices, Gather, LengthError, Level, Model, SampleSlices, SampleWeightSlices};
+use hairis::{LengthError, Level};
 
 const NAME: &str = "slices give the bits of packets";
 /// Content of a slice that is not to be written.
@@ -58,23 +57,23 @@ impl<const N: usize> Room<N> {
 /// # Errors
 ///
 /// At the first entry that differs.
-pub fn slices_equal_packets<S: Subject>(subject: &S) -> Outcome {
+pub fn slices_equal_packets(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0x511c);
-    for (n, (name, params)) in subject.materials().into_iter().chain(subject.extremes()).enumerate() {
-        let gather = calls::prepare(&Bsdf::new(&subject.model(), &params), draws.hit());
+    for (n, material) in subject.set(Which::All).iter().enumerate() {
+        let (name, gather) = (material.name(), material.prepare(draws.hit()));
         let rows: [(Direction, [f32; 3]); LONGEST] = core::array::from_fn(|_| (draws.direction(), draws.xi3()));
         for level in Level::available() {
-            let expected = Expected::new(&gather, level, &rows);
+            let expected = Expected::new(&*gather, level, &rows);
             for len in 0..=LONGEST {
                 // Every length with each material, every alignment with some.
                 for offset in (0..8).filter(|offset| n == 0 || (len + offset + n) % 8 == 0) {
-                    expected.check(&gather, level, offset, len, &format!("{name} on {level}, {len} at {offset}"))?;
+                    expected.check(&*gather, level, offset, len, &format!("{name} on {level}, {len} at {offset}"))?;
                 }
             }
         }
         if n == 0 {
-            lengths_are_checked(&gather)?;
-            found_level_is_default(&gather, &Expected::new(&gather, Level::detect(), &rows).inputs)?;
+            lengths_are_checked(&*gather)?;
+            found_level_is_default(&*gather, &Expected::new(&*gather, Level::detect(), &rows).inputs)?;
         }
     }
     Ok(())
@@ -88,15 +87,15 @@ struct Expected {
 }
 
 impl Expected {
-    fn new<M: Model>(gather: &Gather<M>, level: Level, rows: &[(Direction, [f32; 3])]) -> Self {
+    fn new(gather: &dyn ErasedGather, level: Level, rows: &[(Direction, [f32; 3])]) -> Self {
         let components: [fn(&Direction) -> f32; 3] = [|v| v.x, |v| v.y, |v| v.z];
         let wi = components.map(|of| rows.iter().map(|(wi, _)| of(wi)).collect());
         let xi = [0, 1, 2].map(|axis| rows.iter().map(|(_, xi)| xi[axis]).collect::<Vec<f32>>());
         let mut all = Self { inputs: [wi, xi], evals: Vec::new(), samples: Vec::new() };
         for eight in rows.chunks(8) {
             let padded: [_; 8] = core::array::from_fn(|lane| eight[lane % eight.len()]);
-            let evals = calls::eval8(gather, level, &packet(&padded.map(|(wi, _)| wi)));
-            let samples = calls::sample8(gather, level, &triples(&padded.map(|(_, xi)| xi)));
+            let evals = gather.eval8(level, &packet(&padded.map(|(wi, _)| wi)));
+            let samples = gather.sample8(level, &triples(&padded.map(|(_, xi)| xi)));
             for lane in 0..eight.len() {
                 all.evals.push(eval_bits(evals.lane(lane)));
                 all.samples.push(sample_bits(&samples, lane));
@@ -105,7 +104,7 @@ impl Expected {
         all
     }
 
-    fn check<M: Model>(&self, gather: &Gather<M>, level: Level, offset: usize, len: usize, at: &str) -> Outcome {
+    fn check(&self, gather: &dyn ErasedGather, level: Level, offset: usize, len: usize, at: &str) -> Outcome {
         let refused = |e: LengthError| Failure::new(NAME, format!("{e}: {at}"));
         // Inputs are read at an alignment of their own.
         let from = (offset + len) % 8;
@@ -115,22 +114,22 @@ impl Expected {
             .map(|columns| columns.each_ref().map(|column| [&vec![9.0; from][..], &column[..len]].concat()));
         let [wi, xi] = inputs.each_ref().map(|columns| columns.each_ref().map(|column| &column[from..]));
         let mut out = Room::<4>::new(offset, len);
-        calls::eval_slices(gather, level, wi, out.slices()).map_err(refused)?;
+        gather.eval_slices(Some(level), wi, out.slices()).map_err(refused)?;
         out.check(&self.evals, "value and density", at)?;
         let mut values = Room::<3>::new(offset, len);
-        gather.eval_batch_at(level, wi, values.slices()).map_err(refused)?;
+        gather.value_slices(level, wi, values.slices()).map_err(refused)?;
         let colors: Vec<_> = self.evals.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
         values.check(&colors, "value alone", at)?;
         let mut densities = Room::<1>::new(offset, len);
         let [pdf] = densities.slices();
-        gather.pdf_batch_at(level, wi, pdf).map_err(refused)?;
+        gather.pdf_slice(level, wi, pdf).map_err(refused)?;
         let pdfs: Vec<_> = self.evals.iter().map(|[.., pdf]| [*pdf]).collect();
         densities.check(&pdfs, "density alone", at)?;
         let mut samples = Room::<COLUMNS>::new(offset, len);
-        calls::sample_slices(gather, level, xi, samples.slices()).map_err(refused)?;
+        gather.sample_slices(Some(level), xi, samples.slices()).map_err(refused)?;
         samples.check(&self.samples, "samples", at)?;
         let mut weights = Room::<{ WEIGHT_COLUMNS.len() }>::new(offset, len);
-        calls::weight_slices(gather, level, xi, weights.slices()).map_err(refused)?;
+        gather.weight_slices(Some(level), xi, weights.slices()).map_err(refused)?;
         let some: Vec<_> = self.samples.iter().map(|sample| WEIGHT_COLUMNS.map(|column| sample[column])).collect();
         weights.check(&some, "weights of samples", at)
     }
@@ -144,7 +143,7 @@ const SAMPLE_SLICES: [&str; 3 + COLUMNS] = [
 ];
 
 /// A slice of another length is refused by its name, and nothing is written.
-fn lengths_are_checked<M: Model>(gather: &Gather<M>) -> Outcome {
+fn lengths_are_checked(gather: &dyn ErasedGather) -> Outcome {
     for level in Level::available() {
         for (expected, len) in [(5, 0), (5, 4), (5, 6), (5, 40), (16, 17)] {
             let length = |n: usize, wrong: usize| if n == wrong { len } else { expected };
@@ -165,13 +164,13 @@ fn lengths_are_checked<M: Model>(gather: &Gather<M>) -> Outcome {
                 let read = inputs.each_ref().map(|column| &column[..]);
                 let room = || [3, 4, 5, 6].map(|n| vec![UNTOUCHED; length(n, wrong)]);
                 let mut out = room();
-                let got = calls::eval_slices(gather, level, read, out.each_mut().map(|c| &mut c[..]));
+                let got = gather.eval_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
                 check(name, got, &out)?;
                 // Value and density alone each have some of the slices.
                 let mut out = room();
                 let [r, g, b, pdf] = out.each_mut().map(|c| &mut c[..]);
                 let (value, density) =
-                    (gather.eval_batch_at(level, read, [r, g, b]), gather.pdf_batch_at(level, read, pdf));
+                    (gather.value_slices(level, read, [r, g, b]), gather.pdf_slice(level, read, pdf));
                 if name != "pdf" {
                     check(name, value, &out[..3])?;
                 }
@@ -183,12 +182,12 @@ fn lengths_are_checked<M: Model>(gather: &Gather<M>) -> Outcome {
                 let inputs = [0, 1, 2].map(|n| vec![0.5; length(n, wrong)]);
                 let read = inputs.each_ref().map(|column| &column[..]);
                 let mut out: [Vec<f32>; COLUMNS] = core::array::from_fn(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
-                let got = calls::sample_slices(gather, level, read, out.each_mut().map(|c| &mut c[..]));
+                let got = gather.sample_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
                 check(name, got, &out)?;
                 // Weights alone have some of the slices.
                 if wrong < 3 || WEIGHT_COLUMNS.contains(&(wrong - 3)) {
                     let mut out = WEIGHT_COLUMNS.map(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
-                    let got = calls::weight_slices(gather, level, read, out.each_mut().map(|c| &mut c[..]));
+                    let got = gather.weight_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
                     check(name, got, &out)?;
                 }
             }
@@ -198,22 +197,17 @@ fn lengths_are_checked<M: Model>(gather: &Gather<M>) -> Outcome {
 }
 
 /// Without a level, slices run on the one that is found.
-fn found_level_is_default<M: Model>(gather: &Gather<M>, inputs: &[[Vec<f32>; 3]; 2]) -> Outcome {
+fn found_level_is_default(gather: &dyn ErasedGather, inputs: &[[Vec<f32>; 3]; 2]) -> Outcome {
     let [wi, xi] = inputs.each_ref().map(|columns| columns.each_ref().map(|column| &column[..13]));
     let refused = |e: LengthError| Failure::new(NAME, format!("{e}: 13 entries, at the level found"));
     let (mut found, mut default) = (Room::<4>::new(0, 13), Room::<4>::new(0, 13));
-    calls::eval_slices(gather, Level::detect(), wi, found.slices()).map_err(refused)?;
-    let [r, g, b, pdf] = default.slices();
-    gather.eval_pdf_batch(wi, EvalSlices { value: [r, g, b], pdf }).map_err(refused)?;
+    gather.eval_slices(Some(Level::detect()), wi, found.slices()).map_err(refused)?;
+    gather.eval_slices(None, wi, default.slices()).map_err(refused)?;
     let (mut found_samples, mut samples) = (Room::<COLUMNS>::new(0, 13), Room::<COLUMNS>::new(0, 13));
-    calls::sample_slices(gather, Level::detect(), xi, found_samples.slices()).map_err(refused)?;
-    let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = samples.slices();
-    let slices = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
-    gather.sample_batch(xi, slices).map_err(refused)?;
+    gather.sample_slices(Some(Level::detect()), xi, found_samples.slices()).map_err(refused)?;
+    gather.sample_slices(None, xi, samples.slices()).map_err(refused)?;
     let mut weights = Room::<{ WEIGHT_COLUMNS.len() }>::new(0, 13);
-    let [u, v, w, pdf, wr, wg, wb] = weights.slices();
-    let slices = SampleWeightSlices { wi: [u, v, w], pdf, weight: [wr, wg, wb] };
-    gather.sample_weight_batch(xi, slices).map_err(refused)?;
+    gather.weight_slices(None, xi, weights.slices()).map_err(refused)?;
     let same = WEIGHT_COLUMNS.iter().zip(&weights.columns).all(|(n, column)| samples.columns[*n] == *column);
     if found.columns == default.columns && found_samples.columns == samples.columns && same {
         return Ok(());

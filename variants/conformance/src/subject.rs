@@ -14,7 +14,7 @@ pub type Materials<S> = Vec<(&'static str, ParamsOf<S>)>;
 /// reports, and to give the same results on one lane, on eight and in slices.
 pub trait Subject: Sync {
     /// The model.
-    type Model: Model;
+    type Model: Model + 'static;
 
     /// The model's marker.
     fn model(&self) -> Self::Model;

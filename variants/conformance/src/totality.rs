@@ -1,10 +1,9 @@
 //! Every finite input gives finite results that are not negative.
 
-use crate::calls::{self, Direction};
+use crate::erased::{Direction, ErasedSubject, Material, Which};
 use crate::failure::{Failure, Outcome};
-use crate::probe::{Draws, LAST, direction, hits8, masks, packet, slots, triples};
-use crate::subject::Subject;
-use hairis::{Bsdf, Bsdf8, Eval, Hit, Level, Lobe, LobeEval, LobeMask, Model, Sample8, Vec3x};
+use crate::probe::{Draws, LAST, direction, hits8, masks, packet, triples};
+use hairis::{Eval, Hit, Level, Lobe, LobeEval, LobeMask, Sample8, Vec3x};
 
 const NAME: &str = "results are finite and not negative";
 
@@ -84,11 +83,11 @@ fn sound_lobe(lobe: &LobeEval) -> bool {
 }
 
 /// Reason why a lane of a sample is not valid.
-fn fault<M: Model>(s: &Sample8, lane: usize, mask: LobeMask) -> Option<&'static str> {
+fn fault(s: &Sample8, lane: usize, mask: LobeMask, lobe_count: usize) -> Option<&'static str> {
     let at = |x: &hairis::wide::f32x8| x.as_array()[lane];
     let (value, pdf, weight, slot) = (s.value.each_ref().map(at), at(&s.pdf), s.weight.each_ref().map(at), at(&s.slot));
     let wi = [at(&s.wi.x), at(&s.wi.y), at(&s.wi.z)];
-    let lobe = slots::<M>().find(|lobe| lobe.index() as f32 == slot);
+    let lobe = Lobe::ALL.into_iter().take(lobe_count).find(|lobe| lobe.index() as f32 == slot);
     if !value.iter().chain(&weight).chain([&pdf]).all(|x| sound(*x)) {
         return Some("a value, density or weight is negative or not finite");
     }
@@ -117,16 +116,16 @@ fn fault<M: Model>(s: &Sample8, lane: usize, mask: LobeMask) -> Option<&'static 
 /// # Errors
 ///
 /// At the first input where something is not.
-pub fn results_are_finite<S: Subject>(subject: &S) -> Outcome {
+pub fn results_are_finite(subject: &dyn ErasedSubject) -> Outcome {
     sweep(subject, ROUNDS, vector)
 }
 
 /// The same for so many packets per material, of these directions.
-pub(crate) fn sweep<S: Subject>(subject: &S, rounds: usize, vector: fn(&mut Draws) -> Direction) -> Outcome {
+pub(crate) fn sweep(subject: &dyn ErasedSubject, rounds: usize, vector: fn(&mut Draws) -> Direction) -> Outcome {
     let mut draws = Draws(0x0707);
     let masks = masks();
-    for (name, params) in subject.materials().into_iter().chain(subject.extremes()) {
-        let bsdf = Bsdf::new(&subject.model(), &params);
+    for material in subject.set(Which::All).iter() {
+        let name = material.name();
         for round in 0..rounds {
             let hits: [Hit; 8] = core::array::from_fn(|_| {
                 let h = *draws.pick(&[0.0, -0.0, 1.0, -1.0, 1e-40, 0.3, LAST, -1.5, 1e30]);
@@ -142,11 +141,11 @@ pub(crate) fn sweep<S: Subject>(subject: &S, rounds: usize, vector: fn(&mut Draw
             };
             let (wi8, xi8) = (packet(&wi), triples(&xi));
             for level in Level::available() {
-                let each = calls::prepare_packed(&Bsdf8::pack([&bsdf; 8]), level, hits8(&hits));
-                let each = calls::with_lobes_each(&each, mask);
-                let one = calls::with_lobes(&calls::prepare(&bsdf, hits[0]), mask);
-                let evals = [calls::eval_each(&each, level, &wi8), calls::eval8(&one, level, &wi8)];
-                let samples = [calls::sample_each(&each, level, &xi8), calls::sample8(&one, level, &xi8)];
+                let each = Material::prepare_packed([material; 8], level, hits8(&hits));
+                let each = each.with_lobes(mask);
+                let one = material.prepare(hits[0]).with_lobes(mask);
+                let evals = [each.eval(level, &wi8), one.eval8(level, &wi8)];
+                let samples = [each.sample(level, &xi8), one.sample8(level, &xi8)];
                 for lane in 0..8 {
                     for (e, of) in evals.iter().zip(["eight hits", "one hit (that of lane 0)"]) {
                         if !sound_eval(&e.lane(lane)) {
@@ -161,20 +160,22 @@ pub(crate) fn sweep<S: Subject>(subject: &S, rounds: usize, vector: fn(&mut Draw
                     for (s, of) in samples.iter().zip(["eight hits", "one hit (that of lane 0)"]) {
                         // Beyond the range of uniform numbers any lobe may be drawn.
                         let within = xi[lane].iter().all(|xi| *xi < 1.0);
-                        if let Some(why) = fault::<S::Model>(s, lane, if within { mask } else { LobeMask::ALL }) {
+                        if let Some(why) =
+                            fault(s, lane, if within { mask } else { LobeMask::ALL }, subject.lobe_count())
+                        {
                             return fail(why, lane, &format!("{of} {level}"), format!("{s:?}"));
                         }
                     }
                 }
             }
             let lane = round % 8;
-            let gather = calls::with_lobes(&calls::prepare(&bsdf, hits[lane]), mask);
-            let e = calls::eval(&gather, wi[lane]);
+            let gather = material.prepare(hits[lane]).with_lobes(mask);
+            let e = gather.eval(wi[lane]);
             if !sound_eval(&e) || (mask == LobeMask::NONE && (e.pdf != 0.0 || e.value != [0.0; 3])) {
                 return fail("a value or density", lane, "scalar", format!("{e:?}"));
             }
-            let lobes = calls::lobes(&gather, wi[lane]);
-            let named = S::Model::LOBES.len();
+            let lobes = gather.lobes(wi[lane]);
+            let named = subject.lobe_count();
             for lobe in Lobe::ALL {
                 let beyond = lobe.index() >= named && (lobes[lobe].value != 0.0 || lobes[lobe].pdf != 0.0);
                 if !sound_lobe(&lobes[lobe]) || beyond {
@@ -182,7 +183,7 @@ pub(crate) fn sweep<S: Subject>(subject: &S, rounds: usize, vector: fn(&mut Draw
                 }
             }
             // One lane repeats, bit for bit: there is no state.
-            let sample = calls::sample(&gather, xi[lane]);
+            let sample = gather.sample(xi[lane]);
             if let Some(s) = sample {
                 let numbers = [s.value, s.weight].concat();
                 let length = f64::from(s.wi.x).hypot(f64::from(s.wi.y)).hypot(f64::from(s.wi.z));
@@ -192,14 +193,12 @@ pub(crate) fn sweep<S: Subject>(subject: &S, rounds: usize, vector: fn(&mut Draw
                     return fail("a sample", lane, "scalar", format!("{s:?}"));
                 }
             }
-            if sample != calls::sample(&gather, xi[lane]) {
+            if sample != gather.sample(xi[lane]) {
                 return fail("a sample differs when it is drawn again", lane, "scalar", format!("{sample:?}"));
             }
             if round % 16 == 0 {
-                for (gather, what) in
-                    [(gather, "an albedo"), (calls::conserving(&gather), "an albedo of conserving hair")]
-                {
-                    let albedo = calls::albedo(&gather).0;
+                for (gather, what) in [(&gather, "an albedo"), (&gather.conserving(), "an albedo of conserving hair")] {
+                    let albedo = gather.albedo().0;
                     if !albedo.as_flattened().iter().all(|x| sound(*x)) {
                         return fail(what, lane, "scalar", format!("{albedo:?}"));
                     }

@@ -10,7 +10,7 @@ use hairis::{
 };
 use hairis_conformance::{Claims, Materials, Subject};
 
-/// Faults of a model, by number: constants are all that a type may differ in.
+/// Faults of a model, by number. They are constants of a material: a type per fault would be compiled for each.
 pub(crate) const SOUND: u8 = 0;
 pub(crate) const DENSITY_TOO_HIGH: u8 = 1;
 pub(crate) const WRONG_LANE: u8 = 2;
@@ -39,13 +39,14 @@ pub(crate) const NEGATIVE_ROUNDED_DOWN: u8 = 22;
 ///
 /// `S = kd / pi^2 + ks c(sin theta_i + sin theta_o) / (2 pi)`, with `c` the Cauchy density of width `w`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fiber<const FAULT: u8>;
+pub(crate) struct Fiber;
 
 const DIFFUSE: Lobe = Lobe::slot(0);
 const CONE: Lobe = Lobe::slot(1);
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Params {
+    pub(crate) fault: u8,
     pub(crate) kd: [f32; 3],
     pub(crate) ks: [f32; 3],
     /// Width of the cone in `sin theta`.
@@ -84,31 +85,36 @@ hairis::lane_struct! {
     }
 }
 
-/// Constants that are packed, and taken out of lanes, with a fault.
+/// Constants, and the fault with which they are packed, taken out of lanes and read. All lanes have the same.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Faulty<const FAULT: u8, T>(T);
+pub(crate) struct Faulty<T> {
+    fault: u8,
+    sound: T,
+}
 
-impl<const FAULT: u8, T> Deref for Faulty<FAULT, T> {
+impl<T> Deref for Faulty<T> {
     type Target = T;
     #[inline(always)]
     fn deref(&self) -> &T {
-        &self.0
+        &self.sound
     }
 }
 
-impl<const FAULT: u8, T: LaneStruct> LaneStruct for Faulty<FAULT, T> {
-    type One = Faulty<FAULT, T::One>;
-    type Eight = Faulty<FAULT, T::Eight>;
+impl<T: LaneStruct> LaneStruct for Faulty<T> {
+    type One = Faulty<T::One>;
+    type Eight = Faulty<T::Eight>;
 
     fn pack(mut items: [&Self::One; 8]) -> Self::Eight {
-        if FAULT == WRONG_PACK {
+        let fault = items[0].fault;
+        if fault == WRONG_PACK {
             items[6] = items[5];
         }
-        Faulty(T::pack(items.map(|item| &item.0)))
+        Faulty { fault, sound: T::pack(items.map(|item| &item.sound)) }
     }
 
     fn lane(eight: &Self::Eight, lane: usize) -> Self::One {
-        Faulty(T::lane(&eight.0, if FAULT == WRONG_LANE && lane == 3 { 4 } else { lane }))
+        let fault = eight.fault;
+        Faulty { fault, sound: T::lane(&eight.sound, if fault == WRONG_LANE && lane == 3 { 4 } else { lane }) }
     }
 }
 
@@ -149,11 +155,11 @@ fn cone_sine<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, xi: L) -> L {
     (-one).max(one.min(x - sin_theta_o))
 }
 
-impl<const FAULT: u8> Fiber<FAULT> {
+impl Fiber {
     /// The sums over both lobes; 0 where a lane is not sound.
     #[inline(always)]
     fn total<L: Lanes, C: Broadcast<L>>(
-        gather: &Point<C>,
+        gather: &Faulty<Point<C>>,
         lobes: [LobeEval<L>; 2],
         wi: Vec3x<L>,
         sound: L::Mask,
@@ -165,19 +171,19 @@ impl<const FAULT: u8> Fiber<FAULT> {
         let mut channel = 0;
         while channel < 3 {
             let mut sum = diffuse.value.mul_add(diffuse.color[channel], cone.value * cone.color[channel]);
-            if FAULT == NOT_RECIPROCAL {
+            if gather.fault == NOT_RECIPROCAL {
                 sum = sum * wi.x.mul_add(c(0.01), c(1.0));
             }
-            if FAULT == LOBE_MISSING {
+            if gather.fault == LOBE_MISSING {
                 sum = cone.value * cone.color[channel];
             }
-            if FAULT == NEGATIVE {
+            if gather.fault == NEGATIVE {
                 sum = sum - c(1e-3);
             }
-            if FAULT == DIVIDES_BY_ZERO {
+            if gather.fault == DIVIDES_BY_ZERO {
                 sum = sum.min(c(1.0) / L::keep(c(9.0).lt(wi.x), wi.x));
             }
-            if FAULT == NEGATIVE_ROUNDED_DOWN {
+            if gather.fault == NEGATIVE_ROUNDED_DOWN {
                 let tiny = wi.x * wi.x * c(1e-10);
                 sum = sum + ((c(1.0) - tiny) - c(1.0)) * c(1e9);
             }
@@ -186,13 +192,15 @@ impl<const FAULT: u8> Fiber<FAULT> {
         }
         let [p_diffuse, p_cone] = [gather.selection[0].lanes(), gather.selection[1].lanes()];
         let mut pdf = diffuse.pdf.mul_add(p_diffuse, cone.pdf * p_cone).min(limit);
-        if FAULT == DENSITY_TOO_HIGH {
+        if gather.fault == DENSITY_TOO_HIGH {
             pdf = pdf * c(1.02);
         }
-        if (FAULT == WIDE_SLICES_DIFFER && width_of::<L>() > 8) || (FAULT == PACKET_DIFFERS && width_of::<L>() > 1) {
+        if (gather.fault == WIDE_SLICES_DIFFER && width_of::<L>() > 8)
+            || (gather.fault == PACKET_DIFFERS && width_of::<L>() > 1)
+        {
             pdf = pdf * c(1.0 + 4.0 * f32::EPSILON) + c(1e-4) * pdf;
         }
-        if FAULT == NAN_AT_THE_POLE {
+        if gather.fault == NAN_AT_THE_POLE {
             // 0 / 0 on the axis.
             let cos_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
             pdf = pdf * cos_sq / (wi.y * wi.y + wi.z * wi.z);
@@ -201,68 +209,68 @@ impl<const FAULT: u8> Fiber<FAULT> {
     }
 }
 
-impl<const FAULT: u8> Model for Fiber<FAULT> {
+impl Model for Fiber {
     type Params = Params;
-    type Material<C: Scalar> = Faulty<FAULT, Material<C>>;
-    type Gather<C: Scalar> = Faulty<FAULT, Point<C>>;
+    type Material<C: Scalar> = Faulty<Material<C>>;
+    type Gather<C: Scalar> = Faulty<Point<C>>;
 
     const LOBES: &'static [&'static str] = &["diffuse", "cone"];
 
-    fn material(&self, params: &Params) -> Faulty<FAULT, Material<f32>> {
+    fn material(&self, params: &Params) -> Faulty<Material<f32>> {
         let (d, s) = (params.kd.iter().sum::<f32>(), params.ks.iter().sum::<f32>());
         let share = |x: f32| if d + s > 0.0 { x / (d + s) } else { 0.0 };
-        Faulty(Material { kd: params.kd, ks: params.ks, width: params.width, selection: [share(d), share(s)] })
+        let sound = Material { kd: params.kd, ks: params.ks, width: params.width, selection: [share(d), share(s)] };
+        Faulty { fault: params.fault, sound }
     }
 
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L>>(
-        material: &Faulty<FAULT, Material<C>>,
-        hit: Hit<L>,
-    ) -> Faulty<FAULT, Point<L::Stored>> {
+    fn prepare<L: Lanes, C: Broadcast<L>>(material: &Faulty<Material<C>>, hit: Hit<L>) -> Faulty<Point<L::Stored>> {
         let (zero, one, tiny) = (L::splat(0.0), L::splat(1.0), L::splat(1e-30));
         let largest = hit.wo.x.abs().max(hit.wo.y.abs().max(hit.wo.z.abs())).max(tiny);
         let Vec3x { x, y, z } = hit.wo;
         let wo = Vec3x::new(L::quotient(x, largest), L::quotient(y, largest), L::quotient(z, largest));
         let length = wo.dot(wo).sqrt();
         let mut sin_theta_o = L::select(tiny.lt(length), L::quotient(wo.x, length), zero);
-        if FAULT == READS_H {
+        if material.fault == READS_H {
             let h = (-one).max(one.min(hit.h));
             sin_theta_o = sin_theta_o * h.mul_add(L::splat(0.1), L::splat(0.9));
         }
-        if FAULT != NAN_IS_A_NUMBER {
+        if material.fault != NAN_IS_A_NUMBER {
             sin_theta_o = sin_theta_o + (hit.wo.x * zero + hit.wo.y * zero + hit.wo.z * zero);
         }
         let width = material.width.lanes();
         let span = atan2_upper(width + width, width.mul_add(width, sin_theta_o.mul_add(sin_theta_o, -one)));
-        Faulty(Point {
+        let sound = Point {
             kd: store3(lanes3(&material.kd)),
             ks: store3(lanes3(&material.ks)),
             width: width.store(),
             selection: [material.selection[0].lanes().store(), material.selection[1].lanes().store()],
             sin_theta_o: sin_theta_o.store(),
             span: span.store(),
-        })
+        };
+        Faulty { fault: material.fault, sound }
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes>(gather: &Faulty<FAULT, Point<C>>, lobes: LobeMask) -> Faulty<FAULT, Point<C>> {
+    fn restrict<C: Lanes>(gather: &Faulty<Point<C>>, lobes: LobeMask) -> Faulty<Point<C>> {
         let (d, s) = (C::splat(lobes.factor(DIFFUSE)), C::splat(lobes.factor(CONE)));
         let [p_d, p_s] = [gather.selection[0] * d, gather.selection[1] * s];
         // Quotients: that of a number and itself is 1 however it is rounded.
         let sum = (p_d + p_s).max(C::splat(f32::MIN_POSITIVE));
         let times = |x: [C; 3], by: C| [x[0] * by, x[1] * by, x[2] * by];
-        let kd = if FAULT == MASK_LEAKS { times(gather.kd, d.max(C::splat(1e-4))) } else { times(gather.kd, d) };
-        Faulty(Point { kd, ks: times(gather.ks, s), selection: [p_d / sum, p_s / sum], ..gather.0 })
+        let kd = if gather.fault == MASK_LEAKS { times(gather.kd, d.max(C::splat(1e-4))) } else { times(gather.kd, d) };
+        let sound = Point { kd, ks: times(gather.ks, s), selection: [p_d / sum, p_s / sum], ..gather.sound };
+        Faulty { fault: gather.fault, sound }
     }
 
     #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L>>(gather: &Faulty<FAULT, Point<C>>, wi: Vec3x<L>) -> Eval<L> {
+    fn eval<L: Lanes, C: Broadcast<L>>(gather: &Faulty<Point<C>>, wi: Vec3x<L>) -> Eval<L> {
         let (lobes, _, sound) = shapes(gather, wi);
         Self::total(gather, lobes, wi, sound)
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &Faulty<FAULT, Point<C>>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &Faulty<Point<C>>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
         let ([diffuse, cone], _, sound) = shapes(gather, wi);
         let zero = L::splat(0.0);
         let limit = L::select(sound, L::splat(f32::MAX), zero);
@@ -273,22 +281,22 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
     }
 
     #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L>>(gather: &Faulty<FAULT, Point<C>>, xi: [L; 3]) -> Drawn<L> {
+    fn sample<L: Lanes, C: Broadcast<L>>(gather: &Faulty<Point<C>>, xi: [L; 3]) -> Drawn<L> {
         let c = L::splat;
         let (zero, one) = (c(0.0), c(1.0));
         let mut selection: L = gather.selection[0].lanes();
-        if FAULT == WRONG_PROBABILITY {
+        if gather.fault == WRONG_PROBABILITY {
             selection = selection * c(1.05);
         }
         let is_diffuse = xi[0].lt(selection);
         let mut along = xi[1];
-        if FAULT == SKEWED_LOBE {
+        if gather.fault == SKEWED_LOBE {
             along = along * (one - along).mul_add(c(0.02), one);
         }
         let sin = L::select(is_diffuse, xi[1] + xi[1] - one, cone_sine(gather, along));
         let cos = ((one - sin) * (one + sin)).sqrt();
         let mut around = xi[2];
-        if FAULT == AZIMUTH_UNEVEN {
+        if gather.fault == AZIMUTH_UNEVEN {
             around = around * (one - around).mul_add(c(0.02), one);
         }
         // The azimuth is uniform: the double of an angle in [-pi/2, pi/2].
@@ -297,20 +305,20 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
         let (lobes, _, sound) = shapes(gather, wi);
         let Eval { value, pdf } = Self::total(gather, lobes, wi, sound);
         let mut sound = L::and(sound, zero.lt(pdf));
-        if FAULT != NAN_IS_A_NUMBER {
+        if gather.fault != NAN_IS_A_NUMBER {
             sound = L::and(sound, (xi[0] + xi[1] + xi[2]).abs().lt(c(f32::INFINITY)));
         }
-        if FAULT == DISCARDS {
+        if gather.fault == DISCARDS {
             sound = L::and(sound, c(0.05).lt(xi[2]));
         }
         let mut by = L::select(sound, L::quotient(cos, pdf), zero);
-        if FAULT == WEIGHT_WITHOUT_COSINE {
+        if gather.fault == WEIGHT_WITHOUT_COSINE {
             by = L::select(sound, L::quotient(one, pdf), zero);
         }
-        if FAULT == HEAVY_WEIGHT {
+        if gather.fault == HEAVY_WEIGHT {
             by = L::select(c(0.999).lt(xi[1]), by * c(20.0), by);
         }
-        if FAULT == LONG_DIRECTION {
+        if gather.fault == LONG_DIRECTION {
             wi = wi.scale(c(1.0001));
         }
         let slot = L::select(is_diffuse, zero, one);
@@ -327,7 +335,7 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &Faulty<FAULT, Point<C>>) -> PerLobe<[L; 3]> {
+    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &Faulty<Point<C>>) -> PerLobe<[L; 3]> {
         const STEPS: u16 = 256;
         let (kd, ks) = (lanes3(&gather.kd), lanes3(&gather.ks));
         let zero = L::splat(0.0);
@@ -338,7 +346,7 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
             sum = sum + ((L::splat(1.0) - sin) * (L::splat(1.0) + sin)).sqrt();
             step += 1;
         }
-        let loss = if FAULT == ALBEDO_TOO_LOW { 0.99 } else { 1.0 };
+        let loss = if gather.fault == ALBEDO_TOO_LOW { 0.99 } else { 1.0 };
         let seen = gather.sin_theta_o.lanes().lt(L::splat(2.0));
         let kd = [L::keep(seen, kd[0]), L::keep(seen, kd[1]), L::keep(seen, kd[2])];
         let by = L::keep(seen, sum * gather.span.lanes() * L::splat(loss * FRAC_1_PI / f32::from(STEPS)));
@@ -347,29 +355,29 @@ impl<const FAULT: u8> Model for Fiber<FAULT> {
 }
 
 /// The fibre with this fault, as its author would test it.
-pub(crate) struct Broken<const FAULT: u8>;
+pub(crate) struct Broken(pub(crate) u8);
 
-impl<const FAULT: u8> Subject for Broken<FAULT> {
-    type Model = Fiber<FAULT>;
+impl Subject for Broken {
+    type Model = Fiber;
 
-    fn model(&self) -> Fiber<FAULT> {
+    fn model(&self) -> Fiber {
         Fiber
     }
 
     fn materials(&self) -> Materials<Self> {
         vec![
-            ("everyday", Params { kd: [0.4, 0.3, 0.2], ks: [0.5, 0.4, 0.6], width: 0.1 }),
-            ("narrow", Params { kd: [0.1, 0.3, 0.2], ks: [0.5, 0.9, 0.0], width: 0.01 }),
-            ("black", Params { kd: [0.0; 3], ks: [0.0; 3], width: 0.1 }),
+            ("everyday", Params { fault: self.0, kd: [0.4, 0.3, 0.2], ks: [0.5, 0.4, 0.6], width: 0.1 }),
+            ("narrow", Params { fault: self.0, kd: [0.1, 0.3, 0.2], ks: [0.5, 0.9, 0.0], width: 0.01 }),
+            ("black", Params { fault: self.0, kd: [0.0; 3], ks: [0.0; 3], width: 0.1 }),
         ]
     }
 
     fn extremes(&self) -> Materials<Self> {
-        vec![("cone alone", Params { kd: [0.0; 3], ks: [1e30, 0.0, 1e-30], width: 0.03 })]
+        vec![("cone alone", Params { fault: self.0, kd: [0.0; 3], ks: [1e30, 0.0, 1e-30], width: 0.03 })]
     }
 
     fn white(&self) -> Materials<Self> {
-        vec![("diffuse alone", Params { kd: [1.0; 3], ks: [0.0; 3], width: 0.1 })]
+        vec![("diffuse alone", Params { fault: self.0, kd: [1.0; 3], ks: [0.0; 3], width: 0.1 })]
     }
 
     fn claims(&self) -> Claims {

@@ -90,22 +90,22 @@ impl Formulas {
 struct Beside(Errors);
 
 impl Subject for Beside {
-    type Model = Fiber<SOUND>;
+    type Model = Fiber;
 
     fn model(&self) -> Self::Model {
         Fiber
     }
 
     fn materials(&self) -> Materials<Self> {
-        Broken::<SOUND>.materials()
+        Broken(SOUND).materials()
     }
 
     fn claims(&self) -> Claims {
-        Broken::<SOUND>.claims()
+        Broken(SOUND).claims()
     }
 
     fn random_materials(&self) -> Vec<Params> {
-        vec![Params { kd: [0.3, 0.0, 0.9], ks: [0.0, 0.7, 0.2], width: 0.4 }]
+        vec![Params { fault: SOUND, kd: [0.3, 0.0, 0.9], ks: [0.0, 0.7, 0.2], width: 0.4 }]
     }
 
     fn reference(&self, params: &<Self::Model as Model>::Params, hit: &Hit) -> Option<Box<dyn Reference>> {

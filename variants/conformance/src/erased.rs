@@ -1,0 +1,323 @@
+//! Subjects, materials and shading points without their types.
+//!
+//! Properties take these, so that each is compiled once; the calls below are compiled once per model.
+
+pub(crate) mod hits;
+pub(crate) mod light;
+
+use crate::subject::{Claims, ParamsOf, Reference, Subject};
+use hairis::wide::f32x8;
+use hairis::{
+    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level, Lobe, LobeEval, LobeEval8,
+    LobeMask, Model, PerLobe, Sample, Sample8, SampleSlices, SampleWeightSlices, Vec3x, Vec3x8,
+};
+
+/// A direction, or any vector, in the fibre's frame.
+pub(crate) type Direction = Vec3x<f32>;
+
+/// A [`Subject`] without its model's type: pass a reference to any subject.
+pub trait ErasedSubject: Sync {
+    /// See [`Subject::claims`].
+    #[doc(hidden)]
+    fn claims(&self) -> Claims;
+    /// Number of the model's lobes.
+    #[doc(hidden)]
+    fn lobe_count(&self) -> usize;
+    #[doc(hidden)]
+    fn set(&self, which: Which) -> Box<dyn MaterialSet + '_>;
+}
+
+/// Materials of a subject.
+#[derive(Clone, Copy, Debug)]
+pub enum Which {
+    /// [`Subject::materials`].
+    Everyday,
+    /// The same, and [`Subject::extremes`].
+    All,
+    /// The everyday ones, and [`Subject::random_materials`].
+    Random,
+    /// [`Subject::white`].
+    White,
+}
+
+impl dyn ErasedSubject + '_ {
+    /// The slots that the model names.
+    pub(crate) fn slots(&self) -> impl Iterator<Item = Lobe> + use<> {
+        Lobe::ALL.into_iter().take(self.lobe_count())
+    }
+
+    /// Each lobe alone, and all together.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = LobeMask> + use<> {
+        self.slots().map(|lobe| LobeMask::of(&[lobe])).chain([LobeMask::ALL])
+    }
+}
+
+impl<S: Subject> ErasedSubject for S {
+    fn claims(&self) -> Claims {
+        Subject::claims(self)
+    }
+
+    fn lobe_count(&self) -> usize {
+        S::Model::LOBES.len()
+    }
+
+    fn set(&self, which: Which) -> Box<dyn MaterialSet + '_> {
+        Box::new(Set::new(self, which))
+    }
+}
+
+/// Materials of one model, by index.
+pub trait MaterialSet {
+    fn len(&self) -> usize;
+    fn name(&self, index: usize) -> &'static str;
+    fn prepare(&self, index: usize, hit: Hit) -> Box<dyn ErasedGather>;
+    fn prepare8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn ErasedGather8>;
+    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8) -> Box<dyn ErasedGather8>;
+    fn edges(&self, index: usize, hit: &Hit) -> [Vec<f64>; 2];
+    fn weight_bound(&self, index: usize, hit: &Hit, lobes: LobeMask) -> Option<f64>;
+    fn reference(&self, index: usize, hit: &Hit) -> Option<Box<dyn Reference>>;
+}
+
+impl dyn MaterialSet + '_ {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Material<'_>> {
+        (0..self.len()).map(|index| Material { set: self, index })
+    }
+}
+
+/// One material of a set.
+#[derive(Clone, Copy)]
+pub(crate) struct Material<'a> {
+    set: &'a dyn MaterialSet,
+    index: usize,
+}
+
+impl Material<'_> {
+    pub(crate) fn name(&self) -> &'static str {
+        self.set.name(self.index)
+    }
+
+    pub(crate) fn prepare(&self, hit: Hit) -> Box<dyn ErasedGather> {
+        self.set.prepare(self.index, hit)
+    }
+
+    pub(crate) fn prepare8(&self, level: Level, hits: Hit8) -> Box<dyn ErasedGather8> {
+        self.set.prepare8(self.index, level, hits)
+    }
+
+    /// Eight hits on eight materials of one set.
+    pub(crate) fn prepare_packed(materials: [Self; 8], level: Level, hits: Hit8) -> Box<dyn ErasedGather8> {
+        materials[0].set.prepare_packed(materials.map(|material| material.index), level, hits)
+    }
+
+    pub(crate) fn edges(&self, hit: &Hit) -> [Vec<f64>; 2] {
+        self.set.edges(self.index, hit)
+    }
+
+    pub(crate) fn weight_bound(&self, hit: &Hit, lobes: LobeMask) -> Option<f64> {
+        self.set.weight_bound(self.index, hit, lobes)
+    }
+
+    pub(crate) fn reference(&self, hit: &Hit) -> Option<Box<dyn Reference>> {
+        self.set.reference(self.index, hit)
+    }
+}
+
+/// Materials of one model, with its types.
+pub(crate) struct Set<'s, S: Subject> {
+    subject: &'s S,
+    names: Vec<&'static str>,
+    params: Vec<ParamsOf<S>>,
+    pub(crate) bsdfs: Vec<Bsdf<S::Model>>,
+}
+
+impl<'s, S: Subject> Set<'s, S> {
+    pub(crate) fn new(subject: &'s S, which: Which) -> Self {
+        let mut materials = if matches!(which, Which::White) { subject.white() } else { subject.materials() };
+        match which {
+            Which::Everyday | Which::White => {}
+            Which::All => materials.extend(subject.extremes()),
+            Which::Random => {
+                let random = subject.random_materials();
+                materials.extend(random.into_iter().map(|params| ("a random material", params)));
+            }
+        }
+        let (names, params): (Vec<_>, Vec<_>) = materials.into_iter().unzip();
+        let bsdfs = params.iter().map(|params| Bsdf::new(&subject.model(), params)).collect();
+        Self { subject, names, params, bsdfs }
+    }
+}
+
+impl<S: Subject> MaterialSet for Set<'_, S> {
+    fn len(&self) -> usize {
+        self.names.len()
+    }
+
+    fn name(&self, index: usize) -> &'static str {
+        self.names[index]
+    }
+
+    fn prepare(&self, index: usize, hit: Hit) -> Box<dyn ErasedGather> {
+        Box::new(self.bsdfs[index].prepare(hit))
+    }
+
+    fn prepare8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn ErasedGather8> {
+        Box::new(self.bsdfs[index].prepare8_at(level, hits))
+    }
+
+    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8) -> Box<dyn ErasedGather8> {
+        Box::new(Bsdf8::pack(index.map(|i| &self.bsdfs[i])).prepare8_at(level, hits))
+    }
+
+    fn edges(&self, index: usize, hit: &Hit) -> [Vec<f64>; 2] {
+        self.subject.edges(&self.params[index], hit)
+    }
+
+    fn weight_bound(&self, index: usize, hit: &Hit, lobes: LobeMask) -> Option<f64> {
+        self.subject.weight_bound(&self.params[index], hit, lobes)
+    }
+
+    fn reference(&self, index: usize, hit: &Hit) -> Option<Box<dyn Reference>> {
+        self.subject.reference(&self.params[index], hit)
+    }
+}
+
+/// Columns of a sample in slices: direction, value, density, weight, slot.
+pub(crate) const COLUMNS: usize = 11;
+
+/// Places of the columns of [`ErasedGather::weight_slices`] among those of [`ErasedGather::sample_slices`].
+pub(crate) const WEIGHT_COLUMNS: [usize; 7] = [0, 1, 2, 6, 7, 8, 9];
+
+/// Outcome of a call on slices.
+type Written = Result<(), LengthError>;
+
+/// [`Gather`] of any model. Without a level, slices run on the one that is found.
+pub trait ErasedGather {
+    fn eval(&self, wi: Direction) -> Eval;
+    fn eval8(&self, level: Level, wi: &Vec3x8) -> Eval8;
+    fn lobes(&self, wi: Direction) -> PerLobe<LobeEval>;
+    fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
+    fn sample(&self, xi: [f32; 3]) -> Option<Sample>;
+    fn sample8(&self, level: Level, xi: &[f32x8; 3]) -> Sample8;
+    fn albedo(&self) -> PerLobe<[f32; 3]>;
+    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedGather>;
+    fn conserving(&self) -> Box<dyn ErasedGather>;
+    fn eval_slices(&self, level: Option<Level>, wi: [&[f32]; 3], out: [&mut [f32]; 4]) -> Written;
+    fn value_slices(&self, level: Level, wi: [&[f32]; 3], out: [&mut [f32]; 3]) -> Written;
+    fn pdf_slice(&self, level: Level, wi: [&[f32]; 3], out: &mut [f32]) -> Written;
+    fn sample_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; COLUMNS]) -> Written;
+    fn weight_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; WEIGHT_COLUMNS.len()]) -> Written;
+}
+
+impl<M: Model + 'static> ErasedGather for Gather<M> {
+    fn eval(&self, wi: Direction) -> Eval {
+        self.eval_pdf(wi)
+    }
+
+    fn eval8(&self, level: Level, wi: &Vec3x8) -> Eval8 {
+        self.eval_pdf8_at(level, wi)
+    }
+
+    fn lobes(&self, wi: Direction) -> PerLobe<LobeEval> {
+        self.lobes(wi)
+    }
+
+    fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
+        self.lobes8(wi)
+    }
+
+    fn sample(&self, xi: [f32; 3]) -> Option<Sample> {
+        self.sample(xi)
+    }
+
+    fn sample8(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
+        self.sample8_at(level, xi)
+    }
+
+    fn albedo(&self) -> PerLobe<[f32; 3]> {
+        self.albedo()
+    }
+
+    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedGather> {
+        Box::new(self.with_lobes(lobes))
+    }
+
+    fn conserving(&self) -> Box<dyn ErasedGather> {
+        Box::new(self.conserving())
+    }
+
+    fn eval_slices(&self, level: Option<Level>, wi: [&[f32]; 3], out: [&mut [f32]; 4]) -> Written {
+        let [r, g, b, pdf] = out;
+        let out = EvalSlices { value: [r, g, b], pdf };
+        match level {
+            Some(level) => self.eval_pdf_batch_at(level, wi, out),
+            None => self.eval_pdf_batch(wi, out),
+        }
+    }
+
+    fn value_slices(&self, level: Level, wi: [&[f32]; 3], out: [&mut [f32]; 3]) -> Written {
+        self.eval_batch_at(level, wi, out)
+    }
+
+    fn pdf_slice(&self, level: Level, wi: [&[f32]; 3], out: &mut [f32]) -> Written {
+        self.pdf_batch_at(level, wi, out)
+    }
+
+    fn sample_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; COLUMNS]) -> Written {
+        let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = out;
+        let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
+        match level {
+            Some(level) => self.sample_batch_at(level, xi, out),
+            None => self.sample_batch(xi, out),
+        }
+    }
+
+    fn weight_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; WEIGHT_COLUMNS.len()]) -> Written {
+        let [u, v, w, pdf, wr, wg, wb] = out;
+        let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [wr, wg, wb] };
+        match level {
+            Some(level) => self.sample_weight_batch_at(level, xi, out),
+            None => self.sample_weight_batch(xi, out),
+        }
+    }
+}
+
+/// [`Gather8`] of any model.
+pub trait ErasedGather8 {
+    fn eval(&self, level: Level, wi: &Vec3x8) -> Eval8;
+    fn lobes(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
+    fn sample(&self, level: Level, xi: &[f32x8; 3]) -> Sample8;
+    fn albedo(&self, level: Level) -> PerLobe<[f32x8; 3]>;
+    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedGather8>;
+    fn conserving(&self, level: Level) -> Box<dyn ErasedGather8>;
+    fn lane(&self, lane: usize) -> Box<dyn ErasedGather>;
+}
+
+impl<M: Model + 'static> ErasedGather8 for Gather8<M> {
+    fn eval(&self, level: Level, wi: &Vec3x8) -> Eval8 {
+        self.eval_pdf8_at(level, wi)
+    }
+
+    fn lobes(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
+        self.lobes8(wi)
+    }
+
+    fn sample(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
+        self.sample8_at(level, xi)
+    }
+
+    fn albedo(&self, level: Level) -> PerLobe<[f32x8; 3]> {
+        self.albedo8_at(level)
+    }
+
+    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedGather8> {
+        Box::new(self.with_lobes(lobes))
+    }
+
+    fn conserving(&self, level: Level) -> Box<dyn ErasedGather8> {
+        Box::new(self.conserving_at(level))
+    }
+
+    fn lane(&self, lane: usize) -> Box<dyn ErasedGather> {
+        Box::new(self.lane(lane))
+    }
+}

@@ -1,0 +1,68 @@
+//! Shading points of any model that weigh candidates.
+
+use super::{ErasedGather, ErasedGather8, MaterialSet, Set, Which};
+use crate::subject::Subject;
+use hairis::resample::{Counts, Partition, Pool, Weighed8};
+use hairis::wide::f32x8;
+use hairis::{Gather, Gather8, Hit, Hit8, Level, Model, Vec3x8};
+
+/// A [`Subject`] under light: pass a reference to any subject.
+pub trait LitSubject: Sync {
+    /// Everyday materials.
+    #[doc(hidden)]
+    fn lit(&self) -> Box<dyn LitSet + '_>;
+}
+
+impl<S: Subject> LitSubject for S {
+    fn lit(&self) -> Box<dyn LitSet + '_> {
+        Box::new(Set::new(self, Which::Everyday))
+    }
+}
+
+/// Materials whose shading points weigh candidates.
+pub trait LitSet: MaterialSet {
+    fn lit(&self, index: usize, hit: Hit) -> Box<dyn LitGather>;
+    fn lit8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn LitGather8>;
+}
+
+impl<S: Subject> LitSet for Set<'_, S> {
+    fn lit(&self, index: usize, hit: Hit) -> Box<dyn LitGather> {
+        Box::new(self.bsdfs[index].prepare(hit))
+    }
+
+    fn lit8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn LitGather8> {
+        Box::new(self.bsdfs[index].prepare8_at(level, hits))
+    }
+}
+
+/// A shading point that weighs a pool of candidates.
+pub trait LitGather: ErasedGather {
+    fn propose(&self, pool: &mut Pool<16>, xi: [&[f32]; 3]);
+    fn weigh(&self, pool: &mut Pool<16>);
+}
+
+impl<M: Model + 'static> LitGather for Gather<M> {
+    fn propose(&self, pool: &mut Pool<16>, xi: [&[f32]; 3]) {
+        pool.propose(self, xi).expect("of one length");
+    }
+
+    fn weigh(&self, pool: &mut Pool<16>) {
+        pool.weigh(self);
+    }
+}
+
+/// Eight shading points that weigh a candidate each.
+pub trait LitGather8: ErasedGather8 {
+    fn propose(&self, level: Level, xi: &[f32x8; 3]) -> Vec3x8;
+    fn weigh(&self, level: Level, wi: &Vec3x8, radiance: &[f32x8; 3], pdf: &f32x8, counts: Counts) -> Weighed8;
+}
+
+impl<M: Model + 'static> LitGather8 for Gather8<M> {
+    fn propose(&self, level: Level, xi: &[f32x8; 3]) -> Vec3x8 {
+        self.propose8_at(level, xi)
+    }
+
+    fn weigh(&self, level: Level, wi: &Vec3x8, radiance: &[f32x8; 3], pdf: &f32x8, counts: Counts) -> Weighed8 {
+        self.weigh8_at(level, wi, radiance, pdf, counts, Partition::All)
+    }
+}
