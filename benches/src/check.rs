@@ -111,6 +111,7 @@ fn agrees(truth: Option<[f64; 3]>, answer: &Answer, expected: impl Fn([f64; 3]) 
         && answer.value.is_none_or(|got| got.into_iter().zip(value).all(|(got, want)| close(got, want)))
 }
 
-fn to_f64(v: Vec3) -> [f64; 3] {
+/// The components in double precision.
+pub(crate) fn to_f64(v: Vec3) -> [f64; 3] {
     v.to_array().map(f64::from)
 }

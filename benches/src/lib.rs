@@ -4,6 +4,7 @@
 //! program `entry` runs one of them for callgrind and for timing by hand.
 
 pub mod check;
+pub mod contenders;
 pub mod cpu;
 pub mod entries;
 #[cfg(target_arch = "x86_64")]

@@ -3,6 +3,7 @@
 use crate::inputs::Column;
 use crate::platform::Platform;
 use core::array::from_fn;
+use core::fmt;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
@@ -42,6 +43,12 @@ pub trait Pass {
     fn pass(&mut self);
     /// The answers of a pass, in the order of the directions.
     fn answers(&mut self) -> Vec<Answer>;
+}
+
+impl fmt::Debug for dyn Pass + '_ {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Pass")
+    }
 }
 
 impl<T: Task> Pass for T {

@@ -9,20 +9,18 @@
 //! drawn beforehand and stay in the second-level cache. The answers of every contender are compared with the reference
 //! in `f64` after the timing.
 
-mod cells;
-mod check;
-mod inputs;
-mod points;
 mod threads;
 
+use crate::sequence::{Independent, stream_id};
 use crate::stats::percentile;
-use cells::{Contender, SpeedCell, SpeedCells};
+use crate::subject::{random, uniform_direction};
 use core::hint::black_box;
 use hairis::{Level, ParamError};
-use hairis_benches::task::{Each, Output, Pass};
+pub use hairis_benches::contenders::Op;
+use hairis_benches::contenders::{Contender, DIRECTIONS, Inputs, Operation, operations};
+use hairis_benches::task::Pass;
 use hairis_variants::ModelId;
-use inputs::{DIRECTIONS, Inputs};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::time::Instant;
 pub use threads::ThreadsResult;
 
@@ -35,69 +33,6 @@ const MIN_STRETCH: f64 = 5e4;
 /// Share of wrong answers from which a contender fails: samples next to the boundary of two lobes may choose either,
 /// and the `f32` reference loses digits near the axis; a wrong lane is an eighth.
 const MAX_WRONG: f64 = 0.01;
-
-/// Timed operation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Op {
-    /// Everything constant for one shading point (section 3.3 of the paper).
-    Prepare,
-    /// Value and density of a direction, the shading point prepared beforehand.
-    EvalPdf,
-    /// A direction with its value, density and weight, the shading point prepared beforehand.
-    Sample,
-    /// [`EvalPdf`](Self::EvalPdf) of hair so narrow that the directions lie in the far tails of every lobe.
-    EvalPdfTails,
-    /// [`Sample`](Self::Sample) of the same hair.
-    SampleTails,
-    /// A shading point of its own for each direction, and its value and density: all on one head of hair.
-    PointsEval,
-    /// The same, and one sample with its value.
-    PointsShared,
-    /// The same with four samples per shading point.
-    PointsOf4,
-    /// With sixteen.
-    PointsOf16,
-    /// With one, on eight heads of hair, one per lane, packed once.
-    PointsMixed,
-    /// The same, packed anew for each eight shading points.
-    PointsPacked,
-}
-
-impl Op {
-    /// Every operation, in the order of the tables.
-    pub const ALL: [Self; 11] = [
-        Self::Prepare,
-        Self::EvalPdf,
-        Self::Sample,
-        Self::EvalPdfTails,
-        Self::SampleTails,
-        Self::PointsEval,
-        Self::PointsShared,
-        Self::PointsOf4,
-        Self::PointsOf16,
-        Self::PointsMixed,
-        Self::PointsPacked,
-    ];
-
-    /// Name of the operation in tables.
-    #[must_use]
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Prepare => "prepare",
-            Self::EvalPdf => "eval + pdf",
-            Self::Sample => "sample",
-            Self::EvalPdfTails => "eval + pdf, far tails",
-            Self::SampleTails => "sample, far tails",
-            Self::PointsEval => "prepare + eval + pdf",
-            Self::PointsShared => "prepare + 1 sample",
-            Self::PointsOf4 => "prepare + 4 samples",
-            Self::PointsOf16 => "prepare + 16 samples",
-            Self::PointsMixed => "prepare + 1, 8 hairs",
-            Self::PointsPacked => "prepare + 1, 8 hairs, packing",
-        }
-    }
-}
 
 /// Duration and inputs of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -119,6 +54,7 @@ impl SpeedConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SpeedResult {
     /// The operation.
+    #[serde(serialize_with = "op_name")]
     pub op: Op,
     /// The model.
     pub model: &'static str,
@@ -146,6 +82,12 @@ pub struct SpeedResult {
     pub wrong_share: f64,
     /// Whether the answers are right, but for one in a hundred. A row that did not pass is no result.
     pub passed: bool,
+}
+
+/// Writes the name of an operation.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn op_name<S: Serializer>(op: &Op, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(op.name())
 }
 
 /// The table, and what it was measured with.
@@ -185,9 +127,8 @@ impl SpeedReport {
 pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedReport, ParamError> {
     let mut cells = Vec::new();
     for model in ModelId::defaults_of_names() {
-        cells.extend(model.visit(SpeedCells(config.seed))?);
+        cells.extend(operations(model, &draw(model, config.seed))?.into_iter().map(SpeedCell::calibrate));
     }
-    cells.iter_mut().flat_map(|cell| &mut cell.contenders).for_each(Contender::calibrate);
 
     let start = Instant::now();
     for round in 0.. {
@@ -198,7 +139,7 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
         }
         cells.iter_mut().for_each(|cell| cell.round(round));
     }
-    let inputs = Inputs::draw(config.seed)?;
+    let inputs = draw(ModelId::Gaussian, config.seed);
     let mut threads = Vec::new();
     for model in ModelId::defaults_of_names() {
         threads.extend(threads::run(model, &inputs)?);
@@ -213,22 +154,53 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
     })
 }
 
-impl Contender {
-    /// Finds how many passes make a stretch long enough to time.
-    fn calibrate(&mut self) {
-        let fastest = (0..5).map(|_| stretch(&mut *self.task, 1)).fold(f64::INFINITY, f64::min);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 1000")]
-        let passes = (MIN_STRETCH / fastest).ceil().clamp(1.0, 1e3) as u32;
-        self.passes = passes;
-    }
+/// Uniform directions and numbers; the first parameters are the default, the other seven are drawn.
+fn draw(model: ModelId, seed: u64) -> Inputs {
+    let (mut from, default) = (Independent::new(seed, stream_id(&[0x5eed])), model.defaults());
+    let mut params = [default; 8];
+    params[1..].fill_with(|| random(default, &mut from));
+    let narrow = default.fields().iter().filter_map(|field| Some((field, field.narrow?)));
+    let narrow =
+        narrow.fold(default, |values, (field, narrow)| values.with(field.name, &vec![narrow; field.kind.width()]));
+    let mut directions = || (0..DIRECTIONS).map(|_| uniform_direction(&mut from)).collect();
+    let (wi, wo) = (directions(), directions());
+    let xi = (0..DIRECTIONS).map(|_| [from.next_f32(), from.next_f32(), from.next_f32()]).collect();
+    Inputs { wi, wo, xi, params, narrow }
+}
+
+/// The times of a contender.
+struct Times {
+    /// Passes in a stretch.
+    passes: u32,
+    /// Time per direction in each round, ns.
+    ns: Vec<f64>,
+}
+
+/// One operation of one model: a table's block of rows.
+struct SpeedCell {
+    operation: Operation,
+    /// By contender.
+    times: Vec<Times>,
 }
 
 impl SpeedCell {
+    /// Finds how many passes of each contender make a stretch long enough to time.
+    fn calibrate(mut operation: Operation) -> Self {
+        let passes = |contender: &mut Contender| {
+            let fastest = (0..5).map(|_| stretch(&mut *contender.task, 1)).fold(f64::INFINITY, f64::min);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 1000")]
+            let passes = (MIN_STRETCH / fastest).ceil().clamp(1.0, 1e3) as u32;
+            Times { passes, ns: Vec::new() }
+        };
+        let times = operation.contenders.iter_mut().map(passes).collect();
+        Self { operation, times }
+    }
+
     /// Times every contender once, in an order that changes from round to round.
     fn round(&mut self, round: usize) {
-        let count = self.contenders.len();
-        for k in 0..count {
-            let Contender { task, passes, ns, .. } = &mut self.contenders[(k + round) % count];
+        let count = self.times.len();
+        for k in (0..count).map(|k| (k + round) % count) {
+            let (task, Times { passes, ns }) = (&mut self.operation.contenders[k].task, &mut self.times[k]);
             // One stretch untimed: the one before was another's, and left the caches its own and the vector units asleep.
             stretch(&mut **task, *passes);
             let mut time = 0.0;
@@ -238,13 +210,13 @@ impl SpeedCell {
     }
 
     fn rows(self) -> Vec<SpeedResult> {
-        let Self { op, model, contenders, truth } = self;
+        let Self { operation: Operation { op, model, contenders, truth }, times } = self;
         // The two textbooks lead; ratios are to the faster of them.
-        let [libm, std] = [0, 1].map(|textbook: usize| contenders[textbook].ns.clone());
+        let [libm, std] = [0, 1].map(|textbook: usize| times[textbook].ns.clone());
         let fastest = if quartiles(&std)[1] < quartiles(&libm)[1] { std } else { libm };
-        let row = |mut contender: Contender| {
-            let ratios: Vec<f64> = fastest.iter().zip(&contender.ns).map(|(textbook, ns)| textbook / ns).collect();
-            let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) = (quartiles(&contender.ns), quartiles(&ratios));
+        let row = |(mut contender, Times { passes, ns }): (Contender, Times)| {
+            let ratios: Vec<f64> = fastest.iter().zip(&ns).map(|(textbook, ns)| textbook / ns).collect();
+            let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) = (quartiles(&ns), quartiles(&ratios));
             let wrong_share = truth.wrong_share(&contender.task.answers());
             SpeedResult {
                 op,
@@ -252,7 +224,7 @@ impl SpeedCell {
                 contender: contender.name,
                 level: contender.level,
                 rounds: ratios.len(),
-                passes: contender.passes,
+                passes,
                 ns,
                 ns_q1,
                 ns_q3,
@@ -263,7 +235,7 @@ impl SpeedCell {
                 passed: wrong_share <= MAX_WRONG,
             }
         };
-        contenders.into_iter().map(row).collect()
+        contenders.into_iter().zip(times).map(row).collect()
     }
 }
 
@@ -284,16 +256,6 @@ fn deeper(depth: usize, f: &mut dyn FnMut()) {
         deeper(depth - 1, f)
     }
     black_box(&frame);
-}
-
-/// A pass that calls `call` with each of `inputs`.
-pub(crate) fn task<'a, I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass + 'a>
-where
-    I: Clone + 'a,
-    O: Output + 'a,
-    F: Fn(&I) -> O + 'a,
-{
-    Box::new(Each::new(1, inputs.to_vec(), call))
 }
 
 /// Time of `passes` passes, ns.
@@ -320,30 +282,28 @@ pub(crate) fn median_error(quartiles: [f64; 3], count: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::check::Truth;
     use super::*;
-    use hairis::HairParams;
-    use hairis_benches::inputs::packets;
-    use hairis_variants::Parameters as _;
+
+    fn kajiya_kay() -> Vec<Operation> {
+        operations(ModelId::KajiyaKay, &draw(ModelId::KajiyaKay, 1)).expect("accepted")
+    }
 
     #[test]
     fn every_contender_answers_every_direction() {
-        for cell in ModelId::KajiyaKay.visit(SpeedCells(1)).expect("accepted") {
-            for mut contender in cell.contenders {
-                let wrong = cell.truth.wrong_share(&contender.task.answers());
-                assert!(wrong <= MAX_WRONG, "{} {} {}: {wrong}", cell.op.label(), contender.name, contender.level);
+        for Operation { op, contenders, truth, .. } in kajiya_kay() {
+            for mut contender in contenders {
+                let wrong = truth.wrong_share(&contender.task.answers());
+                assert!(wrong <= MAX_WRONG, "{} {} {}: {wrong}", op.label(), contender.name, contender.level);
             }
         }
     }
 
     #[test]
     fn one_wrong_lane_in_eight_fails() {
-        let inputs = Inputs::<HairParams>::draw(1).expect("hair within range");
-        let (hair, wo) = (inputs.params[0], inputs.wo[0]);
-        let gather = ModelId::Gaussian.bsdf(&hair.values()).expect("accepted").prepare(wo);
-        let points = cells::truth::<hairis::Hair<hairis::Gaussian>>(&hair, &[wo; DIRECTIONS]).expect("accepted");
-        let truth = Truth::of_directions(points, &inputs.wi);
-        let mut answers = task(&packets(&inputs.wi), move |wi| gather.eval_pdf8(wi)).answers();
+        let Operation { contenders, truth, .. } =
+            kajiya_kay().into_iter().find(|operation| operation.op == Op::EvalPdf).expect("among all");
+        let mut eight = contenders.into_iter().find(|contender| contender.name == "eight lanes").expect("among all");
+        let mut answers = eight.task.answers();
         assert!(truth.wrong_share(&answers) <= MAX_WRONG, "right answers");
         for answer in answers.iter_mut().step_by(8) {
             answer.pdf = answer.pdf.map(|pdf| 1.01 * pdf);

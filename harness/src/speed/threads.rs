@@ -1,9 +1,8 @@
 //! Throughput by number of threads: slices in chunks through rayon.
 
-use super::inputs::Inputs;
-use super::{Op, quartiles};
+use super::{Inputs, Op, op_name, quartiles};
 use core::hint::black_box;
-use hairis::{EvalSlices, HairParams, Level, ParamError, SampleSlices};
+use hairis::{EvalSlices, Level, ParamError, SampleSlices};
 use hairis_variants::ModelId;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -21,6 +20,7 @@ const ROUNDS: usize = 15;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThreadsResult {
     /// [`Op::EvalPdf`] or [`Op::Sample`], through slices.
+    #[serde(serialize_with = "op_name")]
     pub op: Op,
     /// The model.
     pub model: &'static str,
@@ -61,7 +61,7 @@ fn thread_counts() -> Vec<usize> {
 }
 
 /// Measures evaluation and sampling of one model on every number of threads.
-pub(super) fn run(model: ModelId, inputs: &Inputs<HairParams>) -> Result<Vec<ThreadsResult>, ParamError> {
+pub(super) fn run(model: ModelId, inputs: &Inputs) -> Result<Vec<ThreadsResult>, ParamError> {
     let counts = thread_counts();
     let pools: Result<Vec<_>, _> = counts.iter().map(|n| ThreadPoolBuilder::new().num_threads(*n).build()).collect();
     // Where the system refuses threads there is nothing to report.
@@ -119,7 +119,7 @@ mod tests {
     fn every_number_of_threads_has_its_row() {
         let counts = thread_counts();
         assert!(counts[0] == 1 && counts.windows(2).all(|pair| pair[0] < pair[1]), "{counts:?}");
-        let inputs = Inputs::draw(1).expect("hair within range");
+        let inputs = super::super::draw(ModelId::Gaussian, 1);
         let rows = run(ModelId::Gaussian, &inputs).expect("the default is legal");
         assert_eq!(rows.len(), 2 * counts.len(), "a row is missing");
         for row in &rows {

@@ -14,11 +14,12 @@ use crate::light::{Environment, Light, Seen8};
 use crate::rays::{RaySubject, RayTimes, measure_times, numbers};
 use crate::sampler::{Sampler, bsdf, uniform_sample8, uniform8};
 use crate::sequence::{Independent, stream_id};
-use crate::speed::{median_error, quartiles, stretch, task};
+use crate::speed::{median_error, quartiles, stretch};
 use crate::stats::Estimate;
 use crate::subject::{ModelKind, uniform_direction};
 use core::hint::black_box;
 use hairis::{HairParams, Sample8, Vec3x8};
+use hairis_benches::contenders::task;
 use hairis_benches::task::{Answer, Output, Pass};
 use wide::f32x8;
 

@@ -1,27 +1,111 @@
-//! The operations, and the contenders of each.
+//! Contenders of `hairis compare`: the formulas in scalar code, and the kernel on one lane, on eight and in slices.
 
-use super::check::Truth;
-use super::inputs::{DIRECTIONS, Inputs};
-use super::{Op, points, task};
-use crate::subject::to_f64;
+mod inputs;
+mod points;
+mod truth;
+
+pub use inputs::{DIRECTIONS, Inputs};
+pub use truth::Truth;
+
+use crate::check::to_f64;
+use crate::entries::TEXTBOOK;
+use crate::inputs::{arrays, packets, xi_packets};
+use crate::platform::{Platform, platform};
+use crate::task::{Each, Output, PROBE, Pass, Point, Slices};
 use core::marker::PhantomData;
 use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::wide::f32x8;
 use hairis::{Bsdf, EvalSlices, Level, ParamError, SampleSlices, Vec3x8};
-use hairis_benches::entries::TEXTBOOK;
-use hairis_benches::inputs::{arrays, packets, xi_packets};
-use hairis_benches::platform::{Platform, platform};
-use hairis_benches::task::{PROBE, Pass, Point, Slices};
 use hairis_variants::{AnyReference, ModelId, Parameters, Registered, Visitor};
 
+/// Timed operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Op {
+    /// Everything constant for one shading point (section 3.3 of the paper).
+    Prepare,
+    /// Value and density of a direction, the shading point prepared beforehand.
+    EvalPdf,
+    /// A direction with its value, density and weight, the shading point prepared beforehand.
+    Sample,
+    /// [`EvalPdf`](Self::EvalPdf) of hair so narrow that the directions lie in the far tails of every lobe.
+    EvalPdfTails,
+    /// [`Sample`](Self::Sample) of the same hair.
+    SampleTails,
+    /// A shading point of its own for each direction, and its value and density: all on one head of hair.
+    PointsEval,
+    /// The same, and one sample with its value.
+    PointsShared,
+    /// The same with four samples per shading point.
+    PointsOf4,
+    /// With sixteen.
+    PointsOf16,
+    /// With one, on eight heads of hair, one per lane, packed once.
+    PointsMixed,
+    /// The same, packed anew for each eight shading points.
+    PointsPacked,
+}
+
+impl Op {
+    /// Every operation, in the order of the tables.
+    pub const ALL: [Self; 11] = [
+        Self::Prepare,
+        Self::EvalPdf,
+        Self::Sample,
+        Self::EvalPdfTails,
+        Self::SampleTails,
+        Self::PointsEval,
+        Self::PointsShared,
+        Self::PointsOf4,
+        Self::PointsOf16,
+        Self::PointsMixed,
+        Self::PointsPacked,
+    ];
+
+    /// Name of the operation in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Prepare => "prepare",
+            Self::EvalPdf => "eval-pdf",
+            Self::Sample => "sample",
+            Self::EvalPdfTails => "eval-pdf-tails",
+            Self::SampleTails => "sample-tails",
+            Self::PointsEval => "points-eval",
+            Self::PointsShared => "points-shared",
+            Self::PointsOf4 => "points-of4",
+            Self::PointsOf16 => "points-of16",
+            Self::PointsMixed => "points-mixed",
+            Self::PointsPacked => "points-packed",
+        }
+    }
+
+    /// Name of the operation in tables.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Prepare => "prepare",
+            Self::EvalPdf => "eval + pdf",
+            Self::Sample => "sample",
+            Self::EvalPdfTails => "eval + pdf, far tails",
+            Self::SampleTails => "sample, far tails",
+            Self::PointsEval => "prepare + eval + pdf",
+            Self::PointsShared => "prepare + 1 sample",
+            Self::PointsOf4 => "prepare + 4 samples",
+            Self::PointsOf16 => "prepare + 16 samples",
+            Self::PointsMixed => "prepare + 1, 8 hairs",
+            Self::PointsPacked => "prepare + 1, 8 hairs, packing",
+        }
+    }
+}
+
 /// The kernel, one direction per call.
-pub(super) const ONE: &str = "one lane";
+const ONE: &str = "one lane";
 /// The kernel, eight directions per call.
-pub(super) const EIGHT: &str = "eight lanes";
+const EIGHT: &str = "eight lanes";
 
 /// The kernel, eight directions at one shading point per call, where [`EIGHT`] has eight shading points.
-pub(super) const EIGHT_AT_ONE: &str = "eight lanes, one point";
+const EIGHT_AT_ONE: &str = "eight lanes, one point";
 
 /// [`EIGHT`], with numbers that are put into a packet just before the call, as hosts do that compute them one by one.
 const FRESH: &str = "eight lanes, just written";
@@ -30,53 +114,59 @@ const SLICES: &str = "slices";
 /// The kernel, eight directions in one call.
 const SHORT: &str = "slices of 8";
 /// The kernel, all directions in one call, each at a shading point of its own.
-pub(super) const HITS: &str = "slices of hits";
+const HITS: &str = "slices of hits";
 /// Directions of [`SHORT`].
 const FEW: usize = 8;
 
-/// Contender, and its times.
-pub(super) struct Contender {
-    pub(super) name: &'static str,
+/// Code that takes part in an operation.
+#[derive(Debug)]
+pub struct Contender {
+    /// [`TEXTBOOK`], or one of the kinds of calls of the kernel.
+    pub name: &'static str,
     /// Instruction set of its lanes.
-    pub(super) level: &'static str,
-    pub(super) task: Box<dyn Pass>,
-    /// Passes in a stretch.
-    pub(super) passes: u32,
-    /// Time per direction in each round, ns.
-    pub(super) ns: Vec<f64>,
+    pub level: &'static str,
+    /// All its calls.
+    pub task: Box<dyn Pass>,
 }
 
-impl Contender {
-    fn new(name: &'static str, level: &'static str, task: Box<dyn Pass>) -> Self {
-        Self { name, level, task, passes: 1, ns: Vec::new() }
-    }
-}
-
-/// One operation of one model: a table's block of rows.
-pub(super) struct SpeedCell {
-    pub(super) op: Op,
-    pub(super) model: &'static str,
+/// One operation of one model.
+#[derive(Debug)]
+pub struct Operation {
+    /// The operation.
+    pub op: Op,
+    /// Name of the model.
+    pub model: &'static str,
     /// The formulas in `f32` on the libm crate and on std first, then the kernel.
-    pub(super) contenders: Vec<Contender>,
-    pub(super) truth: Truth,
+    pub contenders: Vec<Contender>,
+    /// The answers.
+    pub truth: Truth,
+}
+
+/// All operations of a model with its first sampler; none of a model with another.
+///
+/// # Errors
+///
+/// If the model refuses the parameters.
+pub fn operations(model: ModelId, inputs: &Inputs) -> Result<Vec<Operation>, ParamError> {
+    model.visit(OfModel(inputs))
 }
 
 /// The contenders of an operation, and the answers.
-pub(super) type Timed = Result<(Contenders, Truth), ParamError>;
+type Contest = Result<(Contenders, Truth), ParamError>;
 
-/// All operations of one model, on inputs of this seed; none unless it is the first of its name.
-pub(super) struct SpeedCells(pub(super) u64);
+/// The operations of one model.
+struct OfModel<'a>(&'a Inputs);
 
-impl Visitor for SpeedCells {
-    type Output = Result<Vec<SpeedCell>, ParamError>;
+impl Visitor for OfModel<'_> {
+    type Output = Result<Vec<Operation>, ParamError>;
 
     fn visit<M: Registered>(self) -> Self::Output {
         // At compile time: models that are not timed are not compiled.
         if const { !ModelId::of::<M>().is_default() } {
             return Ok(Vec::new());
         }
-        let inputs = Inputs::draw(self.0)?;
-        let timed = |op: Op| {
+        let inputs = self.0.typed()?;
+        let contest = |op: Op| {
             let (contenders, truth) = match op {
                 Op::Prepare => prepare::<M>(&inputs),
                 Op::EvalPdf => eval_pdf::<M>(&inputs.params[0], &inputs, true),
@@ -90,44 +180,57 @@ impl Visitor for SpeedCells {
                 Op::PointsMixed => points::mixed::<M>(&inputs, false),
                 Op::PointsPacked => points::mixed::<M>(&inputs, true),
             }?;
-            Ok(SpeedCell { op, model: M::NAME, contenders: contenders.0, truth })
+            Ok(Operation { op, model: M::NAME, contenders: contenders.0, truth })
         };
-        Op::ALL.into_iter().map(timed).collect()
+        Op::ALL.into_iter().map(contest).collect()
     }
 }
 
+/// A pass that calls `call` with each of `inputs`.
+pub fn task<'a, I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass + 'a>
+where
+    I: Clone + 'a,
+    O: Output + 'a,
+    F: Fn(&I) -> O + 'a,
+{
+    Box::new(Each::new(1, inputs.to_vec(), call))
+}
+
 /// The formulas in `f64` for these parameters, seen from each of `wo`.
-pub(super) fn truth<M: Registered>(params: &M::Params, wo: &[Vec3]) -> Result<Vec<AnyReference<f64>>, ParamError> {
+fn truth<M: Registered>(params: &M::Params, wo: &[Vec3]) -> Result<Vec<AnyReference<f64>>, ParamError> {
     wo.iter().map(|wo| ModelId::of::<M>().reference(&params.values(), to_f64(*wo), 0.0)).collect()
 }
 
 /// The contenders so far.
-pub(super) struct Contenders(Vec<Contender>);
+struct Contenders(Vec<Contender>);
 
 impl Contenders {
     /// The formulas in `f32` on the libm crate and on std, and the kernel on one lane.
-    pub(super) fn new(libm: Box<dyn Pass>, std: Box<dyn Pass>, one: Box<dyn Pass>) -> Self {
-        let [libm, std] = [("scalar, libm crate", libm), ("scalar, std", std)]
-            .map(|(level, task)| Contender::new(TEXTBOOK, level, task));
-        Self(vec![libm, std, Contender::new(ONE, "scalar", one)])
+    fn new(libm: Box<dyn Pass>, std: Box<dyn Pass>, one: Box<dyn Pass>) -> Self {
+        let [libm, std] = [("scalar, libm crate", libm), ("scalar, std", std)].map(|(level, task)| Contender {
+            name: TEXTBOOK,
+            level,
+            task,
+        });
+        Self(vec![libm, std, Contender { name: ONE, level: "scalar", task: one }])
     }
 
     /// Then one on every level of this CPU.
-    pub(super) fn levels(mut self, name: &'static str, task: impl Fn(Level) -> Box<dyn Pass>) -> Self {
-        self.0.extend(Level::available().map(|level| Contender::new(name, level.name(), task(level))));
+    fn levels(mut self, name: &'static str, task: impl Fn(Level) -> Box<dyn Pass>) -> Self {
+        self.0.extend(Level::available().map(|level| Contender { name, level: level.name(), task: task(level) }));
         self
     }
 }
 
 /// A material: the kernel's, and the formulas on the libm crate and on std.
-pub(super) struct Material<M: Registered> {
-    pub(super) bsdf: Bsdf<M>,
-    pub(super) libm: M::Formulas<f32>,
-    pub(super) std: M::Formulas<Platform>,
+struct Material<M: Registered> {
+    bsdf: Bsdf<M>,
+    libm: M::Formulas<f32>,
+    std: M::Formulas<Platform>,
 }
 
 impl<M: Registered> Material<M> {
-    pub(super) fn new(params: &M::Params) -> Self {
+    fn new(params: &M::Params) -> Self {
         Self { bsdf: Bsdf::new(&M::MODEL, params), libm: M::formulas(params), std: M::formulas(params) }
     }
 
@@ -138,7 +241,7 @@ impl<M: Registered> Material<M> {
     }
 }
 
-fn prepare<M: Registered>(inputs: &Inputs<M::Params>) -> Timed {
+fn prepare<M: Registered>(inputs: &Inputs<M::Params>) -> Contest {
     let params = &inputs.params[0];
     let Material::<M> { bsdf, libm, std } = Material::new(params);
     let wo = arrays(&inputs.wo);
@@ -151,7 +254,7 @@ fn prepare<M: Registered>(inputs: &Inputs<M::Params>) -> Timed {
     Ok((contenders, Truth::of_directions(truth::<M>(params, &inputs.wo)?, &[PROBE; DIRECTIONS])))
 }
 
-fn eval_pdf<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every_way: bool) -> Timed {
+fn eval_pdf<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every_way: bool) -> Contest {
     let (wo, wi) = (inputs.wo[0], arrays(&inputs.wi));
     let material = Material::<M>::new(params);
     let ((libm, std), gather) = (material.references(wo), material.bsdf.prepare(wo));
@@ -179,7 +282,7 @@ fn eval_pdf<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every
     Ok((contenders, Truth::of_directions(truth::<M>(params, &[wo; DIRECTIONS])?, &inputs.wi)))
 }
 
-fn sample<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every_way: bool) -> Timed {
+fn sample<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every_way: bool) -> Contest {
     let (wo, xi) = (inputs.wo[0], &inputs.xi);
     let material = Material::<M>::new(params);
     let ((libm, std), gather) = (material.references(wo), material.bsdf.prepare(wo));

@@ -1,16 +1,14 @@
 //! Shading points of their own: preparing one, and a few samples of it.
 
-use super::cells::{Contenders, EIGHT, EIGHT_AT_ONE, HITS, Material, Timed, truth};
-use super::check::Truth;
-use super::inputs::{DIRECTIONS, Inputs, pairs};
-use super::task;
+use super::inputs::pairs;
+use super::{Contenders, Contest, DIRECTIONS, EIGHT, EIGHT_AT_ONE, HITS, Inputs, Material, Truth, task, truth};
+use crate::inputs::{arrays, packets, xi_packets};
+use crate::platform::{Platform, platform};
+use crate::task::{Answer, Output, Pass, Several, Slices};
 use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::wide::f32x8;
 use hairis::{Bsdf8, EvalColumns, HitSlices, Sample8, SampleColumns};
-use hairis_benches::inputs::{arrays, packets, xi_packets};
-use hairis_benches::platform::{Platform, platform};
-use hairis_benches::task::{Answer, Output, Pass, Several, Slices};
 use hairis_variants::Registered;
 
 /// The first `N` samples of a packet.
@@ -34,7 +32,7 @@ fn several<I: 'static, O: Output + 'static>(
 
 /// A shading point and `N` samples of it, all on the same hair: each lane at its own point, or a point's samples in `P`
 /// packets, the last of which may have lanes to spare.
-pub(super) fn shared<M: Registered, const N: usize, const P: usize>(inputs: &Inputs<M::Params>) -> Timed {
+pub(super) fn shared<M: Registered, const N: usize, const P: usize>(inputs: &Inputs<M::Params>) -> Contest {
     let params = &inputs.params[0];
     let Material::<M> { bsdf, libm, std } = Material::new(params);
     let (rows, _) = inputs.xi.as_chunks::<N>();
@@ -100,7 +98,7 @@ fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
 }
 
 /// A shading point and an evaluation at it, all on the same hair.
-pub(super) fn eval<M: Registered>(inputs: &Inputs<M::Params>) -> Timed {
+pub(super) fn eval<M: Registered>(inputs: &Inputs<M::Params>) -> Contest {
     let params = &inputs.params[0];
     let Material::<M> { bsdf, libm, std } = Material::new(params);
     let both = pairs(&arrays(&inputs.wo), &arrays(&inputs.wi));
@@ -122,7 +120,7 @@ pub(super) fn eval<M: Registered>(inputs: &Inputs<M::Params>) -> Timed {
 }
 
 /// A shading point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
-pub(super) fn mixed<M: Registered>(inputs: &Inputs<M::Params>, pack_each: bool) -> Timed {
+pub(super) fn mixed<M: Registered>(inputs: &Inputs<M::Params>, pack_each: bool) -> Contest {
     let materials = inputs.params.each_ref().map(Material::<M>::new);
     let (libm, std) = (materials.each_ref().map(|of| of.libm), materials.each_ref().map(|of| of.std));
     let bsdfs = materials.map(|of| of.bsdf);

@@ -1,0 +1,41 @@
+//! The arguments of all calls, drawn before anything is timed.
+
+use glam::Vec3;
+use hairis::ParamError;
+use hairis_variants::{Parameters, Values};
+
+/// Directions per pass: packets of shading points with 16 samples each. With their numbers `xi` they take 21 KB.
+pub const DIRECTIONS: usize = 896;
+
+/// [`DIRECTIONS`] directions and numbers, all lanes different, and eight sets of parameters.
+#[derive(Clone, Debug)]
+pub struct Inputs<P = Values> {
+    /// Directions towards the light.
+    pub wi: Vec<Vec3>,
+    /// Directions towards the viewer.
+    pub wo: Vec<Vec3>,
+    /// Uniform numbers.
+    pub xi: Vec<[f32; 3]>,
+    /// Parameters of the lanes; the first are those of all operations on one material.
+    pub params: [P; 8],
+    /// The default with lobes so narrow, half a degree on hair, that almost all directions lie in their far tails, where
+    /// numbers would be denormal if they were let.
+    pub narrow: P,
+}
+
+impl Inputs {
+    /// The same with the parameters of a model.
+    pub(super) fn typed<P: Parameters>(&self) -> Result<Inputs<P>, ParamError> {
+        let Self { wi, wo, xi, params, narrow } = self.clone();
+        let (narrow, mut typed) = (P::from_values(&narrow)?, [P::default(); 8]);
+        for (typed, values) in typed.iter_mut().zip(&params) {
+            *typed = P::from_values(values)?;
+        }
+        Ok(Inputs { wi, wo, xi, params: typed, narrow })
+    }
+}
+
+/// The elements of two lists, paired.
+pub(super) fn pairs<A: Clone, B: Clone>(a: &[A], b: &[B]) -> Vec<(A, B)> {
+    a.iter().cloned().zip(b.iter().cloned()).collect()
+}
