@@ -12,3 +12,5 @@ mod tolerance;
 mod vector;
 
 use hairis_conformance::published::{quadrature, support};
+// Linked for what it has compiled already: the published model and its samplers, for every instruction set.
+use hairis_variants as _;
