@@ -4,6 +4,7 @@ use crate::family::Bands;
 use crate::support::{Draws, direction, double, lanes_of, oracle};
 use core::f64::consts::PI;
 use hairis::{Bsdf, Gaussian, HairDesc, HairParams, LobeMask, Matched, Model, PerLobe};
+use hairis_conformance::published::Formulas;
 
 /// The model.
 type Tested = Matched<Gaussian, 9, true>;
@@ -75,7 +76,7 @@ fn weights_are_below_their_bound() {
         let params = draws.params(10.0);
         let wo = direction(draws.between(-1.5, 1.5), draws.between(-PI, PI));
         let mask = if round % 3 == 0 { LobeMask::of(&[hairis::Lobe::ALL[draws.below(4)]]) } else { LobeMask::ALL };
-        let limit = oracle::<Bands<9, true>>(&params, 1.0, wo).weight_bound(mask);
+        let limit = oracle(&Formulas::of::<Bands<9, true>>(), &params, 1.0, wo).weight_bound(mask);
         let gather = Bsdf::new(&model, &params).prepare(wo).with_lobes(mask);
         for _ in 0..500 {
             if let Some(s) = gather.sample(draws.xi3()) {

@@ -6,6 +6,7 @@ pub(crate) mod hits;
 pub(crate) mod light;
 
 use crate::subject::{Claims, ParamsOf, Reference, Subject};
+use core::fmt;
 use hairis::wide::f32x8;
 use hairis::{
     Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level, Lobe, LobeEval, LobeEval8,
@@ -191,11 +192,13 @@ pub(crate) const WEIGHT_COLUMNS: [usize; 7] = [0, 1, 2, 6, 7, 8, 9];
 type Written = Result<(), LengthError>;
 
 /// [`Gather`] of any model. Without a level, slices run on the one that is found.
-pub trait ErasedGather {
+pub trait ErasedGather: fmt::Debug {
     fn eval(&self, wi: Direction) -> Eval;
+    fn value(&self, wi: Direction) -> [f32; 3];
+    fn pdf(&self, wi: Direction) -> f32;
     fn eval8(&self, level: Level, wi: &Vec3x8) -> Eval8;
     fn lobes(&self, wi: Direction) -> PerLobe<LobeEval>;
-    fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
+    fn lobes8(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8>;
     fn sample(&self, xi: [f32; 3]) -> Option<Sample>;
     fn sample8(&self, level: Level, xi: &[f32x8; 3]) -> Sample8;
     fn albedo(&self) -> PerLobe<[f32; 3]>;
@@ -213,6 +216,14 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
         self.eval_pdf(wi)
     }
 
+    fn value(&self, wi: Direction) -> [f32; 3] {
+        self.eval(wi)
+    }
+
+    fn pdf(&self, wi: Direction) -> f32 {
+        self.pdf(wi)
+    }
+
     fn eval8(&self, level: Level, wi: &Vec3x8) -> Eval8 {
         self.eval_pdf8_at(level, wi)
     }
@@ -221,8 +232,8 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
         self.lobes(wi)
     }
 
-    fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        self.lobes8(wi)
+    fn lobes8(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8> {
+        self.lobes8_at(level, wi)
     }
 
     fn sample(&self, xi: [f32; 3]) -> Option<Sample> {
@@ -282,7 +293,7 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
 }
 
 /// [`Gather8`] of any model.
-pub trait ErasedGather8 {
+pub trait ErasedGather8: fmt::Debug {
     fn eval(&self, level: Level, wi: &Vec3x8) -> Eval8;
     fn lobes(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
     fn sample(&self, level: Level, xi: &[f32x8; 3]) -> Sample8;

@@ -236,7 +236,7 @@ pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
         for lane in 0..8 {
             let at = || m.at(lane, level);
             let one = each.lane(lane);
-            let (alone, one_albedo) = (one.lobes8(&wi), one.albedo());
+            let (alone, one_albedo) = (one.lobes8(level, &wi), one.albedo());
             for lobe in Lobe::ALL {
                 let bits = |l: &PerLobe<hairis::LobeEval8>| {
                     let l = &l[lobe];

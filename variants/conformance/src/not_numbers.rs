@@ -68,7 +68,7 @@ fn at_one(gather: &dyn ErasedGather, wi: Option<Direction>, xi: Option<[f32; 3]>
     }
     for level in Level::available() {
         if let Some(wi) = wi {
-            let (e, lobes) = (gather.eval8(level, &packet(&[wi; 8])), gather.lobes8(&packet(&[wi; 8])));
+            let (e, lobes) = (gather.eval8(level, &packet(&[wi; 8])), gather.lobes8(level, &packet(&[wi; 8])));
             if !(0..8).all(|lane| black(e.lane(lane))) || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf])) {
                 return Some(format!("{e:?} {lobes:?}, {level}"));
             }

@@ -8,6 +8,7 @@ pub mod density;
 pub mod edge;
 pub mod faint;
 pub mod fireflies;
+mod handles;
 pub mod lobes;
 pub mod parity;
 pub mod props;
@@ -27,8 +28,10 @@ pub use reference::PublishedReference;
 pub use rows::Rows;
 pub use subject::Family;
 
+use core::fmt;
 use hairis::reference::Shape;
 use hairis::{Hair, HairParams, Matched, MatchedBell, Model};
+use handles::AnyModel;
 
 /// A model of the family.
 pub trait Published: Sync {
@@ -57,12 +60,69 @@ pub trait Published: Sync {
     const ROWS: Rows;
 }
 
-/// The published sampler, and the matched ones of 5, 9 and 25 bands.
-type Samplers<B> = (Hair<B>, Matched<B, 5>, Matched<B, 9>, Matched<B, 25>);
+/// The formulas that a model is held against.
+#[derive(Clone, Copy, Debug)]
+pub struct Formulas {
+    /// See [`Published::SHAPE`].
+    pub shape: Shape,
+    /// See [`Published::BANDS`].
+    pub bands: Option<usize>,
+    /// See [`Published::BY_CHANNEL`].
+    pub by_channel: bool,
+}
 
-/// The model with each of its samplers.
-fn samplers<S: Published>() -> Samplers<S::Bell> {
-    (Hair(S::bell()), Matched(S::bell()), Matched(S::bell()), Matched(S::bell()))
+impl Formulas {
+    /// Those of a model.
+    pub const fn of<S: Published>() -> Self {
+        Self { shape: S::SHAPE, bands: S::BANDS, by_channel: S::BY_CHANNEL }
+    }
+}
+
+/// A [`Published`] model without its types, which the tests take.
+pub struct Tested {
+    forms: Vec<(Box<dyn AnyModel>, f32)>,
+    /// With the published sampler, and with the matched ones of 5, 9 and 25 bands.
+    samplers: [(Option<usize>, Box<dyn AnyModel>); 4],
+    formulas: Formulas,
+    over_cauchy: f64,
+    pdf_floor: f64,
+    rows: Rows,
+}
+
+impl fmt::Debug for Tested {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.formulas.fmt(f)
+    }
+}
+
+impl Tested {
+    pub fn new<S: Published>() -> Self {
+        let forms = S::forms().into_iter().map(|(model, factor)| (Box::new(model) as Box<dyn AnyModel>, factor));
+        let samplers: [(_, Box<dyn AnyModel>); 4] = [
+            (None, Box::new(Hair(S::bell()))),
+            (Some(5), Box::new(Matched::<_, 5>(S::bell()))),
+            (Some(9), Box::new(Matched::<_, 9>(S::bell()))),
+            (Some(25), Box::new(Matched::<_, 25>(S::bell()))),
+        ];
+        Self {
+            forms: forms.collect(),
+            samplers,
+            formulas: Formulas::of::<S>(),
+            over_cauchy: S::OVER_CAUCHY,
+            pdf_floor: S::PDF_FLOOR,
+            rows: S::ROWS,
+        }
+    }
+
+    fn forms(&self) -> Vec<(&dyn AnyModel, f32)> {
+        self.forms.iter().map(|(model, factor)| (&**model, *factor)).collect()
+    }
+
+    /// The model with the matched sampler of so many bands, or with the published one.
+    fn sampler(&self, bands: Option<usize>) -> &dyn AnyModel {
+        let found = self.samplers.iter().find(|(with, _)| *with == bands);
+        &*found.expect("one of the samplers").1
+    }
 }
 
 /// Declares a module with a `#[test]` for each test of a [`Published`] model: `common` ones, or those of the `published` or a
@@ -134,13 +194,13 @@ macro_rules! published {
         #[cfg(test)]
         mod $name {
             /// The model under test.
-            type Tested = $model;
+            type Model = $model;
             $(
                 mod $module {
                     $(
                         #[test]
                         fn $test() {
-                            $crate::published::$module::$test::<super::Tested>();
+                            $crate::published::$module::$test(&$crate::published::Tested::new::<super::Model>());
                         }
                     )*
                 }

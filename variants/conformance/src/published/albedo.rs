@@ -1,12 +1,13 @@
 //! The directional albedo against quadrature of the reference, and the scale that keeps it at most 1.
 
+use super::handles::Bsdf;
 use super::quadrature::{integrate, panels};
 use super::support::{Draws, Kind, LargestError, Point, direction, for_each_point, narrow, packet, parameters};
-use super::{Published, PublishedReference};
+use super::{PublishedReference, Tested};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::reference::Parameters;
-use hairis::{Bsdf, Conserving, HairDesc, HairParams, Level, Lobe, Model, PerLobe};
+use hairis::{HairDesc, HairParams, Level, Lobe, PerLobe};
 
 /// Integral of each lobe's value times the cosine: a product of two line integrals, as the lobes are products.
 fn integrals(reference: &PublishedReference, point: &Point) -> PerLobe<f64> {
@@ -36,11 +37,11 @@ fn integrals(reference: &PublishedReference, point: &Point) -> PerLobe<f64> {
     all
 }
 
-pub fn albedo_is_the_integral<S: Published>() {
+pub fn albedo_is_the_integral(tested: &Tested) {
     let mut worst = LargestError::default();
     let mut turn = 0;
     for kind in [Kind::Grid, Kind::Narrow, Kind::Wide] {
-        for_each_point::<S>(kind, |bsdf, reference, point| {
+        for_each_point(tested, kind, |bsdf, reference, point| {
             turn += 1;
             if kind == Kind::Grid && turn % 7 != 0 {
                 return;
@@ -60,7 +61,7 @@ pub fn albedo_is_the_integral<S: Published>() {
             }
         });
     }
-    worst.check("albedo against quadrature", S::ROWS.albedo);
+    worst.check("albedo against quadrature", tested.rows.albedo);
 }
 
 /// Materials of any widths and shifts, and those where quadrature and scans have gone wrong.
@@ -92,33 +93,33 @@ fn off_pole((off, side): (f64, f64)) -> (Vec3, f64) {
 
 /// The albedo of each lobe but for its colour, from the formulas of its two factors: as exact for lobes of any width, seen from
 /// any inclination.
-fn exact<S: Published>(p: &Parameters<f64>, theta_o: f64) -> PerLobe<f64> {
+fn exact(tested: &Tested, p: &Parameters<f64>, theta_o: f64) -> PerLobe<f64> {
     let to_pole = FRAC_PI_2 - theta_o.abs();
     let longitude = [0, 1, 2].map(|l| {
         let centre = 2.0 * p.alpha[l] - theta_o;
         let poles = [-FRAC_PI_2, FRAC_PI_2].map(|pole| [(pole, to_pole.max(1e-9)), (pole, 1e-9)]);
         let bells = [&[(centre, 2.0 * p.beta[l])], poles.as_flattened()].concat();
         integrate(&panels(-FRAC_PI_2, FRAC_PI_2, &bells), |theta_i| {
-            let bell = S::SHAPE.bell(p.beta[l], 0.5 * (theta_i + theta_o) - p.alpha[l]);
+            let bell = tested.formulas.shape.bell(p.beta[l], 0.5 * (theta_i + theta_o) - p.alpha[l]);
             let cos_theta_d = (0.5 * (theta_i - theta_o)).cos();
             bell * (theta_i.cos() / cos_theta_d.max(1e-300)).powi(2)
         })
     });
     let azimuth = |centre: f64, width: f64| {
-        2.0 * integrate(&panels(0.0, PI, &[(centre, width)]), |phi| S::SHAPE.bell(width, phi - centre))
+        2.0 * integrate(&panels(0.0, PI, &[(centre, width)]), |phi| tested.formulas.shape.bell(width, phi - centre))
     };
     let [r, tt, trt] = longitude;
     PerLobe([4.0 * r, azimuth(PI, p.gamma_tt) * tt, 4.0 * trt, azimuth(p.phi_g, p.gamma_g) * p.intensity_g * trt])
 }
 
-pub fn albedo_of_any_width_is_the_integral<S: Published>() {
+pub fn albedo_of_any_width_is_the_integral(tested: &Tested) {
     let mut worst = LargestError::default();
-    for (model, factor) in S::forms() {
+    for (model, factor) in tested.forms() {
         for params in any_widths() {
-            let (bsdf, p) = (Bsdf::new(&model, &params), parameters(&params, factor));
+            let (bsdf, p) = (Bsdf::new(model, &params), parameters(&params, factor));
             for at in any_inclinations().chain([(FRAC_PI_2 - 1.495, -1.0)]).filter(|(off, _)| *off > 1e-5) {
                 let (wo, theta_o) = off_pole(at);
-                let (got, want) = (bsdf.prepare(wo).albedo(), exact::<S>(&p, theta_o));
+                let (got, want) = (bsdf.prepare(wo).albedo(), exact(tested, &p, theta_o));
                 let d = params.desc();
                 let colors = PerLobe([d.intensity_r, d.intensity_tt, d.intensity_trt, d.intensity_trt]);
                 for lobe in Lobe::ALL.into_iter().filter(|lobe| colors[*lobe][0] > 0.0) {
@@ -131,21 +132,22 @@ pub fn albedo_of_any_width_is_the_integral<S: Published>() {
             }
         }
     }
-    worst.check("albedo of any width against quadrature", S::ROWS.albedo_any);
+    worst.check("albedo of any width against quadrature", tested.rows.albedo_any);
 }
 
-pub fn conserving_hair_returns_at_most_what_it_receives<S: Published>() {
+pub fn conserving_hair_returns_at_most_what_it_receives(tested: &Tested) {
     let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
     let sums =
         |PerLobe(lobes): PerLobe<[f32; 3]>| [0, 1, 2].map(|c| lobes.iter().map(|lobe| f64::from(lobe[c])).sum::<f64>());
     let presets: Vec<HairParams> = HairParams::presets().into_iter().map(|(_, params)| params).collect();
-    for (model, factor) in S::forms() {
+    for (model, factor) in tested.forms() {
         for params in any_widths().into_iter().chain(presets.clone()) {
-            let (bsdf, raw) = (Bsdf::new(&Conserving(model), &params), Bsdf::new(&model, &params));
+            let raw = Bsdf::new(model, &params);
             let (p, d) = (parameters(&params, factor), params.desc());
             for at in any_inclinations().filter(|(off, _)| *off > 1e-5) {
                 let (wo, theta_o) = off_pole(at);
-                let (got, PerLobe([r, tt, trt, glint])) = (sums(bsdf.prepare(wo).albedo()), exact::<S>(&p, theta_o));
+                let (got, PerLobe([r, tt, trt, glint])) =
+                    (sums(model.conserving_albedo(&params, wo.into())), exact(tested, &p, theta_o));
                 for (c, got) in got.into_iter().enumerate() {
                     let [i_r, i_tt, i_trt] = [d.intensity_r[c], d.intensity_tt[c], d.intensity_trt[c]].map(f64::from);
                     let want = (r * i_r + tt * i_tt + (trt + glint) * i_trt).min(1.0);
@@ -166,16 +168,16 @@ pub fn conserving_hair_returns_at_most_what_it_receives<S: Published>() {
     lanes.check("albedo of hair that conserves, eight lanes against one", 1e-4);
 }
 
-pub fn max_albedo_bounds_lobes_of_any_width<S: Published>() {
+pub fn max_albedo_bounds_lobes_of_any_width(tested: &Tested) {
     let (mut above, mut scaled) = (LargestError::default(), LargestError::default());
-    for (model, factor) in S::forms() {
+    for (model, factor) in tested.forms() {
         for params in any_widths() {
             let p = parameters(&params, factor);
             let d = params.desc();
-            let most = f64::from(Bsdf::new(&model, &params).max_albedo());
+            let most = f64::from(Bsdf::new(model, &params).max_albedo());
             let mut seen = 0.0_f64;
             for at in any_inclinations() {
-                let PerLobe([r, tt, trt, glint]) = exact::<S>(&p, off_pole(at).1);
+                let PerLobe([r, tt, trt, glint]) = exact(tested, &p, off_pole(at).1);
                 for c in 0..3 {
                     let [i_r, i_tt, i_trt] = [d.intensity_r[c], d.intensity_tt[c], d.intensity_trt[c]].map(f64::from);
                     seen = seen.max(r * i_r + tt * i_tt + (trt + glint) * i_trt);
@@ -192,7 +194,7 @@ pub fn max_albedo_bounds_lobes_of_any_width<S: Published>() {
 }
 
 /// The largest albedo on a scan of `steps` inclinations.
-fn scanned<M: Model>(bsdf: &Bsdf<M>, steps: u32) -> f32 {
+fn scanned(bsdf: &Bsdf<'_>, steps: u32) -> f32 {
     let mut most = 0.0_f32;
     for i in 0..=steps {
         let theta = -FRAC_PI_2 + PI * f64::from(i) / f64::from(steps);
@@ -204,12 +206,12 @@ fn scanned<M: Model>(bsdf: &Bsdf<M>, steps: u32) -> f32 {
     most
 }
 
-pub fn max_albedo_bounds_a_scan_ten_times_as_fine<S: Published>() {
+pub fn max_albedo_bounds_a_scan_ten_times_as_fine(tested: &Tested) {
     let mut draws = Draws(31);
     let random: Vec<HairParams> = (0..24).map(|_| draws.params(10.0)).collect();
-    for (model, _) in S::forms() {
+    for (model, _) in tested.forms() {
         for params in HairParams::presets().into_iter().map(|(_, p)| p).chain(random.clone()) {
-            let bsdf = Bsdf::new(&model, &params);
+            let bsdf = Bsdf::new(model, &params);
             let (most, seen) = (bsdf.max_albedo(), scanned(&bsdf, 1800));
             assert!(seen <= most, "{seen} is above max_albedo {most}: {params:?}");
             assert!(most <= seen * 1.02, "max_albedo {most} is no least bound of {seen}: {params:?}");
@@ -217,16 +219,16 @@ pub fn max_albedo_bounds_a_scan_ten_times_as_fine<S: Published>() {
     }
 }
 
-pub fn scaled_hair_returns_at_most_what_it_receives<S: Published>() {
+pub fn scaled_hair_returns_at_most_what_it_receives(tested: &Tested) {
     let mut draws = Draws(32);
     let random: Vec<HairParams> = (0..24).map(|_| draws.params(10.0)).collect();
     let mut scaled_down = 0;
-    for (model, _) in S::forms() {
+    for (model, _) in tested.forms() {
         for params in HairParams::presets().into_iter().map(|(_, p)| p).chain(random.clone()) {
-            let scale = Bsdf::new(&model, &params).conserving_scale();
+            let scale = Bsdf::new(model, &params).conserving_scale();
             scaled_down += usize::from(scale < 1.0);
             assert!(scale > 0.0 && scale <= 1.0, "scale {scale}: {params:?}");
-            let most = scanned(&Bsdf::new(&model, &params.scaled(scale).unwrap()), 1800);
+            let most = scanned(&Bsdf::new(model, &params.scaled(scale).unwrap()), 1800);
             assert!(most <= 1.0, "scaled by {scale} it still returns {most}: {params:?}");
             assert!(scale == 1.0 || most > 0.97, "scaled by {scale} more than need be, to {most}: {params:?}");
         }

@@ -1,23 +1,19 @@
 //! Each lobe's density integrates to 1, and so does the mixture: quadrature over the kernels' own numbers.
 
+use super::Tested;
+use super::handles::Bsdf;
 use super::quadrature::{integrate, panels};
 use super::support::{Kind, LargestError, THETA_O, direction, double, materials, parameters};
-use super::{Published, samplers};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::reference::MatchedReference;
-use hairis::{Bsdf, HairParams, Lobe, Model};
+use hairis::{HairParams, Lobe};
 
 /// Integral over the sphere of the density of each lobe alone, of the others but for rounding a product of two.
-fn integrals<S: Published, M: Model<Params = HairParams>>(
-    model: M,
-    bands: usize,
-    params: &HairParams,
-    theta_o: f64,
-) -> [f64; 4] {
+fn integrals(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -> [f64; 4] {
     let wo = direction(theta_o, 0.4);
     let p = parameters(params, 1.0);
-    let gather = Bsdf::new(&model, params).prepare(wo);
-    let reference = MatchedReference::prepare(&p, S::SHAPE, double(wo), bands);
+    let gather = Bsdf::new(tested.sampler(Some(bands)), params).prepare(wo);
+    let reference = MatchedReference::prepare(&p, tested.formulas.shape, double(wo), bands);
     Lobe::ALL.map(|lobe| {
         let l = lobe.index().min(2);
         let at = |theta: f64, phi: f64| {
@@ -42,16 +38,10 @@ fn integrals<S: Published, M: Model<Params = HairParams>>(
     })
 }
 
-fn see<S: Published, M: Model<Params = HairParams>>(
-    worst: &mut LargestError,
-    model: M,
-    bands: usize,
-    kind: Kind,
-    theta_o: &[f64],
-) {
+fn see(tested: &Tested, worst: &mut LargestError, bands: usize, kind: Kind, theta_o: &[f64]) {
     for params in materials(kind).iter().step_by(if kind == Kind::Grid { 37 } else { 1 }) {
         for degrees in theta_o {
-            let all = integrals::<S, M>(model, bands, params, degrees.to_radians());
+            let all = integrals(tested, bands, params, degrees.to_radians());
             for (lobe, integral) in Lobe::ALL.into_iter().zip(all).filter(|(_, x)| !x.is_nan()) {
                 worst.see((integral - 1.0).abs(), || format!("{bands} {lobe:?} {degrees} {integral} {params:?}"));
             }
@@ -59,15 +49,16 @@ fn see<S: Published, M: Model<Params = HairParams>>(
     }
 }
 
-pub fn each_lobe_integrates_to_one<S: Published>() {
-    let (_, few, usual, many) = samplers::<S>();
-    for (kind, limit) in
-        [(Kind::Grid, S::ROWS.integral[0]), (Kind::Narrow, S::ROWS.integral[1]), (Kind::Wide, S::ROWS.integral[2])]
-    {
+pub fn each_lobe_integrates_to_one(tested: &Tested) {
+    for (kind, limit) in [
+        (Kind::Grid, tested.rows.integral[0]),
+        (Kind::Narrow, tested.rows.integral[1]),
+        (Kind::Wide, tested.rows.integral[2]),
+    ] {
         let mut worst = LargestError::default();
-        see::<S, _>(&mut worst, few, 5, kind, &THETA_O);
-        see::<S, _>(&mut worst, usual, 9, kind, &THETA_O);
-        see::<S, _>(&mut worst, many, 25, kind, &THETA_O);
+        for bands in [5, 9, 25] {
+            see(tested, &mut worst, bands, kind, &THETA_O);
+        }
         worst.check(&format!("{kind:?} integral of a lobe's density, off 1"), limit);
     }
 }

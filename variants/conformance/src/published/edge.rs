@@ -1,20 +1,21 @@
 //! Exact cases: the ends of every range.
 
-use super::Published;
+use super::Tested;
+use super::handles::{Bsdf, Gather};
 use super::support::{Draws, lanes_of, packet};
 use core::f32::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
-use hairis::{Bsdf, GRAZING, Gather, HairDesc, HairParams, Level, Lobe, LobeMask, MAX_WIDTH, MIN_WIDTH, Sample};
+use hairis::{GRAZING, HairDesc, HairParams, Level, Lobe, LobeMask, MAX_WIDTH, MIN_WIDTH, Sample};
 
 const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 const ENDS: [f32; 4] = [0.0, f32::EPSILON / 2.0, 0.5, LAST];
 
-fn material<S: Published>(desc: &HairDesc) -> Bsdf<S::Model> {
-    Bsdf::new(&S::forms()[0].0, &HairParams::new(desc).unwrap())
+fn material<'a>(tested: &'a Tested, desc: &HairDesc) -> Bsdf<'a> {
+    Bsdf::new(tested.forms()[0].0, &HairParams::new(desc).unwrap())
 }
 
 /// A sample of one lane, the same of every level if they round alike.
-fn samples<S: Published>(gather: &Gather<S::Model>, xi: [f32; 3]) -> Vec<Option<Sample>> {
+fn samples(gather: &Gather, xi: [f32; 3]) -> Vec<Option<Sample>> {
     let wide = Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
     wide.chain([gather.sample(xi)]).collect()
 }
@@ -31,18 +32,18 @@ fn widths(width: f32) -> HairDesc {
     HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: width, gamma_g: width, ..HairDesc::default() }
 }
 
-pub fn ends_of_xi_give_sound_samples_of_every_lobe<S: Published>() {
+pub fn ends_of_xi_give_sound_samples_of_every_lobe(tested: &Tested) {
     let wos = [Vec3::Y, Vec3::X, -Vec3::X, Vec3::ZERO, Vec3::new(0.6, 0.0, -0.8), Vec3::new(-0.9999, 0.01, 0.01)];
     let mut seen = [0; 4];
     for desc in [widths(MIN_WIDTH), widths(0.1), widths(MAX_WIDTH)] {
         for (alpha, phi_g) in [(0.0, 0.0), (FRAC_PI_2, PI), (-FRAC_PI_2, FRAC_PI_2), (0.3, 0.7)] {
             let desc = HairDesc { alpha_r: alpha, alpha_tt: -alpha, alpha_trt: alpha, phi_g, ..desc };
             for wo in wos {
-                let gather = material::<S>(&desc).prepare(wo);
+                let gather = material(tested, &desc).prepare(wo);
                 for lobe in Lobe::ALL {
                     let alone = gather.with_lobes(LobeMask::of(&[lobe]));
                     for xi in ENDS.iter().flat_map(|a| ENDS.iter().flat_map(|b| ENDS.map(|c| [*a, *b, c]))) {
-                        for sample in samples::<S>(&alone, xi).into_iter().flatten() {
+                        for sample in samples(&alone, xi).into_iter().flatten() {
                             assert_sound(&sample, &format!("xi {xi:?} wo {wo:?} {desc:?}"));
                             assert_eq!(sample.lobe, lobe, "xi {xi:?} wo {wo:?} {desc:?}");
                             seen[lobe.index()] += 1;
@@ -56,11 +57,11 @@ pub fn ends_of_xi_give_sound_samples_of_every_lobe<S: Published>() {
 }
 
 /// Where R and TRT-g vanish, what is left of them is a difference of rounded numbers, and nothing else has their colours.
-pub fn nothing_is_negative_on_the_seam<S: Published>() {
+pub fn nothing_is_negative_on_the_seam(tested: &Tested) {
     let black = [0.0; 3];
     let colours =
         HairDesc { intensity_r: [0.0, 0.0, 1.0], intensity_tt: black, intensity_trt: [1.0, 1.0, 0.0], ..widths(0.3) };
-    let gather = |wo| material::<S>(&HairDesc { phi_g: 3.0, gamma_g: 0.35, ..colours }).prepare(wo);
+    let gather = |wo| material(tested, &HairDesc { phi_g: 3.0, gamma_g: 0.35, ..colours }).prepare(wo);
     let mut seen = 0;
     for (y, z) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (0.6, 0.8), (1.0, 0.0), (0.3, -0.7)] {
         for x in [0.0, 0.4, -2.0] {
@@ -69,7 +70,7 @@ pub fn nothing_is_negative_on_the_seam<S: Published>() {
                 for (xi_theta, xi_phi) in
                     [0.02, 0.3, 0.5, 0.81].into_iter().flat_map(|a| [0.0, 0.5, LAST].map(|b| (a, b)))
                 {
-                    for sample in samples::<S>(&gather, [xi_lobe, xi_theta, xi_phi]).into_iter().flatten() {
+                    for sample in samples(&gather, [xi_lobe, xi_theta, xi_phi]).into_iter().flatten() {
                         assert_sound(&sample, "on the seam");
                         seen += 1;
                     }
@@ -80,10 +81,10 @@ pub fn nothing_is_negative_on_the_seam<S: Published>() {
     assert!(seen > 1000, "hardly any sample was kept: {seen}");
 }
 
-pub fn the_axis_scatters_nothing<S: Published>() {
+pub fn the_axis_scatters_nothing(tested: &Tested) {
     for desc in [widths(MIN_WIDTH), widths(0.1), widths(MAX_WIDTH)] {
         for wo in [Vec3::Y, Vec3::X, -Vec3::X, Vec3::ZERO] {
-            let gather = material::<S>(&desc).prepare(wo);
+            let gather = material(tested, &desc).prepare(wo);
             let beside = 0.99 * GRAZING;
             let axis = [Vec3::X, -Vec3::X, Vec3::new(1.0, beside, 0.0), Vec3::new(-1.0, 0.0, -beside), Vec3::ZERO];
             for wi in axis {
@@ -97,20 +98,20 @@ pub fn the_axis_scatters_nothing<S: Published>() {
                 assert!(lobes.0.iter().all(|l| l.value == 0.0 && l.pdf == 0.0), "lobes at wi {wi:?} wo {wo:?}");
             }
             let near = gather.eval_pdf(Vec3::new(0.0, 1.0, 0.0));
-            assert!(f64::from(near.pdf) > S::PDF_FLOOR || near.value[0] <= 1e-20, "off the axis: {near:?}");
+            assert!(f64::from(near.pdf) > tested.pdf_floor || near.value[0] <= 1e-20, "off the axis: {near:?}");
         }
     }
 }
 
-pub fn a_direction_just_off_the_axis_has_a_density<S: Published>() {
-    let gather = material::<S>(&widths(1.0)).prepare(Vec3::Y);
+pub fn a_direction_just_off_the_axis_has_a_density(tested: &Tested) {
+    let gather = material(tested, &widths(1.0)).prepare(Vec3::Y);
     let off = 1.01 * GRAZING;
     let e = gather.eval_pdf(Vec3::new(1.0, off, 0.0));
     assert!(e.pdf > 0.0 && e.value[0] > 0.0, "at cos theta {off}: {e:?}");
 }
 
-pub fn vectors_that_are_no_direction_give_zero<S: Published>() {
-    let gather = material::<S>(&HairDesc::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
+pub fn vectors_that_are_no_direction_give_zero(tested: &Tested) {
+    let gather = material(tested, &HairDesc::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
     let odd = [
         Vec3::new(2.01, 0.1, 0.0),
         Vec3::new(0.0, -2.5, 0.0),
@@ -132,11 +133,11 @@ pub fn vectors_that_are_no_direction_give_zero<S: Published>() {
     }
 }
 
-pub fn the_seam_is_no_edge<S: Published>() {
+pub fn the_seam_is_no_edge(tested: &Tested) {
     // phi = pi: TT peaks, R and TRT-g vanish, and both sides are one.
     for (y, z) in [(1.0, 0.0), (0.0, 1.0), (0.6, -0.8)] {
         let wo = Vec3::new(0.0, y, z);
-        let gather = material::<S>(&HairDesc::default()).prepare(wo);
+        let gather = material(tested, &HairDesc::default()).prepare(wo);
         let on = gather.lobes(-wo);
         assert!(on[Lobe::R].value.abs() < 1e-7 && on[Lobe::TRT].pdf.abs() < 1e-7, "R and TRT-g on the seam: {on:?}");
         assert!(on[Lobe::TT].value > 0.2, "TT on the seam: {on:?}");
@@ -152,8 +153,8 @@ pub fn the_seam_is_no_edge<S: Published>() {
     }
 }
 
-pub fn a_zero_wo_counts_as_the_normal_plane<S: Published>() {
-    let bsdf = material::<S>(&HairDesc::default());
+pub fn a_zero_wo_counts_as_the_normal_plane(tested: &Tested) {
+    let bsdf = material(tested, &HairDesc::default());
     let wi = Vec3::new(0.3, 0.5, 0.7).normalize();
     let zero = bsdf.prepare(Vec3::ZERO).eval_pdf(wi);
     assert_eq!(zero, bsdf.prepare(Vec3::Y).eval_pdf(wi), "wo of zero");
@@ -168,7 +169,7 @@ pub fn a_zero_wo_counts_as_the_normal_plane<S: Published>() {
     }
 }
 
-pub fn lobes_without_energy_are_never_drawn<S: Published>() {
+pub fn lobes_without_energy_are_never_drawn(tested: &Tested) {
     let black = [0.0; 3];
     let base = widths(0.3);
     let cases = [
@@ -181,7 +182,7 @@ pub fn lobes_without_energy_are_never_drawn<S: Published>() {
         (HairDesc { intensity_r: black, intensity_tt: black, intensity_g: 0.0, ..base }, [false, false, true, false]),
     ];
     for (desc, lit) in cases {
-        let gather = material::<S>(&desc).prepare(Vec3::new(0.28, 0.96, 0.0));
+        let gather = material(tested, &desc).prepare(Vec3::new(0.28, 0.96, 0.0));
         let mut seen = [false; 4];
         let mut draws = Draws(41);
         let mut take = |sample: Option<Sample>| {
@@ -190,57 +191,57 @@ pub fn lobes_without_energy_are_never_drawn<S: Published>() {
             seen[sample.lobe.index()] = true;
         };
         for _ in 0..100_000 / 8 {
-            let eight = gather.sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
+            let eight = gather.sample8_at(Level::detect(), &lanes_of(&core::array::from_fn(|_| draws.xi3())));
             (0..8).for_each(|lane| take(eight.lane(lane)));
         }
         for xi in [0.0, f32::from_bits(1), f32::EPSILON / 2.0, LAST, 1.0] {
-            samples::<S>(&gather, [xi, 0.4, 0.4]).into_iter().for_each(&mut take);
+            samples(&gather, [xi, 0.4, 0.4]).into_iter().for_each(&mut take);
         }
         assert_eq!(seen, lit, "lobes seen in 10^5 draws of {desc:?}");
     }
 }
 
-pub fn black_hair_scatters_and_samples_nothing<S: Published>() {
+pub fn black_hair_scatters_and_samples_nothing(tested: &Tested) {
     let black = [0.0; 3];
     let desc = HairDesc { intensity_r: black, intensity_tt: black, intensity_trt: black, ..HairDesc::default() };
-    let bsdf = material::<S>(&desc);
+    let bsdf = material(tested, &desc);
     let gather = bsdf.prepare(Vec3::Y);
     for wi in [Vec3::Y, -Vec3::Y, Vec3::new(0.6, 0.0, 0.8)] {
         let e = gather.eval_pdf(wi);
         assert_eq!((e.value, e.pdf), ([0.0; 3], 0.0), "wi {wi:?}");
     }
     for xi in ENDS {
-        for sample in samples::<S>(&gather, [xi, 0.3, 0.6]) {
+        for sample in samples(&gather, [xi, 0.3, 0.6]) {
             assert_eq!(sample, None, "xi {xi}");
         }
     }
-    let eight = gather.sample8(&lanes_of(&[[0.1, 0.2, 0.3]; 8]));
+    let eight = gather.sample8_at(Level::detect(), &lanes_of(&[[0.1, 0.2, 0.3]; 8]));
     assert_eq!(eight.live(), 0, "live lanes");
     assert_eq!(eight.slot.to_array(), [-1.0; 8], "slots");
     assert_eq!(gather.albedo().0, [[0.0; 3]; 4], "albedo");
     assert_eq!(bsdf.conserving_scale(), 1.0, "scale");
 }
 
-pub fn grazing_samples_are_discarded<S: Published>() {
+pub fn grazing_samples_are_discarded(tested: &Tested) {
     // A lobe wider than the sphere, drawn at the end of its range: theta_i is -pi/2.
     for wo in [Vec3::Y, Vec3::new(0.8, 0.6, 0.0)] {
-        let gather = material::<S>(&widths(MAX_WIDTH)).prepare(wo);
-        for sample in samples::<S>(&gather, [0.1, 0.0, 0.3]) {
+        let gather = material(tested, &widths(MAX_WIDTH)).prepare(wo);
+        for sample in samples(&gather, [0.1, 0.0, 0.3]) {
             assert_eq!(sample, None, "theta_i of -pi/2 was kept");
         }
-        let eight = gather.sample8(&lanes_of(&[[0.1, 0.0, 0.3]; 8]));
+        let eight = gather.sample8_at(Level::detect(), &lanes_of(&[[0.1, 0.0, 0.3]; 8]));
         assert_eq!((eight.live(), eight.slot.to_array()), (0, [-1.0; 8]), "a discarded lane");
         assert_eq!((eight.pdf.to_array(), eight.weight[0].to_array()), ([0.0; 8], [0.0; 8]), "a discarded lane");
-        for sample in samples::<S>(&gather, [0.1, 0.001, 0.3]) {
+        for sample in samples(&gather, [0.1, 0.001, 0.3]) {
             assert!(sample.is_some(), "a sample off the axis was discarded");
         }
     }
 }
 
 /// Products of components next to nothing left the range of a float, and every result was the largest one.
-pub fn an_azimuth_next_to_nothing_is_still_an_azimuth<S: Published>() {
-    let gather = material::<S>(&HairDesc::default()).prepare(Vec3::new(1.0, 1e-15, 0.0));
-    let reference = material::<S>(&HairDesc::default()).prepare(Vec3::new(1.0, 1e-6, 0.0));
+pub fn an_azimuth_next_to_nothing_is_still_an_azimuth(tested: &Tested) {
+    let gather = material(tested, &HairDesc::default()).prepare(Vec3::new(1.0, 1e-15, 0.0));
+    let reference = material(tested, &HairDesc::default()).prepare(Vec3::new(1.0, 1e-6, 0.0));
     for wi in [Vec3::new(1.0, 2e-5, 0.0), Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.6, 0.0, 0.8)] {
         let (got, want) = (gather.eval_pdf(wi), reference.eval_pdf(wi));
         assert!((got.pdf / want.pdf - 1.0).abs() < 1e-4, "{wi}: {got:?} against {want:?}");
@@ -251,12 +252,12 @@ pub fn an_azimuth_next_to_nothing_is_still_an_azimuth<S: Published>() {
 }
 
 /// Nor have their squares digits, where they are denormals.
-pub fn a_direction_next_to_the_axis_is_still_a_direction<S: Published>() {
+pub fn a_direction_next_to_the_axis_is_still_a_direction(tested: &Tested) {
     for off in [1e-15, 1e-18, 1e-19, 1e-20, 1e-21, 3e-22, 3e-23, 1e-38, f32::from_bits(1)] {
         for wo in [Vec3::new(1.0, off, 0.0), Vec3::new(-1.0, -off, off), Vec3::new(1e3, 0.0, 1e3 * off)] {
-            let gather = material::<S>(&widths(0.3)).prepare(wo);
+            let gather = material(tested, &widths(0.3)).prepare(wo);
             for xi in ENDS.iter().flat_map(|a| [[*a, 0.5, 0.3], [0.9, *a, 0.6], [0.1, 0.4, *a], [0.5, 0.4, *a]]) {
-                for sample in samples::<S>(&gather, xi).into_iter().flatten() {
+                for sample in samples(&gather, xi).into_iter().flatten() {
                     assert_sound(&sample, &format!("xi {xi:?} wo {wo:?}"));
                 }
             }
@@ -265,10 +266,10 @@ pub fn a_direction_next_to_the_axis_is_still_a_direction<S: Published>() {
 }
 
 /// The strength of the glints and their colour may each be absurd where their product is not.
-pub fn absurd_glints_of_a_faint_colour_do_not_overflow<S: Published>() {
+pub fn absurd_glints_of_a_faint_colour_do_not_overflow(tested: &Tested) {
     let usual = HairDesc { intensity_g: 2.0, intensity_trt: [0.15; 3], phi_g: PI, ..HairDesc::default() };
     let absurd = HairDesc { intensity_g: 3e37, intensity_trt: [1e-38; 3], ..usual };
-    let [usual, absurd] = [usual, absurd].map(|desc| material::<S>(&desc).prepare(Vec3::Y));
+    let [usual, absurd] = [usual, absurd].map(|desc| material(tested, &desc).prepare(Vec3::Y));
     let wi = Vec3::new(0.1, -0.99, -0.05).normalize();
     let only = LobeMask::of(&[Lobe::GLINT]);
     let (usual, absurd) = (usual.with_lobes(only).eval(wi), absurd.with_lobes(only).eval(wi));

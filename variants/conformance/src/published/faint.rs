@@ -1,17 +1,18 @@
 //! Lobes next to nothing: faint ones, and those that lie off the sphere.
 
-use super::Published;
+use super::Tested;
+use super::handles::{Bsdf, Gather};
 use super::support::{Draws, lanes_of, packet};
 use core::f32::consts::FRAC_PI_2;
 use glam::Vec3;
-use hairis::{Bsdf, Gather, HairDesc, HairParams, Level, Lobe, LobeMask, Sample};
+use hairis::{HairDesc, HairParams, Level, Lobe, LobeMask, Sample};
 
-fn gather<S: Published>(desc: &HairDesc, wo: Vec3) -> Gather<S::Model> {
-    Bsdf::new(&S::forms()[0].0, &HairParams::new(desc).unwrap()).prepare(wo)
+fn gather(tested: &Tested, desc: &HairDesc, wo: Vec3) -> Gather {
+    Bsdf::new(tested.forms()[0].0, &HairParams::new(desc).unwrap()).prepare(wo)
 }
 
 /// The sample of one lane, and of every level.
-fn samples<S: Published>(gather: &Gather<S::Model>, xi: [f32; 3]) -> Vec<Option<Sample>> {
+fn samples(gather: &Gather, xi: [f32; 3]) -> Vec<Option<Sample>> {
     let wide = Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
     wide.chain([gather.sample(xi)]).collect()
 }
@@ -21,17 +22,17 @@ fn near(got: f32, want: f32, by: f32) -> bool {
 }
 
 /// A share of the energy below the normal numbers has no reciprocal.
-pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one<S: Published>() {
+pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
     let mut draws = Draws(61);
     let only = LobeMask::of(&[Lobe::TT]);
     for wo in [Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.96, 0.0, 0.28)] {
-        let usual = gather::<S>(&HairDesc::default(), wo).with_lobes(only);
+        let usual = gather(tested, &HairDesc::default(), wo).with_lobes(only);
         for intensity in [1e-10, 1e-30, 1e-37, 1e-39, 1e-42, 1e-45] {
             let desc = HairDesc { intensity_tt: [intensity; 3], ..HairDesc::default() };
-            let faint = gather::<S>(&desc, wo).with_lobes(only);
+            let faint = gather(tested, &desc, wo).with_lobes(only);
             for _ in 0..200 {
                 let xi = draws.xi3();
-                for (faint, usual) in samples::<S>(&faint, xi).into_iter().zip(samples::<S>(&usual, xi)) {
+                for (faint, usual) in samples(&faint, xi).into_iter().zip(samples(&usual, xi)) {
                     let (Some(faint), Some(usual)) = (faint, usual) else {
                         panic!("{faint:?} {usual:?} at {intensity}")
                     };
@@ -41,7 +42,7 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one<S: Published>() {
                 }
                 let wi = usual.sample(xi).unwrap().wi;
                 for level in Level::available() {
-                    let eight = |gather: &Gather<S::Model>| gather.eval_pdf8_at(level, &packet(&[wi])).lane(3);
+                    let eight = |gather: &Gather| gather.eval_pdf8_at(level, &packet(&[wi])).lane(3);
                     for (got, want) in [(eight(&faint), eight(&usual)), (faint.eval_pdf(wi), usual.eval_pdf(wi))] {
                         assert!(near(got.pdf, want.pdf, 1e-5), "{got:?}, as bright as usual {want:?}, {level} {wi}");
                     }
@@ -52,7 +53,7 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one<S: Published>() {
 }
 
 /// All of a lobe's density is in its far tail, and its integral is next to nothing: less than a reciprocal of the squares.
-pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with<S: Published>() {
+pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with(tested: &Tested) {
     let black = [0.0; 3];
     let mut seen = 0;
     for (alpha_trt, beta_trt) in
@@ -66,7 +67,7 @@ pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with<S: Published>() {
             beta_trt,
             ..HairDesc::default()
         };
-        let gather = gather::<S>(&desc, Vec3::Y);
+        let gather = gather(tested, &desc, Vec3::Y);
         for wi in [
             Vec3::new(-1.0, 1e-3, 0.0),
             Vec3::new(-1.0, 1e-4, 1e-4),

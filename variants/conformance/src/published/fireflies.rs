@@ -1,10 +1,11 @@
 //! No fireflies: every weight is below its closed-form bound, and that is a small multiple of the mean over all everyday hair.
 
+use super::Tested;
+use super::handles::Bsdf;
 use super::support::{Draws, LargestError, direction, double, lanes_of, narrow, parameters};
-use super::{Published, samplers};
 use core::f64::consts::PI;
 use hairis::reference::MatchedReference;
-use hairis::{Bsdf, HairDesc, HairParams, Lobe, LobeMask, Model};
+use hairis::{HairDesc, HairParams, Level, Lobe, LobeMask};
 
 /// Hair with `beta_r` from 0.5 to 60 degrees and all else as wide as it is found, seen from up to 89.9 degrees.
 fn hair(draws: &mut Draws) -> (HairParams, f64) {
@@ -19,21 +20,21 @@ fn hair(draws: &mut Draws) -> (HairParams, f64) {
 }
 
 /// The largest weights over their bound, and the largest bounds over the mean.
-fn scan<S: Published, M: Model<Params = HairParams>>(model: M, bands: usize, worst: &mut [LargestError; 2]) {
+fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
     let mut draws = Draws(81);
     for round in 0..16_000 {
         let (params, theta_o) = hair(&mut draws);
         let wo = direction(theta_o, draws.between(-PI, PI));
         let mask = if round % 4 == 0 { LobeMask::of(&[Lobe::ALL[draws.below(4)]]) } else { LobeMask::ALL };
-        let gather = Bsdf::new(&model, &params).prepare(wo).with_lobes(mask);
-        let reference = MatchedReference::prepare(&parameters(&params, 1.0), S::SHAPE, double(wo), bands);
+        let gather = Bsdf::new(tested.sampler(Some(bands)), &params).prepare(wo).with_lobes(mask);
+        let reference = MatchedReference::prepare(&parameters(&params, 1.0), tested.formulas.shape, double(wo), bands);
         let limit = reference.weight_bound(mask);
         if mask == LobeMask::ALL {
             let mean: f64 = gather.albedo().0.iter().flatten().map(|x| f64::from(*x) / 3.0).sum();
             worst[1].see(limit / mean, || format!("{bands} theta_o {theta_o} {params:?}"));
         }
         for _ in 0..4 {
-            let eight = gather.sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
+            let eight = gather.sample8_at(Level::detect(), &lanes_of(&core::array::from_fn(|_| draws.xi3())));
             for s in (0..8).filter_map(|lane| eight.lane(lane)) {
                 let weight = s.weight.iter().map(|x| f64::from(*x) / 3.0).sum::<f64>();
                 worst[0].see(weight / limit, || format!("{bands} theta_o {theta_o} {mask:?} {s:?} {params:?}"));
@@ -42,13 +43,12 @@ fn scan<S: Published, M: Model<Params = HairParams>>(model: M, bands: usize, wor
     }
 }
 
-pub fn weights_are_below_their_bound_and_close_to_the_mean<S: Published>() {
-    let (_, few, usual, many) = samplers::<S>();
+pub fn weights_are_below_their_bound_and_close_to_the_mean(tested: &Tested) {
     let mut worst: [[LargestError; 2]; 3] = Default::default();
-    scan::<S, _>(few, 5, &mut worst[0]);
-    scan::<S, _>(usual, 9, &mut worst[1]);
-    scan::<S, _>(many, 25, &mut worst[2]);
-    for ((bands, limit), [bound, mean]) in [5, 9, 25].into_iter().zip(S::ROWS.weight).zip(&worst) {
+    for (worst, bands) in worst.iter_mut().zip([5, 9, 25]) {
+        scan(tested, bands, worst);
+    }
+    for ((bands, limit), [bound, mean]) in [5, 9, 25].into_iter().zip(tested.rows.weight).zip(&worst) {
         bound.check(&format!("{bands} bands: largest weight over its bound"), 1.0 + 1e-4);
         mean.check(&format!("{bands} bands: bound on weights over the mean"), limit);
     }

@@ -1,13 +1,13 @@
 //! The lobes apart: their sums, and every subset of them.
 
-use super::Published;
+use super::Tested;
 use super::support::{Draws, Kind, LargestError, double, for_each_point, lanes_of, narrow, packet, relative};
 use crate::probe::masks;
-use hairis::{Bsdf, Lobe, LobeMask};
+use hairis::{Level, Lobe, LobeMask};
 
-pub fn lobes_add_up<S: Published>() {
+pub fn lobes_add_up(tested: &Tested) {
     let (mut s, mut pdf) = (LargestError::default(), LargestError::default());
-    for_each_point::<S>(Kind::Grid, |bsdf, reference, point| {
+    for_each_point(tested, Kind::Grid, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         let probability = reference.probabilities();
         for wi in point.directions(8) {
@@ -18,18 +18,18 @@ pub fn lobes_add_up<S: Published>() {
                 s.see(relative(all.value[c], sum, 1e-20), at);
             }
             let sum = Lobe::ALL.into_iter().map(|lobe| probability[lobe] * f64::from(lobes[lobe].pdf)).sum();
-            pdf.see(relative(all.pdf, sum, S::PDF_FLOOR.max(f64::MIN_POSITIVE)), at);
+            pdf.see(relative(all.pdf, sum, tested.pdf_floor.max(f64::MIN_POSITIVE)), at);
         }
     });
-    s.check("S against its lobes", S::ROWS.lobe_sum);
-    pdf.check("pdf against its lobes", S::ROWS.lobe_sum);
+    s.check("S against its lobes", tested.rows.lobe_sum);
+    pdf.check("pdf against its lobes", tested.rows.lobe_sum);
 }
 
-pub fn a_subset_scatters_and_samples_its_lobes_alone<S: Published>() {
+pub fn a_subset_scatters_and_samples_its_lobes_alone(tested: &Tested) {
     let (mut s, mut pdf) = (LargestError::default(), LargestError::default());
-    for_each_point::<S>(Kind::Wide, |bsdf, reference, point| {
+    for_each_point(tested, Kind::Wide, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
-        let eight = Bsdf::prepare8(bsdf, &hairis::Vec3x8::splat(point.wo));
+        let eight = bsdf.prepare8_at(Level::detect(), &hairis::Vec3x8::splat(point.wo));
         let mut draws = Draws(point.seed);
         for mask in masks() {
             let part = gather.with_lobes(mask);
@@ -46,7 +46,7 @@ pub fn a_subset_scatters_and_samples_its_lobes_alone<S: Published>() {
                     s.see(relative(got.value[c], sum, 1e-20), at);
                 }
                 let sum = of(&|l| reference.probabilities()[l] * f64::from(lobes[l].pdf)) / total.max(1e-300);
-                pdf.see(relative(got.pdf, sum, S::PDF_FLOOR.max(1e-300)), at);
+                pdf.see(relative(got.pdf, sum, tested.pdf_floor.max(1e-300)), at);
                 let value_alone = part.lobes(wi);
                 for lobe in Lobe::ALL {
                     let color = value_alone[lobe].color.iter().sum::<f32>() * value_alone[lobe].value;
@@ -54,7 +54,7 @@ pub fn a_subset_scatters_and_samples_its_lobes_alone<S: Published>() {
                 }
             }
             let xi = core::array::from_fn(|_| draws.xi3());
-            let samples = eight.with_lobes(mask).sample8(&lanes_of(&xi));
+            let samples = eight.with_lobes(mask).sample8_at(Level::detect(), &lanes_of(&xi));
             for (lane, xi) in xi.into_iter().enumerate() {
                 for sample in [part.sample(xi), samples.lane(lane)] {
                     let lobe = sample.map(|s| s.lobe);
@@ -65,17 +65,17 @@ pub fn a_subset_scatters_and_samples_its_lobes_alone<S: Published>() {
         }
         let none = gather.with_lobes(LobeMask::NONE);
         for eight in point.directions(8).chunks(8) {
-            let all = none.eval_pdf8(&packet(eight));
+            let all = none.eval_pdf8_at(Level::detect(), &packet(eight));
             assert!(all.pdf.to_array() == [0.0; 8], "a pdf without lobes: {all:?}");
             assert!(all.value.iter().all(|c| c.to_array() == [0.0; 8]), "a value without lobes: {all:?}");
         }
     });
-    s.check("S of a subset", S::ROWS.lobe_sum);
-    pdf.check("pdf of a subset", S::ROWS.lobe_sum);
+    s.check("S of a subset", tested.rows.lobe_sum);
+    pdf.check("pdf of a subset", tested.rows.lobe_sum);
 }
 
-pub fn a_lobe_is_colored_by_its_parameters<S: Published>() {
-    for_each_point::<S>(Kind::Wide, |bsdf, reference, point| {
+pub fn a_lobe_is_colored_by_its_parameters(tested: &Tested) {
+    for_each_point(tested, Kind::Wide, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         let d = point.params.desc();
         let wi = point.directions(1)[0];
@@ -87,6 +87,6 @@ pub fn a_lobe_is_colored_by_its_parameters<S: Published>() {
         // The strength of the glints is theirs, not the color's.
         let glint = reference.lobe_values(double(wi))[Lobe::GLINT];
         let error = relative(lobes[Lobe::GLINT].value, glint, 1e-20);
-        assert!(error <= S::ROWS.wide[2], "glint {:?} against {}", lobes[Lobe::GLINT], narrow(glint));
+        assert!(error <= tested.rows.wide[2], "glint {:?} against {}", lobes[Lobe::GLINT], narrow(glint));
     });
 }

@@ -1,13 +1,12 @@
 //! One lane against eight, position by position, and the backends against each other: bit for bit wherever both round
 //! alike.
 
-use super::Published;
+use super::Tested;
+use super::handles::{Bsdf, Gather8};
 use super::support::{Draws, Kind, LargestError, Point, for_each_point, lanes_of, materials, packet, parameters};
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, Drawn, Eval, Gather8, Hit, Level, Lobe, Model, PerLobe, Sample8};
-
-type BsdfOf<S> = Bsdf<<S as Published>::Model>;
+use hairis::{Drawn, Eval, Hit, Level, Lobe, PerLobe, Sample8};
 
 fn eval_bits(e: Eval) -> [u32; 4] {
     [e.value[0], e.value[1], e.value[2], e.pdf].map(f32::to_bits)
@@ -29,15 +28,15 @@ fn unfused() -> impl Iterator<Item = Level> {
 }
 
 /// Eight different hits and materials, and eight directions and triples of numbers.
-struct MixedPacket<S: Published> {
-    bsdf: [BsdfOf<S>; 8],
+struct MixedPacket<'a> {
+    bsdf: [Bsdf<'a>; 8],
     wo: [Vec3; 8],
     wi: [Vec3; 8],
     xi: [[f32; 3]; 8],
 }
 
-fn mixed<S: Published>(draws: &mut Draws) -> MixedPacket<S> {
-    let (model, factor) = S::forms()[0];
+fn mixed<'a>(tested: &'a Tested, draws: &mut Draws) -> MixedPacket<'a> {
+    let (model, factor) = tested.forms()[0];
     let params: [_; 8] = core::array::from_fn(|_| draws.params(1e3));
     let wo: [_; 8] =
         core::array::from_fn(|lane| draws.near_lobes(&parameters(&params[lane], factor), 0.0, 0.0).normalize());
@@ -46,16 +45,16 @@ fn mixed<S: Published>(draws: &mut Draws) -> MixedPacket<S> {
         draws.near_lobes(&parameters(&params[lane], factor), theta_o, phi_o)
     });
     let xi = core::array::from_fn(|_| draws.xi3());
-    MixedPacket { bsdf: params.map(|p| Bsdf::new(&model, &p)), wo, wi, xi }
+    MixedPacket { bsdf: params.map(|p| Bsdf::new(model, &p)), wo, wi, xi }
 }
 
-fn gathers<S: Published>(m: &MixedPacket<S>, level: Level) -> Gather8<S::Model> {
-    Bsdf8::pack(m.bsdf.each_ref()).prepare8_at(level, &packet(&m.wo))
+fn gathers(m: &MixedPacket<'_>, level: Level) -> Gather8 {
+    Bsdf::prepare_packed(m.bsdf.each_ref(), level, &packet(&m.wo))
 }
 
-pub fn every_lane_position_equals_one_lane<S: Published>() {
+pub fn every_lane_position_equals_one_lane(tested: &Tested) {
     assert!(Level::available().next() == Some(Level::portable()), "the portable level runs everywhere");
-    for_each_point::<S>(Kind::Wide, |bsdf, _, point| {
+    for_each_point(tested, Kind::Wide, |bsdf, _, point| {
         let gather = bsdf.prepare(point.wo);
         let mut draws = Draws(point.seed);
         for eight in point.directions(32).chunks(8) {
@@ -74,17 +73,17 @@ pub fn every_lane_position_equals_one_lane<S: Published>() {
     });
 }
 
-pub fn eight_shading_points_equal_one_each<S: Published>() {
+pub fn eight_shading_points_equal_one_each(tested: &Tested) {
     let mut draws = Draws(11);
     for _ in 0..2000 {
-        let m = mixed::<S>(&mut draws);
+        let m = mixed(tested, &mut draws);
         for level in unfused() {
             let gather = gathers(&m, level);
             let (evals, samples) =
                 (gather.eval_pdf8_at(level, &packet(&m.wi)), gather.sample8_at(level, &lanes_of(&m.xi)));
             for lane in 0..8 {
                 let one = m.bsdf[lane].prepare(m.wo[lane]);
-                let at = || format!("{level} lane {lane} wo {:?} {:?}", m.wo[lane], m.bsdf[lane]);
+                let at = || format!("{level} lane {lane} wo {:?} {:?}", m.wo[lane], m.bsdf[lane].params);
                 assert_eq!(eval_bits(one.eval_pdf(m.wi[lane])), eval_bits(evals.lane(lane)), "{}", at());
                 assert_eq!(one.sample(m.xi[lane]), samples.lane(lane), "{}", at());
                 assert_eq!(format!("{one:?}"), format!("{:?}", gather.lane(lane)), "{}", at());
@@ -94,28 +93,27 @@ pub fn eight_shading_points_equal_one_each<S: Published>() {
 }
 
 /// Also in builds whose every level fuses.
-pub fn one_lane_never_fuses<S: Published>() {
-    let (model, _) = S::forms()[0];
+pub fn one_lane_never_fuses(tested: &Tested) {
+    let (model, _) = tested.forms()[0];
     let mut draws = Draws(16);
     for _ in 0..2000 {
         let (params, wo) = (draws.params(1e3), draws.direction());
-        let (material, hit) = (model.material(&params), Hit { wo, h: 0.0 });
-        let one = <S::Model as Model>::prepare_one(&material, hit);
-        let lane = <S::Model as Model>::prepare::<f32, f32>(&material, hit);
-        assert_eq!(format!("{one:?}"), format!("{lane:?}"), "{hit:?} {params:?}");
+        let hit = Hit { wo, h: 0.0 };
+        let [one, lane] = model.constants(&params, hit);
+        assert_eq!(one, lane, "{hit:?} {params:?}");
     }
 }
 
-pub fn one_shading_point_in_every_lane_equals_a_shared_one<S: Published>() {
-    let (model, _) = S::forms()[0];
+pub fn one_shading_point_in_every_lane_equals_a_shared_one(tested: &Tested) {
+    let (model, _) = tested.forms()[0];
     let mut draws = Draws(12);
     let random: Vec<_> = (0..200).map(|_| draws.params(10.0)).collect();
     for params in materials(Kind::Wide).into_iter().chain(random) {
-        let m = mixed::<S>(&mut draws);
-        let bsdf = Bsdf::new(&model, &params);
+        let m = mixed(tested, &mut draws);
+        let bsdf = Bsdf::new(model, &params);
         let wo = packet(&[m.wo[0]]);
         for level in Level::available() {
-            let eight = Bsdf8::pack([&bsdf; 8]).prepare8_at(level, &wo);
+            let eight = Bsdf::prepare_packed([&bsdf; 8], level, &wo);
             let same = bsdf.prepare8_at(level, &wo);
             assert_eq!(format!("{eight:?}"), format!("{same:?}"), "{level}: packed and shared material");
             let shared = eight.lane(3);
@@ -129,15 +127,15 @@ pub fn one_shading_point_in_every_lane_equals_a_shared_one<S: Published>() {
     }
 }
 
-pub fn permuted_lanes_permute_the_results<S: Published>() {
+pub fn permuted_lanes_permute_the_results(tested: &Tested) {
     let mut draws = Draws(13);
     for _ in 0..500 {
-        let m = mixed::<S>(&mut draws);
+        let m = mixed(tested, &mut draws);
         let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
         for last in (1..8).rev() {
             order.swap(last, draws.below(last + 1));
         }
-        let p = MixedPacket::<S> {
+        let p = MixedPacket {
             bsdf: order.map(|i| m.bsdf[i]),
             wo: order.map(|i| m.wo[i]),
             wi: order.map(|i| m.wi[i]),
@@ -166,9 +164,9 @@ fn tame(point: &Point) -> Vec<Vec3> {
     all
 }
 
-pub fn levels_agree_with_one_lane<S: Published>() {
+pub fn levels_agree_with_one_lane(tested: &Tested) {
     let mut worst: [LargestError; 3] = Default::default();
-    for_each_point::<S>(Kind::Wide, |bsdf, _, point| {
+    for_each_point(tested, Kind::Wide, |bsdf, _, point| {
         let gather = bsdf.prepare(point.wo);
         let mut draws = Draws(point.seed + 7);
         for eight in tame(point).chunks(8) {
@@ -188,9 +186,9 @@ pub fn levels_agree_with_one_lane<S: Published>() {
             }
         }
     });
-    worst[0].check("S of a level against one lane", S::ROWS.levels[0]);
-    worst[1].check("pdf of a level against one lane", S::ROWS.levels[1]);
-    worst[2].check("direction of a level against one lane", S::ROWS.levels[2]);
+    worst[0].check("S of a level against one lane", tested.rows.levels[0]);
+    worst[1].check("pdf of a level against one lane", tested.rows.levels[1]);
+    worst[2].check("direction of a level against one lane", tested.rows.levels[2]);
 }
 
 /// The bits of each lane's albedos.
@@ -199,11 +197,11 @@ fn albedo_bits(albedo: &PerLobe<[f32x8; 3]>) -> [Vec<u32>; 8] {
     core::array::from_fn(|lane| all.iter().map(|x| x.as_array()[lane].to_bits()).collect())
 }
 
-pub fn levels_that_round_alike_give_the_same_bits<S: Published>() {
+pub fn levels_that_round_alike_give_the_same_bits(tested: &Tested) {
     let levels: Vec<_> = Level::available().collect();
     let mut draws = Draws(14);
     for _ in 0..500 {
-        let m = mixed::<S>(&mut draws);
+        let m = mixed(tested, &mut draws);
         for pair in levels.windows(2).filter(|pair| pair[0].fuses() == pair[1].fuses()) {
             let g = gathers(&m, pair[0]);
             let h = gathers(&m, pair[1]);
@@ -220,13 +218,13 @@ pub fn levels_that_round_alike_give_the_same_bits<S: Published>() {
     }
 }
 
-pub fn lobes_and_albedo_agree_with_one_lane<S: Published>() {
+pub fn lobes_and_albedo_agree_with_one_lane(tested: &Tested) {
     let mut draws = Draws(15);
     let mut worst = LargestError::default();
     for _ in 0..200 {
-        let m = mixed::<S>(&mut draws);
-        let gather = Bsdf8::pack(m.bsdf.each_ref()).prepare8(&packet(&m.wo));
-        let (lobes, albedo) = (gather.lobes8(&packet(&m.wi)), gather.albedo8());
+        let m = mixed(tested, &mut draws);
+        let gather = gathers(&m, Level::detect());
+        let (lobes, albedo) = (gather.lobes8(&packet(&m.wi)), gather.albedo8_at(Level::detect()));
         for level in unfused() {
             for (lane, bits) in albedo_bits(&gather.albedo8_at(level)).into_iter().enumerate() {
                 let one: Vec<u32> = gather.lane(lane).albedo().0.as_flattened().iter().map(|x| x.to_bits()).collect();
@@ -253,13 +251,13 @@ pub fn lobes_and_albedo_agree_with_one_lane<S: Published>() {
             }
         }
     }
-    worst.check("albedo of eight against one", S::ROWS.albedo_lanes);
+    worst.check("albedo of eight against one", tested.rows.albedo_lanes);
 }
 
-pub fn a_hit_is_its_direction<S: Published>() {
+pub fn a_hit_is_its_direction(tested: &Tested) {
     // The published model ignores the offset across the fibre.
-    let (model, _) = S::forms()[0];
-    let bsdf = Bsdf::new(&model, &hairis::HairParams::default());
+    let (model, _) = tested.forms()[0];
+    let bsdf = Bsdf::new(model, &hairis::HairParams::default());
     let wo = Vec3::new(0.6, 0.8, 0.0);
     let plain = format!("{:?}", bsdf.prepare(wo));
     assert_eq!(plain, format!("{:?}", bsdf.prepare(Hit { wo: wo.into(), h: 0.7 })), "h must not matter");

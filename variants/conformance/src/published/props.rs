@@ -1,12 +1,13 @@
 //! Properties of every input: totality over all bit patterns, reciprocity, and samples that agree with eval and pdf.
 
-use super::Published;
+use super::Tested;
+use super::handles::{Bsdf, Gather8};
 use super::support::{Draws, LargestError, direction, lanes_of, materials, narrow, packet, relative};
 use super::support::{Kind, angles};
 use core::f64::consts::PI;
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, Gather8, HairParams, Level, Lobe};
+use hairis::{HairParams, Level, Lobe};
 
 /// Cases of each property of random inputs.
 const CASES: u64 = 20_000;
@@ -54,7 +55,7 @@ fn params(draws: &mut Draws) -> HairParams {
 }
 
 /// Every number of a packet of eight, for `wi` and `xi` in every lane.
-fn numbers<S: Published>(gather: &Gather8<S::Model>, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
+fn numbers(gather: &Gather8, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
     let first = |x: &f32x8| x.as_array()[0];
     let e = gather.eval_pdf8_at(level, &packet(&[wi]));
     let s = gather.sample8_at(level, &lanes_of(&[xi; 8]));
@@ -68,7 +69,7 @@ fn numbers<S: Published>(gather: &Gather8<S::Model>, level: Level, wi: Vec3, xi:
 }
 
 /// Every number of one lane.
-fn scalar_numbers<S: Published>(bsdf: &Bsdf<S::Model>, wo: Vec3, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
+fn scalar_numbers(bsdf: &Bsdf<'_>, wo: Vec3, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
     let gather = bsdf.prepare(wo);
     let e = gather.eval_pdf(wi);
     let mut positive = [&e.value[..], &[e.pdf, gather.pdf(wi)], &gather.eval(wi)].concat();
@@ -84,18 +85,18 @@ fn scalar_numbers<S: Published>(bsdf: &Bsdf<S::Model>, wo: Vec3, wi: Vec3, xi: [
     (positive, any)
 }
 
-pub fn finite_inputs_give_finite_outputs<S: Published>() {
+pub fn finite_inputs_give_finite_outputs(tested: &Tested) {
     let mut draws = Draws(54);
     for _ in 0..CASES {
         let params = params(&mut draws);
         let [wo, wi] = [three(&mut draws, finite), three(&mut draws, finite)].map(Vec3::from_array);
         // Uniform numbers are in [0, 1); all else is as wild as floats are.
         let xi = three(&mut draws, finite).map(|x| x.abs().fract());
-        let bsdf = Bsdf::new(&S::forms()[0].0, &params);
-        let mut all = vec![scalar_numbers::<S>(&bsdf, wo, wi, xi)];
+        let bsdf = Bsdf::new(tested.forms()[0].0, &params);
+        let mut all = vec![scalar_numbers(&bsdf, wo, wi, xi)];
         for level in Level::available() {
-            let gather = Bsdf8::pack([&bsdf; 8]).prepare8_at(level, &packet(&[wo]));
-            all.push(numbers::<S>(&gather, level, wi, xi));
+            let gather = Bsdf::prepare_packed([&bsdf; 8], level, &packet(&[wo]));
+            all.push(numbers(&gather, level, wi, xi));
         }
         for (positive, any) in all {
             let at = || format!("wo {wo:?} wi {wi:?} xi {xi:?} {params:?}");
@@ -105,27 +106,27 @@ pub fn finite_inputs_give_finite_outputs<S: Published>() {
     }
 }
 
-pub fn nothing_panics_on_nan_and_infinity<S: Published>() {
+pub fn nothing_panics_on_nan_and_infinity(tested: &Tested) {
     let mut draws = Draws(55);
     for _ in 0..CASES {
         let params = params(&mut draws);
         let [wo, wi] = [three(&mut draws, anything), three(&mut draws, anything)].map(Vec3::from_array);
         let xi = three(&mut draws, anything);
-        let bsdf = Bsdf::new(&S::forms()[0].0, &params);
-        let (positive, _) = scalar_numbers::<S>(&bsdf, Vec3::Y, wi, [0.5; 3]);
+        let bsdf = Bsdf::new(tested.forms()[0].0, &params);
+        let (positive, _) = scalar_numbers(&bsdf, Vec3::Y, wi, [0.5; 3]);
         assert!(positive.iter().all(|x| *x >= 0.0), "wi {wi:?} {params:?}: {positive:?}");
-        let _ = scalar_numbers::<S>(&bsdf, wo, wi, xi);
+        let _ = scalar_numbers(&bsdf, wo, wi, xi);
         for level in Level::available() {
-            let gather = Bsdf8::pack([&bsdf; 8]).prepare8_at(level, &packet(&[wo]));
-            let _ = numbers::<S>(&gather, level, wi, xi);
+            let gather = Bsdf::prepare_packed([&bsdf; 8], level, &packet(&[wo]));
+            let _ = numbers(&gather, level, wi, xi);
         }
     }
 }
 
-pub fn a_sample_agrees_with_eval_and_pdf<S: Published>() {
+pub fn a_sample_agrees_with_eval_and_pdf(tested: &Tested) {
     let mut worst = LargestError::default();
     let mut draws = Draws(53);
-    for (model, factor) in S::forms() {
+    for (model, factor) in tested.forms() {
         for _ in 0..10_000 {
             let params = draws.params(10.0);
             let d = params.desc();
@@ -134,7 +135,7 @@ pub fn a_sample_agrees_with_eval_and_pdf<S: Published>() {
             // Effect of a rounded direction on a bell of that width.
             let scale = f64::from(width) / (f64::from(width) + 0.1);
             let wo = direction(draws.between(-1.5, 1.5), draws.between(-PI, PI));
-            let gather = Bsdf::new(&model, &params).prepare(wo);
+            let gather = Bsdf::new(model, &params).prepare(wo);
             for _ in 0..8 {
                 let xi = draws.xi3();
                 let wide = Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(1));
@@ -153,15 +154,15 @@ pub fn a_sample_agrees_with_eval_and_pdf<S: Published>() {
             }
         }
     }
-    worst.check("sample against pdf, times width / (width + 0.1)", S::ROWS.sample_eval);
+    worst.check("sample against pdf, times width / (width + 0.1)", tested.rows.sample_eval);
 }
 
-pub fn eval_is_reciprocal<S: Published>() {
+pub fn eval_is_reciprocal(tested: &Tested) {
     let mut worst = LargestError::default();
     let mut draws = Draws(51);
-    for (model, _) in S::forms() {
+    for (model, _) in tested.forms() {
         for params in materials(Kind::Wide).into_iter().chain(materials(Kind::Grid).into_iter().step_by(17)) {
-            let bsdf = Bsdf::new(&model, &params);
+            let bsdf = Bsdf::new(model, &params);
             for _ in 0..2000 {
                 let mut any = || direction(draws.sign() * draws.between(0.0, 1.5), draws.between(-PI, PI));
                 let (a, b) = (any(), any());
@@ -175,13 +176,13 @@ pub fn eval_is_reciprocal<S: Published>() {
             }
         }
     }
-    worst.check("reciprocity", S::ROWS.reciprocity);
+    worst.check("reciprocity", tested.rows.reciprocity);
 }
 
-pub fn every_lobe_has_a_density_of_its_own<S: Published>() {
+pub fn every_lobe_has_a_density_of_its_own(tested: &Tested) {
     // The sum over lobes of probability times pdf is what `sample` draws from: none may go below 0 or be missing.
-    let (model, _) = S::forms()[0];
-    let gather = Bsdf::new(&model, &HairParams::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
+    let (model, _) = tested.forms()[0];
+    let gather = Bsdf::new(model, &HairParams::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
     let mut draws = Draws(52);
     let mut seen = [0; 4];
     for _ in 0..10_000 {

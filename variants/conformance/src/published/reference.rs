@@ -1,6 +1,6 @@
 //! The reference with the sampler of the model under test.
 
-use super::Published;
+use super::Formulas;
 use hairis::reference::{HairReference, MatchedReference, Parameters, ReferenceSample};
 use hairis::{Lobe, LobeMask, PerLobe};
 
@@ -30,12 +30,13 @@ macro_rules! both {
 impl PublishedReference {
     /// The reference for these parameters at the shading point of `wo`.
     #[must_use]
-    pub fn prepare<S: Published>(parameters: &Parameters<f64>, wo: [f64; 3]) -> Self {
-        let Some(bands) = S::BANDS else {
-            return Self::Published(HairReference::prepare(parameters, S::SHAPE, wo));
+    pub fn prepare(formulas: &Formulas, parameters: &Parameters<f64>, wo: [f64; 3]) -> Self {
+        let Formulas { shape, bands, by_channel } = *formulas;
+        let Some(bands) = bands else {
+            return Self::Published(HairReference::prepare(parameters, shape, wo));
         };
-        let formulas = MatchedReference::prepare(parameters, S::SHAPE, wo, bands);
-        Self::Matched(if S::BY_CHANNEL { formulas.by_channel() } else { formulas })
+        let formulas = MatchedReference::prepare(parameters, shape, wo, bands);
+        Self::Matched(if by_channel { formulas.by_channel() } else { formulas })
     }
 
     both! {

@@ -1,7 +1,7 @@
 //! Samples against the reference: cdf of the drawn angle, value, density and weight at the drawn direction.
 
 use super::support::{Draws, Kind, LargestError, Point, angles, double, for_each_point, lanes_of, relative};
-use super::{Published, PublishedReference};
+use super::{PublishedReference, Tested};
 use core::f64::consts::PI;
 use hairis::{Level, Lobe, LobeMask, Sample};
 
@@ -31,7 +31,7 @@ fn phi(point: &Point, sample: &Sample) -> f64 {
 }
 
 /// Errors of a sample at the direction it returned: S, density, weight, and the length of the direction.
-fn see<S: Published>(worst: &mut [LargestError; 4], reference: &PublishedReference, point: &Point, sample: &Sample) {
+fn see(tested: &Tested, worst: &mut [LargestError; 4], reference: &PublishedReference, point: &Point, sample: &Sample) {
     let at = || format!("{sample:?} wo {:?} {:?}", point.wo, point.params);
     let d = double(sample.wi);
     worst[3].see((d.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs(), at);
@@ -42,8 +42,8 @@ fn see<S: Published>(worst: &mut [LargestError; 4], reference: &PublishedReferen
     let (value, pdf) = (reference.eval(d), reference.pdf(d));
     // On the seam R and TRT-g vanish, and the rounding of the direction is all that is left of them.
     let seam = PI - phi < 1e-3;
-    if !(seam && S::BANDS.is_some()) {
-        worst[1].see(relative(sample.pdf, pdf, S::PDF_FLOOR), at);
+    if !(seam && tested.formulas.bands.is_some()) {
+        worst[1].see(relative(sample.pdf, pdf, tested.pdf_floor), at);
     }
     if seam {
         return;
@@ -54,10 +54,10 @@ fn see<S: Published>(worst: &mut [LargestError; 4], reference: &PublishedReferen
     }
 }
 
-fn check<S: Published>(kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3], cdf: [f64; 2]) {
+fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3], cdf: [f64; 2]) {
     let mut worst: [LargestError; 4] = Default::default();
     let (mut theta, mut azimuth) = (LargestError::default(), LargestError::default());
-    for_each_point::<S>(kind, |bsdf, reference, point| {
+    for_each_point(tested, kind, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         let mut draws = Draws(point.seed);
         for _ in 0..per_point {
@@ -66,7 +66,7 @@ fn check<S: Published>(kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3],
             for (lane, xi) in xi.iter().enumerate() {
                 let all = wide.iter().map(|eight| eight.lane(lane)).chain([gather.sample(*xi)]);
                 for sample in all.flatten() {
-                    see::<S>(&mut worst, reference, point, &sample);
+                    see(tested, &mut worst, reference, point, &sample);
                     let chosen = reference.sample(xi.map(f64::from)).lobe;
                     let mut edge = 0.0;
                     let edges = reference.probabilities().0.map(|p| {
@@ -76,7 +76,7 @@ fn check<S: Published>(kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3],
                     // Within a rounding of the next lobe, or so close to the axis that either may discard.
                     let grazing = chosen.is_none() && angles(point.wo, sample.wi)[0].cos() < 1e-3;
                     // At the very end of a Gaussian either may find no density left.
-                    let end = chosen.is_none() && S::BANDS.is_some() && (xi[1] == 0.0 || xi[1] == LAST);
+                    let end = chosen.is_none() && tested.formulas.bands.is_some() && (xi[1] == 0.0 || xi[1] == LAST);
                     let near = grazing || end || edges.iter().any(|d| *d < 1e-6);
                     assert!(near || chosen == Some(sample.lobe), "{chosen:?} {sample:?} xi {xi:?} {point:?}");
                 }
@@ -102,19 +102,19 @@ fn check<S: Published>(kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3],
     worst[0].check(&format!("{kind:?} S of a sample"), s);
     worst[1].check(&format!("{kind:?} pdf of a sample"), pdf);
     worst[2].check(&format!("{kind:?} weight of a sample"), weight);
-    worst[3].check(&format!("{kind:?} length of a sample"), S::ROWS.sample_length);
+    worst[3].check(&format!("{kind:?} length of a sample"), tested.rows.sample_length);
     theta.check(&format!("{kind:?} cdf of theta"), cdf[0]);
     azimuth.check(&format!("{kind:?} cdf of phi"), cdf[1]);
 }
 
-pub fn samples_on_the_grid<S: Published>() {
-    check::<S>(Kind::Grid, 3, S::ROWS.grid_sample, S::ROWS.grid_cdf);
+pub fn samples_on_the_grid(tested: &Tested) {
+    check(tested, Kind::Grid, 3, tested.rows.grid_sample, tested.rows.grid_cdf);
 }
 
-pub fn samples_of_narrow_lobes<S: Published>() {
-    check::<S>(Kind::Narrow, 256, S::ROWS.narrow_sample, S::ROWS.narrow_cdf);
+pub fn samples_of_narrow_lobes(tested: &Tested) {
+    check(tested, Kind::Narrow, 256, tested.rows.narrow_sample, tested.rows.narrow_cdf);
 }
 
-pub fn samples_of_wide_lobes<S: Published>() {
-    check::<S>(Kind::Wide, 256, S::ROWS.wide_sample, S::ROWS.wide_cdf);
+pub fn samples_of_wide_lobes(tested: &Tested) {
+    check(tested, Kind::Wide, 256, tested.rows.wide_sample, tested.rows.wide_cdf);
 }

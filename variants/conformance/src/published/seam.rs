@@ -1,8 +1,9 @@
 //! Next to `|phi|` = pi, where glints may end: samples report value and density of the direction they return, however narrow TT is.
 
-use super::Published;
+use super::Tested;
+use super::handles::Bsdf;
 use super::support::{LargestError, direction, double, lanes_of, oracle, relative};
-use hairis::{Bsdf, HairDesc, HairParams, Level, Lobe};
+use hairis::{HairDesc, HairParams, Level, Lobe};
 
 /// Numbers of 24 bits about a half, which both TT and the glints draw pi from: all next to it, and then fewer and fewer.
 fn about_a_half() -> impl Iterator<Item = f32> {
@@ -10,7 +11,7 @@ fn about_a_half() -> impl Iterator<Item = f32> {
     steps.flat_map(|k| [1.0, -1.0].map(|side| 0.5 + side * f32::from(k) * f32::EPSILON / 2.0))
 }
 
-pub fn samples_next_to_the_seam_report_their_own_direction<S: Published>() {
+pub fn samples_next_to_the_seam_report_their_own_direction(tested: &Tested) {
     let mut worst: [LargestError; 3] = Default::default();
     let mut glints = 0;
     for (gamma_tt, gamma_g, phi_g) in [
@@ -25,8 +26,8 @@ pub fn samples_next_to_the_seam_report_their_own_direction<S: Published>() {
         let params = HairParams::new(&params).unwrap();
         for (theta_o, phi_o) in [(0.0, 0.0), (0.3, 0.785), (-0.9, 2.4), (1.2, -1.1), (0.7, 3.1)] {
             let wo = direction(theta_o, phi_o);
-            let gather = Bsdf::new(&S::forms()[0].0, &params).prepare(wo);
-            let reference = oracle::<S>(&params, 1.0, wo);
+            let gather = Bsdf::new(tested.forms()[0].0, &params).prepare(wo);
+            let reference = oracle(&tested.formulas, &params, 1.0, wo);
             for xi_phi in about_a_half() {
                 let xi = core::array::from_fn(|lane| [(lane as f32 + 0.5) / 8.0, 0.11 * lane as f32 + 0.05, xi_phi]);
                 for sample in Level::available().flat_map(|level| {
@@ -50,7 +51,7 @@ pub fn samples_next_to_the_seam_report_their_own_direction<S: Published>() {
         }
     }
     assert!(glints > 1000, "hardly any glint: {glints}");
-    for ((worst, bound), what) in worst.iter().zip(S::ROWS.seam).zip(["S", "pdf", "weight"]) {
+    for ((worst, bound), what) in worst.iter().zip(tested.rows.seam).zip(["S", "pdf", "weight"]) {
         worst.check(&format!("{what} of a sample on the seam"), bound);
     }
 }

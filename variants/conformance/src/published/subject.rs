@@ -1,7 +1,7 @@
 //! The family as subjects of the suite.
 
 use super::support::{double, oracle, parameters};
-use super::{Published, PublishedReference};
+use super::{Formulas, Published, PublishedReference};
 use crate::probe::{angles, narrow};
 use crate::subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subject, Tolerance};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -98,7 +98,7 @@ impl<P: Published> Subject for Family<P> {
     }
 
     fn edges(&self, params: &HairParams, hit: &Hit) -> [Vec<f64>; 2] {
-        let theta = match oracle::<P>(params, P::forms()[0].1, vector(hit)) {
+        let theta = match oracle(&Formulas::of::<P>(), params, P::forms()[0].1, vector(hit)) {
             PublishedReference::Published(_) => Vec::new(),
             PublishedReference::Matched(book) => book.bands().collect(),
         };
@@ -113,7 +113,7 @@ impl<P: Published> Subject for Family<P> {
 
     /// The bound is on the mean of the channels.
     fn weight_bound(&self, params: &HairParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
-        let reference = oracle::<P>(params, P::forms()[0].1, vector(hit));
+        let reference = oracle(&Formulas::of::<P>(), params, P::forms()[0].1, vector(hit));
         matches!(reference, PublishedReference::Matched(_)).then(|| 3.0 * reference.weight_bound(lobes))
     }
 
@@ -128,7 +128,7 @@ impl<P: Published> Subject for Family<P> {
         let tolerance =
             Tolerance { value, pdf, lobes: lobe_value.max(lobe_pdf), rounding: 5e-7, ..Tolerance::default() };
         Some(Box::new(FlooredReference {
-            reference: oracle::<P>(params, P::forms()[0].1, vector(hit)),
+            reference: oracle(&Formulas::of::<P>(), params, P::forms()[0].1, vector(hit)),
             floor: P::PDF_FLOOR,
             tolerance,
         }))

@@ -2,12 +2,13 @@
 
 pub use crate::probe::{Draws, narrow};
 
-use super::{Published, PublishedReference};
+use super::handles::Bsdf;
+use super::{Formulas, PublishedReference, Tested};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::reference::Parameters;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, HairDesc, HairParams, MAX_WIDTH, MIN_WIDTH, Vec3x8};
+use hairis::{HairDesc, HairParams, MAX_WIDTH, MIN_WIDTH, Vec3x8};
 
 pub const DEG: f64 = PI / 180.0;
 
@@ -127,8 +128,8 @@ pub fn parameters(params: &HairParams, factor: f32) -> Parameters<f64> {
 }
 
 /// The reference at the shading point of `wo`.
-pub fn oracle<S: Published>(params: &HairParams, factor: f32, wo: Vec3) -> PublishedReference {
-    PublishedReference::prepare::<S>(&parameters(params, factor), double(wo))
+pub fn oracle(formulas: &Formulas, params: &HairParams, factor: f32, wo: Vec3) -> PublishedReference {
+    PublishedReference::prepare(formulas, &parameters(params, factor), double(wo))
 }
 
 /// Error of `got` relative to `want`, or to `floor` where `want` is smaller.
@@ -210,17 +211,17 @@ pub fn grid_point(beta_r: f64, gamma_tt: f64, gamma_g: f64, phi_g: f64, intensit
 pub const THETA_O: [f64; 12] = [0.0, 15.0, -30.0, 45.0, -60.0, 75.0, -80.0, 85.0, 89.0, -89.0, 89.9, -89.9];
 
 /// A material of one kind with its reference, for every form of the model, material and inclination.
-pub fn for_each_point<S: Published>(kind: Kind, mut f: impl FnMut(&Bsdf<S::Model>, &PublishedReference, &Point)) {
-    for (model, factor) in S::forms() {
+pub(super) fn for_each_point(tested: &Tested, kind: Kind, mut f: impl FnMut(&Bsdf<'_>, &PublishedReference, &Point)) {
+    for (model, factor) in tested.forms() {
         for (index, params) in materials(kind).iter().enumerate() {
-            let bsdf = Bsdf::new(&model, params);
+            let bsdf = Bsdf::new(model, params);
             for (turn, theta_o) in THETA_O.into_iter().enumerate() {
                 let (theta_o, phi_o) = (theta_o * DEG, 0.7 * turn as f64 - 3.0);
                 let wo = direction(theta_o, phi_o);
                 let seed = (index * 100 + turn) as u64;
                 let p = parameters(params, factor);
                 let point = Point { params: *params, p, wo, theta_o, phi_o, seed };
-                f(&bsdf, &oracle::<S>(params, factor, wo), &point);
+                f(&bsdf, &oracle(&tested.formulas, params, factor, wo), &point);
             }
         }
     }

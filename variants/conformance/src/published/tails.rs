@@ -1,10 +1,11 @@
 //! Samples far from the centres of their lobes, at the ends of the uniform numbers: what they report is of the direction they
 //! return.
 
-use super::Published;
+use super::Tested;
+use super::handles::Bsdf;
 use super::support::{DEG, LargestError, angles, direction, double, lanes_of, narrow, oracle, relative};
 use core::f64::consts::PI;
-use hairis::{Bsdf, HairDesc, HairParams, Level, Lobe};
+use hairis::{HairDesc, HairParams, Level, Lobe};
 
 const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 
@@ -29,14 +30,18 @@ const NUMBERS: [f32; 15] = [
 
 /// S, density and weight of samples at these numbers, further than 1e-3 rad from the axis and from the seam; the density of TT and
 /// the glints also next to the seam.
-fn errors<S: Published>(descs: &[HairDesc], theta_o: impl Iterator<Item = f64> + Clone) -> ([LargestError; 4], usize) {
+fn errors(
+    tested: &Tested,
+    descs: &[HairDesc],
+    theta_o: impl Iterator<Item = f64> + Clone,
+) -> ([LargestError; 4], usize) {
     let mut worst: [LargestError; 4] = Default::default();
     let mut seen = 0;
     for params in descs.iter().map(|desc| HairParams::new(desc).unwrap()) {
         for (turn, theta_o) in theta_o.clone().enumerate() {
             let wo = direction(theta_o, 0.7 * turn as f64 - 3.0);
-            let gather = Bsdf::new(&S::forms()[0].0, &params).prepare(wo);
-            let reference = oracle::<S>(&params, 1.0, wo);
+            let gather = Bsdf::new(tested.forms()[0].0, &params).prepare(wo);
+            let reference = oracle(&tested.formulas, &params, 1.0, wo);
             let ends = NUMBERS.iter().flat_map(|a| NUMBERS.map(|b| [*a, b]));
             for [theta, phi] in ends {
                 let xi = core::array::from_fn(|lane| [(lane as f32 + 0.5) / 8.0, theta, phi]);
@@ -57,7 +62,7 @@ fn errors<S: Published>(descs: &[HairDesc], theta_o: impl Iterator<Item = f64> +
                         continue;
                     }
                     seen += 1;
-                    let error = relative(sample.pdf, pdf, S::PDF_FLOOR);
+                    let error = relative(sample.pdf, pdf, tested.pdf_floor);
                     if PI - angle < 1e-3 {
                         // R and TRT-g vanish there, and the rounding of the direction is all that is left of them.
                         if sample.lobe == Lobe::TT || sample.lobe == Lobe::GLINT {
@@ -67,7 +72,7 @@ fn errors<S: Published>(descs: &[HairDesc], theta_o: impl Iterator<Item = f64> +
                     }
                     worst[1].see(error, at);
                     for ((got, weight), want) in sample.value.into_iter().zip(sample.weight).zip(value) {
-                        worst[0].see(relative(got, want, S::PDF_FLOOR), at);
+                        worst[0].see(relative(got, want, tested.pdf_floor), at);
                         worst[2].see(relative(weight, want * theta_i.cos() / pdf, 1e-20), at);
                     }
                 }
@@ -90,26 +95,26 @@ fn degrees() -> Vec<HairDesc> {
     all
 }
 
-pub fn samples_in_the_tails_report_their_own_direction<S: Published>() {
-    let (worst, seen) = errors::<S>(&degrees(), (0..40).map(|i| 0.077 * f64::from(i) - 1.5));
+pub fn samples_in_the_tails_report_their_own_direction(tested: &Tested) {
+    let (worst, seen) = errors(tested, &degrees(), (0..40).map(|i| 0.077 * f64::from(i) - 1.5));
     assert!(seen > 50_000, "hardly any sample: {seen}");
     for ((worst, bound), what) in
-        worst.iter().zip(S::ROWS.tail_sample).zip(["S", "pdf", "weight", "pdf next to the seam"])
+        worst.iter().zip(tested.rows.tail_sample).zip(["S", "pdf", "weight", "pdf next to the seam"])
     {
         worst.check(&format!("{what} of a sample in the tails"), bound);
     }
 }
 
 /// No lobe has its centre on the sphere: all samples are of tails, up to nine widths out.
-pub fn samples_of_lobes_off_the_sphere_report_their_own_direction<S: Published>() {
+pub fn samples_of_lobes_off_the_sphere_report_their_own_direction(tested: &Tested) {
     let off: Vec<HairDesc> = degrees()
         .into_iter()
         .flat_map(|base| [0.1, 0.15, 0.2].map(|by| HairDesc { alpha_r: by, alpha_tt: by, alpha_trt: by, ..base }))
         .collect();
-    let (worst, seen) = errors::<S>(&off, (0..32).map(|i| -1.56 + 0.006 * f64::from(i)));
+    let (worst, seen) = errors(tested, &off, (0..32).map(|i| -1.56 + 0.006 * f64::from(i)));
     assert!(seen > 10_000, "hardly any sample: {seen}");
     for ((worst, bound), what) in
-        worst.iter().zip(S::ROWS.off_sphere_sample).zip(["S", "pdf", "weight", "pdf next to the seam"])
+        worst.iter().zip(tested.rows.off_sphere_sample).zip(["S", "pdf", "weight", "pdf next to the seam"])
     {
         worst.check(&format!("{what} of a sample of a lobe off the sphere"), bound);
     }

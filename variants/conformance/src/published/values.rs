@@ -1,6 +1,6 @@
 //! Values, densities and lobes against the reference in double precision, one lane and eight, on every level.
 
-use super::Published;
+use super::Tested;
 use super::support::{Kind, LargestError, for_each_point, packet, relative};
 use hairis::{Eval, Level, Lobe};
 
@@ -8,9 +8,9 @@ use hairis::{Eval, Level, Lobe};
 const FLOOR: f64 = 1e-20;
 
 /// Largest errors of S and of the density over the materials of a kind.
-fn scan<S: Published>(kind: Kind, per_point: usize) -> [LargestError; 4] {
+fn scan(tested: &Tested, kind: Kind, per_point: usize) -> [LargestError; 4] {
     let mut worst: [LargestError; 4] = Default::default();
-    for_each_point::<S>(kind, |bsdf, reference, point| {
+    for_each_point(tested, kind, |bsdf, reference, point| {
         let gather = bsdf.prepare(point.wo);
         for eight in point.directions(per_point).chunks(8) {
             let wi = packet(eight);
@@ -26,7 +26,7 @@ fn scan<S: Published>(kind: Kind, per_point: usize) -> [LargestError; 4] {
                     for (got, want) in got.value.into_iter().zip(value) {
                         worst[0].see(relative(got, want, FLOOR), at);
                     }
-                    worst[1].see(relative(got.pdf, pdf, S::PDF_FLOOR), at);
+                    worst[1].see(relative(got.pdf, pdf, tested.pdf_floor), at);
                 };
                 see(gather.eval_pdf(*wi), "scalar");
                 for (level, eval) in &wide {
@@ -37,14 +37,14 @@ fn scan<S: Published>(kind: Kind, per_point: usize) -> [LargestError; 4] {
                     let eight = &wide_lobes[lobe];
                     let wide = [eight.value.as_array()[lane], eight.pdf.as_array()[lane]];
                     // Normalised, a lobe of the last few powers of two of a Gaussian would show its cut.
-                    let cut = lobe_values[lobe] < S::PDF_FLOOR;
+                    let cut = lobe_values[lobe] < tested.pdf_floor;
                     for [value, pdf] in [[scalar[lobe].value, scalar[lobe].pdf], wide] {
                         let at = || format!("{lobe:?} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
                         worst[2].see(relative(value, lobe_values[lobe], FLOOR), at);
                         if cut {
                             continue;
                         }
-                        worst[3].see(relative(pdf, lobe_pdfs[lobe], S::PDF_FLOOR.max(f64::MIN_POSITIVE)), at);
+                        worst[3].see(relative(pdf, lobe_pdfs[lobe], tested.pdf_floor.max(f64::MIN_POSITIVE)), at);
                     }
                 }
             }
@@ -53,21 +53,21 @@ fn scan<S: Published>(kind: Kind, per_point: usize) -> [LargestError; 4] {
     worst
 }
 
-fn check<S: Published>(kind: Kind, per_point: usize, bounds: [f64; 4]) {
+fn check(tested: &Tested, kind: Kind, per_point: usize, bounds: [f64; 4]) {
     let names = ["S", "pdf", "S of a lobe", "pdf of a lobe"];
-    for ((name, worst), bound) in names.into_iter().zip(scan::<S>(kind, per_point)).zip(bounds) {
+    for ((name, worst), bound) in names.into_iter().zip(scan(tested, kind, per_point)).zip(bounds) {
         worst.check(&format!("{kind:?} {name}"), bound);
     }
 }
 
-pub fn values_on_the_grid<S: Published>() {
-    check::<S>(Kind::Grid, 64, S::ROWS.grid);
+pub fn values_on_the_grid(tested: &Tested) {
+    check(tested, Kind::Grid, 64, tested.rows.grid);
 }
 
-pub fn values_of_narrow_lobes<S: Published>() {
-    check::<S>(Kind::Narrow, 4096, S::ROWS.narrow);
+pub fn values_of_narrow_lobes(tested: &Tested) {
+    check(tested, Kind::Narrow, 4096, tested.rows.narrow);
 }
 
-pub fn values_of_wide_lobes<S: Published>() {
-    check::<S>(Kind::Wide, 4096, S::ROWS.wide);
+pub fn values_of_wide_lobes(tested: &Tested) {
+    check(tested, Kind::Wide, 4096, tested.rows.wide);
 }

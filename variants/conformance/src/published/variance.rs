@@ -1,24 +1,27 @@
 //! The relative variance V of one sample under constant light, of every sampler: quadrature of the kernels' own values
 //! and densities over the grid of the efficiency figures.
 
+use super::Tested;
+use super::handles::{AnyModel, Bsdf, Gather};
 use super::quadrature::{panels, rule};
 use super::support::{DEG, direction, double, grid_point, narrow, parameters};
-use super::{Published, samplers};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::reference::{HairReference, MatchedReference};
-use hairis::{Bsdf, Gather, HairParams, Lobe, Model, PerLobe};
+use hairis::{HairParams, Lobe, PerLobe};
 
 const PHI_O: f64 = 0.4;
 
 /// Probabilities of the lobes, by parameters and `theta_o`.
-type Shares = fn(&HairParams, f64) -> PerLobe<f64>;
+type Shares<'a> = &'a dyn Fn(&HairParams, f64) -> PerLobe<f64>;
 
-fn published<S: Published>(params: &HairParams, theta_o: f64) -> PerLobe<f64> {
-    HairReference::prepare(&parameters(params, 1.0), S::SHAPE, double(direction(theta_o, PHI_O))).probabilities()
+fn published(tested: &Tested, params: &HairParams, theta_o: f64) -> PerLobe<f64> {
+    HairReference::prepare(&parameters(params, 1.0), tested.formulas.shape, double(direction(theta_o, PHI_O)))
+        .probabilities()
 }
 
-fn matched<S: Published, const N: usize>(params: &HairParams, theta_o: f64) -> PerLobe<f64> {
-    MatchedReference::prepare(&parameters(params, 1.0), S::SHAPE, double(direction(theta_o, PHI_O)), N).probabilities()
+fn matched(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -> PerLobe<f64> {
+    MatchedReference::prepare(&parameters(params, 1.0), tested.formulas.shape, double(direction(theta_o, PHI_O)), bands)
+        .probabilities()
 }
 
 /// Quadrature in one angle: its weights, and each lobe's value and density there, the other angle at a peak.
@@ -34,7 +37,7 @@ fn peak(params: &HairParams, theta_o: f64, lobe: Lobe) -> [f64; 2] {
     [(2.0 * p.alpha[lobe.index().min(2)] - theta_o).clamp(-1.3, 1.3), [0.0, PI, 0.0, p.phi_g][lobe.index()]]
 }
 
-fn line<M: Model>(gather: &Gather<M>, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 2]) -> Line {
+fn line(gather: &Gather, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 2]) -> Line {
     let of = |lobe: Lobe, x: f64| {
         let [theta, phi] = at(lobe, x);
         let l = gather.lobes(direction(theta, PHI_O - phi))[lobe];
@@ -45,7 +48,7 @@ fn line<M: Model>(gather: &Gather<M>, points: &[(f64, f64)], at: impl Fn(Lobe, f
 }
 
 /// The line in `theta_i`: values absolute, densities to an integral of 1; the density jumps at `jumps`.
-fn longitude<M: Model>(gather: &Gather<M>, params: &HairParams, theta_o: f64, jumps: &[f64]) -> Line {
+fn longitude(gather: &Gather, params: &HairParams, theta_o: f64, jumps: &[f64]) -> Line {
     let p = parameters(params, 1.0);
     let bell = |l: usize| (2.0 * p.alpha[l] - theta_o, p.beta[l]);
     let pole = FRAC_PI_2 - theta_o;
@@ -58,7 +61,7 @@ fn longitude<M: Model>(gather: &Gather<M>, params: &HairParams, theta_o: f64, ju
 }
 
 /// The line in `phi`: values to a peak of 1, densities to an integral of 1.
-fn azimuth<M: Model>(gather: &Gather<M>, params: &HairParams, theta_o: f64) -> Line {
+fn azimuth(gather: &Gather, params: &HairParams, theta_o: f64) -> Line {
     let p = parameters(params, 1.0);
     let ends = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt), (FRAC_PI_2, 1.0)]);
     let points: Vec<_> = rule(&ends).into_iter().map(|(x, w)| (x, 2.0 * w)).collect();
@@ -103,13 +106,13 @@ fn v(long: &Line, round: &Line, params: &HairParams, shares: PerLobe<f64>) -> f6
 }
 
 /// The inclinations where the density of a sampler of so many bands jumps: the same for all hair.
-fn jumps<S: Published>(bands: usize) -> Vec<f64> {
+fn jumps(tested: &Tested, bands: usize) -> Vec<f64> {
     let p = parameters(&HairParams::default(), 1.0);
-    MatchedReference::prepare(&p, S::SHAPE, [0.0, 1.0, 0.0], bands).bands().collect()
+    MatchedReference::prepare(&p, tested.formulas.shape, [0.0, 1.0, 0.0], bands).bands().collect()
 }
 
 /// V at every point of the grid.
-fn over_grid<M: Model<Params = HairParams>>(model: M, shares: Shares, jumps: &[f64]) -> Vec<f64> {
+fn over_grid(model: &dyn AnyModel, shares: Shares<'_>, jumps: &[f64]) -> Vec<f64> {
     let mut all = Vec::new();
     for beta in [2.5, 5.0, 7.5, 10.0, 15.0, 20.0] {
         for degrees in [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0] {
@@ -121,7 +124,7 @@ fn over_grid<M: Model<Params = HairParams>>(model: M, shares: Shares, jumps: &[f
                     for phi_g in [20.0, 35.0, 45.0] {
                         for intensity_g in [0.5, 5.0] {
                             let params = grid_point(beta, gamma_tt, gamma_g, phi_g, intensity_g);
-                            let gather = Bsdf::new(&model, &params).prepare(wo);
+                            let gather = Bsdf::new(model, &params).prepare(wo);
                             let mut line = longitude(&gather, &params, theta_o, jumps);
                             // The strength of the glints is in their value; the rest is the same for all of these.
                             if let Some(long) = &long {
@@ -140,7 +143,7 @@ fn over_grid<M: Model<Params = HairParams>>(model: M, shares: Shares, jumps: &[f
 }
 
 /// The mean of V, the geometric mean of its gain over the published sampler, and the least of it.
-fn gain<S: Published>(bands: usize, published: &[f64], v: &[f64]) -> [f64; 3] {
+fn gain(tested: &Tested, bands: usize, published: &[f64], v: &[f64]) -> [f64; 3] {
     let n = narrow(v.len() as f64);
     let mean = |x: &[f64]| x.iter().sum::<f64>() / f64::from(n);
     let logs: Vec<f64> = published.iter().zip(v).map(|(published, v)| (published / v).ln()).collect();
@@ -148,7 +151,7 @@ fn gain<S: Published>(bands: usize, published: &[f64], v: &[f64]) -> [f64; 3] {
     let most = v.iter().fold(0.0, |a: f64, x| a.max(*x));
     println!(
         "{:?} {bands} bands: V {:.5} (at most {most:.5}; published {:.4}), gain {geometric:.2}, at least {least:.2}, {} points",
-        S::SHAPE,
+        tested.formulas.shape,
         mean(v),
         mean(published),
         v.len()
@@ -156,15 +159,13 @@ fn gain<S: Published>(bands: usize, published: &[f64], v: &[f64]) -> [f64; 3] {
     [mean(v), geometric, least]
 }
 
-pub fn variance_falls_by_what_is_promised<S: Published>() {
-    let (hair, few, usual, many) = samplers::<S>();
-    let published = over_grid(hair, published::<S>, &[]);
-    let gains = [
-        gain::<S>(5, &published, &over_grid(few, matched::<S, 5>, &jumps::<S>(5))),
-        gain::<S>(9, &published, &over_grid(usual, matched::<S, 9>, &jumps::<S>(9))),
-        gain::<S>(25, &published, &over_grid(many, matched::<S, 25>, &jumps::<S>(25))),
-    ];
-    for (got, [v, gain, least]) in gains.iter().zip(S::ROWS.gain) {
+pub fn variance_falls_by_what_is_promised(tested: &Tested) {
+    let published = over_grid(tested.sampler(None), &|params, theta_o| published(tested, params, theta_o), &[]);
+    let gains = [5, 9, 25].map(|bands| {
+        let shares = |params: &HairParams, theta_o: f64| matched(tested, bands, params, theta_o);
+        gain(tested, bands, &published, &over_grid(tested.sampler(Some(bands)), &shares, &jumps(tested, bands)))
+    });
+    for (got, [v, gain, least]) in gains.iter().zip(tested.rows.gain) {
         assert!(got[0] <= v && got[1] >= gain && got[2] >= least, "{got:?}, not {v}, {gain}, {least}");
     }
 }
