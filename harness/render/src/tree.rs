@@ -91,12 +91,6 @@ impl Tree {
         self.level.run(Closest { tree: self, ray, visits })
     }
 
-    /// [`occluded`](Self::occluded), with the nodes and blocks that it looks at added to `visits`.
-    #[must_use]
-    pub fn occluded_counted(&self, ray: &Ray, visits: &mut Visits) -> bool {
-        self.level.run(Any { tree: self, ray, visits })
-    }
-
     /// How many nodes and blocks it has.
     #[must_use]
     pub fn size(&self) -> Visits {
