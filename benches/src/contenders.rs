@@ -4,14 +4,14 @@ mod inputs;
 mod points;
 mod truth;
 
-pub use inputs::{DIRECTIONS, Inputs};
+pub use inputs::{TIMED_DIRECTIONS, TimedInputs};
 pub use truth::Truth;
 
 use crate::check::to_f64;
 use crate::entries::TEXTBOOK;
 use crate::inputs::{arrays, packets, xi_packets};
 use crate::platform::{Platform, platform};
-use crate::task::{Each, Output, PROBE, Pass, Point, Slices};
+use crate::task::{PROBE, Pass, Point, Slices, task};
 use core::marker::PhantomData;
 use glam::Vec3;
 use hairis::reference::Reference;
@@ -21,7 +21,7 @@ use hairis_variants::{AnyReference, ModelId, Parameters, Registered, Visitor};
 
 /// Timed operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Op {
+pub enum TimedOp {
     /// Everything constant for one shading point (section 3.3 of the paper).
     Prepare,
     /// Value and density of a direction, the shading point prepared beforehand.
@@ -46,7 +46,7 @@ pub enum Op {
     PointsPacked,
 }
 
-impl Op {
+impl TimedOp {
     /// Every operation, in the order of the tables.
     pub const ALL: [Self; 11] = [
         Self::Prepare,
@@ -125,15 +125,15 @@ pub struct Contender {
     pub name: &'static str,
     /// Instruction set of its lanes.
     pub level: &'static str,
-    /// All its calls.
+    /// Pass over all inputs.
     pub task: Box<dyn Pass>,
 }
 
 /// One operation of one model.
 #[derive(Debug)]
-pub struct Operation {
+pub struct Contest {
     /// The operation.
-    pub op: Op,
+    pub op: TimedOp,
     /// Name of the model.
     pub model: &'static str,
     /// The formulas in `f32` on the libm crate and on std first, then the kernel.
@@ -142,23 +142,27 @@ pub struct Operation {
     pub truth: Truth,
 }
 
-/// All operations of a model with its first sampler; none of a model with another.
+/// Returns every timed operation of a model; none unless [`ModelId::is_default`].
 ///
 /// # Errors
 ///
 /// If the model refuses the parameters.
-pub fn operations(model: ModelId, inputs: &Inputs) -> Result<Vec<Operation>, ParamError> {
+///
+/// # Panics
+///
+/// If there are not [`TIMED_DIRECTIONS`] of each input.
+pub fn contests(model: ModelId, inputs: &TimedInputs) -> Result<Vec<Contest>, ParamError> {
     model.visit(OfModel(inputs))
 }
 
 /// The contenders of an operation, and the answers.
-type Contest = Result<(Contenders, Truth), ParamError>;
+type Entrants = Result<(Contenders, Truth), ParamError>;
 
 /// The operations of one model.
-struct OfModel<'a>(&'a Inputs);
+struct OfModel<'a>(&'a TimedInputs);
 
 impl Visitor for OfModel<'_> {
-    type Output = Result<Vec<Operation>, ParamError>;
+    type Output = Result<Vec<Contest>, ParamError>;
 
     fn visit<M: Registered>(self) -> Self::Output {
         // At compile time: models that are not timed are not compiled.
@@ -166,34 +170,24 @@ impl Visitor for OfModel<'_> {
             return Ok(Vec::new());
         }
         let inputs = self.0.typed()?;
-        let contest = |op: Op| {
+        let contest = |op: TimedOp| {
             let (contenders, truth) = match op {
-                Op::Prepare => prepare::<M>(&inputs),
-                Op::EvalPdf => eval_pdf::<M>(&inputs.params[0], &inputs, true),
-                Op::EvalPdfTails => eval_pdf::<M>(&inputs.narrow, &inputs, false),
-                Op::Sample => sample::<M>(&inputs.params[0], &inputs, true),
-                Op::SampleTails => sample::<M>(&inputs.narrow, &inputs, false),
-                Op::PointsEval => points::eval::<M>(&inputs),
-                Op::PointsShared => points::shared::<M, 1, 1>(&inputs),
-                Op::PointsOf4 => points::shared::<M, 4, 1>(&inputs),
-                Op::PointsOf16 => points::shared::<M, 16, 2>(&inputs),
-                Op::PointsMixed => points::mixed::<M>(&inputs, false),
-                Op::PointsPacked => points::mixed::<M>(&inputs, true),
+                TimedOp::Prepare => prepare::<M>(&inputs),
+                TimedOp::EvalPdf => eval_pdf::<M>(&inputs.params[0], &inputs, true),
+                TimedOp::EvalPdfTails => eval_pdf::<M>(&inputs.narrow, &inputs, false),
+                TimedOp::Sample => sample::<M>(&inputs.params[0], &inputs, true),
+                TimedOp::SampleTails => sample::<M>(&inputs.narrow, &inputs, false),
+                TimedOp::PointsEval => points::eval::<M>(&inputs),
+                TimedOp::PointsShared => points::shared::<M, 1, 1>(&inputs),
+                TimedOp::PointsOf4 => points::shared::<M, 4, 1>(&inputs),
+                TimedOp::PointsOf16 => points::shared::<M, 16, 2>(&inputs),
+                TimedOp::PointsMixed => points::mixed::<M>(&inputs, false),
+                TimedOp::PointsPacked => points::mixed::<M>(&inputs, true),
             }?;
-            Ok(Operation { op, model: M::NAME, contenders: contenders.0, truth })
+            Ok(Contest { op, model: M::NAME, contenders: contenders.0, truth })
         };
-        Op::ALL.into_iter().map(contest).collect()
+        TimedOp::ALL.into_iter().map(contest).collect()
     }
-}
-
-/// A pass that calls `call` with each of `inputs`.
-pub fn task<'a, I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass + 'a>
-where
-    I: Clone + 'a,
-    O: Output + 'a,
-    F: Fn(&I) -> O + 'a,
-{
-    Box::new(Each::new(1, inputs.to_vec(), call))
 }
 
 /// The formulas in `f64` for these parameters, seen from each of `wo`.
@@ -241,7 +235,7 @@ impl<M: Registered> Material<M> {
     }
 }
 
-fn prepare<M: Registered>(inputs: &Inputs<M::Params>) -> Contest {
+fn prepare<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let params = &inputs.params[0];
     let Material::<M> { bsdf, libm, std } = Material::new(params);
     let wo = arrays(&inputs.wo);
@@ -251,10 +245,10 @@ fn prepare<M: Registered>(inputs: &Inputs<M::Params>) -> Contest {
         task(&inputs.wo, move |wo| bsdf.prepare(*wo)),
     )
     .levels(EIGHT, |level| task(&packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo)));
-    Ok((contenders, Truth::of_directions(truth::<M>(params, &inputs.wo)?, &[PROBE; DIRECTIONS])))
+    Ok((contenders, Truth::of_directions(truth::<M>(params, &inputs.wo)?, &[PROBE; TIMED_DIRECTIONS])))
 }
 
-fn eval_pdf<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every_way: bool) -> Contest {
+fn eval_pdf<M: Registered>(params: &M::Params, inputs: &TimedInputs<M::Params>, every_way: bool) -> Entrants {
     let (wo, wi) = (inputs.wo[0], arrays(&inputs.wi));
     let material = Material::<M>::new(params);
     let ((libm, std), gather) = (material.references(wo), material.bsdf.prepare(wo));
@@ -273,16 +267,16 @@ fn eval_pdf<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every
         task(&inputs.wi, move |wi| gather.eval_pdf(*wi)),
     )
     .levels(EIGHT, |level| task(&packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi)))
-    .levels(SLICES, slices(DIRECTIONS));
+    .levels(SLICES, slices(TIMED_DIRECTIONS));
     if every_way {
         let (eights, _) = inputs.wi.as_chunks::<8>();
         let fresh = |level| task(eights, move |wi| gather.eval_pdf8_at(level, &Vec3x8::from(*wi)));
         contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
     }
-    Ok((contenders, Truth::of_directions(truth::<M>(params, &[wo; DIRECTIONS])?, &inputs.wi)))
+    Ok((contenders, Truth::of_directions(truth::<M>(params, &[wo; TIMED_DIRECTIONS])?, &inputs.wi)))
 }
 
-fn sample<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every_way: bool) -> Contest {
+fn sample<M: Registered>(params: &M::Params, inputs: &TimedInputs<M::Params>, every_way: bool) -> Entrants {
     let (wo, xi) = (inputs.wo[0], &inputs.xi);
     let material = Material::<M>::new(params);
     let ((libm, std), gather) = (material.references(wo), material.bsdf.prepare(wo));
@@ -301,12 +295,12 @@ fn sample<M: Registered>(params: &M::Params, inputs: &Inputs<M::Params>, every_w
         task(xi, move |xi| gather.sample(*xi)),
     )
     .levels(EIGHT, |level| task(&xi_packets(xi), move |xi| gather.sample8_at(level, xi)))
-    .levels(SLICES, slices(DIRECTIONS));
+    .levels(SLICES, slices(TIMED_DIRECTIONS));
     if every_way {
         let (eights, _) = xi.as_chunks::<8>();
         let packed = |xi: &[[f32; 3]; 8]| -> [f32x8; 3] { core::array::from_fn(|k| f32x8::new(xi.map(|xi| xi[k]))) };
         let fresh = |level| task(eights, move |xi| gather.sample8_at(level, &packed(xi)));
         contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
     }
-    Ok((contenders, Truth::of_samples(truth::<M>(params, &[wo; DIRECTIONS])?, xi)))
+    Ok((contenders, Truth::of_samples(truth::<M>(params, &[wo; TIMED_DIRECTIONS])?, xi)))
 }

@@ -1,7 +1,8 @@
-//! Entry points of the models on fixed inputs, with the expected answers. All measurements share them.
+//! Entry points of the models on fixed inputs, with the expected answers.
 //!
 //! [`entries::visit`] passes every entry point on every level to a [`Visitor`]: the Criterion benches time them, the
-//! program `entry` runs one of them for callgrind and for timing by hand.
+//! program `entry` runs one of them for callgrind and for timing by hand. [`contenders`] are the calls that `hairis compare` times,
+//! on inputs that it draws.
 
 pub mod check;
 pub mod contenders;

@@ -107,6 +107,16 @@ impl<I, O: Output, F: Fn(&I) -> O> Task for Each<I, O, F> {
     }
 }
 
+/// A pass that calls `call` with each of `inputs`.
+pub fn task<'a, I, O, F>(inputs: &[I], call: F) -> Box<dyn Pass + 'a>
+where
+    I: Clone + 'a,
+    O: Output + 'a,
+    F: Fn(&I) -> O + 'a,
+{
+    Box::new(Each::new(1, inputs.to_vec(), call))
+}
+
 /// A function of one argument with several results, each passed on as it comes.
 #[derive(Debug)]
 pub struct Several<I, O, F> {

@@ -16,8 +16,8 @@ use crate::stats::percentile;
 use crate::subject::{random, uniform_direction};
 use core::hint::black_box;
 use hairis::{Level, ParamError};
-pub use hairis_benches::contenders::Op;
-use hairis_benches::contenders::{Contender, DIRECTIONS, Inputs, Operation, operations};
+pub use hairis_benches::contenders::TimedOp;
+use hairis_benches::contenders::{Contender, Contest, TIMED_DIRECTIONS, TimedInputs, contests};
 use hairis_benches::task::Pass;
 use hairis_variants::ModelId;
 use serde::{Serialize, Serializer};
@@ -55,7 +55,7 @@ impl SpeedConfig {
 pub struct SpeedResult {
     /// The operation.
     #[serde(serialize_with = "op_name")]
-    pub op: Op,
+    pub op: TimedOp,
     /// The model.
     pub model: &'static str,
     /// `textbook`, `one lane`, or eight lanes, one of the kinds of packets and slices.
@@ -86,7 +86,7 @@ pub struct SpeedResult {
 
 /// Writes the name of an operation.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn op_name<S: Serializer>(op: &Op, serializer: S) -> Result<S::Ok, S::Error> {
+fn op_name<S: Serializer>(op: &TimedOp, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(op.name())
 }
 
@@ -110,7 +110,7 @@ pub struct SpeedReport {
 impl SpeedReport {
     /// The row of a contender, by operation, model, name and level.
     #[must_use]
-    pub fn row(&self, op: Op, model: &str, contender: &str, level: &str) -> Option<&SpeedResult> {
+    pub fn row(&self, op: TimedOp, model: &str, contender: &str, level: &str) -> Option<&SpeedResult> {
         self.rows
             .iter()
             .find(|row| row.op == op && row.model == model && row.contender == contender && row.level == level)
@@ -127,7 +127,7 @@ impl SpeedReport {
 pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedReport, ParamError> {
     let mut cells = Vec::new();
     for model in ModelId::defaults_of_names() {
-        cells.extend(operations(model, &draw(model, config.seed))?.into_iter().map(SpeedCell::calibrate));
+        cells.extend(contests(model, &draw(model, config.seed))?.into_iter().map(SpeedCell::calibrate));
     }
 
     let start = Instant::now();
@@ -139,6 +139,7 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
         }
         cells.iter_mut().for_each(|cell| cell.round(round));
     }
+    // Of its parameters threads use none: directions and numbers alone.
     let inputs = draw(ModelId::Gaussian, config.seed);
     let mut threads = Vec::new();
     for model in ModelId::defaults_of_names() {
@@ -146,7 +147,7 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
     }
     Ok(SpeedReport {
         config: *config,
-        directions: DIRECTIONS,
+        directions: TIMED_DIRECTIONS,
         compiled_level: Level::portable().name(),
         detected_level: Level::detect().name(),
         rows: cells.into_iter().flat_map(SpeedCell::rows).collect(),
@@ -155,17 +156,17 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
 }
 
 /// Uniform directions and numbers; the first parameters are the default, the other seven are drawn.
-fn draw(model: ModelId, seed: u64) -> Inputs {
+fn draw(model: ModelId, seed: u64) -> TimedInputs {
     let (mut from, default) = (Independent::new(seed, stream_id(&[0x5eed])), model.defaults());
     let mut params = [default; 8];
     params[1..].fill_with(|| random(default, &mut from));
     let narrow = default.fields().iter().filter_map(|field| Some((field, field.narrow?)));
     let narrow =
         narrow.fold(default, |values, (field, narrow)| values.with(field.name, &vec![narrow; field.kind.width()]));
-    let mut directions = || (0..DIRECTIONS).map(|_| uniform_direction(&mut from)).collect();
+    let mut directions = || (0..TIMED_DIRECTIONS).map(|_| uniform_direction(&mut from)).collect();
     let (wi, wo) = (directions(), directions());
-    let xi = (0..DIRECTIONS).map(|_| [from.next_f32(), from.next_f32(), from.next_f32()]).collect();
-    Inputs { wi, wo, xi, params, narrow }
+    let xi = (0..TIMED_DIRECTIONS).map(|_| [from.next_f32(), from.next_f32(), from.next_f32()]).collect();
+    TimedInputs { wi, wo, xi, params, narrow }
 }
 
 /// The times of a contender.
@@ -178,39 +179,39 @@ struct Times {
 
 /// One operation of one model: a table's block of rows.
 struct SpeedCell {
-    operation: Operation,
+    contest: Contest,
     /// By contender.
     times: Vec<Times>,
 }
 
 impl SpeedCell {
     /// Finds how many passes of each contender make a stretch long enough to time.
-    fn calibrate(mut operation: Operation) -> Self {
+    fn calibrate(mut contest: Contest) -> Self {
         let passes = |contender: &mut Contender| {
             let fastest = (0..5).map(|_| stretch(&mut *contender.task, 1)).fold(f64::INFINITY, f64::min);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 1000")]
             let passes = (MIN_STRETCH / fastest).ceil().clamp(1.0, 1e3) as u32;
             Times { passes, ns: Vec::new() }
         };
-        let times = operation.contenders.iter_mut().map(passes).collect();
-        Self { operation, times }
+        let times = contest.contenders.iter_mut().map(passes).collect();
+        Self { contest, times }
     }
 
     /// Times every contender once, in an order that changes from round to round.
     fn round(&mut self, round: usize) {
         let count = self.times.len();
         for k in (0..count).map(|k| (k + round) % count) {
-            let (task, Times { passes, ns }) = (&mut self.operation.contenders[k].task, &mut self.times[k]);
+            let (task, Times { passes, ns }) = (&mut self.contest.contenders[k].task, &mut self.times[k]);
             // One stretch untimed: the one before was another's, and left the caches its own and the vector units asleep.
             stretch(&mut **task, *passes);
             let mut time = 0.0;
             deeper(round % FRAMES, &mut || time = stretch(&mut **task, *passes));
-            ns.push(time / (f64::from(*passes) * DIRECTIONS as f64));
+            ns.push(time / (f64::from(*passes) * TIMED_DIRECTIONS as f64));
         }
     }
 
     fn rows(self) -> Vec<SpeedResult> {
-        let Self { operation: Operation { op, model, contenders, truth }, times } = self;
+        let Self { contest: Contest { op, model, contenders, truth }, times } = self;
         // The two textbooks lead; ratios are to the faster of them.
         let [libm, std] = [0, 1].map(|textbook: usize| times[textbook].ns.clone());
         let fastest = if quartiles(&std)[1] < quartiles(&libm)[1] { std } else { libm };
@@ -284,13 +285,13 @@ pub(crate) fn median_error(quartiles: [f64; 3], count: usize) -> f64 {
 mod tests {
     use super::*;
 
-    fn kajiya_kay() -> Vec<Operation> {
-        operations(ModelId::KajiyaKay, &draw(ModelId::KajiyaKay, 1)).expect("accepted")
+    fn kajiya_kay() -> Vec<Contest> {
+        contests(ModelId::KajiyaKay, &draw(ModelId::KajiyaKay, 1)).expect("accepted")
     }
 
     #[test]
     fn every_contender_answers_every_direction() {
-        for Operation { op, contenders, truth, .. } in kajiya_kay() {
+        for Contest { op, contenders, truth, .. } in kajiya_kay() {
             for mut contender in contenders {
                 let wrong = truth.wrong_share(&contender.task.answers());
                 assert!(wrong <= MAX_WRONG, "{} {} {}: {wrong}", op.label(), contender.name, contender.level);
@@ -300,8 +301,8 @@ mod tests {
 
     #[test]
     fn one_wrong_lane_in_eight_fails() {
-        let Operation { contenders, truth, .. } =
-            kajiya_kay().into_iter().find(|operation| operation.op == Op::EvalPdf).expect("among all");
+        let Contest { contenders, truth, .. } =
+            kajiya_kay().into_iter().find(|contest| contest.op == TimedOp::EvalPdf).expect("among all");
         let mut eight = contenders.into_iter().find(|contender| contender.name == "eight lanes").expect("among all");
         let mut answers = eight.task.answers();
         assert!(truth.wrong_share(&answers) <= MAX_WRONG, "right answers");
@@ -309,7 +310,7 @@ mod tests {
             answer.pdf = answer.pdf.map(|pdf| 1.01 * pdf);
         }
         assert!(truth.wrong_share(&answers) >= 0.12, "a wrong density passed");
-        answers.truncate(DIRECTIONS - 1);
+        answers.truncate(TIMED_DIRECTIONS - 1);
         assert_eq!(truth.wrong_share(&answers), 1.0, "an answer is missing");
     }
 }

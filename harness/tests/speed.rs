@@ -1,7 +1,7 @@
 //! Timings: here, and not beside the code, so that what is timed is compiled once.
 
 use hairis::Level;
-use hairis_harness::speed::{Op, SpeedConfig, run};
+use hairis_harness::speed::{SpeedConfig, TimedOp, run};
 use hairis_variants::ModelId;
 
 #[test]
@@ -13,13 +13,13 @@ fn every_contender_is_timed_and_right() {
     // hits where it has one.
     let levels = Level::available().count();
     let models = ModelId::defaults_of_names().count();
-    assert_eq!(report.rows.len(), models * (Op::ALL.len() * (3 + levels) + 12 * levels), "a row is missing");
+    assert_eq!(report.rows.len(), models * (TimedOp::ALL.len() * (3 + levels) + 12 * levels), "a row is missing");
     assert!(last >= 1.0, "progress ended at {last}");
     for row in &report.rows {
         assert!(row.passed, "wrong answers: {row:?}");
         assert!(row.rounds == 15 && row.ns > 0.0 && row.ns_q1 <= row.ns && row.ns <= row.ns_q3, "{row:?}");
     }
-    for op in Op::ALL {
+    for op in TimedOp::ALL {
         let name = op.label();
         for model in ModelId::defaults_of_names() {
             let textbooks = report.rows.iter().filter(|row| row.contender == "textbook");
@@ -32,6 +32,6 @@ fn every_contender_is_timed_and_right() {
             );
         }
     }
-    let row = report.row(Op::Sample, "cauchy", "eight lanes", Level::portable().name());
+    let row = report.row(TimedOp::Sample, "cauchy", "eight lanes", Level::portable().name());
     assert!(row.is_some(), "the portable level is always there");
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
 
 mod by_channel;
+mod default_level;
 mod family;
 mod frames;
 mod math;
@@ -12,5 +13,5 @@ mod tolerance;
 mod vector;
 
 use hairis_conformance::published::{quadrature, support};
-// Linked for what it has compiled already: the published model and its samplers, for every instruction set.
+// At opt-level 1 rustc links generic code of other crates: this one has compiled the models for every instruction set.
 use hairis_variants as _;

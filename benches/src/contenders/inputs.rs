@@ -5,11 +5,11 @@ use hairis::ParamError;
 use hairis_variants::{Parameters, Values};
 
 /// Directions per pass: packets of shading points with 16 samples each. With their numbers `xi` they take 21 KB.
-pub const DIRECTIONS: usize = 896;
+pub const TIMED_DIRECTIONS: usize = 896;
 
-/// [`DIRECTIONS`] directions and numbers, all lanes different, and eight sets of parameters.
+/// [`TIMED_DIRECTIONS`] directions and numbers, all lanes different, and eight sets of parameters.
 #[derive(Clone, Debug)]
-pub struct Inputs<P = Values> {
+pub struct TimedInputs<P = Values> {
     /// Directions towards the light.
     pub wi: Vec<Vec3>,
     /// Directions towards the viewer.
@@ -23,15 +23,17 @@ pub struct Inputs<P = Values> {
     pub narrow: P,
 }
 
-impl Inputs {
+impl TimedInputs {
     /// The same with the parameters of a model.
-    pub(super) fn typed<P: Parameters>(&self) -> Result<Inputs<P>, ParamError> {
+    pub(super) fn typed<P: Parameters>(&self) -> Result<TimedInputs<P>, ParamError> {
         let Self { wi, wo, xi, params, narrow } = self.clone();
+        let counts = [wi.len(), wo.len(), xi.len()];
+        assert_eq!(counts, [TIMED_DIRECTIONS; 3], "directions to and fro, and triples of numbers");
         let (narrow, mut typed) = (P::from_values(&narrow)?, [P::default(); 8]);
         for (typed, values) in typed.iter_mut().zip(&params) {
             *typed = P::from_values(values)?;
         }
-        Ok(Inputs { wi, wo, xi, params: typed, narrow })
+        Ok(TimedInputs { wi, wo, xi, params: typed, narrow })
     }
 }
 

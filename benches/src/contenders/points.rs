@@ -1,10 +1,10 @@
 //! Shading points of their own: preparing one, and a few samples of it.
 
 use super::inputs::pairs;
-use super::{Contenders, Contest, DIRECTIONS, EIGHT, EIGHT_AT_ONE, HITS, Inputs, Material, Truth, task, truth};
+use super::{Contenders, EIGHT, EIGHT_AT_ONE, Entrants, HITS, Material, TIMED_DIRECTIONS, TimedInputs, Truth, truth};
 use crate::inputs::{arrays, packets, xi_packets};
 use crate::platform::{Platform, platform};
-use crate::task::{Answer, Output, Pass, Several, Slices};
+use crate::task::{Answer, Output, Pass, Several, Slices, task};
 use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::wide::f32x8;
@@ -32,7 +32,7 @@ fn several<I: 'static, O: Output + 'static>(
 
 /// A shading point and `N` samples of it, all on the same hair: each lane at its own point, or a point's samples in `P`
 /// packets, the last of which may have lanes to spare.
-pub(super) fn shared<M: Registered, const N: usize, const P: usize>(inputs: &Inputs<M::Params>) -> Contest {
+pub(super) fn shared<M: Registered, const N: usize, const P: usize>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let params = &inputs.params[0];
     let Material::<M> { bsdf, libm, std } = Material::new(params);
     let (rows, _) = inputs.xi.as_chunks::<N>();
@@ -85,7 +85,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(inputs: &Inp
                 let out = SampleColumns { wi: Some([u, v, w]), value, pdf: Some(pdf), weight, slot: Some(slot) };
                 bsdf.sample_hits_at(level, HitSlices { wo: [x, y, z], h: None }, [a, b, c], out)
             };
-            Box::new(Slices::new(DIRECTIONS, &joined(&arrays(wo), &inputs.xi), call))
+            Box::new(Slices::new(TIMED_DIRECTIONS, &joined(&arrays(wo), &inputs.xi), call))
         });
     }
     let points = truth::<M>(params, wo)?.into_iter().flat_map(|point| core::iter::repeat_n(point, N)).collect();
@@ -98,7 +98,7 @@ fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
 }
 
 /// A shading point and an evaluation at it, all on the same hair.
-pub(super) fn eval<M: Registered>(inputs: &Inputs<M::Params>) -> Contest {
+pub(super) fn eval<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let params = &inputs.params[0];
     let Material::<M> { bsdf, libm, std } = Material::new(params);
     let both = pairs(&arrays(&inputs.wo), &arrays(&inputs.wi));
@@ -114,13 +114,13 @@ pub(super) fn eval<M: Registered>(inputs: &Inputs<M::Params>) -> Contest {
             let out = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
             bsdf.eval_pdf_hits_at(level, HitSlices { wo: [x, y, z], h: None }, [u, v, w], out)
         };
-        Box::new(Slices::new(DIRECTIONS, &joined(&arrays(&inputs.wo), &arrays(&inputs.wi)), call))
+        Box::new(Slices::new(TIMED_DIRECTIONS, &joined(&arrays(&inputs.wo), &arrays(&inputs.wi)), call))
     });
     Ok((contenders, Truth::of_directions(truth::<M>(params, &inputs.wo)?, &inputs.wi)))
 }
 
 /// A shading point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
-pub(super) fn mixed<M: Registered>(inputs: &Inputs<M::Params>, pack_each: bool) -> Contest {
+pub(super) fn mixed<M: Registered>(inputs: &TimedInputs<M::Params>, pack_each: bool) -> Entrants {
     let materials = inputs.params.each_ref().map(Material::<M>::new);
     let (libm, std) = (materials.each_ref().map(|of| of.libm), materials.each_ref().map(|of| of.std));
     let bsdfs = materials.map(|of| of.bsdf);

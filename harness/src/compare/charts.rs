@@ -8,7 +8,7 @@ use crate::plot::{Axis, Bar, Series, bars, lines};
 use crate::report::Drawing;
 use crate::sampler::Sampler;
 use crate::sequence::{SequenceKind, XiSource};
-use crate::speed::Op;
+use crate::speed::TimedOp;
 use crate::subject::ModelKind;
 use hairis::HairParams;
 use hairis_variants::{Cauchy, ModelId};
@@ -51,7 +51,7 @@ pub(super) fn summary(of: &Comparison) -> Drawing {
 
 /// Speed against the textbook, a chart per model.
 pub(super) fn speeds(of: &Comparison) -> Vec<Drawing> {
-    let ops = [Op::Prepare, Op::EvalPdf, Op::Sample, Op::PointsMixed];
+    let ops = [TimedOp::Prepare, TimedOp::EvalPdf, TimedOp::Sample, TimedOp::PointsMixed];
     let groups = ops.map(|op| op.label().to_owned());
     // The rest is in the table.
     let shown = |contender| ["one lane", "eight lanes", "slices"].contains(&contender);

@@ -7,7 +7,7 @@ use crate::light::in_words;
 use crate::report::{Report, Section};
 use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
-use crate::speed::Op;
+use crate::speed::TimedOp;
 use crate::subject::ModelKind;
 use crate::table::number;
 
@@ -81,7 +81,7 @@ pub fn report(of: &Comparison) -> Report {
 }
 
 /// How many times as fast as the textbook eight lanes are.
-fn speed_ratio(of: &Comparison, op: Op, model: ModelKind) -> Option<String> {
+fn speed_ratio(of: &Comparison, op: TimedOp, model: ModelKind) -> Option<String> {
     let row = of.speed.row(op, model.name(), "eight lanes", of.speed.detected_level)?;
     Some(number::ratio(row.ratio))
 }
@@ -91,7 +91,7 @@ fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
     let level = of.speed.detected_level;
     let mut verdicts = Vec::new();
     let ratio = |op| speed_ratio(of, op, ModelKind::Gaussian);
-    if let (Some(eval), Some(sample)) = (ratio(Op::EvalPdf), ratio(Op::Sample)) {
+    if let (Some(eval), Some(sample)) = (ratio(TimedOp::EvalPdf), ratio(TimedOp::Sample)) {
         let sentence =
             format!("Eight lanes on {level} evaluate {eval} and sample {sample} as fast as the scalar formulas.");
         verdicts.push(["Speed".to_owned(), sentence]);
@@ -189,7 +189,7 @@ fn more_speed(of: &Comparison) -> Option<String> {
         "Eight lanes on {} evaluate the Cauchy model {} as fast as the paper's formulas in scalar f32, and sample the Gaussian \
          model on eight different shading points, preparation included, {} as fast.",
         of.speed.detected_level,
-        speed_ratio(of, Op::EvalPdf, ModelKind::Cauchy)?,
-        speed_ratio(of, Op::PointsMixed, ModelKind::Gaussian)?
+        speed_ratio(of, TimedOp::EvalPdf, ModelKind::Cauchy)?,
+        speed_ratio(of, TimedOp::PointsMixed, ModelKind::Gaussian)?
     ))
 }

@@ -6,7 +6,7 @@ use crate::agreement::{AgreementResult, Quantity, Region};
 use crate::efficiency::{EfficiencyRow, MisRow, SAMPLERS, Technique};
 use crate::sampler::Sampler;
 use crate::sequence::SequenceKind;
-use crate::speed::Op;
+use crate::speed::TimedOp;
 use crate::stats::Estimate;
 use crate::table::{Table, number};
 use hairis_variants::ModelId;
@@ -31,7 +31,8 @@ pub fn summary(of: &Comparison) -> Vec<Table> {
 pub(super) fn speed(of: &Comparison, depth: Depth) -> Vec<Table> {
     let quartiles = |[low, high]: [f64; 2], shown: fn(f64) -> String| format!("{} to {}", shown(low), shown(high));
     let ns = |ns| number::plain(ns, 3);
-    let is_shown = |op| depth == Depth::Full || !matches!(op, Op::PointsOf4 | Op::PointsPacked | Op::SampleTails);
+    let is_shown =
+        |op| depth == Depth::Full || !matches!(op, TimedOp::PointsOf4 | TimedOp::PointsPacked | TimedOp::SampleTails);
     let of_model = |model: ModelId| {
         let rows = of.speed.rows.iter().filter(|row| row.model == model.name() && is_shown(row.op)).map(|row| {
             let keys = [row.op.label(), row.contender, row.level].map(str::to_owned);

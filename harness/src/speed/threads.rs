@@ -1,6 +1,6 @@
 //! Throughput by number of threads: slices in chunks through rayon.
 
-use super::{Inputs, Op, op_name, quartiles};
+use super::{TimedInputs, TimedOp, op_name, quartiles};
 use core::hint::black_box;
 use hairis::{EvalSlices, Level, ParamError, SampleSlices};
 use hairis_variants::ModelId;
@@ -19,9 +19,9 @@ const ROUNDS: usize = 15;
 /// Throughput on a number of threads: a row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThreadsResult {
-    /// [`Op::EvalPdf`] or [`Op::Sample`], through slices.
+    /// [`TimedOp::EvalPdf`] or [`TimedOp::Sample`], through slices.
     #[serde(serialize_with = "op_name")]
-    pub op: Op,
+    pub op: TimedOp,
     /// The model.
     pub model: &'static str,
     /// Instruction set of the lanes.
@@ -61,7 +61,7 @@ fn thread_counts() -> Vec<usize> {
 }
 
 /// Measures evaluation and sampling of one model on every number of threads.
-pub(super) fn run(model: ModelId, inputs: &Inputs) -> Result<Vec<ThreadsResult>, ParamError> {
+pub(super) fn run(model: ModelId, inputs: &TimedInputs) -> Result<Vec<ThreadsResult>, ParamError> {
     let counts = thread_counts();
     let pools: Result<Vec<_>, _> = counts.iter().map(|n| ThreadPoolBuilder::new().num_threads(*n).build()).collect();
     // Where the system refuses threads there is nothing to report.
@@ -78,7 +78,7 @@ pub(super) fn run(model: ModelId, inputs: &Inputs) -> Result<Vec<ThreadsResult>,
         let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
         let _ = gather.sample_batch(chunk.inputs.each_ref().map(Vec::as_slice), out);
     });
-    let rows = |(op, ns): (Op, Vec<Vec<f64>>)| {
+    let rows = |(op, ns): (TimedOp, Vec<Vec<f64>>)| {
         let of = |(threads, times): (&usize, &Vec<f64>)| {
             let ratios: Vec<f64> = ns[0].iter().zip(times).map(|(one, many)| one / many).collect();
             let ([_, ns, _], [speedup_q1, speedup, speedup_q3]) = (quartiles(times), quartiles(&ratios));
@@ -87,7 +87,7 @@ pub(super) fn run(model: ModelId, inputs: &Inputs) -> Result<Vec<ThreadsResult>,
         };
         counts.iter().zip(&ns).map(of).collect::<Vec<_>>()
     };
-    Ok([(Op::EvalPdf, eval), (Op::Sample, sample)].into_iter().flat_map(rows).collect())
+    Ok([(TimedOp::EvalPdf, eval), (TimedOp::Sample, sample)].into_iter().flat_map(rows).collect())
 }
 
 /// Time per direction of each pool in each round, ns; the pools take turns.
@@ -119,7 +119,7 @@ mod tests {
     fn every_number_of_threads_has_its_row() {
         let counts = thread_counts();
         assert!(counts[0] == 1 && counts.windows(2).all(|pair| pair[0] < pair[1]), "{counts:?}");
-        let inputs = super::super::draw(ModelId::Gaussian, 1);
+        let inputs = crate::speed::draw(ModelId::Gaussian, 1);
         let rows = run(ModelId::Gaussian, &inputs).expect("the default is legal");
         assert_eq!(rows.len(), 2 * counts.len(), "a row is missing");
         for row in &rows {

@@ -19,8 +19,7 @@ use crate::stats::Estimate;
 use crate::subject::{ModelKind, uniform_direction};
 use core::hint::black_box;
 use hairis::{HairParams, Sample8, Vec3x8};
-use hairis_benches::contenders::task;
-use hairis_benches::task::{Answer, Output, Pass};
+use hairis_benches::task::{Answer, Output, Pass, task};
 use wide::f32x8;
 
 /// Samples of a shading point over which its set-up is spread: a path tracer's, and two of direct lighting.

@@ -34,9 +34,9 @@ pub enum Which {
     /// [`Subject::materials`].
     Everyday,
     /// The same, and [`Subject::extremes`].
-    All,
+    WithExtremes,
     /// The everyday ones, and [`Subject::random_materials`].
-    Random,
+    WithRandom,
     /// [`Subject::white`].
     White,
 }
@@ -136,8 +136,8 @@ impl<'s, S: Subject> Set<'s, S> {
         let mut materials = if matches!(which, Which::White) { subject.white() } else { subject.materials() };
         match which {
             Which::Everyday | Which::White => {}
-            Which::All => materials.extend(subject.extremes()),
-            Which::Random => {
+            Which::WithExtremes => materials.extend(subject.extremes()),
+            Which::WithRandom => {
                 let random = subject.random_materials();
                 materials.extend(random.into_iter().map(|params| ("a random material", params)));
             }
@@ -188,8 +188,8 @@ pub(crate) const COLUMNS: usize = 11;
 /// Places of the columns of [`ErasedGather::weight_slices`] among those of [`ErasedGather::sample_slices`].
 pub(crate) const WEIGHT_COLUMNS: [usize; 7] = [0, 1, 2, 6, 7, 8, 9];
 
-/// Outcome of a call on slices.
-type Written = Result<(), LengthError>;
+/// Outcome of a call on slices: an error if their lengths differ.
+type SliceResult = Result<(), LengthError>;
 
 /// [`Gather`] of any model. Without a level, slices run on the one that is found.
 pub trait ErasedGather: fmt::Debug {
@@ -204,11 +204,16 @@ pub trait ErasedGather: fmt::Debug {
     fn albedo(&self) -> PerLobe<[f32; 3]>;
     fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedGather>;
     fn conserving(&self) -> Box<dyn ErasedGather>;
-    fn eval_slices(&self, level: Option<Level>, wi: [&[f32]; 3], out: [&mut [f32]; 4]) -> Written;
-    fn value_slices(&self, level: Level, wi: [&[f32]; 3], out: [&mut [f32]; 3]) -> Written;
-    fn pdf_slice(&self, level: Level, wi: [&[f32]; 3], out: &mut [f32]) -> Written;
-    fn sample_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; COLUMNS]) -> Written;
-    fn weight_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; WEIGHT_COLUMNS.len()]) -> Written;
+    fn eval_slices(&self, level: Option<Level>, wi: [&[f32]; 3], out: [&mut [f32]; 4]) -> SliceResult;
+    fn value_slices(&self, level: Level, wi: [&[f32]; 3], out: [&mut [f32]; 3]) -> SliceResult;
+    fn pdf_slice(&self, level: Level, wi: [&[f32]; 3], out: &mut [f32]) -> SliceResult;
+    fn sample_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; COLUMNS]) -> SliceResult;
+    fn weight_slices(
+        &self,
+        level: Option<Level>,
+        xi: [&[f32]; 3],
+        out: [&mut [f32]; WEIGHT_COLUMNS.len()],
+    ) -> SliceResult;
 }
 
 impl<M: Model + 'static> ErasedGather for Gather<M> {
@@ -256,7 +261,7 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
         Box::new(self.conserving())
     }
 
-    fn eval_slices(&self, level: Option<Level>, wi: [&[f32]; 3], out: [&mut [f32]; 4]) -> Written {
+    fn eval_slices(&self, level: Option<Level>, wi: [&[f32]; 3], out: [&mut [f32]; 4]) -> SliceResult {
         let [r, g, b, pdf] = out;
         let out = EvalSlices { value: [r, g, b], pdf };
         match level {
@@ -265,15 +270,15 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
         }
     }
 
-    fn value_slices(&self, level: Level, wi: [&[f32]; 3], out: [&mut [f32]; 3]) -> Written {
+    fn value_slices(&self, level: Level, wi: [&[f32]; 3], out: [&mut [f32]; 3]) -> SliceResult {
         self.eval_batch_at(level, wi, out)
     }
 
-    fn pdf_slice(&self, level: Level, wi: [&[f32]; 3], out: &mut [f32]) -> Written {
+    fn pdf_slice(&self, level: Level, wi: [&[f32]; 3], out: &mut [f32]) -> SliceResult {
         self.pdf_batch_at(level, wi, out)
     }
 
-    fn sample_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; COLUMNS]) -> Written {
+    fn sample_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; COLUMNS]) -> SliceResult {
         let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = out;
         let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
         match level {
@@ -282,7 +287,12 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
         }
     }
 
-    fn weight_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; WEIGHT_COLUMNS.len()]) -> Written {
+    fn weight_slices(
+        &self,
+        level: Option<Level>,
+        xi: [&[f32]; 3],
+        out: [&mut [f32]; WEIGHT_COLUMNS.len()],
+    ) -> SliceResult {
         let [u, v, w, pdf, wr, wg, wb] = out;
         let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [wr, wg, wb] };
         match level {

@@ -1,7 +1,7 @@
 //! Slices of hits give the bits of packets, whatever their length, alignment, materials and columns.
 
 use crate::environment::{DOWN, with_mode};
-use crate::erased::hits::{Columns, HitsSet, HitsSubject, Of};
+use crate::erased::hits::{Columns, HitMaterials, HitsSet, HitsSubject};
 use crate::erased::{COLUMNS, Direction, Material, MaterialSet};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
@@ -21,7 +21,8 @@ const SAMPLE_CHOICES: [[bool; 5]; 4] = [
     [false; 5],
 ];
 
-/// Slices of hits give the bits that [`Bsdf8::prepare8`](hairis::Bsdf8::prepare8) and then eight lanes give: on one material, and on a table of
+/// Slices of hits give the bits that [`Bsdf8::prepare8`](hairis::Bsdf8::prepare8) and then eight lanes give: on one material,
+/// and on a table of
 /// materials in runs and at random; without `h`, they are hits on the axis. Columns that are left out are not written, nor is
 /// anything beyond a slice. Slices of different lengths and indices beyond the table are refused, and then nothing is written.
 /// Where the host rounds down and takes denormals for 0, results are finite and not negative.
@@ -40,13 +41,13 @@ pub fn hits_equal_packets(subject: &dyn HitsSubject) -> Outcome {
             let slices = Slices::new(&rows, len % 8, len % 3 != 1);
             let expected = Expected::new(&vec![materials[one]; len], level, &slices.rows);
             slices.check(&expected, len, &format!("one material, {at}"), |xi, out| {
-                set.call(Of::One(one), level, slices.hits(), xi, out)
+                set.call(HitMaterials::Shared(one), level, slices.hits(), xi, out)
             })?;
             let index = indices(&mut draws, len, materials.len());
             let each: Vec<_> = index.iter().map(|i| materials[*i as usize]).collect();
             let expected = Expected::new(&each, level, &slices.rows);
             slices.check(&expected, len, &format!("materials {index:?}, {at}"), |xi, out| {
-                set.call(Of::Each(&index), level, slices.hits(), xi, out)
+                set.call(HitMaterials::PerHit(&index), level, slices.hits(), xi, out)
             })?;
         }
     }
@@ -65,7 +66,7 @@ fn any_rounding_is_finite(set: &dyn HitsSet) -> Outcome {
         let [r, g, b, pdf, wr, wg, wb, density] = all.each_mut().map(|column| &mut column[..]);
         let evals = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
         let samples = SampleColumns { weight: Some([wr, wg, wb]), pdf: Some(density), ..SampleColumns::default() };
-        let call = |xi, out| set.call(Of::Each(&index), level, slices.hits(), xi, out);
+        let call = |xi, out| set.call(HitMaterials::PerHit(&index), level, slices.hits(), xi, out);
         let lengths = call(slices.three(4), Columns::Eval(evals)).and(call(slices.three(7), Columns::Sample(samples)));
         if lengths.is_err() || !all.iter().flatten().all(|x| x.is_finite() && *x >= 0.0) {
             return Err(Failure::new(NAME, format!("rounded down on {level}: {all:?}")));
@@ -179,9 +180,9 @@ impl Expected {
         let mut all = Self { evals: Vec::new(), samples: Vec::new() };
         for (materials, rows) in materials.chunks(8).zip(rows.chunks(8)) {
             let lane = |lane: usize| lane % rows.len();
-            let of = core::array::from_fn(|i| materials[lane(i)]);
+            let packed = core::array::from_fn(|i| materials[lane(i)]);
             let row: [Row; 8] = core::array::from_fn(|i| rows[lane(i)]);
-            let gather = Material::prepare_packed(of, level, hits8(&row.map(|row| row.hit)));
+            let gather = Material::prepare_packed(packed, level, hits8(&row.map(|row| row.hit)));
             let evals = gather.eval(level, &packet(&row.map(|row| row.wi)));
             let samples = gather.sample(level, &triples(&row.map(|row| row.xi)));
             for lane in 0..rows.len() {

@@ -59,7 +59,7 @@ fn each_mixed(
     rounds: usize,
     mut see: impl FnMut(&Mixed<'_>, &mut Draws, usize) -> Outcome,
 ) -> Outcome {
-    let set = subject.set(Which::All);
+    let set = subject.set(Which::WithExtremes);
     let materials: Vec<_> = set.iter().collect();
     let mut draws = Draws(seed);
     for round in 0..rounds {

@@ -126,7 +126,7 @@ fn at_each(
 /// At the first input where something is not 0, or a sample is kept.
 pub fn inputs_that_are_no_numbers_are_black(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0x7a7a);
-    for material in subject.set(Which::All).iter() {
+    for material in subject.set(Which::WithExtremes).iter() {
         let name = material.name();
         for _ in 0..ROUNDS {
             let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());

@@ -72,13 +72,13 @@ pub struct Formulas {
 }
 
 impl Formulas {
-    /// Those of a model.
+    /// Formulas of a model.
     pub const fn of<S: Published>() -> Self {
         Self { shape: S::SHAPE, bands: S::BANDS, by_channel: S::BY_CHANNEL }
     }
 }
 
-/// A [`Published`] model without its types, which the tests take.
+/// A [`Published`] model without its types, as the tests take it.
 pub struct Tested {
     forms: Vec<(Box<dyn AnyModel>, f32)>,
     /// With the published sampler, and with the matched ones of 5, 9 and 25 bands.
@@ -96,6 +96,7 @@ impl fmt::Debug for Tested {
 }
 
 impl Tested {
+    /// The model `S`.
     pub fn new<S: Published>() -> Self {
         let forms = S::forms().into_iter().map(|(model, factor)| (Box::new(model) as Box<dyn AnyModel>, factor));
         let samplers: [(_, Box<dyn AnyModel>); 4] = [
@@ -112,6 +113,11 @@ impl Tested {
             pdf_floor: S::PDF_FLOOR,
             rows: S::ROWS,
         }
+    }
+
+    /// The first of its forms.
+    fn model(&self) -> &dyn AnyModel {
+        &*self.forms[0].0
     }
 
     fn forms(&self) -> Vec<(&dyn AnyModel, f32)> {

@@ -33,7 +33,7 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0x4ef5);
     let mut worst = ["S", "density", "lobe"].map(|what| Worst::new(NAME, what, 1.0));
     let mut compared = 0_usize;
-    for material in subject.set(Which::Random).iter() {
+    for material in subject.set(Which::WithRandom).iter() {
         let name = material.name();
         for hit in hits_and(HITS, &mut draws) {
             let Some(reference) = material.reference(&hit) else { return Ok(()) };

@@ -13,7 +13,7 @@ pub type Materials<S> = Vec<(&'static str, ParamsOf<S>)>;
 /// Two functions are required. Whatever else is left out, the model still has to be total, to sample the density it
 /// reports, and to give the same results on one lane, on eight and in slices.
 pub trait Subject: Sync {
-    /// The model.
+    /// The model: a marker without borrowed data.
     type Model: Model + 'static;
 
     /// The model's marker.

@@ -89,14 +89,14 @@ hairis::lane_struct! {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Faulty<T> {
     fault: u8,
-    sound: T,
+    constants: T,
 }
 
 impl<T> Deref for Faulty<T> {
     type Target = T;
     #[inline(always)]
     fn deref(&self) -> &T {
-        &self.sound
+        &self.constants
     }
 }
 
@@ -109,12 +109,12 @@ impl<T: LaneStruct> LaneStruct for Faulty<T> {
         if fault == WRONG_PACK {
             items[6] = items[5];
         }
-        Faulty { fault, sound: T::pack(items.map(|item| &item.sound)) }
+        Faulty { fault, constants: T::pack(items.map(|item| &item.constants)) }
     }
 
     fn lane(eight: &Self::Eight, lane: usize) -> Self::One {
         let fault = eight.fault;
-        Faulty { fault, sound: T::lane(&eight.sound, if fault == WRONG_LANE && lane == 3 { 4 } else { lane }) }
+        Faulty { fault, constants: T::lane(&eight.constants, if fault == WRONG_LANE && lane == 3 { 4 } else { lane }) }
     }
 }
 
@@ -219,8 +219,8 @@ impl Model for Fiber {
     fn material(&self, params: &Params) -> Faulty<Material<f32>> {
         let (d, s) = (params.kd.iter().sum::<f32>(), params.ks.iter().sum::<f32>());
         let share = |x: f32| if d + s > 0.0 { x / (d + s) } else { 0.0 };
-        let sound = Material { kd: params.kd, ks: params.ks, width: params.width, selection: [share(d), share(s)] };
-        Faulty { fault: params.fault, sound }
+        let constants = Material { kd: params.kd, ks: params.ks, width: params.width, selection: [share(d), share(s)] };
+        Faulty { fault: params.fault, constants }
     }
 
     #[inline(always)]
@@ -240,7 +240,7 @@ impl Model for Fiber {
         }
         let width = material.width.lanes();
         let span = atan2_upper(width + width, width.mul_add(width, sin_theta_o.mul_add(sin_theta_o, -one)));
-        let sound = Point {
+        let constants = Point {
             kd: store3(lanes3(&material.kd)),
             ks: store3(lanes3(&material.ks)),
             width: width.store(),
@@ -248,7 +248,7 @@ impl Model for Fiber {
             sin_theta_o: sin_theta_o.store(),
             span: span.store(),
         };
-        Faulty { fault: material.fault, sound }
+        Faulty { fault: material.fault, constants }
     }
 
     #[inline(always)]
@@ -259,8 +259,8 @@ impl Model for Fiber {
         let sum = (p_d + p_s).max(C::splat(f32::MIN_POSITIVE));
         let times = |x: [C; 3], by: C| [x[0] * by, x[1] * by, x[2] * by];
         let kd = if gather.fault == MASK_LEAKS { times(gather.kd, d.max(C::splat(1e-4))) } else { times(gather.kd, d) };
-        let sound = Point { kd, ks: times(gather.ks, s), selection: [p_d / sum, p_s / sum], ..gather.sound };
-        Faulty { fault: gather.fault, sound }
+        let constants = Point { kd, ks: times(gather.ks, s), selection: [p_d / sum, p_s / sum], ..gather.constants };
+        Faulty { fault: gather.fault, constants }
     }
 
     #[inline(always)]

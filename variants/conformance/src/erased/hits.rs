@@ -7,9 +7,9 @@ use hairis::{EvalColumns, HitSlices, HitsError, Level, MaterialTable, SampleColu
 /// The columns of a call that are asked for.
 #[derive(Debug)]
 pub enum Columns<'a> {
-    /// Those of an evaluation.
+    /// Columns of an evaluation.
     Eval(EvalColumns<'a>),
-    /// Those of a sample.
+    /// Columns of a sample.
     Sample(SampleColumns<'a>),
 }
 
@@ -22,7 +22,7 @@ pub trait HitsSubject: Sync {
 
 impl<S: Subject> HitsSubject for S {
     fn hits(&self) -> Box<dyn HitsSet + '_> {
-        Box::new(Set::new(self, Which::All))
+        Box::new(Set::new(self, Which::WithExtremes))
     }
 }
 
@@ -30,7 +30,7 @@ impl<S: Subject> HitsSubject for S {
 pub trait HitsSet: MaterialSet {
     fn call(
         &self,
-        of: Of<'_>,
+        of: HitMaterials<'_>,
         level: Level,
         hits: HitSlices<'_>,
         inputs: [&[f32]; 3],
@@ -48,17 +48,17 @@ pub trait HitsSet: MaterialSet {
 
 /// Materials of the hits.
 #[derive(Clone, Copy, Debug)]
-pub enum Of<'a> {
+pub enum HitMaterials<'a> {
     /// One, by its index.
-    One(usize),
+    Shared(usize),
     /// One per hit.
-    Each(&'a [u32]),
+    PerHit(&'a [u32]),
 }
 
 impl<S: Subject> HitsSet for Set<'_, S> {
     fn call(
         &self,
-        of: Of<'_>,
+        of: HitMaterials<'_>,
         level: Level,
         hits: HitSlices<'_>,
         inputs: [&[f32]; 3],
@@ -66,10 +66,18 @@ impl<S: Subject> HitsSet for Set<'_, S> {
     ) -> Result<(), HitsError> {
         let table = |index| MaterialTable { materials: &self.bsdfs, index };
         match (of, out) {
-            (Of::One(i), Columns::Eval(out)) => Ok(self.bsdfs[i].eval_pdf_hits_at(level, hits, inputs, out)?),
-            (Of::One(i), Columns::Sample(out)) => Ok(self.bsdfs[i].sample_hits_at(level, hits, inputs, out)?),
-            (Of::Each(index), Columns::Eval(out)) => table(index).eval_pdf_hits_at(level, hits, inputs, out),
-            (Of::Each(index), Columns::Sample(out)) => table(index).sample_hits_at(level, hits, inputs, out),
+            (HitMaterials::Shared(i), Columns::Eval(out)) => {
+                Ok(self.bsdfs[i].eval_pdf_hits_at(level, hits, inputs, out)?)
+            }
+            (HitMaterials::Shared(i), Columns::Sample(out)) => {
+                Ok(self.bsdfs[i].sample_hits_at(level, hits, inputs, out)?)
+            }
+            (HitMaterials::PerHit(index), Columns::Eval(out)) => {
+                table(index).eval_pdf_hits_at(level, hits, inputs, out)
+            }
+            (HitMaterials::PerHit(index), Columns::Sample(out)) => {
+                table(index).sample_hits_at(level, hits, inputs, out)
+            }
         }
     }
 

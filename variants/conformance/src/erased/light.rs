@@ -1,6 +1,6 @@
 //! Shading points of any model that weigh candidates.
 
-use super::{ErasedGather, ErasedGather8, MaterialSet, Set, Which};
+use super::{ErasedGather, MaterialSet, Set, Which};
 use crate::subject::Subject;
 use hairis::resample::{Counts, Partition, Pool, Weighed8};
 use hairis::wide::f32x8;
@@ -52,7 +52,7 @@ impl<M: Model + 'static> LitGather for Gather<M> {
 }
 
 /// Eight shading points that weigh a candidate each.
-pub trait LitGather8: ErasedGather8 {
+pub trait LitGather8 {
     fn propose(&self, level: Level, xi: &[f32x8; 3]) -> Vec3x8;
     fn weigh(&self, level: Level, wi: &Vec3x8, radiance: &[f32x8; 3], pdf: &f32x8, counts: Counts) -> Weighed8;
 }

@@ -11,7 +11,7 @@ const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 const ENDS: [f32; 4] = [0.0, f32::EPSILON / 2.0, 0.5, LAST];
 
 fn material<'a>(tested: &'a Tested, desc: &HairDesc) -> Bsdf<'a> {
-    Bsdf::new(tested.forms()[0].0, &HairParams::new(desc).unwrap())
+    Bsdf::new(tested.model(), &HairParams::new(desc).unwrap())
 }
 
 /// A sample of one lane, the same of every level if they round alike.

@@ -8,7 +8,7 @@ use glam::Vec3;
 use hairis::{HairDesc, HairParams, Level, Lobe, LobeMask, Sample};
 
 fn gather(tested: &Tested, desc: &HairDesc, wo: Vec3) -> Gather {
-    Bsdf::new(tested.forms()[0].0, &HairParams::new(desc).unwrap()).prepare(wo)
+    Bsdf::new(tested.model(), &HairParams::new(desc).unwrap()).prepare(wo)
 }
 
 /// The sample of one lane, and of every level.

@@ -1,4 +1,4 @@
-//! Handles of [`hairis`] for any model of the family, under their own names: the tests are compiled once, and these calls once
+//! Handles of any model of the family, with the names of those of [`hairis`]: the tests are compiled once, and these calls once
 //! per model.
 
 use crate::erased::{Direction, ErasedGather, ErasedGather8};

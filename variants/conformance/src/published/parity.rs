@@ -94,7 +94,7 @@ pub fn eight_shading_points_equal_one_each(tested: &Tested) {
 
 /// Also in builds whose every level fuses.
 pub fn one_lane_never_fuses(tested: &Tested) {
-    let (model, _) = tested.forms()[0];
+    let model = tested.model();
     let mut draws = Draws(16);
     for _ in 0..2000 {
         let (params, wo) = (draws.params(1e3), draws.direction());
@@ -105,7 +105,7 @@ pub fn one_lane_never_fuses(tested: &Tested) {
 }
 
 pub fn one_shading_point_in_every_lane_equals_a_shared_one(tested: &Tested) {
-    let (model, _) = tested.forms()[0];
+    let model = tested.model();
     let mut draws = Draws(12);
     let random: Vec<_> = (0..200).map(|_| draws.params(10.0)).collect();
     for params in materials(Kind::Wide).into_iter().chain(random) {
@@ -256,7 +256,7 @@ pub fn lobes_and_albedo_agree_with_one_lane(tested: &Tested) {
 
 pub fn a_hit_is_its_direction(tested: &Tested) {
     // The published model ignores the offset across the fibre.
-    let (model, _) = tested.forms()[0];
+    let model = tested.model();
     let bsdf = Bsdf::new(model, &hairis::HairParams::default());
     let wo = Vec3::new(0.6, 0.8, 0.0);
     let plain = format!("{:?}", bsdf.prepare(wo));

@@ -92,7 +92,7 @@ pub fn finite_inputs_give_finite_outputs(tested: &Tested) {
         let [wo, wi] = [three(&mut draws, finite), three(&mut draws, finite)].map(Vec3::from_array);
         // Uniform numbers are in [0, 1); all else is as wild as floats are.
         let xi = three(&mut draws, finite).map(|x| x.abs().fract());
-        let bsdf = Bsdf::new(tested.forms()[0].0, &params);
+        let bsdf = Bsdf::new(tested.model(), &params);
         let mut all = vec![scalar_numbers(&bsdf, wo, wi, xi)];
         for level in Level::available() {
             let gather = Bsdf::prepare_packed([&bsdf; 8], level, &packet(&[wo]));
@@ -112,7 +112,7 @@ pub fn nothing_panics_on_nan_and_infinity(tested: &Tested) {
         let params = params(&mut draws);
         let [wo, wi] = [three(&mut draws, anything), three(&mut draws, anything)].map(Vec3::from_array);
         let xi = three(&mut draws, anything);
-        let bsdf = Bsdf::new(tested.forms()[0].0, &params);
+        let bsdf = Bsdf::new(tested.model(), &params);
         let (positive, _) = scalar_numbers(&bsdf, Vec3::Y, wi, [0.5; 3]);
         assert!(positive.iter().all(|x| *x >= 0.0), "wi {wi:?} {params:?}: {positive:?}");
         let _ = scalar_numbers(&bsdf, wo, wi, xi);

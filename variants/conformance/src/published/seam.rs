@@ -26,7 +26,7 @@ pub fn samples_next_to_the_seam_report_their_own_direction(tested: &Tested) {
         let params = HairParams::new(&params).unwrap();
         for (theta_o, phi_o) in [(0.0, 0.0), (0.3, 0.785), (-0.9, 2.4), (1.2, -1.1), (0.7, 3.1)] {
             let wo = direction(theta_o, phi_o);
-            let gather = Bsdf::new(tested.forms()[0].0, &params).prepare(wo);
+            let gather = Bsdf::new(tested.model(), &params).prepare(wo);
             let reference = oracle(&tested.formulas, &params, 1.0, wo);
             for xi_phi in about_a_half() {
                 let xi = core::array::from_fn(|lane| [(lane as f32 + 0.5) / 8.0, 0.11 * lane as f32 + 0.05, xi_phi]);

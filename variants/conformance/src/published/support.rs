@@ -227,7 +227,7 @@ pub(super) fn for_each_point(tested: &Tested, kind: Kind, mut f: impl FnMut(&Bsd
     }
 }
 
-/// One point of [`for_each_point`].
+/// A shading point of a material, as parameters and angles.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     pub params: HairParams,

@@ -40,7 +40,7 @@ fn errors(
     for params in descs.iter().map(|desc| HairParams::new(desc).unwrap()) {
         for (turn, theta_o) in theta_o.clone().enumerate() {
             let wo = direction(theta_o, 0.7 * turn as f64 - 3.0);
-            let gather = Bsdf::new(tested.forms()[0].0, &params).prepare(wo);
+            let gather = Bsdf::new(tested.model(), &params).prepare(wo);
             let reference = oracle(&tested.formulas, &params, 1.0, wo);
             let ends = NUMBERS.iter().flat_map(|a| NUMBERS.map(|b| [*a, b]));
             for [theta, phi] in ends {
