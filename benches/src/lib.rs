@@ -1,10 +1,11 @@
 //! Entry points of the models on fixed inputs, with the expected answers.
 //!
 //! [`entries::visit`] passes every entry point on every level to a [`Visitor`]: the Criterion benches time them, the
-//! program `entry` runs one of them for callgrind and for timing by hand. [`contenders`] are the calls that `hairis compare` times,
-//! on inputs that it draws.
+//! program `entry` runs one of them for callgrind and for timing by hand. The module `contenders` (feature
+//! `contenders`) has the calls that `hairis compare` times, on inputs that it draws.
 
 pub mod check;
+#[cfg(feature = "contenders")]
 pub mod contenders;
 pub mod cpu;
 pub mod entries;
