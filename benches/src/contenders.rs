@@ -18,9 +18,11 @@ use hairis::reference::Reference;
 use hairis::wide::f32x8;
 use hairis::{Bsdf, EvalSlices, Level, ParamError, SampleSlices, Vec3x8};
 use hairis_variants::{AnyReference, ModelId, Parameters, Registered, Visitor};
+use serde::Serialize;
 
 /// Timed operation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum TimedOp {
     /// Everything constant for one shading point (section 3.3 of the paper).
     Prepare,
@@ -61,24 +63,6 @@ impl TimedOp {
         Self::PointsMixed,
         Self::PointsPacked,
     ];
-
-    /// Name of the operation in files.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Prepare => "prepare",
-            Self::EvalPdf => "eval-pdf",
-            Self::Sample => "sample",
-            Self::EvalPdfTails => "eval-pdf-tails",
-            Self::SampleTails => "sample-tails",
-            Self::PointsEval => "points-eval",
-            Self::PointsShared => "points-shared",
-            Self::PointsOf4 => "points-of4",
-            Self::PointsOf16 => "points-of16",
-            Self::PointsMixed => "points-mixed",
-            Self::PointsPacked => "points-packed",
-        }
-    }
 
     /// Name of the operation in tables.
     #[must_use]

@@ -20,7 +20,7 @@ pub use hairis_benches::contenders::TimedOp;
 use hairis_benches::contenders::{Contender, Contest, TIMED_DIRECTIONS, TimedInputs, contests};
 use hairis_benches::task::Pass;
 use hairis_variants::ModelId;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use std::time::Instant;
 pub use threads::ThreadsResult;
 
@@ -54,7 +54,6 @@ impl SpeedConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SpeedResult {
     /// The operation.
-    #[serde(serialize_with = "op_name")]
     pub op: TimedOp,
     /// The model.
     pub model: &'static str,
@@ -82,12 +81,6 @@ pub struct SpeedResult {
     pub wrong_share: f64,
     /// Whether the answers are right, but for one in a hundred. A row that did not pass is no result.
     pub passed: bool,
-}
-
-/// Writes the name of an operation.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn op_name<S: Serializer>(op: &TimedOp, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(op.name())
 }
 
 /// The table, and what it was measured with.

@@ -1,6 +1,6 @@
 //! Throughput by number of threads: slices in chunks through rayon.
 
-use super::{TimedInputs, TimedOp, op_name, quartiles};
+use super::{TimedInputs, TimedOp, quartiles};
 use core::hint::black_box;
 use hairis::{EvalSlices, Level, ParamError, SampleSlices};
 use hairis_variants::ModelId;
@@ -20,7 +20,6 @@ const ROUNDS: usize = 15;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ThreadsResult {
     /// [`TimedOp::EvalPdf`] or [`TimedOp::Sample`], through slices.
-    #[serde(serialize_with = "op_name")]
     pub op: TimedOp,
     /// The model.
     pub model: &'static str,

@@ -1,7 +1,7 @@
 //! Slices of hits give the bits of packets, whatever their length, alignment, materials and columns.
 
 use crate::environment::{DOWN, with_mode};
-use crate::erased::hits::{Columns, HitMaterials, HitsSet, HitsSubject};
+use crate::erased::hits::{Columns, HitMaterials, HitsCall, HitsSet, HitsSubject};
 use crate::erased::{COLUMNS, Direction, Material, MaterialSet};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
@@ -22,8 +22,7 @@ const SAMPLE_CHOICES: [[bool; 5]; 4] = [
 ];
 
 /// Slices of hits give the bits that [`Bsdf8::prepare8`](hairis::Bsdf8::prepare8) and then eight lanes give: on one material,
-/// and on a table of
-/// materials in runs and at random; without `h`, they are hits on the axis. Columns that are left out are not written, nor is
+/// and on a table of materials in runs and at random; without `h`, they are hits on the axis. Columns that are left out are not written, nor is
 /// anything beyond a slice. Slices of different lengths and indices beyond the table are refused, and then nothing is written.
 /// Where the host rounds down and takes denormals for 0, results are finite and not negative.
 ///
@@ -40,14 +39,14 @@ pub fn hits_equal_packets(subject: &dyn HitsSubject) -> Outcome {
             let at = format!("{len} hits on {level}");
             let slices = Slices::new(&rows, len % 8, len % 3 != 1);
             let expected = Expected::new(&vec![materials[one]; len], level, &slices.rows);
-            slices.check(&expected, len, &format!("one material, {at}"), |xi, out| {
-                set.call(HitMaterials::Shared(one), level, slices.hits(), xi, out)
+            slices.check(&expected, len, &format!("one material, {at}"), |out| {
+                set.call(HitMaterials::Shared(one), level, slices.call(out))
             })?;
             let index = indices(&mut draws, len, materials.len());
             let each: Vec<_> = index.iter().map(|i| materials[*i as usize]).collect();
             let expected = Expected::new(&each, level, &slices.rows);
-            slices.check(&expected, len, &format!("materials {index:?}, {at}"), |xi, out| {
-                set.call(HitMaterials::PerHit(&index), level, slices.hits(), xi, out)
+            slices.check(&expected, len, &format!("materials {index:?}, {at}"), |out| {
+                set.call(HitMaterials::PerHit(&index), level, slices.call(out))
             })?;
         }
     }
@@ -66,8 +65,8 @@ fn any_rounding_is_finite(set: &dyn HitsSet) -> Outcome {
         let [r, g, b, pdf, wr, wg, wb, density] = all.each_mut().map(|column| &mut column[..]);
         let evals = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
         let samples = SampleColumns { weight: Some([wr, wg, wb]), pdf: Some(density), ..SampleColumns::default() };
-        let call = |xi, out| set.call(HitMaterials::PerHit(&index), level, slices.hits(), xi, out);
-        let lengths = call(slices.three(4), Columns::Eval(evals)).and(call(slices.three(7), Columns::Sample(samples)));
+        let call = |out| set.call(HitMaterials::PerHit(&index), level, slices.call(out));
+        let lengths = call(Columns::Eval(evals)).and(call(Columns::Sample(samples)));
         if lengths.is_err() || !all.iter().flatten().all(|x| x.is_finite() && *x >= 0.0) {
             return Err(Failure::new(NAME, format!("rounded down on {level}: {all:?}")));
         }
@@ -126,8 +125,11 @@ impl Slices {
         [0, 1, 2].map(|n| &self.columns[from + n][self.offset..])
     }
 
-    fn hits(&self) -> HitSlices<'_> {
-        HitSlices { wo: self.three(0), h: self.has_h.then(|| &self.columns[3][self.offset..]) }
+    /// The arguments of a call for these results: directions to evaluate, or numbers to sample with.
+    fn call<'a>(&'a self, out: Columns<'a>) -> HitsCall<'a> {
+        let hits = HitSlices { wo: self.three(0), h: self.has_h.then(|| &self.columns[3][self.offset..]) };
+        let inputs = self.three(if matches!(out, Columns::Eval(_)) { 4 } else { 7 });
+        HitsCall { hits, inputs, out }
     }
 
     fn check(
@@ -135,14 +137,14 @@ impl Slices {
         expected: &Expected,
         len: usize,
         at: &str,
-        call: impl Fn([&[f32]; 3], Columns<'_>) -> Result<(), HitsError>,
+        call: impl Fn(Columns<'_>) -> Result<(), HitsError>,
     ) -> Outcome {
         let refused = |e: HitsError| Failure::new(NAME, format!("{e}: {at}"));
         for [value, pdf] in EVAL_CHOICES {
             let mut room = Room::<4>::new(self.offset, len);
             let [r, g, b, density] = room.slices();
             let out = EvalColumns { value: value.then_some([r, g, b]), pdf: pdf.then_some(density) };
-            call(self.three(4), Columns::Eval(out)).map_err(refused)?;
+            call(Columns::Eval(out)).map_err(refused)?;
             room.check(&chosen(&expected.evals, [value, value, value, pdf]), "value and density", at)?;
         }
         for [wi, value, pdf, weight, slot] in SAMPLE_CHOICES {
@@ -155,7 +157,7 @@ impl Slices {
                 weight: weight.then_some([wr, wg, wb]),
                 slot: slot.then_some(lobe),
             };
-            call(self.three(7), Columns::Sample(out)).map_err(refused)?;
+            call(Columns::Sample(out)).map_err(refused)?;
             let asked = [wi, wi, wi, value, value, value, pdf, weight, weight, weight, slot];
             room.check(&chosen(&expected.samples, asked), "samples", at)?;
         }
@@ -206,7 +208,7 @@ fn arguments_are_checked(set: &dyn HitsSet) -> Outcome {
             *last = index;
         }
         let out = EvalColumns { pdf: Some(&mut pdf), ..EvalColumns::default() };
-        let got = set.eval_at_default(&all, HitSlices { wo: [&u, v, w], h: Some(h) }, [x, y, z], out);
+        let got = set.eval_each(&all, HitSlices { wo: [&u, v, w], h: Some(h) }, [x, y, z], out);
         if got == Err(want) && pdf.iter().all(|x| *x == UNTOUCHED) {
             return Ok(());
         }

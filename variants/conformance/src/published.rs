@@ -115,13 +115,20 @@ impl Tested {
         }
     }
 
-    /// The first of its forms.
-    fn model(&self) -> &dyn AnyModel {
-        &*self.forms[0].0
+    /// Every form of the model, with its factor on the widths.
+    fn forms(&self) -> impl Iterator<Item = (&dyn AnyModel, f32)> {
+        self.forms.iter().map(|(model, factor)| (&**model, *factor))
     }
 
-    fn forms(&self) -> Vec<(&dyn AnyModel, f32)> {
-        self.forms.iter().map(|(model, factor)| (&**model, *factor)).collect()
+    /// The first form.
+    fn first(&self) -> (&dyn AnyModel, f32) {
+        let (model, factor) = &self.forms[0];
+        (&**model, *factor)
+    }
+
+    /// The model of the first form.
+    fn model(&self) -> &dyn AnyModel {
+        self.first().0
     }
 
     /// The model with the matched sampler of so many bands, or with the published one.

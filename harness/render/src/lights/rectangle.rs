@@ -180,7 +180,7 @@ impl View {
         })
     }
 
-    /// What a ray that meets the rectangle sees of it.
+    /// Radiance and density of a ray that meets the rectangle.
     #[inline]
     #[must_use]
     pub fn see(&self, direction: Vec3) -> Seen {

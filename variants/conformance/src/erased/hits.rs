@@ -6,7 +6,7 @@ use hairis::{EvalColumns, HitSlices, HitsError, Level, MaterialTable, SampleColu
 
 /// The columns of a call that are asked for.
 #[derive(Debug)]
-pub enum Columns<'a> {
+pub(crate) enum Columns<'a> {
     /// Columns of an evaluation.
     Eval(EvalColumns<'a>),
     /// Columns of a sample.
@@ -14,6 +14,9 @@ pub enum Columns<'a> {
 }
 
 /// A [`Subject`] whose slices of hits are tested: pass a reference to any subject.
+///
+/// A trait apart from [`ErasedSubject`](super::ErasedSubject), so that slices of hits are compiled for subjects that are tested on
+/// them alone.
 pub trait HitsSubject: Sync {
     /// Everyday materials and extremes.
     #[doc(hidden)]
@@ -26,24 +29,23 @@ impl<S: Subject> HitsSubject for S {
     }
 }
 
+/// Arguments of a call on slices of hits.
+#[derive(Debug)]
+pub struct HitsCall<'a> {
+    pub(crate) hits: HitSlices<'a>,
+    /// Directions towards the light, or uniform numbers.
+    pub(crate) inputs: [&'a [f32]; 3],
+    pub(crate) out: Columns<'a>,
+}
+
+/// Outcome of a call: an error if lengths differ, or an index is beyond the table.
+type HitsResult = Result<(), HitsError>;
+
 /// Materials of one model, and its slices of hits.
 pub trait HitsSet: MaterialSet {
-    fn call(
-        &self,
-        of: HitMaterials<'_>,
-        level: Level,
-        hits: HitSlices<'_>,
-        inputs: [&[f32]; 3],
-        out: Columns<'_>,
-    ) -> Result<(), HitsError>;
-    /// One material per hit, on the level that is found.
-    fn eval_at_default(
-        &self,
-        index: &[u32],
-        hits: HitSlices<'_>,
-        wi: [&[f32]; 3],
-        out: EvalColumns<'_>,
-    ) -> Result<(), HitsError>;
+    fn call(&self, of: HitMaterials<'_>, level: Level, call: HitsCall<'_>) -> HitsResult;
+    /// Evaluates hits of one material each on the level that is found.
+    fn eval_each(&self, index: &[u32], hits: HitSlices<'_>, wi: [&[f32]; 3], out: EvalColumns<'_>) -> HitsResult;
 }
 
 /// Materials of the hits.
@@ -56,38 +58,24 @@ pub enum HitMaterials<'a> {
 }
 
 impl<S: Subject> HitsSet for Set<'_, S> {
-    fn call(
-        &self,
-        of: HitMaterials<'_>,
-        level: Level,
-        hits: HitSlices<'_>,
-        inputs: [&[f32]; 3],
-        out: Columns<'_>,
-    ) -> Result<(), HitsError> {
-        let table = |index| MaterialTable { materials: &self.bsdfs, index };
-        match (of, out) {
-            (HitMaterials::Shared(i), Columns::Eval(out)) => {
-                Ok(self.bsdfs[i].eval_pdf_hits_at(level, hits, inputs, out)?)
-            }
-            (HitMaterials::Shared(i), Columns::Sample(out)) => {
-                Ok(self.bsdfs[i].sample_hits_at(level, hits, inputs, out)?)
-            }
-            (HitMaterials::PerHit(index), Columns::Eval(out)) => {
-                table(index).eval_pdf_hits_at(level, hits, inputs, out)
-            }
-            (HitMaterials::PerHit(index), Columns::Sample(out)) => {
-                table(index).sample_hits_at(level, hits, inputs, out)
+    fn call(&self, of: HitMaterials<'_>, level: Level, call: HitsCall<'_>) -> HitsResult {
+        let HitsCall { hits, inputs, out } = call;
+        match of {
+            HitMaterials::Shared(index) => Ok(match out {
+                Columns::Eval(out) => self.bsdfs[index].eval_pdf_hits_at(level, hits, inputs, out),
+                Columns::Sample(out) => self.bsdfs[index].sample_hits_at(level, hits, inputs, out),
+            }?),
+            HitMaterials::PerHit(index) => {
+                let table = MaterialTable { materials: &self.bsdfs, index };
+                match out {
+                    Columns::Eval(out) => table.eval_pdf_hits_at(level, hits, inputs, out),
+                    Columns::Sample(out) => table.sample_hits_at(level, hits, inputs, out),
+                }
             }
         }
     }
 
-    fn eval_at_default(
-        &self,
-        index: &[u32],
-        hits: HitSlices<'_>,
-        wi: [&[f32]; 3],
-        out: EvalColumns<'_>,
-    ) -> Result<(), HitsError> {
+    fn eval_each(&self, index: &[u32], hits: HitSlices<'_>, wi: [&[f32]; 3], out: EvalColumns<'_>) -> HitsResult {
         MaterialTable { materials: &self.bsdfs, index }.eval_pdf_hits(hits, wi, out)
     }
 }

@@ -7,6 +7,8 @@ use hairis::wide::f32x8;
 use hairis::{Gather, Gather8, Hit, Hit8, Level, Model, Vec3x8};
 
 /// A [`Subject`] under light: pass a reference to any subject.
+///
+/// A trait apart, as [`HitsSubject`](super::hits::HitsSubject).
 pub trait LitSubject: Sync {
     /// Everyday materials.
     #[doc(hidden)]

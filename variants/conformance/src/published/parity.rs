@@ -36,7 +36,7 @@ struct MixedPacket<'a> {
 }
 
 fn mixed<'a>(tested: &'a Tested, draws: &mut Draws) -> MixedPacket<'a> {
-    let (model, factor) = tested.forms()[0];
+    let (model, factor) = tested.first();
     let params: [_; 8] = core::array::from_fn(|_| draws.params(1e3));
     let wo: [_; 8] =
         core::array::from_fn(|lane| draws.near_lobes(&parameters(&params[lane], factor), 0.0, 0.0).normalize());

@@ -181,7 +181,7 @@ pub fn eval_is_reciprocal(tested: &Tested) {
 
 pub fn every_lobe_has_a_density_of_its_own(tested: &Tested) {
     // The sum over lobes of probability times pdf is what `sample` draws from: none may go below 0 or be missing.
-    let (model, _) = tested.forms()[0];
+    let model = tested.model();
     let gather = Bsdf::new(model, &HairParams::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
     let mut draws = Draws(52);
     let mut seen = [0; 4];
