@@ -1,4 +1,5 @@
-//! Captures the build for reports: compiler, commit and optimisation level. Without git or without a repository the commit is "unknown".
+//! Records the build for reports: compiler, commit and optimisation level. Without git or without a repository the commit is
+//! "unknown". The build script of the renderer, too; `hairis_instruments::machine!` reads what it records.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,8 +10,8 @@ fn main() {
     set("OPT_LEVEL", &std::env::var("OPT_LEVEL").unwrap_or_else(|_| unknown()));
     set("TARGET_FEATURES", &std::env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default());
 
-    // Only a repository that tracks this very file counts: an unpacked copy may lie inside another one.
-    let ours = run("git", &["ls-files", "--error-unmatch", "build.rs"]).is_some();
+    // Only a repository that tracks the package counts: an unpacked copy may lie inside another one.
+    let ours = run("git", &["ls-files", "--error-unmatch", "Cargo.toml"]).is_some();
     let commit = ours.then(|| run("git", &["rev-parse", "HEAD"])).flatten();
     // No optional locks: a build must not refresh the user's index.
     let status =
@@ -18,10 +19,14 @@ fn main() {
     set("COMMIT", &commit.unwrap_or_else(unknown));
     set("DIRTY", status.map_or("unknown", |s| if s.is_empty() { "no" } else { "yes" }));
 
-    // Commits, checkouts and edits of what is compiled run this again, and nothing else does: these all rebuild the package anyway, save a commit.
-    println!("cargo::rerun-if-changed=build.rs");
-    for path in ["Cargo.toml", "src", "../Cargo.toml", "../Cargo.lock", "../kernels/src", "../variants/src"] {
-        watch(path);
+    // Commits, checkouts and edits of what is compiled run this again, and nothing else does: these all rebuild the package
+    // anyway, save a commit.
+    watch("Cargo.toml");
+    watch("src");
+    if let Some(root) = ["..", "../.."].into_iter().find(|root| Path::new(root).join("Cargo.lock").exists()) {
+        for path in ["Cargo.toml", "Cargo.lock", "kernels/src", "variants/src", "harness/instruments/src"] {
+            watch(&format!("{root}/{path}"));
+        }
     }
     if ours {
         for name in ["HEAD", "logs/HEAD"] {

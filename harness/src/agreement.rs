@@ -14,9 +14,9 @@
 mod measure;
 mod packet;
 
-use crate::stats::percentile;
 use crate::subject::values_json;
 use hairis::ParamError;
+use hairis_instruments::stats::percentile;
 use hairis_variants::{Accuracy, ModelId};
 use measure::{CodePath, LanePlace, LocatedError, measure};
 use packet::{Formulas, Packet, formulas};

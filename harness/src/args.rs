@@ -1,6 +1,5 @@
 //! The flags. clap checks them; the number of the shard is checked with the cells, by the command.
 
-use crate::error::Error;
 use clap::{Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -136,32 +135,6 @@ pub struct Merge {
     /// Environment light of the parts, to time its look-up [default: the procedural sky if the parts used it, else no times]
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
-}
-
-/// Parses the flags of this process; `None` after printing the help or the version.
-///
-/// # Errors
-///
-/// [`Error::Usage`], in one line, if they are not valid.
-pub fn parse() -> Result<Option<Args>, Error> {
-    match Args::try_parse() {
-        Ok(args) => Ok(Some(args)),
-        Err(error) if error.use_stderr() => Err(Error::Usage(one_line(&error.to_string()))),
-        Err(help) => {
-            // Ignore a closed pipe, as in `hairis --help | head -1`.
-            let _ = help.print();
-            Ok(None)
-        }
-    }
-}
-
-/// The first paragraph of clap's message, in one line; the usage that follows it is left to `--help`.
-#[must_use]
-pub fn one_line(message: &str) -> String {
-    let first = message.split("\n\n").next().unwrap_or(message);
-    let words: Vec<&str> = first.split_whitespace().collect();
-    let line = words.join(" ");
-    format!("{} (see --help)", line.strip_prefix("error: ").unwrap_or(&line))
 }
 
 #[cfg(test)]

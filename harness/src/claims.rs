@@ -34,13 +34,14 @@ mod uniform;
 pub use claim::{Claim, Figure, Origin, Role, Side, Threshold, Verdict};
 pub use tables::tables;
 
-use crate::light::Sky;
-use crate::machine::Machine;
-use crate::progress::Progress;
 use crate::study::{Cell, Grid, Plan};
 use crate::subject::ModelKind;
 use hair::{Hair, HairFigures};
 use hairis::ParamError;
+use hairis_instruments::light::Sky;
+use hairis_instruments::machine;
+use hairis_instruments::machine::Machine;
+use hairis_instruments::progress::Progress;
 use serde::Serialize;
 
 /// All results; the content of `claims.json`.
@@ -92,7 +93,7 @@ pub fn run(seed: u64, quick: bool, progress: &(dyn Fn(f64) + Sync)) -> Result<Cl
     claims.extend([bounds::claim(&cells), glint::density(&cells)?, glint::interval(&cells)?]);
     let lights = performance::LIGHTS.map(|[_, name]| name);
     let settings = Settings { seed, quick, cells: grid.len(), samples: plan.budget().samples, lights };
-    Ok(Claims { settings, machine: Machine::current(), claims })
+    Ok(Claims { settings, machine: machine!(), claims })
 }
 
 /// The hair of a cell.

@@ -7,9 +7,10 @@ pub mod merge;
 pub mod study;
 
 use crate::args::Command;
-use crate::error::Error;
-use crate::light::{Environment, LightError, Sky};
-use crate::table::Table;
+use hairis_instruments::error::Error;
+use hairis_instruments::light::{Environment, LightError, Sky};
+use hairis_instruments::program::say;
+use hairis_instruments::table::Table;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -61,9 +62,4 @@ fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Res
 fn report_failures(failures: &[String]) -> Result<(), Error> {
     failures.iter().for_each(|failure| say(&format!("failed: {failure}")));
     if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
-}
-
-/// Prints a line on standard error. Ignores write errors.
-fn say(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
 }

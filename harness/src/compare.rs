@@ -10,13 +10,14 @@ pub use tables::summary as summary_tables;
 
 use crate::agreement::{self, AgreementResult};
 use crate::efficiency::{self, EfficiencyConfig, EfficiencyResult, SAMPLERS, SampleCosts};
-use crate::light::Environment;
-use crate::machine::Machine;
 use crate::rays::{self as ray_figures, RaysConfig, RaysResult};
 use crate::speed::{self, SpeedConfig, SpeedReport};
 use crate::study::output::Times;
 use crate::subject::ModelKind;
 use hairis::ParamError;
+use hairis_instruments::light::Environment;
+use hairis_instruments::machine;
+use hairis_instruments::machine::Machine;
 use serde::Serialize;
 
 /// Everything that was found; `compare.json` is this.
@@ -72,7 +73,7 @@ pub fn run(
     let variance = EfficiencyConfig { costs: Some(costs), ..EfficiencyConfig::new(seed, quick, environment) };
     let efficiency = efficiency::run(&variance, &share("sample efficiency"))?;
     let rays = ray_figures::run(&RaysConfig::new(seed, quick, environment), &efficiency, &share("rays"));
-    Ok(Comparison { settings, machine: Machine::current(), speed, agreement, efficiency, rays })
+    Ok(Comparison { settings, machine: machine!(), speed, agreement, efficiency, rays })
 }
 
 /// Samples at a shading point over which its preparation is spread, as in direct lighting.

@@ -147,9 +147,10 @@ fn hair(cell: &Cell) -> Result<HairValues, ParamError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quadrature::{SphereIntegrator, Tolerance, fibre_direction};
     use crate::subject::ModelKind;
     use hairis::reference::{HairReference, Parameters};
+    use hairis_instruments::direction::fibre_direction;
+    use hairis_instruments::quadrature::{SphereIntegrator, Tolerance};
 
     #[test]
     fn the_best_factors_are_the_best_in_their_norm() {

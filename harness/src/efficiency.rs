@@ -11,7 +11,7 @@
 //! - Correlated samples (stratified, Halton) have no variance of their own. For them `V = N Var(mean) / mean^2` with `Var(mean)` the variance of the mean
 //!   of `N` samples over `R` independent randomisations, so that V / N is again the squared relative error, but at that `N` alone: each row states its `N`.
 //!   For independent numbers `N` is 1 and `R` the number of samples, the same formula.
-//! - Standard errors of V are those of [`Moments::relative_variance`](crate::stats::Moments::relative_variance).
+//! - Standard errors of V are those of [`Moments::relative_variance`](hairis_instruments::stats::Moments::relative_variance).
 //! - The effective sample size of 1000 samples is `1000 / (1 + V)`: Kish's for independent numbers, the same function of V elsewhere.
 //! - Every mean is compared with a reference, see [`Reference`], and gives a bias z-score. Contributions of rare hits are skewed, which distorts the tails of
 //!   a plain z: Hall's transformation (1992, On the removal of skewness by transformation) removes the skewness. [`Check`] collects the scores.
@@ -25,7 +25,7 @@
 //! The fibre lies along world x, and (u, v, w) is the world's (x, y, z). The viewer is at azimuth [`PHI_O_DEG`], 60 degrees from straight up (+y), inclined by
 //! [`THETA_O_DEG`]. So one glint, 35 degrees from the viewer in azimuth, runs along azimuth 25 and meets the area light above, which spans 27 degrees either side of 0.
 //! The [`Sun`] stands at inclination [`SUN_DEG`]`[0]` = -60 and azimuth 25 degrees: the centre of the R lobe and of that glint for
-//! `theta_o = 45`, well inside the TRT lobe for 75, in the tails for 0 and 85. The sun of the procedural [`Sky`](crate::light::Sky) is near
+//! `theta_o = 45`, well inside the TRT lobe for 75, in the tails for 0 and 85. The sun of the procedural [`Sky`](hairis_instruments::light::Sky) is near
 //! inclination 26 degrees, the centre of the TRT lobe for `theta_o = 0`.
 //!
 //! # Determinism
@@ -51,14 +51,14 @@ pub(crate) use measure::{bias_z, is_tested};
 pub(crate) use reference::stratified;
 pub(crate) use run::z_bound;
 
-#[cfg(test)]
-use crate::light::Light;
-use crate::light::{Environment, Sun};
-use crate::quadrature::fibre_direction;
 use crate::sampler::Sampler;
-use crate::sequence::stream_id;
 use crate::subject::ModelKind;
 use hairis::{HairDesc, HairParams, ParamError};
+use hairis_instruments::direction::fibre_direction;
+#[cfg(test)]
+use hairis_instruments::light::Light;
+use hairis_instruments::light::{Environment, Sun};
+use hairis_instruments::sequence::stream_id;
 use serde::Serialize;
 
 /// Inclinations of the viewer, in degrees.
@@ -85,7 +85,7 @@ pub const MIN_EFFECTIVE: f64 = 100.0;
 pub const FALSE_ALARM: f64 = 1e-3;
 
 /// The samplers compared, in the order of reports. "Stratified uniform" is the first with
-/// [`SequenceKind::Stratified`](crate::sequence::SequenceKind::Stratified) numbers.
+/// [`SequenceKind::Stratified`](hairis_instruments::sequence::SequenceKind::Stratified) numbers.
 ///
 /// The matched sampler is the documented default one; [`study`](crate::study) has them all.
 pub const SAMPLERS: [Sampler; 3] = [Sampler::Uniform, Sampler::Published, Sampler::Matched];
@@ -167,7 +167,7 @@ pub struct EfficiencyConfig<'a> {
     pub seed: u64,
     /// Numbers of samples.
     pub budget: Budget,
-    /// The environment among the lights: a file's, or [`Sky`](crate::light::Sky)'s.
+    /// The environment among the lights: a file's, or [`Sky`](hairis_instruments::light::Sky)'s.
     pub environment: &'a Environment,
     /// The hair.
     pub params: HairParams,

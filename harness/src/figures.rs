@@ -4,12 +4,12 @@ mod looks;
 
 pub use looks::{maps, polar};
 
-use crate::plot::{Axis, ScatterPanel, Series, SphereGrid, lines, scatter_maps};
-use crate::quadrature::fibre_direction;
-use crate::report::Drawing;
 use core::f64::consts::{PI, SQRT_2};
 use glam::Vec3;
 use hairis::{Bsdf, Gaussian, Hair, HairParams, Lobe, LobeMask};
+use hairis_instruments::direction::fibre_direction;
+use hairis_instruments::plot::{Axis, ScatterPanel, Series, SphereGrid, lines, scatter_maps};
+use hairis_instruments::report::Drawing;
 use hairis_variants::{AnyBsdf, AnyGather};
 
 /// Widths of the bells shown, degrees.
@@ -114,11 +114,11 @@ pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::markup::well_formed;
-    use crate::plot::{Bar, bars, heat_map};
-    use crate::report::{Report, Section};
-    use crate::table::{Table, number};
     use hairis::HairDesc;
+    use hairis_instruments::markup::well_formed;
+    use hairis_instruments::plot::{Bar, bars, heat_map};
+    use hairis_instruments::report::{Report, Section};
+    use hairis_instruments::table::{Table, number};
     use hairis_variants::Cauchy;
 
     fn default_hair() -> HairParams {

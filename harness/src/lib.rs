@@ -7,27 +7,27 @@ pub mod cmd;
 pub mod compare;
 pub mod difference;
 pub mod efficiency;
-pub mod error;
 pub mod figures;
-pub mod files;
-pub mod light;
-pub mod machine;
-pub mod markup;
-pub mod plot;
-pub mod progress;
-pub mod quadrature;
 pub mod rays;
-pub mod report;
 pub mod sampler;
-pub mod sequence;
 pub mod speed;
-pub mod stats;
 pub mod study;
 pub mod subject;
-pub mod table;
 
 /// Example of the workspace README.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 #[derive(Debug)]
 pub struct Readme;
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_build_is_recorded() {
+        let machine = hairis_instruments::machine!();
+        assert!(machine.rustc == "unknown" || machine.rustc.starts_with("rustc "), "{}", machine.rustc);
+        let is_hash = machine.commit.len() >= 40 && machine.commit.bytes().all(|byte| byte.is_ascii_hexdigit());
+        assert!(machine.commit == "unknown" || is_hash, "{}", machine.commit);
+        assert_eq!(machine.target_features.contains(&"sse2"), cfg!(target_feature = "sse2"));
+    }
+}

@@ -1,24 +1,10 @@
-//! The command line `hairis`: parse, dispatch, exit code. All else is in the library.
+//! The command line `hairis`. All of it is in the library.
 
-use hairis_harness::error::Error;
-use hairis_harness::{args, cmd};
-use std::io::Write;
+use hairis_harness::args::Args;
+use hairis_harness::cmd;
+use hairis_instruments::program;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // The one place that prints an error. Ignore write errors.
-            let _ = writeln!(std::io::stderr(), "hairis: {error}");
-            ExitCode::from(error.exit_code())
-        }
-    }
-}
-
-fn run() -> Result<(), Error> {
-    match args::parse()? {
-        Some(args) => cmd::run(&args.command),
-        None => Ok(()),
-    }
+    program::run("hairis", |args: &Args| cmd::run(&args.command))
 }

@@ -2,12 +2,13 @@
 //!
 //! To add one, add a variant of [`Sampler`] with its arms in the methods and in `weight_bound`.
 
-use crate::quadrature::fibre_direction;
 use crate::subject::ModelKind;
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::reference::{MatchedReference, Parameters};
 use hairis::{Eval8, HairParams, LobeMask, Sample8, Vec3x8};
+use hairis_instruments::direction::cosine;
+use hairis_instruments::direction::fibre_direction;
 use hairis_variants::{AnyBsdf, AnyGather, ModelId, Parameters as _};
 use serde::Serialize;
 use wide::f32x8;
@@ -151,13 +152,6 @@ pub(crate) fn uniform8(xi: &[f32x8; 3]) -> Vec3x8 {
     Vec3x8::new(u, r * cos_phi, r * sin_phi)
 }
 
-/// Cosine of the inclination of directions in the fibre's frame.
-#[inline]
-#[must_use]
-pub fn cosine(direction: &Vec3x8) -> f32x8 {
-    (direction.y * direction.y + direction.z * direction.z).sqrt()
-}
-
 /// The samples of uniform directions that evaluate to `eval`.
 #[inline]
 pub(crate) fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
@@ -170,7 +164,7 @@ pub(crate) fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sequence::Independent;
+    use hairis_instruments::sequence::Independent;
 
     fn numbers(from: &mut Independent) -> [f32x8; 3] {
         core::array::from_fn(|_| f32x8::new(core::array::from_fn(|_| from.next_f32())))
@@ -229,7 +223,7 @@ mod tests {
         let params = HairParams::default();
         let mut from = Independent::new(1, 2);
         for theta_o in [0.0_f64, 0.8, 1.4] {
-            let wo = crate::subject::direction(theta_o.sin(), theta_o.cos(), 1.0);
+            let wo = hairis_instruments::direction::direction(theta_o.sin(), theta_o.cos(), 1.0);
             for model in ModelKind::ALL {
                 for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Published) {
                     let bound = weight_bound(model, sampler, &params, theta_o).expect("there is one");

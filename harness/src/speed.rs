@@ -11,14 +11,15 @@
 
 mod threads;
 
-use crate::sequence::{Independent, stream_id};
-use crate::stats::percentile;
-use crate::subject::{random, uniform_direction};
+use crate::subject::random;
 use core::hint::black_box;
 use hairis::{Level, ParamError};
 pub use hairis_benches::contenders::TimedOp;
 use hairis_benches::contenders::{Contender, Contest, TIMED_DIRECTIONS, TimedInputs, contests};
 use hairis_benches::task::Pass;
+use hairis_instruments::direction::uniform_direction;
+use hairis_instruments::sequence::{Independent, stream_id};
+use hairis_instruments::stats::percentile;
 use hairis_variants::ModelId;
 use serde::Serialize;
 use std::time::Instant;

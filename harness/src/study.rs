@@ -44,27 +44,26 @@ mod perfect;
 mod rays;
 mod report;
 mod rows;
-pub mod shard;
 mod summary;
 mod tally;
 mod times;
 mod view;
 
 pub use grid::{Cell, Grid};
-pub use shard::Shard;
 
 pub(crate) use equal_time::in_equal_time;
 pub(crate) use times::in_turns;
 pub(crate) use view::gain;
 
 use crate::efficiency::sun;
-use crate::error::Error;
-use crate::light::{Constant, Environment, Light, Rectangle, Smooth};
-use crate::machine::Machine;
 use crate::sampler::Sampler;
-use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use hairis::{Level, ParamError};
+use hairis_instruments::error::Error;
+use hairis_instruments::light::{Constant, Environment, Light, Rectangle, Smooth};
+use hairis_instruments::machine;
+use hairis_instruments::shard::Shard;
+use hairis_instruments::stats::Estimate;
 use part::{Finished, Header};
 use rayon::prelude::*;
 use wide::f32x8;
@@ -119,7 +118,7 @@ impl Plan<'_> {
     /// Header of the part file of `shard`.
     #[must_use]
     pub fn header(&self, shard: Shard) -> Header {
-        let machine = Machine::current();
+        let machine = machine!();
         let budget = self.budget();
         let changed = if machine.dirty == Some(true) { "+changes" } else { "" };
         Header {

@@ -1,9 +1,8 @@
 //! The two models of hair that the experiments compare, and the parameters and directions that comparisons draw.
 
-use crate::sequence::Independent;
-use glam::Vec3;
 use hairis::reference::Shape;
 use hairis::{HairParams, ParamError};
+use hairis_instruments::sequence::Independent;
 use hairis_variants::{Draw, Field, Kind, ModelId, Parameters as _, Values};
 use serde::Serialize;
 
@@ -54,28 +53,6 @@ impl ModelKind {
     pub(crate) const fn index(self) -> u64 {
         self as u64
     }
-}
-
-/// The components in double precision.
-#[must_use]
-pub fn to_f64(v: Vec3) -> [f64; 3] {
-    v.to_array().map(f64::from)
-}
-
-/// A direction at `sin_theta` above the normal plane, of cosine `cos_theta`, at azimuth `phi` rad.
-///
-/// The components are formed in `f64` and rounded, so that those of a direction near the axis keep their digits.
-#[must_use]
-#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
-pub fn direction(sin_theta: f64, cos_theta: f64, phi: f64) -> Vec3 {
-    Vec3::new(sin_theta as f32, (cos_theta * phi.cos()) as f32, (cos_theta * phi.sin()) as f32)
-}
-
-/// A direction uniform on the sphere.
-pub fn uniform_direction(xi: &mut Independent) -> Vec3 {
-    let sin_theta = 2.0 * xi.next_f64() - 1.0;
-    let phi = core::f64::consts::TAU * xi.next_f64();
-    direction(sin_theta, (1.0 - sin_theta * sin_theta).sqrt(), phi)
 }
 
 /// Random values of every field that has a range, and a random word of every field of words; the others stay.
@@ -129,14 +106,5 @@ mod tests {
         let mut xi = Independent::new(3, 0);
         let hair: Vec<HairParams> = (0..1_000).map(|_| random_hair(&mut xi).expect("within range")).collect();
         assert!(hair.windows(2).all(|pair| pair[0] != pair[1]), "two draws are the same hair");
-    }
-
-    #[test]
-    fn directions_are_unit() {
-        let mut xi = Independent::new(3, 1);
-        for _ in 0..1_000 {
-            let length = uniform_direction(&mut xi).length();
-            assert!((length - 1.0).abs() < 3e-7, "length {length}");
-        }
     }
 }

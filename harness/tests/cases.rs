@@ -3,8 +3,9 @@
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::Vec3;
 use hairis::HairDesc;
-use hairis_harness::sequence::Independent;
-use hairis_harness::subject::{direction, random_hair};
+use hairis_harness::subject::random_hair;
+use hairis_instruments::direction::direction;
+use hairis_instruments::sequence::Independent;
 
 /// Where `wi` was put.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

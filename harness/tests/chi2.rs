@@ -8,8 +8,8 @@ use hairis::reference::{HairReference, MatchedReference, Parameters, Shape};
 use hairis::wide::f32x8;
 use hairis::{Bsdf, Gaussian, HairDesc, HairParams, Lobe, LobeMask, Matched, Model, PerLobe, Sample8};
 use hairis_conformance::statistics::{AngleEdges, ChiSquare, chi_square, ks_statistic};
-use hairis_harness::sequence::Independent;
-use hairis_harness::stats::sidak;
+use hairis_instruments::sequence::Independent;
+use hairis_instruments::stats::sidak;
 use hairis_variants::{Cauchy, ModelId, Parameters as _};
 
 const SAMPLES: u32 = 1_000_000;

@@ -2,7 +2,7 @@
 
 use hairis_harness::args::CodePath;
 use hairis_harness::cmd::eval;
-use hairis_harness::light::{Environment, Light};
+use hairis_instruments::light::{Environment, Light};
 use hairis_harness::study::part;
 use hairis_render::formats::{Import, import_bytes};
 use hairis_render::part::{Part, seal};

@@ -9,9 +9,8 @@ use crate::scenes::Name;
 use crate::transport::{Integrator, Mis};
 use clap::{Parser, Subcommand};
 use core::str::FromStr;
-use hairis_harness::args::one_line;
-use hairis_harness::error::Error;
-use hairis_harness::study::Shard;
+use hairis_instruments::error::Error;
+use hairis_instruments::shard::Shard;
 use std::path::PathBuf;
 
 /// Renders hair to measure scattering models and their samplers on images.
@@ -267,22 +266,5 @@ impl Render {
             return refuse("--depth", "from 1 to 10000", &self.depth);
         }
         Ok(())
-    }
-}
-
-/// The flags this process was started with; `None` if they asked for help or the version, which then is printed.
-///
-/// # Errors
-///
-/// [`Error::Usage`], in one line, if they make no sense.
-pub fn parse() -> Result<Option<Args>, Error> {
-    match Args::try_parse() {
-        Ok(args) => Ok(Some(args)),
-        Err(error) if error.use_stderr() => Err(Error::Usage(one_line(&error.to_string()))),
-        Err(help) => {
-            // Ignore write errors, as in `hairis-render --help | head -1`.
-            let _ = help.print();
-            Ok(None)
-        }
     }
 }

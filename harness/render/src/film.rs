@@ -2,9 +2,9 @@
 
 use crate::transport::Profile;
 use glam::Vec3;
-use hairis_harness::light::luminance;
-use hairis_harness::sequence::mix;
-use hairis_harness::study::Shard;
+use hairis_instruments::light::luminance;
+use hairis_instruments::sequence::mix;
+use hairis_instruments::shard::Shard;
 
 /// Side of a tile in pixels.
 pub const TILE: u32 = 32;

@@ -2,7 +2,7 @@
 
 use crate::material::{Hair, Sampling, Scale};
 use crate::transport::{Integrator, Settings};
-use hairis_harness::error::Error;
+use hairis_instruments::error::Error;
 use hairis_variants::{ModelId, Values};
 
 /// The word for directions that are uniform over the sphere.

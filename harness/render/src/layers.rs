@@ -4,8 +4,8 @@ use crate::film::Film;
 use crate::scene::{Met, Scene};
 use glam::Vec3;
 use hairis::Level;
-use hairis_harness::light::{luminance, rounded};
-use hairis_harness::machine::Machine;
+use hairis_instruments::light::{luminance, rounded};
+use hairis_instruments::machine;
 use rayon::iter::{IntoParallelRefMutIterator as _, ParallelIterator as _};
 
 /// One channel of a layer, row by row from the upper left corner.
@@ -60,7 +60,7 @@ impl Beside {
             ("run", run.to_owned()),
             ("command", command()),
             ("level", Level::detect().name().to_owned()),
-            ("machine", Machine::current().summary()),
+            ("machine", machine!().summary()),
             ("samplesPerPixel", film.samples().to_string()),
             ("secondsOfCpuTime", format!("{:.1}", film.seconds())),
         ];

@@ -10,7 +10,7 @@ use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::Vec3x8;
 use hairis::wide::f32x8;
-use hairis_harness::light::{self, Environment, Light as _, Seen8, rounded};
+use hairis_instruments::light::{self, Environment, Light as _, Seen8, rounded};
 
 /// Light from infinitely far away.
 #[derive(Clone, Debug)]

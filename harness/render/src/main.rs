@@ -1,15 +1,10 @@
-//! The binary: flags in, exit code out.
+//! The command line `hairis-render`. All of it is in the library.
 
-use hairis_render::{args, cmd};
+use hairis_instruments::program;
+use hairis_render::args::Args;
+use hairis_render::cmd;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let result = args::parse().and_then(|args| args.map_or(Ok(()), cmd::run));
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("hairis-render: {error}");
-            ExitCode::from(error.exit_code())
-        }
-    }
+    program::run("hairis-render", |args: &Args| cmd::run(&args.command))
 }

@@ -5,7 +5,7 @@ use core::f32::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{Eval8, Hit, Hit8, Sample8, Vec3x8};
-use hairis_harness::sampler::cosine;
+use hairis_instruments::direction::cosine;
 use hairis_variants::{AnyBsdf, AnyGather, AnyGather8};
 
 /// How directions are drawn at a hit.

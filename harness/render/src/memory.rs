@@ -1,6 +1,6 @@
 //! Memory that a picture needs, and memory that is left.
 
-use hairis_harness::error::Error;
+use hairis_instruments::error::Error;
 use std::fs;
 
 /// The most that a segment takes while the tree is built, of any kind of hair: strands, boxes and blocks.

@@ -6,7 +6,7 @@ mod strata;
 pub use even::Even;
 
 use clap::ValueEnum;
-use hairis_harness::sequence::{HALTON_BASES, Halton, mix, to_unit_f32};
+use hairis_instruments::sequence::{HALTON_BASES, Halton, mix, to_unit_f32};
 
 /// Where the uniform numbers of a path come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

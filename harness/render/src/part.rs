@@ -7,13 +7,14 @@ pub(crate) use sealed::{Reader, digest, unseal};
 
 use crate::film::{Crop, Film, Sums, Tile};
 use hairis::Level;
-use hairis_harness::error::Error;
-use hairis_harness::files::whole;
-use hairis_harness::machine::Machine;
+use hairis_instruments::error::Error;
+use hairis_instruments::files::whole;
+use hairis_instruments::machine;
+use hairis_instruments::program::say;
 use std::collections::HashMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::{env, fs, io};
+use std::{env, fs};
 
 /// First line of a file.
 const MAGIC: &str = "hairis-render part 3";
@@ -108,7 +109,7 @@ impl Part {
         };
         if part.finished {
             // Ignore write errors: this is a remark.
-            let _ = writeln!(io::stderr(), "{}: {other}; the picture is begun anew", path.display());
+            say(&format!("{}: {other}; the picture is begun anew", path.display()));
             return Ok(fresh);
         }
         let problem = format!("{other}: remove it, or choose another --out");
@@ -161,7 +162,7 @@ impl Part {
 
 /// What the sums of a picture depend on beside flags: the build, and whether the CPU fuses multiply and add.
 pub(crate) fn build() -> String {
-    let machine = Machine::current();
+    let machine = machine!();
     // A commit does not tell builds with changes apart: their program does.
     let changes = if machine.dirty == Some(false) {
         String::new()

@@ -5,10 +5,10 @@ use crate::layers::Beside;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage as _,
 };
-use hairis_harness::error::Error;
-use hairis_harness::files::whole;
-use hairis_harness::light::luminance;
-use hairis_harness::stats::percentile;
+use hairis_instruments::error::Error;
+use hairis_instruments::files::whole;
+use hairis_instruments::light::luminance;
+use hairis_instruments::stats::percentile;
 use image::{ExtendedColorType, ImageEncoder as _, RgbImage};
 use std::io::{self, Cursor, Write as _};
 use std::path::Path;

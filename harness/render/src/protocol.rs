@@ -167,7 +167,7 @@ impl Reference {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hairis_harness::sequence::Independent;
+    use hairis_instruments::sequence::Independent;
 
     /// Pictures about 1; a sum of twelve uniform numbers has variance 1.
     pub(super) fn noisy(xi: &mut Independent, deviation: f64) -> Picture {

@@ -8,7 +8,7 @@ use crate::tree::{self, Ray, Tree};
 use glam::Vec3;
 use hairis::Vec3x8;
 use hairis::wide::f32x8;
-use hairis_harness::light::Seen8;
+use hairis_instruments::light::Seen8;
 
 /// Rays to lights end this much before them.
 const SHORTER: f32 = 1.0 - 1e-4;
@@ -285,7 +285,7 @@ mod tests {
     use crate::hair::{Choice, Energy};
     use crate::lights::uniform_direction;
     use crate::scenes::{self, Name, Parts};
-    use hairis_harness::sequence::{Independent, XiSource as _};
+    use hairis_instruments::sequence::{Independent, XiSource as _};
 
     #[test]
     fn a_direction_has_one_density() {

@@ -9,8 +9,8 @@ use crate::transport::Integrator;
 use crate::tree::Tree;
 use clap::ValueEnum;
 use glam::Vec3;
-use hairis_harness::error::Error;
-use hairis_harness::light::{self, Environment};
+use hairis_instruments::error::Error;
+use hairis_instruments::light::{self, Environment};
 
 /// The scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -120,9 +120,9 @@ fn rebuilt(scene: &Scene, mirror: bool, swap: bool) -> Scene {
 }
 
 /// Means of the left and of the right half of a picture, over seeds.
-fn halves(scene: &Scene, seed: u64) -> [hairis_harness::stats::Estimate; 2] {
+fn halves(scene: &Scene, seed: u64) -> [hairis_instruments::stats::Estimate; 2] {
     let settings = Settings { integrator: Integrator::Direct, ..Settings::default() };
-    let mut sums = [hairis_harness::stats::Moments::new(); 2];
+    let mut sums = [hairis_instruments::stats::Moments::new(); 2];
     for run in 0..RUNS {
         let picture = film(scene, &Settings { seed: seed + run, ..settings }, 16).picture();
         let [width, height] = picture.size;

@@ -2,7 +2,7 @@
 
 use crate::support::{film, hair, inclination, mean, scene};
 use glam::Vec3;
-use hairis_harness::stats::Moments;
+use hairis_instruments::stats::Moments;
 use hairis_render::camera::Camera;
 use hairis_render::film::Crop;
 use hairis_render::hair::{Choice, Energy, default_sampler, samplers};

@@ -1,7 +1,7 @@
 //! Scenes and means of pictures for the tests of transport.
 
 use glam::Vec3;
-use hairis_harness::stats::{Estimate, Moments};
+use hairis_instruments::stats::{Estimate, Moments};
 use hairis_render::film::{Crop, Film};
 use hairis_render::hair::{Choice, Energy};
 use hairis_render::material::Hair;

@@ -2,11 +2,11 @@
 
 use super::packet::Packet;
 use super::{Quantity, Region};
-use crate::subject::to_f64;
 use core::f64::consts::TAU;
 use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::{Eval, Hit, Level, Lobe, ParamError, Sample, Vec3x8};
+use hairis_instruments::direction::to_f64;
 use hairis_variants::{Accuracy, AnyBsdf8, AnyReference, ModelId, Values};
 use wide::f32x8;
 

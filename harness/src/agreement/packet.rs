@@ -1,11 +1,12 @@
 //! Eight shading points, and directions and numbers that fall into a region.
 
 use super::Region;
-use crate::sequence::{Independent, stream_id};
-use crate::subject::{direction, random, to_f64, uniform_direction};
+use crate::subject::random;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::Vec3;
 use hairis::ParamError;
+use hairis_instruments::direction::{direction, to_f64, uniform_direction};
+use hairis_instruments::sequence::{Independent, stream_id};
 use hairis_variants::{AnyReference, ModelId, Values};
 
 /// Between these angles from the axis, rad, a direction is near it.

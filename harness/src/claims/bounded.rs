@@ -1,9 +1,9 @@
 //! Numbers with a bound on their error: arithmetic, integrals, and the spread of many.
 
-use crate::quadrature::{Tolerance, bell_breakpoints, integrate};
-use crate::stats::Estimate;
 use core::array;
 use core::iter::Sum;
+use hairis_instruments::quadrature::{Tolerance, bell_breakpoints, integrate};
+use hairis_instruments::stats::Estimate;
 
 /// A number and a bound estimate of its error; arithmetic carries the error to first order.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -56,8 +56,8 @@ pub(super) fn claim(cells: &FoundCells) -> Claim {
 #[cfg(test)]
 mod tests {
     use crate::claims::hair::Longitudinal;
-    use crate::sequence::Independent;
     use core::f64::consts::FRAC_PI_2;
+    use hairis_instruments::sequence::Independent;
 
     #[test]
     fn samples_are_lost_as_the_mass_says() {

@@ -2,12 +2,13 @@
 
 use super::bounded::Bounded;
 use crate::efficiency::with_beta;
-use crate::quadrature::{Tolerance, bell_breakpoints, fibre_direction, integrate_rectangle};
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::reference::{CauchyDensity, HairReference, Parameters};
 use hairis::{HairParams, Lobe, PerLobe};
+use hairis_instruments::direction::fibre_direction;
+use hairis_instruments::quadrature::{Tolerance, bell_breakpoints, integrate_rectangle};
 
 /// The interval of `theta_h` as `theta_i` runs over all inclinations, rad.
 pub(super) fn theta_h_interval(theta_o: f64) -> [f64; 2] {
@@ -179,7 +180,7 @@ impl Hair {
 mod tests {
     use super::*;
     use crate::efficiency::quadrature;
-    use crate::light::Constant;
+    use hairis_instruments::light::Constant;
 
     #[test]
     fn variances_are_those_of_the_whole_sphere() {

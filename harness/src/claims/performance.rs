@@ -1,14 +1,14 @@
 //! The all-Cauchy model against the Gaussian one, each under the published sampler: the study's machinery, light by light.
 
 use super::claim::{Claim, Figure, Origin, Side, Statement};
-use crate::progress::Progress;
 use crate::sampler::Sampler;
-use crate::stats::Estimate;
 use crate::study::output::Times;
 use crate::study::{Cell, Plan, gain, in_equal_time, variances};
 use crate::subject::ModelKind;
-use crate::table::number;
 use hairis::ParamError;
+use hairis_instruments::progress::Progress;
+use hairis_instruments::stats::Estimate;
+use hairis_instruments::table::number;
 
 /// Names of the claims, and the lights in words, in the order of the study.
 pub(super) const LIGHTS: [[&str; 2]; 5] = [

@@ -2,7 +2,7 @@
 
 use super::Claims;
 use super::claim::{Claim, Figure, Origin, Role, Side, Threshold};
-use crate::table::{Table, number};
+use hairis_instruments::table::{Table, number};
 
 /// The tables.
 #[must_use]

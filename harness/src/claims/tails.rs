@@ -65,8 +65,8 @@ pub(super) fn claim() -> Claim {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sequence::Independent;
-    use crate::stats::Moments;
+    use hairis_instruments::sequence::Independent;
+    use hairis_instruments::stats::Moments;
 
     #[test]
     fn the_added_variance_is_its_closed_form_and_that_of_samples() {

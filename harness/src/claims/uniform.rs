@@ -4,10 +4,10 @@ use super::bounded::{Bounded, Spread, largest};
 use super::claim::{Claim, Figure, Origin, Side, Statement};
 use super::{FoundCells, hair_of};
 use crate::sampler::Sampler;
-use crate::stats::Estimate;
 use crate::study::{Cell, Grid, Plan, StudyBudget, variances};
 use crate::subject::ModelKind;
 use hairis::ParamError;
+use hairis_instruments::stats::Estimate;
 
 const STATEMENT: Statement = Statement {
     id: "better-than-uniform",
@@ -84,7 +84,7 @@ pub(super) fn claim(plan: &Plan<'_>, cells: &FoundCells) -> Result<Claim, ParamE
 mod tests {
     use super::*;
     use crate::claims::hair_of;
-    use crate::light::Sky;
+    use hairis_instruments::light::Sky;
 
     #[test]
     fn the_example_is_that_of_the_record() {

@@ -1,11 +1,12 @@
 //! `hairis claims`: computes the paper's claims, prints them, and writes `claims.json`.
 
-use super::{print_tables, say};
+use super::print_tables;
 use crate::args::Claims;
 use crate::claims;
-use crate::error::Error;
-use crate::files::{writable, write_json};
-use crate::progress::{share_bar, show_share};
+use hairis_instruments::error::Error;
+use hairis_instruments::files::{writable, write_json};
+use hairis_instruments::program::say;
+use hairis_instruments::progress::{share_bar, show_share};
 use std::fs;
 
 /// Computes the claims.

@@ -1,12 +1,13 @@
 //! `hairis compare`: runs the comparison, prints its tables, and writes `compare.json`, `report.html` and
 //! `figures/`.
 
-use super::{environment, print_tables, report_failures, say};
+use super::{environment, print_tables, report_failures};
 use crate::args::Compare;
 use crate::compare::{self, CompareSettings};
-use crate::error::Error;
-use crate::files::{writable, write_json};
-use crate::progress::{share_bar, show_share};
+use hairis_instruments::error::Error;
+use hairis_instruments::files::{writable, write_json};
+use hairis_instruments::program::say;
+use hairis_instruments::progress::{share_bar, show_share};
 use std::fs;
 
 /// Runs the comparison.

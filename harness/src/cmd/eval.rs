@@ -11,8 +11,8 @@ mod lines;
 mod request;
 
 use crate::args::{CodePath, Eval};
-use crate::error::Error;
 use answer::{answers, block_len};
+use hairis_instruments::error::Error;
 use lines::Lines;
 use request::Request;
 use std::io::{self, BufReader, BufWriter, ErrorKind, Read, Write};

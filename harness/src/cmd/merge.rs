@@ -1,10 +1,11 @@
 //! `hairis merge`: joins the parts of a study.
 
+use super::environment;
 use super::study::finish;
-use super::{environment, say};
 use crate::args::Merge;
-use crate::error::Error;
 use crate::study::output::Study;
+use hairis_instruments::error::Error;
+use hairis_instruments::program::say;
 use std::fs;
 
 /// Joins them, writes the same tables as one run, and prints the summary.

@@ -1,14 +1,16 @@
 //! `hairis study`: runs the study, or its part; once all is there, prints its summary and writes its tables.
 
-use super::{environment, print_tables, report_failures, say};
+use super::{environment, print_tables, report_failures};
 use crate::args::Study as Flags;
 use crate::difference::Difference;
-use crate::error::Error;
-use crate::light::Environment;
-use crate::progress::bar;
 use crate::study::output::Study;
 use crate::study::part::{Part, read};
-use crate::study::{self, Plan, Shard};
+use crate::study::{self, Plan};
+use hairis_instruments::error::Error;
+use hairis_instruments::light::Environment;
+use hairis_instruments::program::say;
+use hairis_instruments::progress::bar;
+use hairis_instruments::shard::Shard;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;

@@ -4,13 +4,13 @@ use super::page::{THETA_O_DEG, v_gain};
 use super::{Comparison, distinct};
 use crate::efficiency::SAMPLERS;
 use crate::figures;
-use crate::plot::{Axis, Bar, Series, bars, lines};
-use crate::report::Drawing;
 use crate::sampler::Sampler;
-use crate::sequence::{SequenceKind, XiSource};
 use crate::speed::TimedOp;
 use crate::subject::ModelKind;
 use hairis::HairParams;
+use hairis_instruments::plot::{Axis, Bar, Series, bars, lines};
+use hairis_instruments::report::Drawing;
+use hairis_instruments::sequence::{SequenceKind, XiSource};
 use hairis_variants::{Cauchy, ModelId};
 
 /// Points of each panel of the sample distributions.

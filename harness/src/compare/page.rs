@@ -3,13 +3,13 @@
 use super::tables::{self, Depth};
 use super::{CompareSettings, Comparison, charts, distinct, rays};
 use crate::efficiency::EfficiencyRow;
-use crate::light::in_words;
-use crate::report::{Report, Section};
 use crate::sampler::Sampler;
-use crate::sequence::SequenceKind;
 use crate::speed::TimedOp;
 use crate::subject::ModelKind;
-use crate::table::number;
+use hairis_instruments::light::in_words;
+use hairis_instruments::report::{Report, Section};
+use hairis_instruments::sequence::SequenceKind;
+use hairis_instruments::table::number;
 
 /// The page.
 #[must_use]

@@ -2,13 +2,13 @@
 
 use super::Comparison;
 use super::tables::Depth;
-use crate::light::in_words;
-use crate::plot::{Axis, Series, lines};
 use crate::rays::{EqualTime, HALF, OneRay, PRICES_US, RayRow, RayTimes, SIZES, VISIBLE, equal_time};
-use crate::report::Drawing;
-use crate::stats::Estimate;
-use crate::table::{Table, number};
 use core::iter;
+use hairis_instruments::light::in_words;
+use hairis_instruments::plot::{Axis, Series, lines};
+use hairis_instruments::report::Drawing;
+use hairis_instruments::stats::Estimate;
+use hairis_instruments::table::{Table, number};
 
 /// Candidates of each technique whose V is shown.
 const SHOWN: [u32; 3] = [4, 8, 16];

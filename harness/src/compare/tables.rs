@@ -5,10 +5,10 @@ use super::{Comparison, distinct, rays};
 use crate::agreement::{AgreementResult, Quantity, Region};
 use crate::efficiency::{EfficiencyRow, MisRow, SAMPLERS, Technique};
 use crate::sampler::Sampler;
-use crate::sequence::SequenceKind;
 use crate::speed::TimedOp;
-use crate::stats::Estimate;
-use crate::table::{Table, number};
+use hairis_instruments::sequence::SequenceKind;
+use hairis_instruments::stats::Estimate;
+use hairis_instruments::table::{Table, number};
 use hairis_variants::ModelId;
 
 /// How much a set of tables holds.

@@ -9,8 +9,8 @@
 //! Functions are even in `phi`, so that `cos(m phi)` is all they need.
 
 use super::lobes::{BellValues, Rule, TERMS, dot};
-use crate::quadrature::GaussLegendre;
 use core::f64::consts::{PI, SQRT_2};
+use hairis_instruments::quadrature::GaussLegendre;
 
 /// Deviation of the blur along each of two directions, in degrees.
 pub const SIGMA_DEG: f64 = 10.0;
@@ -193,9 +193,9 @@ impl Harmonics {
 mod tests {
     use super::super::lobes::{Kind, Nodes, ViewedHair};
     use super::*;
-    use crate::quadrature::fibre_direction;
     use core::f64::consts::FRAC_PI_2;
     use hairis::HairParams;
+    use hairis_instruments::direction::fibre_direction;
 
     fn blur() -> Blur {
         Blur::new(SIGMA_DEG.to_radians(), 64, 64)

@@ -7,11 +7,11 @@
 //!
 //! so that integrals of S, and of products of two S, are sums of products of integrals on a line.
 
-use crate::quadrature::GaussLegendre;
 use core::array;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::HairParams;
 use hairis::reference::{Parameters, Shape};
+use hairis_instruments::quadrature::GaussLegendre;
 
 /// The products of `S cos theta_i`.
 pub(super) const TERMS: usize = 3;
@@ -157,12 +157,12 @@ fn gram(nodes: &Nodes, a: &[[f64; TERMS]], b: &[[f64; TERMS]]) -> [[f64; TERMS];
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quadrature::fibre_direction;
-    use crate::sequence::Independent;
     use crate::study::Grid;
     use crate::subject::random_hair;
     use hairis::reference::HairReference;
     use hairis::{Bsdf, Gaussian, Hair};
+    use hairis_instruments::direction::fibre_direction;
+    use hairis_instruments::sequence::Independent;
     use hairis_variants::Cauchy;
 
     #[test]

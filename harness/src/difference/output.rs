@@ -1,10 +1,10 @@
 //! The differences as columns and as tables.
 
 use super::{Difference, Differences, Width};
-use crate::stats::percentile;
 use crate::study::columns::Columns;
 use crate::study::grid::{GridAxis, columns_of};
-use crate::table::{Table, number};
+use hairis_instruments::stats::percentile;
+use hairis_instruments::table::{Table, number};
 
 /// A figure of a row: its column, its name in tables, and its value.
 type Figure = (&'static str, &'static str, fn(&Differences) -> f64);

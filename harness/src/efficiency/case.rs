@@ -1,15 +1,16 @@
 //! One model seen from one direction: the measured eight-lane shading point, and its double-precision oracle.
 
 use super::{ModelKind, PHI_O_DEG};
-use crate::quadrature::{SphereIntegrator, Tolerance, fibre_direction};
 use crate::sampler::{Sampler, Scatter, UNIFORM_PDF};
-use crate::sequence::{XiSource, to_unit_f32};
 use core::array;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::{DVec3, Vec3};
 use hairis::HairParams;
 use hairis::reference::{Oracle, Parameters};
 use hairis::wide::f32x8;
+use hairis_instruments::direction::fibre_direction;
+use hairis_instruments::quadrature::{SphereIntegrator, Tolerance};
+use hairis_instruments::sequence::{XiSource, to_unit_f32};
 
 /// A model with its parameters, seen from `wo`.
 pub(super) struct Case {

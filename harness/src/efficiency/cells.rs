@@ -5,11 +5,11 @@ use super::measure::{self, bias_z, is_tested, moments};
 use super::reference::exact_variance;
 use super::result::{ConvergencePoint, EfficiencyRow, MisRow, ReferenceV, SweepRow, Technique};
 use super::{EfficiencyConfig, ModelKind, Reference, stream};
-use crate::light::{Constant, Light};
 use crate::sampler::Sampler;
-use crate::sequence::SequenceKind;
-use crate::stats::{Estimate, Moments};
 use hairis::HairParams;
+use hairis_instruments::light::{Constant, Light};
+use hairis_instruments::sequence::SequenceKind;
+use hairis_instruments::stats::{Estimate, Moments};
 
 /// A case under a light, the light's place in the order of reports, and the reference.
 #[derive(Clone, Copy)]

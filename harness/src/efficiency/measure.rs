@@ -3,11 +3,11 @@
 
 use super::case::Case;
 use super::{MIN_EFFECTIVE, Technique, intensity};
-use crate::light::{Light, LightSample, product};
 use crate::sampler::Sampler;
-use crate::sequence::{SequenceKind, XiSource};
-use crate::stats::{Estimate, Moments};
 use core::array;
+use hairis_instruments::light::{Light, LightSample, product};
+use hairis_instruments::sequence::{SequenceKind, XiSource};
+use hairis_instruments::stats::{Estimate, Moments};
 
 /// Moments of one cell, and the largest numbers seen on the way.
 #[derive(Clone, Copy, Debug, Default)]

@@ -2,12 +2,12 @@
 
 use super::case::Case;
 use super::{Reference, ReferenceMethod, SAMPLERS, intensity, stream};
-use crate::light::{Environment, Light, LightSample, luminance, product};
-use crate::quadrature::SphereIntegrator;
 use crate::sampler::Sampler;
-use crate::sequence::{Stratified, XiSource};
-use crate::stats::{Estimate, Moments};
 use glam::DVec3;
+use hairis_instruments::light::{Environment, Light, LightSample, luminance, product};
+use hairis_instruments::quadrature::SphereIntegrator;
+use hairis_instruments::sequence::{Stratified, XiSource};
+use hairis_instruments::stats::{Estimate, Moments};
 
 /// `numerator / pdf`, 0 where nothing is drawn: the contribution is 0 there too.
 fn over(numerator: f64, pdf: f64) -> f64 {

@@ -2,8 +2,8 @@
 
 use super::{Budget, EachSampler, ModelKind, SAMPLERS, SampleCosts, of_sampler};
 use crate::sampler::Sampler;
-use crate::sequence::SequenceKind;
-use crate::stats::Estimate;
+use hairis_instruments::sequence::SequenceKind;
+use hairis_instruments::stats::Estimate;
 use serde::Serialize;
 
 /// Every table of the comparison of sample efficiency.

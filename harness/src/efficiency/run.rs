@@ -8,13 +8,13 @@ use super::{
     BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG, Reference, SAMPLERS,
     SUN_DEG, THETA_O_DEG, with_beta,
 };
-use crate::light::{Constant, Light, Rectangle, Smooth};
-use crate::progress::Progress;
 use crate::sampler::Sampler;
-use crate::sequence::SequenceKind;
-use crate::stats::{Estimate, sidak};
 use core::f64::consts::SQRT_2;
 use hairis::{HairParams, ParamError};
+use hairis_instruments::light::{Constant, Light, Rectangle, Smooth};
+use hairis_instruments::progress::Progress;
+use hairis_instruments::sequence::SequenceKind;
+use hairis_instruments::stats::{Estimate, sidak};
 use statrs::function::erf::erfc_inv;
 
 /// Places of the lights in the order of reports.

@@ -6,10 +6,10 @@ use super::measure::{CellMoments, bias_z, is_tested, moments};
 use super::reference::{by_quadrature, exact_variance};
 use super::result::Technique;
 use super::*;
-use crate::light::{Constant, Light, Rectangle, Smooth, Sun};
-use crate::quadrature::fibre_direction;
-use crate::sequence::{Independent, SequenceKind, XiSource};
-use crate::stats::{Estimate, Moments};
+use hairis_instruments::direction::fibre_direction;
+use hairis_instruments::light::{Constant, Light, Rectangle, Smooth, Sun};
+use hairis_instruments::sequence::{Independent, SequenceKind, XiSource};
+use hairis_instruments::stats::{Estimate, Moments};
 use std::sync::{Mutex, OnceLock};
 
 /// Everything, small enough to be computed in seconds.
@@ -259,7 +259,7 @@ fn ten_hits_that_carry_a_fifth_of_the_mean_are_too_few() {
 #[test]
 #[ignore = "slow: 100 s of processor time in release"]
 fn a_full_run_under_the_sky_passes_its_check() {
-    let sky = crate::light::Sky::default().environment();
+    let sky = hairis_instruments::light::Sky::default().environment();
     let result = run(&EfficiencyConfig::new(2, false, &sky), &|_, _| ()).expect("valid");
     assert!(result.check.passed(), "{:#?}", result.check);
     // Directions from the BSDF meet a sun off the highlights once in a thousand samples or less: V is up to 40,000, and two

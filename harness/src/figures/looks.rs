@@ -1,12 +1,12 @@
 //! Looks of the two models around a fibre: sections, and maps of the sphere.
 
 use crate::difference::{SIGMA_DEG, blurred};
-use crate::plot::{Axis, PolarPanel, SphereGrid, heat_map};
-use crate::quadrature::fibre_direction;
-use crate::report::Drawing;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::{Bell, Bsdf, Gaussian, Hair, HairParams};
+use hairis_instruments::direction::fibre_direction;
+use hairis_instruments::plot::{Axis, PolarPanel, SphereGrid, heat_map};
+use hairis_instruments::report::Drawing;
 use hairis_variants::{AnyBsdf, Cauchy};
 
 fn direction(theta: f64, phi: f64) -> Vec3 {
@@ -52,7 +52,7 @@ pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> 
     ];
     let names: Vec<&str> = models.iter().map(|(name, _)| *name).collect();
     let title = format!("S, Gaussian and Cauchy, θₒ = {degrees:.0}°");
-    let chart = crate::plot::polar(&title, "radius: S (1/sr), mean of RGB", &names, &panels);
+    let chart = hairis_instruments::plot::polar(&title, "radius: S (1/sr), mean of RGB", &names, &panels);
     let caption = format!(
         "The scattering function of the published Gaussian model and of the all-Cauchy variant, seen from θₒ = \
          {degrees:.0}° (ωₒ marks the direction to the viewer). Above: around the fibre, on the cone of the mirror \

@@ -1,12 +1,13 @@
 //! Eight candidates at a time: drawn, looked up and weighed.
 
 use super::MOST;
-use crate::light::{Light, Seen8, rounded};
-use crate::sampler::{Scatter, cosine};
-use crate::sequence::{Independent, XiSource};
+use crate::sampler::Scatter;
 use core::array;
 use hairis::resample::{Counts, Partition, Weighed8};
 use hairis::{Eval8, Vec3x8};
+use hairis_instruments::direction::cosine;
+use hairis_instruments::light::{Light, Seen8, rounded};
+use hairis_instruments::sequence::{Independent, XiSource};
 use wide::f32x8;
 
 /// Eight directions that were drawn from a light, one per lane.

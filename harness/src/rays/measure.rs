@@ -4,9 +4,9 @@ use super::candidates::{LightBlock, LightBlocks, Lit, PACKETS, numbers};
 use super::result::{BiasScore, OneRay, PoolFigures, RayFigures, RayPose};
 use super::{HALF, MOST, RAYS, SIZES, pools};
 use crate::efficiency::{bias_z, is_tested};
-use crate::sequence::Independent;
-use crate::stats::{Estimate, Moments};
 use hairis::resample::{Choice, Choices, choose};
+use hairis_instruments::sequence::Independent;
+use hairis_instruments::stats::{Estimate, Moments};
 use wide::f32x8;
 
 /// Candidates of both techniques.

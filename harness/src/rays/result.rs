@@ -2,7 +2,7 @@
 
 use super::{EqualTime, RayTimes, VISIBLE};
 use crate::efficiency::Check;
-use crate::stats::Estimate;
+use hairis_instruments::stats::Estimate;
 use serde::Serialize;
 
 /// Everything about rays.

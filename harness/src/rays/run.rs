@@ -3,12 +3,12 @@
 use super::result::{RayFigures, RayPose, RayRow, RaysResult};
 use super::{EqualTime, Lit, RaySubject, measure, times};
 use crate::efficiency::{Check, EfficiencyResult, THETA_O_DEG, intensity, stratified};
-use crate::light::{Environment, Light, product};
-use crate::progress::Progress;
-use crate::sequence::stream_id;
-use crate::stats::Estimate;
 use crate::study::with_lights;
 use hairis::reference::Reference as _;
+use hairis_instruments::light::{Environment, Light, product};
+use hairis_instruments::progress::Progress;
+use hairis_instruments::sequence::stream_id;
+use hairis_instruments::stats::Estimate;
 use std::collections::HashMap;
 
 /// Settings of a run.

@@ -1,10 +1,10 @@
 //! The models and samplers whose rays are measured, and the shading points.
 
 use crate::efficiency::{PHI_O_DEG, THETA_O_DEG};
-use crate::quadrature::fibre_direction;
 use crate::sampler::{Sampler, Scatter};
 use glam::Vec3;
 use hairis::Hit;
+use hairis_instruments::direction::fibre_direction;
 use hairis_variants::{AnyReference, ModelId};
 
 /// Offset of the ray from the fibre's axis, for models that read it, by place in [`THETA_O_DEG`].

@@ -5,10 +5,10 @@ use super::measure::pose;
 use super::result::{geometric_mean, occluded};
 use super::*;
 use crate::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, THETA_O_DEG};
-use crate::light::{Environment, Light, Sky};
-use crate::sequence::{Independent, XiSource};
-use crate::stats::Estimate;
 use crate::study::with_lights;
+use hairis_instruments::light::{Environment, Light, Sky};
+use hairis_instruments::sequence::{Independent, XiSource};
+use hairis_instruments::stats::Estimate;
 use std::sync::OnceLock;
 
 const SMALL: Budget = Budget {

@@ -6,12 +6,12 @@
 
 use super::candidates::{Candidates8, LightBlock, Lit, numbers};
 use super::{MOST, RAYS, RaySubject, SIZES};
-use crate::light::Light;
-use crate::sequence::{Independent, stream_id};
-use crate::stats::Estimate;
 use crate::study::in_turns;
 use core::hint::black_box;
 use hairis::resample::choose;
+use hairis_instruments::light::Light;
+use hairis_instruments::sequence::{Independent, stream_id};
+use hairis_instruments::stats::Estimate;
 use serde::Serialize;
 use std::time::Instant;
 use wide::f32x8;

@@ -6,14 +6,14 @@ use super::perfect::{self, PerfectTally};
 use super::rays::SIZES;
 use super::tally::{Figures, Tally, figures, largest};
 use crate::efficiency::PHI_O_DEG;
-use crate::light::Light;
-use crate::quadrature::fibre_direction;
 use crate::rays::{LightBlocks, Lit, Unoccluded, numbers, unoccluded};
 use crate::sampler::{Sampler, Scatter};
-use crate::sequence::{Independent, XiSource, stream_id};
-use crate::stats::Estimate;
 use crate::subject::ModelKind;
 use hairis::{ParamError, Vec3x8};
+use hairis_instruments::direction::fibre_direction;
+use hairis_instruments::light::Light;
+use hairis_instruments::sequence::{Independent, XiSource, stream_id};
+use hairis_instruments::stats::Estimate;
 use wide::{f32x8, f64x8};
 
 /// Figures of one sampler of one model under one light.
@@ -197,8 +197,8 @@ fn widened(x: f32x8) -> f64x8 {
 mod tests {
     use super::*;
     use crate::efficiency::{SAMPLERS, perfect_v, quadrature, ray_v, sun};
-    use crate::light::{Constant, Rectangle, Sky, Smooth};
     use crate::study::Grid;
+    use hairis_instruments::light::{Constant, Rectangle, Sky, Smooth};
 
     const BUDGET: StudyBudget = StudyBudget { samples: 1 << 16, light_samples: 1 << 13, pools: 0 };
 

@@ -4,7 +4,7 @@ use super::output::Study;
 use super::rows::{Row, name};
 use crate::efficiency::{FALSE_ALARM, z_bound};
 use crate::sampler::Sampler;
-use crate::stats::sidak;
+use hairis_instruments::stats::sidak;
 
 /// Rounding of a weight in single precision, relative to its bound.
 const ROUNDING: f64 = 1e-4;
@@ -57,13 +57,14 @@ impl Study {
 
 #[cfg(test)]
 mod tests {
-    use crate::light::Sky;
-    use crate::stats::Estimate;
     use crate::study::cell::Measured;
     use crate::study::output::{Study, Times};
     use crate::study::rows::set_bounds;
     use crate::study::tally::Figures;
-    use crate::study::{Grid, Plan, Shard};
+    use crate::study::{Grid, Plan};
+    use hairis_instruments::light::Sky;
+    use hairis_instruments::shard::Shard;
+    use hairis_instruments::stats::Estimate;
 
     #[test]
     fn weights_above_their_bound_and_means_apart_are_found() {

@@ -1,6 +1,6 @@
 //! Variances in equal time: the gain of a sampler whose samples take longer, alone or with the work that follows them.
 
-use crate::stats::Estimate;
+use hairis_instruments::stats::Estimate;
 
 /// Comparison of two figures, beyond their errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

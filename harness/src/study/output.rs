@@ -8,15 +8,16 @@ use super::rays;
 use super::rows::{Row, published, set_bounds};
 use super::times::PER_POINT;
 use super::view::Counted;
-use super::{Grid, Shard, report};
+use super::{Grid, report};
 use crate::difference::Difference;
-use crate::error::Error;
-use crate::files::{whole, write_json};
-use crate::light::Environment;
-use crate::machine::Machine;
 use crate::sampler::Sampler;
-use crate::stats::Estimate;
 use crate::subject::ModelKind;
+use hairis_instruments::error::Error;
+use hairis_instruments::files::{whole, write_json};
+use hairis_instruments::light::Environment;
+use hairis_instruments::machine;
+use hairis_instruments::shard::Shard;
+use hairis_instruments::stats::Estimate;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -206,7 +207,7 @@ impl Study {
             #[cfg(feature = "parquet")]
             whole(&dir.join(format!("{name}.parquet")), |out| columns.write_parquet(self.notes(), out))?;
         }
-        let settings = json!({ "study": self.header, "times_measured_on": Machine::current() });
+        let settings = json!({ "study": self.header, "times_measured_on": machine!() });
         write_json(&dir.join("study.json"), &settings)
     }
 }

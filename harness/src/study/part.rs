@@ -7,12 +7,12 @@ mod sealed;
 
 pub use sealed::line;
 
-use super::Shard;
 use super::cell::Measured;
 use super::tally::Figures;
-use crate::error::Error;
-use crate::light::Environment;
-use crate::stats::Estimate;
+use hairis_instruments::error::Error;
+use hairis_instruments::light::Environment;
+use hairis_instruments::shard::Shard;
+use hairis_instruments::stats::Estimate;
 use sealed::unseal;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File, TryLockError};
@@ -294,8 +294,8 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::light::Sky;
     use crate::study::Plan;
+    use hairis_instruments::light::Sky;
 
     fn header(seed: u64) -> Header {
         let sky = Sky::default().environment();

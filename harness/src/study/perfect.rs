@@ -17,7 +17,7 @@
 use super::cell::Measured;
 use super::tally::{Figures, Sums, joined, largest};
 use crate::sampler::Sampler;
-use crate::stats::Estimate;
+use hairis_instruments::stats::Estimate;
 use wide::f64x8;
 
 /// Source of the directions: the sampler whose weights vary least.
@@ -61,9 +61,9 @@ pub(super) fn measured(strata: &[PerfectTally; 2]) -> Measured {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quadrature::GaussLegendre;
-    use crate::sequence::Independent;
     use crate::study::tally::tests::assert_honest;
+    use hairis_instruments::quadrature::GaussLegendre;
+    use hairis_instruments::sequence::Independent;
 
     /// Hair and light on [0, 1): `f`, its integral, and the light's radiance and density on [0, 0.1).
     fn f(x: f64) -> f64 {

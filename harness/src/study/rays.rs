@@ -6,7 +6,7 @@ use super::equal_time::{in_equal_time, time_ratio};
 use super::output::Study;
 use super::rows::Row;
 use crate::rays::{HALF, PRICES_US, VISIBLE, occluded};
-use crate::stats::Estimate;
+use hairis_instruments::stats::Estimate;
 
 /// Candidates of each technique in a pool.
 pub(super) const SIZES: [u32; 2] = [4, 8];

@@ -8,8 +8,8 @@ mod tables;
 
 use super::output::Study;
 use crate::difference::{Difference, SIGMA_DEG};
-use crate::machine::Machine;
-use crate::report::{Report, Section};
+use hairis_instruments::machine;
+use hairis_instruments::report::{Report, Section};
 use serde_json::Value;
 
 /// Whether the content of a `claims.json` has verdicts to show.
@@ -112,7 +112,7 @@ impl Study {
             ["cells computed by", &format!("version {}, commit {}", header.version, header.commit)],
             ["cells computed on", &header.level],
             ["environment", &format!("digest {}", header.environment)],
-            ["times measured on", &Machine::current().summary()],
+            ["times measured on", &machine!().summary()],
         ])
     }
 }

@@ -6,8 +6,8 @@ use super::grid::{Cell, columns_of};
 use super::output::Study;
 use super::rays;
 use crate::sampler::{Sampler, weight_bound};
-use crate::stats::Estimate;
 use crate::subject::ModelKind;
+use hairis_instruments::stats::Estimate;
 
 /// The sampler of a row; `None`: perfect sampling of the hair, see [`perfect`](super::perfect).
 pub(super) type Strategy = Option<Sampler>;

@@ -7,9 +7,9 @@ use super::rows::{Estimator, Strategy, on_each_model, published, samplers, strat
 use super::times::PER_POINT;
 use super::view::{Counted, MAX_RELATIVE_ERROR, sure_ratio};
 use crate::sampler::Sampler;
-use crate::stats::Estimate;
 use crate::subject::ModelKind;
-use crate::table::{Table, number};
+use hairis_instruments::stats::Estimate;
+use hairis_instruments::table::{Table, number};
 
 /// The estimator that each of some estimators is compared with, and those.
 type Compared = (fn(Estimator) -> Estimator, Vec<Estimator>);

@@ -6,8 +6,8 @@
 //! (density `q`) join them by the balance heuristic: with `n` of the one and `c n` of the other, a direction counts
 //! `p / (p + c q)` among the sampler's and `c p / (p + c q)` among the light's.
 
-use crate::stats::Estimate;
 use core::array::from_fn;
+use hairis_instruments::stats::Estimate;
 use wide::f64x8;
 
 /// Sums over the directions of one stratum, the sampler's or the light's, one per lane: of `N` terms, and of the product of
@@ -127,8 +127,8 @@ pub(super) fn figures(strata: &[Tally]) -> Figures {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::sequence::Independent;
-    use crate::stats::Moments;
+    use hairis_instruments::sequence::Independent;
+    use hairis_instruments::stats::Moments;
 
     fn draw(from: &mut Independent) -> f64x8 {
         f64x8::new(from_fn(|_| -(1.0 - from.next_f64()).ln()))

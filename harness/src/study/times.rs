@@ -10,16 +10,17 @@
 
 use super::columns::Columns;
 use super::with_lights;
-use crate::light::{Environment, Light, Seen8};
 use crate::rays::{RaySubject, RayTimes, measure_times, numbers};
 use crate::sampler::{Sampler, bsdf, uniform_sample8, uniform8};
-use crate::sequence::{Independent, stream_id};
 use crate::speed::{median_error, quartiles, stretch};
-use crate::stats::Estimate;
-use crate::subject::{ModelKind, uniform_direction};
+use crate::subject::ModelKind;
 use core::hint::black_box;
-use hairis::{HairParams, Sample8, Vec3x8};
-use hairis_benches::task::{Answer, Output, Pass, task};
+use hairis::{Eval8, HairParams, Sample8, Vec3x8};
+use hairis_benches::task::{Pass, task};
+use hairis_instruments::direction::uniform_direction;
+use hairis_instruments::light::{Environment, Light, Seen8};
+use hairis_instruments::sequence::{Independent, stream_id};
+use hairis_instruments::stats::Estimate;
 use wide::f32x8;
 
 /// Samples of a shading point over which its set-up is spread: a path tracer's, and two of direct lighting.
@@ -154,7 +155,10 @@ fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeS
     }
     let seen = directions(&mut from);
     contenders.extend(lights.iter().enumerate().map(|(place, light)| {
-        let pass: Box<dyn Pass + '_> = task(&seen, |wi| light.see8(wi));
+        let pass: Box<dyn Pass + '_> = task(&seen, |wi| {
+            let Seen8 { radiance: value, pdf } = light.see8(wi);
+            Eval8 { value, pdf }
+        });
         (Timed::LookUp(place), pass, 2)
     }));
     let times = in_turns(&mut contenders, rounds, |(of, pass, passes)| {
@@ -210,11 +214,6 @@ fn pass<'a>(model: ModelKind, sampler: Sampler, points: &[Points], per_point: us
     })
 }
 
-/// A look-up has neither a direction of its own nor a reference: it is timed, not checked.
-impl Output for Seen8 {
-    fn answers(&self, _: &mut Vec<Answer>) {}
-}
-
 /// Draws every sample and keeps the last.
 #[inline(always)]
 fn each(xi: &[[f32x8; 3]], sample: impl Fn(&[f32x8; 3]) -> Sample8) -> Sample8 {
@@ -229,7 +228,7 @@ fn each(xi: &[[f32x8; 3]], sample: impl Fn(&[f32x8; 3]) -> Sample8) -> Sample8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::light::{Constant, Smooth};
+    use hairis_instruments::light::{Constant, Smooth};
 
     #[test]
     fn every_sampler_and_light_is_timed() {

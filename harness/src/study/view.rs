@@ -5,11 +5,11 @@ use super::equal_time::{NOTHING, Sign, in_equal_time, time_ratio};
 use super::output::Study;
 use super::rays::RAYS;
 use super::rows::{Estimator, Row, name};
-use crate::plot::{Axis, Bar, bars};
 use crate::rays::RayTimes;
 use crate::sampler::Sampler;
-use crate::stats::Estimate;
-use crate::table::Table;
+use hairis_instruments::plot::{Axis, Bar, bars};
+use hairis_instruments::stats::Estimate;
+use hairis_instruments::table::Table;
 
 /// Relative standard error of V beyond which a cell is left out: the light was hardly hit.
 pub(super) const MAX_RELATIVE_ERROR: f64 = 0.25;

@@ -4,7 +4,7 @@ use super::render::{check_out, finish};
 use crate::args::Merge;
 use crate::layers::Beside;
 use crate::part::Part;
-use hairis_harness::error::Error;
+use hairis_instruments::error::Error;
 
 /// Joins the parts of a picture.
 ///

@@ -17,11 +17,12 @@ use crate::scenes::{self, Name, Parts};
 use crate::transport::{self, Settings};
 use core::time::Duration;
 use description::describe;
-use hairis_harness::error::Error;
-use hairis_harness::files::whole;
-use hairis_harness::light::Environment;
-use hairis_harness::progress::{share_bar, show_share};
-use hairis_harness::study::Shard;
+use hairis_instruments::error::Error;
+use hairis_instruments::files::whole;
+use hairis_instruments::light::Environment;
+use hairis_instruments::program::say;
+use hairis_instruments::progress::{share_bar, show_share};
+use hairis_instruments::shard::Shard;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -125,7 +126,7 @@ fn hair(flags: &Render, settings: &Settings) -> Result<Hair, Error> {
     let hair = choice.hair(energy)?;
     let [mean, worst] = hair.mean_and_worst_albedo();
     // Ignore write errors: this is a remark.
-    let _ = writeln!(io::stderr(), "albedo of the hair: mean {mean:.3}, largest {worst:.3}");
+    say(&format!("albedo of the hair: mean {mean:.3}, largest {worst:.3}"));
     if flags.energy.is_none() {
         check_paths(&hair, settings, preset, "use --energy per-wo")?;
     }
@@ -152,7 +153,7 @@ pub(super) fn check_out(path: &Path) -> Result<(), Error> {
 pub(crate) fn environment(path: &Path) -> Result<Environment, Error> {
     let map = Environment::load(path).map_err(Error::Environment)?;
     for note in map.notes() {
-        let _ = writeln!(io::stderr(), "{note}");
+        say(&note);
     }
     Ok(map)
 }
@@ -163,7 +164,7 @@ fn read_hair(flags: &Render, path: &Path) -> Result<Strands, Error> {
     let options = Import { radius: flags.radius, scale: flags.scale, up: flags.up, follow, ..Import::default() };
     let imported = import(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
     for remark in imported.remarks {
-        let _ = writeln!(io::stderr(), "{}: {remark}", path.display());
+        say(&format!("{}: {remark}", path.display()));
     }
     if imported.strands.strands() == 0 {
         return Err(Error::Usage(format!("{}: there is no strand to render", path.display())));

@@ -10,10 +10,10 @@ use crate::lights::RectangleSampling;
 use crate::numbers::Sequence;
 use crate::protocol::{Measure, Reach, Runs, reach, slope_of};
 use clap::ValueEnum;
-use hairis_harness::error::Error;
-use hairis_harness::files::whole;
-use hairis_harness::machine::Machine;
-use hairis_harness::stats::Estimate;
+use hairis_instruments::error::Error;
+use hairis_instruments::files::whole;
+use hairis_instruments::machine;
+use hairis_instruments::stats::Estimate;
 use std::io::Write as _;
 use std::path::Path;
 
@@ -46,7 +46,7 @@ pub(super) fn write(
 fn head(plan: &Plan, flags: &Figures) -> Vec<String> {
     let Plan { side, strands, runs, .. } = plan;
     vec![
-        format!("# {}", Machine::current().summary()),
+        format!("# {}", machine!().summary()),
         format!("# {}", command(flags)),
         format!(
             "# {side} by {side} pixels, {strands} strands, {runs} pictures per error; time: seconds of a thread, per picture"

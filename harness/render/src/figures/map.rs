@@ -1,6 +1,6 @@
 //! Error maps: a colour per pixel, on a scale that all samplers of a scene share.
 
-use hairis_harness::table::number;
+use hairis_instruments::table::number;
 use image::RgbImage;
 
 /// Ratio of the largest and the smallest squared error that a map tells apart.
@@ -84,7 +84,7 @@ pub(super) fn scale<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
     if values.is_empty() {
         return 1.0;
     }
-    let covered = hairis_harness::stats::percentile(&values, COVERED);
+    let covered = hairis_instruments::stats::percentile(&values, COVERED);
     let power = 10.0_f64.powf(covered.log10().floor());
     let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= covered).unwrap_or(10.0);
     factor * power

@@ -12,9 +12,9 @@ use crate::protocol::{Reference, Runs};
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
 use crate::transport::{Integrator, Mis, Settings, film};
-use hairis_harness::error::Error;
-use hairis_harness::light::Environment;
-use hairis_harness::machine::Machine;
+use hairis_instruments::error::Error;
+use hairis_instruments::light::Environment;
+use hairis_instruments::machine;
 use std::path::Path;
 
 /// The model of the scenes.
@@ -151,7 +151,7 @@ impl Measured {
         step: &dyn Fn(&str),
     ) -> Result<Self, Error> {
         let defaults = name.defaults();
-        let title = map.as_ref().map(|map| hairis_harness::light::Light::name(map).to_owned());
+        let title = map.as_ref().map(|map| hairis_instruments::light::Light::name(map).to_owned());
         let digest = map.as_ref().map_or(0, Environment::digest);
         let hair = |sampler| Choice::find(MODEL, sampler, defaults.preset)?.hair(Energy::Raw);
         let strands = scenes::grow(name, plan.strands)?;
@@ -230,7 +230,7 @@ impl Measured {
 
     /// Attributes of a picture's file. Samplers' times are those of the fastest of several pictures.
     fn beside(&self, sampler: &str, samples: u32, seconds: f64) -> Beside {
-        let machine = Machine::current();
+        let machine = machine!();
         let attributes = vec![
             ("run", format!("{} sampler={sampler} {}", self.of_scene, build())),
             ("seed", self.seed.to_string()),

@@ -10,9 +10,9 @@ use crate::protocol::Reference;
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
 use crate::transport::Settings;
-use hairis_harness::error::Error;
-use hairis_harness::report::{Drawing, Section};
-use hairis_harness::table::{Table, number};
+use hairis_instruments::error::Error;
+use hairis_instruments::report::{Drawing, Section};
+use hairis_instruments::table::{Table, number};
 use hairis_variants::ModelId;
 
 /// Hair of every model, by the names of its presets.

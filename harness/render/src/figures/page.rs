@@ -13,12 +13,12 @@ use crate::numbers::Sequence;
 use crate::picture::exposure;
 use crate::protocol::{Measure, Runs};
 use crate::transport::Integrator;
-use hairis_harness::error::Error;
-use hairis_harness::files::whole;
-use hairis_harness::machine::Machine;
-use hairis_harness::plot::{Axis, Bar, Series, bars, lines};
-use hairis_harness::report::{Drawing, Report, Section};
-use hairis_harness::table::{Table, number};
+use hairis_instruments::error::Error;
+use hairis_instruments::files::whole;
+use hairis_instruments::machine;
+use hairis_instruments::plot::{Axis, Bar, Series, bars, lines};
+use hairis_instruments::report::{Drawing, Report, Section};
+use hairis_instruments::table::{Table, number};
 use std::io::Write as _;
 use std::path::Path;
 
@@ -36,7 +36,7 @@ pub(super) fn write(
 }
 
 fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> std::io::Result<Report> {
-    let machine = Machine::current();
+    let machine = machine!();
     let mut sections = vec![Section::new("Summary").tables([summary(all)])];
     for measured in all {
         sections.push(section(measured)?);

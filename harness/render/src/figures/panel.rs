@@ -5,7 +5,7 @@ use crate::film::{Crop, Picture};
 use crate::picture::{png, preview};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use hairis_harness::markup::escape;
+use hairis_instruments::markup::escape;
 use image::RgbImage;
 use image::imageops::{FilterType, crop_imm, resize};
 use std::io;

@@ -2,8 +2,8 @@
 
 use super::measure::Measured;
 use crate::protocol::{Measure, Reach, Runs, reach, slope_of};
-use hairis_harness::stats::Estimate;
-use hairis_harness::table::{Table, number};
+use hairis_instruments::stats::Estimate;
+use hairis_instruments::table::{Table, number};
 
 /// The error that samples and time are told to.
 const MEASURE: Measure = Measure::RelMse;

@@ -6,9 +6,10 @@ use crate::protocol::{Errors, Reference, Runs};
 use crate::scene::Scene;
 use crate::transport::Settings;
 use core::cell::{Cell, RefCell};
-use hairis_harness::error::Error;
-use hairis_harness::files::whole;
-use hairis_harness::stats::Estimate;
+use hairis_instruments::error::Error;
+use hairis_instruments::files::whole;
+use hairis_instruments::program::say;
+use hairis_instruments::stats::Estimate;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
@@ -134,7 +135,7 @@ fn read(path: &Path, key: &str) -> Option<Runs> {
         Err(error) => format!("cannot read: {error}"),
     };
     // Ignore write errors: this is a remark.
-    let _ = writeln!(io::stderr(), "{}: {problem}; measured again", path.display());
+    say(&format!("{}: {problem}; measured again", path.display()));
     None
 }
 

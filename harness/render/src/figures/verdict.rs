@@ -3,8 +3,8 @@
 use super::measure::{BySampler, Measured, RESAMPLED};
 use crate::protocol::{Measure, Runs};
 use core::cmp::Ordering;
-use hairis_harness::stats::Estimate;
-use hairis_harness::table::number::{ratio, ratio_with_error};
+use hairis_instruments::stats::Estimate;
+use hairis_instruments::table::number::{ratio, ratio_with_error};
 
 /// A gain below this, or within two standard errors of 1, is none.
 const GAIN: f64 = 1.15;

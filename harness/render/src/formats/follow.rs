@@ -2,7 +2,7 @@
 
 use crate::lights::uniform_direction;
 use glam::Vec3;
-use hairis_harness::sequence::{Independent, XiSource as _};
+use hairis_instruments::sequence::{Independent, XiSource as _};
 
 /// How many strands are added beside each, and how far away.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use super::{LightSample, Seen};
 use clap::ValueEnum;
 use core::f64::consts::PI;
 use glam::{DVec3, Vec3};
-use hairis_harness::light::rounded;
+use hairis_instruments::light::rounded;
 
 /// Below this solid angle, in sr, the difference of its corners' angles keeps no digits: points are drawn by area.
 const SMALL: f64 = 1e-7;
@@ -225,8 +225,8 @@ mod tests {
     use super::RectangleSampling::{Area, SolidAngle};
     use super::*;
     use hairis_conformance::statistics::chi_square;
-    use hairis_harness::sequence::{Independent, XiSource as _};
-    use hairis_harness::stats::Moments;
+    use hairis_instruments::sequence::{Independent, XiSource as _};
+    use hairis_instruments::stats::Moments;
 
     fn tilted() -> Rectangle {
         let (a, b) = (Vec3::new(3.0, 1.0, 0.0), Vec3::new(-1.0, 3.0, 2.0).cross(Vec3::new(3.0, 1.0, 0.0)).normalize());

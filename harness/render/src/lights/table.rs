@@ -4,7 +4,7 @@ use super::{LightSample8, Sky};
 use crate::numbers::Even;
 #[cfg(test)]
 use hairis::wide::f32x8;
-use hairis_harness::sequence::mix;
+use hairis_instruments::sequence::mix;
 use std::sync::OnceLock;
 
 /// Most directions of a table: 8 MB.
@@ -110,9 +110,9 @@ fn low(bits: u64) -> u32 {
 mod tests {
     use super::*;
     use hairis_conformance::statistics::chi_square;
-    use hairis_harness::light::{Environment, Light as _};
-    use hairis_harness::sequence::{Independent, XiSource as _};
-    use hairis_harness::stats::Moments;
+    use hairis_instruments::light::{Environment, Light as _};
+    use hairis_instruments::sequence::{Independent, XiSource as _};
+    use hairis_instruments::stats::Moments;
 
     fn map() -> Environment {
         let mut xi = Independent::new(4, 0);
@@ -169,7 +169,7 @@ mod tests {
         let got = moments.mean_estimate();
         // Independent directions would leave some 5e-3 of it in each table.
         assert!(8.0 * got.standard_error < 5e-4 * got.value && got.standard_error > 0.0, "{got:?}");
-        let truth = map.integrate(&|dir| [dir.y * dir.y; 3], &hairis_harness::quadrature::SphereIntegrator::new());
+        let truth = map.integrate(&|dir| [dir.y * dir.y; 3], &hairis_instruments::quadrature::SphereIntegrator::new());
         assert!((got.value / truth.value[1] - 1.0).abs() < 1e-4, "{got:?} for {:?}", truth.value);
         assert!(Table::draw(&Sky::Black, 1, 16).is_none());
         let bytes = |length| size_of_val(&Table::draw(&sky, 1, length).expect("a sky").blocks[..]);

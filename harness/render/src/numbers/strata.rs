@@ -1,7 +1,7 @@
 //! Jittered points: one in each cell of a grid, in random order.
 
 use super::{half, unit};
-use hairis_harness::sequence::mix;
+use hairis_instruments::sequence::mix;
 
 /// Cells along each axis of a grid.
 const SIDE: usize = 4;

@@ -1,6 +1,6 @@
 //! Files of numbers that end in a digest of the rest.
 
-use hairis_harness::sequence::mix;
+use hairis_instruments::sequence::mix;
 
 /// A number that differs where bytes do, but by chance.
 pub(crate) fn digest(bytes: &[u8]) -> u64 {

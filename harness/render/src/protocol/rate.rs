@@ -1,7 +1,7 @@
 //! How errors fall with samples: slopes, and samples and time to an error.
 
 use super::{Measure, Runs};
-use hairis_harness::stats::Estimate;
+use hairis_instruments::stats::Estimate;
 
 /// Mean of values but for that of one place.
 pub(super) fn average(values: impl Iterator<Item = (usize, f64)>, left_out: Option<usize>) -> f64 {

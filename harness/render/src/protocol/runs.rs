@@ -5,7 +5,7 @@ use super::{Errors, Measure, Reference};
 use crate::film::{Crop, Film, Picture};
 use crate::scene::Scene;
 use crate::transport::{Settings, film};
-use hairis_harness::stats::{Estimate, Moments};
+use hairis_instruments::stats::{Estimate, Moments};
 
 /// Renders with one sampler at one count of samples, each with a seed of its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,7 +122,7 @@ impl Runs {
 mod tests {
     use super::*;
     use crate::protocol::tests::noisy;
-    use hairis_harness::sequence::Independent;
+    use hairis_instruments::sequence::Independent;
 
     #[test]
     fn noise_and_bias_are_told_apart() {

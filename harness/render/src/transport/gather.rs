@@ -12,7 +12,7 @@ use crate::scene::{Met, Scene};
 use crate::tree::{self, Ray};
 use glam::Vec3;
 use hairis::{FiberFrame, FiberFrame8, Hit};
-use hairis_harness::sampler::cosine;
+use hairis_instruments::direction::cosine;
 
 /// Seed of the camera rays: one for all pictures, so that they differ by their samples alone.
 const CAMERA_SEED: u64 = 0x6361_6d65_7261;

@@ -10,7 +10,7 @@ use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{FiberFrame8, Hit8, Vec3x8};
-use hairis_harness::sampler::cosine;
+use hairis_instruments::direction::cosine;
 
 /// Scatterings before paths may end at random.
 const FIRST_ROULETTE: u32 = 4;

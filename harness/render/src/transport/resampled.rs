@@ -15,7 +15,7 @@ use glam::Vec3;
 use hairis::resample::{Counts, Partition, Weighed8, choose};
 use hairis::wide::f32x8;
 use hairis::{Eval8, FiberFrame8, Vec3x8};
-use hairis_harness::sampler::cosine;
+use hairis_instruments::direction::cosine;
 
 /// Candidates of each technique per ray, where one shading point has many.
 ///

@@ -5,9 +5,9 @@ use crate::hair::{Choice, Energy};
 use crate::lights::{Rectangle, Table};
 use crate::scenes::{self, Name, Parts};
 use glam::Vec3;
-use hairis_harness::light::Environment;
-use hairis_harness::sequence::{Independent, XiSource as _};
-use hairis_harness::stats::{Estimate, Moments};
+use hairis_instruments::light::Environment;
+use hairis_instruments::sequence::{Independent, XiSource as _};
+use hairis_instruments::stats::{Estimate, Moments};
 use rayon::prelude::*;
 
 /// A few strands on a head under a map with bright texels; with two lamps as well.

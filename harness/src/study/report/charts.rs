@@ -6,11 +6,11 @@ use super::super::rows::{Estimator, Row, name, published, samplers, strategies};
 use super::super::summary::on_gaussian;
 use super::super::times::PER_POINT;
 use super::super::view::{Counted, Gain, MANY, TOLD, mean_v};
-use crate::plot::{Axis, Bar, Series, bars, lines};
-use crate::report::Drawing;
 use crate::sampler::Sampler;
-use crate::stats::Estimate;
 use crate::subject::ModelKind;
+use hairis_instruments::plot::{Axis, Bar, Series, bars, lines};
+use hairis_instruments::report::Drawing;
+use hairis_instruments::stats::Estimate;
 
 /// The light that everything sees.
 const CONSTANT: usize = 0;

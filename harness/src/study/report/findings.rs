@@ -5,11 +5,11 @@ use super::super::output::Study;
 use super::super::rows::{Estimator, Strategy, name, published, samplers};
 use super::super::view::{Counted, MANY, TOLD};
 use crate::difference::{Difference, Differences, Summary, Width, albedo_ratio};
-use crate::light::in_words;
 use crate::sampler::Sampler;
-use crate::stats::Estimate;
 use crate::subject::ModelKind;
-use crate::table::number::{self, percent};
+use hairis_instruments::light::in_words;
+use hairis_instruments::stats::Estimate;
+use hairis_instruments::table::number::{self, percent};
 use std::path::Path;
 
 /// The sentences, in the order in which one would ask.

@@ -2,9 +2,9 @@
 
 use crate::difference::{Difference, Differences, Summary, Width, albedo_ratio};
 use crate::figures;
-use crate::plot::{Axis, Bar, Series, lines};
-use crate::report::Drawing;
 use hairis::HairParams;
+use hairis_instruments::plot::{Axis, Bar, Series, lines};
+use hairis_instruments::report::Drawing;
 use hairis_variants::Cauchy;
 
 /// Inclination of the viewer in the pictures of the default hair, in degrees.

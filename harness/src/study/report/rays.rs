@@ -7,11 +7,11 @@ use super::super::rows::{Estimator, on_each_model, samplers};
 use super::super::summary::shown;
 use super::super::view::{Gain, gain, sure_ratio};
 use super::charts::{MEDIANS, each_model, median_bar, samplers_on};
-use crate::plot::Axis;
 use crate::rays::{PRICES_US, VISIBLE, occluded};
-use crate::report::{Drawing, Section};
-use crate::stats::Estimate;
-use crate::table::{Table, number};
+use hairis_instruments::plot::Axis;
+use hairis_instruments::report::{Drawing, Section};
+use hairis_instruments::stats::Estimate;
+use hairis_instruments::table::{Table, number};
 
 pub(super) fn section(of: &Study) -> Section {
     let section = Section::new("Rays from candidates").paragraph(

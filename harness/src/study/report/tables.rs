@@ -5,7 +5,7 @@ use super::super::rows::{name, on_each_model, published, samplers, strategies};
 use super::super::summary::shown;
 use super::super::times::PER_POINT;
 use super::super::view::{ess, mean_of, mean_v};
-use crate::table::{Table, number};
+use hairis_instruments::table::{Table, number};
 use serde_json::Value;
 
 /// Quality and times of every sampler, and times of the look-ups.

@@ -4,8 +4,8 @@ use crate::args::{Render, Size};
 use crate::film::Crop;
 use crate::part::{build, digest};
 use crate::transport::Settings;
-use hairis_harness::error::Error;
-use hairis_harness::light::Environment;
+use hairis_instruments::error::Error;
+use hairis_instruments::light::Environment;
 use std::fs;
 
 /// Everything that the sums of a picture depend on, but for the count of samples and the shard: parts of equal lines may be

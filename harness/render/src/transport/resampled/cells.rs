@@ -78,7 +78,7 @@ const fn curve() -> [u8; CELLS] {
 mod tests {
     use super::*;
     use glam::Vec3;
-    use hairis_harness::sequence::{Independent, XiSource as _};
+    use hairis_instruments::sequence::{Independent, XiSource as _};
 
     #[test]
     fn the_curve_goes_from_cell_to_neighbour() {

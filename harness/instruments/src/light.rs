@@ -1,0 +1,146 @@
+//! Lights for the comparison: functions of direction alone, infinitely far away.
+//!
+//! World frame: y is up. With the fibre along world x, the fibre frame (u, v, w) is the world frame (x, y, z), and
+//! [`fibre_direction`](crate::direction::fibre_direction) gives world directions. Radiance is linear RGB with the Rec. 709 primaries, in arbitrary but common units.
+
+mod constant;
+mod environment;
+mod load;
+mod rectangle;
+mod sky;
+mod smooth;
+mod sun;
+#[cfg(test)]
+mod tests;
+
+pub use constant::Constant;
+pub use environment::{Environment, PixelRepairs};
+pub use load::LightError;
+pub use rectangle::Rectangle;
+pub use sky::Sky;
+pub use smooth::Smooth;
+pub use sun::Sun;
+
+use crate::quadrature::{Integral, SphereIntegrator};
+use glam::DVec3;
+use hairis::Vec3x8;
+use wide::f32x8;
+
+/// Luminance of a linear RGB colour with the Rec. 709 primaries, in the unit of the colour.
+#[must_use]
+pub const fn luminance(rgb: [f64; 3]) -> f64 {
+    0.212_639 * rgb[0] + 0.715_169 * rgb[1] + 0.072_192 * rgb[2]
+}
+
+/// A direction drawn from a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// Unit direction from the shading point towards the light, world frame.
+    pub dir: DVec3,
+    /// Radiance from there, linear RGB.
+    pub radiance: [f64; 3],
+    /// Density per steradian; when it is 0 the sample contributes 0.
+    pub pdf: f64,
+}
+
+/// Radiance and density of a light in eight directions, one per lane, in single precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen8 {
+    /// Radiance from there, linear RGB.
+    pub radiance: [f32x8; 3],
+    /// Density of drawing the direction from the light, per steradian.
+    pub pdf: f32x8,
+}
+
+/// Light arriving from infinitely far away.
+///
+/// Directions given to `see` need not be exactly of unit length: a direction that went through `f32` is good enough.
+pub trait Light: Sync + Send {
+    /// Name in tables and reports.
+    fn name(&self) -> &str;
+
+    /// [`radiance`](Self::radiance) and [`pdf`](Self::pdf).
+    fn see(&self, dir: DVec3) -> ([f64; 3], f64);
+
+    /// Radiance arriving from `dir`, linear RGB.
+    fn radiance(&self, dir: DVec3) -> [f64; 3] {
+        self.see(dir).0
+    }
+
+    /// Density of [`sample`](Self::sample) at `dir`, per steradian; integrates to 1 over the sphere.
+    fn pdf(&self, dir: DVec3) -> f64 {
+        self.see(dir).1
+    }
+
+    /// A direction drawn with density [`pdf`](Self::pdf) from two numbers of [0, 1).
+    fn sample(&self, xi: [f64; 2]) -> LightSample;
+
+    /// Eight directions, as [`sample`](Self::sample) draws them.
+    fn sample8(&self, xi: [[f64; 2]; 8]) -> [LightSample; 8] {
+        xi.map(|xi| self.sample(xi))
+    }
+
+    /// [`radiance`](Self::radiance) and [`pdf`](Self::pdf) in eight directions, one per lane: unit vectors of single precision.
+    ///
+    /// - Accuracy: that of `f32`; a direction within a few 1e-7 rad of an edge may be taken for one on the other side.
+    fn see8(&self, dir: &Vec3x8) -> Seen8;
+
+    /// Reference integral of `radiance * f` over the sphere, `f` per steradian and linear RGB.
+    ///
+    /// Each light integrates over its own support, so its edges cost nothing. `sphere` gives the tolerance and, for lights that cover the whole sphere, the
+    /// breakpoints of the lobes of `f` (fibre along world x). An [`Environment`] integrates texel by texel and only estimates the error.
+    fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {
+        sphere.integrate_direction(|dir| product(self.radiance(dir), f(dir)))
+    }
+}
+
+/// A light's name in a sentence.
+#[must_use]
+pub fn in_words(name: &str) -> &str {
+    match name {
+        "constant" => "constant light",
+        "smooth" => "smooth light",
+        "sun" => "a 5° sun",
+        "rectangle" => "a large area light",
+        "clear sky" | "sky" => "a procedural sky",
+        _ => name,
+    }
+}
+
+/// The nearest number of single precision.
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
+pub const fn rounded(x: f64) -> f32 {
+    x as f32
+}
+
+/// Channel-wise product of two colours.
+#[must_use]
+pub fn product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    core::array::from_fn(|c| a[c] * b[c])
+}
+
+/// The direction at the cosine and the square of the sine of an angle to the unit vector `axis`, and at azimuth `phi`, in a
+/// right-handed frame (Duff et al. 2017).
+fn about(axis: DVec3, cosine: f64, sine_sq: f64, phi: f64) -> DVec3 {
+    let [e1, e2] = tangents(axis);
+    let r = sine_sq.max(0.0).sqrt();
+    let (sin_phi, cos_phi) = phi.sin_cos();
+    cosine * axis + r * cos_phi * e1 + r * sin_phi * e2
+}
+
+/// Two unit vectors that complete `axis` to the frame.
+fn tangents(axis: DVec3) -> [DVec3; 2] {
+    let sign = 1.0_f64.copysign(axis.z);
+    let a = -1.0 / (sign + axis.z);
+    let b = axis.x * axis.y * a;
+    [
+        DVec3::new(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x),
+        DVec3::new(b, sign + axis.y * axis.y * a, -axis.y),
+    ]
+}
+
+/// The unit direction of `dir`, or straight up when it has none.
+fn unit_or_up(dir: DVec3) -> DVec3 {
+    dir.try_normalize().unwrap_or(DVec3::Y)
+}

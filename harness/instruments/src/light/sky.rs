@@ -1,0 +1,191 @@
+//! A clear sky, the environment that needs no file.
+
+use super::{Environment, luminance, rounded};
+use core::array::from_fn;
+use core::f64::consts::PI;
+use glam::DVec3;
+
+/// Width and height of the rendered map, in texels.
+const SIZE: [usize; 2] = [512, 256];
+
+/// Reflectance of the ground, in each channel.
+const GROUND: f64 = 0.2;
+
+/// Turbidity of a clear day.
+const TURBIDITY: f64 = 3.0;
+
+/// Height of the sun above the horizon, and its azimuth to the right of -z, in degrees.
+const SUN_DEG: [f64; 2] = [40.0, 35.0];
+
+/// Perez coefficients of Y, x, y: each of the five is `slope * turbidity + offset`.
+const PEREZ: [[[f64; 2]; 5]; 3] = [
+    [[0.1787, -1.4630], [-0.3554, 0.4275], [-0.0227, 5.3251], [0.1206, -2.5771], [-0.0670, 0.3703]],
+    [[-0.0193, -0.2592], [-0.0665, 0.0008], [-0.0004, 0.2125], [-0.0641, -0.8989], [-0.0033, 0.0452]],
+    [[-0.0167, -0.2608], [-0.0950, 0.0092], [-0.0079, 0.2102], [-0.0441, -1.6537], [-0.0109, 0.0529]],
+];
+
+/// Zenith chromaticity x and y: rows for the turbidity squared, to the first power and constant; columns for the sun's angle cubed down to constant.
+const ZENITH: [[[f64; 4]; 3]; 2] = [
+    [[0.00166, -0.00375, 0.00209, 0.0], [-0.02903, 0.06377, -0.03202, 0.00394], [0.11693, -0.21196, 0.06052, 0.25886]],
+    [[0.00275, -0.00610, 0.00317, 0.0], [-0.04214, 0.08970, -0.04153, 0.00516], [0.15346, -0.26756, 0.06670, 0.26688]],
+];
+
+/// A clear sky with its sun and a grey ground.
+///
+/// The sky is the analytic daylight of Preetham, with Perez' distribution and the zenith luminance and chromaticity of its appendix. The sun's illuminance
+/// is that above the atmosphere, 133.8 klx, dimmed by Rayleigh and aerosol extinction at 610, 550 and 465 nm; its disc is narrower than a texel, so it is
+/// blurred to a bell of deviation 0.6 degrees that holds the same illuminance. Below the horizon lies a Lambertian ground of reflectance 0.2 under both.
+///
+/// - Source: Preetham, Shirley and Smits 1999, A practical analytic model for daylight, sections 3 and appendix; the relative optical mass is Kasten's.
+/// - Units: radiance is linear RGB whose luminance is in kcd/m^2 (the spectral shape is reduced to three channels, a simplification).
+/// - Accuracy: known to be too bright about a sun near the horizon; meant as a plausible light, not as a measurement.
+///
+/// # Examples
+/// ```
+/// use hairis_instruments::light::Sky;
+/// let map = Sky::default().environment();
+/// assert_eq!(map.size(), [512, 256]);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Sky {
+    sun: DVec3,
+    sun_polar: f64,
+}
+
+impl Default for Sky {
+    /// A clear day, turbidity 3, the sun 40 degrees high and 35 degrees to the right of -z.
+    fn default() -> Self {
+        let [elevation, azimuth] = SUN_DEG.map(f64::to_radians);
+        let [(sin_e, cos_e), (sin_a, cos_a)] = [elevation, azimuth].map(f64::sin_cos);
+        Self { sun: DVec3::new(cos_e * sin_a, sin_e, -cos_e * cos_a), sun_polar: 0.5 * PI - elevation }
+    }
+}
+
+impl Sky {
+    /// Radiance of the sky without its sun at `dir` above the horizon, linear RGB in kcd/m^2; negative channels of colours outside the gamut are 0.
+    fn sky_radiance(&self, dir: DVec3) -> [f64; 3] {
+        // The fit diverges at the horizon itself: hold it from half a degree up.
+        let cos_theta = dir.y.max(0.01);
+        let cos_gamma = dir.dot(self.sun).clamp(-1.0, 1.0);
+        let [luminance, x, y] = from_fn(|k| {
+            let [a, b, c, d, e] = PEREZ[k].map(|[slope, offset]| slope * TURBIDITY + offset);
+            let perez = |cos_t: f64, cos_g: f64| {
+                (1.0 + a * (b / cos_t).exp()) * (1.0 + c * (d * cos_g.acos()).exp() + e * cos_g * cos_g)
+            };
+            self.zenith(k) * perez(cos_theta, cos_gamma) / perez(1.0, self.sun_polar.cos())
+        });
+        xyy_to_rgb(x, y, luminance.max(0.0))
+    }
+
+    /// Zenith luminance in kcd/m^2 (0) or chromaticity x (1), y (2).
+    fn zenith(&self, k: usize) -> f64 {
+        let (t, s) = (TURBIDITY, self.sun_polar);
+        if k == 0 {
+            let chi = (4.0 / 9.0 - t / 120.0) * (PI - 2.0 * s);
+            return (4.0453 * t - 4.9710) * chi.tan() - 0.2155 * t + 2.4192;
+        }
+        let row = |c: [f64; 4]| ((c[0] * s + c[1]) * s + c[2]) * s + c[3];
+        let [square, first, constant] = ZENITH[k - 1].map(row);
+        (square * t + first) * t + constant
+    }
+
+    /// Illuminance of the sun on a plane that faces it, linear RGB in klx.
+    fn sun_irradiance(&self) -> [f64; 3] {
+        let degrees = self.sun_polar.to_degrees();
+        let mass = 1.0 / (self.sun_polar.cos() + 0.15 * (93.885 - degrees).powf(-1.253));
+        let aerosol = 0.04608 * TURBIDITY - 0.04586;
+        [0.610_f64, 0.550, 0.465].map(|micrometres| {
+            let depth = 0.008_735 * micrometres.powf(-4.08) + aerosol * micrometres.powf(-1.3);
+            133.8 * (-depth * mass).exp()
+        })
+    }
+
+    /// The map of 512 by 256 texels; the same bits each time on one machine.
+    ///
+    /// # Panics
+    ///
+    /// Never: there is a pixel for each texel.
+    #[must_use]
+    pub fn environment(&self) -> Environment {
+        let [width, height] = SIZE;
+        let upper = height / 2 * width;
+        let edge = |j: usize| (PI * j as f64 / height as f64).cos();
+        let deviation = 0.6_f64.to_radians();
+        let mut sky_and_bell = Vec::with_capacity(upper);
+        let (mut irradiance, mut bell_sum, mut bell_cosine) = ([0.0; 3], 0.0, 0.0);
+        for k in 0..upper {
+            let (i, j) = (k % width, k / width);
+            let polar = PI * (j as f64 + 0.5) / height as f64;
+            let azimuth = 2.0 * PI * ((i as f64 + 0.5) / width as f64 - 0.5);
+            let dir = DVec3::new(polar.sin() * azimuth.sin(), polar.cos(), -polar.sin() * azimuth.cos());
+            let solid_angle = 2.0 * PI / width as f64 * (edge(j) - edge(j + 1));
+            let sky = self.sky_radiance(dir);
+            // |dir - sun|^2 is the squared angle to first order, and exact enough over a bell of half a degree.
+            let bell = (-0.5 * (dir - self.sun).length_squared() / (deviation * deviation)).exp();
+            bell_sum += bell * solid_angle;
+            bell_cosine += bell * solid_angle * dir.y;
+            for c in 0..3 {
+                irradiance[c] += sky[c] * dir.y * solid_angle;
+            }
+            sky_and_bell.push((sky, bell));
+        }
+        let sun = self.sun_irradiance().map(|e| e / bell_sum);
+        let lit = sky_and_bell.iter().map(|(sky, bell)| from_fn(|c| rounded(sky[c] + sun[c] * bell)));
+        let ground = from_fn(|c| rounded(GROUND / PI * (irradiance[c] + sun[c] * bell_cosine)));
+        let pixels = lit.chain(core::iter::repeat_n(ground, width * height - upper)).collect();
+        Environment::from_pixels("clear sky", width, height, pixels).expect("a pixel for each texel")
+    }
+}
+
+/// Linear RGB with the Rec. 709 primaries and the D65 white of a colour of chromaticity (x, y) and luminance `big_y`; negative channels become 0, and the
+/// others are scaled so that the luminance stays.
+fn xyy_to_rgb(x: f64, y: f64, big_y: f64) -> [f64; 3] {
+    let (cap_x, cap_z) = (x / y * big_y, (1.0 - x - y) / y * big_y);
+    let rgb = [
+        3.240_969_94 * cap_x - 1.537_383_18 * big_y - 0.498_610_76 * cap_z,
+        -0.969_243_64 * cap_x + 1.875_967_50 * big_y + 0.041_555_06 * cap_z,
+        0.055_630_08 * cap_x - 0.203_976_96 * big_y + 1.056_971_51 * cap_z,
+    ]
+    .map(|v| v.max(0.0));
+    let now = luminance(rgb);
+    if now > 0.0 { rgb.map(|v| v * big_y / now) } else { [0.0; 3] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::Light;
+
+    #[test]
+    fn white_of_the_chromaticity_diagram_is_white() {
+        let rgb = xyy_to_rgb(0.312_7, 0.329_0, 2.0);
+        assert!(rgb.iter().all(|v| (v - 2.0).abs() < 2e-3), "{rgb:?}");
+        let blue = xyy_to_rgb(0.15, 0.02, 1.0);
+        assert!(blue.iter().all(|v| *v >= 0.0) && (luminance(blue) - 1.0).abs() < 1e-12, "{blue:?}");
+    }
+
+    #[test]
+    fn zenith_luminance_matches_the_paper_formula() {
+        // T = 3, sun at 50 degrees from the zenith: chi = (4/9 - 3/120)(180 - 100) degrees = 33.5556 degrees.
+        let sky = Sky::default();
+        let want = (4.0453 * 3.0 - 4.9710) * 33.555_555_555_6_f64.to_radians().tan() - 0.2155 * 3.0 + 2.4192;
+        assert!((luminance(sky.sky_radiance(DVec3::Y)) - want).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_sky_is_plausible() {
+        let sky = Sky::default();
+        let zenith = sky.sky_radiance(DVec3::Y);
+        assert!(zenith[2] > zenith[0], "blue overhead: {zenith:?}");
+        let sun = sky.sun_irradiance();
+        assert!(sun[0] > sun[1] && sun[1] > sun[2] && (60.0..110.0).contains(&luminance(sun)), "{sun:?}");
+        let map = sky.environment();
+        assert_eq!(map.repairs(), crate::light::PixelRepairs::default());
+        assert!(map.notes().is_empty(), "{:?}", map.notes());
+        let at_sun = luminance(map.radiance(sky.sun));
+        assert!(at_sun > 1e4, "the sun shines: {at_sun}");
+        let down = map.radiance(-DVec3::Y);
+        assert!(luminance(down) > 1.0 && luminance(down) < 10.0, "the ground reflects some klx: {down:?}");
+        assert_eq!(map.digest(), sky.environment().digest());
+    }
+}

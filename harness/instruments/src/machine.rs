@@ -1,0 +1,162 @@
+//! Machine and build, printed beside each figure of a report.
+
+use serde::Serialize;
+
+/// The machine and the build, as reported by the system and the compiler. Nothing here is measured. See
+/// [`machine!`](crate::machine!).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Machine {
+    /// Model name of the processor, or its architecture if the system does not report it.
+    pub cpu: String,
+    /// Logical cores this process may use.
+    pub logical_cores: usize,
+    /// Operating system, as Rust names it.
+    pub os: &'static str,
+    /// Architecture, as Rust names it.
+    pub arch: &'static str,
+    /// Version line of the compiler.
+    pub rustc: &'static str,
+    /// Optimisation level of this package.
+    pub opt_level: &'static str,
+    /// Whether debug assertions are compiled in: figures of speed from such a build mean nothing.
+    pub debug_assertions: bool,
+    /// Commit the build was made from, in full, or "unknown".
+    pub commit: &'static str,
+    /// Whether tracked files differed from that commit when the build was made; `None` when unknown.
+    ///
+    /// The build looks again after each commit and each change of what is compiled; an edit of other files alone is not seen until then.
+    pub dirty: Option<bool>,
+    /// Target features the code was compiled for, of those that matter here. Dispatch at run time may use more.
+    pub target_features: Vec<&'static str>,
+}
+
+/// This [`Machine`](crate::machine::Machine), with the build of the calling package: its build script is `harness/build.rs`.
+#[macro_export]
+macro_rules! machine {
+    () => {
+        $crate::machine::Machine::of_build([
+            env!("HAIRIS_BUILD_COMMIT"),
+            env!("HAIRIS_BUILD_DIRTY"),
+            env!("HAIRIS_BUILD_RUSTC"),
+            env!("HAIRIS_BUILD_OPT_LEVEL"),
+            env!("HAIRIS_BUILD_TARGET_FEATURES"),
+        ])
+    };
+}
+
+impl Machine {
+    /// This machine, and what a build script recorded: commit, whether files differ from it ("yes", "no" or "unknown"),
+    /// compiler, optimisation level, and target features with commas between them.
+    #[must_use]
+    pub fn of_build([commit, dirty, rustc, opt_level, target_features]: [&'static str; 5]) -> Self {
+        Self {
+            cpu: cpu_name(),
+            logical_cores: std::thread::available_parallelism().map_or(1, usize::from),
+            os: std::env::consts::OS,
+            arch: std::env::consts::ARCH,
+            rustc,
+            opt_level,
+            debug_assertions: cfg!(debug_assertions),
+            commit,
+            dirty: match dirty {
+                "yes" => Some(true),
+                "no" => Some(false),
+                _ => None,
+            },
+            target_features: of_interest(target_features),
+        }
+    }
+
+    /// One line for table captions: processor, cores, compiled features, commit.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let commit = self.commit.get(..12).unwrap_or(self.commit);
+        let dirty = if self.dirty == Some(true) { "+changes" } else { "" };
+        let features =
+            if self.target_features.is_empty() { "baseline".to_owned() } else { self.target_features.join("+") };
+        format!(
+            "{}, {} logical cores, {} {}, compiled for {features}, {}, commit {commit}{dirty}",
+            self.cpu, self.logical_cores, self.os, self.arch, self.rustc
+        )
+    }
+}
+
+/// The processor's name from the system, or the architecture.
+fn cpu_name() -> String {
+    std::fs::read_to_string("/proc/cpuinfo")
+        .ok()
+        .and_then(|text| name_in_cpuinfo(&text))
+        .unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+}
+
+/// The first name a `cpuinfo` text gives: "model name" on x86, others on ARM, POWER and RISC-V.
+fn name_in_cpuinfo(text: &str) -> Option<String> {
+    ["model name", "Model", "Hardware", "cpu", "uarch", "Processor"].iter().find_map(|key| {
+        text.lines().find_map(|line| {
+            let (name, value) = line.split_once(':')?;
+            let value = value.split_whitespace().collect::<Vec<_>>().join(" ");
+            (name.trim() == *key && !value.is_empty()).then_some(value)
+        })
+    })
+}
+
+/// Those of the compiled target features that the kernels' speed may depend on.
+fn of_interest(compiled: &'static str) -> Vec<&'static str> {
+    const KNOWN: [&str; 12] =
+        ["sse2", "sse4.1", "sse4.2", "avx", "avx2", "fma", "bmi2", "avx512f", "avx512vl", "neon", "sve", "simd128"];
+    let compiled: Vec<&str> = compiled.split(',').collect();
+    KNOWN.into_iter().filter(|name| compiled.contains(name)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COMMIT: &str = "0123456789abcdef0123456789abcdef01234567";
+
+    fn current() -> Machine {
+        Machine::of_build([COMMIT, "no", "rustc 1.89.0", "3", "fxsr,sse2,avx2"])
+    }
+
+    #[test]
+    fn cpu_names_are_found_in_the_dialects_of_cpuinfo() {
+        let x86 =
+            "processor\t: 0\nvendor_id\t: X\nmodel\t\t: 85\nmodel name\t: Some(R)   CPU @ 2.70GHz\nflags\t: a b\n";
+        assert_eq!(name_in_cpuinfo(x86).as_deref(), Some("Some(R) CPU @ 2.70GHz"));
+        let arm = "processor\t: 0\nBogoMIPS\t: 108.00\nHardware\t: BCM2711\nModel\t: Raspberry Pi 4 Model B\n";
+        assert_eq!(name_in_cpuinfo(arm).as_deref(), Some("Raspberry Pi 4 Model B"));
+        assert_eq!(
+            name_in_cpuinfo("cpu\t\t: POWER9, altivec supported\n").as_deref(),
+            Some("POWER9, altivec supported")
+        );
+        assert_eq!(name_in_cpuinfo("model name\t:\nprocessor\t: 0\n"), None);
+        assert_eq!(name_in_cpuinfo(""), None);
+    }
+
+    #[test]
+    fn the_current_machine_is_complete() {
+        let m = current();
+        assert!(!m.cpu.is_empty() && !m.os.is_empty() && !m.arch.is_empty() && m.logical_cores > 0);
+        assert_eq!((m.dirty, m.target_features.as_slice()), (Some(false), ["sse2", "avx2"].as_slice()));
+        let summary = m.summary();
+        assert!(summary.contains(&m.cpu) && summary.ends_with("rustc 1.89.0, commit 0123456789ab"), "{summary}");
+        assert_eq!(Machine::of_build([COMMIT, "unknown", "", "", ""]).dirty, None);
+    }
+
+    #[test]
+    fn it_serialises() {
+        let json = serde_json::to_value(current()).expect("plain data");
+        for key in ["cpu", "logical_cores", "os", "arch", "rustc", "opt_level", "commit", "dirty", "target_features"] {
+            assert!(json.get(key).is_some(), "{key}");
+        }
+    }
+
+    #[test]
+    fn summaries_mark_changes_and_baseline() {
+        let mut m = current();
+        m.dirty = Some(true);
+        m.target_features.clear();
+        assert!(m.summary().ends_with("commit 0123456789ab+changes"), "{}", m.summary());
+        assert!(m.summary().contains("compiled for baseline"));
+    }
+}

@@ -1,0 +1,92 @@
+//! Text made safe for HTML and SVG.
+
+/// `text` with what markup gives a meaning escaped, for element content and quoted attributes alike.
+///
+/// Control characters, which XML forbids even when escaped, are left out; tab and line ends become spaces.
+#[must_use]
+pub fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            _ => out.extend(printable(c)),
+        }
+    }
+    out
+}
+
+/// `text` without control characters: for writers that escape by themselves.
+pub(crate) fn clean(text: &str) -> String {
+    text.chars().filter_map(printable).collect()
+}
+
+fn printable(c: char) -> Option<char> {
+    match c {
+        '\t' | '\n' | '\r' => Some(' '),
+        '\u{fffe}' | '\u{ffff}' => None,
+        _ => (!c.is_control()).then_some(c),
+    }
+}
+
+/// Checks that `markup` nests: every tag closed, in order, and no stray angle bracket. Void HTML elements may stay open.
+///
+/// # Errors
+///
+/// The first place that does not.
+pub fn well_formed(markup: &str) -> Result<(), String> {
+    const VOID: [&str; 3] = ["meta", "br", "link"];
+    let mut open: Vec<&str> = Vec::new();
+    let mut rest = markup;
+    while let Some(start) = rest.find('<') {
+        let (text, tail) = rest.split_at(start);
+        if text.contains('>') {
+            return Err(format!("a stray '>' in {text:?}"));
+        }
+        let end = tail.find('>').ok_or("a tag without an end")?;
+        let tag = &tail[1..end];
+        rest = &tail[end + 1..];
+        if tag.contains('<') || !tag.matches('"').count().is_multiple_of(2) {
+            return Err(format!("a broken tag {tag:?}"));
+        }
+        let name = tag.trim_start_matches('/').split([' ', '/', '\n']).next().unwrap_or_default();
+        if tag.starts_with('!') || tag.ends_with('/') || VOID.contains(&name) {
+            continue;
+        }
+        if !tag.starts_with('/') {
+            open.push(name);
+        } else if open.pop() != Some(name) {
+            return Err(format!("</{name}> closes nothing"));
+        }
+    }
+    if rest.contains('>') {
+        return Err(format!("a stray '>' in {rest:?}"));
+    }
+    if open.is_empty() { Ok(()) } else { Err(format!("left open: {open:?}")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hostile_text_is_inert() {
+        let hostile = "</svg><script>alert('x' & \"y\")</script>\u{0}\u{1b}[31m]]>\nend";
+        let safe = escape(hostile);
+        assert!(!safe.contains(['<', '>', '"', '\'', '\u{0}', '\u{1b}']), "{safe}");
+        assert!(safe.ends_with(" end") && safe.starts_with("&lt;/svg&gt;&lt;script&gt;"), "{safe}");
+        assert_eq!(escape("θ ± 1°"), "θ ± 1°", "ordinary text stays as it is");
+        assert_eq!(escape("&lt;"), "&amp;lt;", "nothing is taken for escaped already");
+    }
+
+    #[test]
+    fn the_check_sees_faults() {
+        assert!(well_formed("<a><b x=\"1\"/>text<br></a>").is_ok(), "this nests");
+        for bad in ["<a>", "</a>", "<a><b></a></b>", "<a x=\"1>", "a > b", "<a <b></b>"] {
+            assert!(well_formed(bad).is_err(), "{bad} does not nest");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Charts as PNG, for where SVG is not taken.
+//!
+//! Text is set in a font that is part of the program (`DejaVu Sans`, cut down to what charts use; see `font/LICENSE`): a
+//! machine without fonts draws the same picture, byte by byte.
+
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::{Options, Tree};
+use std::io;
+use std::sync::Arc;
+
+/// Pixels of the picture to one of the chart.
+const SCALE: f32 = 2.0;
+
+const FONTS: [&[u8]; 2] = [include_bytes!("font/DejaVuSans.ttf"), include_bytes!("font/DejaVuSans-Bold.ttf")];
+
+/// A chart as a PNG of twice its size in pixels.
+///
+/// # Errors
+///
+/// If `svg` is no drawing, or one without extent: never for those of this module.
+///
+/// ```
+/// use hairis_instruments::plot::{Axis, Series, lines, png};
+/// let svg = lines("t", Axis::linear("x"), Axis::linear("y"), &[Series::curve("s", [(0.0, 1.0)])]);
+/// assert!(png(&svg)?.starts_with(b"\x89PNG"));
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub fn png(svg: &str) -> io::Result<Vec<u8>> {
+    draw(svg)?.encode_png().map_err(io::Error::other)
+}
+
+fn draw(svg: &str) -> io::Result<Pixmap> {
+    let mut options = Options { font_family: "DejaVu Sans".to_owned(), ..Options::default() };
+    let fonts = options.fontdb_mut();
+    for font in FONTS {
+        fonts.load_font_source(resvg::usvg::fontdb::Source::Binary(Arc::new(font)));
+    }
+    fonts.set_sans_serif_family("DejaVu Sans");
+    let tree = Tree::from_str(svg, &options).map_err(io::Error::other)?;
+    let size = tree.size().to_int_size().scale_by(SCALE).ok_or_else(|| io::Error::other("a drawing without extent"))?;
+    let mut pixels = Pixmap::new(size.width(), size.height()).ok_or_else(|| io::Error::other("a drawing too large"))?;
+    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+    Ok(pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pixels of a line of text that are not white.
+    fn ink(text: &str, weight: &str) -> usize {
+        let svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"60\" height=\"30\"><rect width=\"60\" height=\"30\" \
+             fill=\"#fff\"/><text x=\"5\" y=\"20\" font-family=\"sans-serif\" font-weight=\"{weight}\">{text}</text></svg>"
+        );
+        draw(&svg).expect("a drawing").pixels().iter().filter(|pixel| pixel.red() < 128).count()
+    }
+
+    #[test]
+    fn every_character_of_the_charts_is_in_the_font() {
+        let (nothing, unknown) = (ink("", "normal"), ink("\u{4e00}", "normal"));
+        assert_eq!(nothing, 0);
+        for c in "aZ09αβγθφσκₒᵢ_⁰¹²³⁴⁵⁶⁷⁸⁹⁻×±−°·≈∞√µ–—’→".chars() {
+            for weight in ["normal", "bold"] {
+                let ink = ink(&c.to_string(), weight);
+                assert!(ink > 0 && ink != unknown, "{c} is not drawn");
+            }
+        }
+        assert!(ink("m", "bold") > ink("m", "normal"), "bold is bold");
+    }
+
+    #[test]
+    fn what_is_no_drawing_is_refused() {
+        assert!(png("").is_err() && png("<svg").is_err());
+    }
+}

@@ -1,0 +1,145 @@
+//! Integrals over the sphere of directions in fibre coordinates.
+
+use super::adaptive::{Integral, Tolerance, bell_breakpoints, integrate_rectangle};
+use crate::direction::fibre_direction;
+use core::f64::consts::{FRAC_PI_2, PI};
+use glam::DVec3;
+
+/// Integrator over all directions, `d omega = cos theta dtheta dphi`.
+///
+/// Announce each lobe by `theta_lobe` and `phi_lobe`, or each edge by a plain breakpoint: then widths down to 0.01 rad
+/// and far below are resolved to the tolerance. The poles are never evaluated.
+///
+/// # Examples
+/// ```
+/// use hairis_instruments::quadrature::SphereIntegrator;
+/// let r = SphereIntegrator::new().integrate(|_, _| [1.0]);
+/// assert!(r.converged && (r.value[0] - 4.0 * core::f64::consts::PI).abs() < 1e-12);
+/// ```
+#[derive(Clone, Debug)]
+pub struct SphereIntegrator {
+    theta: Vec<f64>,
+    phi: Vec<f64>,
+    /// Tolerance of the integrals.
+    pub tolerance: Tolerance,
+}
+
+impl Default for SphereIntegrator {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl SphereIntegrator {
+    /// An integrator of relative error 1e-8 without breakpoints.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            theta: vec![-FRAC_PI_2, 0.0, FRAC_PI_2],
+            phi: vec![-PI, -FRAC_PI_2, 0.0, FRAC_PI_2, PI],
+            tolerance: Tolerance::relative(1e-8),
+        }
+    }
+
+    /// The same with another tolerance.
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: Tolerance) -> Self {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// Adds a breakpoint in `theta`, in rad; one outside (-pi/2, pi/2) is dropped.
+    #[must_use]
+    pub fn theta_break(mut self, theta: f64) -> Self {
+        if theta.abs() < FRAC_PI_2 {
+            self.theta.push(theta);
+        }
+        self
+    }
+
+    /// Adds a breakpoint in `phi`, in rad, wrapped to [-pi, pi]; one that is not finite is dropped.
+    #[must_use]
+    pub fn phi_break(mut self, phi: f64) -> Self {
+        if phi.is_finite() {
+            self.phi.push(phi - 2.0 * PI * (phi / (2.0 * PI)).round());
+        }
+        self
+    }
+
+    /// Adds the breakpoints of a bell in `theta`: its centre, and 3 and 12 widths either side. In rad.
+    ///
+    /// A bell of width `beta` in `theta_h = (theta_i + theta_o)/2` has width `2 beta` in `theta_i`, about `2 alpha - theta_o`.
+    #[must_use]
+    pub fn theta_lobe(self, centre: f64, width: f64) -> Self {
+        bell_breakpoints(0.0, width).into_iter().fold(self, |q, d| q.theta_break(centre + d))
+    }
+
+    /// Adds the breakpoints of a bell in `phi`: its centre, and 3 and 12 widths either side, wrapped. In rad.
+    #[must_use]
+    pub fn phi_lobe(self, centre: f64, width: f64) -> Self {
+        // Beyond half a turn the wrapped tails would only shred the circle.
+        bell_breakpoints(0.0, width).into_iter().filter(|d| d.abs() < PI).fold(self, |q, d| q.phi_break(centre + d))
+    }
+
+    /// Integral of `f(theta, phi)` over the sphere. The cosine of the measure is applied here; `f` is per steradian.
+    pub fn integrate<const N: usize>(&self, mut f: impl FnMut(f64, f64) -> [f64; N]) -> Integral<N> {
+        let integrand = |theta: f64, phi| f(theta, phi).map(|v| v * theta.cos());
+        integrate_rectangle(integrand, &self.theta, &self.phi, &self.tolerance)
+    }
+
+    /// Integral of a function of direction over the sphere.
+    pub fn integrate_direction<const N: usize>(&self, mut f: impl FnMut(DVec3) -> [f64; N]) -> Integral<N> {
+        self.integrate(|theta, phi| f(fibre_direction(theta, phi)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn second_moments_are_those_of_the_sphere() {
+        let r = SphereIntegrator::new().integrate_direction(|d| [d.x * d.x, d.y * d.y, d.z * d.z]);
+        for v in r.value {
+            assert!((v - 4.0 * PI / 3.0).abs() < 1e-12, "{r:?}");
+        }
+    }
+
+    #[test]
+    fn a_narrow_product_lobe_matches_its_lines() {
+        // Bells of 0.01 rad off centre, one across the seam of phi: the product of two line integrals.
+        let (theta_0, phi_0, width) = (0.713, 3.139, 0.01);
+        let bell = |x: f64| (-0.5 * (x / width) * (x / width)).exp();
+        let wrap = |x: f64| x - 2.0 * PI * (x / (2.0 * PI)).round();
+        let r = SphereIntegrator::new()
+            .theta_lobe(theta_0, width)
+            .phi_lobe(phi_0, width)
+            .integrate(|theta, phi| [bell(theta - theta_0) * bell(wrap(phi - phi_0))]);
+        let line = width * (2.0 * PI).sqrt();
+        let want = line * line * theta_0.cos() * (-0.5 * width * width).exp();
+        assert!(r.converged && (r.value[0] / want - 1.0).abs() < 1e-8, "{r:?} {want}");
+    }
+
+    #[test]
+    fn cauchy_tails_and_rgb() {
+        let c = |x: f64, b: f64| b * b / (x * x + b * b);
+        let r = SphereIntegrator::new().theta_lobe(-0.3, 0.01).phi_lobe(1.0, 0.02).integrate(|t, p| {
+            let v = c(t + 0.3, 0.01) * c(p - 1.0, 0.02) / t.cos();
+            [v, 2.0 * v, 0.5 * v]
+        });
+        let theta = 0.01 * (((FRAC_PI_2 + 0.3) / 0.01).atan() + ((FRAC_PI_2 - 0.3) / 0.01).atan());
+        let phi = 0.02 * (((PI - 1.0) / 0.02).atan() + ((PI + 1.0) / 0.02).atan());
+        for (got, scale) in r.value.iter().zip([1.0, 2.0, 0.5]) {
+            assert!((got / (scale * theta * phi) - 1.0).abs() < 1e-9, "{r:?}");
+        }
+        assert!(r.converged);
+    }
+
+    #[test]
+    fn foreign_breakpoints_are_dropped_or_wrapped() {
+        let q = SphereIntegrator::new().theta_break(2.0).theta_break(f64::NAN).phi_break(7.0).phi_break(f64::INFINITY);
+        let r = q.integrate(|_, _| [1.0]);
+        assert!((r.value[0] - 4.0 * PI).abs() < 1e-12 && r.converged);
+        assert_eq!(q.tolerance.relative, 1e-8);
+    }
+}

@@ -1,0 +1,292 @@
+//! The report: one self-contained HTML page, without scripts.
+
+use crate::error::Error;
+use crate::files::whole;
+use crate::markup::escape;
+#[cfg(feature = "png")]
+use crate::plot::png;
+use crate::table::Table;
+use rayon::prelude::*;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+const STYLE: &str = include_str!("report/style.css");
+
+/// A page: verdicts and one plot, then findings, then sections of plots with their tables folded away.
+///
+/// Texts are plain: everything in them is escaped, and what stands between `` ` `` marks is set as code.
+///
+/// ```
+/// use hairis_instruments::report::{Report, Section};
+/// let html = Report {
+///     title: "Comparison".to_owned(),
+///     verdicts: vec![["Speed".to_owned(), "Eight lanes are `7.1×` as fast as one.".to_owned()]],
+///     sections: vec![Section::new("Machine").facts(&[["CPU", "Example <9000>"]])],
+///     ..Report::default()
+/// }
+/// .html();
+/// assert!(html.contains("<code>7.1×</code>") && html.contains("Example &lt;9000&gt;"));
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// The title.
+    pub title: String,
+    /// The line under the title, such as when and where it was made.
+    pub subtitle: String,
+    /// Use cases with a sentence each; they come first.
+    pub verdicts: Vec<[String; 2]>,
+    /// The plot beside the verdicts.
+    pub summary: Option<Drawing>,
+    /// Sentences that follow the verdicts; the question that one begins with, if any, stands out.
+    pub findings: Vec<String>,
+    /// The sections, the last about the method.
+    pub sections: Vec<Section>,
+}
+
+/// A part of a report, under a heading of its own and in the table of contents.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[must_use]
+pub struct Section {
+    title: String,
+    blocks: Vec<Block>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Block {
+    Html(String),
+    Figure(Drawing),
+}
+
+/// A drawing with its caption.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    /// Name of its files, without the end: letters, digits and hyphens; empty for none.
+    pub name: String,
+    /// A complete `<svg>` element, as those of [`crate::plot`]: it goes into the page as it is.
+    pub svg: String,
+    /// Caption.
+    pub caption: String,
+}
+
+impl Drawing {
+    /// A drawing with its name and its caption.
+    #[must_use]
+    pub fn new(name: impl Into<String>, svg: String, caption: impl Into<String>) -> Self {
+        Self { name: name.into(), svg, caption: caption.into() }
+    }
+}
+
+impl Section {
+    /// A section without content.
+    pub fn new(title: impl Into<String>) -> Self {
+        Self { title: title.into(), blocks: Vec::new() }
+    }
+
+    /// Adds a heading within the section.
+    pub fn heading(self, text: &str) -> Self {
+        self.html(format!("<h3>{}</h3>\n", inline(text)))
+    }
+
+    /// Adds a paragraph.
+    pub fn paragraph(self, text: impl AsRef<str>) -> Self {
+        self.html(format!("<p>{}</p>\n", inline(text.as_ref())))
+    }
+
+    /// Adds tables, each behind its title.
+    pub fn tables(self, tables: impl IntoIterator<Item = Table>) -> Self {
+        tables.into_iter().fold(self, |section, table| {
+            let title = escape(table.title());
+            section.html(format!("<details><summary>{title}</summary>\n{}</details>\n", table.to_html()))
+        })
+    }
+
+    /// Adds names with their values: the CPU, the seed, the commit.
+    pub fn facts<S: AsRef<str>>(self, facts: &[[S; 2]]) -> Self {
+        self.html(definitions(facts))
+    }
+
+    /// Adds figures, which are numbered through the report.
+    pub fn figures(mut self, figures: impl IntoIterator<Item = Drawing>) -> Self {
+        self.blocks.extend(figures.into_iter().map(Block::Figure));
+        self
+    }
+
+    fn html(mut self, html: String) -> Self {
+        self.blocks.push(Block::Html(html));
+        self
+    }
+}
+
+impl Report {
+    /// The page.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let mut last = 0;
+        let mut figure = |Drawing { svg, caption, .. }: &Drawing| {
+            last += 1;
+            let caption = inline(caption);
+            format!(
+                "<figure id=\"figure-{last}\">\n<div class=\"plot\">\n{svg}</div>\n\
+                 <figcaption><strong>Figure {last}.</strong> {caption}</figcaption>\n</figure>\n"
+            )
+        };
+        let summary = self.summary.as_ref().map(&mut figure).unwrap_or_default();
+        let verdicts = definitions(&self.verdicts);
+        let mut findings: String = self.findings.iter().map(|text| format!("<li>{}</li>\n", answer(text))).collect();
+        if !findings.is_empty() {
+            findings = format!("<section id=\"findings\">\n<h2>In figures</h2>\n<ul>\n{findings}</ul>\n</section>\n");
+        }
+        let (mut contents, mut sections) = (String::new(), String::new());
+        for (i, section) in (1..).zip(&self.sections) {
+            let title = inline(&section.title);
+            contents += &format!("<li><a href=\"#section-{i}\">{title}</a></li>\n");
+            sections += &format!("<section id=\"section-{i}\">\n<h2>{title}</h2>\n");
+            for block in &section.blocks {
+                sections += &match block {
+                    Block::Html(html) => html.clone(),
+                    Block::Figure(drawing) => figure(drawing),
+                };
+            }
+            sections += "</section>\n";
+        }
+        let (title, subtitle) = (escape(&self.title), inline(&self.subtitle));
+        format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n\
+             </head>\n<body>\n<header>\n<h1>{title}</h1>\n<p class=\"subtitle\">{subtitle}</p>\n</header>\n<main>\n\
+             <section id=\"verdicts\" class=\"verdicts\">\n{verdicts}{summary}</section>\n\
+             <nav aria-label=\"Contents\">\n<ol>\n{contents}</ol>\n</nav>\n{findings}{sections}</main>\n</body>\n</html>\n"
+        )
+    }
+
+    /// The figures in their order.
+    fn figures(&self) -> impl Iterator<Item = &Drawing> {
+        let blocks = self.sections.iter().flat_map(|section| &section.blocks);
+        let figures = blocks.filter_map(|block| if let Block::Figure(figure) = block { Some(figure) } else { None });
+        self.summary.iter().chain(figures)
+    }
+
+    /// Writes the page to `report.html` in `dir`, and every figure to `figures/NAME-NUMBER-....svg`, with feature `png` to
+    /// `.png` too, each as a whole or not at all.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Output`] for one that cannot be written.
+    pub fn write(&self, dir: &Path, name: &str) -> Result<(), Error> {
+        whole(&dir.join("report.html"), |out| out.write_all(self.html().as_bytes()))?;
+        let folder = dir.join("figures");
+        fs::create_dir_all(&folder).map_err(Error::output(&folder))?;
+        let figures: Vec<(usize, &Drawing)> = (1..).zip(self.figures()).collect();
+        figures.par_iter().try_for_each(|(number, figure)| {
+            let stem = format!("{name}-{number:02}-{}", figure.name);
+            let stem = stem.trim_end_matches('-');
+            whole(&folder.join(format!("{stem}.svg")), |out| out.write_all(figure.svg.as_bytes()))?;
+            #[cfg(feature = "png")]
+            whole(&folder.join(format!("{stem}.png")), |out| out.write_all(&png(&figure.svg)?))?;
+            Ok(())
+        })
+    }
+}
+
+fn definitions<S: AsRef<str>>(pairs: &[[S; 2]]) -> String {
+    let item =
+        |[name, text]: &[S; 2]| format!("<dt>{}</dt><dd>{}</dd>\n", inline(name.as_ref()), inline(text.as_ref()));
+    format!("<dl>\n{}</dl>\n", pairs.iter().map(item).collect::<String>())
+}
+
+/// A finding: the question that it begins with, if any, stands out.
+fn answer(text: &str) -> String {
+    match text.split_once("? ") {
+        Some((question, answer)) if !question.contains(['.', '`']) => {
+            format!("<strong>{}?</strong> {}", inline(question), inline(answer))
+        }
+        _ => inline(text),
+    }
+}
+
+/// Escaped text with what stands between pairs of `` ` `` as code; numbers stay with their unit.
+fn inline(text: &str) -> String {
+    let mut html = String::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('`') {
+        let Some((code, after)) = after.split_once('`') else { break };
+        html.push_str(&format!("{}<code>{}</code>", escape(before), escape(code)));
+        rest = after;
+    }
+    (html + &escape(rest)).replace(" %", "\u{a0}%").replace(" ns", "\u{a0}ns")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::markup::well_formed;
+    use crate::plot::{Axis, Series, lines};
+
+    const HOSTILE: &str = "`<img src=x onerror=alert(1)>`\"'</style></section>&amp;`\u{0}";
+
+    fn full(text: &str) -> Report {
+        let svg = || lines(text, Axis::linear(text), Axis::log(text), &[Series::curve(text, [(1.0, 2.0)])]);
+        let mut table = Table::new(text).texts([text]).numbers([text]).note(text);
+        table.push([text, text]);
+        let section = Section::new(text).heading(text).paragraph(text).tables([table]).facts(&[[text, text]]);
+        let section = section.figures([Drawing::new("", svg(), text), Drawing::new("", svg(), text)]);
+        let text = text.to_owned();
+        Report {
+            title: text.clone(),
+            subtitle: text.clone(),
+            verdicts: vec![[text.clone(), text.clone()]],
+            summary: Some(Drawing::new("summary", svg(), text.clone())),
+            findings: vec![text.clone()],
+            sections: vec![section, Section::new(text.clone()).paragraph(text)],
+        }
+    }
+
+    #[test]
+    fn hostile_text_is_inert() {
+        let html = full(HOSTILE).html();
+        well_formed(&html).expect("the page nests");
+        assert!(!html.contains("<img") && !html.contains('\u{0}'), "hostile text got through");
+        assert_eq!(html.matches("</style>").count(), 1, "the style ends once");
+        assert!(html.contains("<code>&lt;img src=x onerror=alert(1)&gt;</code>"), "code is set as code");
+    }
+
+    #[test]
+    fn a_page_stands_alone_and_ids_are_unique() {
+        let html = full("text").html();
+        for outside in ["http-equiv", "<script", "<link", "src=", "url(", "@import"] {
+            assert!(!html.contains(outside), "{outside} reaches outside");
+        }
+        let links = html.replace("http://www.w3.org/2000/svg", "");
+        assert!(!links.contains("http"), "no addresses");
+        let mut ids: Vec<&str> = html.split(" id=\"").skip(1).filter_map(|t| t.split('"').next()).collect();
+        let all = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), all, "an id stands twice");
+        let anchors = html.split("href=\"#").skip(1).filter_map(|t| t.split('"').next());
+        assert!(anchors.clone().count() == 2 && anchors.into_iter().all(|a| ids.contains(&a)), "links have ends");
+    }
+
+    #[test]
+    fn figures_are_written_by_number_and_name() {
+        let dir = tempfile::TempDir::new().expect("a folder");
+        let mut report = full("text");
+        let svg = lines("t", Axis::linear("x"), Axis::linear("y"), &[]);
+        report.sections.push(Section::new("s").figures([Drawing::new("last", svg.clone(), "c")]));
+        report.write(dir.path(), "example").expect("written");
+        let read = |name: &str| fs::read(dir.path().join(name)).expect("there");
+        assert_eq!(read("report.html"), report.html().as_bytes());
+        assert_eq!(read("figures/example-04-last.svg"), svg.as_bytes());
+        let has_png = cfg!(feature = "png");
+        assert!(!has_png || read("figures/example-02.png").starts_with(b"\x89PNG"), "a PNG beside each SVG");
+        let files = fs::read_dir(dir.path().join("figures")).expect("a folder").count();
+        assert_eq!(files, if has_png { 8 } else { 4 });
+    }
+
+    #[test]
+    fn an_empty_report_is_a_page() {
+        well_formed(&Report::default().html()).expect("the page nests");
+    }
+}

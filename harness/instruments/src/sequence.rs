@@ -1,0 +1,274 @@
+//! Sources of the uniform numbers `xi` that estimators consume: independent, Halton, stratified.
+//!
+//! Every source is set by `(seed, stream)`: one seed per run, one stream per cell of the comparison (see [`stream_id`]), so a figure does not depend on which
+//! thread computed it or on what ran before. Numbers are in [0, 1); after [`to_unit_f32`] in [0, 1 - 2^-24]. Neither is ever exactly 1.
+
+mod halton;
+mod stratified;
+
+pub use halton::{HALTON_BASES, Halton};
+pub use stratified::{Stratified, strata};
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+use serde::Serialize;
+
+/// The largest number a source gives as `f32`: 1 - 2^-24.
+pub const MAX_XI_F32: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// A source of points in the unit cube.
+pub trait XiSource {
+    /// Fills `point` with the coordinates of the next point, each in [0, 1).
+    ///
+    /// - Shape: one coordinate per element. An independent source takes any length; the others document theirs.
+    ///
+    /// # Panics
+    /// When the source has fewer dimensions than `point` has elements.
+    fn next_point(&mut self, point: &mut [f64]);
+
+    /// The next point's first `D` coordinates, in [0, 1).
+    fn next_xi<const D: usize>(&mut self) -> [f64; D]
+    where
+        Self: Sized,
+    {
+        let mut point = [0.0; D];
+        self.next_point(&mut point);
+        point
+    }
+
+    /// The next point's first `D` coordinates as `f32`, in [0, 1 - 2^-24].
+    fn next_xi_f32<const D: usize>(&mut self) -> [f32; D]
+    where
+        Self: Sized,
+    {
+        self.next_xi::<D>().map(to_unit_f32)
+    }
+}
+
+impl<S: XiSource + ?Sized> XiSource for Box<S> {
+    fn next_point(&mut self, point: &mut [f64]) {
+        (**self).next_point(point);
+    }
+}
+
+/// Rounds a number of [0, 1) to `f32` without ever reaching 1, which rounding to nearest would do from 1 - 2^-25 on.
+///
+/// - Domain: any `x`; below 0 gives 0, from 1 - 2^-24 on gives 1 - 2^-24, NaN gives 0.
+#[must_use]
+pub fn to_unit_f32(x: f64) -> f32 {
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose; the clamp follows")]
+    let y = x as f32;
+    // NaN fails the comparison and becomes 0.
+    if y > 0.0 { y.min(MAX_XI_F32) } else { 0.0 }
+}
+
+/// A stream number for the cell of a comparison at the given indices, for [`Independent::new`] and its siblings.
+///
+/// Chained `SplitMix64` finalisers: distinct index lists give distinct streams except with probability about 2^-64 a pair. The start is salted, lest the
+/// hash of a small length cancel the hash of an equal index.
+#[must_use]
+pub fn stream_id(indices: &[u64]) -> u64 {
+    let start = mix(0x6861_6972_6973_0001_u64.wrapping_add((indices.len() as u64) << 32));
+    indices.iter().fold(start, |h, &i| mix(h ^ mix(i)))
+}
+
+/// Finaliser of `SplitMix64` (Steele, Lea and Flood 2014; constants by Stafford), with the increment that keeps 0 from being a fixed point.
+#[inline]
+#[must_use]
+pub fn mix(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+/// The upper 53 bits as a multiple of 2^-53 in [0, 1).
+pub(crate) fn unit_f64(bits: u64) -> f64 {
+    (bits >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+}
+
+/// A hash as a whole number below `bound`.
+fn below(hash: u64, bound: u64) -> u64 {
+    ((u128::from(hash) * u128::from(bound)) >> 64) as u64
+}
+
+/// Independent uniform numbers from `ChaCha8`.
+///
+/// # Examples
+/// ```
+/// use hairis_instruments::sequence::{Independent, XiSource};
+/// let mut a = Independent::new(1, 7);
+/// let mut b = Independent::new(1, 7);
+/// assert_eq!(a.next_xi_f32::<3>(), b.next_xi_f32::<3>(), "a stream is reproducible");
+/// ```
+#[derive(Clone, Debug)]
+pub struct Independent {
+    rng: ChaCha8Rng,
+}
+
+impl Independent {
+    /// The stream `stream` of the run `seed`. Streams of one seed do not overlap: the stream number is the cipher's nonce.
+    #[must_use]
+    pub fn new(seed: u64, stream: u64) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        rng.set_stream(stream);
+        Self { rng }
+    }
+
+    /// One number in [0, 1), a multiple of 2^-53.
+    pub fn next_f64(&mut self) -> f64 {
+        unit_f64(self.rng.next_u64())
+    }
+
+    /// One number in [0, 1 - 2^-24], a multiple of 2^-24.
+    pub fn next_f32(&mut self) -> f32 {
+        (self.rng.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
+    }
+
+    /// A whole number below `bound` (0 when `bound` is 0), with a bias below `bound` / 2^64.
+    pub fn next_below(&mut self, bound: usize) -> usize {
+        #[expect(clippy::cast_possible_truncation, reason = "a number below `bound`")]
+        let index = below(self.rng.next_u64(), bound as u64) as usize;
+        index
+    }
+}
+
+impl XiSource for Independent {
+    fn next_point(&mut self, point: &mut [f64]) {
+        for x in point {
+            *x = self.next_f64();
+        }
+    }
+}
+
+/// The kinds of source of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SequenceKind {
+    /// [`Independent`] numbers: the kind that variance per sample is defined on.
+    Independent,
+    /// Scrambled [`Halton`] points, as the paper draws its samples.
+    Halton,
+    /// Jittered [`Stratified`] points, the paper's "stratified uniform".
+    Stratified,
+}
+
+impl SequenceKind {
+    /// Every kind, in the order of reports.
+    pub const ALL: [Self; 3] = [Self::Independent, Self::Halton, Self::Stratified];
+
+    /// Name in reports and flags.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Independent => "independent",
+            Self::Halton => "halton",
+            Self::Stratified => "stratified",
+        }
+    }
+
+    /// A source of this kind for estimates of `samples` points of `dims` coordinates each.
+    ///
+    /// Each further `samples` points of a stratified source are a new randomisation; a Halton source goes on with its sequence, so take one source (one
+    /// stream) for each independent randomisation.
+    ///
+    /// # Panics
+    /// For `Halton` with more dimensions than [`HALTON_BASES`] has.
+    #[must_use]
+    pub fn source(self, seed: u64, stream: u64, dims: usize, samples: usize) -> Box<dyn XiSource + Send> {
+        match self {
+            Self::Independent => Box::new(Independent::new(seed, stream)),
+            Self::Halton => Box::new(Halton::new(dims, seed, stream)),
+            Self::Stratified => Box::new(Stratified::new(&strata(samples, dims), seed, stream)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hairis_conformance::statistics::{chi_square, ks_p_value, ks_statistic};
+
+    #[test]
+    fn f32_never_reaches_one() {
+        assert_eq!(MAX_XI_F32, 16_777_215.0 / 16_777_216.0);
+        for x in [1.0 - f64::EPSILON / 2.0, 1.0 - 2.0_f64.powi(-26), 1.0, 2.0, f64::INFINITY] {
+            assert_eq!(to_unit_f32(x), MAX_XI_F32, "x {x}");
+        }
+        assert_eq!(to_unit_f32(-1.0), 0.0);
+        assert_eq!(to_unit_f32(f64::NAN), 0.0);
+        assert_eq!(to_unit_f32(0.25), 0.25);
+        assert!(unit_f64(u64::MAX) < 1.0 && unit_f64(0) == 0.0);
+    }
+
+    #[test]
+    fn independent_is_uniform_and_streams_differ() {
+        let mut xi = Independent::new(42, 0);
+        let mut s: Vec<f64> = (0..100_000).map(|_| xi.next_f64()).collect();
+        let d = ks_statistic(&mut s, |x| x);
+        assert!(ks_p_value(d, s.len()) > 0.01, "distance {d}");
+        let mut cells = vec![0_u64; 16 * 16];
+        for _ in 0..256_000 {
+            let [x, y] = xi.next_xi::<2>();
+            let cell = |x: f64| (0..16).rev().find(|&i| x >= i as f64 / 16.0).unwrap_or(0);
+            cells[16 * cell(x) + cell(y)] += 1;
+        }
+        let p = chi_square(&cells, &vec![1_000.0; 256], 5.0).p_value;
+        assert!(p > 0.01, "pairs: p {p}");
+        let first = |seed, stream| Independent::new(seed, stream).next_f64();
+        assert!(first(1, 0) != first(1, 1) && first(1, 0) != first(2, 0));
+        assert_eq!(first(1, 5), first(1, 5));
+    }
+
+    #[test]
+    fn next_below_is_uniform() {
+        let mut xi = Independent::new(9, 0);
+        let mut counts = [0_u64; 7];
+        for _ in 0..70_000 {
+            counts[xi.next_below(7)] += 1;
+        }
+        assert!(chi_square(&counts, &[10_000.0; 7], 5.0).p_value > 0.01, "{counts:?}");
+        assert_eq!(xi.next_below(0), 0);
+        assert_eq!(xi.next_below(1), 0);
+    }
+
+    #[test]
+    fn stream_ids_tell_indices_apart() {
+        let mut ids: Vec<u64> = (0..50).flat_map(|a| (0..50).map(move |b| stream_id(&[a, b]))).collect();
+        ids.extend((0..50).map(|a| stream_id(&[a])));
+        let n = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), n);
+        assert_ne!(stream_id(&[]), stream_id(&[0]));
+    }
+
+    #[test]
+    fn every_kind_stays_in_range_and_integrates() {
+        // A product of three linear factors with integral 1; 64 randomisations of 64 points.
+        for kind in SequenceKind::ALL {
+            let mut means = crate::stats::Moments::new();
+            for run in 0..64 {
+                let mut source = kind.source(7, stream_id(&[run]), 3, 64);
+                let mut sum = 0.0;
+                for _ in 0..64 {
+                    let mut p = [0.0; 3];
+                    source.next_point(&mut p);
+                    assert!(p.iter().all(|x| (0.0..1.0).contains(x)), "{kind:?} {p:?}");
+                    sum += p.iter().map(|x| 2.0 * x).product::<f64>();
+                }
+                means.push(sum / 64.0);
+            }
+            let e = means.mean_estimate();
+            assert!(e.z_score(1.0).abs() < 4.0, "{kind:?} {e:?}");
+            let independent = (4.0_f64 / 3.0).powi(3) - 1.0;
+            let gain = independent / 64.0 / means.variance();
+
+            match kind {
+                SequenceKind::Independent => assert!((0.5..2.0).contains(&gain), "{gain}"),
+                // Measured 26 (Halton) and 11 (stratified).
+                _ => assert!(gain > 5.0, "{kind:?} {gain}"),
+            }
+        }
+    }
+}

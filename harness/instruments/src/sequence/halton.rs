@@ -1,0 +1,154 @@
+//! The Halton sequence, scrambled so that independent randomisations give honest error bars.
+
+use super::{XiSource, below, mix, unit_f64};
+
+/// The prime bases of the dimensions, in order.
+pub const HALTON_BASES: [u32; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
+
+/// Scrambled Halton points: dimension `d` is the radical inverse in the `d`-th prime, each digit permuted at random.
+///
+/// The scrambling is Owen's nested one with affine permutations, `digit -> (a digit + c) mod base` with `a` in 1..base and `c` in 0..base drawn by a hash of
+/// the run, the dimension and all earlier digits. For a prime base this maps two distinct digits to a uniform pair of distinct digits, as a full random
+/// permutation does, and variance depends on pairs only. Each point is uniform on its own, so estimates are unbiased; the elementary intervals stay
+/// equidistributed; and streams are independent randomisations, so the spread of their means is the error. Preferred to a Cranley-Patterson rotation,
+/// which keeps the correlated stripes of the larger bases at the 16 to 64 samples of direct lighting.
+///
+/// - Source: Owen 1995; Matousek 1998, On the L2-discrepancy for anchored boxes.
+/// - Shape: at most `dims` coordinates a point.
+///
+/// # Examples
+/// ```
+/// use hairis_instruments::sequence::{Halton, XiSource};
+/// let mut halton = Halton::new(2, 1, 0);
+/// let below = (0..64).filter(|_| halton.next_xi::<2>()[0] < 0.5).count();
+/// assert_eq!(below, 32, "base 2 splits 64 points evenly");
+/// ```
+#[derive(Clone, Debug)]
+pub struct Halton {
+    dims: usize,
+    key: u64,
+    index: u64,
+}
+
+impl Halton {
+    /// The randomisation `(seed, stream)` in `dims` dimensions, from its first point.
+    ///
+    /// # Panics
+    /// When `dims` exceeds the number of [`HALTON_BASES`].
+    #[must_use]
+    pub fn new(dims: usize, seed: u64, stream: u64) -> Self {
+        assert!(dims <= HALTON_BASES.len(), "Halton has {} dimensions, {dims} asked for", HALTON_BASES.len());
+        Self { dims, key: mix(mix(seed) ^ stream), index: 0 }
+    }
+
+    /// Coordinate `dim` of the point at `index`, in [0, 1).
+    ///
+    /// # Panics
+    /// When `dim` is not below the number of [`HALTON_BASES`].
+    #[must_use]
+    pub fn coordinate(&self, dim: usize, index: u64) -> f64 {
+        let base = HALTON_BASES[dim];
+        let b = u64::from(base);
+        let mut hash = mix(self.key ^ mix(dim as u64));
+        let mut rest = index;
+        let mut value = 0.0;
+        let mut scale = 1.0;
+        // Digits down to 2^-32 keep the nesting; below that the point is placed at random, by a hash of its whole index.
+        while scale > 1.0 / 4_294_967_296.0 {
+            let digit = rest % b;
+            rest /= b;
+            let a = 1 + below(hash, b - 1);
+            let c = below(mix(hash), b);
+            scale /= f64::from(base);
+            value += ((a * digit + c) % b) as f64 * scale;
+            hash = mix(hash ^ mix(digit + 1));
+        }
+        value += scale * unit_f64(mix(hash ^ mix(rest)));
+        value.min(1.0 - f64::EPSILON / 2.0)
+    }
+}
+
+impl XiSource for Halton {
+    fn next_point(&mut self, point: &mut [f64]) {
+        assert!(point.len() <= self.dims, "{} coordinates asked of a Halton source with {}", point.len(), self.dims);
+        for (dim, x) in point.iter_mut().enumerate() {
+            *x = self.coordinate(dim, self.index);
+        }
+        self.index += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stats::Moments;
+    use hairis_conformance::statistics::{chi_square, ks_p_value, ks_statistic};
+
+    fn cell(x: f64, cells: u32) -> usize {
+        (0..cells as usize).rev().find(|&i| x >= i as f64 / f64::from(cells)).unwrap_or(0)
+    }
+
+    #[test]
+    fn scrambled_points_keep_elementary_intervals() {
+        // Every run of 2^2 3^2 5 points has exactly one point in each box of the (4, 9, 5) grid.
+        let n = 4 * 9 * 5;
+        for stream in 0..20 {
+            let mut halton = Halton::new(3, 1, stream);
+            for block in 0..3 {
+                let mut counts = vec![0; n];
+                for _ in 0..n {
+                    let [x, y, z] = halton.next_xi::<3>();
+                    counts[(cell(x, 4) * 9 + cell(y, 9)) * 5 + cell(z, 5)] += 1;
+                }
+                assert!(counts.iter().all(|&c| c == 1), "stream {stream} block {block}");
+            }
+        }
+    }
+
+    #[test]
+    fn one_point_is_uniform_over_randomisations() {
+        for dim in 0..6 {
+            for index in [0, 1, 77, u64::MAX] {
+                let mut s: Vec<f64> =
+                    (0..20_000).map(|stream| Halton::new(6, 3, stream).coordinate(dim, index)).collect();
+                let d = ks_statistic(&mut s, |x| x);
+                // 24 tests in all: Sidak at 1%.
+                assert!(ks_p_value(d, s.len()) > crate::stats::sidak(0.01, 24), "dim {dim} index {index}: {d}");
+            }
+        }
+    }
+
+    #[test]
+    fn two_points_fall_as_a_random_permutation_would_have_them() {
+        // Points 0 and 1 in base 5: their first digits are a uniform ordered pair of distinct digits, twenty cells.
+        let mut counts = vec![0_u64; 25];
+        for stream in 0..40_000 {
+            let h = Halton::new(3, 8, stream);
+            counts[cell(h.coordinate(2, 0), 5) * 5 + cell(h.coordinate(2, 1), 5)] += 1;
+        }
+        let expected: Vec<f64> = (0..25).map(|i| if i % 6 == 0 { 0.0 } else { 2_000.0 }).collect();
+        let p = chi_square(&counts, &expected, 5.0).p_value;
+        assert!(p > 0.01, "p {p}");
+    }
+
+    #[test]
+    fn star_discrepancy_beats_random() {
+        // On the anchored boxes of a 32 x 32 grid: random points of n = 1024 sit near 0.03, Halton near 0.004.
+        let mut worst = Moments::new();
+        for stream in 0..10 {
+            let mut halton = Halton::new(2, 5, stream);
+            let points: Vec<[f64; 2]> = (0..1_024).map(|_| halton.next_xi::<2>()).collect();
+            let mut d = 0.0_f64;
+            for i in 1..=32 {
+                for j in 1..=32 {
+                    let (x, y) = (f64::from(i) / 32.0, f64::from(j) / 32.0);
+                    let inside = points.iter().filter(|p| p[0] < x && p[1] < y).count();
+                    d = d.max((inside as f64 / 1_024.0 - x * y).abs());
+                }
+            }
+            worst.push(d);
+        }
+
+        assert!(worst.mean() < 0.01, "{}", worst.mean());
+    }
+}

@@ -1,0 +1,174 @@
+//! Tables that read the same in the terminal and in the report.
+
+pub mod number;
+
+use crate::markup;
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, TableStyle};
+
+/// A table: cells are text, formatted once (see [`number`]), so that its forms cannot differ.
+///
+/// ```
+/// use hairis_instruments::table::{Table, number};
+/// let rows = [("uniform", 0.706, 0.002), ("published", 0.209, 0.001)];
+/// let table = Table::new("Variance at θ_o = 0°")
+///     .texts(["sampler"])
+///     .numbers(["V (relative variance)"])
+///     .rows(rows.map(|(sampler, v, error)| [sampler.to_owned(), number::with_error(v, error)]))
+///     .note("2²⁰ samples each.");
+/// assert!(table.to_html().contains("<td class=\"number\">0.2090 ± 0.0010</td>"));
+/// assert!(table.to_text(None).contains("0.2090 ± 0.0010"));
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+#[must_use]
+pub struct Table {
+    title: String,
+    /// The names of the columns, and whether they hold numbers, which stand to the right.
+    headers: Vec<(String, bool)>,
+    rows: Vec<Vec<String>>,
+    notes: Vec<String>,
+}
+
+impl Table {
+    /// A table without columns.
+    pub fn new(title: impl Into<String>) -> Self {
+        Self { title: title.into(), ..Self::default() }
+    }
+
+    /// Adds columns of text.
+    pub fn texts<S: Into<String>>(mut self, headers: impl IntoIterator<Item = S>) -> Self {
+        self.headers.extend(headers.into_iter().map(|header| (header.into(), false)));
+        self
+    }
+
+    /// Adds columns of numbers. Put the unit in the header.
+    pub fn numbers<S: Into<String>>(mut self, headers: impl IntoIterator<Item = S>) -> Self {
+        self.headers.extend(headers.into_iter().map(|header| (header.into(), true)));
+        self
+    }
+
+    /// Adds a row; cells that it lacks are empty, and those beyond the last column are left out.
+    pub fn push<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
+        let mut row: Vec<String> = cells.into_iter().map(Into::into).collect();
+        row.resize(self.headers.len(), String::new());
+        self.rows.push(row);
+    }
+
+    /// Adds rows.
+    pub fn rows<R: IntoIterator<Item = String>>(mut self, rows: impl IntoIterator<Item = R>) -> Self {
+        rows.into_iter().for_each(|row| self.push(row));
+        self
+    }
+
+    /// Adds a line below the table.
+    pub fn note(mut self, text: impl Into<String>) -> Self {
+        self.notes.push(text.into());
+        self
+    }
+
+    /// The title.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// Whether it has no rows.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// As lines of text, with cells broken so that none is longer than `width` characters. Without a width, lines fit the
+    /// terminal if standard output is one, and are as long as they have to be if not.
+    #[must_use]
+    pub fn to_text(&self, width: Option<u16>) -> String {
+        let line = || LineStyle::none().fill('─').junction('─');
+        let mut table = comfy_table::Table::new();
+        table.load_style(TableStyle::new().header_separator(line()).bottom_border(line()));
+        table.set_content_arrangement(ContentArrangement::Dynamic);
+        if let Some(width) = width {
+            table.set_width(width);
+        }
+        table.set_header(self.headers.iter().map(|(header, _)| markup::clean(header)));
+        table.add_rows(self.rows.iter().map(|row| row.iter().map(|cell| markup::clean(cell))));
+        for (column, (_, is_number)) in table.column_iter_mut().zip(&self.headers) {
+            column.set_cell_alignment(if *is_number { CellAlignment::Right } else { CellAlignment::Left });
+        }
+        let body = table.to_string();
+        let mut text = String::new();
+        for line in [&self.title, &body].into_iter().chain(&self.notes).flat_map(|part| part.lines()) {
+            text += &format!("{}\n", markup::clean(line).trim_end());
+        }
+        text
+    }
+
+    /// As HTML, in a box of its own that scrolls sideways.
+    #[must_use]
+    pub fn to_html(&self) -> String {
+        let class = |is_number: bool| if is_number { " class=\"number\"" } else { "" };
+        let (mut head, mut rows) = (String::new(), String::new());
+        for (header, is_number) in &self.headers {
+            head += &format!("<th scope=\"col\"{}>{}</th>", class(*is_number), markup::escape(header));
+        }
+        for row in &self.rows {
+            rows += "<tr>";
+            for (place, (cell, (_, is_number))) in row.iter().zip(&self.headers).enumerate() {
+                let (tag, scope) = if place == 0 { ("th", " scope=\"row\"") } else { ("td", "") };
+                rows += &format!("<{tag}{scope}{}>{}</{tag}>", class(*is_number), markup::escape(cell));
+            }
+            rows += "</tr>\n";
+        }
+        let note = |note: &String| format!("<p class=\"note\">{}</p>\n", markup::escape(note));
+        let (title, notes) = (markup::escape(&self.title), self.notes.iter().map(note).collect::<String>());
+        format!(
+            "<div class=\"table-box\" role=\"region\" tabindex=\"0\" aria-label=\"{title}\"><table>\n\
+             <thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n{notes}"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WIDE: Option<u16> = Some(u16::MAX);
+
+    fn example() -> Table {
+        let mut table = Table::new("Speed <of> \"hair\"").texts(["kernel"]).numbers(["time (ns)", "ratio"]);
+        table.push(["eval & sample", "8.31 ± 0.02", "13.4×"]);
+        table.push(["short"]);
+        table.push(["long", "1", "2", "dropped"]);
+        table
+    }
+
+    #[test]
+    fn the_terminal_and_the_report_show_the_same_cells() {
+        let (plain, html) = (example().to_text(WIDE), example().to_html());
+        for cell in ["8.31 ± 0.02", "13.4×", "time (ns)", "short"] {
+            assert!(plain.contains(cell) && html.contains(cell), "{cell} in {plain} and {html}");
+        }
+        assert!(!plain.contains("dropped") && !html.contains("dropped"), "a cell beyond the columns");
+        assert_eq!(html.matches("<t").count() - html.matches("<tr").count(), 3 + 3 + 9, "every row is full: {html}");
+    }
+
+    #[test]
+    fn html_is_escaped_and_nests() {
+        let html = example().note("</table>").to_html();
+        markup::well_formed(&html).expect("the table nests");
+        assert!(html.contains("Speed &lt;of&gt; &quot;hair&quot;") && html.contains("eval &amp; sample"), "{html}");
+    }
+
+    #[test]
+    fn columns_line_up_and_lines_keep_to_the_width() {
+        let plain = example().to_text(WIDE);
+        let ends: Vec<usize> =
+            plain.lines().filter(|l| l.contains("13.4×") || l.contains("ratio")).map(|l| l.chars().count()).collect();
+        assert_eq!(ends.len(), 2, "{plain}");
+        assert_eq!(ends[0], ends[1], "numbers end where their header does: {plain}");
+        let mut wide = Table::new("t").texts(["a", "b"]);
+        wide.push(["word ".repeat(30), "other ".repeat(30)]);
+        let text = wide.to_text(Some(60));
+        assert!(text.lines().all(|l| l.chars().count() <= 60), "{text}");
+        assert!(wide.to_text(WIDE).lines().any(|l| l.chars().count() > 200), "nothing is broken off a terminal");
+        assert!(!Table::new("a\u{1b}[31m").to_text(None).contains('\u{1b}'), "no escape sequences get through");
+    }
+}
