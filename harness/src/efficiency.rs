@@ -24,7 +24,7 @@
 //!
 //! The fibre lies along world x, and (u, v, w) is the world's (x, y, z). The viewer is at azimuth [`PHI_O_DEG`], 60 degrees from straight up (+y), inclined by
 //! [`THETA_O_DEG`]. So one glint, 35 degrees from the viewer in azimuth, runs along azimuth 25 and meets the area light above, which spans 27 degrees either side of 0.
-//! The [`Sun`] stands at inclination [`SUN_DEG`]`[0]` = -60 and azimuth 25 degrees: the centre of the R lobe and of that glint for
+//! The [`Sun`](hairis_instruments::light::Sun) stands at inclination [`SUN_DEG`](crate::lights::SUN_DEG)`[0]` = -60 and azimuth 25 degrees: the centre of the R lobe and of that glint for
 //! `theta_o = 45`, well inside the TRT lobe for 75, in the tails for 0 and 85. The sun of the procedural [`Sky`](hairis_instruments::light::Sky) is near
 //! inclination 26 degrees, the centre of the TRT lobe for `theta_o = 0`.
 //!
@@ -54,11 +54,11 @@ pub(crate) use run::z_bound;
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
 use hairis::{HairDesc, HairParams, ParamError};
-use hairis_instruments::direction::fibre_direction;
+use hairis_instruments::light::Environment;
 #[cfg(test)]
 use hairis_instruments::light::Light;
-use hairis_instruments::light::{Environment, Sun};
 use hairis_instruments::sequence::stream_id;
+use hairis_instruments::stats::Estimate;
 use serde::Serialize;
 
 /// Inclinations of the viewer, in degrees.
@@ -66,9 +66,6 @@ pub const THETA_O_DEG: [f64; 4] = [0.0, 45.0, 75.0, 85.0];
 
 /// Azimuth of the viewer, in degrees.
 pub const PHI_O_DEG: f64 = 60.0;
-
-/// Inclination and azimuth of the sun's centre, in degrees.
-pub const SUN_DEG: [f64; 2] = [-60.0, 25.0];
 
 /// Widths `beta_r` of the sweep, in degrees; `beta_tt` is half of it and `beta_trt` twice.
 pub const BETA_R_DEG: [f32; 6] = [2.5, 5.0, 7.5, 10.0, 15.0, 20.0];
@@ -115,6 +112,11 @@ impl SampleCosts {
             ModelKind::Cauchy => &self.cauchy,
         };
         of_sampler(each, sampler)
+    }
+
+    /// `1 / (V seconds)` of samples of relative variance `v`.
+    fn efficiency(&self, v: &Estimate, model: ModelKind, sampler: Sampler) -> Estimate {
+        Estimate::exact(1e9).ratio(&v.scale(self.ns(model, sampler)))
     }
 }
 
@@ -198,12 +200,6 @@ impl<'a> EfficiencyConfig<'a> {
 pub(crate) fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, ParamError> {
     let beta_r = beta_r_deg.to_radians();
     HairParams::new(&HairDesc { beta_r, beta_tt: 0.5 * beta_r, beta_trt: 2.0 * beta_r, ..*base.desc() })
-}
-
-/// The sun of the comparison.
-pub(crate) fn sun() -> Sun {
-    let [theta, phi] = SUN_DEG.map(f64::to_radians);
-    Sun::five_degrees(fibre_direction(theta, phi))
 }
 
 /// Mean and V of a model under a light that quadrature can integrate, seen from [`PHI_O_DEG`].

@@ -35,7 +35,6 @@
 
 mod cell;
 mod check;
-pub mod columns;
 mod equal_time;
 pub mod grid;
 pub mod output;
@@ -51,16 +50,15 @@ mod view;
 
 pub use grid::{Cell, Grid};
 
-pub(crate) use equal_time::in_equal_time;
 pub(crate) use times::in_turns;
 pub(crate) use view::gain;
 
-use crate::efficiency::sun;
+use crate::lights::lights;
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
 use hairis::{Level, ParamError};
 use hairis_instruments::error::Error;
-use hairis_instruments::light::{Constant, Environment, Light, Rectangle, Smooth};
+use hairis_instruments::light::Environment;
 use hairis_instruments::machine;
 use hairis_instruments::shard::Shard;
 use hairis_instruments::stats::Estimate;
@@ -134,21 +132,11 @@ impl Plan<'_> {
             environment: part::digest(self.environment),
             models: ModelKind::ALL.iter().map(|model| model.name().to_owned()).collect(),
             samplers: Sampler::ALL.iter().map(|sampler| sampler.name().to_owned()).collect(),
-            lights: with_lights(Some(self.environment), |lights| {
-                lights.iter().map(|light| light.name().to_owned()).collect()
-            }),
+            lights: lights(Some(self.environment)).iter().map(|light| light.name().to_owned()).collect(),
             cells: self.grid().len(),
             shard: shard.to_string(),
         }
     }
-}
-
-/// The lights in the order of reports: those that need no file, then the environment, if there is one.
-pub(crate) fn with_lights<R>(environment: Option<&Environment>, f: impl FnOnce(&[&dyn Light]) -> R) -> R {
-    let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), sun(), Rectangle::figure_6a());
-    let mut lights: Vec<&dyn Light> = vec![&constant, &smooth, &sun, &area];
-    lights.extend(environment.map(|map| map as &dyn Light));
-    f(&lights)
 }
 
 /// Computes the cells at `todo` on all cores. Workers pass each to `keep`, in no order.
@@ -158,11 +146,10 @@ pub(crate) fn with_lights<R>(environment: Option<&Environment>, f: impl FnOnce(&
 /// The first that `keep` gave, or the hair's: the cells in work are then finished, and no others begun.
 pub fn run(plan: &Plan<'_>, todo: &[usize], keep: impl Fn(Finished) -> Result<(), Error> + Sync) -> Result<(), Error> {
     let (grid, budget) = (plan.grid(), plan.budget());
-    with_lights(Some(plan.environment), |lights| {
-        todo.par_iter().with_max_len(1).try_for_each(|&index| {
-            let found = cell::measure(plan.seed, budget, lights, &grid.cell(index), &Sampler::ALL)?;
-            keep(Finished::of(index, &found))
-        })
+    let lights = lights(Some(plan.environment));
+    todo.par_iter().with_max_len(1).try_for_each(|&index| {
+        let found = cell::measure(plan.seed, budget, &lights, &grid.cell(index), &Sampler::ALL)?;
+        keep(Finished::of(index, &found))
     })
 }
 
@@ -178,8 +165,6 @@ pub(crate) fn variances(
     cell: &Cell,
     samplers: &[Sampler],
 ) -> Result<Vec<Estimate>, ParamError> {
-    with_lights(Some(plan.environment), |lights| {
-        let found = cell::measure(plan.seed, budget, lights, cell, samplers)?;
-        Ok(found.iter().map(|of| of.figures.v).collect())
-    })
+    let found = cell::measure(plan.seed, budget, &lights(Some(plan.environment)), cell, samplers)?;
+    Ok(found.iter().map(|of| of.figures.v).collect())
 }

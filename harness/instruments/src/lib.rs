@@ -3,6 +3,7 @@
 //!
 //! Nothing here knows an experiment, a scene or a model of hair.
 
+pub mod columns;
 pub mod direction;
 pub mod error;
 pub mod files;

@@ -94,19 +94,6 @@ pub trait Light: Sync + Send {
     }
 }
 
-/// A light's name in a sentence.
-#[must_use]
-pub fn in_words(name: &str) -> &str {
-    match name {
-        "constant" => "constant light",
-        "smooth" => "smooth light",
-        "sun" => "a 5° sun",
-        "rectangle" => "a large area light",
-        "clear sky" | "sky" => "a procedural sky",
-        _ => name,
-    }
-}
-
 /// The nearest number of single precision.
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]

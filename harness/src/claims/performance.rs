@@ -3,7 +3,7 @@
 use super::claim::{Claim, Figure, Origin, Side, Statement};
 use crate::sampler::Sampler;
 use crate::study::output::Times;
-use crate::study::{Cell, Plan, gain, in_equal_time, variances};
+use crate::study::{Cell, Plan, gain, variances};
 use crate::subject::ModelKind;
 use hairis::ParamError;
 use hairis_instruments::progress::Progress;
@@ -96,7 +96,7 @@ fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
     let times = Times::measure(plan.seed, plan.quick, None);
     let [gaussian, cauchy] = ModelKind::ALL.map(|model| times.ns(model, Sampler::Published, PER_POINT));
     let faster = gaussian.ratio(&cauchy);
-    let gains: Vec<Estimate> = means.iter().map(|mean| in_equal_time(*mean, faster)).collect();
+    let gains: Vec<Estimate> = means.iter().map(|mean| mean.times(&faster)).collect();
     let timed = |name: String, of: Estimate| Figure::new(name, Origin::Timed, of);
     let by_value = |a: &usize, b: &usize| gains[*a].value.total_cmp(&gains[*b].value);
     let known = || (0..gains.len()).filter(|light| gains[*light].value.is_finite());

@@ -3,10 +3,10 @@
 use super::tables::{self, Depth};
 use super::{CompareSettings, Comparison, charts, distinct, rays};
 use crate::efficiency::EfficiencyRow;
+use crate::lights::in_words;
 use crate::sampler::Sampler;
 use crate::speed::TimedOp;
 use crate::subject::ModelKind;
-use hairis_instruments::light::in_words;
 use hairis_instruments::report::{Report, Section};
 use hairis_instruments::sequence::SequenceKind;
 use hairis_instruments::table::number;

@@ -2,9 +2,9 @@
 
 use super::Comparison;
 use super::tables::Depth;
+use crate::lights::in_words;
 use crate::rays::{EqualTime, HALF, OneRay, PRICES_US, RayRow, RayTimes, SIZES, VISIBLE, equal_time};
 use core::iter;
-use hairis_instruments::light::in_words;
 use hairis_instruments::plot::{Axis, Series, lines};
 use hairis_instruments::report::Drawing;
 use hairis_instruments::stats::Estimate;

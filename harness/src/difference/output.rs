@@ -1,8 +1,8 @@
 //! The differences as columns and as tables.
 
 use super::{Difference, Differences, Width};
-use crate::study::columns::Columns;
 use crate::study::grid::{GridAxis, columns_of};
+use hairis_instruments::columns::Columns;
 use hairis_instruments::stats::percentile;
 use hairis_instruments::table::{Table, number};
 

@@ -1,7 +1,7 @@
 //! One cell of each table.
 
 use super::case::Case;
-use super::measure::{self, bias_z, is_tested, moments};
+use super::measure::{bias_z, is_tested, moments};
 use super::reference::exact_variance;
 use super::result::{ConvergencePoint, EfficiencyRow, MisRow, ReferenceV, SweepRow, Technique};
 use super::{EfficiencyConfig, ModelKind, Reference, stream};
@@ -48,9 +48,9 @@ impl Place<'_> {
             n,
             randomisations,
             v,
-            ess_per_1000: measure::effective_per_1000(&v),
+            ess_per_1000: v.effective_per_1000(),
             samples_for_1_percent: v.scale(1e4),
-            efficiency: config.costs.map(|costs| measure::efficiency(&v, costs.ns(case.model, sampler))),
+            efficiency: config.costs.map(|costs| costs.efficiency(&v, case.model, sampler)),
             max_weight: tally.max_weight,
             max_contribution: tally.max_in_means(),
             mean: tally.moments.mean_estimate(),

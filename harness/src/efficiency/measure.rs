@@ -142,15 +142,3 @@ pub(crate) fn is_tested(samples: usize, [v, skewness]: [f64; 2]) -> bool {
     let n = samples as f64;
     (v.is_nan() || n / (1.0 + v) >= MIN_EFFECTIVE) && (skewness.is_nan() || n >= MIN_EFFECTIVE * skewness * skewness)
 }
-
-/// `1000 / (1 + V)`.
-pub(super) fn effective_per_1000(v: &Estimate) -> Estimate {
-    let value = 1_000.0 / (1.0 + v.value);
-    Estimate { value, standard_error: v.standard_error * value * value / 1_000.0 }
-}
-
-/// `1 / (V seconds)`.
-pub(super) fn efficiency(v: &Estimate, ns: f64) -> Estimate {
-    let value = 1e9 / (v.value * ns);
-    Estimate { value, standard_error: value * v.standard_error / v.value }
-}

@@ -6,12 +6,12 @@ use super::reference::{by_quadrature, of_environment};
 use super::result::{Check, EfficiencyResult, EfficiencySettings, Technique};
 use super::{
     BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG, Reference, SAMPLERS,
-    SUN_DEG, THETA_O_DEG, with_beta,
+    THETA_O_DEG, with_beta,
 };
+use crate::lights::{SUN_DEG, lights};
 use crate::sampler::Sampler;
 use core::f64::consts::SQRT_2;
 use hairis::{HairParams, ParamError};
-use hairis_instruments::light::{Constant, Light, Rectangle, Smooth};
 use hairis_instruments::progress::Progress;
 use hairis_instruments::sequence::SequenceKind;
 use hairis_instruments::stats::{Estimate, sidak};
@@ -34,7 +34,7 @@ pub fn run(
     config: &EfficiencyConfig<'_>,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<EfficiencyResult, ParamError> {
-    let lights: [&dyn Light; 5] = [&Constant, &Smooth, &super::sun(), &Rectangle, config.environment];
+    let lights = lights(Some(config.environment));
     let poses = product(&ModelKind::ALL, &THETA_O_DEG);
     let of_hair = |params: &HairParams| -> Vec<Case> {
         poses.iter().map(|&(model, theta_o)| Case::new(model, params, theta_o)).collect()

@@ -108,14 +108,6 @@ pub struct PoolFigures {
     pub v: Estimate,
 }
 
-/// Geometric mean with its standard error, of figures with errors of their own.
-pub(super) fn geometric_mean(of: &[Estimate]) -> Estimate {
-    let n = of.len() as f64;
-    let value = (of.iter().map(|one| one.value.ln()).sum::<f64>() / n).exp();
-    let squares = of.iter().map(|one| (one.standard_error / one.value).powi(2)).sum::<f64>();
-    Estimate { value, standard_error: value * squares.sqrt() / n }
-}
-
 impl RayFigures {
     /// Geometric means; numbers of rays have arithmetic ones.
     pub(super) fn mean(of: &[&Self]) -> Self {
@@ -125,7 +117,7 @@ impl RayFigures {
             .map(|figures| (*figures).clone().estimates().into_iter().map(|estimate| *estimate).collect())
             .collect();
         for (place, estimate) in mean.estimates().into_iter().enumerate() {
-            *estimate = geometric_mean(&each.iter().map(|figures| figures[place]).collect::<Vec<_>>());
+            *estimate = Estimate::geometric_mean(&each.iter().map(|figures| figures[place]).collect::<Vec<_>>());
         }
         for (place, pool) in mean.half.iter_mut().enumerate() {
             pool.traced = of.iter().map(|figures| figures.half[place].traced).sum::<f64>() / of.len() as f64;

@@ -3,7 +3,7 @@
 use super::result::{RayFigures, RayPose, RayRow, RaysResult};
 use super::{EqualTime, Lit, RaySubject, measure, times};
 use crate::efficiency::{Check, EfficiencyResult, THETA_O_DEG, intensity, stratified};
-use crate::study::with_lights;
+use crate::lights::lights;
 use hairis::reference::Reference as _;
 use hairis_instruments::light::{Environment, Light, product};
 use hairis_instruments::progress::Progress;
@@ -49,13 +49,12 @@ pub fn run(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> RaysResult {
     let subjects: Vec<RaySubject> = RaySubject::all().collect();
-    with_lights(Some(config.environment), |lights| {
-        let cells = subjects.len() * lights.len();
-        let times = times::measure(&subjects, lights, config.seed, config.rounds, |done| progress(done, 2 * cells));
-        let rows = rows(config, &subjects, lights, efficiency, &|done, _| progress(cells + done, 2 * cells));
-        let equal_time = rows.iter().zip(&times).map(|(row, times)| EqualTime::new(row, times)).collect();
-        RaysResult { pools: config.pools, check: check(&rows), rows, times, equal_time }
-    })
+    let lights = lights(Some(config.environment));
+    let cells = subjects.len() * lights.len();
+    let times = times::measure(&subjects, &lights, config.seed, config.rounds, |done| progress(done, 2 * cells));
+    let rows = rows(config, &subjects, &lights, efficiency, &|done, _| progress(cells + done, 2 * cells));
+    let equal_time = rows.iter().zip(&times).map(|(row, times)| EqualTime::new(row, times)).collect();
+    RaysResult { pools: config.pools, check: check(&rows), rows, times, equal_time }
 }
 
 /// The variances.

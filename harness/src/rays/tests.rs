@@ -2,10 +2,10 @@
 
 use super::equal_time::PRICES_US;
 use super::measure::pose;
-use super::result::{geometric_mean, occluded};
+use super::result::occluded;
 use super::*;
 use crate::efficiency::{self, Budget, EfficiencyConfig, EfficiencyResult, THETA_O_DEG};
-use crate::study::with_lights;
+use crate::lights::lights;
 use hairis_instruments::light::{Environment, Light, Sky};
 use hairis_instruments::sequence::{Independent, XiSource};
 use hairis_instruments::stats::Estimate;
@@ -41,7 +41,7 @@ fn sky() -> &'static (Environment, EfficiencyResult) {
 }
 
 fn rows(config: &RaysConfig<'_>, subjects: &[RaySubject], references: &EfficiencyResult) -> Vec<RayRow> {
-    with_lights(Some(config.environment), |lights| run::rows(config, subjects, lights, references, &|_, _| ()))
+    run::rows(config, subjects, &lights(Some(config.environment)), references, &|_, _| ())
 }
 
 fn config<'a>(environment: &'a Environment, pools: usize) -> RaysConfig<'a> {
@@ -56,7 +56,7 @@ fn a_ray_of_4_and_4_candidates_is_worth_8_of_mis_and_of_8_and_8_15() {
     let under_sky: Vec<&RayRow> = rows.iter().filter(|row| row.light == map.name()).collect();
     assert_eq!(under_sky.len(), subjects.len());
     let of_all = |pick: &dyn Fn(&RayFigures) -> Estimate| {
-        geometric_mean(&under_sky.iter().map(|row| pick(&row.mean)).collect::<Vec<_>>())
+        Estimate::geometric_mean(&under_sky.iter().map(|row| pick(&row.mean)).collect::<Vec<_>>())
     };
     let mis = of_all(&|figures| figures.mis.unoccluded);
     for (size, least) in [(1, 8.0), (2, 15.0)] {

@@ -196,9 +196,10 @@ fn widened(x: f32x8) -> f64x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::efficiency::{SAMPLERS, perfect_v, quadrature, ray_v, sun};
+    use crate::efficiency::{SAMPLERS, perfect_v, quadrature, ray_v};
+    use crate::lights::lights;
     use crate::study::Grid;
-    use hairis_instruments::light::{Constant, Rectangle, Sky, Smooth};
+    use hairis_instruments::light::{Constant, Sky};
 
     const BUDGET: StudyBudget = StudyBudget { samples: 1 << 16, light_samples: 1 << 13, pools: 0 };
 
@@ -209,8 +210,7 @@ mod tests {
 
     #[test]
     fn figures_agree_with_quadrature() {
-        let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), sun(), Rectangle::figure_6a());
-        let lights: [&dyn Light; 5] = [&constant, &smooth, &sun, &area, &constant];
+        let lights = [lights(None), vec![&Constant]].concat();
         // Narrow hair that hardly meets the sun; the default; wide hair at grazing incidence.
         for (beta_r, theta_o) in [(2.5, 0.0), (7.5, 45.0), (20.0, 85.0)] {
             let cell = cell_of(beta_r, theta_o);
@@ -249,8 +249,7 @@ mod tests {
 
     #[test]
     fn rays_agree_with_quadrature() {
-        let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), sun(), Rectangle::figure_6a());
-        let lights: [&dyn Light; 5] = [&constant, &smooth, &sun, &area, &constant];
+        let lights = [lights(None), vec![&Constant]].concat();
         let budget = StudyBudget { pools: 1024, ..BUDGET };
         for (beta_r, theta_o) in [(7.5, 45.0), (20.0, 85.0)] {
             let cell = cell_of(beta_r, theta_o);
@@ -279,8 +278,7 @@ mod tests {
     #[test]
     fn figures_depend_on_the_seed_and_the_cell_alone() {
         let sky = Sky::default().environment();
-        let (constant, smooth, sun, area) = (Constant::white(), Smooth::new(), sun(), Rectangle::figure_6a());
-        let lights: [&dyn Light; 5] = [&constant, &smooth, &sun, &area, &sky];
+        let lights = lights(Some(&sky));
         let budget = StudyBudget { samples: 256, light_samples: 64, pools: 4 };
         let of = |seed, cell: &Cell| measure(seed, budget, &lights, cell, &Sampler::ALL).expect("accepted");
         let cell = cell_of(7.5, 45.0);

@@ -35,19 +35,12 @@ pub(super) fn time_ratio([base, other]: [Estimate; 2], more: Estimate) -> Estima
     Estimate { value, standard_error: value * relative }
 }
 
-/// A ratio of variances times that of the times.
-pub(crate) fn in_equal_time(variance: Estimate, time: Estimate) -> Estimate {
-    let value = variance.value * time.value;
-    let relative = (variance.standard_error / variance.value).hypot(time.standard_error / time.value);
-    Estimate { value, standard_error: value * relative }
-}
-
 /// Cells that are won, undecided and lost: gains in V, those of cells that are unsure being `None`, against the ratio of the
 /// times.
 pub(super) fn count_cells(gains: impl Iterator<Item = Option<Estimate>>, time: Estimate) -> [usize; 3] {
     let mut cells = [0; 3];
     for gain in gains {
-        cells[gain.map_or(Sign::Unsure, |gain| Sign::of(in_equal_time(gain, time))) as usize] += 1;
+        cells[gain.map_or(Sign::Unsure, |gain| Sign::of(gain.times(&time))) as usize] += 1;
     }
     cells
 }

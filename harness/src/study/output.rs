@@ -1,8 +1,6 @@
 //! A finished study, and its files.
 
 use super::cell::Measured;
-use super::columns::Columns;
-use super::equal_time::in_equal_time;
 use super::part::{self, FORMAT, Finished, Header, Read, refuse};
 use super::rays;
 use super::rows::{Row, published, set_bounds};
@@ -12,6 +10,7 @@ use super::{Grid, report};
 use crate::difference::Difference;
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
+use hairis_instruments::columns::Columns;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::{whole, write_json};
 use hairis_instruments::light::Environment;
@@ -181,7 +180,7 @@ impl Study {
                     |row: &Row<'_>| 1e9 / (row.v().value * (ns(row) + self.more(row.light, counted).value));
                 let gain = |(row, gain): (&Row<'_>, &Estimate)| {
                     let time = self.time_ratio([published(row.of), row.of], row.light, per_point, counted);
-                    if is_published(row) && !time.value.is_nan() { *gain } else { in_equal_time(*gain, time) }
+                    if is_published(row) && !time.value.is_nan() { *gain } else { gain.times(&time) }
                 };
                 columns = columns
                     .number(format!("{prefix}efficiency_at_{per_point}"), rows.iter().map(efficiency))

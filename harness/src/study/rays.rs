@@ -1,11 +1,11 @@
 //! One ray of direct light in a cell: by one-sample MIS, and chosen from candidates; see [`rays`](crate::rays).
 
 use super::cell::Measured;
-use super::columns::Columns;
-use super::equal_time::{in_equal_time, time_ratio};
+use super::equal_time::time_ratio;
 use super::output::Study;
 use super::rows::Row;
 use crate::rays::{HALF, PRICES_US, VISIBLE, occluded};
+use hairis_instruments::columns::Columns;
 use hairis_instruments::stats::Estimate;
 
 /// Candidates of each technique in a pool.
@@ -62,7 +62,7 @@ pub(super) fn efficiencies(mut columns: Columns, rows: &[Row<'_>], study: &Study
         for price in PRICES_US {
             let gain = |(row, ns): (&Row<'_>, &[Estimate; 3])| {
                 let v = [MIS, by].map(|by| half_visible(row.measured, by));
-                in_equal_time(v[0].ratio(&v[1]), times_at([ns[MIS], ns[by]], price))
+                v[0].ratio(&v[1]).times(&times_at([ns[MIS], ns[by]], price))
             };
             let name = format!("gain_{}_at_{price}_us", RAYS[by].column);
             columns = columns.estimate(&name, rows.iter().zip(&ns).map(gain));

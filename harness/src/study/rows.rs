@@ -1,12 +1,12 @@
 //! The rows of a study, as columns.
 
 use super::cell::Measured;
-use super::columns::Columns;
 use super::grid::{Cell, columns_of};
 use super::output::Study;
 use super::rays;
 use crate::sampler::{Sampler, weight_bound};
 use crate::subject::ModelKind;
+use hairis_instruments::columns::Columns;
 use hairis_instruments::stats::Estimate;
 
 /// The sampler of a row; `None`: perfect sampling of the hair, see [`perfect`](super::perfect).

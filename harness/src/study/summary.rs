@@ -1,7 +1,7 @@
 //! Summary of a study: gains over the published sampler and of the Cauchy model, as geometric means over the grid, and
 //! in how many cells.
 
-use super::equal_time::{count_cells, in_equal_time};
+use super::equal_time::count_cells;
 use super::output::Study;
 use super::rows::{Estimator, Strategy, on_each_model, published, samplers, strategies};
 use super::times::PER_POINT;
@@ -87,8 +87,7 @@ impl Study {
                     return "not timed".to_owned();
                 }
                 let cells = count_cells(self.pairs(pair, light).map(sure_ratio), time).map(|cells| cells.to_string());
-                let median =
-                    self.gain(pair, light).map_or_else(String::new, |gain| shown(in_equal_time(gain.median, time)));
+                let median = self.gain(pair, light).map_or_else(String::new, |gain| shown(gain.median.times(&time)));
                 format!("{median} ({})", cells.join(" / "))
             };
             PER_POINT.map(entry).into()

@@ -8,8 +8,7 @@
 //! importance sampling needs it. They are so many, and spread so far, that an environment is read as by a render: from
 //! whatever cache holds all of it.
 
-use super::columns::Columns;
-use super::with_lights;
+use crate::lights::lights;
 use crate::rays::{RaySubject, RayTimes, measure_times, numbers};
 use crate::sampler::{Sampler, bsdf, uniform_sample8, uniform8};
 use crate::speed::{median_error, quartiles, stretch};
@@ -17,6 +16,7 @@ use crate::subject::ModelKind;
 use core::hint::black_box;
 use hairis::{Eval8, HairParams, Sample8, Vec3x8};
 use hairis_benches::task::{Pass, task};
+use hairis_instruments::columns::Columns;
 use hairis_instruments::direction::uniform_direction;
 use hairis_instruments::light::{Environment, Light, Seen8};
 use hairis_instruments::sequence::{Independent, stream_id};
@@ -90,7 +90,7 @@ impl Times {
     #[must_use]
     pub fn measure(seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
         let rounds = if quick { 15 } else { 75 };
-        let of_samples = with_lights(environment, |lights| measure(seed, rounds, lights));
+        let of_samples = measure(seed, rounds, &lights(environment));
         Self { of_samples, of_rays: Vec::new() }
     }
 
@@ -100,7 +100,7 @@ impl Times {
         let is_measured = |of: &RaySubject| ModelKind::ALL.iter().any(|model| model.name() == of.model());
         let subjects: Vec<RaySubject> = RaySubject::all().filter(is_measured).collect();
         let rounds = if quick { 9 } else { 75 };
-        let of_rays = with_lights(environment, |lights| measure_times(&subjects, lights, seed, rounds, |_| ()));
+        let of_rays = measure_times(&subjects, &lights(environment), seed, rounds, |_| ());
         Self { of_rays, ..self }
     }
 
@@ -232,8 +232,7 @@ mod tests {
 
     #[test]
     fn every_sampler_and_light_is_timed() {
-        let (constant, smooth) = (Constant::white(), Smooth::new());
-        let times = Times { of_samples: measure(1, 3, &[&constant, &smooth]), of_rays: Vec::new() };
+        let times = Times { of_samples: measure(1, 3, &[&Constant, &Smooth]), of_rays: Vec::new() };
         assert_eq!(times.of_samples.len(), ModelKind::ALL.len() * Sampler::ALL.len() * PER_POINT.len() + 2);
         for (of, time) in &times.of_samples {
             let [q1, median, q3] = time.quartiles;

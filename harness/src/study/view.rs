@@ -1,7 +1,7 @@
 //! Queries to a finished study: variances, gains and times by model, sampler and light.
 
 use super::cell::Measured;
-use super::equal_time::{NOTHING, Sign, in_equal_time, time_ratio};
+use super::equal_time::{NOTHING, Sign, time_ratio};
 use super::output::Study;
 use super::rays::RAYS;
 use super::rows::{Estimator, Row, name};
@@ -53,11 +53,8 @@ pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
     let n = ratios.len() as f64;
     let at = |quarter: usize| ratios[(ratios.len() - 1) * quarter / 4];
     let share = |sign| ratios.iter().filter(|ratio| Sign::of(**ratio) == sign).count() as f64 / (n + unsure as f64);
-    let logarithm = ratios.iter().map(|ratio| ratio.value.ln()).sum::<f64>() / n;
-    let error = ratios.iter().map(|ratio| (ratio.standard_error / ratio.value).powi(2)).sum::<f64>().sqrt() / n;
-    let value = logarithm.exp();
     Some(Gain {
-        geometric_mean: Estimate { value, standard_error: value * error },
+        geometric_mean: Estimate::geometric_mean(&ratios),
         median: at(2),
         quartiles: [at(1), at(3)].map(|ratio| ratio.value),
         shares: [Sign::Above, Sign::Below].map(share),
@@ -126,7 +123,7 @@ impl Study {
     /// the cells. `None` if no cell is sure, or a time unknown.
     pub(super) fn equal_time(&self, pair: [Estimator; 2], light: usize, counted: Counted) -> Option<Estimate> {
         let median = self.gain(pair, light)?.median;
-        let gain = in_equal_time(median, self.time_ratio(pair, light, MANY, counted));
+        let gain = median.times(&self.time_ratio(pair, light, MANY, counted));
         gain.value.is_finite().then_some(gain)
     }
 
@@ -185,13 +182,6 @@ pub(super) fn mean_of<'a>(rows: impl Iterator<Item = Row<'a>>, figure: &dyn Fn(&
         (n, sum, square) = (n + 1.0, sum + figure.value, square + figure.standard_error.powi(2));
     }
     Estimate { value: sum / n, standard_error: f64::sqrt(square) / n }
-}
-
-/// Effective samples in 1000.
-pub(super) fn ess(of: &Measured) -> Estimate {
-    let v = of.figures.v;
-    let value = 1e3 / (1.0 + v.value);
-    Estimate { value, standard_error: value * v.standard_error / (1.0 + v.value) }
 }
 
 #[cfg(test)]

@@ -13,19 +13,11 @@ use wide::f32x8;
 /// # Examples
 /// ```
 /// use hairis_instruments::light::{Constant, Light};
-/// let s = Constant::white().sample([0.2, 0.7]);
+/// let s = Constant.sample([0.2, 0.7]);
 /// assert_eq!(s.radiance, [1.0; 3]);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Constant;
-
-impl Constant {
-    /// The light.
-    #[must_use]
-    pub const fn white() -> Self {
-        Self
-    }
-}
 
 impl Light for Constant {
     fn name(&self) -> &str {

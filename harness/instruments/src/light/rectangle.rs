@@ -20,18 +20,12 @@ const HALF: [f64; 2] = [2.0, 0.5];
 /// # Examples
 /// ```
 /// use hairis_instruments::light::Rectangle;
-/// assert!((Rectangle::figure_6a().solid_angle() - 1.646_1).abs() < 1e-4);
+/// assert!((Rectangle.solid_angle() - 1.646_1).abs() < 1e-4);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Rectangle;
 
 impl Rectangle {
-    /// The light.
-    #[must_use]
-    pub const fn figure_6a() -> Self {
-        Self
-    }
-
     /// Solid angle seen from the shading point, in sr.
     ///
     /// `4 asin(a b / sqrt((a^2 + 1)(b^2 + 1)))` with half sides a and b, as an arctangent.
@@ -101,7 +95,7 @@ mod tests {
 
     #[test]
     fn corners_come_from_the_corners_of_the_square() {
-        let r = Rectangle::figure_6a();
+        let r = Rectangle;
         let last = 1.0 - f64::EPSILON / 2.0;
         for (xi, want) in [([0.0, 0.0], [-2.0, -0.5]), ([last, last], [2.0, 0.5]), ([0.5, 0.5], [0.0, 0.0])] {
             let got = r.point(xi);

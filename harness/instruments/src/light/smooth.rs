@@ -28,19 +28,11 @@ const SLOPE: f64 = luminance([MEAN[0] * CONTRAST[0], MEAN[1] * CONTRAST[1], MEAN
 /// ```
 /// use glam::DVec3;
 /// use hairis_instruments::light::{Light, Smooth};
-/// let smooth = Smooth::new();
+/// let smooth = Smooth;
 /// assert!(smooth.radiance(DVec3::Y)[1] > smooth.radiance(-DVec3::Y)[1]);
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Smooth;
-
-impl Smooth {
-    /// The light.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self
-    }
-}
 
 impl Light for Smooth {
     fn name(&self) -> &str {

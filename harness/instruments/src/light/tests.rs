@@ -25,11 +25,11 @@ fn small_map() -> Environment {
 
 fn lights() -> Vec<Box<dyn Light>> {
     vec![
-        Box::new(Constant::white()),
-        Box::new(Smooth::new()),
+        Box::new(Constant),
+        Box::new(Smooth),
         Box::new(Sun::five_degrees(DVec3::new(0.4, 0.7, -0.3))),
         Box::new(Sun::five_degrees(-DVec3::Z)),
-        Box::new(Rectangle::figure_6a()),
+        Box::new(Rectangle),
         Box::new(small_map()),
         Box::new(Environment::from_pixels("black", 4, 2, vec![[0.0; 3]; 8]).expect("valid")),
     ]
@@ -95,7 +95,7 @@ fn eight_lanes_see_what_one_sees() {
         for k in 0..2_500 {
             // Half of the directions are the light's own, so that small ones are met.
             let dirs: [DVec3; 8] = core::array::from_fn(|lane| {
-                if lane % 2 == 0 { light.sample(xi.next_xi()).dir } else { Constant::white().sample(xi.next_xi()).dir }
+                if lane % 2 == 0 { light.sample(xi.next_xi()).dir } else { Constant.sample(xi.next_xi()).dir }
             });
             let seen = light.see8(&dirs.map(|dir| dir.as_vec3()).into());
             for (lane, dir) in dirs.into_iter().enumerate() {
@@ -184,15 +184,15 @@ fn estimates_equal_the_quadrature_of_radiance() {
 #[test]
 fn reference_integrals_have_closed_forms() {
     let one = |_: DVec3| [1.0; 3];
-    let constant = Constant::white().integrate(&one, &tight()).value;
+    let constant = Constant.integrate(&one, &tight()).value;
     assert!(constant.iter().all(|v| (v - 4.0 * PI).abs() < 1e-10), "{constant:?}");
-    let smooth = Smooth::new().integrate(&one, &tight()).value;
+    let smooth = Smooth.integrate(&one, &tight()).value;
     for (v, mean) in smooth.iter().zip([1.0, 0.9, 0.8]) {
         assert!((v - 4.0 * PI * mean).abs() < 1e-9, "{smooth:?}");
     }
     let sun = Sun::five_degrees(DVec3::X).integrate(&one, &tight()).value;
     assert!(sun.iter().all(|v| (v - 1.0).abs() < 1e-10), "{sun:?}");
-    let area = Rectangle::figure_6a();
+    let area = Rectangle;
     let got = area.integrate(&one, &tight());
     assert!(got.converged && (got.value[0] / area.solid_angle() - 1.0).abs() < 1e-10, "{got:?}");
     let map = small_map();
@@ -226,10 +226,10 @@ fn samples_follow_their_density() {
     let n = 24;
     let even = vec![1.0 / (n * n) as f64; n * n];
     let turn = |a: f64, b: f64| bin(0.5 + a.atan2(b) / (2.0 * PI), n);
-    let p = fit(&Constant::white(), 0, &even, |d| bin(0.5 + 0.5 * d.y, n) * n + turn(d.x, d.z));
+    let p = fit(&Constant, 0, &even, |d| bin(0.5 + 0.5 * d.y, n) * n + turn(d.x, d.z));
     assert!(p > level, "constant: {p}");
     // Smooth: bands of equal height hold the integral of its linear density.
-    let smooth = Smooth::new();
+    let smooth = Smooth;
     let axis = DVec3::new(0.36, 0.80, 0.48).normalize();
     let slope = 4.0 * PI * smooth.pdf(axis) - 1.0;
     let mass: Vec<f64> = (0..n * n)
@@ -248,7 +248,7 @@ fn samples_follow_their_density() {
     let p =
         fit(&sun, 2, &even, |d| bin(0.5 * (d - axis).length_squared() / height, n) * n + turn(d.dot(e1), d.dot(e2)));
     assert!(p > level, "sun: {p}");
-    let light = Rectangle::figure_6a();
+    let light = Rectangle;
     let mass: Vec<f64> = (0..n * n)
         .map(|k| {
             let x = |i: usize| 4.0 * (i as f64 / n as f64 - 0.5);

@@ -41,10 +41,34 @@ impl Estimate {
         Self { value, standard_error: (value * relative).abs() }
     }
 
+    /// Product of two independent estimates, with its first-order standard error: the squares of the relative errors add.
+    #[must_use]
+    pub fn times(&self, other: &Self) -> Self {
+        let value = self.value * other.value;
+        let relative = (self.standard_error / self.value).hypot(other.standard_error / other.value);
+        Self { value, standard_error: (value * relative).abs() }
+    }
+
     /// Estimate times an exact number.
     #[must_use]
     pub fn scale(&self, factor: f64) -> Self {
         Self { value: self.value * factor, standard_error: (self.standard_error * factor).abs() }
+    }
+
+    /// Effective samples in 1000, `1000 / (1 + V)`, of samples of this relative variance V.
+    #[must_use]
+    pub fn effective_per_1000(&self) -> Self {
+        let value = 1e3 / (1.0 + self.value);
+        Self { value, standard_error: value * self.standard_error / (1.0 + self.value) }
+    }
+
+    /// Geometric mean of independent estimates of positive figures; not a number of none.
+    #[must_use]
+    pub fn geometric_mean(of: &[Self]) -> Self {
+        let n = of.len() as f64;
+        let value = (of.iter().map(|one| one.value.ln()).sum::<f64>() / n).exp();
+        let squares = of.iter().map(|one| (one.standard_error / one.value).powi(2)).sum::<f64>();
+        Self { value, standard_error: value * squares.sqrt() / n }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The section on rays chosen from candidates.
 
-use super::super::equal_time::{count_cells, in_equal_time};
+use super::super::equal_time::count_cells;
 use super::super::output::Study;
 use super::super::rays::{MIS, POOLS, RAYS, half_visible, times_at, v};
 use super::super::rows::{Estimator, on_each_model, samplers};
@@ -71,7 +71,7 @@ fn equal_time(of: &Study) -> Table {
                 let time = times_at([ns[MIS], ns[by]], price);
                 let [won, ..] = count_cells(pairs().map(sure_ratio), time);
                 let share = number::percent(won as f64 / of.cells.len() as f64);
-                let gain = |median| format!("{} ({share})", number::ratio(in_equal_time(median, time).value));
+                let gain = |median: Estimate| format!("{} ({share})", number::ratio(median.times(&time).value));
                 median.map_or_else(String::new, gain)
             }));
         }

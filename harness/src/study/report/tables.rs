@@ -4,7 +4,7 @@ use super::super::output::Study;
 use super::super::rows::{name, on_each_model, published, samplers, strategies};
 use super::super::summary::shown;
 use super::super::times::PER_POINT;
-use super::super::view::{ess, mean_of, mean_v};
+use super::super::view::{mean_of, mean_v};
 use hairis_instruments::table::{Table, number};
 use serde_json::Value;
 
@@ -17,7 +17,11 @@ pub(super) fn all(of: &Study) -> [Table; 3] {
         // V that is 0 in every cell has no geometric mean.
         let is_even = rows().all(|row| row.v().value == 0.0);
         let v = if is_even { "0".to_owned() } else { mean_v(rows()).map_or_else(String::new, shown) };
-        let means = [mean_of(rows(), &ess), mean_of(rows(), &|measured| measured.figures.kl)].map(shown);
+        let means = [
+            mean_of(rows(), &|measured| measured.figures.v.effective_per_1000()),
+            mean_of(rows(), &|measured| measured.figures.kl),
+        ]
+        .map(shown);
         let most = rows().map(|row| row.measured.max_contribution).fold(0.0, f64::max);
         [vec![v], means.into(), vec![number::plain(most, 3)]].concat()
     });

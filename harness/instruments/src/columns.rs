@@ -3,7 +3,7 @@
 #[cfg(feature = "parquet")]
 mod parquet;
 
-use hairis_instruments::stats::Estimate;
+use crate::stats::Estimate;
 use std::borrow::Cow;
 use std::io::{self, Write};
 
