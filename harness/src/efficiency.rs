@@ -183,7 +183,7 @@ impl<'a> EfficiencyConfig<'a> {
     /// # Examples
     /// ```
     /// use hairis_harness::efficiency::{Budget, EfficiencyConfig};
-    /// let sky = hairis_harness::light::Sky::default().environment();
+    /// let sky = hairis_instruments::light::Sky::default().environment();
     /// let config = EfficiencyConfig::new(1, true, &sky);
     /// assert_eq!(config.budget, Budget::new(true));
     /// ```
