@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-packages=(hairis hairis-conformance hairis-variants hairis-benches hairis-harness)
+packages=(hairis hairis-conformance hairis-variants hairis-benches hairis-instruments hairis-harness)
 
 rm -rf "$target/package"
 cargo package -q --no-verify --allow-dirty --target-dir "$target" "${packages[@]/#/-p}" 2> "$dir/log" || { cat "$dir/log"; exit 1; }
@@ -26,5 +26,6 @@ check() { # check PACKAGE ARGUMENT...: compiles it from its archive, with the ot
 # hairis depends on its own tests' package by path alone: its archive has no tests to compile.
 check hairis --lib --all-features
 check hairis-variants --all-targets --features textbook
+check hairis-instruments --lib --all-features
 check hairis-harness --lib --bins --all-features
 echo "${#packages[@]} packages can be published"
