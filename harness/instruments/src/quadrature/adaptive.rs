@@ -42,8 +42,7 @@ impl Tolerance {
     }
 
     /// Whether an integral with these errors, all numbers, is within the tolerance.
-    #[must_use]
-    pub fn is_met(&self, value: &[f64], error: &[f64]) -> bool {
+    pub(crate) fn is_met(&self, value: &[f64], error: &[f64]) -> bool {
         let largest = value.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
         let allowed = self.absolute.max(self.relative * largest);
         value.iter().all(|v| v.is_finite()) && error.iter().all(|e| *e <= allowed)
