@@ -16,7 +16,7 @@ check() { # check PACKAGE FEATURES...: without the default features, with each o
 check hairis '' textbook
 check hairis-variants '' any textbook any,textbook
 check hairis-instruments '' parquet png parquet,png
-check hairis-harness '' parquet,png
+check hairis-harness '' parquet png parquet,png
 
 if command -v cargo-deny > /dev/null; then cargo deny check --config .ci/deny.toml licenses bans sources
 else echo "licences, bans and sources were not checked: cargo install --locked cargo-deny"; fi

@@ -19,8 +19,7 @@ fn main() {
     set("COMMIT", &commit.unwrap_or_else(unknown));
     set("DIRTY", status.map_or("unknown", |s| if s.is_empty() { "no" } else { "yes" }));
 
-    // Commits, checkouts and edits of what is compiled run this again, and nothing else does: these all rebuild the package
-    // anyway, save a commit.
+    // Commits, checkouts and edits of these sources run this again. Edits of `benches` are not seen until then.
     watch("Cargo.toml");
     watch("src");
     if let Some(root) = ["..", "../.."].into_iter().find(|root| Path::new(root).join("Cargo.lock").exists()) {

@@ -1,4 +1,4 @@
-//! The two models of hair that the experiments compare, and the parameters and directions that comparisons draw.
+//! The two models of hair that the experiments compare, and the parameters that comparisons draw.
 
 use hairis::reference::Shape;
 use hairis::{HairParams, ParamError};

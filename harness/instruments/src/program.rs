@@ -1,4 +1,4 @@
-//! The first and the last of a program: flags in, exit code out.
+//! Entry point of a command-line program: flags, help, errors and exit codes.
 
 use crate::error::Error;
 use clap::Parser;
@@ -39,7 +39,7 @@ fn one_line(message: &str) -> String {
     format!("{} (see --help)", line.strip_prefix("error: ").unwrap_or(&line))
 }
 
-/// Prints a line on standard error. Errors of writing are ignored: there is nobody left to tell.
+/// Prints a line on standard error. Ignores write errors.
 pub fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }

@@ -108,7 +108,6 @@ impl Part {
             return Ok(part);
         };
         if part.finished {
-            // Ignore write errors: this is a remark.
             say(&format!("{}: {other}; the picture is begun anew", path.display()));
             return Ok(fresh);
         }

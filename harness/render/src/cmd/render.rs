@@ -125,7 +125,6 @@ fn hair(flags: &Render, settings: &Settings) -> Result<Hair, Error> {
     let energy = flags.energy.unwrap_or(Energy::Raw);
     let hair = choice.hair(energy)?;
     let [mean, worst] = hair.mean_and_worst_albedo();
-    // Ignore write errors: this is a remark.
     say(&format!("albedo of the hair: mean {mean:.3}, largest {worst:.3}"));
     if flags.energy.is_none() {
         check_paths(&hair, settings, preset, "use --energy per-wo")?;

@@ -134,7 +134,6 @@ fn read(path: &Path, key: &str) -> Option<Runs> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
         Err(error) => format!("cannot read: {error}"),
     };
-    // Ignore write errors: this is a remark.
     say(&format!("{}: {problem}; measured again", path.display()));
     None
 }
