@@ -9,6 +9,7 @@ use wide::f32x8;
 /// The direction at inclination `theta` and azimuth `phi`: `(sin theta, cos theta cos phi, cos theta sin phi)` along (u, v, w).
 ///
 /// - Units: rad; `theta` is measured from the normal plane.
+#[inline]
 #[must_use]
 pub fn fibre_direction(theta: f64, phi: f64) -> DVec3 {
     let (sin_theta, cos_theta) = theta.sin_cos();
@@ -24,6 +25,7 @@ pub fn cosine(direction: &Vec3x8) -> f32x8 {
 }
 
 /// The components in double precision.
+#[inline]
 #[must_use]
 pub fn to_f64(v: Vec3) -> [f64; 3] {
     v.to_array().map(f64::from)
@@ -32,6 +34,7 @@ pub fn to_f64(v: Vec3) -> [f64; 3] {
 /// A direction at `sin_theta` above the normal plane, of cosine `cos_theta`, at azimuth `phi` rad.
 ///
 /// The components are formed in `f64` and rounded, so that those of a direction near the axis keep their digits.
+#[inline]
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
 pub fn direction(sin_theta: f64, cos_theta: f64, phi: f64) -> Vec3 {
@@ -39,6 +42,7 @@ pub fn direction(sin_theta: f64, cos_theta: f64, phi: f64) -> Vec3 {
 }
 
 /// A direction uniform on the sphere.
+#[inline]
 pub fn uniform_direction(xi: &mut Independent) -> Vec3 {
     let sin_theta = 2.0 * xi.next_f64() - 1.0;
     let phi = TAU * xi.next_f64();

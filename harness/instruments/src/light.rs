@@ -27,6 +27,7 @@ use hairis::Vec3x8;
 use wide::f32x8;
 
 /// Luminance of a linear RGB colour with the Rec. 709 primaries, in the unit of the colour.
+#[inline]
 #[must_use]
 pub const fn luminance(rgb: [f64; 3]) -> f64 {
     0.212_639 * rgb[0] + 0.715_169 * rgb[1] + 0.072_192 * rgb[2]
@@ -95,6 +96,7 @@ pub trait Light: Sync + Send {
 }
 
 /// The nearest number of single precision.
+#[inline]
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
 pub const fn rounded(x: f64) -> f32 {
@@ -102,6 +104,7 @@ pub const fn rounded(x: f64) -> f32 {
 }
 
 /// Channel-wise product of two colours.
+#[inline]
 #[must_use]
 pub fn product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|c| a[c] * b[c])

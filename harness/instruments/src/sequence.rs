@@ -54,6 +54,7 @@ impl<S: XiSource + ?Sized> XiSource for Box<S> {
 /// Rounds a number of [0, 1) to `f32` without ever reaching 1, which rounding to nearest would do from 1 - 2^-25 on.
 ///
 /// - Domain: any `x`; below 0 gives 0, from 1 - 2^-24 on gives 1 - 2^-24, NaN gives 0.
+#[inline]
 #[must_use]
 pub fn to_unit_f32(x: f64) -> f32 {
     #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose; the clamp follows")]
@@ -83,6 +84,7 @@ pub fn mix(x: u64) -> u64 {
 }
 
 /// The upper 53 bits as a multiple of 2^-53 in [0, 1).
+#[inline]
 pub(crate) fn unit_f64(bits: u64) -> f64 {
     (bits >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
 }
@@ -116,11 +118,13 @@ impl Independent {
     }
 
     /// One number in [0, 1), a multiple of 2^-53.
+    #[inline]
     pub fn next_f64(&mut self) -> f64 {
         unit_f64(self.rng.next_u64())
     }
 
     /// One number in [0, 1 - 2^-24], a multiple of 2^-24.
+    #[inline]
     pub fn next_f32(&mut self) -> f32 {
         (self.rng.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
     }

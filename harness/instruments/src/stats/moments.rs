@@ -102,6 +102,7 @@ impl Moments {
     }
 
     /// Adds one sample. A NaN or an infinity makes every later figure NaN: it is never dropped.
+    #[inline]
     pub fn push(&mut self, x: f64) {
         let n1 = self.count as f64;
         self.count += 1;
