@@ -1,5 +1,5 @@
 //! Records the build for reports: compiler, commit and optimisation level. Without git or without a repository the commit is
-//! "unknown". The build script of the renderer, too; `hairis_instruments::machine!` reads what it records.
+//! "unknown". Also the build script of the renderer; `hairis_instruments::machine!` reads what it records.
 
 use std::path::Path;
 use std::process::Command;
@@ -19,11 +19,13 @@ fn main() {
     set("COMMIT", &commit.unwrap_or_else(unknown));
     set("DIRTY", status.map_or("unknown", |s| if s.is_empty() { "no" } else { "yes" }));
 
-    // Commits, checkouts and edits of these sources run this again. Edits of `benches` are not seen until then.
+    // Commits, checkouts and edits of these sources run this again; they rebuild the harness anyway, save a commit.
     watch("Cargo.toml");
     watch("src");
     if let Some(root) = ["..", "../.."].into_iter().find(|root| Path::new(root).join("Cargo.lock").exists()) {
-        for path in ["Cargo.toml", "Cargo.lock", "kernels/src", "variants/src", "harness/instruments/src"] {
+        for path in
+            ["Cargo.toml", "Cargo.lock", "kernels/src", "variants/src", "harness/instruments/src", "benches/src"]
+        {
             watch(&format!("{root}/{path}"));
         }
     }

@@ -4,6 +4,12 @@ use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::light::{Constant, Environment, Light, Rectangle, Smooth, Sun};
 use std::sync::LazyLock;
 
+/// Places in the list of [`lights`].
+pub(crate) const CONSTANT: usize = 0;
+pub(crate) const SUN: usize = 2;
+pub(crate) const AREA: usize = 3;
+pub(crate) const ENVIRONMENT: usize = 4;
+
 /// Inclination and azimuth of the sun's centre, in degrees.
 pub const SUN_DEG: [f64; 2] = [-60.0, 25.0];
 

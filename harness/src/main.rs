@@ -1,4 +1,4 @@
-//! The command line `hairis`. All of it is in the library.
+//! The command `hairis`; all else is in the library.
 
 use hairis_harness::args::Args;
 use hairis_harness::cmd;

@@ -2,8 +2,8 @@
 
 use hairis_harness::args::CodePath;
 use hairis_harness::cmd::eval;
-use hairis_instruments::light::{Environment, Light};
 use hairis_harness::study::part;
+use hairis_instruments::light::{Environment, Light};
 use hairis_render::formats::{Import, import_bytes};
 use hairis_render::part::{Part, seal};
 use std::io::BufReader;

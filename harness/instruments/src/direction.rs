@@ -1,4 +1,4 @@
-//! Directions in the frame of a fibre, whose axis is the first one.
+//! Directions in the frame of a fibre, whose axis is the first coordinate.
 
 use crate::sequence::Independent;
 use core::f64::consts::TAU;
@@ -17,14 +17,14 @@ pub fn fibre_direction(theta: f64, phi: f64) -> DVec3 {
     DVec3::new(sin_theta, cos_theta * cos_phi, cos_theta * sin_phi)
 }
 
-/// Cosine of the inclination of directions in the fibre's frame.
+/// Cosine of the inclination of eight directions in the frame of the fibre, one per lane.
 #[inline]
 #[must_use]
 pub fn cosine(direction: &Vec3x8) -> f32x8 {
     (direction.y * direction.y + direction.z * direction.z).sqrt()
 }
 
-/// The components in double precision.
+/// Components of `v` in double precision.
 #[inline]
 #[must_use]
 pub fn to_f64(v: Vec3) -> [f64; 3] {

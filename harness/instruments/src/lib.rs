@@ -1,7 +1,7 @@
-//! What the harness and the renderer both measure and report with: lights, numbers, integrals and estimates; tables, plots and
-//! pages; files, flags and errors of a program.
+//! Shared modules of the harness and the renderer: lights, random numbers, integrals, statistics; tables, plots, pages; files,
+//! flags and errors.
 //!
-//! Nothing here knows an experiment, a scene or a model of hair.
+//! They depend on no experiment, scene or model of hair.
 
 pub mod columns;
 pub mod direction;

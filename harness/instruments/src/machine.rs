@@ -16,7 +16,7 @@ pub struct Machine {
     pub arch: &'static str,
     /// Version line of the compiler.
     pub rustc: &'static str,
-    /// Optimisation level of this package.
+    /// Optimisation level of the package whose build this is.
     pub opt_level: &'static str,
     /// Whether debug assertions are compiled in: figures of speed from such a build mean nothing.
     pub debug_assertions: bool,
@@ -30,7 +30,8 @@ pub struct Machine {
     pub target_features: Vec<&'static str>,
 }
 
-/// This [`Machine`](crate::machine::Machine), with the build of the calling package: its build script is `harness/build.rs`.
+/// The current [`Machine`](crate::machine::Machine) and the build of the calling package. The build script of that package must
+/// set the variables `HAIRIS_BUILD_*`, as `harness/build.rs` does.
 #[macro_export]
 macro_rules! machine {
     () => {
@@ -63,7 +64,7 @@ impl Machine {
                 "no" => Some(false),
                 _ => None,
             },
-            target_features: of_interest(target_features),
+            target_features: known_features(target_features),
         }
     }
 
@@ -100,8 +101,8 @@ fn name_in_cpuinfo(text: &str) -> Option<String> {
     })
 }
 
-/// Those of the compiled target features that the kernels' speed may depend on.
-fn of_interest(compiled: &'static str) -> Vec<&'static str> {
+/// Compiled target features that may affect the speed of the kernels.
+fn known_features(compiled: &'static str) -> Vec<&'static str> {
     const KNOWN: [&str; 12] =
         ["sse2", "sse4.1", "sse4.2", "avx", "avx2", "fma", "bmi2", "avx512f", "avx512vl", "neon", "sve", "simd128"];
     let compiled: Vec<&str> = compiled.split(',').collect();

@@ -32,11 +32,12 @@ fn printable(c: char) -> Option<char> {
     }
 }
 
-/// Checks that `markup` nests: every tag closed, in order, and no stray angle bracket. Void HTML elements may stay open.
+/// Checks that `markup` nests: every tag closed, in order, and no stray angle bracket. Void HTML elements may stay open. For
+/// tests of pages.
 ///
 /// # Errors
 ///
-/// The first place that does not.
+/// Describes the first fault.
 pub fn well_formed(markup: &str) -> Result<(), String> {
     const VOID: [&str; 3] = ["meta", "br", "link"];
     let mut open: Vec<&str> = Vec::new();

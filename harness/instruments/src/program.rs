@@ -5,9 +5,10 @@ use clap::Parser;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// Reads the flags of this process, does its work, and prints an error in one line.
+/// Parses the command line and calls `work`. Prints an error as one line on standard error, after `name`, and returns its exit
+/// code.
 ///
-/// Help and the version are printed, and there is no work.
+/// If help or the version is asked for, prints that and succeeds without calling `work`.
 pub fn run<F: Parser>(name: &str, work: impl FnOnce(&F) -> Result<(), Error>) -> ExitCode {
     match flags().and_then(|flags| flags.map_or(Ok(()), |flags| work(&flags))) {
         Ok(()) => ExitCode::SUCCESS,

@@ -28,7 +28,7 @@ pub fn show_share(bar: &ProgressBar, done: f64) {
 }
 
 /// Cells done so far, out of all.
-#[expect(missing_debug_implementations, reason = "a function is no text")]
+#[expect(missing_debug_implementations, reason = "`report` is a closure")]
 pub struct Progress<'a> {
     done: AtomicUsize,
     total: usize,

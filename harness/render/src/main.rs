@@ -1,4 +1,4 @@
-//! The command line `hairis-render`. All of it is in the library.
+//! The command `hairis-render`; all else is in the library.
 
 use hairis_instruments::program;
 use hairis_render::args::Args;

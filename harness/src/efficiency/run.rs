@@ -8,7 +8,7 @@ use super::{
     BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG, Reference, SAMPLERS,
     THETA_O_DEG, with_beta,
 };
-use crate::lights::{SUN_DEG, lights};
+use crate::lights::{AREA, CONSTANT, ENVIRONMENT, SUN, SUN_DEG, lights};
 use crate::sampler::Sampler;
 use core::f64::consts::SQRT_2;
 use hairis::{HairParams, ParamError};
@@ -16,12 +16,6 @@ use hairis_instruments::progress::Progress;
 use hairis_instruments::sequence::SequenceKind;
 use hairis_instruments::stats::{Estimate, sidak};
 use statrs::function::erf::erfc_inv;
-
-/// Places of the lights in the order of reports.
-const CONSTANT: usize = 0;
-const SUN: usize = 2;
-const AREA: usize = 3;
-const ENVIRONMENT: usize = 4;
 
 /// The largest V of an environment for which convergence is shown.
 const CONVERGENCE_V: f64 = 100.0;
@@ -45,7 +39,7 @@ pub fn run(
         sweep.extend(of_hair(&with_beta(&config.params, beta_r)?).into_iter().map(|case| (beta_r, case)));
     }
 
-    let lit_cases = product(&cases.iter().collect::<Vec<_>>(), &[0, 1, 2, 3, 4]);
+    let lit_cases = product(&cases.iter().collect::<Vec<_>>(), &(0..lights.len()).collect::<Vec<_>>());
     let estimators = product(&SAMPLERS, &SequenceKind::ALL);
     let techniques: Vec<Technique> = Technique::all().collect();
     let sweep_cells = product(&sweep.iter().collect::<Vec<_>>(), &SAMPLERS);

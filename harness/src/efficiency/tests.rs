@@ -6,7 +6,7 @@ use super::measure::{CellMoments, bias_z, is_tested, moments};
 use super::reference::{by_quadrature, exact_variance};
 use super::result::Technique;
 use super::*;
-use crate::lights::lights;
+use crate::lights::{SUN, lights};
 use hairis_instruments::light::{Constant, Light};
 use hairis_instruments::sequence::{Independent, SequenceKind, XiSource};
 use hairis_instruments::stats::{Estimate, Moments};
@@ -97,7 +97,7 @@ fn every_estimator_agrees_with_quadrature() {
             let reference = by_quadrature(&case, light);
             for (t, technique) in Technique::all().enumerate() {
                 // 1e6 samples hit the sun about 480 times.
-                let n = if k == 2 { 1_000_000 } else { 200_000 };
+                let n = if k == SUN { 1_000_000 } else { 200_000 };
                 let tally = independent(&case, technique, light, [31, (16 * k + t) as u64], n);
                 let z = bias_z(&tally.moments, reference.estimate());
                 worst = worst.max(z.abs());
@@ -118,7 +118,7 @@ fn every_estimator_agrees_with_quadrature() {
 fn the_sun_is_for_light_sampling_and_the_rest_for_both() {
     let case = Case::new(ModelKind::Gaussian, &HairParams::default(), 45.0);
     let v = |technique: Technique| {
-        let tally = independent(&case, technique, lights(None)[2], [41, 0], 100_000);
+        let tally = independent(&case, technique, lights(None)[SUN], [41, 0], 100_000);
         tally.moments.relative_variance().value * technique.samples_each() as f64
     };
     assert!(v(Technique::Light) < 0.1, "the lobes are wider than the sun");

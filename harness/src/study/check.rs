@@ -3,6 +3,7 @@
 use super::output::Study;
 use super::rows::{Row, name};
 use crate::efficiency::{FALSE_ALARM, z_bound};
+use crate::lights::CONSTANT;
 use crate::sampler::Sampler;
 use hairis_instruments::stats::sidak;
 
@@ -40,7 +41,7 @@ impl Study {
             }
         };
         // Perfect sampling has directions of another, and their mean.
-        let constant: Vec<&Row<'_>> = rows.iter().filter(|row| row.light == 0 && row.of.1.is_some()).collect();
+        let constant: Vec<&Row<'_>> = rows.iter().filter(|row| row.light == CONSTANT && row.of.1.is_some()).collect();
         let scores = constant.chunks(Sampler::ALL.len()).flat_map(|of_model| {
             of_model[1..].iter().map(|row| {
                 let [first, mean] = [of_model[0], row].map(|row| row.measured.figures.mean);

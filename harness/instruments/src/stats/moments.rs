@@ -36,15 +36,17 @@ impl Estimate {
     /// The squares of the relative errors add; good while the divisor's relative error stays below about 0.1.
     #[must_use]
     pub fn ratio(&self, divisor: &Self) -> Self {
-        let value = self.value / divisor.value;
-        let relative = (self.standard_error / self.value).hypot(divisor.standard_error / divisor.value);
-        Self { value, standard_error: (value * relative).abs() }
+        self.combined(divisor, self.value / divisor.value)
     }
 
-    /// Product of two independent estimates, with its first-order standard error: the squares of the relative errors add.
+    /// Product of two independent estimates, with its first-order standard error; NaN where one of them is 0.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
-        let value = self.value * other.value;
+        self.combined(other, self.value * other.value)
+    }
+
+    /// A product or quotient of both: the squares of the relative errors add.
+    fn combined(&self, other: &Self, value: f64) -> Self {
         let relative = (self.standard_error / self.value).hypot(other.standard_error / other.value);
         Self { value, standard_error: (value * relative).abs() }
     }
@@ -62,12 +64,12 @@ impl Estimate {
         Self { value, standard_error: value * self.standard_error / (1.0 + self.value) }
     }
 
-    /// Geometric mean of independent estimates of positive figures; not a number of none.
+    /// Geometric mean of independent estimates of positive figures; NaN without estimates.
     #[must_use]
-    pub fn geometric_mean(of: &[Self]) -> Self {
-        let n = of.len() as f64;
-        let value = (of.iter().map(|one| one.value.ln()).sum::<f64>() / n).exp();
-        let squares = of.iter().map(|one| (one.standard_error / one.value).powi(2)).sum::<f64>();
+    pub fn geometric_mean(estimates: &[Self]) -> Self {
+        let n = estimates.len() as f64;
+        let value = (estimates.iter().map(|one| one.value.ln()).sum::<f64>() / n).exp();
+        let squares = estimates.iter().map(|one| (one.standard_error / one.value).powi(2)).sum::<f64>();
         Self { value, standard_error: value * squares.sqrt() / n }
     }
 }
@@ -263,6 +265,14 @@ mod tests {
         let b = Estimate { value: 2.0, standard_error: 0.1 };
         let r = a.ratio(&b);
         assert!((r.value - 3.0).abs() < 1e-15 && (r.standard_error - 3.0 * 0.05 * 2.0_f64.sqrt()).abs() < 1e-15);
+        let p = a.times(&b);
+        assert!((p.value - 12.0).abs() < 1e-15 && (p.standard_error - 12.0 * 0.05 * 2.0_f64.sqrt()).abs() < 1e-15);
+        let mean = Estimate::geometric_mean(&[a, b]);
+        assert!((mean.value * mean.value - 12.0).abs() < 1e-14, "{mean:?}");
+        assert!((2.0 * mean.standard_error / mean.value - 0.05 * 2.0_f64.sqrt()).abs() < 1e-15, "{mean:?}");
+        assert!(Estimate::geometric_mean(&[]).value.is_nan());
+        let effective = Estimate { value: 3.0, standard_error: 0.4 }.effective_per_1000();
+        assert_eq!((effective.value, effective.standard_error), (250.0, 25.0));
         assert_eq!(a.scale(-2.0), Estimate { value: -12.0, standard_error: 0.6 });
         assert_eq!(Estimate { value: 1.0, standard_error: 0.0 }.z_score(1.0), 0.0);
         assert_eq!(a.z_score(5.4), (6.0 - 5.4) / 0.3);

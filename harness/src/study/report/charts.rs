@@ -6,14 +6,12 @@ use super::super::rows::{Estimator, Row, name, published, samplers, strategies};
 use super::super::summary::on_gaussian;
 use super::super::times::PER_POINT;
 use super::super::view::{Counted, Gain, MANY, TOLD, mean_v};
+use crate::lights::CONSTANT;
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
 use hairis_instruments::plot::{Axis, Bar, Series, bars, lines};
 use hairis_instruments::report::Drawing;
 use hairis_instruments::stats::Estimate;
-
-/// The light that everything sees.
-const CONSTANT: usize = 0;
 
 /// The last sentence of captions of bars of [`median_bar`].
 pub(super) const MEDIANS: &str = "Medians over the grid; whiskers go from the first to the third quartile.";
