@@ -6,26 +6,57 @@ use std::process::Command;
 
 fn main() {
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
-    set("RUSTC", &run(&rustc, &["--version"]).unwrap_or_else(unknown));
-    set("OPT_LEVEL", &std::env::var("OPT_LEVEL").unwrap_or_else(|_| unknown()));
-    set("TARGET_FEATURES", &std::env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default());
+    set(
+        "RUSTC",
+        &run(&rustc, &["--version"]).unwrap_or_else(unknown),
+    );
+    set(
+        "OPT_LEVEL",
+        &std::env::var("OPT_LEVEL").unwrap_or_else(|_| unknown()),
+    );
+    set(
+        "TARGET_FEATURES",
+        &std::env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default(),
+    );
 
     // Only a repository that tracks the package counts: an unpacked copy may lie inside another one.
     let ours = run("git", &["ls-files", "--error-unmatch", "Cargo.toml"]).is_some();
     let commit = ours.then(|| run("git", &["rev-parse", "HEAD"])).flatten();
     // No optional locks: a build must not refresh the user's index.
-    let status =
-        ours.then(|| run("git", &["--no-optional-locks", "status", "--porcelain", "--untracked-files=no"])).flatten();
+    let status = ours
+        .then(|| {
+            run(
+                "git",
+                &[
+                    "--no-optional-locks",
+                    "status",
+                    "--porcelain",
+                    "--untracked-files=no",
+                ],
+            )
+        })
+        .flatten();
     set("COMMIT", &commit.unwrap_or_else(unknown));
-    set("DIRTY", status.map_or("unknown", |s| if s.is_empty() { "no" } else { "yes" }));
+    set(
+        "DIRTY",
+        status.map_or("unknown", |s| if s.is_empty() { "no" } else { "yes" }),
+    );
 
     // Commits, checkouts and edits of these sources run this again; they rebuild the harness anyway, save a commit.
     watch("Cargo.toml");
     watch("src");
-    if let Some(root) = ["..", "../.."].into_iter().find(|root| Path::new(root).join("Cargo.lock").exists()) {
-        for path in
-            ["Cargo.toml", "Cargo.lock", "kernels/src", "variants/src", "harness/instruments/src", "benches/src"]
-        {
+    if let Some(root) = ["..", "../.."]
+        .into_iter()
+        .find(|root| Path::new(root).join("Cargo.lock").exists())
+    {
+        for path in [
+            "Cargo.toml",
+            "Cargo.lock",
+            "kernels/src",
+            "variants/src",
+            "harness/instruments/src",
+            "benches/src",
+        ] {
             watch(&format!("{root}/{path}"));
         }
     }
@@ -46,7 +77,10 @@ fn watch(path: &str) {
 }
 
 fn set(name: &str, value: &str) {
-    println!("cargo::rustc-env=HAIRIS_BUILD_{name}={}", value.lines().next().unwrap_or_default());
+    println!(
+        "cargo::rustc-env=HAIRIS_BUILD_{name}={}",
+        value.lines().next().unwrap_or_default()
+    );
 }
 
 fn unknown() -> String {
@@ -56,5 +90,8 @@ fn unknown() -> String {
 /// Output of a command, trimmed; `None` when it is missing or fails.
 fn run(program: &str, args: &[&str]) -> Option<String> {
     let output = Command::new(program).args(args).output().ok()?;
-    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    output
+        .status
+        .success()
+        .then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }

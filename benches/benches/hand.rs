@@ -18,7 +18,10 @@ mod x86 {
     use core::hint::black_box;
     use glam::Vec3;
     use hairis::wide::f32x8;
-    use hairis::{Bell, Bsdf, EvalColumns, EvalSlices, Gather, Gaussian, Hair, HairParams, HitSlices, Level, Matched};
+    use hairis::{
+        Bell, Bsdf, EvalColumns, EvalSlices, Gather, Gaussian, Hair, HairParams, HitSlices, Level,
+        Matched,
+    };
     use hairis::{Model, SampleColumns, SampleWeightSlices, Vec3x};
     use hairis_benches::cpu;
     use hairis_benches::hand::{Constants, Set};
@@ -36,7 +39,11 @@ mod x86 {
 
     pub(crate) fn main() {
         // Cargo runs benches as tests, too.
-        let turns = if env::args().any(|word| word == "--bench") { TURNS } else { 1 };
+        let turns = if env::args().any(|word| word == "--bench") {
+            TURNS
+        } else {
+            1
+        };
         println!("# CPU: {}", cpu::name());
         println!("# compiled for {}", Level::portable());
         println!("task,call,level,ns,base_ns,ratio,ratio_low,ratio_high");
@@ -47,8 +54,24 @@ mod x86 {
             eval::<_, false>(run("eval-gaussian"), set, Gaussian, &inputs);
             eval::<_, true>(run("eval-cauchy"), set, Cauchy::PAPER, &inputs);
             sample(run("sample-gaussian"), set, &inputs);
-            hits(Run { task: "published", level, turns }, &Hair(Gaussian), &inputs);
-            hits(Run { task: "matched", level, turns }, &Matched::<_>(Gaussian), &inputs);
+            hits(
+                Run {
+                    task: "published",
+                    level,
+                    turns,
+                },
+                &Hair(Gaussian),
+                &inputs,
+            );
+            hits(
+                Run {
+                    task: "matched",
+                    level,
+                    turns,
+                },
+                &Matched::<_>(Gaussian),
+                &inputs,
+            );
         }
     }
 
@@ -91,7 +114,10 @@ mod x86 {
             let (ns, hand) = (quantile(0, 0.5), quantile(1, 0.5));
             let ratio = [0.5, 0.25, 0.75].map(|q| quantile(2, q));
             let [ratio, low, high] = ratio;
-            println!("{},{call},{},{ns:.3},{hand:.3},{ratio:.3},{low:.3},{high:.3}", self.task, self.level);
+            println!(
+                "{},{call},{},{ns:.3},{hand:.3},{ratio:.3},{low:.3},{high:.3}",
+                self.task, self.level
+            );
         }
 
         /// Calls on columns of `len` rows, which must give the same.
@@ -105,13 +131,22 @@ mod x86 {
             let from: [Column; 3] = from_fn(|k| Column::new(k, rows.iter().map(|row| row[k])));
             let mut to: [Column; N] = from_fn(|k| Column::new(3 + k, []));
             let mut to_hand: [Column; N] = from_fn(|k| Column::new(3 + k, []));
-            self.compare(call, || pass(&from, &mut to, len, &ours), || pass(&from, &mut to_hand, len, &hand));
+            self.compare(
+                call,
+                || pass(&from, &mut to, len, &ours),
+                || pass(&from, &mut to_hand, len, &hand),
+            );
             for (by_hand, ours) in to_hand.iter().zip(&to) {
                 let (a, b) = (by_hand.part(0, DIRECTIONS), ours.part(0, DIRECTIONS));
                 let agree = |(a, b): &(&f32, &f32)| (*a - *b).abs() <= TOLERANCE * b.abs() + 1e-7;
                 let wrong = a.iter().zip(b).filter(|pair| !agree(pair)).count();
                 // Next to the boundary of two lobes either may be chosen.
-                assert!(wrong <= DIRECTIONS / 200, "{} {call} {}: {wrong} answers differ", self.task, self.level);
+                assert!(
+                    wrong <= DIRECTIONS / 200,
+                    "{} {call} {}: {wrong} answers differ",
+                    self.task,
+                    self.level
+                );
             }
         }
     }
@@ -185,7 +220,10 @@ mod x86 {
 
     fn gather<B: Bell>(bell: B, inputs: &Inputs) -> (Gather<Hair<B>>, Constants) {
         let (params, wo) = (HairParams::default(), inputs.wo[0]);
-        (Bsdf::new(&Hair(bell), &params).prepare(wo), Constants::new(params.desc(), wo.to_array()))
+        (
+            Bsdf::new(&Hair(bell), &params).prepare(wo),
+            Constants::new(params.desc(), wo.to_array()),
+        )
     }
 
     fn eval<B: Bell, const CAUCHY: bool>(run: Run<'_>, set: Set, bell: B, inputs: &Inputs) {
@@ -193,10 +231,19 @@ mod x86 {
         let wi: Vec<[f32; 3]> = inputs.wi.iter().map(Vec3::to_array).collect();
         let level = run.level;
         let ours = |from: [&[f32]; 3], [r, g, b, pdf]: [&mut [f32]; 4]| {
-            let done = gather.eval_pdf_batch_at(level, from, EvalSlices { value: [r, g, b], pdf });
+            let done = gather.eval_pdf_batch_at(
+                level,
+                from,
+                EvalSlices {
+                    value: [r, g, b],
+                    pdf,
+                },
+            );
             black_box(done.is_ok());
         };
-        run.columns("slices", (&wi, DIRECTIONS), ours, |from, to| set.eval::<CAUCHY>(constants, from, to));
+        run.columns("slices", (&wi, DIRECTIONS), ours, |from, to| {
+            set.eval::<CAUCHY>(constants, from, to)
+        });
         run.columns("slices of eight", (&wi, 8), ours, |from, to| {
             set.eval8::<CAUCHY>(constants, eight(from), eight_mut(to));
         });
@@ -207,10 +254,22 @@ mod x86 {
                 let mut sum = [0.0; 8];
                 for rows in rows {
                     let [mut x, mut y, mut z] = packet();
-                    write(rows, &LANES, [x.as_mut_array(), y.as_mut_array(), z.as_mut_array()]);
+                    write(
+                        rows,
+                        &LANES,
+                        [x.as_mut_array(), y.as_mut_array(), z.as_mut_array()],
+                    );
                     let eval = gather.eval_pdf8_at(level, &Vec3x::new(x, y, z));
                     let [r, g, b] = &eval.value;
-                    used(&mut sum, [r.as_array(), g.as_array(), b.as_array(), eval.pdf.as_array()]);
+                    used(
+                        &mut sum,
+                        [
+                            r.as_array(),
+                            g.as_array(),
+                            b.as_array(),
+                            eval.pdf.as_array(),
+                        ],
+                    );
                 }
                 black_box(sum);
             },
@@ -231,10 +290,16 @@ mod x86 {
         let (gather, constants) = &gather(Gaussian, inputs);
         let (level, xi) = (run.level, &inputs.xi);
         let ours = |from: [&[f32]; 3], [u, v, w, pdf, r, g, b]: [&mut [f32]; 7]| {
-            let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [r, g, b] };
+            let out = SampleWeightSlices {
+                wi: [u, v, w],
+                pdf,
+                weight: [r, g, b],
+            };
             black_box(gather.sample_weight_batch_at(level, from, out).is_ok());
         };
-        run.columns("slices", (xi, DIRECTIONS), ours, |from, to| set.sample::<false>(constants, from, to));
+        run.columns("slices", (xi, DIRECTIONS), ours, |from, to| {
+            set.sample::<false>(constants, from, to)
+        });
         run.columns("slices of eight", (xi, 8), ours, |from, to| {
             set.sample8::<false>(constants, eight(from), eight_mut(to));
         });
@@ -246,12 +311,27 @@ mod x86 {
                 for rows in rows {
                     let mut from = packet();
                     let [x, y, z] = &mut from;
-                    write(rows, &LANES, [x.as_mut_array(), y.as_mut_array(), z.as_mut_array()]);
+                    write(
+                        rows,
+                        &LANES,
+                        [x.as_mut_array(), y.as_mut_array(), z.as_mut_array()],
+                    );
                     let s = gather.sample8_at(level, &from);
                     let ([r, g, b], wi) = (&s.weight, &s.wi);
                     let wi = [wi.x.as_array(), wi.y.as_array(), wi.z.as_array()];
                     let [u, v, w] = wi;
-                    used(&mut sum, [u, v, w, s.pdf.as_array(), r.as_array(), g.as_array(), b.as_array()]);
+                    used(
+                        &mut sum,
+                        [
+                            u,
+                            v,
+                            w,
+                            s.pdf.as_array(),
+                            r.as_array(),
+                            g.as_array(),
+                            b.as_array(),
+                        ],
+                    );
                 }
                 black_box(sum);
             },
@@ -277,7 +357,9 @@ mod x86 {
     }
 
     fn parts_mut<const N: usize>(columns: &mut [Column; N]) -> [&mut [f32]; N] {
-        columns.each_mut().map(|column| column.part_mut(0, DIRECTIONS))
+        columns
+            .each_mut()
+            .map(|column| column.part_mut(0, DIRECTIONS))
     }
 
     /// Slices of hits, each with a `wo` of its own, beside slices of the published model at one hit: the columns of a path tracer.
@@ -288,20 +370,36 @@ mod x86 {
         let wo: [Column; 3] = columns(0, &arrays(&inputs.wo));
         let wi: [Column; 3] = columns(3, &arrays(&inputs.wi));
         let xi: [Column; 3] = columns(3, &inputs.xi);
-        let hits = HitSlices { wo: parts(&wo), h: None };
+        let hits = HitSlices {
+            wo: parts(&wo),
+            h: None,
+        };
         let rows = vec![[0.0; 7]; DIRECTIONS];
-        let (mut of_hits, mut of_one): ([Column; 7], [Column; 7]) = (columns(6, &rows), columns(6, &rows));
+        let (mut of_hits, mut of_one): ([Column; 7], [Column; 7]) =
+            (columns(6, &rows), columns(6, &rows));
         run.compare(
             "hits: eval",
             || {
                 let [r, g, b, pdf, ..] = parts_mut(&mut of_hits);
-                let out = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
-                black_box(bsdf.eval_pdf_hits_at(level, black_box(hits), parts(&wi), out).is_ok());
+                let out = EvalColumns {
+                    value: Some([r, g, b]),
+                    pdf: Some(pdf),
+                };
+                black_box(
+                    bsdf.eval_pdf_hits_at(level, black_box(hits), parts(&wi), out)
+                        .is_ok(),
+                );
             },
             || {
                 let [r, g, b, pdf, ..] = parts_mut(&mut of_one);
-                let out = EvalSlices { value: [r, g, b], pdf };
-                black_box(one.eval_pdf_batch_at(level, black_box(parts(&wi)), out).is_ok());
+                let out = EvalSlices {
+                    value: [r, g, b],
+                    pdf,
+                };
+                black_box(
+                    one.eval_pdf_batch_at(level, black_box(parts(&wi)), out)
+                        .is_ok(),
+                );
             },
         );
         run.compare(
@@ -309,13 +407,28 @@ mod x86 {
             || {
                 let [u, v, w, pdf, r, g, b] = parts_mut(&mut of_hits);
                 let (wi, weight) = (Some([u, v, w]), Some([r, g, b]));
-                let out = SampleColumns { wi, pdf: Some(pdf), weight, ..SampleColumns::default() };
-                black_box(bsdf.sample_hits_at(level, black_box(hits), parts(&xi), out).is_ok());
+                let out = SampleColumns {
+                    wi,
+                    pdf: Some(pdf),
+                    weight,
+                    ..SampleColumns::default()
+                };
+                black_box(
+                    bsdf.sample_hits_at(level, black_box(hits), parts(&xi), out)
+                        .is_ok(),
+                );
             },
             || {
                 let [u, v, w, pdf, r, g, b] = parts_mut(&mut of_one);
-                let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [r, g, b] };
-                black_box(one.sample_weight_batch_at(level, black_box(parts(&xi)), out).is_ok());
+                let out = SampleWeightSlices {
+                    wi: [u, v, w],
+                    pdf,
+                    weight: [r, g, b],
+                };
+                black_box(
+                    one.sample_weight_batch_at(level, black_box(parts(&xi)), out)
+                        .is_ok(),
+                );
             },
         );
     }

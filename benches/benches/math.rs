@@ -4,7 +4,10 @@
 //!
 //! `cargo bench -p hairis-benches --bench math`, with `-- math/atan_unit` for one group. Throughput is in arguments.
 
-#[expect(dead_code, reason = "the operations of the models are timed by the other benches")]
+#[expect(
+    dead_code,
+    reason = "the operations of the models are timed by the other benches"
+)]
 mod timing;
 
 use criterion::measurement::WallTime;
@@ -13,7 +16,9 @@ use glam::Vec3;
 use hairis::Level;
 use hairis_benches::entries::label;
 use hairis_benches::inputs::{DIRECTIONS, Inputs, packets};
-use hairis_benches::math::{Atan2Upper, AtanUnit, Bell, Columns, Eight, Function, SinCosAbsolute, SinCosTwice};
+use hairis_benches::math::{
+    Atan2Upper, AtanUnit, Bell, Columns, Eight, Function, SinCosAbsolute, SinCosTwice,
+};
 use hairis_benches::task::{Each, Slices, Task};
 
 /// Largest error that counts as correct, relative to the value or, where that is below 1, absolute: that of the function
@@ -22,7 +27,11 @@ const TOLERANCE: f64 = 1e-6;
 
 fn function<F: Function>(c: &mut Criterion) {
     let [x, y] = F::RANGE.map(|[lo, hi]| move |xi: f32| lo + (hi - lo) * xi);
-    let arguments: Vec<Vec3> = Inputs::draw().xi.iter().map(|xi| Vec3::new(x(xi[0]), y(xi[1]), 0.0)).collect();
+    let arguments: Vec<Vec3> = Inputs::draw()
+        .xi
+        .iter()
+        .map(|xi| Vec3::new(x(xi[0]), y(xi[1]), 0.0))
+        .collect();
     let group = &mut c.benchmark_group(format!("math/{}", F::NAME));
     let arrays: Vec<[f32; 3]> = arguments.iter().map(|v| v.to_array()).collect();
 
@@ -44,7 +53,12 @@ fn function<F: Function>(c: &mut Criterion) {
     );
     for level in Level::available() {
         let pairs = packets(&arguments).iter().map(|v| [v.x, v.y]).collect();
-        let eight = Each::new(8, pairs, move |arguments| level.run(Eight { arguments, function: F::default() }));
+        let eight = Each::new(8, pairs, move |arguments| {
+            level.run(Eight {
+                arguments,
+                function: F::default(),
+            })
+        });
         show::<F, _>(group, &arguments, "x8", label(level), eight);
         let slices = Slices::new(DIRECTIONS, &arrays, move |v, mut out: [&mut [f32]; 3]| {
             level.run_rows(Columns(F::default()), v, &mut out);
@@ -63,12 +77,21 @@ fn show<F: Function, T: Task>(
     mut task: T,
 ) {
     let answers = task.answers();
-    assert_eq!(answers.len(), arguments.len(), "{} {entry} {level}: answers", F::NAME);
+    assert_eq!(
+        answers.len(),
+        arguments.len(),
+        "{} {entry} {level}: answers",
+        F::NAME
+    );
     for (argument, answer) in arguments.iter().zip(answers) {
         let truth = F::truth(f64::from(argument.x), f64::from(argument.y));
         for (got, want) in answer.value.into_iter().flatten().zip(truth) {
             let error = (f64::from(got) - want).abs() / want.abs().max(1.0);
-            assert!(error <= TOLERANCE, "{} {entry} {level}: {got} for {argument}, not {want}", F::NAME);
+            assert!(
+                error <= TOLERANCE,
+                "{} {entry} {level}: {got} for {argument}, not {want}",
+                F::NAME
+            );
         }
     }
     timing::time(group, entry, level, task);

@@ -8,10 +8,20 @@ use hairis_benches::{Name, Op, Task, Visitor, entries};
 
 /// Adds all entry points of an operation, one group per model: scalar code and every level.
 pub(crate) fn bench(c: &mut Criterion, op: Op) {
-    println!("{op}: compiled for {}, eight lanes run on {}", Level::portable(), Level::detect());
+    println!(
+        "{op}: compiled for {}, eight lanes run on {}",
+        Level::portable(),
+        Level::detect()
+    );
     for (model, _) in entries::MODELS.iter() {
         let mut group = c.benchmark_group(format!("{op}/{model}"));
-        entries::visit(op, &mut Timing { group: &mut group, model });
+        entries::visit(
+            op,
+            &mut Timing {
+                group: &mut group,
+                model,
+            },
+        );
         group.finish();
     }
 }
@@ -43,7 +53,9 @@ pub(crate) fn time<T: Task>(
         .sampling_mode(SamplingMode::Flat)
         .warm_up_time(Duration::from_millis(500))
         .measurement_time(Duration::from_secs(2));
-    group.throughput(Throughput::Elements((task.calls() * task.directions()) as u64));
+    group.throughput(Throughput::Elements(
+        (task.calls() * task.directions()) as u64,
+    ));
     group.bench_function(BenchmarkId::new(entry, level), |b| {
         b.iter(|| {
             for index in 0..task.calls() {

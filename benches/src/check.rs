@@ -50,8 +50,15 @@ pub enum Given {
 /// If more than one answer in a hundred is wrong, or a call has none.
 pub fn check(name: &Name, task: &mut impl Task, model: ModelId, asked: impl Fn(usize) -> Asked) {
     let answers = task.answers();
-    assert!(answers.len() >= task.calls(), "{name}: {} answers to {} calls", answers.len(), task.calls());
-    let wrong: Vec<usize> = (0..answers.len()).filter(|i| !right(&asked(*i), model, &answers[*i])).collect();
+    assert!(
+        answers.len() >= task.calls(),
+        "{name}: {} answers to {} calls",
+        answers.len(),
+        task.calls()
+    );
+    let wrong: Vec<usize> = (0..answers.len())
+        .filter(|i| !right(&asked(*i), model, &answers[*i]))
+        .collect();
     assert!(
         wrong.len() * MOST_WRONG <= answers.len(),
         "{name}: {} of {} answers are wrong, the first for {:?}: {:?}",
@@ -63,7 +70,9 @@ pub fn check(name: &Name, task: &mut impl Task, model: ModelId, asked: impl Fn(u
 }
 
 fn right(asked: &Asked, model: ModelId, answer: &Answer) -> bool {
-    let point = model.reference::<f64>(&asked.values, to_f64(asked.wo), 0.0).expect("checked parameters");
+    let point = model
+        .reference::<f64>(&asked.values, to_f64(asked.wo), 0.0)
+        .expect("checked parameters");
     let truth = match asked.given {
         Given::Wi(wi) | Given::Candidate(wi) => Some(to_f64(wi)),
         Given::Xi(xi) | Given::Proposal(xi) => drawn(&point, xi),
@@ -71,7 +80,9 @@ fn right(asked: &Asked, model: ModelId, answer: &Answer) -> bool {
     };
     match asked.given {
         Given::Wi(_) | Given::Xi(_) => is_right(&point, truth, answer),
-        Given::Candidate(_) | Given::Proposal(_) | Given::Kept => agrees(truth, answer, |wi| weighed(&point, wi)),
+        Given::Candidate(_) | Given::Proposal(_) | Given::Kept => {
+            agrees(truth, answer, |wi| weighed(&point, wi))
+        }
     }
 }
 
@@ -81,7 +92,8 @@ fn weighed(point: &impl Reference<f64>, wi: [f64; 3]) -> ([f64; 3], f64) {
     // The sky of `resample`, in double precision.
     let (value, radiance) = (point.eval(wi), wi.map(|x| 1.0 + 0.5 * x));
     let f = [0, 1, 2].map(|c: usize| radiance[c] * value[c] * cosine);
-    let density = f64::from(COUNTS.bsdf) * point.pdf(wi) + f64::from(COUNTS.light) * f64::from(SKY_PDF);
+    let density =
+        f64::from(COUNTS.bsdf) * point.pdf(wi) + f64::from(COUNTS.light) * f64::from(SKY_PDF);
     (f, f.iter().sum::<f64>() / (3.0 * density))
 }
 
@@ -100,15 +112,31 @@ pub fn is_right(point: &impl Reference<f64>, truth: Option<[f64; 3]>, answer: &A
 }
 
 /// Whether an answer has the right direction, and what `expected` gives there.
-fn agrees(truth: Option<[f64; 3]>, answer: &Answer, expected: impl Fn([f64; 3]) -> ([f64; 3], f64)) -> bool {
-    let Some(truth) = truth else { return answer.pdf == Some(0.0) };
+fn agrees(
+    truth: Option<[f64; 3]>,
+    answer: &Answer,
+    expected: impl Fn([f64; 3]) -> ([f64; 3], f64),
+) -> bool {
+    let Some(truth) = truth else {
+        return answer.pdf == Some(0.0);
+    };
     let wi = answer.wi.map_or(truth, to_f64);
     let (value, pdf) = expected(wi);
-    let close = |got: f32, want: f64| (f64::from(got) - want).abs() <= TOLERANCE * want + NEGLIGIBLE;
-    let apart = wi.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+    let close =
+        |got: f32, want: f64| (f64::from(got) - want).abs() <= TOLERANCE * want + NEGLIGIBLE;
+    let apart = wi
+        .iter()
+        .zip(truth)
+        .map(|(a, b)| (a - b).powi(2))
+        .sum::<f64>()
+        .sqrt();
     apart <= TOLERANCE
         && answer.pdf.is_none_or(|got| close(got, pdf))
-        && answer.value.is_none_or(|got| got.into_iter().zip(value).all(|(got, want)| close(got, want)))
+        && answer.value.is_none_or(|got| {
+            got.into_iter()
+                .zip(value)
+                .all(|(got, want)| close(got, want))
+        })
 }
 
 /// The components in double precision.

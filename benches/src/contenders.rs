@@ -168,15 +168,25 @@ impl Visitor for OfModel<'_> {
                 TimedOp::PointsMixed => points::mixed::<M>(&inputs, false),
                 TimedOp::PointsPacked => points::mixed::<M>(&inputs, true),
             }?;
-            Ok(Contest { op, model: M::NAME, contenders: contenders.0, truth })
+            Ok(Contest {
+                op,
+                model: M::NAME,
+                contenders: contenders.0,
+                truth,
+            })
         };
         TimedOp::ALL.into_iter().map(contest).collect()
     }
 }
 
 /// The formulas in `f64` for these parameters, seen from each of `wo`.
-fn truth<M: Registered>(params: &M::Params, wo: &[Vec3]) -> Result<Vec<AnyReference<f64>>, ParamError> {
-    wo.iter().map(|wo| ModelId::of::<M>().reference(&params.values(), to_f64(*wo), 0.0)).collect()
+fn truth<M: Registered>(
+    params: &M::Params,
+    wo: &[Vec3],
+) -> Result<Vec<AnyReference<f64>>, ParamError> {
+    wo.iter()
+        .map(|wo| ModelId::of::<M>().reference(&params.values(), to_f64(*wo), 0.0))
+        .collect()
 }
 
 /// The contenders so far.
@@ -185,17 +195,30 @@ struct Contenders(Vec<Contender>);
 impl Contenders {
     /// The formulas in `f32` on the libm crate and on std, and the kernel on one lane.
     fn new(libm: Box<dyn Pass>, std: Box<dyn Pass>, one: Box<dyn Pass>) -> Self {
-        let [libm, std] = [("scalar, libm crate", libm), ("scalar, std", std)].map(|(level, task)| Contender {
-            name: TEXTBOOK,
-            level,
-            task,
-        });
-        Self(vec![libm, std, Contender { name: ONE, level: "scalar", task: one }])
+        let [libm, std] =
+            [("scalar, libm crate", libm), ("scalar, std", std)].map(|(level, task)| Contender {
+                name: TEXTBOOK,
+                level,
+                task,
+            });
+        Self(vec![
+            libm,
+            std,
+            Contender {
+                name: ONE,
+                level: "scalar",
+                task: one,
+            },
+        ])
     }
 
     /// Then one on every level of this CPU.
     fn levels(mut self, name: &'static str, task: impl Fn(Level) -> Box<dyn Pass>) -> Self {
-        self.0.extend(Level::available().map(|level| Contender { name, level: level.name(), task: task(level) }));
+        self.0.extend(Level::available().map(|level| Contender {
+            name,
+            level: level.name(),
+            task: task(level),
+        }));
         self
     }
 }
@@ -209,13 +232,20 @@ struct Material<M: Registered> {
 
 impl<M: Registered> Material<M> {
     fn new(params: &M::Params) -> Self {
-        Self { bsdf: Bsdf::new(&M::MODEL, params), libm: M::formulas(params), std: M::formulas(params) }
+        Self {
+            bsdf: Bsdf::new(&M::MODEL, params),
+            libm: M::formulas(params),
+            std: M::formulas(params),
+        }
     }
 
     /// The formulas seen from `wo`.
     fn references(&self, wo: Vec3) -> (M::Reference<f32>, M::Reference<Platform>) {
         let wo = wo.to_array();
-        (M::reference_at(&self.libm, wo, 0.0), M::reference_at(&self.std, platform(wo), Platform(0.0)))
+        (
+            M::reference_at(&self.libm, wo, 0.0),
+            M::reference_at(&self.std, platform(wo), Platform(0.0)),
+        )
     }
 }
 
@@ -224,15 +254,31 @@ fn prepare<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let Material::<M> { bsdf, libm, std } = Material::new(params);
     let wo = arrays(&inputs.wo);
     let contenders = Contenders::new(
-        task(&wo, move |wo| Point::<_, f32>(M::reference_at(&libm, *wo, 0.0), PhantomData)),
-        task(&wo, move |wo| Point(M::reference_at(&std, platform(*wo), Platform(0.0)), PhantomData)),
+        task(&wo, move |wo| {
+            Point::<_, f32>(M::reference_at(&libm, *wo, 0.0), PhantomData)
+        }),
+        task(&wo, move |wo| {
+            Point(
+                M::reference_at(&std, platform(*wo), Platform(0.0)),
+                PhantomData,
+            )
+        }),
         task(&inputs.wo, move |wo| bsdf.prepare(*wo)),
     )
-    .levels(EIGHT, |level| task(&packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo)));
-    Ok((contenders, Truth::of_directions(truth::<M>(params, &inputs.wo)?, &[PROBE; TIMED_DIRECTIONS])))
+    .levels(EIGHT, |level| {
+        task(&packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo))
+    });
+    Ok((
+        contenders,
+        Truth::of_directions(truth::<M>(params, &inputs.wo)?, &[PROBE; TIMED_DIRECTIONS]),
+    ))
 }
 
-fn eval_pdf<M: Registered>(params: &M::Params, inputs: &TimedInputs<M::Params>, every_way: bool) -> Entrants {
+fn eval_pdf<M: Registered>(
+    params: &M::Params,
+    inputs: &TimedInputs<M::Params>,
+    every_way: bool,
+) -> Entrants {
     let (wo, wi) = (inputs.wo[0], arrays(&inputs.wi));
     let material = Material::<M>::new(params);
     let ((libm, std), gather) = (material.references(wo), material.bsdf.prepare(wo));
@@ -240,7 +286,14 @@ fn eval_pdf<M: Registered>(params: &M::Params, inputs: &TimedInputs<M::Params>, 
         let wi = &wi;
         move |level| -> Box<dyn Pass> {
             let call = move |wi: [&[f32]; 3], [r, g, b, pdf]: [&mut [f32]; 4]| {
-                gather.eval_pdf_batch_at(level, wi, EvalSlices { value: [r, g, b], pdf })
+                gather.eval_pdf_batch_at(
+                    level,
+                    wi,
+                    EvalSlices {
+                        value: [r, g, b],
+                        pdf,
+                    },
+                )
             };
             Box::new(Slices::new(len, wi, call))
         }
@@ -250,26 +303,49 @@ fn eval_pdf<M: Registered>(params: &M::Params, inputs: &TimedInputs<M::Params>, 
         task(&wi, move |wi| std.eval_pdf(platform(*wi))),
         task(&inputs.wi, move |wi| gather.eval_pdf(*wi)),
     )
-    .levels(EIGHT, |level| task(&packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi)))
+    .levels(EIGHT, |level| {
+        task(&packets(&inputs.wi), move |wi| {
+            gather.eval_pdf8_at(level, wi)
+        })
+    })
     .levels(SLICES, slices(TIMED_DIRECTIONS));
     if every_way {
         let (eights, _) = inputs.wi.as_chunks::<8>();
-        let fresh = |level| task(eights, move |wi| gather.eval_pdf8_at(level, &Vec3x8::from(*wi)));
+        let fresh = |level| {
+            task(eights, move |wi| {
+                gather.eval_pdf8_at(level, &Vec3x8::from(*wi))
+            })
+        };
         contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
     }
-    Ok((contenders, Truth::of_directions(truth::<M>(params, &[wo; TIMED_DIRECTIONS])?, &inputs.wi)))
+    Ok((
+        contenders,
+        Truth::of_directions(truth::<M>(params, &[wo; TIMED_DIRECTIONS])?, &inputs.wi),
+    ))
 }
 
-fn sample<M: Registered>(params: &M::Params, inputs: &TimedInputs<M::Params>, every_way: bool) -> Entrants {
+fn sample<M: Registered>(
+    params: &M::Params,
+    inputs: &TimedInputs<M::Params>,
+    every_way: bool,
+) -> Entrants {
     let (wo, xi) = (inputs.wo[0], &inputs.xi);
     let material = Material::<M>::new(params);
     let ((libm, std), gather) = (material.references(wo), material.bsdf.prepare(wo));
     let slices = |len| {
         move |level| -> Box<dyn Pass> {
-            let call = move |xi: [&[f32]; 3], [r, g, b, pdf, u, v, w, wr, wg, wb, slot]: [&mut [f32]; 11]| {
-                let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
-                gather.sample_batch_at(level, xi, out)
-            };
+            let call =
+                move |xi: [&[f32]; 3],
+                      [r, g, b, pdf, u, v, w, wr, wg, wb, slot]: [&mut [f32]; 11]| {
+                    let out = SampleSlices {
+                        wi: [u, v, w],
+                        value: [r, g, b],
+                        pdf,
+                        weight: [wr, wg, wb],
+                        slot,
+                    };
+                    gather.sample_batch_at(level, xi, out)
+                };
             Box::new(Slices::new(len, xi, call))
         }
     };
@@ -278,13 +354,20 @@ fn sample<M: Registered>(params: &M::Params, inputs: &TimedInputs<M::Params>, ev
         task(xi, move |xi| std.sample(platform(*xi))),
         task(xi, move |xi| gather.sample(*xi)),
     )
-    .levels(EIGHT, |level| task(&xi_packets(xi), move |xi| gather.sample8_at(level, xi)))
+    .levels(EIGHT, |level| {
+        task(&xi_packets(xi), move |xi| gather.sample8_at(level, xi))
+    })
     .levels(SLICES, slices(TIMED_DIRECTIONS));
     if every_way {
         let (eights, _) = xi.as_chunks::<8>();
-        let packed = |xi: &[[f32; 3]; 8]| -> [f32x8; 3] { core::array::from_fn(|k| f32x8::new(xi.map(|xi| xi[k]))) };
+        let packed = |xi: &[[f32; 3]; 8]| -> [f32x8; 3] {
+            core::array::from_fn(|k| f32x8::new(xi.map(|xi| xi[k])))
+        };
         let fresh = |level| task(eights, move |xi| gather.sample8_at(level, &packed(xi)));
         contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
     }
-    Ok((contenders, Truth::of_samples(truth::<M>(params, &[wo; TIMED_DIRECTIONS])?, xi)))
+    Ok((
+        contenders,
+        Truth::of_samples(truth::<M>(params, &[wo; TIMED_DIRECTIONS])?, xi),
+    ))
 }

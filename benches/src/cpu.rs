@@ -9,8 +9,11 @@ pub fn name() -> String {
         return env::consts::ARCH.to_owned();
     };
     let field = |name: &str| {
-        let line = info.lines().find(|line| line.split(':').next().is_some_and(|key| key.trim() == name));
-        line.and_then(|line| line.split(':').nth(1)).map_or("", str::trim)
+        let line = info
+            .lines()
+            .find(|line| line.split(':').next().is_some_and(|key| key.trim() == name));
+        line.and_then(|line| line.split(':').nth(1))
+            .map_or("", str::trim)
     };
     format!(
         "{} family {} model {} stepping {}",

@@ -31,8 +31,15 @@ pub enum Op {
 
 impl Op {
     /// All of them: a path takes 1, 4 or 16 samples per shading point.
-    pub const ALL: [Self; 7] =
-        [Self::Prepare, Self::Eval, Self::Sample, Self::Path(1), Self::Path(4), Self::Path(16), Self::Resample];
+    pub const ALL: [Self; 7] = [
+        Self::Prepare,
+        Self::Eval,
+        Self::Sample,
+        Self::Path(1),
+        Self::Path(4),
+        Self::Path(16),
+        Self::Resample,
+    ];
 }
 
 impl fmt::Display for Op {
@@ -63,7 +70,12 @@ pub struct Name {
 impl fmt::Display for Name {
     /// Path of the bench: `eval/eval_pdf8/gaussian/avx2+fma`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { op, entry, model, level } = self;
+        let Self {
+            op,
+            entry,
+            model,
+            level,
+        } = self;
         write!(f, "{op}/{entry}/{model}/{level}")
     }
 }
@@ -82,13 +94,21 @@ pub static MODELS: LazyLock<Vec<(String, ModelId)>> = LazyLock::new(|| {
         Some((_, word)) if !id.is_default() => (format!("{}-{word}", id.name()), id),
         _ => (id.name().to_owned(), id),
     };
-    ModelId::ALL.iter().copied().filter(|id| takes_part(*id)).map(name).collect()
+    ModelId::ALL
+        .iter()
+        .copied()
+        .filter(|id| takes_part(*id))
+        .map(name)
+        .collect()
 });
 
 /// Whether a model is measured. Models that differ in the number of bands alone are not.
 const fn takes_part(id: ModelId) -> bool {
     use ModelId::{CauchyMatched5, CauchyMatched25, GaussianMatched5, GaussianMatched25};
-    !matches!(id, GaussianMatched5 | GaussianMatched25 | CauchyMatched5 | CauchyMatched25)
+    !matches!(
+        id,
+        GaussianMatched5 | GaussianMatched25 | CauchyMatched5 | CauchyMatched25
+    )
 }
 
 /// Name of the scalar baseline, the paper's formulas in `f32`.
@@ -99,7 +119,11 @@ const SHORT: usize = 5;
 /// Short name of a level, the same on every machine and in every build.
 #[must_use]
 pub fn label(level: Level) -> &'static str {
-    if level == Level::portable() { "portable" } else { level.name() }
+    if level == Level::portable() {
+        "portable"
+    } else {
+        level.name()
+    }
 }
 
 /// Passes an operation's entry points of all [`MODELS`] to `visitor`; the reference comes first. Answers are checked
@@ -111,7 +135,12 @@ pub fn label(level: Level) -> &'static str {
 pub fn visit(op: Op, visitor: &mut impl Visitor) {
     let inputs = &Inputs::draw();
     for (name, id) in MODELS.iter() {
-        id.visit(OfModel { op, name, inputs, visitor });
+        id.visit(OfModel {
+            op,
+            name,
+            inputs,
+            visitor,
+        });
     }
 }
 
@@ -129,8 +158,20 @@ impl<V: Visitor> hairis_variants::Visitor for OfModel<'_, V> {
     fn visit<M: Registered>(self) {
         // At compile time: models that are not measured are not compiled.
         if const { takes_part(ModelId::of::<M>()) } {
-            let Self { op, name, inputs, visitor } = self;
-            Of::<M> { op, id: ModelId::of::<M>(), name, inputs, model: PhantomData }.visit(visitor);
+            let Self {
+                op,
+                name,
+                inputs,
+                visitor,
+            } = self;
+            Of::<M> {
+                op,
+                id: ModelId::of::<M>(),
+                name,
+                inputs,
+                model: PhantomData,
+            }
+            .visit(visitor);
         }
     }
 }
@@ -164,7 +205,12 @@ impl<M: Registered> Of<'_, M> {
         asked: impl Fn(usize) -> Asked,
         task: impl FnOnce() -> T,
     ) {
-        let name = Name { op: self.op, entry, model: self.name, level };
+        let name = Name {
+            op: self.op,
+            entry,
+            model: self.name,
+            level,
+        };
         let baseline_of_its_own = entry == TEXTBOOK && !self.id.is_default();
         if !baseline_of_its_own && visitor.wants(&name) {
             let mut task = task();
@@ -193,27 +239,44 @@ impl<M: Registered> Of<'_, M> {
 
     /// Eight shading points on eight heads of hair.
     fn gather8(&self, level: Level) -> Gather8<M> {
-        self.mixed().prepare8_at(level, &packets(&self.inputs.wo[..8])[0])
+        self.mixed()
+            .prepare8_at(level, &packets(&self.inputs.wo[..8])[0])
     }
 
     /// The query at [`gather`](Self::gather).
     fn at_one(&self, given: Given) -> Asked {
-        Asked { values: M::Params::default().values(), wo: self.inputs.wo[0], given }
+        Asked {
+            values: M::Params::default().values(),
+            wo: self.inputs.wo[0],
+            given,
+        }
     }
 
     /// The query at a lane of [`gather8`](Self::gather8).
     fn at_lane(&self, i: usize, given: Given) -> Asked {
-        Asked { values: params::<M>()[i % 8].values(), wo: self.inputs.wo[i % 8], given }
+        Asked {
+            values: params::<M>()[i % 8].values(),
+            wo: self.inputs.wo[i % 8],
+            given,
+        }
     }
 
     /// The query at a shading point of its own, on one material.
     fn shared(&self, i: usize, given: Given) -> Asked {
-        Asked { values: M::Params::default().values(), wo: self.inputs.wo[i], given }
+        Asked {
+            values: M::Params::default().values(),
+            wo: self.inputs.wo[i],
+            given,
+        }
     }
 
     /// The same on eight heads of hair.
     fn mixed_hair(&self, i: usize, given: Given) -> Asked {
-        Asked { values: params::<M>()[i % 8].values(), wo: self.inputs.wo[i], given }
+        Asked {
+            values: params::<M>()[i % 8].values(),
+            wo: self.inputs.wo[i],
+            given,
+        }
     }
 
     fn prepare(&self, visitor: &mut impl Visitor) {
@@ -222,7 +285,9 @@ impl<M: Registered> Of<'_, M> {
         let mixed = |i| self.mixed_hair(i, Given::Wi(PROBE));
         self.show(visitor, TEXTBOOK, "scalar", shared, || {
             let formulas = M::formulas::<f32>(&M::Params::default());
-            Each::new(1, arrays(&inputs.wo), move |wo| Point(M::reference_at(&formulas, *wo, 0.0), PhantomData))
+            Each::new(1, arrays(&inputs.wo), move |wo| {
+                Point(M::reference_at(&formulas, *wo, 0.0), PhantomData)
+            })
         });
         self.show(visitor, "prepare", "scalar", shared, || {
             let bsdf = self.bsdf();
@@ -231,11 +296,15 @@ impl<M: Registered> Of<'_, M> {
         for level in Level::available() {
             self.show(visitor, "prepare8-shared", label(level), shared, || {
                 let bsdf = self.bsdf();
-                Each::new(8, packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo))
+                Each::new(8, packets(&inputs.wo), move |wo| {
+                    bsdf.prepare8_at(level, wo)
+                })
             });
             self.show(visitor, "prepare8-mixed", label(level), mixed, || {
                 let bsdf = self.mixed();
-                Each::new(8, packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo))
+                Each::new(8, packets(&inputs.wo), move |wo| {
+                    bsdf.prepare8_at(level, wo)
+                })
             });
         }
     }
@@ -255,31 +324,53 @@ impl<M: Registered> Of<'_, M> {
         for level in Level::available() {
             self.show(visitor, "eval_pdf8", label(level), one, || {
                 let gather = self.gather();
-                Each::new(8, packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi))
+                Each::new(8, packets(&inputs.wi), move |wi| {
+                    gather.eval_pdf8_at(level, wi)
+                })
             });
             self.show(visitor, "eval_pdf8-points", label(level), lane, || {
                 let gather = self.gather8(level);
-                Each::new(8, packets(&inputs.wi), move |wi| gather.eval_pdf8_at(level, wi))
+                Each::new(8, packets(&inputs.wi), move |wi| {
+                    gather.eval_pdf8_at(level, wi)
+                })
             });
-            for (entry, len) in [("eval_pdf_batch", DIRECTIONS), ("eval_pdf_batch-short", SHORT)] {
+            for (entry, len) in [
+                ("eval_pdf_batch", DIRECTIONS),
+                ("eval_pdf_batch-short", SHORT),
+            ] {
                 self.show(visitor, entry, label(level), one, || {
                     let gather = self.gather();
-                    Slices::new(len, &arrays(&inputs.wi), move |wi, [r, g, b, pdf]: [&mut [f32]; 4]| {
-                        gather.eval_pdf_batch_at(level, wi, EvalSlices { value: [r, g, b], pdf })
-                    })
+                    Slices::new(
+                        len,
+                        &arrays(&inputs.wi),
+                        move |wi, [r, g, b, pdf]: [&mut [f32]; 4]| {
+                            gather.eval_pdf_batch_at(
+                                level,
+                                wi,
+                                EvalSlices {
+                                    value: [r, g, b],
+                                    pdf,
+                                },
+                            )
+                        },
+                    )
                 });
             }
             self.show(visitor, "eval_batch", label(level), one, || {
                 let gather = self.gather();
-                Slices::new(DIRECTIONS, &arrays(&inputs.wi), move |wi, value: [&mut [f32]; 3]| {
-                    gather.eval_batch_at(level, wi, value)
-                })
+                Slices::new(
+                    DIRECTIONS,
+                    &arrays(&inputs.wi),
+                    move |wi, value: [&mut [f32]; 3]| gather.eval_batch_at(level, wi, value),
+                )
             });
             self.show(visitor, "pdf_batch", label(level), one, || {
                 let gather = self.gather();
-                Slices::new(DIRECTIONS, &arrays(&inputs.wi), move |wi, [pdf]: [&mut [f32]; 1]| {
-                    gather.pdf_batch_at(level, wi, pdf)
-                })
+                Slices::new(
+                    DIRECTIONS,
+                    &arrays(&inputs.wi),
+                    move |wi, [pdf]: [&mut [f32]; 1]| gather.pdf_batch_at(level, wi, pdf),
+                )
             });
         }
     }
@@ -299,21 +390,37 @@ impl<M: Registered> Of<'_, M> {
         for level in Level::available() {
             self.show(visitor, "sample8", label(level), one, || {
                 let gather = self.gather();
-                Each::new(8, xi_packets(&inputs.xi), move |xi| gather.sample8_at(level, xi))
+                Each::new(8, xi_packets(&inputs.xi), move |xi| {
+                    gather.sample8_at(level, xi)
+                })
             });
             self.show(visitor, "sample8-points", label(level), lane, || {
                 let gather = self.gather8(level);
-                Each::new(8, xi_packets(&inputs.xi), move |xi| gather.sample8_at(level, xi))
+                Each::new(8, xi_packets(&inputs.xi), move |xi| {
+                    gather.sample8_at(level, xi)
+                })
             });
             self.show(visitor, "sample_weight_batch", label(level), one, || {
                 let gather = self.gather();
-                Slices::new(DIRECTIONS, &inputs.xi, move |xi, [u, v, w, pdf, r, g, b]: [&mut [f32]; 7]| {
-                    let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [r, g, b] };
-                    gather.sample_weight_batch_at(level, xi, out)
-                })
+                Slices::new(
+                    DIRECTIONS,
+                    &inputs.xi,
+                    move |xi, [u, v, w, pdf, r, g, b]: [&mut [f32]; 7]| {
+                        let out = SampleWeightSlices {
+                            wi: [u, v, w],
+                            pdf,
+                            weight: [r, g, b],
+                        };
+                        gather.sample_weight_batch_at(level, xi, out)
+                    },
+                )
                 .read_by(|[u, v, w, pdf, ..]| Answer {
                     // No direction where the sample is discarded.
-                    wi: Some(if pdf > 0.0 { Vec3::new(u, v, w) } else { Vec3::ZERO }),
+                    wi: Some(if pdf > 0.0 {
+                        Vec3::new(u, v, w)
+                    } else {
+                        Vec3::ZERO
+                    }),
                     value: None,
                     pdf: Some(pdf),
                 })
@@ -342,7 +449,12 @@ impl<M: Registered> Of<'_, M> {
         let (xi, eights) = (&inputs.xi[..samples], xi_packets(&inputs.xi));
         let packets_at_one = samples.div_ceil(8);
         let scalar = |i| self.shared(i, Given::Xi(xi[samples - 1]));
-        let one = |i| self.shared(i / 8, Given::Xi(inputs.xi[8 * (packets_at_one - 1) + i % 8]));
+        let one = |i| {
+            self.shared(
+                i / 8,
+                Given::Xi(inputs.xi[8 * (packets_at_one - 1) + i % 8]),
+            )
+        };
         let eight = |i| self.mixed_hair(i, Given::Xi(inputs.xi[8 * (samples - 1) + i % 8]));
         self.show(visitor, TEXTBOOK, "scalar", scalar, || {
             let (formulas, xi) = (M::formulas::<f32>(&M::Params::default()), xi.to_vec());
@@ -382,7 +494,9 @@ impl<M: Registered> Of<'_, M> {
 /// The results of the last call; those of the others are left in memory and dropped.
 #[inline(always)]
 fn last<X, O>(inputs: &[X], call: impl Fn(&X) -> O) -> O {
-    let [before @ .., input] = inputs else { unreachable!("there is at least one sample") };
+    let [before @ .., input] = inputs else {
+        unreachable!("there is at least one sample")
+    };
     for input in before {
         black_box(&call(black_box(input)));
     }

@@ -28,9 +28,21 @@ impl Inputs {
     #[must_use]
     pub fn draw() -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(0x6861_6972);
-        let mut xi = || (0..DIRECTIONS).map(|_| hairis::random::xi(&mut rng)).collect::<Vec<_>>();
-        let directions = |xi: Vec<[f32; 3]>| xi.into_iter().map(|[height, turn, _]| on_sphere(height, turn)).collect();
-        Self { wi: directions(xi()), wo: directions(xi()), xi: xi() }
+        let mut xi = || {
+            (0..DIRECTIONS)
+                .map(|_| hairis::random::xi(&mut rng))
+                .collect::<Vec<_>>()
+        };
+        let directions = |xi: Vec<[f32; 3]>| {
+            xi.into_iter()
+                .map(|[height, turn, _]| on_sphere(height, turn))
+                .collect()
+        };
+        Self {
+            wi: directions(xi()),
+            wo: directions(xi()),
+            xi: xi(),
+        }
     }
 }
 
@@ -59,7 +71,10 @@ pub fn packets(v: &[Vec3]) -> Vec<Vec3x8> {
 #[must_use]
 pub fn xi_packets(xi: &[[f32; 3]]) -> Vec<[f32x8; 3]> {
     let (eights, _) = xi.as_chunks::<8>();
-    eights.iter().map(|eight| from_fn(|k| f32x8::new(eight.map(|xi| xi[k])))).collect()
+    eights
+        .iter()
+        .map(|eight| from_fn(|k| f32x8::new(eight.map(|xi| xi[k]))))
+        .collect()
 }
 
 /// Parameters of the eight lanes: the presets in turn.
@@ -105,7 +120,10 @@ impl Column {
         for (to, from) in column[start..start + DIRECTIONS].iter_mut().zip(numbers) {
             *to = from;
         }
-        Self { numbers: column, start }
+        Self {
+            numbers: column,
+            start,
+        }
     }
 
     /// Part of the column.

@@ -70,7 +70,10 @@ impl Real for Platform {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "rounding to f32 is the purpose"
+    )]
     fn from_f64(value: f64) -> Self {
         Self(value as f32)
     }

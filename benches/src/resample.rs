@@ -5,7 +5,9 @@ use crate::task::{Answer, Output, Task};
 use core::array::from_fn;
 use core::hint::black_box;
 use glam::Vec3;
-use hairis::resample::{CandidateSlices, Counts, Partition, Reservoir8, Weighed8, WeightSlices, choose};
+use hairis::resample::{
+    CandidateSlices, Counts, Partition, Reservoir8, Weighed8, WeightSlices, choose,
+};
 use hairis::wide::f32x8;
 use hairis::{Gather, Gather8, LengthError, Level, Model, Vec3x8};
 
@@ -19,7 +21,10 @@ const ALL: usize = 2 * EACH;
 const PACKETS: usize = 4;
 
 /// Numbers of candidates by which every weight counts.
-pub const COUNTS: Counts = Counts { bsdf: 32, light: 32 };
+pub const COUNTS: Counts = Counts {
+    bsdf: 32,
+    light: 32,
+};
 
 /// The sky's density of every direction, per steradian: it is drawn uniformly.
 pub const SKY_PDF: f32 = 0.079_577_47;
@@ -79,15 +84,29 @@ impl<M: Model> PoolTask<M> {
             level,
             xi: from_fn(|k| Column::new(k, inputs.xi.iter().map(|xi| xi[k]))),
             block: from_fn(|k| Column::new(3 + k, block.iter().map(|row| row[k]))),
-            pool: Columns { wi: three, radiance: three, pdf_light: one, contribution: three, weight: one },
+            pool: Columns {
+                wi: three,
+                radiance: three,
+                pdf_light: one,
+                contribution: three,
+                weight: one,
+            },
         }
     }
 
     #[inline(always)]
     fn fill(&mut self, index: usize) -> Result<(), LengthError> {
         let at = index * EACH;
-        let Columns { wi, radiance, pdf_light, contribution, weight } = &mut self.pool;
-        let xi = black_box(&self.xi).each_ref().map(|column| column.part(at, EACH));
+        let Columns {
+            wi,
+            radiance,
+            pdf_light,
+            contribution,
+            weight,
+        } = &mut self.pool;
+        let xi = black_box(&self.xi)
+            .each_ref()
+            .map(|column| column.part(at, EACH));
         let proposed = wi.each_mut().map(|column| &mut column[..EACH]);
         self.gather.propose_batch_at(self.level, xi, proposed)?;
         for (radiance, wi) in radiance.iter_mut().zip(&*wi) {
@@ -96,7 +115,10 @@ impl<M: Model> PoolTask<M> {
             }
         }
         pdf_light[..EACH].fill(SKY_PDF);
-        let columns = wi.iter_mut().chain(radiance.iter_mut()).chain([&mut *pdf_light]);
+        let columns = wi
+            .iter_mut()
+            .chain(radiance.iter_mut())
+            .chain([&mut *pdf_light]);
         for (column, drawn) in columns.zip(black_box(&self.block)) {
             column[EACH..].copy_from_slice(drawn.part(at, EACH));
         }
@@ -105,8 +127,12 @@ impl<M: Model> PoolTask<M> {
             radiance: radiance.each_ref().map(|column| &column[..]),
             pdf_light,
         };
-        let out = WeightSlices { contribution: contribution.each_mut().map(|column| &mut column[..]), weight };
-        self.gather.weigh_batch_at(self.level, candidates, COUNTS, Partition::All, out)
+        let out = WeightSlices {
+            contribution: contribution.each_mut().map(|column| &mut column[..]),
+            weight,
+        };
+        self.gather
+            .weigh_batch_at(self.level, candidates, COUNTS, Partition::All, out)
     }
 }
 
@@ -131,7 +157,12 @@ impl<M: Model> Task for PoolTask<M> {
         let mut out = Vec::new();
         for index in 0..self.calls() {
             self.call(index);
-            let Columns { wi, contribution, weight, .. } = &self.pool;
+            let Columns {
+                wi,
+                contribution,
+                weight,
+                ..
+            } = &self.pool;
             let contribution = contribution.each_ref().map(|column| &column[..]);
             let choices = choose(contribution, weight, RAYS, 0.5);
             let (sum, mut shares) = (choices.total(), 0.0_f32);
@@ -139,7 +170,13 @@ impl<M: Model> Task for PoolTask<M> {
                 shares += choice.contribution.iter().sum::<f32>() / (3.0 * sum);
             }
             // Of one channel, what is chosen adds up to the sum of the weights; if not, every answer is wrong.
-            let weight = weight.map(|w| if (shares - 1.0).abs() < 1e-4 { w } else { f32::NAN });
+            let weight = weight.map(|w| {
+                if (shares - 1.0).abs() < 1e-4 {
+                    w
+                } else {
+                    f32::NAN
+                }
+            });
             out.extend((0..ALL).map(|i| Answer {
                 wi: Some(Vec3::from_array(wi.map(|column| column[i]))),
                 value: Some([0, 1, 2].map(|c: usize| contribution[c][i])),
@@ -169,7 +206,15 @@ impl Stream {
         let (xi, wi) = (xi.as_chunks::<PACKETS>().0, wi.as_chunks::<PACKETS>().0);
         // Other numbers than those that candidates are drawn by: from packets elsewhere.
         let u = |at: usize| from_fn(|k| xi[(at + 1 + k / PACKETS) % xi.len()][k % PACKETS][0]);
-        xi.iter().zip(wi).enumerate().map(|(at, (xi, wi))| Self { xi: *xi, wi: *wi, u: u(at) }).collect()
+        xi.iter()
+            .zip(wi)
+            .enumerate()
+            .map(|(at, (xi, wi))| Self {
+                xi: *xi,
+                wi: *wi,
+                u: u(at),
+            })
+            .collect()
     }
 
     /// Proposes, looks up, weighs and adds all candidates; then the estimate.
@@ -183,9 +228,15 @@ impl Stream {
             reservoir.add_at(level, wi, &weighed, u);
         };
         let (first, second) = self.u.split_at(PACKETS);
-        self.xi.iter().zip(first).for_each(|(xi, u)| add(&gather.propose8_at(level, xi), u));
+        self.xi
+            .iter()
+            .zip(first)
+            .for_each(|(xi, u)| add(&gather.propose8_at(level, xi), u));
         self.wi.iter().zip(second).for_each(|(wi, u)| add(wi, u));
-        Kept { reservoir, estimate: reservoir.estimate_at(level) }
+        Kept {
+            reservoir,
+            estimate: reservoir.estimate_at(level),
+        }
     }
 }
 
@@ -198,14 +249,30 @@ pub struct Kept {
 
 impl Output for Kept {
     fn answers(&self, out: &mut Vec<Answer>) {
-        let Self { reservoir: Reservoir8 { wi, contribution, sum }, estimate } = self;
+        let Self {
+            reservoir:
+                Reservoir8 {
+                    wi,
+                    contribution,
+                    sum,
+                },
+            estimate,
+        } = self;
         for lane in 0..8 {
             let colour = |of: &[f32x8; 3]| of.map(|channel| channel.to_array()[lane]);
             // The mean over the channels is the sum of the weights; if not, the answer is wrong.
             let mean = colour(estimate).iter().sum::<f32>() / 3.0;
             let is_sum = (mean / sum.to_array()[lane] - 1.0).abs() < 1e-5;
-            let value = if is_sum { colour(contribution) } else { [f32::NAN; 3] };
-            out.push(Answer { wi: Some(wi.lane(lane)), value: Some(value), pdf: None });
+            let value = if is_sum {
+                colour(contribution)
+            } else {
+                [f32::NAN; 3]
+            };
+            out.push(Answer {
+                wi: Some(wi.lane(lane)),
+                value: Some(value),
+                pdf: None,
+            });
         }
     }
 }
@@ -213,7 +280,11 @@ impl Output for Kept {
 /// A direction that was proposed; a discarded sample has density 0.
 #[must_use]
 pub fn proposed(wi: Vec3) -> Answer {
-    Answer { wi: Some(wi), value: None, pdf: (wi == Vec3::ZERO).then_some(0.0) }
+    Answer {
+        wi: Some(wi),
+        value: None,
+        pdf: (wi == Vec3::ZERO).then_some(0.0),
+    }
 }
 
 impl Output for Vec3x8 {
@@ -225,8 +296,15 @@ impl Output for Vec3x8 {
 /// Contributions as values, weights as densities.
 impl Output for Weighed8 {
     fn answers(&self, out: &mut Vec<Answer>) {
-        let ([r, g, b], weight) = (self.contribution.map(f32x8::to_array), self.weight.to_array());
-        let answer = |i: usize| Answer { wi: None, value: Some([r[i], g[i], b[i]]), pdf: Some(weight[i]) };
+        let ([r, g, b], weight) = (
+            self.contribution.map(f32x8::to_array),
+            self.weight.to_array(),
+        );
+        let answer = |i: usize| Answer {
+            wi: None,
+            value: Some([r[i], g[i], b[i]]),
+            pdf: Some(weight[i]),
+        };
         out.extend((0..8).map(answer));
     }
 }

@@ -81,7 +81,12 @@ pub struct Each<I, O, F> {
 impl<I, O: Output, F: Fn(&I) -> O> Each<I, O, F> {
     /// Calls `call` once for each of `inputs`; a call answers for `directions` directions.
     pub const fn new(directions: usize, inputs: Vec<I>, call: F) -> Self {
-        Self { inputs, directions, call, output: PhantomData }
+        Self {
+            inputs,
+            directions,
+            call,
+            output: PhantomData,
+        }
     }
 }
 
@@ -130,7 +135,12 @@ impl<I, O: Output, F: Fn(&I, &mut dyn FnMut(&O))> Several<I, O, F> {
     /// Calls `call` once for each of `inputs`; of its answers in the order they come, the `i`th is the answer to direction
     /// `place(i)`.
     pub const fn new(inputs: Vec<I>, place: fn(usize) -> usize, call: F) -> Self {
-        Self { inputs, call, place, output: PhantomData }
+        Self {
+            inputs,
+            call,
+            place,
+            output: PhantomData,
+        }
     }
 }
 
@@ -218,7 +228,8 @@ where
     fn call(&mut self, index: usize) {
         let (at, len) = (index * self.len, self.len);
         // Loops, not `map`, which is not inlined here: it would take a quarter of the time of short slices.
-        let (mut inputs, mut outputs): ([&[f32]; I], [&mut [f32]; N]) = ([&[]; I], from_fn(|_| Default::default()));
+        let (mut inputs, mut outputs): ([&[f32]; I], [&mut [f32]; N]) =
+            ([&[]; I], from_fn(|_| Default::default()));
         for (part, column) in inputs.iter_mut().zip(black_box(&self.inputs)) {
             *part = column.part(at, len);
         }
@@ -257,7 +268,11 @@ impl Single for Platform {
 
 impl<T: Single> Output for ([T; 3], T) {
     fn answers(&self, out: &mut Vec<Answer>) {
-        out.push(Answer { wi: None, value: Some(self.0.map(T::number)), pdf: Some(self.1.number()) });
+        out.push(Answer {
+            wi: None,
+            value: Some(self.0.map(T::number)),
+            pdf: Some(self.1.number()),
+        });
     }
 }
 
@@ -265,13 +280,21 @@ impl<T: Single> Output for ([T; 3], T) {
 impl Output for [f32x8; 2] {
     fn answers(&self, out: &mut Vec<Answer>) {
         let [first, second] = self.map(f32x8::to_array);
-        out.extend((0..8).map(|i| Answer { wi: None, value: Some([first[i], second[i], 0.0]), pdf: None }));
+        out.extend((0..8).map(|i| Answer {
+            wi: None,
+            value: Some([first[i], second[i], 0.0]),
+            pdf: None,
+        }));
     }
 }
 
 impl Output for Eval {
     fn answers(&self, out: &mut Vec<Answer>) {
-        out.push(Answer { wi: None, value: Some(self.value), pdf: Some(self.pdf) });
+        out.push(Answer {
+            wi: None,
+            value: Some(self.value),
+            pdf: Some(self.pdf),
+        });
     }
 }
 
@@ -286,15 +309,27 @@ impl Output for Eval8 {
 impl<T: Single> Output for reference::ReferenceSample<T> {
     fn answers(&self, out: &mut Vec<Answer>) {
         let (wi, value) = (self.wi.map(T::number), self.value.map(T::number));
-        out.push(Answer { wi: Some(wi.into()), value: Some(value), pdf: Some(self.pdf.number()) });
+        out.push(Answer {
+            wi: Some(wi.into()),
+            value: Some(value),
+            pdf: Some(self.pdf.number()),
+        });
     }
 }
 
 impl Output for Option<Sample> {
     fn answers(&self, out: &mut Vec<Answer>) {
         out.push(match self {
-            Some(sample) => Answer { wi: Some(sample.wi), value: Some(sample.value), pdf: Some(sample.pdf) },
-            None => Answer { wi: Some(Vec3::ZERO), value: Some([0.0; 3]), pdf: Some(0.0) },
+            Some(sample) => Answer {
+                wi: Some(sample.wi),
+                value: Some(sample.value),
+                pdf: Some(sample.pdf),
+            },
+            None => Answer {
+                wi: Some(Vec3::ZERO),
+                value: Some([0.0; 3]),
+                pdf: Some(0.0),
+            },
         });
     }
 }
@@ -313,7 +348,9 @@ pub struct Point<R, T = f32>(pub R, pub PhantomData<T>);
 
 impl<R: Reference<T>, T: Single> Output for Point<R, T> {
     fn answers(&self, out: &mut Vec<Answer>) {
-        self.0.eval_pdf(PROBE.to_array().map(T::from_f32)).answers(out);
+        self.0
+            .eval_pdf(PROBE.to_array().map(T::from_f32))
+            .answers(out);
     }
 }
 

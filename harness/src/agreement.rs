@@ -70,8 +70,14 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them, in the order of the tables.
-    pub const ALL: [Self; 6] =
-        [Self::Pdf, Self::Value, Self::SamplePdf, Self::SampleValue, Self::SampleWeight, Self::SampleCdf];
+    pub const ALL: [Self; 6] = [
+        Self::Pdf,
+        Self::Value,
+        Self::SamplePdf,
+        Self::SampleValue,
+        Self::SampleWeight,
+        Self::SampleCdf,
+    ];
 
     /// For tables.
     pub(crate) const fn label(self) -> &'static str {
@@ -154,9 +160,21 @@ pub struct WorstCase {
 
 impl WorstCase {
     fn new(model: ModelId, at: &LanePlace) -> Self {
-        let (wo, wi, h) = (at.wo.to_array(), at.wi.to_array(), model.is_near_field().then_some(at.h));
+        let (wo, wi, h) = (
+            at.wo.to_array(),
+            at.wi.to_array(),
+            model.is_near_field().then_some(at.h),
+        );
         let choice = model.choice().into_iter().collect();
-        Self { model: model.name(), choice, params: values_json(&at.values), h, wo, wi, xi: at.xi }
+        Self {
+            model: model.name(),
+            choice,
+            params: values_json(&at.values),
+            h,
+            wo,
+            wi,
+            xi: at.xi,
+        }
     }
 }
 
@@ -190,7 +208,10 @@ fn of_model(
         let mut columns = empty();
         for index in chunk {
             let packet = Packet::draw(model, formulas, region, seed, u64::from(*index))?;
-            for (path, columns) in paths.iter().zip(columns.chunks_exact_mut(Quantity::ALL.len())) {
+            for (path, columns) in paths
+                .iter()
+                .zip(columns.chunks_exact_mut(Quantity::ALL.len()))
+            {
                 measure(model, region, &packet, *path, &mut |quantity, measured| {
                     columns[quantity as usize].add(measured);
                 })?;
@@ -199,16 +220,23 @@ fn of_model(
         Ok(columns)
     };
     let join = |mut all: Vec<Column>, part: Vec<Column>| {
-        all.iter_mut().zip(part).for_each(|(column, more)| column.join(more));
+        all.iter_mut()
+            .zip(part)
+            .for_each(|(column, more)| column.join(more));
         Ok(all)
     };
     let indices: Vec<u32> = (0..packets).collect();
     let all = indices.par_chunks(500).map(part).try_reduce(empty, join)?;
-    let labels = paths.iter().flat_map(|path| Quantity::ALL.map(|quantity| (*path, quantity)));
+    let labels = paths
+        .iter()
+        .flat_map(|path| Quantity::ALL.map(|quantity| (*path, quantity)));
     // Not every model has a cdf.
-    let compared =
-        labels.zip(all).filter(|((_, quantity), column)| *quantity != Quantity::SampleCdf || !column.errors.is_empty());
-    Ok(compared.map(|((path, quantity), column)| column.row(model, region, path, quantity)).collect())
+    let compared = labels.zip(all).filter(|((_, quantity), column)| {
+        *quantity != Quantity::SampleCdf || !column.errors.is_empty()
+    });
+    Ok(compared
+        .map(|((path, quantity), column)| column.row(model, region, path, quantity))
+        .collect())
 }
 
 /// The errors behind a row.
@@ -240,7 +268,13 @@ impl Column {
         }
     }
 
-    fn row(mut self, model: ModelId, region: Region, path: CodePath, quantity: Quantity) -> AgreementResult {
+    fn row(
+        mut self,
+        model: ModelId,
+        region: Region,
+        path: CodePath,
+        quantity: Quantity,
+    ) -> AgreementResult {
         self.errors.sort_by(f64::total_cmp);
         let worst = self.errors.last().copied().unwrap_or(f64::NAN);
         let bound = quantity.bound(&model.accuracy());
@@ -258,7 +292,9 @@ impl Column {
             beyond: self.errors.iter().filter(|error| **error > bound).count(),
             unexplained: self.unexplained,
             passed: worst <= bound,
-            worst_case: self.worst.map(|measured| WorstCase::new(model, &measured.at)),
+            worst_case: self
+                .worst
+                .map(|measured| WorstCase::new(model, &measured.at)),
         }
     }
 }
@@ -276,19 +312,43 @@ mod tests {
         let rows = run(SEED, PACKETS).expect("hair within range");
         let paths = 1 + 2 * hairis::Level::available().count();
         let per_quantity = Region::ALL.len() * paths;
-        let cdf = rows.iter().filter(|row| row.quantity == Quantity::SampleCdf).count();
+        let cdf = rows
+            .iter()
+            .filter(|row| row.quantity == Quantity::SampleCdf)
+            .count();
         let others = ModelId::ALL.len() * (Quantity::ALL.len() - 1) * per_quantity;
-        assert!(rows.len() - cdf == others && cdf % per_quantity == 0, "a row is missing");
+        assert!(
+            rows.len() - cdf == others && cdf % per_quantity == 0,
+            "a row is missing"
+        );
         for row in &rows {
             // Few samples of wide lobes fall into a narrow region, however they are seeded: 3 in 800 near the axis.
             let sampled = !matches!(row.quantity, Quantity::Pdf | Quantity::Value);
-            let least = if row.region == Region::General || (!sampled && row.sampler.is_some()) { 40 } else { 0 };
-            assert!(row.count > least && row.p999 <= row.worst, "few directions, or no order: {row:?}");
+            let least = if row.region == Region::General || (!sampled && row.sampler.is_some()) {
+                40
+            } else {
+                0
+            };
+            assert!(
+                row.count > least && row.p999 <= row.worst,
+                "few directions, or no order: {row:?}"
+            );
             assert_eq!(row.unexplained, 0, "digits lost: {row:?}");
-            assert_eq!(row.passed, row.beyond == 0, "the verdict is that of the bound: {row:?}");
-            assert!(row.region != Region::General || row.passed, "beyond the bound: {row:?}");
+            assert_eq!(
+                row.passed,
+                row.beyond == 0,
+                "the verdict is that of the bound: {row:?}"
+            );
+            assert!(
+                row.region != Region::General || row.passed,
+                "beyond the bound: {row:?}"
+            );
         }
-        assert_eq!(rows, run(SEED, PACKETS).expect("hair within range"), "the same seed, the same rows");
+        assert_eq!(
+            rows,
+            run(SEED, PACKETS).expect("hair within range"),
+            "the same seed, the same rows"
+        );
     }
 
     #[test]
@@ -297,20 +357,39 @@ mod tests {
             of_model(model, formulas, Region::General, SEED, PACKETS).expect("hair within range")
         };
         let all = rows(ModelId::Gaussian, &formulas(ModelId::Cauchy));
-        let row = |quantity| all.iter().find(|row| row.quantity == quantity).expect("every quantity has a row");
-        assert!(!row(Quantity::Value).passed && row(Quantity::Value).unexplained > 0, "a Gaussian passed for a Cauchy");
+        let row = |quantity| {
+            all.iter()
+                .find(|row| row.quantity == quantity)
+                .expect("every quantity has a row")
+        };
+        assert!(
+            !row(Quantity::Value).passed && row(Quantity::Value).unexplained > 0,
+            "a Gaussian passed for a Cauchy"
+        );
         assert!(row(Quantity::Pdf).passed, "both are sampled alike");
         for row in rows(ModelId::GaussianMatched, &formulas(ModelId::CauchyMatched)) {
-            assert!(!row.passed, "a sampler matched to a Gaussian passed for one matched to a Cauchy: {row:?}");
+            assert!(
+                !row.passed,
+                "a sampler matched to a Gaussian passed for one matched to a Cauchy: {row:?}"
+            );
         }
         let wide = |values: &Values, wo, h| {
             let wider = |values: Values, name| {
-                let numbers: Vec<f32> = values.numbers(name).iter().map(|width| 1.001 * width).collect();
+                let numbers: Vec<f32> = values
+                    .numbers(name)
+                    .iter()
+                    .map(|width| 1.001 * width)
+                    .collect();
                 values.with(name, &numbers)
             };
-            let values = ["beta", "gamma_tt", "gamma_g"].into_iter().fold(*values, wider);
+            let values = ["beta", "gamma_tt", "gamma_g"]
+                .into_iter()
+                .fold(*values, wider);
             formulas(ModelId::Gaussian)(&values, wo, h)
         };
-        assert!(rows(ModelId::Gaussian, &wide).iter().all(|row| !row.passed), "widths off by a thousandth passed");
+        assert!(
+            rows(ModelId::Gaussian, &wide).iter().all(|row| !row.passed),
+            "widths off by a thousandth passed"
+        );
     }
 }

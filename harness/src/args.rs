@@ -105,7 +105,12 @@ pub struct Study {
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
     /// Compute only part I of N (I from 1 to N), for `hairis merge` to join
-    #[arg(long, value_name = "I/N", default_value = "1/1", hide_default_value = true)]
+    #[arg(
+        long,
+        value_name = "I/N",
+        default_value = "1/1",
+        hide_default_value = true
+    )]
     pub shard: String,
 }
 
@@ -143,13 +148,20 @@ mod tests {
 
     #[test]
     fn no_command_overwrites_the_report_of_another() {
-        let out = |command| match Args::try_parse_from(["hairis", command]).expect("no flag is required").command {
+        let out = |command| match Args::try_parse_from(["hairis", command])
+            .expect("no flag is required")
+            .command
+        {
             Command::Compare(Compare { out, .. })
             | Command::Study(Study { out, .. })
             | Command::Claims(Claims { out, .. }) => out,
             command => panic!("{command:?} writes no report"),
         };
         assert_ne!(out("compare"), out("study"), "both write a report.html");
-        assert_eq!(out("claims"), out("study"), "the report of the study shows the verdicts");
+        assert_eq!(
+            out("claims"),
+            out("study"),
+            "the report of the study shows the verdicts"
+        );
     }
 }

@@ -81,29 +81,64 @@ type FoundCells = [(Cell, ModelKind, HairFigures)];
 /// Never in practice: the hair of the grid is within the accepted ranges.
 pub fn run(seed: u64, quick: bool, progress: &(dyn Fn(f64) + Sync)) -> Result<Claims, ParamError> {
     let sky = Sky::default().environment();
-    let plan = Plan { seed, quick, environment: &sky };
+    let plan = Plan {
+        seed,
+        quick,
+        environment: &sky,
+    };
     let grid = plan.grid();
     // Quadrature and sampling take about as long.
-    let [first, second] =
-        [0.0, 0.5].map(|begin| move |done: usize, total: usize| progress(begin + 0.5 * done as f64 / total as f64));
+    let [first, second] = [0.0, 0.5].map(|begin| {
+        move |done: usize, total: usize| progress(begin + 0.5 * done as f64 / total as f64)
+    });
     let cells = by_quadrature(grid, &Progress::new(grid.len(), &first))?;
 
-    let mut claims = vec![energy::claim(), tails::claim(), uniform::claim(&plan, &cells)?, grazing::claim()?];
-    claims.extend(performance::claims(&plan, &Progress::new(grid.len(), &second))?);
-    claims.extend([bounds::claim(&cells), glint::density(&cells)?, glint::interval(&cells)?]);
+    let mut claims = vec![
+        energy::claim(),
+        tails::claim(),
+        uniform::claim(&plan, &cells)?,
+        grazing::claim()?,
+    ];
+    claims.extend(performance::claims(
+        &plan,
+        &Progress::new(grid.len(), &second),
+    )?);
+    claims.extend([
+        bounds::claim(&cells),
+        glint::density(&cells)?,
+        glint::interval(&cells)?,
+    ]);
     let lights = performance::LIGHTS.map(|[_, name]| name);
-    let settings = Settings { seed, quick, cells: grid.len(), samples: plan.budget().samples, lights };
-    Ok(Claims { settings, machine: machine!(), claims })
+    let settings = Settings {
+        seed,
+        quick,
+        cells: grid.len(),
+        samples: plan.budget().samples,
+        lights,
+    };
+    Ok(Claims {
+        settings,
+        machine: machine!(),
+        claims,
+    })
 }
 
 /// The hair of a cell.
 fn hair_of(cell: &Cell, model: ModelKind) -> Result<Hair, ParamError> {
-    Ok(Hair::new(model, &cell.params()?, f64::from(cell.theta_o_deg).to_radians()))
+    Ok(Hair::new(
+        model,
+        &cell.params()?,
+        f64::from(cell.theta_o_deg).to_radians(),
+    ))
 }
 
 /// Integrates every cell of `grid` on all cores.
-fn by_quadrature(grid: Grid, progress: &Progress<'_>) -> Result<Vec<(Cell, ModelKind, HairFigures)>, ParamError> {
+fn by_quadrature(
+    grid: Grid,
+    progress: &Progress<'_>,
+) -> Result<Vec<(Cell, ModelKind, HairFigures)>, ParamError> {
     let cells: Vec<Cell> = grid.cells().collect();
-    let found = |cell: &Cell| ModelKind::ALL.map(|model| Ok((*cell, model, hair_of(cell, model)?.found())));
+    let found =
+        |cell: &Cell| ModelKind::ALL.map(|model| Ok((*cell, model, hair_of(cell, model)?.found())));
     progress.map(&cells, found).into_iter().flatten().collect()
 }

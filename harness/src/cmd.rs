@@ -37,7 +37,10 @@ fn environment(path: Option<&Path>) -> Result<(Environment, String), Error> {
     };
     let environment = Environment::load(path).map_err(Error::Environment)?;
     if environment.is_black() {
-        return Err(Error::Environment(LightError::black(path, environment.repairs())));
+        return Err(Error::Environment(LightError::black(
+            path,
+            environment.repairs(),
+        )));
     }
     environment.notes().iter().for_each(|note| say(note));
     Ok((environment, path.display().to_string()))
@@ -49,7 +52,10 @@ fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Res
     for table in tables {
         match writeln!(out, "{}", table.to_text(None)).and_then(|()| out.flush()) {
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
-                say(&format!("standard output was closed; the tables are in {}", file.display()));
+                say(&format!(
+                    "standard output was closed; the tables are in {}",
+                    file.display()
+                ));
                 return Ok(());
             }
             result => result.map_err(Error::Write)?,
@@ -60,6 +66,12 @@ fn print_tables<'a>(tables: impl Iterator<Item = &'a Table>, file: &Path) -> Res
 
 /// Names the failures on standard error.
 fn report_failures(failures: &[String]) -> Result<(), Error> {
-    failures.iter().for_each(|failure| say(&format!("failed: {failure}")));
-    if failures.is_empty() { Ok(()) } else { Err(Error::Failed(failures.len())) }
+    failures
+        .iter()
+        .for_each(|failure| say(&format!("failed: {failure}")));
+    if failures.is_empty() {
+        Ok(())
+    } else {
+        Err(Error::Failed(failures.len()))
+    }
 }

@@ -63,17 +63,33 @@ pub fn run(
 ) -> Result<Comparison, ParamError> {
     let CompareSettings { seed, quick, .. } = settings;
     let share = |part| move |done: usize, total: usize| progress(part, done as f64 / total as f64);
-    let speed = speed::run(&SpeedConfig::new(seed, quick), |done| progress("speed", done))?;
+    let speed = speed::run(&SpeedConfig::new(seed, quick), |done| {
+        progress("speed", done)
+    })?;
     let costs = sample_costs(&Times::measure(seed, quick, None));
 
     progress("agreement", 0.0);
     let agreement = agreement::run(seed, if quick { 4_000 } else { 40_000 })?;
     progress("agreement", 1.0);
 
-    let variance = EfficiencyConfig { costs: Some(costs), ..EfficiencyConfig::new(seed, quick, environment) };
+    let variance = EfficiencyConfig {
+        costs: Some(costs),
+        ..EfficiencyConfig::new(seed, quick, environment)
+    };
     let efficiency = efficiency::run(&variance, &share("sample efficiency"))?;
-    let rays = ray_figures::run(&RaysConfig::new(seed, quick, environment), &efficiency, &share("rays"));
-    Ok(Comparison { settings, machine: machine!(), speed, agreement, efficiency, rays })
+    let rays = ray_figures::run(
+        &RaysConfig::new(seed, quick, environment),
+        &efficiency,
+        &share("rays"),
+    );
+    Ok(Comparison {
+        settings,
+        machine: machine!(),
+        speed,
+        agreement,
+        efficiency,
+        rays,
+    })
 }
 
 /// Samples at a shading point over which its preparation is spread, as in direct lighting.
@@ -82,7 +98,10 @@ const SAMPLES_A_POINT: usize = 16;
 /// Times of a sample on eight lanes, set-up included.
 fn sample_costs(times: &Times) -> SampleCosts {
     let of = |model| SAMPLERS.map(|sampler| times.ns(model, sampler, SAMPLES_A_POINT).value);
-    SampleCosts { gaussian: of(ModelKind::Gaussian), cauchy: of(ModelKind::Cauchy) }
+    SampleCosts {
+        gaussian: of(ModelKind::Gaussian),
+        cauchy: of(ModelKind::Cauchy),
+    }
 }
 
 impl Comparison {
@@ -90,7 +109,13 @@ impl Comparison {
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
         let slow = self.speed.rows.iter().filter(|row| !row.passed).map(|row| {
-            format!("speed: {} {} {} {} gave wrong answers", row.op.label(), row.model, row.contender, row.level)
+            format!(
+                "speed: {} {} {} {} gave wrong answers",
+                row.op.label(),
+                row.model,
+                row.contender,
+                row.level
+            )
         });
         let far = self.agreement.iter().filter(|row| !row.passed).map(|row| {
             let AgreementResult { model, path, level, region, quantity, worst, bound, .. } = row;
@@ -99,8 +124,18 @@ impl Comparison {
                 "agreement: {model} {sampler} {path} {level} {region} {quantity}: {worst:.2e} is beyond {bound:.0e}"
             )
         });
-        let biased = self.efficiency.check.failures.iter().map(|what| format!("efficiency: {what}"));
-        let rays = self.rays.check.failures.iter().map(|what| format!("rays: {what}"));
+        let biased = self
+            .efficiency
+            .check
+            .failures
+            .iter()
+            .map(|what| format!("efficiency: {what}"));
+        let rays = self
+            .rays
+            .check
+            .failures
+            .iter()
+            .map(|what| format!("rays: {what}"));
         slow.chain(far).chain(biased).chain(rays).collect()
     }
 }

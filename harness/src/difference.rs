@@ -61,7 +61,13 @@ pub enum Width {
 
 impl Width {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 5] = [Self::Paper, Self::HalfWidth, Self::Area, Self::BestOfGrid, Self::BestOfCell];
+    pub const ALL: [Self; 5] = [
+        Self::Paper,
+        Self::HalfWidth,
+        Self::Area,
+        Self::BestOfGrid,
+        Self::BestOfCell,
+    ];
 
     /// Name in reports and in rows.
     #[must_use]
@@ -104,7 +110,10 @@ impl Difference {
     /// Never for [`Grid::FULL`] and [`Grid::QUICK`]: their hair is accepted.
     pub fn over(grid: Grid) -> Result<Self, ParamError> {
         let cells: Vec<Cell> = grid.cells().collect();
-        let hair: Vec<HairValues> = cells.par_iter().map(hair).collect::<Result<_, ParamError>>()?;
+        let hair: Vec<HairValues> = cells
+            .par_iter()
+            .map(hair)
+            .collect::<Result<_, ParamError>>()?;
         let best_of_grid = best::least(|k| {
             let squares: Vec<f64> = hair.par_iter().map(|hair| hair.square_error(k)).collect();
             squares.iter().sum()
@@ -119,9 +128,19 @@ impl Difference {
                 Width::BestOfCell => best::least(|k| hair.square_error(k)),
             });
             let found = hair.figures(&factors.map(Kind::cauchy), &blur);
-            Width::ALL.into_iter().zip(found).map(|(width, figures)| DifferenceRow { cell: *cell, width, figures })
+            Width::ALL
+                .into_iter()
+                .zip(found)
+                .map(|(width, figures)| DifferenceRow {
+                    cell: *cell,
+                    width,
+                    figures,
+                })
         });
-        Ok(Self { grid, rows: rows.collect() })
+        Ok(Self {
+            grid,
+            rows: rows.collect(),
+        })
     }
 
     /// The rows of one choice of widths.
@@ -141,7 +160,10 @@ pub(crate) fn blurred(params: &HairParams, theta_o: f64, k: f64) -> Vec<Harmonic
 
 fn hair(cell: &Cell) -> Result<HairValues, ParamError> {
     let params: HairParams = cell.params()?;
-    Ok(HairValues::new(ViewedHair::new(&params, f64::from(cell.theta_o_deg).to_radians()), ORDER))
+    Ok(HairValues::new(
+        ViewedHair::new(&params, f64::from(cell.theta_o_deg).to_radians()),
+        ORDER,
+    ))
 }
 
 #[cfg(test)]
@@ -156,14 +178,27 @@ mod tests {
     fn the_best_factors_are_the_best_in_their_norm() {
         let found = Difference::over(Grid::QUICK).expect("accepted");
         assert_eq!(found.rows.len(), Grid::QUICK.len() * Width::ALL.len());
-        let squares = |width| found.of(width).map(|row| row.figures.plain.l2.powi(2)).sum::<f64>();
+        let squares = |width| {
+            found
+                .of(width)
+                .map(|row| row.figures.plain.l2.powi(2))
+                .sum::<f64>()
+        };
         for width in [Width::Paper, Width::HalfWidth, Width::Area] {
-            assert!(squares(Width::BestOfGrid) < squares(width), "over the grid, {width:?}");
+            assert!(
+                squares(Width::BestOfGrid) < squares(width),
+                "over the grid, {width:?}"
+            );
         }
         for rows in found.rows.chunks(Width::ALL.len()) {
-            let [others @ .., best] = rows else { panic!("no rows") };
+            let [others @ .., best] = rows else {
+                panic!("no rows")
+            };
             for other in others {
-                assert!(best.figures.plain.l2 <= other.figures.plain.l2 + 1e-9, "{best:?} {other:?}");
+                assert!(
+                    best.figures.plain.l2 <= other.figures.plain.l2 + 1e-9,
+                    "{best:?} {other:?}"
+                );
             }
         }
     }
@@ -171,24 +206,46 @@ mod tests {
     #[test]
     fn figures_are_those_of_the_reference_by_another_quadrature() {
         let cell = Grid::QUICK.cell(17);
-        let (params, theta_o) = (cell.params().expect("accepted"), f64::from(cell.theta_o_deg).to_radians());
-        let found = hair(&cell).expect("accepted").figures(&[Kind::cauchy(1.0)], &Blur::new(0.2, 32, 32))[0];
-        let wo = fibre_direction(theta_o, 0.0).as_vec3().as_dvec3().to_array();
-        let [gaussian, cauchy] =
-            ModelKind::ALL.map(|model| HairReference::<f64>::prepare(&Parameters::from(&params), model.shape(), wo));
+        let (params, theta_o) = (
+            cell.params().expect("accepted"),
+            f64::from(cell.theta_o_deg).to_radians(),
+        );
+        let found = hair(&cell)
+            .expect("accepted")
+            .figures(&[Kind::cauchy(1.0)], &Blur::new(0.2, 32, 32))[0];
+        let wo = fibre_direction(theta_o, 0.0)
+            .as_vec3()
+            .as_dvec3()
+            .to_array();
+        let [gaussian, cauchy] = ModelKind::ALL.map(|model| {
+            HairReference::<f64>::prepare(&Parameters::from(&params), model.shape(), wo)
+        });
         let scale = found.albedo_gaussian / found.albedo_cauchy;
         let desc = params.desc();
-        let mut sphere =
-            SphereIntegrator::new().with_tolerance(Tolerance { max_panels: 4_000, ..Tolerance::relative(1e-5) });
-        for (alpha, beta) in
-            [(desc.alpha_r, desc.beta_r), (desc.alpha_tt, desc.beta_tt), (desc.alpha_trt, desc.beta_trt)]
-        {
+        let mut sphere = SphereIntegrator::new().with_tolerance(Tolerance {
+            max_panels: 4_000,
+            ..Tolerance::relative(1e-5)
+        });
+        for (alpha, beta) in [
+            (desc.alpha_r, desc.beta_r),
+            (desc.alpha_tt, desc.beta_tt),
+            (desc.alpha_trt, desc.beta_trt),
+        ] {
             sphere = sphere.theta_lobe(f64::from(2.0 * alpha) - theta_o, f64::from(2.0 * beta));
         }
         let r = sphere.integrate(|theta, phi| {
             let wi = fibre_direction(theta, phi).to_array();
-            let [a, b] = [gaussian.eval(wi), cauchy.eval(wi)].map(|s| theta.cos() * s.iter().sum::<f64>() / 3.0);
-            [a, b, (a - b).abs(), (a - b).powi(2), (a - scale * b).abs(), (a - scale * b).powi(2), a * a]
+            let [a, b] = [gaussian.eval(wi), cauchy.eval(wi)]
+                .map(|s| theta.cos() * s.iter().sum::<f64>() / 3.0);
+            [
+                a,
+                b,
+                (a - b).abs(),
+                (a - b).powi(2),
+                (a - scale * b).abs(),
+                (a - scale * b).powi(2),
+                a * a,
+            ]
         });
         let [a, b, l1, square, shape_l1, shape_square, norm] = r.value;
         let pairs = [

@@ -42,8 +42,8 @@ mod run;
 mod tests;
 
 pub use result::{
-    Check, ConvergencePoint, EfficiencyResult, EfficiencyRow, EfficiencySettings, MisRow, Reference, ReferenceMethod,
-    ReferenceV, SweepRow, Technique,
+    Check, ConvergencePoint, EfficiencyResult, EfficiencyRow, EfficiencySettings, MisRow,
+    Reference, ReferenceMethod, ReferenceV, SweepRow, Technique,
 };
 pub use run::run;
 
@@ -92,7 +92,11 @@ pub type EachSampler<T> = [T; SAMPLERS.len()];
 
 /// The figure of one sampler; not a number for one that is not compared.
 fn of_sampler(each: &EachSampler<f64>, sampler: Sampler) -> f64 {
-    SAMPLERS.iter().zip(each).find(|(of, _)| **of == sampler).map_or(f64::NAN, |(_, figure)| *figure)
+    SAMPLERS
+        .iter()
+        .zip(each)
+        .find(|(of, _)| **of == sampler)
+        .map_or(f64::NAN, |(_, figure)| *figure)
 }
 
 /// Time of one sample of one model on the eight-lane path, in ns: set-up amortised over 16 samples, lights excluded.
@@ -189,7 +193,13 @@ impl<'a> EfficiencyConfig<'a> {
     /// ```
     #[must_use]
     pub fn new(seed: u64, quick: bool, environment: &'a Environment) -> Self {
-        Self { seed, budget: Budget::new(quick), environment, params: HairParams::default(), costs: None }
+        Self {
+            seed,
+            budget: Budget::new(quick),
+            environment,
+            params: HairParams::default(),
+            costs: None,
+        }
     }
 }
 
@@ -199,18 +209,33 @@ impl<'a> EfficiencyConfig<'a> {
 /// When a width leaves its range.
 pub(crate) fn with_beta(base: &HairParams, beta_r_deg: f32) -> Result<HairParams, ParamError> {
     let beta_r = beta_r_deg.to_radians();
-    HairParams::new(&HairDesc { beta_r, beta_tt: 0.5 * beta_r, beta_trt: 2.0 * beta_r, ..*base.desc() })
+    HairParams::new(&HairDesc {
+        beta_r,
+        beta_tt: 0.5 * beta_r,
+        beta_trt: 2.0 * beta_r,
+        ..*base.desc()
+    })
 }
 
 /// Mean and V of a model under a light that quadrature can integrate, seen from [`PHI_O_DEG`].
 #[cfg(test)]
-pub(crate) fn quadrature(model: ModelKind, params: &HairParams, theta_o_deg: f64, light: &dyn Light) -> Reference {
+pub(crate) fn quadrature(
+    model: ModelKind,
+    params: &HairParams,
+    theta_o_deg: f64,
+    light: &dyn Light,
+) -> Reference {
     reference::by_quadrature(&case::Case::new(model, params, theta_o_deg), light)
 }
 
 /// V of perfect sampling of the model under such a light.
 #[cfg(test)]
-pub(crate) fn perfect_v(model: ModelKind, params: &HairParams, theta_o_deg: f64, light: &dyn Light) -> f64 {
+pub(crate) fn perfect_v(
+    model: ModelKind,
+    params: &HairParams,
+    theta_o_deg: f64,
+    light: &dyn Light,
+) -> f64 {
     reference::perfect_v(&case::Case::new(model, params, theta_o_deg), light)
 }
 

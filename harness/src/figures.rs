@@ -20,17 +20,25 @@ const WIDTHS: [f64; 3] = [5.0, 10.0, 20.0];
 type Bell = (&'static str, fn(f64) -> f64, fn(f64) -> f64);
 
 const BELLS: [Bell; 2] = [
-    ("Gaussian", |x| (-0.5 * x * x).exp(), |x| (2.0 * PI).sqrt() * libm::erf(x / SQRT_2)),
+    (
+        "Gaussian",
+        |x| (-0.5 * x * x).exp(),
+        |x| (2.0 * PI).sqrt() * libm::erf(x / SQRT_2),
+    ),
     ("Cauchy", |x| 1.0 / (x * x + 1.0), |x| 2.0 * x.atan()),
 ];
 
 /// The bells, each divided by what `scale` gives for it and its width.
 fn bells_over(title: &str, y: &str, scale: fn(&Bell, f64) -> f64) -> String {
-    let x = Axis::linear("distance from the centre (°)").range(-90.0, 90.0).step(15.0);
+    let x = Axis::linear("distance from the centre (°)")
+        .range(-90.0, 90.0)
+        .step(15.0);
     let mut series = Vec::new();
     for (dash, bell) in BELLS.iter().enumerate() {
         for (color, width) in WIDTHS.into_iter().enumerate() {
-            let points = (-360..=360).map(|i| f64::from(i) / 4.0).map(|x| (x, bell.1(x / width) / scale(bell, width)));
+            let points = (-360..=360)
+                .map(|i| f64::from(i) / 4.0)
+                .map(|x| (x, bell.1(x / width) / scale(bell, width)));
             series.push(Series::curve(format!("{} {width}°", bell.0), points).styled(color, dash));
         }
     }
@@ -42,8 +50,14 @@ fn bells_over(title: &str, y: &str, scale: fn(&Bell, f64) -> f64) -> String {
 #[must_use]
 pub fn bells() -> [Drawing; 2] {
     let title = "Gaussian and Cauchy of the same width, area 1";
-    let of_area_1 = bells_over(title, "density (1/rad)", |(_, _, area), width| width.to_radians() * area(90.0 / width));
-    let of_peak_1 = bells_over("Gaussian and Cauchy of the same width, peak 1", "bell (no unit)", |_, _| 1.0);
+    let of_area_1 = bells_over(title, "density (1/rad)", |(_, _, area), width| {
+        width.to_radians() * area(90.0 / width)
+    });
+    let of_peak_1 = bells_over(
+        "Gaussian and Cauchy of the same width, peak 1",
+        "bell (no unit)",
+        |_, _| 1.0,
+    );
     [
         Drawing::new(
             "bells-of-area-1",
@@ -64,7 +78,9 @@ pub fn bells() -> [Drawing; 2] {
 
 /// `S cos theta_i`, the mean of the channels.
 fn reflected(gather: &AnyGather, theta: f64, phi: f64) -> f64 {
-    let [r, g, b] = gather.eval(fibre_direction(theta, phi).as_vec3()).map(f64::from);
+    let [r, g, b] = gather
+        .eval(fibre_direction(theta, phi).as_vec3())
+        .map(f64::from);
     (r + g + b) / 3.0 * theta.cos()
 }
 
@@ -80,16 +96,26 @@ fn angles_of(wi: Vec3) -> [f64; 2] {
 /// `xi` are the points of the unit cube, the same ones for all six maps: a Halton sequence, as in the paper.
 #[must_use]
 pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) -> Drawing {
-    let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params)).prepare(fibre_direction(theta_o, 0.0).as_vec3());
+    let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params))
+        .prepare(fibre_direction(theta_o, 0.0).as_vec3());
     let panel = |(title, lobes, is_uniform): (&str, LobeMask, bool)| {
         let gather = gather.with_lobes(lobes);
         let angles = |xi: &[f32; 3]| {
             let [_, a, b] = xi.map(f64::from);
             let uniform = [(2.0 * a - 1.0).asin(), 2.0 * PI * b];
-            if is_uniform { Some(uniform) } else { Some(angles_of(gather.sample(*xi)?.wi)) }
+            if is_uniform {
+                Some(uniform)
+            } else {
+                Some(angles_of(gather.sample(*xi)?.wi))
+            }
         };
-        let density = SphereGrid::sample((80, 160), &mut |theta, phi| reflected(&gather, theta, phi));
-        ScatterPanel { title: title.to_owned(), points: xi.iter().filter_map(angles).collect(), density }
+        let density =
+            SphereGrid::sample((80, 160), &mut |theta, phi| reflected(&gather, theta, phi));
+        ScatterPanel {
+            title: title.to_owned(),
+            points: xi.iter().filter_map(angles).collect(),
+            density,
+        }
     };
     let panels = [
         ("(a) uniform", LobeMask::ALL, true),
@@ -101,7 +127,12 @@ pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) 
     ]
     .map(panel);
     let mark = format!("direction to the viewer, θₒ = {:.0}°", theta_o.to_degrees());
-    let maps = scatter_maps("Sample distributions over S cos θᵢ", &panels, &mark, [theta_o, 0.0]);
+    let maps = scatter_maps(
+        "Sample distributions over S cos θᵢ",
+        &panels,
+        &mark,
+        [theta_o, 0.0],
+    );
     let caption = format!(
         "{} samples a map in equal-area maps of the sphere, as figure 5 of the paper: (a) uniform sampling, (b) the \
          mixture, (c) to (f) each lobe alone. The background is S cos θᵢ of the same lobes (square root; darker is \
@@ -126,7 +157,9 @@ mod tests {
     }
 
     fn halton(n: u32) -> Vec<[f32; 3]> {
-        (1..=n).map(|i| [2_u32, 3, 5].map(|base| radical_inverse(i, base))).collect()
+        (1..=n)
+            .map(|i| [2_u32, 3, 5].map(|base| radical_inverse(i, base)))
+            .collect()
     }
 
     fn radical_inverse(mut i: u32, base: u32) -> f32 {
@@ -144,7 +177,12 @@ mod tests {
         let theta_o = 20.0_f64.to_radians();
         let samples = sample_distributions(&params, theta_o, &halton(2000));
         let [area, peak] = bells();
-        vec![area, peak, samples, polar(&params, theta_o, &[("Cauchy", Cauchy::PAPER)])]
+        vec![
+            area,
+            peak,
+            samples,
+            polar(&params, theta_o, &[("Cauchy", Cauchy::PAPER)]),
+        ]
     }
 
     #[test]
@@ -152,8 +190,14 @@ mod tests {
         for (name, at, area) in BELLS {
             for end in [0.5, 2.0, 9.0] {
                 let h = end / 2000.0;
-                let sum: f64 = (-2000..2000).map(|i| h * at((f64::from(i) + 0.5) * h)).sum();
-                assert!((sum - area(end)).abs() < 1e-6, "{name} to {end}: {sum} {}", area(end));
+                let sum: f64 = (-2000..2000)
+                    .map(|i| h * at((f64::from(i) + 0.5) * h))
+                    .sum();
+                assert!(
+                    (sum - area(end)).abs() < 1e-6,
+                    "{name} to {end}: {sum} {}",
+                    area(end)
+                );
             }
         }
     }
@@ -162,8 +206,17 @@ mod tests {
     fn figures_are_drawings_of_moderate_size() {
         for figure in all() {
             well_formed(&figure.svg).expect("the drawing nests");
-            assert!(!figure.svg.contains("NaN") && !figure.caption.is_empty(), "{}", figure.caption);
-            assert!(figure.svg.len() < 600_000, "{} bytes: {}", figure.svg.len(), figure.caption);
+            assert!(
+                !figure.svg.contains("NaN") && !figure.caption.is_empty(),
+                "{}",
+                figure.caption
+            );
+            assert!(
+                figure.svg.len() < 600_000,
+                "{} bytes: {}",
+                figure.svg.len(),
+                figure.caption
+            );
         }
     }
 
@@ -171,28 +224,75 @@ mod tests {
     #[test]
     fn a_gallery_of_every_chart_is_a_page() {
         let n = |i: i32| 4.0_f64.powi(i);
-        let exact = |value: f64, error: f64| Bar { value, low: value - error, high: value + error };
-        let decay = |c: f64| (1..9).map(move |i| (n(i), c / n(i).sqrt())).map(|(n, e)| (n, exact(e, 0.12 * e)));
-        let names = ["uniform", "published", "matched", "light", "MIS", "quasi-MC"];
-        let mut series: Vec<Series> =
-            (0..).zip(names).map(|(i, name)| Series::new(name, decay(1.0 / n(i).sqrt()))).collect();
-        series.push(Series::guide("slope −1/2", [(4.0, 0.6), (4096.0, 0.6 / 32.0)]));
-        let chart = lines("Convergence (made up)", Axis::log("samples N"), Axis::log("relative RMS error"), &series);
-        let interval = |y: f64| Bar { value: y, low: y - 0.2, high: y + 0.1 };
-        let band = (0..50).map(|i| f64::from(i) / 10.0).map(|x| (x, interval(x.sin())));
-        let band = [Series::new("sine", band), Series::guide("zero", [(0.0, 0.0), (5.0, 0.0)])];
-        let bands = lines("Intervals (made up)", Axis::linear("x (rad)"), Axis::linear("y"), &band);
-        let bar = |v: &f64| exact(*v, 0.04 * v);
-        let made_up = |title: &str, axis: Axis, groups: &[&str], rows: &[(&str, &[f64])], level: f64| {
-            let groups: Vec<String> = groups.iter().map(|group| (*group).to_owned()).collect();
-            let series: Vec<(String, Vec<Bar>)> =
-                rows.iter().map(|(name, values)| ((*name).to_owned(), values.iter().map(bar).collect())).collect();
-            bars(title, axis, &groups, &series, level)
+        let exact = |value: f64, error: f64| Bar {
+            value,
+            low: value - error,
+            high: value + error,
         };
+        let decay = |c: f64| {
+            (1..9)
+                .map(move |i| (n(i), c / n(i).sqrt()))
+                .map(|(n, e)| (n, exact(e, 0.12 * e)))
+        };
+        let names = [
+            "uniform",
+            "published",
+            "matched",
+            "light",
+            "MIS",
+            "quasi-MC",
+        ];
+        let mut series: Vec<Series> = (0..)
+            .zip(names)
+            .map(|(i, name)| Series::new(name, decay(1.0 / n(i).sqrt())))
+            .collect();
+        series.push(Series::guide(
+            "slope −1/2",
+            [(4.0, 0.6), (4096.0, 0.6 / 32.0)],
+        ));
+        let chart = lines(
+            "Convergence (made up)",
+            Axis::log("samples N"),
+            Axis::log("relative RMS error"),
+            &series,
+        );
+        let interval = |y: f64| Bar {
+            value: y,
+            low: y - 0.2,
+            high: y + 0.1,
+        };
+        let band = (0..50)
+            .map(|i| f64::from(i) / 10.0)
+            .map(|x| (x, interval(x.sin())));
+        let band = [
+            Series::new("sine", band),
+            Series::guide("zero", [(0.0, 0.0), (5.0, 0.0)]),
+        ];
+        let bands = lines(
+            "Intervals (made up)",
+            Axis::linear("x (rad)"),
+            Axis::linear("y"),
+            &band,
+        );
+        let bar = |v: &f64| exact(*v, 0.04 * v);
+        let made_up =
+            |title: &str, axis: Axis, groups: &[&str], rows: &[(&str, &[f64])], level: f64| {
+                let groups: Vec<String> = groups.iter().map(|group| (*group).to_owned()).collect();
+                let series: Vec<(String, Vec<Bar>)> = rows
+                    .iter()
+                    .map(|(name, values)| ((*name).to_owned(), values.iter().map(bar).collect()))
+                    .collect();
+                bars(title, axis, &groups, &series, level)
+            };
         let speed = made_up(
             "Speed (made up)",
             Axis::linear("speed relative to scalar (×)"),
-            &["eval", "sample", "sample and eval, one shading point", "prepare"],
+            &[
+                "eval",
+                "sample",
+                "sample and eval, one shading point",
+                "prepare",
+            ],
             &[
                 ("8 lanes, portable", &[2.1, 2.4, 2.2, 1.4]),
                 ("8 lanes, AVX2 and FMA", &[7.4, 6.1, 6.6, 3.9]),
@@ -211,19 +311,38 @@ mod tests {
             ],
             0.0,
         );
-        let gather =
-            AnyBsdf::from(Bsdf::new(&Hair(Gaussian), &default_hair())).prepare(fibre_direction(0.35, 0.0).as_vec3());
+        let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), &default_hair()))
+            .prepare(fibre_direction(0.35, 0.0).as_vec3());
         let grid = SphereGrid::sample((90, 180), &mut |theta, phi| reflected(&gather, theta, phi));
-        let heat = heat_map("S cos θᵢ of the default hair, θₒ = 20°", Axis::linear("S cos θᵢ (1/sr)"), &grid);
-        let heat_log = heat_map("The same, logarithmic", Axis::log("S cos θᵢ (1/sr)").range(1e-4, 2.0), &grid);
+        let heat = heat_map(
+            "S cos θᵢ of the default hair, θₒ = 20°",
+            Axis::linear("S cos θᵢ (1/sr)"),
+            &grid,
+        );
+        let heat_log = heat_map(
+            "The same, logarithmic",
+            Axis::log("S cos θᵢ (1/sr)").range(1e-4, 2.0),
+            &grid,
+        );
         let numbers = ["θₒ = 0°", "θₒ = 45°", "θₒ = 75°", "gain over uniform"];
-        let mut table = Table::new("Relative variance V under constant light").texts(["sampler"]).numbers(numbers);
-        for (sampler, v, gain) in [("uniform", [0.706, 0.931, 2.268], 1.0), ("published", [0.209, 0.189, 0.29], 7.82)] {
+        let mut table = Table::new("Relative variance V under constant light")
+            .texts(["sampler"])
+            .numbers(numbers);
+        for (sampler, v, gain) in [
+            ("uniform", [0.706, 0.931, 2.268], 1.0),
+            ("published", [0.209, 0.189, 0.29], 7.82),
+        ] {
             let cells = v.map(|v| number::with_error(v, 0.005 * v));
-            table.push([sampler.to_owned()].into_iter().chain(cells).chain([number::ratio(gain)]));
+            table.push(
+                [sampler.to_owned()]
+                    .into_iter()
+                    .chain(cells)
+                    .chain([number::ratio(gain)]),
+            );
         }
         let table = table.note("2²⁰ samples a cell; ± is one standard error.");
-        let charts = [chart, bands, speed, variance, heat, heat_log].map(|svg| Drawing::new("", svg, "Made up."));
+        let charts = [chart, bands, speed, variance, heat, heat_log]
+            .map(|svg| Drawing::new("", svg, "Made up."));
         let text = "Some text that is long enough to fill more than a line, so that its measure can be judged on screens of any width.";
         let page = Report {
             title: "hairis: scalar against SIMD, Gaussian against Cauchy".to_owned(),
@@ -231,7 +350,10 @@ mod tests {
             findings: vec!["Eight lanes are 7.1× as fast as one (`sample`, AVX2).".to_owned()],
             sections: vec![
                 Section::new("Variance").paragraph(text).tables([table]),
-                Section::new("Figures").paragraph("Every kind of chart.").figures(all()).figures(charts),
+                Section::new("Figures")
+                    .paragraph("Every kind of chart.")
+                    .figures(all())
+                    .figures(charts),
                 Section::new("Method").facts(&[["CPU", "Example CPU @ 3.00 GHz"]]),
             ],
             ..Report::default()
@@ -239,11 +361,16 @@ mod tests {
         .html();
         well_formed(&page).expect("the page nests");
         let folder = tempfile::tempdir().expect("a folder");
-        let folder = std::env::var_os("HAIRIS_GALLERY").map_or(folder.path().to_owned(), Into::into);
+        let folder =
+            std::env::var_os("HAIRIS_GALLERY").map_or(folder.path().to_owned(), Into::into);
         std::fs::write(folder.join("gallery.html"), &page).expect("the page is written");
         for (i, part) in page.split("<svg ").skip(1).enumerate() {
             let svg = part.split_once("</svg>").expect("an end").0;
-            std::fs::write(folder.join(format!("{}.svg", i + 1)), format!("<svg {svg}</svg>\n")).expect("written");
+            std::fs::write(
+                folder.join(format!("{}.svg", i + 1)),
+                format!("<svg {svg}</svg>\n"),
+            )
+            .expect("written");
         }
     }
 }

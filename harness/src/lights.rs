@@ -20,7 +20,10 @@ pub(crate) fn lights(environment: Option<&Environment>) -> Vec<&dyn Light> {
         Sun::five_degrees(fibre_direction(theta, phi))
     });
     let lights: [&dyn Light; 4] = [&Constant, &Smooth, &*SUN, &Rectangle];
-    lights.into_iter().chain(environment.map(|map| map as &dyn Light)).collect()
+    lights
+        .into_iter()
+        .chain(environment.map(|map| map as &dyn Light))
+        .collect()
 }
 
 /// A light's name in a sentence.

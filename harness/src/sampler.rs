@@ -32,7 +32,13 @@ pub enum Sampler {
 
 impl Sampler {
     /// Every sampler, in the order of reports.
-    pub const ALL: [Self; 5] = [Self::Uniform, Self::Published, Self::Matched5, Self::Matched, Self::Matched25];
+    pub const ALL: [Self; 5] = [
+        Self::Uniform,
+        Self::Published,
+        Self::Matched5,
+        Self::Matched,
+        Self::Matched25,
+    ];
 
     /// Name in reports and in rows.
     pub(crate) fn name(self) -> &'static str {
@@ -80,17 +86,26 @@ impl Sampler {
 ///   reaches at `theta_i = -theta_o`.
 /// - `published`: none in closed form. Its glints end at `|phi| = pi/2`; other lobes sample their tails beyond it.
 /// - `matched`: the integral of all lobes, times the largest ratio of W to its constant in a band.
-pub(crate) fn weight_bound(model: ModelKind, sampler: Sampler, params: &HairParams, theta_o: f64) -> Option<f64> {
+pub(crate) fn weight_bound(
+    model: ModelKind,
+    sampler: Sampler,
+    params: &HairParams,
+    theta_o: f64,
+) -> Option<f64> {
     if sampler == Sampler::Uniform {
         let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
         let desc = params.desc();
         let glints = 1.0 + f64::from(desc.intensity_g);
-        let peak = mean(desc.intensity_r) + mean(desc.intensity_tt) + mean(desc.intensity_trt) * glints;
+        let peak =
+            mean(desc.intensity_r) + mean(desc.intensity_tt) + mean(desc.intensity_trt) * glints;
         return Some(4.0 * core::f64::consts::PI * peak / theta_o.cos());
     }
     let bands = sampler.bands()?;
     let wo = fibre_direction(theta_o, 0.0).to_array();
-    Some(MatchedReference::prepare(&Parameters::from(params), model.shape(), wo, bands).weight_bound(LobeMask::ALL))
+    Some(
+        MatchedReference::prepare(&Parameters::from(params), model.shape(), wo, bands)
+            .weight_bound(LobeMask::ALL),
+    )
 }
 
 /// Density of a uniform direction, per steradian.
@@ -106,7 +121,10 @@ pub(crate) struct Scatter {
 impl Scatter {
     /// This hair, seen from `wo`.
     pub(crate) fn new(model: ModelKind, sampler: Sampler, params: &HairParams, wo: Vec3) -> Self {
-        Self { gather: bsdf(model, sampler, params).prepare(wo), is_uniform: sampler == Sampler::Uniform }
+        Self {
+            gather: bsdf(model, sampler, params).prepare(wo),
+            is_uniform: sampler == Sampler::Uniform,
+        }
     }
 
     /// A prepared shading point, with the model's own sampler or with uniform directions.
@@ -125,7 +143,14 @@ impl Scatter {
 
     pub(crate) fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
         let eval = self.gather.eval_pdf8(wi);
-        if self.is_uniform { Eval8 { pdf: f32x8::splat(UNIFORM_PDF), ..eval } } else { eval }
+        if self.is_uniform {
+            Eval8 {
+                pdf: f32x8::splat(UNIFORM_PDF),
+                ..eval
+            }
+        } else {
+            eval
+        }
     }
 }
 
@@ -157,7 +182,13 @@ pub(crate) fn uniform_sample8(wi: Vec3x8, eval: Eval8) -> Sample8 {
     let factor = cosine(&wi) * f32x8::splat(1.0 / UNIFORM_PDF);
     let [r, g, b] = eval.value;
     let weight = [r * factor, g * factor, b * factor];
-    Sample8 { wi, value: eval.value, pdf: f32x8::splat(UNIFORM_PDF), weight, slot: f32x8::ZERO }
+    Sample8 {
+        wi,
+        value: eval.value,
+        pdf: f32x8::splat(UNIFORM_PDF),
+        weight,
+        slot: f32x8::ZERO,
+    }
 }
 
 #[cfg(test)]
@@ -184,7 +215,10 @@ mod tests {
         }
         // Standard errors of 0.0032 and 0.0017.
         assert!(sum.abs().max_element() < 0.015, "{sum}");
-        assert!((squares - Vec3::splat(1.0 / 3.0)).abs().max_element() < 0.008, "{squares}");
+        assert!(
+            (squares - Vec3::splat(1.0 / 3.0)).abs().max_element() < 0.008,
+            "{squares}"
+        );
     }
 
     #[test]
@@ -206,10 +240,16 @@ mod tests {
                         let wi = sample.wi.lane(lane);
                         let cos = f64::from(wi.y).hypot(f64::from(wi.z));
                         let place = format!("{model:?} {sampler:?} at {wi}");
-                        assert!((at(&sample.pdf) / at(&eval.pdf) - 1.0).abs() < 1e-3, "{place}: pdf");
+                        assert!(
+                            (at(&sample.pdf) / at(&eval.pdf) - 1.0).abs() < 1e-3,
+                            "{place}: pdf"
+                        );
                         for c in 0..3 {
                             let want = at(&eval.value[c]) * cos / at(&eval.pdf);
-                            assert!((at(&sample.weight[c]) - want).abs() <= 1e-3 * want + 1e-20, "{place}: weight");
+                            assert!(
+                                (at(&sample.weight[c]) - want).abs() <= 1e-3 * want + 1e-20,
+                                "{place}: weight"
+                            );
                         }
                     }
                 }
@@ -224,17 +264,34 @@ mod tests {
         for theta_o in [0.0_f64, 0.8, 1.4] {
             let wo = hairis_instruments::direction::direction(theta_o.sin(), theta_o.cos(), 1.0);
             for model in ModelKind::ALL {
-                for sampler in Sampler::ALL.into_iter().filter(|sampler| *sampler != Sampler::Published) {
-                    let bound = weight_bound(model, sampler, &params, theta_o).expect("there is one");
+                for sampler in Sampler::ALL
+                    .into_iter()
+                    .filter(|sampler| *sampler != Sampler::Published)
+                {
+                    let bound =
+                        weight_bound(model, sampler, &params, theta_o).expect("there is one");
                     let gather = Scatter::new(model, sampler, &params, wo);
                     let mut most = 0.0_f32;
                     for _ in 0..20_000 {
                         let weight = gather.sample8(&numbers(&mut from)).weight;
-                        most = (weight[0] + weight[1] + weight[2]).to_array().into_iter().fold(most, f32::max);
+                        most = (weight[0] + weight[1] + weight[2])
+                            .to_array()
+                            .into_iter()
+                            .fold(most, f32::max);
                     }
-                    let (most, near) = (f64::from(most) / 3.0, if sampler == Sampler::Uniform { 0.1 } else { 0.5 });
+                    let (most, near) = (
+                        f64::from(most) / 3.0,
+                        if sampler == Sampler::Uniform {
+                            0.1
+                        } else {
+                            0.5
+                        },
+                    );
                     let place = format!("{model:?} {sampler:?} at {theta_o}");
-                    assert!(most <= bound * (1.0 + 1e-5) && most > near * bound, "{place}: {most} of {bound}");
+                    assert!(
+                        most <= bound * (1.0 + 1e-5) && most > near * bound,
+                        "{place}: {most} of {bound}"
+                    );
                 }
             }
         }

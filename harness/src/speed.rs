@@ -47,7 +47,10 @@ pub struct SpeedConfig {
 impl SpeedConfig {
     /// About twenty seconds; if `quick`, four.
     pub(crate) const fn new(seed: u64, quick: bool) -> Self {
-        Self { seconds: if quick { 4.0 } else { 20.0 }, seed }
+        Self {
+            seconds: if quick { 4.0 } else { 20.0 },
+            seed,
+        }
     }
 }
 
@@ -104,10 +107,16 @@ pub struct SpeedReport {
 impl SpeedReport {
     /// The row of a contender, by operation, model, name and level.
     #[must_use]
-    pub fn row(&self, op: TimedOp, model: &str, contender: &str, level: &str) -> Option<&SpeedResult> {
-        self.rows
-            .iter()
-            .find(|row| row.op == op && row.model == model && row.contender == contender && row.level == level)
+    pub fn row(
+        &self,
+        op: TimedOp,
+        model: &str,
+        contender: &str,
+        level: &str,
+    ) -> Option<&SpeedResult> {
+        self.rows.iter().find(|row| {
+            row.op == op && row.model == model && row.contender == contender && row.level == level
+        })
     }
 }
 
@@ -121,7 +130,11 @@ impl SpeedReport {
 pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedReport, ParamError> {
     let mut cells = Vec::new();
     for model in ModelId::defaults_of_names() {
-        cells.extend(contests(model, &draw(model, config.seed))?.into_iter().map(SpeedCell::calibrate));
+        cells.extend(
+            contests(model, &draw(model, config.seed))?
+                .into_iter()
+                .map(SpeedCell::calibrate),
+        );
     }
 
     let start = Instant::now();
@@ -151,16 +164,35 @@ pub fn run(config: &SpeedConfig, mut progress: impl FnMut(f64)) -> Result<SpeedR
 
 /// Uniform directions and numbers; the first parameters are the default, the other seven are drawn.
 fn draw(model: ModelId, seed: u64) -> TimedInputs {
-    let (mut from, default) = (Independent::new(seed, stream_id(&[0x5eed])), model.defaults());
+    let (mut from, default) = (
+        Independent::new(seed, stream_id(&[0x5eed])),
+        model.defaults(),
+    );
     let mut params = [default; 8];
     params[1..].fill_with(|| random(default, &mut from));
-    let narrow = default.fields().iter().filter_map(|field| Some((field, field.narrow?)));
-    let narrow =
-        narrow.fold(default, |values, (field, narrow)| values.with(field.name, &vec![narrow; field.kind.width()]));
-    let mut directions = || (0..TIMED_DIRECTIONS).map(|_| uniform_direction(&mut from)).collect();
+    let narrow = default
+        .fields()
+        .iter()
+        .filter_map(|field| Some((field, field.narrow?)));
+    let narrow = narrow.fold(default, |values, (field, narrow)| {
+        values.with(field.name, &vec![narrow; field.kind.width()])
+    });
+    let mut directions = || {
+        (0..TIMED_DIRECTIONS)
+            .map(|_| uniform_direction(&mut from))
+            .collect()
+    };
     let (wi, wo) = (directions(), directions());
-    let xi = (0..TIMED_DIRECTIONS).map(|_| [from.next_f32(), from.next_f32(), from.next_f32()]).collect();
-    TimedInputs { wi, wo, xi, params, narrow }
+    let xi = (0..TIMED_DIRECTIONS)
+        .map(|_| [from.next_f32(), from.next_f32(), from.next_f32()])
+        .collect();
+    TimedInputs {
+        wi,
+        wo,
+        xi,
+        params,
+        narrow,
+    }
 }
 
 /// The times of a contender.
@@ -182,10 +214,19 @@ impl SpeedCell {
     /// Finds how many passes of each contender make a stretch long enough to time.
     fn calibrate(mut contest: Contest) -> Self {
         let passes = |contender: &mut Contender| {
-            let fastest = (0..5).map(|_| stretch(&mut *contender.task, 1)).fold(f64::INFINITY, f64::min);
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to 1000")]
+            let fastest = (0..5)
+                .map(|_| stretch(&mut *contender.task, 1))
+                .fold(f64::INFINITY, f64::min);
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "from 1 to 1000"
+            )]
             let passes = (MIN_STRETCH / fastest).ceil().clamp(1.0, 1e3) as u32;
-            Times { passes, ns: Vec::new() }
+            Times {
+                passes,
+                ns: Vec::new(),
+            }
         };
         let times = contest.contenders.iter_mut().map(passes).collect();
         Self { contest, times }
@@ -195,7 +236,8 @@ impl SpeedCell {
     fn round(&mut self, round: usize) {
         let count = self.times.len();
         for k in (0..count).map(|k| (k + round) % count) {
-            let (task, Times { passes, ns }) = (&mut self.contest.contenders[k].task, &mut self.times[k]);
+            let (task, Times { passes, ns }) =
+                (&mut self.contest.contenders[k].task, &mut self.times[k]);
             // One stretch untimed: the one before was another's, and left the caches its own and the vector units asleep.
             stretch(&mut **task, *passes);
             let mut time = 0.0;
@@ -205,13 +247,31 @@ impl SpeedCell {
     }
 
     fn rows(self) -> Vec<SpeedResult> {
-        let Self { contest: Contest { op, model, contenders, truth }, times } = self;
+        let Self {
+            contest:
+                Contest {
+                    op,
+                    model,
+                    contenders,
+                    truth,
+                },
+            times,
+        } = self;
         // The two textbooks lead; ratios are to the faster of them.
         let [libm, std] = [0, 1].map(|textbook: usize| times[textbook].ns.clone());
-        let fastest = if quartiles(&std)[1] < quartiles(&libm)[1] { std } else { libm };
+        let fastest = if quartiles(&std)[1] < quartiles(&libm)[1] {
+            std
+        } else {
+            libm
+        };
         let row = |(mut contender, Times { passes, ns }): (Contender, Times)| {
-            let ratios: Vec<f64> = fastest.iter().zip(&ns).map(|(textbook, ns)| textbook / ns).collect();
-            let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) = (quartiles(&ns), quartiles(&ratios));
+            let ratios: Vec<f64> = fastest
+                .iter()
+                .zip(&ns)
+                .map(|(textbook, ns)| textbook / ns)
+                .collect();
+            let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) =
+                (quartiles(&ns), quartiles(&ratios));
             let wrong_share = truth.wrong_share(&contender.task.answers());
             SpeedResult {
                 op,
@@ -285,25 +345,47 @@ mod tests {
 
     #[test]
     fn every_contender_answers_every_direction() {
-        for Contest { op, contenders, truth, .. } in kajiya_kay() {
+        for Contest {
+            op,
+            contenders,
+            truth,
+            ..
+        } in kajiya_kay()
+        {
             for mut contender in contenders {
                 let wrong = truth.wrong_share(&contender.task.answers());
-                assert!(wrong <= MAX_WRONG, "{} {} {}: {wrong}", op.label(), contender.name, contender.level);
+                assert!(
+                    wrong <= MAX_WRONG,
+                    "{} {} {}: {wrong}",
+                    op.label(),
+                    contender.name,
+                    contender.level
+                );
             }
         }
     }
 
     #[test]
     fn one_wrong_lane_in_eight_fails() {
-        let Contest { contenders, truth, .. } =
-            kajiya_kay().into_iter().find(|contest| contest.op == TimedOp::EvalPdf).expect("among all");
-        let mut eight = contenders.into_iter().find(|contender| contender.name == "eight lanes").expect("among all");
+        let Contest {
+            contenders, truth, ..
+        } = kajiya_kay()
+            .into_iter()
+            .find(|contest| contest.op == TimedOp::EvalPdf)
+            .expect("among all");
+        let mut eight = contenders
+            .into_iter()
+            .find(|contender| contender.name == "eight lanes")
+            .expect("among all");
         let mut answers = eight.task.answers();
         assert!(truth.wrong_share(&answers) <= MAX_WRONG, "right answers");
         for answer in answers.iter_mut().step_by(8) {
             answer.pdf = answer.pdf.map(|pdf| 1.01 * pdf);
         }
-        assert!(truth.wrong_share(&answers) >= 0.12, "a wrong density passed");
+        assert!(
+            truth.wrong_share(&answers) >= 0.12,
+            "a wrong density passed"
+        );
         answers.truncate(TIMED_DIRECTIONS - 1);
         assert_eq!(truth.wrong_share(&answers), 1.0, "an answer is missing");
     }

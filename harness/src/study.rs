@@ -80,7 +80,10 @@ pub struct StudyBudget {
 impl StudyBudget {
     /// Samples of a light to one of a sampler.
     fn ratio(self) -> f32x8 {
-        #[expect(clippy::cast_possible_truncation, reason = "a ratio of two small numbers")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "a ratio of two small numbers"
+        )]
         f32x8::splat((self.light_samples as f64 / self.samples as f64) as f32)
     }
 }
@@ -107,9 +110,17 @@ impl Plan<'_> {
     #[must_use]
     pub const fn budget(&self) -> StudyBudget {
         if self.quick {
-            StudyBudget { samples: 1 << 15, light_samples: 1 << 12, pools: 128 }
+            StudyBudget {
+                samples: 1 << 15,
+                light_samples: 1 << 12,
+                pools: 128,
+            }
         } else {
-            StudyBudget { samples: 1 << 18, light_samples: 1 << 15, pools: 256 }
+            StudyBudget {
+                samples: 1 << 18,
+                light_samples: 1 << 15,
+                pools: 256,
+            }
         }
     }
 
@@ -118,21 +129,38 @@ impl Plan<'_> {
     pub fn header(&self, shard: Shard) -> Header {
         let machine = machine!();
         let budget = self.budget();
-        let changed = if machine.dirty == Some(true) { "+changes" } else { "" };
+        let changed = if machine.dirty == Some(true) {
+            "+changes"
+        } else {
+            ""
+        };
         Header {
             format: part::FORMAT.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: format!("{}{changed}", machine.commit),
-            level: format!("{}, compiled for {}", Level::detect().name(), machine.target_features.join("+")),
+            level: format!(
+                "{}, compiled for {}",
+                Level::detect().name(),
+                machine.target_features.join("+")
+            ),
             quick: self.quick,
             seed: self.seed,
             samples: budget.samples,
             light_samples: budget.light_samples,
             pools: budget.pools,
             environment: part::digest(self.environment),
-            models: ModelKind::ALL.iter().map(|model| model.name().to_owned()).collect(),
-            samplers: Sampler::ALL.iter().map(|sampler| sampler.name().to_owned()).collect(),
-            lights: lights(Some(self.environment)).iter().map(|light| light.name().to_owned()).collect(),
+            models: ModelKind::ALL
+                .iter()
+                .map(|model| model.name().to_owned())
+                .collect(),
+            samplers: Sampler::ALL
+                .iter()
+                .map(|sampler| sampler.name().to_owned())
+                .collect(),
+            lights: lights(Some(self.environment))
+                .iter()
+                .map(|light| light.name().to_owned())
+                .collect(),
             cells: self.grid().len(),
             shard: shard.to_string(),
         }
@@ -144,7 +172,11 @@ impl Plan<'_> {
 /// # Errors
 ///
 /// The first that `keep` gave, or the hair's: the cells in work are then finished, and no others begun.
-pub fn run(plan: &Plan<'_>, todo: &[usize], keep: impl Fn(Finished) -> Result<(), Error> + Sync) -> Result<(), Error> {
+pub fn run(
+    plan: &Plan<'_>,
+    todo: &[usize],
+    keep: impl Fn(Finished) -> Result<(), Error> + Sync,
+) -> Result<(), Error> {
     let (grid, budget) = (plan.grid(), plan.budget());
     let lights = lights(Some(plan.environment));
     todo.par_iter().with_max_len(1).try_for_each(|&index| {
@@ -165,6 +197,12 @@ pub(crate) fn variances(
     cell: &Cell,
     samplers: &[Sampler],
 ) -> Result<Vec<Estimate>, ParamError> {
-    let found = cell::measure(plan.seed, budget, &lights(Some(plan.environment)), cell, samplers)?;
+    let found = cell::measure(
+        plan.seed,
+        budget,
+        &lights(Some(plan.environment)),
+        cell,
+        samplers,
+    )?;
     Ok(found.iter().map(|of| of.figures.v).collect())
 }

@@ -63,10 +63,21 @@ pub fn random(mut values: Values, xi: &mut Independent) -> Values {
             let mut number = || match (field.kind, field.draw) {
                 #[expect(clippy::cast_precision_loss, reason = "a few words")]
                 (Kind::Word(words), _) => Some((xi.next_f32() * words.len() as f32).floor()),
-                (_, Some(Draw { least, most, unit, log: false })) => {
-                    Some((least + (most - least) * xi.next_f32()) * unit)
-                }
-                (_, Some(Draw { least, most, unit, .. })) => Some(least * (most / least).powf(xi.next_f32()) * unit),
+                (
+                    _,
+                    Some(Draw {
+                        least,
+                        most,
+                        unit,
+                        log: false,
+                    }),
+                ) => Some((least + (most - least) * xi.next_f32()) * unit),
+                (
+                    _,
+                    Some(Draw {
+                        least, most, unit, ..
+                    }),
+                ) => Some(least * (most / least).powf(xi.next_f32()) * unit),
                 _ => None,
             };
             let numbers: Option<Vec<f32>> = (0..field.kind.width()).map(|_| number()).collect();
@@ -83,8 +94,13 @@ pub(crate) fn values_json(values: &Values) -> serde_json::Value {
         Kind::Word(_) => serde_json::json!(values.word(field.name)),
         _ => serde_json::json!(values.numbers(field.name)),
     };
-    let given = values.fields().iter().filter(|field| values.has(field.name));
-    given.map(|field| (field.name.to_owned(), json(field))).collect()
+    let given = values
+        .fields()
+        .iter()
+        .filter(|field| values.has(field.name));
+    given
+        .map(|field| (field.name.to_owned(), json(field)))
+        .collect()
 }
 
 /// Hair drawn over the range of the everyday: widths log-uniform in 1 to 30 degrees, shifts uniform within 15 degrees,
@@ -104,7 +120,12 @@ mod tests {
     #[test]
     fn random_hair_is_accepted_and_differs() {
         let mut xi = Independent::new(3, 0);
-        let hair: Vec<HairParams> = (0..1_000).map(|_| random_hair(&mut xi).expect("within range")).collect();
-        assert!(hair.windows(2).all(|pair| pair[0] != pair[1]), "two draws are the same hair");
+        let hair: Vec<HairParams> = (0..1_000)
+            .map(|_| random_hair(&mut xi).expect("within range"))
+            .collect();
+        assert!(
+            hair.windows(2).all(|pair| pair[0] != pair[1]),
+            "two draws are the same hair"
+        );
     }
 }

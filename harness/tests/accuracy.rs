@@ -33,14 +33,29 @@ fn cauchy_is_within_its_bounds_of_the_oracle() {
 fn check(model: ModelId, shape: Shape, s_bound: f64) {
     let mut source = Cases::new(SEED);
     let cases: Vec<Case> = (0..CASES).map(|i| source.case(i)).collect();
-    let mut paths = vec![("scalar".to_owned(), cases.iter().map(|case| scalar(model, case)).collect())];
-    paths.extend(Level::available().map(|level| (format!("x8 {level}"), eight(model, level, &cases))));
+    let mut paths = vec![(
+        "scalar".to_owned(),
+        cases.iter().map(|case| scalar(model, case)).collect(),
+    )];
+    paths.extend(
+        Level::available().map(|level| (format!("x8 {level}"), eight(model, level, &cases))),
+    );
     let (mut report, mut failed) = (String::new(), false);
     for (path, answers) in &paths {
-        failed |= compare(&mut report, &format!("{} {path}", model.name()), shape, s_bound, &cases, answers);
+        failed |= compare(
+            &mut report,
+            &format!("{} {path}", model.name()),
+            shape,
+            s_bound,
+            &cases,
+            answers,
+        );
     }
     println!("{report}");
-    assert!(!failed, "relative errors against the oracle in double precision:\n{report}");
+    assert!(
+        !failed,
+        "relative errors against the oracle in double precision:\n{report}"
+    );
 }
 
 fn scalar(model: ModelId, case: &Case) -> Answer {
@@ -55,7 +70,9 @@ fn eight(model: ModelId, level: Level, cases: &[Case]) -> Vec<Answer> {
     let group = |group: &[Case; 8]| {
         let materials: [AnyBsdf; 8] = from_fn(|i| bsdf(model, &group[i]));
         let wo = Vec3x8::from(group.map(|case| case.wo));
-        let gathers = AnyBsdf8::pack(materials.each_ref()).unwrap().prepare8_at(level, &wo);
+        let gathers = AnyBsdf8::pack(materials.each_ref())
+            .unwrap()
+            .prepare8_at(level, &wo);
         let evals = gathers.eval_pdf8_at(level, &Vec3x8::from(group.map(|case| case.wi)));
         [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| (evals.lane(lane).value, evals.lane(lane).pdf))
     };
@@ -71,20 +88,43 @@ fn params(case: &Case) -> HairParams {
 }
 
 /// Reports the worst and the 99.9th percentile of each region; true if a bound is not kept.
-fn compare(report: &mut String, name: &str, shape: Shape, s_bound: f64, cases: &[Case], answers: &[Answer]) -> bool {
+fn compare(
+    report: &mut String,
+    name: &str,
+    shape: Shape,
+    s_bound: f64,
+    cases: &[Case],
+    answers: &[Answer],
+) -> bool {
     let mut failed = false;
-    let errors: Vec<[f64; 2]> = cases.iter().zip(answers).map(|(case, answer)| errors(shape, case, answer)).collect();
+    let errors: Vec<[f64; 2]> = cases
+        .iter()
+        .zip(answers)
+        .map(|(case, answer)| errors(shape, case, answer))
+        .collect();
     for (quantity, (label, bound)) in [("pdf", PDF), ("S", s_bound)].into_iter().enumerate() {
         for region in Region::ALL {
             let of_region = |i: &usize| cases[*i].region == region;
             let mut at: Vec<usize> = (0..cases.len()).filter(of_region).collect();
             at.sort_by(|a, b| errors[*a][quantity].total_cmp(&errors[*b][quantity]));
             let worst = at[at.len() - 1];
-            let (most, high) = (errors[worst][quantity], errors[at[at.len() * 999 / 1000]][quantity]);
-            writeln!(report, "{name}: {label:3} {region:9?} worst {most:.2e}, 99.9% below {high:.2e}").unwrap();
+            let (most, high) = (
+                errors[worst][quantity],
+                errors[at[at.len() * 999 / 1000]][quantity],
+            );
+            writeln!(
+                report,
+                "{name}: {label:3} {region:9?} worst {most:.2e}, 99.9% below {high:.2e}"
+            )
+            .unwrap();
             if most.is_nan() || most > bound {
                 failed = true;
-                writeln!(report, "  beyond {bound:e}: {:?} gave {:?}", cases[worst], answers[worst]).unwrap();
+                writeln!(
+                    report,
+                    "  beyond {bound:e}: {:?} gave {:?}",
+                    cases[worst], answers[worst]
+                )
+                .unwrap();
             }
         }
     }
@@ -101,13 +141,25 @@ fn errors(shape: Shape, case: &Case, (value, pdf): &Answer) -> [f64; 2] {
     let oracle = HairReference::prepare(&parameters, shape, double(case.wo));
     let expected = oracle.eval(double(case.wi));
     let cos_theta_d = (0.5 * (angles(case.wo).0 - angles(case.wi).0)).cos();
-    let bell = if shape == Shape::Gaussian { 2.0_f64.powi(-114) } else { 0.0 };
+    let bell = if shape == Shape::Gaussian {
+        2.0_f64.powi(-114)
+    } else {
+        0.0
+    };
     let channel = |c: usize| {
         let p = &parameters;
-        let peaks = p.intensity_r[c] + p.intensity_tt[c] + p.intensity_trt[c] * (1.0 + p.intensity_g);
-        relative(value[c], expected[c], bell * peaks / (cos_theta_d * cos_theta_d))
+        let peaks =
+            p.intensity_r[c] + p.intensity_tt[c] + p.intensity_trt[c] * (1.0 + p.intensity_g);
+        relative(
+            value[c],
+            expected[c],
+            bell * peaks / (cos_theta_d * cos_theta_d),
+        )
     };
-    [relative(*pdf, oracle.pdf(double(case.wi)), 0.0), channel(0).max(channel(1)).max(channel(2))]
+    [
+        relative(*pdf, oracle.pdf(double(case.wi)), 0.0),
+        channel(0).max(channel(1)).max(channel(2)),
+    ]
 }
 
 /// The part of an error beyond `allowed`, relative to what was expected.

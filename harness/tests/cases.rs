@@ -23,7 +23,13 @@ pub(crate) enum Region {
 }
 
 impl Region {
-    pub(crate) const ALL: [Self; 5] = [Self::Sphere, Self::Peaks, Self::Grazing, Self::Back, Self::GlintCut];
+    pub(crate) const ALL: [Self; 5] = [
+        Self::Sphere,
+        Self::Peaks,
+        Self::Grazing,
+        Self::Back,
+        Self::GlintCut,
+    ];
 }
 
 /// A shading point and a direction.
@@ -60,7 +66,12 @@ impl Cases {
             let from_cut = (phi.cos().asin()).abs();
             let off_axis = |w: Vec3| w.as_dvec3().y.hypot(w.as_dvec3().z) > FROM_AXIS;
             if from_cut > CUT_BAND && off_axis(wo) && off_axis(wi) {
-                return Case { region, desc, wo, wi };
+                return Case {
+                    region,
+                    desc,
+                    wo,
+                    wi,
+                };
             }
         }
     }
@@ -94,7 +105,11 @@ impl Cases {
     /// Random hair, some of whose colours, channels and glints are 0.
     fn desc(&mut self) -> HairDesc {
         let mut desc = *random_hair(&mut self.0).expect("within range").desc();
-        for color in [&mut desc.intensity_r, &mut desc.intensity_tt, &mut desc.intensity_trt] {
+        for color in [
+            &mut desc.intensity_r,
+            &mut desc.intensity_tt,
+            &mut desc.intensity_trt,
+        ] {
             let black = self.chance(0.2);
             for channel in color {
                 if black || self.chance(0.1) {
@@ -116,15 +131,21 @@ impl Cases {
         match region {
             Region::Sphere => {}
             Region::Peaks => {
-                let (alpha, beta) =
-                    [(desc.alpha_r, desc.beta_r), (desc.alpha_tt, desc.beta_tt), (desc.alpha_trt, desc.beta_trt)]
-                        [self.0.next_below(3)];
+                let (alpha, beta) = [
+                    (desc.alpha_r, desc.beta_r),
+                    (desc.alpha_tt, desc.beta_tt),
+                    (desc.alpha_trt, desc.beta_trt),
+                ][self.0.next_below(3)];
                 let theta_h = f64::from(alpha) + f64::from(beta) * self.between(-4.0, 4.0);
                 let theta_i = (2.0 * theta_h - sin_o.atan2(cos_o)).clamp(-FRAC_PI_2, FRAC_PI_2);
                 (cos_i, sin_i) = (theta_i.cos(), theta_i.sin());
                 phi = match self.0.next_below(3) {
                     0 => PI - f64::from(desc.gamma_tt) * self.between(-4.0, 4.0),
-                    1 => self.sign() * (f64::from(desc.phi_g) + f64::from(desc.gamma_g) * self.between(-4.0, 4.0)),
+                    1 => {
+                        self.sign()
+                            * (f64::from(desc.phi_g)
+                                + f64::from(desc.gamma_g) * self.between(-4.0, 4.0))
+                    }
                     _ => phi,
                 };
             }
@@ -138,9 +159,14 @@ impl Cases {
                 }
             }
             Region::Back => phi = self.sign() * (PI - self.log_between(1e-4, 1e-2)),
-            Region::GlintCut => phi = self.sign() * (FRAC_PI_2 + self.sign() * self.log_between(1e-5, 1e-2)),
+            Region::GlintCut => {
+                phi = self.sign() * (FRAC_PI_2 + self.sign() * self.log_between(1e-5, 1e-2))
+            }
         }
-        (direction(sin_o, cos_o, phi_o), direction(sin_i, cos_i, (phi_o - phi) % TAU))
+        (
+            direction(sin_o, cos_o, phi_o),
+            direction(sin_i, cos_i, (phi_o - phi) % TAU),
+        )
     }
 
     /// Cosine and sine of the inclination of a direction uniform on the sphere.

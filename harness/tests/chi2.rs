@@ -6,7 +6,9 @@ use core::fmt::Write as _;
 use glam::Vec3;
 use hairis::reference::{HairReference, MatchedReference, Parameters, Shape};
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Gaussian, HairDesc, HairParams, Lobe, LobeMask, Matched, Model, PerLobe, Sample8};
+use hairis::{
+    Bsdf, Gaussian, HairDesc, HairParams, Lobe, LobeMask, Matched, Model, PerLobe, Sample8,
+};
 use hairis_conformance::statistics::{AngleEdges, ChiSquare, chi_square, ks_statistic};
 use hairis_instruments::sequence::Independent;
 use hairis_instruments::stats::sidak;
@@ -27,10 +29,21 @@ fn materials() -> [(&'static str, HairParams); 3] {
     let all = |degrees: f32| {
         let width = degrees.to_radians();
         let (beta_r, beta_tt, beta_trt) = (width, width, width);
-        let desc = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: width, gamma_g: width, ..HairDesc::default() };
+        let desc = HairDesc {
+            beta_r,
+            beta_tt,
+            beta_trt,
+            gamma_tt: width,
+            gamma_g: width,
+            ..HairDesc::default()
+        };
         HairParams::new(&desc).unwrap()
     };
-    [("default", HairParams::default()), ("narrow", all(0.5)), ("wide", all(60.0))]
+    [
+        ("default", HairParams::default()),
+        ("narrow", all(0.5)),
+        ("wide", all(60.0)),
+    ]
 }
 
 /// The default set with every width times `factor`.
@@ -38,7 +51,15 @@ fn widened(factor: f32) -> HairParams {
     let d = HairDesc::default();
     let (beta_r, beta_tt, beta_trt) = (d.beta_r * factor, d.beta_tt * factor, d.beta_trt * factor);
     let (gamma_tt, gamma_g) = (d.gamma_tt * factor, d.gamma_g * factor);
-    HairParams::new(&HairDesc { beta_r, beta_tt, beta_trt, gamma_tt, gamma_g, ..d }).unwrap()
+    HairParams::new(&HairDesc {
+        beta_r,
+        beta_tt,
+        beta_trt,
+        gamma_tt,
+        gamma_g,
+        ..d
+    })
+    .unwrap()
 }
 
 fn wo(degrees: f32) -> Vec3 {
@@ -53,7 +74,10 @@ fn double(v: Vec3) -> [f64; 3] {
 /// Sine and cosine of `theta_i` and of `phi_o - phi_i`, each pair times a length.
 fn sides(wo: Vec3, wi: Vec3) -> [[f64; 2]; 2] {
     let ([_, v_o, w_o], [u, v, w]) = (double(wo), double(wi));
-    [[u, (v * v + w * w).sqrt()], [v * w_o - w * v_o, v * v_o + w * w_o]]
+    [
+        [u, (v * v + w * w).sqrt()],
+        [v * w_o - w * v_o, v * v_o + w * w_o],
+    ]
 }
 
 /// `theta_i` and `phi_o - phi_i` in (-pi, pi].
@@ -67,7 +91,11 @@ type Draw = Box<dyn Fn(&[f32x8; 3]) -> Sample8>;
 /// Samples of a model of the registry.
 fn registered(model: ModelId) -> impl Fn(&HairParams, Vec3, LobeMask) -> Draw {
     move |params, wo, mask| {
-        let gather = model.bsdf(&params.values()).unwrap().prepare(wo).with_lobes(mask);
+        let gather = model
+            .bsdf(&params.values())
+            .unwrap()
+            .prepare(wo)
+            .with_lobes(mask);
         Box::new(move |xi| gather.sample8(xi))
     }
 }
@@ -150,7 +178,10 @@ impl SphereCells {
         let of = |lobe: Lobe| share[lobe.index()] * f64::from(mask.factor(lobe));
         let total: f64 = Lobe::ALL.into_iter().map(of).sum();
         let inner = FRAC_PI_2 - GRAZING;
-        let (mut theta, mut phi) = (vec![-inner, inner], vec![-PI, -FRAC_PI_2, 0.0, FRAC_PI_2, PI]);
+        let (mut theta, mut phi) = (
+            vec![-inner, inner],
+            vec![-PI, -FRAC_PI_2, 0.0, FRAC_PI_2, PI],
+        );
         for i in 1..12 {
             let even = f64::from(i) / 12.0;
             theta.push(inner * (2.0 * even - 1.0));
@@ -174,7 +205,11 @@ impl SphereCells {
             let number = f64::from(SAMPLES) * of(lobe) / total;
             // Every cdf of phi ascends from -pi to 0 and from 0 to pi, and some jump between.
             let part = |ends: &[f64]| {
-                let end = if ends[1] == 0.0 { -f64::MIN_POSITIVE } else { ends[1] };
+                let end = if ends[1] == 0.0 {
+                    -f64::MIN_POSITIVE
+                } else {
+                    ends[1]
+                };
                 let start = if ends[0] == -PI { -PI + 1e-15 } else { ends[0] };
                 reference.cdf_phi(lobe, end) - reference.cdf_phi(lobe, start)
             };
@@ -182,13 +217,21 @@ impl SphereCells {
             let mut cells = expected.iter_mut();
             for row in theta.windows(2) {
                 let row = reference.cdf_theta(lobe, row[1]) - reference.cdf_theta(lobe, row[0]);
-                columns.iter().zip(&mut cells).for_each(|(column, cell)| *cell += number * row * column);
+                columns
+                    .iter()
+                    .zip(&mut cells)
+                    .for_each(|(column, cell)| *cell += number * row * column);
             }
             let caps = reference.cdf_theta(lobe, -inner) + 1.0 - reference.cdf_theta(lobe, inner);
             *expected.last_mut().unwrap() += number * caps;
         }
         let edges = [AngleEdges::new(&theta), AngleEdges::new(&phi)];
-        Self { theta, phi, edges, expected }
+        Self {
+            theta,
+            phi,
+            edges,
+            expected,
+        }
     }
 
     fn index(&self, wo: Vec3, wi: Vec3) -> usize {
@@ -196,7 +239,11 @@ impl SphereCells {
         let row = self.edges[0].below(theta);
         let column = self.edges[1].below(phi).clamp(1, self.phi.len() - 1);
         let inside = (1..self.theta.len()).contains(&row);
-        if inside { (row - 1) * (self.phi.len() - 1) + column - 1 } else { self.expected.len() - 1 }
+        if inside {
+            (row - 1) * (self.phi.len() - 1) + column - 1
+        } else {
+            self.expected.len() - 1
+        }
     }
 
     /// Counts a million samples and tests them.
@@ -215,10 +262,16 @@ impl SphereCells {
         let mut cells = observed.iter().zip(&self.expected);
         for theta in self.theta.windows(2) {
             for (phi, (o, e)) in self.phi.windows(2).zip(&mut cells) {
-                writeln!(text, "{},{},{},{},{o},{e}", theta[0], theta[1], phi[0], phi[1]).unwrap();
+                writeln!(
+                    text,
+                    "{},{},{},{},{o},{e}",
+                    theta[0], theta[1], phi[0], phi[1]
+                )
+                .unwrap();
             }
         }
-        let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}.csv", name.replace(' ', "-")));
+        let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"))
+            .join(format!("{}.csv", name.replace(' ', "-")));
         std::fs::write(&path, text).unwrap();
         path.display().to_string()
     }
@@ -226,7 +279,9 @@ impl SphereCells {
 
 /// The lobes one by one, and their mixture.
 fn masks() -> impl Iterator<Item = (String, LobeMask)> {
-    let alone = Lobe::ALL.into_iter().map(|lobe| (format!("{lobe:?}"), LobeMask::of(&[lobe])));
+    let alone = Lobe::ALL
+        .into_iter()
+        .map(|lobe| (format!("{lobe:?}"), LobeMask::of(&[lobe])));
     alone.chain([("mixture".to_owned(), LobeMask::ALL)])
 }
 
@@ -246,23 +301,34 @@ fn check<T: ReferenceSampler>(
                 stream += 1;
                 // A Gaussian lobe so far off the sphere is cut to 0 (at 2^-115 of its peak) across its tail: part of its
                 // samples are discarded, as they must be.
-                let share: f64 =
-                    Lobe::ALL.iter().map(|l| reference.probabilities()[*l] * f64::from(mask.factor(*l))).sum();
+                let share: f64 = Lobe::ALL
+                    .iter()
+                    .map(|l| reference.probabilities()[*l] * f64::from(mask.factor(*l)))
+                    .sum();
                 if share < 1e-25 {
                     continue;
                 }
                 let cells = SphereCells::new(&reference, mask);
                 let at = format!("{shape} {name} {degrees} {lobe}");
                 let mass: f64 = cells.expected.iter().sum::<f64>() / f64::from(SAMPLES);
-                assert!((mass - 1.0).abs() < 1e-9, "{at}: the density has a mass of {mass}");
+                assert!(
+                    (mass - 1.0).abs() < 1e-9,
+                    "{at}: the density has a mass of {mass}"
+                );
                 let (result, observed) = cells.test(&draw(&params, wo, mask), wo, stream);
-                assert!(result.degrees_of_freedom > 60, "{at}: too few cells to tell anything, {result:?}");
+                assert!(
+                    result.degrees_of_freedom > 60,
+                    "{at}: too few cells to tell anything, {result:?}"
+                );
                 if result.p_value < least {
                     (least, least_at) = (result.p_value, at.clone());
                 }
                 // NaN is a failure too.
                 if result.p_value.is_nan() || result.p_value < level {
-                    panic!("{at}: {result:?} at level {level}, tables in {}", cells.dump(&observed, &at));
+                    panic!(
+                        "{at}: {result:?} at level {level}, tables in {}",
+                        cells.dump(&observed, &at)
+                    );
                 }
             }
         }
@@ -275,37 +341,88 @@ fn check<T: ReferenceSampler>(
 
 #[test]
 fn samples_of_the_published_model_follow_its_density() {
-    check(registered(ModelId::Gaussian), published(Shape::Gaussian), "Gaussian", 1);
+    check(
+        registered(ModelId::Gaussian),
+        published(Shape::Gaussian),
+        "Gaussian",
+        1,
+    );
 }
 
 #[test]
 fn samples_of_the_cauchy_model_follow_its_density() {
-    check(registered(ModelId::Cauchy), published(Shape::Cauchy), "Cauchy", 2);
+    check(
+        registered(ModelId::Cauchy),
+        published(Shape::Cauchy),
+        "Cauchy",
+        2,
+    );
 }
 
 #[test]
 fn samples_of_few_bands_follow_their_density() {
-    check(registered(ModelId::GaussianMatched5), matched(Shape::Gaussian, 5), "5 bands Gaussian", 5);
-    check(registered(ModelId::CauchyMatched5), matched(Shape::Cauchy, 5), "5 bands Cauchy", 6);
+    check(
+        registered(ModelId::GaussianMatched5),
+        matched(Shape::Gaussian, 5),
+        "5 bands Gaussian",
+        5,
+    );
+    check(
+        registered(ModelId::CauchyMatched5),
+        matched(Shape::Cauchy, 5),
+        "5 bands Cauchy",
+        6,
+    );
 }
 
 #[test]
 fn samples_of_the_default_bands_follow_their_density() {
-    check(registered(ModelId::GaussianMatched), matched(Shape::Gaussian, 9), "9 bands Gaussian", 3);
-    check(registered(ModelId::CauchyMatched), matched(Shape::Cauchy, 9), "9 bands Cauchy", 4);
+    check(
+        registered(ModelId::GaussianMatched),
+        matched(Shape::Gaussian, 9),
+        "9 bands Gaussian",
+        3,
+    );
+    check(
+        registered(ModelId::CauchyMatched),
+        matched(Shape::Cauchy, 9),
+        "9 bands Cauchy",
+        4,
+    );
 }
 
 #[test]
 fn samples_of_many_bands_follow_their_density() {
-    check(registered(ModelId::GaussianMatched25), matched(Shape::Gaussian, 25), "25 bands Gaussian", 7);
-    check(registered(ModelId::CauchyMatched25), matched(Shape::Cauchy, 25), "25 bands Cauchy", 8);
+    check(
+        registered(ModelId::GaussianMatched25),
+        matched(Shape::Gaussian, 25),
+        "25 bands Gaussian",
+        7,
+    );
+    check(
+        registered(ModelId::CauchyMatched25),
+        matched(Shape::Cauchy, 25),
+        "25 bands Cauchy",
+        8,
+    );
 }
 
 #[test]
 fn samples_by_channel_follow_their_density() {
-    let reference = |shape| move |params: &HairParams, wo| matched(shape, 9)(params, wo).by_channel();
-    check(of_type(Matched::<_, 9, true>(Gaussian)), reference(Shape::Gaussian), "Gaussian by channel", 9);
-    check(of_type(Matched::<_, 9, true>(Cauchy::PAPER)), reference(Shape::Cauchy), "Cauchy by channel", 10);
+    let reference =
+        |shape| move |params: &HairParams, wo| matched(shape, 9)(params, wo).by_channel();
+    check(
+        of_type(Matched::<_, 9, true>(Gaussian)),
+        reference(Shape::Gaussian),
+        "Gaussian by channel",
+        9,
+    );
+    check(
+        of_type(Matched::<_, 9, true>(Cauchy::PAPER)),
+        reference(Shape::Cauchy),
+        "Cauchy by channel",
+        10,
+    );
 }
 
 #[test]
@@ -313,11 +430,22 @@ fn widths_off_by_a_twentieth_are_found() {
     // The control: the same test must reject a sampler whose widths are 5% too large.
     for degrees in [0.0, -80.0] {
         let wo = wo(degrees);
-        let reference = HairReference::prepare(&Parameters::from(&HairParams::default()), Shape::Gaussian, double(wo));
+        let reference = HairReference::prepare(
+            &Parameters::from(&HairParams::default()),
+            Shape::Gaussian,
+            double(wo),
+        );
         for (lobe, mask) in masks() {
             let cells = SphereCells::new(&reference, mask);
-            let (result, _) = cells.test(&registered(ModelId::Gaussian)(&widened(1.05), wo, mask), wo, 7);
-            assert!(result.p_value < sidak(0.01, TESTS), "{lobe} at {degrees}: {result:?} passes a wrong width");
+            let (result, _) = cells.test(
+                &registered(ModelId::Gaussian)(&widened(1.05), wo, mask),
+                wo,
+                7,
+            );
+            assert!(
+                result.p_value < sidak(0.01, TESTS),
+                "{lobe} at {degrees}: {result:?} passes a wrong width"
+            );
         }
     }
 }
@@ -329,7 +457,8 @@ fn every_sampler_on_the_line_follows_its_cdf() {
     for (name, params) in materials() {
         for degrees in [0.0, 85.0] {
             let wo = wo(degrees);
-            let reference = HairReference::prepare(&Parameters::from(&params), Shape::Gaussian, double(wo));
+            let reference =
+                HairReference::prepare(&Parameters::from(&params), Shape::Gaussian, double(wo));
             for lobe in Lobe::ALL {
                 let mut uniform = [const { Vec::new() }; 2];
                 let stream = 9000 + lobe.index() as u64;
@@ -341,10 +470,17 @@ fn every_sampler_on_the_line_follows_its_cdf() {
                     uniform[1].push(reference.cdf_phi(lobe, phi));
                 });
                 for (axis, u) in ["theta", "phi"].into_iter().zip(&mut uniform) {
-                    assert!(u.len() > 990_000, "{name} {degrees} {lobe:?}: only {} were kept", u.len());
+                    assert!(
+                        u.len() > 990_000,
+                        "{name} {degrees} {lobe:?}: only {} were kept",
+                        u.len()
+                    );
                     let d = ks_statistic(u, |x| x);
                     worst = worst.max(d / limit);
-                    assert!(d < limit, "{name} {degrees} {lobe:?} {axis}: D = {d:.3e}, limit {limit:.3e}");
+                    assert!(
+                        d < limit,
+                        "{name} {degrees} {lobe:?} {axis}: D = {d:.3e}, limit {limit:.3e}"
+                    );
                 }
             }
         }

@@ -24,13 +24,20 @@ struct Run {
 
 impl Run {
     fn json(&self) -> Vec<Value> {
-        self.out.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
+        self.out
+            .iter()
+            .map(|line| serde_json::from_str(line).unwrap())
+            .collect()
     }
 }
 
 fn command(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hairis"));
-    command.args(args).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+        .args(args)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
     command
 }
 
@@ -41,8 +48,18 @@ fn run(args: &[&str], input: &[u8]) -> Run {
     let writer = thread::spawn(move || drop(stdin.write_all(&input)));
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap();
-    let lines = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().lines().map(str::to_owned).collect();
-    Run { code: output.status.code(), out: lines(output.stdout), err: lines(output.stderr) }
+    let lines = |bytes: Vec<u8>| {
+        String::from_utf8(bytes)
+            .unwrap()
+            .lines()
+            .map(str::to_owned)
+            .collect()
+    };
+    Run {
+        code: output.status.code(),
+        out: lines(output.stdout),
+        err: lines(output.stderr),
+    }
 }
 
 fn eval(path: &str, requests: &[Value]) -> Run {
@@ -88,5 +105,10 @@ fn with_xi(mut request: Value, xi: [f64; 3]) -> Value {
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    value
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|x| x.as_f64().unwrap())
+        .collect()
 }

@@ -5,7 +5,9 @@
 use core::f64::consts::PI;
 use glam::Vec3;
 use hairis::reference::{HairReference, Parameters, Shape};
-use hairis::{Bell, Bsdf, EvalSlices, Gaussian, Hair, HairDesc, HairParams, Level, SampleWeightSlices};
+use hairis::{
+    Bell, Bsdf, EvalSlices, Gaussian, Hair, HairDesc, HairParams, Level, SampleWeightSlices,
+};
 use hairis_benches::hand::{Constants, Set};
 use hairis_variants::Cauchy;
 use rand_chacha::ChaCha8Rng;
@@ -40,14 +42,20 @@ impl Random {
         let u = 2.0 * f64::from(height) - 1.0;
         let (sin, cos) = (f64::from(turn) * core::f64::consts::TAU).sin_cos();
         let plane = (1.0 - u * u).sqrt();
-        if plane < 1e-3 { self.direction() } else { [u, plane * cos, plane * sin].map(single) }
+        if plane < 1e-3 {
+            self.direction()
+        } else {
+            [u, plane * cos, plane * sin].map(single)
+        }
     }
 
     /// As far from the opposite side of `wo`: down to 1e-9 rad.
     fn beside_seam(&mut self, wo: [f32; 3]) -> [f32; 3] {
         let [u, v, w] = self.direction().map(f64::from);
         let [log, side, _] = self.numbers().map(f64::from);
-        let phi = f64::from(wo[2]).atan2(f64::from(wo[1])) + PI + 10_f64.powf(-9.0 * log) * (side - 0.5).signum();
+        let phi = f64::from(wo[2]).atan2(f64::from(wo[1]))
+            + PI
+            + 10_f64.powf(-9.0 * log) * (side - 0.5).signum();
         [u, v.hypot(w) * phi.cos(), v.hypot(w) * phi.sin()].map(single)
     }
 
@@ -55,22 +63,35 @@ impl Random {
     fn numbers_beside_seam(&mut self) -> [f32; 3] {
         let ([a, b, _], [log, side, middle]) = (self.numbers(), self.numbers());
         let step = (-24.0 * log).exp2();
-        let c = if middle < 0.5 { 0.5 + 0.5 * step * (side - 0.5).signum() } else { step };
-        [a, b, if middle > 0.75 { 1.0 - c } else { c }.min(1.0 - f32::EPSILON / 2.0)]
+        let c = if middle < 0.5 {
+            0.5 + 0.5 * step * (side - 0.5).signum()
+        } else {
+            step
+        };
+        [
+            a,
+            b,
+            if middle > 0.75 { 1.0 - c } else { c }.min(1.0 - f32::EPSILON / 2.0),
+        ]
     }
 
     /// Hair of some widths, from the least to the most, in degrees. Every third has no TT, which outshines the others at the seam.
     fn hair(&mut self, [least, most]: [f32; 2]) -> HairDesc {
         let mut between = |lo: f32, hi: f32| self.numbers()[0].mul_add(hi - lo, lo);
         let mut width = || between(least, most).to_radians();
-        let [beta_r, beta_tt, beta_trt, gamma_tt, gamma_g] = [width(), width(), width(), width(), width()];
+        let [beta_r, beta_tt, beta_trt, gamma_tt, gamma_g] =
+            [width(), width(), width(), width(), width()];
         let mut shift = || between(-15.0, 15.0).to_radians();
         let [alpha_r, alpha_tt, alpha_trt] = [shift(), shift(), shift()];
         let phi_g = between(20.0, 70.0).to_radians();
         let intensity_g = between(0.2, 5.0);
         let mut color = || [between(0.05, 1.0), between(0.05, 1.0), between(0.05, 1.0)];
         let [intensity_r, intensity_tt, intensity_trt] = [color(), color(), color()];
-        let intensity_tt = if self.numbers()[0] < 1.0 / 3.0 { [0.0; 3] } else { intensity_tt };
+        let intensity_tt = if self.numbers()[0] < 1.0 / 3.0 {
+            [0.0; 3]
+        } else {
+            intensity_tt
+        };
         HairDesc {
             alpha_r,
             alpha_tt,
@@ -89,7 +110,10 @@ impl Random {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "rounded to single precision")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounded to single precision"
+)]
 fn single(x: f64) -> f32 {
     x as f32
 }
@@ -103,9 +127,17 @@ struct Worst {
 }
 
 fn relative(got: f32, want: f64) -> f64 {
-    let error = if want < NEGLIGIBLE { 0.0 } else { (f64::from(got) / want - 1.0).abs() };
+    let error = if want < NEGLIGIBLE {
+        0.0
+    } else {
+        (f64::from(got) / want - 1.0).abs()
+    };
     // `max` does not see NaN.
-    if got.is_finite() { error } else { f64::INFINITY }
+    if got.is_finite() {
+        error
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// A hit of the tests, with some rows at it.
@@ -133,7 +165,8 @@ fn visit(
         for _ in 0..HITS {
             let (desc, wo) = (random.hair(widths), random.direction());
             let params = &HairParams::new(&desc).expect("legal parameters");
-            let reference = &HairReference::prepare(&Parameters::from(params), shape, wo.map(f64::from));
+            let reference =
+                &HairReference::prepare(&Parameters::from(params), shape, wo.map(f64::from));
             let mut columns = [[0.0; ROWS]; 3];
             for i in 0..ROWS {
                 for (column, x) in columns.iter_mut().zip(rows(&mut random, wo)) {
@@ -142,10 +175,24 @@ fn visit(
             }
             let columns = columns.each_ref().map(|column| &column[..]);
             let constants = &Constants::new(&desc, wo);
-            visit(&Rows { set, level, reference, constants, params, wo, columns }, &mut worst);
+            visit(
+                &Rows {
+                    set,
+                    level,
+                    reference,
+                    constants,
+                    params,
+                    wo,
+                    columns,
+                },
+                &mut worst,
+            );
         }
         println!("{level} {shape:?}: {worst:?}");
-        assert!(worst.iter().all(&check), "{level} {shape:?}: {worst:?}, by hand and of the package");
+        assert!(
+            worst.iter().all(&check),
+            "{level} {shape:?}: {worst:?}, by hand and of the package"
+        );
     }
 }
 
@@ -158,23 +205,43 @@ type Draw = fn(&mut Random, [f32; 3]) -> [f32; 3];
 
 /// Half of the directions anywhere, the others beside the seam.
 fn anywhere(random: &mut Random, wo: [f32; 3]) -> [f32; 3] {
-    if random.numbers()[0] < 0.5 { random.direction() } else { random.beside_seam(wo) }
+    if random.numbers()[0] < 0.5 {
+        random.direction()
+    } else {
+        random.beside_seam(wo)
+    }
 }
 
-fn eval<B: Bell, const CAUCHY: bool>(bell: B, shape: Shape, (widths, rows): ([f32; 2], Draw), bounds: [f64; 2]) {
+fn eval<B: Bell, const CAUCHY: bool>(
+    bell: B,
+    shape: Shape,
+    (widths, rows): ([f32; 2], Draw),
+    bounds: [f64; 2],
+) {
     visit(
         shape,
         widths,
         rows,
         |hit, worst| {
             let (mut by_hand, mut ours) = ([[0.0; ROWS]; 4], [[0.0; ROWS]; 4]);
-            hit.set.eval::<CAUCHY>(hit.constants, hit.columns, by_hand.each_mut().map(|column| &mut column[..]));
+            hit.set.eval::<CAUCHY>(
+                hit.constants,
+                hit.columns,
+                by_hand.each_mut().map(|column| &mut column[..]),
+            );
             let [r, g, b, pdf] = ours.each_mut().map(|column| &mut column[..]);
             let gather = Bsdf::new(&Hair(bell), hit.params).prepare(Vec3::from_array(hit.wo));
-            let out = EvalSlices { value: [r, g, b], pdf };
-            gather.eval_pdf_batch_at(hit.level, hit.columns, out).expect("one length");
+            let out = EvalSlices {
+                value: [r, g, b],
+                pdf,
+            };
+            gather
+                .eval_pdf_batch_at(hit.level, hit.columns, out)
+                .expect("one length");
             for i in 0..ROWS {
-                let (value, pdf) = hit.reference.eval_pdf(hit.columns.map(|column| f64::from(column[i])));
+                let (value, pdf) = hit
+                    .reference
+                    .eval_pdf(hit.columns.map(|column| f64::from(column[i])));
                 for (out, worst) in [&by_hand, &ours].into_iter().zip(&mut *worst) {
                     let [r, g, b, got] = row(out, i);
                     for (got, want) in [r, g, b].into_iter().zip(value) {
@@ -185,11 +252,17 @@ fn eval<B: Bell, const CAUCHY: bool>(bell: B, shape: Shape, (widths, rows): ([f3
             }
             // The kernels of eight.
             let mut eight = [[0.0; 8]; 4];
-            let first = hit.columns.map(|column| column.first_chunk().expect("at least eight"));
-            hit.set.eval8::<CAUCHY>(hit.constants, first, eight.each_mut());
+            let first = hit
+                .columns
+                .map(|column| column.first_chunk().expect("at least eight"));
+            hit.set
+                .eval8::<CAUCHY>(hit.constants, first, eight.each_mut());
             for (column, eight) in by_hand.iter().zip(eight) {
                 for (a, b) in column.iter().zip(eight) {
-                    assert!((a / b - 1.0).abs() < 1e-4 || *a < 1e-20, "{a} of a slice, {b} of a packet");
+                    assert!(
+                        (a / b - 1.0).abs() < 1e-4 || *a < 1e-20,
+                        "{a} of a slice, {b} of a packet"
+                    );
                 }
             }
         },
@@ -199,7 +272,12 @@ fn eval<B: Bell, const CAUCHY: bool>(bell: B, shape: Shape, (widths, rows): ([f3
 
 #[test]
 fn gaussian_values_and_densities_are_within_the_bounds() {
-    eval::<_, false>(Gaussian, Shape::Gaussian, (EVERYDAY, anywhere), [1e-4, 1e-5]);
+    eval::<_, false>(
+        Gaussian,
+        Shape::Gaussian,
+        (EVERYDAY, anywhere),
+        [1e-4, 1e-5],
+    );
 }
 
 /// Wide lobes have no tails to lose digits in. Measured: 7.5e-7 and 4.5e-7 by hand, 1.08e-6 and 6.3e-7 of the package.
@@ -212,7 +290,12 @@ fn values_of_wide_lobes_are_within_the_bounds() {
 
 #[test]
 fn cauchy_values_and_densities_are_within_the_bounds() {
-    eval::<_, true>(Cauchy::PAPER, Shape::Cauchy, (EVERYDAY, anywhere), [1e-5, 1e-5]);
+    eval::<_, true>(
+        Cauchy::PAPER,
+        Shape::Cauchy,
+        (EVERYDAY, anywhere),
+        [1e-5, 1e-5],
+    );
 }
 
 /// Density and weight at the direction that a sample reports; the direction against that of the formulas.
@@ -221,21 +304,43 @@ fn samples_are_within_the_bounds() {
     visit(
         Shape::Gaussian,
         EVERYDAY,
-        |random, _| if random.numbers()[0] < 0.5 { random.numbers() } else { random.numbers_beside_seam() },
+        |random, _| {
+            if random.numbers()[0] < 0.5 {
+                random.numbers()
+            } else {
+                random.numbers_beside_seam()
+            }
+        },
         |hit, worst| {
             let (mut by_hand, mut ours) = ([[0.0; ROWS]; 7], [[0.0; ROWS]; 7]);
-            hit.set.sample::<false>(hit.constants, hit.columns, by_hand.each_mut().map(|column| &mut column[..]));
+            hit.set.sample::<false>(
+                hit.constants,
+                hit.columns,
+                by_hand.each_mut().map(|column| &mut column[..]),
+            );
             let [u, v, w, pdf, r, g, b] = ours.each_mut().map(|column| &mut column[..]);
             let gather = Bsdf::new(&Hair(Gaussian), hit.params).prepare(Vec3::from_array(hit.wo));
-            let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [r, g, b] };
-            gather.sample_weight_batch_at(hit.level, hit.columns, out).expect("one length");
+            let out = SampleWeightSlices {
+                wi: [u, v, w],
+                pdf,
+                weight: [r, g, b],
+            };
+            gather
+                .sample_weight_batch_at(hit.level, hit.columns, out)
+                .expect("one length");
             // The kernels of eight.
             let mut eight = [[0.0; 8]; 7];
-            let first = hit.columns.map(|column| column.first_chunk().expect("at least eight"));
-            hit.set.sample8::<false>(hit.constants, first, eight.each_mut());
+            let first = hit
+                .columns
+                .map(|column| column.first_chunk().expect("at least eight"));
+            hit.set
+                .sample8::<false>(hit.constants, first, eight.each_mut());
             for (column, eight) in by_hand.iter().zip(eight) {
                 for (a, b) in column.iter().zip(eight) {
-                    assert!((a - b).abs() <= 1e-4 * a.abs() + 1e-6, "{a} of a slice, {b} of a packet");
+                    assert!(
+                        (a - b).abs() <= 1e-4 * a.abs() + 1e-6,
+                        "{a} of a slice, {b} of a packet"
+                    );
                 }
             }
             for i in 0..ROWS {
@@ -245,7 +350,12 @@ fn samples_are_within_the_bounds() {
                     let [u, v, w, pdf, r, g, b] = row(out, i);
                     let wi = [u, v, w].map(f64::from);
                     assert!(wi.iter().all(|x| x.is_finite()), "{wi:?}");
-                    let apart = wi.iter().zip(want.wi).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+                    let apart = wi
+                        .iter()
+                        .zip(want.wi)
+                        .map(|(a, b)| (a - b).powi(2))
+                        .sum::<f64>()
+                        .sqrt();
                     // Next to its ends 1 less twice the last number has few digits of the angle.
                     if (1e-3..0.999).contains(&xi[2]) {
                         worst.apart = worst.apart.max(apart);

@@ -7,23 +7,39 @@ use hairis_variants::ModelId;
 #[test]
 fn every_contender_is_timed_and_right() {
     let mut last = 0.0;
-    let report = run(&SpeedConfig { seconds: 0.0, seed: 1 }, |done| last = done).expect("hair within range");
+    let report = run(
+        &SpeedConfig {
+            seconds: 0.0,
+            seed: 1,
+        },
+        |done| last = done,
+    )
+    .expect("hair within range");
     // Slices take part where a shading point is given: evaluation and sampling, short ones and packets just written unless
     // all directions are in the tails. Eight lanes at one shading point take part where it has several samples, slices of
     // hits where it has one.
     let levels = Level::available().count();
     let models = ModelId::defaults_of_names().count();
-    assert_eq!(report.rows.len(), models * (TimedOp::ALL.len() * (3 + levels) + 12 * levels), "a row is missing");
+    assert_eq!(
+        report.rows.len(),
+        models * (TimedOp::ALL.len() * (3 + levels) + 12 * levels),
+        "a row is missing"
+    );
     assert!(last >= 1.0, "progress ended at {last}");
     for row in &report.rows {
         assert!(row.passed, "wrong answers: {row:?}");
-        assert!(row.rounds == 15 && row.ns > 0.0 && row.ns_q1 <= row.ns && row.ns <= row.ns_q3, "{row:?}");
+        assert!(
+            row.rounds == 15 && row.ns > 0.0 && row.ns_q1 <= row.ns && row.ns <= row.ns_q3,
+            "{row:?}"
+        );
     }
     for op in TimedOp::ALL {
         let name = op.label();
         for model in ModelId::defaults_of_names() {
             let textbooks = report.rows.iter().filter(|row| row.contender == "textbook");
-            let ratios = textbooks.filter(|row| (row.op, row.model) == (op, model.name())).map(|row| row.ratio);
+            let ratios = textbooks
+                .filter(|row| (row.op, row.model) == (op, model.name()))
+                .map(|row| row.ratio);
             let ratios: Vec<f64> = ratios.collect();
             assert!(
                 ratios.len() == 2 && ratios.contains(&1.0),
@@ -32,6 +48,11 @@ fn every_contender_is_timed_and_right() {
             );
         }
     }
-    let row = report.row(TimedOp::Sample, "cauchy", "eight lanes", Level::portable().name());
+    let row = report.row(
+        TimedOp::Sample,
+        "cauchy",
+        "eight lanes",
+        Level::portable().name(),
+    );
     assert!(row.is_some(), "the portable level is always there");
 }

@@ -6,7 +6,9 @@
 
 use crate::packet::{AtGather, Pdf, Samples, Value, ValuePdf, Weights};
 use crate::simd::dispatch::clean_upper_halves;
-use crate::slices::{EvalSlices, LengthError, SampleSlices, SampleWeightSlices, WI, XI, check_columns};
+use crate::slices::{
+    EvalSlices, LengthError, SampleSlices, SampleWeightSlices, WI, XI, check_columns,
+};
 use crate::{Gather, Level, Model};
 
 impl<M: Model> Gather<M> {
@@ -39,10 +41,20 @@ impl<M: Model> Gather<M> {
     ///
     /// If the slices differ in length; nothing is written then.
     #[inline]
-    pub fn eval_pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
+    pub fn eval_pdf_batch_at(
+        &self,
+        level: Level,
+        wi: [&[f32]; 3],
+        out: EvalSlices<'_>,
+    ) -> Result<(), LengthError> {
         clean_upper_halves();
         let [r, g, b] = out.value;
-        let columns = check_columns(&WI, wi, &["value.r", "value.g", "value.b", "pdf"], [r, g, b, out.pdf])?;
+        let columns = check_columns(
+            &WI,
+            wi,
+            &["value.r", "value.g", "value.b", "pdf"],
+            [r, g, b, out.pdf],
+        )?;
         level.run_columns(AtGather::<M, ValuePdf>::new(&self.inner), &columns);
         Ok(())
     }
@@ -63,7 +75,12 @@ impl<M: Model> Gather<M> {
     ///
     /// If the slices differ in length; nothing is written then.
     #[inline]
-    pub fn eval_batch_at(&self, level: Level, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> Result<(), LengthError> {
+    pub fn eval_batch_at(
+        &self,
+        level: Level,
+        wi: [&[f32]; 3],
+        value: [&mut [f32]; 3],
+    ) -> Result<(), LengthError> {
         clean_upper_halves();
         let columns = check_columns(&WI, wi, &["value.r", "value.g", "value.b"], value)?;
         level.run_columns(AtGather::<M, Value>::new(&self.inner), &columns);
@@ -86,7 +103,12 @@ impl<M: Model> Gather<M> {
     ///
     /// If the slices differ in length; nothing is written then.
     #[inline]
-    pub fn pdf_batch_at(&self, level: Level, wi: [&[f32]; 3], pdf: &mut [f32]) -> Result<(), LengthError> {
+    pub fn pdf_batch_at(
+        &self,
+        level: Level,
+        wi: [&[f32]; 3],
+        pdf: &mut [f32],
+    ) -> Result<(), LengthError> {
         clean_upper_halves();
         let columns = check_columns(&WI, wi, &["pdf"], [pdf])?;
         level.run_columns(AtGather::<M, Pdf>::new(&self.inner), &columns);
@@ -109,10 +131,20 @@ impl<M: Model> Gather<M> {
     ///
     /// If the slices differ in length; nothing is written then.
     #[inline]
-    pub fn sample_batch_at(&self, level: Level, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
+    pub fn sample_batch_at(
+        &self,
+        level: Level,
+        xi: [&[f32]; 3],
+        out: SampleSlices<'_>,
+    ) -> Result<(), LengthError> {
         clean_upper_halves();
         let ([u, v, w], [r, g, b], [wr, wg, wb]) = (out.wi, out.value, out.weight);
-        let columns = check_columns(&XI, xi, &SAMPLE, [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot])?;
+        let columns = check_columns(
+            &XI,
+            xi,
+            &SAMPLE,
+            [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot],
+        )?;
         level.run_columns(AtGather::<M, Samples>::new(&self.inner), &columns);
         Ok(())
     }
@@ -124,7 +156,11 @@ impl<M: Model> Gather<M> {
     ///
     /// If the slices differ in length; nothing is written then.
     #[inline]
-    pub fn sample_weight_batch(&self, xi: [&[f32]; 3], out: SampleWeightSlices<'_>) -> Result<(), LengthError> {
+    pub fn sample_weight_batch(
+        &self,
+        xi: [&[f32]; 3],
+        out: SampleWeightSlices<'_>,
+    ) -> Result<(), LengthError> {
         self.sample_weight_batch_at(Level::detect(), xi, out)
     }
 
@@ -149,7 +185,11 @@ impl<M: Model> Gather<M> {
 }
 
 /// Names of the slices of samples.
-const SAMPLE: [&str; 11] =
-    ["wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf", "weight.r", "weight.g", "weight.b", "slot"];
+const SAMPLE: [&str; 11] = [
+    "wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf", "weight.r", "weight.g",
+    "weight.b", "slot",
+];
 /// The same without value and slot.
-const WEIGHTS: [&str; 7] = ["wi.u", "wi.v", "wi.w", "pdf", "weight.r", "weight.g", "weight.b"];
+const WEIGHTS: [&str; 7] = [
+    "wi.u", "wi.v", "wi.w", "pdf", "weight.r", "weight.g", "weight.b",
+];

@@ -62,7 +62,9 @@ impl<M: Model> Bsdf<M> {
     #[inline]
     #[must_use]
     pub fn new(model: &M, params: &M::Params) -> Self {
-        Self { material: model.material(params) }
+        Self {
+            material: model.material(params),
+        }
     }
 
     /// The shading point of a hit: a [`Hit`], or `wo` alone.
@@ -73,7 +75,15 @@ impl<M: Model> Bsdf<M> {
     #[must_use]
     pub fn prepare(&self, hit: impl Into<Hit>) -> Gather<M> {
         let Hit { wo, h } = hit.into();
-        Gather { inner: M::prepare_one(&self.material, Hit { wo: wo.alone(), h: h.alone() }) }
+        Gather {
+            inner: M::prepare_one(
+                &self.material,
+                Hit {
+                    wo: wo.alone(),
+                    h: h.alone(),
+                },
+            ),
+        }
     }
 
     /// Eight shading points on this material, one per lane: a [`Hit8`], or eight `wo`.
@@ -87,7 +97,10 @@ impl<M: Model> Bsdf<M> {
     #[inline]
     #[must_use]
     pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8<M> {
-        level.run(Prepare::<M, f32, _> { material: &self.material, hits })
+        level.run(Prepare::<M, f32, _> {
+            material: &self.material,
+            hits,
+        })
     }
 
     /// The largest directional albedo over all `wo` and the three channels: above 1 the hair gives back more light
@@ -113,10 +126,21 @@ impl<M: Model> Bsdf<M> {
                 let next = at(side, step);
                 // As high as the parabola through the three rises.
                 let bend = 2.0 * here - before - next;
-                let rise = if bend > 0.0 { (before - next) * (before - next) / (8.0 * bend) } else { 0.0 };
-                let estimate = if here >= before && here >= next { here + rise } else { next };
+                let rise = if bend > 0.0 {
+                    (before - next) * (before - next) / (8.0 * bend)
+                } else {
+                    0.0
+                };
+                let estimate = if here >= before && here >= next {
+                    here + rise
+                } else {
+                    next
+                };
                 if estimate > peak {
-                    (peak, where_to_look) = (estimate, (side, if estimate == next { step } else { step - 1.0 }));
+                    (peak, where_to_look) = (
+                        estimate,
+                        (side, if estimate == next { step } else { step - 1.0 }),
+                    );
                 }
                 most = most.max(here).max(next);
                 last = [here, next];
@@ -166,7 +190,9 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn pack(materials: [&Bsdf<M>; 8]) -> Self {
-        Self { material: <M::Material<f32> as LaneStruct>::pack(materials.map(|m| &m.material)) }
+        Self {
+            material: <M::Material<f32> as LaneStruct>::pack(materials.map(|m| &m.material)),
+        }
     }
 
     /// Eight shading points, lane by lane: a [`Hit8`], or eight `wo`.
@@ -180,7 +206,10 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8<M> {
-        level.run(Prepare::<M, f32x8, _> { material: &self.material, hits })
+        level.run(Prepare::<M, f32x8, _> {
+            material: &self.material,
+            hits,
+        })
     }
 }
 
@@ -225,7 +254,10 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: [f32; 3]) -> Option<Sample> {
-        Sample::from_drawn(&M::sample::<f32, f32>(&self.inner, [xi[0].alone(), xi[1].alone(), xi[2].alone()]))
+        Sample::from_drawn(&M::sample::<f32, f32>(
+            &self.inner,
+            [xi[0].alone(), xi[1].alone(), xi[2].alone()],
+        ))
     }
 
     /// As [`eval_pdf`](Self::eval_pdf), for eight directions.
@@ -239,7 +271,10 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
-        level.run(EvalPdf::<M, f32> { gather: &self.inner, wi })
+        level.run(EvalPdf::<M, f32> {
+            gather: &self.inner,
+            wi,
+        })
     }
 
     /// As [`lobes`](Self::lobes), for eight directions.
@@ -253,7 +288,10 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn lobes8_at(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        level.run(Lobes::<M, f32> { gather: &self.inner, wi })
+        level.run(Lobes::<M, f32> {
+            gather: &self.inner,
+            wi,
+        })
     }
 
     /// As [`sample`](Self::sample), for eight triples of numbers.
@@ -267,7 +305,10 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn sample8_at(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
-        level.run(SampleWi::<M, f32> { gather: &self.inner, xi })
+        level.run(SampleWi::<M, f32> {
+            gather: &self.inner,
+            xi,
+        })
     }
 
     /// The constants of the model at this shading point.
@@ -281,7 +322,9 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn with_lobes(&self, lobes: LobeMask) -> Self {
-        Self { inner: M::restrict::<f32>(&self.inner, lobes) }
+        Self {
+            inner: M::restrict::<f32>(&self.inner, lobes),
+        }
     }
 
     /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
@@ -306,7 +349,10 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
-        level.run(EvalPdf::<M, f32x8> { gather: &self.inner, wi })
+        level.run(EvalPdf::<M, f32x8> {
+            gather: &self.inner,
+            wi,
+        })
     }
 
     /// Each lobe's value, colour and own density, each lane at its own shading point.
@@ -320,7 +366,10 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn lobes8_at(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        level.run(Lobes::<M, f32x8> { gather: &self.inner, wi })
+        level.run(Lobes::<M, f32x8> {
+            gather: &self.inner,
+            wi,
+        })
     }
 
     /// One direction for each shading point.
@@ -334,7 +383,10 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn sample8_at(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
-        level.run(SampleWi::<M, f32x8> { gather: &self.inner, xi })
+        level.run(SampleWi::<M, f32x8> {
+            gather: &self.inner,
+            xi,
+        })
     }
 
     /// The constants of the model at these shading points.
@@ -352,14 +404,18 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn lane(&self, lane: usize) -> Gather<M> {
-        Gather { inner: <M::Gather<f32> as LaneStruct>::lane(&self.inner, lane) }
+        Gather {
+            inner: <M::Gather<f32> as LaneStruct>::lane(&self.inner, lane),
+        }
     }
 
     /// The shading points with only some of their lobes: the others neither scatter nor are sampled.
     #[inline]
     #[must_use]
     pub fn with_lobes(&self, lobes: LobeMask) -> Self {
-        Self { inner: M::restrict::<f32x8>(&self.inner, lobes) }
+        Self {
+            inner: M::restrict::<f32x8>(&self.inner, lobes),
+        }
     }
 
     /// Directional albedo of each lobe, linear RGB, each lane at its own shading point.
@@ -373,6 +429,8 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn albedo8_at(&self, level: Level) -> PerLobe<[f32x8; 3]> {
-        level.run(Albedo::<M> { gather: &self.inner })
+        level.run(Albedo::<M> {
+            gather: &self.inner,
+        })
     }
 }

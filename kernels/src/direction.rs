@@ -27,8 +27,16 @@ impl<L: Lanes> Direction<L> {
         let cos_sq = y.mul_add(y, z * z);
         let cos_theta = cos_sq.sqrt();
         // The comparison is false for the infinities of a sum that overflowed, and for NaN.
-        let sound = L::and(L::splat(GRAZING).lt(cos_theta), x.mul_add(x, cos_sq).lt(L::splat(4.0)));
-        Self { vector, sin_theta: x, cos_theta, sound }
+        let sound = L::and(
+            L::splat(GRAZING).lt(cos_theta),
+            x.mul_add(x, cos_sq).lt(L::splat(4.0)),
+        );
+        Self {
+            vector,
+            sin_theta: x,
+            cos_theta,
+            sound,
+        }
     }
 
     /// The direction of any finite vector. Zero counts as v, in the normal plane; on the axis the cosine is 0.
@@ -40,7 +48,11 @@ impl<L: Lanes> Direction<L> {
         let Vec3x { x, y, z } = vector;
         // Scaled first, so that no square overflows or vanishes; one of about unit length keeps its digits.
         let largest = x.abs().max(y.abs().max(z.abs()));
-        let by = L::select(c(1e12).lt(largest), c(1e-25), L::select(largest.lt(c(1e-12)), c(1e25), one));
+        let by = L::select(
+            c(1e12).lt(largest),
+            c(1e-25),
+            L::select(largest.lt(c(1e-12)), c(1e25), one),
+        );
         let (x, y, z) = (x * by, y * by, z * by);
         let length_sq = x.mul_add(x, y.mul_add(y, z * z));
         let some = c(1e-30).lt(length_sq);
@@ -53,7 +65,12 @@ impl<L: Lanes> Direction<L> {
         let cos = plane_sq.sqrt();
         let vector = Vec3x::new(x.mul_add(off, x), y.mul_add(off, y), z.mul_add(off, z));
         let (sin_theta, cos_theta) = (vector.x, cos.mul_add(off, cos));
-        Self { vector, sin_theta, cos_theta, sound: c(GRAZING).lt(cos_theta) }
+        Self {
+            vector,
+            sin_theta,
+            cos_theta,
+            sound: c(GRAZING).lt(cos_theta),
+        }
     }
 
     /// The direction of an inclination and an azimuth, given as sine and cosine.
@@ -61,7 +78,12 @@ impl<L: Lanes> Direction<L> {
     #[must_use]
     pub fn from_sin_cos([sin_theta, cos_theta]: [L; 2], [sin_phi, cos_phi]: [L; 2]) -> Self {
         let vector = Vec3x::new(sin_theta, cos_theta * cos_phi, cos_theta * sin_phi);
-        Self { vector, sin_theta, cos_theta, sound: L::splat(GRAZING).lt(cos_theta) }
+        Self {
+            vector,
+            sin_theta,
+            cos_theta,
+            sound: L::splat(GRAZING).lt(cos_theta),
+        }
     }
 
     /// The direction of an inclination, at the azimuth `pi (2 xi - 1)`.

@@ -1,7 +1,9 @@
 //! Energy per direction: a model that returns no more light than arrives.
 
 use crate::model::{Drawn, Eval, Hit, LobeEval};
-use crate::{Broadcast, Gather, Gather8, Kernel, Lanes, Level, LobeMask, Model, PerLobe, Scalar, Vec3x};
+use crate::{
+    Broadcast, Gather, Gather8, Kernel, Lanes, Level, LobeMask, Model, PerLobe, Scalar, Vec3x,
+};
 use wide::f32x8;
 
 impl<M: Model> Gather<M> {
@@ -11,7 +13,9 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn conserving(&self) -> Self {
-        Self { inner: M::conserve::<f32>(&self.inner) }
+        Self {
+            inner: M::conserve::<f32>(&self.inner),
+        }
     }
 }
 
@@ -27,7 +31,9 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn conserving_at(&self, level: Level) -> Self {
-        level.run(Conserve::<M> { gather: &self.inner })
+        level.run(Conserve::<M> {
+            gather: &self.inner,
+        })
     }
 }
 
@@ -45,7 +51,9 @@ impl<M: Model> Kernel for Conserve<'_, M> {
     where
         f32x8: Broadcast<L>,
     {
-        Gather8 { inner: M::conserve::<L>(self.gather) }
+        Gather8 {
+            inner: M::conserve::<L>(self.gather),
+        }
     }
 }
 
@@ -87,7 +95,10 @@ impl<M: Model> Model for Conserving<M> {
     }
 
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, hit: Hit<L>) -> M::Gather<L::Stored> {
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        material: &M::Material<C>,
+        hit: Hit<L>,
+    ) -> M::Gather<L::Stored> {
         M::conserve::<L>(&M::prepare::<L, C>(material, hit))
     }
 
@@ -107,7 +118,10 @@ impl<M: Model> Model for Conserving<M> {
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &M::Gather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        gather: &M::Gather<C>,
+        wi: Vec3x<L>,
+    ) -> PerLobe<LobeEval<L>> {
         M::lobes(gather, wi)
     }
 

@@ -55,22 +55,42 @@ impl fmt::Display for ParamError {
     #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Width(field, value) => write!(f, "{field} must be a width in [1e-4, pi] rad, got {value}"),
-            Self::Shift(field, value) => write!(f, "{field} must be an angle in [-pi/2, pi/2] rad, got {value}"),
-            Self::GlintAngle(field, value) => write!(f, "{field} must be an angle in [0, pi] rad, got {value}"),
-            Self::Intensity(field, channel, value) => {
-                write!(f, "{field}[{channel}] must be finite and at least 0, got {value}")
+            Self::Width(field, value) => {
+                write!(f, "{field} must be a width in [1e-4, pi] rad, got {value}")
             }
-            Self::Scalar(field, value) => write!(f, "{field} must be finite and at least 0, got {value}"),
-            Self::WidthFactor(field, value) => write!(f, "{field} must be in [0.5, 4], got {value}"),
+            Self::Shift(field, value) => write!(
+                f,
+                "{field} must be an angle in [-pi/2, pi/2] rad, got {value}"
+            ),
+            Self::GlintAngle(field, value) => {
+                write!(f, "{field} must be an angle in [0, pi] rad, got {value}")
+            }
+            Self::Intensity(field, channel, value) => {
+                write!(
+                    f,
+                    "{field}[{channel}] must be finite and at least 0, got {value}"
+                )
+            }
+            Self::Scalar(field, value) => {
+                write!(f, "{field} must be finite and at least 0, got {value}")
+            }
+            Self::WidthFactor(field, value) => {
+                write!(f, "{field} must be in [0.5, 4], got {value}")
+            }
             Self::Degrees(field, value, [least, most]) => {
-                write!(f, "{field} must be an angle in [{least}, {most}] degrees, got {value}")
+                write!(
+                    f,
+                    "{field} must be an angle in [{least}, {most}] degrees, got {value}"
+                )
             }
             Self::Range(field, value, [least, most]) => {
                 write!(f, "{field} must be in [{least}, {most}], got {value}")
             }
             Self::Overflow(field, channel, value) => {
-                write!(f, "{field}[{channel}] times its intensity must be finite, got a color of {value}")
+                write!(
+                    f,
+                    "{field}[{channel}] times its intensity must be finite, got a color of {value}"
+                )
             }
         }
     }

@@ -36,7 +36,8 @@ impl<L: Lanes> Vec3x<L> {
     #[inline(always)]
     #[must_use]
     pub fn dot(self, other: Self) -> L {
-        self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
+        self.x
+            .mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
     }
 
     /// The same vector, its components read one by one: see [`Lanes::alone`]. Callers have often just written them; what is read
@@ -70,7 +71,11 @@ impl<L: Lanes> Vec3x<L> {
     /// The stored vector, which may just have been written, as lanes.
     #[inline(always)]
     pub(crate) fn load_fresh<C: crate::Broadcast<L>>(stored: &Vec3x<C>) -> Self {
-        Self::new(stored.x.fresh_lanes(), stored.y.fresh_lanes(), stored.z.fresh_lanes())
+        Self::new(
+            stored.x.fresh_lanes(),
+            stored.y.fresh_lanes(),
+            stored.z.fresh_lanes(),
+        )
     }
 
     /// The stored vector as lanes.
@@ -96,14 +101,22 @@ impl Vec3x8 {
     #[inline]
     #[must_use]
     pub fn lane(&self, lane: usize) -> Vec3 {
-        Vec3::new(self.x.as_array()[lane], self.y.as_array()[lane], self.z.as_array()[lane])
+        Vec3::new(
+            self.x.as_array()[lane],
+            self.y.as_array()[lane],
+            self.z.as_array()[lane],
+        )
     }
 }
 
 impl From<[Vec3; 8]> for Vec3x8 {
     #[inline]
     fn from(v: [Vec3; 8]) -> Self {
-        Self::new(f32x8::new(v.map(|v| v.x)), f32x8::new(v.map(|v| v.y)), f32x8::new(v.map(|v| v.z)))
+        Self::new(
+            f32x8::new(v.map(|v| v.x)),
+            f32x8::new(v.map(|v| v.y)),
+            f32x8::new(v.map(|v| v.z)),
+        )
     }
 }
 
@@ -208,7 +221,11 @@ impl FiberFrame {
         let v = unit_or(across, any.v);
         // Once more: the first difference leaves up to 1e-2 of u where the normal is almost along it.
         let v = unit_or(v - any.u * v.dot(any.u), any.v);
-        Self { u: any.u, v, w: any.u.cross(v) }
+        Self {
+            u: any.u,
+            v,
+            w: any.u.cross(v),
+        }
     }
 
     /// World to fibre: `(u, v, w)` components of `v`.
@@ -271,7 +288,11 @@ impl FiberFrame {
 #[inline]
 fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let largest = v.abs().max_element();
-    if largest > 0.0 && v.is_finite() { (v / largest).normalize() } else { fallback }
+    if largest > 0.0 && v.is_finite() {
+        (v / largest).normalize()
+    } else {
+        fallback
+    }
 }
 
 /// One frame per lane: the same for eight directions ([`splat`](Self::splat)), or those of eight shading points.
@@ -290,7 +311,11 @@ impl FiberFrame8 {
     #[inline]
     #[must_use]
     pub fn splat(frame: &FiberFrame) -> Self {
-        Self { u: Vec3x8::splat(frame.u), v: Vec3x8::splat(frame.v), w: Vec3x8::splat(frame.w) }
+        Self {
+            u: Vec3x8::splat(frame.u),
+            v: Vec3x8::splat(frame.v),
+            w: Vec3x8::splat(frame.w),
+        }
     }
 
     /// Frames of eight hits: lane by lane as [`FiberFrame::from_tangent_normal`], for unit vectors.
@@ -316,15 +341,23 @@ impl FiberFrame8 {
         if along.any() {
             let lanes = along.to_bitmask();
             let any = |lane: usize| tangents.lane(lane).any_orthonormal_vector();
-            v = core::array::from_fn::<Vec3, 8, _>(
-                |lane| if lanes >> lane & 1 == 1 { any(lane) } else { v.lane(lane) },
-            )
+            v = core::array::from_fn::<Vec3, 8, _>(|lane| {
+                if lanes >> lane & 1 == 1 {
+                    any(lane)
+                } else {
+                    v.lane(lane)
+                }
+            })
             .into();
         }
         // Once more: the first difference leaves up to 1e-2 of the tangent where the normal is almost along it.
         let v = unit8(&reject8(&v, tangents));
         let u = tangents;
-        let w = Vec3x8::new(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
+        let w = Vec3x8::new(
+            u.y * v.z - u.z * v.y,
+            u.z * v.x - u.x * v.z,
+            u.x * v.y - u.y * v.x,
+        );
         Self { u: *u, v, w }
     }
 
@@ -334,21 +367,32 @@ impl FiberFrame8 {
     pub fn to_local(&self, v: &Vec3x8) -> Vec3x8 {
         let unfused = |v: &Vec3x8| Vec3x::new(Unfused(v.x), Unfused(v.y), Unfused(v.z));
         let v = unfused(v);
-        Vec3x::new(v.dot(unfused(&self.u)).0, v.dot(unfused(&self.v)).0, v.dot(unfused(&self.w)).0)
+        Vec3x::new(
+            v.dot(unfused(&self.u)).0,
+            v.dot(unfused(&self.v)).0,
+            v.dot(unfused(&self.w)).0,
+        )
     }
 
     /// Fibre to world, each lane out of its own frame.
     #[inline]
     #[must_use]
     pub fn to_world(&self, v: &Vec3x8) -> Vec3x8 {
-        self.u.scale(v.x).plus(self.v.scale(v.y)).plus(self.w.scale(v.z))
+        self.u
+            .scale(v.x)
+            .plus(self.v.scale(v.y))
+            .plus(self.w.scale(v.z))
     }
 }
 
 impl From<[FiberFrame; 8]> for FiberFrame8 {
     #[inline]
     fn from(frames: [FiberFrame; 8]) -> Self {
-        Self { u: frames.map(|f| f.u).into(), v: frames.map(|f| f.v).into(), w: frames.map(|f| f.w).into() }
+        Self {
+            u: frames.map(|f| f.u).into(),
+            v: frames.map(|f| f.v).into(),
+            w: frames.map(|f| f.w).into(),
+        }
     }
 }
 

@@ -47,7 +47,10 @@ impl<B: Bell> Model for Hair<B> {
     }
 
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L>>(material: &HairMaterial<C>, hit: Hit<L>) -> HairGather<L::Stored> {
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        material: &HairMaterial<C>,
+        hit: Hit<L>,
+    ) -> HairGather<L::Stored> {
         gather::prepare(material, hit.wo)
     }
 
@@ -60,11 +63,20 @@ impl<B: Bell> Model for Hair<B> {
     fn eval<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> Eval<L> {
         let (angles, sound) = Angles::from_direction(&gather.view, wi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
-        finish_eval(&gather.view, &angles, sound, &terms, mix_densities(terms.density, &gather.weight))
+        finish_eval(
+            &gather.view,
+            &angles,
+            sound,
+            &terms,
+            mix_densities(terms.density, &gather.weight),
+        )
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        gather: &HairGather<C>,
+        wi: Vec3x<L>,
+    ) -> PerLobe<LobeEval<L>> {
         let (angles, sound) = Angles::from_direction(&gather.view, wi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
         let density = [
@@ -80,12 +92,22 @@ impl<B: Bell> Model for Hair<B> {
     fn sample<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> Drawn<L> {
         let (wi, choice, angles) = sampling::draw(gather, xi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
-        finish_sample(&gather.view, wi, choice, &angles, &terms, mix_densities(terms.density, &gather.weight))
+        finish_sample(
+            &gather.view,
+            wi,
+            choice,
+            &angles,
+            &terms,
+            mix_densities(terms.density, &gather.weight),
+        )
     }
 
     #[inline(always)]
     fn conserve<L: Lanes>(gather: &HairGather<L::Stored>) -> HairGather<L::Stored> {
-        HairGather { view: albedo::conserve::<B, L>(&gather.view), ..*gather }
+        HairGather {
+            view: albedo::conserve::<B, L>(&gather.view),
+            ..*gather
+        }
     }
 
     #[inline(always)]

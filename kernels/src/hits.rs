@@ -49,8 +49,15 @@ impl fmt::Display for HitsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Length(error) => error.fmt(f),
-            Self::Material { hit, index, materials } => {
-                write!(f, "index[{hit}] is {index} where the table has {materials} materials")
+            Self::Material {
+                hit,
+                index,
+                materials,
+            } => {
+                write!(
+                    f,
+                    "index[{hit}] is {index} where the table has {materials} materials"
+                )
             }
         }
     }
@@ -88,7 +95,12 @@ impl<M: Model> Bsdf<M> {
     /// # Ok::<(), hairis::LengthError>(())
     /// ```
     #[inline]
-    pub fn eval_pdf_hits(&self, hits: HitSlices<'_>, wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), LengthError> {
+    pub fn eval_pdf_hits(
+        &self,
+        hits: HitSlices<'_>,
+        wi: [&[f32]; 3],
+        out: EvalColumns<'_>,
+    ) -> Result<(), LengthError> {
         self.eval_pdf_hits_at(Level::detect(), hits, wi, out)
     }
 
@@ -107,7 +119,11 @@ impl<M: Model> Bsdf<M> {
     ) -> Result<(), LengthError> {
         clean_upper_halves();
         let (inputs, mut outputs) = (hits.with(wi, WI)?, out.columns(hits.len())?);
-        level.run_rows(AtHits::<M, HitEvals>::new(&self.material), inputs, &mut outputs);
+        level.run_rows(
+            AtHits::<M, HitEvals>::new(&self.material),
+            inputs,
+            &mut outputs,
+        );
         Ok(())
     }
 
@@ -135,7 +151,12 @@ impl<M: Model> Bsdf<M> {
     /// # Ok::<(), hairis::LengthError>(())
     /// ```
     #[inline]
-    pub fn sample_hits(&self, hits: HitSlices<'_>, xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), LengthError> {
+    pub fn sample_hits(
+        &self,
+        hits: HitSlices<'_>,
+        xi: [&[f32]; 3],
+        out: SampleColumns<'_>,
+    ) -> Result<(), LengthError> {
         self.sample_hits_at(Level::detect(), hits, xi, out)
     }
 
@@ -154,7 +175,11 @@ impl<M: Model> Bsdf<M> {
     ) -> Result<(), LengthError> {
         clean_upper_halves();
         let (inputs, mut outputs) = (hits.with(xi, XI)?, out.columns(hits.len())?);
-        level.run_rows(AtHits::<M, HitSamples>::new(&self.material), inputs, &mut outputs);
+        level.run_rows(
+            AtHits::<M, HitSamples>::new(&self.material),
+            inputs,
+            &mut outputs,
+        );
         Ok(())
     }
 }
@@ -166,7 +191,12 @@ impl<M: Model> MaterialTable<'_, M> {
     ///
     /// If the slices differ in length, or an index is not in the table; nothing is written then.
     #[inline]
-    pub fn eval_pdf_hits(&self, hits: HitSlices<'_>, wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), HitsError> {
+    pub fn eval_pdf_hits(
+        &self,
+        hits: HitSlices<'_>,
+        wi: [&[f32]; 3],
+        out: EvalColumns<'_>,
+    ) -> Result<(), HitsError> {
         self.eval_pdf_hits_at(Level::detect(), hits, wi, out)
     }
 
@@ -192,7 +222,12 @@ impl<M: Model> MaterialTable<'_, M> {
     ///
     /// If the slices differ in length, or an index is not in the table; nothing is written then.
     #[inline]
-    pub fn sample_hits(&self, hits: HitSlices<'_>, xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), HitsError> {
+    pub fn sample_hits(
+        &self,
+        hits: HitSlices<'_>,
+        xi: [&[f32]; 3],
+        out: SampleColumns<'_>,
+    ) -> Result<(), HitsError> {
         self.sample_hits_at(Level::detect(), hits, xi, out)
     }
 
@@ -222,10 +257,17 @@ impl<M: Model> MaterialTable<'_, M> {
         clean_upper_halves();
         check_lengths(inputs[0].len(), [("index", Some(self.index.len()))])?;
         let materials = self.materials.len();
-        let material = |index: u32| self.materials.get(usize::try_from(index).unwrap_or(usize::MAX));
+        let material = |index: u32| {
+            self.materials
+                .get(usize::try_from(index).unwrap_or(usize::MAX))
+        };
         for (hit, &index) in self.index.iter().enumerate() {
             if material(index).is_none() {
-                return Err(HitsError::Material { hit, index, materials });
+                return Err(HitsError::Material {
+                    hit,
+                    index,
+                    materials,
+                });
             }
         }
         let (mut at, mut rest) = (0, self.index);
@@ -233,9 +275,15 @@ impl<M: Model> MaterialTable<'_, M> {
             && let Some(first) = material(*index)
         {
             let alike = rest.iter().take_while(|other| *other == index).count();
-            let done = if alike >= 8 || alike == rest.len() { alike } else { rest.len().min(8) };
+            let done = if alike >= 8 || alike == rest.len() {
+                alike
+            } else {
+                rest.len().min(8)
+            };
             let inputs = inputs.map(|column| column.get(at..at + done).unwrap_or_default());
-            let mut outputs = outputs.each_mut().map(|column| column.get_mut(at..at + done).unwrap_or_default());
+            let mut outputs = outputs
+                .each_mut()
+                .map(|column| column.get_mut(at..at + done).unwrap_or_default());
             if done == alike {
                 level.run_rows(AtHits::<M, K>::new(&first.material), inputs, &mut outputs);
             } else {

@@ -105,7 +105,9 @@ pub use lobe::{Lobe, LobeMask, PerLobe};
 pub use lobe_model::{LobeModel, Mixed, Mixture};
 pub use matched::{Matched, MatchedBell, MatchedGather, MatchedMaterial};
 pub use model::{Drawn, Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Model, Sample, Sample8};
-pub use params::{ArtistControls, Glints, HairDesc, HairParams, Highlight, MAX_WIDTH, MIN_WIDTH, Transmission};
+pub use params::{
+    ArtistControls, Glints, HairDesc, HairParams, Highlight, MAX_WIDTH, MIN_WIDTH, Transmission,
+};
 pub use simd::columns::Row;
 #[cfg(feature = "textbook")]
 #[doc(hidden)]
@@ -114,7 +116,10 @@ pub use simd::dispatch::{Constant, Kernel, Level};
 pub(crate) use simd::lanes::fresh_lanes3;
 pub use simd::lanes::{Broadcast, LaneStruct, Lanes, Scalar, lanes3, lanes4, store3, store4};
 pub use simd::pair::Pair;
-pub use slices::{EvalColumns, EvalSlices, HitSlices, LengthError, SampleColumns, SampleSlices, SampleWeightSlices};
+pub use slices::{
+    EvalColumns, EvalSlices, HitSlices, LengthError, SampleColumns, SampleSlices,
+    SampleWeightSlices,
+};
 
 #[doc(hidden)]
 pub use wide;

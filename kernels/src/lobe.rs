@@ -31,7 +31,10 @@ impl Lobe {
     #[inline]
     #[must_use]
     pub const fn slot(index: u8) -> Self {
-        assert!((index as usize) < Self::COUNT, "a lobe slot is 0, 1, 2 or 3");
+        assert!(
+            (index as usize) < Self::COUNT,
+            "a lobe slot is 0, 1, 2 or 3"
+        );
         Self(index)
     }
 
@@ -45,7 +48,9 @@ impl Lobe {
     /// The lobe of a slot number stored as a float; `None` for the -1 of a discarded sample.
     #[inline]
     pub(crate) fn from_number(number: f32) -> Option<Self> {
-        Self::ALL.into_iter().find(|lobe| f32::from(lobe.0) == number)
+        Self::ALL
+            .into_iter()
+            .find(|lobe| f32::from(lobe.0) == number)
     }
 }
 

@@ -101,18 +101,27 @@ pub trait LobeModel: Copy {
 
     /// Everything that depends on the material and the hit alone. `wo` may have any length: see
     /// [`Direction::normalized`].
-    fn prepare<L: Lanes, C: Broadcast<L>>(material: &Self::Material<C>, hit: Hit<L>) -> Self::Prepared<L::Stored>;
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        material: &Self::Material<C>,
+        hit: Hit<L>,
+    ) -> Self::Prepared<L::Stored>;
 
     /// Sampling weight of each lobe, to any common scale; 0 for slots without a lobe.
     fn weights<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> PerLobe<L>;
 
     /// Each lobe's value, colour and own density at a direction.
-    fn lobes<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>>;
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        prepared: &Self::Prepared<C>,
+        wi: &Direction<L>,
+    ) -> PerLobe<LobeEval<L>>;
 
     /// A direction of each lane's lobe. All three numbers are uniform: the first has chosen the lobe, and is stretched to
     /// `[0, 1)` again.
-    fn sample_lobe<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>, lobe: L::Index, xi: [L; 3])
-    -> Direction<L>;
+    fn sample_lobe<L: Lanes, C: Broadcast<L>>(
+        prepared: &Self::Prepared<C>,
+        lobe: L::Index,
+        xi: [L; 3],
+    ) -> Direction<L>;
 
     /// Directional albedo of each lobe, linear RGB.
     ///
@@ -153,12 +162,18 @@ impl<C: Scalar, P: LaneStruct> LaneStruct for Mixed<P, C> {
 
     #[inline]
     fn pack(items: [&Self::One; 8]) -> Self::Eight {
-        Mixed { prepared: P::pack(items.map(|i| &i.prepared)), mixture: Mixture::pack(items.map(|i| &i.mixture)) }
+        Mixed {
+            prepared: P::pack(items.map(|i| &i.prepared)),
+            mixture: Mixture::pack(items.map(|i| &i.mixture)),
+        }
     }
 
     #[inline]
     fn lane(eight: &Self::Eight, lane: usize) -> Self::One {
-        Mixed { prepared: P::lane(&eight.prepared, lane), mixture: eight.mixture.lane(lane) }
+        Mixed {
+            prepared: P::lane(&eight.prepared, lane),
+            mixture: eight.mixture.lane(lane),
+        }
     }
 }
 
@@ -169,11 +184,19 @@ const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// The sums over the lobes; 0 where the direction is none.
 #[inline(always)]
-fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>, C>, wi: &Direction<L>) -> Eval<L> {
+fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(
+    gather: &Mixed<M::Prepared<C>, C>,
+    wi: &Direction<L>,
+) -> Eval<L> {
     let (PerLobe(lobes), mixture) = (M::lobes(&gather.prepared, wi), &gather.mixture);
     let value = lobes[0].value * mixture.kept[0].lanes();
     let [r, g, b] = lobes[0].color;
-    let mut sum = [value * r, value * g, value * b, lobes[0].pdf * mixture.selection[0].lanes()];
+    let mut sum = [
+        value * r,
+        value * g,
+        value * b,
+        lobes[0].pdf * mixture.selection[0].lanes(),
+    ];
     // Written out: slots without a lobe cost nothing.
     macro_rules! add {
         ($($i:literal)*) => { $(
@@ -191,8 +214,15 @@ fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>,
     }
     add!(1 2 3);
     let limit = limit::<L>(wi.is_sound());
-    let value = [within(sum[0], limit), within(sum[1], limit), within(sum[2], limit)];
-    Eval { value, pdf: within(sum[3], limit) }
+    let value = [
+        within(sum[0], limit),
+        within(sum[1], limit),
+        within(sum[2], limit),
+    ];
+    Eval {
+        value,
+        pdf: within(sum[3], limit),
+    }
 }
 
 /// The largest result where a lane is sound, 0 where it is not.
@@ -213,7 +243,10 @@ impl<M: LobeModel> Model for M {
     type Gather<C: Scalar> = Mixed<M::Prepared<C>, C>;
 
     const LOBES: &'static [&'static str] = {
-        assert!(!M::LOBES.is_empty() && M::LOBES.len() <= Lobe::COUNT, "a model has 1 to 4 lobes");
+        assert!(
+            !M::LOBES.is_empty() && M::LOBES.len() <= Lobe::COUNT,
+            "a model has 1 to 4 lobes"
+        );
         M::LOBES
     };
 
@@ -230,8 +263,15 @@ impl<M: LobeModel> Model for M {
         let (one, infinity) = (L::splat(1.0), L::splat(f32::INFINITY));
         // No lobe scatters towards a wo that is NaN or infinite, and the model is given another.
         let Vec3x { x, y, z } = hit.wo;
-        let finite = L::and(L::and(x.abs().lt(infinity), y.abs().lt(infinity)), z.abs().lt(infinity));
-        let wo = Vec3x::new(L::keep(finite, x), L::select(finite, y, one), L::keep(finite, z));
+        let finite = L::and(
+            L::and(x.abs().lt(infinity), y.abs().lt(infinity)),
+            z.abs().lt(infinity),
+        );
+        let wo = Vec3x::new(
+            L::keep(finite, x),
+            L::select(finite, y, one),
+            L::keep(finite, z),
+        );
         let prepared = <M as LobeModel>::prepare(material, Hit::new(wo, hit.h));
         let kept = L::keep(finite, one);
         let mixture = Mixture::new(M::weights::<L, L::Stored>(&prepared).0, [kept; 4]).store();
@@ -239,15 +279,23 @@ impl<M: LobeModel> Model for M {
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes>(gather: &Mixed<M::Prepared<C>, C>, lobes: LobeMask) -> Mixed<M::Prepared<C>, C> {
-        let Mixture { selection, kept, .. } = gather.mixture;
+    fn restrict<C: Lanes>(
+        gather: &Mixed<M::Prepared<C>, C>,
+        lobes: LobeMask,
+    ) -> Mixed<M::Prepared<C>, C> {
+        let Mixture {
+            selection, kept, ..
+        } = gather.mixture;
         let kept = [
             kept[0] * C::splat(lobes.factor(Lobe::ALL[0])),
             kept[1] * C::splat(lobes.factor(Lobe::ALL[1])),
             kept[2] * C::splat(lobes.factor(Lobe::ALL[2])),
             kept[3] * C::splat(lobes.factor(Lobe::ALL[3])),
         ];
-        Mixed { mixture: Mixture::new(selection, kept), ..*gather }
+        Mixed {
+            mixture: Mixture::new(selection, kept),
+            ..*gather
+        }
     }
 
     #[inline(always)]
@@ -256,7 +304,10 @@ impl<M: LobeModel> Model for M {
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>, C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        gather: &Mixed<M::Prepared<C>, C>,
+        wi: Vec3x<L>,
+    ) -> PerLobe<LobeEval<L>> {
         let wi = Direction::new(wi);
         let limit = limit::<L>(wi.is_sound());
         let mut lobes = <M as LobeModel>::lobes(&gather.prepared, &wi);
@@ -271,18 +322,32 @@ impl<M: LobeModel> Model for M {
     }
 
     #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>, C>, xi: [L; 3]) -> Drawn<L> {
+    fn sample<L: Lanes, C: Broadcast<L>>(
+        gather: &Mixed<M::Prepared<C>, C>,
+        xi: [L; 3],
+    ) -> Drawn<L> {
         let c = L::splat;
         let (zero, most) = (c(0.0), c(BELOW_ONE));
         let m = &gather.mixture;
         let lobe = L::search(xi[0], lanes3(&m.bounds), M::LOBES.len() - 1);
         // Stretch the first number again, from the nearer end, where differences are exact: a rare lobe keeps the low bits.
-        let (start, start_less_one) = (C::look_up(&m.start, lobe), C::look_up(&m.start_less_one, lobe));
-        let into = L::select(xi[0].lt(c(0.5)), xi[0] - start, (xi[0] - c(1.0)) - start_less_one);
+        let (start, start_less_one) = (
+            C::look_up(&m.start, lobe),
+            C::look_up(&m.start_less_one, lobe),
+        );
+        let into = L::select(
+            xi[0].lt(c(0.5)),
+            xi[0] - start,
+            (xi[0] - c(1.0)) - start_less_one,
+        );
         let again = L::quotient(into, C::look_up(&m.selection, lobe));
         // False for NaN.
         let numbers = (xi[0] + xi[1] + xi[2]).lt(c(f32::INFINITY));
-        let xi = [zero.max(again.min(most)), zero.max(xi[1].min(most)), zero.max(xi[2].min(most))];
+        let xi = [
+            zero.max(again.min(most)),
+            zero.max(xi[1].min(most)),
+            zero.max(xi[2].min(most)),
+        ];
         let wi = M::sample_lobe(&gather.prepared, lobe, xi);
         let Eval { value, pdf } = total::<M, L, C>(gather, &wi);
         let sound = L::and(L::and(wi.is_sound(), c(LEAST_DENSITY).lt(pdf)), numbers);
@@ -291,9 +356,17 @@ impl<M: LobeModel> Model for M {
         let Vec3x { x, y, z } = wi.vector;
         Drawn {
             wi: Vec3x::new(L::keep(sound, x), L::keep(sound, y), L::keep(sound, z)),
-            value: [value[0].min(limit), value[1].min(limit), value[2].min(limit)],
+            value: [
+                value[0].min(limit),
+                value[1].min(limit),
+                value[2].min(limit),
+            ],
             pdf: pdf.min(limit),
-            weight: [(value[0] * by).min(limit), (value[1] * by).min(limit), (value[2] * by).min(limit)],
+            weight: [
+                (value[0] * by).min(limit),
+                (value[1] * by).min(limit),
+                (value[2] * by).min(limit),
+            ],
             slot: L::select(sound, L::index_number(lobe), c(-1.0)),
         }
     }
@@ -306,7 +379,11 @@ impl<M: LobeModel> Model for M {
         while l < Lobe::COUNT {
             let kept: L = gather.mixture.kept[l].lanes();
             let [r, g, b] = albedo.0[l];
-            albedo.0[l] = [(r * kept).min(most), (g * kept).min(most), (b * kept).min(most)];
+            albedo.0[l] = [
+                (r * kept).min(most),
+                (g * kept).min(most),
+                (b * kept).min(most),
+            ];
             l += 1;
         }
         albedo
@@ -315,7 +392,9 @@ impl<M: LobeModel> Model for M {
 
 /// Each lobe's albedo as the mean weight of its samples at the points of a lattice.
 #[inline(always)]
-fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>) -> PerLobe<[L; 3]> {
+fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(
+    prepared: &M::Prepared<C>,
+) -> PerLobe<[L; 3]> {
     const STEPS: u16 = 1024;
     let c = L::splat;
     let mut albedo = [[c(0.0); 3]; Lobe::COUNT];
@@ -329,11 +408,20 @@ fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(prepared: &M::Prepare
             // square roots at the ends: `3 u^2 - 2 u^3`, of slope 0 there, has none. The slopes sum to 1 + 1 / (2 STEPS^2).
             let u = (f32::from(step) + 0.5) / f32::from(STEPS);
             let slope = 6.0 * u * (1.0 - u);
-            let xi = [c(lattice(step, 0x91e1_0da5)), c(u * u * (3.0 - 2.0 * u)), c(lattice(step, 0xc13f_a9a9))];
+            let xi = [
+                c(lattice(step, 0x91e1_0da5)),
+                c(u * u * (3.0 - 2.0 * u)),
+                c(lattice(step, 0xc13f_a9a9)),
+            ];
             let wi = M::sample_lobe(prepared, lobe, xi);
             let at = M::lobes(prepared, &wi).0[l];
             let sound = L::and(wi.is_sound(), c(LEAST_DENSITY).lt(at.pdf));
-            sum = sum + L::select(sound, L::quotient(at.value * wi.cos_theta, at.pdf) * c(slope), c(0.0));
+            sum = sum
+                + L::select(
+                    sound,
+                    L::quotient(at.value * wi.cos_theta, at.pdf) * c(slope),
+                    c(0.0),
+                );
             color = at.color;
             step += 1;
         }

@@ -12,7 +12,9 @@ pub use bell::MatchedBell;
 pub use gather::MatchedGather;
 pub use material::MatchedMaterial;
 
-use crate::hair::{Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities, times};
+use crate::hair::{
+    Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities, times,
+};
 use crate::model::{Drawn, Eval, Hit, LobeEval};
 use crate::simd::pair::Pair;
 use crate::simd::unfused::Unfused;
@@ -79,7 +81,9 @@ use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Matched<B, const BANDS: usize = 9, const BY_CHANNEL: bool = false>(pub B);
 
-impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Matched<B, BANDS, BY_CHANNEL> {
+impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
+    for Matched<B, BANDS, BY_CHANNEL>
+{
     type Params = HairParams;
     type Material<C: Scalar> = MatchedMaterial<C>;
     type Gather<C: Scalar> = MatchedGather<C, BANDS>;
@@ -105,7 +109,10 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes>(gather: &MatchedGather<C, BANDS>, lobes: LobeMask) -> MatchedGather<C, BANDS> {
+    fn restrict<C: Lanes>(
+        gather: &MatchedGather<C, BANDS>,
+        lobes: LobeMask,
+    ) -> MatchedGather<C, BANDS> {
         gather.restrict(lobes)
     }
 
@@ -113,11 +120,20 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
     fn eval<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> Eval<L> {
         let (angles, sound) = Angles::from_direction(&gather.view, wi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
-        finish_eval(&gather.view, &angles, sound, &terms, density(gather, &angles, &terms))
+        finish_eval(
+            &gather.view,
+            &angles,
+            sound,
+            &terms,
+            density(gather, &angles, &terms),
+        )
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        gather: &MatchedGather<C, BANDS>,
+        wi: Vec3x<L>,
+    ) -> PerLobe<LobeEval<L>> {
         let (angles, sound) = Angles::from_direction(&gather.view, wi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
         let height = gather.height::<L>(angles.sin_theta_i);
@@ -130,12 +146,24 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model for Match
     fn sample<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, xi: [L; 3]) -> Drawn<L> {
         let (wi, choice, angles) = sampling::draw::<B, L, C, BANDS>(gather, xi);
         let terms = angles.eval_lobes::<B, C>(&gather.view);
-        finish_sample(&gather.view, wi, choice, &angles, &terms, density(gather, &angles, &terms))
+        finish_sample(
+            &gather.view,
+            wi,
+            choice,
+            &angles,
+            &terms,
+            density(gather, &angles, &terms),
+        )
     }
 
     #[inline(always)]
-    fn conserve<L: Lanes>(gather: &MatchedGather<L::Stored, BANDS>) -> MatchedGather<L::Stored, BANDS> {
-        MatchedGather { view: albedo::conserve::<B, L>(&gather.view), ..*gather }
+    fn conserve<L: Lanes>(
+        gather: &MatchedGather<L::Stored, BANDS>,
+    ) -> MatchedGather<L::Stored, BANDS> {
+        MatchedGather {
+            view: albedo::conserve::<B, L>(&gather.view),
+            ..*gather
+        }
     }
 
     #[inline(always)]
@@ -151,5 +179,6 @@ fn density<L: Lanes, C: Broadcast<L>, const N: usize>(
     angles: &Angles<L>,
     terms: &LobeTerms<L>,
 ) -> L {
-    mix_densities(terms.value, &gather.weight) * (gather.height(angles.sin_theta_i) * gather.scale.lanes())
+    mix_densities(terms.value, &gather.weight)
+        * (gather.height(angles.sin_theta_i) * gather.scale.lanes())
 }

@@ -47,7 +47,11 @@ fn halves<L: Lanes, const N: usize, const FIRST: usize>(x: L, coefficients: [f32
 #[inline(always)]
 pub fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f32; N]) -> L {
     let apart = !L::FUSES && N > 7;
-    let mut sum = if apart { halves::<L, N, 2>(x, coefficients) } else { L::splat(coefficients[N - 1]) };
+    let mut sum = if apart {
+        halves::<L, N, 2>(x, coefficients)
+    } else {
+        L::splat(coefficients[N - 1])
+    };
     macro_rules! steps {
         ($($i:literal)*) => { $(
             if $i + 1 < N && ($i < 2 || !apart) {
@@ -119,7 +123,10 @@ pub fn gaussian_and_complement<L: Lanes>(s: L) -> (L, L) {
     let one = L::splat(1.0);
     // The exponent without the bias of `gaussian`: as an integer, and as the power of two.
     let magic = L::splat(8_388_608.0 + 127.0);
-    let (to_exponent, last) = (L::splat(TO_EXPONENT), L::splat(LEAST_EXPONENT / -TO_EXPONENT));
+    let (to_exponent, last) = (
+        L::splat(TO_EXPONENT),
+        L::splat(LEAST_EXPONENT / -TO_EXPONENT),
+    );
     let some = s.lt(last);
     let s = s.min(last);
     let n = s.mul_add(to_exponent, magic);
@@ -138,7 +145,10 @@ pub fn gaussian_and_complement<L: Lanes>(s: L) -> (L, L) {
         ],
     );
     let rest = f * power;
-    (L::keep(some, p.mul_add(rest, power)), p.mul_add(-rest, one - power))
+    (
+        L::keep(some, p.mul_add(rest, power)),
+        p.mul_add(-rest, one - power),
+    )
 }
 
 /// `atan t` for `|t| <= 1`.
@@ -216,7 +226,12 @@ pub fn atan_eighth_turn<L: Lanes>(t: L) -> L {
     let z = t * t;
     let p = polynomial(
         z,
-        [-0.333_329_498_767_852_8, 0.199_777_275_323_867_8, -0.138_777_986_168_861_4, 0.080_539_561_808_109_28],
+        [
+            -0.333_329_498_767_852_8,
+            0.199_777_275_323_867_8,
+            -0.138_777_986_168_861_4,
+            0.080_539_561_808_109_28,
+        ],
     );
     p.mul_add(z * t, t)
 }
@@ -255,7 +270,12 @@ pub fn sin_cos_absolute<L: Lanes>(x: L) -> (L, L) {
     let z = (x * x).interleaved();
     let p = horner(
         z,
-        [-0.499_999_314_546_584_9, 0.041_663_989_424_705_51, -0.001_385_592_622_682_452_2, 2.319_435_589_015_484e-5],
+        [
+            -0.499_999_314_546_584_9,
+            0.041_663_989_424_705_51,
+            -0.001_385_592_622_682_452_2,
+            2.319_435_589_015_484e-5,
+        ],
     );
     (sin_half_turn(x), p.mul_add(z, L::splat(1.0)))
 }
@@ -276,7 +296,12 @@ pub fn sin_half_turn<L: Lanes>(x: L) -> L {
     let z = x * x;
     let p = horner(
         z,
-        [-0.166_666_612_029_075_62, 0.008_333_072_066_307_068, -0.000_198_096_604_435_704_65, 2.606_138_195_915_264e-6],
+        [
+            -0.166_666_612_029_075_62,
+            0.008_333_072_066_307_068,
+            -0.000_198_096_604_435_704_65,
+            2.606_138_195_915_264e-6,
+        ],
     );
     p.mul_add(z * x, x)
 }
@@ -336,7 +361,10 @@ pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
     let c = L::splat;
     let over = horner(x, [11.961_291_3, 8.593_118_7, 2.821_643_8, 0.398_885_7]);
     // The leading coefficient is 1.
-    let under = (x + c(7.067_357_5)).mul_add(x, c(22.627_039)).mul_add(x, c(36.273_33)).mul_add(x, c(23.922_586_4));
+    let under = (x + c(7.067_357_5))
+        .mul_add(x, c(22.627_039))
+        .mul_add(x, c(36.273_33))
+        .mul_add(x, c(23.922_586_4));
     L::quotient(over, under)
 }
 
@@ -348,7 +376,9 @@ pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
 pub fn normal_tail_inverse<L: Lanes>(q: L) -> L {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let w = zero.max(zero - log2((c(4.0) * q * (one - q)).interleaved())).interleaved();
+    let w = zero
+        .max(zero - log2((c(4.0) * q * (one - q)).interleaved()))
+        .interleaved();
     let center = polynomial(
         w,
         [

@@ -36,7 +36,10 @@ pub trait Model: Copy {
     fn material(&self, params: &Self::Params) -> Self::Material<f32>;
 
     /// Everything that depends on the material and the hit alone (section 3.3 of the paper).
-    fn prepare<L: Lanes, C: Broadcast<L>>(material: &Self::Material<C>, hit: Hit<L>) -> Self::Gather<L::Stored>;
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        material: &Self::Material<C>,
+        hit: Hit<L>,
+    ) -> Self::Gather<L::Stored>;
 
     /// The same for one hit. A model whose lobes take the same steps may put them into lanes here.
     #[inline(always)]
@@ -51,7 +54,10 @@ pub trait Model: Copy {
     fn eval<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>, wi: Vec3x<L>) -> Eval<L>;
 
     /// Each lobe's value, colour and own density at `wi`.
-    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>>;
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        gather: &Self::Gather<C>,
+        wi: Vec3x<L>,
+    ) -> PerLobe<LobeEval<L>>;
 
     /// A direction drawn with three uniform numbers in `[0, 1)`. The first chooses the lobe, and may serve again.
     fn sample<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>, xi: [L; 3]) -> Drawn<L>;
@@ -95,7 +101,10 @@ impl<L: Lanes> Hit<L> {
     pub fn new(wo: impl Into<Vec3x<L>>, h: L) -> Self {
         let one = L::splat(1.0);
         let number = L::or(h.lt(one), (-one).lt(h));
-        Self { wo: wo.into(), h: L::keep(number, (-one).max(one.min(h))) }
+        Self {
+            wo: wo.into(),
+            h: L::keep(number, (-one).max(one.min(h))),
+        }
     }
 }
 
@@ -109,7 +118,10 @@ impl From<Vec3> for Hit {
     /// hit, or give it by [`Hit::new`].
     #[inline(always)]
     fn from(wo: Vec3) -> Self {
-        Self { wo: wo.into(), h: 0.0 }
+        Self {
+            wo: wo.into(),
+            h: 0.0,
+        }
     }
 }
 
@@ -117,7 +129,10 @@ impl From<Vec3A> for Hit {
     /// A hit on the axis (`h` is 0).
     #[inline(always)]
     fn from(wo: Vec3A) -> Self {
-        Self { wo: wo.into(), h: 0.0 }
+        Self {
+            wo: wo.into(),
+            h: 0.0,
+        }
     }
 }
 
@@ -125,7 +140,10 @@ impl From<&Vec3x<f32x8>> for Hit8 {
     /// Hits on the axes (`h` is 0).
     #[inline(always)]
     fn from(wo: &Vec3x<f32x8>) -> Self {
-        Self { wo: *wo, h: f32x8::ZERO }
+        Self {
+            wo: *wo,
+            h: f32x8::ZERO,
+        }
     }
 }
 
@@ -153,7 +171,10 @@ impl<L: Lanes> Eval<L> {
     /// The lanes in their storage form.
     #[inline(always)]
     pub fn store(self) -> Eval<L::Stored> {
-        Eval { value: crate::simd::lanes::store3(self.value), pdf: self.pdf.store() }
+        Eval {
+            value: crate::simd::lanes::store3(self.value),
+            pdf: self.pdf.store(),
+        }
     }
 }
 
@@ -166,7 +187,10 @@ impl Eval8 {
     #[inline]
     #[must_use]
     pub fn lane(&self, lane: usize) -> Eval {
-        Eval { value: self.value.map(|c| c.as_array()[lane]), pdf: self.pdf.as_array()[lane] }
+        Eval {
+            value: self.value.map(|c| c.as_array()[lane]),
+            pdf: self.pdf.as_array()[lane],
+        }
     }
 }
 
@@ -190,13 +214,21 @@ impl<L: Lanes> LobeEval<L> {
     #[must_use]
     pub fn none() -> Self {
         let zero = L::splat(0.0);
-        Self { value: zero, color: [zero; 3], pdf: zero }
+        Self {
+            value: zero,
+            color: [zero; 3],
+            pdf: zero,
+        }
     }
 
     /// The lanes in their storage form.
     #[inline(always)]
     pub fn store(self) -> LobeEval<L::Stored> {
-        LobeEval { value: self.value.store(), color: crate::simd::lanes::store3(self.color), pdf: self.pdf.store() }
+        LobeEval {
+            value: self.value.store(),
+            color: crate::simd::lanes::store3(self.color),
+            pdf: self.pdf.store(),
+        }
     }
 }
 
@@ -250,7 +282,13 @@ impl Sample {
     #[inline]
     pub(crate) fn from_drawn(drawn: &Drawn<f32>) -> Option<Self> {
         let lobe = Lobe::from_number(drawn.slot)?;
-        Some(Self { wi: drawn.wi.into(), value: drawn.value, pdf: drawn.pdf, weight: drawn.weight, lobe })
+        Some(Self {
+            wi: drawn.wi.into(),
+            value: drawn.value,
+            pdf: drawn.pdf,
+            weight: drawn.weight,
+            lobe,
+        })
     }
 }
 
@@ -284,7 +322,11 @@ impl Sample8 {
             wi: self.wi.lane(lane).into(),
             value: [at(&self.value[0]), at(&self.value[1]), at(&self.value[2])],
             pdf: at(&self.pdf),
-            weight: [at(&self.weight[0]), at(&self.weight[1]), at(&self.weight[2])],
+            weight: [
+                at(&self.weight[0]),
+                at(&self.weight[1]),
+                at(&self.weight[2]),
+            ],
             slot: at(&self.slot),
         })
     }

@@ -3,7 +3,8 @@
 use crate::model::{Drawn, Eval8, Hit8, LobeEval8, Sample8};
 use crate::resample::{Weighed8, Weighing};
 use crate::{
-    Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Model, PerLobe, Row, Vec3x, Vec3x8, fresh_lanes3, store3,
+    Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Model, PerLobe, Row, Vec3x, Vec3x8,
+    fresh_lanes3, store3,
 };
 use core::marker::PhantomData;
 use wide::f32x8;
@@ -26,8 +27,13 @@ impl<M: Model, C: Constant, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
         f32x8: Broadcast<L>,
     {
         let hits: Hit8 = self.hits.into();
-        let hit = Hit { wo: Vec3x::load(&hits.wo), h: hits.h.lanes() };
-        Gather8 { inner: M::prepare::<L, C>(self.material, hit) }
+        let hit = Hit {
+            wo: Vec3x::load(&hits.wo),
+            h: hits.h.lanes(),
+        };
+        Gather8 {
+            inner: M::prepare::<L, C>(self.material, hit),
+        }
     }
 }
 
@@ -102,7 +108,10 @@ pub(crate) struct AtGather<'a, M: Model, K> {
 impl<'a, M: Model, K> AtGather<'a, M, K> {
     #[inline(always)]
     pub(crate) fn new(gather: &'a M::Gather<f32>) -> Self {
-        Self { gather, columns: PhantomData }
+        Self {
+            gather,
+            columns: PhantomData,
+        }
     }
 }
 
@@ -195,7 +204,10 @@ pub(crate) trait HitRow<M: Model, const N: usize> {
 pub(crate) struct HitEvals;
 impl<M: Model> HitRow<M, 4> for HitEvals {
     #[inline(always)]
-    fn row<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, [u, v, w, h, x, y, z]: [L; 7]) -> [L; 4] {
+    fn row<L: Lanes, C: Broadcast<L>>(
+        material: &M::Material<C>,
+        [u, v, w, h, x, y, z]: [L; 7],
+    ) -> [L; 4] {
         let gather = M::prepare::<L, C>(material, Hit::new(Vec3x::new(u, v, w), h));
         let eval = M::eval::<L, L::Stored>(&gather, Vec3x::new(x, y, z));
         let [r, g, b] = eval.value;
@@ -207,7 +219,10 @@ impl<M: Model> HitRow<M, 4> for HitEvals {
 pub(crate) struct HitSamples;
 impl<M: Model> HitRow<M, 11> for HitSamples {
     #[inline(always)]
-    fn row<L: Lanes, C: Broadcast<L>>(material: &M::Material<C>, [u, v, w, h, x, y, z]: [L; 7]) -> [L; 11] {
+    fn row<L: Lanes, C: Broadcast<L>>(
+        material: &M::Material<C>,
+        [u, v, w, h, x, y, z]: [L; 7],
+    ) -> [L; 11] {
         let gather = M::prepare::<L, C>(material, Hit::new(Vec3x::new(u, v, w), h));
         columns(M::sample::<L, L::Stored>(&gather, [x, y, z]))
     }
@@ -222,7 +237,10 @@ pub(crate) struct AtHits<'a, M: Model, K> {
 impl<'a, M: Model, K> AtHits<'a, M, K> {
     #[inline(always)]
     pub(crate) fn new(material: &'a M::Material<f32>) -> Self {
-        Self { material, columns: PhantomData }
+        Self {
+            material,
+            columns: PhantomData,
+        }
     }
 }
 
@@ -259,7 +277,11 @@ pub(crate) struct EightHits<'a, M: Model, K, const N: usize> {
 impl<'a, M: Model, K, const N: usize> EightHits<'a, M, K, N> {
     #[inline(always)]
     pub(crate) fn new(material: &'a M::Material<f32x8>, input: &'a [f32x8; 7]) -> Self {
-        Self { material, input, columns: PhantomData }
+        Self {
+            material,
+            input,
+            columns: PhantomData,
+        }
     }
 }
 
@@ -312,7 +334,11 @@ impl<M: Model> Row<3, 3> for Proposals<'_, M> {
 #[inline(always)]
 fn proposed<L: Lanes>(sample: Drawn<L>) -> [L; 3] {
     let kept = L::splat(0.0).lt(sample.pdf);
-    [L::keep(kept, sample.wi.x), L::keep(kept, sample.wi.y), L::keep(kept, sample.wi.z)]
+    [
+        L::keep(kept, sample.wi.x),
+        L::keep(kept, sample.wi.y),
+        L::keep(kept, sample.wi.z),
+    ]
 }
 
 /// Columns of candidates' contributions and weights.
@@ -325,7 +351,10 @@ pub(crate) struct Weighs<'a, M: Model> {
 impl<'a, M: Model> Weighs<'a, M> {
     #[inline(always)]
     pub(crate) fn new(gather: &'a M::Gather<f32>, weighing: Weighing) -> Self {
-        Self { at: AtGather::new(gather), weighing }
+        Self {
+            at: AtGather::new(gather),
+            weighing,
+        }
     }
 }
 
@@ -335,7 +364,13 @@ impl<M: Model> Row<7, 4> for Weighs<'_, M> {
     where
         f32: Broadcast<L>,
     {
-        weighed::<M, L, f32>(self.at.gather, self.weighing, Vec3x::new(x, y, z), [r, g, b], pdf_light)
+        weighed::<M, L, f32>(
+            self.at.gather,
+            self.weighing,
+            Vec3x::new(x, y, z),
+            [r, g, b],
+            pdf_light,
+        )
     }
 }
 
@@ -367,7 +402,10 @@ impl<M: Model> Kernel for ProposalsOf<'_, M> {
     where
         f32x8: Broadcast<L>,
     {
-        let [x, y, z] = store3(proposed(M::sample::<L, f32x8>(self.gather, fresh_lanes3(self.xi))));
+        let [x, y, z] = store3(proposed(M::sample::<L, f32x8>(
+            self.gather,
+            fresh_lanes3(self.xi),
+        )));
         Vec3x::new(x, y, z)
     }
 }
@@ -391,8 +429,16 @@ impl<M: Model> Kernel for WeighOf<'_, M> {
         f32x8: Broadcast<L>,
     {
         let (wi, light) = (Vec3x::load_fresh(self.wi), self.pdf_light.fresh_lanes());
-        let [r, g, b, weight] =
-            weighed::<M, L, f32x8>(self.gather, self.weighing, wi, fresh_lanes3(self.radiance), light);
-        Weighed8 { contribution: store3([r, g, b]), weight: weight.store() }
+        let [r, g, b, weight] = weighed::<M, L, f32x8>(
+            self.gather,
+            self.weighing,
+            wi,
+            fresh_lanes3(self.radiance),
+            light,
+        );
+        Weighed8 {
+            contribution: store3([r, g, b]),
+            weight: weight.store(),
+        }
     }
 }

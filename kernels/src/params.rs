@@ -98,7 +98,11 @@ impl HairParams {
     /// All intensities zero is legal: the model then evaluates to 0 and every sample is discarded.
     #[inline]
     pub fn new(desc: &HairDesc) -> Result<Self, ParamError> {
-        let shifts = [("alpha_r", desc.alpha_r), ("alpha_tt", desc.alpha_tt), ("alpha_trt", desc.alpha_trt)];
+        let shifts = [
+            ("alpha_r", desc.alpha_r),
+            ("alpha_tt", desc.alpha_tt),
+            ("alpha_trt", desc.alpha_trt),
+        ];
         for (field, value) in shifts {
             check(value.abs() <= FRAC_PI_2, ParamError::Shift(field, value))?;
         }
@@ -110,9 +114,15 @@ impl HairParams {
             ("gamma_g", desc.gamma_g),
         ];
         for (field, value) in widths {
-            check((MIN_WIDTH..=MAX_WIDTH).contains(&value), ParamError::Width(field, value))?;
+            check(
+                (MIN_WIDTH..=MAX_WIDTH).contains(&value),
+                ParamError::Width(field, value),
+            )?;
         }
-        check((0.0..=PI).contains(&desc.phi_g), ParamError::GlintAngle("phi_g", desc.phi_g))?;
+        check(
+            (0.0..=PI).contains(&desc.phi_g),
+            ParamError::GlintAngle("phi_g", desc.phi_g),
+        )?;
         let colours = [
             ("intensity_r", desc.intensity_r),
             ("intensity_tt", desc.intensity_tt),
@@ -120,10 +130,16 @@ impl HairParams {
         ];
         for (field, rgb) in colours {
             for (channel, value) in rgb.into_iter().enumerate() {
-                check(is_intensity(value), ParamError::Intensity(field, channel, value))?;
+                check(
+                    is_intensity(value),
+                    ParamError::Intensity(field, channel, value),
+                )?;
             }
         }
-        check(is_intensity(desc.intensity_g), ParamError::Scalar("intensity_g", desc.intensity_g))?;
+        check(
+            is_intensity(desc.intensity_g),
+            ParamError::Scalar("intensity_g", desc.intensity_g),
+        )?;
         Ok(Self(*desc))
     }
 

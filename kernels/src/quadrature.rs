@@ -45,7 +45,11 @@ pub(crate) const GRADED: [[f32; 3]; 72] = graded();
 /// The same rule with two thirds of the nodes: a digit less.
 pub(crate) const COARSE: [[f32; 3]; 48] = graded();
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "rounding to a float is the purpose")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "rounding to a float is the purpose"
+)]
 const fn graded<const NODES: usize>() -> [[f32; 3]; NODES] {
     let mut nodes = [[0.0; 3]; NODES];
     let mut k = 0;
@@ -56,7 +60,11 @@ const fn graded<const NODES: usize>() -> [[f32; 3]; NODES] {
         let sum = up + down;
         let both = v * rest;
         let slope = 5.0 * (both * both * both * both) / (sum * sum);
-        nodes[k] = [(up / sum) as f32, (down / sum) as f32, (slope / NODES as f64) as f32];
+        nodes[k] = [
+            (up / sum) as f32,
+            (down / sum) as f32,
+            (slope / NODES as f64) as f32,
+        ];
         k += 1;
     }
     nodes

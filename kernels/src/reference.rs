@@ -110,7 +110,9 @@ impl<T: Real> HairReference<T> {
         longitudinal[Lobe::GLINT] = trt;
 
         let energies = energies(p);
-        let total = Lobe::ALL.into_iter().fold(zero, |sum, lobe| sum + energies[lobe]);
+        let total = Lobe::ALL
+            .into_iter()
+            .fold(zero, |sum, lobe| sum + energies[lobe]);
         let mut probabilities = PerLobe::default();
         if total > zero {
             for lobe in Lobe::ALL {
@@ -154,14 +156,16 @@ impl<T: Real> HairReference<T> {
     #[inline]
     #[must_use]
     pub fn eval(&self, wi: [T; 3]) -> [T; 3] {
-        self.angles(wi).map_or([T::default(); 3], |at| self.colour(&self.values_at(&at)))
+        self.angles(wi)
+            .map_or([T::default(); 3], |at| self.colour(&self.values_at(&at)))
     }
 
     /// The four terms of equation (1) without their RGB intensity: `M N / cos^2 theta_d`, the glint's times `I_g`.
     #[inline]
     #[must_use]
     pub fn lobe_values(&self, wi: [T; 3]) -> PerLobe<T> {
-        self.angles(wi).map_or_else(PerLobe::default, |at| self.values_at(&at))
+        self.angles(wi)
+            .map_or_else(PerLobe::default, |at| self.values_at(&at))
     }
 
     /// Density of [`sample`](Self::sample) at `wi`: the mixture of the four lobes.
@@ -172,23 +176,29 @@ impl<T: Real> HairReference<T> {
     #[inline]
     #[must_use]
     pub fn pdf(&self, wi: [T; 3]) -> T {
-        self.angles(wi).map_or_else(T::default, |at| self.mixture(&self.pdfs_at(&at)))
+        self.angles(wi)
+            .map_or_else(T::default, |at| self.mixture(&self.pdfs_at(&at)))
     }
 
     /// [`eval`](Self::eval) and [`pdf`](Self::pdf) at once: the angles are computed from `wi` once.
     #[inline]
     #[must_use]
     pub fn eval_pdf(&self, wi: [T; 3]) -> ([T; 3], T) {
-        self.angles(wi).map_or(([T::default(); 3], T::default()), |at| {
-            (self.colour(&self.values_at(&at)), self.mixture(&self.pdfs_at(&at)))
-        })
+        self.angles(wi)
+            .map_or(([T::default(); 3], T::default()), |at| {
+                (
+                    self.colour(&self.values_at(&at)),
+                    self.mixture(&self.pdfs_at(&at)),
+                )
+            })
     }
 
     /// Density of [`sample_lobe`](Self::sample_lobe) for each lobe at `wi`, per steradian.
     #[inline]
     #[must_use]
     pub fn lobe_pdfs(&self, wi: [T; 3]) -> PerLobe<T> {
-        self.angles(wi).map_or_else(PerLobe::default, |at| self.pdfs_at(&at))
+        self.angles(wi)
+            .map_or_else(PerLobe::default, |at| self.pdfs_at(&at))
     }
 
     /// Itself: what [`Reference`] reads of every form of the model.
@@ -205,7 +215,12 @@ impl<T: Real> HairReference<T> {
         }
         let theta_i = wi[0].atan2(cos_theta_i);
         let phi = wrapped(self.phi_o - azimuth(wi));
-        Some(Angles { theta_i, cos_theta_i, phi, cos_half_phi: cos_half(phi) })
+        Some(Angles {
+            theta_i,
+            cos_theta_i,
+            phi,
+            cos_half_phi: cos_half(phi),
+        })
     }
 
     #[inline]
@@ -247,7 +262,8 @@ impl<T: Real> HairReference<T> {
         let phi_cosine = at.cos_half_phi / T::from_f64(4.0);
         let mut pdfs = PerLobe::default();
         pdfs[Lobe::R] = self.pdf_theta(Lobe::R, at.theta_i) * phi_cosine / at.cos_theta_i;
-        pdfs[Lobe::TT] = self.pdf_theta(Lobe::TT, at.theta_i) * self.pdf_phi(Lobe::TT, at.phi) / at.cos_theta_i;
+        pdfs[Lobe::TT] =
+            self.pdf_theta(Lobe::TT, at.theta_i) * self.pdf_phi(Lobe::TT, at.phi) / at.cos_theta_i;
         pdfs[Lobe::TRT] = theta_trt * phi_cosine / at.cos_theta_i;
         pdfs[Lobe::GLINT] = theta_trt * self.pdf_phi(Lobe::GLINT, at.phi) / at.cos_theta_i;
         pdfs
@@ -255,7 +271,9 @@ impl<T: Real> HairReference<T> {
 
     #[inline]
     fn mixture(&self, pdfs: &PerLobe<T>) -> T {
-        Lobe::ALL.into_iter().fold(T::default(), |sum, lobe| sum + self.probabilities[lobe] * pdfs[lobe])
+        Lobe::ALL.into_iter().fold(T::default(), |sum, lobe| {
+            sum + self.probabilities[lobe] * pdfs[lobe]
+        })
     }
 }
 
@@ -276,7 +294,11 @@ fn energies<T: Real>(p: &Parameters<T>) -> PerLobe<T> {
 /// Azimuth of `w`, 0 on the axis whatever the signs of its zeros.
 #[inline]
 fn azimuth<T: Real>(w: [T; 3]) -> T {
-    if w[1] == T::default() && w[2] == T::default() { T::default() } else { w[2].atan2(w[1]) }
+    if w[1] == T::default() && w[2] == T::default() {
+        T::default()
+    } else {
+        w[2].atan2(w[1])
+    }
 }
 
 /// `phi` in [-2 pi, 2 pi] brought to (-pi, pi].

@@ -78,7 +78,8 @@ impl Partition {
 fn share<L: Lanes>(partition: Partition, pdf_light: L, pdf_bsdf: L) -> L {
     let one = L::splat(1.0);
     // As far as squares go.
-    let ratio = L::quotient(pdf_bsdf, L::splat(f32::MIN_POSITIVE).max(pdf_light)).min(L::splat(1e18));
+    let ratio =
+        L::quotient(pdf_bsdf, L::splat(f32::MIN_POSITIVE).max(pdf_light)).min(L::splat(1e18));
     match partition {
         Partition::All => one,
         Partition::Balance => L::quotient(one, one + ratio),
@@ -94,9 +95,15 @@ pub(crate) struct Weighing {
 }
 
 impl Weighing {
-    #[expect(clippy::cast_precision_loss, reason = "numbers of candidates are far below 2^24")]
+    #[expect(
+        clippy::cast_precision_loss,
+        reason = "numbers of candidates are far below 2^24"
+    )]
     const fn new(counts: Counts, partition: Partition) -> Self {
-        Self { counts: [counts.bsdf as f32, counts.light as f32], partition }
+        Self {
+            counts: [counts.bsdf as f32, counts.light as f32],
+            partition,
+        }
     }
 
     /// Contribution and weight of a direction whose S is `value`.
@@ -122,7 +129,11 @@ impl Weighing {
         let [bsdf, light] = self.counts;
         let density = pdf_bsdf.min(most).mul_add(c(bsdf), pdf_light * c(light));
         let mean = (f[0] + f[1] + f[2]) * c(1.0 / 3.0);
-        let weight = L::keep(zero.lt(density), L::quotient(mean, c(f32::MIN_POSITIVE).max(density))).min(most);
+        let weight = L::keep(
+            zero.lt(density),
+            L::quotient(mean, c(f32::MIN_POSITIVE).max(density)),
+        )
+        .min(most);
         let [r, g, b] = f;
         [r, g, b, weight]
     }
@@ -164,8 +175,21 @@ pub struct Weighed8 {
 }
 
 /// Names of the slices of candidates, and of weights.
-const CANDIDATE: [&str; 7] = ["wi.u", "wi.v", "wi.w", "radiance.r", "radiance.g", "radiance.b", "pdf_light"];
-const WEIGHT: [&str; 4] = ["contribution.r", "contribution.g", "contribution.b", "weight"];
+const CANDIDATE: [&str; 7] = [
+    "wi.u",
+    "wi.v",
+    "wi.w",
+    "radiance.r",
+    "radiance.g",
+    "radiance.b",
+    "pdf_light",
+];
+const WEIGHT: [&str; 4] = [
+    "contribution.r",
+    "contribution.g",
+    "contribution.b",
+    "weight",
+];
 
 impl Weighed8 {
     /// Candidates whose values and densities the host has, for densities that are not the model's own: a mixture with another
@@ -181,8 +205,12 @@ impl Weighed8 {
         partition: Partition,
     ) -> Self {
         let weighing = Weighing::new(counts, partition);
-        let [r, g, b, weight] = weighing.weigh(eval.value, eval.pdf, *cos_theta_i, *radiance, *pdf_light);
-        Self { contribution: [r, g, b], weight }
+        let [r, g, b, weight] =
+            weighing.weigh(eval.value, eval.pdf, *cos_theta_i, *radiance, *pdf_light);
+        Self {
+            contribution: [r, g, b],
+            weight,
+        }
     }
 }
 
@@ -204,7 +232,12 @@ impl<M: Model> Gather<M> {
     ///
     /// If the slices differ in length; nothing is written then.
     #[inline]
-    pub fn propose_batch_at(&self, level: Level, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
+    pub fn propose_batch_at(
+        &self,
+        level: Level,
+        xi: [&[f32]; 3],
+        wi: [&mut [f32]; 3],
+    ) -> Result<(), LengthError> {
         clean_upper_halves();
         let columns = check_columns(&XI, xi, &WI, wi)?;
         level.run_columns(Proposals::<M>::new(&self.inner), &columns);
@@ -242,7 +275,11 @@ impl<M: Model> Gather<M> {
         out: WeightSlices<'_>,
     ) -> Result<(), LengthError> {
         clean_upper_halves();
-        let CandidateSlices { wi, radiance, pdf_light } = candidates;
+        let CandidateSlices {
+            wi,
+            radiance,
+            pdf_light,
+        } = candidates;
         let ([u, v, w], [r, g, b], [fr, fg, fb]) = (wi, radiance, out.contribution);
         let inputs = [u, v, w, r, g, b, pdf_light];
         let columns = check_columns(&CANDIDATE, inputs, &WEIGHT, [fr, fg, fb, out.weight])?;
@@ -264,7 +301,10 @@ impl<M: Model> Gather8<M> {
     #[inline]
     #[must_use]
     pub fn propose8_at(&self, level: Level, xi: &[f32x8; 3]) -> Vec3x8 {
-        level.run(ProposalsOf::<M> { gather: &self.inner, xi })
+        level.run(ProposalsOf::<M> {
+            gather: &self.inner,
+            xi,
+        })
     }
 
     /// Contribution and weight of a candidate for each hit, from the light's radiance and density there.
@@ -294,6 +334,12 @@ impl<M: Model> Gather8<M> {
         partition: Partition,
     ) -> Weighed8 {
         let weighing = Weighing::new(counts, partition);
-        level.run(WeighOf::<M> { gather: &self.inner, wi, radiance, pdf_light, weighing })
+        level.run(WeighOf::<M> {
+            gather: &self.inner,
+            wi,
+            radiance,
+            pdf_light,
+            weighing,
+        })
     }
 }

@@ -17,8 +17,15 @@ pub struct LengthError {
 impl fmt::Display for LengthError {
     #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { field, len, expected } = self;
-        write!(f, "{field} has {len} entries where the first slice has {expected}")
+        let Self {
+            field,
+            len,
+            expected,
+        } = self;
+        write!(
+            f,
+            "{field} has {len} entries where the first slice has {expected}"
+        )
     }
 }
 
@@ -108,8 +115,22 @@ impl<'a> HitSlices<'a> {
         names: [&'static str; 3],
     ) -> Result<[&'a [f32]; 7], LengthError> {
         let [u, v, w] = self.wo;
-        check_lengths(self.len(), [("wo.v", Some(v.len())), ("wo.w", Some(w.len())), ("h", self.h.map(<[f32]>::len))])?;
-        check_lengths(self.len(), [(names[0], Some(x.len())), (names[1], Some(y.len())), (names[2], Some(z.len()))])?;
+        check_lengths(
+            self.len(),
+            [
+                ("wo.v", Some(v.len())),
+                ("wo.w", Some(w.len())),
+                ("h", self.h.map(<[f32]>::len)),
+            ],
+        )?;
+        check_lengths(
+            self.len(),
+            [
+                (names[0], Some(x.len())),
+                (names[1], Some(y.len())),
+                (names[2], Some(z.len())),
+            ],
+        )?;
         Ok([u, v, w, self.h.unwrap_or_default(), x, y, z])
     }
 }
@@ -118,7 +139,10 @@ impl<'a> EvalColumns<'a> {
     #[inline]
     pub(crate) fn columns(self, expected: usize) -> Result<[&'a mut [f32]; 4], LengthError> {
         check_lengths(expected, lens3(VALUE, self.value.as_ref()))?;
-        check_lengths(expected, [("pdf", self.pdf.as_ref().map(|column| column.len()))])?;
+        check_lengths(
+            expected,
+            [("pdf", self.pdf.as_ref().map(|column| column.len()))],
+        )?;
         let [r, g, b] = self.value.unwrap_or_default();
         Ok([r, g, b, self.pdf.unwrap_or_default()])
     }
@@ -129,13 +153,34 @@ impl<'a> SampleColumns<'a> {
     pub(crate) fn columns(self, expected: usize) -> Result<[&'a mut [f32]; 11], LengthError> {
         check_lengths(expected, lens3(WI, self.wi.as_ref()))?;
         check_lengths(expected, lens3(VALUE, self.value.as_ref()))?;
-        check_lengths(expected, [("pdf", self.pdf.as_ref().map(|column| column.len()))])?;
-        check_lengths(expected, lens3(["weight.r", "weight.g", "weight.b"], self.weight.as_ref()))?;
-        check_lengths(expected, [("slot", self.slot.as_ref().map(|column| column.len()))])?;
+        check_lengths(
+            expected,
+            [("pdf", self.pdf.as_ref().map(|column| column.len()))],
+        )?;
+        check_lengths(
+            expected,
+            lens3(["weight.r", "weight.g", "weight.b"], self.weight.as_ref()),
+        )?;
+        check_lengths(
+            expected,
+            [("slot", self.slot.as_ref().map(|column| column.len()))],
+        )?;
         let [u, v, w] = self.wi.unwrap_or_default();
         let [r, g, b] = self.value.unwrap_or_default();
         let [wr, wg, wb] = self.weight.unwrap_or_default();
-        Ok([u, v, w, r, g, b, self.pdf.unwrap_or_default(), wr, wg, wb, self.slot.unwrap_or_default()])
+        Ok([
+            u,
+            v,
+            w,
+            r,
+            g,
+            b,
+            self.pdf.unwrap_or_default(),
+            wr,
+            wg,
+            wb,
+            self.slot.unwrap_or_default(),
+        ])
     }
 }
 
@@ -148,7 +193,10 @@ const VALUE: [&str; 3] = ["value.r", "value.g", "value.b"];
 
 /// Names and lengths of three columns; no length where they are left out.
 #[inline(always)]
-fn lens3(names: [&'static str; 3], columns: Option<&[&mut [f32]; 3]>) -> [(&'static str, Option<usize>); 3] {
+fn lens3(
+    names: [&'static str; 3],
+    columns: Option<&[&mut [f32]; 3]>,
+) -> [(&'static str, Option<usize>); 3] {
     let len = |i: usize| columns.map(|columns| columns[i].len());
     [(names[0], len(0)), (names[1], len(1)), (names[2], len(2))]
 }
@@ -163,8 +211,12 @@ pub(crate) fn check_columns<'a, const I: usize, const N: usize>(
     outputs: [&'a mut [f32]; N],
 ) -> Result<Columns<'a, I, N>, LengthError> {
     // By value: columns that a cold call refers to would be copied to memory before every check.
-    let lens = (inputs.map(<[f32]>::len), outputs.each_ref().map(|column| column.len()));
-    Columns::all(inputs, outputs).ok_or_else(|| first_that_differs(in_names, lens.0, out_names, lens.1))
+    let lens = (
+        inputs.map(<[f32]>::len),
+        outputs.each_ref().map(|column| column.len()),
+    );
+    Columns::all(inputs, outputs)
+        .ok_or_else(|| first_that_differs(in_names, lens.0, out_names, lens.1))
 }
 
 /// The first of the slices that is not of the length of the first input.
@@ -176,9 +228,18 @@ fn first_that_differs<const I: usize, const N: usize>(
     outputs: [usize; N],
 ) -> LengthError {
     let expected = inputs[0];
-    let mut all = in_names.iter().zip(inputs).chain(out_names.iter().zip(outputs));
-    let (field, len) = all.find(|(_, len)| *len != expected).unwrap_or((&"", expected));
-    LengthError { field, len, expected }
+    let mut all = in_names
+        .iter()
+        .zip(inputs)
+        .chain(out_names.iter().zip(outputs));
+    let (field, len) = all
+        .find(|(_, len)| *len != expected)
+        .unwrap_or((&"", expected));
+    LengthError {
+        field,
+        len,
+        expected,
+    }
 }
 
 /// Refuses the first column that has a length, and not the expected one.
@@ -191,7 +252,11 @@ pub(crate) fn check_lengths<const N: usize>(
         if let Some(len) = len
             && len != expected
         {
-            return Err(LengthError { field, len, expected });
+            return Err(LengthError {
+                field,
+                len,
+                expected,
+            });
         }
     }
     Ok(())

@@ -13,7 +13,13 @@ type Tested = Matched<Gaussian, 9, true>;
 fn red() -> HairParams {
     let intensities = ([0.05; 3], [0.9, 0.35, 0.08], [0.6, 0.12, 0.01]);
     let (intensity_r, intensity_tt, intensity_trt) = intensities;
-    HairParams::new(&HairDesc { intensity_r, intensity_tt, intensity_trt, ..HairDesc::default() }).unwrap()
+    HairParams::new(&HairDesc {
+        intensity_r,
+        intensity_tt,
+        intensity_trt,
+        ..HairDesc::default()
+    })
+    .unwrap()
 }
 
 /// Relative variance of one sample's weight in each channel, and of their mean; means of the channels and of the directional
@@ -30,12 +36,19 @@ fn measure<M: Model<Params = HairParams>>(
     for cell in 0..CELLS * CELLS * CELLS / 8 {
         let xi: [[f32; 3]; 8] = core::array::from_fn(|lane| {
             let i = 8 * cell + lane;
-            [i / (CELLS * CELLS), i / CELLS % CELLS, i % CELLS].map(|at| (at as f32 + draws.xi()) / CELLS as f32)
+            [i / (CELLS * CELLS), i / CELLS % CELLS, i % CELLS]
+                .map(|at| (at as f32 + draws.xi()) / CELLS as f32)
         });
         let sample = gather.sample8(&lanes_of(&xi));
         for lane in 0..8 {
-            let w = sample.lane(lane).map_or([0.0; 3], |s| s.weight).map(f64::from);
-            for (i, x) in [w[0], w[1], w[2], (w[0] + w[1] + w[2]) / 3.0].into_iter().enumerate() {
+            let w = sample
+                .lane(lane)
+                .map_or([0.0; 3], |s| s.weight)
+                .map(f64::from);
+            for (i, x) in [w[0], w[1], w[2], (w[0] + w[1] + w[2]) / 3.0]
+                .into_iter()
+                .enumerate()
+            {
                 first[i] += x;
                 second[i] += x * x;
             }
@@ -59,11 +72,22 @@ fn coloured_hair_gains_over_its_channels() {
             "{degrees}: by mean {red_m:.4} {green_m:.4} {blue_m:.4} {mean_m:.4}, by channel {r:.4} {g:.4} {b:.4} {mean:.4}"
         );
         for c in 0..3 {
-            assert!((got[c] / albedo[c] - 1.0).abs() < 2e-3, "channel {c}: mean weight {} of {}", got[c], albedo[c]);
+            assert!(
+                (got[c] / albedo[c] - 1.0).abs() < 2e-3,
+                "channel {c}: mean weight {} of {}",
+                got[c],
+                albedo[c]
+            );
         }
-        assert!(1.3 * (r + g + b) < red_m + green_m + blue_m, "the channels together");
+        assert!(
+            1.3 * (r + g + b) < red_m + green_m + blue_m,
+            "the channels together"
+        );
         assert!(3.0 * b < blue_m, "the weakest channel");
-        assert!(mean < 12.0 * mean_m && mean < 0.15, "what it costs the mean");
+        assert!(
+            mean < 12.0 * mean_m && mean < 0.15,
+            "what it costs the mean"
+        );
     }
 }
 
@@ -75,14 +99,22 @@ fn weights_are_below_their_bound() {
     for round in 0..400 {
         let params = draws.params(10.0);
         let wo = direction(draws.between(-1.5, 1.5), draws.between(-PI, PI));
-        let mask = if round % 3 == 0 { LobeMask::of(&[hairis::Lobe::ALL[draws.below(4)]]) } else { LobeMask::ALL };
+        let mask = if round % 3 == 0 {
+            LobeMask::of(&[hairis::Lobe::ALL[draws.below(4)]])
+        } else {
+            LobeMask::ALL
+        };
         let limit = oracle(&Formulas::of::<Bands<9, true>>(), &params, 1.0, wo).weight_bound(mask);
         let gather = Bsdf::new(&model, &params).prepare(wo).with_lobes(mask);
         for _ in 0..500 {
             if let Some(s) = gather.sample(draws.xi3()) {
                 let mean = s.weight.iter().map(|x| f64::from(*x)).sum::<f64>() / 3.0;
                 closest = closest.max(mean / limit);
-                assert!(mean <= limit * (1.0 + 1e-4), "{mean} above {limit} at {s:?} wo {:?} {params:?}", double(wo));
+                assert!(
+                    mean <= limit * (1.0 + 1e-4),
+                    "{mean} above {limit} at {s:?} wo {:?} {params:?}",
+                    double(wo)
+                );
             }
         }
     }

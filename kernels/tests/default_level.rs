@@ -6,30 +6,78 @@ use hairis::{Bsdf, Bsdf8, Gaussian, Hair, HairDesc, HairParams, Level};
 #[test]
 fn packets_without_a_level_run_on_the_one_found() {
     let mut draws = Draws(71);
-    let narrow = HairParams::new(&HairDesc { beta_r: 0.05, ..HairDesc::default() }).unwrap();
+    let narrow = HairParams::new(&HairDesc {
+        beta_r: 0.05,
+        ..HairDesc::default()
+    })
+    .unwrap();
     let [a, b] = [HairParams::default(), narrow].map(|params| Bsdf::new(&Hair(Gaussian), &params));
     let packed = Bsdf8::pack([&a, &b, &b, &a, &a, &b, &a, &b]);
     let level = Level::detect();
     for _ in 0..100 {
         let mut eight = || {
-            let v: [_; 8] = core::array::from_fn(|_| direction(draws.between(-1.5, 1.5), draws.between(-3.1, 3.1)));
+            let v: [_; 8] = core::array::from_fn(|_| {
+                direction(draws.between(-1.5, 1.5), draws.between(-3.1, 3.1))
+            });
             packet(&v)
         };
         let [wo, wi] = [eight(), eight()];
         let xi = lanes_of(&core::array::from_fn(|_| draws.xi3()));
-        let same = |default: String, found: String, what: &str| assert_eq!(default, found, "{what} of {wo:?} {wi:?}");
+        let same = |default: String, found: String, what: &str| {
+            assert_eq!(default, found, "{what} of {wo:?} {wi:?}")
+        };
         let text = |of: &dyn core::fmt::Debug| format!("{of:?}");
         let (shared, mixed) = (a.prepare8(&wo), packed.prepare8(&wo));
-        same(text(&shared), text(&a.prepare8_at(level, &wo)), "one material");
-        same(text(&mixed), text(&packed.prepare8_at(level, &wo)), "eight materials");
-        same(text(&mixed.eval_pdf8(&wi)), text(&mixed.eval_pdf8_at(level, &wi)), "values of eight hits");
-        same(text(&mixed.sample8(&xi)), text(&mixed.sample8_at(level, &xi)), "samples of eight hits");
-        same(text(&mixed.lobes8(&wi)), text(&mixed.lobes8_at(level, &wi)), "lobes of eight hits");
-        same(text(&mixed.albedo8()), text(&mixed.albedo8_at(level)), "albedos of eight hits");
-        same(text(&mixed.conserving()), text(&mixed.conserving_at(level)), "eight hits that conserve energy");
+        same(
+            text(&shared),
+            text(&a.prepare8_at(level, &wo)),
+            "one material",
+        );
+        same(
+            text(&mixed),
+            text(&packed.prepare8_at(level, &wo)),
+            "eight materials",
+        );
+        same(
+            text(&mixed.eval_pdf8(&wi)),
+            text(&mixed.eval_pdf8_at(level, &wi)),
+            "values of eight hits",
+        );
+        same(
+            text(&mixed.sample8(&xi)),
+            text(&mixed.sample8_at(level, &xi)),
+            "samples of eight hits",
+        );
+        same(
+            text(&mixed.lobes8(&wi)),
+            text(&mixed.lobes8_at(level, &wi)),
+            "lobes of eight hits",
+        );
+        same(
+            text(&mixed.albedo8()),
+            text(&mixed.albedo8_at(level)),
+            "albedos of eight hits",
+        );
+        same(
+            text(&mixed.conserving()),
+            text(&mixed.conserving_at(level)),
+            "eight hits that conserve energy",
+        );
         let one = mixed.lane(3);
-        same(text(&one.eval_pdf8(&wi)), text(&one.eval_pdf8_at(level, &wi)), "values of one hit");
-        same(text(&one.sample8(&xi)), text(&one.sample8_at(level, &xi)), "samples of one hit");
-        same(text(&one.lobes8(&wi)), text(&one.lobes8_at(level, &wi)), "lobes of one hit");
+        same(
+            text(&one.eval_pdf8(&wi)),
+            text(&one.eval_pdf8_at(level, &wi)),
+            "values of one hit",
+        );
+        same(
+            text(&one.sample8(&xi)),
+            text(&one.sample8_at(level, &xi)),
+            "samples of one hit",
+        );
+        same(
+            text(&one.lobes8(&wi)),
+            text(&one.lobes8_at(level, &wi)),
+            "lobes of one hit",
+        );
     }
 }

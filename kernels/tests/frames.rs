@@ -10,18 +10,35 @@ use hairis_conformance::published::props::{finite, three};
 fn frames_are_orthonormal_and_right_handed() {
     let mut draws = Draws(56);
     for _ in 0..20_000 {
-        let [tangent, normal] = [three(&mut draws, finite), three(&mut draws, finite)].map(Vec3::from_array);
-        for frame in [FiberFrame::from_tangent(tangent), FiberFrame::from_tangent_normal(tangent, normal)] {
+        let [tangent, normal] =
+            [three(&mut draws, finite), three(&mut draws, finite)].map(Vec3::from_array);
+        for frame in [
+            FiberFrame::from_tangent(tangent),
+            FiberFrame::from_tangent_normal(tangent, normal),
+        ] {
             let FiberFrame { u, v, w } = frame;
-            let off = [u.dot(v), v.dot(w), w.dot(u), u.length() - 1.0, v.length() - 1.0, w.length() - 1.0];
+            let off = [
+                u.dot(v),
+                v.dot(w),
+                w.dot(u),
+                u.length() - 1.0,
+                v.length() - 1.0,
+                w.length() - 1.0,
+            ];
             let worst = off.iter().fold(0.0, |a: f32, x| a.max(x.abs()));
             assert!(worst <= bound::FRAME, "{frame:?} is off by {worst}");
-            assert!((u.cross(v) - w).length() <= bound::FRAME, "{frame:?} is left-handed");
+            assert!(
+                (u.cross(v) - w).length() <= bound::FRAME,
+                "{frame:?} is left-handed"
+            );
             let largest = tangent.abs().max_element();
             let along = largest == 0.0 || u.dot((tangent / largest).normalize()) > 0.999_999;
             assert!(along, "u is not along {tangent:?}");
             let x = Vec3::new(0.3, -0.5, 0.8);
-            assert!((frame.to_world(frame.to_local(x)) - x).length() < 1e-6, "there and back in {frame:?}");
+            assert!(
+                (frame.to_world(frame.to_local(x)) - x).length() < 1e-6,
+                "there and back in {frame:?}"
+            );
         }
     }
 }
@@ -30,16 +47,31 @@ fn frames_are_orthonormal_and_right_handed() {
 fn eight_lanes_round_as_sums_do_in_every_build() {
     let mut draws = Draws(57);
     for _ in 0..2000 {
-        let frames: [FiberFrame; 8] =
-            core::array::from_fn(|_| FiberFrame::from_tangent(Vec3::from_array(three(&mut draws, finite))));
-        let vectors: [Vec3; 8] = core::array::from_fn(|_| Vec3::new(draws.xi(), draws.xi(), draws.xi()));
+        let frames: [FiberFrame; 8] = core::array::from_fn(|_| {
+            FiberFrame::from_tangent(Vec3::from_array(three(&mut draws, finite)))
+        });
+        let vectors: [Vec3; 8] =
+            core::array::from_fn(|_| Vec3::new(draws.xi(), draws.xi(), draws.xi()));
         let eight = FiberFrame8::from(frames);
-        let (local, world) = (eight.to_local(&vectors.into()), eight.to_world(&vectors.into()));
+        let (local, world) = (
+            eight.to_local(&vectors.into()),
+            eight.to_world(&vectors.into()),
+        );
         for lane in 0..8 {
             let (FiberFrame { u, v, w }, x) = (frames[lane], vectors[lane]);
             let dot = |axis: Vec3| x.x * axis.x + (x.y * axis.y + x.z * axis.z);
-            assert_eq!(local.lane(lane), Vec3::new(dot(u), dot(v), dot(w)), "{x} in {:?}", frames[lane]);
-            assert_eq!(world.lane(lane), frames[lane].to_world(x), "{x} out of {:?}", frames[lane]);
+            assert_eq!(
+                local.lane(lane),
+                Vec3::new(dot(u), dot(v), dot(w)),
+                "{x} in {:?}",
+                frames[lane]
+            );
+            assert_eq!(
+                world.lane(lane),
+                frames[lane].to_world(x),
+                "{x} out of {:?}",
+                frames[lane]
+            );
         }
     }
 }
@@ -61,9 +93,20 @@ fn frames_of_eight_hits_are_those_of_one_at_a_time() {
         }
         let frames = FiberFrame8::from_tangents_normals(&u.into(), &wo.into());
         for lane in 0..8 {
-            let (tangent, v, w) = (frames.u.lane(lane), frames.v.lane(lane), frames.w.lane(lane));
-            let off = [v.length() - 1.0, tangent.dot(v), (tangent.cross(v) - w).length()];
-            assert!(tangent == u[lane] && off.iter().all(|x| x.abs() < 1e-6), "{tangent} {v} {w}");
+            let (tangent, v, w) = (
+                frames.u.lane(lane),
+                frames.v.lane(lane),
+                frames.w.lane(lane),
+            );
+            let off = [
+                v.length() - 1.0,
+                tangent.dot(v),
+                (tangent.cross(v) - w).length(),
+            ];
+            assert!(
+                tangent == u[lane] && off.iter().all(|x| x.abs() < 1e-6),
+                "{tangent} {v} {w}"
+            );
             let one = FiberFrame::from_tangent_normal(u[lane], wo[lane]);
             let along = u[lane].cross(wo[lane]).length() < 1e-2;
             assert!(along || (one.v - v).length() < 1e-4, "{} {v}", one.v);

@@ -4,9 +4,9 @@ use crate::support::{Draws, LargestError, narrow};
 use crate::tolerance as bound;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use hairis::math::{
-    atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_and_complement, half_angle, half_atan2,
-    half_atan2_parts, log2, log2_one_plus, normal_tail, normal_tail_inverse, normal_tail_ratio, sin_cos_absolute,
-    sin_cos_twice, tan_half_turn,
+    atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_and_complement, half_angle,
+    half_atan2, half_atan2_parts, log2, log2_one_plus, normal_tail, normal_tail_inverse,
+    normal_tail_ratio, sin_cos_absolute, sin_cos_twice, tan_half_turn,
 };
 use hairis::reference::Real;
 use hairis::wide::f32x8;
@@ -23,7 +23,8 @@ fn ulp(got: f32, want: f64) -> f64 {
 /// `POINTS` numbers from `lo` to `hi`, both included, and special ones in between.
 fn scan(lo: f32, hi: f32) -> impl Iterator<Item = f32> {
     let (a, b) = (f64::from(lo), f64::from(hi));
-    let even = (0..=POINTS).map(move |i| narrow(a + (b - a) * f64::from(i) / f64::from(POINTS)).clamp(lo, hi));
+    let even = (0..=POINTS)
+        .map(move |i| narrow(a + (b - a) * f64::from(i) / f64::from(POINTS)).clamp(lo, hi));
     // Every magnitude down to the denormals, on both sides of 0.
     let small = (0..2048).flat_map(move |i| {
         let x = hi * narrow((-f64::from(i) / 13.0).exp2());
@@ -45,7 +46,11 @@ fn both(
         if Level::portable().fuses() {
             worst.see(ulp(lane, f64::from(scalar)), || format!("{x:?}"));
         } else {
-            assert_eq!(lane.to_bits(), scalar.to_bits(), "eight lanes and one at {x:?}: {lane} {scalar}");
+            assert_eq!(
+                lane.to_bits(),
+                scalar.to_bits(),
+                "eight lanes and one at {x:?}: {lane} {scalar}"
+            );
         }
     }
     scalar
@@ -101,30 +106,50 @@ fn gaussian_is_accurate_and_then_zero() {
     for s in scan(0.0, 0.99 * zero).chain(scan(0.0, 2.0)) {
         let got = both([s, 0.0], exp, exp, &mut lanes);
         // One lane does not fuse: the exponent is rounded, and the power is as far off as it is large.
-        worst.see(ulp(got, (-f64::from(s) / 2.0).exp()) / (1.0 + f64::from(s) / 2.0), || format!("{s}"));
+        worst.see(
+            ulp(got, (-f64::from(s) / 2.0).exp()) / (1.0 + f64::from(s) / 2.0),
+            || format!("{s}"),
+        );
     }
     worst.check("GAUSSIAN", bound::GAUSSIAN);
     lanes.check("GAUSSIAN_LANES", bound::GAUSSIAN_LANES);
     let mut last = 1.0;
     for s in scan(0.99 * zero, 1.2 * zero).filter(|s| *s >= 0.99 * zero) {
         let got = gaussian(s);
-        assert!(got >= 0.0 && got <= (-113.0_f32).exp2(), "exp(-{s}/2) is {got}");
+        assert!(
+            got >= 0.0 && got <= (-113.0_f32).exp2(),
+            "exp(-{s}/2) is {got}"
+        );
         assert!(s < 1.01 * zero || got == 0.0, "exp(-{s}/2) is {got}, not 0");
-        assert!(got == 0.0 || got >= 0.5e-35, "exp(-{s}/2) is {got}, almost a denormal");
+        assert!(
+            got == 0.0 || got >= 0.5e-35,
+            "exp(-{s}/2) is {got}, almost a denormal"
+        );
         last = got;
     }
     assert!(last == 0.0, "far out");
     for s in [200.0, 1e4, 8e6, 1e30, f32::MAX, f32::INFINITY, f32::NAN] {
         assert_eq!(gaussian(s), 0.0, "exp(-{s}/2)");
-        assert_eq!(gaussian(f32x8::splat(s)), f32x8::ZERO, "exp(-{s}/2), eight lanes");
+        assert_eq!(
+            gaussian(f32x8::splat(s)),
+            f32x8::ZERO,
+            "exp(-{s}/2), eight lanes"
+        );
     }
-    assert_eq!((gaussian(0.0_f32), gaussian(-0.0_f32)), (1.0, 1.0), "exp(0)");
+    assert_eq!(
+        (gaussian(0.0_f32), gaussian(-0.0_f32)),
+        (1.0, 1.0),
+        "exp(0)"
+    );
 }
 
 #[test]
 fn atan_unit_is_accurate() {
-    let (mut worst, mut absolute, mut lanes) =
-        (LargestError::default(), LargestError::default(), LargestError::default());
+    let (mut worst, mut absolute, mut lanes) = (
+        LargestError::default(),
+        LargestError::default(),
+        LargestError::default(),
+    );
     for x in scan(-1.0, 1.0) {
         let (got, want) = (both([x, 0.0], atan, atan, &mut lanes), f64::from(x).atan());
         worst.see(ulp(got, want), || format!("{x:e}"));
@@ -139,8 +164,11 @@ fn atan_unit_is_accurate() {
 
 #[test]
 fn atan2_upper_is_accurate_at_every_magnitude() {
-    let (mut worst, mut absolute, mut lanes) =
-        (LargestError::default(), LargestError::default(), LargestError::default());
+    let (mut worst, mut absolute, mut lanes) = (
+        LargestError::default(),
+        LargestError::default(),
+        LargestError::default(),
+    );
     let mut draws = Draws(5);
     for i in 0..POINTS {
         let angle = match i % 4 {
@@ -151,7 +179,10 @@ fn atan2_upper_is_accurate_at_every_magnitude() {
         };
         let size = draws.scale(1e-15, 1e15);
         let (y, x) = (narrow(size * angle.sin()).abs(), narrow(size * angle.cos()));
-        let (got, want) = (both([y, x], atan2, atan2, &mut lanes), f64::from(y).atan2(f64::from(x)));
+        let (got, want) = (
+            both([y, x], atan2, atan2, &mut lanes),
+            f64::from(y).atan2(f64::from(x)),
+        );
         worst.see(ulp(got, want), || format!("y {y:e} x {x:e}"));
         absolute.see((f64::from(got) - want).abs(), || format!("y {y:e} x {x:e}"));
     }
@@ -175,8 +206,11 @@ fn atan2_upper_is_accurate_at_every_magnitude() {
 
 #[test]
 fn half_atan2_is_accurate_at_both_ends() {
-    let (mut worst, mut absolute, mut lanes) =
-        (LargestError::default(), LargestError::default(), LargestError::default());
+    let (mut worst, mut absolute, mut lanes) = (
+        LargestError::default(),
+        LargestError::default(),
+        LargestError::default(),
+    );
     let mut draws = Draws(6);
     for i in 0..POINTS {
         let angle = match i % 3 {
@@ -185,15 +219,28 @@ fn half_atan2_is_accurate_at_both_ends() {
             _ => draws.between(0.0, f64::from(FRAC_PI_2)),
         };
         let size = draws.scale(0.25, 7.0);
-        let (y, x) = (narrow(draws.sign() * size * angle.sin()), narrow(size * angle.cos()).abs());
-        let (got, want) = (both([y, x], half, half, &mut lanes), 0.5 * f64::from(y).atan2(f64::from(x)));
+        let (y, x) = (
+            narrow(draws.sign() * size * angle.sin()),
+            narrow(size * angle.cos()).abs(),
+        );
+        let (got, want) = (
+            both([y, x], half, half, &mut lanes),
+            0.5 * f64::from(y).atan2(f64::from(x)),
+        );
         worst.see(ulp(got, want), || format!("y {y:e} x {x:e}"));
         absolute.see((f64::from(got) - want).abs(), || format!("y {y:e} x {x:e}"));
     }
     worst.check("HALF_ATAN2", bound::HALF_ATAN2);
     absolute.check("HALF_ATAN2_RAD", bound::HALF_ATAN2_RAD);
     lanes.check("HALF_ATAN2_LANES", bound::HALF_ATAN2_LANES);
-    assert_eq!([half_atan2(0.0_f32, 1.0, 1.0), half_atan2(-1.0_f32, 0.0, 1.0)], [0.0, -FRAC_PI_4], "the ends");
+    assert_eq!(
+        [
+            half_atan2(0.0_f32, 1.0, 1.0),
+            half_atan2(-1.0_f32, 0.0, 1.0)
+        ],
+        [0.0, -FRAC_PI_4],
+        "the ends"
+    );
 }
 
 /// Next to a quarter turn the parts have the digits that their sum has lost.
@@ -206,7 +253,9 @@ fn the_parts_of_half_atan2_are_accurate_next_to_a_quarter_turn() {
         let [base, rest] = half_atan2_parts(y, x, (x * x + y * y).sqrt());
         assert_eq!(base, FRAC_PI_4 * y, "y {y} x {x:e}");
         let want = 0.5 * f64::from(y).atan2(f64::from(x));
-        worst.see((f64::from(base) + f64::from(rest) - want).abs(), || format!("y {y} x {x:e}"));
+        worst.see((f64::from(base) + f64::from(rest) - want).abs(), || {
+            format!("y {y} x {x:e}")
+        });
     }
     worst.check("HALF_ATAN2_PARTS_RAD", bound::HALF_ATAN2_PARTS_RAD);
 }
@@ -223,13 +272,22 @@ fn half_of_an_angle_from_its_sine_and_cosine_is_accurate() {
                 _ => draws.between(0.0, f64::from(FRAC_PI_2)),
             };
         let (sin, cos) = (narrow(angle.sin()), narrow(angle.cos()));
-        let (got, want) = (both([sin, cos], half_of, half_of, &mut lanes), 0.5 * f64::from(sin).atan2(f64::from(cos)));
+        let (got, want) = (
+            both([sin, cos], half_of, half_of, &mut lanes),
+            0.5 * f64::from(sin).atan2(f64::from(cos)),
+        );
         worst.see((f64::from(got) - want).abs(), || format!("{angle:e}"));
     }
-    worst.check("HALF_ANGLE_RAD, the rounding of sine and cosine included", bound::HALF_ANGLE_RAD);
+    worst.check(
+        "HALF_ANGLE_RAD, the rounding of sine and cosine included",
+        bound::HALF_ANGLE_RAD,
+    );
     lanes.check("HALF_ANGLE_LANES", bound::HALF_ANGLE_LANES);
     assert_eq!(half_angle(0.0_f32, 1.0), 0.0, "the middle");
-    assert!(half_angle(f32::NAN, 0.0).is_nan() && half_angle(0.5, f32::NAN).is_nan(), "NaN");
+    assert!(
+        half_angle(f32::NAN, 0.0).is_nan() && half_angle(0.5, f32::NAN).is_nan(),
+        "NaN"
+    );
 }
 
 #[test]
@@ -237,8 +295,16 @@ fn numerator_and_denominator_of_a_tangent_are_accurate() {
     let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
     for x in scan(-FRAC_PI_2, FRAC_PI_2) {
         let n = both([x, 0.0], numerator, numerator, &mut lanes);
-        let d = both([x, 0.0], denominator, denominator, &mut LargestError::default());
-        worst.see((f64::from(n).atan2(f64::from(d)) - f64::from(x)).abs(), || format!("{x:e}"));
+        let d = both(
+            [x, 0.0],
+            denominator,
+            denominator,
+            &mut LargestError::default(),
+        );
+        worst.see(
+            (f64::from(n).atan2(f64::from(d)) - f64::from(x)).abs(),
+            || format!("{x:e}"),
+        );
     }
     worst.check("TAN_HALF_TURN_RAD", bound::TAN_HALF_TURN_RAD);
     lanes.check("TAN_HALF_TURN_LANES", bound::MATH_LANES);
@@ -248,16 +314,27 @@ fn numerator_and_denominator_of_a_tangent_are_accurate() {
 
 #[test]
 fn sine_and_cosine_are_accurate_where_they_vanish() {
-    let (mut sine, mut cosine, mut absolute) =
-        (LargestError::default(), LargestError::default(), LargestError::default());
+    let (mut sine, mut cosine, mut absolute) = (
+        LargestError::default(),
+        LargestError::default(),
+        LargestError::default(),
+    );
     let (mut sine_lanes, mut cosine_lanes) = (LargestError::default(), LargestError::default());
     let near_the_pole = (0..=4096).map(|i| f32::from_bits(FRAC_PI_4.to_bits() - i));
     for x in scan(-FRAC_PI_4, FRAC_PI_4).chain(near_the_pole) {
-        let (s, c) = (both([x, 0.0], sin, sin, &mut sine_lanes), both([x, 0.0], cos, cos, &mut cosine_lanes));
+        let (s, c) = (
+            both([x, 0.0], sin, sin, &mut sine_lanes),
+            both([x, 0.0], cos, cos, &mut cosine_lanes),
+        );
         let (want_s, want_c) = (2.0 * f64::from(x)).sin_cos();
         sine.see(ulp(s, want_s), || format!("{x:e}"));
         cosine.see(ulp(c, want_c), || format!("{x:e}"));
-        absolute.see((f64::from(s) - want_s).abs().max((f64::from(c) - want_c).abs()), || format!("{x:e}"));
+        absolute.see(
+            (f64::from(s) - want_s)
+                .abs()
+                .max((f64::from(c) - want_c).abs()),
+            || format!("{x:e}"),
+        );
     }
     sine.check("SIN_TWICE", bound::SIN_TWICE);
     cosine.check("COS_TWICE", bound::COS_TWICE);
@@ -270,15 +347,28 @@ fn sine_and_cosine_are_accurate_where_they_vanish() {
 
 #[test]
 fn the_sine_and_cosine_of_inversion_are_accurate_absolutely() {
-    let (mut worst, mut sine_lanes, mut cosine_lanes) =
-        (LargestError::default(), LargestError::default(), LargestError::default());
+    let (mut worst, mut sine_lanes, mut cosine_lanes) = (
+        LargestError::default(),
+        LargestError::default(),
+        LargestError::default(),
+    );
     for x in scan(-FRAC_PI_2, FRAC_PI_2) {
         let s = both([x, 0.0], sin_absolute, sin_absolute, &mut sine_lanes);
-        let c = both([x, 0.0], cos_absolute, cos_absolute, &mut LargestError::default());
+        let c = both(
+            [x, 0.0],
+            cos_absolute,
+            cos_absolute,
+            &mut LargestError::default(),
+        );
         let c8 = cos_absolute([f32x8::splat(x); 2]).to_array()[3];
         cosine_lanes.see(f64::from(c - c8).abs(), || format!("{x:e}"));
         let (want_s, want_c) = f64::from(x).sin_cos();
-        worst.see((f64::from(s) - want_s).abs().max((f64::from(c) - want_c).abs()), || format!("{x:e}"));
+        worst.see(
+            (f64::from(s) - want_s)
+                .abs()
+                .max((f64::from(c) - want_c).abs()),
+            || format!("{x:e}"),
+        );
     }
     worst.check("SIN_COS_ABSOLUTE", bound::SIN_COS_ABSOLUTE);
     sine_lanes.check("SIN_ABSOLUTE_LANES", bound::MATH_LANES);
@@ -312,17 +402,28 @@ fn logarithm_and_normal_tails_are_accurate() {
         let x = narrow((-126.0 + 253.0 * share).exp2());
         let want = f64::from(x).log2();
         let got = both([x, 0.0], logarithm, logarithm, &mut lanes);
-        worst[0].see((f64::from(got) - want).abs() / (1.0 + want.abs()), || format!("{x}"));
+        worst[0].see((f64::from(got) - want).abs() / (1.0 + want.abs()), || {
+            format!("{x}")
+        });
         let x = narrow(12.6 * share);
         let want = above(f64::from(x)) * (f64::from(x).powi(2) / 2.0).exp();
         let got = both([x, 0.0], tail_ratio, tail_ratio, &mut lanes);
         worst[1].see((f64::from(got) / want - 1.0).abs(), || format!("{x}"));
-        assert_eq!(both([x, 0.0], tail, tail, &mut lanes), got * gaussian(x * x), "tail of {x}");
+        assert_eq!(
+            both([x, 0.0], tail, tail, &mut lanes),
+            got * gaussian(x * x),
+            "tail of {x}"
+        );
         // Probabilities evenly, and evenly by their logarithm.
         for q in [0.5 * share, (-1.0 - 115.0 * share).exp2()] {
             let q = narrow(q);
             if q > f32::MIN_POSITIVE {
-                let error = above(f64::from(both([q, 0.0], tail_inverse, tail_inverse, &mut lanes))) - f64::from(q);
+                let error = above(f64::from(both(
+                    [q, 0.0],
+                    tail_inverse,
+                    tail_inverse,
+                    &mut lanes,
+                ))) - f64::from(q);
                 worst[2].see(error.abs(), || format!("{q}"));
                 worst[3].see(error.abs() / f64::from(q), || format!("{q}"));
             }
@@ -331,7 +432,10 @@ fn logarithm_and_normal_tails_are_accurate() {
     worst[0].check("LOG2, over 1 + |log2|", bound::LOG2);
     worst[1].check("NORMAL_TAIL_RATIO", bound::NORMAL_TAIL_RATIO);
     worst[2].check("NORMAL_TAIL_INVERSE", bound::NORMAL_TAIL_INVERSE[0]);
-    worst[3].check("NORMAL_TAIL_INVERSE, relative", bound::NORMAL_TAIL_INVERSE[1]);
+    worst[3].check(
+        "NORMAL_TAIL_INVERSE, relative",
+        bound::NORMAL_TAIL_INVERSE[1],
+    );
     for x in [0.0, f32::from_bits(1), 0.5, 0.500_000_1] {
         assert!(normal_tail_inverse(x).is_finite(), "inverse tail of {x}");
     }
@@ -347,11 +451,23 @@ fn logarithm_and_normal_tails_are_accurate() {
 fn a_gaussian_s_complement_keeps_its_digits_where_it_is_small() {
     let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
     let mut beside = LargestError::default();
-    for s in scan(0.0, 170.0).chain(scan(0.0, 2.0)).chain(scan(0.0, 1e-6)) {
+    for s in scan(0.0, 170.0)
+        .chain(scan(0.0, 2.0))
+        .chain(scan(0.0, 1e-6))
+    {
         let got = both([s, 0.0], complement, complement, &mut lanes);
-        worst.see(ulp(got, -(-f64::from(s) / 2.0).exp_m1()), || format!("{s:e}"));
-        let exp = if s < 157.0 { (-f64::from(s) / 2.0).exp() } else { continue };
-        beside.see(ulp(gaussian_and_complement(s).0, exp) / (1.0 + f64::from(s) / 2.0), || format!("{s:e}"));
+        worst.see(ulp(got, -(-f64::from(s) / 2.0).exp_m1()), || {
+            format!("{s:e}")
+        });
+        let exp = if s < 157.0 {
+            (-f64::from(s) / 2.0).exp()
+        } else {
+            continue;
+        };
+        beside.see(
+            ulp(gaussian_and_complement(s).0, exp) / (1.0 + f64::from(s) / 2.0),
+            || format!("{s:e}"),
+        );
     }
     beside.check("GAUSSIAN", bound::GAUSSIAN);
     worst.check("COMPLEMENT", bound::COMPLEMENT);
@@ -368,11 +484,17 @@ fn a_logarithm_next_to_one_keeps_the_digits_of_the_difference() {
     let least = -1.0 + f32::EPSILON / 2.0;
     for f in scan(least, 0.0).chain(scan(-1e-6, 0.0)) {
         let got = both([f, 0.0], log_one_plus, log_one_plus, &mut lanes);
-        worst.see(ulp(got, f64::from(f).ln_1p() / core::f64::consts::LN_2), || format!("{f:e}"));
+        worst.see(
+            ulp(got, f64::from(f).ln_1p() / core::f64::consts::LN_2),
+            || format!("{f:e}"),
+        );
     }
     worst.check("LOG2_ONE_PLUS", bound::LOG2_ONE_PLUS);
     lanes.check("LOG2_ONE_PLUS_LANES", bound::LOG2_ONE_PLUS_LANES);
-    assert!(!log2_one_plus(-1.0_f32).is_infinite(), "the end of the range");
+    assert!(
+        !log2_one_plus(-1.0_f32).is_infinite(),
+        "the end of the range"
+    );
 }
 
 #[test]
@@ -380,7 +502,13 @@ fn the_arc_tangent_of_an_eighth_of_a_turn_is_accurate() {
     let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
     let most = core::f32::consts::FRAC_PI_8.tan();
     for x in scan(-most, most) {
-        worst.see(ulp(both([x, 0.0], atan_eighth, atan_eighth, &mut lanes), f64::from(x).atan()), || format!("{x:e}"));
+        worst.see(
+            ulp(
+                both([x, 0.0], atan_eighth, atan_eighth, &mut lanes),
+                f64::from(x).atan(),
+            ),
+            || format!("{x:e}"),
+        );
     }
     worst.check("ATAN_EIGHTH", bound::ATAN_EIGHTH);
     lanes.check("ATAN_EIGHTH_LANES", bound::MATH_LANES);

@@ -10,7 +10,11 @@ fn presets_pass_their_own_checks() {
     for (name, preset) in HairParams::presets() {
         assert_eq!(HairParams::new(preset.desc()), Ok(preset), "preset {name}");
     }
-    assert_eq!(HairParams::default(), HairParams::new(&HairDesc::default()).unwrap(), "the default set");
+    assert_eq!(
+        HairParams::default(),
+        HairParams::new(&HairDesc::default()).unwrap(),
+        "the default set"
+    );
 }
 
 /// Share of the light a fibre returns, by channel, averaged over the directions it comes from (Gaussian model).
@@ -45,29 +49,59 @@ fn presets_return_less_than_they_receive() {
         ("black", [0.12, 0.10, 0.09]),
         ("white", [0.87, 0.85, 0.83]),
     ];
-    for ((name, preset), (expected_name, expected)) in HairParams::presets().into_iter().zip(documented) {
+    for ((name, preset), (expected_name, expected)) in
+        HairParams::presets().into_iter().zip(documented)
+    {
         assert_eq!(name, expected_name, "the order of the presets");
         let albedo = mean_albedo(&preset);
         println!("{name}: {albedo:.4?}");
         for (found, expected) in albedo.into_iter().zip(expected) {
-            assert!((found - expected).abs() < 0.006, "{name}: albedo {albedo:?}, documented {expected}");
-            assert!(found < 1.0 || name == "default", "{name} returns more than it receives: {albedo:?}");
+            assert!(
+                (found - expected).abs() < 0.006,
+                "{name}: albedo {albedo:?}, documented {expected}"
+            );
+            assert!(
+                found < 1.0 || name == "default",
+                "{name} returns more than it receives: {albedo:?}"
+            );
         }
     }
 }
 
 #[test]
 fn artist_defaults_are_the_default_set() {
-    assert_eq!(HairParams::from_artist(&ArtistControls::default()), Ok(HairParams::default()), "default controls");
+    assert_eq!(
+        HairParams::from_artist(&ArtistControls::default()),
+        Ok(HairParams::default()),
+        "default controls"
+    );
 }
 
 #[test]
 fn artist_controls_reach_their_parameters() {
     let controls = ArtistControls {
-        primary: Highlight { color: [0.5, 1.0, 2.0], intensity: 0.5, shift_deg: -9.0, width_deg: 6.0 },
-        transmission: Transmission { shift_deg: 4.5, width_deg: 3.0, azimuthal_width_deg: 20.0, ..Default::default() },
-        secondary: Highlight { shift_deg: 13.5, width_deg: 12.0, ..Default::default() },
-        glints: Glints { strength: 2.0, separation_deg: 80.0, azimuthal_width_deg: 15.0 },
+        primary: Highlight {
+            color: [0.5, 1.0, 2.0],
+            intensity: 0.5,
+            shift_deg: -9.0,
+            width_deg: 6.0,
+        },
+        transmission: Transmission {
+            shift_deg: 4.5,
+            width_deg: 3.0,
+            azimuthal_width_deg: 20.0,
+            ..Default::default()
+        },
+        secondary: Highlight {
+            shift_deg: 13.5,
+            width_deg: 12.0,
+            ..Default::default()
+        },
+        glints: Glints {
+            strength: 2.0,
+            separation_deg: 80.0,
+            azimuthal_width_deg: 15.0,
+        },
     };
     let desc = *HairParams::from_artist(&controls).unwrap().desc();
     let angles = [
@@ -82,23 +116,46 @@ fn artist_controls_reach_their_parameters() {
         (desc.phi_g, 40.0),
     ];
     for (radians, degrees) in angles {
-        assert!((radians.to_degrees() - degrees).abs() < 1e-5, "{radians} rad is not {degrees} degrees");
+        assert!(
+            (radians.to_degrees() - degrees).abs() < 1e-5,
+            "{radians} rad is not {degrees} degrees"
+        );
     }
-    assert_eq!((desc.intensity_r, desc.intensity_g), ([0.25, 0.5, 1.0], 2.0), "color times intensity, and strength");
+    assert_eq!(
+        (desc.intensity_r, desc.intensity_g),
+        ([0.25, 0.5, 1.0], 2.0),
+        "color times intensity, and strength"
+    );
 }
 
 #[test]
 fn artist_ranges_hold_their_ends() {
     for (shift_deg, width_deg, separation_deg) in [(-90.0, 0.01, 0.0), (90.0, 180.0, 360.0)] {
-        let highlight = Highlight { shift_deg, width_deg, ..Default::default() };
+        let highlight = Highlight {
+            shift_deg,
+            width_deg,
+            ..Default::default()
+        };
         let controls = ArtistControls {
             primary: highlight,
-            transmission: Transmission { shift_deg, width_deg, azimuthal_width_deg: width_deg, ..Default::default() },
+            transmission: Transmission {
+                shift_deg,
+                width_deg,
+                azimuthal_width_deg: width_deg,
+                ..Default::default()
+            },
             secondary: highlight,
-            glints: Glints { separation_deg, azimuthal_width_deg: width_deg, ..Default::default() },
+            glints: Glints {
+                separation_deg,
+                azimuthal_width_deg: width_deg,
+                ..Default::default()
+            },
         };
         let made = HairParams::from_artist(&controls);
-        assert!(made.is_ok(), "shift {shift_deg} width {width_deg} separation {separation_deg}: {made:?}");
+        assert!(
+            made.is_ok(),
+            "shift {shift_deg} width {width_deg} separation {separation_deg}: {made:?}"
+        );
     }
 }
 
@@ -123,7 +180,11 @@ fn artist_errors_name_the_control() {
         ),
         (
             |c| c.transmission.azimuthal_width_deg = f32::INFINITY,
-            ParamError::Degrees("transmission.azimuthal_width_deg", f32::INFINITY, [0.01, 180.0]),
+            ParamError::Degrees(
+                "transmission.azimuthal_width_deg",
+                f32::INFINITY,
+                [0.01, 180.0],
+            ),
             "transmission.azimuthal_width_deg must be an angle in [0.01, 180] degrees, got inf",
         ),
         (
@@ -150,11 +211,25 @@ fn artist_errors_name_the_control() {
     for (edit, error, message) in cases {
         let mut controls = ArtistControls::default();
         edit(&mut controls);
-        assert_eq!(HairParams::from_artist(&controls), Err(error), "the error of {message}");
+        assert_eq!(
+            HairParams::from_artist(&controls),
+            Err(error),
+            "the error of {message}"
+        );
         assert_eq!(error.to_string(), message, "the message");
-        assert!(message.starts_with(error.field()), "field {} of {message}", error.field());
+        assert!(
+            message.starts_with(error.field()),
+            "field {} of {message}",
+            error.field()
+        );
     }
-    let nan = ArtistControls { primary: Highlight { shift_deg: f32::NAN, ..Default::default() }, ..Default::default() };
+    let nan = ArtistControls {
+        primary: Highlight {
+            shift_deg: f32::NAN,
+            ..Default::default()
+        },
+        ..Default::default()
+    };
     let error = HairParams::from_artist(&nan).unwrap_err();
     assert_eq!(error.field(), "primary.shift_deg", "NaN never passes");
 }

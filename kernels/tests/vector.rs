@@ -24,7 +24,11 @@ impl<C: hairis::Constant> Kernel for Search<'_, C> {
         f32x8: Broadcast<L>,
     {
         let [a, b, c] = self.bounds;
-        let index = L::search(self.x.lanes(), [L::splat(a), L::splat(b), L::splat(c)], self.count);
+        let index = L::search(
+            self.x.lanes(),
+            [L::splat(a), L::splat(b), L::splat(c)],
+            self.count,
+        );
         let [first, second, third, _] = *self.table;
         let table = [first, second, third, third];
         [
@@ -45,15 +49,33 @@ fn search_counts_bounds_and_tables_answer_by_index() {
     for level in Level::available() {
         for count in 0..4 {
             let x = f32x8::new(numbers);
-            let alike = level.run(Search { x: &x, bounds, table: &one, count });
-            let apart = level.run(Search { x: &x, bounds, table: &eight, count });
+            let alike = level.run(Search {
+                x: &x,
+                bounds,
+                table: &one,
+                count,
+            });
+            let apart = level.run(Search {
+                x: &x,
+                bounds,
+                table: &eight,
+                count,
+            });
             for (lane, x) in numbers.into_iter().enumerate() {
-                let index = bounds.iter().take(count).filter(|bound| x >= **bound).count();
+                let index = bounds
+                    .iter()
+                    .take(count)
+                    .filter(|bound| x >= **bound)
+                    .count();
                 let want = [index as f32, one[index], one[index.min(2)], one[index / 2]];
                 let place = format!("{level}, {x} among {count} bounds");
                 assert_eq!(alike.map(|a| a.to_array()[lane]), want, "{place}");
                 let offset = [0.0, 100.0, 100.0, 100.0].map(|step| step * lane as f32);
-                assert_eq!(apart.map(|a| a.to_array()[lane]), [0, 1, 2, 3].map(|k| want[k] + offset[k]), "{place}");
+                assert_eq!(
+                    apart.map(|a| a.to_array()[lane]),
+                    [0, 1, 2, 3].map(|k| want[k] + offset[k]),
+                    "{place}"
+                );
             }
         }
     }
@@ -79,16 +101,38 @@ fn rows_of_any_length_are_computed_once_each_and_nothing_else_is_written() {
     let columns: [Vec<f32>; 3] = core::array::from_fn(|_| (0..100).map(|_| draws.xi()).collect());
     for level in Level::available() {
         for len in 0..=97 {
-            let [a, b, c] = [&columns[0][..len], &columns[1][1..][..len], &columns[2][2..][..len]];
+            let [a, b, c] = [
+                &columns[0][..len],
+                &columns[1][1..][..len],
+                &columns[2][2..][..len],
+            ];
             let mut out = [vec![-1.0_f32; 110], vec![-1.0_f32; 110]];
             let [first, second] = &mut out;
-            level.run_rows(Sums, [a, b, c], &mut [&mut first[3..][..len], &mut second[5..][..len]]);
+            level.run_rows(
+                Sums,
+                [a, b, c],
+                &mut [&mut first[3..][..len], &mut second[5..][..len]],
+            );
             for i in 0..len {
-                assert_eq!(out[0][3 + i], a[i] + b[i] + c[i], "{level}, row {i} of {len}");
-                assert_eq!(out[1][5 + i], a[i] - b[i] - c[i], "{level}, row {i} of {len}");
+                assert_eq!(
+                    out[0][3 + i],
+                    a[i] + b[i] + c[i],
+                    "{level}, row {i} of {len}"
+                );
+                assert_eq!(
+                    out[1][5 + i],
+                    a[i] - b[i] - c[i],
+                    "{level}, row {i} of {len}"
+                );
             }
-            let rest = out[0].iter().enumerate().filter(|(i, _)| !(3..3 + len).contains(i));
-            assert!(rest.into_iter().all(|(_, x)| *x == -1.0), "{level}: written beyond {len} rows");
+            let rest = out[0]
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| !(3..3 + len).contains(i));
+            assert!(
+                rest.into_iter().all(|(_, x)| *x == -1.0),
+                "{level}: written beyond {len} rows"
+            );
         }
     }
 }
@@ -102,24 +146,50 @@ fn offsets_have_the_sign_of_the_turn_from_the_normal_to_wo() {
         let h = frame.offset(normal, wo);
         let across = |v: Vec3| (v - frame.u * v.dot(frame.u)).normalize();
         let want = frame.u.dot(across(normal).cross(across(wo)));
-        assert!((h - want).abs() < 1e-5, "{frame:?}, normal {normal}, wo {wo}: {h}, not {want}");
-        assert!((frame.offset(normal * 1e30, wo * 1e-30) - want).abs() < 1e-5, "any length");
-        assert!((frame.offset(wo, normal) + want).abs() < 1e-5, "the other way round");
+        assert!(
+            (h - want).abs() < 1e-5,
+            "{frame:?}, normal {normal}, wo {wo}: {h}, not {want}"
+        );
+        assert!(
+            (frame.offset(normal * 1e30, wo * 1e-30) - want).abs() < 1e-5,
+            "any length"
+        );
+        assert!(
+            (frame.offset(wo, normal) + want).abs() < 1e-5,
+            "the other way round"
+        );
     }
-    let frame = FiberFrame { u: Vec3::X, v: Vec3::Y, w: Vec3::Z };
+    let frame = FiberFrame {
+        u: Vec3::X,
+        v: Vec3::Y,
+        w: Vec3::Z,
+    };
     for odd in [Vec3::ZERO, Vec3::X, Vec3::NAN, Vec3::INFINITY] {
-        assert_eq!((frame.offset(odd, Vec3::Y), frame.offset(Vec3::Y, odd)), (0.0, 0.0), "{odd}");
+        assert_eq!(
+            (frame.offset(odd, Vec3::Y), frame.offset(Vec3::Y, odd)),
+            (0.0, 0.0),
+            "{odd}"
+        );
     }
 }
 
 #[test]
 fn hits_clamp_their_offset() {
-    for (h, want) in
-        [(0.3, 0.3), (-1.0, -1.0), (7.0, 1.0), (-f32::INFINITY, -1.0), (f32::INFINITY, 1.0), (f32::NAN, 0.0)]
-    {
+    for (h, want) in [
+        (0.3, 0.3),
+        (-1.0, -1.0),
+        (7.0, 1.0),
+        (-f32::INFINITY, -1.0),
+        (f32::INFINITY, 1.0),
+        (f32::NAN, 0.0),
+    ] {
         assert_eq!(Hit::new(Vec3::Y, h).h, want, "{h}");
         let wo = hairis::Vec3x8::splat(Vec3::Y);
-        assert_eq!(Hit::new(wo, f32x8::splat(h)).h, f32x8::splat(want), "{h}, eight lanes");
+        assert_eq!(
+            Hit::new(wo, f32x8::splat(h)).h,
+            f32x8::splat(want),
+            "{h}, eight lanes"
+        );
     }
 }
 
@@ -135,16 +205,36 @@ fn any_finite_vector_has_a_direction() {
         if length < 1e-36 {
             continue;
         }
-        let Direction { vector, sin_theta, cos_theta, .. } = Direction::normalized(Vec3x::from(Vec3::from(v) * scale));
+        let Direction {
+            vector,
+            sin_theta,
+            cos_theta,
+            ..
+        } = Direction::normalized(Vec3x::from(Vec3::from(v) * scale));
         let got = [vector.x, vector.y, vector.z].map(f64::from);
         for (got, want) in got.into_iter().zip(truth) {
-            assert!((got - want / length).abs() < 1.2e-7, "{v:?} times {scale}: {got}, not {}", want / length);
+            assert!(
+                (got - want / length).abs() < 1.2e-7,
+                "{v:?} times {scale}: {got}, not {}",
+                want / length
+            );
         }
         let cos = truth[1].hypot(truth[2]) / length;
         // Three roundings.
-        assert!((f64::from(cos_theta) - cos).abs() < 1.8e-7 && sin_theta == vector.x, "{v:?} times {scale}");
+        assert!(
+            (f64::from(cos_theta) - cos).abs() < 1.8e-7 && sin_theta == vector.x,
+            "{v:?} times {scale}"
+        );
     }
     let zero = Direction::normalized(Vec3x::<f32>::from(Vec3::ZERO));
-    assert_eq!((Vec3::from(zero.vector), zero.cos_theta), (Vec3::Y, 1.0), "zero counts as v");
-    assert_eq!(Direction::normalized(Vec3x::<f32>::from(Vec3::X)).cos_theta, 0.0, "along the fibre");
+    assert_eq!(
+        (Vec3::from(zero.vector), zero.cos_theta),
+        (Vec3::Y, 1.0),
+        "zero counts as v"
+    );
+    assert_eq!(
+        Direction::normalized(Vec3x::<f32>::from(Vec3::X)).cos_theta,
+        0.0,
+        "along the fibre"
+    );
 }

@@ -11,8 +11,8 @@ use glam::Vec3;
 use hairis::math::{atan2_upper, sin_cos_half_turn};
 use hairis::wide::f32x8;
 use hairis::{
-    Broadcast, Bsdf, Bsdf8, Direction, Hit, Lanes, Level, Lobe, LobeEval, LobeMask, LobeModel, Model, PerLobe, Scalar,
-    Vec3x8, lane_struct, lanes3,
+    Broadcast, Bsdf, Bsdf8, Direction, Hit, Lanes, Level, Lobe, LobeEval, LobeMask, LobeModel,
+    Model, PerLobe, Scalar, Vec3x8, lane_struct, lanes3,
 };
 
 /// The marker that the trait is implemented on.
@@ -63,15 +63,27 @@ impl LobeModel for LambertFiber {
 
     fn material(&self, params: &Params) -> Material<f32> {
         let Params { kd, ks, width } = *params;
-        Material { kd, ks, width, weights: [kd.iter().sum(), ks.iter().sum()] }
+        Material {
+            kd,
+            ks,
+            width,
+            weights: [kd.iter().sum(), ks.iter().sum()],
+        }
     }
 
     #[inline(always)]
     fn prepare<L: Lanes, C: Broadcast<L>>(material: &Material<C>, hit: Hit<L>) -> Point<L::Stored> {
         let sin = Direction::normalized(hit.wo).sin_theta;
         let width = material.width.lanes();
-        let span = atan2_upper(width + width, width.mul_add(width, sin.mul_add(sin, -L::splat(1.0))));
-        Point { material: material.spread::<L>(), sin_theta_o: sin.store(), span: span.store() }
+        let span = atan2_upper(
+            width + width,
+            width.mul_add(width, sin.mul_add(sin, -L::splat(1.0))),
+        );
+        Point {
+            material: material.spread::<L>(),
+            sin_theta_o: sin.store(),
+            span: span.store(),
+        }
     }
 
     #[inline(always)]
@@ -81,28 +93,50 @@ impl LobeModel for LambertFiber {
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L>>(point: &Point<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        point: &Point<C>,
+        wi: &Direction<L>,
+    ) -> PerLobe<LobeEval<L>> {
         let c = L::splat;
         let width = point.material.width.lanes();
         let off = wi.sin_theta + point.sin_theta_o.lanes();
         let bell = L::quotient(width, off.mul_add(off, width * width)) * c(0.5 * FRAC_1_PI);
         let (kd, ks) = (lanes3(&point.material.kd), lanes3(&point.material.ks));
-        let diffuse = LobeEval { value: c(FRAC_1_PI * FRAC_1_PI), color: kd, pdf: c(0.25 * FRAC_1_PI) };
-        let cone = LobeEval { value: bell * c(FRAC_1_PI), color: ks, pdf: L::quotient(bell, point.span.lanes()) };
+        let diffuse = LobeEval {
+            value: c(FRAC_1_PI * FRAC_1_PI),
+            color: kd,
+            pdf: c(0.25 * FRAC_1_PI),
+        };
+        let cone = LobeEval {
+            value: bell * c(FRAC_1_PI),
+            color: ks,
+            pdf: L::quotient(bell, point.span.lanes()),
+        };
         PerLobe::padded([diffuse, cone], LobeEval::none())
     }
 
     #[inline(always)]
-    fn sample_lobe<L: Lanes, C: Broadcast<L>>(point: &Point<C>, lobe: L::Index, xi: [L; 3]) -> Direction<L> {
+    fn sample_lobe<L: Lanes, C: Broadcast<L>>(
+        point: &Point<C>,
+        lobe: L::Index,
+        xi: [L; 3],
+    ) -> Direction<L> {
         let one = L::splat(1.0);
         let (width, sin_theta_o) = (point.material.width.lanes(), point.sin_theta_o.lanes());
         // The cone: width tan(lo + xi span) - sin theta_o, without a tangent.
         let (s, c) = sin_cos_half_turn(xi[1] * point.span.lanes() * L::splat(0.5));
         let (sin, cos) = ((s + s) * c, c * c - s * s);
         let lo = sin_theta_o - one;
-        let x = L::quotient(width * lo.mul_add(cos, width * sin), width.mul_add(cos, -(lo * sin)));
+        let x = L::quotient(
+            width * lo.mul_add(cos, width * sin),
+            width.mul_add(cos, -(lo * sin)),
+        );
         let cone = (-one).max(one.min(x - sin_theta_o));
-        let sin = L::select(L::is_index(lobe, DIFFUSE.index()), xi[1] + xi[1] - one, cone);
+        let sin = L::select(
+            L::is_index(lobe, DIFFUSE.index()),
+            xi[1] + xi[1] - one,
+            cone,
+        );
         Direction::with_uniform_azimuth([sin, ((one - sin) * (one + sin)).sqrt()], xi[2])
     }
 }
@@ -123,14 +157,25 @@ pub(crate) fn pdf_integral(gather: &hairis::Gather<LambertFiber>) -> f64 {
 pub(crate) fn main() {
     let fibers: [_; 8] = core::array::from_fn(|i| {
         let t = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7][i];
-        Bsdf::new(&LambertFiber, &Params { kd: [t, 0.3, 0.2], ks: [0.5 - 0.5 * t; 3], width: 0.02 + 0.2 * t })
+        Bsdf::new(
+            &LambertFiber,
+            &Params {
+                kd: [t, 0.3, 0.2],
+                ks: [0.5 - 0.5 * t; 3],
+                width: 0.02 + 0.2 * t,
+            },
+        )
     });
     let wo: [Vec3; 8] = core::array::from_fn(|i| {
         let sin = [-0.99, -0.7, -0.3, 0.0, 0.2, 0.5, 0.8, 0.999][i];
         Vec3::new(sin, (1.0_f32 - sin * sin).sqrt(), 0.0)
     });
     let wi = wo.map(|wo| Vec3::new(0.05 - 0.9 * wo.x, 0.6, 0.4).normalize());
-    let xi = [[0.1, 0.9, 0.3, 0.7, 0.2, 0.8, 0.5, 0.6], [0.5, 0.1, 0.9, 0.3, 0.7, 0.4, 0.6, 0.2], [0.25; 8]];
+    let xi = [
+        [0.1, 0.9, 0.3, 0.7, 0.2, 0.8, 0.5, 0.6],
+        [0.5, 0.1, 0.9, 0.3, 0.7, 0.4, 0.6, 0.2],
+        [0.25; 8],
+    ];
 
     for level in Level::available() {
         let gather = Bsdf8::pack(fibers.each_ref()).prepare8_at(level, &Vec3x8::from(wo));
@@ -141,7 +186,10 @@ pub(crate) fn main() {
             let one = fibers[lane].prepare(wo[lane]);
             let (e, scalar) = (eval.lane(lane), one.eval_pdf(wi[lane]));
             let xi = [xi[0][lane], xi[1][lane], xi[2][lane]];
-            let (s, single) = (samples.lane(lane).expect("off the axis"), one.sample(xi).expect("off the axis"));
+            let (s, single) = (
+                samples.lane(lane).expect("off the axis"),
+                one.sample(xi).expect("off the axis"),
+            );
             println!(
                 "  {:.5} {:.5} {:.4} {:.4} {}",
                 e.value[0],
@@ -151,17 +199,36 @@ pub(crate) fn main() {
                 <LambertFiber as Model>::LOBES[s.lobe.index()]
             );
             let close = |a: f32, b: f32| (a - b).abs() <= 2e-5 * a.abs().max(1e-3);
-            assert!(close(e.value[0], scalar.value[0]) && close(e.pdf, scalar.pdf), "lane {lane}: {e:?} {scalar:?}");
-            assert!(close(s.pdf, single.pdf) && s.lobe == single.lobe, "lane {lane}: {s:?} {single:?}");
-            assert!((s.wi - single.wi).length() < 1e-5, "lane {lane}: {s:?} {single:?}");
-            assert!(close(one.pdf(s.wi), s.pdf), "lane {lane}: the density of a sample is that of its direction");
+            assert!(
+                close(e.value[0], scalar.value[0]) && close(e.pdf, scalar.pdf),
+                "lane {lane}: {e:?} {scalar:?}"
+            );
+            assert!(
+                close(s.pdf, single.pdf) && s.lobe == single.lobe,
+                "lane {lane}: {s:?} {single:?}"
+            );
+            assert!(
+                (s.wi - single.wi).length() < 1e-5,
+                "lane {lane}: {s:?} {single:?}"
+            );
+            assert!(
+                close(one.pdf(s.wi), s.pdf),
+                "lane {lane}: the density of a sample is that of its direction"
+            );
         }
     }
     for (fiber, wo) in fibers.iter().zip(wo) {
         let integral = pdf_integral(&fiber.prepare(wo));
         println!("integral of the pdf: {integral:.6}");
-        assert!((integral - 1.0).abs() < 1e-4, "the density integrates to {integral}");
+        assert!(
+            (integral - 1.0).abs() < 1e-4,
+            "the density integrates to {integral}"
+        );
     }
     let cone = fibers[3].prepare(wo[3]).with_lobes(LobeMask::of(&[CONE]));
-    println!("the cone alone: {:?}, albedo {:?}", cone.eval(wi[3]), cone.albedo()[CONE]);
+    println!(
+        "the cone alone: {:?}, albedo {:?}",
+        cone.eval(wi[3]),
+        cone.albedo()[CONE]
+    );
 }

@@ -26,9 +26,13 @@ impl Cauchy {
     /// The Gaussian model's own widths: as in the paper, and within 0.5% of the least-squares best factor.
     pub const PAPER: Self = Self { width_factor: 1.0 };
     /// Both bells are half as high at the same distance: a factor of `sqrt(2 ln 2)`.
-    pub const HALF_WIDTH: Self = Self { width_factor: 1.177_410_0 };
+    pub const HALF_WIDTH: Self = Self {
+        width_factor: 1.177_410_0,
+    };
     /// Both bells have the same area over the whole line: a factor of `sqrt(2 / pi)`.
-    pub const AREA: Self = Self { width_factor: 0.797_884_6 };
+    pub const AREA: Self = Self {
+        width_factor: 0.797_884_6,
+    };
 
     /// A bell whose widths are those of the Gaussian model times `width_factor`.
     ///

@@ -15,15 +15,25 @@ pub(crate) fn check(passed: bool, error: ParamError) -> Result<(), ParamError> {
 
 /// Refuses a `value` outside `[least, most]`, and NaN.
 #[inline]
-pub(crate) fn check_range(field: &'static str, value: f32, [least, most]: [f32; 2]) -> Result<(), ParamError> {
-    check((least..=most).contains(&value), ParamError::Range(field, value, [least, most]))
+pub(crate) fn check_range(
+    field: &'static str,
+    value: f32,
+    [least, most]: [f32; 2],
+) -> Result<(), ParamError> {
+    check(
+        (least..=most).contains(&value),
+        ParamError::Range(field, value, [least, most]),
+    )
 }
 
 /// Refuses a colour with a channel that is negative or not finite.
 #[inline]
 pub(crate) fn check_rgb(field: &'static str, rgb: [f32; 3]) -> Result<(), ParamError> {
     for (channel, value) in rgb.into_iter().enumerate() {
-        check(is_intensity(value), ParamError::Intensity(field, channel, value))?;
+        check(
+            is_intensity(value),
+            ParamError::Intensity(field, channel, value),
+        )?;
     }
     Ok(())
 }

@@ -72,29 +72,47 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
     }
 
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L>>(material: &ChiangMaterial<C>, hit: Hit<L>) -> ChiangGather<L::Stored> {
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        material: &ChiangMaterial<C>,
+        hit: Hit<L>,
+    ) -> ChiangGather<L::Stored> {
         gather::prepare(material, hit)
     }
 
     #[inline(always)]
     fn weights<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>) -> PerLobe<L> {
-        if BY_CHANNEL { gather::shares_by_channel(gather) } else { gather::mean_shares(gather) }
+        if BY_CHANNEL {
+            gather::shares_by_channel(gather)
+        } else {
+            gather::mean_shares(gather)
+        }
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        gather: &ChiangGather<C>,
+        wi: &Direction<L>,
+    ) -> PerLobe<LobeEval<L>> {
         let (pdf, inv_cos) = lobes::densities(gather, wi);
         let mut lobes = [LobeEval::none(); 4];
         let mut p = 0;
         while p < 4 {
-            lobes[p] = LobeEval { value: pdf[p] * inv_cos, color: gather::attenuation(gather, p), pdf: pdf[p] };
+            lobes[p] = LobeEval {
+                value: pdf[p] * inv_cos,
+                color: gather::attenuation(gather, p),
+                pdf: pdf[p],
+            };
             p += 1;
         }
         PerLobe(lobes)
     }
 
     #[inline(always)]
-    fn sample_lobe<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, lobe: L::Index, xi: [L; 3]) -> Direction<L> {
+    fn sample_lobe<L: Lanes, C: Broadcast<L>>(
+        gather: &ChiangGather<C>,
+        lobe: L::Index,
+        xi: [L; 3],
+    ) -> Direction<L> {
         sampling::sample(gather, lobe, xi)
     }
 

@@ -18,18 +18,41 @@ const NARROW: f32 = 0.008_726_646;
 /// of strength 0.1 to 10, colours in `[0, 1)`.
 impl Parameters for HairParams {
     const FIELDS: &'static [Field] = &[
-        Field::new("alpha", Kind::Numbers(&["alpha_r", "alpha_tt", "alpha_trt"])).uniform(-15.0, 15.0).degrees(),
+        Field::new(
+            "alpha",
+            Kind::Numbers(&["alpha_r", "alpha_tt", "alpha_trt"]),
+        )
+        .uniform(-15.0, 15.0)
+        .degrees(),
         Field::new("beta", Kind::Numbers(&["beta_r", "beta_tt", "beta_trt"]))
             .log_uniform(1.0, 30.0)
             .degrees()
             .narrow(NARROW),
-        Field::new("gamma_tt", Kind::Number).log_uniform(1.0, 30.0).degrees().narrow(NARROW),
-        Field::new("gamma_g", Kind::Number).log_uniform(1.0, 30.0).degrees().narrow(NARROW),
-        Field::new("phi_g", Kind::Number).uniform(10.0, 80.0).degrees().late(),
-        Field::new("i_r", Kind::Rgb).alias("intensity_r").uniform(0.0, 1.0),
-        Field::new("i_tt", Kind::Rgb).alias("intensity_tt").uniform(0.0, 1.0),
-        Field::new("i_trt", Kind::Rgb).alias("intensity_trt").uniform(0.0, 1.0),
-        Field::new("i_g", Kind::Number).alias("intensity_g").log_uniform(0.1, 10.0).late(),
+        Field::new("gamma_tt", Kind::Number)
+            .log_uniform(1.0, 30.0)
+            .degrees()
+            .narrow(NARROW),
+        Field::new("gamma_g", Kind::Number)
+            .log_uniform(1.0, 30.0)
+            .degrees()
+            .narrow(NARROW),
+        Field::new("phi_g", Kind::Number)
+            .uniform(10.0, 80.0)
+            .degrees()
+            .late(),
+        Field::new("i_r", Kind::Rgb)
+            .alias("intensity_r")
+            .uniform(0.0, 1.0),
+        Field::new("i_tt", Kind::Rgb)
+            .alias("intensity_tt")
+            .uniform(0.0, 1.0),
+        Field::new("i_trt", Kind::Rgb)
+            .alias("intensity_trt")
+            .uniform(0.0, 1.0),
+        Field::new("i_g", Kind::Number)
+            .alias("intensity_g")
+            .log_uniform(0.1, 10.0)
+            .late(),
     ];
     const PRESETS: &'static [(&'static str, Self)] = &Self::presets();
 
@@ -140,13 +163,20 @@ impl<B: RegisteredBell> Registered for Hair<B> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn exact_formulas<T: Real>(_params: &HairParams, exact: &Values<T>) -> reference::Parameters<T> {
+    fn exact_formulas<T: Real>(
+        _params: &HairParams,
+        exact: &Values<T>,
+    ) -> reference::Parameters<T> {
         exact_parameters(exact)
     }
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn reference_at<T: Real>(formulas: &reference::Parameters<T>, wo: [T; 3], _h: T) -> HairReference<T> {
+    fn reference_at<T: Real>(
+        formulas: &reference::Parameters<T>,
+        wo: [T; 3],
+        _h: T,
+    ) -> HairReference<T> {
         HairReference::prepare(formulas, B::SHAPE, wo)
     }
 
@@ -159,7 +189,10 @@ impl<B: RegisteredBell> Registered for Hair<B> {
     #[cfg(feature = "textbook")]
     #[inline]
     fn cdf(reference: &HairReference<f64>, lobe: Lobe, theta_i: f64, phi: f64) -> Option<[f64; 2]> {
-        Some([reference.cdf_theta(lobe, theta_i), reference.cdf_phi(lobe, phi)])
+        Some([
+            reference.cdf_theta(lobe, theta_i),
+            reference.cdf_phi(lobe, phi),
+        ])
     }
 }
 
@@ -205,13 +238,20 @@ impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn exact_formulas<T: Real>(_params: &HairParams, exact: &Values<T>) -> reference::Parameters<T> {
+    fn exact_formulas<T: Real>(
+        _params: &HairParams,
+        exact: &Values<T>,
+    ) -> reference::Parameters<T> {
         exact_parameters(exact)
     }
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn reference_at<T: Real>(formulas: &reference::Parameters<T>, wo: [T; 3], _h: T) -> MatchedReference<T> {
+    fn reference_at<T: Real>(
+        formulas: &reference::Parameters<T>,
+        wo: [T; 3],
+        _h: T,
+    ) -> MatchedReference<T> {
         MatchedReference::prepare(formulas, B::SHAPE, wo, BANDS)
     }
 
@@ -223,8 +263,16 @@ impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn cdf(reference: &MatchedReference<f64>, lobe: Lobe, theta_i: f64, phi: f64) -> Option<[f64; 2]> {
-        Some([reference.cdf_theta(lobe, theta_i), reference.cdf_phi(lobe, phi)])
+    fn cdf(
+        reference: &MatchedReference<f64>,
+        lobe: Lobe,
+        theta_i: f64,
+        phi: f64,
+    ) -> Option<[f64; 2]> {
+        Some([
+            reference.cdf_theta(lobe, theta_i),
+            reference.cdf_phi(lobe, phi),
+        ])
     }
 }
 
@@ -261,7 +309,8 @@ fn slack(shape: Shape, params: &HairParams, wo: [f64; 3], wi: [f64; 3]) -> [f64;
     let cos_theta_d = (0.5 * (theta_o - theta_i)).cos();
     let d = params.desc();
     core::array::from_fn(|c| {
-        let intensity = d.intensity_r[c] + d.intensity_tt[c] + d.intensity_trt[c] * (1.0 + d.intensity_g);
+        let intensity =
+            d.intensity_r[c] + d.intensity_tt[c] + d.intensity_trt[c] * (1.0 + d.intensity_g);
         f64::from(intensity) * FLOOR / (cos_theta_d * cos_theta_d)
     })
 }

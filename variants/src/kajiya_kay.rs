@@ -7,13 +7,18 @@ mod reference;
 
 pub use params::{Form, KajiyaKayDesc, KajiyaKayParams, cosine_integral};
 #[cfg(feature = "textbook")]
-pub use reference::{KajiyaKayConstants, KajiyaKayParameters, KajiyaKayReference, cosine_power_integral};
+pub use reference::{
+    KajiyaKayConstants, KajiyaKayParameters, KajiyaKayReference, cosine_power_integral,
+};
 
 use core::f32::consts::{FRAC_1_PI, FRAC_PI_2, LN_2, PI};
 use hairis::math::{
-    GAUSS_LEGENDRE_32, gaussian, gaussian_and_complement, half_atan2, log2_near_one, log2_one_plus, sin_cos_half_turn,
+    GAUSS_LEGENDRE_32, gaussian, gaussian_and_complement, half_atan2, log2_near_one, log2_one_plus,
+    sin_cos_half_turn,
 };
-use hairis::{Broadcast, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Scalar, lane_struct, lanes3};
+use hairis::{
+    Broadcast, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Scalar, lane_struct, lanes3,
+};
 
 /// The model of Kajiya & Kay 1989, normalised, in a reciprocal form and in that of the publication.
 ///
@@ -89,13 +94,25 @@ impl LobeModel for KajiyaKay {
 
     const LOBES: &'static [&'static str] = &["diffuse", "specular"];
 
-    #[expect(clippy::cast_possible_truncation, reason = "constants of a material, computed in f64")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "constants of a material, computed in f64"
+    )]
     #[inline]
     fn material(&self, params: &KajiyaKayParams) -> KajiyaKayMaterial<f32> {
-        let KajiyaKayDesc { kd, ks, exponent, form } = *params.desc();
+        let KajiyaKayDesc {
+            kd,
+            ks,
+            exponent,
+            form,
+        } = *params.desc();
         let (p, reciprocal) = (f64::from(exponent), form == Form::Reciprocal);
         let b = cosine_integral(p + 1.0);
-        let (m, narrowing) = if reciprocal { (2.0, 1.0) } else { (1.0, (p + 1.0) * b * b) };
+        let (m, narrowing) = if reciprocal {
+            (2.0, 1.0)
+        } else {
+            (1.0, (p + 1.0) * b * b)
+        };
         KajiyaKayMaterial {
             kd,
             ks,
@@ -110,8 +127,15 @@ impl LobeModel for KajiyaKay {
     }
 
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L>>(m: &KajiyaKayMaterial<C>, hit: Hit<L>) -> KajiyaKayGather<L::Stored> {
-        let Direction { sin_theta, cos_theta, .. } = Direction::normalized(hit.wo);
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        m: &KajiyaKayMaterial<C>,
+        hit: Hit<L>,
+    ) -> KajiyaKayGather<L::Stored> {
+        let Direction {
+            sin_theta,
+            cos_theta,
+            ..
+        } = Direction::normalized(hit.wo);
         let returned = cos_theta.mul_add(cos_theta, sin_theta * sin_theta * m.grazing.lanes());
         let reciprocal = L::splat(0.5).lt(m.reciprocal.lanes());
         let specular = m.mean[1].lanes() * L::select(reciprocal, returned, returned.sqrt());
@@ -124,13 +148,22 @@ impl LobeModel for KajiyaKay {
 
     #[inline(always)]
     fn weights<L: Lanes, C: Broadcast<L>>(gather: &KajiyaKayGather<C>) -> PerLobe<L> {
-        PerLobe::padded([gather.weights[0].lanes(), gather.weights[1].lanes()], L::splat(0.0))
+        PerLobe::padded(
+            [gather.weights[0].lanes(), gather.weights[1].lanes()],
+            L::splat(0.0),
+        )
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &KajiyaKayGather<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        gather: &KajiyaKayGather<C>,
+        wi: &Direction<L>,
+    ) -> PerLobe<LobeEval<L>> {
         let (c, zero, one) = (L::splat, L::splat(0.0), L::splat(1.0));
-        let (m, [sin_o, cos_o]) = (&gather.material, [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()]);
+        let (m, [sin_o, cos_o]) = (
+            &gather.material,
+            [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()],
+        );
         let (sin_i, cos_i) = (wi.sin_theta, wi.cos_theta);
         let reciprocal = c(0.5).lt(m.reciprocal.lanes());
 
@@ -149,13 +182,25 @@ impl LobeModel for KajiyaKay {
         let pdf = bell * m.density.lanes() * (inverse * cos_i) * L::select(reciprocal, cos_i, one);
 
         let flat = c(FRAC_1_PI * FRAC_1_PI);
-        let diffuse = LobeEval { value: flat, color: lanes3(&m.kd), pdf: flat * cos_i };
-        let specular = LobeEval { value, color: lanes3(&m.ks), pdf };
+        let diffuse = LobeEval {
+            value: flat,
+            color: lanes3(&m.kd),
+            pdf: flat * cos_i,
+        };
+        let specular = LobeEval {
+            value,
+            color: lanes3(&m.ks),
+            pdf,
+        };
         PerLobe::padded([diffuse, specular], LobeEval::none())
     }
 
     #[inline(always)]
-    fn sample_lobe<L: Lanes, C: Broadcast<L>>(gather: &KajiyaKayGather<C>, lobe: L::Index, xi: [L; 3]) -> Direction<L> {
+    fn sample_lobe<L: Lanes, C: Broadcast<L>>(
+        gather: &KajiyaKayGather<C>,
+        lobe: L::Index,
+        xi: [L; 3],
+    ) -> Direction<L> {
         let (c, zero, one) = (L::splat, L::splat(0.0), L::splat(1.0));
         let [sin_o, cos_o] = [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()];
         let is_diffuse = L::is_index(lobe, 0);
@@ -163,8 +208,12 @@ impl LobeModel for KajiyaKay {
 
         // The polar method for a power of the cosine: 2 for the diffuse lobe, p for the specular one. `rest` is what the
         // squared radius of a point in the disk leaves of 1.
-        let (rest, radius_sq) = gaussian_and_complement(log2_one_plus(-xi[1]) * gather.material.inv_exponent.lanes());
-        let (rest, radius_sq) = (L::select(is_diffuse, one - xi[1], rest), L::select(is_diffuse, xi[1], radius_sq));
+        let (rest, radius_sq) =
+            gaussian_and_complement(log2_one_plus(-xi[1]) * gather.material.inv_exponent.lanes());
+        let (rest, radius_sq) = (
+            L::select(is_diffuse, one - xi[1], rest),
+            L::select(is_diffuse, xi[1], radius_sq),
+        );
         let (sin_turn, cos_turn) = sin_cos_half_turn((c(0.5) - xi[0]) * c(PI));
         let sin = radius_sq.sqrt() * sin_turn;
         let cos = (radius_sq * cos_turn).mul_add(cos_turn, rest).sqrt();
@@ -172,16 +221,25 @@ impl LobeModel for KajiyaKay {
         // The sign of the sum, by the cosine that the power leaves out.
         let minus = cos.mul_add(cos_o, sin * sin_o);
         let plus = L::difference_of_products(cos, cos_o, sin, sin_o);
-        let (kept, turned) = (power(reciprocal, zero.max(minus)), power(reciprocal, zero.max(plus)));
+        let (kept, turned) = (
+            power(reciprocal, zero.max(minus)),
+            power(reciprocal, zero.max(plus)),
+        );
         let scaled = xi[2] * (kept + turned);
         let keep = scaled.lt(kept);
         let into = L::select(keep, scaled, scaled - kept);
-        let again = L::quotient(into, L::select(keep, kept, turned).max(c(f32::MIN_POSITIVE)));
+        let again = L::quotient(
+            into,
+            L::select(keep, kept, turned).max(c(f32::MIN_POSITIVE)),
+        );
         let sum = L::select(keep, sin, -sin);
         let sin_i = sum.mul_sub(cos_o, cos * sin_o);
         let cos_i = zero.max(L::select(keep, minus, plus));
 
-        let theta = [L::select(is_diffuse, sin, sin_i), L::select(is_diffuse, cos, cos_i)];
+        let theta = [
+            L::select(is_diffuse, sin, sin_i),
+            L::select(is_diffuse, cos, cos_i),
+        ];
         Direction::with_uniform_azimuth(theta, L::select(is_diffuse, xi[2], again))
     }
 
@@ -190,11 +248,17 @@ impl LobeModel for KajiyaKay {
     #[inline(always)]
     fn albedo<L: Lanes, C: Broadcast<L>>(gather: &KajiyaKayGather<C>) -> PerLobe<[L; 3]> {
         let (c, zero, half_turn) = (L::splat, L::splat(0.0), L::splat(FRAC_PI_2));
-        let (m, [sin_o, cos_o]) = (&gather.material, [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()]);
+        let (m, [sin_o, cos_o]) = (
+            &gather.material,
+            [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()],
+        );
         let reciprocal = c(0.5).lt(m.reciprocal.lanes());
         let theta_o = half_atan2(sin_o, cos_o, c(1.0)) * c(2.0);
         let reach = half_turn.min(c(6.5) * L::quotient(c(-LN_2), m.exponent.lanes()).sqrt());
-        let (lo, hi) = ((theta_o - half_turn).max(-reach), (theta_o + half_turn).min(reach));
+        let (lo, hi) = (
+            (theta_o - half_turn).max(-reach),
+            (theta_o + half_turn).min(reach),
+        );
         let mut sum = zero;
         for (x, weight) in GAUSS_LEGENDRE_32 {
             let (sin, cos) = sin_cos_half_turn((hi - lo).mul_add(c(x), lo));

@@ -69,7 +69,16 @@ impl Field {
     #[inline]
     #[must_use]
     pub const fn new(name: &'static str, kind: Kind) -> Self {
-        Self { name, alias: name, kind, optional: false, instead_of: None, draw: None, late: false, narrow: None }
+        Self {
+            name,
+            alias: name,
+            kind,
+            optional: false,
+            instead_of: None,
+            draw: None,
+            late: false,
+            narrow: None,
+        }
     }
 
     /// With another name in a [`ParamError`].
@@ -83,28 +92,50 @@ impl Field {
     #[inline]
     #[must_use]
     pub const fn optional(self) -> Self {
-        Self { optional: true, ..self }
+        Self {
+            optional: true,
+            ..self
+        }
     }
 
     /// May take the place of `field`.
     #[inline]
     #[must_use]
     pub const fn instead_of(self, field: &'static str) -> Self {
-        Self { instead_of: Some(field), ..self }
+        Self {
+            instead_of: Some(field),
+            ..self
+        }
     }
 
     /// Uniform over `[least, most]` in random materials.
     #[inline]
     #[must_use]
     pub const fn uniform(self, least: f32, most: f32) -> Self {
-        Self { draw: Some(Draw { least, most, unit: 1.0, log: false }), ..self }
+        Self {
+            draw: Some(Draw {
+                least,
+                most,
+                unit: 1.0,
+                log: false,
+            }),
+            ..self
+        }
     }
 
     /// Uniform in its logarithm over `[least, most]` in random materials.
     #[inline]
     #[must_use]
     pub const fn log_uniform(self, least: f32, most: f32) -> Self {
-        Self { draw: Some(Draw { least, most, unit: 1.0, log: true }), ..self }
+        Self {
+            draw: Some(Draw {
+                least,
+                most,
+                unit: 1.0,
+                log: true,
+            }),
+            ..self
+        }
     }
 
     /// With the range of random materials in degrees; the value stays in radians.
@@ -112,7 +143,10 @@ impl Field {
     #[must_use]
     pub const fn degrees(self) -> Self {
         let draw = match self.draw {
-            Some(draw) => Some(Draw { unit: PI / 180.0, ..draw }),
+            Some(draw) => Some(Draw {
+                unit: PI / 180.0,
+                ..draw
+            }),
             None => None,
         };
         Self { draw, ..self }
@@ -129,16 +163,24 @@ impl Field {
     #[inline]
     #[must_use]
     pub const fn narrow(self, narrow: f32) -> Self {
-        Self { narrow: Some(narrow), ..self }
+        Self {
+            narrow: Some(narrow),
+            ..self
+        }
     }
 
     /// The place that `error` refuses: the field, and which of its numbers if the error names one.
     #[inline]
     #[must_use]
-    pub fn refused<'a>(fields: &'a [Self], error: &ParamError) -> Option<(&'a Self, Option<usize>)> {
+    pub fn refused<'a>(
+        fields: &'a [Self],
+        error: &ParamError,
+    ) -> Option<(&'a Self, Option<usize>)> {
         let name = error.field();
         fields.iter().find_map(|field| match field.kind {
-            Kind::Numbers(names) if field.alias != name => Some((field, Some(names.iter().position(|n| *n == name)?))),
+            Kind::Numbers(names) if field.alias != name => {
+                Some((field, Some(names.iter().position(|n| *n == name)?)))
+            }
             _ if field.alias != name => None,
             _ => Some((field, channel(error))),
         })
@@ -149,7 +191,9 @@ impl Field {
 #[inline]
 fn channel(error: &ParamError) -> Option<usize> {
     match error {
-        ParamError::Intensity(_, channel, _) | ParamError::Overflow(_, channel, _) => Some(*channel),
+        ParamError::Intensity(_, channel, _) | ParamError::Overflow(_, channel, _) => {
+            Some(*channel)
+        }
         _ => None,
     }
 }
@@ -169,14 +213,22 @@ impl<T: Copy + Default> Values<T> {
     #[inline]
     #[must_use]
     pub fn none(fields: &'static [Field]) -> Self {
-        Self { fields, numbers: [T::default(); MOST], given: 0 }
+        Self {
+            fields,
+            numbers: [T::default(); MOST],
+            given: 0,
+        }
     }
 
     /// The same fields with every number converted.
     #[inline]
     #[must_use]
     pub fn map<U>(&self, convert: impl FnMut(T) -> U) -> Values<U> {
-        Values { fields: self.fields, numbers: self.numbers.map(convert), given: self.given }
+        Values {
+            fields: self.fields,
+            numbers: self.numbers.map(convert),
+            given: self.given,
+        }
     }
 
     /// The fields.
@@ -195,7 +247,10 @@ impl<T: Copy + Default> Values<T> {
     #[must_use]
     pub fn with(mut self, name: &str, numbers: &[T]) -> Self {
         let (index, at) = self.place(name);
-        assert!(self.fields[index].kind.width() == numbers.len(), "the field has another count of numbers");
+        assert!(
+            self.fields[index].kind.width() == numbers.len(),
+            "the field has another count of numbers"
+        );
         self.numbers[at..at + numbers.len()].copy_from_slice(numbers);
         self.given |= 1 << index;
         self
@@ -244,15 +299,27 @@ impl<T: Copy + Default> Values<T> {
     #[inline]
     #[must_use]
     pub fn get<const N: usize>(&self, name: &str) -> [T; N] {
-        let Ok(numbers) = self.numbers(name).try_into() else { panic!("the field has another count of numbers") };
+        let Ok(numbers) = self.numbers(name).try_into() else {
+            panic!("the field has another count of numbers")
+        };
         numbers
     }
 
     /// Index of the field `name`, and where its numbers begin.
     #[inline]
     fn place(&self, name: &str) -> (usize, usize) {
-        let index = self.fields.iter().position(|field| field.name == name).expect("a field of the model");
-        (index, self.fields[..index].iter().map(|field| field.kind.width()).sum())
+        let index = self
+            .fields
+            .iter()
+            .position(|field| field.name == name)
+            .expect("a field of the model");
+        (
+            index,
+            self.fields[..index]
+                .iter()
+                .map(|field| field.kind.width())
+                .sum(),
+        )
     }
 }
 
@@ -269,8 +336,15 @@ impl Values {
     #[must_use]
     pub fn with_word(self, name: &str, word: &str) -> Self {
         let (index, _) = self.place(name);
-        let Kind::Word(words) = self.fields[index].kind else { panic!("not a field of words") };
-        let place = words.iter().zip(0_u8..).find(|(one, _)| **one == word).expect("a word of the field").1;
+        let Kind::Word(words) = self.fields[index].kind else {
+            panic!("not a field of words")
+        };
+        let place = words
+            .iter()
+            .zip(0_u8..)
+            .find(|(one, _)| **one == word)
+            .expect("a word of the field")
+            .1;
         self.with(name, &[f32::from(place)])
     }
 
@@ -282,9 +356,15 @@ impl Values {
     #[inline]
     #[must_use]
     pub fn word(&self, name: &str) -> &'static str {
-        let Kind::Word(words) = self.fields[self.place(name).0].kind else { panic!("not a field of words") };
+        let Kind::Word(words) = self.fields[self.place(name).0].kind else {
+            panic!("not a field of words")
+        };
         let [number] = self.get(name);
-        words.iter().zip(0_u8..).find(|(_, place)| f32::from(*place) == number).map_or(words[0], |(word, _)| word)
+        words
+            .iter()
+            .zip(0_u8..)
+            .find(|(_, place)| f32::from(*place) == number)
+            .map_or(words[0], |(word, _)| word)
     }
 }
 

@@ -16,17 +16,32 @@ pub(crate) fn fixed<T: Real>(wo: [T; 3]) -> Fixed<T> {
     let zero = T::default();
     let across = wo[1].hypot(wo[2]);
     let length = wo[0].hypot(across);
-    let (sin_theta_o, cos_theta_o) =
-        if length > zero { (wo[0] / length, across / length) } else { (zero, T::from_f64(1.0)) };
-    let phi_o = if across > zero { wo[2].atan2(wo[1]) } else { zero };
-    Fixed { sin_theta_o, cos_theta_o, phi_o }
+    let (sin_theta_o, cos_theta_o) = if length > zero {
+        (wo[0] / length, across / length)
+    } else {
+        (zero, T::from_f64(1.0))
+    };
+    let phi_o = if across > zero {
+        wo[2].atan2(wo[1])
+    } else {
+        zero
+    };
+    Fixed {
+        sin_theta_o,
+        cos_theta_o,
+        phi_o,
+    }
 }
 
 /// Sine and cosine of the inclination of `wi`, whatever the rounding of its length.
 pub(crate) fn inclination<T: Real>([u, v, w]: [T; 3]) -> [T; 2] {
     let across = v.hypot(w);
     let length = (u * u + across * across).sqrt();
-    if length > T::default() { [u / length, across / length] } else { [u, across] }
+    if length > T::default() {
+        [u / length, across / length]
+    } else {
+        [u, across]
+    }
 }
 
 /// Directions closer than this to the fibre axis, in cosine of `theta_i`, have neither value nor density.
@@ -37,7 +52,13 @@ pub(crate) fn grazing<T: Real>() -> T {
 /// A discarded sample: it counts, with a contribution of 0.
 pub(crate) fn discarded<T: Real>() -> ReferenceSample<T> {
     let zero = T::default();
-    ReferenceSample { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None }
+    ReferenceSample {
+        wi: [zero; 3],
+        value: [zero; 3],
+        pdf: zero,
+        weight: [zero; 3],
+        lobe: None,
+    }
 }
 
 /// The parts over their sum; all 0 if that is 0.
@@ -97,7 +118,11 @@ pub(crate) fn finish_sample<T: Real>(
         return discarded();
     }
     ReferenceSample {
-        wi: [sin_theta_i, cos_theta_i * phi_i.cos(), cos_theta_i * phi_i.sin()],
+        wi: [
+            sin_theta_i,
+            cos_theta_i * phi_i.cos(),
+            cos_theta_i * phi_i.sin(),
+        ],
         value,
         pdf,
         weight: value.map(|s| s * cos_theta_i / pdf),

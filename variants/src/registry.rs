@@ -18,8 +18,8 @@ use {
     glam::Vec3,
     hairis::wide::f32x8,
     hairis::{
-        Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level, LobeEval, LobeEval8,
-        LobeMask, Sample, Sample8, SampleSlices, SampleWeightSlices, Vec3x8,
+        Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level,
+        LobeEval, LobeEval8, LobeMask, Sample, Sample8, SampleSlices, SampleWeightSlices, Vec3x8,
     },
 };
 
@@ -88,7 +88,12 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     /// formulas have them: the `xi[1]` and `xi[2]` of the sample.
     #[cfg(feature = "textbook")]
     #[inline]
-    fn cdf(reference: &Self::Reference<f64>, lobe: Lobe, theta_i: f64, phi: f64) -> Option<[f64; 2]> {
+    fn cdf(
+        reference: &Self::Reference<f64>,
+        lobe: Lobe,
+        theta_i: f64,
+        phi: f64,
+    ) -> Option<[f64; 2]> {
         let _ = (reference, lobe, theta_i, phi);
         None
     }

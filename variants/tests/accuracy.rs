@@ -10,7 +10,9 @@ use glam::Vec3;
 use hairis::reference::LobeAt;
 use hairis::{Bsdf, Eval, Gather, Hit, Level, Lobe, LobeEval, Model, PerLobe, Sample};
 use hairis_variants::KajiyaKay;
-use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, Selection, Shifts};
+use hairis_variants::chiang::{
+    Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, Selection, Shifts,
+};
 use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams, KajiyaKayReference};
 
 const CASES: usize = 10_000;
@@ -22,7 +24,11 @@ const ANGLE: f64 = 1.2e-7;
 /// An inclination: a quarter of them within a tenth of the axis, down to 1e-3 rad from it.
 fn inclination(draws: &mut Draws) -> f64 {
     let grazing = draws.sign() * (FRAC_PI_2 - draws.scale(1.1e-3, 0.1));
-    if draws.below(4) == 0 { grazing } else { draws.between(-FRAC_PI_2 + 1.1e-3, FRAC_PI_2 - 1.1e-3) }
+    if draws.below(4) == 0 {
+        grazing
+    } else {
+        draws.between(-FRAC_PI_2 + 1.1e-3, FRAC_PI_2 - 1.1e-3)
+    }
 }
 
 fn hit(draws: &mut Draws) -> Hit {
@@ -37,11 +43,19 @@ fn hit(draws: &mut Draws) -> Hit {
 }
 
 /// Eight directions: half of them samples, half from anywhere, grazing ones included.
-fn directions<M: Model>(gather: &Gather<M>, draws: &mut Draws) -> ([[f32; 3]; 8], [Option<Sample>; 8], [Vec3; 8]) {
+fn directions<M: Model>(
+    gather: &Gather<M>,
+    draws: &mut Draws,
+) -> ([[f32; 3]; 8], [Option<Sample>; 8], [Vec3; 8]) {
     let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
     let samples = xi.map(|xi| gather.sample(xi));
-    let any: [Vec3; 8] = core::array::from_fn(|_| direction(inclination(draws), draws.between(-PI, PI)));
-    (xi, samples, core::array::from_fn(|k| samples[k].filter(|_| k % 2 == 0).map_or(any[k], |s| s.wi)))
+    let any: [Vec3; 8] =
+        core::array::from_fn(|_| direction(inclination(draws), draws.between(-PI, PI)));
+    (
+        xi,
+        samples,
+        core::array::from_fn(|k| samples[k].filter(|_| k % 2 == 0).map_or(any[k], |s| s.wi)),
+    )
 }
 
 fn double(v: Vec3) -> [f64; 3] {
@@ -65,8 +79,17 @@ impl Largest {
     }
 
     fn check(self) {
-        println!("{}: measured {:.3} of the bound: {}", self.0, self.1, self.2);
-        assert!(self.1 <= 1.0, "{}: {:.3} times the bound: {}", self.0, self.1, self.2);
+        println!(
+            "{}: measured {:.3} of the bound: {}",
+            self.0, self.1, self.2
+        );
+        assert!(
+            self.1 <= 1.0,
+            "{}: {:.3} times the bound: {}",
+            self.0,
+            self.1,
+            self.2
+        );
     }
 }
 
@@ -79,7 +102,11 @@ struct Errors {
 
 impl Errors {
     fn new() -> Self {
-        Self { lobes: Largest::new("a lobe"), sums: Largest::new("S or density"), weights: Largest::new("a weight") }
+        Self {
+            lobes: Largest::new("a lobe"),
+            sums: Largest::new("S or density"),
+            weights: Largest::new("a weight"),
+        }
     }
 
     /// Each lobe to its bound; S and density to the bounds of the lobes they are the sum of.
@@ -94,8 +121,14 @@ impl Errors {
         for lobe in Lobe::ALL {
             let (got, want, bound) = (&lobes[lobe], &book[lobe], bounds[lobe.index()]);
             if want.pdf > LEAST {
-                self.lobes.see(f64::from(got.pdf) / want.pdf - 1.0, bound, || format!("density of {lobe:?}: {}", at()));
-                self.lobes.see(f64::from(got.value) / want.value - 1.0, bound, || format!("S of {lobe:?}: {}", at()));
+                self.lobes
+                    .see(f64::from(got.pdf) / want.pdf - 1.0, bound, || {
+                        format!("density of {lobe:?}: {}", at())
+                    });
+                self.lobes
+                    .see(f64::from(got.value) / want.value - 1.0, bound, || {
+                        format!("S of {lobe:?}: {}", at())
+                    });
             }
             for (allowed, color) in allowed.iter_mut().zip(want.color) {
                 *allowed += want.value * color * bound;
@@ -104,9 +137,13 @@ impl Errors {
         }
         for got in evals {
             for (c, (&got, &allowed)) in got.value.iter().zip(&allowed).enumerate() {
-                self.sums.see(f64::from(got) - want.0[c], allowed, || format!("S, channel {c}: {}", at()));
+                self.sums.see(f64::from(got) - want.0[c], allowed, || {
+                    format!("S, channel {c}: {}", at())
+                });
             }
-            self.sums.see(f64::from(got.pdf) - want.1, allowed[3], || format!("density: {}", at()));
+            self.sums.see(f64::from(got.pdf) - want.1, allowed[3], || {
+                format!("density: {}", at())
+            });
         }
     }
 
@@ -124,10 +161,12 @@ impl Errors {
             if cos > 1e-3 && value > LEAST {
                 let apart = Lobe::ALL.into_iter().map(|lobe| {
                     let of = &book[lobe];
-                    (of.value * of.color[c] / value - of.pdf * shares[lobe] / pdf).abs() * bounds[lobe.index()]
+                    (of.value * of.color[c] / value - of.pdf * shares[lobe] / pdf).abs()
+                        * bounds[lobe.index()]
                 });
                 let allowed = apart.sum::<f64>().max(1e-4);
-                self.weights.see(f64::from(got) * pdf / (value * cos) - 1.0, allowed, at);
+                self.weights
+                    .see(f64::from(got) * pdf / (value * cos) - 1.0, allowed, at);
             }
         }
     }
@@ -164,9 +203,17 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
             beta_m: roughness(&mut draws),
             beta_n: roughness(&mut draws),
             tilt: narrow(draws.between(-0.35, 0.35)),
-            eta: if case % 2 == 0 { 1.55 } else { narrow(draws.between(1.0, 4.0)) },
+            eta: if case % 2 == 0 {
+                1.55
+            } else {
+                narrow(draws.between(1.0, 4.0))
+            },
             sigma_a: draws.xi3().map(|x| 6.0 * x * x),
-            shifts: if case % 16 == 0 { Shifts::SmallAngle } else { Shifts::DEon },
+            shifts: if case % 16 == 0 {
+                Shifts::SmallAngle
+            } else {
+                Shifts::DEon
+            },
         };
         let params = ChiangParams::new(&desc).unwrap();
         let hit = hit(&mut draws);
@@ -181,7 +228,9 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
                 let (got, want) = (f64::from(gather.albedo()[lobe][c]), book.albedo()[lobe][c]);
                 let depth = lobe.index() as f64 * p.sigma_a[c] * book.path_length();
                 if want > LEAST {
-                    attenuation.see(got / want - 1.0, 2e-6 + 3.6e-7 * depth, || format!("{lobe:?} {desc:?} {hit:?}"));
+                    attenuation.see(got / want - 1.0, 2e-6 + 3.6e-7 * depth, || {
+                        format!("{lobe:?} {desc:?} {hit:?}")
+                    });
                 }
             }
         }
@@ -200,10 +249,20 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
             let d = double(wi[k]);
             let bounds = bounds_at(d);
             let at = || format!("{:?} {desc:?} {hit:?}", wi[k]);
-            errors.see_eval((gather.lobes(wi[k]), evals), (book.lobes(d), book.eval_pdf(d)), (bounds, shares), &at);
+            errors.see_eval(
+                (gather.lobes(wi[k]), evals),
+                (book.lobes(d), book.eval_pdf(d)),
+                (bounds, shares),
+                &at,
+            );
             let Some(sample) = &samples[k] else { continue };
             let d = double(sample.wi);
-            errors.see_weight(sample, (book.lobes(d), book.eval_pdf(d)), (bounds_at(d), shares), &at);
+            errors.see_weight(
+                sample,
+                (book.lobes(d), book.eval_pdf(d)),
+                (bounds_at(d), shares),
+                &at,
+            );
             see_sample(&mut drawn, &book, (wo, xi[k], sample), &at);
         }
     }
@@ -230,15 +289,21 @@ fn see_sample(
     let off = (of_azimuth - number).abs();
     let cos = v.hypot(w);
     let rounding = 2e-7 / shares[lobe] + 4e-7 + 0.3 * ANGLE / (cos.min(wo[1].hypot(wo[2])));
-    worst.see(off.min((1.0 - off).abs()), rounding + book.azimuthal(lobe, turn + book.centre(lobe)) * 1e-6, || {
-        format!("azimuth of {sample:?} xi {xi:?}: {}", at())
-    });
+    worst.see(
+        off.min((1.0 - off).abs()),
+        rounding + book.azimuthal(lobe, turn + book.centre(lobe)) * 1e-6,
+        || format!("azimuth of {sample:?} xi {xi:?}: {}", at()),
+    );
     let [second, third] = [xi[1], xi[2]].map(f64::from);
-    let inclination = |by: f64| book.sample_inclination(lobe, (second + by).clamp(0.0, 1.0 - 1e-9), third);
+    let inclination =
+        |by: f64| book.sample_inclination(lobe, (second + by).clamp(0.0, 1.0 - 1e-9), third);
     let [sin, cos_i] = inclination(0.0);
-    let reach = [-1.2e-7, 1.2e-7].map(|by| (inclination(by)[0] - sin).hypot(inclination(by)[1] - cos_i));
+    let reach =
+        [-1.2e-7, 1.2e-7].map(|by| (inclination(by)[0] - sin).hypot(inclination(by)[1] - cos_i));
     let off = (u - sin).hypot(cos - cos_i);
-    worst.see(off, 7.5e-7 + reach[0].max(reach[1]), || format!("inclination of {sample:?} xi {xi:?}: {}", at()));
+    worst.see(off, 7.5e-7 + reach[0].max(reach[1]), || {
+        format!("inclination of {sample:?} xi {xi:?}: {}", at())
+    });
 }
 
 #[test]
@@ -249,9 +314,18 @@ fn kajiya_and_kay_s_fibre_is_as_accurate_as_its_exponent_allows() {
         let mut plain = Largest::new("S or density, to 1e-5");
         for case in 0..CASES / 2 {
             // The exponent's logarithm is uniform; a tenth of them are beyond 1000.
-            let exponent = if case % 10 == 0 { draws.scale(1e3, 1e4) } else { draws.scale(1.0, 1e3) };
+            let exponent = if case % 10 == 0 {
+                draws.scale(1e3, 1e4)
+            } else {
+                draws.scale(1.0, 1e3)
+            };
             let kd = draws.xi3().map(|x| 0.02 + x);
-            let desc = KajiyaKayDesc { kd, ks: draws.xi3(), exponent: narrow(exponent).clamp(1.0, 1e4), form };
+            let desc = KajiyaKayDesc {
+                kd,
+                ks: draws.xi3(),
+                exponent: narrow(exponent).clamp(1.0, 1e4),
+                form,
+            };
             let params = KajiyaKayParams::new(&desc).unwrap();
             let hit = hit(&mut draws);
             let gather = Bsdf::new(&KajiyaKay, &params).prepare(hit);
@@ -263,7 +337,8 @@ fn kajiya_and_kay_s_fibre_is_as_accurate_as_its_exponent_allows() {
                 let sum = theta_o + d[0].atan2(d[1].hypot(d[2]));
                 // cos^p changes by p tan(sum) per radian; its logarithm is rounded; the density has 1 / cos theta_i.
                 let p = f64::from(desc.exponent);
-                let specular = 3e-6 + p * sum.tan().abs() * 2.0 * ANGLE - 4e-7 * p * sum.cos().max(1e-300).ln();
+                let specular = 3e-6 + p * sum.tan().abs() * 2.0 * ANGLE
+                    - 4e-7 * p * sum.cos().max(1e-300).ln();
                 [1e-6, specular, 1.0, 1.0]
             };
             for (k, evals) in evals(&gather, &wi).into_iter().enumerate() {

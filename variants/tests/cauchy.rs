@@ -6,10 +6,23 @@ use hairis_variants::{AllCauchy, Cauchy};
 
 #[test]
 fn width_factors_match_what_they_are_named_for() {
-    let named = [(Cauchy::PAPER, 1.0), (Cauchy::HALF_WIDTH, (2.0 * 2.0_f32.ln()).sqrt())];
-    for (bell, factor) in named.into_iter().chain([(Cauchy::AREA, core::f32::consts::FRAC_2_PI.sqrt())]) {
-        assert!((bell.width_factor() - factor).abs() < 1e-6, "{bell:?} should be {factor}");
-        assert_eq!(Cauchy::with_width_factor(bell.width_factor()), Ok(bell), "{bell:?}");
+    let named = [
+        (Cauchy::PAPER, 1.0),
+        (Cauchy::HALF_WIDTH, (2.0 * 2.0_f32.ln()).sqrt()),
+    ];
+    for (bell, factor) in named
+        .into_iter()
+        .chain([(Cauchy::AREA, core::f32::consts::FRAC_2_PI.sqrt())])
+    {
+        assert!(
+            (bell.width_factor() - factor).abs() < 1e-6,
+            "{bell:?} should be {factor}"
+        );
+        assert_eq!(
+            Cauchy::with_width_factor(bell.width_factor()),
+            Ok(bell),
+            "{bell:?}"
+        );
     }
     assert_eq!(AllCauchy::default(), Hair(Cauchy::PAPER), "the default");
 }
@@ -18,14 +31,22 @@ fn width_factors_match_what_they_are_named_for() {
 fn width_factors_out_of_range_are_refused() {
     for factor in [0.0, 0.499, 4.01, -1.0, f32::INFINITY, 1e30] {
         let refused = Cauchy::with_width_factor(factor);
-        assert_eq!(refused, Err(ParamError::WidthFactor("width_factor", factor)), "{factor}");
+        assert_eq!(
+            refused,
+            Err(ParamError::WidthFactor("width_factor", factor)),
+            "{factor}"
+        );
     }
-    let Err(ParamError::WidthFactor("width_factor", value)) = Cauchy::with_width_factor(f32::NAN) else {
+    let Err(ParamError::WidthFactor("width_factor", value)) = Cauchy::with_width_factor(f32::NAN)
+    else {
         panic!("NaN was accepted");
     };
     assert!(value.is_nan(), "the error holds {value}, not NaN");
     for factor in [0.5, 4.0] {
-        assert!(Cauchy::with_width_factor(factor).is_ok(), "{factor} is legal");
+        assert!(
+            Cauchy::with_width_factor(factor).is_ok(),
+            "{factor} is legal"
+        );
     }
 }
 
@@ -33,26 +54,46 @@ fn width_factors_out_of_range_are_refused() {
 fn a_factor_is_the_same_as_wider_parameters() {
     let d = HairDesc::default();
     let (beta_r, beta_tt, beta_trt) = (d.beta_r * 2.0, d.beta_tt * 2.0, d.beta_trt * 2.0);
-    let wide = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: d.gamma_tt * 2.0, gamma_g: d.gamma_g * 2.0, ..d };
+    let wide = HairDesc {
+        beta_r,
+        beta_tt,
+        beta_trt,
+        gamma_tt: d.gamma_tt * 2.0,
+        gamma_g: d.gamma_g * 2.0,
+        ..d
+    };
     let wide = Bsdf::new(&Cauchy::PAPER.model(), &HairParams::new(&wide).unwrap());
-    let factor = Bsdf::new(&Cauchy::with_width_factor(2.0).unwrap().model(), &HairParams::default());
-    assert_eq!(format!("{wide:?}"), format!("{factor:?}"), "twice the widths, or a factor of two");
+    let factor = Bsdf::new(
+        &Cauchy::with_width_factor(2.0).unwrap().model(),
+        &HairParams::default(),
+    );
+    assert_eq!(
+        format!("{wide:?}"),
+        format!("{factor:?}"),
+        "twice the widths, or a factor of two"
+    );
 }
 
 #[test]
 fn a_lobe_alone_has_weights_of_w_alone() {
     // The sampler's density is the lobe but for W: at one theta the weight is one number, whatever the azimuth.
     let mut draws = Draws(61);
-    let gather = Bsdf::new(&Cauchy::PAPER.model(), &HairParams::default()).prepare(direction(0.5, 1.0));
+    let gather =
+        Bsdf::new(&Cauchy::PAPER.model(), &HairParams::default()).prepare(direction(0.5, 1.0));
     for lobe in Lobe::ALL {
         let alone = gather.with_lobes(LobeMask::of(&[lobe]));
         for _ in 0..200 {
             let xi_theta = draws.xi();
-            let mut weights = (0..8).filter_map(|_| alone.sample([0.0, xi_theta, draws.xi()])).map(|s| s.weight[0]);
+            let mut weights = (0..8)
+                .filter_map(|_| alone.sample([0.0, xi_theta, draws.xi()]))
+                .map(|s| s.weight[0]);
             let first = weights.next().unwrap();
             assert!(first > 0.0, "{lobe:?} at xi {xi_theta}");
             for weight in weights {
-                assert!((weight / first - 1.0).abs() < 2e-6, "{lobe:?} at xi {xi_theta}: {first} and {weight}");
+                assert!(
+                    (weight / first - 1.0).abs() < 2e-6,
+                    "{lobe:?} at xi {xi_theta}: {first} and {weight}"
+                );
             }
         }
     }

@@ -3,9 +3,12 @@
 
 use crate::support::Draws;
 use hairis::{Bsdf, Hit, LobeMask};
-use hairis_conformance::{Claims, FormulaReference, Materials, Reference, Subject, Tolerance, conformance};
+use hairis_conformance::{
+    Claims, FormulaReference, Materials, Reference, Subject, Tolerance, conformance,
+};
 use hairis_variants::chiang::{
-    Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, FarField, OffsetNodes, Selection,
+    Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, FarField, OffsetNodes,
+    Selection,
 };
 
 /// The model with one of its selections.
@@ -16,7 +19,11 @@ fn params(desc: ChiangDesc) -> ChiangParams {
 }
 
 fn rough(beta_m: f32, beta_n: f32) -> ChiangDesc {
-    ChiangDesc { beta_m, beta_n, ..ChiangDesc::default() }
+    ChiangDesc {
+        beta_m,
+        beta_n,
+        ..ChiangDesc::default()
+    }
 }
 
 fn double(hit: &Hit) -> [f64; 3] {
@@ -25,8 +32,17 @@ fn double(hit: &Hit) -> [f64; 3] {
 
 impl<const BY_CHANNEL: bool> ChiangFibers<BY_CHANNEL> {
     fn formulas(params: &ChiangParams, hit: &Hit) -> ChiangReference<f64> {
-        let selection = if BY_CHANNEL { Selection::ByChannel } else { Selection::Mean };
-        ChiangReference::prepare(&ChiangParameters::from(params), selection, double(hit), f64::from(hit.h))
+        let selection = if BY_CHANNEL {
+            Selection::ByChannel
+        } else {
+            Selection::Mean
+        };
+        ChiangReference::prepare(
+            &ChiangParameters::from(params),
+            selection,
+            double(hit),
+            f64::from(hit.h),
+        )
     }
 }
 
@@ -41,8 +57,21 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
         vec![
             ("brown", ChiangParams::brown()),
             ("narrow", params(rough(0.1, 0.1))),
-            ("wide", params(ChiangDesc { tilt: -0.35, eta: 1.3, ..rough(1.0, 0.7) })),
-            ("red, even", params(ChiangDesc { sigma_a: ChiangParams::red().desc().sigma_a, ..rough(0.6, 1.0) })),
+            (
+                "wide",
+                params(ChiangDesc {
+                    tilt: -0.35,
+                    eta: 1.3,
+                    ..rough(1.0, 0.7)
+                }),
+            ),
+            (
+                "red, even",
+                params(ChiangDesc {
+                    sigma_a: ChiangParams::red().desc().sigma_a,
+                    ..rough(0.6, 1.0)
+                }),
+            ),
         ]
     }
 
@@ -52,15 +81,42 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
         vec![
             ("narrowest", params(rough(1e-3, 1e-3))),
             ("no refraction", params(ChiangDesc { eta: 1.0, ..desc })),
-            ("ink", params(ChiangDesc { sigma_a: [f32::MAX, 1e6, 0.0], ..desc })),
-            ("ink without a surface", params(ChiangDesc { sigma_a: [f32::MAX; 3], eta: 1.0, ..desc })),
-            ("tilted", params(ChiangDesc { tilt: quarter, eta: 4.0, sigma_a: [0.0; 3], ..rough(0.01, 1.0) })),
+            (
+                "ink",
+                params(ChiangDesc {
+                    sigma_a: [f32::MAX, 1e6, 0.0],
+                    ..desc
+                }),
+            ),
+            (
+                "ink without a surface",
+                params(ChiangDesc {
+                    sigma_a: [f32::MAX; 3],
+                    eta: 1.0,
+                    ..desc
+                }),
+            ),
+            (
+                "tilted",
+                params(ChiangDesc {
+                    tilt: quarter,
+                    eta: 4.0,
+                    sigma_a: [0.0; 3],
+                    ..rough(0.01, 1.0)
+                }),
+            ),
         ]
     }
 
     fn white(&self) -> Materials<Self> {
-        let clear =
-            |beta_m, beta_n, tilt, eta| params(ChiangDesc { sigma_a: [0.0; 3], tilt, eta, ..rough(beta_m, beta_n) });
+        let clear = |beta_m, beta_n, tilt, eta| {
+            params(ChiangDesc {
+                sigma_a: [0.0; 3],
+                tilt,
+                eta,
+                ..rough(beta_m, beta_n)
+            })
+        };
         vec![
             ("everyday", clear(0.3, 0.3, 0.035, 1.55)),
             ("narrow", clear(1e-3, 0.05, -0.35, 1.55)),
@@ -73,7 +129,13 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
         // The inclination takes two numbers. Of n even points in a square a curve crosses n^(1/2) of the rectangles that hold
         // one each: they are left to chance, n^(1/4) of n. 2.4e-4 was seen with 2^17 points, below 1e-4 with 2^20.
         let inversion = 2.0 * f64::from(Claims::default().points).powf(-0.75);
-        Claims { furnace: Some(1e-6), near_field: true, albedo: 1e-5, inversion, ..Claims::default() }
+        Claims {
+            furnace: Some(1e-6),
+            near_field: true,
+            albedo: 1e-5,
+            inversion,
+            ..Claims::default()
+        }
     }
 
     /// The cones, and the kinks of the azimuthal terms.
@@ -85,33 +147,56 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
             let phi = w.atan2(v) + formulas.centre(lobe);
             [wrap(phi), wrap(phi + core::f64::consts::PI)]
         });
-        [lobes.map(|lobe| formulas.cone(lobe)).to_vec(), azimuths.collect()]
+        [
+            lobes.map(|lobe| formulas.cone(lobe)).to_vec(),
+            azimuths.collect(),
+        ]
     }
 
     fn weight_bound(&self, params: &ChiangParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
         let albedo = Self::formulas(params, hit).albedo();
-        let lit = hairis::Lobe::ALL.into_iter().filter(|lobe| lobes.contains(*lobe));
-        let sum = lit.fold([0.0; 3], |sum, lobe| core::array::from_fn(|c| sum[c] + albedo[lobe][c]));
-        let most = if BY_CHANNEL { sum.into_iter().fold(0.0, f64::max) } else { sum.iter().sum::<f64>() / 3.0 };
+        let lit = hairis::Lobe::ALL
+            .into_iter()
+            .filter(|lobe| lobes.contains(*lobe));
+        let sum = lit.fold([0.0; 3], |sum, lobe| {
+            core::array::from_fn(|c| sum[c] + albedo[lobe][c])
+        });
+        let most = if BY_CHANNEL {
+            sum.into_iter().fold(0.0, f64::max)
+        } else {
+            sum.iter().sum::<f64>() / 3.0
+        };
         // Shares by channel are those of all lobes: of some of them they bound nothing but by the least share.
         (!BY_CHANNEL || lobes == LobeMask::ALL).then_some(3.0 * most * (1.0 + 1e-6))
     }
 
     fn reference(&self, params: &ChiangParams, hit: &Hit) -> Option<Box<dyn Reference>> {
         let desc = params.desc();
-        let width = (0.5 * f64::from(desc.longitudinal_variance()).sqrt()).min(f64::from(desc.azimuthal_scale()));
+        let width = (0.5 * f64::from(desc.longitudinal_variance()).sqrt())
+            .min(f64::from(desc.azimuthal_scale()));
         // An angle is off by 1.2e-7 and less, and a lobe as steep as it is narrow: see tests/accuracy.rs.
         let bound = 5e-6 + 5e-7 / width;
         // From exp(-12) of a lobe's peak down the error grows with the exponent.
         let tau = core::f64::consts::TAU;
-        let peak =
-            0.5 / (0.25 * tau * f64::from(desc.longitudinal_variance())).sqrt() / f64::from(desc.azimuthal_scale());
+        let peak = 0.5
+            / (0.25 * tau * f64::from(desc.longitudinal_variance())).sqrt()
+            / f64::from(desc.azimuthal_scale());
         let [_, v, w] = double(hit);
         // Next to the axis the lobes are as much higher as the circle about it is smaller.
         let floor = (-12.0_f64).exp() * 0.5 * peak.max(0.1) / v.hypot(w).max(1e-3);
         let direction = 1e-5;
-        let tolerance = Tolerance { value: bound, pdf: bound, lobes: bound, floor, direction, ..Tolerance::default() };
-        Some(Box::new(FormulaReference { formulas: Self::formulas(params, hit), tolerance }))
+        let tolerance = Tolerance {
+            value: bound,
+            pdf: bound,
+            lobes: bound,
+            floor,
+            direction,
+            ..Tolerance::default()
+        };
+        Some(Box::new(FormulaReference {
+            formulas: Self::formulas(params, hit),
+            tolerance,
+        }))
     }
 
     fn random_materials(&self) -> Vec<ChiangParams> {
@@ -119,8 +204,16 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
         let one = |_| {
             let beta = [draws.scale(0.02, 1.0), draws.scale(0.02, 1.0)].map(crate::support::narrow);
             let sigma_a = draws.xi3().map(|x| 6.0 * x * x);
-            let (tilt, eta) = (0.7 * (draws.xi() - 0.5), 1.0 + 3.0 * draws.xi() * draws.xi());
-            params(ChiangDesc { sigma_a, tilt, eta, ..rough(beta[0], beta[1]) })
+            let (tilt, eta) = (
+                0.7 * (draws.xi() - 0.5),
+                1.0 + 3.0 * draws.xi() * draws.xi(),
+            );
+            params(ChiangDesc {
+                sigma_a,
+                tilt,
+                eta,
+                ..rough(beta[0], beta[1])
+            })
         };
         (0..40).map(one).collect()
     }
@@ -133,25 +226,40 @@ conformance!(by_channel, ChiangFibers::<true>, but hits);
 #[test]
 fn the_far_field_is_the_mean_over_h_and_conserves_energy() {
     let nodes = OffsetNodes::<4>::new();
-    let clear = params(ChiangDesc { sigma_a: [0.0; 3], ..ChiangDesc::default() });
+    let clear = params(ChiangDesc {
+        sigma_a: [0.0; 3],
+        ..ChiangDesc::default()
+    });
     let bsdf = Bsdf::new(&Chiang::MEAN, &clear);
     let mut draws = Draws(0xfa);
     for _ in 0..20 {
         let wo = crate::support::direction(draws.between(-1.5, 1.5), draws.between(-3.1, 3.1));
         let far = FarField::prepare(&bsdf, &nodes, wo);
         let returned: f32 = far.albedo().0.iter().map(|lobe| lobe[1]).sum();
-        assert!((returned - 1.0).abs() < 2e-6, "{wo}: {returned} of the light");
+        assert!(
+            (returned - 1.0).abs() < 2e-6,
+            "{wo}: {returned} of the light"
+        );
         for _ in 0..50 {
             let sample = far.sample(draws.xi3()).unwrap();
-            assert!(sample.weight.iter().all(|w| (w - 1.0).abs() < 4e-6), "{wo}: {sample:?}");
+            assert!(
+                sample.weight.iter().all(|w| (w - 1.0).abs() < 4e-6),
+                "{wo}: {sample:?}"
+            );
             let eval = far.eval_pdf(sample.wi);
-            assert!((eval.pdf / sample.pdf - 1.0).abs() < 1e-5, "{sample:?} {eval:?}");
+            assert!(
+                (eval.pdf / sample.pdf - 1.0).abs() < 1e-5,
+                "{sample:?} {eval:?}"
+            );
             // Against many random offsets, which is what a host without h does: four and a half standard errors, and 16 times
             // as many offsets where the first 2000 missed the few that bring the most.
             let mut far_off = |n: u32| {
                 let (mut mean, mut square) = (0.0, 0.0);
                 for _ in 0..n {
-                    let pdf = f64::from(bsdf.prepare(Hit::new(wo, 2.0 * draws.xi() - 1.0)).pdf(sample.wi));
+                    let pdf = f64::from(
+                        bsdf.prepare(Hit::new(wo, 2.0 * draws.xi() - 1.0))
+                            .pdf(sample.wi),
+                    );
                     mean += pdf / f64::from(n);
                     square += pdf * pdf / f64::from(n);
                 }
@@ -168,24 +276,50 @@ fn the_far_field_is_the_mean_over_h_and_conserves_energy() {
 fn the_far_field_takes_as_many_nodes_as_its_rule_says() {
     let reference = OffsetNodes::<16>::new();
     for (beta_n, packets) in [(0.5, 1), (0.3, 2), (0.2, 4)] {
-        let desc = ChiangDesc { sigma_a: [0.0; 3], ..rough(0.3, beta_n) };
-        assert!(desc.far_field_nodes() <= 8 * packets, "beta_n {beta_n}: {} nodes", desc.far_field_nodes());
+        let desc = ChiangDesc {
+            sigma_a: [0.0; 3],
+            ..rough(0.3, beta_n)
+        };
+        assert!(
+            desc.far_field_nodes() <= 8 * packets,
+            "beta_n {beta_n}: {} nodes",
+            desc.far_field_nodes()
+        );
         let bsdf = Bsdf::new(&Chiang::MEAN, &params(desc));
         let wo = crate::support::direction(0.5, 0.4);
         let exact = FarField::prepare(&bsdf, &reference, wo);
         let pdf = |wi| match packets {
-            1 => FarField::prepare(&bsdf, &OffsetNodes::<1>::new(), wo).eval_pdf(wi).pdf,
-            2 => FarField::prepare(&bsdf, &OffsetNodes::<2>::new(), wo).eval_pdf(wi).pdf,
-            _ => FarField::prepare(&bsdf, &OffsetNodes::<4>::new(), wo).eval_pdf(wi).pdf,
+            1 => {
+                FarField::prepare(&bsdf, &OffsetNodes::<1>::new(), wo)
+                    .eval_pdf(wi)
+                    .pdf
+            }
+            2 => {
+                FarField::prepare(&bsdf, &OffsetNodes::<2>::new(), wo)
+                    .eval_pdf(wi)
+                    .pdf
+            }
+            _ => {
+                FarField::prepare(&bsdf, &OffsetNodes::<4>::new(), wo)
+                    .eval_pdf(wi)
+                    .pdf
+            }
         };
         let (mut off, mut all) = (0.0, 0.0);
         for i in 0..180 {
-            let wi = crate::support::direction(-0.5, core::f64::consts::TAU * (f64::from(i) + 0.5) / 180.0);
+            let wi = crate::support::direction(
+                -0.5,
+                core::f64::consts::TAU * (f64::from(i) + 0.5) / 180.0,
+            );
             let want = f64::from(exact.eval_pdf(wi).pdf);
             off += (f64::from(pdf(wi)) - want).abs();
             all += want;
         }
         // The mean over the azimuth; the rule aims at 1%.
-        assert!(off / all < 0.015, "beta_n {beta_n}, {packets} packets: {}", off / all);
+        assert!(
+            off / all < 0.015,
+            "beta_n {beta_n}, {packets} packets: {}",
+            off / all
+        );
     }
 }

@@ -24,7 +24,11 @@ impl Published for PublishedHair {
     }
 
     fn forms() -> Vec<(Self::Model, f32)> {
-        vec![(Cauchy::PAPER.model(), 1.0), (Cauchy::HALF_WIDTH.model(), 1.177_41), (Cauchy::AREA.model(), 0.797_884_6)]
+        vec![
+            (Cauchy::PAPER.model(), 1.0),
+            (Cauchy::HALF_WIDTH.model(), 1.177_41),
+            (Cauchy::AREA.model(), 0.797_884_6),
+        ]
     }
 }
 

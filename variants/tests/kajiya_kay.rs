@@ -2,8 +2,12 @@
 
 use crate::support::Draws;
 use hairis::{Hit, Lobe, LobeMask};
-use hairis_conformance::{Claims, FormulaReference, Materials, Reference, Subject, Tolerance, conformance};
-use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams, KajiyaKayReference, cosine_integral};
+use hairis_conformance::{
+    Claims, FormulaReference, Materials, Reference, Subject, Tolerance, conformance,
+};
+use hairis_variants::kajiya_kay::{
+    Form, KajiyaKayDesc, KajiyaKayParams, KajiyaKayReference, cosine_integral,
+};
 use hairis_variants::{KajiyaKay, kajiya_kay};
 
 /// The model in one of its forms.
@@ -22,7 +26,12 @@ fn formulas(params: &KajiyaKayParams, hit: &Hit) -> KajiyaKayReference<f64> {
 
 impl KajiyaKayFibers {
     fn desc(&self, exponent: f32) -> KajiyaKayDesc {
-        KajiyaKayDesc { kd: [0.4, 0.3, 0.2], ks: [0.1, 0.3, 0.5], exponent, form: self.0 }
+        KajiyaKayDesc {
+            kd: [0.4, 0.3, 0.2],
+            ks: [0.1, 0.3, 0.5],
+            exponent,
+            form: self.0,
+        }
     }
 }
 
@@ -40,8 +49,21 @@ impl Subject for KajiyaKayFibers {
             ("everyday", params(self.desc(80.0))),
             ("broad", params(self.desc(1.0))),
             ("narrow", params(self.desc(1000.0))),
-            ("brown", params(KajiyaKayDesc { form, ..*KajiyaKayParams::brown().desc() })),
-            ("black", params(KajiyaKayDesc { kd: black, ks: black, ..self.desc(20.0) })),
+            (
+                "brown",
+                params(KajiyaKayDesc {
+                    form,
+                    ..*KajiyaKayParams::brown().desc()
+                }),
+            ),
+            (
+                "black",
+                params(KajiyaKayDesc {
+                    kd: black,
+                    ks: black,
+                    ..self.desc(20.0)
+                }),
+            ),
         ]
     }
 
@@ -49,14 +71,41 @@ impl Subject for KajiyaKayFibers {
         let (dark, bright) = ([0.0; 3], [1e30, 0.0, 1e-39]);
         vec![
             ("narrowest", params(self.desc(1e4))),
-            ("specular alone", params(KajiyaKayDesc { kd: dark, ..self.desc(3.0) })),
-            ("brightest", params(KajiyaKayDesc { kd: bright, ks: bright, ..self.desc(300.0) })),
-            ("next to nothing", params(KajiyaKayDesc { kd: [1e-39; 3], ks: [1e-42; 3], ..self.desc(30.0) })),
+            (
+                "specular alone",
+                params(KajiyaKayDesc {
+                    kd: dark,
+                    ..self.desc(3.0)
+                }),
+            ),
+            (
+                "brightest",
+                params(KajiyaKayDesc {
+                    kd: bright,
+                    ks: bright,
+                    ..self.desc(300.0)
+                }),
+            ),
+            (
+                "next to nothing",
+                params(KajiyaKayDesc {
+                    kd: [1e-39; 3],
+                    ks: [1e-42; 3],
+                    ..self.desc(30.0)
+                }),
+            ),
         ]
     }
 
     fn white(&self) -> Materials<Self> {
-        vec![("diffuse alone", params(KajiyaKayDesc { kd: [1.0; 3], ks: [0.0; 3], ..self.desc(80.0) }))]
+        vec![(
+            "diffuse alone",
+            params(KajiyaKayDesc {
+                kd: [1.0; 3],
+                ks: [0.0; 3],
+                ..self.desc(80.0)
+            }),
+        )]
     }
 
     fn claims(&self) -> Claims {
@@ -64,38 +113,69 @@ impl Subject for KajiyaKayFibers {
         // boxes that hold one each: they are left to chance, n^(1/3) of n. 6.5e-4 was seen with 2^17 points.
         let inversion = 1.8 * f64::from(Claims::default().points).powf(-2.0 / 3.0);
         let reciprocal = (self.0 == Form::Reciprocal).then_some(2e-6);
-        Claims { reciprocal, furnace: Some(1e-6), albedo: 1e-5, inversion, ..Claims::default() }
+        Claims {
+            reciprocal,
+            furnace: Some(1e-6),
+            albedo: 1e-5,
+            inversion,
+            ..Claims::default()
+        }
     }
 
     /// Where the highlight, and the density of its other side, end.
     fn edges(&self, _params: &KajiyaKayParams, hit: &Hit) -> [Vec<f64>; 2] {
         let [u, v, w] = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
         let (theta_o, right) = (u.atan2(v.hypot(w)), core::f64::consts::FRAC_PI_2);
-        [vec![right - theta_o, -right - theta_o, right - 2.0 * theta_o, -right - 2.0 * theta_o], Vec::new()]
+        [
+            vec![
+                right - theta_o,
+                -right - theta_o,
+                right - 2.0 * theta_o,
+                -right - 2.0 * theta_o,
+            ],
+            Vec::new(),
+        ]
     }
 
     fn weight_bound(&self, params: &KajiyaKayParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
         let (desc, p) = (params.desc(), f64::from(params.desc().exponent));
         let m = if self.0 == Form::Reciprocal { 2.0 } else { 1.0 };
         let all = formulas(params, hit).probabilities().0;
-        let [d, s] = [DIFFUSE, Lobe::slot(1)].map(|lobe| all[lobe.index()] * f64::from(lobes.factor(lobe)));
+        let [d, s] =
+            [DIFFUSE, Lobe::slot(1)].map(|lobe| all[lobe.index()] * f64::from(lobes.factor(lobe)));
         let most = |color: [f32; 3]| f64::from(color.into_iter().fold(0.0, f32::max));
-        let part = |color, by: f64, share: f64| if share > 0.0 { by * most(color) * (d + s) / share } else { 0.0 };
+        let part = |color, by: f64, share: f64| {
+            if share > 0.0 {
+                by * most(color) * (d + s) / share
+            } else {
+                0.0
+            }
+        };
         let ratio = cosine_integral(p) / cosine_integral(p + m);
         (d + s > 0.0).then(|| part(desc.kd, 1.0, d).max(part(desc.ks, ratio, s)))
     }
 
     fn reference(&self, params: &KajiyaKayParams, hit: &Hit) -> Option<Box<dyn Reference>> {
         // The logarithm of the bell is rounded: beyond exp(-17) of the peak, 3e-6 + 4e-7 * 17 is above the tolerance.
-        let tolerance = Tolerance { floor: 4e-8, ..Tolerance::default() };
-        Some(Box::new(FormulaReference { formulas: formulas(params, hit), tolerance }))
+        let tolerance = Tolerance {
+            floor: 4e-8,
+            ..Tolerance::default()
+        };
+        Some(Box::new(FormulaReference {
+            formulas: formulas(params, hit),
+            tolerance,
+        }))
     }
 
     fn random_materials(&self) -> Vec<KajiyaKayParams> {
         let mut draws = Draws(0x6b61);
         let one = |_| {
             let desc = self.desc(crate::support::narrow(draws.scale(1.0, 1000.0)));
-            params(KajiyaKayDesc { kd: draws.xi3(), ks: draws.xi3(), ..desc })
+            params(KajiyaKayDesc {
+                kd: draws.xi3(),
+                ks: draws.xi3(),
+                ..desc
+            })
         };
         (0..40).map(one).collect()
     }

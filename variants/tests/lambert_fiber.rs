@@ -24,37 +24,85 @@ impl Subject for LambertFibers {
         let black = [0.0; 3];
         vec![
             ("everyday", FIBER),
-            ("narrow", Params { width: 0.01, ..FIBER }),
-            ("wide", Params { width: 1.0, ..FIBER }),
-            ("black", Params { kd: black, ks: black, width: 0.1 }),
+            (
+                "narrow",
+                Params {
+                    width: 0.01,
+                    ..FIBER
+                },
+            ),
+            (
+                "wide",
+                Params {
+                    width: 1.0,
+                    ..FIBER
+                },
+            ),
+            (
+                "black",
+                Params {
+                    kd: black,
+                    ks: black,
+                    width: 0.1,
+                },
+            ),
         ]
     }
 
     fn white(&self) -> Materials<Self> {
-        vec![("diffuse alone", Params { kd: [1.0; 3], ks: [0.0; 3], width: 0.1 })]
+        vec![(
+            "diffuse alone",
+            Params {
+                kd: [1.0; 3],
+                ks: [0.0; 3],
+                width: 0.1,
+            },
+        )]
     }
 
     fn claims(&self) -> Claims {
         // The provided albedo is a lattice's: that of the cone has an azimuth.
         // The cone is sampled by the sine of the inclination: next to the axis the cosine has half of its digits.
-        Claims { reciprocal: Some(2e-6), furnace: Some(1e-6), albedo: 2e-3, direction: 2e-5, ..Claims::default() }
+        Claims {
+            reciprocal: Some(2e-6),
+            furnace: Some(1e-6),
+            albedo: 2e-3,
+            direction: 2e-5,
+            ..Claims::default()
+        }
     }
 
     /// Lobe by lobe the weight is `4 kd cos / (pi p)`, or `ks cos span / (pi p)`: `p` is the share of the lobe.
     fn weight_bound(&self, params: &Params, _hit: &Hit, lobes: LobeMask) -> Option<f64> {
         let sum = |color: [f32; 3]| color.iter().map(|x| f64::from(*x)).sum::<f64>();
         let most = |color: [f32; 3]| f64::from(color.into_iter().fold(0.0, f32::max));
-        let lit = |lobe, color: [f32; 3]| if lobes.contains(lobe) { color } else { [0.0; 3] };
+        let lit = |lobe, color: [f32; 3]| {
+            if lobes.contains(lobe) {
+                color
+            } else {
+                [0.0; 3]
+            }
+        };
         let (kd, ks) = (lit(DIFFUSE, params.kd), lit(CONE, params.ks));
         let total = sum(kd) + sum(ks);
-        let ratio = |color, by: f64| if sum(color) > 0.0 { by * most(color) * total / sum(color) } else { 0.0 };
+        let ratio = |color, by: f64| {
+            if sum(color) > 0.0 {
+                by * most(color) * total / sum(color)
+            } else {
+                0.0
+            }
+        };
         (total > 0.0).then(|| ratio(kd, 4.0 / core::f64::consts::PI).max(ratio(ks, 1.0)))
     }
 }
 
 hairis_conformance::conformance!(suite, LambertFibers);
 
-const FIBER: Params = Params { kd: [0.4, 0.3, 0.2], ks: [0.5, 0.4, 0.6], width: 0.1 };
+const FIBER: Params = Params {
+    kd: [0.4, 0.3, 0.2],
+    ks: [0.5, 0.4, 0.6],
+    width: 0.1,
+};
 
 #[test]
 fn the_example_runs() {
@@ -65,12 +113,24 @@ fn the_example_runs() {
 fn the_density_integrates_to_one() {
     for width in [0.01, 0.1, 1.0] {
         for theta in [0.0, 0.7, -1.5] {
-            let gather = Bsdf::new(&LambertFiber, &Params { width, ..FIBER }).prepare(direction(theta, 0.3));
-            for lobes in [LobeMask::ALL, LobeMask::of(&[DIFFUSE]), LobeMask::of(&[CONE])] {
+            let gather =
+                Bsdf::new(&LambertFiber, &Params { width, ..FIBER }).prepare(direction(theta, 0.3));
+            for lobes in [
+                LobeMask::ALL,
+                LobeMask::of(&[DIFFUSE]),
+                LobeMask::of(&[CONE]),
+            ] {
                 let integral = pdf_integral(&gather.with_lobes(lobes));
-                assert!((integral - 1.0).abs() < 2e-4, "{lobes:?} width {width} theta {theta}: {integral}");
+                assert!(
+                    (integral - 1.0).abs() < 2e-4,
+                    "{lobes:?} width {width} theta {theta}: {integral}"
+                );
             }
-            assert_eq!(gather.with_lobes(LobeMask::NONE).pdf(Vec3::Y), 0.0, "no lobe, no density");
+            assert_eq!(
+                gather.with_lobes(LobeMask::NONE).pdf(Vec3::Y),
+                0.0,
+                "no lobe, no density"
+            );
         }
     }
 }
@@ -90,8 +150,14 @@ fn it_is_what_its_formula_says() {
         for c in 0..3 {
             let cone = f64::from(FIBER.ks[c]) * w / (2.0 * pi_sq * (off * off + w * w));
             let want = f64::from(FIBER.kd[c]) / pi_sq + cone;
-            assert!((f64::from(got[c]) / want - 1.0).abs() < 5e-6, "{got:?} want {want} at {wo:?} {wi:?}");
-            assert!((back[c] / got[c] - 1.0).abs() < 5e-6, "reciprocity at {wo:?} {wi:?}");
+            assert!(
+                (f64::from(got[c]) / want - 1.0).abs() < 5e-6,
+                "{got:?} want {want} at {wo:?} {wi:?}"
+            );
+            assert!(
+                (back[c] / got[c] - 1.0).abs() < 5e-6,
+                "reciprocity at {wo:?} {wi:?}"
+            );
         }
     }
 }
@@ -105,18 +171,26 @@ fn weights_are_bounded_and_estimate_the_albedo() {
         let gather = Bsdf::new(&LambertFiber, &FIBER).prepare(direction(theta, 1.0));
         let mut sum = 0.0;
         let count = 1 << 16;
-        let limit = (4.0 * FIBER.kd[0] / core::f32::consts::PI / shares[0]).max(FIBER.ks[0] / shares[1]);
+        let limit =
+            (4.0 * FIBER.kd[0] / core::f32::consts::PI / shares[0]).max(FIBER.ks[0] / shares[1]);
         for _ in 0..count / 8 {
             let eight = gather.sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
             for s in (0..8).filter_map(|lane| eight.lane(lane)) {
-                assert!(s.weight[0] <= limit * 1.000_01, "weight {} above {limit}", s.weight[0]);
+                assert!(
+                    s.weight[0] <= limit * 1.000_01,
+                    "weight {} above {limit}",
+                    s.weight[0]
+                );
                 sum += f64::from(s.weight[0]);
             }
         }
         let (mean, albedo) = (sum / f64::from(count), gather.albedo());
         let want = f64::from(albedo[DIFFUSE][0] + albedo[CONE][0]);
         // Weights are below 1.4: the standard error of 65 536 is below 0.003.
-        assert!((mean - want).abs() < 0.008, "theta {theta}: mean weight {mean}, albedo {want}");
+        assert!(
+            (mean - want).abs() < 0.008,
+            "theta {theta}: mean weight {mean}, albedo {want}"
+        );
     }
 }
 
@@ -124,14 +198,20 @@ fn weights_are_bounded_and_estimate_the_albedo() {
 fn the_cdf_of_the_cone_is_xi() {
     let (theta, width) = (0.6_f64, f64::from(FIBER.width));
     let wo = direction(theta, 0.0);
-    let gather = Bsdf::new(&LambertFiber, &FIBER).prepare(wo).with_lobes(LobeMask::of(&[CONE]));
+    let gather = Bsdf::new(&LambertFiber, &FIBER)
+        .prepare(wo)
+        .with_lobes(LobeMask::of(&[CONE]));
     let angle = |sin: f64| ((sin + double(wo)[0]) / width).atan();
     let mut draws = Draws(73);
     for _ in 0..2000 {
         let xi = draws.xi3();
         let Some(s) = gather.sample(xi) else { continue };
         let cdf = (angle(double(s.wi)[0]) - angle(-1.0)) / (angle(1.0) - angle(-1.0));
-        assert!((cdf - f64::from(xi[1])).abs() < 2e-6, "xi {} cdf {cdf}", xi[1]);
+        assert!(
+            (cdf - f64::from(xi[1])).abs() < 2e-6,
+            "xi {} cdf {cdf}",
+            xi[1]
+        );
     }
 }
 
@@ -140,26 +220,56 @@ fn every_service_of_the_crate_works_on_it() {
     let mut draws = Draws(74);
     let fibers: [_; 8] = core::array::from_fn(|_| {
         let width = crate::support::narrow(draws.scale(0.01, 1.0));
-        Bsdf::new(&LambertFiber, &Params { kd: draws.xi3(), ks: draws.xi3(), width })
+        Bsdf::new(
+            &LambertFiber,
+            &Params {
+                kd: draws.xi3(),
+                ks: draws.xi3(),
+                width,
+            },
+        )
     });
     let mut any = || direction(draws.between(-1.5, 1.5), draws.between(-3.1, 3.1));
-    let (wo, wi): ([_; 8], [_; 8]) = (core::array::from_fn(|_| any()), core::array::from_fn(|_| any()));
+    let (wo, wi): ([_; 8], [_; 8]) = (
+        core::array::from_fn(|_| any()),
+        core::array::from_fn(|_| any()),
+    );
     for level in Level::available() {
         let eight = Bsdf8::pack(fibers.each_ref()).prepare8_at(level, &packet(&wo));
         let evals = eight.eval_pdf8_at(level, &packet(&wi));
         for lane in 0..8 {
             let one = eight.lane(lane);
             // Packets, batches and lanes give the same bits.
-            assert_eq!(one.eval_pdf8_at(level, &packet(&wi)).lane(lane), evals.lane(lane), "{level} lane {lane}");
+            assert_eq!(
+                one.eval_pdf8_at(level, &packet(&wi)).lane(lane),
+                evals.lane(lane),
+                "{level} lane {lane}"
+            );
             let columns = wi.map(|v| v.x).to_vec();
             let (v, w) = (wi.map(|v| v.y).to_vec(), wi.map(|v| v.z).to_vec());
             let mut out = [[0.0; 8]; 4];
             let [r, g, b, pdf] = &mut out;
-            one.eval_pdf_batch_at(level, [&columns, &v, &w], EvalSlices { value: [r, g, b], pdf }).unwrap();
-            assert_eq!(out[3][lane].to_bits(), evals.lane(lane).pdf.to_bits(), "{level} batch, lane {lane}");
+            one.eval_pdf_batch_at(
+                level,
+                [&columns, &v, &w],
+                EvalSlices {
+                    value: [r, g, b],
+                    pdf,
+                },
+            )
+            .unwrap();
+            assert_eq!(
+                out[3][lane].to_bits(),
+                evals.lane(lane).pdf.to_bits(),
+                "{level} batch, lane {lane}"
+            );
             let lobes = one.lobes(wi[lane]);
-            let sum = lobes[DIFFUSE].value * lobes[DIFFUSE].color[0] + lobes[CONE].value * lobes[CONE].color[0];
-            assert!((sum / evals.lane(lane).value[0] - 1.0).abs() < 2e-6, "{level} lane {lane}: lobes sum to {sum}");
+            let sum = lobes[DIFFUSE].value * lobes[DIFFUSE].color[0]
+                + lobes[CONE].value * lobes[CONE].color[0];
+            assert!(
+                (sum / evals.lane(lane).value[0] - 1.0).abs() < 2e-6,
+                "{level} lane {lane}: lobes sum to {sum}"
+            );
             assert_eq!(lobes[Lobe::slot(3)].pdf, 0.0, "a slot without a lobe");
         }
     }
@@ -170,15 +280,36 @@ fn every_service_of_the_crate_works_on_it() {
 #[test]
 fn it_is_total() {
     let gather = |wo| Bsdf::new(&LambertFiber, &FIBER).prepare(wo);
-    for wo in [Vec3::ZERO, Vec3::X, Vec3::splat(f32::MAX), Vec3::splat(1e-44), Vec3::new(0.0, 1e-20, 0.0)] {
-        for wi in [Vec3::X, Vec3::ZERO, Vec3::splat(f32::MAX), Vec3::splat(1e-44), Vec3::Y] {
+    for wo in [
+        Vec3::ZERO,
+        Vec3::X,
+        Vec3::splat(f32::MAX),
+        Vec3::splat(1e-44),
+        Vec3::new(0.0, 1e-20, 0.0),
+    ] {
+        for wi in [
+            Vec3::X,
+            Vec3::ZERO,
+            Vec3::splat(f32::MAX),
+            Vec3::splat(1e-44),
+            Vec3::Y,
+        ] {
             let e = gather(wo).eval_pdf(wi);
-            assert!(e.pdf.is_finite() && e.value[0].is_finite() && e.pdf >= 0.0, "{wo:?} {wi:?}: {e:?}");
-            assert!(wi == Vec3::Y || e.pdf == 0.0, "no direction, yet a density: {wo:?} {wi:?}: {e:?}");
+            assert!(
+                e.pdf.is_finite() && e.value[0].is_finite() && e.pdf >= 0.0,
+                "{wo:?} {wi:?}: {e:?}"
+            );
+            assert!(
+                wi == Vec3::Y || e.pdf == 0.0,
+                "no direction, yet a density: {wo:?} {wi:?}: {e:?}"
+            );
         }
         for xi in [0.0, 0.5, 1.0 - f32::EPSILON / 2.0] {
             if let Some(s) = gather(wo).sample([xi, xi, xi]) {
-                assert!(s.weight[0].is_finite() && (s.wi.length() - 1.0).abs() < 1e-6, "{wo:?} {xi}: {s:?}");
+                assert!(
+                    s.weight[0].is_finite() && (s.wi.length() - 1.0).abs() < 1e-6,
+                    "{wo:?} {xi}: {s:?}"
+                );
             }
         }
     }

@@ -4,7 +4,9 @@ use crate::support::{Draws, direction, lanes_of, packet};
 use core::fmt::Debug;
 use glam::Vec3;
 use hairis::{Bsdf, Bsdf8, EvalSlices, HairParams, Hit, Level, Lobe, LobeMask, ParamError};
-use hairis_variants::{AnyBsdf8, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters, Registered, Visitor};
+use hairis_variants::{
+    AnyBsdf8, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters, Registered, Visitor,
+};
 
 #[test]
 fn names_and_choices_are_distinct_and_found() {
@@ -15,7 +17,11 @@ fn names_and_choices_are_distinct_and_found() {
         assert_eq!(ModelId::ALL.iter().position(same), Some(place), "{id:?}");
     }
     assert_eq!(ModelId::find("phong", None), None, "no such model");
-    assert_eq!(ModelId::find("gaussian", Some("best")), None, "no such sampler");
+    assert_eq!(
+        ModelId::find("gaussian", Some("best")),
+        None,
+        "no such sampler"
+    );
     let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
     assert_eq!(names[..2], ["gaussian", "cauchy"]);
 }
@@ -23,7 +29,10 @@ fn names_and_choices_are_distinct_and_found() {
 /// Every preset comes back from its values, every field has a place, and each refusal leads to its field.
 fn fields_hold<P: Parameters>() {
     let numbers: usize = P::FIELDS.iter().map(|field| field.kind.width()).sum();
-    assert!(numbers <= hairis_variants::Values::MOST && P::FIELDS.len() <= 32, "{numbers} numbers");
+    assert!(
+        numbers <= hairis_variants::Values::MOST && P::FIELDS.len() <= 32,
+        "{numbers} numbers"
+    );
     for (name, params) in P::PRESETS.iter().chain([&("default", P::default())]) {
         assert_eq!(P::from_values(&params.values()), Ok(*params), "{name}");
     }
@@ -48,7 +57,10 @@ fn fields_hold<P: Parameters>() {
             let error = P::from_values(&base.with(field.name, &bad)).expect_err(field.name);
             let (found, place) = Field::refused(P::FIELDS, &error).expect("a field of the model");
             assert_eq!(found.name, field.name, "{error}");
-            assert!(place.is_none() || place == Some(number), "{error}: number {place:?}");
+            assert!(
+                place.is_none() || place == Some(number),
+                "{error}: number {place:?}"
+            );
         }
     }
 }
@@ -62,8 +74,14 @@ fn parameters_are_their_fields() {
 
 #[test]
 fn a_field_takes_the_place_of_another() {
-    let melanin = ChiangParams::default().values().without("sigma_a").with("melanin", &[0.3, 0.0]);
-    assert_eq!(ChiangParams::from_values(&melanin), Ok(ChiangParams::blond()));
+    let melanin = ChiangParams::default()
+        .values()
+        .without("sigma_a")
+        .with("melanin", &[0.3, 0.0]);
+    assert_eq!(
+        ChiangParams::from_values(&melanin),
+        Ok(ChiangParams::blond())
+    );
     let refused = ChiangParams::from_values(&melanin.with("melanin", &[0.3, -1.0]));
     assert_eq!(refused, Err(ParamError::Scalar("pheomelanin", -1.0)));
 }
@@ -77,14 +95,23 @@ impl Visitor for Compare {
     fn visit<M: Registered>(self) {
         let id = ModelId::of::<M>();
         let mut draws = Draws(91);
-        let presets: Vec<_> = M::Params::PRESETS.iter().map(|(_, params)| *params).collect();
+        let presets: Vec<_> = M::Params::PRESETS
+            .iter()
+            .map(|(_, params)| *params)
+            .collect();
         let presets: [M::Params; 8] = core::array::from_fn(|i| presets[i % presets.len()]);
         let bsdfs = presets.map(|params| Bsdf::new(&M::MODEL, &params));
         let any = presets.map(|params| id.bsdf(&params.values()).expect("a preset is legal"));
         let mut some = || direction(draws.between(-1.5, 1.5), draws.between(-3.1, 3.1));
-        let (wo, wi): ([Vec3; 8], [Vec3; 8]) = (core::array::from_fn(|_| some()), core::array::from_fn(|_| some()));
+        let (wo, wi): ([Vec3; 8], [Vec3; 8]) = (
+            core::array::from_fn(|_| some()),
+            core::array::from_fn(|_| some()),
+        );
         let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
-        let hit = Hit { wo: wo[0].into(), h: 0.4 };
+        let hit = Hit {
+            wo: wo[0].into(),
+            h: 0.4,
+        };
         let (one, chosen) = (bsdfs[0].prepare(hit), any[0].prepare(hit));
         assert_eq!(chosen.model(), id, "the entry it came from");
         for lobes in [LobeMask::ALL, LobeMask::of(&[Lobe::slot(0)])] {
@@ -96,11 +123,20 @@ impl Visitor for Compare {
             }
             same(&chosen.albedo(), &one.albedo());
             for level in Level::available() {
-                same(&chosen.eval_pdf8_at(level, &packet(&wi)), &one.eval_pdf8_at(level, &packet(&wi)));
-                same(&chosen.sample8_at(level, &lanes_of(&xi)), &one.sample8_at(level, &lanes_of(&xi)));
+                same(
+                    &chosen.eval_pdf8_at(level, &packet(&wi)),
+                    &one.eval_pdf8_at(level, &packet(&wi)),
+                );
+                same(
+                    &chosen.sample8_at(level, &lanes_of(&xi)),
+                    &one.sample8_at(level, &lanes_of(&xi)),
+                );
             }
             for level in Level::available() {
-                same(&chosen.lobes8_at(level, &packet(&wi)), &one.lobes8_at(level, &packet(&wi)));
+                same(
+                    &chosen.lobes8_at(level, &packet(&wi)),
+                    &one.lobes8_at(level, &packet(&wi)),
+                );
             }
             same(&chosen.lobes8(&packet(&wi)), &one.lobes8(&packet(&wi)));
         }
@@ -108,30 +144,63 @@ impl Visitor for Compare {
         let columns = columns.each_ref().map(|column| column.as_slice());
         let (mut value, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
         let [r, g, b] = &mut value;
-        chosen.eval_pdf_batch(columns, EvalSlices { value: [r, g, b], pdf: &mut pdf }).unwrap();
+        chosen
+            .eval_pdf_batch(
+                columns,
+                EvalSlices {
+                    value: [r, g, b],
+                    pdf: &mut pdf,
+                },
+            )
+            .unwrap();
         let (mut value_of_type, mut pdf_of_type) = ([[0.0; 8]; 3], [0.0; 8]);
         let [r, g, b] = &mut value_of_type;
-        one.eval_pdf_batch(columns, EvalSlices { value: [r, g, b], pdf: &mut pdf_of_type }).unwrap();
+        one.eval_pdf_batch(
+            columns,
+            EvalSlices {
+                value: [r, g, b],
+                pdf: &mut pdf_of_type,
+            },
+        )
+        .unwrap();
         same(&(value, pdf), &(value_of_type, pdf_of_type));
 
         let eight = Bsdf8::pack(bsdfs.each_ref()).prepare8(&packet(&wo));
-        let chosen = AnyBsdf8::pack(any.each_ref()).expect("of one model").prepare8(&packet(&wo));
-        same(&chosen.eval_pdf8(&packet(&wi)), &eight.eval_pdf8(&packet(&wi)));
-        same(&chosen.sample8(&lanes_of(&xi)), &eight.sample8(&lanes_of(&xi)));
+        let chosen = AnyBsdf8::pack(any.each_ref())
+            .expect("of one model")
+            .prepare8(&packet(&wo));
+        same(
+            &chosen.eval_pdf8(&packet(&wi)),
+            &eight.eval_pdf8(&packet(&wi)),
+        );
+        same(
+            &chosen.sample8(&lanes_of(&xi)),
+            &eight.sample8(&lanes_of(&xi)),
+        );
         same(&chosen.lobes8(&packet(&wi)), &eight.lobes8(&packet(&wi)));
         same(&chosen.albedo8(), &eight.albedo8());
         for level in Level::available() {
-            same(&chosen.lobes8_at(level, &packet(&wi)), &eight.lobes8_at(level, &packet(&wi)));
+            same(
+                &chosen.lobes8_at(level, &packet(&wi)),
+                &eight.lobes8_at(level, &packet(&wi)),
+            );
             same(&chosen.albedo8_at(level), &eight.albedo8_at(level));
         }
-        same(&chosen.lane(3).eval_pdf(wi[3]), &eight.lane(3).eval_pdf(wi[3]));
+        same(
+            &chosen.lane(3).eval_pdf(wi[3]),
+            &eight.lane(3).eval_pdf(wi[3]),
+        );
         same(&any[1].conserving_scale(), &bsdfs[1].conserving_scale());
     }
 }
 
 /// Debug shows every bit that matters, and NaN.
 fn same<T: Debug>(chosen: &T, of_type: &T) {
-    assert_eq!(format!("{chosen:?}"), format!("{of_type:?}"), "chosen at run time, and of the type");
+    assert_eq!(
+        format!("{chosen:?}"),
+        format!("{of_type:?}"),
+        "chosen at run time, and of the type"
+    );
 }
 
 #[test]
@@ -143,7 +212,8 @@ fn a_model_chosen_at_run_time_is_the_model() {
 
 #[test]
 fn different_models_do_not_share_lanes() {
-    let [a, b] = [ModelId::Gaussian, ModelId::Cauchy].map(|id| id.bsdf(&id.defaults()).expect("the default is legal"));
+    let [a, b] = [ModelId::Gaussian, ModelId::Cauchy]
+        .map(|id| id.bsdf(&id.defaults()).expect("the default is legal"));
     assert!(AnyBsdf8::pack([&a, &a, &a, &b, &a, &a, &a, &a]).is_none());
     assert!(AnyBsdf8::pack([&a; 8]).is_some());
 }

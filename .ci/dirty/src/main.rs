@@ -45,7 +45,11 @@ fn write_registers(clean: bool) {
             }
         };
     }
-    if clean { ones!("vzeroupper") } else { ones!("") }
+    if clean {
+        ones!("vzeroupper")
+    } else {
+        ones!("")
+    }
 }
 
 /// Times an entry point both ways, in turns.
@@ -56,7 +60,9 @@ struct Both {
 
 impl Visitor for Both {
     fn wants(&self, name: &Name) -> bool {
-        !matches!(name.op, Op::Path(_)) && name.entry != entries::TEXTBOOK && name.to_string().starts_with(&self.start)
+        !matches!(name.op, Op::Path(_))
+            && name.entry != entries::TEXTBOOK
+            && name.to_string().starts_with(&self.start)
     }
 
     fn visit<T: Task>(&mut self, name: &Name, mut task: T) {
@@ -72,7 +78,11 @@ impl Visitor for Both {
         let (ratio, ns) = (median(ratios), median(times));
         let judged = name.level != "scalar";
         let verdict = if judged && ratio > MOST { "FAIL" } else { "" };
-        println!("{:46} {ns:9.1} ns a call, dirty {:9.1} ns, {ratio:.2} times {verdict}", name.to_string(), ns * ratio);
+        println!(
+            "{:46} {ns:9.1} ns a call, dirty {:9.1} ns, {ratio:.2} times {verdict}",
+            name.to_string(),
+            ns * ratio
+        );
         self.failed += u32::from(!verdict.is_empty());
     }
 }
@@ -102,12 +112,18 @@ fn main() -> ExitCode {
         println!("this CPU has no AVX2: nothing can be dirty");
         return ExitCode::SUCCESS;
     }
-    let mut both = Both { start: std::env::args().nth(1).unwrap_or_default(), failed: 0 };
+    let mut both = Both {
+        start: std::env::args().nth(1).unwrap_or_default(),
+        failed: 0,
+    };
     for op in Op::ALL {
         entries::visit(op, &mut both);
     }
     if both.failed > 0 {
-        println!("{} entry points take more than {MOST} times as long when the upper halves are dirty", both.failed);
+        println!(
+            "{} entry points take more than {MOST} times as long when the upper halves are dirty",
+            both.failed
+        );
     }
     ExitCode::from(u8::from(both.failed > 0))
 }

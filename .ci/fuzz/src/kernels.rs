@@ -2,7 +2,10 @@
 
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Eval, EvalSlices, Hit, Level, Lobe, LobeMask, Model, SampleSlices, SampleWeightSlices, Vec3x8};
+use hairis::{
+    Bsdf, Eval, EvalSlices, Hit, Level, Lobe, LobeMask, Model, SampleSlices, SampleWeightSlices,
+    Vec3x8,
+};
 use hairis_variants::{ModelId, Parameters, Registered, Visitor};
 
 /// Numbers from bytes, zeros at their end.
@@ -10,14 +13,21 @@ struct Numbers<'a>(&'a [u8]);
 
 impl Numbers<'_> {
     fn byte(&mut self) -> u8 {
-        let Some((byte, rest)) = self.0.split_first() else { return 0 };
+        let Some((byte, rest)) = self.0.split_first() else {
+            return 0;
+        };
         self.0 = rest;
         *byte
     }
 
     /// A float of any bits.
     fn any(&mut self) -> f32 {
-        f32::from_bits(u32::from_le_bytes([self.byte(), self.byte(), self.byte(), self.byte()]))
+        f32::from_bits(u32::from_le_bytes([
+            self.byte(),
+            self.byte(),
+            self.byte(),
+            self.byte(),
+        ]))
     }
 
     /// A number in [0, 1).
@@ -31,7 +41,8 @@ impl Numbers<'_> {
         match self.byte() {
             0..=15 => Vec3::new(self.any(), self.any(), self.any()),
             16..=31 => Vec3::new(1.0, 1e-4 * self.unit(), 1e-4 * self.unit()).normalize(),
-            _ => (2.0 * Vec3::new(self.unit(), self.unit(), self.unit()) - Vec3::ONE).normalize_or_zero(),
+            _ => (2.0 * Vec3::new(self.unit(), self.unit(), self.unit()) - Vec3::ONE)
+                .normalize_or_zero(),
         }
     }
 }
@@ -61,7 +72,11 @@ impl Visitor for Everything<'_> {
             let mut new = [0.0; 4];
             let new = &mut new[..field.kind.width()];
             for (new, old) in new.iter_mut().zip(old.numbers(field.name)) {
-                *new = if kind < 32 { numbers.any() } else { old * (0.25 + 4.0 * numbers.unit()) };
+                *new = if kind < 32 {
+                    numbers.any()
+                } else {
+                    old * (0.25 + 4.0 * numbers.unit())
+                };
             }
             params = M::Params::from_values(&old.with(field.name, new)).unwrap_or(params);
         }
@@ -71,27 +86,43 @@ impl Visitor for Everything<'_> {
 
 fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
     let gather = bsdf.prepare(Hit::new(numbers.direction(), 2.0 * numbers.unit() - 1.0));
-    let gather =
-        if numbers.byte() < 64 { gather.with_lobes(LobeMask::of(&[Lobe::slot(numbers.byte() % 4)])) } else { gather };
+    let gather = if numbers.byte() < 64 {
+        gather.with_lobes(LobeMask::of(&[Lobe::slot(numbers.byte() % 4)]))
+    } else {
+        gather
+    };
     let wi: [Vec3; 8] = core::array::from_fn(|_| numbers.direction());
-    let xi: [[f32; 3]; 8] = core::array::from_fn(|_| [numbers.unit(), numbers.unit(), numbers.unit()]);
+    let xi: [[f32; 3]; 8] =
+        core::array::from_fn(|_| [numbers.unit(), numbers.unit(), numbers.unit()]);
     for (wi, xi) in wi.iter().zip(xi) {
         sound_eval(gather.eval_pdf(*wi));
-        gather
-            .lobes(*wi)
-            .0
-            .iter()
-            .for_each(|lobe| sound(&[lobe.value, lobe.pdf, lobe.color[0], lobe.color[1], lobe.color[2]]));
+        gather.lobes(*wi).0.iter().for_each(|lobe| {
+            sound(&[
+                lobe.value,
+                lobe.pdf,
+                lobe.color[0],
+                lobe.color[1],
+                lobe.color[2],
+            ])
+        });
         if let Some(sample) = gather.sample(xi) {
             sound(&sample.value);
             sound(&sample.weight);
             sound(&[sample.pdf]);
-            assert!(sample.wi.is_finite() && (sample.wi.length() - 1.0).abs() < 1e-5, "{sample:?}");
+            assert!(
+                sample.wi.is_finite() && (sample.wi.length() - 1.0).abs() < 1e-5,
+                "{sample:?}"
+            );
         }
     }
     gather.albedo().0.iter().for_each(|lobe| sound(lobe));
-    let (wi8, xi8) = (Vec3x8::from(wi), core::array::from_fn(|row| f32x8::new(xi.map(|xi| xi[row]))));
-    let columns = |vectors: [[f32; 3]; 8]| -> [[f32; 8]; 3] { core::array::from_fn(|row| vectors.map(|v| v[row])) };
+    let (wi8, xi8) = (
+        Vec3x8::from(wi),
+        core::array::from_fn(|row| f32x8::new(xi.map(|xi| xi[row]))),
+    );
+    let columns = |vectors: [[f32; 3]; 8]| -> [[f32; 8]; 3] {
+        core::array::from_fn(|row| vectors.map(|v| v[row]))
+    };
     let (wi, xi) = (columns(wi.map(Vec3::into)), columns(xi));
     let len = usize::from(numbers.byte()) % 9;
     for level in Level::available() {
@@ -108,23 +139,45 @@ fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
         }
         let (mut value, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
         let [r, g, b] = value.each_mut().map(|row| &mut row[..len]);
-        let out = EvalSlices { value: [r, g, b], pdf: &mut pdf[..len] };
-        gather.eval_pdf_batch_at(level, [&wi[0][..len], &wi[1][..len], &wi[2][..len]], out).expect("one length");
+        let out = EvalSlices {
+            value: [r, g, b],
+            pdf: &mut pdf[..len],
+        };
+        gather
+            .eval_pdf_batch_at(level, [&wi[0][..len], &wi[1][..len], &wi[2][..len]], out)
+            .expect("one length");
         for i in 0..len {
-            let Eval { value: expected, pdf: density } = eval.lane(i);
+            let Eval {
+                value: expected,
+                pdf: density,
+            } = eval.lane(i);
             let same = value.map(|row| row[i].to_bits()) == expected.map(f32::to_bits)
                 && pdf[i].to_bits() == density.to_bits();
             assert!(same, "entry {i} of {len} on {level}");
         }
         let mut rows = [[0.0; 8]; 11];
         let [u, v, w, r, g, b, pdf, x, y, z, slot] = rows.each_mut().map(|row| &mut row[..len]);
-        let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [x, y, z], slot };
-        gather.sample_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out).expect("one length");
+        let out = SampleSlices {
+            wi: [u, v, w],
+            value: [r, g, b],
+            pdf,
+            weight: [x, y, z],
+            slot,
+        };
+        gather
+            .sample_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
+            .expect("one length");
         rows[3..10].iter().for_each(|row| sound(row));
         let mut weights = [[0.0; 8]; 7];
         let [u, v, w, pdf, x, y, z] = weights.each_mut().map(|row| &mut row[..len]);
-        let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [x, y, z] };
-        gather.sample_weight_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out).expect("one length");
+        let out = SampleWeightSlices {
+            wi: [u, v, w],
+            pdf,
+            weight: [x, y, z],
+        };
+        gather
+            .sample_weight_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
+            .expect("one length");
         let same = weights
             .iter()
             .zip([0, 1, 2, 6, 7, 8, 9])
@@ -139,5 +192,8 @@ fn sound_eval(Eval { value, pdf }: Eval) {
 }
 
 fn sound(numbers: &[f32]) {
-    assert!(numbers.iter().all(|x| x.is_finite() && *x >= 0.0), "{numbers:?}");
+    assert!(
+        numbers.iter().all(|x| x.is_finite() && *x >= 0.0),
+        "{numbers:?}"
+    );
 }

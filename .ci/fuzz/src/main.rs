@@ -11,7 +11,9 @@ mod readers;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|input: &[u8]| {
-    let Some((target, data)) = input.split_first() else { return };
+    let Some((target, data)) = input.split_first() else {
+        return;
+    };
     match target {
         b'k' => kernels::fuzz(data),
         #[cfg(feature = "readers")]

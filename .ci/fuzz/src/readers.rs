@@ -15,8 +15,8 @@ pub fn lines(data: &[u8]) {
     for path in [CodePath::X8, CodePath::F64] {
         let mut out = Vec::new();
         let _ = eval::stream(path, BufReader::new(data), &mut out);
-        let expected =
-            data.split(|byte| *byte == b'\n').count() - usize::from(data.is_empty() || data.ends_with(b"\n"));
+        let expected = data.split(|byte| *byte == b'\n').count()
+            - usize::from(data.is_empty() || data.ends_with(b"\n"));
         let lines = out.iter().filter(|byte| **byte == b'\n').count();
         assert_eq!(lines, expected, "lines");
     }
@@ -26,7 +26,11 @@ pub fn lines(data: &[u8]) {
 fn file(name: &str, data: &[u8]) -> PathBuf {
     static DIR: LazyLock<PathBuf> = LazyLock::new(|| {
         let memory = Path::new("/dev/shm");
-        let dir = if memory.is_dir() { memory.to_owned() } else { std::env::temp_dir() };
+        let dir = if memory.is_dir() {
+            memory.to_owned()
+        } else {
+            std::env::temp_dir()
+        };
         let dir = dir.join(format!("hairis-fuzz-{}", std::process::id()));
         std::fs::create_dir_all(&dir).expect("a folder");
         dir
@@ -39,7 +43,12 @@ fn file(name: &str, data: &[u8]) -> PathBuf {
 /// A part file: read or refused in one line.
 pub fn parts(data: &[u8]) {
     match part::read(&file("cells-1-of-1.jsonl", data)) {
-        Ok(part) => assert!(part.finished.iter().all(|cell| cell.cell < part.header.cells), "cells of the grid"),
+        Ok(part) => assert!(
+            part.finished
+                .iter()
+                .all(|cell| cell.cell < part.header.cells),
+            "cells of the grid"
+        ),
         Err(error) => one_line(&error.to_string()),
     }
 }
@@ -48,13 +57,19 @@ pub fn parts(data: &[u8]) {
 pub fn picture(data: &[u8]) {
     let mut bytes = data.to_vec();
     seal(&mut bytes);
-    let Some(part) = Part::from_bytes(&bytes) else { return };
+    let Some(part) = Part::from_bytes(&bytes) else {
+        return;
+    };
     assert!(
         Part::from_bytes(&part.to_bytes()).is_some_and(|again| again.to_bytes() == part.to_bytes()),
         "written and read"
     );
     match Part::merge(vec![("a".into(), part.clone()), ("b".into(), part.clone())]) {
-        Ok(whole) => assert_eq!(whole.film.crop(), part.film.crop(), "a part joined with itself"),
+        Ok(whole) => assert_eq!(
+            whole.film.crop(),
+            part.film.crop(),
+            "a part joined with itself"
+        ),
         Err(error) => one_line(&error.to_string()),
     }
 }
@@ -66,7 +81,10 @@ pub fn map(data: &[u8]) {
             for xi in [[0.0, 0.0], [0.3, 0.7], [0.999_999, 0.5]] {
                 let sample = map.sample(xi);
                 assert!(sample.pdf.is_finite() && sample.pdf >= 0.0, "density");
-                assert!(sample.radiance.iter().all(|c| c.is_finite() && *c >= 0.0), "radiance");
+                assert!(
+                    sample.radiance.iter().all(|c| c.is_finite() && *c >= 0.0),
+                    "radiance"
+                );
             }
         }
         Err(error) => one_line(&error.to_string()),

@@ -5,8 +5,8 @@
 
 use hairis::wide::f32x8;
 use hairis::{
-    Bsdf, EvalSlices, Gather, Gaussian, Hair, HairParams, Level, Matched, Model, SampleSlices, SampleWeightSlices,
-    Vec3x8,
+    Bsdf, EvalSlices, Gather, Gaussian, Hair, HairParams, Level, Matched, Model, SampleSlices,
+    SampleWeightSlices, Vec3x8,
 };
 
 /// Numbers in [0, 1), by a linear congruence.
@@ -30,20 +30,54 @@ fn slices<M: Model>(gather: &Gather<M>, numbers: &mut Numbers) -> u64 {
         for len in 0..70 {
             for offset in 0..3 {
                 let input: [Box<[f32]>; 3] = core::array::from_fn(|_| numbers.block(offset, len));
-                let input = [&input[0][offset..], &input[1][offset..], &input[2][offset..]];
-                let mut output: [Box<[f32]>; 11] = core::array::from_fn(|_| numbers.block(offset, len));
-                let [u, v, w, r, g, b, pdf, x, y, z, slot] = output.each_mut().map(|block| &mut block[offset..]);
-                let out = EvalSlices { value: [&mut *r, &mut *g, &mut *b], pdf: &mut *pdf };
-                gather.eval_pdf_batch_at(level, input, out).expect("one length");
-                gather.eval_batch_at(level, input, [&mut *x, &mut *y, &mut *z]).expect("one length");
-                gather.pdf_batch_at(level, input, &mut *slot).expect("one length");
-                let same = r.iter().zip(&*x).chain(pdf.iter().zip(&*slot)).all(|(a, b)| a.to_bits() == b.to_bits());
+                let input = [
+                    &input[0][offset..],
+                    &input[1][offset..],
+                    &input[2][offset..],
+                ];
+                let mut output: [Box<[f32]>; 11] =
+                    core::array::from_fn(|_| numbers.block(offset, len));
+                let [u, v, w, r, g, b, pdf, x, y, z, slot] =
+                    output.each_mut().map(|block| &mut block[offset..]);
+                let out = EvalSlices {
+                    value: [&mut *r, &mut *g, &mut *b],
+                    pdf: &mut *pdf,
+                };
+                gather
+                    .eval_pdf_batch_at(level, input, out)
+                    .expect("one length");
+                gather
+                    .eval_batch_at(level, input, [&mut *x, &mut *y, &mut *z])
+                    .expect("one length");
+                gather
+                    .pdf_batch_at(level, input, &mut *slot)
+                    .expect("one length");
+                let same = r
+                    .iter()
+                    .zip(&*x)
+                    .chain(pdf.iter().zip(&*slot))
+                    .all(|(a, b)| a.to_bits() == b.to_bits());
                 assert!(same, "{len} entries from {offset} on {level}");
-                let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [x, y, z], slot };
-                gather.sample_batch_at(level, input, out).expect("one length");
-                let [u, v, w, pdf, x, y, z, ..] = output.each_mut().map(|block| &mut block[offset..]);
-                let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [x, y, z] };
-                gather.sample_weight_batch_at(level, input, out).expect("one length");
+                let out = SampleSlices {
+                    wi: [u, v, w],
+                    value: [r, g, b],
+                    pdf,
+                    weight: [x, y, z],
+                    slot,
+                };
+                gather
+                    .sample_batch_at(level, input, out)
+                    .expect("one length");
+                let [u, v, w, pdf, x, y, z, ..] =
+                    output.each_mut().map(|block| &mut block[offset..]);
+                let out = SampleWeightSlices {
+                    wi: [u, v, w],
+                    pdf,
+                    weight: [x, y, z],
+                };
+                gather
+                    .sample_weight_batch_at(level, input, out)
+                    .expect("one length");
                 calls += 5;
             }
         }
@@ -57,16 +91,27 @@ fn packets<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers) -> u64 {
     for level in Level::available() {
         for _ in 0..16 {
             let wi = Box::new(Vec3x8::from(core::array::from_fn(|_| {
-                glam::Vec3::new(numbers.next() - 0.5, numbers.next() - 0.5, numbers.next() - 0.5).normalize_or_zero()
+                glam::Vec3::new(
+                    numbers.next() - 0.5,
+                    numbers.next() - 0.5,
+                    numbers.next() - 0.5,
+                )
+                .normalize_or_zero()
             })));
-            let xi = Box::new(core::array::from_fn(|_| f32x8::new(core::array::from_fn(|_| numbers.next()))));
+            let xi = Box::new(core::array::from_fn(|_| {
+                f32x8::new(core::array::from_fn(|_| numbers.next()))
+            }));
             let points = Box::new(bsdf.prepare8_at(level, &*wi));
             let all = [
                 points.eval_pdf8_at(level, &wi).pdf,
                 points.sample8_at(level, &xi).pdf,
                 points.lobes8_at(level, &wi).0[0].pdf,
             ];
-            assert!(all.iter().all(|pdf| pdf.to_array().iter().all(|x| x.is_finite())), "{all:?}");
+            assert!(
+                all.iter()
+                    .all(|pdf| pdf.to_array().iter().all(|x| x.is_finite())),
+                "{all:?}"
+            );
             calls += 4;
         }
     }
@@ -83,9 +128,15 @@ fn main() {
         return;
     }
     let params = HairParams::brown();
-    let (hair, matched) = (Bsdf::new(&Hair(Gaussian), &params), Bsdf::new(&Matched::<_>(Gaussian), &params));
+    let (hair, matched) = (
+        Bsdf::new(&Hair(Gaussian), &params),
+        Bsdf::new(&Matched::<_>(Gaussian), &params),
+    );
     let calls = slices(&hair.prepare(glam::Vec3::new(0.6, 0.8, 0.0)), &mut numbers)
-        + slices(&matched.prepare(glam::Vec3::new(0.6, 0.8, 0.0)), &mut numbers)
+        + slices(
+            &matched.prepare(glam::Vec3::new(0.6, 0.8, 0.0)),
+            &mut numbers,
+        )
         + packets(&hair, &mut numbers)
         + packets(&matched, &mut numbers);
     let levels: Vec<&str> = Level::available().map(Level::name).collect();

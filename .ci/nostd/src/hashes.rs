@@ -10,11 +10,14 @@ use core::array::from_fn;
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{
-    Broadcast, Bsdf, Bsdf8, EvalSlices, FiberFrame, FiberFrame8, Gather, Gather8, Gaussian, Hair, HairParams, Hit,
-    Hit8, Kernel, Lanes, Level, Lobe, LobeMask, Matched, Model, SampleSlices, Vec3x, Vec3x8, math, random,
+    Broadcast, Bsdf, Bsdf8, EvalSlices, FiberFrame, FiberFrame8, Gather, Gather8, Gaussian, Hair,
+    HairParams, Hit, Hit8, Kernel, Lanes, Level, Lobe, LobeMask, Matched, Model, SampleSlices,
+    Vec3x, Vec3x8, math, random,
 };
 use hairis_variants::chiang::{FarField, OffsetNodes};
-use hairis_variants::{Cauchy, Chiang, ChiangDesc, ChiangParams, KajiyaKay, KajiyaKayDesc, Parameters};
+use hairis_variants::{
+    Cauchy, Chiang, ChiangDesc, ChiangParams, KajiyaKay, KajiyaKayDesc, Parameters,
+};
 use hash::Hash;
 
 /// Hits per material: eight at a time, the materials of the lanes all different.
@@ -58,12 +61,15 @@ struct Hits<M: Model<Params: Parameters>> {
 impl<M: Model<Params: Parameters>> Hits<M> {
     /// The presets, and a material with narrow lobes.
     fn new(model: M) -> Self {
-        let narrow = M::Params::FIELDS.iter().fold(M::Params::default().values(), |values, field| {
-            match (field.narrow, field.kind.width()) {
-                (Some(x), width) => values.with(field.name, &[x; 4][..width]),
-                (None, _) => values,
-            }
-        });
+        let narrow =
+            M::Params::FIELDS
+                .iter()
+                .fold(M::Params::default().values(), |values, field| {
+                    match (field.narrow, field.kind.width()) {
+                        (Some(x), width) => values.with(field.name, &[x; 4][..width]),
+                        (None, _) => values,
+                    }
+                });
         let narrow = M::Params::from_values(&narrow).unwrap_or_default();
         let presets = M::Params::PRESETS;
         let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
@@ -74,7 +80,10 @@ impl<M: Model<Params: Parameters>> Hits<M> {
             }),
             hits: from_fn(|_| {
                 let wo = directions8(&mut numbers);
-                Hit::new(wo, random::xi8(&mut numbers)[0] * f32x8::splat(2.0) - f32x8::splat(1.0))
+                Hit::new(
+                    wo,
+                    random::xi8(&mut numbers)[0] * f32x8::splat(2.0) - f32x8::splat(1.0),
+                )
             }),
             wi: from_fn(|_| directions8(&mut numbers)),
             xi: from_fn(|_| random::xi8(&mut numbers)),
@@ -112,7 +121,11 @@ impl<M: Model<Params: Parameters>> Hits<M> {
                 }
             }
             for gather in [gather, &gather.conserving()] {
-                gather.albedo().0.iter().for_each(|lobe| albedo.numbers(lobe));
+                gather
+                    .albedo()
+                    .0
+                    .iter()
+                    .for_each(|lobe| albedo.numbers(lobe));
             }
         });
         let print = |hash: Hash, entry| hash.print("scalar", entry, model, "one-lane");
@@ -122,9 +135,9 @@ impl<M: Model<Params: Parameters>> Hits<M> {
         print(some, "with_lobes");
         print(albedo, "albedo");
         let mut most = Hash::NEW;
-        self.materials[..2]
-            .iter()
-            .for_each(|material| most.numbers(&[material.max_albedo(), material.conserving_scale()]));
+        self.materials[..2].iter().for_each(|material| {
+            most.numbers(&[material.max_albedo(), material.conserving_scale()])
+        });
         print(most, "max_albedo");
     }
 
@@ -141,7 +154,8 @@ impl<M: Model<Params: Parameters>> Hits<M> {
         let mut numbers = Numbers(0x2545_f491_4f6c_dd1d);
         let (mut wi, mut xi) = ([[0.0; LEN]; 3], [[0.0; LEN]; 3]);
         for i in 0..LEN {
-            let (direction, uniform): ([f32; 3], _) = (direction(&mut numbers).into(), random::xi(&mut numbers));
+            let (direction, uniform): ([f32; 3], _) =
+                (direction(&mut numbers).into(), random::xi(&mut numbers));
             for row in 0..3 {
                 (wi[row][i], xi[row][i]) = (direction[row], uniform[row]);
             }
@@ -164,7 +178,10 @@ impl<M: Model<Params: Parameters>> Hits<M> {
         let [mut eval, mut lobes, mut sample, mut albedo, mut some] = [Hash::NEW; 5];
         let packed = Bsdf8::pack(from_fn(|lane| &self.materials[lane]));
         for hits in &self.hits {
-            let points: [Gather8<M>; 2] = [self.materials[0].prepare8_at(level, hits), packed.prepare8_at(level, hits)];
+            let points: [Gather8<M>; 2] = [
+                self.materials[0].prepare8_at(level, hits),
+                packed.prepare8_at(level, hits),
+            ];
             for (points, prepare) in points.iter().zip(&mut prepare) {
                 // Scalar calls add no rounding that depends on the level.
                 (0..8).for_each(|lane| prepare.sample(points.lane(lane).sample([0.3, 0.6, 0.9])));
@@ -172,10 +189,18 @@ impl<M: Model<Params: Parameters>> Hits<M> {
                     eval.eval8(&points.eval_pdf8_at(level, wi));
                     lobes.lobes8(&points.lobes8_at(level, wi));
                     sample.sample8(&points.sample8_at(level, xi));
-                    some.eval8(&points.with_lobes(LobeMask::of(&[Lobe::slot(0)])).eval_pdf8_at(level, wi));
+                    some.eval8(
+                        &points
+                            .with_lobes(LobeMask::of(&[Lobe::slot(0)]))
+                            .eval_pdf8_at(level, wi),
+                    );
                 }
                 for points in [points, &points.conserving_at(level)] {
-                    points.albedo8_at(level).0.iter().for_each(|lobe| albedo.lanes(lobe));
+                    points
+                        .albedo8_at(level)
+                        .0
+                        .iter()
+                        .for_each(|lobe| albedo.lanes(lobe));
                 }
             }
         }
@@ -190,11 +215,22 @@ impl<M: Model<Params: Parameters>> Hits<M> {
     }
 }
 
-fn hash_slices<M: Model<Params: Parameters>>(gather: &Gather<M>, level: Level, wi: &[[f32; LEN]; 3], hash: &mut Hash) {
+fn hash_slices<M: Model<Params: Parameters>>(
+    gather: &Gather<M>,
+    level: Level,
+    wi: &[[f32; LEN]; 3],
+    hash: &mut Hash,
+) {
     let wi = [&wi[0][..], &wi[1][..], &wi[2][..]];
     let (mut value, mut pdf) = ([[0.0; LEN]; 3], [0.0; LEN]);
-    let mut passed =
-        gather.eval_pdf_batch_at(level, wi, EvalSlices { value: value.each_mut().map(|x| &mut x[..]), pdf: &mut pdf });
+    let mut passed = gather.eval_pdf_batch_at(
+        level,
+        wi,
+        EvalSlices {
+            value: value.each_mut().map(|x| &mut x[..]),
+            pdf: &mut pdf,
+        },
+    );
     value.iter().for_each(|row| hash.numbers(row));
     hash.numbers(&pdf);
     passed = passed.and(gather.eval_batch_at(level, wi, value.each_mut().map(|x| &mut x[..])));
@@ -204,11 +240,27 @@ fn hash_slices<M: Model<Params: Parameters>>(gather: &Gather<M>, level: Level, w
     assert!(passed.is_ok(), "slices of one length");
 }
 
-fn hash_samples<M: Model<Params: Parameters>>(gather: &Gather<M>, level: Level, xi: &[[f32; LEN]; 3], hash: &mut Hash) {
+fn hash_samples<M: Model<Params: Parameters>>(
+    gather: &Gather<M>,
+    level: Level,
+    xi: &[[f32; LEN]; 3],
+    hash: &mut Hash,
+) {
     let mut rows = [[0.0; LEN]; 11];
     let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = rows.each_mut().map(|row| &mut row[..]);
-    let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
-    assert!(gather.sample_batch_at(level, [&xi[0], &xi[1], &xi[2]], out).is_ok(), "slices of one length");
+    let out = SampleSlices {
+        wi: [u, v, w],
+        value: [r, g, b],
+        pdf,
+        weight: [wr, wg, wb],
+        slot,
+    };
+    assert!(
+        gather
+            .sample_batch_at(level, [&xi[0], &xi[1], &xi[2]], out)
+            .is_ok(),
+        "slices of one length"
+    );
     rows.iter().for_each(|row| hash.numbers(row));
 }
 
@@ -226,7 +278,10 @@ fn every_entry<M: Model<Params: Parameters>>(model: M, name: &str) {
 fn models() {
     every_entry(Hair(Gaussian), "gaussian");
     every_entry(Matched::<_>(Gaussian), "gaussian/matched");
-    every_entry(Matched::<_, 9, true>(Gaussian), "gaussian/matched-by-channel");
+    every_entry(
+        Matched::<_, 9, true>(Gaussian),
+        "gaussian/matched-by-channel",
+    );
     every_entry(Cauchy::PAPER.model(), "cauchy");
     every_entry(Cauchy::PAPER.matched(), "cauchy/matched");
     every_entry(KajiyaKay, "kajiya-kay");
@@ -249,8 +304,11 @@ impl Kernel for Math {
         // In [-1, 1), in [0, 1) and above 0.
         let (x, y): (L, L) = (self.0.lanes(), self.1.lanes());
         let (gaussian, complement) = math::gaussian_and_complement(y * L::splat(90.0));
-        let [(a, b), (c, d), (e, f)] =
-            [math::sin_cos_half_turn(x), math::sin_cos_twice(x * L::splat(0.5)), math::sin_cos_absolute(x)];
+        let [(a, b), (c, d), (e, f)] = [
+            math::sin_cos_half_turn(x),
+            math::sin_cos_twice(x * L::splat(0.5)),
+            math::sin_cos_absolute(x),
+        ];
         let (tan, over) = math::tan_half_turn(x);
         let above = y + L::splat(1e-7);
         [
@@ -294,13 +352,23 @@ fn frames() {
             let (tangent, normal) = (direction(&mut numbers), direction(&mut numbers));
             let frame = FiberFrame::from_tangent_normal(tangent, normal);
             one.number(frame.offset(normal, direction(&mut numbers)));
-            if frame.u.is_finite() { frame } else { FiberFrame::from_tangent(Vec3::X) }
+            if frame.u.is_finite() {
+                frame
+            } else {
+                FiberFrame::from_tangent(Vec3::X)
+            }
         });
         let v = directions8(&mut numbers);
         for (lane, frame) in frames.iter().enumerate() {
-            [frame.u, frame.v, frame.w, frame.to_local(v.lane(lane)), frame.to_world(v.lane(lane))]
-                .into_iter()
-                .for_each(|v| one.vec3(v));
+            [
+                frame.u,
+                frame.v,
+                frame.w,
+                frame.to_local(v.lane(lane)),
+                frame.to_world(v.lane(lane)),
+            ]
+            .into_iter()
+            .for_each(|v| one.vec3(v));
             one.vec3(frame.to_local_a(v.lane(lane).into()).into());
             one.vec3(frame.to_world_a(v.lane(lane).into()).into());
         }
@@ -317,18 +385,40 @@ fn frames() {
 fn parameters() {
     let mut hash = Hash::NEW;
     let mut values = |values: hairis_variants::Values| {
-        values.fields().iter().for_each(|field| hash.numbers(values.numbers(field.name)));
+        values
+            .fields()
+            .iter()
+            .for_each(|field| hash.numbers(values.numbers(field.name)));
     };
-    values(HairParams::from_artist(&Default::default()).unwrap_or_default().values());
+    values(
+        HairParams::from_artist(&Default::default())
+            .unwrap_or_default()
+            .values(),
+    );
     for i in 1_u8..8 {
         let x = f32::from(i) / 9.0;
-        let chiang = ChiangDesc { beta_n: x, ..ChiangDesc::default() };
-        for desc in [chiang.with_color([x, x * x, 0.5]), chiang.with_melanin_amount(x, 0.3)].into_iter().flatten() {
+        let chiang = ChiangDesc {
+            beta_n: x,
+            ..ChiangDesc::default()
+        };
+        for desc in [
+            chiang.with_color([x, x * x, 0.5]),
+            chiang.with_melanin_amount(x, 0.3),
+        ]
+        .into_iter()
+        .flatten()
+        {
             values(ChiangParams::new(&desc).unwrap_or_default().values());
             hash_color(&desc, &mut values);
         }
-        let glossy = KajiyaKayDesc::default().with_width_deg(50.0 * x).unwrap_or_default();
-        values(hairis_variants::KajiyaKayParams::new(&glossy).unwrap_or_default().values());
+        let glossy = KajiyaKayDesc::default()
+            .with_width_deg(50.0 * x)
+            .unwrap_or_default();
+        values(
+            hairis_variants::KajiyaKayParams::new(&glossy)
+                .unwrap_or_default()
+                .values(),
+        );
     }
     hash.print("scalar", "parameters", "-", "one-lane");
 }
@@ -337,7 +427,11 @@ fn parameters() {
 fn hash_color(desc: &ChiangDesc, values: &mut impl FnMut(hairis_variants::Values)) {
     let fibre = ChiangParams::default().values();
     values(fibre.with("sigma_a", &desc.color()));
-    let derived = [desc.width_deg(), desc.longitudinal_variance(), desc.azimuthal_scale()];
+    let derived = [
+        desc.width_deg(),
+        desc.longitudinal_variance(),
+        desc.azimuthal_scale(),
+    ];
     values(fibre.with("sigma_a", &derived));
 }
 
@@ -347,7 +441,11 @@ fn far_field() {
     let (mut hash, mut numbers) = (Hash::NEW, Numbers(13));
     let nodes = OffsetNodes::<4>::new();
     for (_, params) in ChiangParams::presets() {
-        let point = FarField::prepare(&Bsdf::new(&Chiang::<false>, &params), &nodes, direction(&mut numbers));
+        let point = FarField::prepare(
+            &Bsdf::new(&Chiang::<false>, &params),
+            &nodes,
+            direction(&mut numbers),
+        );
         for _ in 0..8 {
             hash.eval(point.eval_pdf(direction(&mut numbers)));
             hash.sample(point.sample(random::xi(&mut numbers)));

@@ -30,9 +30,22 @@ fn close(a: f32, b: f32) -> bool {
 
 fn check<M: Model<Params = HairParams>>(model: &M, first: i32) -> Result<(), i32> {
     let ensure = |passed: bool, number: i32| if passed { Ok(()) } else { Err(first + number) };
-    let hair = [HairParams::blond(), HairParams::brown(), HairParams::black()].map(|p| Bsdf::new(model, &p));
-    let wo = [Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.96, 0.0, 0.28), Vec3::Y];
-    let gathers = [hair[0].prepare(wo[0]), hair[1].prepare(wo[1]), hair[2].prepare(wo[2])];
+    let hair = [
+        HairParams::blond(),
+        HairParams::brown(),
+        HairParams::black(),
+    ]
+    .map(|p| Bsdf::new(model, &p));
+    let wo = [
+        Vec3::new(0.6, 0.8, 0.0),
+        Vec3::new(-0.96, 0.0, 0.28),
+        Vec3::Y,
+    ];
+    let gathers = [
+        hair[0].prepare(wo[0]),
+        hair[1].prepare(wo[1]),
+        hair[2].prepare(wo[2]),
+    ];
     let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
     for _ in 0..100 {
         let xi = random::xi8(&mut numbers);
@@ -41,22 +54,42 @@ fn check<M: Model<Params = HairParams>>(model: &M, first: i32) -> Result<(), i32
             let evals = gather.eval_pdf8(&samples.wi);
             let (mut value, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
             let [r, g, b] = &mut value;
-            let wi = [samples.wi.x.as_array(), samples.wi.y.as_array(), samples.wi.z.as_array()];
-            let out = EvalSlices { value: [r, g, b], pdf: &mut pdf };
-            ensure(gather.eval_pdf_batch([&wi[0][..], &wi[1][..], &wi[2][..]], out).is_ok(), 1)?;
+            let wi = [
+                samples.wi.x.as_array(),
+                samples.wi.y.as_array(),
+                samples.wi.z.as_array(),
+            ];
+            let out = EvalSlices {
+                value: [r, g, b],
+                pdf: &mut pdf,
+            };
+            ensure(
+                gather
+                    .eval_pdf_batch([&wi[0][..], &wi[1][..], &wi[2][..]], out)
+                    .is_ok(),
+                1,
+            )?;
             for lane in 0..8 {
-                let Some(sample) = samples.lane(lane) else { continue };
+                let Some(sample) = samples.lane(lane) else {
+                    continue;
+                };
                 let one = gather.eval_pdf(sample.wi);
                 ensure(close(sample.pdf, evals.lane(lane).pdf), 2)?;
                 ensure(close(sample.pdf, one.pdf), 3)?;
-                ensure(pdf[lane] == evals.lane(lane).pdf && value[0][lane] == evals.lane(lane).value[0], 4)?;
+                ensure(
+                    pdf[lane] == evals.lane(lane).pdf
+                        && value[0][lane] == evals.lane(lane).value[0],
+                    4,
+                )?;
             }
         }
         let points = hairis::Bsdf8::pack(core::array::from_fn(|i| &hair[i % 3]));
         let points = points.prepare8(&Vec3x8::from(core::array::from_fn(|i| wo[i % 3])));
         let samples = points.sample8(&xi);
         for lane in 0..8 {
-            let Some(sample) = samples.lane(lane) else { continue };
+            let Some(sample) = samples.lane(lane) else {
+                continue;
+            };
             ensure(close(sample.pdf, gathers[lane % 3].pdf(sample.wi)), 5)?;
         }
     }
@@ -83,7 +116,11 @@ fn start() -> i32 {
             #[cfg(feature = "bits")]
             hashes::print();
             #[cfg(not(feature = "bits"))]
-            for text in ["both models agree on ", hairis::Level::detect().name(), ", without std\n"] {
+            for text in [
+                "both models agree on ",
+                hairis::Level::detect().name(),
+                ", without std\n",
+            ] {
                 system::write(text.as_bytes());
             }
             0

@@ -39,14 +39,30 @@ fn record(folder: &Path) -> Result<String, Box<dyn Error>> {
         return Err(format!("no benches in {}", folder.display()).into());
     }
     rows.sort();
-    let modified = if output("git", &["status", "--porcelain"])?.is_empty() { "" } else { ", modified" };
+    let modified = if output("git", &["status", "--porcelain"])?.is_empty() {
+        ""
+    } else {
+        ", modified"
+    };
     let mut text = String::new();
     writeln!(text, "# CPU: {}", cpu::name())?;
-    for line in output("rustc", &["-vV"])?.lines().filter(|line| !line.is_empty()) {
+    for line in output("rustc", &["-vV"])?
+        .lines()
+        .filter(|line| !line.is_empty())
+    {
         writeln!(text, "# {line}")?;
     }
-    writeln!(text, "# commit: {}{modified}", output("git", &["rev-parse", "HEAD"])?.trim())?;
-    writeln!(text, "# compiled for {}; eight lanes run on {}", Level::portable(), Level::detect())?;
+    writeln!(
+        text,
+        "# commit: {}{modified}",
+        output("git", &["rev-parse", "HEAD"])?.trim()
+    )?;
+    writeln!(
+        text,
+        "# compiled for {}; eight lanes run on {}",
+        Level::portable(),
+        Level::detect()
+    )?;
     writeln!(text, "group,entry,level,ns,ns_low,ns_high,ns_deviation")?;
     for (_, row) in rows {
         writeln!(text, "{row}")?;
@@ -75,9 +91,19 @@ fn row(folder: &Path) -> Result<([String; 3], String), Box<dyn Error>> {
     let estimates = json(&folder.join("estimates.json"))?;
     let text = |key: &str| bench[key].as_str().unwrap_or_default().to_owned();
     let key = [text("group_id"), text("function_id"), text("value_str")];
-    let elements = bench["throughput"]["Elements"].as_f64().ok_or_else(|| format!("{key:?} has no throughput"))?;
-    let ns = |value: &Value| value.as_f64().map(|ns| ns / elements).ok_or_else(|| format!("{key:?}: no estimate"));
-    let (median, interval) = (&estimates["median"], &estimates["median"]["confidence_interval"]);
+    let elements = bench["throughput"]["Elements"]
+        .as_f64()
+        .ok_or_else(|| format!("{key:?} has no throughput"))?;
+    let ns = |value: &Value| {
+        value
+            .as_f64()
+            .map(|ns| ns / elements)
+            .ok_or_else(|| format!("{key:?}: no estimate"))
+    };
+    let (median, interval) = (
+        &estimates["median"],
+        &estimates["median"]["confidence_interval"],
+    );
     let row = format!(
         "{},{},{},{:.3},{:.3},{:.3},{:.3}",
         key[0],
@@ -97,7 +123,10 @@ fn json(path: &PathBuf) -> Result<Value, Box<dyn Error>> {
 }
 
 fn output(program: &str, words: &[&str]) -> Result<String, Box<dyn Error>> {
-    let done = Command::new(program).args(words).output().map_err(|error| format!("{program}: {error}"))?;
+    let done = Command::new(program)
+        .args(words)
+        .output()
+        .map_err(|error| format!("{program}: {error}"))?;
     if !done.status.success() {
         return Err(format!("{program} {words:?}: {}", done.status).into());
     }
@@ -107,6 +136,8 @@ fn output(program: &str, words: &[&str]) -> Result<String, Box<dyn Error>> {
 /// The same as the name of a folder.
 fn slug(cpu: &str) -> String {
     let plain = cpu.replace("(R)", "").replace("(TM)", "").to_lowercase();
-    let words = plain.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    let words = plain
+        .split(|c: char| !c.is_ascii_alphanumeric())
+        .filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join("-")
 }

@@ -26,14 +26,29 @@ pub struct TimedInputs<P = Values> {
 impl TimedInputs {
     /// The same with the parameters of a model.
     pub(super) fn typed<P: Parameters>(&self) -> Result<TimedInputs<P>, ParamError> {
-        let Self { wi, wo, xi, params, narrow } = self.clone();
+        let Self {
+            wi,
+            wo,
+            xi,
+            params,
+            narrow,
+        } = self.clone();
         let counts = [wi.len(), wo.len(), xi.len()];
-        assert_eq!(counts, [TIMED_DIRECTIONS; 3], "directions to and fro, and triples of numbers");
+        assert_eq!(
+            counts, [TIMED_DIRECTIONS; 3],
+            "directions to and fro, and triples of numbers"
+        );
         let (narrow, mut typed) = (P::from_values(&narrow)?, [P::default(); 8]);
         for (typed, values) in typed.iter_mut().zip(&params) {
             *typed = P::from_values(values)?;
         }
-        Ok(TimedInputs { wi, wo, xi, params: typed, narrow })
+        Ok(TimedInputs {
+            wi,
+            wo,
+            xi,
+            params: typed,
+            narrow,
+        })
     }
 }
 

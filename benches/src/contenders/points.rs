@@ -1,7 +1,10 @@
 //! Shading points of their own: preparing one, and a few samples of it.
 
 use super::inputs::pairs;
-use super::{Contenders, EIGHT, EIGHT_AT_ONE, Entrants, HITS, Material, TIMED_DIRECTIONS, TimedInputs, Truth, truth};
+use super::{
+    Contenders, EIGHT, EIGHT_AT_ONE, Entrants, HITS, Material, TIMED_DIRECTIONS, TimedInputs,
+    Truth, truth,
+};
 use crate::inputs::{arrays, packets, xi_packets};
 use crate::platform::{Platform, platform};
 use crate::task::{Answer, Output, Pass, Several, Slices, task};
@@ -32,15 +35,19 @@ fn several<I: 'static, O: Output + 'static>(
 
 /// A shading point and `N` samples of it, all on the same hair: each lane at its own point, or a point's samples in `P`
 /// packets, the last of which may have lanes to spare.
-pub(super) fn shared<M: Registered, const N: usize, const P: usize>(inputs: &TimedInputs<M::Params>) -> Entrants {
+pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
+    inputs: &TimedInputs<M::Params>,
+) -> Entrants {
     let params = &inputs.params[0];
     let Material::<M> { bsdf, libm, std } = Material::new(params);
     let (rows, _) = inputs.xi.as_chunks::<N>();
     let wo = &inputs.wo[..rows.len()];
     let in_turn = |i| i;
     let (eights, _) = rows.as_chunks::<8>();
-    let by_sample: Vec<[[f32x8; 3]; N]> =
-        eights.iter().map(|eight| core::array::from_fn(|k| xi_packets(&eight.map(|xi| xi[k]))[0])).collect();
+    let by_sample: Vec<[[f32x8; 3]; N]> = eights
+        .iter()
+        .map(|eight| core::array::from_fn(|k| xi_packets(&eight.map(|xi| xi[k]))[0]))
+        .collect();
     // A packet holds the same sample of eight points; the directions are in the order of the points.
     let place = |i: usize| (i / (8 * N) * 8 + i % 8) * N + i / 8 % N;
     let mut contenders = Contenders::new(
@@ -58,10 +65,14 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(inputs: &Tim
         }),
     )
     .levels(EIGHT, |level| {
-        several(pairs(&packets(wo), &by_sample), place, move |(wo, xi), keep| {
-            let points = bsdf.prepare8_at(level, wo);
-            xi.iter().for_each(|xi| keep(&points.sample8_at(level, xi)));
-        })
+        several(
+            pairs(&packets(wo), &by_sample),
+            place,
+            move |(wo, xi), keep| {
+                let points = bsdf.prepare8_at(level, wo);
+                xi.iter().for_each(|xi| keep(&points.sample8_at(level, xi)));
+            },
+        )
     });
     if N > 1 {
         let packed = |row: &[[f32; 3]; N]| -> [[f32x8; 3]; P] {
@@ -74,7 +85,8 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(inputs: &Tim
         contenders = contenders.levels(EIGHT_AT_ONE, |level| {
             several(pairs(wo, &packed), in_turn, move |(wo, xi), keep| {
                 let point = bsdf.prepare(*wo);
-                xi.iter().for_each(|xi| keep(&Leading::<N>(point.sample8_at(level, xi))));
+                xi.iter()
+                    .for_each(|xi| keep(&Leading::<N>(point.sample8_at(level, xi))));
             })
         });
     } else {
@@ -82,19 +94,43 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(inputs: &Tim
             let call = move |[x, y, z, a, b, c]: [&[f32]; 6], out: [&mut [f32]; 11]| {
                 let [red, green, blue, pdf, u, v, w, wr, wg, wb, slot] = out;
                 let (value, weight) = (Some([red, green, blue]), Some([wr, wg, wb]));
-                let out = SampleColumns { wi: Some([u, v, w]), value, pdf: Some(pdf), weight, slot: Some(slot) };
-                bsdf.sample_hits_at(level, HitSlices { wo: [x, y, z], h: None }, [a, b, c], out)
+                let out = SampleColumns {
+                    wi: Some([u, v, w]),
+                    value,
+                    pdf: Some(pdf),
+                    weight,
+                    slot: Some(slot),
+                };
+                bsdf.sample_hits_at(
+                    level,
+                    HitSlices {
+                        wo: [x, y, z],
+                        h: None,
+                    },
+                    [a, b, c],
+                    out,
+                )
             };
-            Box::new(Slices::new(TIMED_DIRECTIONS, &joined(&arrays(wo), &inputs.xi), call))
+            Box::new(Slices::new(
+                TIMED_DIRECTIONS,
+                &joined(&arrays(wo), &inputs.xi),
+                call,
+            ))
         });
     }
-    let points = truth::<M>(params, wo)?.into_iter().flat_map(|point| core::iter::repeat_n(point, N)).collect();
+    let points = truth::<M>(params, wo)?
+        .into_iter()
+        .flat_map(|point| core::iter::repeat_n(point, N))
+        .collect();
     Ok((contenders, Truth::of_samples(points, &inputs.xi)))
 }
 
 /// Rows of both.
 fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
-    a.iter().zip(b).map(|([x, y, z], [u, v, w])| [*x, *y, *z, *u, *v, *w]).collect()
+    a.iter()
+        .zip(b)
+        .map(|([x, y, z], [u, v, w])| [*x, *y, *z, *u, *v, *w])
+        .collect()
 }
 
 /// A shading point and an evaluation at it, all on the same hair.
@@ -104,45 +140,94 @@ pub(super) fn eval<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let both = pairs(&arrays(&inputs.wo), &arrays(&inputs.wi));
     let eights = pairs(&packets(&inputs.wo), &packets(&inputs.wi));
     let contenders = Contenders::new(
-        task(&both, move |(wo, wi)| M::reference_at(&libm, *wo, 0.0).eval_pdf(*wi)),
-        task(&both, move |(wo, wi)| M::reference_at(&std, platform(*wo), Platform(0.0)).eval_pdf(platform(*wi))),
-        task(&pairs(&inputs.wo, &inputs.wi), move |(wo, wi)| bsdf.prepare(*wo).eval_pdf(*wi)),
+        task(&both, move |(wo, wi)| {
+            M::reference_at(&libm, *wo, 0.0).eval_pdf(*wi)
+        }),
+        task(&both, move |(wo, wi)| {
+            M::reference_at(&std, platform(*wo), Platform(0.0)).eval_pdf(platform(*wi))
+        }),
+        task(&pairs(&inputs.wo, &inputs.wi), move |(wo, wi)| {
+            bsdf.prepare(*wo).eval_pdf(*wi)
+        }),
     )
-    .levels(EIGHT, |level| task(&eights, move |(wo, wi)| bsdf.prepare8_at(level, wo).eval_pdf8_at(level, wi)))
+    .levels(EIGHT, |level| {
+        task(&eights, move |(wo, wi)| {
+            bsdf.prepare8_at(level, wo).eval_pdf8_at(level, wi)
+        })
+    })
     .levels(HITS, |level| {
         let call = move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
-            let out = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
-            bsdf.eval_pdf_hits_at(level, HitSlices { wo: [x, y, z], h: None }, [u, v, w], out)
+            let out = EvalColumns {
+                value: Some([r, g, b]),
+                pdf: Some(pdf),
+            };
+            bsdf.eval_pdf_hits_at(
+                level,
+                HitSlices {
+                    wo: [x, y, z],
+                    h: None,
+                },
+                [u, v, w],
+                out,
+            )
         };
-        Box::new(Slices::new(TIMED_DIRECTIONS, &joined(&arrays(&inputs.wo), &arrays(&inputs.wi)), call))
+        Box::new(Slices::new(
+            TIMED_DIRECTIONS,
+            &joined(&arrays(&inputs.wo), &arrays(&inputs.wi)),
+            call,
+        ))
     });
-    Ok((contenders, Truth::of_directions(truth::<M>(params, &inputs.wo)?, &inputs.wi)))
+    Ok((
+        contenders,
+        Truth::of_directions(truth::<M>(params, &inputs.wo)?, &inputs.wi),
+    ))
 }
 
 /// A shading point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
 pub(super) fn mixed<M: Registered>(inputs: &TimedInputs<M::Params>, pack_each: bool) -> Entrants {
     let materials = inputs.params.each_ref().map(Material::<M>::new);
-    let (libm, std) = (materials.each_ref().map(|of| of.libm), materials.each_ref().map(|of| of.std));
+    let (libm, std) = (
+        materials.each_ref().map(|of| of.libm),
+        materials.each_ref().map(|of| of.std),
+    );
     let bsdfs = materials.map(|of| of.bsdf);
-    let numbered: Vec<(usize, Vec3)> = inputs.wo.iter().enumerate().map(|(i, wo)| (i % 8, *wo)).collect();
-    let arrays: Vec<(usize, [f32; 3])> = numbered.iter().map(|(i, wo)| (*i, wo.to_array())).collect();
+    let numbered: Vec<(usize, Vec3)> = inputs
+        .wo
+        .iter()
+        .enumerate()
+        .map(|(i, wo)| (i % 8, *wo))
+        .collect();
+    let arrays: Vec<(usize, [f32; 3])> =
+        numbered.iter().map(|(i, wo)| (*i, wo.to_array())).collect();
     let eights = pairs(&packets(&inputs.wo), &xi_packets(&inputs.xi));
     let packed = Bsdf8::pack(bsdfs.each_ref());
     let contenders = Contenders::new(
-        task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| M::reference_at(&libm[*i], *wo, 0.0).sample(*xi)),
+        task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
+            M::reference_at(&libm[*i], *wo, 0.0).sample(*xi)
+        }),
         task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
             M::reference_at(&std[*i], platform(*wo), Platform(0.0)).sample(platform(*xi))
         }),
-        task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| bsdfs[*i].prepare(*wo).sample(*xi)),
+        task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| {
+            bsdfs[*i].prepare(*wo).sample(*xi)
+        }),
     )
     .levels(EIGHT, |level| {
         if pack_each {
-            task(&eights, move |(wo, xi)| Bsdf8::pack(bsdfs.each_ref()).prepare8_at(level, wo).sample8_at(level, xi))
+            task(&eights, move |(wo, xi)| {
+                Bsdf8::pack(bsdfs.each_ref())
+                    .prepare8_at(level, wo)
+                    .sample8_at(level, xi)
+            })
         } else {
-            task(&eights, move |(wo, xi)| packed.prepare8_at(level, wo).sample8_at(level, xi))
+            task(&eights, move |(wo, xi)| {
+                packed.prepare8_at(level, wo).sample8_at(level, xi)
+            })
         }
     });
-    let points =
-        numbered.iter().map(|(i, wo)| truth::<M>(&inputs.params[*i], &[*wo])).collect::<Result<Vec<_>, _>>()?;
+    let points = numbered
+        .iter()
+        .map(|(i, wo)| truth::<M>(&inputs.params[*i], &[*wo]))
+        .collect::<Result<Vec<_>, _>>()?;
     Ok((contenders, Truth::of_samples(points.concat(), &inputs.xi)))
 }

@@ -17,13 +17,20 @@ impl Truth {
     /// For directions that are given.
     #[must_use]
     pub fn of_directions(points: Vec<AnyReference<f64>>, wi: &[Vec3]) -> Self {
-        Self { points, wi: wi.iter().map(|wi| Some(to_f64(*wi))).collect() }
+        Self {
+            points,
+            wi: wi.iter().map(|wi| Some(to_f64(*wi))).collect(),
+        }
     }
 
     /// For samples.
     #[must_use]
     pub fn of_samples(points: Vec<AnyReference<f64>>, xi: &[[f32; 3]]) -> Self {
-        let wi = points.iter().zip(xi).map(|(point, xi)| drawn(point, *xi)).collect();
+        let wi = points
+            .iter()
+            .zip(xi)
+            .map(|(point, xi)| drawn(point, *xi))
+            .collect();
         Self { points, wi }
     }
 

@@ -18,45 +18,80 @@ impl<M: Registered> Of<'_, M> {
             let drawn = |i| self.at_one(Given::Xi(inputs.xi[i]));
             self.show(visitor, "propose_batch", label(level), drawn, || {
                 let gather = self.gather();
-                let call = move |xi: [&[f32]; 3], wi: [&mut [f32]; 3]| gather.propose_batch_at(level, xi, wi);
+                let call = move |xi: [&[f32]; 3], wi: [&mut [f32]; 3]| {
+                    gather.propose_batch_at(level, xi, wi)
+                };
                 Slices::new(DIRECTIONS, &inputs.xi, call).read_by(|wi| proposed(wi.into()))
             });
             let drawn_in_lane = |i| self.at_lane(i, Given::Xi(inputs.xi[i]));
-            self.show(visitor, "propose8-points", label(level), drawn_in_lane, || {
-                let gather = self.gather8(level);
-                Each::new(8, xi_packets(&inputs.xi), move |xi| gather.propose8_at(level, xi))
-            });
+            self.show(
+                visitor,
+                "propose8-points",
+                label(level),
+                drawn_in_lane,
+                || {
+                    let gather = self.gather8(level);
+                    Each::new(8, xi_packets(&inputs.xi), move |xi| {
+                        gather.propose8_at(level, xi)
+                    })
+                },
+            );
             let weighed = |i| self.at_one(Given::Candidate(inputs.wi[i]));
             self.show(visitor, "weigh_batch", label(level), weighed, || {
                 let gather = self.gather();
                 Slices::new(
                     DIRECTIONS,
                     &looked_up(&inputs.wi),
-                    move |[x, y, z, r, g, b, pdf_light]: [&[f32]; 7], [fr, fg, fb, weight]: [&mut [f32]; 4]| {
-                        let candidates = CandidateSlices { wi: [x, y, z], radiance: [r, g, b], pdf_light };
-                        let out = WeightSlices { contribution: [fr, fg, fb], weight };
+                    move |[x, y, z, r, g, b, pdf_light]: [&[f32]; 7],
+                          [fr, fg, fb, weight]: [&mut [f32]; 4]| {
+                        let candidates = CandidateSlices {
+                            wi: [x, y, z],
+                            radiance: [r, g, b],
+                            pdf_light,
+                        };
+                        let out = WeightSlices {
+                            contribution: [fr, fg, fb],
+                            weight,
+                        };
                         gather.weigh_batch_at(level, candidates, COUNTS, Partition::All, out)
                     },
                 )
             });
             let weighed_in_lane = |i| self.at_lane(i, Given::Candidate(inputs.wi[i]));
-            self.show(visitor, "weigh8-points", label(level), weighed_in_lane, || {
-                let (gather, pdf) = (self.gather8(level), f32x8::splat(SKY_PDF));
-                let candidates: Vec<_> = packets(&inputs.wi).into_iter().map(|wi| (wi, sky8(&wi))).collect();
-                Each::new(8, candidates, move |(wi, radiance)| {
-                    gather.weigh8_at(level, wi, radiance, &pdf, COUNTS, Partition::All)
-                })
-            });
+            self.show(
+                visitor,
+                "weigh8-points",
+                label(level),
+                weighed_in_lane,
+                || {
+                    let (gather, pdf) = (self.gather8(level), f32x8::splat(SKY_PDF));
+                    let candidates: Vec<_> = packets(&inputs.wi)
+                        .into_iter()
+                        .map(|wi| (wi, sky8(&wi)))
+                        .collect();
+                    Each::new(8, candidates, move |(wi, radiance)| {
+                        gather.weigh8_at(level, wi, radiance, &pdf, COUNTS, Partition::All)
+                    })
+                },
+            );
             // A pool's candidates: 32 of the BSDF, then 32 of the light.
             let in_pool = |i: usize| {
                 let at = i / 64 * 32 + i % 32;
-                self.at_one(if i % 64 < 32 { Given::Proposal(inputs.xi[at]) } else { Given::Candidate(inputs.wi[at]) })
+                self.at_one(if i % 64 < 32 {
+                    Given::Proposal(inputs.xi[at])
+                } else {
+                    Given::Candidate(inputs.wi[at])
+                })
             };
-            self.show(visitor, "pool-32-32-16", label(level), in_pool, || PoolTask::new(self.gather(), level, inputs));
+            self.show(visitor, "pool-32-32-16", label(level), in_pool, || {
+                PoolTask::new(self.gather(), level, inputs)
+            });
             let kept = |i| self.at_lane(i, Given::Kept);
             self.show(visitor, "reservoir8-4-4", label(level), kept, || {
                 let gather = self.gather8(level);
-                Each::new(STREAMED, Stream::of(inputs), move |stream: &Stream| stream.keep(&gather, level))
+                Each::new(STREAMED, Stream::of(inputs), move |stream: &Stream| {
+                    stream.keep(&gather, level)
+                })
             });
         }
     }

@@ -36,16 +36,21 @@ pub struct Constants {
 impl Constants {
     /// The constants of checked parameters seen from a unit `wo` off the axis.
     #[must_use]
-    #[expect(clippy::cast_possible_truncation, reason = "computed in double precision, kept in single")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "computed in double precision, kept in single"
+    )]
     pub fn new(desc: &HairDesc, wo: [f32; 3]) -> Self {
         let wo = wo.map(f64::from);
         let plane = wo[1].hypot(wo[2]);
         let half_theta_o = 0.5 * wo[0].atan2(plane);
         let beta = [desc.beta_r, desc.beta_tt, desc.beta_trt].map(f64::from);
-        let shift = [desc.alpha_r, desc.alpha_tt, desc.alpha_trt].map(|alpha| half_theta_o - f64::from(alpha));
+        let shift = [desc.alpha_r, desc.alpha_tt, desc.alpha_trt]
+            .map(|alpha| half_theta_o - f64::from(alpha));
         let gamma = [desc.gamma_tt, desc.gamma_g].map(f64::from);
         let (phi_g, intensity_g) = (f64::from(desc.phi_g), f64::from(desc.intensity_g));
-        let colors = [desc.intensity_r, desc.intensity_tt, desc.intensity_trt].map(|color| color.map(f64::from));
+        let colors = [desc.intensity_r, desc.intensity_tt, desc.intensity_trt]
+            .map(|color| color.map(f64::from));
         let mean = colors.map(|color| color.iter().sum::<f64>() / 3.0);
 
         let root = 4.0 * (2.0 * PI).sqrt();
@@ -97,7 +102,12 @@ impl Constants {
             ]
             .map(|x| x as f32),
             bounds: [p[0], p[0] + p[1], p[0] + p[1] + p[2]].map(|x| x as f32),
-            longitude: [by_lobe(theta.map(|t| t[0])), by_lobe(theta.map(|t| t[1])), by_lobe(beta), by_lobe(shift)],
+            longitude: [
+                by_lobe(theta.map(|t| t[0])),
+                by_lobe(theta.map(|t| t[1])),
+                by_lobe(beta),
+                by_lobe(shift),
+            ],
             azimuth: [
                 by_bell(-tt[0], g[0]),
                 by_bell(tt[1], g[1]),
@@ -131,14 +141,20 @@ fn atan<V: Vector>(t: V) -> V {
 #[inline(always)]
 fn tan_half_turn<V: Vector>(x: V) -> [V; 2] {
     let z = (x * x).together();
-    [x * horner(z, [1.000_000_1, -0.112_152_473, 0.001_132_496_5]), horner(z, [1.0, -0.445_485, 0.016_292_556_6])]
+    [
+        x * horner(z, [1.000_000_1, -0.112_152_473, 0.001_132_496_5]),
+        horner(z, [1.0, -0.445_485, 0.016_292_556_6]),
+    ]
 }
 
 /// The same for `|x| <= pi/4`.
 #[inline(always)]
 fn tan_quarter_turn<V: Vector>(x: V) -> [V; 2] {
     let z = (x * x).together();
-    [x * horner(z, [0.999_999_947, -0.095_853_754_7]), horner(z, [1.0, -0.429_188_206, 0.009_735_576_67])]
+    [
+        x * horner(z, [0.999_999_947, -0.095_853_754_7]),
+        horner(z, [1.0, -0.429_188_206, 0.009_735_576_67]),
+    ]
 }
 
 /// `acos(a) / sqrt(1 - a^2)` for `0 <= a <= 1`, to 1.6e-8 in the angle before rounding, numerator and denominator.
@@ -206,20 +222,40 @@ fn lobes<V: Vector, const CAUCHY: bool>(c: &Constants, at: &Angles<V>) -> Lobes<
     let x_trt = half.mul_add(k(c.to_x[2][0]), k(c.to_x[2][1]));
     let y_tt = at.from_side.mul_add(k(c.to_y[0][0]), k(c.to_y[0][1]));
     let y_g = at.from_side.sub_from(k(c.to_y[1][0]), k(c.to_y[1][1]));
-    let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);
+    let (s_r, s_tt, s_trt, t_tt, t_g) = (
+        x_r * x_r,
+        x_tt * x_tt,
+        x_trt * x_trt,
+        y_tt * y_tt,
+        y_g * y_g,
+    );
     let cos = at.cos_half_phi;
 
-    let [q_r, q_tt, q_trt, q_g] =
-        V::reciprocals([one + s_r, (one + s_tt) * (one + t_tt), one + s_trt, one + t_g], CAUCHY);
+    let [q_r, q_tt, q_trt, q_g] = V::reciprocals(
+        [
+            one + s_r,
+            (one + s_tt) * (one + t_tt),
+            one + s_trt,
+            one + t_g,
+        ],
+        CAUCHY,
+    );
     let q_r = cos * q_r;
     let front_g = V::clear(at.from_side.below_zero(), q_g);
     let secondary = front_g.mul_add(k(c.weights[3]), cos * k(c.weights[2]));
-    let density = q_trt.mul_add(secondary, q_tt.mul_add(k(c.weights[1]), q_r * k(c.weights[0])));
+    let density = q_trt.mul_add(
+        secondary,
+        q_tt.mul_add(k(c.weights[1]), q_r * k(c.weights[0])),
+    );
 
     let (f_r, f_tt, f_trt) = if CAUCHY {
         (q_r, q_tt, q_trt * q_g.mul_add(k(c.glint), cos))
     } else {
-        (cos * gaussian(s_r), gaussian(s_tt + t_tt), gaussian(s_trt) * gaussian(t_g).mul_add(k(c.glint), cos))
+        (
+            cos * gaussian(s_r),
+            gaussian(s_tt + t_tt),
+            gaussian(s_trt) * gaussian(t_g).mul_add(k(c.glint), cos),
+        )
     };
     let sum_u = at.sin_theta_i + k(c.sin_theta_o);
     let sum_c = at.cos_theta_i + k(c.cos_theta_o);
@@ -230,7 +266,11 @@ fn lobes<V: Vector, const CAUCHY: bool>(c: &Constants, at: &Angles<V>) -> Lobes<
         f_r.mul_add(k(r[1]), f_tt.mul_add(k(tt[1]), f_trt * k(trt[1]))),
         f_r.mul_add(k(r[2]), f_tt.mul_add(k(tt[2]), f_trt * k(trt[2]))),
     ];
-    Lobes { value, length_sq, density }
+    Lobes {
+        value,
+        length_sq,
+        density,
+    }
 }
 
 /// Value and density of a direction.
@@ -249,8 +289,18 @@ pub(super) fn eval<V: Vector, const CAUCHY: bool>(c: &Constants, [x, y, z]: [V; 
     let root = (far * (inv_cos * k(c.inv_cos_theta_o))).sqrt();
     let from_side = (k(FRAC_PI_4) - atan(tau)).times_sign(dot);
     let cos_half_phi = root * V::select(dot.below_zero(), tau, one);
-    let at = Angles { half_theta_i, sin_theta_i: x, cos_theta_i: cos, from_side, cos_half_phi };
-    let Lobes { value: [r, g, b], length_sq, density } = lobes::<V, CAUCHY>(c, &at);
+    let at = Angles {
+        half_theta_i,
+        sin_theta_i: x,
+        cos_theta_i: cos,
+        from_side,
+        cos_half_phi,
+    };
+    let Lobes {
+        value: [r, g, b],
+        length_sq,
+        density,
+    } = lobes::<V, CAUCHY>(c, &at);
     let by = one.over(length_sq);
     [r * by, g * by, b * by, density * inv_cos]
 }
@@ -273,7 +323,10 @@ pub(super) fn sample<V: Vector>(c: &Constants, xi: [V; 3]) -> [V; 7] {
 
     let u = (xi[1] - half) * V::look_up(&c.longitude[0], lobe);
     let x = invert(u, V::look_up(&c.longitude[1], lobe));
-    let half_theta_i = x.mul_sub(V::look_up(&c.longitude[2], lobe), V::look_up(&c.longitude[3], lobe));
+    let half_theta_i = x.mul_sub(
+        V::look_up(&c.longitude[2], lobe),
+        V::look_up(&c.longitude[3], lobe),
+    );
     let [n, d] = tan_quarter_turn(half_theta_i);
     let n_sq = n * n;
     let by = two.over(d.mul_add(d, n_sq));
@@ -283,7 +336,10 @@ pub(super) fn sample<V: Vector>(c: &Constants, xi: [V; 3]) -> [V; 7] {
     let across = side.abs();
     let u = (half - across) * V::look_up_half(&c.azimuth[0], lobe);
     let y = invert(u, V::look_up_half(&c.azimuth[1], lobe));
-    let psi = y.mul_add(V::look_up_half(&c.azimuth[2], lobe), V::look_up_half(&c.azimuth[3], lobe));
+    let psi = y.mul_add(
+        V::look_up_half(&c.azimuth[2], lobe),
+        V::look_up_half(&c.azimuth[3], lobe),
+    );
     let [n, d] = tan_half_turn(psi);
     // R and TRT-g: sin(phi / 2) is `across`.
     let cosine = V::rest_of_square(across);
@@ -296,7 +352,8 @@ pub(super) fn sample<V: Vector>(c: &Constants, xi: [V; 3]) -> [V; 7] {
     let sin_phi = sin_abs.times_sign(V::negate(is_bell, side));
     let cos_phi = V::negate(is_tt, n_sq.sub_from(by, one));
     let root = by.sqrt();
-    let (cos_half_phi, sin_half_phi) = (V::select(is_tt, n, d) * root, V::select(is_tt, d, n) * root);
+    let (cos_half_phi, sin_half_phi) =
+        (V::select(is_tt, n, d) * root, V::select(is_tt, d, n) * root);
     // Half of |phi| for the glints, of pi - |phi| for the others.
     let from_side = V::negate(is_glint, psi - k(FRAC_PI_4));
 
@@ -314,7 +371,11 @@ pub(super) fn sample<V: Vector>(c: &Constants, xi: [V; 3]) -> [V; 7] {
         from_side: from_side - rotation,
         cos_half_phi: rotation.sub_from(sin_half_phi, cos_half_phi).max(k(0.0)),
     };
-    let Lobes { value: [r, g, b], length_sq, density } = lobes::<V, false>(c, &at);
+    let Lobes {
+        value: [r, g, b],
+        length_sq,
+        density,
+    } = lobes::<V, false>(c, &at);
     let by = (cos_theta_i * cos_theta_i).over(length_sq * density);
     [sin_theta_i, v, w, density * inv_cos, r * by, g * by, b * by]
 }

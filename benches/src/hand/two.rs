@@ -66,7 +66,12 @@ impl<V: Vector> Vector for Two<V> {
     fn reciprocals([a, b, c, d]: [Self; 4], few: bool) -> [Self; 4] {
         let first = V::reciprocals([a.0, b.0, c.0, d.0], few);
         let second = V::reciprocals([a.1, b.1, c.1, d.1], few);
-        [Self(first[0], second[0]), Self(first[1], second[1]), Self(first[2], second[2]), Self(first[3], second[3])]
+        [
+            Self(first[0], second[0]),
+            Self(first[1], second[1]),
+            Self(first[2], second[2]),
+            Self(first[3], second[3]),
+        ]
     }
     #[inline(always)]
     fn rest_of_square(x: Self) -> Self {
@@ -91,7 +96,10 @@ impl<V: Vector> Vector for Two<V> {
     }
     #[inline(always)]
     fn search(x: Self, [a, b, c]: [Self; 3]) -> Self::Index {
-        (V::search(x.0, [a.0, b.0, c.0]), V::search(x.1, [a.1, b.1, c.1]))
+        (
+            V::search(x.0, [a.0, b.0, c.0]),
+            V::search(x.1, [a.1, b.1, c.1]),
+        )
     }
     #[inline(always)]
     fn is_tt(index: Self::Index) -> Self::Mask {
@@ -107,6 +115,9 @@ impl<V: Vector> Vector for Two<V> {
     }
     #[inline(always)]
     fn look_up_half(table: &Table, index: Self::Index) -> Self {
-        Self(V::look_up_half(table, index.0), V::look_up_half(table, index.1))
+        Self(
+            V::look_up_half(table, index.0),
+            V::look_up_half(table, index.1),
+        )
     }
 }

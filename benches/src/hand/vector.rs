@@ -1,6 +1,9 @@
 //! The intrinsics of three instruction sets under one name each: no more than the hand-written kernels use.
 
-#![allow(unsafe_code, reason = "intrinsics, in functions that are called below a check of the CPU alone")]
+#![allow(
+    unsafe_code,
+    reason = "intrinsics, in functions that are called below a check of the CPU alone"
+)]
 
 use core::arch::asm;
 use core::arch::x86_64::*;
@@ -16,7 +19,10 @@ pub(super) struct Table {
 impl Table {
     pub(super) fn new(entries: [f32; 4]) -> Self {
         let step = |i: usize| f32::from_bits(entries[i].to_bits() ^ entries[i - 1].to_bits());
-        Self { entries, steps: [entries[0], step(1), step(2), step(3)] }
+        Self {
+            entries,
+            steps: [entries[0], step(1), step(2), step(3)],
+        }
     }
 }
 

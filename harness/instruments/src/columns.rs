@@ -49,36 +49,56 @@ pub struct Columns(Vec<(Cow<'static, str>, ColumnValues)>);
 impl Columns {
     fn with(mut self, name: impl Into<Cow<'static, str>>, values: ColumnValues) -> Self {
         let name = name.into();
-        debug_assert!(self.0.iter().all(|(_, first)| first.len() == values.len()), "{name} has another length");
+        debug_assert!(
+            self.0.iter().all(|(_, first)| first.len() == values.len()),
+            "{name} has another length"
+        );
         self.0.push((name, values));
         self
     }
 
     /// Adds a column of numbers.
     #[must_use]
-    pub fn number(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = f64>) -> Self {
+    pub fn number(
+        self,
+        name: impl Into<Cow<'static, str>>,
+        values: impl IntoIterator<Item = f64>,
+    ) -> Self {
         self.with(name, ColumnValues::Number(values.into_iter().collect()))
     }
 
     /// Adds a column of figures, and one of their standard errors, whose name ends in `_se`.
     #[must_use]
     pub fn estimate(self, name: &str, values: impl IntoIterator<Item = Estimate>) -> Self {
-        let (figures, errors): (Vec<f64>, Vec<f64>) =
-            values.into_iter().map(|of| (of.value, of.standard_error)).unzip();
-        self.number(name.to_owned(), figures).number(format!("{name}_se"), errors)
+        let (figures, errors): (Vec<f64>, Vec<f64>) = values
+            .into_iter()
+            .map(|of| (of.value, of.standard_error))
+            .unzip();
+        self.number(name.to_owned(), figures)
+            .number(format!("{name}_se"), errors)
     }
 
     /// Adds a column of counts.
     #[must_use]
     pub fn whole(self, name: &'static str, values: impl IntoIterator<Item = usize>) -> Self {
         let count = |value: usize| i32::try_from(value).unwrap_or(i32::MAX);
-        self.with(name, ColumnValues::Whole(values.into_iter().map(count).collect()))
+        self.with(
+            name,
+            ColumnValues::Whole(values.into_iter().map(count).collect()),
+        )
     }
 
     /// Adds a column of words.
     #[must_use]
-    pub fn text<S: Into<Cow<'static, str>>>(self, name: &'static str, values: impl IntoIterator<Item = S>) -> Self {
-        self.with(name, ColumnValues::Text(values.into_iter().map(Into::into).collect()))
+    pub fn text<S: Into<Cow<'static, str>>>(
+        self,
+        name: &'static str,
+        values: impl IntoIterator<Item = S>,
+    ) -> Self {
+        self.with(
+            name,
+            ColumnValues::Text(values.into_iter().map(Into::into).collect()),
+        )
     }
 
     /// Writes it as CSV (RFC 4180, lines ended as on Unix), names first.
@@ -90,7 +110,8 @@ impl Columns {
         let names: Vec<&str> = self.0.iter().map(|(name, _)| &**name).collect();
         writeln!(out, "{}", names.join(","))?;
         for row in 0..self.0.first().map_or(0, |(_, values)| values.len()) {
-            let fields: Vec<Cow<'_, str>> = self.0.iter().map(|(_, values)| values.field(row)).collect();
+            let fields: Vec<Cow<'_, str>> =
+                self.0.iter().map(|(_, values)| values.field(row)).collect();
             writeln!(out, "{}", fields.join(","))?;
         }
         Ok(())
@@ -123,11 +144,16 @@ mod tests {
     fn parquet_is_the_same_bytes_each_time() {
         let bytes = || {
             let mut out = Vec::new();
-            example().write_parquet(vec![("a".to_owned(), "b".to_owned())], &mut out).expect("written");
+            example()
+                .write_parquet(vec![("a".to_owned(), "b".to_owned())], &mut out)
+                .expect("written");
             out
         };
         let first = bytes();
-        assert!(first.starts_with(b"PAR1") && first.ends_with(b"PAR1"), "the format's mark");
+        assert!(
+            first.starts_with(b"PAR1") && first.ends_with(b"PAR1"),
+            "the format's mark"
+        );
         assert_eq!(first, bytes());
     }
 }

@@ -36,9 +36,16 @@ pub fn to_f64(v: Vec3) -> [f64; 3] {
 /// The components are formed in `f64` and rounded, so that those of a direction near the axis keep their digits.
 #[inline]
 #[must_use]
-#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding to f32 is the purpose"
+)]
 pub fn direction(sin_theta: f64, cos_theta: f64, phi: f64) -> Vec3 {
-    Vec3::new(sin_theta as f32, (cos_theta * phi.cos()) as f32, (cos_theta * phi.sin()) as f32)
+    Vec3::new(
+        sin_theta as f32,
+        (cos_theta * phi.cos()) as f32,
+        (cos_theta * phi.sin()) as f32,
+    )
 }
 
 /// A direction uniform on the sphere.

@@ -49,13 +49,20 @@ pub enum Error {
 impl Error {
     /// A file or folder of results that cannot be written: for `map_err`.
     pub fn output(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
-        |source| Self::Output { path: path.to_owned(), source }
+        |source| Self::Output {
+            path: path.to_owned(),
+            source,
+        }
     }
 
     /// The exit code: 1 for a failed comparison or check, 2 for bad usage or input.
     #[must_use]
     pub const fn exit_code(&self) -> u8 {
-        if matches!(self, Self::Failed(_) | Self::Params(_)) { 1 } else { 2 }
+        if matches!(self, Self::Failed(_) | Self::Params(_)) {
+            1
+        } else {
+            2
+        }
     }
 }
 

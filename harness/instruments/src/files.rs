@@ -11,7 +11,10 @@ use std::path::{Path, PathBuf};
 /// # Errors
 ///
 /// [`Error::Output`] with the file's own name.
-pub fn whole(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<(), Error> {
+pub fn whole(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), Error> {
     let unfinished = unfinished(path);
     let attempt = || {
         let mut out = BufWriter::new(File::create(&unfinished)?);
@@ -80,9 +83,18 @@ mod tests {
             Err(io::Error::from(io::ErrorKind::StorageFull))
         };
         let error = whole(&path, full).expect_err("full").to_string();
-        assert!(error.contains("figures.json") && !error.contains(".new"), "{error}");
-        assert_eq!((fs::read(&path).expect("read"), names()), (b"before".to_vec(), 1));
+        assert!(
+            error.contains("figures.json") && !error.contains(".new"),
+            "{error}"
+        );
+        assert_eq!(
+            (fs::read(&path).expect("read"), names()),
+            (b"before".to_vec(), 1)
+        );
         assert!(writable(dir.path()).is_err(), "a folder");
-        assert!(writable(&dir.path().join("none/file")).is_err(), "no folder");
+        assert!(
+            writable(&dir.path().join("none/file")).is_err(),
+            "no folder"
+        );
     }
 }

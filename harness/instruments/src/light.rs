@@ -98,7 +98,10 @@ pub trait Light: Sync + Send {
 /// The nearest number of single precision.
 #[inline]
 #[must_use]
-#[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding to f32 is the purpose"
+)]
 pub const fn rounded(x: f64) -> f32 {
     x as f32
 }

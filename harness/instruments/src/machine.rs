@@ -72,9 +72,16 @@ impl Machine {
     #[must_use]
     pub fn summary(&self) -> String {
         let commit = self.commit.get(..12).unwrap_or(self.commit);
-        let dirty = if self.dirty == Some(true) { "+changes" } else { "" };
-        let features =
-            if self.target_features.is_empty() { "baseline".to_owned() } else { self.target_features.join("+") };
+        let dirty = if self.dirty == Some(true) {
+            "+changes"
+        } else {
+            ""
+        };
+        let features = if self.target_features.is_empty() {
+            "baseline".to_owned()
+        } else {
+            self.target_features.join("+")
+        };
         format!(
             "{}, {} logical cores, {} {}, compiled for {features}, {}, commit {commit}{dirty}",
             self.cpu, self.logical_cores, self.os, self.arch, self.rustc
@@ -92,7 +99,16 @@ fn cpu_name() -> String {
 
 /// The first name a `cpuinfo` text gives: "model name" on x86, others on ARM, POWER and RISC-V.
 fn name_in_cpuinfo(text: &str) -> Option<String> {
-    ["model name", "Model", "Hardware", "cpu", "uarch", "Processor"].iter().find_map(|key| {
+    [
+        "model name",
+        "Model",
+        "Hardware",
+        "cpu",
+        "uarch",
+        "Processor",
+    ]
+    .iter()
+    .find_map(|key| {
         text.lines().find_map(|line| {
             let (name, value) = line.split_once(':')?;
             let value = value.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -103,10 +119,15 @@ fn name_in_cpuinfo(text: &str) -> Option<String> {
 
 /// Compiled target features that may affect the speed of the kernels.
 fn known_features(compiled: &'static str) -> Vec<&'static str> {
-    const KNOWN: [&str; 12] =
-        ["sse2", "sse4.1", "sse4.2", "avx", "avx2", "fma", "bmi2", "avx512f", "avx512vl", "neon", "sve", "simd128"];
+    const KNOWN: [&str; 12] = [
+        "sse2", "sse4.1", "sse4.2", "avx", "avx2", "fma", "bmi2", "avx512f", "avx512vl", "neon",
+        "sve", "simd128",
+    ];
     let compiled: Vec<&str> = compiled.split(',').collect();
-    KNOWN.into_iter().filter(|name| compiled.contains(name)).collect()
+    KNOWN
+        .into_iter()
+        .filter(|name| compiled.contains(name))
+        .collect()
 }
 
 #[cfg(test)]
@@ -121,11 +142,16 @@ mod tests {
 
     #[test]
     fn cpu_names_are_found_in_the_dialects_of_cpuinfo() {
-        let x86 =
-            "processor\t: 0\nvendor_id\t: X\nmodel\t\t: 85\nmodel name\t: Some(R)   CPU @ 2.70GHz\nflags\t: a b\n";
-        assert_eq!(name_in_cpuinfo(x86).as_deref(), Some("Some(R) CPU @ 2.70GHz"));
+        let x86 = "processor\t: 0\nvendor_id\t: X\nmodel\t\t: 85\nmodel name\t: Some(R)   CPU @ 2.70GHz\nflags\t: a b\n";
+        assert_eq!(
+            name_in_cpuinfo(x86).as_deref(),
+            Some("Some(R) CPU @ 2.70GHz")
+        );
         let arm = "processor\t: 0\nBogoMIPS\t: 108.00\nHardware\t: BCM2711\nModel\t: Raspberry Pi 4 Model B\n";
-        assert_eq!(name_in_cpuinfo(arm).as_deref(), Some("Raspberry Pi 4 Model B"));
+        assert_eq!(
+            name_in_cpuinfo(arm).as_deref(),
+            Some("Raspberry Pi 4 Model B")
+        );
         assert_eq!(
             name_in_cpuinfo("cpu\t\t: POWER9, altivec supported\n").as_deref(),
             Some("POWER9, altivec supported")
@@ -138,16 +164,35 @@ mod tests {
     fn the_current_machine_is_complete() {
         let m = current();
         assert!(!m.cpu.is_empty() && !m.os.is_empty() && !m.arch.is_empty() && m.logical_cores > 0);
-        assert_eq!((m.dirty, m.target_features.as_slice()), (Some(false), ["sse2", "avx2"].as_slice()));
+        assert_eq!(
+            (m.dirty, m.target_features.as_slice()),
+            (Some(false), ["sse2", "avx2"].as_slice())
+        );
         let summary = m.summary();
-        assert!(summary.contains(&m.cpu) && summary.ends_with("rustc 1.89.0, commit 0123456789ab"), "{summary}");
-        assert_eq!(Machine::of_build([COMMIT, "unknown", "", "", ""]).dirty, None);
+        assert!(
+            summary.contains(&m.cpu) && summary.ends_with("rustc 1.89.0, commit 0123456789ab"),
+            "{summary}"
+        );
+        assert_eq!(
+            Machine::of_build([COMMIT, "unknown", "", "", ""]).dirty,
+            None
+        );
     }
 
     #[test]
     fn it_serialises() {
         let json = serde_json::to_value(current()).expect("plain data");
-        for key in ["cpu", "logical_cores", "os", "arch", "rustc", "opt_level", "commit", "dirty", "target_features"] {
+        for key in [
+            "cpu",
+            "logical_cores",
+            "os",
+            "arch",
+            "rustc",
+            "opt_level",
+            "commit",
+            "dirty",
+            "target_features",
+        ] {
             assert!(json.get(key).is_some(), "{key}");
         }
     }
@@ -157,7 +202,11 @@ mod tests {
         let mut m = current();
         m.dirty = Some(true);
         m.target_features.clear();
-        assert!(m.summary().ends_with("commit 0123456789ab+changes"), "{}", m.summary());
+        assert!(
+            m.summary().ends_with("commit 0123456789ab+changes"),
+            "{}",
+            m.summary()
+        );
         assert!(m.summary().contains("compiled for baseline"));
     }
 }

@@ -53,7 +53,11 @@ pub fn well_formed(markup: &str) -> Result<(), String> {
         if tag.contains('<') || !tag.matches('"').count().is_multiple_of(2) {
             return Err(format!("a broken tag {tag:?}"));
         }
-        let name = tag.trim_start_matches('/').split([' ', '/', '\n']).next().unwrap_or_default();
+        let name = tag
+            .trim_start_matches('/')
+            .split([' ', '/', '\n'])
+            .next()
+            .unwrap_or_default();
         if tag.starts_with('!') || tag.ends_with('/') || VOID.contains(&name) {
             continue;
         }
@@ -66,7 +70,11 @@ pub fn well_formed(markup: &str) -> Result<(), String> {
     if rest.contains('>') {
         return Err(format!("a stray '>' in {rest:?}"));
     }
-    if open.is_empty() { Ok(()) } else { Err(format!("left open: {open:?}")) }
+    if open.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("left open: {open:?}"))
+    }
 }
 
 #[cfg(test)]
@@ -77,16 +85,36 @@ mod tests {
     fn hostile_text_is_inert() {
         let hostile = "</svg><script>alert('x' & \"y\")</script>\u{0}\u{1b}[31m]]>\nend";
         let safe = escape(hostile);
-        assert!(!safe.contains(['<', '>', '"', '\'', '\u{0}', '\u{1b}']), "{safe}");
-        assert!(safe.ends_with(" end") && safe.starts_with("&lt;/svg&gt;&lt;script&gt;"), "{safe}");
+        assert!(
+            !safe.contains(['<', '>', '"', '\'', '\u{0}', '\u{1b}']),
+            "{safe}"
+        );
+        assert!(
+            safe.ends_with(" end") && safe.starts_with("&lt;/svg&gt;&lt;script&gt;"),
+            "{safe}"
+        );
         assert_eq!(escape("θ ± 1°"), "θ ± 1°", "ordinary text stays as it is");
-        assert_eq!(escape("&lt;"), "&amp;lt;", "nothing is taken for escaped already");
+        assert_eq!(
+            escape("&lt;"),
+            "&amp;lt;",
+            "nothing is taken for escaped already"
+        );
     }
 
     #[test]
     fn the_check_sees_faults() {
-        assert!(well_formed("<a><b x=\"1\"/>text<br></a>").is_ok(), "this nests");
-        for bad in ["<a>", "</a>", "<a><b></a></b>", "<a x=\"1>", "a > b", "<a <b></b>"] {
+        assert!(
+            well_formed("<a><b x=\"1\"/>text<br></a>").is_ok(),
+            "this nests"
+        );
+        for bad in [
+            "<a>",
+            "</a>",
+            "<a><b></a></b>",
+            "<a x=\"1>",
+            "a > b",
+            "<a <b></b>",
+        ] {
             assert!(well_formed(bad).is_err(), "{bad} does not nest");
         }
     }

@@ -8,7 +8,8 @@ use std::sync::OnceLock;
 /// Progress bar on standard error; nothing where that is no terminal.
 #[must_use]
 pub fn bar(steps: u64, template: &str) -> ProgressBar {
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style =
+        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(steps).with_style(style)
 }
 
@@ -23,7 +24,11 @@ pub fn share_bar(template: &str) -> ProgressBar {
 
 /// Moves a [`share_bar`] to the share that is done, 0 to 1.
 pub fn show_share(bar: &ProgressBar, done: f64) {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1000")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "0 to 1000"
+    )]
     bar.set_position((done.clamp(0.0, 1.0) * STEPS as f64) as u64);
 }
 
@@ -38,7 +43,11 @@ pub struct Progress<'a> {
 impl<'a> Progress<'a> {
     /// Workers call `report` with the number of cells that are done, and `total`, in no order.
     pub const fn new(total: usize, report: &'a (dyn Fn(usize, usize) + Sync)) -> Self {
-        Self { done: AtomicUsize::new(0), total, report }
+        Self {
+            done: AtomicUsize::new(0),
+            total,
+            report,
+        }
     }
 
     /// Computes `f` on every cell, on all cores; results keep the order of the cells.
@@ -47,16 +56,22 @@ impl<'a> Progress<'a> {
         self.each(cells.len(), &|index| {
             results[index].get_or_init(|| f(&cells[index]));
         });
-        results.into_iter().filter_map(OnceLock::into_inner).collect()
+        results
+            .into_iter()
+            .filter_map(OnceLock::into_inner)
+            .collect()
     }
 
     /// Does the work of every cell by its place: compiled once for all kinds of cells.
     fn each(&self, count: usize, work: &(dyn Fn(usize) + Sync)) {
         // One cell at a time: they differ in length by a factor of a hundred.
-        (0..count).into_par_iter().with_max_len(1).for_each(|index| {
-            work(index);
-            let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
-            (self.report)(done, self.total);
-        });
+        (0..count)
+            .into_par_iter()
+            .with_max_len(1)
+            .for_each(|index| {
+                work(index);
+                let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+                (self.report)(done, self.total);
+            });
     }
 }

@@ -73,14 +73,21 @@ impl Drawing {
     /// A drawing with its name and its caption.
     #[must_use]
     pub fn new(name: impl Into<String>, svg: String, caption: impl Into<String>) -> Self {
-        Self { name: name.into(), svg, caption: caption.into() }
+        Self {
+            name: name.into(),
+            svg,
+            caption: caption.into(),
+        }
     }
 }
 
 impl Section {
     /// A section without content.
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), blocks: Vec::new() }
+        Self {
+            title: title.into(),
+            blocks: Vec::new(),
+        }
     }
 
     /// Adds a heading within the section.
@@ -97,7 +104,10 @@ impl Section {
     pub fn tables(self, tables: impl IntoIterator<Item = Table>) -> Self {
         tables.into_iter().fold(self, |section, table| {
             let title = escape(table.title());
-            section.html(format!("<details><summary>{title}</summary>\n{}</details>\n", table.to_html()))
+            section.html(format!(
+                "<details><summary>{title}</summary>\n{}</details>\n",
+                table.to_html()
+            ))
         })
     }
 
@@ -133,9 +143,15 @@ impl Report {
         };
         let summary = self.summary.as_ref().map(&mut figure).unwrap_or_default();
         let verdicts = definitions(&self.verdicts);
-        let mut findings: String = self.findings.iter().map(|text| format!("<li>{}</li>\n", answer(text))).collect();
+        let mut findings: String = self
+            .findings
+            .iter()
+            .map(|text| format!("<li>{}</li>\n", answer(text)))
+            .collect();
         if !findings.is_empty() {
-            findings = format!("<section id=\"findings\">\n<h2>In figures</h2>\n<ul>\n{findings}</ul>\n</section>\n");
+            findings = format!(
+                "<section id=\"findings\">\n<h2>In figures</h2>\n<ul>\n{findings}</ul>\n</section>\n"
+            );
         }
         let (mut contents, mut sections) = (String::new(), String::new());
         for (i, section) in (1..).zip(&self.sections) {
@@ -164,7 +180,13 @@ impl Report {
     /// The figures in their order.
     fn figures(&self) -> impl Iterator<Item = &Drawing> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
-        let figures = blocks.filter_map(|block| if let Block::Figure(figure) = block { Some(figure) } else { None });
+        let figures = blocks.filter_map(|block| {
+            if let Block::Figure(figure) = block {
+                Some(figure)
+            } else {
+                None
+            }
+        });
         self.summary.iter().chain(figures)
     }
 
@@ -175,25 +197,39 @@ impl Report {
     ///
     /// [`Error::Output`] for one that cannot be written.
     pub fn write(&self, dir: &Path, name: &str) -> Result<(), Error> {
-        whole(&dir.join("report.html"), |out| out.write_all(self.html().as_bytes()))?;
+        whole(&dir.join("report.html"), |out| {
+            out.write_all(self.html().as_bytes())
+        })?;
         let folder = dir.join("figures");
         fs::create_dir_all(&folder).map_err(Error::output(&folder))?;
         let figures: Vec<(usize, &Drawing)> = (1..).zip(self.figures()).collect();
         figures.par_iter().try_for_each(|(number, figure)| {
             let stem = format!("{name}-{number:02}-{}", figure.name);
             let stem = stem.trim_end_matches('-');
-            whole(&folder.join(format!("{stem}.svg")), |out| out.write_all(figure.svg.as_bytes()))?;
+            whole(&folder.join(format!("{stem}.svg")), |out| {
+                out.write_all(figure.svg.as_bytes())
+            })?;
             #[cfg(feature = "png")]
-            whole(&folder.join(format!("{stem}.png")), |out| out.write_all(&png(&figure.svg)?))?;
+            whole(&folder.join(format!("{stem}.png")), |out| {
+                out.write_all(&png(&figure.svg)?)
+            })?;
             Ok(())
         })
     }
 }
 
 fn definitions<S: AsRef<str>>(pairs: &[[S; 2]]) -> String {
-    let item =
-        |[name, text]: &[S; 2]| format!("<dt>{}</dt><dd>{}</dd>\n", inline(name.as_ref()), inline(text.as_ref()));
-    format!("<dl>\n{}</dl>\n", pairs.iter().map(item).collect::<String>())
+    let item = |[name, text]: &[S; 2]| {
+        format!(
+            "<dt>{}</dt><dd>{}</dd>\n",
+            inline(name.as_ref()),
+            inline(text.as_ref())
+        )
+    };
+    format!(
+        "<dl>\n{}</dl>\n",
+        pairs.iter().map(item).collect::<String>()
+    )
 }
 
 /// A finding: the question that it begins with, if any, stands out.
@@ -211,11 +247,15 @@ fn inline(text: &str) -> String {
     let mut html = String::new();
     let mut rest = text;
     while let Some((before, after)) = rest.split_once('`') {
-        let Some((code, after)) = after.split_once('`') else { break };
+        let Some((code, after)) = after.split_once('`') else {
+            break;
+        };
         html.push_str(&format!("{}<code>{}</code>", escape(before), escape(code)));
         rest = after;
     }
-    (html + &escape(rest)).replace(" %", "\u{a0}%").replace(" ns", "\u{a0}ns")
+    (html + &escape(rest))
+        .replace(" %", "\u{a0}%")
+        .replace(" ns", "\u{a0}ns")
 }
 
 #[cfg(test)]
@@ -227,11 +267,23 @@ mod tests {
     const HOSTILE: &str = "`<img src=x onerror=alert(1)>`\"'</style></section>&amp;`\u{0}";
 
     fn full(text: &str) -> Report {
-        let svg = || lines(text, Axis::linear(text), Axis::log(text), &[Series::curve(text, [(1.0, 2.0)])]);
+        let svg = || {
+            lines(
+                text,
+                Axis::linear(text),
+                Axis::log(text),
+                &[Series::curve(text, [(1.0, 2.0)])],
+            )
+        };
         let mut table = Table::new(text).texts([text]).numbers([text]).note(text);
         table.push([text, text]);
-        let section = Section::new(text).heading(text).paragraph(text).tables([table]).facts(&[[text, text]]);
-        let section = section.figures([Drawing::new("", svg(), text), Drawing::new("", svg(), text)]);
+        let section = Section::new(text)
+            .heading(text)
+            .paragraph(text)
+            .tables([table])
+            .facts(&[[text, text]]);
+        let section =
+            section.figures([Drawing::new("", svg(), text), Drawing::new("", svg(), text)]);
         let text = text.to_owned();
         Report {
             title: text.clone(),
@@ -247,9 +299,15 @@ mod tests {
     fn hostile_text_is_inert() {
         let html = full(HOSTILE).html();
         well_formed(&html).expect("the page nests");
-        assert!(!html.contains("<img") && !html.contains('\u{0}'), "hostile text got through");
+        assert!(
+            !html.contains("<img") && !html.contains('\u{0}'),
+            "hostile text got through"
+        );
         assert_eq!(html.matches("</style>").count(), 1, "the style ends once");
-        assert!(html.contains("<code>&lt;img src=x onerror=alert(1)&gt;</code>"), "code is set as code");
+        assert!(
+            html.contains("<code>&lt;img src=x onerror=alert(1)&gt;</code>"),
+            "code is set as code"
+        );
     }
 
     #[test]
@@ -260,13 +318,23 @@ mod tests {
         }
         let links = html.replace("http://www.w3.org/2000/svg", "");
         assert!(!links.contains("http"), "no addresses");
-        let mut ids: Vec<&str> = html.split(" id=\"").skip(1).filter_map(|t| t.split('"').next()).collect();
+        let mut ids: Vec<&str> = html
+            .split(" id=\"")
+            .skip(1)
+            .filter_map(|t| t.split('"').next())
+            .collect();
         let all = ids.len();
         ids.sort_unstable();
         ids.dedup();
         assert_eq!(ids.len(), all, "an id stands twice");
-        let anchors = html.split("href=\"#").skip(1).filter_map(|t| t.split('"').next());
-        assert!(anchors.clone().count() == 2 && anchors.into_iter().all(|a| ids.contains(&a)), "links have ends");
+        let anchors = html
+            .split("href=\"#")
+            .skip(1)
+            .filter_map(|t| t.split('"').next());
+        assert!(
+            anchors.clone().count() == 2 && anchors.into_iter().all(|a| ids.contains(&a)),
+            "links have ends"
+        );
     }
 
     #[test]
@@ -274,14 +342,21 @@ mod tests {
         let dir = tempfile::TempDir::new().expect("a folder");
         let mut report = full("text");
         let svg = lines("t", Axis::linear("x"), Axis::linear("y"), &[]);
-        report.sections.push(Section::new("s").figures([Drawing::new("last", svg.clone(), "c")]));
+        report
+            .sections
+            .push(Section::new("s").figures([Drawing::new("last", svg.clone(), "c")]));
         report.write(dir.path(), "example").expect("written");
         let read = |name: &str| fs::read(dir.path().join(name)).expect("there");
         assert_eq!(read("report.html"), report.html().as_bytes());
         assert_eq!(read("figures/example-04-last.svg"), svg.as_bytes());
         let has_png = cfg!(feature = "png");
-        assert!(!has_png || read("figures/example-02.png").starts_with(b"\x89PNG"), "a PNG beside each SVG");
-        let files = fs::read_dir(dir.path().join("figures")).expect("a folder").count();
+        assert!(
+            !has_png || read("figures/example-02.png").starts_with(b"\x89PNG"),
+            "a PNG beside each SVG"
+        );
+        let files = fs::read_dir(dir.path().join("figures"))
+            .expect("a folder")
+            .count();
         assert_eq!(files, if has_png { 8 } else { 4 });
     }
 

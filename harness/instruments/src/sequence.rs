@@ -57,7 +57,10 @@ impl<S: XiSource + ?Sized> XiSource for Box<S> {
 #[inline]
 #[must_use]
 pub fn to_unit_f32(x: f64) -> f32 {
-    #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose; the clamp follows")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "rounding to f32 is the purpose; the clamp follows"
+    )]
     let y = x as f32;
     // NaN fails the comparison and becomes 0.
     if y > 0.0 { y.min(MAX_XI_F32) } else { 0.0 }
@@ -179,7 +182,13 @@ impl SequenceKind {
     /// # Panics
     /// For `Halton` with more dimensions than [`HALTON_BASES`] has.
     #[must_use]
-    pub fn source(self, seed: u64, stream: u64, dims: usize, samples: usize) -> Box<dyn XiSource + Send> {
+    pub fn source(
+        self,
+        seed: u64,
+        stream: u64,
+        dims: usize,
+        samples: usize,
+    ) -> Box<dyn XiSource + Send> {
         match self {
             Self::Independent => Box::new(Independent::new(seed, stream)),
             Self::Halton => Box::new(Halton::new(dims, seed, stream)),
@@ -196,7 +205,13 @@ mod tests {
     #[test]
     fn f32_never_reaches_one() {
         assert_eq!(MAX_XI_F32, 16_777_215.0 / 16_777_216.0);
-        for x in [1.0 - f64::EPSILON / 2.0, 1.0 - 2.0_f64.powi(-26), 1.0, 2.0, f64::INFINITY] {
+        for x in [
+            1.0 - f64::EPSILON / 2.0,
+            1.0 - 2.0_f64.powi(-26),
+            1.0,
+            2.0,
+            f64::INFINITY,
+        ] {
             assert_eq!(to_unit_f32(x), MAX_XI_F32, "x {x}");
         }
         assert_eq!(to_unit_f32(-1.0), 0.0);
@@ -231,14 +246,19 @@ mod tests {
         for _ in 0..70_000 {
             counts[xi.next_below(7)] += 1;
         }
-        assert!(chi_square(&counts, &[10_000.0; 7], 5.0).p_value > 0.01, "{counts:?}");
+        assert!(
+            chi_square(&counts, &[10_000.0; 7], 5.0).p_value > 0.01,
+            "{counts:?}"
+        );
         assert_eq!(xi.next_below(0), 0);
         assert_eq!(xi.next_below(1), 0);
     }
 
     #[test]
     fn stream_ids_tell_indices_apart() {
-        let mut ids: Vec<u64> = (0..50).flat_map(|a| (0..50).map(move |b| stream_id(&[a, b]))).collect();
+        let mut ids: Vec<u64> = (0..50)
+            .flat_map(|a| (0..50).map(move |b| stream_id(&[a, b])))
+            .collect();
         ids.extend((0..50).map(|a| stream_id(&[a])));
         let n = ids.len();
         ids.sort_unstable();

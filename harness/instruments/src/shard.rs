@@ -50,7 +50,12 @@ impl FromStr for Shard {
     fn from_str(text: &str) -> Result<Self, String> {
         let shape = || format!("must be I/N with whole numbers, such as 2/8, got \"{text}\"");
         let (index, of) = text.split_once('/').ok_or_else(shape)?;
-        let digits = |part: &str| part.bytes().all(|b| b.is_ascii_digit()).then(|| part.parse().ok()).flatten();
+        let digits = |part: &str| {
+            part.bytes()
+                .all(|b| b.is_ascii_digit())
+                .then(|| part.parse().ok())
+                .flatten()
+        };
         let (index, of): (usize, usize) = digits(index).zip(digits(of)).ok_or_else(shape)?;
         if index == 0 || index > of {
             return Err(format!("I must be from 1 to N, got \"{text}\""));
@@ -66,7 +71,10 @@ mod tests {
     #[test]
     fn shards_are_read_as_they_are_written() {
         for text in ["1/1", "3/8", "8/8"] {
-            assert_eq!(text.parse::<Shard>().map(|shard| shard.to_string()), Ok(text.to_owned()));
+            assert_eq!(
+                text.parse::<Shard>().map(|shard| shard.to_string()),
+                Ok(text.to_owned())
+            );
         }
         for text in [
             "5/4",
@@ -92,7 +100,11 @@ mod tests {
     fn every_cell_belongs_to_one_shard() {
         for of in [1, 3, 7, 60] {
             for cell in 0..48 {
-                assert_eq!(Shard::all(of).filter(|shard| shard.owns(cell)).count(), 1, "cell {cell} of {of} shards");
+                assert_eq!(
+                    Shard::all(of).filter(|shard| shard.owns(cell)).count(),
+                    1,
+                    "cell {cell} of {of} shards"
+                );
             }
         }
     }

@@ -31,18 +31,23 @@ pub struct Table {
 impl Table {
     /// A table without columns.
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), ..Self::default() }
+        Self {
+            title: title.into(),
+            ..Self::default()
+        }
     }
 
     /// Adds columns of text.
     pub fn texts<S: Into<String>>(mut self, headers: impl IntoIterator<Item = S>) -> Self {
-        self.headers.extend(headers.into_iter().map(|header| (header.into(), false)));
+        self.headers
+            .extend(headers.into_iter().map(|header| (header.into(), false)));
         self
     }
 
     /// Adds columns of numbers. Put the unit in the header.
     pub fn numbers<S: Into<String>>(mut self, headers: impl IntoIterator<Item = S>) -> Self {
-        self.headers.extend(headers.into_iter().map(|header| (header.into(), true)));
+        self.headers
+            .extend(headers.into_iter().map(|header| (header.into(), true)));
         self
     }
 
@@ -54,7 +59,10 @@ impl Table {
     }
 
     /// Adds rows.
-    pub fn rows<R: IntoIterator<Item = String>>(mut self, rows: impl IntoIterator<Item = R>) -> Self {
+    pub fn rows<R: IntoIterator<Item = String>>(
+        mut self,
+        rows: impl IntoIterator<Item = R>,
+    ) -> Self {
         rows.into_iter().for_each(|row| self.push(row));
         self
     }
@@ -83,19 +91,35 @@ impl Table {
     pub fn to_text(&self, width: Option<u16>) -> String {
         let line = || LineStyle::none().fill('─').junction('─');
         let mut table = comfy_table::Table::new();
-        table.load_style(TableStyle::new().header_separator(line()).bottom_border(line()));
+        table.load_style(
+            TableStyle::new()
+                .header_separator(line())
+                .bottom_border(line()),
+        );
         table.set_content_arrangement(ContentArrangement::Dynamic);
         if let Some(width) = width {
             table.set_width(width);
         }
         table.set_header(self.headers.iter().map(|(header, _)| markup::clean(header)));
-        table.add_rows(self.rows.iter().map(|row| row.iter().map(|cell| markup::clean(cell))));
+        table.add_rows(
+            self.rows
+                .iter()
+                .map(|row| row.iter().map(|cell| markup::clean(cell))),
+        );
         for (column, (_, is_number)) in table.column_iter_mut().zip(&self.headers) {
-            column.set_cell_alignment(if *is_number { CellAlignment::Right } else { CellAlignment::Left });
+            column.set_cell_alignment(if *is_number {
+                CellAlignment::Right
+            } else {
+                CellAlignment::Left
+            });
         }
         let body = table.to_string();
         let mut text = String::new();
-        for line in [&self.title, &body].into_iter().chain(&self.notes).flat_map(|part| part.lines()) {
+        for line in [&self.title, &body]
+            .into_iter()
+            .chain(&self.notes)
+            .flat_map(|part| part.lines())
+        {
             text += &format!("{}\n", markup::clean(line).trim_end());
         }
         text
@@ -107,18 +131,33 @@ impl Table {
         let class = |is_number: bool| if is_number { " class=\"number\"" } else { "" };
         let (mut head, mut rows) = (String::new(), String::new());
         for (header, is_number) in &self.headers {
-            head += &format!("<th scope=\"col\"{}>{}</th>", class(*is_number), markup::escape(header));
+            head += &format!(
+                "<th scope=\"col\"{}>{}</th>",
+                class(*is_number),
+                markup::escape(header)
+            );
         }
         for row in &self.rows {
             rows += "<tr>";
             for (place, (cell, (_, is_number))) in row.iter().zip(&self.headers).enumerate() {
-                let (tag, scope) = if place == 0 { ("th", " scope=\"row\"") } else { ("td", "") };
-                rows += &format!("<{tag}{scope}{}>{}</{tag}>", class(*is_number), markup::escape(cell));
+                let (tag, scope) = if place == 0 {
+                    ("th", " scope=\"row\"")
+                } else {
+                    ("td", "")
+                };
+                rows += &format!(
+                    "<{tag}{scope}{}>{}</{tag}>",
+                    class(*is_number),
+                    markup::escape(cell)
+                );
             }
             rows += "</tr>\n";
         }
         let note = |note: &String| format!("<p class=\"note\">{}</p>\n", markup::escape(note));
-        let (title, notes) = (markup::escape(&self.title), self.notes.iter().map(note).collect::<String>());
+        let (title, notes) = (
+            markup::escape(&self.title),
+            self.notes.iter().map(note).collect::<String>(),
+        );
         format!(
             "<div class=\"table-box\" role=\"region\" tabindex=\"0\" aria-label=\"{title}\"><table>\n\
              <thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n{notes}"
@@ -133,7 +172,9 @@ mod tests {
     const WIDE: Option<u16> = Some(u16::MAX);
 
     fn example() -> Table {
-        let mut table = Table::new("Speed <of> \"hair\"").texts(["kernel"]).numbers(["time (ns)", "ratio"]);
+        let mut table = Table::new("Speed <of> \"hair\"")
+            .texts(["kernel"])
+            .numbers(["time (ns)", "ratio"]);
         table.push(["eval & sample", "8.31 ± 0.02", "13.4×"]);
         table.push(["short"]);
         table.push(["long", "1", "2", "dropped"]);
@@ -144,31 +185,57 @@ mod tests {
     fn the_terminal_and_the_report_show_the_same_cells() {
         let (plain, html) = (example().to_text(WIDE), example().to_html());
         for cell in ["8.31 ± 0.02", "13.4×", "time (ns)", "short"] {
-            assert!(plain.contains(cell) && html.contains(cell), "{cell} in {plain} and {html}");
+            assert!(
+                plain.contains(cell) && html.contains(cell),
+                "{cell} in {plain} and {html}"
+            );
         }
-        assert!(!plain.contains("dropped") && !html.contains("dropped"), "a cell beyond the columns");
-        assert_eq!(html.matches("<t").count() - html.matches("<tr").count(), 3 + 3 + 9, "every row is full: {html}");
+        assert!(
+            !plain.contains("dropped") && !html.contains("dropped"),
+            "a cell beyond the columns"
+        );
+        assert_eq!(
+            html.matches("<t").count() - html.matches("<tr").count(),
+            3 + 3 + 9,
+            "every row is full: {html}"
+        );
     }
 
     #[test]
     fn html_is_escaped_and_nests() {
         let html = example().note("</table>").to_html();
         markup::well_formed(&html).expect("the table nests");
-        assert!(html.contains("Speed &lt;of&gt; &quot;hair&quot;") && html.contains("eval &amp; sample"), "{html}");
+        assert!(
+            html.contains("Speed &lt;of&gt; &quot;hair&quot;")
+                && html.contains("eval &amp; sample"),
+            "{html}"
+        );
     }
 
     #[test]
     fn columns_line_up_and_lines_keep_to_the_width() {
         let plain = example().to_text(WIDE);
-        let ends: Vec<usize> =
-            plain.lines().filter(|l| l.contains("13.4×") || l.contains("ratio")).map(|l| l.chars().count()).collect();
+        let ends: Vec<usize> = plain
+            .lines()
+            .filter(|l| l.contains("13.4×") || l.contains("ratio"))
+            .map(|l| l.chars().count())
+            .collect();
         assert_eq!(ends.len(), 2, "{plain}");
-        assert_eq!(ends[0], ends[1], "numbers end where their header does: {plain}");
+        assert_eq!(
+            ends[0], ends[1],
+            "numbers end where their header does: {plain}"
+        );
         let mut wide = Table::new("t").texts(["a", "b"]);
         wide.push(["word ".repeat(30), "other ".repeat(30)]);
         let text = wide.to_text(Some(60));
         assert!(text.lines().all(|l| l.chars().count() <= 60), "{text}");
-        assert!(wide.to_text(WIDE).lines().any(|l| l.chars().count() > 200), "nothing is broken off a terminal");
-        assert!(!Table::new("a\u{1b}[31m").to_text(None).contains('\u{1b}'), "no escape sequences get through");
+        assert!(
+            wide.to_text(WIDE).lines().any(|l| l.chars().count() > 200),
+            "nothing is broken off a terminal"
+        );
+        assert!(
+            !Table::new("a\u{1b}[31m").to_text(None).contains('\u{1b}'),
+            "no escape sequences get through"
+        );
     }
 }

@@ -116,7 +116,12 @@ pub struct Render {
     #[arg(long, value_name = "X")]
     pub backdrop: Option<f32>,
     /// Degrees by which the camera goes around the hair, to the right
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "DEG",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     pub turn: f32,
     /// Seed of the samples
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -189,7 +194,9 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let sides = text.split('x').map(|side| side.parse().ok().filter(|side| (1..=16384).contains(side)));
+        let sides = text
+            .split('x')
+            .map(|side| side.parse().ok().filter(|side| (1..=16384).contains(side)));
         match sides.collect::<Option<Vec<u32>>>().as_deref() {
             Some(&[width, height]) => Ok(Self([width, height])),
             _ => Err("must be WxH, each from 1 to 16384".to_owned()),
@@ -205,8 +212,18 @@ impl FromStr for CropArg {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        match text.split(',').map(|number| number.parse().ok()).collect::<Option<Vec<u32>>>().as_deref() {
-            Some(&[x, y, width, height]) if width > 0 && height > 0 => Ok(Self(Crop { x, y, width, height })),
+        match text
+            .split(',')
+            .map(|number| number.parse().ok())
+            .collect::<Option<Vec<u32>>>()
+            .as_deref()
+        {
+            Some(&[x, y, width, height]) if width > 0 && height > 0 => Ok(Self(Crop {
+                x,
+                y,
+                width,
+                height,
+            })),
             _ => Err("must be X,Y,W,H, with W and H above 0".to_owned()),
         }
     }
@@ -220,12 +237,17 @@ impl Render {
     /// If it does not lie within the picture.
     pub fn part(&self) -> Result<Crop, Error> {
         let Size([width, height]) = self.size;
-        let Some(CropArg(crop)) = self.crop else { return Ok(Crop::whole([width, height])) };
-        let within = |from: u32, count: u32, all: u32| from.checked_add(count).is_some_and(|end| end <= all);
+        let Some(CropArg(crop)) = self.crop else {
+            return Ok(Crop::whole([width, height]));
+        };
+        let within =
+            |from: u32, count: u32, all: u32| from.checked_add(count).is_some_and(|end| end <= all);
         if within(crop.x, crop.width, width) && within(crop.y, crop.height, height) {
             return Ok(crop);
         }
-        Err(Error::Usage(format!("--crop must lie within {width}x{height}")))
+        Err(Error::Usage(format!(
+            "--crop must lie within {width}x{height}"
+        )))
     }
 
     /// Checks what depends on one flag alone.
@@ -247,10 +269,16 @@ impl Render {
             let problem = "--time must not be given with --shard, whose parts need one count of samples: use --spp";
             return Err(Error::Usage(problem.to_owned()));
         }
-        if let Some(exposure) = self.exposure.filter(|exposure| !(*exposure > 0.0 && exposure.is_finite())) {
+        if let Some(exposure) = self
+            .exposure
+            .filter(|exposure| !(*exposure > 0.0 && exposure.is_finite()))
+        {
             return refuse("--exposure", "a number above 0", &exposure);
         }
-        if let Some(backdrop) = self.backdrop.filter(|backdrop| !(*backdrop >= 0.0 && backdrop.is_finite())) {
+        if let Some(backdrop) = self
+            .backdrop
+            .filter(|backdrop| !(*backdrop >= 0.0 && backdrop.is_finite()))
+        {
             return refuse("--backdrop", "a radiance, 0 or above", &backdrop);
         }
         if self.follow > 1000 {

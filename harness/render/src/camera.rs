@@ -21,8 +21,18 @@ impl Camera {
     #[must_use]
     pub fn new(eye: Vec3, at: Vec3, view_deg: f32, size: [u32; 2]) -> Self {
         let forward = (at - eye).normalize_or(Vec3::NEG_Z);
-        let right = forward.cross(Vec3::Y).try_normalize().unwrap_or_else(|| forward.cross(Vec3::Z).normalize());
-        Self { eye, forward, right, up: right.cross(forward), slope: (0.5 * view_deg.to_radians()).tan(), size }
+        let right = forward
+            .cross(Vec3::Y)
+            .try_normalize()
+            .unwrap_or_else(|| forward.cross(Vec3::Z).normalize());
+        Self {
+            eye,
+            forward,
+            right,
+            up: right.cross(forward),
+            slope: (0.5 * view_deg.to_radians()).tan(),
+            size,
+        }
     }
 
     /// The camera after a turn about the vertical axis through a point, in degrees: from +z towards +x.
@@ -30,7 +40,13 @@ impl Camera {
     pub fn orbit(&self, about: Vec3, degrees: f32) -> Self {
         let turn = |v: Vec3| Quat::from_rotation_y(degrees.to_radians()) * v;
         let eye = about + turn(self.eye - about);
-        Self { eye, forward: turn(self.forward), right: turn(self.right), up: turn(self.up), ..*self }
+        Self {
+            eye,
+            forward: turn(self.forward),
+            right: turn(self.right),
+            up: turn(self.up),
+            ..*self
+        }
     }
 
     /// Width and height of the picture in pixels.
@@ -44,7 +60,13 @@ impl Camera {
     pub fn mirrored(&self) -> Self {
         let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
         let (eye, forward, up) = (mirror(self.eye), mirror(self.forward), mirror(self.up));
-        Self { eye, forward, up, right: -mirror(self.right), ..*self }
+        Self {
+            eye,
+            forward,
+            up,
+            right: -mirror(self.right),
+            ..*self
+        }
     }
 
     /// The ray through a point of the picture, in pixels from its upper left corner.
@@ -54,7 +76,10 @@ impl Camera {
         let [width, height] = self.size.map(|side| side as f32);
         let across = (2.0 * x - width) / height * self.slope;
         let upwards = (1.0 - 2.0 * y / height) * self.slope;
-        Ray::new(self.eye, (self.forward + across * self.right + upwards * self.up).normalize())
+        Ray::new(
+            self.eye,
+            (self.forward + across * self.right + upwards * self.up).normalize(),
+        )
     }
 }
 
@@ -67,23 +92,47 @@ mod tests {
         let camera = Camera::new(Vec3::new(0.0, 0.0, 10.0), Vec3::ZERO, 90.0, [200, 100]);
         assert!((camera.ray(100.0, 50.0).direction - Vec3::NEG_Z).length() < 1e-6);
         let corner = camera.ray(0.0, 0.0).direction;
-        assert!((corner - Vec3::new(-2.0, 1.0, -1.0).normalize()).length() < 1e-6, "{corner}");
+        assert!(
+            (corner - Vec3::new(-2.0, 1.0, -1.0).normalize()).length() < 1e-6,
+            "{corner}"
+        );
     }
 
     #[test]
     fn a_mirrored_camera_sees_the_mirror_image() {
-        let camera = Camera::new(Vec3::new(3.0, 1.0, 10.0), Vec3::new(1.0, 0.0, 0.0), 40.0, [64, 48]);
+        let camera = Camera::new(
+            Vec3::new(3.0, 1.0, 10.0),
+            Vec3::new(1.0, 0.0, 0.0),
+            40.0,
+            [64, 48],
+        );
         let (ray, other) = (camera.ray(10.0, 7.0), camera.mirrored().ray(54.0, 7.0));
         let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
-        assert!((mirror(ray.direction) - other.direction).length() < 1e-6 && mirror(ray.origin) == other.origin);
+        assert!(
+            (mirror(ray.direction) - other.direction).length() < 1e-6
+                && mirror(ray.origin) == other.origin
+        );
     }
 
     #[test]
     fn a_turned_camera_looks_from_the_side() {
-        let camera = Camera::new(Vec3::new(1.0, 2.0, 13.0), Vec3::new(1.0, 2.0, 3.0), 40.0, [64, 48]);
+        let camera = Camera::new(
+            Vec3::new(1.0, 2.0, 13.0),
+            Vec3::new(1.0, 2.0, 3.0),
+            40.0,
+            [64, 48],
+        );
         let ray = camera.orbit(Vec3::new(1.0, 2.0, 3.0), 90.0).ray(32.0, 24.0);
-        assert!((ray.origin - Vec3::new(11.0, 2.0, 3.0)).length() < 1e-5, "{}", ray.origin);
-        assert!((ray.direction - Vec3::NEG_X).length() < 1e-6, "{}", ray.direction);
+        assert!(
+            (ray.origin - Vec3::new(11.0, 2.0, 3.0)).length() < 1e-5,
+            "{}",
+            ray.origin
+        );
+        assert!(
+            (ray.direction - Vec3::NEG_X).length() < 1e-6,
+            "{}",
+            ray.direction
+        );
     }
 
     #[test]

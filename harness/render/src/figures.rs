@@ -26,8 +26,15 @@ use std::path::Path;
 use store::Store;
 
 /// The scenes that are compared, without maps of the caller's.
-const SCENES: [Name; 7] =
-    [Name::Area, Name::AreaSoft, Name::AreaHead, Name::Env, Name::BoxSingle, Name::Box, Name::Head];
+const SCENES: [Name; 7] = [
+    Name::Area,
+    Name::AreaSoft,
+    Name::AreaHead,
+    Name::Env,
+    Name::BoxSingle,
+    Name::Box,
+    Name::Head,
+];
 
 /// Compares samplers on every scene, and writes `report.html` with its figures as `figures.csv` and an EXR file of
 /// each picture beside it. A run that was
@@ -38,10 +45,23 @@ const SCENES: [Name; 7] =
 /// If paths do not converge in a scene, a map cannot be read or a file cannot be written; before anything is rendered.
 pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     let plan = if flags.quick { Plan::QUICK } else { Plan::FULL };
-    let plan = Plan { integrator: flags.integrator, sequence: flags.xi, rectangle_sampling: flags.rectangles, ..plan };
-    let chosen: &[Name] = if flags.scene.is_empty() { &SCENES } else { &flags.scene };
+    let plan = Plan {
+        integrator: flags.integrator,
+        sequence: flags.xi,
+        rectangle_sampling: flags.rectangles,
+        ..plan
+    };
+    let chosen: &[Name] = if flags.scene.is_empty() {
+        &SCENES
+    } else {
+        &flags.scene
+    };
     chosen.iter().try_for_each(|name| plan.check(*name))?;
-    let maps = flags.env.iter().map(|path| environment(path)).collect::<Result<Vec<_>, _>>()?;
+    let maps = flags
+        .env
+        .iter()
+        .map(|path| environment(path))
+        .collect::<Result<Vec<_>, _>>()?;
     prepare(&flags.out)?;
     let store = Store::new(&flags.out)?;
     let mut scenes = Vec::new();
@@ -61,10 +81,21 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     // The shard's own: every so many of scenes and models.
     let owns = |place: usize| flags.shard.is_none_or(|shard| shard.owns(place));
     let count = scenes.len();
-    let scenes: Vec<_> = (0..).zip(scenes).filter(|(place, _)| owns(*place)).map(|(_, scene)| scene).collect();
-    let presets: Vec<_> = (count..).zip(presets).filter(|(place, _)| owns(*place)).map(|(_, name)| *name).collect();
+    let scenes: Vec<_> = (0..)
+        .zip(scenes)
+        .filter(|(place, _)| owns(*place))
+        .map(|(_, scene)| scene)
+        .collect();
+    let presets: Vec<_> = (count..)
+        .zip(presets)
+        .filter(|(place, _)| owns(*place))
+        .map(|(_, name)| *name)
+        .collect();
     let steps = plan.steps(scenes.len()) + presets.len() * ModelId::defaults_of_names().count();
-    let bar = bar(steps as u64, "{msg:>30} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
+    let bar = bar(
+        steps as u64,
+        "{msg:>30} {wide_bar} {percent:>3}% {elapsed} (left {eta})",
+    );
     let step = |what: &str| {
         bar.set_message(what.to_owned());
         bar.inc(1);
@@ -91,8 +122,13 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     }
     bar.finish_and_clear();
     if let Some(shard) = flags.shard {
-        let line = format!("shard {shard}: measurements are in {}\n", store.folder().display());
-        return io::stdout().write_all(line.as_bytes()).map_err(Error::Write);
+        let line = format!(
+            "shard {shard}: measurements are in {}\n",
+            store.folder().display()
+        );
+        return io::stdout()
+            .write_all(line.as_bytes())
+            .map_err(Error::Write);
     }
     let mut lines = String::new();
     for measured in &all {
@@ -100,17 +136,30 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         lines.push_str(&format!("{}: {sentence} {visible}\n", measured.title()));
     }
     if store.resumed() > 0 {
-        lines.push_str(&format!("{} measurements are of a run that was stopped\n", store.resumed()));
+        lines.push_str(&format!(
+            "{} measurements are of a run that was stopped\n",
+            store.resumed()
+        ));
     }
     store.remove();
-    lines.push_str(&format!("wrote {}\n", flags.out.join("report.html").display()));
-    io::stdout().write_all(lines.as_bytes()).map_err(Error::Write)
+    lines.push_str(&format!(
+        "wrote {}\n",
+        flags.out.join("report.html").display()
+    ));
+    io::stdout()
+        .write_all(lines.as_bytes())
+        .map_err(Error::Write)
 }
 
 /// Makes the folder, and sees that files can be written into it.
 fn prepare(out: &Path) -> Result<(), Error> {
-    let refuse = |source| Error::Output { path: out.to_owned(), source };
+    let refuse = |source| Error::Output {
+        path: out.to_owned(),
+        source,
+    };
     fs::create_dir_all(out).map_err(refuse)?;
     let probe = out.join("report.html.new");
-    fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)).map_err(refuse)
+    fs::write(&probe, "")
+        .and_then(|()| fs::remove_file(&probe))
+        .map_err(refuse)
 }

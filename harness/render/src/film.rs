@@ -26,12 +26,18 @@ impl Crop {
     /// The whole of a picture.
     #[must_use]
     pub fn whole([width, height]: [u32; 2]) -> Self {
-        Self { x: 0, y: 0, width, height }
+        Self {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        }
     }
 
     /// Pixels, row by row.
     pub fn pixels(self) -> impl Iterator<Item = [u32; 2]> {
-        (self.y..self.y + self.height).flat_map(move |y| (self.x..self.x + self.width).map(move |x| [x, y]))
+        (self.y..self.y + self.height)
+            .flat_map(move |y| (self.x..self.x + self.width).map(move |x| [x, y]))
     }
 
     /// Place of one of its pixels among them.
@@ -55,24 +61,31 @@ impl Crop {
     /// Tiles of at most [`TILE`] pixels a side, row by row.
     pub fn tiles(self) -> impl Iterator<Item = Self> {
         let step = TILE as usize;
-        (self.y..self.y + self.height).step_by(step).flat_map(move |y| {
-            (self.x..self.x + self.width).step_by(step).map(move |x| Self {
-                x,
-                y,
-                width: TILE.min(self.x + self.width - x),
-                height: TILE.min(self.y + self.height - y),
+        (self.y..self.y + self.height)
+            .step_by(step)
+            .flat_map(move |y| {
+                (self.x..self.x + self.width)
+                    .step_by(step)
+                    .map(move |x| Self {
+                        x,
+                        y,
+                        width: TILE.min(self.x + self.width - x),
+                        height: TILE.min(self.y + self.height - y),
+                    })
             })
-        })
     }
 
     /// Whether it is one of the [`tiles`](Self::tiles) of `whole`.
     #[must_use]
     pub fn is_tile_of(self, whole: Self) -> bool {
         let one_axis = |from: u32, count: u32, start: u32, all: u32| {
-            let Some(offset) = from.checked_sub(start) else { return false };
+            let Some(offset) = from.checked_sub(start) else {
+                return false;
+            };
             offset < all && offset.is_multiple_of(TILE) && count == TILE.min(all - offset)
         };
-        one_axis(self.x, self.width, whole.x, whole.width) && one_axis(self.y, self.height, whole.y, whole.height)
+        one_axis(self.x, self.width, whole.x, whole.width)
+            && one_axis(self.y, self.height, whole.y, whole.height)
     }
 }
 
@@ -140,7 +153,11 @@ impl Film {
     /// Of tiles that are there already.
     #[must_use]
     pub fn of(crop: Crop, tiles: Vec<Tile>) -> Self {
-        Self { crop, tiles, profile: Profile::default() }
+        Self {
+            crop,
+            tiles,
+            profile: Profile::default(),
+        }
     }
 
     /// Keeps the tiles of one shard. They are scattered over the picture, so that shards take about as long.
@@ -162,7 +179,11 @@ impl Film {
     /// Samples that every pixel has.
     #[must_use]
     pub fn samples(&self) -> u32 {
-        self.tiles.iter().map(|tile| tile.samples).min().unwrap_or(0)
+        self.tiles
+            .iter()
+            .map(|tile| tile.samples)
+            .min()
+            .unwrap_or(0)
     }
 
     /// The part of the picture that it covers.
@@ -204,7 +225,10 @@ impl Picture {
     /// A black picture.
     #[must_use]
     pub fn black(size: [u32; 2]) -> Self {
-        Self { size, pixels: vec![[0.0; 3]; Crop::whole(size).len()] }
+        Self {
+            size,
+            pixels: vec![[0.0; 3]; Crop::whole(size).len()],
+        }
     }
 
     /// Mean radiance.
@@ -221,7 +245,10 @@ impl Picture {
     /// If it lies outside.
     #[must_use]
     pub fn at(&self, x: u32, y: u32) -> [f64; 3] {
-        assert!(x < self.size[0] && y < self.size[1], "the pixel lies outside");
+        assert!(
+            x < self.size[0] && y < self.size[1],
+            "the pixel lies outside"
+        );
         self.pixels[y as usize * self.size[0] as usize + x as usize]
     }
 
@@ -238,13 +265,35 @@ mod tests {
 
     #[test]
     fn tiles_cover_a_crop_once() {
-        let crop = Crop { x: 5, y: 3, width: 70, height: 33 };
+        let crop = Crop {
+            x: 5,
+            y: 3,
+            width: 70,
+            height: 33,
+        };
         let film = Film::new(crop);
         assert_eq!(film.tiles.len(), 6);
-        let is_tile = |x, y, width, height| Crop { x, y, width, height }.is_tile_of(crop);
+        let is_tile = |x, y, width, height| {
+            Crop {
+                x,
+                y,
+                width,
+                height,
+            }
+            .is_tile_of(crop)
+        };
         assert!(film.tiles.iter().all(|tile| tile.place.is_tile_of(crop)));
-        assert!(!is_tile(6, 3, 32, 32) && !is_tile(5, 3, 32, 31) && !is_tile(5, 67, 32, 1) && !is_tile(0, 3, 32, 32));
-        let mut pixels: Vec<[u32; 2]> = film.tiles.iter().flat_map(|tile| tile.place.pixels()).collect();
+        assert!(
+            !is_tile(6, 3, 32, 32)
+                && !is_tile(5, 3, 32, 31)
+                && !is_tile(5, 67, 32, 1)
+                && !is_tile(0, 3, 32, 32)
+        );
+        let mut pixels: Vec<[u32; 2]> = film
+            .tiles
+            .iter()
+            .flat_map(|tile| tile.place.pixels())
+            .collect();
         pixels.sort_unstable();
         let mut expected: Vec<[u32; 2]> = crop.pixels().collect();
         expected.sort_unstable();

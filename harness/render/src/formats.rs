@@ -64,7 +64,13 @@ pub struct Import {
 
 impl Default for Import {
     fn default() -> Self {
-        Self { radius: None, scale: None, up: Up::Y, smooth: Some(Flattening::default()), follow: Follow::default() }
+        Self {
+            radius: None,
+            scale: None,
+            up: Up::Y,
+            smooth: Some(Flattening::default()),
+            follow: Follow::default(),
+        }
     }
 }
 
@@ -84,17 +90,27 @@ pub struct Imported {
 /// If the file cannot be read, or anything in it is not as its format has it; see [`Problem`]. No file makes this panic, or
 /// take more memory than 64 times its length, times the strands that follow each.
 pub fn import(path: &Path, options: &Import) -> Result<Imported, ImportError> {
-    let unread = |source| ImportError { path: path.to_owned(), offset: None, problem: Problem::Read(source) };
+    let unread = |source| ImportError {
+        path: path.to_owned(),
+        offset: None,
+        problem: Problem::Read(source),
+    };
     let file = File::open(path).map_err(unread)?;
     let mut data = Vec::new();
     // One byte more than allowed shows that there are more.
     let too_long = file.metadata().map_err(unread)?.len() > LONGEST_FILE;
     if !too_long {
-        file.take(LONGEST_FILE + 1).read_to_end(&mut data).map_err(unread)?;
+        file.take(LONGEST_FILE + 1)
+            .read_to_end(&mut data)
+            .map_err(unread)?;
     }
     if too_long || data.len() as u64 > LONGEST_FILE {
         let problem = Problem::TooLong { most: LONGEST_FILE };
-        return Err(ImportError { path: path.to_owned(), offset: None, problem });
+        return Err(ImportError {
+            path: path.to_owned(),
+            offset: None,
+            problem,
+        });
     }
     import_bytes(path, &data, options)
 }
@@ -105,20 +121,33 @@ pub fn import(path: &Path, options: &Import) -> Result<Imported, ImportError> {
 ///
 /// See [`import`].
 pub fn import_bytes(path: &Path, data: &[u8], options: &Import) -> Result<Imported, ImportError> {
-    let refuse = |problem| ImportError { path: path.to_owned(), offset: None, problem };
+    let refuse = |problem| ImportError {
+        path: path.to_owned(),
+        offset: None,
+        problem,
+    };
     let parse = match path.extension().and_then(|ending| ending.to_str()) {
         Some(ending) if ending.eq_ignore_ascii_case("hair") => cyhair::parse,
         Some(ending) if ending.eq_ignore_ascii_case("tfx") => tressfx::parse,
         _ => return Err(refuse(Problem::Ending)),
     };
-    for (name, value) in [("radius", options.radius), ("scale", options.scale), ("spread", Some(options.follow.spread))]
-    {
+    for (name, value) in [
+        ("radius", options.radius),
+        ("scale", options.scale),
+        ("spread", Some(options.follow.spread)),
+    ] {
         if let Some(value) = value.filter(|value| !(1e-6..=1e6).contains(value)) {
             return Err(refuse(Problem::Option { name, value }));
         }
     }
-    let wrong = |(offset, problem)| ImportError { path: path.to_owned(), offset: Some(offset), problem };
-    parse(Bytes(data)).and_then(|raw| raw.build(options)).map_err(wrong)
+    let wrong = |(offset, problem)| ImportError {
+        path: path.to_owned(),
+        offset: Some(offset),
+        problem,
+    };
+    parse(Bytes(data))
+        .and_then(|raw| raw.build(options))
+        .map_err(wrong)
 }
 
 /// A problem, and the byte that shows it.
@@ -148,12 +177,15 @@ impl Raw<'_> {
     fn build(self, options: &Import) -> Result<Imported, Wrong> {
         let scale = options.scale.unwrap_or(self.scale);
         let about = options.follow.strands as usize + 1;
-        let covering = (!self.radii).then(|| Groom::covering_radius(about.saturating_mul(self.count)));
+        let covering =
+            (!self.radii).then(|| Groom::covering_radius(about.saturating_mul(self.count)));
         let root_radius = options.radius.or(covering);
         let mut builder = Strands::builder();
         let (mut total, mut repeated) = (0, 0);
         for (guide, strand) in self.strands.enumerate() {
-            let place = |(position, radius): (Vec3, f32)| (options.up.turn(scale * position), scale * radius);
+            let place = |(position, radius): (Vec3, f32)| {
+                (options.up.turn(scale * position), scale * radius)
+            };
             let mut nodes: Vec<(Vec3, f32)> = strand.nodes.map(place).collect();
             total += nodes.len();
             // Curves through nodes that coincide have loops.
@@ -162,7 +194,10 @@ impl Raw<'_> {
             repeated += before - nodes.len();
             if let Some(radius) = root_radius {
                 let last = nodes.len().saturating_sub(1).max(1) as f32;
-                nodes.iter_mut().enumerate().for_each(|(k, node)| node.1 = Groom::tapered(radius, k as f32 / last));
+                nodes
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(k, node)| node.1 = Groom::tapered(radius, k as f32 / last));
             }
             for nodes in options.follow.about(guide, &nodes) {
                 let added = match options.smooth {
@@ -174,13 +209,25 @@ impl Raw<'_> {
         }
         let mut remarks = Vec::new();
         let mut dropped = |what: &str, count: usize, of: usize| {
-            let warning = if count as f64 > MANY * of as f64 { "warning: " } else { "" };
+            let warning = if count as f64 > MANY * of as f64 {
+                "warning: "
+            } else {
+                ""
+            };
             if count > 0 {
                 remarks.push(format!("{warning}dropped {count} of {of} {what}"));
             }
         };
-        dropped("strands, which have no segment", builder.dropped_strands(), about * self.count);
-        dropped("nodes, which repeat the one before", repeated + builder.dropped_nodes(), total);
+        dropped(
+            "strands, which have no segment",
+            builder.dropped_strands(),
+            about * self.count,
+        );
+        dropped(
+            "nodes, which repeat the one before",
+            repeated + builder.dropped_nodes(),
+            total,
+        );
         if !self.unused.is_empty() {
             remarks.push(format!("not used: {}", self.unused.join(", ")));
         }
@@ -195,10 +242,16 @@ impl Raw<'_> {
 /// A smooth curve through the nodes, as a polyline; radii go from node to node.
 fn smooth(nodes: &[(Vec3, f32)], flattening: &Flattening) -> Vec<(Vec3, f32)> {
     let positions: Vec<Vec3> = nodes.iter().map(|node| node.0).collect();
-    let Some(spline) = Spline::new(&positions, Basis::CatmullRom) else { return nodes.to_vec() };
+    let Some(spline) = Spline::new(&positions, Basis::CatmullRom) else {
+        return nodes.to_vec();
+    };
     let radius = |part: f32| {
         let place = part * spline.spans() as f32;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to a whole number, from 0")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "cut to a whole number, from 0"
+        )]
         let span = (place as usize).min(spline.spans() - 1);
         let (from, to) = (nodes[span].1, nodes[span + 1].1);
         (from + (place - span as f32) * (to - from)).max(0.0)

@@ -48,7 +48,10 @@ impl Choice {
     pub fn find(model: &str, sampler: &str, preset: &str) -> Result<Self, Error> {
         let Some(first) = ModelId::find(model, None) else {
             let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
-            return Err(Error::Usage(format!("--model must be one of {}, got {model}", names.join(", "))));
+            return Err(Error::Usage(format!(
+                "--model must be one of {}, got {model}",
+                names.join(", ")
+            )));
         };
         let (id, sampling) = match sampler {
             UNIFORM => (first, Sampling::Uniform),
@@ -57,16 +60,25 @@ impl Choice {
                 Some(id) => (id, Sampling::Own),
                 None => {
                     let words = samplers(model).join(", ");
-                    return Err(Error::Usage(format!("--sampler of {model} must be one of {words}, got {word}")));
+                    return Err(Error::Usage(format!(
+                        "--sampler of {model} must be one of {words}, got {word}"
+                    )));
                 }
             },
         };
         let Some(values) = preset_of(id, preset) else {
             let mut names: Vec<&str> = id.presets().map(|(name, _)| name).collect();
             names.extend(preset_of(id, GLOSSY).map(|_| GLOSSY));
-            return Err(Error::Usage(format!("--hair of {model} must be one of {}, got {preset}", names.join(", "))));
+            return Err(Error::Usage(format!(
+                "--hair of {model} must be one of {}, got {preset}",
+                names.join(", ")
+            )));
         };
-        Ok(Self { id, sampling, values })
+        Ok(Self {
+            id,
+            sampling,
+            values,
+        })
     }
 
     /// The material.
@@ -98,7 +110,11 @@ impl Choice {
 /// The sampler of a model where none is asked for: the matched one, or its own.
 #[must_use]
 pub fn default_sampler(model: &str) -> &'static str {
-    if samplers(model).contains(&MATCHED) { MATCHED } else { PUBLISHED }
+    if samplers(model).contains(&MATCHED) {
+        MATCHED
+    } else {
+        PUBLISHED
+    }
 }
 
 /// Words for the samplers of a model.
@@ -114,7 +130,12 @@ pub fn samplers(model: &str) -> Vec<&'static str> {
 /// # Errors
 ///
 /// If paths scatter several times in hair of a mean albedo of [`MOST_MEAN_ALBEDO`] or above.
-pub fn check_paths(hair: &Hair, settings: &Settings, preset: &str, remedy: &str) -> Result<(), Error> {
+pub fn check_paths(
+    hair: &Hair,
+    settings: &Settings,
+    preset: &str,
+    remedy: &str,
+) -> Result<(), Error> {
     let [mean, _] = hair.mean_and_worst_albedo();
     if settings.integrator == Integrator::Path && settings.multiple && mean >= MOST_MEAN_ALBEDO {
         return Err(Error::Usage(format!(
@@ -127,14 +148,20 @@ pub fn check_paths(hair: &Hair, settings: &Settings, preset: &str, remedy: &str)
 /// The parameters of a preset.
 fn preset_of(id: ModelId, name: &str) -> Option<Values> {
     if name != GLOSSY {
-        return id.presets().find(|(preset, _)| *preset == name).map(|(_, values)| values);
+        return id
+            .presets()
+            .find(|(preset, _)| *preset == name)
+            .map(|(_, values)| values);
     }
     let published = ModelId::find("gaussian", None)?;
     if id.fields() != published.fields() {
         return None;
     }
     let deg = |angle: f32| angle.to_radians();
-    let values = id.defaults().with("beta", &[deg(2.5), deg(1.25), deg(5.0)]).with("gamma_tt", &[deg(5.0)]);
+    let values = id
+        .defaults()
+        .with("beta", &[deg(2.5), deg(1.25), deg(5.0)])
+        .with("gamma_tt", &[deg(5.0)]);
     Some(values.with("gamma_g", &[deg(5.0)]).with("i_g", &[5.0]))
 }
 
@@ -150,7 +177,10 @@ mod tests {
                     let choice = Choice::find(id.name(), sampler, preset).expect("listed");
                     assert_eq!(choice.id.name(), id.name());
                     for field in values.fields() {
-                        assert_eq!(choice.values.numbers(field.name), values.numbers(field.name));
+                        assert_eq!(
+                            choice.values.numbers(field.name),
+                            values.numbers(field.name)
+                        );
                     }
                     choice.hair(Energy::Scaled).expect("in range");
                 }
@@ -161,13 +191,20 @@ mod tests {
 
     #[test]
     fn what_there_is_not_is_named() {
-        let message = |model, sampler, preset| Choice::find(model, sampler, preset).expect_err("refused").to_string();
+        let message = |model, sampler, preset| {
+            Choice::find(model, sampler, preset)
+                .expect_err("refused")
+                .to_string()
+        };
         assert!(
             message("phong", UNIFORM, "blond").contains("kajiya-kay")
                 && message("phong", UNIFORM, "blond").contains("phong")
         );
         assert!(message("gaussian", "best", "blond").contains("matched-25"));
         assert!(message("gaussian", UNIFORM, "green").contains("glossy"));
-        assert!(!message("chiang", UNIFORM, "glossy").contains("black, glossy"), "chiang has no glossy preset");
+        assert!(
+            !message("chiang", UNIFORM, "glossy").contains("black, glossy"),
+            "chiang has no glossy preset"
+        );
     }
 }

@@ -42,10 +42,26 @@ impl Beside {
                 samples[place] = rounded(f64::from(tile.samples));
             }
         }
-        let mut channels =
-            vec![Channel { name: "variance", pixels: variance }, Channel { name: "samples", pixels: samples }];
+        let mut channels = vec![
+            Channel {
+                name: "variance",
+                pixels: variance,
+            },
+            Channel {
+                name: "samples",
+                pixels: samples,
+            },
+        ];
         if film.tiles.iter().any(|tile| !tile.first.is_empty()) {
-            let names = ["albedo.R", "albedo.G", "albedo.B", "tangent.X", "tangent.Y", "tangent.Z", "Z"];
+            let names = [
+                "albedo.R",
+                "albedo.G",
+                "albedo.B",
+                "tangent.X",
+                "tangent.Y",
+                "tangent.Z",
+                "Z",
+            ];
             channels.extend(names.into_iter().enumerate().map(|(k, name)| {
                 let mut pixels = vec![0.0; crop.len()];
                 for tile in &film.tiles {
@@ -64,7 +80,10 @@ impl Beside {
             ("samplesPerPixel", film.samples().to_string()),
             ("secondsOfCpuTime", format!("{:.1}", film.seconds())),
         ];
-        Self { channels, attributes }
+        Self {
+            channels,
+            attributes,
+        }
     }
 }
 
@@ -78,9 +97,16 @@ fn command() -> String {
 /// directional albedo of hair and the albedo of surfaces; and `tangent`, the direction of the fibre from root to tip; and
 /// `Z`, the distance along the ray in cm. All are 0 elsewhere.
 pub fn look(scene: &Scene, film: &mut Film) {
-    film.tiles.par_iter_mut().filter(|tile| tile.first.is_empty()).for_each(|tile| {
-        tile.first = tile.place.pixels().map(|pixel| first(scene, pixel)).collect();
-    });
+    film.tiles
+        .par_iter_mut()
+        .filter(|tile| tile.first.is_empty())
+        .for_each(|tile| {
+            tile.first = tile
+                .place
+                .pixels()
+                .map(|pixel| first(scene, pixel))
+                .collect();
+        });
 }
 
 /// Albedo, tangent and distance of what the ray through a pixel's centre meets first.
@@ -88,11 +114,16 @@ fn first(scene: &Scene, [x, y]: [u32; 2]) -> [f32; 7] {
     let ray = scene.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
     let (albedo, tangent, distance) = match scene.closest(&ray) {
         Met::Hair(hit) => {
-            let tangent = scene.strands.tangent(hit.segment, hit.s).normalize_or_zero();
+            let tangent = scene
+                .strands
+                .tangent(hit.segment, hit.s)
+                .normalize_or_zero();
             let theta_o = (-ray.direction.dot(tangent)).clamp(-1.0, 1.0).asin();
             (scene.hair.albedo(theta_o, hit.h), tangent, hit.t)
         }
-        Met::Surface(point, _, albedo) => (albedo.to_array(), Vec3::ZERO, point.distance(ray.origin)),
+        Met::Surface(point, _, albedo) => {
+            (albedo.to_array(), Vec3::ZERO, point.distance(ray.origin))
+        }
         Met::Nothing | Met::Light(_) => ([0.0; 3], Vec3::ZERO, 0.0),
     };
     let [r, g, b] = albedo;
@@ -106,16 +137,29 @@ mod tests {
 
     #[test]
     fn variance_is_that_of_the_mean() {
-        let mut film = Film::new(Crop { x: 3, y: 1, width: 2, height: 2 });
+        let mut film = Film::new(Crop {
+            x: 3,
+            y: 1,
+            width: 2,
+            height: 2,
+        });
         let tile = &mut film.tiles[0];
         tile.samples = 4;
         for grey in [1.0, 3.0, 1.0, 3.0] {
             tile.sums[2].add(Vec3::splat(grey));
         }
         let beside = Beside::film(&film, "a run");
-        let [variance, samples] = &beside.channels[..] else { panic!("two layers") };
-        assert!((variance.pixels[2] - 0.25).abs() < 1e-6 && variance.pixels[0] == 0.0, "{variance:?}");
+        let [variance, samples] = &beside.channels[..] else {
+            panic!("two layers")
+        };
+        assert!(
+            (variance.pixels[2] - 0.25).abs() < 1e-6 && variance.pixels[0] == 0.0,
+            "{variance:?}"
+        );
         assert_eq!(samples.pixels, [4.0; 4]);
-        assert!(beside.attributes.contains(&("run", "a run".to_owned())), "{beside:?}");
+        assert!(
+            beside.attributes.contains(&("run", "a run".to_owned())),
+            "{beside:?}"
+        );
     }
 }

@@ -58,19 +58,33 @@ impl LightSample8 {
         let pdf = at(&self.pdf) * share;
         let radiance = Vec3::from_array(self.radiance.each_ref().map(at));
         let direction = self.direction.lane(lane);
-        (pdf > 0.0).then_some(LightSample { direction, distance: at(&self.distance), radiance, pdf })
+        (pdf > 0.0).then_some(LightSample {
+            direction,
+            distance: at(&self.distance),
+            radiance,
+            pdf,
+        })
     }
 }
 
 impl From<[Option<LightSample>; 8]> for LightSample8 {
     fn from(samples: [Option<LightSample>; 8]) -> Self {
-        const NONE: LightSample = LightSample { direction: Vec3::Y, distance: 0.0, radiance: Vec3::ZERO, pdf: 0.0 };
+        const NONE: LightSample = LightSample {
+            direction: Vec3::Y,
+            distance: 0.0,
+            radiance: Vec3::ZERO,
+            pdf: 0.0,
+        };
         let samples = samples.map(|sample| sample.unwrap_or(NONE));
         let lanes = |of: fn(&LightSample) -> f32| f32x8::new(samples.each_ref().map(of));
         Self {
             direction: samples.map(|sample| sample.direction).into(),
             distance: lanes(|sample| sample.distance),
-            radiance: [lanes(|one| one.radiance.x), lanes(|one| one.radiance.y), lanes(|one| one.radiance.z)],
+            radiance: [
+                lanes(|one| one.radiance.x),
+                lanes(|one| one.radiance.y),
+                lanes(|one| one.radiance.z),
+            ],
             pdf: lanes(|sample| sample.pdf),
         }
     }
@@ -99,7 +113,12 @@ impl Sky {
             Self::Black => None,
             Self::White => {
                 let direction = uniform_direction(xi);
-                Some(LightSample { direction, distance: f32::INFINITY, radiance: Vec3::ONE, pdf: 0.25 / PI })
+                Some(LightSample {
+                    direction,
+                    distance: f32::INFINITY,
+                    radiance: Vec3::ONE,
+                    pdf: 0.25 / PI,
+                })
             }
             Self::Map(map) => towards(&map.sample(xi.map(f64::from))),
         }
@@ -110,7 +129,10 @@ impl Sky {
     pub fn sample8(&self, xi: &[[f32; 8]; 2]) -> LightSample8 {
         let pairs: [[f32; 2]; 8] = core::array::from_fn(|lane| [xi[0][lane], xi[1][lane]]);
         LightSample8::from(match self {
-            Self::Map(map) => map.sample8(pairs.map(|xi| xi.map(f64::from))).each_ref().map(towards),
+            Self::Map(map) => map
+                .sample8(pairs.map(|xi| xi.map(f64::from)))
+                .each_ref()
+                .map(towards),
             Self::Black | Self::White => pairs.map(|xi| self.sample(xi)),
         })
     }
@@ -119,12 +141,21 @@ impl Sky {
     #[must_use]
     pub fn see(&self, direction: Vec3) -> Seen {
         match self {
-            Self::Black => Seen { radiance: Vec3::ZERO, pdf: 0.0 },
-            Self::White => Seen { radiance: Vec3::ONE, pdf: 0.25 / PI },
+            Self::Black => Seen {
+                radiance: Vec3::ZERO,
+                pdf: 0.0,
+            },
+            Self::White => Seen {
+                radiance: Vec3::ONE,
+                pdf: 0.25 / PI,
+            },
             Self::Map(map) => {
                 let direction = direction.as_dvec3();
                 let radiance = Vec3::from_array(map.radiance(direction).map(rounded));
-                Seen { radiance, pdf: rounded(map.pdf(direction)) }
+                Seen {
+                    radiance,
+                    pdf: rounded(map.pdf(direction)),
+                }
             }
         }
     }
@@ -134,7 +165,10 @@ impl Sky {
     pub fn see8(&self, directions: &Vec3x8) -> Seen8 {
         let Self::Map(map) = self else {
             let seen = self.see(Vec3::Y);
-            return Seen8 { radiance: seen.radiance.to_array().map(f32x8::splat), pdf: f32x8::splat(seen.pdf) };
+            return Seen8 {
+                radiance: seen.radiance.to_array().map(f32x8::splat),
+                pdf: f32x8::splat(seen.pdf),
+            };
         };
         map.see8(directions)
     }
@@ -145,7 +179,12 @@ fn towards(sample: &light::LightSample) -> Option<LightSample> {
     let pdf = rounded(sample.pdf);
     let radiance = Vec3::from_array(sample.radiance.map(rounded));
     let direction = sample.dir.as_vec3();
-    (pdf > 0.0).then_some(LightSample { direction, distance: f32::INFINITY, radiance, pdf })
+    (pdf > 0.0).then_some(LightSample {
+        direction,
+        distance: f32::INFINITY,
+        radiance,
+        pdf,
+    })
 }
 
 /// A direction uniform on the sphere; the first number is along x.

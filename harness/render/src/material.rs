@@ -47,7 +47,10 @@ impl Scale {
 }
 
 /// Eight hits, or one hit for eight directions.
-#[expect(clippy::large_enum_variant, reason = "on the stack of a wave, and read at once")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "on the stack of a wave, and read at once"
+)]
 enum Points {
     Each(AnyGather8),
     One(AnyGather),
@@ -65,7 +68,11 @@ impl Hair {
         Prepared(match self {
             Self::Model(bsdf, sampling, scale) => {
                 let points = bsdf.prepare8(hits);
-                let points = if *scale == Scale::PerWo { points.conserving() } else { points };
+                let points = if *scale == Scale::PerWo {
+                    points.conserving()
+                } else {
+                    points
+                };
                 Some((Points::Each(points), *sampling, scale.factor()))
             }
             Self::Isotropic => None,
@@ -77,9 +84,11 @@ impl Hair {
     #[must_use]
     pub fn prepare(&self, hit: Hit) -> Prepared {
         Prepared(match self {
-            Self::Model(bsdf, sampling, scale) => {
-                Some((Points::One(point(bsdf, hit, *scale)), *sampling, scale.factor()))
-            }
+            Self::Model(bsdf, sampling, scale) => Some((
+                Points::One(point(bsdf, hit, *scale)),
+                *sampling,
+                scale.factor(),
+            )),
             Self::Isotropic => None,
         })
     }
@@ -87,7 +96,9 @@ impl Hair {
     /// Directional albedo at an inclination of `wo` in rad and an offset `h`.
     #[must_use]
     pub fn albedo(&self, theta_o: f32, h: f32) -> [f32; 3] {
-        let Self::Model(bsdf, _, scale) = self else { return [1.0; 3] };
+        let Self::Model(bsdf, _, scale) = self else {
+            return [1.0; 3];
+        };
         let hit = Hit::new(Vec3::new(theta_o.sin(), theta_o.cos(), 0.0), h);
         let lobes = point(bsdf, hit, *scale).albedo().0;
         core::array::from_fn(|c| lobes.iter().map(|lobe| lobe[c]).sum::<f32>() * scale.factor())
@@ -125,7 +136,11 @@ impl Hair {
 /// One hit.
 fn point(bsdf: &AnyBsdf, hit: Hit, scale: Scale) -> AnyGather {
     let point = bsdf.prepare(hit);
-    if scale == Scale::PerWo { point.conserving() } else { point }
+    if scale == Scale::PerWo {
+        point.conserving()
+    } else {
+        point
+    }
 }
 
 impl Prepared {
@@ -135,14 +150,24 @@ impl Prepared {
     pub fn eval8(&self, wi: &Vec3x8) -> Eval8 {
         let uniform = f32x8::splat(0.25 / PI);
         let Some((points, sampling, factor)) = &self.0 else {
-            return Eval8 { value: [uniform / cosine(wi).max(f32x8::splat(1e-6)); 3], pdf: uniform };
+            return Eval8 {
+                value: [uniform / cosine(wi).max(f32x8::splat(1e-6)); 3],
+                pdf: uniform,
+            };
         };
         let eval = match points {
             Points::Each(points) => points.eval_pdf8(wi),
             Points::One(point) => point.eval_pdf8(wi),
         };
-        let pdf = if *sampling == Sampling::Uniform { uniform } else { eval.pdf };
-        Eval8 { value: eval.value.map(|channel| channel * f32x8::splat(*factor)), pdf }
+        let pdf = if *sampling == Sampling::Uniform {
+            uniform
+        } else {
+            eval.pdf
+        };
+        Eval8 {
+            value: eval.value.map(|channel| channel * f32x8::splat(*factor)),
+            pdf,
+        }
     }
 
     /// A direction per lane, from three uniform numbers.
@@ -162,7 +187,9 @@ impl Prepared {
                 ..sample
             };
         }
-        let wi = Vec3x8::from(core::array::from_fn::<Vec3, 8, _>(|lane| uniform_direction([xi[1][lane], xi[2][lane]])));
+        let wi = Vec3x8::from(core::array::from_fn::<Vec3, 8, _>(|lane| {
+            uniform_direction([xi[1][lane], xi[2][lane]])
+        }));
         let Eval8 { value, .. } = self.eval8(&wi);
         let by = cosine(&wi) * f32x8::splat(4.0 * PI);
         Sample8 {

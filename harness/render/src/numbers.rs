@@ -46,7 +46,12 @@ impl Numbers {
     #[inline]
     #[must_use]
     pub fn new(sequence: Sequence, seed: u64, pixel: u64, sample: u32) -> Self {
-        Self { sequence, key: mix(mix(seed) ^ pixel), sample, group: 0 }
+        Self {
+            sequence,
+            key: mix(mix(seed) ^ pixel),
+            sample,
+            group: 0,
+        }
     }
 
     /// The sample.
@@ -64,23 +69,41 @@ impl Numbers {
         match self.sequence {
             Sequence::Sobol => {
                 let turn = u64::from(self.sample / SOBOL_POINTS) << 32 | u64::from(group);
-                sobol_burley::sample_4d(self.sample % SOBOL_POINTS, 0, half(mix(self.key ^ mix(turn))))
+                sobol_burley::sample_4d(
+                    self.sample % SOBOL_POINTS,
+                    0,
+                    half(mix(self.key ^ mix(turn))),
+                )
             }
             Sequence::Halton if group as usize * 4 < HALTON_BASES.len() => {
                 let halton = Halton::new(HALTON_BASES.len(), self.key, 0);
-                let number =
-                    |dimension| to_unit_f32(halton.coordinate(group as usize * 4 + dimension, u64::from(self.sample)));
+                let number = |dimension| {
+                    to_unit_f32(
+                        halton.coordinate(group as usize * 4 + dimension, u64::from(self.sample)),
+                    )
+                };
                 core::array::from_fn(number)
             }
             Sequence::Stratified => {
-                let pair = |pair: u64| strata::pair(mix(self.key ^ mix(2 * u64::from(group) + pair)), self.sample);
+                let pair = |pair: u64| {
+                    strata::pair(
+                        mix(self.key ^ mix(2 * u64::from(group) + pair)),
+                        self.sample,
+                    )
+                };
                 let ([a, b], [c, d]) = (pair(0), pair(1));
                 [a, b, c, d]
             }
             Sequence::Independent | Sequence::Halton => {
                 let first = mix(self.key ^ mix(u64::from(self.sample) << 32 | u64::from(group)));
                 let second = mix(first);
-                [half(first >> 32), half(first), half(second >> 32), half(second)].map(unit)
+                [
+                    half(first >> 32),
+                    half(first),
+                    half(second >> 32),
+                    half(second),
+                ]
+                .map(unit)
             }
         }
     }
@@ -103,7 +126,12 @@ mod tests {
     use super::*;
     use hairis_conformance::statistics::chi_square;
 
-    const ALL: [Sequence; 4] = [Sequence::Independent, Sequence::Halton, Sequence::Sobol, Sequence::Stratified];
+    const ALL: [Sequence; 4] = [
+        Sequence::Independent,
+        Sequence::Halton,
+        Sequence::Sobol,
+        Sequence::Stratified,
+    ];
 
     #[test]
     fn every_pair_of_every_group_is_uniform() {
@@ -111,7 +139,9 @@ mod tests {
         for sequence in ALL {
             for group in 0..5 {
                 let mut cells = [[0_u64; 64]; PAIRS.len()];
-                for (pixel, sample) in (0..64).flat_map(|pixel| (0..100).map(move |sample| (pixel, sample))) {
+                for (pixel, sample) in
+                    (0..64).flat_map(|pixel| (0..100).map(move |sample| (pixel, sample)))
+                {
                     let mut numbers = Numbers::new(sequence, 3, pixel, sample);
                     let four = (0..=group).map(|_| numbers.four()).last().expect("a group");
                     assert!(four.iter().all(|x| (0.0..1.0).contains(x)), "{four:?}");
@@ -122,7 +152,10 @@ mod tests {
                 }
                 for (cells, pair) in cells.iter().zip(PAIRS) {
                     let p = chi_square(cells, &[100.0; 64], 5.0).p_value;
-                    assert!(p > 1e-4, "{sequence:?}, group {group}, dimensions {pair:?}: p {p}");
+                    assert!(
+                        p > 1e-4,
+                        "{sequence:?}, group {group}, dimensions {pair:?}: p {p}"
+                    );
                 }
             }
         }
@@ -134,7 +167,10 @@ mod tests {
             let four = |seed, pixel, sample| Numbers::new(sequence, seed, pixel, sample).four();
             assert_eq!(four(1, 2, 3), four(1, 2, 3));
             let others = [four(2, 2, 3), four(1, 3, 3), four(1, 2, 4)];
-            assert!(others.iter().all(|other| *other != four(1, 2, 3)), "{sequence:?}");
+            assert!(
+                others.iter().all(|other| *other != four(1, 2, 3)),
+                "{sequence:?}"
+            );
             let mut numbers = Numbers::new(sequence, 1, 2, 3);
             assert_ne!(numbers.four(), numbers.four(), "{sequence:?}");
         }

@@ -50,18 +50,56 @@ impl Part {
     /// The bytes of the file.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        let Crop { x, y, width, height } = self.film.crop();
+        let Crop {
+            x,
+            y,
+            width,
+            height,
+        } = self.film.crop();
         let mut bytes = format!("{MAGIC}\n{}\n", self.run).into_bytes();
-        bytes.extend([x, y, width, height, u32::from(self.finished)].into_iter().flat_map(u32::to_le_bytes));
-        for Tile { place, sums, samples, seconds, first } in &self.film.tiles {
-            let Crop { x, y, width, height } = *place;
-            bytes.extend([x, y, width, height, *samples].into_iter().flat_map(u32::to_le_bytes));
+        bytes.extend(
+            [x, y, width, height, u32::from(self.finished)]
+                .into_iter()
+                .flat_map(u32::to_le_bytes),
+        );
+        for Tile {
+            place,
+            sums,
+            samples,
+            seconds,
+            first,
+        } in &self.film.tiles
+        {
+            let Crop {
+                x,
+                y,
+                width,
+                height,
+            } = *place;
+            bytes.extend(
+                [x, y, width, height, *samples]
+                    .into_iter()
+                    .flat_map(u32::to_le_bytes),
+            );
             bytes.extend(seconds.to_le_bytes());
-            for Sums { radiance: [r, g, b], luminance_sq } in sums {
-                bytes.extend([r, g, b, luminance_sq].into_iter().flat_map(|sum| sum.to_le_bytes()));
+            for Sums {
+                radiance: [r, g, b],
+                luminance_sq,
+            } in sums
+            {
+                bytes.extend(
+                    [r, g, b, luminance_sq]
+                        .into_iter()
+                        .flat_map(|sum| sum.to_le_bytes()),
+                );
             }
             bytes.extend(u32::from(!first.is_empty()).to_le_bytes());
-            bytes.extend(first.iter().flatten().flat_map(|number| number.to_le_bytes()));
+            bytes.extend(
+                first
+                    .iter()
+                    .flatten()
+                    .flat_map(|number| number.to_le_bytes()),
+            );
         }
         seal(&mut bytes);
         bytes
@@ -73,9 +111,13 @@ impl Part {
     ///
     /// If it cannot be read, or is no such file.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let refuse = |problem: String| Error::Part { path: path.to_owned(), problem };
+        let refuse = |problem: String| Error::Part {
+            path: path.to_owned(),
+            problem,
+        };
         let bytes = fs::read(path).map_err(|source| refuse(format!("cannot read: {source}")))?;
-        Self::from_bytes(&bytes).ok_or_else(|| refuse("damaged, or not a part of a picture: remove it".to_owned()))
+        Self::from_bytes(&bytes)
+            .ok_or_else(|| refuse("damaged, or not a part of a picture: remove it".to_owned()))
     }
 
     /// Reads the bytes of a file; `None` if they are damaged, or not those of a part.
@@ -108,11 +150,17 @@ impl Part {
             return Ok(part);
         };
         if part.finished {
-            say(&format!("{}: {other}; the picture is begun anew", path.display()));
+            say(&format!(
+                "{}: {other}; the picture is begun anew",
+                path.display()
+            ));
             return Ok(fresh);
         }
         let problem = format!("{other}: remove it, or choose another --out");
-        Err(Error::Part { path: path.to_owned(), problem })
+        Err(Error::Part {
+            path: path.to_owned(),
+            problem,
+        })
     }
 
     /// Joins parts of one run into a whole picture. A tile that is in several is taken from the first.
@@ -123,9 +171,12 @@ impl Part {
     pub fn merge(parts: Vec<(PathBuf, Self)>) -> Result<Self, Error> {
         // A small picture may have shards without a tile, whose count of samples says nothing.
         let is_counted = |part: &Self| !part.film.tiles.is_empty();
-        let (counted, empty): (Vec<_>, Vec<_>) = parts.into_iter().partition(|(_, part)| is_counted(part));
+        let (counted, empty): (Vec<_>, Vec<_>) =
+            parts.into_iter().partition(|(_, part)| is_counted(part));
         let mut parts = counted.into_iter().chain(empty);
-        let Some((first_path, first)) = parts.next() else { return Err(Error::Missing("no parts".to_owned())) };
+        let Some((first_path, first)) = parts.next() else {
+            return Err(Error::Missing("no parts".to_owned()));
+        };
         let (run, crop, samples) = (first.run, first.film.crop(), first.film.samples());
         let mut tiles: HashMap<[u32; 2], Tile> = HashMap::new();
         let mut add = |film: Film| {
@@ -137,7 +188,10 @@ impl Part {
         for (path, part) in parts {
             let problem = if part.run != run || part.film.crop() != crop {
                 let words = difference(&part.run, &run).unwrap_or_default();
-                format!("belongs to another run than {} ({words})", first_path.display())
+                format!(
+                    "belongs to another run than {} ({words})",
+                    first_path.display()
+                )
             } else if is_counted(&part) && part.film.samples() != samples {
                 let got = part.film.samples();
                 format!(
@@ -151,11 +205,21 @@ impl Part {
             return Err(Error::Part { path, problem });
         }
         let all = crop.tiles().count();
-        let tiles: Vec<Tile> = crop.tiles().filter_map(|place| tiles.remove(&[place.x, place.y])).collect();
+        let tiles: Vec<Tile> = crop
+            .tiles()
+            .filter_map(|place| tiles.remove(&[place.x, place.y]))
+            .collect();
         if tiles.len() < all {
-            return Err(Error::Missing(format!("{} of {all} tiles are in no part", all - tiles.len())));
+            return Err(Error::Missing(format!(
+                "{} of {all} tiles are in no part",
+                all - tiles.len()
+            )));
         }
-        Ok(Self { run, film: Film::of(crop, tiles), finished: false })
+        Ok(Self {
+            run,
+            film: Film::of(crop, tiles),
+            finished: false,
+        })
     }
 }
 
@@ -169,7 +233,11 @@ pub(crate) fn build() -> String {
         let program = env::current_exe().and_then(fs::read).unwrap_or_default();
         format!("+{:016x}", digest(&program))
     };
-    format!("commit={}{changes} fuses={}", machine.commit, Level::detect().fuses())
+    format!(
+        "commit={}{changes} fuses={}",
+        machine.commit,
+        Level::detect().fuses()
+    )
 }
 
 /// The first word in which two runs differ.
@@ -181,9 +249,19 @@ fn difference(found: &str, expected: &str) -> Option<String> {
 
 /// A part of a picture, if it lies within the largest.
 fn crop(reader: &mut Reader<'_>) -> Option<Crop> {
-    let [x, y, width, height] = [reader.number()?, reader.number()?, reader.number()?, reader.number()?];
+    let [x, y, width, height] = [
+        reader.number()?,
+        reader.number()?,
+        reader.number()?,
+        reader.number()?,
+    ];
     let fits = |from: u32, count: u32| from.checked_add(count).is_some_and(|end| end <= 1 << 14);
-    (fits(x, width) && fits(y, height)).then_some(Crop { x, y, width, height })
+    (fits(x, width) && fits(y, height)).then_some(Crop {
+        x,
+        y,
+        width,
+        height,
+    })
 }
 
 /// The two lines of text, then the numbers.
@@ -203,7 +281,10 @@ fn parse(content: &[u8]) -> Option<Part> {
         let mut sums = Vec::new();
         for _ in 0..place.len() {
             let radiance = [rest.double()?, rest.double()?, rest.double()?];
-            sums.push(Sums { radiance, luminance_sq: rest.double()? });
+            sums.push(Sums {
+                radiance,
+                luminance_sq: rest.double()?,
+            });
         }
         let mut first = Vec::new();
         if rest.number()? != 0 {
@@ -215,9 +296,19 @@ fn parse(content: &[u8]) -> Option<Part> {
                 first.push(numbers);
             }
         }
-        tiles.push(Tile { place, sums, samples, seconds, first });
+        tiles.push(Tile {
+            place,
+            sums,
+            samples,
+            seconds,
+            first,
+        });
     }
-    Some(Part { run, film: Film::of(whole, tiles), finished })
+    Some(Part {
+        run,
+        film: Film::of(whole, tiles),
+        finished,
+    })
 }
 
 #[cfg(test)]
@@ -226,14 +317,28 @@ mod tests {
     use glam::Vec3;
 
     fn part() -> Part {
-        let mut film = Film::new(Crop { x: 3, y: 0, width: 70, height: 20 });
+        let mut film = Film::new(Crop {
+            x: 3,
+            y: 0,
+            width: 70,
+            height: 20,
+        });
         for (k, tile) in (0_u16..).zip(&mut film.tiles) {
             tile.samples = 4;
             tile.seconds = 0.5;
-            tile.first = vec![[0.1, 0.2, 0.3, 1.0, 0.0, 0.0, f32::from(k)]; if k == 1 { 0 } else { tile.sums.len() }];
-            tile.sums.iter_mut().for_each(|sums| sums.add(Vec3::splat(1.0 / f32::from(k + 3))));
+            tile.first = vec![
+                [0.1, 0.2, 0.3, 1.0, 0.0, 0.0, f32::from(k)];
+                if k == 1 { 0 } else { tile.sums.len() }
+            ];
+            tile.sums
+                .iter_mut()
+                .for_each(|sums| sums.add(Vec3::splat(1.0 / f32::from(k + 3))));
         }
-        Part { run: "scene=head seed=1".to_owned(), film, finished: false }
+        Part {
+            run: "scene=head seed=1".to_owned(),
+            film,
+            finished: false,
+        }
     }
 
     #[test]
@@ -259,10 +364,19 @@ mod tests {
     fn runs_go_on_from_their_own_parts() {
         let folder = tempfile::TempDir::new().expect("a folder");
         let path = folder.path().join("a.part");
-        let fresh = |run: &str| Part { run: run.to_owned(), film: Film::new(part().film.crop()), finished: false };
+        let fresh = |run: &str| Part {
+            run: run.to_owned(),
+            film: Film::new(part().film.crop()),
+            finished: false,
+        };
         let (same, other) = ("scene=head seed=1", "scene=head seed=2");
-        let resume = |fresh, samples| Part::resume(&path, fresh, samples).map_err(|error| error.to_string());
-        assert_eq!(resume(fresh(same), Some(8)), Ok(fresh(same)), "there is no file");
+        let resume =
+            |fresh, samples| Part::resume(&path, fresh, samples).map_err(|error| error.to_string());
+        assert_eq!(
+            resume(fresh(same), Some(8)),
+            Ok(fresh(same)),
+            "there is no file"
+        );
         part().write(&path).expect("written");
         assert_eq!(resume(fresh(same), Some(4)), Ok(part()));
         assert_eq!(resume(fresh(same), None), Ok(part()));
@@ -272,8 +386,17 @@ mod tests {
         let mut shard = fresh(same);
         shard.film.tiles.remove(1);
         assert!(refused(shard, None).contains("another shard"));
-        Part { finished: true, ..part() }.write(&path).expect("written");
-        assert_eq!(resume(fresh(other), Some(4)), Ok(fresh(other)), "a finished picture");
+        Part {
+            finished: true,
+            ..part()
+        }
+        .write(&path)
+        .expect("written");
+        assert_eq!(
+            resume(fresh(other), Some(4)),
+            Ok(fresh(other)),
+            "a finished picture"
+        );
         assert_eq!(resume(fresh(same), Some(3)), Ok(fresh(same)));
         assert!(resume(fresh(same), Some(8)).expect("its own").finished);
     }
@@ -284,17 +407,29 @@ mod tests {
         a.film.tiles.truncate(1);
         b.film.tiles.remove(0);
         let named = |name: &str, part: &Part| (PathBuf::from(name), part.clone());
-        assert_eq!(Part::merge(vec![named("b", &b), named("a", &a)]).expect("whole"), part());
+        assert_eq!(
+            Part::merge(vec![named("b", &b), named("a", &a)]).expect("whole"),
+            part()
+        );
         let message = |parts| Part::merge(parts).expect_err("refused").to_string();
         assert!(message(vec![named("a", &a)]).contains("2 of 3 tiles"));
         let mut none = b.clone();
         none.film.tiles.clear();
-        assert_eq!(Part::merge(vec![named("none", &none), named("b", &b), named("a", &a)]).expect("whole"), part());
+        assert_eq!(
+            Part::merge(vec![named("none", &none), named("b", &b), named("a", &a)]).expect("whole"),
+            part()
+        );
         let mut more = b.clone();
         more.film.tiles.iter_mut().for_each(|tile| tile.samples = 8);
         let refused = message(vec![named("a", &a), named("more", &more)]);
-        assert!(refused.contains("more: has 8 samples, expected 4 as in a"), "{refused}");
+        assert!(
+            refused.contains("more: has 8 samples, expected 4 as in a"),
+            "{refused}"
+        );
         b.run = "scene=box seed=1".to_owned();
-        assert!(message(vec![named("a", &a), named("b", &b)]).contains("scene=box, expected scene=head"));
+        assert!(
+            message(vec![named("a", &a), named("b", &b)])
+                .contains("scene=box, expected scene=head")
+        );
     }
 }

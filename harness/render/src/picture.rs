@@ -3,7 +3,8 @@
 use crate::film::Picture;
 use crate::layers::Beside;
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage as _,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes,
+    WritableImage as _,
 };
 use hairis_instruments::error::Error;
 use hairis_instruments::files::whole;
@@ -21,19 +22,33 @@ const BRIGHT: f64 = 0.7;
 /// The factor on radiance that makes a preview neither dark nor white.
 #[must_use]
 pub fn exposure(picture: &Picture) -> f64 {
-    let mut luminances: Vec<f64> = picture.luminances().into_iter().filter(|l| *l > 1e-6).collect();
+    let mut luminances: Vec<f64> = picture
+        .luminances()
+        .into_iter()
+        .filter(|l| *l > 1e-6)
+        .collect();
     luminances.sort_by(f64::total_cmp);
-    if luminances.is_empty() { 1.0 } else { BRIGHT / percentile(&luminances, MOST).max(1e-12) }
+    if luminances.is_empty() {
+        1.0
+    } else {
+        BRIGHT / percentile(&luminances, MOST).max(1e-12)
+    }
 }
 
 /// The picture as a screen shows it, sRGB: linear in the shadows, and lights rolled off towards white.
 #[must_use]
 pub fn preview(picture: &Picture, exposure: f64) -> RgbImage {
     RgbImage::from_fn(picture.size[0], picture.size[1], |x, y| {
-        let rgb = picture.at(x, y).map(|channel| (channel * exposure).max(0.0));
+        let rgb = picture
+            .at(x, y)
+            .map(|channel| (channel * exposure).max(0.0));
         // Beyond 0.6 the curve bends, and reaches 1 at 4.
         let l = luminance(rgb).max(1e-12);
-        let rolled = if l < 0.6 { l } else { 0.6 + 0.4 * (1.0 - (-(l - 0.6) / 0.6).exp()) };
+        let rolled = if l < 0.6 {
+            l
+        } else {
+            0.6 + 0.4 * (1.0 - (-(l - 0.6) / 0.6).exp())
+        };
         image::Rgb(rgb.map(|channel| srgb(channel * rolled / l)))
     })
 }
@@ -41,8 +56,16 @@ pub fn preview(picture: &Picture, exposure: f64) -> RgbImage {
 /// A linear value in `[0, 1]` as the byte that a screen shows.
 #[must_use]
 pub fn srgb(linear: f64) -> u8 {
-    let encoded = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
+    let encoded = if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    };
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to a byte"
+    )]
     let byte = (255.0 * encoded.clamp(0.0, 1.0)).round() as u8;
     byte
 }
@@ -55,7 +78,12 @@ pub fn srgb(linear: f64) -> u8 {
 pub fn png(image: &RgbImage) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     image::codecs::png::PngEncoder::new(&mut bytes)
-        .write_image(image.as_raw(), image.width(), image.height(), ExtendedColorType::Rgb8)
+        .write_image(
+            image.as_raw(),
+            image.width(),
+            image.height(),
+            ExtendedColorType::Rgb8,
+        )
         .map_err(io::Error::other)?;
     Ok(bytes)
 }
@@ -74,18 +102,34 @@ pub fn write(picture: &Picture, beside: &Beside, path: &Path, exposure: f64) -> 
 /// An `OpenEXR` file in memory.
 fn exr(picture: &Picture, beside: &Beside) -> exr::error::Result<Vec<u8>> {
     let channel = |name: &str, pixels| AnyChannel::new(name, FlatSamples::F32(pixels));
-    #[expect(clippy::cast_possible_truncation, reason = "files hold single precision")]
-    let radiance = ["R", "G", "B"]
-        .into_iter()
-        .enumerate()
-        .map(|(c, name)| channel(name, picture.pixels.iter().map(|pixel| pixel[c] as f32).collect()));
-    let layers = beside.channels.iter().map(|layer| channel(layer.name, layer.pixels.clone()));
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "files hold single precision"
+    )]
+    let radiance = ["R", "G", "B"].into_iter().enumerate().map(|(c, name)| {
+        channel(
+            name,
+            picture.pixels.iter().map(|pixel| pixel[c] as f32).collect(),
+        )
+    });
+    let layers = beside
+        .channels
+        .iter()
+        .map(|layer| channel(layer.name, layer.pixels.clone()));
     let channels = AnyChannels::sort(radiance.chain(layers).collect());
     let [width, height] = picture.size.map(|side| side as usize);
-    let mut image =
-        Image::from_layer(Layer::new((width, height), LayerAttributes::default(), Encoding::SMALL_LOSSLESS, channels));
+    let mut image = Image::from_layer(Layer::new(
+        (width, height),
+        LayerAttributes::default(),
+        Encoding::SMALL_LOSSLESS,
+        channels,
+    ));
     for (name, value) in &beside.attributes {
-        image.layer_data.attributes.other.insert((*name).into(), AttributeValue::Text(value.as_str().into()));
+        image
+            .layer_data
+            .attributes
+            .other
+            .insert((*name).into(), AttributeValue::Text(value.as_str().into()));
     }
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes)?;
@@ -98,7 +142,9 @@ fn exr(picture: &Picture, beside: &Beside) -> exr::error::Result<Vec<u8>> {
 ///
 /// If the file cannot be written.
 pub fn write_preview(picture: &Picture, path: &Path, exposure: f64) -> Result<(), Error> {
-    whole(path, |out| out.write_all(&png(&preview(picture, exposure))?))
+    whole(path, |out| {
+        out.write_all(&png(&preview(picture, exposure))?)
+    })
 }
 
 #[cfg(test)]
@@ -116,25 +162,49 @@ mod tests {
         let beside = Beside::film(&film, "seed=1 commit=abc");
         write(&picture, &beside, &path, 1.0).expect("written");
         let file = exr::prelude::read_all_flat_layers_from_file(&path).expect("an EXR file");
-        let [layer] = &file.layer_data[..] else { panic!("one part") };
-        let names: Vec<String> = layer.channel_data.list.iter().map(|channel| channel.name.to_string()).collect();
+        let [layer] = &file.layer_data[..] else {
+            panic!("one part")
+        };
+        let names: Vec<String> = layer
+            .channel_data
+            .list
+            .iter()
+            .map(|channel| channel.name.to_string())
+            .collect();
         assert_eq!(names, ["B", "G", "R", "samples", "variance"]);
         let run = layer.attributes.other.get(&exr::prelude::Text::from("run"));
         assert_eq!(run, Some(&AttributeValue::Text("seed=1 commit=abc".into())));
         let read = image::open(&path).expect("an image").to_rgb32f();
         assert_eq!(read.get_pixel(2, 1).0, [0.25, 1.5, 1e-3]);
         assert_eq!(read.get_pixel(1, 2).0, [0.0; 3]);
-        let seen = image::open(path.with_extension("png")).expect("an image").to_rgb8();
+        let seen = image::open(path.with_extension("png"))
+            .expect("an image")
+            .to_rgb8();
         assert_eq!(seen.get_pixel(0, 0).0, [0; 3]);
-        assert!(seen.get_pixel(2, 1).0[1] > 200, "{:?}", seen.get_pixel(2, 1));
+        assert!(
+            seen.get_pixel(2, 1).0[1] > 200,
+            "{:?}",
+            seen.get_pixel(2, 1)
+        );
     }
 
     #[test]
     fn exposure_brings_pictures_to_one_level() {
         let mut picture = Picture::black([10, 10]);
-        picture.pixels.iter_mut().take(50).for_each(|pixel| *pixel = [2e-3; 3]);
-        assert!((exposure(&picture) * 2e-3 - BRIGHT).abs() < 1e-6, "{}", exposure(&picture));
+        picture
+            .pixels
+            .iter_mut()
+            .take(50)
+            .for_each(|pixel| *pixel = [2e-3; 3]);
+        assert!(
+            (exposure(&picture) * 2e-3 - BRIGHT).abs() < 1e-6,
+            "{}",
+            exposure(&picture)
+        );
         assert_eq!(exposure(&Picture::black([2, 2])), 1.0);
-        assert_eq!((srgb(0.0), srgb(1.0), srgb(f64::NAN), srgb(0.214)), (0, 255, 0, 127));
+        assert_eq!(
+            (srgb(0.0), srgb(1.0), srgb(f64::NAN), srgb(0.214)),
+            (0, 255, 0, 127)
+        );
     }
 }

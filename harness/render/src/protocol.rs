@@ -28,7 +28,12 @@ pub enum Measure {
 
 impl Measure {
     /// All, in their order.
-    pub const ALL: [Self; 4] = [Self::Mse, Self::TrimmedMse, Self::RelMse, Self::TrimmedRelMse];
+    pub const ALL: [Self; 4] = [
+        Self::Mse,
+        Self::TrimmedMse,
+        Self::RelMse,
+        Self::TrimmedRelMse,
+    ];
 
     /// Its name in reports.
     #[must_use]
@@ -88,10 +93,21 @@ impl Reference {
         for (pixel, other) in picture.pixels.iter_mut().zip(&b.pixels) {
             *pixel = core::array::from_fn(|c| 0.5 * (pixel[c] + other[c]));
         }
-        let variances = a.luminances().iter().zip(b.luminances()).map(|(a, b)| 0.25 * (a - b) * (a - b)).collect();
+        let variances = a
+            .luminances()
+            .iter()
+            .zip(b.luminances())
+            .map(|(a, b)| 0.25 * (a - b) * (a - b))
+            .collect();
         let luminances = picture.luminances();
         let mean = luminances.iter().sum::<f64>() / luminances.len().max(1) as f64;
-        Self { picture, seconds: 0.0, luminances, variances, mean }
+        Self {
+            picture,
+            seconds: 0.0,
+            luminances,
+            variances,
+            mean,
+        }
     }
 
     /// The same, made in a time in seconds of a thread.
@@ -108,19 +124,32 @@ impl Reference {
     /// Signed error in luminance of every pixel of a picture.
     #[must_use]
     pub fn signed(&self, picture: &Picture) -> Vec<f64> {
-        picture.luminances().iter().zip(&self.luminances).map(|(a, b)| a - b).collect()
+        picture
+            .luminances()
+            .iter()
+            .zip(&self.luminances)
+            .map(|(a, b)| a - b)
+            .collect()
     }
 
     /// Signed errors in luminance, one per pixel, as relative errors.
     #[must_use]
     pub fn relative(&self, errors: &[f64]) -> Vec<f64> {
-        errors.iter().enumerate().map(|(k, error)| error / self.unit(k).sqrt()).collect()
+        errors
+            .iter()
+            .enumerate()
+            .map(|(k, error)| error / self.unit(k).sqrt())
+            .collect()
     }
 
     /// Squared errors in luminance, one per pixel, as squared relative errors.
     #[must_use]
     pub fn relative_squares(&self, squares: &[f64]) -> Vec<f64> {
-        squares.iter().enumerate().map(|(k, square)| square / self.unit(k)).collect()
+        squares
+            .iter()
+            .enumerate()
+            .map(|(k, square)| square / self.unit(k))
+            .collect()
     }
 
     /// How another scene looks beside this one: the ratio of the mean luminances, and the root of the mean squared relative
@@ -128,7 +157,10 @@ impl Reference {
     #[must_use]
     pub fn difference(&self, other: &Self) -> (f64, f64) {
         let square = |k: usize| {
-            let (apart, noise) = (self.luminances[k] - other.luminances[k], self.variances[k] + other.variances[k]);
+            let (apart, noise) = (
+                self.luminances[k] - other.luminances[k],
+                self.variances[k] + other.variances[k],
+            );
             (apart * apart - noise) / self.unit(k)
         };
         let count = self.luminances.len().max(1);
@@ -141,11 +173,16 @@ impl Reference {
     pub fn errors(&self, picture: &Picture) -> Errors {
         let signed = self.signed(picture);
         let mut errors = Errors::default();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a count")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a share of a count"
+        )]
         let kept = signed.len() - (signed.len() as f64 * TRIMMED).ceil() as usize;
         for is_relative in [false, true] {
             let unit = |k: usize| if is_relative { self.unit(k) } else { 1.0 };
-            let pixel = |(k, error): (usize, &f64)| [error * error / unit(k), self.variances[k] / unit(k)];
+            let pixel =
+                |(k, error): (usize, &f64)| [error * error / unit(k), self.variances[k] / unit(k)];
             let mut pixels: Vec<[f64; 2]> = signed.iter().enumerate().map(pixel).collect();
             pixels.sort_by(|a, b| a[0].total_cmp(&b[0]));
             let measures = if is_relative {
@@ -154,7 +191,9 @@ impl Reference {
                 [Measure::Mse, Measure::TrimmedMse]
             };
             for (measure, count) in measures.into_iter().zip([pixels.len(), kept]) {
-                let mean = |part: usize| pixels[..count].iter().map(|pixel| pixel[part]).sum::<f64>() / count as f64;
+                let mean = |part: usize| {
+                    pixels[..count].iter().map(|pixel| pixel[part]).sum::<f64>() / count as f64
+                };
                 let own = mean(1);
                 errors.values[measure as usize] = mean(0) - own;
                 errors.own[measure as usize] = own;
@@ -184,27 +223,60 @@ mod tests {
         let mut xi = Independent::new(1, 0);
         let reference = Reference::new(&noisy(&mut xi, 0.2), &noisy(&mut xi, 0.2));
         let errors = reference.errors(&noisy(&mut xi, 0.1));
-        assert!((errors.value(Measure::Mse) / 0.01 - 1.0).abs() < 0.15, "{errors:?}");
-        assert!((errors.own(Measure::Mse) / 0.02 - 1.0).abs() < 0.1, "{errors:?}");
-        for [all, trimmed] in [[Measure::Mse, Measure::TrimmedMse], [Measure::RelMse, Measure::TrimmedRelMse]] {
+        assert!(
+            (errors.value(Measure::Mse) / 0.01 - 1.0).abs() < 0.15,
+            "{errors:?}"
+        );
+        assert!(
+            (errors.own(Measure::Mse) / 0.02 - 1.0).abs() < 0.1,
+            "{errors:?}"
+        );
+        for [all, trimmed] in [
+            [Measure::Mse, Measure::TrimmedMse],
+            [Measure::RelMse, Measure::TrimmedRelMse],
+        ] {
             assert!(errors.value(trimmed) < errors.value(all), "{errors:?}");
         }
         let exact = Reference::new(&noisy(&mut xi, 0.0), &noisy(&mut xi, 0.0));
-        let brighter = Picture { size: [200, 100], pixels: vec![[1.1; 3]; 20_000] };
+        let brighter = Picture {
+            size: [200, 100],
+            pixels: vec![[1.1; 3]; 20_000],
+        };
         let signed = exact.signed(&brighter);
-        assert!(exact.relative(&signed).iter().all(|error| (error - 0.1 / 1.01_f64.sqrt()).abs() < 1e-9));
+        assert!(
+            exact
+                .relative(&signed)
+                .iter()
+                .all(|error| (error - 0.1 / 1.01_f64.sqrt()).abs() < 1e-9)
+        );
         let squares: Vec<f64> = signed.iter().map(|error| error * error).collect();
-        assert!(exact.relative_squares(&squares).iter().all(|square| (square - 0.01 / 1.01).abs() < 1e-9));
+        assert!(
+            exact
+                .relative_squares(&squares)
+                .iter()
+                .all(|square| (square - 0.01 / 1.01).abs() < 1e-9)
+        );
     }
 
     #[test]
     fn trimmed_errors_leave_the_worst_pixels_out() {
-        let black = Picture { size: [200, 100], pixels: vec![[1.0; 3]; 20_000] };
+        let black = Picture {
+            size: [200, 100],
+            pixels: vec![[1.0; 3]; 20_000],
+        };
         let mut picture = black.clone();
-        picture.pixels.iter_mut().for_each(|pixel| *pixel = [1.1; 3]);
-        picture.pixels[..20].iter_mut().for_each(|pixel| *pixel = [101.0; 3]);
+        picture
+            .pixels
+            .iter_mut()
+            .for_each(|pixel| *pixel = [1.1; 3]);
+        picture.pixels[..20]
+            .iter_mut()
+            .for_each(|pixel| *pixel = [101.0; 3]);
         let errors = Reference::new(&black, &black).errors(&picture);
-        assert!((errors.value(Measure::TrimmedMse) - 0.01).abs() < 1e-9, "{errors:?}");
+        assert!(
+            (errors.value(Measure::TrimmedMse) - 0.01).abs() < 1e-9,
+            "{errors:?}"
+        );
         assert!(
             (errors.value(Measure::Mse) - 10.01).abs() < 1e-3,
             "20 of 20,000 pixels with a square of 10,000: {errors:?}"

@@ -41,8 +41,15 @@ impl Head {
         let c = f32x8::splat;
         let origin = origin / self.radii;
         let Vec3x8 { x, y, z } = *direction;
-        let (x, y, z) = (x / c(self.radii.x), y / c(self.radii.y), z / c(self.radii.z));
-        let (a, b) = (x * x + y * y + z * z, c(origin.x) * x + c(origin.y) * y + c(origin.z) * z);
+        let (x, y, z) = (
+            x / c(self.radii.x),
+            y / c(self.radii.y),
+            z / c(self.radii.z),
+        );
+        let (a, b) = (
+            x * x + y * y + z * z,
+            c(origin.x) * x + c(origin.y) * y + c(origin.z) * z,
+        );
         let discriminant = b * b - a * c(origin.length_squared() - 1.0);
         let t = (-b - discriminant.max(c(0.0)).sqrt()) / a;
         discriminant.simd_ge(c(0.0)) & t.simd_gt(c(0.0)) & t.simd_lt(*t_max)
@@ -102,18 +109,29 @@ impl Scene {
         let mut ray = *ray;
         let mut met = Met::Nothing;
         if let Some(head) = &self.head
-            && let Some(t) = head.meet(ray.origin, ray.direction, 0.0).filter(|t| *t < ray.t_max)
+            && let Some(t) = head
+                .meet(ray.origin, ray.direction, 0.0)
+                .filter(|t| *t < ray.t_max)
         {
             ray.t_max = t;
             let point = ray.origin + t * ray.direction;
             met = Met::Surface(point, head.normal(point), head.albedo);
         }
         for (index, rectangle) in self.rectangles.iter().enumerate() {
-            let Some(t) = rectangle.meet(ray.origin, ray.direction, 0.0).filter(|t| *t < ray.t_max) else { continue };
+            let Some(t) = rectangle
+                .meet(ray.origin, ray.direction, 0.0)
+                .filter(|t| *t < ray.t_max)
+            else {
+                continue;
+            };
             ray.t_max = t;
             met = if rectangle.emission == Vec3::ZERO {
                 let towards = rectangle.normal().dot(ray.direction) < 0.0;
-                let normal = if towards { rectangle.normal() } else { -rectangle.normal() };
+                let normal = if towards {
+                    rectangle.normal()
+                } else {
+                    -rectangle.normal()
+                };
                 Met::Surface(ray.origin + t * ray.direction, normal, rectangle.albedo)
             } else {
                 Met::Light(index)
@@ -128,8 +146,12 @@ impl Scene {
     pub fn blocked(&self, ray: &Ray) -> bool {
         let t_max = ray.t_max * SHORTER;
         let short = |t: f32| t < t_max;
-        self.head.is_some_and(|head| head.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
-            || self.rectangles.iter().any(|one| one.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
+        self.head
+            .is_some_and(|head| head.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
+            || self
+                .rectangles
+                .iter()
+                .any(|one| one.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
             || self.tree.occluded(ray)
     }
 
@@ -137,13 +159,21 @@ impl Scene {
     #[inline]
     pub fn remove_blocked(&self, origin: Vec3, light: &mut LightSample8) {
         let Some(head) = &self.head else { return };
-        let clear = !head.blocks8(origin, &light.direction, &(light.distance * f32x8::splat(SHORTER)));
+        let clear = !head.blocks8(
+            origin,
+            &light.direction,
+            &(light.distance * f32x8::splat(SHORTER)),
+        );
         light.radiance = light.radiance.map(|channel| channel & clear);
     }
 
     /// Places of the rectangles that emit.
     fn lamps(&self) -> impl Iterator<Item = usize> {
-        self.rectangles.iter().enumerate().filter(|(_, one)| one.emission != Vec3::ZERO).map(|(index, _)| index)
+        self.rectangles
+            .iter()
+            .enumerate()
+            .filter(|(_, one)| one.emission != Vec3::ZERO)
+            .map(|(index, _)| index)
     }
 
     /// How a lamp is seen from a point; `None` from behind.
@@ -177,7 +207,10 @@ impl Scene {
             Some(lamp) => self.view(lamp, origin).map(|view| view.sample([x, y])),
             None => self.sky.sample([x, y]),
         }?;
-        Some(LightSample { pdf: sample.pdf * self.share(), ..sample })
+        Some(LightSample {
+            pdf: sample.pdf * self.share(),
+            ..sample
+        })
     }
 
     /// Eight directions towards lights from a point per lane, as [`sample_light`](Self::sample_light) draws them. Where there is a
@@ -191,7 +224,9 @@ impl Scene {
         sky: Option<&LightSample8>,
     ) -> LightSample8 {
         if self.lamps().next().is_none() {
-            return sky.copied().unwrap_or_else(|| self.sky.sample8(&[xi[0], xi[1]]));
+            return sky
+                .copied()
+                .unwrap_or_else(|| self.sky.sample8(&[xi[0], xi[1]]));
         }
         let (share, mut views) = (self.share(), Views::default());
         LightSample8::from(core::array::from_fn(|lane| {
@@ -201,7 +236,10 @@ impl Scene {
                 (None, Some(sky)) => return sky.lane(lane, share),
                 (None, None) => self.sky.sample([x, y])?,
             };
-            Some(LightSample { pdf: sample.pdf * share, ..sample })
+            Some(LightSample {
+                pdf: sample.pdf * share,
+                ..sample
+            })
         }))
     }
 
@@ -211,7 +249,12 @@ impl Scene {
     pub fn lights_along(&self, origin: Vec3, direction: &Vec3x8) -> LightSample8 {
         if self.lamps().next().is_none() {
             let Seen8 { radiance, pdf } = self.sky.see8(direction);
-            return LightSample8 { direction: *direction, distance: f32x8::splat(f32::INFINITY), radiance, pdf };
+            return LightSample8 {
+                direction: *direction,
+                distance: f32x8::splat(f32::INFINITY),
+                radiance,
+                pdf,
+            };
         }
         let (share, mut views) = (self.share(), Views::default());
         LightSample8::from(core::array::from_fn(|lane| {
@@ -221,7 +264,12 @@ impl Scene {
                 Some(lamp) => views.of(self, lamp, origin)?.see(direction),
                 None => self.sky.see(direction),
             };
-            (pdf > 0.0).then_some(LightSample { direction, distance, radiance, pdf: pdf * share })
+            (pdf > 0.0).then_some(LightSample {
+                direction,
+                distance,
+                radiance,
+                pdf: pdf * share,
+            })
         }))
     }
 
@@ -234,7 +282,10 @@ impl Scene {
             Met::Nothing => self.sky.see(ray.direction),
             Met::Light(index) => self.view(*index, ray.origin)?.see(ray.direction),
         };
-        (seen.pdf > 0.0).then_some(Seen { pdf: seen.pdf * self.share(), ..seen })
+        (seen.pdf > 0.0).then_some(Seen {
+            pdf: seen.pdf * self.share(),
+            ..seen
+        })
     }
 
     /// Radiance along a ray from the camera that met no hair and no surface: of the backdrop, if there is one, where there is
@@ -253,7 +304,10 @@ impl Scene {
     fn lamp_along(&self, origin: Vec3, direction: Vec3) -> (Option<usize>, f32) {
         let mut nearest = (None, f32::INFINITY);
         for lamp in self.lamps() {
-            if let Some(t) = self.rectangles[lamp].meet(origin, direction, 0.0).filter(|t| *t < nearest.1) {
+            if let Some(t) = self.rectangles[lamp]
+                .meet(origin, direction, 0.0)
+                .filter(|t| *t < nearest.1)
+            {
                 nearest = (Some(lamp), t);
             }
         }
@@ -289,24 +343,41 @@ mod tests {
 
     #[test]
     fn a_direction_has_one_density() {
-        let hair =
-            Choice::find("gaussian", "matched", "blond").and_then(|hair| hair.hair(Energy::Raw)).expect("listed");
+        let hair = Choice::find("gaussian", "matched", "blond")
+            .and_then(|hair| hair.hair(Energy::Raw))
+            .expect("listed");
         let strands = scenes::grow(Name::Area, 1).expect("one");
-        let parts = Parts { strands, imported: false, hair, env: None, size: [1; 2], turn: 0.0 };
+        let parts = Parts {
+            strands,
+            imported: false,
+            hair,
+            env: None,
+            size: [1; 2],
+            turn: 0.0,
+        };
         let scene = scenes::build(Name::Area, parts).expect("a scene");
         let mut numbers = Independent::new(8, 0);
         for rectangle_sampling in [RectangleSampling::SolidAngle, RectangleSampling::Area] {
-            let scene = Scene { rectangle_sampling, ..scene.clone() };
+            let scene = Scene {
+                rectangle_sampling,
+                ..scene.clone()
+            };
             for _ in 0..1000 {
                 let origin = 5.0 * uniform_direction(numbers.next_xi_f32());
                 // Off the rim, which rounding may miss.
                 let xi = numbers.next_xi_f32::<3>().map(|x| 0.001 + 0.998 * x);
                 let one = scene.sample_light(origin, xi).expect("in front");
-                let seen = scene.see(&Ray::new(origin, one.direction), &Met::Light(0)).expect("in front");
+                let seen = scene
+                    .see(&Ray::new(origin, one.direction), &Met::Light(0))
+                    .expect("in front");
                 let eight = scene.sample_lights8(|_| origin, &xi.map(|x| [x; 8]), None);
                 let along = scene.lights_along(origin, &[one.direction; 8].into());
                 for pdf in [seen.pdf, eight.pdf.as_array()[0], along.pdf.as_array()[0]] {
-                    assert!((pdf / one.pdf - 1.0).abs() < 1e-4, "{rectangle_sampling:?}: {pdf} for {}", one.pdf);
+                    assert!(
+                        (pdf / one.pdf - 1.0).abs() < 1e-4,
+                        "{rectangle_sampling:?}: {pdf} for {}",
+                        one.pdf
+                    );
                 }
             }
         }
@@ -314,15 +385,21 @@ mod tests {
 
     #[test]
     fn eight_rays_meet_the_head_as_one_does() {
-        let head = Head { radii: Vec3::new(7.5, 10.0, 8.8), albedo: Vec3::ONE };
+        let head = Head {
+            radii: Vec3::new(7.5, 10.0, 8.8),
+            albedo: Vec3::ONE,
+        };
         let mut xi = Independent::new(6, 0);
         let mut met = 0;
         for turn in 0..20_000 {
             // Inside, on the surface and outside.
-            let origin = [0.5, 1.0, 1.01, 3.0][turn % 4] * head.radii * uniform_direction(xi.next_xi_f32());
+            let origin =
+                [0.5, 1.0, 1.01, 3.0][turn % 4] * head.radii * uniform_direction(xi.next_xi_f32());
             let dirs: [Vec3; 8] = core::array::from_fn(|_| uniform_direction(xi.next_xi_f32()));
             let t_max = if turn % 3 == 0 { 12.0 } else { f32::INFINITY };
-            let lanes = head.blocks8(origin, &dirs.into(), &f32x8::splat(t_max)).to_bitmask();
+            let lanes = head
+                .blocks8(origin, &dirs.into(), &f32x8::splat(t_max))
+                .to_bitmask();
             for (lane, dir) in dirs.into_iter().enumerate() {
                 let one = head.meet(origin, dir, 0.0).is_some_and(|t| t < t_max);
                 assert_eq!(lanes >> lane & 1 == 1, one, "{origin} {dir}");

@@ -68,13 +68,26 @@ impl Name {
     /// Default settings of the scene.
     #[must_use]
     pub fn defaults(self) -> Defaults {
-        let gather = |preset| Defaults { integrator: Integrator::Gather, preset, samples: 64, multiple: true };
-        let paths = Defaults { integrator: Integrator::Path, preset: "blond", samples: 64, multiple: true };
+        let gather = |preset| Defaults {
+            integrator: Integrator::Gather,
+            preset,
+            samples: 64,
+            multiple: true,
+        };
+        let paths = Defaults {
+            integrator: Integrator::Path,
+            preset: "blond",
+            samples: 64,
+            multiple: true,
+        };
         match self {
             Self::Area => gather(crate::hair::GLOSSY),
             Self::AreaSoft => gather("default"),
             Self::AreaHead | Self::Env => gather("blond"),
-            Self::BoxSingle => Defaults { multiple: false, ..paths },
+            Self::BoxSingle => Defaults {
+                multiple: false,
+                ..paths
+            },
             Self::Box | Self::Head | Self::FurnaceOne | Self::FurnaceIso => paths,
         }
     }
@@ -97,7 +110,9 @@ impl Name {
 ///
 /// If there are too many.
 pub fn grow(name: Name, count: usize) -> Result<Strands, Error> {
-    groom(name, count).grow(&Flattening::default()).map_err(|problem| Error::Usage(problem.to_string()))
+    groom(name, count)
+        .grow(&Flattening::default())
+        .map_err(|problem| Error::Usage(problem.to_string()))
 }
 
 /// About how many segments [`grow`] will make.
@@ -106,12 +121,22 @@ pub fn grow(name: Name, count: usize) -> Result<Strands, Error> {
 ///
 /// If there are too many strands.
 pub fn estimate_segments(name: Name, count: usize) -> Result<u64, Error> {
-    groom(name, count).estimate_segments(&Flattening::default()).map_err(|problem| Error::Usage(problem.to_string()))
+    groom(name, count)
+        .estimate_segments(&Flattening::default())
+        .map_err(|problem| Error::Usage(problem.to_string()))
 }
 
 fn groom(name: Name, count: usize) -> Groom {
     let groom = Groom::new(name.kind(), count);
-    if groom.kind == Kind::Single { Groom { length: 400.0, radius: 10.0, ..groom } } else { groom }
+    if groom.kind == Kind::Single {
+        Groom {
+            length: 400.0,
+            radius: 10.0,
+            ..groom
+        }
+    } else {
+        groom
+    }
 }
 
 /// Parts of a scene beside its name.
@@ -137,12 +162,23 @@ pub struct Parts {
 ///
 /// If the strands are too thin for their extent.
 pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
-    let Parts { strands, imported, hair, env, size, turn } = parts;
+    let Parts {
+        strands,
+        imported,
+        hair,
+        env,
+        size,
+        turn,
+    } = parts;
     let tree = Tree::build(&strands).map_err(|problem| Error::Usage(problem.to_string()))?;
     let bounds = strands.bounds();
     let extent = bounds.size().length().max(1e-3);
     // Set-ups are for a head at the origin, 26 cm wide with its hair.
-    let (scale, centre) = if imported { (extent / 40.0, bounds.centre()) } else { (1.0, Vec3::ZERO) };
+    let (scale, centre) = if imported {
+        (extent / 40.0, bounds.centre())
+    } else {
+        (1.0, Vec3::ZERO)
+    };
     let at = |x: f32, y: f32, z: f32| centre + scale * Vec3::new(x, y, z);
     let lamp = |corner: Vec3, a: Vec3, b: Vec3, radiance: f32| {
         Rectangle::light(corner, scale * a, scale * b, Vec3::splat(radiance)).facing(centre)
@@ -151,8 +187,12 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
     let mut sky = Sky::Black;
     let mut rectangles = Vec::new();
     match name {
-        Name::Area | Name::AreaSoft => rectangles.push(lamp(at(-100.0, 22.0, -25.0), 200.0 * x, 50.0 * z, 1.0)),
-        Name::AreaHead | Name::Head => rectangles.push(lamp(at(-20.0, 30.0, -10.0), 40.0 * x, 40.0 * z, 6.0)),
+        Name::Area | Name::AreaSoft => {
+            rectangles.push(lamp(at(-100.0, 22.0, -25.0), 200.0 * x, 50.0 * z, 1.0))
+        }
+        Name::AreaHead | Name::Head => {
+            rectangles.push(lamp(at(-20.0, 30.0, -10.0), 40.0 * x, 40.0 * z, 6.0))
+        }
         Name::Env => sky = Sky::Map(Box::new(light::Sky::default().environment())),
         Name::BoxSingle | Name::Box => rectangles = cornell_box(centre, scale),
         Name::FurnaceOne | Name::FurnaceIso => sky = Sky::White,
@@ -163,25 +203,49 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
     }
     let camera = match name {
         _ if imported => Camera::new(at(0.0, 9.0, 52.0), centre, 42.0, size),
-        Name::Area | Name::AreaSoft => Camera::new(at(6.0, 14.0, 26.0), at(-0.5, -1.5, 0.0), 34.0, size),
-        Name::BoxSingle | Name::Box => Camera::new(at(0.0, 3.0, 85.0), at(0.0, -1.0, 0.0), 42.0, size),
+        Name::Area | Name::AreaSoft => {
+            Camera::new(at(6.0, 14.0, 26.0), at(-0.5, -1.5, 0.0), 34.0, size)
+        }
+        Name::BoxSingle | Name::Box => {
+            Camera::new(at(0.0, 3.0, 85.0), at(0.0, -1.0, 0.0), 42.0, size)
+        }
         Name::FurnaceOne => Camera::new(at(0.0, 0.0, 100.0), centre, 8.0, size),
         Name::FurnaceIso => Camera::new(at(6.0, 14.0, 26.0), centre, 30.0, size),
-        Name::AreaHead | Name::Env | Name::Head => Camera::new(at(0.0, 6.0, 68.0), at(0.0, -2.0, 0.0), 36.0, size),
+        Name::AreaHead | Name::Env | Name::Head => {
+            Camera::new(at(0.0, 6.0, 68.0), at(0.0, -2.0, 0.0), 36.0, size)
+        }
     };
     let camera = camera.orbit(centre, turn);
     let on_head = !imported && matches!(name.kind(), Kind::Straight | Kind::Wavy);
-    let head = on_head.then_some(Head { radii: 0.995 * HEAD, albedo: Vec3::new(0.45, 0.32, 0.25) });
+    let head = on_head.then_some(Head {
+        radii: 0.995 * HEAD,
+        albedo: Vec3::new(0.45, 0.32, 0.25),
+    });
     let rectangle_sampling = RectangleSampling::default();
     let gap = 1e-3 * scale;
-    Ok(Scene { strands, tree, hair, head, rectangles, rectangle_sampling, sky, backdrop: None, camera, gap })
+    Ok(Scene {
+        strands,
+        tree,
+        hair,
+        head,
+        rectangles,
+        rectangle_sampling,
+        sky,
+        backdrop: None,
+        camera,
+        gap,
+    })
 }
 
 /// A box of 60 cm with a light below its ceiling, open towards the camera.
 fn cornell_box(centre: Vec3, scale: f32) -> Vec<Rectangle> {
     let at = |x: f32, y: f32, z: f32| centre + scale * Vec3::new(x, y, z);
     let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| 60.0 * scale * axis);
-    let (white, red, green) = (Vec3::splat(0.73), Vec3::new(0.65, 0.05, 0.05), Vec3::new(0.12, 0.45, 0.15));
+    let (white, red, green) = (
+        Vec3::splat(0.73),
+        Vec3::new(0.65, 0.05, 0.05),
+        Vec3::new(0.12, 0.45, 0.15),
+    );
     let lo = at(-30.0, -30.0, -30.0);
     vec![
         Rectangle::wall(lo, x, z, white),
@@ -189,6 +253,7 @@ fn cornell_box(centre: Vec3, scale: f32) -> Vec<Rectangle> {
         Rectangle::wall(lo + y, x, z, white),
         Rectangle::wall(lo, y, z, red),
         Rectangle::wall(lo + x, y, z, green),
-        Rectangle::light(at(-12.0, 29.95, -12.0), 0.4 * x, 0.4 * z, Vec3::splat(14.0)).facing(centre),
+        Rectangle::light(at(-12.0, 29.95, -12.0), 0.4 * x, 0.4 * z, Vec3::splat(14.0))
+            .facing(centre),
     ]
 }

@@ -37,7 +37,11 @@ impl Integrator {
     /// Samples of a pass over a picture that grows. With [`Gather`](Self::Gather), each pass finds its shading points again.
     #[must_use]
     pub fn pass(self) -> u32 {
-        if self == Self::Gather { resampled::POOL } else { PASS }
+        if self == Self::Gather {
+            resampled::POOL
+        } else {
+            PASS
+        }
     }
 }
 
@@ -131,9 +135,19 @@ const PASS: u32 = 4;
 /// Adds samples to a film until every pixel has `samples`. `progress` is called with the share that is done.
 ///
 /// The film has the same bits for any number of threads, and whether samples are added at once or bit by bit.
-pub fn render(scene: &Scene, settings: &Settings, film: &mut Film, samples: u32, progress: &(dyn Fn(f64) + Sync)) {
+pub fn render(
+    scene: &Scene,
+    settings: &Settings,
+    film: &mut Film,
+    samples: u32,
+    progress: &(dyn Fn(f64) + Sync),
+) {
     let total = film.tiles.len().max(1);
-    let tables = Tables::new(&scene.sky, settings.seed, resampled::length(settings.integrator));
+    let tables = Tables::new(
+        &scene.sky,
+        settings.seed,
+        resampled::length(settings.integrator),
+    );
     let done = AtomicUsize::new(0);
     let whole = Mutex::new(Profile::default());
     film.tiles.par_iter_mut().for_each(|tile| {
@@ -170,9 +184,18 @@ fn paths(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile: &mut Til
     let mut wave = wave::Wave::default();
     while tile.samples < samples {
         let pass = PASS.min(samples - tile.samples);
-        wave.start(scene, settings, tile.place, tile.samples..tile.samples + pass);
+        wave.start(
+            scene,
+            settings,
+            tile.place,
+            tile.samples..tile.samples + pass,
+        );
         path::run(scene, tables, settings, &mut wave);
-        for (sums, radiances) in tile.sums.iter_mut().zip(wave.radiances().chunks_exact(pass as usize)) {
+        for (sums, radiances) in tile
+            .sums
+            .iter_mut()
+            .zip(wave.radiances().chunks_exact(pass as usize))
+        {
             radiances.iter().for_each(|radiance| sums.add(*radiance));
         }
         profile::lap(Phase::Rest);

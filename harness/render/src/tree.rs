@@ -55,13 +55,26 @@ impl Tree {
     /// If the scene is too large for its radii, see [`TreeError`].
     pub fn build(strands: &Strands) -> Result<Self, TreeError> {
         let size = strands.bounds().size().length();
-        let thickest = |strand| strands.nodes_of(strand).map(|k| strands.node_radius(k)).fold(0.0, f32::max);
-        let radius = (0..).take(strands.strands()).map(thickest).filter(|&r| r > 0.0).fold(f32::INFINITY, f32::min);
+        let thickest = |strand| {
+            strands
+                .nodes_of(strand)
+                .map(|k| strands.node_radius(k))
+                .fold(0.0, f32::max)
+        };
+        let radius = (0..)
+            .take(strands.strands())
+            .map(thickest)
+            .filter(|&r| r > 0.0)
+            .fold(f32::INFINITY, f32::min);
         if size > LARGEST_SCALE * radius {
             return Err(TreeError::Scale { size, radius });
         }
         let (nodes, blocks) = build::build(strands);
-        Ok(Self { nodes, blocks, level: Level::detect() })
+        Ok(Self {
+            nodes,
+            blocks,
+            level: Level::detect(),
+        })
     }
 
     /// The tree, searched with another instruction set.
@@ -75,26 +88,41 @@ impl Tree {
     #[inline]
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
-        self.level.run(Closest { tree: self, ray, visits: &mut () })
+        self.level.run(Closest {
+            tree: self,
+            ray,
+            visits: &mut (),
+        })
     }
 
     /// Whether the ray meets any segment.
     #[inline]
     #[must_use]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.level.run(Any { tree: self, ray, visits: &mut () })
+        self.level.run(Any {
+            tree: self,
+            ray,
+            visits: &mut (),
+        })
     }
 
     /// [`closest`](Self::closest), with the nodes and blocks that it looks at added to `visits`.
     #[must_use]
     pub fn closest_counted(&self, ray: &Ray, visits: &mut Visits) -> Option<Hit> {
-        self.level.run(Closest { tree: self, ray, visits })
+        self.level.run(Closest {
+            tree: self,
+            ray,
+            visits,
+        })
     }
 
     /// How many nodes and blocks it has.
     #[must_use]
     pub fn size(&self) -> Visits {
-        Visits { nodes: self.nodes.len() as u64, blocks: self.blocks.len() as u64 }
+        Visits {
+            nodes: self.nodes.len() as u64,
+            blocks: self.blocks.len() as u64,
+        }
     }
 
     /// Its size in bytes.

@@ -32,16 +32,27 @@ fn samplers_weightings_and_sequences_agree() {
     for (name, integrator, preset, strands, samples) in cases {
         let mut one = scene(name, hair("gaussian", "matched", preset), strands, 16);
         let multiple = name.defaults().multiple;
-        let base = Settings { integrator, multiple, seed: 1, ..Settings::default() };
+        let base = Settings {
+            integrator,
+            multiple,
+            seed: 1,
+            ..Settings::default()
+        };
         let expected = mean(&one, &base, 2 * samples, RUNS, 1);
         let mut seed = 1;
         let mut check = |one: &Scene, what: &str, settings: Settings| {
             seed += 1;
             let got = mean(one, &Settings { seed, ..settings }, samples, RUNS, 1);
             let apart = distance(&got, &expected);
-            assert!(apart < 4.0, "{name:?}, {what}: {got:?} for {expected:?}, {apart} standard errors apart");
+            assert!(
+                apart < 4.0,
+                "{name:?}, {what}: {got:?} for {expected:?}, {apart} standard errors apart"
+            );
             // Noise must not hide a fault: a mean is known to a tenth.
-            assert!(got.standard_error < 0.1 * expected.value, "{name:?}, {what}: {got:?}");
+            assert!(
+                got.standard_error < 0.1 * expected.value,
+                "{name:?}, {what}: {got:?}"
+            );
         };
         for mis in [Mis::Light, Mis::Bsdf, Mis::Resampled] {
             // Directions drawn from the hair rarely find the sun.
@@ -49,8 +60,16 @@ fn samplers_weightings_and_sequences_agree() {
                 check(&one, &format!("{mis:?}"), Settings { mis, ..base });
             }
         }
-        for sequence in [Sequence::Independent, Sequence::Halton, Sequence::Stratified] {
-            check(&one, &format!("{sequence:?}"), Settings { sequence, ..base });
+        for sequence in [
+            Sequence::Independent,
+            Sequence::Halton,
+            Sequence::Stratified,
+        ] {
+            check(
+                &one,
+                &format!("{sequence:?}"),
+                Settings { sequence, ..base },
+            );
         }
         if !one.rectangles.is_empty() {
             one.rectangle_sampling = RectangleSampling::Area;
@@ -72,7 +91,11 @@ fn every_model_renders() {
         let word = id.choice().map_or("published", |(_, word)| word);
         let one = scene(Name::Head, hair(id.name(), word, "brown"), 500, 12);
         let mean = film(&one, &Settings::default(), 4).picture().mean();
-        assert!(mean.iter().all(|channel| channel.is_finite() && *channel > 1e-3), "{id:?}: {mean:?}");
+        assert!(
+            mean.iter()
+                .all(|channel| channel.is_finite() && *channel > 1e-3),
+            "{id:?}: {mean:?}"
+        );
     }
 }
 
@@ -84,7 +107,11 @@ fn models_of_one_name_agree() {
             let word: usize = word;
             let choice = ids[word].choice().expect("several").1;
             let one = scene(Name::AreaHead, hair(name, choice, "brown"), 800, 12);
-            let settings = Settings { integrator: Integrator::Direct, seed: 1 + word as u64, ..Settings::default() };
+            let settings = Settings {
+                integrator: Integrator::Direct,
+                seed: 1 + word as u64,
+                ..Settings::default()
+            };
             mean(&one, &settings, 16, RUNS, 1)
         });
         assert!(distance(&means[0], &means[1]) < 4.0, "{name}: {means:?}");
@@ -100,10 +127,18 @@ fn rebuilt(scene: &Scene, mirror: bool, swap: bool) -> Scene {
         let segments = nodes.start..nodes.end - 1;
         let mut polyline: Vec<(Vec3, f32)> = segments
             .clone()
-            .map(|segment| (turned(scene.strands.position(segment, 0.0)), scene.strands.radius(segment, 0.0)))
+            .map(|segment| {
+                (
+                    turned(scene.strands.position(segment, 0.0)),
+                    scene.strands.radius(segment, 0.0),
+                )
+            })
             .collect();
         let last = segments.end - 1;
-        polyline.push((turned(scene.strands.position(last, 1.0)), scene.strands.radius(last, 1.0)));
+        polyline.push((
+            turned(scene.strands.position(last, 1.0)),
+            scene.strands.radius(last, 1.0),
+        ));
         if swap {
             polyline.reverse();
         }
@@ -111,7 +146,11 @@ fn rebuilt(scene: &Scene, mirror: bool, swap: bool) -> Scene {
     }
     let strands = builder.finish();
     let tree = Tree::build(&strands).expect("as before");
-    let mut other = Scene { strands, tree, ..scene.clone() };
+    let mut other = Scene {
+        strands,
+        tree,
+        ..scene.clone()
+    };
     if mirror {
         other.camera = scene.camera.mirrored();
         other.rectangles = scene.rectangles.iter().map(Rectangle::mirrored).collect();
@@ -121,15 +160,28 @@ fn rebuilt(scene: &Scene, mirror: bool, swap: bool) -> Scene {
 
 /// Means of the left and of the right half of a picture, over seeds.
 fn halves(scene: &Scene, seed: u64) -> [hairis_instruments::stats::Estimate; 2] {
-    let settings = Settings { integrator: Integrator::Direct, ..Settings::default() };
+    let settings = Settings {
+        integrator: Integrator::Direct,
+        ..Settings::default()
+    };
     let mut sums = [hairis_instruments::stats::Moments::new(); 2];
     for run in 0..RUNS {
-        let picture = film(scene, &Settings { seed: seed + run, ..settings }, 16).picture();
+        let picture = film(
+            scene,
+            &Settings {
+                seed: seed + run,
+                ..settings
+            },
+            16,
+        )
+        .picture();
         let [width, height] = picture.size;
         for (half, sum) in sums.iter_mut().enumerate() {
             let columns = (0..width).filter(|x| usize::from(*x >= width / 2) == half);
-            let total: f64 =
-                columns.flat_map(|x| (0..height).map(move |y| [x, y])).map(|[x, y]| picture.at(x, y)[1]).sum();
+            let total: f64 = columns
+                .flat_map(|x| (0..height).map(move |y| [x, y]))
+                .map(|[x, y]| picture.at(x, y)[1])
+                .sum();
             sum.push(total / f64::from(width * height));
         }
     }
@@ -139,8 +191,12 @@ fn halves(scene: &Scene, seed: u64) -> [hairis_instruments::stats::Estimate; 2] 
 /// A head lit from the side, so that its halves differ.
 fn lopsided(hair: Hair) -> Scene {
     let mut one = scene(Name::AreaHead, hair, 1200, 16);
-    one.rectangles =
-        vec![Rectangle::light(Vec3::new(20.0, 5.0, 10.0), Vec3::new(0.0, 20.0, 0.0), 20.0 * Vec3::Z, Vec3::splat(6.0))];
+    one.rectangles = vec![Rectangle::light(
+        Vec3::new(20.0, 5.0, 10.0),
+        Vec3::new(0.0, 20.0, 0.0),
+        20.0 * Vec3::Z,
+        Vec3::splat(6.0),
+    )];
     one
 }
 
@@ -149,21 +205,41 @@ fn a_mirrored_scene_gives_the_mirror_image() {
     let one = lopsided(hair("gaussian", "matched", "brown"));
     let [left, right] = halves(&one, 1);
     let [other_left, other_right] = halves(&rebuilt(&one, true, false), 101);
-    assert!(distance(&left, &other_right) < 4.0 && distance(&right, &other_left) < 4.0, "{left:?} {other_right:?}");
-    assert!(distance(&left, &right) > 8.0, "the halves differ: {left:?} {right:?}");
+    assert!(
+        distance(&left, &other_right) < 4.0 && distance(&right, &other_left) < 4.0,
+        "{left:?} {other_right:?}"
+    );
+    assert!(
+        distance(&left, &right) > 8.0,
+        "the halves differ: {left:?} {right:?}"
+    );
 }
 
 /// Parallel strands seen across, with a small light at an inclination of -0.2 rad: half the sum of the inclinations is -0.1,
 /// and all lobes are shifted by `alpha`.
 fn at_the_highlight(alpha: f32) -> Scene {
     let id = ModelId::find("gaussian", Some("matched")).expect("listed");
-    let values = id.presets().find(|(name, _)| *name == "brown").expect("listed").1.with("alpha", &[alpha; 3]);
-    let hair = Hair::Model(id.bsdf(&values).expect("in range"), Sampling::Own, Scale::Factor(1.0));
+    let values = id
+        .presets()
+        .find(|(name, _)| *name == "brown")
+        .expect("listed")
+        .1
+        .with("alpha", &[alpha; 3]);
+    let hair = Hair::Model(
+        id.bsdf(&values).expect("in range"),
+        Sampling::Own,
+        Scale::Factor(1.0),
+    );
     let mut one = scene(Name::AreaSoft, hair, 400, 16);
     one.camera = Camera::new(Vec3::new(0.0, 60.0, 80.0), Vec3::NEG_Y, 3.0, [16, 16]);
     let (sin, cos) = 0.2_f32.sin_cos();
     let corner = 60.0 * Vec3::new(-sin, 0.8 * cos, 0.6 * cos) - Vec3::new(2.0, 0.0, 2.0);
-    one.rectangles = vec![Rectangle::light(corner, 4.0 * Vec3::X, 4.0 * Vec3::Z, Vec3::splat(100.0))];
+    one.rectangles = vec![Rectangle::light(
+        corner,
+        4.0 * Vec3::X,
+        4.0 * Vec3::Z,
+        Vec3::splat(100.0),
+    )];
     one
 }
 
@@ -177,5 +253,8 @@ fn the_direction_of_strands_shows_where_lobes_are_shifted_alone() {
     }
     let one = at_the_highlight(0.0);
     let [a, b] = [halves(&one, 301), halves(&rebuilt(&one, false, true), 401)];
-    assert!(distance(&a[1], &b[1]) < 4.0 && distance(&a[0], &b[0]) < 4.0, "no shifts: {a:?} {b:?}");
+    assert!(
+        distance(&a[1], &b[1]) < 4.0 && distance(&a[0], &b[0]) < 4.0,
+        "no shifts: {a:?} {b:?}"
+    );
 }

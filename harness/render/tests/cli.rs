@@ -14,7 +14,11 @@ const SMALL: [&str; 4] = ["--strands", "300", "--size", "40x40"];
 /// Runs the program in a folder.
 fn run(folder: &TempDir, flags: &[&str]) -> Output {
     let program = env!("CARGO_BIN_EXE_hairis-render");
-    Command::new(program).args(flags).current_dir(folder.path()).output().expect("it starts")
+    Command::new(program)
+        .args(flags)
+        .current_dir(folder.path())
+        .output()
+        .expect("it starts")
 }
 
 /// Runs it, and sees that it ends well.
@@ -43,10 +47,17 @@ fn refuse(folder: &TempDir, flags: &[&str]) -> String {
 /// Channels of a picture by name, to the bit.
 fn channels(folder: &TempDir, file: impl AsRef<Path>) -> Vec<(String, Vec<u32>)> {
     let file = read_all_flat_layers_from_file(folder.path().join(file)).expect("a picture");
-    let [layer] = &file.layer_data[..] else { panic!("one part") };
+    let [layer] = &file.layer_data[..] else {
+        panic!("one part")
+    };
     let numbers = |samples: &FlatSamples| match samples {
         FlatSamples::F32(numbers) => numbers.iter().map(|number| number.to_bits()).collect(),
         other => panic!("{other:?}"),
     };
-    layer.channel_data.list.iter().map(|one| (one.name.to_string(), numbers(&one.sample_data))).collect()
+    layer
+        .channel_data
+        .list
+        .iter()
+        .map(|one| (one.name.to_string(), numbers(&one.sample_data)))
+        .collect()
 }

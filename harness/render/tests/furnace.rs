@@ -29,13 +29,20 @@ fn albedo(hair: &Hair, theta_o: f32, h: f32) -> f64 {
         for j in (0..turns).step_by(8) {
             let wi: [Vec3; 8] = core::array::from_fn(|lane| {
                 let phi = (f32::from(j) + lane as f32 + 0.5) / f32::from(turns) * 2.0 * PI;
-                Vec3::new(theta.sin(), theta.cos() * phi.cos(), theta.cos() * phi.sin())
+                Vec3::new(
+                    theta.sin(),
+                    theta.cos() * phi.cos(),
+                    theta.cos() * phi.sin(),
+                )
             });
             let green = prepared.eval8(&wi.into()).value[1].to_array();
             sum += f64::from(green.iter().sum::<f32>()) * f64::from(theta.cos().powi(2));
         }
     }
-    let (d_theta, d_phi) = (core::f64::consts::PI / f64::from(steps), core::f64::consts::TAU / f64::from(turns));
+    let (d_theta, d_phi) = (
+        core::f64::consts::PI / f64::from(steps),
+        core::f64::consts::TAU / f64::from(turns),
+    );
     sum * d_theta * d_phi
 }
 
@@ -53,28 +60,48 @@ fn every_pixel_of_a_strand_is_its_albedo_with_every_sampler_and_weighting() {
     for theta_o in [0.0, 0.5, -1.0] {
         let mut one = strand(hair("gaussian", "matched", "white"), theta_o);
         let pixels: Vec<[u32; 2]> = Crop::whole([SIDE; 2]).pixels().collect();
-        let expected: Vec<f64> =
-            pixels.iter().map(|[x, y]| albedo(&one.hair, inclination(&one, *x, *y), 0.0)).collect();
+        let expected: Vec<f64> = pixels
+            .iter()
+            .map(|[x, y]| albedo(&one.hair, inclination(&one, *x, *y), 0.0))
+            .collect();
         for sampler in samplers("gaussian") {
             one.hair = hair("gaussian", sampler, "white");
             for mis in MIS {
                 // Uniform directions, of the hair or of the white sphere alone, have the largest variance.
-                let samples = if sampler == "uniform" || matches!(mis, Mis::Light) { 256 } else { 64 };
+                let samples = if sampler == "uniform" || matches!(mis, Mis::Light) {
+                    256
+                } else {
+                    64
+                };
                 let mut moments = vec![Moments::new(); pixels.len()];
                 for seed in 0..RUNS {
-                    let settings =
-                        Settings { mis, sequence: Sequence::Independent, seed: 100 + seed, ..Settings::default() };
+                    let settings = Settings {
+                        mis,
+                        sequence: Sequence::Independent,
+                        seed: 100 + seed,
+                        ..Settings::default()
+                    };
                     let picture = film(&one, &settings, samples).picture();
-                    moments.iter_mut().zip(&picture.pixels).for_each(|(moments, pixel)| moments.push(pixel[1]));
+                    moments
+                        .iter_mut()
+                        .zip(&picture.pixels)
+                        .for_each(|(moments, pixel)| moments.push(pixel[1]));
                 }
                 // Pixels differ by less than the width of a lobe: they share a variance, known from all of them.
-                let variance = moments.iter().map(Moments::variance).sum::<f64>() / moments.len() as f64;
+                let variance =
+                    moments.iter().map(Moments::variance).sum::<f64>() / moments.len() as f64;
                 let error = (variance / RUNS as f64).sqrt();
                 for (k, expected) in expected.iter().enumerate() {
-                    let (got, what) = (moments[k].mean(), format!("{theta_o} {sampler} {mis:?} {:?}", pixels[k]));
+                    let (got, what) = (
+                        moments[k].mean(),
+                        format!("{theta_o} {sampler} {mis:?} {:?}", pixels[k]),
+                    );
                     let apart = (got - expected).abs();
                     // Single precision, and the pixel's width in inclinations, show where the noise is less.
-                    assert!(apart < 4.0 * error || apart < 1e-3 * expected, "{what}: {got} ± {error} for {expected}");
+                    assert!(
+                        apart < 4.0 * error || apart < 1e-3 * expected,
+                        "{what}: {got} ± {error} for {expected}"
+                    );
                     assert!(error < 0.06 * expected, "{what}: {got} ± {error}");
                 }
             }
@@ -87,17 +114,31 @@ fn every_model_returns_its_albedo_near_field_ones_by_offset() {
     for id in ModelId::defaults_of_names() {
         let mut one = strand(hair(id.name(), "published", "default"), 0.4);
         // Off the centre, where the offset is large: 7 of a radius of 10.
-        one.camera = Camera::new(Vec3::new(40.0, 7.0, 92.0), Vec3::new(0.0, 7.0, 0.0), 0.5, [8, 8]);
-        let Met::Hair(hit) = one.closest(&one.camera.ray(4.0, 4.0)) else { panic!("no hair in the middle") };
+        one.camera = Camera::new(
+            Vec3::new(40.0, 7.0, 92.0),
+            Vec3::new(0.0, 7.0, 0.0),
+            0.5,
+            [8, 8],
+        );
+        let Met::Hair(hit) = one.closest(&one.camera.ray(4.0, 4.0)) else {
+            panic!("no hair in the middle")
+        };
         assert!((hit.h.abs() - 0.7).abs() < 0.02, "h {}", hit.h);
         let expected = albedo(&one.hair, inclination(&one, 4, 4), hit.h);
         let got = mean(&one, &Settings::default(), 64, 16, 1);
         let close = (got.value / expected - 1.0).abs() < 2e-3;
-        assert!(close || got.z_score(expected).abs() < 4.0, "{}: {got:?} for {expected}", id.name());
+        assert!(
+            close || got.z_score(expected).abs() < 4.0,
+            "{}: {got:?} for {expected}",
+            id.name()
+        );
         if id.is_near_field() {
             let other = albedo(&one.hair, inclination(&one, 4, 4), -hit.h);
             let middle = albedo(&one.hair, inclination(&one, 4, 4), 0.0);
-            assert!((middle / expected - 1.0).abs() > 5e-3, "the offset shows: {middle} {other} {expected}");
+            assert!(
+                (middle / expected - 1.0).abs() > 5e-3,
+                "the offset shows: {middle} {other} {expected}"
+            );
         }
     }
 }
@@ -105,8 +146,15 @@ fn every_model_returns_its_albedo_near_field_ones_by_offset() {
 #[test]
 fn hair_that_absorbs_nothing_is_invisible() {
     let iso = scene(Name::FurnaceIso, Hair::Isotropic, 1500, 16);
-    let endless = Settings { depth: 1000, roulette: false, mis: Mis::Bsdf, ..Settings::default() };
-    let hits = (0..16).filter(|k| matches!(iso.closest(&iso.camera.ray(*k as f32, 8.0)), Met::Hair(_))).count();
+    let endless = Settings {
+        depth: 1000,
+        roulette: false,
+        mis: Mis::Bsdf,
+        ..Settings::default()
+    };
+    let hits = (0..16)
+        .filter(|k| matches!(iso.closest(&iso.camera.ray(*k as f32, 8.0)), Met::Hair(_)))
+        .count();
     assert!(hits > 8, "{hits} of 16 rays meet hair");
     for (place, pixel) in film(&iso, &endless, 8).picture().pixels.iter().enumerate() {
         assert!((pixel[1] - 1.0).abs() < 1e-4, "pixel {place}: {pixel:?}");
@@ -114,10 +162,18 @@ fn hair_that_absorbs_nothing_is_invisible() {
     for mis in MIS {
         for roulette in [false, true] {
             let depth = if roulette { 1000 } else { 300 };
-            let settings = Settings { depth, roulette, mis, ..Settings::default() };
+            let settings = Settings {
+                depth,
+                roulette,
+                mis,
+                ..Settings::default()
+            };
             let got = mean(&iso, &settings, 4, 16, 1);
             let exact = (got.value - 1.0).abs() < 1e-4;
-            assert!(exact || got.z_score(1.0).abs() < 4.0, "{mis:?}, roulette {roulette}: {got:?}");
+            assert!(
+                exact || got.z_score(1.0).abs() < 4.0,
+                "{mis:?}, roulette {roulette}: {got:?}"
+            );
             assert!(got.standard_error < 0.02, "{mis:?}: {got:?}");
         }
     }
@@ -127,31 +183,61 @@ fn hair_that_absorbs_nothing_is_invisible() {
 fn presets_converge_and_scaled_hair_never_shines() {
     let scaled = |model: &str, preset: &str| {
         let choice = Choice::find(model, default_sampler(model), preset).expect("listed");
-        let scaled = scene(Name::FurnaceIso, choice.hair(Energy::Scaled).expect("in range"), 600, 8);
+        let scaled = scene(
+            Name::FurnaceIso,
+            choice.hair(Energy::Scaled).expect("in range"),
+            600,
+            8,
+        );
         for channel in 0..3 {
             let got = mean(&scaled, &Settings::default(), 8, 8, channel);
-            assert!(got.value < 1.0 + 4.0 * got.standard_error + 1e-5, "{model} {preset}: {got:?}");
+            assert!(
+                got.value < 1.0 + 4.0 * got.standard_error + 1e-5,
+                "{model} {preset}: {got:?}"
+            );
         }
     };
     for id in ModelId::defaults_of_names() {
-        id.presets().for_each(|(preset, _)| scaled(id.name(), preset));
+        id.presets()
+            .for_each(|(preset, _)| scaled(id.name(), preset));
     }
     scaled("gaussian", "glossy");
     for preset in ["blond", "brown", "red", "black", "white"] {
         let choice = Choice::find("gaussian", "matched", preset).expect("listed");
-        let [mean_albedo, _] = choice.hair(Energy::Raw).expect("in range").mean_and_worst_albedo();
-        assert!(mean_albedo < hairis_render::hair::MOST_MEAN_ALBEDO || preset == "white", "{preset}: {mean_albedo}");
+        let [mean_albedo, _] = choice
+            .hair(Energy::Raw)
+            .expect("in range")
+            .mean_and_worst_albedo();
+        assert!(
+            mean_albedo < hairis_render::hair::MOST_MEAN_ALBEDO || preset == "white",
+            "{preset}: {mean_albedo}"
+        );
     }
     // Paths of the lightest hair that renders as it is: the same numbers, so that the difference is what long paths add.
-    let raw = scene(Name::FurnaceIso, hair("gaussian", "matched", "blond"), 600, 12);
-    let settings = |depth| Settings { depth, ..Settings::default() };
+    let raw = scene(
+        Name::FurnaceIso,
+        hair("gaussian", "matched", "blond"),
+        600,
+        12,
+    );
+    let settings = |depth| Settings {
+        depth,
+        ..Settings::default()
+    };
     let [short, long] = [64, 128].map(|depth| film(&raw, &settings(depth), 64).picture().mean()[0]);
     assert!((long - short).abs() < 1e-3, "depth 64 {short}, 128 {long}");
 }
 
 #[test]
 fn all_samplers_are_tested() {
-    let tested = ["uniform", "published", "ou", "matched-5", "matched", "matched-25"];
+    let tested = [
+        "uniform",
+        "published",
+        "ou",
+        "matched-5",
+        "matched",
+        "matched-25",
+    ];
     assert_eq!(samplers("gaussian"), tested);
     assert_ne!(Integrator::Direct, Integrator::Path);
 }

@@ -14,9 +14,17 @@ fn rays(strands: &Strands, tree: &Tree, side: usize, bounces: usize) -> [Vec<Ray
     let mut primary = Vec::with_capacity(side * side);
     for i in 0..side * side {
         let (tile, pixel) = (i / 64, i % 64);
-        let (x, y) = (tile % (side / 8) * 8 + pixel % 8, tile / (side / 8) * 8 + pixel / 8);
-        let on_image = |pixel: usize, number: f32| 2.0 * (pixel as f32 + number) / side as f32 - 1.0;
-        let direction = Vec3::new(0.268 * on_image(x, number()), -0.05 - 0.268 * on_image(y, number()), -1.0);
+        let (x, y) = (
+            tile % (side / 8) * 8 + pixel % 8,
+            tile / (side / 8) * 8 + pixel / 8,
+        );
+        let on_image =
+            |pixel: usize, number: f32| 2.0 * (pixel as f32 + number) / side as f32 - 1.0;
+        let direction = Vec3::new(
+            0.268 * on_image(x, number()),
+            -0.05 - 0.268 * on_image(y, number()),
+            -1.0,
+        );
         primary.push(Ray::new(Vec3::new(0.0, 2.0, 60.0), direction.normalize()));
     }
     let mut secondary: Vec<Ray> = Vec::new();
@@ -27,10 +35,17 @@ fn rays(strands: &Strands, tree: &Tree, side: usize, bounces: usize) -> [Vec<Ray
             .map(|hit| {
                 let (z, azimuth) = (2.0 * number() - 1.0, core::f32::consts::TAU * number());
                 let across = (1.0 - z * z).max(0.0).sqrt();
-                let direction = Vec3::new(across * azimuth.cos(), across * azimuth.sin(), z).normalize();
-                let cos_theta = strands.tangent(hit.segment, hit.s).cross(direction).length();
+                let direction =
+                    Vec3::new(across * azimuth.cos(), across * azimuth.sin(), z).normalize();
+                let cos_theta = strands
+                    .tangent(hit.segment, hit.s)
+                    .cross(direction)
+                    .length();
                 let skip = Skip::leaving(hit.strand, strands.radius(hit.segment, hit.s), cos_theta);
-                Ray { skip: Some(skip), ..Ray::new(strands.position(hit.segment, hit.s), direction) }
+                Ray {
+                    skip: Some(skip),
+                    ..Ray::new(strands.position(hit.segment, hit.s), direction)
+                }
             })
             .collect();
         secondary.extend(&last);
@@ -43,7 +58,11 @@ fn visits(tree: &Tree, rays: &[Ray]) -> [f64; 2] {
     let mut visits = Visits::default();
     for ray in rays {
         let closest = tree.closest_counted(ray, &mut visits);
-        assert_eq!(tree.occluded(ray), closest.is_some(), "any hit and the closest: {ray:?}");
+        assert_eq!(
+            tree.occluded(ray),
+            closest.is_some(),
+            "any hit and the closest: {ray:?}"
+        );
     }
     [visits.nodes, visits.blocks].map(|n| n as f64 / rays.len() as f64)
 }
@@ -51,12 +70,17 @@ fn visits(tree: &Tree, rays: &[Ray]) -> [f64; 2] {
 /// Time without a clock. A change of more than 3 % is to be meant, and written here.
 #[test]
 fn rays_look_at_as_much_as_recorded() {
-    let strands = Groom::new(Kind::Wavy, 1000).grow(&Flattening::default()).expect("settings in range");
+    let strands = Groom::new(Kind::Wavy, 1000)
+        .grow(&Flattening::default())
+        .expect("settings in range");
     let tree = Tree::build(&strands).expect("a head");
     let per_ray = rays(&strands, &tree, 128, 1).map(|rays| visits(&tree, &rays));
     let recorded = [[5.640, 2.214], [9.711, 5.031]];
     for (got, recorded) in per_ray.iter().flatten().zip(recorded.iter().flatten()) {
-        assert!((got / recorded - 1.0).abs() < 0.03, "{per_ray:?} nodes and blocks per primary and secondary ray");
+        assert!(
+            (got / recorded - 1.0).abs() < 0.03,
+            "{per_ray:?} nodes and blocks per primary and secondary ray"
+        );
     }
 }
 
@@ -64,16 +88,26 @@ fn rays_look_at_as_much_as_recorded() {
 #[test]
 #[ignore = "slow: half a minute, and its figures mean something with --release only"]
 fn rays_per_second() {
-    println!("groom,strands,segments,build s,bytes/segment,rays,nodes/ray,blocks/ray,Mrays/s closest,Mrays/s any");
-    for (kind, strands) in
-        [(Kind::Wavy, 30_000), (Kind::Straight, 100_000), (Kind::Curly, 30_000), (Kind::Fur, 100_000)]
-    {
-        let hair = Groom::new(kind, strands).grow(&Flattening::default()).expect("settings in range");
+    println!(
+        "groom,strands,segments,build s,bytes/segment,rays,nodes/ray,blocks/ray,Mrays/s closest,Mrays/s any"
+    );
+    for (kind, strands) in [
+        (Kind::Wavy, 30_000),
+        (Kind::Straight, 100_000),
+        (Kind::Curly, 30_000),
+        (Kind::Fur, 100_000),
+    ] {
+        let hair = Groom::new(kind, strands)
+            .grow(&Flattening::default())
+            .expect("settings in range");
         let start = Instant::now();
         let tree = Tree::build(&hair).expect("a head");
         let build = start.elapsed().as_secs_f64();
         let bytes = tree.memory() as f64 / hair.segments() as f64;
-        for (which, rays) in ["primary", "secondary"].iter().zip(rays(&hair, &tree, 384, 3)) {
+        for (which, rays) in ["primary", "secondary"]
+            .iter()
+            .zip(rays(&hair, &tree, 384, 3))
+        {
             let fastest = |mut search: Box<dyn FnMut(&Ray) -> bool + '_>| {
                 let run = |_| {
                     let start = Instant::now();

@@ -11,13 +11,23 @@ use hairis_render::transport::{self, Settings};
 
 /// Hair by name.
 pub(crate) fn hair(model: &str, sampler: &str, preset: &str) -> Hair {
-    Choice::find(model, sampler, preset).expect("listed").hair(Energy::Raw).expect("in range")
+    Choice::find(model, sampler, preset)
+        .expect("listed")
+        .hair(Energy::Raw)
+        .expect("in range")
 }
 
 /// A scene with little hair in a small picture.
 pub(crate) fn scene(name: Name, hair: Hair, strands: usize, side: u32) -> Scene {
     let strands = scenes::grow(name, strands).expect("a few strands");
-    let parts = Parts { strands, imported: false, hair, env: None, size: [side, side], turn: 0.0 };
+    let parts = Parts {
+        strands,
+        imported: false,
+        hair,
+        env: None,
+        size: [side, side],
+        turn: 0.0,
+    };
     scenes::build(name, parts).expect("a scene")
 }
 
@@ -27,9 +37,27 @@ pub(crate) fn film(scene: &Scene, settings: &Settings, samples: u32) -> Film {
 }
 
 /// Mean of a channel over the picture, from renders with `runs` seeds, with its standard error.
-pub(crate) fn mean(scene: &Scene, settings: &Settings, samples: u32, runs: u64, channel: usize) -> Estimate {
-    let one = |run| film(scene, &Settings { seed: 100 * settings.seed + run, ..*settings }, samples);
-    (0..runs).map(|run| one(run).picture().mean()[channel]).collect::<Moments>().mean_estimate()
+pub(crate) fn mean(
+    scene: &Scene,
+    settings: &Settings,
+    samples: u32,
+    runs: u64,
+    channel: usize,
+) -> Estimate {
+    let one = |run| {
+        film(
+            scene,
+            &Settings {
+                seed: 100 * settings.seed + run,
+                ..*settings
+            },
+            samples,
+        )
+    };
+    (0..runs)
+        .map(|run| one(run).picture().mean()[channel])
+        .collect::<Moments>()
+        .mean_estimate()
 }
 
 /// Distance of two independent estimates in standard errors.

@@ -76,8 +76,15 @@ pub(super) fn measure(
     path: CodePath,
     keep: &mut impl FnMut(Quantity, LocatedError),
 ) -> Result<(), ParamError> {
-    let materials = packet.values.iter().map(|values| model.bsdf(values)).collect::<Result<Vec<_>, _>>()?;
-    let hit = |k: usize| Hit { wo: packet.wo[k].into(), h: packet.h[k] };
+    let materials = packet
+        .values
+        .iter()
+        .map(|values| model.bsdf(values))
+        .collect::<Result<Vec<_>, _>>()?;
+    let hit = |k: usize| Hit {
+        wo: packet.wo[k].into(),
+        h: packet.h[k],
+    };
     let xi: [f32x8; 3] = core::array::from_fn(|k| f32x8::new(packet.xi.map(|xi| xi[k])));
     let answers: [(Eval, Option<Sample>); 8] = match path {
         CodePath::One => core::array::from_fn(|k| {
@@ -91,8 +98,12 @@ pub(super) fn measure(
             core::array::from_fn(|k| (eval.lane(k), sample.lane(k)))
         }
         CodePath::Points(level) => {
-            let hits = Hit { wo: Vec3x8::from(packet.wo), h: f32x8::new(packet.h) };
-            let materials = AnyBsdf8::pack(core::array::from_fn(|k| &materials[k])).expect("eight of one model");
+            let hits = Hit {
+                wo: Vec3x8::from(packet.wo),
+                h: f32x8::new(packet.h),
+            };
+            let materials = AnyBsdf8::pack(core::array::from_fn(|k| &materials[k]))
+                .expect("eight of one model");
             let gather = materials.prepare8_at(level, hits);
             let eval = gather.eval_pdf8_at(level, &Vec3x8::from(packet.wi));
             let sample = gather.sample8_at(level, &xi);
@@ -100,14 +111,37 @@ pub(super) fn measure(
         }
     };
     for (k, (eval, sample)) in answers.iter().enumerate() {
-        let (point, wi) =
-            if matches!(path, CodePath::Shared(_)) { (0, packet.wi_shared[k]) } else { (k, packet.wi[k]) };
-        let drawn = sample.map(|s| (s.wi, Eval { value: s.value, pdf: s.pdf }, Some(s)));
+        let (point, wi) = if matches!(path, CodePath::Shared(_)) {
+            (0, packet.wi_shared[k])
+        } else {
+            (k, packet.wi[k])
+        };
+        let drawn = sample.map(|s| {
+            (
+                s.wi,
+                Eval {
+                    value: s.value,
+                    pdf: s.pdf,
+                },
+                Some(s),
+            )
+        });
         let compared = [(wi, *eval, None)].into_iter().chain(drawn);
         for (wi, eval, sample) in compared.filter(|(wi, ..)| region.holds(packet.wo[point], *wi)) {
             let (values, wo, h) = (packet.values[point], packet.wo[point], packet.h[point]);
-            let place = LanePlace { values, wo, h, wi, xi: sample.map(|_| packet.xi[k]) };
-            let exact = Exact { model, accuracy: model.accuracy(), truth: &packet.truth[point], place };
+            let place = LanePlace {
+                values,
+                wo,
+                h,
+                wi,
+                xi: sample.map(|_| packet.xi[k]),
+            };
+            let exact = Exact {
+                model,
+                accuracy: model.accuracy(),
+                truth: &packet.truth[point],
+                place,
+            };
             exact.errors(&eval, sample, keep)?;
         }
     }
@@ -133,14 +167,32 @@ impl Exact<'_> {
         use Quantity::{Pdf, SampleCdf, SamplePdf, SampleValue, SampleWeight, Value};
         let LanePlace { values, wo, wi, .. } = &self.place;
         let slack = self.model.slack(values, to_f64(*wo), to_f64(*wi))?;
-        let [pdf, value] = if sample.is_some() { [SamplePdf, SampleValue] } else { [Pdf, Value] };
-        keep(pdf, self.compare(pdf, [eval.pdf], |wi| [self.truth.pdf(wi)], self.pdf_slack(slack)));
-        keep(value, self.compare(value, eval.value, |wi| self.truth.eval(wi), slack));
+        let [pdf, value] = if sample.is_some() {
+            [SamplePdf, SampleValue]
+        } else {
+            [Pdf, Value]
+        };
+        keep(
+            pdf,
+            self.compare(
+                pdf,
+                [eval.pdf],
+                |wi| [self.truth.pdf(wi)],
+                self.pdf_slack(slack),
+            ),
+        );
+        keep(
+            value,
+            self.compare(value, eval.value, |wi| self.truth.eval(wi), slack),
+        );
         let Some(sample) = sample else { return Ok(()) };
         let over_pdf = |wi: [f64; 3]| wi[1].hypot(wi[2]) / self.truth.pdf(wi);
         let weight = |wi: [f64; 3]| self.truth.eval(wi).map(|s| s * over_pdf(wi));
         let slack = slack.map(|s| s * over_pdf(to_f64(*wi)));
-        keep(SampleWeight, self.compare(SampleWeight, sample.weight, weight, slack));
+        keep(
+            SampleWeight,
+            self.compare(SampleWeight, sample.weight, weight, slack),
+        );
         if let Some(cdf) = self.cdf(sample.lobe) {
             keep(SampleCdf, cdf);
         }
@@ -157,14 +209,24 @@ impl Exact<'_> {
     ) -> LocatedError {
         let wi = to_f64(self.place.wi);
         let want = truth(wi);
-        let worst = |slack: [f64; N]| (0..N).map(|c| relative(got[c], want[c], slack[c])).fold(0.0, f64::max);
+        let worst = |slack: [f64; N]| {
+            (0..N)
+                .map(|c| relative(got[c], want[c], slack[c]))
+                .fold(0.0, f64::max)
+        };
         let error = worst(slack);
         let bound = quantity.bound(&self.accuracy);
         let unexplained = error > bound && {
             let (low, high) = (truth(rotate(wi, -ROUNDING)), truth(rotate(wi, ROUNDING)));
-            worst(core::array::from_fn(|c| slack[c] + (low[c] - want[c]).abs().max((high[c] - want[c]).abs()))) > bound
+            worst(core::array::from_fn(|c| {
+                slack[c] + (low[c] - want[c]).abs().max((high[c] - want[c]).abs())
+            })) > bound
         };
-        LocatedError { error, unexplained, at: self.place }
+        LocatedError {
+            error,
+            unexplained,
+            at: self.place,
+        }
     }
 
     /// Distance of the lobe's cdf at the direction from the numbers it was sampled with, on the circle of length 1: both
@@ -173,11 +235,18 @@ impl Exact<'_> {
         let (xi, wi) = (self.place.xi?, to_f64(self.place.wi));
         let azimuth = |[_, v, w]: [f64; 3]| w.atan2(v);
         let turn = azimuth(to_f64(self.place.wo)) - azimuth(wi);
-        let (theta_i, phi) = (wi[0].atan2(wi[1].hypot(wi[2])), turn - TAU * (turn / TAU).round());
+        let (theta_i, phi) = (
+            wi[0].atan2(wi[1].hypot(wi[2])),
+            turn - TAU * (turn / TAU).round(),
+        );
         let cdf = self.truth.cdf(lobe, theta_i, phi)?;
         let off = |k: usize| (cdf[k] - f64::from(xi[k + 1])).abs();
         let error = off(0).max(off(1).min((1.0 - off(1)).abs()));
-        Some(LocatedError { error, unexplained: error > self.accuracy.cdf, at: self.place })
+        Some(LocatedError {
+            error,
+            unexplained: error > self.accuracy.cdf,
+            at: self.place,
+        })
     }
 
     /// Absolute error of a density that the model allows by design, by that of S. A density proportional to S, as the mean of RGB,

@@ -19,10 +19,13 @@ const CUT: f64 = 1e-6;
 const SEAM: f64 = 1e-9;
 
 /// Formulas of these values, seen from `wo` at the offset `h`.
-pub(super) type Formulas<'a> = dyn Fn(&Values, Vec3, f32) -> Result<AnyReference<f64>, ParamError> + Sync + 'a;
+pub(super) type Formulas<'a> =
+    dyn Fn(&Values, Vec3, f32) -> Result<AnyReference<f64>, ParamError> + Sync + 'a;
 
 /// The formulas of a model.
-pub(super) fn formulas(model: ModelId) -> impl Fn(&Values, Vec3, f32) -> Result<AnyReference<f64>, ParamError> {
+pub(super) fn formulas(
+    model: ModelId,
+) -> impl Fn(&Values, Vec3, f32) -> Result<AnyReference<f64>, ParamError> {
     move |values, wo, h| model.reference(values, to_f64(wo), f64::from(h))
 }
 
@@ -59,9 +62,25 @@ impl Packet {
         let wi = wo.map(|wo| region.direction(wo, &mut from));
         let wi_shared = core::array::from_fn(|_| region.direction(wo[0], &mut from));
         let xi = core::array::from_fn(|_| region.numbers(&mut from));
-        let h = [(); 8].map(|()| if model.is_near_field() { 2.0 * from.next_f32() - 1.0 } else { 0.0 });
-        let truth = (0..8).map(|k| formulas(&values[k], wo[k], h[k])).collect::<Result<_, _>>()?;
-        Ok(Self { values, wo, h, wi, wi_shared, xi, truth })
+        let h = [(); 8].map(|()| {
+            if model.is_near_field() {
+                2.0 * from.next_f32() - 1.0
+            } else {
+                0.0
+            }
+        });
+        let truth = (0..8)
+            .map(|k| formulas(&values[k], wo[k], h[k]))
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            values,
+            wo,
+            h,
+            wi,
+            wi_shared,
+            xi,
+            truth,
+        })
     }
 }
 
@@ -75,7 +94,11 @@ impl Region {
                 let sin_theta = 2.0 * from.next_f64() - 1.0;
                 let off = BACK * log_uniform(from, 1e-6) * sign(from);
                 let phi_o = f64::from(wo.z).atan2(f64::from(wo.y));
-                direction(sin_theta, (1.0 - sin_theta * sin_theta).sqrt(), phi_o + PI + off)
+                direction(
+                    sin_theta,
+                    (1.0 - sin_theta * sin_theta).sqrt(),
+                    phi_o + PI + off,
+                )
             }
         }
     }
@@ -83,7 +106,10 @@ impl Region {
     /// Numbers whose samples often fall into the region.
     fn numbers(self, from: &mut Independent) -> [f32; 3] {
         let mut xi = [from.next_f32(), from.next_f32(), from.next_f32()];
-        #[expect(clippy::cast_possible_truncation, reason = "rounding to f32 is the purpose")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "rounding to f32 is the purpose"
+        )]
         let mut edge = || 1e-2 * log_uniform(from, 1e-5) as f32;
         match self {
             Self::General => {}

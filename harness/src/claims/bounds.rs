@@ -17,16 +17,32 @@ const STATEMENT: Statement = Statement {
 
 /// The spread of closed forms; their error is the rounding of double precision.
 fn spread(values: impl Iterator<Item = f64>) -> Spread {
-    values.map(|value| Bounded { value, error: 1e-14 }).collect()
+    values
+        .map(|value| Bounded {
+            value,
+            error: 1e-14,
+        })
+        .collect()
 }
 
 /// The claim.
 pub(super) fn claim(cells: &FoundCells) -> Claim {
-    let of_lobe = spread(longitudinal_grid().into_iter().map(|lobe| 1.0 - lobe.printed_mass()));
+    let of_lobe = spread(
+        longitudinal_grid()
+            .into_iter()
+            .map(|lobe| 1.0 - lobe.printed_mass()),
+    );
     let of_hair = spread(cells.iter().map(|(.., found)| found.lost));
     // All that is drawn lands on the sphere with a density of the printed one over the share that does.
-    let bias = spread(cells.iter().map(|(.., found)| found.lost / (1.0 - found.lost)));
-    let factor: Spread = cells.iter().map(|(.., found)| found.printed.over(found.published)).collect();
+    let bias = spread(
+        cells
+            .iter()
+            .map(|(.., found)| found.lost / (1.0 - found.lost)),
+    );
+    let factor: Spread = cells
+        .iter()
+        .map(|(.., found)| found.printed.over(found.published))
+        .collect();
     let sentence = format!(
         "A lobe loses {:.1}% to {:.0}% of its samples, a hair {:.1}% to {:.0}%; redrawn without renormalising they make \
          the result up to {:.0}% too bright, and counted as black they multiply the variance by {:.2} (geometric mean), \
@@ -40,13 +56,25 @@ pub(super) fn claim(cells: &FoundCells) -> Claim {
         factor.most.value,
     );
     let figures = Figure::integrals([
-        ("share of samples lost, most of a lobe on the grid", of_lobe.most),
-        ("share of samples lost, least of a lobe on the grid", of_lobe.least),
+        (
+            "share of samples lost, most of a lobe on the grid",
+            of_lobe.most,
+        ),
+        (
+            "share of samples lost, least of a lobe on the grid",
+            of_lobe.least,
+        ),
         ("share of samples lost, most of a hair", of_hair.most),
         ("share of samples lost, least of a hair", of_hair.least),
         ("relative bias if lost samples are redrawn, most", bias.most),
-        ("relative bias if lost samples are redrawn, least", bias.least),
-        ("factor on V if lost samples count, geometric mean", factor.mean),
+        (
+            "relative bias if lost samples are redrawn, least",
+            bias.least,
+        ),
+        (
+            "factor on V if lost samples count, geometric mean",
+            factor.mean,
+        ),
         ("factor on V if lost samples count, most", factor.most),
         ("factor on V if lost samples count, least", factor.least),
     ]);
@@ -62,13 +90,25 @@ mod tests {
     #[test]
     fn samples_are_lost_as_the_mass_says() {
         let (alpha, beta, theta_o) = (-0.13_f64, 0.26_f64, 0.8_f64);
-        let [a, b] = [FRAC_PI_2, -FRAC_PI_2].map(|end: f64| ((end + theta_o - alpha) / beta).atan());
+        let [a, b] =
+            [FRAC_PI_2, -FRAC_PI_2].map(|end: f64| ((end + theta_o - alpha) / beta).atan());
         let mut from = Independent::new(4, 0);
         let count = 100_000;
-        let drawn = (0..count).map(|_| 2.0 * beta * (from.next_f64() * (a - b) + b).tan() + 2.0 * alpha - theta_o);
-        let lost = drawn.filter(|theta_i| theta_i.abs() > FRAC_PI_2).count() as f64 / f64::from(count);
-        let want = 1.0 - Longitudinal { alpha, beta, theta_o }.printed_mass();
+        let drawn = (0..count)
+            .map(|_| 2.0 * beta * (from.next_f64() * (a - b) + b).tan() + 2.0 * alpha - theta_o);
+        let lost =
+            drawn.filter(|theta_i| theta_i.abs() > FRAC_PI_2).count() as f64 / f64::from(count);
+        let want = 1.0
+            - Longitudinal {
+                alpha,
+                beta,
+                theta_o,
+            }
+            .printed_mass();
         let error = (want * (1.0 - want) / f64::from(count)).sqrt();
-        assert!((lost - want).abs() < 4.0 * error && want > 0.05, "{lost} {want}");
+        assert!(
+            (lost - want).abs() < 4.0 * error && want > 0.05,
+            "{lost} {want}"
+        );
     }
 }

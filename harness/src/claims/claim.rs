@@ -65,17 +65,29 @@ impl Figure {
     /// A figure that explains, without a unit.
     pub(super) fn new(name: impl Into<String>, origin: Origin, number: impl Into<Bounded>) -> Self {
         let Bounded { value, error } = number.into();
-        Self { name: name.into(), value, error, unit: "", origin, role: Role::Further }
+        Self {
+            name: name.into(),
+            value,
+            error,
+            unit: "",
+            origin,
+            role: Role::Further,
+        }
     }
 
     /// Figures by quadrature.
     pub(super) fn integrals<const N: usize>(named: [(&str, Bounded); N]) -> Vec<Self> {
-        named.map(|(name, number)| Self::new(name, Origin::Quadrature, number)).into()
+        named
+            .map(|(name, number)| Self::new(name, Origin::Quadrature, number))
+            .into()
     }
 
     /// A number of cells.
     pub(super) fn cells(name: &str, count: usize) -> Self {
-        Self { unit: "cells", ..Self::new(name, Origin::Counted, Bounded::exact(count as f64)) }
+        Self {
+            unit: "cells",
+            ..Self::new(name, Origin::Counted, Bounded::exact(count as f64))
+        }
     }
 
     /// Bound on the distance of the true value from the figure.
@@ -164,18 +176,46 @@ pub(super) struct Statement {
 impl Statement {
     /// The claim with the verdict that follows from its first two figures: the worst of all cases, and within the limits.
     pub(super) fn judge(self, mut figures: Vec<Figure>, sentence: String) -> Claim {
-        let Self { id, quotation, source, of, side, bound, limits } = self;
-        let threshold = Threshold { of, side, bound, limits };
-        let is_kept = |place: usize| figures.get(place).is_some_and(|figure| threshold.is_kept_by(figure));
+        let Self {
+            id,
+            quotation,
+            source,
+            of,
+            side,
+            bound,
+            limits,
+        } = self;
+        let threshold = Threshold {
+            of,
+            side,
+            bound,
+            limits,
+        };
+        let is_kept = |place: usize| {
+            figures
+                .get(place)
+                .is_some_and(|figure| threshold.is_kept_by(figure))
+        };
         let verdict = match [is_kept(0), is_kept(1)] {
             [true, _] => Verdict::Holds,
             [false, true] => Verdict::HoldsWithinLimits,
             [false, false] => Verdict::False,
         };
-        for (figure, role) in figures.iter_mut().zip([Role::Everywhere, Role::WithinLimits]) {
+        for (figure, role) in figures
+            .iter_mut()
+            .zip([Role::Everywhere, Role::WithinLimits])
+        {
             figure.role = role;
         }
-        Claim { id, quotation, source, figures, threshold, verdict, sentence }
+        Claim {
+            id,
+            quotation,
+            source,
+            figures,
+            threshold,
+            verdict,
+            sentence,
+        }
     }
 }
 
@@ -208,18 +248,36 @@ mod tests {
 
     fn verdict(side: Side, figures: [Figure; 2]) -> Verdict {
         let (quotation, source, of) = ("words", "section", "a number");
-        let statement = Statement { id: "id", quotation, source, of, side, bound: 1.0, limits: "here" };
+        let statement = Statement {
+            id: "id",
+            quotation,
+            source,
+            of,
+            side,
+            bound: 1.0,
+            limits: "here",
+        };
         statement.judge(figures.into(), String::new()).verdict
     }
 
     #[test]
     fn figures_decide() {
         let [small, large, nan] = [0.5, 1.5, f64::NAN].map(|value| number(value, 0.0));
-        for (side, good, bad) in [(Side::AtMost, &small, &large), (Side::AtLeast, &large, &small)] {
+        for (side, good, bad) in [
+            (Side::AtMost, &small, &large),
+            (Side::AtLeast, &large, &small),
+        ] {
             assert_eq!(verdict(side, [good.clone(), good.clone()]), Verdict::Holds);
-            assert_eq!(verdict(side, [bad.clone(), good.clone()]), Verdict::HoldsWithinLimits);
+            assert_eq!(
+                verdict(side, [bad.clone(), good.clone()]),
+                Verdict::HoldsWithinLimits
+            );
             assert_eq!(verdict(side, [bad.clone(), bad.clone()]), Verdict::False);
-            assert_eq!(verdict(side, [nan.clone(), nan.clone()]), Verdict::False, "no number keeps nothing");
+            assert_eq!(
+                verdict(side, [nan.clone(), nan.clone()]),
+                Verdict::False,
+                "no number keeps nothing"
+            );
         }
     }
 
@@ -227,8 +285,18 @@ mod tests {
     fn what_is_unsure_is_not_kept() {
         let of = |error: f64| number(0.9, error);
         assert_eq!(verdict(Side::AtMost, [of(0.05), of(0.05)]), Verdict::Holds);
-        assert_eq!(verdict(Side::AtMost, [of(0.2), of(0.05)]), Verdict::HoldsWithinLimits);
-        let sampled = Figure { origin: Origin::Sampled, ..of(0.07) };
-        assert_eq!(verdict(Side::AtMost, [sampled.clone(), sampled]), Verdict::False, "within two standard errors");
+        assert_eq!(
+            verdict(Side::AtMost, [of(0.2), of(0.05)]),
+            Verdict::HoldsWithinLimits
+        );
+        let sampled = Figure {
+            origin: Origin::Sampled,
+            ..of(0.07)
+        };
+        assert_eq!(
+            verdict(Side::AtMost, [sampled.clone(), sampled]),
+            Verdict::False,
+            "within two standard errors"
+        );
     }
 }

@@ -29,9 +29,18 @@ const NARROW: f64 = 10.0;
 /// Relative error of the integral of a Gaussian over the whole line in place of that over `interval`; all in degrees.
 fn error(alpha: f64, beta: f64, interval: [f64; 2]) -> Bounded {
     let [alpha, beta] = [alpha, beta].map(f64::to_radians);
-    let [r] = integrals(|x| [Shape::Gaussian.bell(beta, x - alpha)], &interval, alpha, beta);
+    let [r] = integrals(
+        |x| [Shape::Gaussian.bell(beta, x - alpha)],
+        &interval,
+        alpha,
+        beta,
+    );
     let whole = (2.0 * PI).sqrt() * beta;
-    Bounded { value: 1.0 - r.value / whole, error: f64::EPSILON + r.error / whole }.magnitude()
+    Bounded {
+        value: 1.0 - r.value / whole,
+        error: f64::EPSILON + r.error / whole,
+    }
+    .magnitude()
 }
 
 /// The largest error over the claimed shifts and the widths up to `beta`, in steps of half a degree.
@@ -41,7 +50,9 @@ fn worst(interval: [f64; 2], beta: f64) -> Bounded {
 
 /// Widths from half a degree to `most`, in degrees.
 fn steps(most: f64) -> impl Iterator<Item = f64> {
-    (1..).map(|n| 0.5 * f64::from(n)).take_while(move |beta| *beta <= most)
+    (1..)
+        .map(|n| 0.5 * f64::from(n))
+        .take_while(move |beta| *beta <= most)
 }
 
 /// Shifts over the claimed range, in degrees: the ends, where the error is largest, among them.
@@ -51,8 +62,12 @@ fn shifts() -> impl Iterator<Item = f64> {
 
 /// The widest lobe of which all narrower ones, shifted as claimed, are within 1%, in degrees; 0 if none is.
 fn widest(interval: [f64; 2]) -> f64 {
-    let kept = |beta: f64| shifts().all(|alpha| error(alpha, beta, interval).value < STATEMENT.bound);
-    steps(BETA).take_while(|beta| kept(*beta)).last().unwrap_or(0.0)
+    let kept =
+        |beta: f64| shifts().all(|alpha| error(alpha, beta, interval).value < STATEMENT.bound);
+    steps(BETA)
+        .take_while(|beta| kept(*beta))
+        .last()
+        .unwrap_or(0.0)
 }
 
 /// The claim.
@@ -71,8 +86,14 @@ pub(super) fn claim() -> Claim {
         limits[0],
     );
     let mut figures = Figure::integrals([
-        ("largest error in the claimed range, θ_o = 0° and 75°", largest(seen)),
-        ("largest error for β ≤ 10°, θ_o = 0°", worst(real[0], NARROW)),
+        (
+            "largest error in the claimed range, θ_o = 0° and 75°",
+            largest(seen),
+        ),
+        (
+            "largest error for β ≤ 10°, θ_o = 0°",
+            worst(real[0], NARROW),
+        ),
         ("largest error, θ_o = 0°", seen[0]),
         ("largest error, θ_o = 75°", seen[1]),
         ("largest error at β = 30°, θ_o = 75°", widest_lobe),
@@ -80,7 +101,10 @@ pub(super) fn claim() -> Claim {
     ]);
     figures.extend(limits.into_iter().zip(THETA_O).map(|(value, theta_o)| {
         let name = format!("widest β for which it holds, θ_o = {theta_o}°");
-        Figure { unit: "°", ..Figure::new(name, Origin::Quadrature, Bounded { value, error: 0.5 }) }
+        Figure {
+            unit: "°",
+            ..Figure::new(name, Origin::Quadrature, Bounded { value, error: 0.5 })
+        }
     }));
     STATEMENT.judge(figures, sentence)
 }
@@ -92,10 +116,16 @@ mod tests {
     #[test]
     fn errors_are_the_tails_of_the_normal_distribution() {
         // One and two deviations either side of the centre: 31.73% and 4.55% lie beyond.
-        for (reach, beyond) in [(1.0_f64, 0.317_310_507_862_914), (2.0, 0.045_500_263_896_358)] {
+        for (reach, beyond) in [
+            (1.0_f64, 0.317_310_507_862_914),
+            (2.0, 0.045_500_263_896_358),
+        ] {
             let end = (10.0 * reach).to_radians();
             let got = error(0.0, 10.0, [-end, end]);
-            assert!((got.value - beyond).abs() < 1e-10 && got.error < 1e-9, "{got:?}");
+            assert!(
+                (got.value - beyond).abs() < 1e-10 && got.error < 1e-9,
+                "{got:?}"
+            );
         }
     }
 

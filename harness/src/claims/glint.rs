@@ -48,7 +48,10 @@ fn glints(tt: bool) -> Result<Vec<HairParams>, ParamError> {
             ..base
         })
     };
-    grid.gamma_g_deg.iter().flat_map(|gamma_g| grid.phi_g_deg.iter().map(move |phi_g| hair(gamma_g, phi_g))).collect()
+    grid.gamma_g_deg
+        .iter()
+        .flat_map(|gamma_g| grid.phi_g_deg.iter().map(move |phi_g| hair(gamma_g, phi_g)))
+        .collect()
 }
 
 /// Total of the printed density, less 1.
@@ -56,14 +59,22 @@ fn excess(params: &HairParams) -> Bounded {
     let glint = whole_glint(&Parameters::from(params));
     let printed = |phi: f64| [glint.pdf(phi) / glint.cdf(FRAC_PI_2)];
     let d = params.desc();
-    let [total] = integrals(printed, &[0.0, FRAC_PI_2, PI], f64::from(d.phi_g), f64::from(d.gamma_g));
+    let [total] = integrals(
+        printed,
+        &[0.0, FRAC_PI_2, PI],
+        f64::from(d.phi_g),
+        f64::from(d.gamma_g),
+    );
     total.plus(-1.0)
 }
 
 /// The printed density.
 pub(super) fn density(cells: &FoundCells) -> Result<Claim, ParamError> {
     let Spread { most, least, .. } = glints(false)?.iter().map(excess).collect();
-    let bias: Spread = cells.iter().map(|(.., found)| found.uncut_bias.magnitude()).collect();
+    let bias: Spread = cells
+        .iter()
+        .map(|(.., found)| found.uncut_bias.magnitude())
+        .collect();
     let sentence = format!(
         "Samples end at a right angle and the printed density does not: it totals {:.3} to {:.3}, and an estimator that \
          divides by it is up to {:.1}% too dark.",
@@ -74,8 +85,14 @@ pub(super) fn density(cells: &FoundCells) -> Result<Claim, ParamError> {
     let figures = Figure::integrals([
         ("total of the density above 1, most on the grid", most),
         ("total of the density above 1, least on the grid", least),
-        ("relative loss of an estimator that divides by it, most", bias.most),
-        ("relative loss of an estimator that divides by it, least", bias.least),
+        (
+            "relative loss of an estimator that divides by it, most",
+            bias.most,
+        ),
+        (
+            "relative loss of an estimator that divides by it, least",
+            bias.least,
+        ),
     ]);
     Ok(DENSITY.judge(figures, sentence))
 }
@@ -83,7 +100,11 @@ pub(super) fn density(cells: &FoundCells) -> Result<Claim, ParamError> {
 /// V with azimuths up to `gap` from pi, of the published sampler and with glints drawn from [0, pi].
 fn up_to(hair: &Hair, gap: f64) -> [Bounded; 2] {
     let decades = (1..).map(|k| 10.0_f64.powi(-k)).take_while(|x| *x > gap);
-    let ends: Vec<f64> = [0.0].into_iter().chain(decades.map(|x| PI - x)).chain([PI - gap]).collect();
+    let ends: Vec<f64> = [0.0]
+        .into_iter()
+        .chain(decades.map(|x| PI - x))
+        .chain([PI - gap])
+        .collect();
     hair.second_moments(&ends).map(|of| of.plus(-1.0))
 }
 
@@ -97,11 +118,19 @@ pub(super) fn interval(cells: &FoundCells) -> Result<Claim, ParamError> {
     let (alone, with_tt) = (glints(false)?, glints(true)?);
     let last = GAPS[GAPS.len() - 1];
     let growth = |model: ModelKind, all: &[HairParams], place: usize| {
-        largest(all.iter().map(|params| decade(&Hair::new(model, params, 0.0), last)[place]))
+        largest(
+            all.iter()
+                .map(|params| decade(&Hair::new(model, params, 0.0), last)[place]),
+        )
     };
-    let both = |all: &[HairParams], place: usize| largest(ModelKind::ALL.map(|model| growth(model, all, place)));
+    let both = |all: &[HairParams], place: usize| {
+        largest(ModelKind::ALL.map(|model| growth(model, all, place)))
+    };
     let worst = both(&alone, 0);
-    let ratio: Spread = cells.iter().map(|(.., found)| found.published.over(found.whole)).collect();
+    let ratio: Spread = cells
+        .iter()
+        .map(|(.., found)| found.published.over(found.whole))
+        .collect();
     let sentence = format!(
         "Behind a right angle TRT-g alone covers the tail of the glints and vanishes at π: without R and TT the variance \
          on the Cauchy model is infinite, V growing by {:.4} a decade; with all lobes V is {:.3} times that of glints \
@@ -109,15 +138,28 @@ pub(super) fn interval(cells: &FoundCells) -> Result<Claim, ParamError> {
         worst.value, ratio.mean.value, ratio.least.value, ratio.most.value,
     );
     let mut figures = Figure::integrals([
-        ("growth of V, TRT and glints alone, most of the grid's glints", worst),
-        ("growth of V, TT besides, most of the grid's glints", both(&with_tt, 0)),
-        ("growth of V, TRT and glints alone, Gaussian", growth(ModelKind::Gaussian, &alone, 0)),
-        ("growth of V, TRT and glints alone, glints on [0, π]", both(&alone, 1)),
+        (
+            "growth of V, TRT and glints alone, most of the grid's glints",
+            worst,
+        ),
+        (
+            "growth of V, TT besides, most of the grid's glints",
+            both(&with_tt, 0),
+        ),
+        (
+            "growth of V, TRT and glints alone, Gaussian",
+            growth(ModelKind::Gaussian, &alone, 0),
+        ),
+        (
+            "growth of V, TRT and glints alone, glints on [0, π]",
+            both(&alone, 1),
+        ),
     ]);
     // The glints that leave most of themselves behind: the widest, furthest from the viewer.
     let widest = Hair::new(ModelKind::Cauchy, &alone[alone.len() - 1], 0.0);
     let at = "γ_g = 20°, φ_g = 45°, I_g = 5, Cauchy";
-    let mut add = |name, number: Bounded| figures.push(Figure::new(name, Origin::Quadrature, number));
+    let mut add =
+        |name, number: Bounded| figures.push(Figure::new(name, Origin::Quadrature, number));
     for gap in GAPS {
         let [published, whole] = up_to(&widest, gap);
         add(format!("V up to {gap:e} rad from π, {at}"), published);
@@ -126,9 +168,15 @@ pub(super) fn interval(cells: &FoundCells) -> Result<Claim, ParamError> {
         }
     }
     figures.extend(Figure::integrals([
-        ("V over V of glints on [0, π], all lobes, geometric mean", ratio.mean),
+        (
+            "V over V of glints on [0, π], all lobes, geometric mean",
+            ratio.mean,
+        ),
         ("V over V of glints on [0, π], all lobes, most", ratio.most),
-        ("V over V of glints on [0, π], all lobes, least", ratio.least),
+        (
+            "V over V of glints on [0, π], all lobes, least",
+            ratio.least,
+        ),
     ]));
     Ok(INTERVAL.judge(figures, sentence))
 }
@@ -140,11 +188,19 @@ mod tests {
     #[test]
     fn the_printed_density_exceeds_one_by_what_lies_beyond() {
         let base = *HairParams::default().desc();
-        let params = HairParams::new(&HairDesc { phi_g: 0.61, gamma_g: 0.17, ..base }).expect("accepted");
+        let params = HairParams::new(&HairDesc {
+            phi_g: 0.61,
+            gamma_g: 0.17,
+            ..base
+        })
+        .expect("accepted");
         let arc = |end: f64| ((end - 0.61) / 0.17_f64).atan();
         let want = (arc(PI) - arc(0.0)) / (arc(FRAC_PI_2) - arc(0.0)) - 1.0;
         let got = excess(&params);
-        assert!((got.value - want).abs() < 1e-6 && (got.value - 0.04).abs() < 5e-3, "{got:?} {want}");
+        assert!(
+            (got.value - want).abs() < 1e-6 && (got.value - 0.04).abs() < 5e-3,
+            "{got:?} {want}"
+        );
     }
 
     #[test]
@@ -152,9 +208,18 @@ mod tests {
         let params = *glints(false).expect("accepted").last().expect("some");
         let hair = Hair::new(ModelKind::Cauchy, &params, 0.0);
         let [[first, first_whole], [last, last_whole]] = [1e-5, 1e-8].map(|gap| decade(&hair, gap));
-        assert!((last.value / first.value - 1.0).abs() < 0.01 && last.value > 1e-3, "{first:?} {last:?}");
-        assert!(last_whole.value < 2e-3 * first_whole.value, "{first_whole:?} {last_whole:?}");
+        assert!(
+            (last.value / first.value - 1.0).abs() < 0.01 && last.value > 1e-3,
+            "{first:?} {last:?}"
+        );
+        assert!(
+            last_whole.value < 2e-3 * first_whole.value,
+            "{first_whole:?} {last_whole:?}"
+        );
         let [[near, _], [far, _]] = [1e-8, 1e-7].map(|gap| up_to(&hair, gap));
-        assert!((near.value - far.value - last.value).abs() < 1e-5, "{near:?} {far:?} {last:?}");
+        assert!(
+            (near.value - far.value - last.value).abs() < 1e-5,
+            "{near:?} {far:?} {last:?}"
+        );
     }
 }

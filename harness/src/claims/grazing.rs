@@ -25,8 +25,14 @@ const STATEMENT: Statement = Statement {
 const CAP: f64 = 1e-5;
 
 /// Widths of the lobe that points at the axis, rad: the least that is accepted, then 0.1, 0.5, 2.5, 10 and 60 degrees.
-const BETA: [f64; 6] =
-    [1e-4, 0.1 * PI / 180.0, 0.5 * PI / 180.0, 2.5 * PI / 180.0, 10.0 * PI / 180.0, 60.0 * PI / 180.0];
+const BETA: [f64; 6] = [
+    1e-4,
+    0.1 * PI / 180.0,
+    0.5 * PI / 180.0,
+    2.5 * PI / 180.0,
+    10.0 * PI / 180.0,
+    60.0 * PI / 180.0,
+];
 
 impl Longitudinal {
     /// `M cos^2 theta_i / cos^2 theta_d` at `delta` from the end `sign` of the axis. The reference is 0 within the cap.
@@ -41,7 +47,12 @@ impl Longitudinal {
     fn energy(&self, shape: Shape, reach: f64) -> Bounded {
         let at_end = |sign: f64| {
             let centre = FRAC_PI_2 - sign * (2.0 * self.alpha - self.theta_o);
-            integrals(|delta| [self.energy_at(shape, sign, delta)], &[0.0, reach], centre, 2.0 * self.beta)
+            integrals(
+                |delta| [self.energy_at(shape, sign, delta)],
+                &[0.0, reach],
+                centre,
+                2.0 * self.beta,
+            )
         };
         [-1.0, 1.0].into_iter().flat_map(at_end).sum()
     }
@@ -56,11 +67,20 @@ impl Longitudinal {
 fn areas(shape: Shape, p: &Parameters<f64>) -> [f64; 3] {
     let mean = |rgb: [f64; 3]| rgb.iter().sum::<f64>() / 3.0;
     let area = |centre: f64, width: f64| {
-        let [half] = integrals(|phi| [shape.bell(width, phi - centre)], &[0.0, PI], centre, width);
+        let [half] = integrals(
+            |phi| [shape.bell(width, phi - centre)],
+            &[0.0, PI],
+            centre,
+            width,
+        );
         2.0 * half.value
     };
     let trt = 4.0 + p.intensity_g * area(p.phi_g, p.gamma_g);
-    [4.0 * mean(p.intensity_r), area(PI, p.gamma_tt) * mean(p.intensity_tt), trt * mean(p.intensity_trt)]
+    [
+        4.0 * mean(p.intensity_r),
+        area(PI, p.gamma_tt) * mean(p.intensity_tt),
+        trt * mean(p.intensity_trt),
+    ]
 }
 
 /// The share of the energy of a hair that is discarded.
@@ -69,7 +89,9 @@ fn share_of(shape: Shape, params: &HairParams, theta_o: f64) -> Bounded {
     let areas = areas(shape, &p);
     let energy = |reach: f64| -> Bounded {
         let of_lobe = |lobe: usize| Longitudinal::of(&p, lobe, theta_o).energy(shape, reach);
-        (0..3).map(|lobe| Bounded::exact(areas[lobe]).times(of_lobe(lobe))).sum()
+        (0..3)
+            .map(|lobe| Bounded::exact(areas[lobe]).times(of_lobe(lobe)))
+            .sum()
     };
     energy(CAP).over(energy(FRAC_PI_2))
 }
@@ -79,14 +101,24 @@ fn discarded(params: &HairParams, theta_o: f64) -> f64 {
     let wo = [theta_o.sin(), theta_o.cos(), 0.0];
     let hair = HairReference::prepare(&Parameters::<f64>::from(params), Shape::Gaussian, wo);
     let shares = hair.probabilities();
-    let of = |lobe: Lobe| hair.cdf_theta(lobe, CAP - FRAC_PI_2) + 1.0 - hair.cdf_theta(lobe, FRAC_PI_2 - CAP);
-    Lobe::ALL.into_iter().map(|lobe| shares[lobe] * of(lobe)).sum()
+    let of = |lobe: Lobe| {
+        hair.cdf_theta(lobe, CAP - FRAC_PI_2) + 1.0 - hair.cdf_theta(lobe, FRAC_PI_2 - CAP)
+    };
+    Lobe::ALL
+        .into_iter()
+        .map(|lobe| shares[lobe] * of(lobe))
+        .sum()
 }
 
 /// The share that is discarded of a lobe of width `beta` with its peak on the axis, opposite to a viewer at `theta_o` above the
 /// normal plane.
 fn pointed(shape: Shape, beta: f64, theta_o: f64) -> Bounded {
-    Longitudinal { alpha: 0.5 * (theta_o - FRAC_PI_2), beta, theta_o }.discarded(shape)
+    Longitudinal {
+        alpha: 0.5 * (theta_o - FRAC_PI_2),
+        beta,
+        theta_o,
+    }
+    .discarded(shape)
 }
 
 /// The claim.
@@ -96,16 +128,37 @@ pub(super) fn claim() -> Result<Claim, ParamError> {
         let cell = Grid::FULL.cell(index);
         cells.push((cell.params()?, f64::from(cell.theta_o_deg).to_radians()));
     }
-    let grid =
-        |model: ModelKind| largest(cells.iter().map(|(params, theta_o)| share_of(model.shape(), params, *theta_o)));
+    let grid = |model: ModelKind| {
+        largest(
+            cells
+                .iter()
+                .map(|(params, theta_o)| share_of(model.shape(), params, *theta_o)),
+        )
+    };
     let [gaussian, cauchy] = ModelKind::ALL.map(grid);
-    let lost = cells.iter().map(|(params, theta_o)| discarded(params, *theta_o)).fold(0.0, f64::max);
+    let lost = cells
+        .iter()
+        .map(|(params, theta_o)| discarded(params, *theta_o))
+        .fold(0.0, f64::max);
     let theta_o = [0.0, 45.0, 85.0, 90.0].map(f64::to_radians);
-    let across = |beta: f64| largest(theta_o[..3].iter().map(|t| pointed(Shape::Gaussian, beta, *t)));
+    let across = |beta: f64| {
+        largest(
+            theta_o[..3]
+                .iter()
+                .map(|t| pointed(Shape::Gaussian, beta, *t)),
+        )
+    };
     let all = BETA.iter().flat_map(|beta| {
-        ModelKind::ALL.into_iter().flat_map(move |model| theta_o.map(|t| pointed(model.shape(), *beta, t)))
+        ModelKind::ALL
+            .into_iter()
+            .flat_map(move |model| theta_o.map(|t| pointed(model.shape(), *beta, t)))
     });
-    let (worst, narrow, half, wide) = (largest(all), across(BETA[0]), across(BETA[2]), across(BETA[5]));
+    let (worst, narrow, half, wide) = (
+        largest(all),
+        across(BETA[0]),
+        across(BETA[2]),
+        across(BETA[5]),
+    );
     let sentence = format!(
         "Over the grid at most {:.0e} of the energy is lost; it is narrow lobes that lose more, not wide ones: pointed at \
          the axis, {:.0e} at β = 0.5° and {:.0e} at 1e-4 rad, {:.0}% of the latter when the viewer looks along the \
@@ -116,15 +169,33 @@ pub(super) fn claim() -> Result<Claim, ParamError> {
         100.0 * worst.value,
     );
     let figures = Figure::integrals([
-        ("largest bias of a lobe pointed at the axis, β from 1e-4 rad to 60°, θ_o from 0° to 90°", worst),
-        ("largest bias on the grid, both models", largest([gaussian, cauchy])),
+        (
+            "largest bias of a lobe pointed at the axis, β from 1e-4 rad to 60°, θ_o from 0° to 90°",
+            worst,
+        ),
+        (
+            "largest bias on the grid, both models",
+            largest([gaussian, cauchy]),
+        ),
         ("largest bias on the grid, Gaussian", gaussian),
         ("largest bias on the grid, Cauchy", cauchy),
-        ("pointed at the axis, β = 1e-4 rad, θ_o from 0° to 85°", narrow),
+        (
+            "pointed at the axis, β = 1e-4 rad, θ_o from 0° to 85°",
+            narrow,
+        ),
         ("pointed at the axis, β = 0.5°, θ_o from 0° to 85°", half),
         ("pointed at the axis, β = 60°, θ_o from 0° to 85°", wide),
-        ("pointed at the axis, β = 10°, viewer on the axis", pointed(Shape::Gaussian, BETA[4], FRAC_PI_2)),
-        ("largest share of samples discarded on the grid", Bounded { value: lost, error: 1e-12 }),
+        (
+            "pointed at the axis, β = 10°, viewer on the axis",
+            pointed(Shape::Gaussian, BETA[4], FRAC_PI_2),
+        ),
+        (
+            "largest share of samples discarded on the grid",
+            Bounded {
+                value: lost,
+                error: 1e-12,
+            },
+        ),
     ]);
     Ok(STATEMENT.judge(figures, sentence))
 }
@@ -138,12 +209,16 @@ mod tests {
         let params = HairParams::default();
         let p = Parameters::<f64>::from(&params);
         for (theta_o, delta) in [(0.3_f64, 2e-5_f64), (-1.2, 0.4), (1.5, 1.1)] {
-            let hair = HairReference::prepare(&p, Shape::Cauchy, [theta_o.sin(), theta_o.cos(), 0.0]);
+            let hair =
+                HairReference::prepare(&p, Shape::Cauchy, [theta_o.sin(), theta_o.cos(), 0.0]);
             for sign in [-1.0, 1.0] {
                 let wi = [sign * delta.cos(), delta.sin(), 0.0];
                 let want = hair.lobe_values(wi)[Lobe::TRT] * delta.sin() * delta.sin();
                 assert!(
-                    (Longitudinal::of(&p, 2, theta_o).energy_at(Shape::Cauchy, sign, delta) / want - 1.0).abs() < 1e-9,
+                    (Longitudinal::of(&p, 2, theta_o).energy_at(Shape::Cauchy, sign, delta) / want
+                        - 1.0)
+                        .abs()
+                        < 1e-9,
                     "{theta_o} {delta}"
                 );
             }

@@ -26,13 +26,21 @@ pub(super) struct Longitudinal {
 impl Longitudinal {
     /// The longitudinal term of R, TT or TRT, by slot.
     pub(super) fn of(p: &Parameters<f64>, lobe: usize, theta_o: f64) -> Self {
-        Self { alpha: p.alpha[lobe], beta: p.beta[lobe], theta_o }
+        Self {
+            alpha: p.alpha[lobe],
+            beta: p.beta[lobe],
+            theta_o,
+        }
     }
 
     /// The share of the printed sampler's `theta_i` that are inclinations. As printed, without the half, A and B normalise the
     /// density on an interval twice as long as that of `theta_h`.
     pub(super) fn printed_mass(&self) -> f64 {
-        let Self { alpha, beta, theta_o } = *self;
+        let Self {
+            alpha,
+            beta,
+            theta_o,
+        } = *self;
         let printed = CauchyDensity::new(alpha, beta, theta_o - FRAC_PI_2, theta_o + FRAC_PI_2);
         let [lo, hi] = theta_h_interval(theta_o);
         printed.cdf(hi) - printed.cdf(lo)
@@ -41,10 +49,16 @@ impl Longitudinal {
 
 /// Every M of the parameter grid: three lobes of each width of R, from each inclination.
 pub(super) fn longitudinal_grid() -> Vec<Longitudinal> {
-    let widths = Grid::FULL.beta_r_deg.iter().filter_map(|beta_r| with_beta(&HairParams::default(), *beta_r).ok());
+    let widths = Grid::FULL
+        .beta_r_deg
+        .iter()
+        .filter_map(|beta_r| with_beta(&HairParams::default(), *beta_r).ok());
     let of_width = |params: HairParams| {
         let p = Parameters::from(&params);
-        let theta_o = Grid::FULL.theta_o_deg.iter().map(|theta_o| f64::from(*theta_o).to_radians());
+        let theta_o = Grid::FULL
+            .theta_o_deg
+            .iter()
+            .map(|theta_o| f64::from(*theta_o).to_radians());
         theta_o.flat_map(move |theta_o| [0, 1, 2].map(|lobe| Longitudinal::of(&p, lobe, theta_o)))
     };
     widths.flat_map(of_width).collect()
@@ -57,7 +71,10 @@ pub(super) fn whole_glint(p: &Parameters<f64>) -> CauchyDensity<f64> {
 
 /// Sum over the lobes, each weighted by its share of the samples.
 fn mixture(shares: &PerLobe<f64>, of: &PerLobe<f64>) -> f64 {
-    Lobe::ALL.into_iter().map(|lobe| shares[lobe] * of[lobe]).sum()
+    Lobe::ALL
+        .into_iter()
+        .map(|lobe| shares[lobe] * of[lobe])
+        .sum()
 }
 
 /// A hair of a model seen from an inclination.
@@ -88,12 +105,17 @@ impl Hair {
     pub(super) fn new(model: ModelKind, params: &HairParams, theta_o: f64) -> Self {
         let parameters = Parameters::from(params);
         let wo = fibre_direction(theta_o, 0.0).to_array();
-        Self { parameters, oracle: HairReference::prepare(&parameters, model.shape(), wo), theta_o }
+        Self {
+            parameters,
+            oracle: HairReference::prepare(&parameters, model.shape(), wo),
+            theta_o,
+        }
     }
 
     /// Shares of the lobes' samples that the printed A and B leave on the sphere.
     fn masses(&self) -> PerLobe<f64> {
-        let [r, tt, trt] = [0, 1, 2].map(|lobe| Longitudinal::of(&self.parameters, lobe, self.theta_o).printed_mass());
+        let [r, tt, trt] = [0, 1, 2]
+            .map(|lobe| Longitudinal::of(&self.parameters, lobe, self.theta_o).printed_mass());
         PerLobe::padded([r, tt, trt, trt], 0.0)
     }
 
@@ -102,7 +124,9 @@ impl Hair {
     fn integrals(&self, phi: &[f64]) -> [Bounded; 6] {
         let (masses, shares) = (self.masses(), self.oracle.probabilities());
         let mut kept = shares;
-        Lobe::ALL.into_iter().for_each(|lobe| kept[lobe] *= masses[lobe]);
+        Lobe::ALL
+            .into_iter()
+            .for_each(|lobe| kept[lobe] *= masses[lobe]);
         let glint = whole_glint(&self.parameters);
         let within = glint.cdf(FRAC_PI_2);
         let integrand = |theta_i: f64, phi: f64| {
@@ -115,17 +139,33 @@ impl Hair {
                 return [0.0; 6];
             }
             let printed = mixture(&kept, &pdfs);
-            pdfs[Lobe::GLINT] = self.oracle.pdf_theta(Lobe::TRT, theta_i) * 0.5 * glint.pdf(phi) / cos_theta_i;
+            pdfs[Lobe::GLINT] =
+                self.oracle.pdf_theta(Lobe::TRT, theta_i) * 0.5 * glint.pdf(phi) / cos_theta_i;
             let whole = mixture(&shares, &pdfs);
             pdfs[Lobe::GLINT] /= within;
             let uncut = mixture(&shares, &pdfs);
             let y_sq = y * y;
-            [y, y_sq * 4.0 * PI, y_sq / published, y_sq / printed, y_sq / whole, y * (published / uncut)]
-                .map(|x| x * cos_theta_i)
+            [
+                y,
+                y_sq * 4.0 * PI,
+                y_sq / published,
+                y_sq / printed,
+                y_sq / whole,
+                y * (published / uncut),
+            ]
+            .map(|x| x * cos_theta_i)
         };
-        let r = integrate_rectangle(integrand, &self.theta_breakpoints(), phi, &Tolerance::relative(1e-6));
+        let r = integrate_rectangle(
+            integrand,
+            &self.theta_breakpoints(),
+            phi,
+            &Tolerance::relative(1e-6),
+        );
         // Half the sphere: hair is the same for phi and -phi.
-        core::array::from_fn(|k| Bounded { value: 2.0 * r.value[k], error: 2.0 * r.error[k] })
+        core::array::from_fn(|k| Bounded {
+            value: 2.0 * r.value[k],
+            error: 2.0 * r.error[k],
+        })
     }
 
     /// All that is found of it.
@@ -170,7 +210,11 @@ impl Hair {
     fn phi_breakpoints(&self) -> Vec<f64> {
         let p = &self.parameters;
         let mut phi = vec![0.0, FRAC_PI_2, PI];
-        phi.extend(bell_breakpoints(p.phi_g, p.gamma_g).into_iter().chain(bell_breakpoints(PI, p.gamma_tt)));
+        phi.extend(
+            bell_breakpoints(p.phi_g, p.gamma_g)
+                .into_iter()
+                .chain(bell_breakpoints(PI, p.gamma_tt)),
+        );
         phi.retain(|x| (0.0..=PI).contains(x));
         phi
     }
@@ -190,7 +234,10 @@ mod tests {
                 let found = Hair::new(model, &params, theta_o_deg.to_radians()).found();
                 let want = quadrature(model, &params, theta_o_deg, &Constant).v;
                 for (got, want) in [found.uniform, found.published].into_iter().zip(want) {
-                    assert!((got.value - want).abs() < 1e-5 && got.error < 1e-4, "{model:?}: {got:?} {want}");
+                    assert!(
+                        (got.value - want).abs() < 1e-5 && got.error < 1e-4,
+                        "{model:?}: {got:?} {want}"
+                    );
                 }
             }
         }
@@ -204,18 +251,40 @@ mod tests {
         let params = HairParams::new(&desc).expect("accepted");
         let found = Hair::new(ModelKind::Gaussian, &params, 0.5).found();
         let mass = Longitudinal::of(&Parameters::from(&params), 0, 0.5).printed_mass();
-        assert!((found.lost - (1.0 - mass)).abs() < 1e-12 && mass < 0.99, "{found:?} {mass}");
-        assert!(((1.0 + found.published.value) / mass - 1.0 - found.printed.value).abs() < 1e-6, "{found:?} {mass}");
-        assert!(found.uncut_bias.value.abs() < 1e-9, "no glints, no bias: {found:?}");
+        assert!(
+            (found.lost - (1.0 - mass)).abs() < 1e-12 && mass < 0.99,
+            "{found:?} {mass}"
+        );
+        assert!(
+            ((1.0 + found.published.value) / mass - 1.0 - found.printed.value).abs() < 1e-6,
+            "{found:?} {mass}"
+        );
+        assert!(
+            found.uncut_bias.value.abs() < 1e-9,
+            "no glints, no bias: {found:?}"
+        );
     }
 
     #[test]
     fn the_printed_mass_is_that_of_the_printed_constants() {
         let (alpha, beta, theta_o) = (-0.1, 0.15, 0.4);
         let span = |[lo, hi]: [f64; 2]| ((hi - alpha) / beta).atan() - ((lo - alpha) / beta).atan();
-        let want = span(theta_h_interval(theta_o)) / span([theta_o - FRAC_PI_2, theta_o + FRAC_PI_2]);
-        let got = Longitudinal { alpha, beta, theta_o }.printed_mass();
-        assert!((got - want).abs() < 1e-12 && (got - 0.923).abs() < 5e-4, "{got} {want}");
-        assert_eq!(longitudinal_grid().len(), 6 * 7 * 3, "widths, inclinations and lobes");
+        let want =
+            span(theta_h_interval(theta_o)) / span([theta_o - FRAC_PI_2, theta_o + FRAC_PI_2]);
+        let got = Longitudinal {
+            alpha,
+            beta,
+            theta_o,
+        }
+        .printed_mass();
+        assert!(
+            (got - want).abs() < 1e-12 && (got - 0.923).abs() < 5e-4,
+            "{got} {want}"
+        );
+        assert_eq!(
+            longitudinal_grid().len(),
+            6 * 7 * 3,
+            "widths, inclinations and lobes"
+        );
     }
 }

@@ -15,7 +15,10 @@ pub(super) const LIGHTS: [[&str; 2]; 5] = [
     ["cauchy-samples-better-constant", "constant light"],
     ["cauchy-samples-better-smooth", "smooth light"],
     ["cauchy-samples-better-sun", "a 5° sun"],
-    ["cauchy-samples-better-area", "a large area light along the fibre"],
+    [
+        "cauchy-samples-better-area",
+        "a large area light along the fibre",
+    ],
     ["cauchy-samples-better-sky", "the procedural sky"],
 ];
 
@@ -49,7 +52,9 @@ fn measure(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Pairs>, Param
     let cells: Vec<Cell> = plan.grid().cells().collect();
     let pairs = |cell: &Cell| {
         let v = variances(plan, plan.budget(), cell, &[Sampler::Published])?;
-        Ok(core::array::from_fn(|light| [v[light], v[LIGHTS.len() + light]]))
+        Ok(core::array::from_fn(|light| {
+            [v[light], v[LIGHTS.len() + light]]
+        }))
     };
     progress.map(&cells, pairs).into_iter().collect()
 }
@@ -61,11 +66,14 @@ pub(super) fn claims(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Cla
     let mut means = Vec::new();
     for (light, [id, name]) in LIGHTS.into_iter().enumerate() {
         let pairs = || cells.iter().map(move |cell| cell[light]);
-        let ([mean, least, most], unsure) = gain(pairs()).map_or(([Estimate::UNKNOWN; 3], cells.len()), |gain| {
-            ([gain.geometric_mean, gain.least, gain.most], gain.unsure)
-        });
+        let ([mean, least, most], unsure) = gain(pairs())
+            .map_or(([Estimate::UNKNOWN; 3], cells.len()), |gain| {
+                ([gain.geometric_mean, gain.least, gain.most], gain.unsure)
+            });
         let is_worse = |ratio: Estimate| ratio.value + 2.0 * ratio.standard_error < 1.0;
-        let worse = pairs().filter(|[gaussian, cauchy]| is_worse(gaussian.ratio(cauchy))).count();
+        let worse = pairs()
+            .filter(|[gaussian, cauchy]| is_worse(gaussian.ratio(cauchy)))
+            .count();
         let sentence = format!(
             "Under {name} the published sampler needs {} times as many samples on the Gaussian model as on the Cauchy \
              model ({} to {} over {} cells, surely below 1 in {worse}).",
@@ -75,13 +83,20 @@ pub(super) fn claims(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Cla
             cells.len() - unsure,
         );
         let figure = |which: &str, of: Estimate| {
-            Figure::new(format!("V on Gaussian over V on Cauchy, {name}, {which}"), Origin::Sampled, of)
+            Figure::new(
+                format!("V on Gaussian over V on Cauchy, {name}, {which}"),
+                Origin::Sampled,
+                of,
+            )
         };
         let figures = vec![
             figure("least of the grid", least),
             figure("geometric mean", mean),
             figure("most of the grid", most),
-            Figure::cells("cells where the Gaussian model needs fewer samples, by two standard errors", worse),
+            Figure::cells(
+                "cells where the Gaussian model needs fewer samples, by two standard errors",
+                worse,
+            ),
             Figure::cells("cells left out: error of V above a quarter", unsure),
         ];
         claims.push(Statement { id, ..STATEMENT }.judge(figures, sentence));
@@ -94,26 +109,43 @@ pub(super) fn claims(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Cla
 /// The claim in equal time.
 fn in_time(plan: &Plan<'_>, means: &[Estimate]) -> Claim {
     let times = Times::measure(plan.seed, plan.quick, None);
-    let [gaussian, cauchy] = ModelKind::ALL.map(|model| times.ns(model, Sampler::Published, PER_POINT));
+    let [gaussian, cauchy] =
+        ModelKind::ALL.map(|model| times.ns(model, Sampler::Published, PER_POINT));
     let faster = gaussian.ratio(&cauchy);
     let gains: Vec<Estimate> = means.iter().map(|mean| mean.times(&faster)).collect();
     let timed = |name: String, of: Estimate| Figure::new(name, Origin::Timed, of);
     let by_value = |a: &usize, b: &usize| gains[*a].value.total_cmp(&gains[*b].value);
     let known = || (0..gains.len()).filter(|light| gains[*light].value.is_finite());
-    let (least, most) = (known().min_by(by_value).unwrap_or(0), known().max_by(by_value).unwrap_or(0));
+    let (least, most) = (
+        known().min_by(by_value).unwrap_or(0),
+        known().max_by(by_value).unwrap_or(0),
+    );
     let sentence = format!(
         "A sample of the Cauchy model takes {:.2} times less time here; in equal time its variance is lower by {:.2} under \
          {} and by {:.2} under {}.",
         faster.value, gains[most].value, LIGHTS[most][1], gains[least].value, LIGHTS[least][1],
     );
     let mut figures = vec![
-        timed("gain in equal time, least of the lights".to_owned(), gains[least]),
-        timed("gain in equal time, most of the lights".to_owned(), gains[most]),
+        timed(
+            "gain in equal time, least of the lights".to_owned(),
+            gains[least],
+        ),
+        timed(
+            "gain in equal time, most of the lights".to_owned(),
+            gains[most],
+        ),
     ];
-    figures
-        .extend(gains.iter().zip(LIGHTS).map(|(gain, [_, name])| timed(format!("gain in equal time, {name}"), *gain)));
+    figures.extend(
+        gains
+            .iter()
+            .zip(LIGHTS)
+            .map(|(gain, [_, name])| timed(format!("gain in equal time, {name}"), *gain)),
+    );
     for (model, ns) in ModelKind::ALL.into_iter().zip([gaussian, cauchy]) {
-        figures.push(Figure { unit: "ns", ..timed(format!("time of a sample, {}", model.title()), ns) });
+        figures.push(Figure {
+            unit: "ns",
+            ..timed(format!("time of a sample, {}", model.title()), ns)
+        });
     }
     IN_EQUAL_TIME.judge(figures, sentence)
 }

@@ -7,13 +7,26 @@ use hairis_instruments::table::{Table, number};
 /// The tables.
 #[must_use]
 pub fn tables(of: &Claims) -> Vec<Table> {
-    of.claims.iter().map(of_claim).chain([summary(of)]).collect()
+    of.claims
+        .iter()
+        .map(of_claim)
+        .chain([summary(of)])
+        .collect()
 }
 
 fn of_claim(claim: &Claim) -> Table {
-    let Claim { id, quotation, source, threshold: Threshold { of, limits, .. }, .. } = claim;
+    let Claim {
+        id,
+        quotation,
+        source,
+        threshold: Threshold { of, limits, .. },
+        ..
+    } = claim;
     let mut table = Table::new(format!("{id}: \"{quotation}\" ({source})"));
-    table = table.texts(["figure"]).numbers(["value", "error"]).texts(["unit", "from"]);
+    table = table
+        .texts(["figure"])
+        .numbers(["value", "error"])
+        .texts(["unit", "from"]);
     for figure in &claim.figures {
         let mark = match figure.role {
             Role::Everywhere => " [1]",
@@ -26,7 +39,9 @@ fn of_claim(claim: &Claim) -> Table {
     }
     let bound = bound(claim);
     table
-        .note(format!("Holds if [1] keeps the threshold, within limits ({limits}) if [2] does: {of}, {bound}."))
+        .note(format!(
+            "Holds if [1] keeps the threshold, within limits ({limits}) if [2] does: {of}, {bound}."
+        ))
         .note(format!("{}: {}", claim.verdict.name(), claim.sentence))
 }
 
@@ -44,12 +59,20 @@ fn bound(claim: &Claim) -> String {
 fn shown(figure: &Figure) -> [String; 2] {
     match figure.origin {
         Origin::Counted => [format!("{}", figure.value), String::new()],
-        Origin::Quadrature => [number::plain(figure.value, 5), number::plain(figure.error, 1)],
+        Origin::Quadrature => [
+            number::plain(figure.value, 5),
+            number::plain(figure.error, 1),
+        ],
         Origin::Sampled | Origin::Timed => {
             let text = number::with_error(figure.value, figure.error);
             match text.split_once(" ± ") {
-                Some((value, error)) if !value.starts_with('(') => [value.to_owned(), error.to_owned()],
-                _ => [number::plain(figure.value, 4), number::plain(figure.error, 1)],
+                Some((value, error)) if !value.starts_with('(') => {
+                    [value.to_owned(), error.to_owned()]
+                }
+                _ => [
+                    number::plain(figure.value, 4),
+                    number::plain(figure.error, 1),
+                ],
             }
         }
     }
@@ -62,13 +85,31 @@ fn summary(of: &Claims) -> Table {
         .texts(["limits", "verdict"]);
     for claim in &of.claims {
         let of_role = |role: Role| {
-            let [value, error] = claim.figures.iter().find(|figure| figure.role == role).map(shown).unwrap_or_default();
+            let [value, error] = claim
+                .figures
+                .iter()
+                .find(|figure| figure.role == role)
+                .map(shown)
+                .unwrap_or_default();
             format!("{value} ± {error}")
         };
         let [everywhere, within] = [Role::Everywhere, Role::WithinLimits].map(of_role);
-        let [id, source, limits, verdict] =
-            [claim.id, claim.source, claim.threshold.limits, claim.verdict.name()].map(str::to_owned);
-        table.push([id, source, bound(claim), everywhere, within, limits, verdict]);
+        let [id, source, limits, verdict] = [
+            claim.id,
+            claim.source,
+            claim.threshold.limits,
+            claim.verdict.name(),
+        ]
+        .map(str::to_owned);
+        table.push([
+            id,
+            source,
+            bound(claim),
+            everywhere,
+            within,
+            limits,
+            verdict,
+        ]);
     }
     table.note(format!(
         "{} cells of the parameter grid, seed {}. Errors: standard errors of what is sampled, bound estimates of what is \

@@ -29,13 +29,17 @@ fn added(alpha: f64, beta: f64, interval: [f64; 2], cauchy_area: Option<f64>) ->
     };
     let [gaussian, weighted, cauchy] = integrals(integrand, &interval, alpha, beta);
     let area = cauchy_area.map_or(cauchy, Bounded::exact);
-    area.times(weighted).over(gaussian.times(gaussian)).plus(-1.0)
+    area.times(weighted)
+        .over(gaussian.times(gaussian))
+        .plus(-1.0)
 }
 
 /// The largest Gaussian over Cauchy, both of peak 1.
 fn largest_weight() -> f64 {
     let weight = |x: f64| Shape::Gaussian.bell(1.0, x) / Shape::Cauchy.bell(1.0, x);
-    (0..=8_000).map(|n| weight(f64::from(n) / 1_000.0)).fold(0.0, f64::max)
+    (0..=8_000)
+        .map(|n| weight(f64::from(n) / 1_000.0))
+        .fold(0.0, f64::max)
 }
 
 /// The claim.
@@ -44,7 +48,10 @@ pub(super) fn claim() -> Claim {
     let Spread { most, least, .. } = longitudinal_grid().into_iter().map(of_lobe).collect();
     let line = added(0.0, 1.0, [-REACH, REACH], Some(PI));
     let both = line.plus(1.0).times(line.plus(1.0)).plus(-1.0);
-    let weight = Bounded { value: largest_weight(), error: 1e-7 };
+    let weight = Bounded {
+        value: largest_weight(),
+        error: 1e-7,
+    };
     let in_means = weight.times(Bounded::exact(PI / (2.0 * PI).sqrt()));
     let sentence = format!(
         "Wider tails bound the weight, by {:.4} (bells of peak 1), but the shape still differs: each Gaussian factor adds \
@@ -71,7 +78,10 @@ mod tests {
     #[test]
     fn the_added_variance_is_its_closed_form_and_that_of_samples() {
         let got = added(0.0, 0.3, [-REACH, REACH].map(|x| 0.3 * x), Some(0.3 * PI));
-        assert!((got.value - (0.75 * PI.sqrt() - 1.0)).abs() < 1e-9 && got.error < 1e-8, "{got:?}");
+        assert!(
+            (got.value - (0.75 * PI.sqrt() - 1.0)).abs() < 1e-9 && got.error < 1e-8,
+            "{got:?}"
+        );
         let mut from = Independent::new(1, 0);
         let weights: Moments = (0..100_000)
             .map(|_| {

@@ -31,7 +31,11 @@ fn example() -> Cell {
 /// V of uniform sampling and of the published sampler on the example, Gaussian model, from samples.
 fn measured(plan: &Plan<'_>, cell: &Cell) -> Result<[Estimate; 2], ParamError> {
     let budget = if plan.quick { 1 << 18 } else { 1 << 22 };
-    let budget = StudyBudget { samples: budget, light_samples: 8, pools: 0 };
+    let budget = StudyBudget {
+        samples: budget,
+        light_samples: 8,
+        pools: 0,
+    };
     let v = variances(plan, budget, cell, &[Sampler::Uniform, Sampler::Published])?;
     // Models outermost, then samplers, then lights: the constant light is the first of five.
     Ok([v[0], v[5]])
@@ -39,12 +43,23 @@ fn measured(plan: &Plan<'_>, cell: &Cell) -> Result<[Estimate; 2], ParamError> {
 
 /// The claim.
 pub(super) fn claim(plan: &Plan<'_>, cells: &FoundCells) -> Result<Claim, ParamError> {
-    let ratios: Vec<(&Cell, ModelKind, Bounded)> =
-        cells.iter().map(|(cell, model, found)| (cell, *model, found.published.over(found.uniform))).collect();
+    let ratios: Vec<(&Cell, ModelKind, Bounded)> = cells
+        .iter()
+        .map(|(cell, model, found)| (cell, *model, found.published.over(found.uniform)))
+        .collect();
     let ratio: Spread = ratios.iter().map(|(.., ratio)| *ratio).collect();
-    let within = largest(ratios.iter().filter(|(cell, ..)| cell.beta_r_deg <= NARROW).map(|(.., ratio)| *ratio));
-    let worse =
-        |of: ModelKind| ratios.iter().filter(|(_, model, ratio)| *model == of && ratio.value > STATEMENT.bound).count();
+    let within = largest(
+        ratios
+            .iter()
+            .filter(|(cell, ..)| cell.beta_r_deg <= NARROW)
+            .map(|(.., ratio)| *ratio),
+    );
+    let worse = |of: ModelKind| {
+        ratios
+            .iter()
+            .filter(|(_, model, ratio)| *model == of && ratio.value > STATEMENT.bound)
+            .count()
+    };
     let [gaussian, cauchy] = ModelKind::ALL.map(worse);
     let of_each = cells.len() / ModelKind::ALL.len();
 
@@ -52,15 +67,25 @@ pub(super) fn claim(plan: &Plan<'_>, cells: &FoundCells) -> Result<Claim, ParamE
     let [uniform, published] = measured(plan, &cell)?;
     let exact = hair_of(&cell, ModelKind::Gaussian)?.found();
     let at = "β_R = 20°, γ_TT = 45°, γ_g = 20°, θ_o = 0°";
-    let [of_published, of_uniform] =
-        ["the published sampler", "uniform"].map(|sampler| format!("V of {sampler}, Gaussian, {at}"));
+    let [of_published, of_uniform] = ["the published sampler", "uniform"]
+        .map(|sampler| format!("V of {sampler}, Gaussian, {at}"));
 
     let mut figures = Figure::integrals([
-        ("V of the published sampler over V of uniform, most, both models", ratio.most),
-        ("V of the published sampler over V of uniform, most for β_R ≤ 10°", within),
+        (
+            "V of the published sampler over V of uniform, most, both models",
+            ratio.most,
+        ),
+        (
+            "V of the published sampler over V of uniform, most for β_R ≤ 10°",
+            within,
+        ),
     ]);
     figures.extend([
-        Figure::new(format!("{of_published}, measured"), Origin::Sampled, published),
+        Figure::new(
+            format!("{of_published}, measured"),
+            Origin::Sampled,
+            published,
+        ),
         Figure::new(format!("{of_uniform}, measured"), Origin::Sampled, uniform),
         Figure::new(of_published, Origin::Quadrature, exact.published),
         Figure::new(of_uniform, Origin::Quadrature, exact.uniform),
@@ -69,8 +94,14 @@ pub(super) fn claim(plan: &Plan<'_>, cells: &FoundCells) -> Result<Claim, ParamE
         Figure::cells("cells of each model", of_each),
     ]);
     figures.extend(Figure::integrals([
-        ("V of the published sampler over V of uniform, least", ratio.least),
-        ("V of the published sampler over V of uniform, geometric mean", ratio.mean),
+        (
+            "V of the published sampler over V of uniform, least",
+            ratio.least,
+        ),
+        (
+            "V of the published sampler over V of uniform, geometric mean",
+            ratio.mean,
+        ),
     ]));
     let sentence = format!(
         "Uniform sampling has the lower variance in {gaussian} of {of_each} cells on the Gaussian model and in {cauchy} \
@@ -89,12 +120,21 @@ mod tests {
     #[test]
     fn the_example_is_that_of_the_record() {
         let sky = Sky::default().environment();
-        let plan = Plan { seed: 3, quick: true, environment: &sky };
+        let plan = Plan {
+            seed: 3,
+            quick: true,
+            environment: &sky,
+        };
         let cell = example();
         let [uniform, published] = measured(&plan, &cell).expect("accepted");
-        let exact = hair_of(&cell, ModelKind::Gaussian).expect("accepted").found();
+        let exact = hair_of(&cell, ModelKind::Gaussian)
+            .expect("accepted")
+            .found();
         let near = |of: Bounded, value: f64| (of.value - value).abs() < 1e-3;
-        assert!(near(exact.uniform, 0.267) && near(exact.published, 0.302), "{exact:?}");
+        assert!(
+            near(exact.uniform, 0.267) && near(exact.published, 0.302),
+            "{exact:?}"
+        );
         for (got, want) in [(uniform, exact.uniform), (published, exact.published)] {
             assert!(got.z_score(want.value).abs() < 4.0, "{got:?} {want:?}");
         }

@@ -25,7 +25,12 @@ pub fn run(flags: &Compare) -> Result<(), Error> {
 
     let bar = share_bar("{msg:>18} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
     let environment_notes = environment.notes();
-    let settings = CompareSettings { seed: flags.seed, quick: flags.quick, environment: name, environment_notes };
+    let settings = CompareSettings {
+        seed: flags.seed,
+        quick: flags.quick,
+        environment: name,
+        environment_notes,
+    };
     let comparison = compare::run(settings, &environment, &|part, done| {
         if bar.message() != part {
             bar.reset();

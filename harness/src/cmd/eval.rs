@@ -38,7 +38,11 @@ pub fn run(flags: &Eval) -> Result<(), Error> {
 /// # Errors
 ///
 /// As [`run`].
-pub fn stream<R: Read, W: Write>(path: CodePath, input: BufReader<R>, mut output: W) -> Result<(), Error> {
+pub fn stream<R: Read, W: Write>(
+    path: CodePath,
+    input: BufReader<R>,
+    mut output: W,
+) -> Result<(), Error> {
     let mut lines = Lines::new(input);
     let mut block = Vec::with_capacity(block_len(path));
     let (mut read, mut refused) = (0, 0);
@@ -53,18 +57,33 @@ pub fn stream<R: Read, W: Write>(path: CodePath, input: BufReader<R>, mut output
                 writeln!(output, "{answer}")?;
             }
             // Flush now: the caller may wait for these answers before it writes on.
-            if more && lines.ready() { Ok(()) } else { output.flush() }
+            if more && lines.ready() {
+                Ok(())
+            } else {
+                output.flush()
+            }
         };
         match write() {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => break,
             other => other.map_err(Error::Write)?,
         }
     }
-    if refused == 0 { Ok(()) } else { Err(Error::Malformed { lines: refused, of: read }) }
+    if refused == 0 {
+        Ok(())
+    } else {
+        Err(Error::Malformed {
+            lines: refused,
+            of: read,
+        })
+    }
 }
 
 /// Reads up to `len` lines, fewer where no more are ready; false at the end of the input.
-fn fill<R: Read>(block: &mut Vec<Result<Request, String>>, len: usize, lines: &mut Lines<R>) -> io::Result<bool> {
+fn fill<R: Read>(
+    block: &mut Vec<Result<Request, String>>,
+    len: usize,
+    lines: &mut Lines<R>,
+) -> io::Result<bool> {
     loop {
         match lines.next()? {
             None => return Ok(false),

@@ -22,7 +22,9 @@ pub fn run(flags: &Merge) -> Result<(), Error> {
     let (environment, name) = environment(flags.env.as_deref())?;
     let is_theirs = study.has_environment(&environment);
     if !is_theirs && flags.env.is_some() {
-        return Err(Error::Usage(format!("--env must be the environment of the parts, got {name}")));
+        return Err(Error::Usage(format!(
+            "--env must be the environment of the parts, got {name}"
+        )));
     }
     if !is_theirs {
         say("the look-up of the environment is not timed; pass --env FILE to time it");

@@ -23,12 +23,21 @@ use std::path::Path;
 /// none, or a file cannot be read or written, or is of another study; [`Error::Failed`] at the end, with all files written,
 /// if a check failed.
 pub fn run(flags: &Flags) -> Result<(), Error> {
-    let shard: Shard = flags.shard.parse().map_err(|problem| Error::Usage(format!("--shard {problem}")))?;
+    let shard: Shard = flags
+        .shard
+        .parse()
+        .map_err(|problem| Error::Usage(format!("--shard {problem}")))?;
     let (environment, _) = environment(flags.env.as_deref())?;
-    let plan = Plan { seed: flags.seed, quick: flags.quick, environment: &environment };
+    let plan = Plan {
+        seed: flags.seed,
+        quick: flags.quick,
+        environment: &environment,
+    };
     let cells = plan.grid().len();
     if shard.of() > cells {
-        return Err(Error::Usage(format!("--shard N must be at most {cells}, the number of cells, got \"{shard}\"")));
+        return Err(Error::Usage(format!(
+            "--shard N must be at most {cells}, the number of cells, got \"{shard}\""
+        )));
     }
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
     let (part, finished) = Part::open(&flags.out, &plan.header(shard))?;
@@ -37,9 +46,16 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
     let owned = todo.len();
     todo.retain(|index| finished.iter().all(|cell| cell.cell != *index));
     if !finished.is_empty() && !todo.is_empty() {
-        say(&format!("{}: continues after {} of {owned} cells", part.path().display(), finished.len()));
+        say(&format!(
+            "{}: continues after {} of {owned} cells",
+            part.path().display(),
+            finished.len()
+        ));
     }
-    let bar = bar(todo.len() as u64, "cells {pos:>4} of {len} {wide_bar} {elapsed} (left {eta})");
+    let bar = bar(
+        todo.len() as u64,
+        "cells {pos:>4} of {len} {wide_bar} {elapsed} (left {eta})",
+    );
     study::run(&plan, &todo, |cell| {
         part.keep(&cell)?;
         bar.inc(1);
@@ -51,22 +67,39 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
         let study = Study::join(&[(part.path().to_owned(), read(part.path())?)])?;
         finish(study, Some(&environment), &flags.out)
     } else {
-        say(&format!("wrote {}; `hairis merge` joins it with the others", part.path().display()));
+        say(&format!(
+            "wrote {}; `hairis merge` joins it with the others",
+            part.path().display()
+        ));
         Ok(())
     }
 }
 
 /// Measures times, computes how different the models look, writes the tables and prints the summary.
-pub(super) fn finish(mut study: Study, environment: Option<&Environment>, out: &Path) -> Result<(), Error> {
+pub(super) fn finish(
+    mut study: Study,
+    environment: Option<&Environment>,
+    out: &Path,
+) -> Result<(), Error> {
     study.time(environment);
     let difference = Difference::over(study.grid())?;
     study.write(out, &difference)?;
-    study.report(&difference, claims(out, &study).as_ref()).write(out, "study")?;
+    study
+        .report(&difference, claims(out, &study).as_ref())
+        .write(out, "study")?;
     let page = out.join("report.html");
     print_tables(study.summary().iter().chain(&difference.tables()), &page)?;
-    let [rows, others @ ..] = ["study", "efficiency", "difference"].map(|name| out.join(name).display().to_string());
-    let parquet = if cfg!(feature = "parquet") { " and .parquet" } else { "" };
-    say(&format!("wrote {rows}.csv{parquet}, {} as .csv{parquet}, and {rows}.json", others.join(" and ")));
+    let [rows, others @ ..] =
+        ["study", "efficiency", "difference"].map(|name| out.join(name).display().to_string());
+    let parquet = if cfg!(feature = "parquet") {
+        " and .parquet"
+    } else {
+        ""
+    };
+    say(&format!(
+        "wrote {rows}.csv{parquet}, {} as .csv{parquet}, and {rows}.json",
+        others.join(" and ")
+    ));
     say(&format!("wrote {} and figures/", page.display()));
     report_failures(&study.failures())
 }
@@ -80,7 +113,10 @@ fn claims(out: &Path, study: &Study) -> Option<serde_json::Value> {
         Ok(content) => study.claims(&content),
     };
     let unused = |problem: &String| {
-        say(&format!("{}: left out of the report: {problem}; run `hairis claims` again", path.display()));
+        say(&format!(
+            "{}: left out of the report: {problem}; run `hairis claims` again",
+            path.display()
+        ));
     };
     claims.inspect_err(unused).ok()
 }

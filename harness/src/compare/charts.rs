@@ -22,7 +22,11 @@ pub(super) fn models(of: &Comparison) -> Vec<Drawing> {
     let mut numbers = SequenceKind::Halton.source(of.settings.seed, 0, 3, POINTS);
     let xi: Vec<[f32; 3]> = (0..POINTS).map(|_| numbers.next_xi_f32()).collect();
     let mut all = figures::bells().to_vec();
-    all.push(figures::polar(&params, theta_o, &[("Cauchy (same widths)", Cauchy::PAPER)]));
+    all.push(figures::polar(
+        &params,
+        theta_o,
+        &[("Cauchy (same widths)", Cauchy::PAPER)],
+    ));
     all.push(figures::sample_distributions(&params, theta_o, &xi));
     all
 }
@@ -30,14 +34,19 @@ pub(super) fn models(of: &Comparison) -> Vec<Drawing> {
 /// The verdicts in one plot: ratios of variances by light.
 pub(super) fn summary(of: &Comparison) -> Drawing {
     let lights = &of.efficiency.settings.lights;
-    let labels: Vec<String> = lights.iter().map(|light| light.replace(['-', '_'], " ")).collect();
+    let labels: Vec<String> = lights
+        .iter()
+        .map(|light| light.replace(['-', '_'], " "))
+        .collect();
     let series = [
         ("Cauchy, published", (ModelKind::Cauchy, Sampler::Published)),
         ("Gaussian, matched", (ModelKind::Gaussian, Sampler::Matched)),
         ("Cauchy, matched", (ModelKind::Cauchy, Sampler::Matched)),
     ]
     .map(|(name, other)| {
-        let gains = lights.iter().map(|light| v_gain(of, light, other).unwrap_or(f64::NAN).into());
+        let gains = lights
+            .iter()
+            .map(|light| v_gain(of, light, other).unwrap_or(f64::NAN).into());
         (name.to_owned(), gains.collect())
     });
     let title = "Fewer samples than the published sampler on the Gaussian model";
@@ -51,25 +60,48 @@ pub(super) fn summary(of: &Comparison) -> Drawing {
 
 /// Speed against the textbook, a chart per model.
 pub(super) fn speeds(of: &Comparison) -> Vec<Drawing> {
-    let ops = [TimedOp::Prepare, TimedOp::EvalPdf, TimedOp::Sample, TimedOp::PointsMixed];
+    let ops = [
+        TimedOp::Prepare,
+        TimedOp::EvalPdf,
+        TimedOp::Sample,
+        TimedOp::PointsMixed,
+    ];
     let groups = ops.map(|op| op.label().to_owned());
     // The rest is in the table.
     let shown = |contender| ["one lane", "eight lanes", "slices"].contains(&contender);
-    let contenders = of.speed.rows.iter().filter(|row| shown(row.contender)).map(|row| (row.contender, row.level));
+    let contenders = of
+        .speed
+        .rows
+        .iter()
+        .filter(|row| shown(row.contender))
+        .map(|row| (row.contender, row.level));
     let contenders = distinct(contenders);
     let figure = |model: ModelId| {
-        let title = format!("Speed against the faster textbook in f32, {} model", model.name());
+        let title = format!(
+            "Speed against the faster textbook in f32, {} model",
+            model.name()
+        );
         let series: Vec<(String, Vec<Bar>)> = contenders
             .iter()
             .map(|(contender, level)| {
                 let bar = |op| {
                     let row = of.speed.row(op, model.name(), contender, level);
-                    row.map_or(f64::NAN.into(), |row| Bar { value: row.ratio, low: row.ratio_q1, high: row.ratio_q3 })
+                    row.map_or(f64::NAN.into(), |row| Bar {
+                        value: row.ratio,
+                        low: row.ratio_q1,
+                        high: row.ratio_q3,
+                    })
                 };
                 (format!("{contender}, {level}"), ops.map(bar).to_vec())
             })
             .collect();
-        let chart = bars(&title, Axis::log("times as fast (×)"), &groups, &series, 1.0);
+        let chart = bars(
+            &title,
+            Axis::log("times as fast (×)"),
+            &groups,
+            &series,
+            1.0,
+        );
         let caption = "How many times as fast as the model's formulas in scalar f32 on the faster of two libraries, by operation: medians over the rounds, \
                        whiskers from the first to the third quartile.";
         Drawing::new(format!("speed-{}", model.name()), chart, caption)
@@ -92,49 +124,88 @@ pub(super) fn widths(of: &Comparison) -> Vec<Drawing> {
             }
         }
         let title = format!("Variance against width, θₒ = {theta_o}°");
-        let (x, y) = (Axis::linear("β_R (°)"), Axis::log("relative variance of one sample V"));
+        let (x, y) = (
+            Axis::linear("β_R (°)"),
+            Axis::log("relative variance of one sample V"),
+        );
         let caption = format!(
             "Relative variance of one sample under constant light, seen from {theta_o}°, with β_TT = β_R/2 and \
              β_TRT = 2 β_R; error bars are one standard error."
         );
-        Drawing::new(format!("variance-by-width-{theta_o}"), lines(&title, x, y, &series), caption)
+        Drawing::new(
+            format!("variance-by-width-{theta_o}"),
+            lines(&title, x, y, &series),
+            caption,
+        )
     };
-    of.efficiency.settings.theta_o_deg.iter().take(3).map(figure).collect()
+    of.efficiency
+        .settings
+        .theta_o_deg
+        .iter()
+        .take(3)
+        .map(figure)
+        .collect()
 }
 
 /// The error of the mean against the number of samples.
 pub(super) fn convergence(of: &Comparison) -> Vec<Drawing> {
     let all = &of.efficiency.convergence;
     let figure = |light: &str, model: ModelKind| {
-        let shown = || all.iter().filter(|point| (&*point.light, point.model) == (light, model));
+        let shown = || {
+            all.iter()
+                .filter(|point| (&*point.light, point.model) == (light, model))
+        };
         let mut series = Vec::new();
         for sampler in SAMPLERS {
             for (dash, sequence) in SequenceKind::ALL.into_iter().enumerate() {
-                let rows = shown().filter(|point| (point.sampler, point.sequence) == (sampler, sequence));
+                let rows =
+                    shown().filter(|point| (point.sampler, point.sequence) == (sampler, sequence));
                 let name = format!("{}, {}", sampler.name(), sequence.name());
-                series.push(Series::new(name, rows.map(|p| (p.n as f64, p.rms))).styled(sampler.color(), dash));
+                series.push(
+                    Series::new(name, rows.map(|p| (p.n as f64, p.rms)))
+                        .styled(sampler.color(), dash),
+                );
             }
         }
         if let Some(first) = shown().next() {
             let (n, rms) = (first.n as f64, first.rms.value);
             let last = shown().map(|point| point.n as f64).fold(n, f64::max);
-            series.push(Series::guide("slope −1/2", [(n, rms), (last, rms * (n / last).sqrt())]));
+            series.push(Series::guide(
+                "slope −1/2",
+                [(n, rms), (last, rms * (n / last).sqrt())],
+            ));
         }
         let title = format!("Convergence, {} model, {light}", model.name());
-        let chart = lines(&title, Axis::log("samples N"), Axis::log("root mean square relative error"), &series);
+        let chart = lines(
+            &title,
+            Axis::log("samples N"),
+            Axis::log("root mean square relative error"),
+            &series,
+        );
         let caption = format!(
             "Error of the mean of N samples, {} model, light: {light}, θₒ = {}°, over independent randomisations; error \
              bars are one standard error.",
             model.name(),
             of.efficiency.settings.convergence_theta_o_deg
         );
-        Drawing::new(format!("convergence-{}-{}", model.name(), slug(light)), chart, caption)
+        Drawing::new(
+            format!("convergence-{}-{}", model.name(), slug(light)),
+            chart,
+            caption,
+        )
     };
     let lights = distinct(all.iter().map(|point| point.light.as_str()));
-    lights.into_iter().flat_map(|light| ModelKind::ALL.map(|model| figure(light, model))).collect()
+    lights
+        .into_iter()
+        .flat_map(|light| ModelKind::ALL.map(|model| figure(light, model)))
+        .collect()
 }
 
 /// Words as part of a file's name.
 fn slug(words: &str) -> String {
-    words.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-")
+    words
+        .split(|c: char| !c.is_ascii_alphanumeric())
+        .filter(|word| !word.is_empty())
+        .collect::<Vec<_>>()
+        .join("-")
 }

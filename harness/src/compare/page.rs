@@ -14,7 +14,9 @@ use hairis_instruments::table::number;
 /// The page.
 #[must_use]
 pub fn report(of: &Comparison) -> Report {
-    let speed = Section::new("Speed").figures(charts::speeds(of)).tables(tables::speed(of, Depth::Full));
+    let speed = Section::new("Speed")
+        .figures(charts::speeds(of))
+        .tables(tables::speed(of, Depth::Full));
     let efficiency = Section::new("Sample efficiency")
         .paragraph(
             "V is the variance of one sample over the squared mean: an error of 1% takes 10⁴ V samples. Directions are drawn \
@@ -52,7 +54,12 @@ pub fn report(of: &Comparison) -> Report {
         ["the program was compiled for", of.speed.compiled_level],
         ["machine", &machine],
     ];
-    facts.extend(of.settings.environment_notes.iter().map(|note| ["environment note", note.as_str()]));
+    facts.extend(
+        of.settings
+            .environment_notes
+            .iter()
+            .map(|note| ["environment note", note.as_str()]),
+    );
     let method = Section::new("Method and machine")
         .paragraph(
             "Every estimate is of the reflected radiance, the mean of red, green and blue, on a fibre along the world's \
@@ -68,7 +75,12 @@ pub fn report(of: &Comparison) -> Report {
             check.largest_z
         ))
         .facts(&facts);
-    let CompareSettings { seed, quick, environment, .. } = &of.settings;
+    let CompareSettings {
+        seed,
+        quick,
+        environment,
+        ..
+    } = &of.settings;
     let quick = if *quick { " --quick" } else { "" };
     Report {
         title: "Hair scattering: eight lanes, and Cauchy for Gaussian".to_owned(),
@@ -82,7 +94,9 @@ pub fn report(of: &Comparison) -> Report {
 
 /// How many times as fast as the textbook eight lanes are.
 fn speed_ratio(of: &Comparison, op: TimedOp, model: ModelKind) -> Option<String> {
-    let row = of.speed.row(op, model.name(), "eight lanes", of.speed.detected_level)?;
+    let row = of
+        .speed
+        .row(op, model.name(), "eight lanes", of.speed.detected_level)?;
     Some(number::ratio(row.ratio))
 }
 
@@ -92,23 +106,35 @@ fn verdicts(of: &Comparison) -> Vec<[String; 2]> {
     let mut verdicts = Vec::new();
     let ratio = |op| speed_ratio(of, op, ModelKind::Gaussian);
     if let (Some(eval), Some(sample)) = (ratio(TimedOp::EvalPdf), ratio(TimedOp::Sample)) {
-        let sentence =
-            format!("Eight lanes on {level} evaluate {eval} and sample {sample} as fast as the scalar formulas.");
+        let sentence = format!(
+            "Eight lanes on {level} evaluate {eval} and sample {sample} as fast as the scalar formulas."
+        );
         verdicts.push(["Speed".to_owned(), sentence]);
     }
     for light in &of.efficiency.settings.lights {
-        let change = |other| v_gain(of, light, other).map_or("an unknown number of".to_owned(), change);
+        let change =
+            |other| v_gain(of, light, other).map_or("an unknown number of".to_owned(), change);
         let cauchy = change((ModelKind::Cauchy, Sampler::Published));
         let matched = change((ModelKind::Gaussian, Sampler::Matched));
-        let sentence = format!("Cauchy takes {cauchy} samples; `matched` in place of `published` takes {matched}.");
+        let sentence = format!(
+            "Cauchy takes {cauchy} samples; `matched` in place of `published` takes {matched}."
+        );
         verdicts.push([format!("Under {}", in_words(light)), sentence]);
     }
-    let largest = number::percent(of.agreement.iter().map(|row| row.worst / row.bound).fold(0.0, f64::max));
+    let largest = number::percent(
+        of.agreement
+            .iter()
+            .map(|row| row.worst / row.bound)
+            .fold(0.0, f64::max),
+    );
     let checks = match of.failures().len() {
         0 => "all checks pass".to_owned(),
         failed => format!("{failed} checks failed; they are in compare.json and on the terminal"),
     };
-    verdicts.push(["Accuracy".to_owned(), format!("Largest error: {largest} of its bound; {checks}.")]);
+    verdicts.push([
+        "Accuracy".to_owned(),
+        format!("Largest error: {largest} of its bound; {checks}."),
+    ]);
     verdicts
 }
 
@@ -134,7 +160,11 @@ pub(super) fn v_gain(of: &Comparison, light: &str, other: (ModelKind, Sampler)) 
                 && (row.sequence, row.theta_o_deg) == (SequenceKind::Independent, THETA_O_DEG)
                 && row.light == light
         })?;
-        Some(if row.tested { row.v.value } else { predicted(row, row.sampler) })
+        Some(if row.tested {
+            row.v.value
+        } else {
+            predicted(row, row.sampler)
+        })
     };
     Some(v((ModelKind::Gaussian, Sampler::Published))? / v(other)?)
 }
@@ -146,18 +176,28 @@ pub(super) fn predicted(row: &EfficiencyRow, sampler: Sampler) -> f64 {
 
 /// Findings beyond the verdicts, in sentences with figures.
 fn findings(of: &Comparison) -> Vec<String> {
-    [under_constant_light(of), worse_than_uniform(of), rays::finding(of), more_speed(of)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        under_constant_light(of),
+        worse_than_uniform(of),
+        rays::finding(of),
+        more_speed(of),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 fn under_constant_light(of: &Comparison) -> Option<String> {
     use ModelKind::{Cauchy, Gaussian};
     use Sampler::{Matched, Published, Uniform};
     let v = |key| {
-        let mut rows = of.efficiency.reference_v.iter().filter(|row| row.theta_o_deg == 0.0);
-        rows.find(|row| (row.model, row.sampler) == key).map(|row| row.v)
+        let mut rows = of
+            .efficiency
+            .reference_v
+            .iter()
+            .filter(|row| row.theta_o_deg == 0.0);
+        rows.find(|row| (row.model, row.sampler) == key)
+            .map(|row| row.v)
     };
     let gain = |from, to| Some(number::estimate(&v(from)?.ratio(&v(to)?)));
     Some(format!(
@@ -173,8 +213,16 @@ fn under_constant_light(of: &Comparison) -> Option<String> {
 
 /// Where a sampler of the BSDF does worse than uniform directions.
 fn worse_than_uniform(of: &Comparison) -> Option<String> {
-    let is_worse = |row: &&EfficiencyRow| predicted(row, row.sampler) > 1.05 * predicted(row, Sampler::Uniform);
-    let lights = distinct(of.efficiency.rows.iter().filter(is_worse).map(|row| row.light.as_str()));
+    let is_worse = |row: &&EfficiencyRow| {
+        predicted(row, row.sampler) > 1.05 * predicted(row, Sampler::Uniform)
+    };
+    let lights = distinct(
+        of.efficiency
+            .rows
+            .iter()
+            .filter(is_worse)
+            .map(|row| row.light.as_str()),
+    );
     (!lights.is_empty()).then(|| {
         format!(
             "Sampling the BSDF alone can do worse than uniform directions where a small light lies off the highlights: \

@@ -3,7 +3,9 @@
 use super::Comparison;
 use super::tables::Depth;
 use crate::lights::in_words;
-use crate::rays::{EqualTime, HALF, OneRay, PRICES_US, RayRow, RayTimes, SIZES, VISIBLE, equal_time};
+use crate::rays::{
+    EqualTime, HALF, OneRay, PRICES_US, RayRow, RayTimes, SIZES, VISIBLE, equal_time,
+};
 use core::iter;
 use hairis_instruments::plot::{Axis, Series, lines};
 use hairis_instruments::report::Drawing;
@@ -27,7 +29,11 @@ type Measured<'a> = (&'a RayRow, &'a RayTimes, &'a EqualTime);
 
 fn measured(of: &Comparison) -> impl Iterator<Item = Measured<'_>> {
     let rays = &of.rays;
-    rays.rows.iter().zip(&rays.times).zip(&rays.equal_time).map(|((row, times), equal)| (row, times, equal))
+    rays.rows
+        .iter()
+        .zip(&rays.times)
+        .zip(&rays.equal_time)
+        .map(|((row, times), equal)| (row, times, equal))
 }
 
 fn under_environment(of: &Comparison) -> impl Iterator<Item = Measured<'_>> {
@@ -61,8 +67,15 @@ fn pool_name(candidates_each: u32) -> String {
 
 /// One ray of the BSDF, of the light, of MIS, and from the pools of [`SHOWN`].
 fn shown(row: &RayRow) -> Vec<&OneRay> {
-    let pools = SIZES.iter().zip(&row.mean.chosen).filter(|(size, _)| SHOWN.contains(size)).map(|(_, one)| one);
-    [&row.mean.bsdf, &row.mean.light, &row.mean.mis].into_iter().chain(pools).collect()
+    let pools = SIZES
+        .iter()
+        .zip(&row.mean.chosen)
+        .filter(|(size, _)| SHOWN.contains(size))
+        .map(|(_, one)| one);
+    [&row.mean.bsdf, &row.mean.light, &row.mean.mis]
+        .into_iter()
+        .chain(pools)
+        .collect()
 }
 
 /// V of MIS over V from each pool of [`SHOWN`], given V of [`shown`].
@@ -80,12 +93,32 @@ fn variances(rows: &[Measured<'_>], shares: &[f64]) -> Table {
         .numbers(["16 rays of 32 + 32"]);
     for (row, ..) in rows {
         for (place, share) in shares.iter().enumerate() {
-            let v = |one: &OneRay| place.checked_sub(1).map_or(one.unoccluded, |place| one.visible[place]);
+            let v = |one: &OneRay| {
+                place
+                    .checked_sub(1)
+                    .map_or(one.unoccluded, |place| one.visible[place])
+            };
             let v: Vec<Estimate> = shown(row).into_iter().map(v).collect();
-            let sixteen = row.mean.half.iter().find(|pool| (pool.candidates_each, pool.rays) == (32, 16));
-            let per_ray = sixteen.filter(|_| *share == HALF).map(|pool| pool.v.scale(16.0));
-            let estimates = v.iter().copied().chain(over_pools(&v)).chain(per_ray).map(|v| number::estimate(&v));
-            table.push(keys(row).into_iter().chain([number::percent(*share)]).chain(estimates));
+            let sixteen = row
+                .mean
+                .half
+                .iter()
+                .find(|pool| (pool.candidates_each, pool.rays) == (32, 16));
+            let per_ray = sixteen
+                .filter(|_| *share == HALF)
+                .map(|pool| pool.v.scale(16.0));
+            let estimates = v
+                .iter()
+                .copied()
+                .chain(over_pools(&v))
+                .chain(per_ray)
+                .map(|v| number::estimate(&v));
+            table.push(
+                keys(row)
+                    .into_iter()
+                    .chain([number::percent(*share)])
+                    .chain(estimates),
+            );
         }
     }
     table.note(
@@ -96,7 +129,9 @@ fn variances(rows: &[Measured<'_>], shares: &[f64]) -> Table {
 }
 
 fn best_gain(equal: &EqualTime, price: f64) -> String {
-    equal.best(price).map_or_else(String::new, |point| number::ratio(point.gain_over(&equal.mis[0], price)))
+    equal.best(price).map_or_else(String::new, |point| {
+        number::ratio(point.gain_over(&equal.mis[0], price))
+    })
 }
 
 fn break_even(price: Option<f64>) -> String {
@@ -115,14 +150,35 @@ fn in_equal_time(rows: &[Measured<'_>]) -> Table {
         .numbers(PRICES_US.map(|price| format!("best, {price} µs")))
         .numbers(["4 + 4 from, µs", "8 + 8 from, µs", "any pool from, µs"]);
     for (row, times, equal) in rows {
-        let ns = [times.mis_ns, times.candidate_ns(), times.shared_candidate_ns()].map(|ns| number::plain(ns, 3));
-        let eight = equal.pool(8, 1).map_or([const { String::new() }; 4], |eight| eight.gain.map(number::ratio));
+        let ns = [
+            times.mis_ns,
+            times.candidate_ns(),
+            times.shared_candidate_ns(),
+        ]
+        .map(|ns| number::plain(ns, 3));
+        let eight = equal
+            .pool(8, 1)
+            .map_or([const { String::new() }; 4], |eight| {
+                eight.gain.map(number::ratio)
+            });
         let name = |price| equal.best(price).map_or_else(String::new, point_name);
         let best = PRICES_US.map(|price| format!("{} ({})", best_gain(equal, price), name(price)));
-        let first = equal.pools.iter().filter_map(|point| point.break_even_us).min_by(f64::total_cmp);
-        let [four, eight_from] = [4, 8].map(|count| equal.pool(count, 1).and_then(|point| point.break_even_us));
+        let first = equal
+            .pools
+            .iter()
+            .filter_map(|point| point.break_even_us)
+            .min_by(f64::total_cmp);
+        let [four, eight_from] =
+            [4, 8].map(|count| equal.pool(count, 1).and_then(|point| point.break_even_us));
         let from = [four, eight_from, first].map(break_even);
-        table.push(keys(row).into_iter().chain(ns).chain(eight).chain(best).chain(from));
+        table.push(
+            keys(row)
+                .into_iter()
+                .chain(ns)
+                .chain(eight)
+                .chain(best)
+                .chain(from),
+        );
     }
     table.note(
         "Efficiency 1 / (V · time) over one-sample MIS at the same price of a ray. Times are those of candidates, weights, \
@@ -152,7 +208,12 @@ fn fronts(of: &Comparison) -> Table {
             let mut front: Vec<_> = points.filter(|point| point.on_front[place]).collect();
             front.sort_by(|a, b| a.time_ns(price).total_cmp(&b.time_ns(price)));
             let names: Vec<String> = front.into_iter().map(point_name).collect();
-            table.push([row.model, row.sampler, &format!("{price} µs"), &names.join(", ")]);
+            table.push([
+                row.model,
+                row.sampler,
+                &format!("{price} µs"),
+                &names.join(", "),
+            ]);
         }
     }
     table.note(
@@ -166,15 +227,33 @@ pub(super) fn chart(of: &Comparison) -> Option<Drawing> {
     let (row, _, equal) = example(of)?;
     let words = in_words(&row.light);
     let mut series = Vec::new();
-    for point in PLOTTED.iter().filter_map(|[count, rays]| equal.pool(*count, *rays)) {
+    for point in PLOTTED
+        .iter()
+        .filter_map(|[count, rays]| equal.pool(*count, *rays))
+    {
         let prices = (0..=48).map(|step| 10.0_f64.powf(-3.0 + f64::from(step) / 12.0));
         let gains = prices.map(|price| (price, point.gain_over(&equal.mis[0], price)));
         let rays = if point.rays == 1 { "ray" } else { "rays" };
-        series.push(Series::curve(format!("{}, {} {rays}", pool_name(point.candidates_each), point.rays), gains));
+        series.push(Series::curve(
+            format!(
+                "{}, {} {rays}",
+                pool_name(point.candidates_each),
+                point.rays
+            ),
+            gains,
+        ));
     }
     series.push(Series::guide("one-sample MIS", [(1e-3, 1.0), (10.0, 1.0)]));
-    let title = format!("Efficiency over one-sample MIS, {} model, {words}", row.model);
-    let chart = lines(&title, Axis::log("price of a ray (µs)"), Axis::log("times as efficient (×)"), &series);
+    let title = format!(
+        "Efficiency over one-sample MIS, {} model, {words}",
+        row.model
+    );
+    let chart = lines(
+        &title,
+        Axis::log("price of a ray (µs)"),
+        Axis::log("times as efficient (×)"),
+        &series,
+    );
     let caption = format!(
         "Rays chosen from pools of candidates against rays by one-sample MIS in equal time, by the price of a ray: {} model, {} \
          sampler, {words}, half of the directions visible, geometric mean over the inclinations.",

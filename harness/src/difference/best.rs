@@ -51,6 +51,10 @@ mod tests {
         // Of two hollows the deeper one.
         let found = least(|k| (k - 1.0).powi(2).min((k - 3.0).powi(2) - 0.1));
         assert!((found - 3.0).abs() < 1e-4, "{found}");
-        assert!((least(|k| k) / RANGE[0] - 1.0).abs() < 1e-5 && (least(|k| -k) / RANGE[1] - 1.0).abs() < 1e-5, "ends");
+        assert!(
+            (least(|k| k) / RANGE[0] - 1.0).abs() < 1e-5
+                && (least(|k| -k) / RANGE[1] - 1.0).abs() < 1e-5,
+            "ends"
+        );
     }
 }

@@ -68,7 +68,11 @@ fn legendre(theta: f64) -> Vec<f64> {
             // From degree l to l + 1.
             let l = degree as f64;
             let a = ((2.0 * l + 1.0) * (2.0 * l + 3.0) / ((l + 1.0 - m) * (l + 1.0 + m))).sqrt();
-            let b = if degree > order { ((l - m) * (l + m) / ((2.0 * l - 1.0) * (2.0 * l + 1.0))).sqrt() } else { 0.0 };
+            let b = if degree > order {
+                ((l - m) * (l + m) / ((2.0 * l - 1.0) * (2.0 * l + 1.0))).sqrt()
+            } else {
+                0.0
+            };
             (before, now) = (now, a * (x * now - b * before));
         }
     }
@@ -104,27 +108,43 @@ impl Blur {
         };
         Self {
             factors: factors(1.0 / (sigma * sigma), DEGREE),
-            latitudes: rule.nodes().iter().map(|[x, w]| (w * weight, legendre(x.asin()))).collect(),
+            latitudes: rule
+                .nodes()
+                .iter()
+                .map(|[x, w]| (w * weight, legendre(x.asin())))
+                .collect(),
             cosines: (0..longitudes).map(cosines).collect(),
         }
     }
 
     /// The harmonics of several functions, blurred.
     pub(super) fn harmonics(&self, rule: &Rule, functions: &[BellValues]) -> Vec<Harmonics> {
-        let legendre: Vec<Vec<f64>> = rule.along.iter().map(|[theta, _]| legendre(*theta)).collect();
+        let legendre: Vec<Vec<f64>> = rule
+            .along
+            .iter()
+            .map(|[theta, _]| legendre(*theta))
+            .collect();
         let add = |sums: &mut [f64; TERMS], factor: f64, values: &[f64; TERMS]| {
-            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += factor * value);
+            sums.iter_mut()
+                .zip(values)
+                .for_each(|(sum, value)| *sum += factor * value);
         };
         let blurred = |of: &BellValues| {
             let mut along = vec![[0.0; TERMS]; COEFFICIENTS];
-            for (([_, weight], values), legendre) in rule.along.iter().zip(&of.along).zip(&legendre) {
+            for (([_, weight], values), legendre) in rule.along.iter().zip(&of.along).zip(&legendre)
+            {
                 let values = values.map(|value| weight * value);
-                along.iter_mut().zip(legendre).for_each(|(sums, p)| add(sums, *p, &values));
+                along
+                    .iter_mut()
+                    .zip(legendre)
+                    .for_each(|(sums, p)| add(sums, *p, &values));
             }
             let mut around = [[0.0; TERMS]; DEGREE + 1];
             for ([phi, weight], values) in rule.around.iter().zip(&of.around) {
                 let sums = around.iter_mut().enumerate();
-                sums.for_each(|(order, sums)| add(sums, weight * (order as f64 * phi).cos(), values));
+                sums.for_each(|(order, sums)| {
+                    add(sums, weight * (order as f64 * phi).cos(), values)
+                });
             }
             let mut coefficients = vec![0.0; COEFFICIENTS];
             for (order, range) in orders() {
@@ -151,15 +171,29 @@ impl Blur {
     pub(super) fn l1(&self, a: &[f64], b: &[f64], scale: f64) -> f64 {
         let columns = self.cosines.len();
         let rows = a.chunks_exact(columns).zip(b.chunks_exact(columns));
-        let row = |(a, b): (&[f64], &[f64])| a.iter().zip(b).map(|(a, b)| (a - scale * b).abs()).sum::<f64>();
-        self.latitudes.iter().zip(rows).map(|((weight, _), rows)| weight * row(rows)).sum()
+        let row = |(a, b): (&[f64], &[f64])| {
+            a.iter()
+                .zip(b)
+                .map(|(a, b)| (a - scale * b).abs())
+                .sum::<f64>()
+        };
+        self.latitudes
+            .iter()
+            .zip(rows)
+            .map(|((weight, _), rows)| weight * row(rows))
+            .sum()
     }
 }
 
 impl Harmonics {
     /// The L2 norm of `self - scale other`.
     pub(super) fn l2(&self, other: &Self, scale: f64) -> f64 {
-        self.0.iter().zip(&other.0).map(|(a, b)| (a - scale * b).powi(2)).sum::<f64>().sqrt()
+        self.0
+            .iter()
+            .zip(&other.0)
+            .map(|(a, b)| (a - scale * b).powi(2))
+            .sum::<f64>()
+            .sqrt()
     }
 
     /// The L2 norm.
@@ -185,7 +219,10 @@ impl Harmonics {
     /// The blurred function's value in a direction.
     pub(crate) fn at(&self, theta: f64, phi: f64) -> f64 {
         let sums = self.on_latitude(&legendre(theta));
-        (0..).zip(sums).map(|(order, sum)| sum * (f64::from(order) * phi).cos()).sum()
+        (0..)
+            .zip(sums)
+            .map(|(order, sum)| sum * (f64::from(order) * phi).cos())
+            .sum()
     }
 }
 
@@ -204,10 +241,16 @@ mod tests {
     /// A rule without lobes, and a function of `theta` alone on it.
     fn plain(f: impl Fn(f64) -> f64) -> (Rule, BellValues) {
         let rule = GaussLegendre::new(128);
-        let along: Nodes = rule.on(-FRAC_PI_2, FRAC_PI_2).map(|[x, w]| [x, w * x.cos()]).collect();
+        let along: Nodes = rule
+            .on(-FRAC_PI_2, FRAC_PI_2)
+            .map(|[x, w]| [x, w * x.cos()])
+            .collect();
         let around: Nodes = rule.on(0.0, PI).map(|[x, w]| [x, 2.0 * w]).collect();
         let values = BellValues {
-            along: along.iter().map(|[theta, _]| [f(*theta), 0.0, 0.0]).collect(),
+            along: along
+                .iter()
+                .map(|[theta, _]| [f(*theta), 0.0, 0.0])
+                .collect(),
             around: vec![[1.0, 0.0, 0.0]; around.len()],
         };
         (Rule { along, around }, values)
@@ -230,13 +273,19 @@ mod tests {
         let (rule, values) = plain(f64::sin);
         let blurred = &blur().harmonics(&rule, &[values])[0];
         let want = 1.0 / kappa.tanh() - 1.0 / kappa;
-        assert!((blurred.at(0.7, 1.0) / 0.7_f64.sin() - want).abs() < 1e-12, "{blurred:?}");
+        assert!(
+            (blurred.at(0.7, 1.0) / 0.7_f64.sin() - want).abs() < 1e-12,
+            "{blurred:?}"
+        );
     }
 
     #[test]
     fn what_is_left_out_is_negligible() {
         let factors = factors(1.0 / SIGMA_DEG.to_radians().powi(2), 120);
-        assert!(factors.windows(2).all(|pair| pair[1] < pair[0]), "falling: {factors:?}");
+        assert!(
+            factors.windows(2).all(|pair| pair[1] < pair[0]),
+            "falling: {factors:?}"
+        );
         assert!(factors[DEGREE + 1] < REST, "{}", factors[DEGREE + 1]);
         assert!(factors[DEGREE / 2] > REST, "more than is needed");
     }
@@ -244,17 +293,31 @@ mod tests {
     #[test]
     fn hair_blurred_is_its_integral_with_the_kernel() {
         let kappa = 1.0 / SIGMA_DEG.to_radians().powi(2);
-        let kernel = |cos: f64| kappa / (2.0 * PI * (1.0 - (-2.0 * kappa).exp())) * (kappa * (cos - 1.0)).exp();
+        let kernel = |cos: f64| {
+            kappa / (2.0 * PI * (1.0 - (-2.0 * kappa).exp())) * (kappa * (cos - 1.0)).exp()
+        };
         let view = ViewedHair::new(&HairParams::default(), 0.9);
         let (rule, blur) = (view.rule(12), blur());
         for kind in [Kind::GAUSSIAN, Kind::cauchy(1.0)] {
             let values = rule.values(&view, kind);
             let blurred = &blur.harmonics(&rule, core::slice::from_ref(&values))[0];
-            assert!((blurred.integral() / rule.albedo(&values) - 1.0).abs() < 1e-12, "the integral stays");
+            assert!(
+                (blurred.integral() / rule.albedo(&values) - 1.0).abs() < 1e-12,
+                "the integral stays"
+            );
             let sum: f64 = blur.l1(&blur.values(blurred), &vec![0.0; 64 * 64], 0.0);
-            assert!((sum / rule.albedo(&values) - 1.0).abs() < 1e-9, "it is not negative: {sum}");
+            assert!(
+                (sum / rule.albedo(&values) - 1.0).abs() < 1e-9,
+                "it is not negative: {sum}"
+            );
             // Next to the highlights, between them, behind the fibre and near a pole.
-            for (theta, phi) in [(-0.9, 0.0), (-0.5, 0.6), (0.4, 2.0), (-1.0, PI), (-1.5, 1.0)] {
+            for (theta, phi) in [
+                (-0.9, 0.0),
+                (-0.5, 0.6),
+                (0.4, 2.0),
+                (-1.0, PI),
+                (-1.5, 1.0),
+            ] {
                 let centre = fibre_direction(theta, phi);
                 let mut want = 0.0;
                 for ([theta_i, w_theta], along) in rule.along.iter().zip(&values.along) {
@@ -267,7 +330,10 @@ mod tests {
                     }
                 }
                 let got = blurred.at(theta, phi);
-                assert!((got - want).abs() < 1e-6 * want.abs().max(0.1), "{kind:?} at {theta} {phi}: {got} {want}");
+                assert!(
+                    (got - want).abs() < 1e-6 * want.abs().max(0.1),
+                    "{kind:?} at {theta} {phi}: {got} {want}"
+                );
             }
         }
     }

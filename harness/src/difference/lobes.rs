@@ -25,11 +25,17 @@ pub(super) struct Kind {
 
 impl Kind {
     /// The published model.
-    pub(super) const GAUSSIAN: Self = Self { shape: Shape::Gaussian, factor: 1.0 };
+    pub(super) const GAUSSIAN: Self = Self {
+        shape: Shape::Gaussian,
+        factor: 1.0,
+    };
 
     /// The Cauchy model with its widths times `factor`.
     pub(super) const fn cauchy(factor: f64) -> Self {
-        Self { shape: Shape::Cauchy, factor }
+        Self {
+            shape: Shape::Cauchy,
+            factor,
+        }
     }
 }
 
@@ -67,25 +73,41 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 impl ViewedHair {
     /// The hair seen from `theta_o`, in rad, within (-pi/2, pi/2).
     pub(super) fn new(params: &HairParams, theta_o: f64) -> Self {
-        Self { parameters: Parameters::from(params), theta_o }
+        Self {
+            parameters: Parameters::from(params),
+            theta_o,
+        }
     }
 
     /// The factors that depend on `theta_i`.
     pub(super) fn along(&self, kind: Kind, theta_i: f64) -> [f64; TERMS] {
         let p = self.parameters.with_width_factor(kind.factor);
-        let (theta_h, theta_d) = (0.5 * (theta_i + self.theta_o), 0.5 * (self.theta_o - theta_i));
+        let (theta_h, theta_d) = (
+            0.5 * (theta_i + self.theta_o),
+            0.5 * (self.theta_o - theta_i),
+        );
         let cos_theta_d = theta_d.cos();
         let common = theta_i.cos() / (cos_theta_d * cos_theta_d);
-        let [m_r, m_tt, m_trt] = [0, 1, 2].map(|l| common * kind.shape.bell(p.beta[l], theta_h - p.alpha[l]));
-        let [r, tt, trt] = [p.intensity_r, p.intensity_tt, p.intensity_trt].map(|rgb| rgb.iter().sum::<f64>() / 3.0);
-        [r * m_r + trt * m_trt, tt * m_tt, trt * p.intensity_g * m_trt]
+        let [m_r, m_tt, m_trt] =
+            [0, 1, 2].map(|l| common * kind.shape.bell(p.beta[l], theta_h - p.alpha[l]));
+        let [r, tt, trt] = [p.intensity_r, p.intensity_tt, p.intensity_trt]
+            .map(|rgb| rgb.iter().sum::<f64>() / 3.0);
+        [
+            r * m_r + trt * m_trt,
+            tt * m_tt,
+            trt * p.intensity_g * m_trt,
+        ]
     }
 
     /// The factors that depend on `phi`, which is in [-pi, pi].
     pub(super) fn around(&self, kind: Kind, phi: f64) -> [f64; TERMS] {
         let p = self.parameters.with_width_factor(kind.factor);
         let bell = |width, x| kind.shape.bell(width, x);
-        [(0.5 * phi).cos().max(0.0), bell(p.gamma_tt, PI - phi.abs()), bell(p.gamma_g, phi.abs() - p.phi_g)]
+        [
+            (0.5 * phi).cos().max(0.0),
+            bell(p.gamma_tt, PI - phi.abs()),
+            bell(p.gamma_g, phi.abs() - p.phi_g),
+        ]
     }
 
     /// Gauss-Legendre rules of `order` points on panels that follow the lobes.
@@ -102,13 +124,20 @@ impl ViewedHair {
         // cos^2 theta_i / cos^2 theta_d turns at theta_i = -theta_o within the distance of the pole.
         let pole = FRAC_PI_2 - self.theta_o.abs();
         along.extend(
-            [-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 5.0].map(|d| -self.theta_o + self.theta_o.signum() * d * pole),
+            [-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 5.0]
+                .map(|d| -self.theta_o + self.theta_o.signum() * d * pole),
         );
         let mut around = vec![0.0, FRAC_PI_2, PI];
         around.extend(DISTANCES.map(|d| p.phi_g + d * p.gamma_g));
         around.extend(DISTANCES.map(|d| PI - d.abs() * p.gamma_tt));
-        let along = panels(&rule, along, [-FRAC_PI_2, FRAC_PI_2]).into_iter().map(|[x, w]| [x, w * x.cos()]).collect();
-        let around = panels(&rule, around, [0.0, PI]).into_iter().map(|[x, w]| [x, 2.0 * w]).collect();
+        let along = panels(&rule, along, [-FRAC_PI_2, FRAC_PI_2])
+            .into_iter()
+            .map(|[x, w]| [x, w * x.cos()])
+            .collect();
+        let around = panels(&rule, around, [0.0, PI])
+            .into_iter()
+            .map(|[x, w]| [x, 2.0 * w])
+            .collect();
         Rule { along, around }
     }
 }
@@ -118,29 +147,52 @@ fn panels(rule: &GaussLegendre, mut breaks: Vec<f64>, [lo, hi]: [f64; 2]) -> Nod
     breaks.retain(|x| (lo..=hi).contains(x));
     breaks.sort_by(f64::total_cmp);
     breaks.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    breaks.windows(2).flat_map(|ends| rule.on(ends[0], ends[1])).collect()
+    breaks
+        .windows(2)
+        .flat_map(|ends| rule.on(ends[0], ends[1]))
+        .collect()
 }
 
 impl Rule {
     /// The values of a model at its points.
     pub(super) fn values(&self, view: &ViewedHair, kind: Kind) -> BellValues {
         BellValues {
-            along: self.along.iter().map(|[theta, _]| view.along(kind, *theta)).collect(),
-            around: self.around.iter().map(|[phi, _]| view.around(kind, *phi)).collect(),
+            along: self
+                .along
+                .iter()
+                .map(|[theta, _]| view.along(kind, *theta))
+                .collect(),
+            around: self
+                .around
+                .iter()
+                .map(|[phi, _]| view.around(kind, *phi))
+                .collect(),
         }
     }
 
     /// The integral of `S cos theta_i` over the sphere: the directional albedo, the mean of RGB.
     pub(super) fn albedo(&self, of: &BellValues) -> f64 {
         let integral = |nodes: &Nodes, values: &[[f64; TERMS]]| -> [f64; TERMS] {
-            array::from_fn(|j| nodes.iter().zip(values).map(|([_, weight], value)| weight * value[j]).sum())
+            array::from_fn(|j| {
+                nodes
+                    .iter()
+                    .zip(values)
+                    .map(|([_, weight], value)| weight * value[j])
+                    .sum()
+            })
         };
-        dot(&integral(&self.along, &of.along), &integral(&self.around, &of.around))
+        dot(
+            &integral(&self.along, &of.along),
+            &integral(&self.around, &of.around),
+        )
     }
 
     /// The integral of the product of two models' `S cos theta_i` over the sphere.
     pub(super) fn product(&self, a: &BellValues, b: &BellValues) -> f64 {
-        let (along, around) = (gram(&self.along, &a.along, &b.along), gram(&self.around, &a.around, &b.around));
+        let (along, around) = (
+            gram(&self.along, &a.along, &b.along),
+            gram(&self.around, &a.around, &b.around),
+        );
         dot(along.as_flattened(), around.as_flattened())
     }
 }
@@ -149,7 +201,11 @@ impl Rule {
 fn gram(nodes: &Nodes, a: &[[f64; TERMS]], b: &[[f64; TERMS]]) -> [[f64; TERMS]; TERMS] {
     let integral = |i: usize, j: usize| {
         let values = a.iter().zip(b).map(|(a, b)| (a[i], b[j]));
-        nodes.iter().zip(values).map(|([_, weight], (a, b))| weight * a * b).sum()
+        nodes
+            .iter()
+            .zip(values)
+            .map(|([_, weight], (a, b))| weight * a * b)
+            .sum()
     };
     array::from_fn(|i| array::from_fn(|j| integral(i, j)))
 }
@@ -174,13 +230,23 @@ mod tests {
             let view = ViewedHair::new(&hair, theta_o);
             for kind in [Kind::GAUSSIAN, Kind::cauchy(1.0), Kind::cauchy(0.8)] {
                 let parameters = Parameters::from(&hair).with_width_factor(kind.factor);
-                let oracle = HairReference::prepare(&parameters, kind.shape, fibre_direction(theta_o, 0.3).to_array());
-                let (theta_i, phi) = (1.55 * (2.0 * xi.next_f64() - 1.0), PI * (2.0 * xi.next_f64() - 1.0));
+                let oracle = HairReference::prepare(
+                    &parameters,
+                    kind.shape,
+                    fibre_direction(theta_o, 0.3).to_array(),
+                );
+                let (theta_i, phi) = (
+                    1.55 * (2.0 * xi.next_f64() - 1.0),
+                    PI * (2.0 * xi.next_f64() - 1.0),
+                );
                 let (along, around) = (view.along(kind, theta_i), view.around(kind, phi));
                 let got: f64 = along.iter().zip(around).map(|(a, b)| a * b).sum();
                 let s = oracle.eval(fibre_direction(theta_i, 0.3 - phi).to_array());
                 let want = theta_i.cos() * s.iter().sum::<f64>() / 3.0;
-                assert!((got - want).abs() <= 1e-11 * want + 1e-13, "{kind:?} at {theta_i} {phi}: {got} {want}");
+                assert!(
+                    (got - want).abs() <= 1e-11 * want + 1e-13,
+                    "{kind:?} at {theta_i} {phi}: {got} {want}"
+                );
             }
         }
     }
@@ -189,18 +255,40 @@ mod tests {
     fn albedos_are_those_of_the_kernels() {
         for index in (0..Grid::QUICK.len()).step_by(5) {
             let cell = Grid::QUICK.cell(index);
-            let (params, theta_o) = (cell.params().expect("accepted"), f64::from(cell.theta_o_deg).to_radians());
+            let (params, theta_o) = (
+                cell.params().expect("accepted"),
+                f64::from(cell.theta_o_deg).to_radians(),
+            );
             let wo = fibre_direction(theta_o, 0.0);
             let view = ViewedHair::new(&params, theta_o);
             let rule = view.rule(8);
             let kernels = [
-                (Kind::GAUSSIAN, Bsdf::new(&Hair(Gaussian), &params).prepare(wo.as_vec3()).albedo()),
-                (Kind::cauchy(1.0), Bsdf::new(&Cauchy::PAPER.model(), &params).prepare(wo.as_vec3()).albedo()),
+                (
+                    Kind::GAUSSIAN,
+                    Bsdf::new(&Hair(Gaussian), &params)
+                        .prepare(wo.as_vec3())
+                        .albedo(),
+                ),
+                (
+                    Kind::cauchy(1.0),
+                    Bsdf::new(&Cauchy::PAPER.model(), &params)
+                        .prepare(wo.as_vec3())
+                        .albedo(),
+                ),
             ];
             for (kind, lobes) in kernels {
-                let want = lobes.0.as_flattened().iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
+                let want = lobes
+                    .0
+                    .as_flattened()
+                    .iter()
+                    .map(|c| f64::from(*c))
+                    .sum::<f64>()
+                    / 3.0;
                 let got = rule.albedo(&rule.values(&view, kind));
-                assert!((got / want - 1.0).abs() < 1e-4, "cell {index} {kind:?}: {got} {want}");
+                assert!(
+                    (got / want - 1.0).abs() < 1e-4,
+                    "cell {index} {kind:?}: {got} {want}"
+                );
             }
         }
     }

@@ -50,7 +50,13 @@ impl HairValues {
         let rule = view.rule(order);
         let gaussian = rule.values(&view, Kind::GAUSSIAN);
         let square = rule.product(&gaussian, &gaussian);
-        Self { view, rule, fine: view.rule(2 * order), gaussian, square }
+        Self {
+            view,
+            rule,
+            fine: view.rule(2 * order),
+            gaussian,
+            square,
+        }
     }
 
     /// The square of the relative L2 difference of the Cauchy model with its widths times `k`.
@@ -59,7 +65,10 @@ impl HairValues {
     }
 
     fn square_of(&self, other: &BellValues, scale: f64) -> f64 {
-        let (cross, square) = (self.rule.product(&self.gaussian, other), self.rule.product(other, other));
+        let (cross, square) = (
+            self.rule.product(&self.gaussian, other),
+            self.rule.product(other, other),
+        );
         // For equal models rounding may make the difference negative.
         ((self.square - 2.0 * scale * cross + scale * scale * square) / self.square).max(0.0)
     }
@@ -77,7 +86,10 @@ impl HairValues {
         (1..models.len())
             .map(|n| {
                 let scale = albedo / albedos[n];
-                let plain = |scale, l1: f64| Norms { l1: l1 / albedo, l2: self.square_of(&models[n], scale).sqrt() };
+                let plain = |scale, l1: f64| Norms {
+                    l1: l1 / albedo,
+                    l2: self.square_of(&models[n], scale).sqrt(),
+                };
                 let soft = |scale| Norms {
                     l1: blur.l1(&blurred[0], &blurred[n], scale) / albedo,
                     l2: harmonics[0].l2(&harmonics[n], scale) / norm,
@@ -98,11 +110,19 @@ impl HairValues {
     /// The integrals of the magnitude of the Gaussian model less each of the others: as it is, and scaled to its albedo.
     fn magnitudes(&self, kinds: &[Kind], albedos: &[f64]) -> Vec<[f64; 2]> {
         let kinds = [Kind::GAUSSIAN].iter().chain(kinds);
-        let models: Vec<BellValues> = kinds.map(|kind| self.fine.values(&self.view, *kind)).collect();
+        let models: Vec<BellValues> = kinds
+            .map(|kind| self.fine.values(&self.view, *kind))
+            .collect();
         let mut sums = vec![[0.0; 2]; models.len() - 1];
         for (place, [_, weight]) in self.fine.along.iter().enumerate() {
             // The models on one latitude.
-            let row = |model: &BellValues| model.around.iter().map(|around| dot(&model.along[place], around)).collect();
+            let row = |model: &BellValues| {
+                model
+                    .around
+                    .iter()
+                    .map(|around| dot(&model.along[place], around))
+                    .collect()
+            };
             let rows: Vec<Vec<f64>> = models.iter().map(row).collect();
             for (n, sums) in sums.iter_mut().enumerate() {
                 let scale = albedos[0] / albedos[n + 1];
@@ -111,7 +131,9 @@ impl HairValues {
                     row[0] += w * (a - b).abs();
                     row[1] += w * (a - scale * b).abs();
                 }
-                sums.iter_mut().zip(row).for_each(|(sum, row)| *sum += weight * row);
+                sums.iter_mut()
+                    .zip(row)
+                    .for_each(|(sum, row)| *sum += weight * row);
             }
         }
         sums
@@ -135,13 +157,35 @@ mod tests {
     fn hair(index: usize, order: usize) -> HairValues {
         let cell = Grid::FULL.cell(index);
         let params = cell.params().expect("accepted");
-        HairValues::new(ViewedHair::new(&params, f64::from(cell.theta_o_deg).to_radians()), order)
+        HairValues::new(
+            ViewedHair::new(&params, f64::from(cell.theta_o_deg).to_radians()),
+            order,
+        )
     }
 
     fn numbers(of: &Differences) -> [f64; 10] {
-        let Differences { albedo_gaussian, albedo_cauchy, plain, shape, blurred, blurred_shape, .. } = *of;
+        let Differences {
+            albedo_gaussian,
+            albedo_cauchy,
+            plain,
+            shape,
+            blurred,
+            blurred_shape,
+            ..
+        } = *of;
         let [a, b, c, d] = [plain, shape, blurred, blurred_shape].map(|norms| [norms.l1, norms.l2]);
-        [albedo_gaussian, albedo_cauchy, a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1]]
+        [
+            albedo_gaussian,
+            albedo_cauchy,
+            a[0],
+            a[1],
+            b[0],
+            b[1],
+            c[0],
+            c[1],
+            d[0],
+            d[1],
+        ]
     }
 
     #[test]
@@ -157,8 +201,16 @@ mod tests {
     fn narrow_highlights_differ_as_their_bells_do() {
         // R alone, so narrow that nothing else changes across it: the norms are those of two bells on a line.
         let black = [0.0; 3];
-        let desc = HairDesc { beta_r: 0.002, intensity_tt: black, intensity_trt: black, ..HairDesc::default() };
-        let hair = HairValues::new(ViewedHair::new(&HairParams::new(&desc).expect("accepted"), 0.3), ORDER);
+        let desc = HairDesc {
+            beta_r: 0.002,
+            intensity_tt: black,
+            intensity_trt: black,
+            ..HairDesc::default()
+        };
+        let hair = HairValues::new(
+            ViewedHair::new(&HairParams::new(&desc).expect("accepted"), 0.3),
+            ORDER,
+        );
         for k in [1.0, 0.797_884_6, 1.177_41] {
             let got = hair.square_error(k).sqrt();
             // Integrals over the line, in widths: of g^2, of c^2 and of g c.
@@ -174,7 +226,11 @@ mod tests {
         let mut worst = [0.0_f64; 10];
         // Narrow and wide hair, glints and none, from the side and along the fibre.
         for index in (0..Grid::FULL.len()).step_by(89) {
-            let kinds = [Kind::cauchy(1.0), Kind::cauchy(0.797_884_6), Kind::cauchy(1.3)];
+            let kinds = [
+                Kind::cauchy(1.0),
+                Kind::cauchy(0.797_884_6),
+                Kind::cauchy(1.3),
+            ];
             let coarse = hair(index, ORDER).figures(&kinds, &blur(LATITUDES));
             let fine = hair(index, 2 * ORDER).figures(&kinds, &blur(2 * LATITUDES));
             for (coarse, fine) in coarse.iter().zip(&fine) {

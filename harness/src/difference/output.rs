@@ -17,8 +17,12 @@ const NORMS: [Figure; 8] = [
     ("shape_l2", "shape, L2", |f| f.shape.l2),
     ("blurred_l1", "blurred, L1", |f| f.blurred.l1),
     ("blurred_l2", "blurred, L2", |f| f.blurred.l2),
-    ("blurred_shape_l1", "blurred shape, L1", |f| f.blurred_shape.l1),
-    ("blurred_shape_l2", "blurred shape, L2", |f| f.blurred_shape.l2),
+    ("blurred_shape_l1", "blurred shape, L1", |f| {
+        f.blurred_shape.l1
+    }),
+    ("blurred_shape_l2", "blurred shape, L2", |f| {
+        f.blurred_shape.l2
+    }),
 ];
 
 /// Geometric mean, median, least and most of some figures.
@@ -37,7 +41,12 @@ impl Summary {
         values.sort_by(f64::total_cmp);
         let logarithm = values.iter().map(|x| x.ln()).sum::<f64>() / values.len() as f64;
         let at = |share| percentile(&values, share);
-        Self { geometric_mean: logarithm.exp(), median: at(0.5), least: at(0.0), most: at(1.0) }
+        Self {
+            geometric_mean: logarithm.exp(),
+            median: at(0.5),
+            least: at(0.0),
+            most: at(1.0),
+        }
     }
 }
 
@@ -55,14 +64,17 @@ impl Difference {
     /// | `blurred_l1` .. `blurred_shape_l2` | the four after a blur of [`SIGMA_DEG`](super::SIGMA_DEG) |
     #[must_use]
     pub fn columns(&self) -> Columns {
-        let figure = |of: fn(&Differences) -> f64| self.rows.iter().map(move |row| of(&row.figures));
+        let figure =
+            |of: fn(&Differences) -> f64| self.rows.iter().map(move |row| of(&row.figures));
         let columns = columns_of(self.rows.iter().map(|row| &row.cell))
             .text("width", self.rows.iter().map(|row| row.width.name()))
             .number("k", figure(|f| f.k))
             .number("albedo_gaussian", figure(|f| f.albedo_gaussian))
             .number("albedo_cauchy", figure(|f| f.albedo_cauchy))
             .number("albedo_ratio", figure(albedo_ratio));
-        NORMS.into_iter().fold(columns, |columns, (name, _, of)| columns.number(name, figure(of)))
+        NORMS.into_iter().fold(columns, |columns, (name, _, of)| {
+            columns.number(name, figure(of))
+        })
     }
 
     /// The tables that sum it up.
@@ -77,11 +89,19 @@ impl Difference {
     }
 
     /// The same for each value of an axis of the grid.
-    pub(crate) fn along(&self, axis: GridAxis, width: Width, of: fn(&Differences) -> f64) -> Vec<(f64, Summary)> {
+    pub(crate) fn along(
+        &self,
+        axis: GridAxis,
+        width: Width,
+        of: fn(&Differences) -> f64,
+    ) -> Vec<(f64, Summary)> {
         let (values, value_of) = axis;
         let summary = |value: &f32| {
             let rows = self.of(width).filter(|row| value_of(&row.cell) == *value);
-            (f64::from(*value), Summary::of(rows.map(|row| of(&row.figures))))
+            (
+                f64::from(*value),
+                Summary::of(rows.map(|row| of(&row.figures))),
+            )
         };
         values.iter().map(summary).collect()
     }
@@ -90,21 +110,28 @@ impl Difference {
     pub(crate) fn factor(&self, width: Width) -> String {
         let k = self.summary(width, |f| f.k);
         let shown = |k| number::plain(k, 4);
-        if k.most > k.least { format!("{} to {}", shown(k.least), shown(k.most)) } else { shown(k.median) }
+        if k.most > k.least {
+            format!("{} to {}", shown(k.least), shown(k.most))
+        } else {
+            shown(k.median)
+        }
     }
 
     fn by_width(&self) -> Table {
-        let mut table = Table::new("How far the Cauchy model is from the Gaussian one, over the grid")
-            .texts(["widths"])
-            .numbers(["k"])
-            .texts(["difference"])
-            .numbers(["geometric mean", "median", "worst"]);
+        let mut table =
+            Table::new("How far the Cauchy model is from the Gaussian one, over the grid")
+                .texts(["widths"])
+                .numbers(["k"])
+                .texts(["difference"])
+                .numbers(["geometric mean", "median", "worst"]);
         for width in Width::ALL {
             for (_, name, of) in NORMS {
                 let found = self.summary(width, of);
                 let words = [width.name().to_owned(), self.factor(width), name.to_owned()];
                 table.push(
-                    words.into_iter().chain([found.geometric_mean, found.median, found.most].map(number::percent)),
+                    words.into_iter().chain(
+                        [found.geometric_mean, found.median, found.most].map(number::percent),
+                    ),
                 );
             }
         }
@@ -125,7 +152,11 @@ impl Difference {
             for width in Width::ALL {
                 let cell = |(_, _, of)| {
                     let (_, found) = self.along(self.grid.widths(), width, of)[place];
-                    format!("{} ({})", number::percent(found.geometric_mean), number::percent(found.most))
+                    format!(
+                        "{} ({})",
+                        number::percent(found.geometric_mean),
+                        number::percent(found.most)
+                    )
                 };
                 let words = [number::plain(f64::from(*beta), 3), width.name().to_owned()];
                 table.push(words.into_iter().chain(shown.map(cell)));
@@ -136,15 +167,25 @@ impl Difference {
 
     fn by_inclination(&self) -> Table {
         let title = "Albedo of the Cauchy model over that of the Gaussian one: geometric mean (least to most)";
-        let mut table = Table::new(title).numbers(["θₒ, °", "albedo, Gaussian"]).numbers(Width::ALL.map(Width::name));
+        let mut table = Table::new(title)
+            .numbers(["θₒ, °", "albedo, Gaussian"])
+            .numbers(Width::ALL.map(Width::name));
         for (place, theta_o) in self.grid.theta_o_deg.iter().enumerate() {
             let cell = |width, of| {
                 let (_, found) = self.along(self.grid.inclinations(), width, of)[place];
-                let [mean, least, most] = [found.geometric_mean, found.least, found.most].map(|x| number::plain(x, 3));
+                let [mean, least, most] =
+                    [found.geometric_mean, found.least, found.most].map(|x| number::plain(x, 3));
                 format!("{mean} ({least} to {most})")
             };
-            let words = [number::plain(f64::from(*theta_o), 3), cell(Width::Paper, |f| f.albedo_gaussian)];
-            table.push(words.into_iter().chain(Width::ALL.map(|width| cell(width, albedo_ratio))));
+            let words = [
+                number::plain(f64::from(*theta_o), 3),
+                cell(Width::Paper, |f| f.albedo_gaussian),
+            ];
+            table.push(
+                words
+                    .into_iter()
+                    .chain(Width::ALL.map(|width| cell(width, albedo_ratio))),
+            );
         }
         table
     }
@@ -163,19 +204,37 @@ mod tests {
     #[test]
     fn summaries_are_of_all_the_figures() {
         let found = Summary::of([8.0, 1.0, 2.0].into_iter());
-        assert!((found.geometric_mean - 16.0_f64.cbrt()).abs() < 1e-12, "{found:?}");
+        assert!(
+            (found.geometric_mean - 16.0_f64.cbrt()).abs() < 1e-12,
+            "{found:?}"
+        );
         assert_eq!((found.median, found.least, found.most), (2.0, 1.0, 8.0));
     }
 
     #[test]
     fn every_row_has_every_column() {
-        let found = Difference::over(Grid { theta_o_deg: &[45.0], ..Grid::QUICK }).expect("accepted");
+        let found = Difference::over(Grid {
+            theta_o_deg: &[45.0],
+            ..Grid::QUICK
+        })
+        .expect("accepted");
         let mut csv = Vec::new();
         found.columns().write_csv(&mut csv).expect("written");
-        let fields: Vec<usize> =
-            csv.split(|byte| *byte == b'\n').map(|row| row.split(|b| *b == b',').count()).collect();
-        assert_eq!(fields.len(), found.rows.len() + 2, "names, rows and the end");
-        assert!(fields[..=found.rows.len()].iter().all(|count| *count == fields[0]), "ragged");
+        let fields: Vec<usize> = csv
+            .split(|byte| *byte == b'\n')
+            .map(|row| row.split(|b| *b == b',').count())
+            .collect();
+        assert_eq!(
+            fields.len(),
+            found.rows.len() + 2,
+            "names, rows and the end"
+        );
+        assert!(
+            fields[..=found.rows.len()]
+                .iter()
+                .all(|count| *count == fields[0]),
+            "ragged"
+        );
         for table in found.tables() {
             let text = table.to_text(Some(u16::MAX));
             assert!(text.lines().count() > 4 && !text.contains("n/a"), "{text}");

@@ -44,11 +44,27 @@ impl Case {
         // The oracle gets the same rounded direction.
         let (parameters, exact) = (Parameters::<f64>::from(params), wo.as_dvec3());
         let estimators = Sampler::ALL.map(|sampler| {
-            let oracle = Oracle::prepare(&parameters, model.shape(), exact.to_array(), sampler.bands());
-            let sphere = oracle.jumps().fold(integrator(&parameters, exact), SphereIntegrator::theta_break);
-            SampledCase { scatter: Scatter::new(model, sampler, params, wo), oracle, sphere }
+            let oracle = Oracle::prepare(
+                &parameters,
+                model.shape(),
+                exact.to_array(),
+                sampler.bands(),
+            );
+            let sphere = oracle.jumps().fold(
+                integrator(&parameters, exact),
+                SphereIntegrator::theta_break,
+            );
+            SampledCase {
+                scatter: Scatter::new(model, sampler, params, wo),
+                oracle,
+                sphere,
+            }
         });
-        Self { model, theta_o_deg, estimators }
+        Self {
+            model,
+            theta_o_deg,
+            estimators,
+        }
     }
 
     fn of(&self, sampler: Sampler) -> &SampledCase {
@@ -63,7 +79,10 @@ impl Case {
     /// `S cos theta_i` of the oracle, linear RGB.
     pub(super) fn oracle_value(&self, dir: DVec3) -> [f64; 3] {
         let cos_theta = dir.y.hypot(dir.z);
-        self.of(Sampler::Published).oracle.eval(dir.to_array()).map(|s| s * cos_theta)
+        self.of(Sampler::Published)
+            .oracle
+            .eval(dir.to_array())
+            .map(|s| s * cos_theta)
     }
 
     /// The oracle's density of `sampler`, per steradian.
@@ -88,7 +107,11 @@ impl Case {
         }
         let sample = self.of(sampler).scatter.sample8(&xi.map(f32x8::new));
         let dir = array::from_fn(|lane| sample.wi.lane(lane).as_dvec3());
-        Draws { dir, weight: colours(&sample.weight), pdf: sample.pdf.to_array().map(f64::from) }
+        Draws {
+            dir,
+            weight: colours(&sample.weight),
+            pdf: sample.pdf.to_array().map(f64::from),
+        }
     }
 
     /// `S cos theta_i`, linear RGB, and the density of `sampler`, at eight directions.
@@ -118,7 +141,9 @@ fn integrator(p: &Parameters<f64>, wo: DVec3) -> SphereIntegrator {
     }
     sphere = sphere.phi_lobe(phi_o + PI, p.gamma_tt).phi_break(phi_o);
     for side in [-1.0, 1.0] {
-        sphere = sphere.phi_lobe(phi_o + side * p.phi_g, p.gamma_g).phi_break(phi_o + side * FRAC_PI_2);
+        sphere = sphere
+            .phi_lobe(phi_o + side * p.phi_g, p.gamma_g)
+            .phi_break(phi_o + side * FRAC_PI_2);
     }
     sphere
 }

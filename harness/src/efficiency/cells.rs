@@ -30,14 +30,32 @@ fn cell(config: &EfficiencyConfig<'_>, table: u64, case: &Case, rest: &[u64]) ->
 
 impl Place<'_> {
     pub(super) fn row(&self, sampler: Sampler, sequence: SequenceKind) -> EfficiencyRow {
-        let Self { config, case, light, index, reference } = *self;
+        let Self {
+            config,
+            case,
+            light,
+            index,
+            reference,
+        } = *self;
         let budget = &config.budget;
-        let at = cell(config, stream::ROW, case, &[sampler.index(), sequence as u64, index as u64]);
+        let at = cell(
+            config,
+            stream::ROW,
+            case,
+            &[sampler.index(), sequence as u64, index as u64],
+        );
         let [n, randomisations] = match sequence {
             SequenceKind::Independent => [1, budget.independent],
             _ => [budget.correlated, budget.randomisations],
         };
-        let tally = moments(case, Technique::Bsdf(sampler), light, at, sequence, [n, randomisations]);
+        let tally = moments(
+            case,
+            Technique::Bsdf(sampler),
+            light,
+            at,
+            sequence,
+            [n, randomisations],
+        );
         let v = tally.moments.relative_variance().scale(n as f64);
         EfficiencyRow {
             model: case.model,
@@ -50,7 +68,9 @@ impl Place<'_> {
             v,
             ess_per_1000: v.effective_per_1000(),
             samples_for_1_percent: v.scale(1e4),
-            efficiency: config.costs.map(|costs| costs.efficiency(&v, case.model, sampler)),
+            efficiency: config
+                .costs
+                .map(|costs| costs.efficiency(&v, case.model, sampler)),
             max_weight: tally.max_weight,
             max_contribution: tally.max_in_means(),
             mean: tally.moments.mean_estimate(),
@@ -61,7 +81,13 @@ impl Place<'_> {
     }
 
     pub(super) fn mis_row(&self, technique: Technique) -> MisRow {
-        let Self { config, case, light, index, reference } = *self;
+        let Self {
+            config,
+            case,
+            light,
+            index,
+            reference,
+        } = *self;
         let n = config.budget.mis;
         let [kind, sampler] = match technique {
             Technique::Light => [0, 0],
@@ -69,8 +95,18 @@ impl Place<'_> {
             Technique::Mis(sampler) => [2, sampler.index()],
         };
         let at = cell(config, stream::MIS, case, &[kind, sampler, index as u64]);
-        let tally = moments(case, technique, light, at, SequenceKind::Independent, [1, n]);
-        let v = tally.moments.relative_variance().scale(technique.samples_each() as f64);
+        let tally = moments(
+            case,
+            technique,
+            light,
+            at,
+            SequenceKind::Independent,
+            [1, n],
+        );
+        let v = tally
+            .moments
+            .relative_variance()
+            .scale(technique.samples_each() as f64);
         MisRow {
             model: case.model,
             technique,
@@ -93,12 +129,30 @@ impl Place<'_> {
         }
     }
 
-    pub(super) fn convergence_point(&self, sampler: Sampler, sequence: SequenceKind, n: usize) -> ConvergencePoint {
-        let Self { config, case, light, index, reference } = *self;
+    pub(super) fn convergence_point(
+        &self,
+        sampler: Sampler,
+        sequence: SequenceKind,
+        n: usize,
+    ) -> ConvergencePoint {
+        let Self {
+            config,
+            case,
+            light,
+            index,
+            reference,
+        } = *self;
         let randomisations = config.budget.convergence;
         let rest = [sampler.index(), sequence as u64, index as u64, n as u64];
         let at = cell(config, stream::CONVERGENCE, case, &rest);
-        let tally = moments(case, Technique::Bsdf(sampler), light, at, sequence, [n, randomisations]);
+        let tally = moments(
+            case,
+            Technique::Bsdf(sampler),
+            light,
+            at,
+            sequence,
+            [n, randomisations],
+        );
         ConvergencePoint {
             model: case.model,
             sampler,
@@ -125,15 +179,35 @@ fn rms_error(means: &Moments, truth: f64) -> Estimate {
     let mse = m2 + d * d;
     let var = (m4 - m2 * m2 + 4.0 * d * m3 + 4.0 * d * d * m2).max(0.0);
     let rms = mse.sqrt();
-    Estimate { value: rms / truth, standard_error: (var / n).sqrt() / (2.0 * rms * truth) }
+    Estimate {
+        value: rms / truth,
+        standard_error: (var / n).sqrt() / (2.0 * rms * truth),
+    }
 }
 
 /// One width of the sweep, at a case made for it.
-pub(super) fn sweep_row(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sampler, beta_r_deg: f32) -> SweepRow {
+pub(super) fn sweep_row(
+    config: &EfficiencyConfig<'_>,
+    case: &Case,
+    sampler: Sampler,
+    beta_r_deg: f32,
+) -> SweepRow {
     let n = config.budget.sweep;
-    let at = cell(config, stream::SWEEP, case, &[sampler.index(), u64::from(beta_r_deg.to_bits())]);
+    let at = cell(
+        config,
+        stream::SWEEP,
+        case,
+        &[sampler.index(), u64::from(beta_r_deg.to_bits())],
+    );
     let (technique, light) = (Technique::Bsdf(sampler), Constant);
-    let tally = moments(case, technique, &light, at, SequenceKind::Independent, [1, n]);
+    let tally = moments(
+        case,
+        technique,
+        &light,
+        at,
+        SequenceKind::Independent,
+        [1, n],
+    );
     let exact = exact_variance(case, sampler);
     let (v, [quadrature, _]) = (tally.moments.relative_variance(), exact.v);
     SweepRow {
@@ -151,15 +225,27 @@ pub(super) fn sweep_row(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sam
 
 /// Distance of a measured V to the exact one in standard errors. Hair that scatters nothing has neither: 0.
 fn agreement(v: Estimate, exact: f64) -> f64 {
-    if v.value.is_nan() && exact.is_nan() { 0.0 } else { v.z_score(exact) }
+    if v.value.is_nan() && exact.is_nan() {
+        0.0
+    } else {
+        v.z_score(exact)
+    }
 }
 
 /// V under constant light against quadrature and, for the default hair, against its recorded figures. `v` is that of the independent row.
-pub(super) fn reference_v(config: &EfficiencyConfig<'_>, case: &Case, sampler: Sampler, v: Estimate) -> ReferenceV {
+pub(super) fn reference_v(
+    config: &EfficiencyConfig<'_>,
+    case: &Case,
+    sampler: Sampler,
+    v: Estimate,
+) -> ReferenceV {
     let [quadrature, quadrature_luminance] = exact_variance(case, sampler).v;
     let is_default = config.params == HairParams::default();
     let recorded = recorded_v(case.model, sampler, case.theta_o_deg).filter(|_| is_default);
-    let rounded = Estimate { standard_error: v.standard_error.hypot(ROUNDING), ..v };
+    let rounded = Estimate {
+        standard_error: v.standard_error.hypot(ROUNDING),
+        ..v
+    };
     ReferenceV {
         model: case.model,
         sampler,
@@ -183,7 +269,10 @@ pub(super) fn recorded_v(model: ModelKind, sampler: Sampler, theta_o_deg: f64) -
         // The recorded implementation has no other samplers.
         _ => return None,
     };
-    [0.0, 45.0, 75.0].iter().position(|t| *t == theta_o_deg).map(|i| figures[i])
+    [0.0, 45.0, 75.0]
+        .iter()
+        .position(|t| *t == theta_o_deg)
+        .map(|i| figures[i])
 }
 
 /// Deviation of the rounding to three decimals.

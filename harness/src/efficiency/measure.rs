@@ -26,7 +26,11 @@ impl CellMoments {
 
     /// Largest contribution in means, 0 when there was none.
     pub(super) fn max_in_means(&self) -> f64 {
-        if self.max_contribution > 0.0 { self.max_contribution / self.moments.mean() } else { 0.0 }
+        if self.max_contribution > 0.0 {
+            self.max_contribution / self.moments.mean()
+        } else {
+            0.0
+        }
     }
 }
 
@@ -64,20 +68,33 @@ fn contributions(
                 weights[lane] = intensity(weight);
                 // A discarded sample counts, and contributes 0; it may have no direction to look at. A NaN is let through, for the check to find.
                 if pdf != 0.0 {
-                    let share = if both { power_heuristic(pdf, light.pdf(dir)) } else { 1.0 };
+                    let share = if both {
+                        power_heuristic(pdf, light.pdf(dir))
+                    } else {
+                        1.0
+                    };
                     y[lane] = share * intensity(product(light.radiance(dir), weight));
                 }
             }
         }
         if both || sampler.is_none() {
             let samples: [LightSample; 8] = array::from_fn(|_| light.sample(source.next_xi()));
-            let (value, pdf) = case.eval(sampler.unwrap_or(Sampler::Uniform), &samples.map(|s| s.dir));
+            let (value, pdf) =
+                case.eval(sampler.unwrap_or(Sampler::Uniform), &samples.map(|s| s.dir));
             for (lane, s) in samples.iter().enumerate().filter(|(_, s)| s.pdf != 0.0) {
-                let share = if both { power_heuristic(s.pdf, pdf[lane]) } else { 1.0 };
+                let share = if both {
+                    power_heuristic(s.pdf, pdf[lane])
+                } else {
+                    1.0
+                };
                 y[lane] += share * intensity(product(s.radiance, value[lane])) / s.pdf;
             }
         }
-        weights.into_iter().zip(y).take(lanes).for_each(|(weight, y)| each(weight, y));
+        weights
+            .into_iter()
+            .zip(y)
+            .take(lanes)
+            .for_each(|(weight, y)| each(weight, y));
     }
 }
 
@@ -91,21 +108,40 @@ pub(super) fn moments(
     [n, randomisations]: [usize; 2],
 ) -> CellMoments {
     let mut tally = CellMoments::default();
-    let dims = if let Technique::Bsdf(sampler) = technique { sampler.dims() } else { 3 };
+    let dims = if let Technique::Bsdf(sampler) = technique {
+        sampler.dims()
+    } else {
+        3
+    };
     // Every pass of the other kinds is a randomisation of its own.
-    let [runs, passes] = if kind == SequenceKind::Halton { [randomisations, 1] } else { [1, randomisations] };
+    let [runs, passes] = if kind == SequenceKind::Halton {
+        [randomisations, 1]
+    } else {
+        [1, randomisations]
+    };
     for run in 0..runs {
-        let stream = if run == 0 { stream } else { super::stream(&[stream, run as u64]) };
+        let stream = if run == 0 {
+            stream
+        } else {
+            super::stream(&[stream, run as u64])
+        };
         let (mut sum, mut summed) = (0.0, 0);
-        contributions(case, technique, light, &mut kind.source(seed, stream, dims, n), n * passes, |weight, y| {
-            tally.see(weight, y);
-            sum += y;
-            summed += 1;
-            if summed == n {
-                tally.moments.push(sum / n as f64);
-                (sum, summed) = (0.0, 0);
-            }
-        });
+        contributions(
+            case,
+            technique,
+            light,
+            &mut kind.source(seed, stream, dims, n),
+            n * passes,
+            |weight, y| {
+                tally.see(weight, y);
+                sum += y;
+                summed += 1;
+                if summed == n {
+                    tally.moments.push(sum / n as f64);
+                    (sum, summed) = (0.0, 0);
+                }
+            },
+        );
     }
     tally
 }
@@ -130,7 +166,8 @@ pub(crate) fn bias_z(moments: &Moments, reference: Estimate) -> f64 {
     }
     let skewness = moments.higher_moments()[0] / deviation.powi(3);
     let s = difference / deviation;
-    let cubic = s + skewness * s * s / 3.0 + skewness * skewness * s * s * s / 27.0 + skewness / (6.0 * n);
+    let cubic =
+        s + skewness * s * s / 3.0 + skewness * skewness * s * s * s / 27.0 + skewness / (6.0 * n);
     // The reference's own error widens the spread and leaves the shape.
     let widened = mean.standard_error / mean.standard_error.hypot(reference.standard_error);
     n.sqrt() * cubic * widened
@@ -140,5 +177,6 @@ pub(crate) fn bias_z(moments: &Moments, reference: Estimate) -> f64 {
 /// `n / skewness^2` whatever the part; if they carry all of it, by `n / (1 + V)` as well. What is no number (black light, black hair) is no reason not to.
 pub(crate) fn is_tested(samples: usize, [v, skewness]: [f64; 2]) -> bool {
     let n = samples as f64;
-    (v.is_nan() || n / (1.0 + v) >= MIN_EFFECTIVE) && (skewness.is_nan() || n >= MIN_EFFECTIVE * skewness * skewness)
+    (v.is_nan() || n / (1.0 + v) >= MIN_EFFECTIVE)
+        && (skewness.is_nan() || n >= MIN_EFFECTIVE * skewness * skewness)
 }

@@ -16,12 +16,23 @@ fn over(numerator: f64, pdf: f64) -> f64 {
 
 /// The integral of `light * S cos theta_i` by the light's own quadrature, without the variances; whether it converged.
 fn mean_by_quadrature(case: &Case, light: &dyn Light) -> (Reference, bool) {
-    let integral = light.integrate(&|dir| case.oracle_value(dir), case.sphere(Sampler::Published));
-    (Reference::by_quadrature(intensity(integral.value), intensity(integral.error)), integral.converged)
+    let integral = light.integrate(
+        &|dir| case.oracle_value(dir),
+        case.sphere(Sampler::Published),
+    );
+    (
+        Reference::by_quadrature(intensity(integral.value), intensity(integral.error)),
+        integral.converged,
+    )
 }
 
 /// Second moment of a contribution when directions have a density, by the light's own quadrature.
-fn second_moment(case: &Case, light: &dyn Light, sphere: &SphereIntegrator, density: &dyn Fn(DVec3) -> f64) -> f64 {
+fn second_moment(
+    case: &Case,
+    light: &dyn Light,
+    sphere: &SphereIntegrator,
+    density: &dyn Fn(DVec3) -> f64,
+) -> f64 {
     // The light multiplies by its radiance, channel by channel: the brightest channel carries the integrand, divided by it.
     let square = |dir: DVec3| {
         let radiance = light.radiance(dir);
@@ -68,12 +79,21 @@ pub(super) fn ray_v(case: &Case, light: &dyn Light, sampler: Sampler) -> [f64; 2
     let both = |dir: DVec3| case.density(sampler, dir) + light.pdf(dir);
     let mut sphere = case.sphere(sampler).clone();
     sphere.tolerance.max_panels = 2_000;
-    let share = |dir: DVec3| case.oracle_value(dir).map(|s| over(s * case.density(sampler, dir), both(dir)));
+    let share = |dir: DVec3| {
+        case.oracle_value(dir)
+            .map(|s| over(s * case.density(sampler, dir), both(dir)))
+    };
     let by_sampler = intensity(light.integrate(&share, &sphere).value);
     let mean = mean_by_quadrature(case, light).0.value;
-    let (second, by_light) = (second_moment(case, light, &sphere, &both), mean - by_sampler);
+    let (second, by_light) = (
+        second_moment(case, light, &sphere, &both),
+        mean - by_sampler,
+    );
     let squares = by_sampler * by_sampler + by_light * by_light;
-    [2.0 * second / (mean * mean) - 1.0, (second - squares) / (mean * mean)]
+    [
+        2.0 * second / (mean * mean) - 1.0,
+        (second - squares) / (mean * mean),
+    ]
 }
 
 /// Strata of a pass, across and down.
@@ -94,7 +114,9 @@ pub(crate) fn stratified(
         let sample = light.sample(source.next_xi());
         over(y(&sample), sample.pdf)
     };
-    let means: Moments = (0..passes).map(|_| (0..PASS).map(|_| term()).sum::<f64>() / PASS as f64).collect();
+    let means: Moments = (0..passes)
+        .map(|_| (0..PASS).map(|_| term()).sum::<f64>() / PASS as f64)
+        .collect();
     means.mean_estimate()
 }
 
@@ -104,8 +126,18 @@ pub(crate) fn stratified(
 /// that of the run, the mean is that of the run as well.
 ///
 /// The run draws from the map, `passes` randomisations of 64 x 64 strata; only the map's own sampling is shared with what it is a reference for.
-pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, passes: usize, seed: u64) -> Reference {
-    let id = stream(&[stream::REFERENCE, case.model.index(), case.theta_o_deg.to_bits()]);
+pub(super) fn of_environment(
+    case: &Case,
+    map: &Environment,
+    max_texels: usize,
+    passes: usize,
+    seed: u64,
+) -> Reference {
+    let id = stream(&[
+        stream::REFERENCE,
+        case.model.index(),
+        case.theta_o_deg.to_bits(),
+    ]);
     let (mut squares, mut cubes) = ([0.0; SAMPLERS.len()], [0.0; SAMPLERS.len()]);
     let mean = stratified(map, [seed, id], passes, &mut |s| {
         let y = intensity(product(s.radiance, case.oracle_value(s.dir)));
@@ -128,11 +160,21 @@ pub(super) fn of_environment(case: &Case, map: &Environment, max_texels: usize, 
     if width * height <= max_texels {
         let (exact, converged) = mean_by_quadrature(case, map);
         if converged || exact.quadrature_error <= mean.standard_error {
-            return Reference { v, skewness, ..exact };
+            return Reference {
+                v,
+                skewness,
+                ..exact
+            };
         }
     }
     let (standard_error, method) = (mean.standard_error, ReferenceMethod::StratifiedRun);
-    Reference { standard_error, method, v, skewness, ..Reference::by_quadrature(mean.value, 0.0) }
+    Reference {
+        standard_error,
+        method,
+        v,
+        skewness,
+        ..Reference::by_quadrature(mean.value, 0.0)
+    }
 }
 
 /// The integral of `S cos theta_i` and V under constant light, by quadrature.

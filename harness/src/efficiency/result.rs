@@ -88,7 +88,10 @@ impl Reference {
 
     /// The integral with its standard error.
     pub(crate) const fn estimate(&self) -> Estimate {
-        Estimate { value: self.value, standard_error: self.standard_error }
+        Estimate {
+            value: self.value,
+            standard_error: self.standard_error,
+        }
     }
 
     /// V and skewness of one independent sample; not numbers for a sampler that is not compared.
@@ -174,7 +177,10 @@ pub enum Technique {
 impl Technique {
     /// Every technique, in the order of reports.
     pub fn all() -> impl Iterator<Item = Self> {
-        [Self::Light].into_iter().chain(SAMPLERS.map(Self::Bsdf)).chain(SAMPLERS.map(Self::Mis))
+        [Self::Light]
+            .into_iter()
+            .chain(SAMPLERS.map(Self::Bsdf))
+            .chain(SAMPLERS.map(Self::Mis))
     }
 
     /// Name in reports.

@@ -5,8 +5,8 @@ use super::cells::{self, Place};
 use super::reference::{by_quadrature, of_environment};
 use super::result::{Check, EfficiencyResult, EfficiencySettings, Technique};
 use super::{
-    BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG, Reference, SAMPLERS,
-    THETA_O_DEG, with_beta,
+    BETA_R_DEG, CONVERGENCE_THETA_O_DEG, EfficiencyConfig, FALSE_ALARM, ModelKind, PHI_O_DEG,
+    Reference, SAMPLERS, THETA_O_DEG, with_beta,
 };
 use crate::lights::{AREA, CONSTANT, ENVIRONMENT, SUN, SUN_DEG, lights};
 use crate::sampler::Sampler;
@@ -31,19 +31,32 @@ pub fn run(
     let lights = lights(Some(config.environment));
     let poses = product(&ModelKind::ALL, &THETA_O_DEG);
     let of_hair = |params: &HairParams| -> Vec<Case> {
-        poses.iter().map(|&(model, theta_o)| Case::new(model, params, theta_o)).collect()
+        poses
+            .iter()
+            .map(|&(model, theta_o)| Case::new(model, params, theta_o))
+            .collect()
     };
     let cases = of_hair(&config.params);
     let mut sweep = Vec::new();
     for beta_r in BETA_R_DEG {
-        sweep.extend(of_hair(&with_beta(&config.params, beta_r)?).into_iter().map(|case| (beta_r, case)));
+        sweep.extend(
+            of_hair(&with_beta(&config.params, beta_r)?)
+                .into_iter()
+                .map(|case| (beta_r, case)),
+        );
     }
 
-    let lit_cases = product(&cases.iter().collect::<Vec<_>>(), &(0..lights.len()).collect::<Vec<_>>());
+    let lit_cases = product(
+        &cases.iter().collect::<Vec<_>>(),
+        &(0..lights.len()).collect::<Vec<_>>(),
+    );
     let estimators = product(&SAMPLERS, &SequenceKind::ALL);
     let techniques: Vec<Technique> = Technique::all().collect();
     let sweep_cells = product(&sweep.iter().collect::<Vec<_>>(), &SAMPLERS);
-    let sizes: Vec<usize> = (2..24).map(|k| 1_usize << k).take_while(|n| *n <= config.budget.convergence_n).collect();
+    let sizes: Vec<usize> = (2..24)
+        .map(|k| 1_usize << k)
+        .take_while(|n| *n <= config.budget.convergence_n)
+        .collect();
     let total = lit_cases.len() * (1 + estimators.len())
         + cases.len() * (3 * techniques.len() + SAMPLERS.len())
         + ModelKind::ALL.len() * 3 * estimators.len() * sizes.len()
@@ -54,40 +67,71 @@ pub fn run(
     let references: Vec<Reference> = progress.map(&lit_cases, |&(case, light)| {
         if light == ENVIRONMENT {
             let passes = budget.reference_passes;
-            of_environment(case, config.environment, budget.quadrature_texels, passes, config.seed)
+            of_environment(
+                case,
+                config.environment,
+                budget.quadrature_texels,
+                passes,
+                config.seed,
+            )
         } else {
             by_quadrature(case, lights[light])
         }
     });
-    let place = |(&(case, index), reference)| Place { config, case, light: lights[index], index, reference };
+    let place = |(&(case, index), reference)| Place {
+        config,
+        case,
+        light: lights[index],
+        index,
+        reference,
+    };
     let places: Vec<Place<'_>> = lit_cases.iter().zip(&references).map(place).collect();
     let under = |shown: &[usize]| -> Vec<Place<'_>> {
-        places.iter().filter(|place| shown.contains(&place.index)).copied().collect()
+        places
+            .iter()
+            .filter(|place| shown.contains(&place.index))
+            .copied()
+            .collect()
     };
     let mut converging = under(&[CONSTANT, AREA, ENVIRONMENT]);
     converging.retain(|place| place.case.theta_o_deg == CONVERGENCE_THETA_O_DEG);
     // Under a sun that few samples ever see, a curve of convergence shows which of its points have seen it.
     let is_steady = |place: &Place<'_>| place.reference.v.iter().all(|v| *v < CONVERGENCE_V);
-    if !converging.iter().filter(|place| place.index == ENVIRONMENT).all(is_steady) {
+    if !converging
+        .iter()
+        .filter(|place| place.index == ENVIRONMENT)
+        .all(is_steady)
+    {
         converging.retain(|place| place.index != ENVIRONMENT);
     }
 
     let row_cells = product(&places, &estimators);
-    let rows = progress.map(&row_cells, |&(place, (sampler, sequence))| place.row(sampler, sequence));
-    let mis_rows = progress
-        .map(&product(&under(&[SUN, AREA, ENVIRONMENT]), &techniques), |&(place, technique)| place.mis_row(technique));
-    let convergence = progress.map(&product(&product(&converging, &estimators), &sizes), |&((place, estimator), n)| {
-        place.convergence_point(estimator.0, estimator.1, n)
+    let rows = progress.map(&row_cells, |&(place, (sampler, sequence))| {
+        place.row(sampler, sequence)
     });
-    let beta_sweep =
-        progress.map(&sweep_cells, |&((beta_r, case), sampler)| cells::sweep_row(config, case, sampler, *beta_r));
+    let mis_rows = progress.map(
+        &product(&under(&[SUN, AREA, ENVIRONMENT]), &techniques),
+        |&(place, technique)| place.mis_row(technique),
+    );
+    let convergence = progress.map(
+        &product(&product(&converging, &estimators), &sizes),
+        |&((place, estimator), n)| place.convergence_point(estimator.0, estimator.1, n),
+    );
+    let beta_sweep = progress.map(&sweep_cells, |&((beta_r, case), sampler)| {
+        cells::sweep_row(config, case, sampler, *beta_r)
+    });
     let constant = row_cells
         .iter()
         .zip(&rows)
-        .filter(|((place, (_, sequence)), _)| (place.index, *sequence) == (CONSTANT, SequenceKind::Independent));
-    let measured: Vec<(&Case, Sampler, Estimate)> =
-        constant.map(|((place, _), row)| (place.case, row.sampler, row.v)).collect();
-    let reference_v = progress.map(&measured, |&(case, sampler, v)| cells::reference_v(config, case, sampler, v));
+        .filter(|((place, (_, sequence)), _)| {
+            (place.index, *sequence) == (CONSTANT, SequenceKind::Independent)
+        });
+    let measured: Vec<(&Case, Sampler, Estimate)> = constant
+        .map(|((place, _), row)| (place.case, row.sampler, row.v))
+        .collect();
+    let reference_v = progress.map(&measured, |&(case, sampler, v)| {
+        cells::reference_v(config, case, sampler, v)
+    });
 
     let mut result = EfficiencyResult {
         settings: EfficiencySettings {
@@ -114,7 +158,8 @@ pub fn run(
 /// Every pair of an `a` and a `b`, the latter running faster.
 fn product<A: Copy, B: Copy>(a: &[A], b: &[B]) -> Vec<(A, B)> {
     let mut pairs = Vec::with_capacity(a.len() * b.len());
-    a.iter().for_each(|&x| pairs.extend(b.iter().map(|&y| (x, y))));
+    a.iter()
+        .for_each(|&x| pairs.extend(b.iter().map(|&y| (x, y))));
     pairs
 }
 
@@ -130,25 +175,60 @@ pub(super) fn check(result: &EfficiencyResult) -> Check {
         }
     };
     for r in &result.rows {
-        let place = format!("{} {}, {}", name(r.model, r.sampler), r.sequence.name(), r.light);
-        test(r.tested, r.z, format!("{place}, theta_o {}: mean", r.theta_o_deg));
+        let place = format!(
+            "{} {}, {}",
+            name(r.model, r.sampler),
+            r.sequence.name(),
+            r.light
+        );
+        test(
+            r.tested,
+            r.z,
+            format!("{place}, theta_o {}: mean", r.theta_o_deg),
+        );
     }
     for r in &result.mis_rows {
         let place = format!("{} {}, {}", r.model.name(), r.name, r.light);
-        test(r.tested, r.z, format!("{place}, theta_o {}: mean", r.theta_o_deg));
+        test(
+            r.tested,
+            r.z,
+            format!("{place}, theta_o {}: mean", r.theta_o_deg),
+        );
     }
     for r in &result.convergence {
-        let place = format!("{} {}, {}", name(r.model, r.sampler), r.sequence.name(), r.light);
+        let place = format!(
+            "{} {}, {}",
+            name(r.model, r.sampler),
+            r.sequence.name(),
+            r.light
+        );
         test(r.tested, r.z, format!("{place}, means of {}: bias", r.n));
     }
     for r in &result.beta_sweep {
-        let place = format!("{}, beta_r {}, theta_o {}", name(r.model, r.sampler), r.beta_r_deg, r.theta_o_deg);
-        test(true, r.z_quadrature, format!("{place}: V against quadrature"));
+        let place = format!(
+            "{}, beta_r {}, theta_o {}",
+            name(r.model, r.sampler),
+            r.beta_r_deg,
+            r.theta_o_deg
+        );
+        test(
+            true,
+            r.z_quadrature,
+            format!("{place}: V against quadrature"),
+        );
         test(true, r.z, format!("{place}: mean"));
     }
     for r in &result.reference_v {
-        let place = format!("{}, constant, theta_o {}", name(r.model, r.sampler), r.theta_o_deg);
-        test(true, r.z_quadrature, format!("{place}: V against quadrature"));
+        let place = format!(
+            "{}, constant, theta_o {}",
+            name(r.model, r.sampler),
+            r.theta_o_deg
+        );
+        test(
+            true,
+            r.z_quadrature,
+            format!("{place}: V against quadrature"),
+        );
         if let Some(z) = r.z_recorded {
             test(true, z, format!("{place}: V against the recorded figure"));
         }

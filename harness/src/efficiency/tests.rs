@@ -32,7 +32,10 @@ fn small_map() -> Environment {
 }
 
 fn small(map: &Environment) -> EfficiencyConfig<'_> {
-    EfficiencyConfig { budget: SMALL, ..EfficiencyConfig::new(11, true, map) }
+    EfficiencyConfig {
+        budget: SMALL,
+        ..EfficiencyConfig::new(11, true, map)
+    }
 }
 
 fn cases() -> impl Iterator<Item = (Case, Sampler)> {
@@ -43,8 +46,21 @@ fn cases() -> impl Iterator<Item = (Case, Sampler)> {
     })
 }
 
-fn independent(case: &Case, technique: Technique, light: &dyn Light, at: [u64; 2], n: usize) -> CellMoments {
-    moments(case, technique, light, at, SequenceKind::Independent, [1, n])
+fn independent(
+    case: &Case,
+    technique: Technique,
+    light: &dyn Light,
+    at: [u64; 2],
+    n: usize,
+) -> CellMoments {
+    moments(
+        case,
+        technique,
+        light,
+        at,
+        SequenceKind::Independent,
+        [1, n],
+    )
 }
 
 #[test]
@@ -52,7 +68,11 @@ fn the_recorded_figures_are_of_the_mean_of_rgb() {
     let mut far_from_luminance = 0;
     for (case, sampler) in cases() {
         let exact = exact_variance(&case, sampler);
-        assert!(exact.converged, "{:?} {sampler:?} {}", case.model, case.theta_o_deg);
+        assert!(
+            exact.converged,
+            "{:?} {sampler:?} {}",
+            case.model, case.theta_o_deg
+        );
         if let Some(recorded) = recorded_v(case.model, sampler, case.theta_o_deg) {
             // Measured: 5.4e-4 at most, published on the Cauchy model at 75 degrees, 0.23146 for the table's 0.232.
             assert!(
@@ -64,13 +84,22 @@ fn the_recorded_figures_are_of_the_mean_of_rgb() {
             far_from_luminance += usize::from((exact.v[1] - recorded).abs() > 1.5e-3);
         }
     }
-    assert!(far_from_luminance >= 10, "only {far_from_luminance} of 12 tell luminance from the mean of RGB");
+    assert!(
+        far_from_luminance >= 10,
+        "only {far_from_luminance} of 12 tell luminance from the mean of RGB"
+    );
 }
 
 #[test]
 fn measured_variance_is_that_of_quadrature_and_of_the_table() {
     for (k, (case, sampler)) in cases().enumerate() {
-        let tally = independent(&case, Technique::Bsdf(sampler), &Constant, [21, k as u64], 400_000);
+        let tally = independent(
+            &case,
+            Technique::Bsdf(sampler),
+            &Constant,
+            [21, k as u64],
+            400_000,
+        );
         let v = tally.moments.relative_variance();
         let exact = exact_variance(&case, sampler).v[0];
         // 36 comparisons: 3.5 standard errors is 1.7% of false alarms over all of them.
@@ -81,7 +110,10 @@ fn measured_variance_is_that_of_quadrature_and_of_the_table() {
             case.theta_o_deg
         );
         if let Some(recorded) = recorded_v(case.model, sampler, case.theta_o_deg) {
-            assert!(v.z_score(recorded).abs() < 3.5, "{v:?}, recorded {recorded}");
+            assert!(
+                v.z_score(recorded).abs() < 3.5,
+                "{v:?}, recorded {recorded}"
+            );
         }
     }
 }
@@ -101,17 +133,30 @@ fn every_estimator_agrees_with_quadrature() {
                 let tally = independent(&case, technique, light, [31, (16 * k + t) as u64], n);
                 let z = bias_z(&tally.moments, reference.estimate());
                 worst = worst.max(z.abs());
-                assert!(z.abs() < 4.0, "{} {model:?} {}: z {z}", light.name(), technique.name());
+                assert!(
+                    z.abs() < 4.0,
+                    "{} {model:?} {}: z {z}",
+                    light.name(),
+                    technique.name()
+                );
                 if let Technique::Bsdf(sampler) = technique {
                     // The second moment by quadrature too, where hits are not rare.
                     let v = tally.moments.relative_variance();
                     let exact = reference.predicted(sampler)[0];
-                    assert!(v.z_score(exact).abs() < 4.5, "{} {}: {v:?}, {exact}", light.name(), technique.name());
+                    assert!(
+                        v.z_score(exact).abs() < 4.5,
+                        "{} {}: {v:?}, {exact}",
+                        light.name(),
+                        technique.name()
+                    );
                 }
             }
         }
     }
-    assert!(worst > 0.5, "fifty-six z-scores below {worst} are no errors at all");
+    assert!(
+        worst > 0.5,
+        "fifty-six z-scores below {worst} are no errors at all"
+    );
 }
 
 #[test]
@@ -121,7 +166,10 @@ fn the_sun_is_for_light_sampling_and_the_rest_for_both() {
         let tally = independent(&case, technique, lights(None)[SUN], [41, 0], 100_000);
         tally.moments.relative_variance().value * technique.samples_each() as f64
     };
-    assert!(v(Technique::Light) < 0.1, "the lobes are wider than the sun");
+    assert!(
+        v(Technique::Light) < 0.1,
+        "the lobes are wider than the sun"
+    );
     assert!(v(Technique::Bsdf(Sampler::Uniform)) > 1_000.0);
     assert!(v(Technique::Bsdf(Sampler::Published)) > 100.0);
     assert!(v(Technique::Mis(Sampler::Published)) < 3.0);
@@ -139,14 +187,22 @@ fn small_run() -> &'static (EfficiencyResult, Vec<(usize, usize)>) {
 }
 
 fn on_threads<R: Send>(threads: usize, f: impl FnOnce() -> R + Send) -> R {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(f)
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("threads")
+        .install(f)
 }
 
 #[test]
 fn results_do_not_depend_on_the_number_of_threads() {
     let one = on_threads(1, || run(&small(&small_map()), &|_, _| ())).expect("valid");
-    let json = [&one, &small_run().0].map(|result| serde_json::to_string(result).expect("serialises"));
-    assert!(json[0] == json[1], "one thread and two gave different tables");
+    let json =
+        [&one, &small_run().0].map(|result| serde_json::to_string(result).expect("serialises"));
+    assert!(
+        json[0] == json[1],
+        "one thread and two gave different tables"
+    );
 }
 
 #[test]
@@ -159,72 +215,161 @@ fn a_small_run_has_every_row_and_passes_its_check() {
     assert_eq!(result.beta_sweep.len(), 144);
     let mut calls = calls.clone();
     calls.sort_unstable();
-    assert!(calls.iter().enumerate().all(|(i, call)| *call == (i + 1, calls.len())), "progress skips");
+    assert!(
+        calls
+            .iter()
+            .enumerate()
+            .all(|(i, call)| *call == (i + 1, calls.len())),
+        "progress skips"
+    );
     let check = &result.check;
     assert!(check.passed(), "{check:#?}");
     // The sun at these sizes is too small to be tested by the scattering function alone.
     let sun = |r: &&EfficiencyRow| r.light == "sun";
-    assert!(result.rows.iter().filter(sun).all(|r| !r.tested), "{check:?}");
-    assert!(result.rows.iter().filter(|r| r.light == "constant").all(|r| r.tested), "{check:?}");
-    assert!(check.tests > 675 && check.untested >= 72, "{} {}", check.tests, check.untested);
+    assert!(
+        result.rows.iter().filter(sun).all(|r| !r.tested),
+        "{check:?}"
+    );
+    assert!(
+        result
+            .rows
+            .iter()
+            .filter(|r| r.light == "constant")
+            .all(|r| r.tested),
+        "{check:?}"
+    );
+    assert!(
+        check.tests > 675 && check.untested >= 72,
+        "{} {}",
+        check.tests,
+        check.untested
+    );
     assert!((4.0..6.0).contains(&check.bound), "{}", check.bound);
 }
 
 #[test]
 fn efficiency_is_one_over_variance_and_time() {
-    let costs = SampleCosts { gaussian: [4.0, 8.0, 16.0], cauchy: [3.0, 6.0, 12.0] };
-    let v = Estimate { value: 0.2, standard_error: 0.01 };
+    let costs = SampleCosts {
+        gaussian: [4.0, 8.0, 16.0],
+        cauchy: [3.0, 6.0, 12.0],
+    };
+    let v = Estimate {
+        value: 0.2,
+        standard_error: 0.01,
+    };
     let e = costs.efficiency(&v, ModelKind::Cauchy, Sampler::Published);
-    assert!((e.value * 0.2 * 6e-9 - 1.0).abs() < 1e-12 && (e.standard_error / e.value - 0.05).abs() < 1e-12, "{e:?}");
+    assert!(
+        (e.value * 0.2 * 6e-9 - 1.0).abs() < 1e-12
+            && (e.standard_error / e.value - 0.05).abs() < 1e-12,
+        "{e:?}"
+    );
 }
 
 #[test]
 fn a_wrong_mean_fails_the_check() {
     let mut result = small_run().0.clone();
     // The sampler's weights too large by 5%.
-    let row = result.rows.iter_mut().find(|r| r.sampler == Sampler::Published && r.light == "constant").expect("a row");
+    let row = result
+        .rows
+        .iter_mut()
+        .find(|r| r.sampler == Sampler::Published && r.light == "constant")
+        .expect("a row");
     row.z = 0.05 * row.mean.value / row.mean.standard_error;
-    assert_eq!(run::check(&result).failures.len(), 1, "{:?}", run::check(&result));
+    assert_eq!(
+        run::check(&result).failures.len(),
+        1,
+        "{:?}",
+        run::check(&result)
+    );
     result.rows[1].z = f64::NAN;
     let check = run::check(&result);
-    assert!(check.failures.len() == 2 && check.largest_z.is_infinite(), "{check:?}");
+    assert!(
+        check.failures.len() == 2 && check.largest_z.is_infinite(),
+        "{check:?}"
+    );
 }
 
 #[test]
 fn maps_of_few_texels_raise_no_alarm() {
     // Four nodes do not resolve a lobe inside a texel of 45 degrees and more: the quadrature must not count as exact.
     let gradient = |width: u16, height: u16| {
-        let pixels = (0..width * height).map(|k| [1.0, 0.5 + f32::from(k), 2.0]).collect();
-        Environment::from_pixels("few", usize::from(width), usize::from(height), pixels).expect("valid")
+        let pixels = (0..width * height)
+            .map(|k| [1.0, 0.5 + f32::from(k), 2.0])
+            .collect();
+        Environment::from_pixels("few", usize::from(width), usize::from(height), pixels)
+            .expect("valid")
     };
-    for map in [Environment::from_pixels("one", 1, 1, vec![[1.0; 3]]).expect("valid"), gradient(2, 1), gradient(8, 4)] {
+    for map in [
+        Environment::from_pixels("one", 1, 1, vec![[1.0; 3]]).expect("valid"),
+        gradient(2, 1),
+        gradient(8, 4),
+    ] {
         let result = run(&small(&map), &|_, _| ()).expect("valid hair");
-        assert!(result.check.passed(), "{:?}: {:?}", map.size(), result.check.failures);
+        assert!(
+            result.check.passed(),
+            "{:?}: {:?}",
+            map.size(),
+            result.check.failures
+        );
     }
     // The one texel is a constant light, whose integral is known.
     let one = Environment::from_pixels("one", 1, 1, vec![[1.0; 3]]).expect("valid");
     let case = Case::new(ModelKind::Gaussian, &HairParams::default(), 45.0);
-    let [got, exact] = [reference::of_environment(&case, &one, 128, 16, 1), by_quadrature(&case, &Constant)];
+    let [got, exact] = [
+        reference::of_environment(&case, &one, 128, 16, 1),
+        by_quadrature(&case, &Constant),
+    ];
     assert_eq!(got.method, ReferenceMethod::StratifiedRun);
-    assert!((got.value - exact.value).abs() < 5.0 * got.standard_error, "{got:?}, {exact:?}");
+    assert!(
+        (got.value - exact.value).abs() < 5.0 * got.standard_error,
+        "{got:?}, {exact:?}"
+    );
 }
 
 #[test]
 fn black_hair_and_black_maps_are_no_failures() {
-    let black =
-        HairDesc { intensity_r: [0.0; 3], intensity_tt: [0.0; 3], intensity_trt: [0.0; 3], ..HairDesc::default() };
+    let black = HairDesc {
+        intensity_r: [0.0; 3],
+        intensity_tt: [0.0; 3],
+        intensity_trt: [0.0; 3],
+        ..HairDesc::default()
+    };
     let map = Environment::from_pixels("black", 4, 2, vec![[0.0; 3]; 8]).expect("valid");
     let params = HairParams::new(&black).expect("black is legal");
-    let result = run(&EfficiencyConfig { params, ..small(&map) }, &|_, _| ()).expect("valid");
-    assert!(result.rows.iter().all(|r| r.mean.value == 0.0 && r.z == 0.0), "black hair scatters");
-    assert!(result.mis_rows.iter().all(|r| r.mean.value == 0.0 && r.z == 0.0), "black hair scatters");
+    let result = run(
+        &EfficiencyConfig {
+            params,
+            ..small(&map)
+        },
+        &|_, _| (),
+    )
+    .expect("valid");
+    assert!(
+        result
+            .rows
+            .iter()
+            .all(|r| r.mean.value == 0.0 && r.z == 0.0),
+        "black hair scatters"
+    );
+    assert!(
+        result
+            .mis_rows
+            .iter()
+            .all(|r| r.mean.value == 0.0 && r.z == 0.0),
+        "black hair scatters"
+    );
     assert!(result.check.passed(), "{:#?}", result.check);
     serde_json::to_string(&result).expect("serialises");
     let case = Case::new(ModelKind::Gaussian, &HairParams::default(), 45.0);
     let reference = reference::of_environment(&case, &map, 8, 1, 0);
     for technique in Technique::all() {
         let tally = independent(&case, technique, &map, [61, 0], 1_000);
-        assert_eq!(bias_z(&tally.moments, reference.estimate()), 0.0, "{}", technique.name());
+        assert_eq!(
+            bias_z(&tally.moments, reference.estimate()),
+            0.0,
+            "{}",
+            technique.name()
+        );
     }
 }
 
@@ -236,12 +381,17 @@ fn the_bias_score_is_normal_where_hits_are_rare() {
     let mut plain = 0;
     let mut corrected = 0;
     for _ in 0..4_000 {
-        let m: Moments = (0..10_000).map(|_| f64::from(u8::from(xi.next_f64() < 0.0025))).collect();
+        let m: Moments = (0..10_000)
+            .map(|_| f64::from(u8::from(xi.next_f64() < 0.0025)))
+            .collect();
         plain += usize::from(m.mean_estimate().z_score(0.0025).abs() > 2.576);
         corrected += usize::from(bias_z(&m, reference).abs() > 2.576);
     }
     // 1% of 4000 are 40, give or take 6.3.
-    assert!((18..=65).contains(&corrected), "{corrected} of 4000 beyond 1%, a plain z has {plain}");
+    assert!(
+        (18..=65).contains(&corrected),
+        "{corrected} of 4000 beyond 1%, a plain z has {plain}"
+    );
 }
 
 #[test]
@@ -261,17 +411,36 @@ fn a_full_run_under_the_sky_passes_its_check() {
     // Directions from the BSDF meet a sun off the highlights once in a thousand samples or less: V is up to 40,000, and two
     // million samples are worth 50. Those rows are predicted instead. Uniform directions test every light, and the others test
     // those that are wider than a sun.
-    let independent: Vec<_> = result.rows.iter().filter(|r| r.sequence == SequenceKind::Independent).collect();
+    let independent: Vec<_> = result
+        .rows
+        .iter()
+        .filter(|r| r.sequence == SequenceKind::Independent)
+        .collect();
     let has_sun = |r: &EfficiencyRow| r.light == "sun" || r.light == "clear sky";
     let untested: Vec<_> = independent.iter().filter(|r| !r.tested).collect();
-    let wrong: Vec<_> = untested.iter().filter(|r| r.sampler == Sampler::Uniform || !has_sun(r)).collect();
-    assert!(wrong.is_empty(), "seen often enough by independent numbers, but for {wrong:#?}");
-    assert!(untested.len() * 5 <= independent.len(), "{} of {} rows are not tested", untested.len(), independent.len());
+    let wrong: Vec<_> = untested
+        .iter()
+        .filter(|r| r.sampler == Sampler::Uniform || !has_sun(r))
+        .collect();
+    assert!(
+        wrong.is_empty(),
+        "seen often enough by independent numbers, but for {wrong:#?}"
+    );
+    assert!(
+        untested.len() * 5 <= independent.len(),
+        "{} of {} rows are not tested",
+        untested.len(),
+        independent.len()
+    );
 }
 
 #[test]
 fn the_bound_is_that_of_the_normal_table() {
-    for (p, z) in [(0.05, 1.959_963_984_540_054), (6.334_248_366_623_996e-5, 4.0), (1e-9, 6.109_410_204_869_03)] {
+    for (p, z) in [
+        (0.05, 1.959_963_984_540_054),
+        (6.334_248_366_623_996e-5, 4.0),
+        (1e-9, 6.109_410_204_869_03),
+    ] {
         assert!((z_bound(p) - z).abs() < 1e-9, "{p}: {}", z_bound(p));
     }
 }

@@ -30,29 +30,58 @@ fn scatter(bsdf: impl Into<AnyBsdf>, theta_o: f64) -> impl Fn(Vec3) -> f64 {
 #[must_use]
 pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> Drawing {
     const STEPS: i32 = 1440;
-    let mut models = vec![("Gaussian (published)", AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params)))];
-    models.extend(variants.iter().map(|(name, bell)| (*name, Bsdf::new(&bell.model(), params).into())));
+    let mut models = vec![(
+        "Gaussian (published)",
+        AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params)),
+    )];
+    models.extend(
+        variants
+            .iter()
+            .map(|(name, bell)| (*name, Bsdf::new(&bell.model(), params).into())),
+    );
     let panel = |title: &str, angle: &str, arrow, wi: &dyn Fn(f64) -> Vec3| {
         let line = |(_, bsdf): &(&str, AnyBsdf)| {
             let s = scatter(*bsdf, theta_o);
-            (0..=STEPS).map(|i| 2.0 * PI * f64::from(i) / f64::from(STEPS)).map(|t| (t, s(wi(t)))).collect()
+            (0..=STEPS)
+                .map(|i| 2.0 * PI * f64::from(i) / f64::from(STEPS))
+                .map(|t| (t, s(wi(t))))
+                .collect()
         };
         let (lines, arrow) = (models.iter().map(line).collect(), ("ωₒ".to_owned(), arrow));
-        PolarPanel { title: title.to_owned(), angle: angle.to_owned(), lines, arrow }
+        PolarPanel {
+            title: title.to_owned(),
+            angle: angle.to_owned(),
+            lines,
+            arrow,
+        }
     };
     // 90° is the fibre's tip, 0° the side of the viewer.
     let along = |angle: f64| {
         let (sin, cos) = angle.sin_cos();
-        direction(sin.atan2(cos.abs()).clamp(-FRAC_PI_2, FRAC_PI_2), if cos < 0.0 { PI } else { 0.0 })
+        direction(
+            sin.atan2(cos.abs()).clamp(-FRAC_PI_2, FRAC_PI_2),
+            if cos < 0.0 { PI } else { 0.0 },
+        )
     };
     let degrees = theta_o.to_degrees();
     let panels = [
-        panel("around the fibre (θᵢ = −θₒ)", "azimuth φ", 0.0, &|phi| direction(-theta_o, phi)),
-        panel("in the plane of incidence", "inclination; tip at 90°", theta_o, &along),
+        panel(
+            "around the fibre (θᵢ = −θₒ)",
+            "azimuth φ",
+            0.0,
+            &|phi| direction(-theta_o, phi),
+        ),
+        panel(
+            "in the plane of incidence",
+            "inclination; tip at 90°",
+            theta_o,
+            &along,
+        ),
     ];
     let names: Vec<&str> = models.iter().map(|(name, _)| *name).collect();
     let title = format!("S, Gaussian and Cauchy, θₒ = {degrees:.0}°");
-    let chart = hairis_instruments::plot::polar(&title, "radius: S (1/sr), mean of RGB", &names, &panels);
+    let chart =
+        hairis_instruments::plot::polar(&title, "radius: S (1/sr), mean of RGB", &names, &panels);
     let caption = format!(
         "The scattering function of the published Gaussian model and of the all-Cauchy variant, seen from θₒ = \
          {degrees:.0}° (ωₒ marks the direction to the viewer). Above: around the fibre, on the cone of the mirror \
@@ -71,13 +100,23 @@ pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Drawing; 4] {
     let b = scatter(Bsdf::new(&cauchy.model(), params), theta_o);
     let gaussian = SphereGrid::sample(CELLS, &mut |theta, phi| a(direction(theta, phi)));
     let other = SphereGrid::sample(CELLS, &mut |theta, phi| b(direction(theta, phi)));
-    let more = SphereGrid::sample(CELLS, &mut |theta, phi| b(direction(theta, phi)) - a(direction(theta, phi)));
-    let most = [&gaussian, &other].into_iter().filter_map(SphereGrid::range).map(|(_, high)| high).fold(0.0, f64::max);
+    let more = SphereGrid::sample(CELLS, &mut |theta, phi| {
+        b(direction(theta, phi)) - a(direction(theta, phi))
+    });
+    let most = [&gaussian, &other]
+        .into_iter()
+        .filter_map(SphereGrid::range)
+        .map(|(_, high)| high)
+        .fold(0.0, f64::max);
     let degrees = theta_o.to_degrees();
     let heat = |name: &str, model: &str, grid, remark: &str| {
         // Values below the range take its first colour.
         let value = Axis::log("S (1/sr)").range(most / 1e3, most);
-        let map = heat_map(&format!("S, {model} model, θₒ = {degrees:.0}°"), value, grid);
+        let map = heat_map(
+            &format!("S, {model} model, θₒ = {degrees:.0}°"),
+            value,
+            grid,
+        );
         let caption = format!(
             "S of the {model} model{remark}, seen from θₒ = {degrees:.0}° at azimuth 0: the mean of RGB, logarithmic over \
              three decades. Equal areas of the map are equal solid angles."
@@ -87,7 +126,9 @@ pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Drawing; 4] {
     let k = format!(" with k = {}, in the same colours", cauchy.width_factor());
     let blurred = blurred(params, theta_o, f64::from(cauchy.width_factor()));
     let at = |model: usize, theta, phi| blurred[model].at(theta, phi);
-    let blurred_more = SphereGrid::sample(CELLS, &mut |theta, phi| at(1, theta, phi) - at(0, theta, phi));
+    let blurred_more = SphereGrid::sample(CELLS, &mut |theta, phi| {
+        at(1, theta, phi) - at(0, theta, phi)
+    });
     let blurred_gaussian = SphereGrid::sample(CELLS, &mut |theta, phi| at(0, theta, phi));
     let most_blurred = blurred_gaussian.range().map_or(f64::NAN, |(_, high)| high);
     [
@@ -95,7 +136,11 @@ pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Drawing; 4] {
         heat("map-cauchy", "Cauchy", &other, &k),
         Drawing::new(
             "map-difference",
-            heat_map("S, Cauchy less Gaussian", Axis::linear("difference of S (1/sr)"), &more),
+            heat_map(
+                "S, Cauchy less Gaussian",
+                Axis::linear("difference of S (1/sr)"),
+                &more,
+            ),
             "What the Cauchy model has more (vermilion) and less (blue) than the Gaussian one, linear.",
         ),
         Drawing::new(

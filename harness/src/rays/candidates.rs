@@ -21,8 +21,15 @@ impl LightBlock {
     pub(super) fn draw(light: &dyn Light, source: &mut Independent) -> Self {
         let samples = light.sample8(array::from_fn(|_| source.next_xi()));
         let wi = samples.map(|sample| sample.dir.as_vec3()).into();
-        let radiance = array::from_fn(|c| f32x8::new(samples.map(|sample| rounded(sample.radiance[c]))));
-        Self { wi, seen: Seen8 { radiance, pdf: f32x8::new(samples.map(|sample| rounded(sample.pdf))) } }
+        let radiance =
+            array::from_fn(|c| f32x8::new(samples.map(|sample| rounded(sample.radiance[c]))));
+        Self {
+            wi,
+            seen: Seen8 {
+                radiance,
+                pdf: f32x8::new(samples.map(|sample| rounded(sample.pdf))),
+            },
+        }
     }
 }
 
@@ -35,7 +42,11 @@ pub(crate) struct LightBlocks(pub(super) Vec<[LightBlock; PACKETS]>);
 impl LightBlocks {
     /// For so many of the largest pools.
     pub(crate) fn draw(light: &dyn Light, source: &mut Independent, pools: usize) -> Self {
-        Self((0..pools).map(|_| array::from_fn(|_| LightBlock::draw(light, source))).collect())
+        Self(
+            (0..pools)
+                .map(|_| array::from_fn(|_| LightBlock::draw(light, source)))
+                .collect(),
+        )
     }
 }
 
@@ -63,15 +74,26 @@ impl Lit<'_> {
     #[inline]
     pub(super) fn of_bsdf(&self, xi: &[f32x8; 3]) -> Candidates8 {
         let sample = self.scatter.sample8(xi);
-        let eval = Eval8 { value: sample.value, pdf: sample.pdf };
-        Candidates8 { eval, cos_theta_i: cosine(&sample.wi), seen: self.light.see8(&sample.wi) }
+        let eval = Eval8 {
+            value: sample.value,
+            pdf: sample.pdf,
+        };
+        Candidates8 {
+            eval,
+            cos_theta_i: cosine(&sample.wi),
+            seen: self.light.see8(&sample.wi),
+        }
     }
 
     /// Candidates from the light.
     #[inline]
     pub(super) fn of_light(&self, block: &LightBlock) -> Candidates8 {
         let eval = self.scatter.eval_pdf8(&block.wi);
-        Candidates8 { eval, cos_theta_i: cosine(&block.wi), seen: block.seen }
+        Candidates8 {
+            eval,
+            cos_theta_i: cosine(&block.wi),
+            seen: block.seen,
+        }
     }
 }
 
@@ -79,9 +101,23 @@ impl Candidates8 {
     /// In a pool of `count` candidates of each technique.
     #[inline]
     pub(super) fn weigh(&self, count: u32) -> Weighed8 {
-        let Self { eval, cos_theta_i, seen } = self;
-        let counts = Counts { bsdf: count, light: count };
-        Weighed8::new(eval, cos_theta_i, &seen.radiance, &seen.pdf, counts, Partition::All)
+        let Self {
+            eval,
+            cos_theta_i,
+            seen,
+        } = self;
+        let counts = Counts {
+            bsdf: count,
+            light: count,
+        };
+        Weighed8::new(
+            eval,
+            cos_theta_i,
+            &seen.radiance,
+            &seen.pdf,
+            counts,
+            Partition::All,
+        )
     }
 
     /// Densities of the BSDF's technique and of the light's, per steradian.

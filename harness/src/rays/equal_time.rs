@@ -49,7 +49,16 @@ pub struct Point {
 
 impl Point {
     fn new(candidates_each: u32, rays: u32, [traced, v, ns]: [f64; 3]) -> Self {
-        Self { candidates_each, rays, traced, v, ns, gain: [1.0; 4], break_even_us: None, on_front: [false; 4] }
+        Self {
+            candidates_each,
+            rays,
+            traced,
+            v,
+            ns,
+            gain: [1.0; 4],
+            break_even_us: None,
+            on_front: [false; 4],
+        }
     }
 
     /// Time at this price of a ray, in ns.
@@ -74,7 +83,10 @@ impl Point {
 
 impl EqualTime {
     pub(super) fn new(row: &RayRow, times: &RayTimes) -> Self {
-        let half = VISIBLE.iter().position(|share| *share == HALF).unwrap_or_default();
+        let half = VISIBLE
+            .iter()
+            .position(|share| *share == HALF)
+            .unwrap_or_default();
         let v = row.mean.mis.visible[half].value;
         let mis = RAYS.map(|rays| {
             let count = f64::from(rays);
@@ -82,25 +94,50 @@ impl EqualTime {
         });
         let pool = |pool: &PoolFigures| {
             let ns = times.pool_ns(pool.candidates_each, pool.rays);
-            let point = Point::new(pool.candidates_each, pool.rays, [pool.traced, pool.v.value, ns]);
+            let point = Point::new(
+                pool.candidates_each,
+                pool.rays,
+                [pool.traced, pool.v.value, ns],
+            );
             let gain = PRICES_US.map(|price| point.gain_over(&mis[0], price));
-            Point { gain, break_even_us: point.break_even(&mis[0]), ..point }
+            Point {
+                gain,
+                break_even_us: point.break_even(&mis[0]),
+                ..point
+            }
         };
-        let mut all: Vec<Point> = mis.iter().cloned().chain(row.mean.half.iter().map(pool)).collect();
+        let mut all: Vec<Point> = mis
+            .iter()
+            .cloned()
+            .chain(row.mean.half.iter().map(pool))
+            .collect();
         for (place, price) in PRICES_US.into_iter().enumerate() {
-            let at: Vec<[f64; 2]> = all.iter().map(|point| [point.time_ns(price), point.v]).collect();
+            let at: Vec<[f64; 2]> = all
+                .iter()
+                .map(|point| [point.time_ns(price), point.v])
+                .collect();
             for (point, [time, v]) in all.iter_mut().zip(&at) {
-                point.on_front[place] = !at.iter().any(|[t, w]| t <= time && w <= v && (t < time || w < v));
+                point.on_front[place] = !at
+                    .iter()
+                    .any(|[t, w]| t <= time && w <= v && (t < time || w < v));
             }
         }
         let pools = all.split_off(mis.len());
-        Self { model: row.model, sampler: row.sampler, light: row.light.clone(), mis: all, pools }
+        Self {
+            model: row.model,
+            sampler: row.sampler,
+            light: row.light.clone(),
+            mis: all,
+            pools,
+        }
     }
 
     /// The point of a pool.
     #[must_use]
     pub fn pool(&self, candidates_each: u32, rays: u32) -> Option<&Point> {
-        self.pools.iter().find(|point| (point.candidates_each, point.rays) == (candidates_each, rays))
+        self.pools
+            .iter()
+            .find(|point| (point.candidates_each, point.rays) == (candidates_each, rays))
     }
 
     /// The most efficient pool at a price.

@@ -31,9 +31,17 @@ impl<const S: usize> Columns<S> {
         source: &mut Independent,
         block: impl Fn(usize, &mut Independent) -> LightBlock,
     ) -> Self {
-        let mut columns = Self { sizes, contribution: [[0.0; ALL]; 3], weight: [[0.0; ALL]; S], pdf: [[0.0; ALL]; 2] };
+        let mut columns = Self {
+            sizes,
+            contribution: [[0.0; ALL]; 3],
+            weight: [[0.0; ALL]; S],
+            pdf: [[0.0; ALL]; 2],
+        };
         for packet in 0..PACKETS {
-            let drawn = [lit.of_bsdf(&numbers(source)), lit.of_light(&block(packet, source))];
+            let drawn = [
+                lit.of_bsdf(&numbers(source)),
+                lit.of_light(&block(packet, source)),
+            ];
             for (technique, drawn) in drawn.iter().enumerate() {
                 let store = |column: &mut [f32; ALL], lanes: &f32x8| {
                     for (lane, x) in lanes.as_array().iter().enumerate() {
@@ -41,7 +49,8 @@ impl<const S: usize> Columns<S> {
                     }
                 };
                 let weighed = sizes.map(|count| drawn.weigh(count));
-                (0..3).for_each(|c| store(&mut columns.contribution[c], &weighed[0].contribution[c]));
+                (0..3)
+                    .for_each(|c| store(&mut columns.contribution[c], &weighed[0].contribution[c]));
                 (0..S).for_each(|size| store(&mut columns.weight[size], &weighed[size].weight));
                 (0..2).for_each(|of| store(&mut columns.pdf[of], &drawn.pdf()[of]));
             }
@@ -72,15 +81,27 @@ impl<const S: usize> Columns<S> {
         let mixture = 0.5 * (bsdf + light);
         [bsdf, light, mixture].map(|pdf| {
             let deviation = f - mean * pdf;
-            if deviation == 0.0 { 0.0 } else { deviation * deviation / (pdf * mixture) }
+            if deviation == 0.0 {
+                0.0
+            } else {
+                deviation * deviation / (pdf * mixture)
+            }
         })
     }
 
     /// Contribution of a candidate, the mean of RGB, and its densities.
     #[inline]
     fn at(&self, place: usize) -> (f64, [f64; 2]) {
-        let f = self.contribution.iter().map(|column| f64::from(column[place])).sum::<f64>() / 3.0;
-        (f, [0, 1].map(|technique: usize| f64::from(self.pdf[technique][place])))
+        let f = self
+            .contribution
+            .iter()
+            .map(|column| f64::from(column[place]))
+            .sum::<f64>()
+            / 3.0;
+        (
+            f,
+            [0, 1].map(|technique: usize| f64::from(self.pdf[technique][place])),
+        )
     }
 }
 
@@ -110,7 +131,11 @@ impl Plain {
                 moments.push(square);
             }
             let (f, [bsdf, light]) = columns.at(place);
-            self.mis.push(if f > 0.0 { f / (0.5 * (bsdf + light)) } else { 0.0 });
+            self.mis.push(if f > 0.0 {
+                f / (0.5 * (bsdf + light))
+            } else {
+                0.0
+            });
             if is_light(place) {
                 self.light.push(if f > 0.0 { f / light } else { 0.0 });
             }
@@ -118,7 +143,11 @@ impl Plain {
     }
 
     fn v(&self, mean: f64) -> [Estimate; 3] {
-        [0, 1, 2].map(|estimator: usize| self.squares[estimator].mean_estimate().scale(1.0 / (mean * mean)))
+        [0, 1, 2].map(|estimator: usize| {
+            self.squares[estimator]
+                .mean_estimate()
+                .scale(1.0 / (mean * mean))
+        })
     }
 }
 
@@ -132,10 +161,19 @@ struct Pooled {
 }
 
 impl Pooled {
-    fn add(&mut self, columns: &Columns<{ SIZES.len() }>, visible: &[bool; ALL], source: &mut Independent) {
+    fn add(
+        &mut self,
+        columns: &Columns<{ SIZES.len() }>,
+        visible: &[bool; ALL],
+        source: &mut Independent,
+    ) {
         for (size, count) in SIZES.into_iter().enumerate() {
             for from in columns.pools(size) {
-                for (rays, k) in RAYS.into_iter().enumerate().filter(|(_, k)| *k <= 2 * count) {
+                for (rays, k) in RAYS
+                    .into_iter()
+                    .enumerate()
+                    .filter(|(_, k)| *k <= 2 * count)
+                {
                     let (mut open, mut half) = (0.0, 0.0);
                     let (moments, traced) = &mut self.half[size][rays];
                     for choice in columns.choose(size, from, k, source.next_f32()) {
@@ -187,16 +225,26 @@ pub(crate) fn unoccluded<const S: usize>(
         (0..ALL).for_each(|place| squares.push(columns.squares(place, mean)[2]));
         for (size, moments) in chosen.iter_mut().enumerate() {
             for from in columns.pools(size) {
-                moments.push(columns.choose(size, from, 1, source.next_f32()).map(|choice| mean_of(&choice)).sum());
+                moments.push(
+                    columns
+                        .choose(size, from, 1, source.next_f32())
+                        .map(|choice| mean_of(&choice))
+                        .sum(),
+                );
             }
         }
     }
     let mis = squares.mean_estimate().scale(1.0 / (mean * mean));
     // V about a mean that is off: its derivative by the mean is -2 V over the mean.
     let of_mean = 2.0 * mis.value * reference.standard_error / mean;
-    let bias = chosen.last().map(|moments| score(String::new(), moments, reference));
+    let bias = chosen
+        .last()
+        .map(|moments| score(String::new(), moments, reference));
     Unoccluded {
-        mis: Estimate { standard_error: mis.standard_error.hypot(of_mean), ..mis },
+        mis: Estimate {
+            standard_error: mis.standard_error.hypot(of_mean),
+            ..mis
+        },
         chosen: chosen.map(|moments| moments.relative_variance()),
         bias: bias.filter(|score| score.tested).map(|score| score.z),
     }
@@ -213,13 +261,19 @@ pub(super) fn pose(
     let mut source = Independent::new(seed, stream);
     let (mut plain, mut pooled) = (Plain::default(), Pooled::default());
     for _ in 0..count {
-        let columns = Columns::draw(lit, SIZES, &mut source, |_, source| LightBlock::draw(lit.light, source));
+        let columns = Columns::draw(lit, SIZES, &mut source, |_, source| {
+            LightBlock::draw(lit.light, source)
+        });
         let visible = core::array::from_fn(|_| f64::from(source.next_f32()) < HALF);
         plain.add(&columns, reference.value);
         pooled.add(&columns, &visible, &mut source);
     }
     let [bsdf, from_light, mis] = plain.v(reference.value).map(OneRay::new);
-    let chosen = pooled.chosen.iter().map(|moments| OneRay::new(moments.relative_variance())).collect();
+    let chosen = pooled
+        .chosen
+        .iter()
+        .map(|moments| OneRay::new(moments.relative_variance()))
+        .collect();
     let half = pools().map(|(size, rays)| {
         let (moments, traced) = &pooled.half[size][rays];
         PoolFigures {
@@ -232,25 +286,48 @@ pub(super) fn pose(
     RayPose {
         theta_o_deg,
         reference,
-        figures: RayFigures { bsdf, light: from_light, mis, chosen, half: half.collect() },
+        figures: RayFigures {
+            bsdf,
+            light: from_light,
+            mis,
+            chosen,
+            half: half.collect(),
+        },
         z: scores(&plain, &pooled, reference),
     }
 }
 
 fn score(estimator: String, moments: &Moments, reference: Estimate) -> BiasScore {
     let deviation = moments.variance().sqrt();
-    let shape = [moments.relative_variance().value, moments.higher_moments()[0] / deviation.powi(3)];
+    let shape = [
+        moments.relative_variance().value,
+        moments.higher_moments()[0] / deviation.powi(3),
+    ];
     let count = usize::try_from(moments.count()).unwrap_or(usize::MAX);
-    BiasScore { estimator, z: bias_z(moments, reference), tested: is_tested(count, shape) }
+    BiasScore {
+        estimator,
+        z: bias_z(moments, reference),
+        tested: is_tested(count, shape),
+    }
 }
 
 fn scores(plain: &Plain, pooled: &Pooled, reference: Estimate) -> Vec<BiasScore> {
     let plain = [("light only", &plain.light), ("one-sample MIS", &plain.mis)];
     let plain = plain.map(|(name, moments)| score(name.to_owned(), moments, reference));
-    let one = |(count, moments): (&u32, &Moments)| score(format!("{count} + {count}"), moments, reference);
+    let one = |(count, moments): (&u32, &Moments)| {
+        score(format!("{count} + {count}"), moments, reference)
+    };
     let several = |(size, rays): (usize, usize)| {
         let [count, k] = [SIZES[size], RAYS[rays]];
-        score(format!("{k} of {count} + {count}, half visible"), &pooled.half[size][rays].0, reference.scale(HALF))
+        score(
+            format!("{k} of {count} + {count}, half visible"),
+            &pooled.half[size][rays].0,
+            reference.scale(HALF),
+        )
     };
-    plain.into_iter().chain(SIZES.iter().zip(&pooled.chosen).map(one)).chain(pools().map(several)).collect()
+    plain
+        .into_iter()
+        .chain(SIZES.iter().zip(&pooled.chosen).map(one))
+        .chain(pools().map(several))
+        .collect()
 }

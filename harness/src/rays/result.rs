@@ -86,13 +86,19 @@ pub struct OneRay {
 impl OneRay {
     /// From V without occlusion.
     pub(super) fn new(unoccluded: Estimate) -> Self {
-        Self { unoccluded, visible: VISIBLE.map(|share| occluded(unoccluded, share)) }
+        Self {
+            unoccluded,
+            visible: VISIBLE.map(|share| occluded(unoccluded, share)),
+        }
     }
 }
 
 /// V of one ray that passes with probability `share`, whatever its direction: from `E[X^2]/share` over the squared mean.
 pub(crate) fn occluded(v: Estimate, share: f64) -> Estimate {
-    Estimate { value: (v.value + 1.0) / share - 1.0, standard_error: v.standard_error / share }
+    Estimate {
+        value: (v.value + 1.0) / share - 1.0,
+        standard_error: v.standard_error / share,
+    }
 }
 
 /// Several rays from one pool.
@@ -114,13 +120,29 @@ impl RayFigures {
         let mut mean = of[0].clone();
         let each: Vec<Vec<Estimate>> = of
             .iter()
-            .map(|figures| (*figures).clone().estimates().into_iter().map(|estimate| *estimate).collect())
+            .map(|figures| {
+                (*figures)
+                    .clone()
+                    .estimates()
+                    .into_iter()
+                    .map(|estimate| *estimate)
+                    .collect()
+            })
             .collect();
         for (place, estimate) in mean.estimates().into_iter().enumerate() {
-            *estimate = Estimate::geometric_mean(&each.iter().map(|figures| figures[place]).collect::<Vec<_>>());
+            *estimate = Estimate::geometric_mean(
+                &each
+                    .iter()
+                    .map(|figures| figures[place])
+                    .collect::<Vec<_>>(),
+            );
         }
         for (place, pool) in mean.half.iter_mut().enumerate() {
-            pool.traced = of.iter().map(|figures| figures.half[place].traced).sum::<f64>() / of.len() as f64;
+            pool.traced = of
+                .iter()
+                .map(|figures| figures.half[place].traced)
+                .sum::<f64>()
+                / of.len() as f64;
         }
         mean
     }
@@ -128,7 +150,10 @@ impl RayFigures {
     /// Every V.
     fn estimates(&mut self) -> Vec<&mut Estimate> {
         let mut all = Vec::new();
-        for ray in [&mut self.bsdf, &mut self.light, &mut self.mis].into_iter().chain(&mut self.chosen) {
+        for ray in [&mut self.bsdf, &mut self.light, &mut self.mis]
+            .into_iter()
+            .chain(&mut self.chosen)
+        {
             all.push(&mut ray.unoccluded);
             all.extend(&mut ray.visible);
         }

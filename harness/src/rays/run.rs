@@ -31,7 +31,13 @@ impl<'a> RaysConfig<'a> {
     #[must_use]
     pub const fn new(seed: u64, quick: bool, environment: &'a Environment) -> Self {
         let [pools, passes, rounds] = if quick { [256, 16, 9] } else { [4096, 64, 31] };
-        Self { seed, pools, passes, rounds, environment }
+        Self {
+            seed,
+            pools,
+            passes,
+            rounds,
+            environment,
+        }
     }
 }
 
@@ -51,10 +57,24 @@ pub fn run(
     let subjects: Vec<RaySubject> = RaySubject::all().collect();
     let lights = lights(Some(config.environment));
     let cells = subjects.len() * lights.len();
-    let times = times::measure(&subjects, &lights, config.seed, config.rounds, |done| progress(done, 2 * cells));
-    let rows = rows(config, &subjects, &lights, efficiency, &|done, _| progress(cells + done, 2 * cells));
-    let equal_time = rows.iter().zip(&times).map(|(row, times)| EqualTime::new(row, times)).collect();
-    RaysResult { pools: config.pools, check: check(&rows), rows, times, equal_time }
+    let times = times::measure(&subjects, &lights, config.seed, config.rounds, |done| {
+        progress(done, 2 * cells)
+    });
+    let rows = rows(config, &subjects, &lights, efficiency, &|done, _| {
+        progress(cells + done, 2 * cells)
+    });
+    let equal_time = rows
+        .iter()
+        .zip(&times)
+        .map(|(row, times)| EqualTime::new(row, times))
+        .collect();
+    RaysResult {
+        pools: config.pools,
+        check: check(&rows),
+        rows,
+        times,
+        equal_time,
+    }
 }
 
 /// The variances.
@@ -66,13 +86,21 @@ pub(super) fn rows(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Vec<RayRow> {
     let references = references(config, subjects, lights, efficiency);
-    let cells: Vec<(RaySubject, usize)> =
-        subjects.iter().flat_map(|subject| (0..lights.len()).map(|light| (*subject, light))).collect();
+    let cells: Vec<(RaySubject, usize)> = subjects
+        .iter()
+        .flat_map(|subject| (0..lights.len()).map(|light| (*subject, light)))
+        .collect();
     Progress::new(cells.len(), progress).map(&cells, |&(subject, light)| {
         let pose = |(pose, theta_o)| {
-            let at = [config.seed, stream([subject.index(), light as u64, pose as u64])];
+            let at = [
+                config.seed,
+                stream([subject.index(), light as u64, pose as u64]),
+            ];
             let reference = references[&(subject.model(), light, pose)];
-            let lit = Lit { scatter: &subject.scatter(pose), light: lights[light] };
+            let lit = Lit {
+                scatter: &subject.scatter(pose),
+                light: lights[light],
+            };
             measure::pose(lit, theta_o, reference, at, config.pools)
         };
         let poses: Vec<RayPose> = THETA_O_DEG.into_iter().enumerate().map(pose).collect();
@@ -95,26 +123,56 @@ fn references(
 ) -> HashMap<(&'static str, usize, usize), Estimate> {
     let of_model = |subjects: &[RaySubject]| {
         let subject = subjects[0];
-        (0..lights.len()).flat_map(move |light| (0..THETA_O_DEG.len()).map(move |pose| (subject, light, pose)))
+        (0..lights.len())
+            .flat_map(move |light| (0..THETA_O_DEG.len()).map(move |pose| (subject, light, pose)))
     };
-    let cells: Vec<_> = subjects.chunk_by(|a, b| a.model() == b.model()).flat_map(of_model).collect();
+    let cells: Vec<_> = subjects
+        .chunk_by(|a, b| a.model() == b.model())
+        .flat_map(of_model)
+        .collect();
     let reference = |&(subject, light, pose): &(RaySubject, usize, usize)| {
         let key = (subject.model(), lights[light].name(), THETA_O_DEG[pose]);
-        let known = efficiency.rows.iter().find(|row| (row.model.name(), &*row.light, row.theta_o_deg) == key);
-        let at = [config.seed, stream([1 << 32 | subject.index(), light as u64, 0])];
+        let known = efficiency
+            .rows
+            .iter()
+            .find(|row| (row.model.name(), &*row.light, row.theta_o_deg) == key);
+        let at = [
+            config.seed,
+            stream([1 << 32 | subject.index(), light as u64, 0]),
+        ];
         let by_run = || by_run(subject, lights[light], pose, at, config.passes);
-        ((subject.model(), light, pose), known.map_or_else(by_run, |row| row.reference.estimate()))
+        (
+            (subject.model(), light, pose),
+            known.map_or_else(by_run, |row| row.reference.estimate()),
+        )
     };
-    Progress::new(cells.len(), &|_, _| ()).map(&cells, reference).into_iter().collect()
+    Progress::new(cells.len(), &|_, _| ())
+        .map(&cells, reference)
+        .into_iter()
+        .collect()
 }
 
 /// The mean of RGB by a stratified run over the formulas in double precision, drawn from the light.
-fn by_run(subject: RaySubject, light: &dyn Light, pose: usize, [seed, stream]: [u64; 2], passes: usize) -> Estimate {
+fn by_run(
+    subject: RaySubject,
+    light: &dyn Light,
+    pose: usize,
+    [seed, stream]: [u64; 2],
+    passes: usize,
+) -> Estimate {
     let formulas = subject.formulas(pose);
-    stratified(light, [seed, stream_id(&[stream, pose as u64])], passes, &mut |sample| {
-        let (value, cos_theta) = (formulas.eval(sample.dir.to_array()), sample.dir.y.hypot(sample.dir.z));
-        intensity(product(sample.radiance, value.map(|s| s * cos_theta)))
-    })
+    stratified(
+        light,
+        [seed, stream_id(&[stream, pose as u64])],
+        passes,
+        &mut |sample| {
+            let (value, cos_theta) = (
+                formulas.eval(sample.dir.to_array()),
+                sample.dir.y.hypot(sample.dir.z),
+            );
+            intensity(product(sample.radiance, value.map(|s| s * cos_theta)))
+        },
+    )
 }
 
 /// Holds every bias against one bound.
@@ -122,10 +180,17 @@ pub(super) fn check(rows: &[RayRow]) -> Check {
     let (mut scores, mut untested) = (Vec::new(), 0);
     for row in rows {
         for pose in &row.poses {
-            let place = format!("{} {}, {}, theta_o {}", row.model, row.sampler, row.light, pose.theta_o_deg);
+            let place = format!(
+                "{} {}, {}, theta_o {}",
+                row.model, row.sampler, row.light, pose.theta_o_deg
+            );
             let (tested, others): (Vec<_>, Vec<_>) = pose.z.iter().partition(|score| score.tested);
             untested += others.len();
-            scores.extend(tested.iter().map(|score| (score.z, format!("{place}: mean of {}", score.estimator))));
+            scores.extend(
+                tested
+                    .iter()
+                    .map(|score| (score.z, format!("{place}: mean of {}", score.estimator))),
+            );
         }
     }
     Check::of(&scores, untested)

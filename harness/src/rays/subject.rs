@@ -21,8 +21,14 @@ impl RaySubject {
     /// Every model of the registry with each of its samplers; the two bells with uniform directions as well.
     pub fn all() -> impl Iterator<Item = Self> {
         let with_uniform = |id: ModelId| {
-            let uniform = matches!(id, ModelId::Gaussian | ModelId::Cauchy).then_some(Self { id, is_uniform: true });
-            uniform.into_iter().chain([Self { id, is_uniform: false }])
+            let uniform = matches!(id, ModelId::Gaussian | ModelId::Cauchy).then_some(Self {
+                id,
+                is_uniform: true,
+            });
+            uniform.into_iter().chain([Self {
+                id,
+                is_uniform: false,
+            }])
         };
         ModelId::ALL.iter().copied().flat_map(with_uniform)
     }
@@ -37,8 +43,13 @@ impl RaySubject {
     #[must_use]
     pub fn sampler(self) -> &'static str {
         match self {
-            Self { is_uniform: true, .. } => Sampler::Uniform.name(),
-            Self { id: ModelId::Gaussian | ModelId::Cauchy, .. } => Sampler::Published.name(),
+            Self {
+                is_uniform: true, ..
+            } => Sampler::Uniform.name(),
+            Self {
+                id: ModelId::Gaussian | ModelId::Cauchy,
+                ..
+            } => Sampler::Published.name(),
             Self { id, .. } => id.choice().map_or("its own", |(_, word)| word),
         }
     }
@@ -55,7 +66,10 @@ impl RaySubject {
     /// Never: default parameters are within their ranges.
     pub(super) fn scatter(self, pose: usize) -> Scatter {
         let hit = Hit::new(viewer(pose), OFFSETS[pose]);
-        let bsdf = self.id.bsdf(&self.id.defaults()).expect("defaults are accepted");
+        let bsdf = self
+            .id
+            .bsdf(&self.id.defaults())
+            .expect("defaults are accepted");
         Scatter::at(bsdf.prepare(hit), self.is_uniform)
     }
 
@@ -66,7 +80,9 @@ impl RaySubject {
     /// Never: default parameters are within their ranges.
     pub(super) fn formulas(self, pose: usize) -> AnyReference<f64> {
         let wo = viewer(pose).as_dvec3().to_array();
-        self.id.reference(&self.id.defaults(), wo, f64::from(OFFSETS[pose])).expect("defaults are accepted")
+        self.id
+            .reference(&self.id.defaults(), wo, f64::from(OFFSETS[pose]))
+            .expect("defaults are accepted")
     }
 }
 

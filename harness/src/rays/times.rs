@@ -56,7 +56,9 @@ impl RayTimes {
     /// Time of a pool and of the choice of `rays` of its candidates, in ns: linear between those that were measured.
     #[must_use]
     pub fn pool_ns(&self, candidates_each: u32, rays: u32) -> f64 {
-        let Some(size) = SIZES.iter().position(|count| *count == candidates_each) else { return f64::NAN };
+        let Some(size) = SIZES.iter().position(|count| *count == candidates_each) else {
+            return f64::NAN;
+        };
         let [one, most] = self.pool_ns[size];
         one + (most - one) * f64::from(rays - 1) / f64::from(most_rays(candidates_each) - 1)
     }
@@ -77,10 +79,16 @@ impl RayTimes {
     /// technique; not a number for a pool that there is not.
     pub(crate) fn ray(&self, candidates_each: Option<u32>) -> Estimate {
         let Some(count) = candidates_each else {
-            return Estimate { value: self.mis_ns, standard_error: self.mis_ns_error };
+            return Estimate {
+                value: self.mis_ns,
+                standard_error: self.mis_ns_error,
+            };
         };
         let size = SIZES.iter().position(|of| *of == count);
-        let of = |size: usize| Estimate { value: self.pool_ns[size][0], standard_error: self.pool_ns_error[size] };
+        let of = |size: usize| Estimate {
+            value: self.pool_ns[size][0],
+            standard_error: self.pool_ns_error[size],
+        };
         size.map_or(Estimate::UNKNOWN, of)
     }
 }
@@ -95,13 +103,26 @@ pub(crate) fn measure(
 ) -> Vec<RayTimes> {
     let mut source = Independent::new(seed, stream_id(&[0x4a75]));
     let xi: Vec<[f32x8; 3]> = (0..PACKETS).map(|_| numbers(&mut source)).collect();
-    let tables: Vec<Vec<LightBlock>> =
-        lights.iter().map(|light| (0..PACKETS).map(|_| LightBlock::draw(*light, &mut source)).collect()).collect();
+    let tables: Vec<Vec<LightBlock>> = lights
+        .iter()
+        .map(|light| {
+            (0..PACKETS)
+                .map(|_| LightBlock::draw(*light, &mut source))
+                .collect()
+        })
+        .collect();
     let mut times = Vec::new();
     for subject in subjects {
         let scatter = subject.scatter(POSE);
         for (light, blocks) in lights.iter().zip(&tables) {
-            let at = Shading { lit: Lit { scatter: &scatter, light: *light }, xi: &xi, blocks };
+            let at = Shading {
+                lit: Lit {
+                    scatter: &scatter,
+                    light: *light,
+                },
+                xi: &xi,
+                blocks,
+            };
             times.push(row(*subject, &at, rounds));
             progress(times.len());
         }
@@ -111,7 +132,9 @@ pub(crate) fn measure(
 
 fn row(subject: RaySubject, at: &Shading<'_>, rounds: usize) -> RayTimes {
     // One-sample MIS first, then each pool with one ray and with the most.
-    let pools = SIZES.iter().flat_map(|count| [1, most_rays(*count)].map(|rays| Some((*count, rays))));
+    let pools = SIZES
+        .iter()
+        .flat_map(|count| [1, most_rays(*count)].map(|rays| Some((*count, rays))));
     let mut contenders: Vec<Option<(u32, u32)>> = [None].into_iter().chain(pools).collect();
     let found = in_turns(&mut contenders, rounds, |contender| {
         let work = || contender.map_or_else(|| at.mis(), |(count, rays)| at.pools(count, rays));
@@ -164,16 +187,26 @@ impl Shading<'_> {
     fn pools(&self, count: u32, rays: u32) -> usize {
         let each = count as usize;
         let (packets, pools) = (each.div_ceil(8), CANDIDATES / (2 * each));
-        let mut columns = PoolColumns { contribution: [[0.0; ROOM]; 3], weight: [0.0; ROOM] };
+        let mut columns = PoolColumns {
+            contribution: [[0.0; ROOM]; 3],
+            weight: [0.0; ROOM],
+        };
         for pool in 0..pools {
             for packet in 0..packets {
                 columns.store(8 * packet, &self.of_bsdf(pool * packets + packet), count);
             }
             // Over what is left of the last packet.
             for packet in 0..packets {
-                columns.store(each + 8 * packet, &self.of_light(pool * packets + packet), count);
+                columns.store(
+                    each + 8 * packet,
+                    &self.of_light(pool * packets + packet),
+                    count,
+                );
             }
-            let contribution = columns.contribution.each_ref().map(|column| &column[..2 * each]);
+            let contribution = columns
+                .contribution
+                .each_ref()
+                .map(|column| &column[..2 * each]);
             let u = (pool as f32 + 0.5) / pools as f32;
             for choice in choose(contribution, &columns.weight[..2 * each], rays, u) {
                 black_box(&choice);

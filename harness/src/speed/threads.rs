@@ -45,16 +45,26 @@ struct Chunk<const N: usize> {
 
 impl<const N: usize> Chunk<N> {
     fn new(rows: &[[f32; 3]]) -> Self {
-        let inputs =
-            core::array::from_fn(|k| rows.iter().map(|row| row[k]).cycle().take(rows.len() * REPEATS).collect());
-        Self { inputs, out: core::array::from_fn(|_| vec![0.0; rows.len() * REPEATS]) }
+        let inputs = core::array::from_fn(|k| {
+            rows.iter()
+                .map(|row| row[k])
+                .cycle()
+                .take(rows.len() * REPEATS)
+                .collect()
+        });
+        Self {
+            inputs,
+            out: core::array::from_fn(|_| vec![0.0; rows.len() * REPEATS]),
+        }
     }
 }
 
 /// One, two, four and so on up to all logical cores.
 fn thread_counts() -> Vec<usize> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut counts: Vec<usize> = core::iter::successors(Some(1), |n| Some(2 * n)).take_while(|n| *n < all).collect();
+    let mut counts: Vec<usize> = core::iter::successors(Some(1), |n| Some(2 * n))
+        .take_while(|n| *n < all)
+        .collect();
     counts.push(all);
     counts
 }
@@ -62,37 +72,81 @@ fn thread_counts() -> Vec<usize> {
 /// Measures evaluation and sampling of one model on every number of threads.
 pub(super) fn run(model: ModelId, inputs: &TimedInputs) -> Result<Vec<ThreadsResult>, ParamError> {
     let counts = thread_counts();
-    let pools: Result<Vec<_>, _> = counts.iter().map(|n| ThreadPoolBuilder::new().num_threads(*n).build()).collect();
+    let pools: Result<Vec<_>, _> = counts
+        .iter()
+        .map(|n| ThreadPoolBuilder::new().num_threads(*n).build())
+        .collect();
     // Where the system refuses threads there is nothing to report.
-    let Ok(pools) = pools else { return Ok(Vec::new()) };
+    let Ok(pools) = pools else {
+        return Ok(Vec::new());
+    };
     let gather = model.bsdf(&model.defaults())?.prepare(inputs.wo[0]);
     let wi: Vec<[f32; 3]> = inputs.wi.iter().map(|wi| wi.to_array()).collect();
     let eval = time(&pools, &wi, |chunk: &mut Chunk<4>| {
         let [r, g, b, pdf] = chunk.out.each_mut().map(Vec::as_mut_slice);
         // The columns of a chunk are of one length.
-        let _ = gather.eval_pdf_batch(chunk.inputs.each_ref().map(Vec::as_slice), EvalSlices { value: [r, g, b], pdf });
+        let _ = gather.eval_pdf_batch(
+            chunk.inputs.each_ref().map(Vec::as_slice),
+            EvalSlices {
+                value: [r, g, b],
+                pdf,
+            },
+        );
     });
     let sample = time(&pools, &inputs.xi, |chunk: &mut Chunk<11>| {
         let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = chunk.out.each_mut().map(Vec::as_mut_slice);
-        let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
+        let out = SampleSlices {
+            wi: [u, v, w],
+            value: [r, g, b],
+            pdf,
+            weight: [wr, wg, wb],
+            slot,
+        };
         let _ = gather.sample_batch(chunk.inputs.each_ref().map(Vec::as_slice), out);
     });
     let rows = |(op, ns): (TimedOp, Vec<Vec<f64>>)| {
         let of = |(threads, times): (&usize, &Vec<f64>)| {
-            let ratios: Vec<f64> = ns[0].iter().zip(times).map(|(one, many)| one / many).collect();
-            let ([_, ns, _], [speedup_q1, speedup, speedup_q3]) = (quartiles(times), quartiles(&ratios));
+            let ratios: Vec<f64> = ns[0]
+                .iter()
+                .zip(times)
+                .map(|(one, many)| one / many)
+                .collect();
+            let ([_, ns, _], [speedup_q1, speedup, speedup_q3]) =
+                (quartiles(times), quartiles(&ratios));
             let (model, level) = (model.name(), Level::detect().name());
-            ThreadsResult { op, model, level, threads: *threads, millions: 1e3 / ns, speedup, speedup_q1, speedup_q3 }
+            ThreadsResult {
+                op,
+                model,
+                level,
+                threads: *threads,
+                millions: 1e3 / ns,
+                speedup,
+                speedup_q1,
+                speedup_q3,
+            }
         };
         counts.iter().zip(&ns).map(of).collect::<Vec<_>>()
     };
-    Ok([(TimedOp::EvalPdf, eval), (TimedOp::Sample, sample)].into_iter().flat_map(rows).collect())
+    Ok([(TimedOp::EvalPdf, eval), (TimedOp::Sample, sample)]
+        .into_iter()
+        .flat_map(rows)
+        .collect())
 }
 
 /// Time per direction of each pool in each round, ns; the pools take turns.
-fn time<const N: usize>(pools: &[ThreadPool], rows: &[[f32; 3]], work: impl Fn(&mut Chunk<N>) + Sync) -> Vec<Vec<f64>> {
-    let most = pools.iter().map(ThreadPool::current_num_threads).max().unwrap_or(1);
-    let mut chunks: Vec<Chunk<N>> = (0..CHUNKS_A_THREAD * most).map(|_| Chunk::new(rows)).collect();
+fn time<const N: usize>(
+    pools: &[ThreadPool],
+    rows: &[[f32; 3]],
+    work: impl Fn(&mut Chunk<N>) + Sync,
+) -> Vec<Vec<f64>> {
+    let most = pools
+        .iter()
+        .map(ThreadPool::current_num_threads)
+        .max()
+        .unwrap_or(1);
+    let mut chunks: Vec<Chunk<N>> = (0..CHUNKS_A_THREAD * most)
+        .map(|_| Chunk::new(rows))
+        .collect();
     let directions = (chunks.len() * rows.len() * REPEATS) as f64;
     let mut ns = vec![Vec::new(); pools.len()];
     for round in 0..=ROUNDS {
@@ -117,13 +171,22 @@ mod tests {
     #[test]
     fn every_number_of_threads_has_its_row() {
         let counts = thread_counts();
-        assert!(counts[0] == 1 && counts.windows(2).all(|pair| pair[0] < pair[1]), "{counts:?}");
+        assert!(
+            counts[0] == 1 && counts.windows(2).all(|pair| pair[0] < pair[1]),
+            "{counts:?}"
+        );
         let inputs = crate::speed::draw(ModelId::Gaussian, 1);
         let rows = run(ModelId::Gaussian, &inputs).expect("the default is legal");
         assert_eq!(rows.len(), 2 * counts.len(), "a row is missing");
         for row in &rows {
-            assert!(row.millions > 0.0 && row.speedup > 0.0 && row.speedup_q1 <= row.speedup_q3, "{row:?}");
-            assert!(row.threads != 1 || row.speedup == 1.0, "one thread against itself: {row:?}");
+            assert!(
+                row.millions > 0.0 && row.speedup > 0.0 && row.speedup_q1 <= row.speedup_q3,
+                "{row:?}"
+            );
+            assert!(
+                row.threads != 1 || row.speedup == 1.0,
+                "one thread against itself: {row:?}"
+            );
         }
     }
 }

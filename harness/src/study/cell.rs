@@ -66,15 +66,25 @@ pub(super) fn measure(
     samplers: &[Sampler],
 ) -> Result<Vec<Measured>, ParamError> {
     let params = cell.params()?;
-    let wo = fibre_direction(f64::from(cell.theta_o_deg).to_radians(), PHI_O_DEG.to_radians()).as_vec3();
+    let wo = fibre_direction(
+        f64::from(cell.theta_o_deg).to_radians(),
+        PHI_O_DEG.to_radians(),
+    )
+    .as_vec3();
     let key = stream_id(&cell.values().map(|value| u64::from(value.to_bits())));
     let stream = |rest: &[u64]| Independent::new(seed, stream_id(&[SALT, key, stream_id(rest)]));
 
     let each_light = || lights.iter().copied().zip(0..);
     let draw = |(light, place): (&dyn Light, u64)| -> Vec<LightDraw> {
-        let packets = if is_drawn(place) { budget.light_samples / 8 } else { 0 };
+        let packets = if is_drawn(place) {
+            budget.light_samples / 8
+        } else {
+            0
+        };
         let mut from = stream(&[0, place]);
-        (0..packets).map(|_| LightDraw::next(light, &mut from)).collect()
+        (0..packets)
+            .map(|_| LightDraw::next(light, &mut from))
+            .collect()
     };
     let draws: Vec<Vec<LightDraw>> = each_light().map(draw).collect();
     let draw = |(light, place)| LightBlocks::draw(light, &mut stream(&[2, place]), budget.pools);
@@ -84,8 +94,10 @@ pub(super) fn measure(
         for &sampler in samplers {
             let scatter = Scatter::new(model, sampler, &params, wo);
             let mut from = stream(&[1, model.index(), sampler.index()]);
-            let empty =
-                Strata { sampled: Default::default(), perfect: (sampler == perfect::SOURCE).then(Default::default) };
+            let empty = Strata {
+                sampled: Default::default(),
+                perfect: (sampler == perfect::SOURCE).then(Default::default),
+            };
             let mut strata = vec![empty; lights.len()];
             let max_weight = by_sampler(&scatter, &mut from, budget, lights, &mut strata);
             for (light, strata) in strata.iter_mut().enumerate() {
@@ -101,9 +113,15 @@ pub(super) fn measure(
                 };
                 if budget.pools > 0 {
                     let mut from = stream(&[3, model.index(), sampler.index(), light as u64]);
-                    let lit = Lit { scatter: &scatter, light: lights[light] };
-                    let Unoccluded { mis, chosen: [small, large], bias } =
-                        unoccluded(lit, &blocks[light], SIZES, figures.mean, &mut from);
+                    let lit = Lit {
+                        scatter: &scatter,
+                        light: lights[light],
+                    };
+                    let Unoccluded {
+                        mis,
+                        chosen: [small, large],
+                        bias,
+                    } = unoccluded(lit, &blocks[light], SIZES, figures.mean, &mut from);
                     (of.rays, of.bias) = (Some([mis, small, large]), bias);
                 }
                 found.push(of);
@@ -151,9 +169,18 @@ fn by_sampler(
         let pdf = sample.pdf.max(f32x8::splat(f32::MIN_POSITIVE));
         for ((strata, light), place) in strata.iter_mut().zip(lights).zip(0..) {
             let seen = light.see8(&sample.wi);
-            let ratio = if is_drawn(place) { budget.ratio() } else { f32x8::ZERO };
+            let ratio = if is_drawn(place) {
+                budget.ratio()
+            } else {
+                f32x8::ZERO
+            };
             let y = widened(seen.radiance[0] * r + seen.radiance[1] * g + seen.radiance[2] * b);
-            strata.push(0, || widened(weight), y, widened(pdf / (pdf + ratio * seen.pdf)));
+            strata.push(
+                0,
+                || widened(weight),
+                y,
+                widened(pdf / (pdf + ratio * seen.pdf)),
+            );
         }
     }
     f64::from(max_weight.to_array().into_iter().fold(0.0, f32::max))
@@ -170,7 +197,12 @@ fn by_light(scatter: &Scatter, draws: &[LightDraw], budget: StudyBudget, strata:
         // In double precision: far from the lobes the density alone may be tiny.
         let over_pdf = |x: f64x8| pdf.simd_gt(f64x8::ZERO).select(x / pdf, f64x8::ZERO);
         let weight = || over_pdf((value[0] + value[1] + value[2]) * draw.cosine);
-        strata.push(1, weight, over_pdf(r + g + b), ratio * pdf / (pdf + ratio * draw.pdf));
+        strata.push(
+            1,
+            weight,
+            over_pdf(r + g + b),
+            ratio * pdf / (pdf + ratio * draw.pdf),
+        );
     }
 }
 
@@ -182,7 +214,9 @@ impl LightDraw {
         Self {
             wi: samples.map(|sample| sample.dir.as_vec3()).into(),
             cosine: f64x8::new(cosines.map(|cosine| cosine / 3.0)),
-            factor: core::array::from_fn(|c| f64x8::new(core::array::from_fn(|lane| factor(lane, c)))),
+            factor: core::array::from_fn(|c| {
+                f64x8::new(core::array::from_fn(|lane| factor(lane, c)))
+            }),
             // Directions that cannot be drawn are dark, and contribute nothing either way.
             pdf: f64x8::new(samples.map(|sample| sample.pdf.max(f64::MIN_POSITIVE))),
         }
@@ -201,11 +235,18 @@ mod tests {
     use crate::study::Grid;
     use hairis_instruments::light::{Constant, Sky};
 
-    const BUDGET: StudyBudget = StudyBudget { samples: 1 << 16, light_samples: 1 << 13, pools: 0 };
+    const BUDGET: StudyBudget = StudyBudget {
+        samples: 1 << 16,
+        light_samples: 1 << 13,
+        pools: 0,
+    };
 
     fn cell_of(beta_r_deg: f32, theta_o_deg: f32) -> Cell {
         let is = |cell: &Cell| cell.beta_r_deg == beta_r_deg && cell.theta_o_deg == theta_o_deg;
-        (0..Grid::QUICK.len()).map(|i| Grid::QUICK.cell(i)).find(is).expect("in the grid")
+        (0..Grid::QUICK.len())
+            .map(|i| Grid::QUICK.cell(i))
+            .find(is)
+            .expect("in the grid")
     }
 
     #[test]
@@ -222,9 +263,16 @@ mod tests {
                     let want = quadrature(model, &params, f64::from(theta_o), *light);
                     for (sampler, v) in SAMPLERS.into_iter().zip(want.v) {
                         let found = &found[(m * samplers + sampler as usize) * 5 + l];
-                        let place = format!("{beta_r} {theta_o} {model:?} {} {sampler:?}: {found:?}", light.name());
+                        let place = format!(
+                            "{beta_r} {theta_o} {model:?} {} {sampler:?}: {found:?}",
+                            light.name()
+                        );
                         let mean = found.figures.mean.z_score(want.value);
-                        assert!(mean.abs() < 5.0, "{place}: mean {} is {mean} errors off", want.value);
+                        assert!(
+                            mean.abs() < 5.0,
+                            "{place}: mean {} is {mean} errors off",
+                            want.value
+                        );
                         let z = found.figures.v.z_score(v);
                         assert!(z.abs() < 5.0, "{place}: V {v} is {z} errors off");
                         let error = found.figures.v.standard_error;
@@ -232,16 +280,35 @@ mod tests {
                     }
                     let found = &found[(ModelKind::ALL.len() * samplers + m) * 5 + l];
                     let v = perfect_v(model, &params, f64::from(theta_o), *light);
-                    let place = format!("{beta_r} {theta_o} {model:?} {} perfect: {found:?}", light.name());
-                    let Estimate { value, standard_error } = found.figures.v;
+                    let place = format!(
+                        "{beta_r} {theta_o} {model:?} {} perfect: {found:?}",
+                        light.name()
+                    );
+                    let Estimate {
+                        value,
+                        standard_error,
+                    } = found.figures.v;
                     if l == 0 {
-                        assert!(v.abs() < 1e-6 && value.abs() < 1e-12 && standard_error < 1e-9, "{place}: V {v}");
+                        assert!(
+                            v.abs() < 1e-6 && value.abs() < 1e-12 && standard_error < 1e-9,
+                            "{place}: V {v}"
+                        );
                         continue;
                     }
-                    let [mean, z] = [found.figures.mean.z_score(want.value), found.figures.v.z_score(v)];
-                    assert!(mean.abs() < 5.0, "{place}: mean {} is {mean} errors off", want.value);
+                    let [mean, z] = [
+                        found.figures.mean.z_score(want.value),
+                        found.figures.v.z_score(v),
+                    ];
+                    assert!(
+                        mean.abs() < 5.0,
+                        "{place}: mean {} is {mean} errors off",
+                        want.value
+                    );
                     assert!(z.abs() < 5.0, "{place}: V {v} is {z} errors off");
-                    assert!(standard_error < 0.05 * v, "{place}: an error of {standard_error}");
+                    assert!(
+                        standard_error < 0.05 * v,
+                        "{place}: an error of {standard_error}"
+                    );
                 }
             }
         }
@@ -250,7 +317,10 @@ mod tests {
     #[test]
     fn rays_agree_with_quadrature() {
         let lights = [lights(None), vec![&Constant]].concat();
-        let budget = StudyBudget { pools: 1024, ..BUDGET };
+        let budget = StudyBudget {
+            pools: 1024,
+            ..BUDGET
+        };
         for (beta_r, theta_o) in [(7.5, 45.0), (20.0, 85.0)] {
             let cell = cell_of(beta_r, theta_o);
             let params = cell.params().expect("accepted");
@@ -259,15 +329,30 @@ mod tests {
                 for (s, sampler) in SAMPLERS.into_iter().enumerate() {
                     for (l, light) in lights.iter().take(4).enumerate() {
                         let found = &found[(m * SAMPLERS.len() + s) * 5 + l];
-                        let [mis, pool] = ray_v(model, &params, f64::from(theta_o), *light, sampler);
-                        let place = format!("{beta_r} {theta_o} {model:?} {} {sampler:?}: {found:?}", light.name());
-                        let bias = found.bias.unwrap_or_else(|| panic!("{place}: no test of the mean"));
+                        let [mis, pool] =
+                            ray_v(model, &params, f64::from(theta_o), *light, sampler);
+                        let place = format!(
+                            "{beta_r} {theta_o} {model:?} {} {sampler:?}: {found:?}",
+                            light.name()
+                        );
+                        let bias = found
+                            .bias
+                            .unwrap_or_else(|| panic!("{place}: no test of the mean"));
                         assert!(bias.abs() < 5.0, "{place}: the mean is {bias} errors off");
                         let sizes = SIZES.map(|count| pool / f64::from(count));
-                        for (v, want) in found.rays.expect("measured").into_iter().zip([mis, sizes[0], sizes[1]]) {
+                        for (v, want) in found
+                            .rays
+                            .expect("measured")
+                            .into_iter()
+                            .zip([mis, sizes[0], sizes[1]])
+                        {
                             let z = v.z_score(want);
                             assert!(z.abs() < 5.0, "{place}: V {want} is {z} errors off");
-                            assert!(v.standard_error < 0.1 * want, "{place}: an error of {}", v.standard_error);
+                            assert!(
+                                v.standard_error < 0.1 * want,
+                                "{place}: an error of {}",
+                                v.standard_error
+                            );
                         }
                     }
                 }
@@ -279,18 +364,32 @@ mod tests {
     fn figures_depend_on_the_seed_and_the_cell_alone() {
         let sky = Sky::default().environment();
         let lights = lights(Some(&sky));
-        let budget = StudyBudget { samples: 256, light_samples: 64, pools: 4 };
-        let of = |seed, cell: &Cell| measure(seed, budget, &lights, cell, &Sampler::ALL).expect("accepted");
+        let budget = StudyBudget {
+            samples: 256,
+            light_samples: 64,
+            pools: 4,
+        };
+        let of = |seed, cell: &Cell| {
+            measure(seed, budget, &lights, cell, &Sampler::ALL).expect("accepted")
+        };
         let cell = cell_of(7.5, 45.0);
         let found = of(1, &cell);
         let drawn = 2 * Sampler::ALL.len() * 5;
         assert_eq!(found.len(), drawn + 2 * 5);
-        assert_eq!(found, of(1, &Cell { index: 7, ..cell }), "where the cell stands");
+        assert_eq!(
+            found,
+            of(1, &Cell { index: 7, ..cell }),
+            "where the cell stands"
+        );
         assert_ne!(found, of(2, &cell), "another seed");
         let alone = measure(1, budget, &lights, &cell, &[Sampler::Published]).expect("accepted");
         let among = |of: &Measured| found[..drawn].contains(of);
         assert!(alone.iter().all(among), "a sampler alone and among others");
-        assert_eq!(alone.len(), 10, "perfect sampling has nothing to be estimated from");
+        assert_eq!(
+            alone.len(),
+            10,
+            "perfect sampling has nothing to be estimated from"
+        );
         let source = measure(1, budget, &lights, &cell, &[perfect::SOURCE]).expect("accepted");
         assert_eq!(source[10..], found[drawn..], "its source alone");
     }

@@ -32,12 +32,18 @@ pub(super) fn time_ratio([base, other]: [Estimate; 2], more: Estimate) -> Estima
     // An error of what follows moves both times, and the ratio by the difference.
     let relative = (base.standard_error / a).hypot(other.standard_error / b);
     let relative = relative.hypot(more.standard_error * (1.0 / a - 1.0 / b));
-    Estimate { value, standard_error: value * relative }
+    Estimate {
+        value,
+        standard_error: value * relative,
+    }
 }
 
 /// Cells that are won, undecided and lost: gains in V, those of cells that are unsure being `None`, against the ratio of the
 /// times.
-pub(super) fn count_cells(gains: impl Iterator<Item = Option<Estimate>>, time: Estimate) -> [usize; 3] {
+pub(super) fn count_cells(
+    gains: impl Iterator<Item = Option<Estimate>>,
+    time: Estimate,
+) -> [usize; 3] {
     let mut cells = [0; 3];
     for gain in gains {
         cells[gain.map_or(Sign::Unsure, |gain| Sign::of(gain.times(&time))) as usize] += 1;
@@ -50,15 +56,25 @@ mod tests {
     use super::*;
 
     fn of(value: f64, standard_error: f64) -> Estimate {
-        Estimate { value, standard_error }
+        Estimate {
+            value,
+            standard_error,
+        }
     }
 
     #[test]
     fn words_need_two_standard_errors() {
         let sign = |value, error| Sign::of(of(value, error));
-        assert_eq!([sign(1.1, 0.04), sign(1.1, 0.06), sign(0.9, 0.04)], [Sign::Above, Sign::Unsure, Sign::Below]);
+        assert_eq!(
+            [sign(1.1, 0.04), sign(1.1, 0.06), sign(0.9, 0.04)],
+            [Sign::Above, Sign::Unsure, Sign::Below]
+        );
         assert_eq!(sign(f64::NAN, 0.1), Sign::Unsure, "no number tells nothing");
-        assert_eq!(sign(2.0, f64::NAN), Sign::Unsure, "nor does one without an error");
+        assert_eq!(
+            sign(2.0, f64::NAN),
+            Sign::Unsure,
+            "nor does one without an error"
+        );
     }
 
     #[test]
@@ -68,7 +84,10 @@ mod tests {
         assert_eq!(alone, base.ratio(&other));
         let with = time_ratio([base, other], of(20.0, 0.0));
         assert!((with.value - 0.75).abs() < 1e-15, "{with:?}");
-        assert!((with.standard_error / 0.75 - (0.1_f64 / 30.0).hypot(0.1 / 40.0)).abs() < 1e-15, "{with:?}");
+        assert!(
+            (with.standard_error / 0.75 - (0.1_f64 / 30.0).hypot(0.1 / 40.0)).abs() < 1e-15,
+            "{with:?}"
+        );
         // By what the ratio changes when the time that follows is one error longer.
         let moved = time_ratio([base, other], of(20.001, 0.0)).value - with.value;
         let error = time_ratio([of(10.0, 0.0), of(20.0, 0.0)], of(20.0, 0.001)).standard_error;
@@ -77,8 +96,18 @@ mod tests {
 
     #[test]
     fn cells_are_won_and_lost_beyond_the_errors_of_variance_and_time() {
-        let gains = [Some(of(2.1, 0.01)), Some(of(1.9, 0.01)), Some(of(2.01, 0.01)), Some(of(2.1, 0.1)), None];
+        let gains = [
+            Some(of(2.1, 0.01)),
+            Some(of(1.9, 0.01)),
+            Some(of(2.01, 0.01)),
+            Some(of(2.1, 0.1)),
+            None,
+        ];
         assert_eq!(count_cells(gains.into_iter(), of(0.5, 0.0)), [1, 3, 1]);
-        assert_eq!(count_cells(gains.into_iter(), of(0.5, 0.05)), [0, 5, 0], "times with errors of a tenth");
+        assert_eq!(
+            count_cells(gains.into_iter(), of(0.5, 0.05)),
+            [0, 5, 0],
+            "times with errors of a tenth"
+        );
     }
 }

@@ -86,7 +86,14 @@ impl Grid {
     }
 
     fn axes(&self) -> [&'static [f32]; 6] {
-        [self.beta_r_deg, self.gamma_tt_deg, self.gamma_g_deg, self.phi_g_deg, self.intensity_g, self.theta_o_deg]
+        [
+            self.beta_r_deg,
+            self.gamma_tt_deg,
+            self.gamma_g_deg,
+            self.phi_g_deg,
+            self.intensity_g,
+            self.theta_o_deg,
+        ]
     }
 
     /// Number of cells.
@@ -114,8 +121,23 @@ impl Grid {
             *value = axis[rest % axis.len()];
             rest /= axis.len();
         }
-        let [beta_r_deg, gamma_tt_deg, gamma_g_deg, phi_g_deg, intensity_g, theta_o_deg] = values;
-        Cell { index, beta_r_deg, gamma_tt_deg, gamma_g_deg, phi_g_deg, intensity_g, theta_o_deg }
+        let [
+            beta_r_deg,
+            gamma_tt_deg,
+            gamma_g_deg,
+            phi_g_deg,
+            intensity_g,
+            theta_o_deg,
+        ] = values;
+        Cell {
+            index,
+            beta_r_deg,
+            gamma_tt_deg,
+            gamma_g_deg,
+            phi_g_deg,
+            intensity_g,
+            theta_o_deg,
+        }
     }
 }
 
@@ -123,7 +145,14 @@ impl Cell {
     /// The values of the axes, in the order of [`Grid`]'s fields.
     #[must_use]
     pub const fn values(&self) -> [f32; 6] {
-        [self.beta_r_deg, self.gamma_tt_deg, self.gamma_g_deg, self.phi_g_deg, self.intensity_g, self.theta_o_deg]
+        [
+            self.beta_r_deg,
+            self.gamma_tt_deg,
+            self.gamma_g_deg,
+            self.phi_g_deg,
+            self.intensity_g,
+            self.theta_o_deg,
+        ]
     }
 
     /// The hair.
@@ -144,14 +173,26 @@ impl Cell {
 }
 
 /// Names of the columns of the axes.
-const AXES: [&str; 6] = ["beta_r_deg", "gamma_tt_deg", "gamma_g_deg", "phi_g_deg", "intensity_g", "theta_o_deg"];
+const AXES: [&str; 6] = [
+    "beta_r_deg",
+    "gamma_tt_deg",
+    "gamma_g_deg",
+    "phi_g_deg",
+    "intensity_g",
+    "theta_o_deg",
+];
 
 /// The columns that say what cell a row is of.
 pub(crate) fn columns_of<'a>(cells: impl Iterator<Item = &'a Cell> + Clone) -> Columns {
     let columns = Columns::default().whole("cell", cells.clone().map(|cell| cell.index));
-    (0..).zip(AXES).fold(columns, |columns, (axis, name): (usize, _)| {
-        columns.number(name, cells.clone().map(|cell| f64::from(cell.values()[axis])))
-    })
+    (0..)
+        .zip(AXES)
+        .fold(columns, |columns, (axis, name): (usize, _)| {
+            columns.number(
+                name,
+                cells.clone().map(|cell| f64::from(cell.values()[axis])),
+            )
+        })
 }
 
 #[cfg(test)]
@@ -162,7 +203,9 @@ mod tests {
     fn every_cell_is_there_once_and_accepted() {
         assert_eq!(Grid::FULL.len(), 3024);
         for grid in [Grid::FULL, Grid::QUICK] {
-            let mut seen: Vec<[u32; 6]> = (0..grid.len()).map(|i| grid.cell(i).values().map(f32::to_bits)).collect();
+            let mut seen: Vec<[u32; 6]> = (0..grid.len())
+                .map(|i| grid.cell(i).values().map(f32::to_bits))
+                .collect();
             for i in 0..grid.len() {
                 grid.cell(i).params().expect("within the ranges accepted");
             }
@@ -170,14 +213,25 @@ mod tests {
             seen.dedup();
             assert_eq!(seen.len(), grid.len());
         }
-        assert_eq!(Grid::FULL.cell(1).theta_o_deg, 15.0, "the last axis runs fastest");
+        assert_eq!(
+            Grid::FULL.cell(1).theta_o_deg,
+            15.0,
+            "the last axis runs fastest"
+        );
     }
 
     #[test]
     fn the_short_grid_is_part_of_the_whole_and_holds_the_default_hair() {
-        let full: Vec<[f32; 6]> = (0..Grid::FULL.len()).map(|i| Grid::FULL.cell(i).values()).collect();
-        let quick: Vec<Cell> = (0..Grid::QUICK.len()).map(|i| Grid::QUICK.cell(i)).collect();
-        assert!(quick.iter().all(|cell| full.contains(&cell.values())), "cells of its own");
+        let full: Vec<[f32; 6]> = (0..Grid::FULL.len())
+            .map(|i| Grid::FULL.cell(i).values())
+            .collect();
+        let quick: Vec<Cell> = (0..Grid::QUICK.len())
+            .map(|i| Grid::QUICK.cell(i))
+            .collect();
+        assert!(
+            quick.iter().all(|cell| full.contains(&cell.values())),
+            "cells of its own"
+        );
         let default = HairParams::default();
         let near = |a: f32, b: f32| (a - b).abs() <= 1e-6;
         let is_default = |cell: &&Cell| {
@@ -191,7 +245,11 @@ mod tests {
                 && near(a.phi_g, b.phi_g)
                 && a.intensity_g == b.intensity_g
         };
-        assert_eq!(quick.iter().filter(is_default).count(), 4, "the default hair from four inclinations");
+        assert_eq!(
+            quick.iter().filter(is_default).count(),
+            4,
+            "the default hair from four inclinations"
+        );
     }
 
     #[test]
@@ -199,7 +257,11 @@ mod tests {
         let params = Grid::FULL.cell(0).params().expect("accepted");
         let desc = params.desc();
         let deg = |rad: f32| f64::from(rad.to_degrees());
-        for (got, want) in [(desc.alpha_r, -7.5), (desc.alpha_tt, 3.75), (desc.alpha_trt, 11.25)] {
+        for (got, want) in [
+            (desc.alpha_r, -7.5),
+            (desc.alpha_tt, 3.75),
+            (desc.alpha_trt, 11.25),
+        ] {
             assert!((deg(got) - want).abs() < 1e-5, "{got} for {want}");
         }
         assert_eq!(

@@ -45,32 +45,55 @@ impl Study {
         };
         let grid = Grid::of(header.quick);
         let known = header.format == FORMAT
-            && header.models.iter().map(String::as_str).eq(ModelKind::ALL.map(ModelKind::name))
-            && header.samplers.iter().map(String::as_str).eq(Sampler::ALL.map(Sampler::name))
+            && header
+                .models
+                .iter()
+                .map(String::as_str)
+                .eq(ModelKind::ALL.map(ModelKind::name))
+            && header
+                .samplers
+                .iter()
+                .map(String::as_str)
+                .eq(Sampler::ALL.map(Sampler::name))
             && header.cells == grid.len();
         if !known {
             let version = &header.version;
-            let problem = format!("is of version {version}, whose grid or samplers differ from those of this program");
+            let problem = format!(
+                "is of version {version}, whose grid or samplers differ from those of this program"
+            );
             return Err(refuse(first, problem));
         }
         let mut found: Vec<Option<(&Path, &Finished)>> = vec![None; header.cells];
         let mut shards: Vec<Shard> = Vec::new();
         for (path, part) in parts {
             if let Some([field, this, that]) = part.header.difference(header) {
-                let problem = format!("belongs to a run with {field} {this}, but {} has {that}", first.display());
+                let problem = format!(
+                    "belongs to a run with {field} {this}, but {} has {that}",
+                    first.display()
+                );
                 return Err(refuse(path, problem));
             }
-            let shard = part.header.shard().map_err(|problem| refuse(path, problem))?;
+            let shard = part
+                .header
+                .shard()
+                .map_err(|problem| refuse(path, problem))?;
             shards.push(shard);
             let of = shards[0].of();
             if shard.of() != of {
-                let problem = format!("is one of {} parts, but {} is one of {of}", shard.of(), first.display());
+                let problem = format!(
+                    "is one of {} parts, but {} is one of {of}",
+                    shard.of(),
+                    first.display()
+                );
                 return Err(refuse(path, problem));
             }
             for cell in &part.finished {
                 match found[cell.cell] {
                     Some((other, before)) if before != cell => {
-                        return Err(refuse(path, format!("differs in cell {} from {}", cell.cell, other.display())));
+                        return Err(refuse(
+                            path,
+                            format!("differs in cell {} from {}", cell.cell, other.display()),
+                        ));
                     }
                     _ => found[cell.cell] = Some((path, cell)),
                 }
@@ -84,8 +107,15 @@ impl Study {
             set_bounds(&grid.cell(cell.cell), &mut measured, header.lights.len());
             measured
         });
-        let header = Header { shard: Shard::WHOLE.to_string(), ..header.clone() };
-        Ok(Self { cells: cells.collect(), header, times: Times::default() })
+        let header = Header {
+            shard: Shard::WHOLE.to_string(),
+            ..header.clone()
+        };
+        Ok(Self {
+            cells: cells.collect(),
+            header,
+            times: Times::default(),
+        })
     }
 
     /// Reads every part file in `dirs` and joins them.
@@ -122,13 +152,17 @@ impl Study {
     ///
     /// The reason why it has no place there.
     pub fn claims(&self, content: &[u8]) -> Result<Value, String> {
-        let claims = serde_json::from_slice(content).ok().filter(report::has_claims);
+        let claims = serde_json::from_slice(content)
+            .ok()
+            .filter(report::has_claims);
         let claims: Value = claims.ok_or("it is damaged")?;
         let header = json!(self.header);
         for name in ["seed", "quick", "cells", "samples"] {
             let (here, there) = (&header[name], &claims["settings"][name]);
             if here != there {
-                return Err(format!("it belongs to a run with {name} {there}, expected {here}"));
+                return Err(format!(
+                    "it belongs to a run with {name} {there}, expected {here}"
+                ));
             }
         }
         Ok(claims)
@@ -163,10 +197,17 @@ impl Study {
         let is_published = |row: &Row<'_>| row.of == published(row.of);
         let against_published = |row: &Row<'_>| match is_published(row) {
             true => Estimate::exact(1.0),
-            false => self.row(row.cell, published(row.of), row.light).v().ratio(&row.v()),
+            false => self
+                .row(row.cell, published(row.of), row.light)
+                .v()
+                .ratio(&row.v()),
         };
         let gains: Vec<Estimate> = rows.iter().map(against_published).collect();
-        let look_up = |row: &Row<'_>| row.of.1.map_or(Estimate::UNKNOWN, |_| self.times.look_up(row.light));
+        let look_up = |row: &Row<'_>| {
+            row.of
+                .1
+                .map_or(Estimate::UNKNOWN, |_| self.times.look_up(row.light))
+        };
         let mut columns = self
             .keys(&rows)
             .estimate("v", rows.iter().map(Row::v))
@@ -176,15 +217,27 @@ impl Study {
             let ns = |row: &Row<'_>| self.ns(row.of, per_point).value;
             columns = columns.number(format!("ns_at_{per_point}"), rows.iter().map(ns));
             for (prefix, counted) in [("", Counted::Sample), ("look_up_", Counted::LookUp)] {
-                let efficiency =
-                    |row: &Row<'_>| 1e9 / (row.v().value * (ns(row) + self.more(row.light, counted).value));
+                let efficiency = |row: &Row<'_>| {
+                    1e9 / (row.v().value * (ns(row) + self.more(row.light, counted).value))
+                };
                 let gain = |(row, gain): (&Row<'_>, &Estimate)| {
-                    let time = self.time_ratio([published(row.of), row.of], row.light, per_point, counted);
-                    if is_published(row) && !time.value.is_nan() { *gain } else { gain.times(&time) }
+                    let time =
+                        self.time_ratio([published(row.of), row.of], row.light, per_point, counted);
+                    if is_published(row) && !time.value.is_nan() {
+                        *gain
+                    } else {
+                        gain.times(&time)
+                    }
                 };
                 columns = columns
-                    .number(format!("{prefix}efficiency_at_{per_point}"), rows.iter().map(efficiency))
-                    .estimate(&format!("{prefix}gain_at_{per_point}"), rows.iter().zip(&gains).map(gain));
+                    .number(
+                        format!("{prefix}efficiency_at_{per_point}"),
+                        rows.iter().map(efficiency),
+                    )
+                    .estimate(
+                        &format!("{prefix}gain_at_{per_point}"),
+                        rows.iter().zip(&gains).map(gain),
+                    );
             }
         }
         rays::efficiencies(columns, &rows, self)
@@ -198,13 +251,22 @@ impl Study {
     ///
     /// [`Error::Output`] for the first that cannot be written.
     pub fn write(&self, dir: &Path, difference: &Difference) -> Result<(), Error> {
-        whole(&dir.join("times.csv"), |out| self.times.columns(self.lights()).write_csv(out))?;
-        let tables =
-            [("study", self.columns()), ("efficiency", self.efficiencies()), ("difference", difference.columns())];
+        whole(&dir.join("times.csv"), |out| {
+            self.times.columns(self.lights()).write_csv(out)
+        })?;
+        let tables = [
+            ("study", self.columns()),
+            ("efficiency", self.efficiencies()),
+            ("difference", difference.columns()),
+        ];
         for (name, columns) in tables {
-            whole(&dir.join(format!("{name}.csv")), |out| columns.write_csv(out))?;
+            whole(&dir.join(format!("{name}.csv")), |out| {
+                columns.write_csv(out)
+            })?;
             #[cfg(feature = "parquet")]
-            whole(&dir.join(format!("{name}.parquet")), |out| columns.write_parquet(self.notes(), out))?;
+            whole(&dir.join(format!("{name}.parquet")), |out| {
+                columns.write_parquet(self.notes(), out)
+            })?;
         }
         let settings = json!({ "study": self.header, "times_measured_on": machine!() });
         write_json(&dir.join("study.json"), &settings)
@@ -217,7 +279,9 @@ impl Study {
     fn notes(&self) -> Vec<(String, String)> {
         let header = serde_json::to_value(&self.header).unwrap_or_default();
         let fields = header.as_object().into_iter().flatten();
-        fields.map(|(key, value)| (format!("hairis.{key}"), value.to_string())).collect()
+        fields
+            .map(|(key, value)| (format!("hairis.{key}"), value.to_string()))
+            .collect()
     }
 }
 

@@ -76,10 +76,14 @@ impl Header {
     #[must_use]
     pub fn difference(&self, other: &Self) -> Option<[String; 3]> {
         let [ours, theirs] = [self, other].map(|of| serde_json::to_value(of).unwrap_or_default());
-        ours.as_object()?.iter().filter(|(name, _)| *name != "shard").find_map(|(name, here)| {
-            let there = &theirs[name];
-            (here != there).then(|| [name.replace('_', " "), here.to_string(), there.to_string()])
-        })
+        ours.as_object()?
+            .iter()
+            .filter(|(name, _)| *name != "shard")
+            .find_map(|(name, here)| {
+                let there = &theirs[name];
+                (here != there)
+                    .then(|| [name.replace('_', " "), here.to_string(), there.to_string()])
+            })
     }
 
     /// The shard.
@@ -88,7 +92,9 @@ impl Header {
     ///
     /// When it is none.
     pub fn shard(&self) -> Result<Shard, String> {
-        self.shard.parse().map_err(|problem| format!("shard {problem}"))
+        self.shard
+            .parse()
+            .map_err(|problem| format!("shard {problem}"))
     }
 }
 
@@ -112,22 +118,40 @@ impl Finished {
             let pair = |of: Estimate| [of.value, of.standard_error];
             let [mean, v, kl] = [of.figures.mean, of.figures.v, of.figures.kl].map(pair);
             let [mis, small, large] = of.rays.unwrap_or([Estimate::UNKNOWN; 3]).map(pair);
-            let pairs = [mean, v, kl, [of.max_weight, of.max_contribution], mis, small, large];
+            let pairs = [
+                mean,
+                v,
+                kl,
+                [of.max_weight, of.max_contribution],
+                mis,
+                small,
+                large,
+            ];
             let mut numbers = [of.bias; NUMBERS];
             for (number, x) in numbers.iter_mut().zip(pairs.as_flattened()) {
                 *number = Some(*x);
             }
             numbers.map(|x| x.filter(|x| x.is_finite()))
         };
-        Self { cell, rows: rows.iter().map(row).collect() }
+        Self {
+            cell,
+            rows: rows.iter().map(row).collect(),
+        }
     }
 
     pub(super) fn measured(&self) -> Vec<Measured> {
         let row = |row: &[Option<f64>; NUMBERS]| {
             let number = |place: usize| row[place].unwrap_or(f64::NAN);
-            let of = |place: usize| Estimate { value: number(place), standard_error: number(place + 1) };
+            let of = |place: usize| Estimate {
+                value: number(place),
+                standard_error: number(place + 1),
+            };
             Measured {
-                figures: Figures { mean: of(0), v: of(2), kl: of(4) },
+                figures: Figures {
+                    mean: of(0),
+                    v: of(2),
+                    kl: of(4),
+                },
                 max_weight: number(6),
                 weight_bound: None,
                 max_contribution: number(7),
@@ -156,15 +180,23 @@ pub struct Read {
 ///
 /// [`Error::Part`] if the folder cannot be read or holds none.
 pub fn find(dir: &Path) -> Result<Vec<PathBuf>, Error> {
-    let paths = |entries: fs::ReadDir| entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<PathBuf>>>();
-    let mut found =
-        fs::read_dir(dir).and_then(paths).map_err(|source| refuse(dir, format!("cannot read: {source}")))?;
+    let paths = |entries: fs::ReadDir| {
+        entries
+            .map(|entry| Ok(entry?.path()))
+            .collect::<io::Result<Vec<PathBuf>>>()
+    };
+    let mut found = fs::read_dir(dir)
+        .and_then(paths)
+        .map_err(|source| refuse(dir, format!("cannot read: {source}")))?;
     found.retain(|path| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         name.starts_with("cells-") && name.ends_with(".jsonl")
     });
     if found.is_empty() {
-        return Err(refuse(dir, "contains no part of a study (cells-I-of-N.jsonl)"));
+        return Err(refuse(
+            dir,
+            "contains no part of a study (cells-I-of-N.jsonl)",
+        ));
     }
     found.sort();
     Ok(found)
@@ -177,7 +209,8 @@ pub fn find(dir: &Path) -> Result<Vec<PathBuf>, Error> {
 /// [`Error::Part`] if it cannot be read, is none, or is damaged elsewhere than at its end.
 pub fn read(path: &Path) -> Result<Read, Error> {
     let bytes = fs::read(path).map_err(|source| refuse(path, format!("cannot read: {source}")))?;
-    parse(path, &bytes)?.ok_or_else(|| refuse(path, "is no part of a study: its header line is missing"))
+    parse(path, &bytes)?
+        .ok_or_else(|| refuse(path, "is no part of a study: its header line is missing"))
 }
 
 /// The part in `bytes`; `None` if not even its first line is whole.
@@ -190,18 +223,29 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
     // Parts of earlier versions have no checksums; their format tells them apart.
     let (first, is_right) = unseal(first).unwrap_or_else(|| (first.to_vec(), true));
     if !is_right {
-        return Err(refuse(path, "line 1 is damaged: its checksum is wrong; delete the file"));
+        return Err(refuse(
+            path,
+            "line 1 is damaged: its checksum is wrong; delete the file",
+        ));
     }
-    let header: Header = serde_json::from_slice(&first).map_err(|_| refuse(path, "is no part of a study"))?;
+    let header: Header =
+        serde_json::from_slice(&first).map_err(|_| refuse(path, "is no part of a study"))?;
     if header.format != FORMAT {
-        return Ok(Some(Read { header, finished: Vec::new(), whole: last + 1 }));
+        return Ok(Some(Read {
+            header,
+            finished: Vec::new(),
+            whole: last + 1,
+        }));
     }
     let shard = header.shard().map_err(|problem| refuse(path, problem))?;
     let mut finished = Vec::new();
     for (line, number) in lines.zip(2..) {
         let damaged = |problem: &str| {
             let advice = "delete the line, and `hairis study` computes it again";
-            refuse(path, format!("line {number} is damaged: {problem}; {advice}"))
+            refuse(
+                path,
+                format!("line {number} is damaged: {problem}; {advice}"),
+            )
         };
         let (line, is_right) = unseal(line).ok_or_else(|| damaged("not a cell"))?;
         if !is_right {
@@ -209,19 +253,33 @@ fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Read>, Error> {
         }
         let cell: Finished = serde_json::from_slice(&line).map_err(|_| damaged("not a cell"))?;
         if cell.cell >= header.cells || !shard.owns(cell.cell) {
-            return Err(damaged(&format!("cell {} is not of shard {shard}", cell.cell)));
+            return Err(damaged(&format!(
+                "cell {} is not of shard {shard}",
+                cell.cell
+            )));
         }
         if cell.rows.len() != header.rows() {
-            return Err(damaged(&format!("{} rows, expected {}", cell.rows.len(), header.rows())));
+            return Err(damaged(&format!(
+                "{} rows, expected {}",
+                cell.rows.len(),
+                header.rows()
+            )));
         }
         finished.push(cell);
     }
-    Ok(Some(Read { header, finished, whole: last + 1 }))
+    Ok(Some(Read {
+        header,
+        finished,
+        whole: last + 1,
+    }))
 }
 
 /// A part, or a folder of them, that cannot be used.
 pub(super) fn refuse(path: &Path, problem: impl Into<String>) -> Error {
-    Error::Part { path: path.to_owned(), problem: problem.into() }
+    Error::Part {
+        path: path.to_owned(),
+        problem: problem.into(),
+    }
 }
 
 /// A part file that is being written. The system frees it when the process ends, however it ends.
@@ -242,7 +300,12 @@ impl Part {
         let shard = header.shard().map_err(Error::Usage)?;
         let path = dir.join(format!("cells-{}-of-{}.jsonl", shard.index(), shard.of()));
         let output = Error::output(&path);
-        let mut file = File::options().append(true).create(true).read(true).open(&path).map_err(&output)?;
+        let mut file = File::options()
+            .append(true)
+            .create(true)
+            .read(true)
+            .open(&path)
+            .map_err(&output)?;
         // File systems without locks go without.
         if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
             return Err(refuse(&path, "another process is writing to it"));
@@ -253,7 +316,10 @@ impl Part {
             Some(read) => {
                 if let Some([field, was, is]) = read.header.difference(header) {
                     let run = format!("belongs to a run with {field} {was}, expected {is}");
-                    return Err(refuse(&path, format!("{run}; pass another --out or delete the file")));
+                    return Err(refuse(
+                        &path,
+                        format!("{run}; pass another --out or delete the file"),
+                    ));
                 }
                 (read.whole, read.finished)
             }
@@ -264,7 +330,13 @@ impl Part {
         if whole == 0 {
             file.write_all(&first).map_err(&output)?;
         }
-        Ok((Self { path: path.clone(), file: Mutex::new(Ok(file)) }, finished))
+        Ok((
+            Self {
+                path: path.clone(),
+                file: Mutex::new(Ok(file)),
+            },
+            finished,
+        ))
     }
 
     /// The file.
@@ -281,7 +353,10 @@ impl Part {
     pub fn keep(&self, finished: &Finished) -> Result<(), Error> {
         let output = Error::output(&self.path);
         let line = line(finished).map_err(&output)?;
-        let mut file = self.file.lock().map_err(|_| output(io::Error::other("another thread failed")))?;
+        let mut file = self
+            .file
+            .lock()
+            .map_err(|_| output(io::Error::other("another thread failed")))?;
         if let Err(cause) = file.as_mut().map_or(Ok(()), |file| file.write_all(&line)) {
             *file = Err(cause);
         }
@@ -299,14 +374,30 @@ mod tests {
 
     fn header(seed: u64) -> Header {
         let sky = Sky::default().environment();
-        Plan { seed, quick: true, environment: &sky }.header(Shard::WHOLE)
+        Plan {
+            seed,
+            quick: true,
+            environment: &sky,
+        }
+        .header(Shard::WHOLE)
     }
 
     fn finished(cell: usize, header: &Header) -> Finished {
         let mut row = [Some(0.1); NUMBERS];
-        row[1..8].copy_from_slice(&[Some(1e-300), None, None, Some(f64::MAX), Some(1.0 / 3.0), Some(0.0), None]);
+        row[1..8].copy_from_slice(&[
+            Some(1e-300),
+            None,
+            None,
+            Some(f64::MAX),
+            Some(1.0 / 3.0),
+            Some(0.0),
+            None,
+        ]);
         row[NUMBERS - 1] = None;
-        Finished { cell, rows: vec![row; header.rows()] }
+        Finished {
+            cell,
+            rows: vec![row; header.rows()],
+        }
     }
 
     #[test]
@@ -316,13 +407,24 @@ mod tests {
         let (part, before) = Part::open(dir.path(), &header).expect("new");
         assert!(before.is_empty());
         let cells = [finished(3, &header), finished(0, &header)];
-        cells.iter().for_each(|cell| part.keep(cell).expect("written"));
+        cells
+            .iter()
+            .for_each(|cell| part.keep(cell).expect("written"));
         let read = read(part.path()).expect("read");
-        assert_eq!((read.header, &read.finished[..]), (header.clone(), &cells[..]));
-        assert!(cells[0].measured()[0].figures.v.value.is_nan(), "what is no number stays none");
+        assert_eq!(
+            (read.header, &read.finished[..]),
+            (header.clone(), &cells[..])
+        );
+        assert!(
+            cells[0].measured()[0].figures.v.value.is_nan(),
+            "what is no number stays none"
+        );
         assert_eq!(Finished::of(3, &cells[0].measured()), cells[0]);
         let again = Part::open(dir.path(), &header);
-        assert!(matches!(&again, Err(Error::Part { problem, .. }) if problem.contains("another process")), "{again:?}");
+        assert!(
+            matches!(&again, Err(Error::Part { problem, .. }) if problem.contains("another process")),
+            "{again:?}"
+        );
         drop(part);
         let (_, before) = Part::open(dir.path(), &header).expect("free again");
         assert_eq!(before, cells);
@@ -352,23 +454,47 @@ mod tests {
     #[test]
     fn headers_tell_runs_apart_but_for_the_shard() {
         let (one, two) = (header(1), header(2));
-        assert_eq!(one.difference(&two), Some(["seed".to_owned(), "1".to_owned(), "2".to_owned()]));
-        assert_eq!(one.difference(&Header { shard: "2/3".to_owned(), ..one.clone() }), None);
+        assert_eq!(
+            one.difference(&two),
+            Some(["seed".to_owned(), "1".to_owned(), "2".to_owned()])
+        );
+        assert_eq!(
+            one.difference(&Header {
+                shard: "2/3".to_owned(),
+                ..one.clone()
+            }),
+            None
+        );
     }
 
     #[test]
     #[cfg(target_os = "linux")]
     fn nothing_follows_a_line_that_could_not_be_written() {
         let path = PathBuf::from("/dev/full");
-        let file = File::options().append(true).open(&path).expect("Linux has it");
-        let part = Part { path, file: Mutex::new(Ok(file)) };
+        let file = File::options()
+            .append(true)
+            .open(&path)
+            .expect("Linux has it");
+        let part = Part {
+            path,
+            file: Mutex::new(Ok(file)),
+        };
         let header = header(1);
         // Of several threads any may be the one whose error is reported: all of them name the cause.
         for _ in 0..3 {
-            let error = part.keep(&finished(0, &header)).expect_err("the device is full").to_string();
-            assert!(error.starts_with("cannot write /dev/full: No space left"), "{error}");
+            let error = part
+                .keep(&finished(0, &header))
+                .expect_err("the device is full")
+                .to_string();
+            assert!(
+                error.starts_with("cannot write /dev/full: No space left"),
+                "{error}"
+            );
         }
-        assert!(part.file.lock().is_ok_and(|file| file.is_err()), "nothing is written after that");
+        assert!(
+            part.file.lock().is_ok_and(|file| file.is_err()),
+            "nothing is written after that"
+        );
     }
 
     #[test]
@@ -377,18 +503,34 @@ mod tests {
         let header = header(1);
         let path = {
             let (part, _) = Part::open(dir.path(), &header).expect("new");
-            [2, 5].into_iter().for_each(|cell| part.keep(&finished(cell, &header)).expect("written"));
+            [2, 5]
+                .into_iter()
+                .for_each(|cell| part.keep(&finished(cell, &header)).expect("written"));
             part.path().to_owned()
         };
         let bytes = fs::read(&path).expect("read");
         let mut places = 0;
         // Every digit of the file, header and checksums included, but for those of the format's name.
-        for place in (40..bytes.len()).filter(|place| bytes[*place].is_ascii_digit()).step_by(7) {
+        for place in (40..bytes.len())
+            .filter(|place| bytes[*place].is_ascii_digit())
+            .step_by(7)
+        {
             let mut changed = bytes.clone();
-            changed[place] = if changed[place] == b'9' { b'8' } else { changed[place] + 1 };
-            let error = parse(&path, &changed).expect_err(&format!("byte {place}")).to_string();
+            changed[place] = if changed[place] == b'9' {
+                b'8'
+            } else {
+                changed[place] + 1
+            };
+            let error = parse(&path, &changed)
+                .expect_err(&format!("byte {place}"))
+                .to_string();
             let line = 1 + bytes[..place].iter().filter(|byte| **byte == b'\n').count();
-            assert!(error.contains(&format!("line {line} is damaged: its checksum is wrong; delete the")), "{error}");
+            assert!(
+                error.contains(&format!(
+                    "line {line} is damaged: its checksum is wrong; delete the"
+                )),
+                "{error}"
+            );
             places += 1;
         }
         assert!(places > 100, "{places}");

@@ -45,17 +45,37 @@ impl PerfectTally {
 pub(super) fn measured(strata: &[PerfectTally; 2]) -> Measured {
     let ([z, a, b, c], covariances) = joined(strata);
     let estimate = |value, gradient: [f64; 4]| {
-        let row = |i: usize| (0..4).map(|j| gradient[i] * gradient[j] * covariances[i][j]).sum::<f64>();
-        Estimate { value, standard_error: (0..4).map(row).sum::<f64>().max(0.0).sqrt() }
+        let row = |i: usize| {
+            (0..4)
+                .map(|j| gradient[i] * gradient[j] * covariances[i][j])
+                .sum::<f64>()
+        };
+        Estimate {
+            value,
+            standard_error: (0..4).map(row).sum::<f64>().max(0.0).sqrt(),
+        }
     };
     let square = a * a;
     let figures = Figures {
         mean: estimate(a, [0.0, 1.0, 0.0, 0.0]),
-        v: estimate(z * b / square - 1.0, [b / square, -2.0 * z * b / (square * a), z / square, 0.0]),
-        kl: estimate(c / a + z.ln() - a.ln(), [1.0 / z, -(c / a + 1.0) / a, 0.0, 1.0 / a]),
+        v: estimate(
+            z * b / square - 1.0,
+            [b / square, -2.0 * z * b / (square * a), z / square, 0.0],
+        ),
+        kl: estimate(
+            c / a + z.ln() - a.ln(),
+            [1.0 / z, -(c / a + 1.0) / a, 0.0, 1.0 / a],
+        ),
     };
     let max_contribution = z * largest(strata) / a;
-    Measured { figures, max_weight: z, weight_bound: None, max_contribution, rays: None, bias: None }
+    Measured {
+        figures,
+        max_weight: z,
+        weight_bound: None,
+        max_contribution,
+        rays: None,
+        bias: None,
+    }
 }
 
 #[cfg(test)]
@@ -91,7 +111,10 @@ mod tests {
         };
         for _ in 0..500 {
             // The root of x/2 + x^2/2 = xi.
-            let [w, y, m] = of(core::array::from_fn(|_| (0.25 + 2.0 * from.next_f64()).sqrt() - 0.5), 1.0);
+            let [w, y, m] = of(
+                core::array::from_fn(|_| (0.25 + 2.0 * from.next_f64()).sqrt() - 0.5),
+                1.0,
+            );
             strata[0].push(w, w, y, m);
         }
         for _ in 0..500 * ratio {
@@ -110,8 +133,16 @@ mod tests {
         let kl = over(&|x| f(x) * radiance(x) / mean * (F * radiance(x) / mean).ln());
         for ratio in [0, 1, 3] {
             assert_honest(ratio, [mean, v, kl], |run| {
-                let Measured { figures, max_weight, max_contribution, .. } = estimated(run, ratio);
-                assert!((max_weight / F - 1.0).abs() < 0.05, "every weight is F: {max_weight}");
+                let Measured {
+                    figures,
+                    max_weight,
+                    max_contribution,
+                    ..
+                } = estimated(run, ratio);
+                assert!(
+                    (max_weight / F - 1.0).abs() < 0.05,
+                    "every weight is F: {max_weight}"
+                );
                 let most = max_contribution * figures.mean.value / max_weight;
                 assert!(most > 2.5 && most <= 3.0, "the brightest of 1 to 3: {most}");
                 figures
@@ -125,15 +156,27 @@ mod tests {
         let one = f64x8::splat(1.0);
         tally.push(one, one, f64x8::ZERO, one);
         let dark = measured(&[tally, PerfectTally::default()]).figures;
-        assert!(dark.mean.value == 0.0 && dark.v.value.is_nan() && dark.kl.value.is_nan(), "{dark:?}");
+        assert!(
+            dark.mean.value == 0.0 && dark.v.value.is_nan() && dark.kl.value.is_nan(),
+            "{dark:?}"
+        );
         let mut tally = PerfectTally::default();
         for k in 1..9 {
             let w = f64x8::new(core::array::from_fn(|lane| 1.0 / (lane + k) as f64));
             tally.push(w, w, w + w, one);
         }
         let even = measured(&[tally, PerfectTally::default()]).figures;
-        assert!(even.v.value.abs() < 1e-14 && even.v.standard_error < 1e-7, "{even:?}");
-        assert!(even.kl.value.abs() < 1e-14 && even.kl.standard_error < 1e-7, "{even:?}");
-        assert!(even.mean.standard_error > 0.01, "weights that vary: {even:?}");
+        assert!(
+            even.v.value.abs() < 1e-14 && even.v.standard_error < 1e-7,
+            "{even:?}"
+        );
+        assert!(
+            even.kl.value.abs() < 1e-14 && even.kl.standard_error < 1e-7,
+            "{even:?}"
+        );
+        assert!(
+            even.mean.standard_error > 0.01,
+            "weights that vary: {even:?}"
+        );
     }
 }

@@ -20,9 +20,21 @@ pub(super) struct By {
 
 /// The estimators of a ray: one-sample MIS, and choices from pools of [`SIZES`].
 pub(super) const RAYS: [By; 1 + SIZES.len()] = [
-    By { name: "MIS", column: "mis", candidates_each: None },
-    By { name: "4 + 4", column: "4_4", candidates_each: Some(SIZES[0]) },
-    By { name: "8 + 8", column: "8_8", candidates_each: Some(SIZES[1]) },
+    By {
+        name: "MIS",
+        column: "mis",
+        candidates_each: None,
+    },
+    By {
+        name: "4 + 4",
+        column: "4_4",
+        candidates_each: Some(SIZES[0]),
+    },
+    By {
+        name: "8 + 8",
+        column: "8_8",
+        candidates_each: Some(SIZES[1]),
+    },
 ];
 
 /// Places in [`RAYS`] of one-sample MIS and of the pools.
@@ -49,12 +61,18 @@ pub(super) fn columns(mut columns: Columns, rows: &[Row<'_>]) -> Columns {
             columns = columns.number(name, v().map(|v| occluded(v, share).value));
         }
     }
-    columns.number("pool_bias", rows.iter().map(|row| row.measured.bias.unwrap_or(f64::NAN)))
+    columns.number(
+        "pool_bias",
+        rows.iter().map(|row| row.measured.bias.unwrap_or(f64::NAN)),
+    )
 }
 
 /// Adds the columns of times and of gains over one-sample MIS in equal time, half of the directions visible.
 pub(super) fn efficiencies(mut columns: Columns, rows: &[Row<'_>], study: &Study) -> Columns {
-    let ns: Vec<_> = rows.iter().map(|row| [0, 1, 2].map(|by| study.ray_ns(row.of, row.light, by))).collect();
+    let ns: Vec<_> = rows
+        .iter()
+        .map(|row| [0, 1, 2].map(|by| study.ray_ns(row.of, row.light, by)))
+        .collect();
     for (by, By { column, .. }) in RAYS.iter().enumerate() {
         columns = columns.estimate(&format!("ray_ns_{column}"), ns.iter().map(|ns| ns[by]));
     }

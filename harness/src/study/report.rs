@@ -29,7 +29,8 @@ impl Study {
             header.cells,
             header.samplers.len(),
             header.lights.len(),
-            findings::map(&header.lights).map_or_else(String::new, |map| format!(", of which the map is {map}"))
+            findings::map(&header.lights)
+                .map_or_else(String::new, |map| format!(", of which the map is {map}"))
         );
         let claims = claims.and_then(tables::claims);
         let method = self.method(claims.is_some());
@@ -64,8 +65,14 @@ impl Study {
              {SIGMA_DEG}°: what is left of a difference in a light that wide."
         );
         vec![
-            Section::new("Variance").paragraph(variance).figures(charts::variances(self)).figures(charts::limits(self)),
-            Section::new("Efficiency").paragraph(time).figures(charts::efficiencies(self)).figures(charts::gains(self)),
+            Section::new("Variance")
+                .paragraph(variance)
+                .figures(charts::variances(self))
+                .figures(charts::limits(self)),
+            Section::new("Efficiency")
+                .paragraph(time)
+                .figures(charts::efficiencies(self))
+                .figures(charts::gains(self)),
             Section::new("How the gains spread").figures(charts::distributions(self)),
             Section::new("Largest weights").figures(charts::weights(self)),
             rays::section(self),
@@ -76,7 +83,9 @@ impl Study {
                 .heading("Over the grid")
                 .figures(looks::charts(difference))
                 .tables(difference.tables()),
-            Section::new("Tables").tables(self.summary()).tables(tables::all(self)),
+            Section::new("Tables")
+                .tables(self.summary())
+                .tables(tables::all(self)),
         ]
     }
 
@@ -106,10 +115,22 @@ impl Study {
         let others = &others[..others.len() - usize::from(has_claims)];
         let section = Section::new("Method and machine").paragraph(cells);
         others.iter().fold(section, Section::paragraph).facts(&[
-            ["command", &format!("hairis study{}", if header.quick { " --quick" } else { "" })],
+            [
+                "command",
+                &format!("hairis study{}", if header.quick { " --quick" } else { "" }),
+            ],
             ["seed", &header.seed.to_string()],
-            ["samples", &format!("{} a sampler and cell, {} a light and cell", header.samples, header.light_samples)],
-            ["cells computed by", &format!("version {}, commit {}", header.version, header.commit)],
+            [
+                "samples",
+                &format!(
+                    "{} a sampler and cell, {} a light and cell",
+                    header.samples, header.light_samples
+                ),
+            ],
+            [
+                "cells computed by",
+                &format!("version {}, commit {}", header.version, header.commit),
+            ],
             ["cells computed on", &header.level],
             ["environment", &format!("digest {}", header.environment)],
             ["times measured on", &machine!().summary()],

@@ -26,8 +26,12 @@ pub(super) fn samplers() -> impl Iterator<Item = Strategy> + Clone {
 }
 
 /// Each of some strategies on each model.
-pub(super) fn on_each_model(of: impl Iterator<Item = Strategy> + Clone) -> impl Iterator<Item = Estimator> + Clone {
-    ModelKind::ALL.into_iter().flat_map(move |model| of.clone().map(move |strategy| (model, strategy)))
+pub(super) fn on_each_model(
+    of: impl Iterator<Item = Strategy> + Clone,
+) -> impl Iterator<Item = Estimator> + Clone {
+    ModelKind::ALL
+        .into_iter()
+        .flat_map(move |model| of.clone().map(move |strategy| (model, strategy)))
 }
 
 /// Name in reports and in rows.
@@ -69,9 +73,13 @@ const fn place((model, strategy): Estimator, light: usize, lights: usize) -> usi
 pub(super) fn set_bounds(cell: &Cell, measured: &mut [Measured], lights: usize) {
     let (params, theta_o) = (cell.params().ok(), f64::from(cell.theta_o_deg).to_radians());
     for (model, strategy) in on_each_model(samplers()) {
-        let bound = strategy.zip(params.as_ref()).and_then(|(of, params)| weight_bound(model, of, params, theta_o));
+        let bound = strategy
+            .zip(params.as_ref())
+            .and_then(|(of, params)| weight_bound(model, of, params, theta_o));
         let first = place((model, strategy), 0, lights);
-        measured[first..first + lights].iter_mut().for_each(|row| row.weight_bound = bound);
+        measured[first..first + lights]
+            .iter_mut()
+            .for_each(|row| row.weight_bound = bound);
     }
 }
 
@@ -83,12 +91,20 @@ impl Study {
 
     /// The row of one estimator under one light in a cell.
     pub(super) fn row(&self, cell: Cell, of: Estimator, light: usize) -> Row<'_> {
-        Row { cell, of, light, measured: &self.cells[cell.index][place(of, light, self.lights().len())] }
+        Row {
+            cell,
+            of,
+            light,
+            measured: &self.cells[cell.index][place(of, light, self.lights().len())],
+        }
     }
 
     /// The rows of one estimator under one light, one per cell.
     pub(super) fn rows_of(&self, of: Estimator, light: usize) -> impl Iterator<Item = Row<'_>> {
-        self.grid().cells().take(self.cells.len()).map(move |cell| self.row(cell, of, light))
+        self.grid()
+            .cells()
+            .take(self.cells.len())
+            .map(move |cell| self.row(cell, of, light))
     }
 
     /// Every row, in order: cells outermost, then models, strategies and lights.
@@ -107,7 +123,10 @@ impl Study {
         columns_of(rows.iter().map(|row| &row.cell))
             .text("model", rows.iter().map(|row| row.of.0.name()))
             .text("sampler", rows.iter().map(|row| name(row.of.1)))
-            .text("light", rows.iter().map(|row| self.lights()[row.light].clone()))
+            .text(
+                "light",
+                rows.iter().map(|row| self.lights()[row.light].clone()),
+            )
     }
 
     /// The rows: what depends on the plan and the build alone.
@@ -137,10 +156,19 @@ impl Study {
             .keys(&rows)
             .estimate("mean", rows.iter().map(|row| row.measured.figures.mean))
             .estimate("v", rows.iter().map(Row::v))
-            .number("ess_per_1000", figures(|m| 1_000.0 / (1.0 + m.figures.v.value)))
-            .number("samples_for_1_percent", figures(|m| m.figures.v.value * 1e4))
+            .number(
+                "ess_per_1000",
+                figures(|m| 1_000.0 / (1.0 + m.figures.v.value)),
+            )
+            .number(
+                "samples_for_1_percent",
+                figures(|m| m.figures.v.value * 1e4),
+            )
             .number("max_weight", figures(|m| m.max_weight))
-            .number("weight_bound", figures(|m| m.weight_bound.unwrap_or(f64::NAN)))
+            .number(
+                "weight_bound",
+                figures(|m| m.weight_bound.unwrap_or(f64::NAN)),
+            )
             .number("max_contribution", figures(|m| m.max_contribution))
             .estimate("kl", rows.iter().map(|row| row.measured.figures.kl));
         rays::columns(columns, &rows)

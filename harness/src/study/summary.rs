@@ -21,7 +21,12 @@ pub(super) const fn on_gaussian((_, strategy): Estimator) -> Estimator {
 
 /// Those of some strategies that are not the published sampler, on each model.
 fn over_published(of: impl Iterator<Item = Strategy> + Clone) -> Compared {
-    (published, on_each_model(of).filter(|(_, strategy)| *strategy != Some(Sampler::Published)).collect())
+    (
+        published,
+        on_each_model(of)
+            .filter(|(_, strategy)| *strategy != Some(Sampler::Published))
+            .collect(),
+    )
 }
 
 impl Study {
@@ -30,7 +35,12 @@ impl Study {
     #[must_use]
     pub fn summary(&self) -> Vec<Table> {
         let (runnable, all) = (over_published(samplers()), over_published(strategies()));
-        let models: Compared = (on_gaussian, samplers().map(|strategy| (ModelKind::Cauchy, strategy)).collect());
+        let models: Compared = (
+            on_gaussian,
+            samplers()
+                .map(|strategy| (ModelKind::Cauchy, strategy))
+                .collect(),
+        );
         let (percent, cells) = (100.0 * MAX_RELATIVE_ERROR, self.cells.len());
         let above = |who: &str| {
             format!(
@@ -45,35 +55,68 @@ impl Study {
             "Times of the default hair, eight lanes, one thread, on this machine. ±: one standard error, that of the times \
              included. Won and lost: by more than two standard errors, of {cells} cells; those left out above are undecided."
         );
-        let look_up = "The time of a look-up of the light in its direction is added to that of every sample.";
-        let in_time = "The same in equal time, set-up included: median (cells won / undecided / lost)";
-        let with_look_up = "The same with a look-up of the light: median (cells won / undecided / lost)";
+        let look_up =
+            "The time of a look-up of the light in its direction is added to that of every sample.";
+        let in_time =
+            "The same in equal time, set-up included: median (cells won / undecided / lost)";
+        let with_look_up =
+            "The same with a look-up of the light: median (cells won / undecided / lost)";
         vec![
-            self.gains("V of the published sampler over V of another, over the grid", &all)
-                .note(above("the published sampler"))
-                .note(perfect),
-            self.gains_in_time(in_time, &runnable, Counted::Sample).note(&*timed),
-            self.gains_in_time(with_look_up, &runnable, Counted::LookUp).note(look_up),
-            self.gains("V on the Gaussian model over V on the Cauchy model, over the grid", &models)
-                .note(above("on the Gaussian model")),
-            self.gains_in_time(in_time, &models, Counted::Sample).note(&*timed),
+            self.gains(
+                "V of the published sampler over V of another, over the grid",
+                &all,
+            )
+            .note(above("the published sampler"))
+            .note(perfect),
+            self.gains_in_time(in_time, &runnable, Counted::Sample)
+                .note(&*timed),
+            self.gains_in_time(with_look_up, &runnable, Counted::LookUp)
+                .note(look_up),
+            self.gains(
+                "V on the Gaussian model over V on the Cauchy model, over the grid",
+                &models,
+            )
+            .note(above("on the Gaussian model")),
+            self.gains_in_time(in_time, &models, Counted::Sample)
+                .note(&*timed),
         ]
     }
 
     /// Gains in V.
     fn gains(&self, title: &str, (base, others): &Compared) -> Table {
-        let headers = ["median", "cells above 1 / below 1", "geometric mean", "least", "most", "left out"];
-        self.table(title, headers, others.iter().copied(), &|other, light| match self.gain([base(other), other], light)
-        {
-            Some(gain) => {
-                let [mean, least, most] = [gain.geometric_mean, gain.least, gain.most].map(shown);
-                let shares = gain.shares.map(number::percent).join(" / ");
-                vec![shown(gain.median), shares, mean, least, most, gain.unsure.to_string()]
-            }
-            // Perfect sampling under constant light.
-            None if self.rows_of(other, light).all(|row| row.v().value == 0.0) => vec!["no limit".to_owned()],
-            None => ["", "", "", "", "", "all"].map(str::to_owned).into(),
-        })
+        let headers = [
+            "median",
+            "cells above 1 / below 1",
+            "geometric mean",
+            "least",
+            "most",
+            "left out",
+        ];
+        self.table(
+            title,
+            headers,
+            others.iter().copied(),
+            &|other, light| match self.gain([base(other), other], light) {
+                Some(gain) => {
+                    let [mean, least, most] =
+                        [gain.geometric_mean, gain.least, gain.most].map(shown);
+                    let shares = gain.shares.map(number::percent).join(" / ");
+                    vec![
+                        shown(gain.median),
+                        shares,
+                        mean,
+                        least,
+                        most,
+                        gain.unsure.to_string(),
+                    ]
+                }
+                // Perfect sampling under constant light.
+                None if self.rows_of(other, light).all(|row| row.v().value == 0.0) => {
+                    vec!["no limit".to_owned()]
+                }
+                None => ["", "", "", "", "", "all"].map(str::to_owned).into(),
+            },
+        )
     }
 
     /// Gains in equal time, a column for each number of samples per point.
@@ -86,8 +129,11 @@ impl Study {
                 if time.value.is_nan() {
                     return "not timed".to_owned();
                 }
-                let cells = count_cells(self.pairs(pair, light).map(sure_ratio), time).map(|cells| cells.to_string());
-                let median = self.gain(pair, light).map_or_else(String::new, |gain| shown(gain.median.times(&time)));
+                let cells = count_cells(self.pairs(pair, light).map(sure_ratio), time)
+                    .map(|cells| cells.to_string());
+                let median = self
+                    .gain(pair, light)
+                    .map_or_else(String::new, |gain| shown(gain.median.times(&time)));
                 format!("{median} ({})", cells.join(" / "))
             };
             PER_POINT.map(entry).into()

@@ -39,7 +39,12 @@ pub(super) struct Figures {
 impl<const N: usize> Default for Sums<N> {
     fn default() -> Self {
         let zero = [f64x8::ZERO; N];
-        Self { sums: zero, products: [zero; N], count: 0, largest: f64x8::ZERO }
+        Self {
+            sums: zero,
+            products: [zero; N],
+            count: 0,
+            largest: f64x8::ZERO,
+        }
     }
 }
 
@@ -70,8 +75,9 @@ impl<const N: usize> Sums<N> {
         let n = self.count as f64;
         let mean = |sum: f64x8| sum.to_array().iter().sum::<f64>() / n;
         let means = self.sums.map(mean);
-        let covariance =
-            |i: usize, j: usize| (mean(self.products[i.max(j)][i.min(j)]) - means[i] * means[j]) / (n - 1.0);
+        let covariance = |i: usize, j: usize| {
+            (mean(self.products[i.max(j)][i.min(j)]) - means[i] * means[j]) / (n - 1.0)
+        };
         (means, from_fn(|i| from_fn(|j| covariance(i, j))))
     }
 }
@@ -82,7 +88,10 @@ pub(super) fn joined<const N: usize>(strata: &[Sums<N>]) -> ([f64; N], [[f64; N]
     for (m, s) in strata.iter().map(Sums::means) {
         for i in 0..N {
             means[i] += m[i];
-            covariances[i].iter_mut().zip(s[i]).for_each(|(sum, x)| *sum += x);
+            covariances[i]
+                .iter_mut()
+                .zip(s[i])
+                .for_each(|(sum, x)| *sum += x);
         }
     }
     (means, covariances)
@@ -90,7 +99,10 @@ pub(super) fn joined<const N: usize>(strata: &[Sums<N>]) -> ([f64; N], [[f64; N]
 
 /// The largest number that was counted.
 pub(super) fn largest<const N: usize>(strata: &[Sums<N>]) -> f64 {
-    strata.iter().flat_map(|sums| sums.largest.to_array()).fold(0.0, f64::max)
+    strata
+        .iter()
+        .flat_map(|sums| sums.largest.to_array())
+        .fold(0.0, f64::max)
 }
 
 impl Tally {
@@ -113,14 +125,23 @@ impl Tally {
 /// Standard errors are those of the delta method.
 pub(super) fn figures(strata: &[Tally]) -> Figures {
     let ([a, b, c], [[aa, ab, ac], [_, bb, _], [_, _, cc]]) = joined(strata);
-    let of = |value, variance: f64| Estimate { value, standard_error: variance.max(0.0).sqrt() };
+    let of = |value, variance: f64| Estimate {
+        value,
+        standard_error: variance.max(0.0).sqrt(),
+    };
     // Gradients of b/a^2 - 1 and of c/a - ln a, by the means they depend on.
     let (v_a, v_b) = (-2.0 * b / (a * a * a), 1.0 / (a * a));
     let (kl_a, kl_c) = (-(c / a + 1.0) / a, 1.0 / a);
     Figures {
         mean: of(a, aa),
-        v: of(b / (a * a) - 1.0, v_a * v_a * aa + 2.0 * v_a * v_b * ab + v_b * v_b * bb),
-        kl: of(c / a - a.ln(), kl_a * kl_a * aa + 2.0 * kl_a * kl_c * ac + kl_c * kl_c * cc),
+        v: of(
+            b / (a * a) - 1.0,
+            v_a * v_a * aa + 2.0 * v_a * v_b * ab + v_b * v_b * bb,
+        ),
+        kl: of(
+            c / a - a.ln(),
+            kl_a * kl_a * aa + 2.0 * kl_a * kl_c * ac + kl_c * kl_c * cc,
+        ),
     }
 }
 
@@ -145,9 +166,17 @@ pub(super) mod tests {
         }
         let (got, want) = (figures(&[tally]), moments.relative_variance());
         assert!((got.mean.value / moments.mean() - 1.0).abs() < 1e-12);
-        assert!((got.mean.standard_error / moments.mean_estimate().standard_error - 1.0).abs() < 1e-9);
-        assert!((got.v.value / want.value - 1.0).abs() < 1e-3, "n or n - 1: {got:?} {want:?}");
-        assert!((got.v.standard_error / want.standard_error - 1.0).abs() < 1e-3, "{got:?} {want:?}");
+        assert!(
+            (got.mean.standard_error / moments.mean_estimate().standard_error - 1.0).abs() < 1e-9
+        );
+        assert!(
+            (got.v.value / want.value - 1.0).abs() < 1e-3,
+            "n or n - 1: {got:?} {want:?}"
+        );
+        assert!(
+            (got.v.standard_error / want.standard_error - 1.0).abs() < 1e-3,
+            "{got:?} {want:?}"
+        );
         // E[w ln w] of the exponential distribution is 1 minus Euler's constant.
         assert!(got.kl.z_score(0.422_784_335_098_467).abs() < 4.0, "{got:?}");
     }
@@ -163,7 +192,12 @@ pub(super) mod tests {
             }
             z.push(figures(&[tally]).kl.z_score(0.422_784_335_098_467));
         }
-        assert!(z.mean().abs() < 0.2 && (z.variance() - 1.0).abs() < 0.25, "{} {}", z.mean(), z.variance());
+        assert!(
+            z.mean().abs() < 0.2 && (z.variance() - 1.0).abs() < 0.25,
+            "{} {}",
+            z.mean(),
+            z.variance()
+        );
     }
 
     /// A light of radiance 1 on [0, 0.1) of [0, 1), under the density `p = 1/2 + x`; `ratio` directions of the light to one of the sampler.
@@ -177,7 +211,10 @@ pub(super) mod tests {
             let p = (f64x8::splat(0.25) + xi + xi).sqrt();
             let lit = f64x8::splat(0.6).simd_gt(p);
             let seen = lit.select(q, f64x8::ZERO);
-            strata[0].push(lit.select(f64x8::splat(1.0) / p, f64x8::ZERO), p / (p + c * seen));
+            strata[0].push(
+                lit.select(f64x8::splat(1.0) / p, f64x8::ZERO),
+                p / (p + c * seen),
+            );
         }
         for _ in 0..500 * ratio {
             let p = half + uniform() / q;
@@ -187,7 +224,11 @@ pub(super) mod tests {
     }
 
     /// A thousand runs' mean, V and divergence are off the truth by what their errors say, no more and no less.
-    pub(in crate::study) fn assert_honest(ratio: u64, truth: [f64; 3], mut figures: impl FnMut(u64) -> Figures) {
+    pub(in crate::study) fn assert_honest(
+        ratio: u64,
+        truth: [f64; 3],
+        mut figures: impl FnMut(u64) -> Figures,
+    ) {
         let mut z = [Moments::new(); 3];
         for run in 0..1_000 {
             let Figures { mean, v, kl } = figures(run);
@@ -197,7 +238,10 @@ pub(super) mod tests {
         }
         for (z, of) in z.iter().zip(["mean", "V", "divergence"]) {
             let (mean, variance) = (z.mean(), z.variance());
-            assert!(mean.abs() < 0.2 && (variance - 1.0).abs() < 0.25, "{of} at {ratio}: {mean} {variance}");
+            assert!(
+                mean.abs() < 0.2 && (variance - 1.0).abs() < 0.25,
+                "{of} at {ratio}: {mean} {variance}"
+            );
         }
     }
 
@@ -216,7 +260,10 @@ pub(super) mod tests {
         let mut tally = Tally::default();
         tally.push(f64x8::ZERO, f64x8::splat(1.0));
         let got = figures(&[tally, Tally::default()]);
-        assert!(got.mean.value == 0.0 && got.v.value.is_nan() && got.kl.value.is_nan(), "{got:?}");
+        assert!(
+            got.mean.value == 0.0 && got.v.value.is_nan() && got.kl.value.is_nan(),
+            "{got:?}"
+        );
         let constant = {
             let mut tally = Tally::default();
             tally.push(f64x8::splat(3.0), f64x8::splat(1.0));

@@ -56,12 +56,19 @@ pub(crate) struct TimeSpread {
 impl TimeSpread {
     /// The median.
     pub(crate) const fn median(&self) -> Estimate {
-        Estimate { value: self.quartiles[1], standard_error: self.standard_error }
+        Estimate {
+            value: self.quartiles[1],
+            standard_error: self.standard_error,
+        }
     }
 }
 
 /// Times contenders in turn, in an order that changes from round to round; `time` gives the ns of a stretch of one.
-pub(crate) fn in_turns<C>(contenders: &mut [C], rounds: usize, mut time: impl FnMut(&mut C) -> f64) -> Vec<TimeSpread> {
+pub(crate) fn in_turns<C>(
+    contenders: &mut [C],
+    rounds: usize,
+    mut time: impl FnMut(&mut C) -> f64,
+) -> Vec<TimeSpread> {
     let count = contenders.len();
     let mut ns = vec![Vec::with_capacity(rounds); count];
     for round in 0..rounds {
@@ -72,7 +79,10 @@ pub(crate) fn in_turns<C>(contenders: &mut [C], rounds: usize, mut time: impl Fn
     }
     let spread = |ns: &Vec<f64>| {
         let quartiles = quartiles(ns);
-        TimeSpread { quartiles, standard_error: median_error(quartiles, rounds) }
+        TimeSpread {
+            quartiles,
+            standard_error: median_error(quartiles, rounds),
+        }
     };
     ns.iter().map(spread).collect()
 }
@@ -91,13 +101,20 @@ impl Times {
     pub fn measure(seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
         let rounds = if quick { 15 } else { 75 };
         let of_samples = measure(seed, rounds, &lights(environment));
-        Self { of_samples, of_rays: Vec::new() }
+        Self {
+            of_samples,
+            of_rays: Vec::new(),
+        }
     }
 
     /// Measures those of rays as well: in about five seconds, or one if `quick`.
     #[must_use]
     pub fn with_rays(self, seed: u64, quick: bool, environment: Option<&Environment>) -> Self {
-        let is_measured = |of: &RaySubject| ModelKind::ALL.iter().any(|model| model.name() == of.model());
+        let is_measured = |of: &RaySubject| {
+            ModelKind::ALL
+                .iter()
+                .any(|model| model.name() == of.model())
+        };
         let subjects: Vec<RaySubject> = RaySubject::all().filter(is_measured).collect();
         let rounds = if quick { 9 } else { 75 };
         let of_rays = measure_times(&subjects, &lights(environment), seed, rounds, |_| ());
@@ -106,7 +123,10 @@ impl Times {
 
     /// Median in ns; not a number if it was not measured.
     fn median(&self, of: Timed) -> Estimate {
-        self.of_samples.iter().find(|(timed, _)| *timed == of).map_or(Estimate::UNKNOWN, |(_, time)| time.median())
+        self.of_samples
+            .iter()
+            .find(|(timed, _)| *timed == of)
+            .map_or(Estimate::UNKNOWN, |(_, time)| time.median())
     }
 
     /// Median time of a sample in ns, for 1, 4 or 16 samples per shading point; not a number for others.
@@ -122,13 +142,29 @@ impl Times {
     /// The table of times of samples and look-ups; what does not apply to a row is empty.
     pub(super) fn columns(&self, lights: &[String]) -> Columns {
         let words = |(of, _): &(Timed, TimeSpread)| match *of {
-            Timed::Sample(model, sampler, per_point) => {
-                [model.name().to_owned(), sampler.name().to_owned(), per_point.to_string(), String::new()]
-            }
-            Timed::LookUp(light) => [String::new(), String::new(), String::new(), lights[light].clone()],
+            Timed::Sample(model, sampler, per_point) => [
+                model.name().to_owned(),
+                sampler.name().to_owned(),
+                per_point.to_string(),
+                String::new(),
+            ],
+            Timed::LookUp(light) => [
+                String::new(),
+                String::new(),
+                String::new(),
+                lights[light].clone(),
+            ],
         };
-        let word = |k: usize| self.of_samples.iter().map(move |time| words(time)[k].clone());
-        let quartile = |k: usize| self.of_samples.iter().map(move |(_, time)| time.quartiles[k]);
+        let word = |k: usize| {
+            self.of_samples
+                .iter()
+                .map(move |time| words(time)[k].clone())
+        };
+        let quartile = |k: usize| {
+            self.of_samples
+                .iter()
+                .map(move |(_, time)| time.quartiles[k])
+        };
         Columns::default()
             .text("model", word(0))
             .text("sampler", word(1))
@@ -148,15 +184,27 @@ fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeS
     let mut contenders: Vec<(Timed, Box<dyn Pass + '_>, u32)> = Vec::new();
     for model in ModelKind::ALL {
         for sampler in Sampler::ALL {
-            contenders.extend(PER_POINT.into_iter().zip(PASSES).map(|(per_point, passes)| {
-                (Timed::Sample(model, sampler, per_point), pass(model, sampler, &points, per_point), passes)
-            }));
+            contenders.extend(
+                PER_POINT
+                    .into_iter()
+                    .zip(PASSES)
+                    .map(|(per_point, passes)| {
+                        (
+                            Timed::Sample(model, sampler, per_point),
+                            pass(model, sampler, &points, per_point),
+                            passes,
+                        )
+                    }),
+            );
         }
     }
     let seen = directions(&mut from);
     contenders.extend(lights.iter().enumerate().map(|(place, light)| {
         let pass: Box<dyn Pass + '_> = task(&seen, |wi| {
-            let Seen8 { radiance: value, pdf } = light.see8(wi);
+            let Seen8 {
+                radiance: value,
+                pdf,
+            } = light.see8(wi);
             Eval8 { value, pdf }
         });
         (Timed::LookUp(place), pass, 2)
@@ -175,7 +223,11 @@ fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeS
 
 /// Directions of the published sampler on the default hair, sixteen per shading point.
 fn directions(from: &mut Independent) -> Vec<Vec3x8> {
-    let bsdf = bsdf(ModelKind::Gaussian, Sampler::Published, &HairParams::default());
+    let bsdf = bsdf(
+        ModelKind::Gaussian,
+        Sampler::Published,
+        &HairParams::default(),
+    );
     let of_packet = |_| {
         let points = Points::draw(from);
         let gather = bsdf.prepare8(&points.wo);
@@ -201,7 +253,12 @@ impl Points {
 }
 
 /// A pass over `points`, `per_point` samples each.
-fn pass<'a>(model: ModelKind, sampler: Sampler, points: &[Points], per_point: usize) -> Box<dyn Pass + 'a> {
+fn pass<'a>(
+    model: ModelKind,
+    sampler: Sampler,
+    points: &[Points],
+    per_point: usize,
+) -> Box<dyn Pass + 'a> {
     let bsdf = bsdf(model, sampler, &HairParams::default());
     task(points, move |points| {
         let gather = bsdf.prepare8(&points.wo);
@@ -210,7 +267,11 @@ fn pass<'a>(model: ModelKind, sampler: Sampler, points: &[Points], per_point: us
             uniform_sample8(wi, gather.eval_pdf8(&wi))
         };
         let xi = &points.xi[..per_point];
-        if sampler == Sampler::Uniform { each(xi, uniform) } else { each(xi, |xi| gather.sample8(xi)) }
+        if sampler == Sampler::Uniform {
+            each(xi, uniform)
+        } else {
+            each(xi, |xi| gather.sample8(xi))
+        }
     })
 }
 
@@ -232,18 +293,39 @@ mod tests {
 
     #[test]
     fn every_sampler_and_light_is_timed() {
-        let times = Times { of_samples: measure(1, 3, &[&Constant, &Smooth]), of_rays: Vec::new() };
-        assert_eq!(times.of_samples.len(), ModelKind::ALL.len() * Sampler::ALL.len() * PER_POINT.len() + 2);
+        let times = Times {
+            of_samples: measure(1, 3, &[&Constant, &Smooth]),
+            of_rays: Vec::new(),
+        };
+        assert_eq!(
+            times.of_samples.len(),
+            ModelKind::ALL.len() * Sampler::ALL.len() * PER_POINT.len() + 2
+        );
         for (of, time) in &times.of_samples {
             let [q1, median, q3] = time.quartiles;
-            assert!(q1 > 0.0 && q1 <= median && median <= q3 && time.standard_error >= 0.0, "{time:?}");
+            assert!(
+                q1 > 0.0 && q1 <= median && median <= q3 && time.standard_error >= 0.0,
+                "{time:?}"
+            );
             let found = match *of {
                 Timed::Sample(model, sampler, per_point) => times.ns(model, sampler, per_point),
                 Timed::LookUp(light) => times.look_up(light),
             };
-            assert_eq!(found, Estimate { value: median, standard_error: time.standard_error });
+            assert_eq!(
+                found,
+                Estimate {
+                    value: median,
+                    standard_error: time.standard_error
+                }
+            );
         }
-        assert!(times.ns(ModelKind::Gaussian, Sampler::Published, 2).value.is_nan(), "not measured");
+        assert!(
+            times
+                .ns(ModelKind::Gaussian, Sampler::Published, 2)
+                .value
+                .is_nan(),
+            "not measured"
+        );
         assert!(times.look_up(2).value.is_nan(), "no such light");
     }
 

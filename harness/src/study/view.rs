@@ -52,7 +52,13 @@ pub(crate) fn gain(pairs: impl Iterator<Item = [Estimate; 2]>) -> Option<Gain> {
     let (least, most) = (*ratios.first()?, *ratios.last()?);
     let n = ratios.len() as f64;
     let at = |quarter: usize| ratios[(ratios.len() - 1) * quarter / 4];
-    let share = |sign| ratios.iter().filter(|ratio| Sign::of(**ratio) == sign).count() as f64 / (n + unsure as f64);
+    let share = |sign| {
+        ratios
+            .iter()
+            .filter(|ratio| Sign::of(**ratio) == sign)
+            .count() as f64
+            / (n + unsure as f64)
+    };
     Some(Gain {
         geometric_mean: Estimate::geometric_mean(&ratios),
         median: at(2),
@@ -82,8 +88,14 @@ pub(super) const TOLD: [Sampler; 2] = [Sampler::Published, Sampler::Matched];
 
 impl Study {
     /// V of `base` and of `other` in every cell.
-    pub(super) fn pairs(&self, [base, other]: [Estimator; 2], light: usize) -> impl Iterator<Item = [Estimate; 2]> {
-        self.rows_of(base, light).zip(self.rows_of(other, light)).map(|(base, other)| [base.v(), other.v()])
+    pub(super) fn pairs(
+        &self,
+        [base, other]: [Estimator; 2],
+        light: usize,
+    ) -> impl Iterator<Item = [Estimate; 2]> {
+        self.rows_of(base, light)
+            .zip(self.rows_of(other, light))
+            .map(|(base, other)| [base.v(), other.v()])
     }
 
     /// V of `base` over V of `other`; `None` if no cell is sure.
@@ -93,19 +105,29 @@ impl Study {
 
     /// Time of a sample in ns, its shading point's set-up shared by `per_point`; not a number for perfect sampling.
     pub(super) fn ns(&self, (model, strategy): Estimator, per_point: usize) -> Estimate {
-        strategy.map_or(Estimate::UNKNOWN, |sampler| self.times.ns(model, sampler, per_point))
+        strategy.map_or(Estimate::UNKNOWN, |sampler| {
+            self.times.ns(model, sampler, per_point)
+        })
     }
 
     /// Time counted beside that of a sample, in ns.
     pub(super) fn more(&self, light: usize, counted: Counted) -> Estimate {
-        if counted == Counted::LookUp { self.times.look_up(light) } else { NOTHING }
+        if counted == Counted::LookUp {
+            self.times.look_up(light)
+        } else {
+            NOTHING
+        }
     }
 
     /// Time of a ray without its tracing, in ns, by its place in [`RAYS`]; not a number if it was not measured.
     pub(super) fn ray_ns(&self, (model, strategy): Estimator, light: usize, by: usize) -> Estimate {
         let key = (model.name(), name(strategy), &*self.lights()[light]);
         let is = |of: &&RayTimes| (of.model, of.sampler, &*of.light) == key;
-        self.times.of_rays.iter().find(is).map_or(Estimate::UNKNOWN, |of| of.ray(RAYS[by].candidates_each))
+        self.times
+            .of_rays
+            .iter()
+            .find(is)
+            .map_or(Estimate::UNKNOWN, |of| of.ray(RAYS[by].candidates_each))
     }
 
     /// Time of a sample of `base` over that of one of `other`.
@@ -116,19 +138,32 @@ impl Study {
         per_point: usize,
         counted: Counted,
     ) -> Estimate {
-        time_ratio(pair.map(|one| self.ns(one, per_point)), self.more(light, counted))
+        time_ratio(
+            pair.map(|one| self.ns(one, per_point)),
+            self.more(light, counted),
+        )
     }
 
     /// How many times the variance `base` has of `other` in equal time, [`MANY`] samples per shading point: median over
     /// the cells. `None` if no cell is sure, or a time unknown.
-    pub(super) fn equal_time(&self, pair: [Estimator; 2], light: usize, counted: Counted) -> Option<Estimate> {
+    pub(super) fn equal_time(
+        &self,
+        pair: [Estimator; 2],
+        light: usize,
+        counted: Counted,
+    ) -> Option<Estimate> {
         let median = self.gain(pair, light)?.median;
         let gain = median.times(&self.time_ratio(pair, light, MANY, counted));
         gain.value.is_finite().then_some(gain)
     }
 
     /// Geometric mean over the cells of `1 / (V µs)`.
-    pub(super) fn efficiency(&self, of: Estimator, light: usize, per_point: usize) -> Option<Estimate> {
+    pub(super) fn efficiency(
+        &self,
+        of: Estimator,
+        light: usize,
+        per_point: usize,
+    ) -> Option<Estimate> {
         let one = Estimate::exact(1e3).ratio(&mean_v(self.rows_of(of, light))?);
         Some(one.ratio(&self.ns(of, per_point)))
     }
@@ -141,7 +176,9 @@ impl Study {
         of: impl Iterator<Item = Estimator>,
         cells: &dyn Fn(Estimator, usize) -> Vec<String>,
     ) -> Table {
-        let mut table = Table::new(title).texts(["model", "sampler", "light"]).numbers(headers);
+        let mut table = Table::new(title)
+            .texts(["model", "sampler", "light"])
+            .numbers(headers);
         for (model, strategy) in of {
             for (light, title) in self.lights().iter().enumerate() {
                 let keys = [model.name(), name(strategy), title].map(str::to_owned);
@@ -161,10 +198,20 @@ impl Study {
         bar: &dyn Fn(Estimator, usize) -> Bar,
     ) -> String {
         // A file's name in words.
-        let labels: Vec<String> = self.lights().iter().map(|name| name.replace(['-', '_'], " ")).collect();
+        let labels: Vec<String> = self
+            .lights()
+            .iter()
+            .map(|name| name.replace(['-', '_'], " "))
+            .collect();
         let lights = 0..labels.len();
-        let series: Vec<_> =
-            of.map(|one| (name(one.1).to_owned(), lights.clone().map(|light| bar(one, light)).collect())).collect();
+        let series: Vec<_> = of
+            .map(|one| {
+                (
+                    name(one.1).to_owned(),
+                    lights.clone().map(|light| bar(one, light)).collect(),
+                )
+            })
+            .collect();
         bars(title, axis, &labels, &series, level)
     }
 }
@@ -175,13 +222,25 @@ pub(super) fn mean_v<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Estimate
 }
 
 /// Mean over some cells of a figure; cells where it is no number are left out.
-pub(super) fn mean_of<'a>(rows: impl Iterator<Item = Row<'a>>, figure: &dyn Fn(&Measured) -> Estimate) -> Estimate {
+pub(super) fn mean_of<'a>(
+    rows: impl Iterator<Item = Row<'a>>,
+    figure: &dyn Fn(&Measured) -> Estimate,
+) -> Estimate {
     let figures = rows.map(|row| figure(row.measured));
     let (mut n, mut sum, mut square) = (0.0, 0.0, 0.0);
-    for figure in figures.filter(|figure| figure.value.is_finite() && figure.standard_error.is_finite()) {
-        (n, sum, square) = (n + 1.0, sum + figure.value, square + figure.standard_error.powi(2));
+    for figure in
+        figures.filter(|figure| figure.value.is_finite() && figure.standard_error.is_finite())
+    {
+        (n, sum, square) = (
+            n + 1.0,
+            sum + figure.value,
+            square + figure.standard_error.powi(2),
+        );
     }
-    Estimate { value: sum / n, standard_error: f64::sqrt(square) / n }
+    Estimate {
+        value: sum / n,
+        standard_error: f64::sqrt(square) / n,
+    }
 }
 
 #[cfg(test)]
@@ -189,7 +248,10 @@ mod tests {
     use super::*;
 
     fn v(value: f64, standard_error: f64) -> Estimate {
-        Estimate { value, standard_error }
+        Estimate {
+            value,
+            standard_error,
+        }
     }
 
     #[test]
@@ -204,8 +266,18 @@ mod tests {
         let gain = gain(pairs.into_iter()).expect("two cells");
         assert!((gain.geometric_mean.value - 4.0).abs() < 1e-12);
         assert!((gain.geometric_mean.standard_error - 4.0 * 0.01 / 2.0_f64.sqrt()).abs() < 1e-12);
-        assert_eq!((gain.least.value, gain.most.value, gain.unsure), (2.0, 8.0, 2));
-        assert_eq!((gain.median.value, gain.quartiles, gain.shares), (2.0, [2.0, 2.0], [0.5, 0.0]));
-        assert_eq!(super::gain([[nan, nan]].into_iter()), None, "nothing is sure");
+        assert_eq!(
+            (gain.least.value, gain.most.value, gain.unsure),
+            (2.0, 8.0, 2)
+        );
+        assert_eq!(
+            (gain.median.value, gain.quartiles, gain.shares),
+            (2.0, [2.0, 2.0], [0.5, 0.0])
+        );
+        assert_eq!(
+            super::gain([[nan, nan]].into_iter()),
+            None,
+            "nothing is sure"
+        );
     }
 }

@@ -36,14 +36,25 @@ fn request(sampler: &str, model: &str, case: &Case) -> Value {
 /// Models and cases in turn, so that neighbours differ in everything.
 fn cases(seed: u64, len: usize) -> Vec<(&'static str, Case)> {
     let mut source = Cases::new(seed);
-    (0..len).map(|i| (["gaussian", "cauchy"][i / 5 % 2], source.case(i))).collect()
+    (0..len)
+        .map(|i| (["gaussian", "cauchy"][i / 5 % 2], source.case(i)))
+        .collect()
 }
 
 fn assert_close(name: &str, got: &Value, expected: &Value, allowed: f64, floor: f64) {
-    let list = |value: &Value| if value.is_array() { numbers(value) } else { vec![value.as_f64().unwrap()] };
+    let list = |value: &Value| {
+        if value.is_array() {
+            numbers(value)
+        } else {
+            vec![value.as_f64().unwrap()]
+        }
+    };
     for (got, expected) in list(got).into_iter().zip(list(expected)) {
         let error = (got - expected).abs();
-        assert!(error <= allowed * expected + floor, "{name}: {got:e} where {expected:e} was expected, to {allowed:e}");
+        assert!(
+            error <= allowed * expected + floor,
+            "{name}: {got:e} where {expected:e} was expected, to {allowed:e}"
+        );
     }
 }
 
@@ -54,7 +65,10 @@ fn all_paths_agree_on_directions() {
 
 fn agree_on_directions(sampler: &str) {
     let cases = cases(1, 400);
-    let requests: Vec<Value> = cases.iter().map(|(model, case)| request(sampler, model, case)).collect();
+    let requests: Vec<Value> = cases
+        .iter()
+        .map(|(model, case)| request(sampler, model, case))
+        .collect();
     let oracle = eval("f64", &requests).json();
     for path in &PATHS[..3] {
         let run = eval(path, &requests);
@@ -63,8 +77,17 @@ fn agree_on_directions(sampler: &str) {
             assert_eq!(keys(answer), keys(expected), "{path}: fields");
             for quantity in ["s", "pdf", "pdf_lobe"] {
                 let name = format!("{path} {model} {sampler} {quantity} at {case:?}");
-                let (allowed, floor) = (allowed(sampler, model, quantity), floor(sampler, model, quantity));
-                assert_close(&name, &answer[quantity], &expected[quantity], allowed, floor);
+                let (allowed, floor) = (
+                    allowed(sampler, model, quantity),
+                    floor(sampler, model, quantity),
+                );
+                assert_close(
+                    &name,
+                    &answer[quantity],
+                    &expected[quantity],
+                    allowed,
+                    floor,
+                );
             }
         }
     }
@@ -84,10 +107,21 @@ fn agree_on_samples(sampler: &str) {
     let cases = cases(3, 400);
     let xi: Vec<[f64; 3]> = cases.iter().map(|_| source.xi()).collect();
     let requests = |by: f64| -> Vec<Value> {
-        let moved = |xi: [f64; 3]| [xi[0], (xi[1] + by).clamp(0.0, 1.0 - 1e-12), (xi[2] + by).clamp(0.0, 1.0 - 1e-12)];
-        cases.iter().zip(&xi).map(|((model, case), xi)| with_xi(request(sampler, model, case), moved(*xi))).collect()
+        let moved = |xi: [f64; 3]| {
+            [
+                xi[0],
+                (xi[1] + by).clamp(0.0, 1.0 - 1e-12),
+                (xi[2] + by).clamp(0.0, 1.0 - 1e-12),
+            ]
+        };
+        cases
+            .iter()
+            .zip(&xi)
+            .map(|((model, case), xi)| with_xi(request(sampler, model, case), moved(*xi)))
+            .collect()
     };
-    let [below, oracle, above] = [-XI_ERROR, 0.0, XI_ERROR].map(|by| eval("f64", &requests(by)).json());
+    let [below, oracle, above] =
+        [-XI_ERROR, 0.0, XI_ERROR].map(|by| eval("f64", &requests(by)).json());
     for path in &PATHS[..3] {
         let run = eval(path, &requests(0.0));
         assert_eq!(run.code, Some(0), "{path}: {:?}", run.err);
@@ -95,10 +129,16 @@ fn agree_on_samples(sampler: &str) {
         let (mut kept, mut returned) = (Vec::new(), Vec::new());
         for (i, (answer, (model, case))) in answers.iter().zip(&cases).enumerate() {
             let expected = &oracle[i];
-            let name = format!("{path} {model} {sampler} {case:?}: {answer} where {expected} was expected");
+            let name = format!(
+                "{path} {model} {sampler} {case:?}: {answer} where {expected} was expected"
+            );
             assert_eq!(keys(answer), keys(expected), "{name}");
             if answer["lobe"].is_null() || expected["lobe"].is_null() {
-                let other = if answer["lobe"].is_null() { expected } else { answer };
+                let other = if answer["lobe"].is_null() {
+                    expected
+                } else {
+                    answer
+                };
                 assert!(other["lobe"].is_null() || is_edge(other), "{name}");
                 continue;
             }
@@ -111,7 +151,11 @@ fn agree_on_samples(sampler: &str) {
             kept.push(i);
             returned.push(at_wi);
         }
-        assert!(kept.len() > 300, "{path}: {} samples were not discarded", kept.len());
+        assert!(
+            kept.len() > 300,
+            "{path}: {} samples were not discarded",
+            kept.len()
+        );
         // S and the pdf that came with a sample are those of its direction, up to the rounding of that direction.
         for (i, expected) in kept.into_iter().zip(eval("f64", &returned).json()) {
             let ((model, case), wi) = (&cases[i], direction(&answers[i]["wi"]));
@@ -123,8 +167,17 @@ fn agree_on_samples(sampler: &str) {
             }
             for quantity in ["s", "pdf"] {
                 let name = format!("{path} {model} {sampler} {quantity} of a sample at {case:?}");
-                let (allowed, floor) = (allowed(sampler, model, quantity), floor(sampler, model, quantity));
-                assert_close(&name, &answers[i][quantity], &expected[quantity], allowed, floor);
+                let (allowed, floor) = (
+                    allowed(sampler, model, quantity),
+                    floor(sampler, model, quantity),
+                );
+                assert_close(
+                    &name,
+                    &answers[i][quantity],
+                    &expected[quantity],
+                    allowed,
+                    floor,
+                );
             }
         }
     }
@@ -139,7 +192,11 @@ fn direction(wi: &Value) -> glam::Vec3 {
 /// Distance between two sampled directions.
 fn apart(a: &Value, b: &Value) -> f64 {
     let (a, b) = (numbers(&a["wi"]), numbers(&b["wi"]));
-    a.iter().zip(&b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+    a.iter()
+        .zip(&b)
+        .map(|(a, b)| (a - b) * (a - b))
+        .sum::<f64>()
+        .sqrt()
 }
 
 /// Whether a sample may be discarded or not by the last bit of a number: one within 1e-4 rad of the axis, or one where
@@ -155,16 +212,35 @@ fn black_hair_scatters_nothing() {
     case.desc.intensity_r = [0.0; 3];
     case.desc.intensity_tt = [0.0; 3];
     case.desc.intensity_trt = [0.0; 3];
-    for (path, sampler) in PATHS.into_iter().flat_map(|path| SAMPLERS.map(|sampler| (path, sampler))) {
+    for (path, sampler) in PATHS
+        .into_iter()
+        .flat_map(|path| SAMPLERS.map(|sampler| (path, sampler)))
+    {
         let request = request(sampler, "gaussian", &case);
         let requests = [request.clone(), with_xi(request, [0.5; 3])];
         let answers = eval(path, &requests).json();
-        assert_eq!((numbers(&answers[0]["s"]), answers[0]["pdf"].as_f64()), (vec![0.0; 3], Some(0.0)), "{path}");
-        assert_eq!(answers[1]["lobe"], Value::Null, "{path}: a discarded sample");
+        assert_eq!(
+            (numbers(&answers[0]["s"]), answers[0]["pdf"].as_f64()),
+            (vec![0.0; 3], Some(0.0)),
+            "{path}"
+        );
+        assert_eq!(
+            answers[1]["lobe"],
+            Value::Null,
+            "{path}: a discarded sample"
+        );
         for field in ["wi", "s", "pdf_lobe", "weight"] {
-            assert!(numbers(&answers[1][field]).iter().all(|x| *x == 0.0), "{path}: {field} of {}", answers[1]);
+            assert!(
+                numbers(&answers[1][field]).iter().all(|x| *x == 0.0),
+                "{path}: {field} of {}",
+                answers[1]
+            );
         }
-        assert_eq!(answers[1]["pdf"].as_f64(), Some(0.0), "{path}: pdf of a discarded sample");
+        assert_eq!(
+            answers[1]["pdf"].as_f64(),
+            Some(0.0),
+            "{path}: pdf of a discarded sample"
+        );
     }
 }
 
@@ -177,11 +253,15 @@ fn lobes_without_energy_are_never_drawn() {
         case.desc.intensity_tt = [0.2; 3];
         case.desc.intensity_trt = [0.2; 3];
         case.desc.intensity_g = 0.0;
-        requests.extend(SAMPLERS.map(|sampler| with_xi(request(sampler, model, &case), source.xi())));
+        requests
+            .extend(SAMPLERS.map(|sampler| with_xi(request(sampler, model, &case), source.xi())));
     }
     for path in PATHS {
         for answer in eval(path, &requests).json() {
-            assert!(answer["lobe"] != "r" && answer["lobe"] != "glint", "{path}: {answer}");
+            assert!(
+                answer["lobe"] != "r" && answer["lobe"] != "glint",
+                "{path}: {answer}"
+            );
         }
     }
 }

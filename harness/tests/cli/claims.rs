@@ -8,10 +8,31 @@ use std::process::Stdio;
 use tempfile::TempDir;
 
 fn claims(dir: &Path, threads: &str, seed: &str) -> Run {
-    let args = ["claims", "--quick", "--seed", seed, "--out", dir.to_str().unwrap()];
-    let output = command(&args).env("RAYON_NUM_THREADS", threads).stdin(Stdio::null()).output().unwrap();
-    let lines = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().lines().map(str::to_owned).collect();
-    Run { code: output.status.code(), out: lines(output.stdout), err: lines(output.stderr) }
+    let args = [
+        "claims",
+        "--quick",
+        "--seed",
+        seed,
+        "--out",
+        dir.to_str().unwrap(),
+    ];
+    let output = command(&args)
+        .env("RAYON_NUM_THREADS", threads)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let lines = |bytes: Vec<u8>| {
+        String::from_utf8(bytes)
+            .unwrap()
+            .lines()
+            .map(str::to_owned)
+            .collect()
+    };
+    Run {
+        code: output.status.code(),
+        out: lines(output.stdout),
+        err: lines(output.stderr),
+    }
 }
 
 /// `claims.json` of a run, without the claim that depends on times.
@@ -19,7 +40,8 @@ fn untimed(threads: &str, seed: &str) -> Value {
     let dir = TempDir::new().unwrap();
     let run = claims(dir.path(), threads, seed);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
-    let mut json: Value = serde_json::from_slice(&fs::read(dir.path().join("claims.json")).unwrap()).unwrap();
+    let mut json: Value =
+        serde_json::from_slice(&fs::read(dir.path().join("claims.json")).unwrap()).unwrap();
     let all = json["claims"].as_array_mut().unwrap();
     let before = all.len();
     all.retain(|claim| claim["figures"][0]["origin"] != "timed");
@@ -33,17 +55,35 @@ fn the_file_is_complete_and_depends_on_the_seed_alone() {
     assert_eq!(one, untimed("2", "1"), "another number of threads");
     let other = untimed("2", "2");
     assert_ne!(one["claims"], other["claims"], "another seed");
-    assert_eq!((&one["settings"]["seed"], &one["settings"]["quick"]), (&1.into(), &true.into()));
+    assert_eq!(
+        (&one["settings"]["seed"], &one["settings"]["quick"]),
+        (&1.into(), &true.into())
+    );
     assert!(one["machine"]["cpu"].is_string(), "{}", one["machine"]);
     for claim in one["claims"].as_array().unwrap() {
         for key in ["id", "quotation", "source", "verdict", "sentence"] {
-            assert!(claim[key].as_str().is_some_and(|text| !text.is_empty()), "{key} of {claim}");
+            assert!(
+                claim[key].as_str().is_some_and(|text| !text.is_empty()),
+                "{key} of {claim}"
+            );
         }
-        assert!(["holds", "holds within limits", "false"].contains(&claim["verdict"].as_str().unwrap()), "{claim}");
-        assert!(claim["threshold"]["bound"].is_number() && claim["threshold"]["limits"].is_string(), "{claim}");
+        assert!(
+            ["holds", "holds within limits", "false"].contains(&claim["verdict"].as_str().unwrap()),
+            "{claim}"
+        );
+        assert!(
+            claim["threshold"]["bound"].is_number() && claim["threshold"]["limits"].is_string(),
+            "{claim}"
+        );
         for figure in claim["figures"].as_array().unwrap() {
-            assert!(figure["value"].is_number() && figure["error"].is_number(), "{figure}");
-            assert!(figure["unit"].is_string() && figure["role"].is_string(), "{figure}");
+            assert!(
+                figure["value"].is_number() && figure["error"].is_number(),
+                "{figure}"
+            );
+            assert!(
+                figure["unit"].is_string() && figure["role"].is_string(),
+                "{figure}"
+            );
         }
     }
 }
@@ -57,15 +97,27 @@ fn a_full_disk_leaves_the_file_as_it_was() {
     // No file may grow beyond a kilobyte or two; the signal for that is ignored, as for any program that checks its writes.
     let script = "trap '' XFSZ; ulimit -f 2; exec \"$0\" claims --quick --out \"$1\"";
     let output = std::process::Command::new("sh")
-        .args(["-c", script, env!("CARGO_BIN_EXE_hairis"), dir.path().to_str().unwrap()])
+        .args([
+            "-c",
+            script,
+            env!("CARGO_BIN_EXE_hairis"),
+            dir.path().to_str().unwrap(),
+        ])
         .stdin(Stdio::null())
         .output()
         .unwrap();
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{error}");
-    assert!(error.starts_with("hairis: cannot write") && error.contains("claims.json: File too large"), "{error}");
+    assert!(
+        error.starts_with("hairis: cannot write") && error.contains("claims.json: File too large"),
+        "{error}"
+    );
     assert_eq!(fs::read_to_string(&path).unwrap(), "before");
-    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "nothing else is left");
+    assert_eq!(
+        fs::read_dir(dir.path()).unwrap().count(),
+        1,
+        "nothing else is left"
+    );
 }
 
 #[test]
@@ -75,7 +127,16 @@ fn a_folder_that_cannot_be_written_is_refused() {
     fs::create_dir(dir.path().join("claims.json")).unwrap();
     for out in [dir.path().join("file/out"), dir.path().to_owned()] {
         let run = claims(&out, "1", "1");
-        assert_eq!((run.code, run.out.len(), run.err.len()), (Some(2), 0, 1), "{:?}", run.err);
-        assert!(run.err[0].starts_with("hairis: cannot write"), "{:?}", run.err);
+        assert_eq!(
+            (run.code, run.out.len(), run.err.len()),
+            (Some(2), 0, 1),
+            "{:?}",
+            run.err
+        );
+        assert!(
+            run.err[0].starts_with("hairis: cannot write"),
+            "{:?}",
+            run.err
+        );
     }
 }

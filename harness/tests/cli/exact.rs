@@ -24,12 +24,22 @@ fn assert_exact(line: &Value, point: &impl Reference<f64>) {
     let (value, pdf) = point.eval_pdf(wi);
     let drawn = point.sample(XI);
     let near = |name: &str, got: &Value, expected: &[f64]| {
-        let got = if got.is_array() { numbers(got) } else { vec![got.as_f64().unwrap()] };
+        let got = if got.is_array() {
+            numbers(got)
+        } else {
+            vec![got.as_f64().unwrap()]
+        };
         for (got, expected) in got.iter().zip(expected) {
-            assert!((got - expected).abs() <= 1e-12 * expected.abs(), "{name} of {line}: {got:e}, not {expected:e}");
+            assert!(
+                (got - expected).abs() <= 1e-12 * expected.abs(),
+                "{name} of {line}: {got:e}, not {expected:e}"
+            );
         }
     };
-    assert!(value[0] > 0.0 && drawn.lobe.is_some(), "{line}: nothing to compare");
+    assert!(
+        value[0] > 0.0 && drawn.lobe.is_some(),
+        "{line}: nothing to compare"
+    );
     near("s", &answers[0]["s"], &value);
     near("pdf", &answers[0]["pdf"], &[pdf]);
     near("wi", &answers[1]["wi"], &drawn.wi);
@@ -60,14 +70,25 @@ fn the_published_model() {
     };
     for (model, shape) in [("gaussian", Shape::Gaussian), ("cauchy", Shape::Cauchy)] {
         assert_exact(&line(model, "ou"), &HairReference::prepare(&p, shape, WO));
-        assert_exact(&line(model, "matched"), &MatchedReference::prepare(&p, shape, WO, 9));
+        assert_exact(
+            &line(model, "matched"),
+            &MatchedReference::prepare(&p, shape, WO, 9),
+        );
     }
 }
 
 #[test]
 fn kajiya_kay() {
-    for (word, form) in [("reciprocal", Form::Reciprocal), ("published", Form::Published)] {
-        let p = KajiyaKayParameters { kd: [0.3, 0.2, 0.1], ks: [0.15, 0.14, 0.13], exponent: 80.1, form };
+    for (word, form) in [
+        ("reciprocal", Form::Reciprocal),
+        ("published", Form::Published),
+    ] {
+        let p = KajiyaKayParameters {
+            kd: [0.3, 0.2, 0.1],
+            ks: [0.15, 0.14, 0.13],
+            exponent: 80.1,
+            form,
+        };
         let params = json!({"kd": p.kd, "ks": p.ks, "exponent": p.exponent, "form": word});
         let line = json!({"model": "kajiya-kay", "wo": WO, "params": params});
         assert_exact(&line, &KajiyaKayConstants::new(&p).prepare(WO));
@@ -78,23 +99,35 @@ fn kajiya_kay() {
 fn chiang_by_absorption_melanin_and_color() {
     let (beta_n, melanin, color) = (0.31_f64, [0.9, 0.2], [0.6, 0.4, 0.2]);
     // The two formulas as d'Eon et al. 2011 and Chiang et al. 2016 print them.
-    let of_melanin: [f64; 3] =
-        core::array::from_fn(|c| melanin[0] * [0.419, 0.697, 1.37][c] + melanin[1] * [0.187, 0.4, 1.05][c]);
+    let of_melanin: [f64; 3] = core::array::from_fn(|c| {
+        melanin[0] * [0.419, 0.697, 1.37][c] + melanin[1] * [0.187, 0.4, 1.05][c]
+    });
     let powers = [2, 3, 4, 5].map(|n| beta_n.powi(n));
-    let denominator =
-        5.969 - 0.215 * beta_n + 2.532 * powers[0] - 10.73 * powers[1] + 5.574 * powers[2] + 0.245 * powers[3];
+    let denominator = 5.969 - 0.215 * beta_n + 2.532 * powers[0] - 10.73 * powers[1]
+        + 5.574 * powers[2]
+        + 0.245 * powers[3];
     let of_color = color.map(|c: f64| (c.ln() / denominator).powi(2));
     for (field, numbers, sigma_a) in [
         ("sigma_a", json!([0.3, 0.5, 0.7]), [0.3, 0.5, 0.7]),
         ("melanin", json!(melanin), of_melanin),
         ("color", json!(color), of_color),
     ] {
-        let p = ChiangParameters { beta_m: 0.3, beta_n, tilt: 0.03, eta: 1.55, sigma_a, shifts: Shifts::SmallAngle };
-        let mut params =
-            json!({"beta_m": p.beta_m, "beta_n": beta_n, "tilt": p.tilt, "eta": p.eta, "shifts": "small-angle"});
+        let p = ChiangParameters {
+            beta_m: 0.3,
+            beta_n,
+            tilt: 0.03,
+            eta: 1.55,
+            sigma_a,
+            shifts: Shifts::SmallAngle,
+        };
+        let mut params = json!({"beta_m": p.beta_m, "beta_n": beta_n, "tilt": p.tilt, "eta": p.eta, "shifts": "small-angle"});
         params[field] = numbers;
-        for (word, selection) in [("mean", Selection::Mean), ("by-channel", Selection::ByChannel)] {
-            let line = json!({"model": "chiang", "select": word, "params": params, "wo": WO, "h": H});
+        for (word, selection) in [
+            ("mean", Selection::Mean),
+            ("by-channel", Selection::ByChannel),
+        ] {
+            let line =
+                json!({"model": "chiang", "select": word, "params": params, "wo": WO, "h": H});
             assert_exact(&line, &ChiangConstants::new(&p, selection).prepare(WO, H));
         }
     }

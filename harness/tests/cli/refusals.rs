@@ -21,7 +21,12 @@ fn and(pointer: &str, name: &str, value: Value) -> Value {
 /// A good request without a field of the object at a JSON pointer.
 fn without(pointer: &str, name: &str) -> Value {
     let mut request = good();
-    request.pointer_mut(pointer).unwrap().as_object_mut().unwrap().remove(name);
+    request
+        .pointer_mut(pointer)
+        .unwrap()
+        .as_object_mut()
+        .unwrap()
+        .remove(name);
     request
 }
 
@@ -33,54 +38,148 @@ fn bad_values() -> Vec<(Value, &'static str)> {
             "model: must be \"gaussian\" or \"cauchy\" or \"kajiya-kay\" or \"chiang\", got \"phong\"",
         ),
         (with("/model", json!(3)), "model: must be a string, got 3"),
-        (and("", "sampler", json!("uniform")), "sampler: must be \"ou\" or "),
+        (
+            and("", "sampler", json!("uniform")),
+            "sampler: must be \"ou\" or ",
+        ),
         (
             and("", "sampler", json!("best")),
             "sampler: must be \"ou\" or \"matched-5\" or \"matched\" or \"matched-25\", got \"best\"",
         ),
         (without("", "params"), "params: missing"),
-        (with("/params", json!([])), "params: must be an object, got an array of 0"),
+        (
+            with("/params", json!([])),
+            "params: must be an object, got an array of 0",
+        ),
         (without("/params", "gamma_tt"), "params.gamma_tt: missing"),
-        (and("/params", "gama_tt", json!(1)), "params.gama_tt: unknown field, expected one of alpha"),
-        (and("", "w_i", json!(1)), "w_i: unknown field, expected one of model"),
-        (with("/params/beta/1", json!(0)), "params.beta[1]: must be a width in [1e-4, pi] rad, got 0"),
-        (with("/params/beta/0", json!(9.9e-5)), "params.beta[0]: must be a width"),
-        (with("/params/gamma_g", json!(PI + 1e-5)), "params.gamma_g: must be a width"),
-        (with("/params/gamma_tt", json!(-1)), "params.gamma_tt: must be a width"),
-        (with("/params/alpha/2", json!(1.6)), "params.alpha[2]: must be an angle in [-pi/2, pi/2] rad, got 1.6"),
-        (with("/params/phi_g", json!(-0.1)), "params.phi_g: must be an angle in [0, pi] rad, got -0.1"),
-        (with("/params/i_r/2", json!(-1)), "params.i_r[2]: must be finite and at least 0, got -1"),
-        (with("/params/i_tt/0", json!(1e300)), "params.i_tt[0]: too large for single precision, got 1e300"),
-        (with("/params/i_g", json!(-0.5)), "params.i_g: must be finite and at least 0, got -0.5"),
-        (with("/params/i_trt", json!([1, 2])), "params.i_trt: must have 3 numbers, got 2"),
-        (with("/params/i_trt", json!(1)), "params.i_trt: must be an array of 3 numbers, got 1"),
-        (with("/params/alpha/0", json!("x")), "params.alpha[0]: must be a number, got \"x\""),
-        (with("/params/alpha/0", Value::Null), "params.alpha[0]: must be a number, got null"),
+        (
+            and("/params", "gama_tt", json!(1)),
+            "params.gama_tt: unknown field, expected one of alpha",
+        ),
+        (
+            and("", "w_i", json!(1)),
+            "w_i: unknown field, expected one of model",
+        ),
+        (
+            with("/params/beta/1", json!(0)),
+            "params.beta[1]: must be a width in [1e-4, pi] rad, got 0",
+        ),
+        (
+            with("/params/beta/0", json!(9.9e-5)),
+            "params.beta[0]: must be a width",
+        ),
+        (
+            with("/params/gamma_g", json!(PI + 1e-5)),
+            "params.gamma_g: must be a width",
+        ),
+        (
+            with("/params/gamma_tt", json!(-1)),
+            "params.gamma_tt: must be a width",
+        ),
+        (
+            with("/params/alpha/2", json!(1.6)),
+            "params.alpha[2]: must be an angle in [-pi/2, pi/2] rad, got 1.6",
+        ),
+        (
+            with("/params/phi_g", json!(-0.1)),
+            "params.phi_g: must be an angle in [0, pi] rad, got -0.1",
+        ),
+        (
+            with("/params/i_r/2", json!(-1)),
+            "params.i_r[2]: must be finite and at least 0, got -1",
+        ),
+        (
+            with("/params/i_tt/0", json!(1e300)),
+            "params.i_tt[0]: too large for single precision, got 1e300",
+        ),
+        (
+            with("/params/i_g", json!(-0.5)),
+            "params.i_g: must be finite and at least 0, got -0.5",
+        ),
+        (
+            with("/params/i_trt", json!([1, 2])),
+            "params.i_trt: must have 3 numbers, got 2",
+        ),
+        (
+            with("/params/i_trt", json!(1)),
+            "params.i_trt: must be an array of 3 numbers, got 1",
+        ),
+        (
+            with("/params/alpha/0", json!("x")),
+            "params.alpha[0]: must be a number, got \"x\"",
+        ),
+        (
+            with("/params/alpha/0", Value::Null),
+            "params.alpha[0]: must be a number, got null",
+        ),
         (without("", "wo"), "wo: missing"),
-        (with("/wo", json!([0, 0, 0])), "wo: must be a unit vector (to 0.001), got length 0"),
-        (with("/wi", json!([0.0, 0.998, 0.0])), "wi: must be a unit vector (to 0.001), got length 0.998"),
-        (with("/wi", json!([1e200, 1e200, 0.0])), "wi: must be a unit vector"),
-        (with("/wi", json!([0, 1, 0, 0])), "wi: must have 3 numbers, got 4"),
+        (
+            with("/wo", json!([0, 0, 0])),
+            "wo: must be a unit vector (to 0.001), got length 0",
+        ),
+        (
+            with("/wi", json!([0.0, 0.998, 0.0])),
+            "wi: must be a unit vector (to 0.001), got length 0.998",
+        ),
+        (
+            with("/wi", json!([1e200, 1e200, 0.0])),
+            "wi: must be a unit vector",
+        ),
+        (
+            with("/wi", json!([0, 1, 0, 0])),
+            "wi: must have 3 numbers, got 4",
+        ),
         (without("", "wi"), "wi: missing; give wi or xi"),
-        (and("", "xi", json!([0, 0, 0])), "wi: given together with xi"),
-        (super::with_xi(good(), [0.0, 1.0, 0.0]), "xi[1]: must be in [0, 1), got 1"),
-        (super::with_xi(good(), [0.0, 0.0, -1e-9]), "xi[2]: must be in [0, 1), got -0.000000001"),
+        (
+            and("", "xi", json!([0, 0, 0])),
+            "wi: given together with xi",
+        ),
+        (
+            super::with_xi(good(), [0.0, 1.0, 0.0]),
+            "xi[1]: must be in [0, 1), got 1",
+        ),
+        (
+            super::with_xi(good(), [0.0, 0.0, -1e-9]),
+            "xi[2]: must be in [0, 1), got -0.000000001",
+        ),
     ]
 }
 
 #[test]
 fn each_bad_value_is_refused_by_name_and_the_rest_still_runs() {
     let bad = bad_values();
-    let requests: Vec<Value> = bad.iter().flat_map(|(request, _)| [good(), request.clone()]).collect();
+    let requests: Vec<Value> = bad
+        .iter()
+        .flat_map(|(request, _)| [good(), request.clone()])
+        .collect();
     for path in PATHS {
         let run = eval(path, &requests);
         assert_eq!(run.code, Some(2), "{path}: bad input");
-        assert_eq!(run.err, [format!("hairis: {} of {} lines were refused", bad.len(), requests.len())], "{path}");
-        assert_eq!(run.out.len(), requests.len(), "{path}: one line out for each line in");
+        assert_eq!(
+            run.err,
+            [format!(
+                "hairis: {} of {} lines were refused",
+                bad.len(),
+                requests.len()
+            )],
+            "{path}"
+        );
+        assert_eq!(
+            run.out.len(),
+            requests.len(),
+            "{path}: one line out for each line in"
+        );
         for (answers, (request, problem)) in run.json().chunks(2).zip(&bad) {
-            assert!(answers[0].get("s").is_some(), "{path}: the line before {problem:?} got {}", answers[0]);
+            assert!(
+                answers[0].get("s").is_some(),
+                "{path}: the line before {problem:?} got {}",
+                answers[0]
+            );
             let error = answers[1]["error"].as_str().unwrap_or_default();
-            assert!(error.starts_with(problem), "{path}: {request} got {error:?}, not {problem:?}");
+            assert!(
+                error.starts_with(problem),
+                "{path}: {request} got {error:?}, not {problem:?}"
+            );
         }
     }
 }
@@ -96,7 +195,10 @@ fn each_bad_line_is_refused_and_the_rest_still_runs() {
         (b"{\"model\": \"gaussian\"", "line: not JSON: EOF"),
         (b"[1, 2]", "line: must be an object, got an array of 2"),
         (b"{\"wo\": [0, NaN, 0]}", "wo[1]: expected value (column"),
-        (b"{\"params\": {\"beta\": [0.1, 1e400", "params.beta[1]: number out of range (column"),
+        (
+            b"{\"params\": {\"beta\": [0.1, 1e400",
+            "params.beta[1]: number out of range (column",
+        ),
         (b"{\"params\": {\"beta\": [0.1, 0.", "params.beta[1]: EOF"),
         (b"{\"wo\": [0, 1, 0], \"wo\": [0, 1, 0]}", "wo: given twice"),
         (b"{} {}", "line: not JSON: trailing characters"),
@@ -109,11 +211,19 @@ fn each_bad_line_is_refused_and_the_rest_still_runs() {
     }
     let run = run(&["eval"], &input);
     assert_eq!(run.code, Some(2), "bad input");
-    assert_eq!(run.out.len(), 2 * lines.len(), "one line out for each line in");
+    assert_eq!(
+        run.out.len(),
+        2 * lines.len(),
+        "one line out for each line in"
+    );
     for (answers, (_, problem)) in run.json().chunks(2).zip(&lines) {
         let error = answers[0]["error"].as_str().unwrap_or_default();
         assert!(error.starts_with(problem), "got {error:?}, not {problem:?}");
-        assert!(answers[1].get("s").is_some(), "the line after {problem:?} got {}", answers[1]);
+        assert!(
+            answers[1].get("s").is_some(),
+            "the line after {problem:?} got {}",
+            answers[1]
+        );
     }
 }
 
@@ -126,7 +236,11 @@ fn refusals_stay_short() {
     for line in [&deep, &known, &number, &format!("{{\"model\":\"{long}\"}}")] {
         let run = run(&["eval"], line.as_bytes());
         let error = run.json()[0]["error"].as_str().unwrap().to_owned();
-        assert!((10..=330).contains(&error.chars().count()), "{} characters: {error}", error.chars().count());
+        assert!(
+            (10..=330).contains(&error.chars().count()),
+            "{} characters: {error}",
+            error.chars().count()
+        );
     }
 }
 
@@ -146,17 +260,36 @@ fn limits_written_in_double_precision_are_accepted() {
     ];
     for path in PATHS {
         let run = eval(path, &requests);
-        assert_eq!((run.code, run.err.len()), (Some(0), 0), "{path}: {:?}", run.out);
+        assert_eq!(
+            (run.code, run.err.len()),
+            (Some(0), 0),
+            "{path}: {:?}",
+            run.out
+        );
     }
 }
 
 #[test]
 fn bad_flags_are_refused_in_one_line() {
-    let cases: [&[&str]; 4] = [&[], &["evaluate"], &["eval", "--path", "gpu"], &["eval", "--paths", "x8"]];
+    let cases: [&[&str]; 4] = [
+        &[],
+        &["evaluate"],
+        &["eval", "--path", "gpu"],
+        &["eval", "--paths", "x8"],
+    ];
     for args in cases {
         let run = run(args, b"");
-        assert_eq!((run.code, run.out.len(), run.err.len()), (Some(2), 0, 1), "{args:?}: {:?}", run.err);
-        assert!(run.err[0].starts_with("hairis: "), "{args:?}: {:?}", run.err);
+        assert_eq!(
+            (run.code, run.out.len(), run.err.len()),
+            (Some(2), 0, 1),
+            "{args:?}: {:?}",
+            run.err
+        );
+        assert!(
+            run.err[0].starts_with("hairis: "),
+            "{args:?}: {:?}",
+            run.err
+        );
     }
 }
 
@@ -165,7 +298,12 @@ fn help_and_version_are_no_errors() {
     let cases: [&[&str]; 3] = [&["--help"], &["--version"], &["eval", "--help"]];
     for args in cases {
         let run = run(args, b"");
-        assert_eq!((run.code, run.err.len()), (Some(0), 0), "{args:?}: {:?}", run.err);
+        assert_eq!(
+            (run.code, run.err.len()),
+            (Some(0), 0),
+            "{args:?}: {:?}",
+            run.err
+        );
         assert!(!run.out.is_empty(), "{args:?} prints something");
     }
 }

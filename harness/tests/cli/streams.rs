@@ -10,7 +10,12 @@ use std::thread;
 fn no_input_is_no_output() {
     for path in PATHS {
         let run = run(&["eval", "--path", path], b"");
-        assert_eq!((run.code, run.out.len(), run.err.len()), (Some(0), 0, 0), "{path}: {:?}", run.err);
+        assert_eq!(
+            (run.code, run.out.len(), run.err.len()),
+            (Some(0), 0, 0),
+            "{path}: {:?}",
+            run.err
+        );
     }
 }
 
@@ -33,11 +38,22 @@ fn a_reader_that_leaves_is_no_error() {
         // The run stops reading, so that this write may fail.
         let writer = thread::spawn(move || drop(stdin.write_all(input.as_bytes())));
         let mut first = String::new();
-        BufReader::new(child.stdout.take().unwrap()).read_line(&mut first).unwrap();
+        BufReader::new(child.stdout.take().unwrap())
+            .read_line(&mut first)
+            .unwrap();
         assert!(first.starts_with("{\"s\":["), "{path}: {first}");
         let mut err = String::new();
-        child.stderr.take().unwrap().read_to_string(&mut err).unwrap();
-        assert_eq!((child.wait().unwrap().code(), &*err), (Some(0), ""), "{path}");
+        child
+            .stderr
+            .take()
+            .unwrap()
+            .read_to_string(&mut err)
+            .unwrap();
+        assert_eq!(
+            (child.wait().unwrap().code(), &*err),
+            (Some(0), ""),
+            "{path}"
+        );
         writer.join().unwrap();
     }
 }
@@ -49,12 +65,19 @@ fn who_waits_for_an_answer_gets_it() {
         let mut stdin = child.stdin.take().unwrap();
         let stdout = BufReader::new(child.stdout.take().unwrap());
         let (sender, answers) = mpsc::channel();
-        let reader = thread::spawn(move || stdout.lines().for_each(|line| sender.send(line.unwrap()).unwrap()));
+        let reader = thread::spawn(move || {
+            stdout
+                .lines()
+                .for_each(|line| sender.send(line.unwrap()).unwrap())
+        });
         for i in 0..3 {
             writeln!(stdin, "{}", good()).unwrap();
             stdin.flush().unwrap();
             let answer = answers.recv_timeout(Duration::from_secs(60));
-            assert!(answer.is_ok(), "{path}: no answer to line {i} while the input is open");
+            assert!(
+                answer.is_ok(),
+                "{path}: no answer to line {i} while the input is open"
+            );
         }
         drop(stdin);
         assert_eq!(child.wait().unwrap().code(), Some(0), "{path}");

@@ -23,7 +23,13 @@ const WHOLE: &str = "cells-1-of-1.jsonl";
 fn study(dir: &Path, threads: &str, more: &[&str]) -> Run {
     let mut args = vec!["study", "--quick", "--out", dir.to_str().unwrap()];
     args.extend(more);
-    finish(command(&args).env("RAYON_NUM_THREADS", threads).stdin(Stdio::null()).output().unwrap())
+    finish(
+        command(&args)
+            .env("RAYON_NUM_THREADS", threads)
+            .stdin(Stdio::null())
+            .output()
+            .unwrap(),
+    )
 }
 
 fn merge(out: &Path, parts: &[&Path]) -> Run {
@@ -33,8 +39,18 @@ fn merge(out: &Path, parts: &[&Path]) -> Run {
 }
 
 fn finish(output: std::process::Output) -> Run {
-    let lines = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().lines().map(str::to_owned).collect();
-    Run { code: output.status.code(), out: lines(output.stdout), err: lines(output.stderr) }
+    let lines = |bytes: Vec<u8>| {
+        String::from_utf8(bytes)
+            .unwrap()
+            .lines()
+            .map(str::to_owned)
+            .collect()
+    };
+    Run {
+        code: output.status.code(),
+        out: lines(output.stdout),
+        err: lines(output.stderr),
+    }
 }
 
 /// A finished run on one thread, made once.
@@ -44,7 +60,11 @@ fn reference() -> &'static Path {
         let dir = TempDir::new().unwrap();
         let run = study(dir.path(), "1", &[]);
         assert_eq!(run.code, Some(0), "{:?}", run.err);
-        assert!(run.out.iter().any(|line| line.contains("geometric mean")), "a summary: {:?}", run.out);
+        assert!(
+            run.out.iter().any(|line| line.contains("geometric mean")),
+            "a summary: {:?}",
+            run.out
+        );
         dir
     })
     .path()
@@ -60,14 +80,26 @@ const ROWS: &[&str] = if cfg!(feature = "parquet") {
 /// That `dir` holds the rows of the reference, byte by byte.
 fn assert_same_rows(dir: &Path, what: &str) {
     for name in ROWS {
-        let (got, want) = (fs::read(dir.join(name)).unwrap(), fs::read(reference().join(name)).unwrap());
+        let (got, want) = (
+            fs::read(dir.join(name)).unwrap(),
+            fs::read(reference().join(name)).unwrap(),
+        );
         assert!(!want.is_empty() && got == want, "{what}: {name} differs");
     }
 }
 
 fn assert_refused(run: &Run, words: &str) {
-    assert_eq!((run.code, run.out.len(), run.err.len()), (Some(2), 0, 1), "{words}: {:?}", run.err);
-    assert!(run.err[0].starts_with("hairis: ") && run.err[0].contains(words), "{words}: {:?}", run.err);
+    assert_eq!(
+        (run.code, run.out.len(), run.err.len()),
+        (Some(2), 0, 1),
+        "{words}: {:?}",
+        run.err
+    );
+    assert!(
+        run.err[0].starts_with("hairis: ") && run.err[0].contains(words),
+        "{words}: {:?}",
+        run.err
+    );
 }
 
 #[test]
@@ -85,9 +117,16 @@ fn rows_do_not_depend_on_the_number_of_threads_or_on_stops() {
         let whole = ends.iter().filter(|end| **end < cut).count();
         let kept = fs::read(dir.path().join(WHOLE)).unwrap();
         if whole > 1 {
-            assert!(kept.starts_with(&part[..=ends[whole - 1]]), "cut at {cut}: finished cells are kept");
+            assert!(
+                kept.starts_with(&part[..=ends[whole - 1]]),
+                "cut at {cut}: finished cells are kept"
+            );
         }
-        assert_eq!(kept.iter().filter(|byte| **byte == b'\n').count(), CELLS + 1, "cut at {cut}: each cell once");
+        assert_eq!(
+            kept.iter().filter(|byte| **byte == b'\n').count(),
+            CELLS + 1,
+            "cut at {cut}: each cell once"
+        );
     }
 }
 
@@ -95,7 +134,13 @@ fn rows_do_not_depend_on_the_number_of_threads_or_on_stops() {
 fn a_killed_run_goes_on() {
     let dir = TempDir::new().unwrap();
     let part = dir.path().join(WHOLE);
-    let lines = || fs::read(&part).unwrap_or_default().iter().filter(|byte| **byte == b'\n').count();
+    let lines = || {
+        fs::read(&part)
+            .unwrap_or_default()
+            .iter()
+            .filter(|byte| **byte == b'\n')
+            .count()
+    };
     for least in [2, 5, 12] {
         let mut child = command(&["study", "--quick", "--out", dir.path().to_str().unwrap()])
             .env("RAYON_NUM_THREADS", "1")
@@ -111,7 +156,10 @@ fn a_killed_run_goes_on() {
         child.wait().unwrap();
         assert!(lines() >= least, "only {} lines after a minute", lines());
     }
-    assert!(lines() < CELLS + 1 && !dir.path().join("study.csv").exists(), "killed too late to show anything");
+    assert!(
+        lines() < CELLS + 1 && !dir.path().join("study.csv").exists(),
+        "killed too late to show anything"
+    );
     let run = study(dir.path(), "2", &[]);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
     assert!(run.err[0].contains("continues after"), "{:?}", run.err);
@@ -120,28 +168,51 @@ fn a_killed_run_goes_on() {
 
 #[test]
 fn parts_joined_are_the_same_as_one_run() {
-    let (shared, apart, out) = (TempDir::new().unwrap(), TempDir::new().unwrap(), TempDir::new().unwrap());
+    let (shared, apart, out) = (
+        TempDir::new().unwrap(),
+        TempDir::new().unwrap(),
+        TempDir::new().unwrap(),
+    );
     for (dir, shard) in [(&shared, "1/4"), (&apart, "4/4"), (&shared, "3/4")] {
         let run = study(dir.path(), "1", &["--shard", shard]);
-        assert_eq!((run.code, run.out.len()), (Some(0), 0), "{shard}: {:?}", run.err);
+        assert_eq!(
+            (run.code, run.out.len()),
+            (Some(0), 0),
+            "{shard}: {:?}",
+            run.err
+        );
     }
     // Not yet all of it: what is missing is named, and nothing is written.
     let folders = [shared.path(), apart.path()];
-    assert_refused(&merge(&out.path().join("new"), &folders), "not complete: shard 2/4 missing");
+    assert_refused(
+        &merge(&out.path().join("new"), &folders),
+        "not complete: shard 2/4 missing",
+    );
     assert!(!out.path().join("new").exists(), "a folder for nothing");
     let run = study(apart.path(), "1", &["--shard", "2/4"]);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
     let run = merge(&out.path().join("new"), &folders);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
-    assert!(run.out.iter().any(|line| line.contains("geometric mean")), "a summary: {:?}", run.out);
+    assert!(
+        run.out.iter().any(|line| line.contains("geometric mean")),
+        "a summary: {:?}",
+        run.out
+    );
     assert_same_rows(&out.path().join("new"), "four parts");
 
     // A part that was stopped is named too; one that is there twice does no harm.
     let part = shared.path().join("cells-3-of-4.jsonl");
     let bytes = fs::read(&part).unwrap();
     fs::write(&part, &bytes[..bytes.len() - 10]).unwrap();
-    assert_refused(&merge(out.path(), &folders), "not complete: shard 3/4 has 11 of 12 cells");
-    fs::copy(apart.path().join("cells-2-of-4.jsonl"), shared.path().join("cells-2-of-4.jsonl")).unwrap();
+    assert_refused(
+        &merge(out.path(), &folders),
+        "not complete: shard 3/4 has 11 of 12 cells",
+    );
+    fs::copy(
+        apart.path().join("cells-2-of-4.jsonl"),
+        shared.path().join("cells-2-of-4.jsonl"),
+    )
+    .unwrap();
     let run = study(shared.path(), "1", &["--shard", "3/4"]);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
     assert_eq!(merge(out.path(), &folders).code, Some(0));
@@ -151,7 +222,10 @@ fn parts_joined_are_the_same_as_one_run() {
 /// How many look-ups of this light were timed in `dir`.
 fn look_ups(dir: &Path, environment: &str) -> usize {
     let times = fs::read_to_string(dir.join("times.csv")).unwrap();
-    times.lines().filter(|line| line.starts_with(&format!(",,,{environment},"))).count()
+    times
+        .lines()
+        .filter(|line| line.starts_with(&format!(",,,{environment},")))
+        .count()
 }
 
 #[test]
@@ -160,8 +234,16 @@ fn a_whole_run_can_be_merged_too() {
     let run = merge(out.path(), &[reference()]);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
     assert_same_rows(out.path(), "one part");
-    assert_eq!(look_ups(out.path(), "clear sky"), 1, "the sky needs no file");
-    assert!(!run.err.iter().any(|line| line.contains("--env")), "{:?}", run.err);
+    assert_eq!(
+        look_ups(out.path(), "clear sky"),
+        1,
+        "the sky needs no file"
+    );
+    assert!(
+        !run.err.iter().any(|line| line.contains("--env")),
+        "{:?}",
+        run.err
+    );
 }
 
 #[test]
@@ -174,13 +256,18 @@ fn a_look_up_is_timed_after_a_merge_if_the_environment_is_at_hand() {
         fs::write(path, bytes).unwrap();
     }
     let env = |path: &Path| ["--env".to_owned(), path.to_str().unwrap().to_owned()];
-    let with = |args: [String; 2]| -> Run { study(dir.path(), "2", &args.each_ref().map(String::as_str)) };
+    let with =
+        |args: [String; 2]| -> Run { study(dir.path(), "2", &args.each_ref().map(String::as_str)) };
     assert_eq!(with(env(&map)).code, Some(0));
     assert_eq!(look_ups(dir.path(), "map.hdr"), 1);
 
     let run = merge(out.path(), &[dir.path()]);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
-    assert!(run.err[0].contains("not timed; pass --env FILE"), "{:?}", run.err);
+    assert!(
+        run.err[0].contains("not timed; pass --env FILE"),
+        "{:?}",
+        run.err
+    );
     assert_eq!(look_ups(out.path(), "map.hdr"), 0);
     let efficiency = fs::read_to_string(out.path().join("efficiency.csv")).unwrap();
     let fields = |line: &str| -> Vec<String> { line.split(',').map(str::to_owned).collect() };
@@ -190,21 +277,39 @@ fn a_look_up_is_timed_after_a_merge_if_the_environment_is_at_hand() {
         let is_timed = of("light") != "map.hdr" && of("sampler") != "perfect";
         assert_eq!(!of("look_up_ns").is_empty(), is_timed, "{row:?}");
         assert_eq!(!of("look_up_gain_at_16").is_empty(), is_timed, "{row:?}");
-        assert_eq!(!of("gain_at_16").is_empty(), of("sampler") != "perfect", "{row:?}");
+        assert_eq!(
+            !of("gain_at_16").is_empty(),
+            of("sampler") != "perfect",
+            "{row:?}"
+        );
     }
 
     let merged = |path: &Path| {
-        let args = [out.path().to_str().unwrap().to_owned(), dir.path().to_str().unwrap().to_owned()];
-        let args: Vec<String> = ["merge".to_owned()].into_iter().chain(args).chain(env(path)).collect();
+        let args = [
+            out.path().to_str().unwrap().to_owned(),
+            dir.path().to_str().unwrap().to_owned(),
+        ];
+        let args: Vec<String> = ["merge".to_owned()]
+            .into_iter()
+            .chain(args)
+            .chain(env(path))
+            .collect();
         let args: Vec<&str> = args.iter().map(String::as_str).collect();
         finish(command(&args).stdin(Stdio::null()).output().unwrap())
     };
-    assert_refused(&merged(&other), "--env must be the environment of the parts");
+    assert_refused(
+        &merged(&other),
+        "--env must be the environment of the parts",
+    );
     assert_refused(&merged(Path::new("missing.hdr")), "missing.hdr");
     let run = merged(&map);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
     assert_eq!(look_ups(out.path(), "map.hdr"), 1);
     for name in ROWS {
-        assert_eq!(fs::read(out.path().join(name)).unwrap(), fs::read(dir.path().join(name)).unwrap(), "{name}");
+        assert_eq!(
+            fs::read(out.path().join(name)).unwrap(),
+            fs::read(dir.path().join(name)).unwrap(),
+            "{name}"
+        );
     }
 }

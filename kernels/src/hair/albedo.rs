@@ -23,7 +23,11 @@ impl<L: Lanes> Nodes<L> {
     #[inline(always)]
     fn between(from: L, to: L) -> Self {
         let ([above, below_from], [above_to, below]) = (compress(from), compress(to));
-        Self { above, below, span: L::select(L::splat(0.0).lt(from), below_from - below, above_to - above) }
+        Self {
+            above,
+            below,
+            span: L::select(L::splat(0.0).lt(from), below_from - below, above_to - above),
+        }
     }
 
     /// `x` of a node, and its weight times `dx`.
@@ -34,7 +38,10 @@ impl<L: Lanes> Nodes<L> {
         let below = c(rest).mul_add(self.span, self.below);
         let inv = L::quotient(c(1.0), above * below);
         let u = (above - below) * c(0.5);
-        (u * inv, u.mul_add(u, c(1.0)) * (inv * inv) * (self.span * c(weight)))
+        (
+            u * inv,
+            u.mul_add(u, c(1.0)) * (inv * inv) * (self.span * c(weight)),
+        )
     }
 }
 
@@ -45,9 +52,15 @@ fn compress<L: Lanes>(x: L) -> [L; 2] {
     let twice = (x + x).abs();
     let root = twice.mul_add(twice, one).sqrt();
     let inv = L::quotient(one, one + root);
-    let (large, small) = (twice.mul_add(inv, one), (one + L::quotient(one, root + twice)) * inv);
+    let (large, small) = (
+        twice.mul_add(inv, one),
+        (one + L::quotient(one, root + twice)) * inv,
+    );
     let negative = x.lt(zero);
-    [L::select(negative, small, large), L::select(negative, large, small)]
+    [
+        L::select(negative, small, large),
+        L::select(negative, large, small),
+    ]
 }
 
 /// Integral of a bell of width `width` over `[lo, hi]`, about its centre at 0.
@@ -66,7 +79,11 @@ pub(super) fn bell_area<B: Bell>(lo: f32, hi: f32, width: f32) -> f32 {
 #[inline(always)]
 pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> PerLobe<[L; 3]> {
     let hair = &view.lobes;
-    let (r, tt, trt) = (lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt));
+    let (r, tt, trt) = (
+        lanes3(&hair.color_r),
+        lanes3(&hair.color_tt),
+        lanes3(&hair.color_trt),
+    );
     // The azimuthal term of R and TRT-g, cos(phi / 2), has an area of 4.
     let four = L::splat(4.0);
     let area = longitudes::<B, L, C, _>(view, &GRADED);
@@ -84,7 +101,11 @@ fn lobe<L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize, area: L, color:
     let (zero, most) = (L::splat(0.0), L::splat(f32::MAX));
     // The second operand wins over NaN.
     let albedo = (area * hair.strength[l].lanes()).max(zero);
-    [(albedo * color[0]).min(most), (albedo * color[1]).min(most), (albedo * color[2]).min(most)]
+    [
+        (albedo * color[0]).min(most),
+        (albedo * color[1]).min(most),
+        (albedo * color[2]).min(most),
+    ]
 }
 
 /// The view terms with each channel of the lobes divided by its albedo where that is above 1, to within 2e-4.
@@ -97,7 +118,11 @@ pub(crate) fn conserve<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> HairVie
     let r = r * four * hair.strength[0].lanes();
     let tt = tt * hair.azimuth_area[0].lanes() * hair.strength[1].lanes();
     let trt = trt * four.mul_add(hair.strength[2].lanes(), glints);
-    let mut colors = [lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt)];
+    let mut colors = [
+        lanes3(&hair.color_r),
+        lanes3(&hair.color_tt),
+        lanes3(&hair.color_trt),
+    ];
     let mut c = 0;
     while c < 3 {
         let albedo = r.mul_add(colors[0][c], tt.mul_add(colors[1][c], trt * colors[2][c]));
@@ -109,13 +134,21 @@ pub(crate) fn conserve<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> HairVie
         c += 1;
     }
     let [r, tt, trt] = colors;
-    let lobes = HairLobes { color_r: store3(r), color_tt: store3(tt), color_trt: store3(trt), ..*hair };
+    let lobes = HairLobes {
+        color_r: store3(r),
+        color_tt: store3(tt),
+        color_trt: store3(trt),
+        ..*hair
+    };
     HairView { lobes, ..*view }
 }
 
 /// [`longitudinal`] of R, TT and TRT.
 #[inline(always)]
-fn longitudes<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(view: &HairView<C>, rule: &[[f32; 3]; N]) -> [L; 3] {
+fn longitudes<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(
+    view: &HairView<C>,
+    rule: &[[f32; 3]; N],
+) -> [L; 3] {
     [
         longitudinal::<B, L, C, N>(view, 0, rule),
         longitudinal::<B, L, C, N>(view, 1, rule),

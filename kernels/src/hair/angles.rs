@@ -40,7 +40,10 @@ pub(crate) struct LobeTerms<L> {
 impl<L: Lanes> Angles<L> {
     /// The angles of `wi` relative to a shading point, and the mask of lanes where `wi` is a direction off the axis.
     #[inline(always)]
-    pub(crate) fn from_direction<C: Broadcast<L>>(view: &HairView<C>, wi: Vec3x<L>) -> (Self, L::Mask) {
+    pub(crate) fn from_direction<C: Broadcast<L>>(
+        view: &HairView<C>,
+        wi: Vec3x<L>,
+    ) -> (Self, L::Mask) {
         let c = L::splat;
         let plane_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
         let cos_theta_i = plane_sq.sqrt();
@@ -53,7 +56,10 @@ impl<L: Lanes> Angles<L> {
         let far = reach + dot.abs();
         // Off the axis, seen from a wo that is a direction: else the length of its part across the fibre is NaN. Longer than
         // 2 is no direction; the comparison is false for the infinities of a sum that overflowed.
-        let sound = L::and((cos_o * c(GRAZING)).lt(reach), wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)));
+        let sound = L::and(
+            (cos_o * c(GRAZING)).lt(reach),
+            wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)),
+        );
 
         // Next to opposite poles theta_i and theta_o cancel: the large terms first, without rounding there.
         let half_theta_i_plus_quarter = half_angle(wi.x, cos_theta_i) + view.quarter_o.lanes();
@@ -87,14 +93,29 @@ impl<L: Lanes> Angles<L> {
         let x_trt = ((plus_quarter + view.shift[2].lanes()) * hair.inv_beta[2].lanes()).alone();
         // Their signs are not used: where `half` is of |phi| its distance from pi/2 is that of TT.
         let from_tt = self.half - L::keep(self.of_phi, c(FRAC_PI_2));
-        let from_glint = self.half - L::select(self.of_phi, hair.half_phi_g.lanes(), hair.half_back_g.lanes());
+        let from_glint = self.half
+            - L::select(
+                self.of_phi,
+                hair.half_phi_g.lanes(),
+                hair.half_back_g.lanes(),
+            );
         let y_tt = (from_tt * hair.inv_half_gamma[0].lanes()).alone();
         let y_g = (from_glint * hair.inv_half_gamma[1].lanes()).alone();
-        let (s_r, s_tt, s_trt, t_tt, t_g) = (x_r * x_r, x_tt * x_tt, x_trt * x_trt, y_tt * y_tt, y_g * y_g);
+        let (s_r, s_tt, s_trt, t_tt, t_g) = (
+            x_r * x_r,
+            x_tt * x_tt,
+            x_trt * x_trt,
+            y_tt * y_tt,
+            y_g * y_g,
+        );
 
         // The Cauchy value of each. Each of the five is at most 1e9, so that four of them
         // multiplied stay below the largest float.
-        let (d_r, d_tt_x, d_trt) = (one_plus_square(x_r), one_plus_square(x_tt), one_plus_square(x_trt));
+        let (d_r, d_tt_x, d_trt) = (
+            one_plus_square(x_r),
+            one_plus_square(x_tt),
+            one_plus_square(x_trt),
+        );
         let (d_tt_y, d_g_y) = (one_plus_square(y_tt), one_plus_square(y_g));
         let (d_tt, d_g) = (d_tt_x * d_tt_y, d_trt * d_g_y);
         let [cauchy_tt, cauchy_g] = quotients([one, d_tt], [one, d_g]);
@@ -102,16 +123,31 @@ impl<L: Lanes> Angles<L> {
         // Cos^2 theta_d is the squared length of the mean of the two directions in the meridian plane: exact where both
         // are near opposite poles, where 1 + cos cos + sin sin cancels.
         let half = c(0.5);
-        let mean_u = self.sin_theta_i.mul_add(half, view.half_sin_theta_o.lanes());
-        let mean_c = self.cos_theta_i.mul_add(half, view.half_cos_theta_o.lanes());
+        let mean_u = self
+            .sin_theta_i
+            .mul_add(half, view.half_sin_theta_o.lanes());
+        let mean_c = self
+            .cos_theta_i
+            .mul_add(half, view.half_cos_theta_o.lanes());
         let cos_sq_theta_d = mean_u.mul_add(mean_u, (mean_c * mean_c).alone()).alone();
         let [cauchy_r, inv_cos_sq_theta_d] = quotients([one, d_r], [one, cos_sq_theta_d]);
 
-        let of_tt = [s_tt, t_tt, cauchy_tt, cauchy_tt * d_tt_y, cauchy_tt * d_tt_x];
+        let of_tt = [
+            s_tt,
+            t_tt,
+            cauchy_tt,
+            cauchy_tt * d_tt_y,
+            cauchy_tt * d_tt_x,
+        ];
         let of_g = [s_trt, t_g, cauchy_g, cauchy_trt, cauchy_g * d_trt];
         let [m_r, f_tt, m_trt, f_g] = B::four([s_r, cauchy_r], of_tt, [s_trt, cauchy_trt], of_g);
         LobeTerms {
-            value: [m_r * self.cos_half_phi, f_tt, m_trt * self.cos_half_phi, f_g],
+            value: [
+                m_r * self.cos_half_phi,
+                f_tt,
+                m_trt * self.cos_half_phi,
+                f_g,
+            ],
             density: [
                 cauchy_r * self.cos_half_phi,
                 cauchy_tt,
@@ -138,7 +174,11 @@ impl<L: Lanes> LobeTerms<L> {
         let trt = self.value[2] * hair.strength[2].lanes();
         let (f_r, f_tt) = (self.value[0], self.value[1]);
         let f_trt = self.value[3].mul_add(hair.strength[3].lanes(), trt);
-        let (r, tt, trt) = (lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt));
+        let (r, tt, trt) = (
+            lanes3(&hair.color_r),
+            lanes3(&hair.color_tt),
+            lanes3(&hair.color_trt),
+        );
         [
             f_r.mul_add(r[0], f_tt.mul_add(tt[0], f_trt * trt[0])),
             f_r.mul_add(r[1], f_tt.mul_add(tt[1], f_trt * trt[1])),

@@ -61,7 +61,12 @@ pub(crate) fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3], L) {
     let zero = c(0.0);
     let total = (energy[0] + energy[1]) + (energy[2] + energy[3]);
     let inv_total = L::select(zero.lt(total), L::quotient(c(1.0), total), zero);
-    let p = [energy[0] * inv_total, energy[1] * inv_total, energy[2] * inv_total, energy[3] * inv_total];
+    let p = [
+        energy[0] * inv_total,
+        energy[1] * inv_total,
+        energy[2] * inv_total,
+        energy[3] * inv_total,
+    ];
     let (two, low) = (c(2.0), p[0] + p[1]);
     let more = [p[1] + p[2] + p[3], p[2] + p[3], p[3]];
     let bounds = [
@@ -87,7 +92,10 @@ impl HairMaterial<f32> {
         let sampler = HairSampler {
             azimuth_middle: [tt.tan_mid, glint.tan_mid],
             azimuth_span: [-tt.span, glint.span],
-            azimuth_density: [f32::quotient(0.5, tt.span * gamma_tt), f32::quotient(0.5, glint.span * gamma_g)],
+            azimuth_density: [
+                f32::quotient(0.5, tt.span * gamma_tt),
+                f32::quotient(0.5, glint.span * gamma_g),
+            ],
             selection: p,
             bounds,
         };
@@ -102,12 +110,19 @@ const LEAST_SHARE: f64 = 1e-30;
 ///
 /// In double precision: the product of two of the largest legal intensities overflows a float.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "shares of the largest, 0 or in [1e-30, 1]")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "shares of the largest, 0 or in [1e-30, 1]"
+)]
 fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -> [f32; 4] {
     use core::f64::consts::PI;
     let d = params.desc();
     let mean = |rgb: [f32; 3]| rgb.iter().map(|c| f64::from(*c)).sum::<f64>() / 3.0;
-    let (i_r, i_tt, i_trt) = (mean(d.intensity_r), mean(d.intensity_tt), mean(d.intensity_trt));
+    let (i_r, i_tt, i_trt) = (
+        mean(d.intensity_r),
+        mean(d.intensity_tt),
+        mean(d.intensity_trt),
+    );
     let root = 4.0 * libm::sqrt(2.0 * PI);
     let energy = [
         root * f64::from(beta[0]) * i_r,
@@ -116,7 +131,13 @@ fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -
         4.0 * PI * f64::from(beta[2]) * f64::from(gamma_g) * i_trt * f64::from(d.intensity_g),
     ];
     let largest = energy.iter().fold(0.0, |a: f64, e| a.max(*e));
-    energy.map(|e| if e > 0.0 { (e / largest).max(LEAST_SHARE) as f32 } else { 0.0 })
+    energy.map(|e| {
+        if e > 0.0 {
+            (e / largest).max(LEAST_SHARE) as f32
+        } else {
+            0.0
+        }
+    })
 }
 
 /// Truncated Cauchy of a lobe's longitude: the ends are those of all lobes, but for the shift.
@@ -127,7 +148,10 @@ fn longitude<L: Lanes, C: Broadcast<L>>([lo, hi]: [L; 2], shift: L, beta: C) -> 
 
 /// The shading point of a material seen from `wo`.
 #[inline(always)]
-pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<L>) -> HairGather<L::Stored> {
+pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
+    m: &HairMaterial<C>,
+    wo: Vec3x<L>,
+) -> HairGather<L::Stored> {
     let c = L::splat;
     let (hair, sampler) = (&m.lobes, &m.sampler);
     let view = view::prepare(hair, wo);
@@ -158,8 +182,12 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &HairMaterial<C>, wo: Vec3x<
         of_trt * sampler.azimuth_density[1].lanes(),
     ];
     let p = &sampler.selection;
-    let weight =
-        [density[0] * p[0].lanes(), density[1] * p[1].lanes(), density[2] * p[2].lanes(), density[3] * p[3].lanes()];
+    let weight = [
+        density[0] * p[0].lanes(),
+        density[1] * p[1].lanes(),
+        density[2] * p[2].lanes(),
+        density[3] * p[3].lanes(),
+    ];
 
     HairGather {
         view,
@@ -180,7 +208,11 @@ impl<C: Lanes> HairGather<C> {
         Self {
             view: self.view.restrict(lobes),
             weight: times(self.density, p),
-            sampler: HairSampler { selection: p, bounds, ..self.sampler },
+            sampler: HairSampler {
+                selection: p,
+                bounds,
+                ..self.sampler
+            },
             ..*self
         }
     }

@@ -18,7 +18,11 @@ fn limit<L: Lanes>(sound: L::Mask) -> L {
 /// `x` times `by`, at most `limit`.
 #[inline(always)]
 fn scale3<L: Lanes>(x: [L; 3], by: L, limit: L) -> [L; 3] {
-    [(x[0] * by).min(limit), (x[1] * by).min(limit), (x[2] * by).min(limit)]
+    [
+        (x[0] * by).min(limit),
+        (x[1] * by).min(limit),
+        (x[2] * by).min(limit),
+    ]
 }
 
 /// The density of a mixture of lobes, from the shape of each lobe's density and its weight.
@@ -40,7 +44,10 @@ pub(crate) fn finish_eval<L: Lanes, C: Broadcast<L>>(
 ) -> Eval<L> {
     let limit = limit::<L>(sound);
     let value = scale3(terms.sum_lobes(view), terms.inv_cos_sq_theta_d, limit);
-    Eval { value, pdf: (density * angles.inv_cos_theta_i).min(limit) }
+    Eval {
+        value,
+        pdf: (density * angles.inv_cos_theta_i).min(limit),
+    }
 }
 
 /// Each lobe at these angles, of its own `density` times `cos theta_i`.
@@ -54,9 +61,18 @@ pub(crate) fn finish_lobes<L: Lanes, C: Broadcast<L>>(
 ) -> PerLobe<LobeEval<L>> {
     let limit = limit::<L>(sound);
     let hair = &view.lobes;
-    let colors = [lanes3(&hair.color_r), lanes3(&hair.color_tt), lanes3(&hair.color_trt), lanes3(&hair.color_trt)];
+    let colors = [
+        lanes3(&hair.color_r),
+        lanes3(&hair.color_tt),
+        lanes3(&hair.color_trt),
+        lanes3(&hair.color_trt),
+    ];
     let zero = L::splat(0.0);
-    let mut lobes = [LobeEval { value: zero, color: [zero; 3], pdf: zero }; 4];
+    let mut lobes = [LobeEval {
+        value: zero,
+        color: [zero; 3],
+        pdf: zero,
+    }; 4];
     let mut l = 0;
     while l < 4 {
         let strength = hair.strength[l].lanes() * terms.inv_cos_sq_theta_d;
@@ -81,12 +97,18 @@ pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
     density: L,
 ) -> Drawn<L> {
     let cos = angles.cos_theta_i;
-    let sound = L::and(L::splat(GRAZING).lt(cos), L::splat(LEAST_DENSITY).lt(density));
+    let sound = L::and(
+        L::splat(GRAZING).lt(cos),
+        L::splat(LEAST_DENSITY).lt(density),
+    );
     let limit = limit::<L>(sound);
     let (sum, inv_cos_sq_theta_d) = (terms.sum_lobes(view), terms.inv_cos_sq_theta_d);
     // weight = S cos theta_i / pdf, and pdf = density / cos theta_i. The product before the division is at most 4. Where results
     // are rounded down, a density of 0 may be -0, and a quotient by it -infinity.
-    let by = L::quotient(cos * cos * inv_cos_sq_theta_d, density.max(L::splat(LEAST_DENSITY)));
+    let by = L::quotient(
+        cos * cos * inv_cos_sq_theta_d,
+        density.max(L::splat(LEAST_DENSITY)),
+    );
     Drawn {
         wi,
         value: scale3(sum, inv_cos_sq_theta_d, limit),

@@ -10,7 +10,10 @@ use core::f32::consts::FRAC_PI_4;
 
 /// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its angles.
 #[inline(always)]
-pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> (Vec3x<L>, L::Index, Angles<L>) {
+pub(super) fn draw<L: Lanes, C: Broadcast<L>>(
+    gather: &HairGather<C>,
+    xi: [L; 3],
+) -> (Vec3x<L>, L::Index, Angles<L>) {
     let c = L::splat;
     let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
     let (view, hair, sampler) = (&gather.view, &gather.view.lobes, &gather.sampler);
@@ -25,10 +28,16 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]
             C::look_up_three(&gather.longitude_middle, choice),
             C::look_up_half(&sampler.azimuth_middle, choice),
         ),
-        span: Pair(C::look_up_three(&gather.longitude_span, choice), C::look_up_half(&sampler.azimuth_span, choice)),
+        span: Pair(
+            C::look_up_three(&gather.longitude_span, choice),
+            C::look_up_half(&sampler.azimuth_span, choice),
+        ),
     };
     let Pair(x, y) = both.invert(Pair(along - half, half - folded.across));
-    let from_quarter = x.mul_sub(C::look_up_three(&hair.beta, choice), C::look_up_three(&view.shift, choice));
+    let from_quarter = x.mul_sub(
+        C::look_up_three(&hair.beta, choice),
+        C::look_up_three(&view.shift, choice),
+    );
     let center = L::keep(L::is_index(choice, 3), hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
     let (wi, angles) = direction_from_angles(view, choice, from_quarter, folded, psi);
@@ -49,7 +58,10 @@ impl<L: Lanes> FoldedXi<L> {
     #[inline(always)]
     pub(crate) fn of(xi: L) -> Self {
         let side = xi + xi - L::splat(1.0);
-        Self { side, across: L::splat(1.0).min(side.abs()) }
+        Self {
+            side,
+            across: L::splat(1.0).min(side.abs()),
+        }
     }
 }
 
@@ -111,7 +123,8 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let inv_cos_theta_i = L::quotient(one, c(LEAST_COSINE).max(cos_theta_i));
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
-    let rotation = cross.mul_sub(cos_phi, dot * sin_twice) * (inv_cos_theta_i * (inv_plane_o * c(0.5)));
+    let rotation =
+        cross.mul_sub(cos_phi, dot * sin_twice) * (inv_cos_theta_i * (inv_plane_o * c(0.5)));
     let angles = Angles {
         // Not `from_quarter`: the direction is that of the rounded half.
         half_theta_i_plus_quarter: half_theta_i + quarter_o,

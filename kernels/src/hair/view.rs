@@ -69,7 +69,8 @@ impl HairLobes<f32> {
         let k = bell.width_factor();
         // Below 5e-5 rad the product of four Cauchy denominators overflows far from the centres.
         let [b_r, b_tt, b_trt, gamma_tt, gamma_g] =
-            [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g].map(|width| (width * k).max(5e-5));
+            [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g]
+                .map(|width| (width * k).max(5e-5));
         let phi_g = d.phi_g;
         // The float next to pi is above it by a thousandth of the least width.
         let to_back = (PI - phi_g) + 2.0 * FRAC_PI_2_LOW;
@@ -83,18 +84,29 @@ impl HairLobes<f32> {
             inv_half_gamma: [f32::quotient(2.0, gamma_tt), f32::quotient(2.0, gamma_g)],
             half_phi_g: 0.5 * phi_g,
             half_back_g: 0.5 * to_back,
-            azimuth_area: [bell_area::<B>(-PI, PI, gamma_tt), 2.0 * bell_area::<B>(-phi_g, to_back, gamma_g)],
+            azimuth_area: [
+                bell_area::<B>(-PI, PI, gamma_tt),
+                2.0 * bell_area::<B>(-phi_g, to_back, gamma_g),
+            ],
             color_r: d.intensity_r,
             color_tt: d.intensity_tt,
             color_trt: d.intensity_trt.map(|c| (c * excess).min(f32::MAX)),
-            strength: [1.0, 1.0, f32::quotient(1.0, excess), f32::quotient(d.intensity_g, excess)],
+            strength: [
+                1.0,
+                1.0,
+                f32::quotient(1.0, excess),
+                f32::quotient(d.intensity_g, excess),
+            ],
         }
     }
 }
 
 /// The lobes of a material seen from `wo`.
 #[inline(always)]
-pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x<L>) -> HairView<L::Stored> {
+pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
+    lobes: &HairLobes<C>,
+    wo: Vec3x<L>,
+) -> HairView<L::Stored> {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     // The digits of a wo of about unit length are kept as they are; any other is scaled by its largest component, so
@@ -122,8 +134,11 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(lobes: &HairLobes<C>, wo: Vec3x
     let cos_phi_o = L::select(off_axis, y * inv_plane, one);
     let sin_phi_o = z * inv_plane;
 
-    let [r, tt, trt] =
-        [half_rest - lobes.alpha[0].lanes(), half_rest - lobes.alpha[1].lanes(), half_rest - lobes.alpha[2].lanes()];
+    let [r, tt, trt] = [
+        half_rest - lobes.alpha[0].lanes(),
+        half_rest - lobes.alpha[1].lanes(),
+        half_rest - lobes.alpha[2].lanes(),
+    ];
 
     HairView {
         half_sin_theta_o: (x * half_inv_len).store(),

@@ -41,7 +41,10 @@ impl<C: Lanes> Mixture<C> {
         let scale = C::select(total.lt(c(1e-19)), c(1e19), one);
         let e = [e[0] * scale, e[1] * scale, e[2] * scale, e[3] * scale];
         let total = total * scale;
-        let by = C::keep(zero.lt(total), C::quotient(one, total.max(c(f32::MIN_POSITIVE))));
+        let by = C::keep(
+            zero.lt(total),
+            C::quotient(one, total.max(c(f32::MIN_POSITIVE))),
+        );
         let p = [e[0] * by, e[1] * by, e[2] * by, e[3] * by];
         let (first, last) = (p[0] + p[1], p[2] + p[3]);
         let later = [p[1] + last, last, p[3]];

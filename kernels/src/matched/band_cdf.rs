@@ -29,8 +29,17 @@ impl<P: Lanes> Longitude<P> {
         let (none, quarter) = (P::splat(0.0), P::splat(FRAC_PI_4));
         let [lo, hi] = [(quarter_o - quarter) + shift, (quarter_o + quarter) + shift];
         let origin = B::origin(lo * inv_beta, hi * inv_beta);
-        let this = Self { shift, inv_beta, origin, integral: none, area: none };
-        Self { integral: this.integral_to::<B, L, K>(quarter_o + P::outwards(FRAC_PI_4)), ..this }
+        let this = Self {
+            shift,
+            inv_beta,
+            origin,
+            integral: none,
+            area: none,
+        };
+        Self {
+            integral: this.integral_to::<B, L, K>(quarter_o + P::outwards(FRAC_PI_4)),
+            ..this
+        }
     }
 
     /// The integrals up to half an inclination, plus `quarter_o`, in either hemisphere.
@@ -68,7 +77,10 @@ impl<P: Lanes> Longitude<P> {
         P: Hemispheres<L, K>,
     {
         let middle = (self.integral + self.integral.swapped()).abs() * height;
-        [middle.mul_add(P::splat(0.5), self.area), (self.area + self.area.swapped()) + middle]
+        [
+            middle.mul_add(P::splat(0.5), self.area),
+            (self.area + self.area.swapped()) + middle,
+        ]
     }
 }
 
@@ -96,14 +108,21 @@ pub(super) struct BandCdf<L: Lanes, const N: usize> {
 
 /// Integrates over all bands, from both poles to the middle.
 #[inline(always)]
-pub(super) fn integrate_bands<B: MatchedBell, L: Lanes, P: Hemispheres<L, K>, const K: usize, const N: usize>(
+pub(super) fn integrate_bands<
+    B: MatchedBell,
+    L: Lanes,
+    P: Hemispheres<L, K>,
+    const K: usize,
+    const N: usize,
+>(
     quarter_o: L,
     shift: [L; 3],
     inv_beta: [L; 3],
     theta_o: [L; 2],
 ) -> BandCdf<L, N> {
     let none = L::splat(0.0);
-    let (quarter_o, shift, inv_beta) = (P::of(quarter_o), P::of_lobes(shift), P::of_lobes(inv_beta));
+    let (quarter_o, shift, inv_beta) =
+        (P::of(quarter_o), P::of_lobes(shift), P::of_lobes(inv_beta));
     let mut lobes = [Longitude::at_poles::<B, L, K>(quarter_o, shift[0], inv_beta[0]); K];
     for_each!(k < K, {
         lobes[k] = Longitude::at_poles::<B, L, K>(quarter_o, shift[k], inv_beta[k]);
@@ -133,7 +152,11 @@ pub(super) fn integrate_bands<B: MatchedBell, L: Lanes, P: Hemispheres<L, K>, co
         for_each!(k < K, {
             of_lobes[k] = lobes[k].pass::<B, L, K>(to, height, minus_slope);
         });
-        let (heights, slopes, offsets) = (height.apart(), minus_slope.abs().apart(), P::lobes_apart(of_lobes));
+        let (heights, slopes, offsets) = (
+            height.apart(),
+            minus_slope.abs().apart(),
+            P::lobes_apart(of_lobes),
+        );
         (cdf.height[j], cdf.height[N - 1 - j]) = (heights[0].store(), heights[1].store());
         (cdf.slope[j], cdf.slope[N - 1 - j]) = (slopes[0].store(), slopes[1].store());
         (cdf.offset[j], cdf.offset[N - 1 - j]) = (shared4(offsets[0]), shared4(offsets[1]));

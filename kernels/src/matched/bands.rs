@@ -23,7 +23,12 @@ const MOST: usize = 12;
 /// efficiency figures; the distance of the last bounds how much of a lobe on the pole has a weight of its own.
 const ENDS: [&[[f32; 2]]; 3] = [
     &[[0.935, 0.60412954], [0.598, 0.32050172]],
-    &[[0.979, 0.68274841], [0.936, 0.60554465], [0.803, 0.46615599], [0.395, 0.20303393]],
+    &[
+        [0.979, 0.68274841],
+        [0.936, 0.60554465],
+        [0.803, 0.46615599],
+        [0.395, 0.20303393],
+    ],
     &[
         [0.9956, 0.73847671],
         [0.993, 0.72620268],
@@ -49,7 +54,12 @@ pub(super) const fn bands(all: usize) -> [Band; MOST + 1] {
         25 => ENDS[2],
         _ => panic!("5, 9 or 25 bands"),
     };
-    let mut side = [Band { outer: 1.0, half_inner: 0.0, half_sin: 0.0, half_cos: 0.5 }; MOST + 1];
+    let mut side = [Band {
+        outer: 1.0,
+        half_inner: 0.0,
+        half_sin: 0.0,
+        half_cos: 0.5,
+    }; MOST + 1];
     let mut j = 0;
     while j < ends.len() {
         let [inner, half_inner] = ends[j];
@@ -107,11 +117,26 @@ mod tests {
             for (j, ends) in side.windows(2).enumerate() {
                 let (band, next) = (&ends[0], f64::from(ends[1].outer));
                 let inner = libm::sin(2.0 * f64::from(band.half_inner));
-                assert!((inner - next).abs() < 1e-7, "{all}: the inner end of {j}: {inner} for {next}");
-                assert!(0.0 < inner && inner < f64::from(band.outer), "{all}: {j} has no area");
-                let (sin, cos) = (2.0 * f64::from(band.half_sin), 2.0 * f64::from(band.half_cos));
-                assert!((sin - 0.5 * (inner + f64::from(band.outer))).abs() < 1e-7, "{all}: middle of {j}");
-                assert!((sin.hypot(cos) - 1.0).abs() < 1e-7, "{all}: length of the middle of {j}");
+                assert!(
+                    (inner - next).abs() < 1e-7,
+                    "{all}: the inner end of {j}: {inner} for {next}"
+                );
+                assert!(
+                    0.0 < inner && inner < f64::from(band.outer),
+                    "{all}: {j} has no area"
+                );
+                let (sin, cos) = (
+                    2.0 * f64::from(band.half_sin),
+                    2.0 * f64::from(band.half_cos),
+                );
+                assert!(
+                    (sin - 0.5 * (inner + f64::from(band.outer))).abs() < 1e-7,
+                    "{all}: middle of {j}"
+                );
+                assert!(
+                    (sin.hypot(cos) - 1.0).abs() < 1e-7,
+                    "{all}: length of the middle of {j}"
+                );
             }
         }
     }

@@ -75,7 +75,10 @@ where
     let hair = &m.lobes;
     let view = prepare_view(hair, wo);
     let theta_o = [view.half_sin_theta_o.lanes(), view.half_cos_theta_o.lanes()];
-    let (shift, inv_beta) = (lanes3(&[view.shift[0], view.shift[1], view.shift[2]]), lanes3(&hair.inv_beta));
+    let (shift, inv_beta) = (
+        lanes3(&[view.shift[0], view.shift[1], view.shift[2]]),
+        lanes3(&hair.inv_beta),
+    );
     let cdf = integrate_bands::<B, L, P, K, N>(view.quarter_o.lanes(), shift, inv_beta, theta_o);
     // The glints share the longitude of TRT.
     let [r, tt, trt] = cdf.area;
@@ -150,7 +153,10 @@ fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [
     let mut sum = [zero; 4];
     c = 0;
     while c < 3 {
-        let relative = L::keep((most * L::splat(LEAST_CHANNEL)).lt(total[c]), L::quotient(most, total[c]));
+        let relative = L::keep(
+            (most * L::splat(LEAST_CHANNEL)).lt(total[c]),
+            L::quotient(most, total[c]),
+        );
         let mut l = 0;
         while l < 4 {
             let share = intensity[3 * l + c].lanes() * relative;
@@ -188,7 +194,11 @@ impl<C, const N: usize> MatchedGather<C, N> {
         while j <= N / 2 {
             let inside = across.lt(L::splat(const { bands(N) }[j].outer));
             let next = if j < N / 2 {
-                L::select(below, self.height[j].lanes(), self.height[N - 1 - j].lanes())
+                L::select(
+                    below,
+                    self.height[j].lanes(),
+                    self.height[N - 1 - j].lanes(),
+                )
             } else {
                 self.height[j].lanes()
             };
@@ -211,8 +221,14 @@ impl<C, const N: usize> MatchedGather<C, N> {
         let mut l = 0;
         while l < 4 {
             let area = self.area[l].lanes();
-            by_area[l] = L::keep(L::splat(0.0).lt(area), L::quotient(one, area.max(L::splat(LEAST_AREA))));
-            by_extent[l] = L::keep(L::splat(0.0).lt(by_extent[l]), L::quotient(one, by_extent[l]));
+            by_area[l] = L::keep(
+                L::splat(0.0).lt(area),
+                L::quotient(one, area.max(L::splat(LEAST_AREA))),
+            );
+            by_extent[l] = L::keep(
+                L::splat(0.0).lt(by_extent[l]),
+                L::quotient(one, by_extent[l]),
+            );
             l += 1;
         }
         [by_area, by_extent]
@@ -226,7 +242,13 @@ impl<C: Lanes, const N: usize> MatchedGather<C, N> {
         let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));
         let (p, bounds, inv_total) = selection(times(self.selection, factor));
         let weight = times(times(self.weight, factor), [inv_total; 4]);
-        Self { view: self.view.restrict(lobes), weight, selection: p, bounds, ..*self }
+        Self {
+            view: self.view.restrict(lobes),
+            weight,
+            selection: p,
+            bounds,
+            ..*self
+        }
     }
 }
 
@@ -275,7 +297,9 @@ impl<C: Scalar, const N: usize> LaneStruct for MatchedGather<C, N> {
             origin: n!(origin),
             height: n!(height),
             slope: n!(slope),
-            offset: core::array::from_fn(|i| core::array::from_fn(|j| f32x8::new(g.map(|g| g.offset[i][j])))),
+            offset: core::array::from_fn(|i| {
+                core::array::from_fn(|j| f32x8::new(g.map(|g| g.offset[i][j])))
+            }),
             offset_above: n!(offset_above),
             below: n!(below),
             area: n!(area),

@@ -31,10 +31,17 @@ crate::lane_struct! {
 
 /// Integral of each lobe without its colour, per unit of its longitude's integral.
 #[inline(always)]
-pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(hair: &HairLobes<C>, azimuth_mass: [L; 2]) -> [L; 4] {
+pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(
+    hair: &HairLobes<C>,
+    azimuth_mass: [L; 2],
+) -> [L; 4] {
     // dtheta_i is two widths for each of x; the azimuth of R and TRT-g has an area of 4, and bells have two sides.
     let unit = L::splat(2.0 * B::UNIT);
-    let [r, tt, trt] = [hair.beta[0].lanes() * unit, hair.beta[1].lanes() * unit, hair.beta[2].lanes() * unit];
+    let [r, tt, trt] = [
+        hair.beta[0].lanes() * unit,
+        hair.beta[1].lanes() * unit,
+        hair.beta[2].lanes() * unit,
+    ];
     let both_sides = L::splat(4.0 * B::UNIT);
     let azimuth_tt = hair.half_gamma[0].lanes() * azimuth_mass[0] * both_sides;
     let azimuth_g = hair.half_gamma[1].lanes() * azimuth_mass[1] * both_sides;
@@ -50,9 +57,13 @@ impl MatchedMaterial<f32> {
         let lobes = HairLobes::of(bell, params);
         let phi_g = params.desc().phi_g;
         let [inv_gamma_tt, inv_gamma_g] = lobes.inv_half_gamma.map(|inv| 0.5 * inv);
-        let ranges = [(0.0, PI * inv_gamma_tt), (-phi_g * inv_gamma_g, (PI - phi_g) * inv_gamma_g)];
+        let ranges = [
+            (0.0, PI * inv_gamma_tt),
+            (-phi_g * inv_gamma_g, (PI - phi_g) * inv_gamma_g),
+        ];
         let azimuth_origin = ranges.map(|(lo, hi)| B::origin(lo, hi));
-        let from_to = |i: usize| [ranges[i].0, ranges[i].1].map(|x| B::integral(azimuth_origin[i], x));
+        let from_to =
+            |i: usize| [ranges[i].0, ranges[i].1].map(|x| B::integral(azimuth_origin[i], x));
         let [tt, glint] = [from_to(0), from_to(1)];
         // Integrals ascend but for their rounding.
         let azimuth_mass = [tt, glint].map(|[from, to]| 0.0_f32.max(to - from));
@@ -73,7 +84,10 @@ impl MatchedMaterial<f32> {
 ///
 /// In double precision: the product of two of the largest legal intensities overflows a float.
 #[inline]
-#[expect(clippy::cast_possible_truncation, reason = "at most 3 times the largest")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "at most 3 times the largest"
+)]
 fn intensity(params: &HairParams) -> [[f32; 3]; 4] {
     let d = params.desc();
     let double = |rgb: [f32; 3], factor: f32| rgb.map(|c| f64::from(c) * f64::from(factor));
@@ -87,7 +101,11 @@ fn intensity(params: &HairParams) -> [[f32; 3]; 4] {
     let largest = all.iter().map(mean).fold(0.0, f64::max);
     all.map(|rgb| {
         let (own, least) = (mean(&rgb), largest * LEAST_IMPORTANCE);
-        let by = if own < least { LEAST_IMPORTANCE / own } else { 1.0 / largest };
+        let by = if own < least {
+            LEAST_IMPORTANCE / own
+        } else {
+            1.0 / largest
+        };
         rgb.map(|c| if own > 0.0 { (c * by) as f32 } else { 0.0 })
     })
 }

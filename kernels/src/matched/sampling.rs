@@ -34,10 +34,15 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
         integral = integral.min(line::<L, C, N>(gather, choice, lower, area, j));
         j += 1;
     }
-    let [first, minus_last] =
-        [C::look_up_three(&gather.offset[0], choice), C::look_up_three(&gather.offset[N - 1], choice)];
+    let [first, minus_last] = [
+        C::look_up_three(&gather.offset[0], choice),
+        C::look_up_three(&gather.offset[N - 1], choice),
+    ];
     let whole = first + minus_last;
-    let (least, most) = (whole.mul_add(c(-LEAST_SHARE), first), whole.mul_sub(c(LEAST_SHARE), minus_last));
+    let (least, most) = (
+        whole.mul_add(c(-LEAST_SHARE), first),
+        whole.mul_sub(c(LEAST_SHARE), minus_last),
+    );
     // The second operand wins over NaN.
     let integral = L::select(lower, integral, -integral).max(least).min(most);
 
@@ -46,10 +51,16 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let is_glint = L::is_index(choice, 3);
     let share = L::select(is_glint, one - folded.across, folded.across);
     let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON / 2.0)));
-    let (mass, from) = (C::look_up_half(&gather.azimuth_mass, choice), C::look_up_half(&gather.azimuth_from, choice));
+    let (mass, from) = (
+        C::look_up_half(&gather.azimuth_mass, choice),
+        C::look_up_half(&gather.azimuth_from, choice),
+    );
 
     // Side by side.
-    let origin = Pair(C::look_up_three(&gather.origin, choice), C::look_up_half(&gather.azimuth_origin, choice));
+    let origin = Pair(
+        C::look_up_three(&gather.origin, choice),
+        C::look_up_half(&gather.azimuth_origin, choice),
+    );
     let Pair(x, y) = B::invert(origin, Pair(integral, share.mul_add(mass, from)));
     // NaN if any number is, or infinite: the sample has no inclination then, and no density. Rounding may take another past
     // the pole, where it has none either.
@@ -71,9 +82,21 @@ fn line<L: Lanes, C: Broadcast<L>, const N: usize>(
     j: usize,
 ) -> L {
     let middle = j == N / 2;
-    let above = if middle { &gather.offset_above } else { &gather.offset[N - 1 - j] };
-    let offset = L::select(lower, C::look_up_three(&gather.offset[j], choice), C::look_up_three(above, choice));
+    let above = if middle {
+        &gather.offset_above
+    } else {
+        &gather.offset[N - 1 - j]
+    };
+    let offset = L::select(
+        lower,
+        C::look_up_three(&gather.offset[j], choice),
+        C::look_up_three(above, choice),
+    );
     let slope = gather.slope[j].lanes();
-    let slope = if middle { slope } else { L::select(lower, slope, gather.slope[N - 1 - j].lanes()) };
+    let slope = if middle {
+        slope
+    } else {
+        L::select(lower, slope, gather.slope[N - 1 - j].lanes())
+    };
     slope.mul_add(area, offset)
 }

@@ -36,7 +36,12 @@ pub struct Highlight {
 impl Default for Highlight {
     #[inline]
     fn default() -> Self {
-        Self { color: [1.0; 3], intensity: 0.3, shift_deg: -7.5, width_deg: 7.5 }
+        Self {
+            color: [1.0; 3],
+            intensity: 0.3,
+            shift_deg: -7.5,
+            width_deg: 7.5,
+        }
     }
 }
 
@@ -60,7 +65,13 @@ pub struct Transmission {
 impl Default for Transmission {
     #[inline]
     fn default() -> Self {
-        Self { color: [0.8, 0.6, 0.4], intensity: 1.0, shift_deg: 3.75, width_deg: 3.75, azimuthal_width_deg: 10.0 }
+        Self {
+            color: [0.8, 0.6, 0.4],
+            intensity: 1.0,
+            shift_deg: 3.75,
+            width_deg: 3.75,
+            azimuthal_width_deg: 10.0,
+        }
     }
 }
 
@@ -80,7 +91,11 @@ pub struct Glints {
 impl Default for Glints {
     #[inline]
     fn default() -> Self {
-        Self { strength: 0.5, separation_deg: 70.0, azimuthal_width_deg: 10.0 }
+        Self {
+            strength: 0.5,
+            separation_deg: 70.0,
+            azimuthal_width_deg: 10.0,
+        }
     }
 }
 
@@ -120,7 +135,12 @@ impl Default for ArtistControls {
         Self {
             primary: Highlight::default(),
             transmission: Transmission::default(),
-            secondary: Highlight { color: [0.7, 0.5, 0.3], intensity: 1.0, shift_deg: 11.25, width_deg: 15.0 },
+            secondary: Highlight {
+                color: [0.7, 0.5, 0.3],
+                intensity: 1.0,
+                shift_deg: 11.25,
+                width_deg: 15.0,
+            },
             glints: Glints::default(),
         }
     }
@@ -136,8 +156,16 @@ impl HairParams {
     /// its intensity overflows.
     #[inline]
     pub fn from_artist(controls: &ArtistControls) -> Result<Self, ParamError> {
-        let ArtistControls { primary: r, transmission: tt, secondary: trt, glints } = controls;
-        check(is_intensity(glints.strength), ParamError::Scalar("glints.strength", glints.strength))?;
+        let ArtistControls {
+            primary: r,
+            transmission: tt,
+            secondary: trt,
+            glints,
+        } = controls;
+        check(
+            is_intensity(glints.strength),
+            ParamError::Scalar("glints.strength", glints.strength),
+        )?;
         Self::new(&HairDesc {
             alpha_r: shift("primary.shift_deg", r.shift_deg)?,
             alpha_tt: shift("transmission.shift_deg", tt.shift_deg)?,
@@ -147,10 +175,21 @@ impl HairParams {
             beta_trt: width("secondary.width_deg", trt.width_deg)?,
             gamma_tt: width("transmission.azimuthal_width_deg", tt.azimuthal_width_deg)?,
             gamma_g: width("glints.azimuthal_width_deg", glints.azimuthal_width_deg)?,
-            phi_g: (degrees("glints.separation_deg", glints.separation_deg, SEPARATIONS)? * 0.5).min(PI),
+            phi_g: (degrees("glints.separation_deg", glints.separation_deg, SEPARATIONS)? * 0.5)
+                .min(PI),
             intensity_r: tint("primary.color", r.color, "primary.intensity", r.intensity)?,
-            intensity_tt: tint("transmission.color", tt.color, "transmission.intensity", tt.intensity)?,
-            intensity_trt: tint("secondary.color", trt.color, "secondary.intensity", trt.intensity)?,
+            intensity_tt: tint(
+                "transmission.color",
+                tt.color,
+                "transmission.intensity",
+                tt.intensity,
+            )?,
+            intensity_trt: tint(
+                "secondary.color",
+                trt.color,
+                "secondary.intensity",
+                trt.intensity,
+            )?,
             intensity_g: glints.strength,
         })
     }
@@ -160,7 +199,10 @@ impl HairParams {
 #[inline]
 fn degrees(field: &'static str, value: f32, range: [f32; 2]) -> Result<f32, ParamError> {
     let [least, most] = range;
-    check((least..=most).contains(&value), ParamError::Degrees(field, value, range))?;
+    check(
+        (least..=most).contains(&value),
+        ParamError::Degrees(field, value, range),
+    )?;
     Ok(value * RAD_PER_DEG)
 }
 
@@ -184,12 +226,21 @@ fn tint(
     intensity_field: &'static str,
     intensity: f32,
 ) -> Result<[f32; 3], ParamError> {
-    check(is_intensity(intensity), ParamError::Scalar(intensity_field, intensity))?;
+    check(
+        is_intensity(intensity),
+        ParamError::Scalar(intensity_field, intensity),
+    )?;
     let mut rgb = [0.0; 3];
     for (channel, (product, value)) in rgb.iter_mut().zip(color).enumerate() {
-        check(is_intensity(value), ParamError::Intensity(color_field, channel, value))?;
+        check(
+            is_intensity(value),
+            ParamError::Intensity(color_field, channel, value),
+        )?;
         *product = value * intensity;
-        check(is_intensity(*product), ParamError::Overflow(color_field, channel, value))?;
+        check(
+            is_intensity(*product),
+            ParamError::Overflow(color_field, channel, value),
+        )?;
     }
     Ok(rgb)
 }

@@ -69,10 +69,29 @@ const BLOND: HairParams = Look {
     ..BASE
 }
 .params();
-const BROWN: HairParams = Look { pigment: [0.6, 0.4, 0.24], glint: 0.8, ..BASE }.params();
-const RED: HairParams = Look { alpha_r: -7.0, gamma_g: 12.0, pigment: [0.8, 0.36, 0.14], glint: 0.7, ..BASE }.params();
-const BLACK: HairParams =
-    Look { alpha_r: -6.0, beta_r: 6.0, pigment: [0.14, 0.1, 0.08], reflected: 0.03, returned: 0.2, ..BASE }.params();
+const BROWN: HairParams = Look {
+    pigment: [0.6, 0.4, 0.24],
+    glint: 0.8,
+    ..BASE
+}
+.params();
+const RED: HairParams = Look {
+    alpha_r: -7.0,
+    gamma_g: 12.0,
+    pigment: [0.8, 0.36, 0.14],
+    glint: 0.7,
+    ..BASE
+}
+.params();
+const BLACK: HairParams = Look {
+    alpha_r: -6.0,
+    beta_r: 6.0,
+    pigment: [0.14, 0.1, 0.08],
+    reflected: 0.03,
+    returned: 0.2,
+    ..BASE
+}
+.params();
 const WHITE: HairParams = Look {
     alpha_r: -8.0,
     beta_r: 9.0,

@@ -21,11 +21,19 @@ impl<T: Real> Cut<T> {
     /// The bell on `[lo, hi]`, in widths from its centre.
     pub(super) fn new(shape: Shape, lo: T, hi: T) -> Self {
         let gaussian = shape == Shape::Gaussian;
-        let unit = Self { gaussian, lo, hi, area: T::from_f64(1.0) };
+        let unit = Self {
+            gaussian,
+            lo,
+            hi,
+            area: T::from_f64(1.0),
+        };
         let area = unit.below(hi);
         // A Gaussian whose every value in the interval is below 2^-115 is 0 to the kernels, and nothing is drawn from it.
         let none = gaussian && lo.max(-hi) > T::from_f64(12.627_1);
-        Self { area: if none { T::default() } else { area }, ..unit }
+        Self {
+            area: if none { T::default() } else { area },
+            ..unit
+        }
     }
 
     /// Integral of the bell from `lo` to `x`.
@@ -46,14 +54,22 @@ impl<T: Real> Cut<T> {
 
     /// Integral of the bell from `x` to `hi`: the rest of [`below`](Self::below), without a difference.
     fn beyond(&self, x: T) -> T {
-        Self { lo: -self.hi, ..*self }.below(-x)
+        Self {
+            lo: -self.hi,
+            ..*self
+        }
+        .below(-x)
     }
 
     /// Probability of at most `x`.
     pub(super) fn cdf(&self, x: T) -> T {
         let x = x.max(self.lo).min(self.hi);
         let (below, beyond) = (self.below(x), self.beyond(x));
-        if below < beyond { below / self.area } else { T::from_f64(1.0) - beyond / self.area }
+        if below < beyond {
+            below / self.area
+        } else {
+            T::from_f64(1.0) - beyond / self.area
+        }
     }
 
     /// The point whose [`cdf`](Self::cdf) is `xi`: of a Cauchy the nearer end turned by its part of the angle, of a Gaussian
@@ -61,9 +77,15 @@ impl<T: Real> Cut<T> {
     pub(super) fn sample(&self, xi: T) -> T {
         let (one, half) = (T::from_f64(1.0), T::from_f64(0.5));
         if !self.gaussian {
-            let (end, turn) = if xi < half { (self.lo, xi * self.area) } else { (self.hi, -(one - xi) * self.area) };
+            let (end, turn) = if xi < half {
+                (self.lo, xi * self.area)
+            } else {
+                (self.hi, -(one - xi) * self.area)
+            };
             let (sin, cos) = (turn.sin(), turn.cos());
-            return ((end * cos + sin) / (cos - end * sin)).max(self.lo).min(self.hi);
+            return ((end * cos + sin) / (cos - end * sin))
+                .max(self.lo)
+                .min(self.hi);
         }
         let (mut lo, mut hi) = (self.lo, self.hi);
         for _ in 0..64 {

@@ -1,6 +1,8 @@
 //! The interface that the formulas of every model share.
 
-use super::{HairReference, MatchedReference, Oracle, Parameters, Real, ReferenceSample, integrate};
+use super::{
+    HairReference, MatchedReference, Oracle, Parameters, Real, ReferenceSample, integrate,
+};
 use crate::{Lobe, PerLobe};
 
 /// One lobe at one direction, in either precision.
@@ -95,14 +97,23 @@ reference! {
 
 /// The colours of the lobes; `lobe_values` has the glint's strength in it.
 fn colours<T: Real>(p: &Parameters<T>) -> PerLobe<[T; 3]> {
-    PerLobe([p.intensity_r, p.intensity_tt, p.intensity_trt, p.intensity_trt])
+    PerLobe([
+        p.intensity_r,
+        p.intensity_tt,
+        p.intensity_trt,
+        p.intensity_trt,
+    ])
 }
 
 fn lobes<T: Real>(book: &HairReference<T>, pdfs: &PerLobe<T>, wi: [T; 3]) -> PerLobe<LobeAt<T>> {
     let (values, colours) = (book.lobe_values(wi), colours(&book.parameters));
     let mut lobes = PerLobe::default();
     for lobe in Lobe::ALL {
-        lobes[lobe] = LobeAt { value: values[lobe], color: colours[lobe], pdf: pdfs[lobe] };
+        lobes[lobe] = LobeAt {
+            value: values[lobe],
+            color: colours[lobe],
+            pdf: pdfs[lobe],
+        };
     }
     lobes
 }
@@ -118,11 +129,25 @@ fn albedo<T: Real>(book: &HairReference<T>) -> PerLobe<[T; 3]> {
             let ratio = theta_i.cos() / (half * (theta_o - theta_i)).cos();
             ratio * ratio * shape.bell(p.beta[i], half * (theta_i + theta_o) - p.alpha[i])
         };
-        integrate([-right, right], two * p.alpha[i] - theta_o, two * p.beta[i], integrand)
+        integrate(
+            [-right, right],
+            two * p.alpha[i] - theta_o,
+            two * p.beta[i],
+            integrand,
+        )
     };
-    let azimuth = |peak: T, width: T| two * integrate([zero, T::PI], peak, width, |phi| shape.bell(width, phi - peak));
+    let azimuth = |peak: T, width: T| {
+        two * integrate([zero, T::PI], peak, width, |phi| {
+            shape.bell(width, phi - peak)
+        })
+    };
     let cosine = T::from_f64(4.0);
-    let areas = [cosine, azimuth(T::PI, p.gamma_tt), cosine, p.intensity_g * azimuth(p.phi_g, p.gamma_g)];
+    let areas = [
+        cosine,
+        azimuth(T::PI, p.gamma_tt),
+        cosine,
+        p.intensity_g * azimuth(p.phi_g, p.gamma_g),
+    ];
     let longitudes = [longitude(0), longitude(1), longitude(2)];
     let colours = colours(p);
     let mut albedo = PerLobe::default();

@@ -1,7 +1,9 @@
 //! Formulas of the matched sampler [`Matched`](crate::Matched), line by line.
 
 use super::cut::Cut;
-use super::{Angles, GRAZING, HairReference, Parameters, Real, ReferenceSample, Shape, cos_half, wrapped};
+use super::{
+    Angles, GRAZING, HairReference, Parameters, Real, ReferenceSample, Shape, cos_half, wrapped,
+};
 use crate::{Lobe, LobeMask, PerLobe};
 
 /// Most bands.
@@ -12,7 +14,10 @@ const fn ends(bands: usize) -> &'static [f32] {
     match bands {
         5 => &[0.935, 0.598],
         9 => &[0.979, 0.936, 0.803, 0.395],
-        25 => &[0.9956, 0.993, 0.9886, 0.9817, 0.9705, 0.9525, 0.9235, 0.8767, 0.8014, 0.68, 0.4844, 0.1694],
+        25 => &[
+            0.9956, 0.993, 0.9886, 0.9817, 0.9705, 0.9525, 0.9235, 0.8767, 0.8014, 0.68, 0.4844,
+            0.1694,
+        ],
         _ => panic!("5, 9 or 25 bands"),
     }
 }
@@ -49,7 +54,11 @@ pub struct MatchedReference<T> {
 fn w<T: Real>(theta_i: T, theta_o: T) -> T {
     let cos_theta_d = (T::from_f64(0.5) * (theta_o - theta_i)).cos();
     let ratio = theta_i.cos().max(T::default()) / cos_theta_d;
-    if cos_theta_d > T::default() { ratio * ratio } else { T::default() }
+    if cos_theta_d > T::default() {
+        ratio * ratio
+    } else {
+        T::default()
+    }
 }
 
 /// The share of each in the sum; 0 where there is none.
@@ -95,7 +104,12 @@ impl<T: Real> MatchedReference<T> {
         }
         let mean = |rgb: [T; 3]| (rgb[0] + rgb[1] + rgb[2]) / number(3.0);
         let trt = mean(p.intensity_trt);
-        let intensity = PerLobe([mean(p.intensity_r), mean(p.intensity_tt), trt, trt * p.intensity_g]);
+        let intensity = PerLobe([
+            mean(p.intensity_r),
+            mean(p.intensity_tt),
+            trt,
+            trt * p.intensity_g,
+        ]);
         let azimuth = PerLobe([
             number(4.0),
             number(2.0) * p.gamma_tt * transmission.area,
@@ -119,7 +133,11 @@ impl<T: Real> MatchedReference<T> {
         for lobe in Lobe::ALL {
             let i = lobe.index().min(2);
             let centre = half * book.theta_o - p.alpha[i];
-            let cut = Cut::new(shape, (centre - quarter) / p.beta[i], (centre + quarter) / p.beta[i]);
+            let cut = Cut::new(
+                shape,
+                (centre - quarter) / p.beta[i],
+                (centre + quarter) / p.beta[i],
+            );
             this.longitudinal[lobe] = cut;
             let below = |sine: T| cut.below(this.offset(lobe, sine.asin()));
             let (mut areas, mut from) = ([zero; MOST + 1], below(sines[0]));
@@ -130,7 +148,13 @@ impl<T: Real> MatchedReference<T> {
             }
             this.areas[lobe] = areas;
             // Nothing is drawn from a bell that is 0 all over the sphere.
-            let longitude = number(2.0) * p.beta[i] * if cut.area > zero { this.areas[lobe][bands] } else { zero };
+            let longitude = number(2.0)
+                * p.beta[i]
+                * if cut.area > zero {
+                    this.areas[lobe][bands]
+                } else {
+                    zero
+                };
             this.extents[lobe] = azimuth[lobe] * longitude;
             this.energies[lobe] = intensity[lobe] * this.extents[lobe];
         }
@@ -159,14 +183,21 @@ impl<T: Real> MatchedReference<T> {
         for lobe in Lobe::ALL {
             sums[lobe] = sums[lobe].sqrt();
         }
-        Self { probabilities: shares(&sums), ..self }
+        Self {
+            probabilities: shares(&sums),
+            ..self
+        }
     }
 
     /// The band of an inclination, by its sine.
     fn band(&self, sin_theta_i: T) -> usize {
         // An end belongs to the band towards the pole.
         let below = |j: &usize| {
-            if self.sines[*j] < T::default() { sin_theta_i <= self.sines[*j] } else { sin_theta_i < self.sines[*j] }
+            if self.sines[*j] < T::default() {
+                sin_theta_i <= self.sines[*j]
+            } else {
+                sin_theta_i < self.sines[*j]
+            }
         };
         (1..self.bands).find(below).unwrap_or(self.bands) - 1
     }
@@ -200,10 +231,15 @@ impl<T: Real> MatchedReference<T> {
     #[must_use]
     pub fn weight_bound(&self, mask: LobeMask) -> T {
         let (zero, theta_o) = (T::default(), self.book.theta_o);
-        let lobes = || Lobe::ALL.into_iter().filter(|l| mask.contains(*l) && self.probabilities[*l] > zero);
+        let lobes = || {
+            Lobe::ALL
+                .into_iter()
+                .filter(|l| mask.contains(*l) && self.probabilities[*l] > zero)
+        };
         let chosen = lobes().fold(zero, |sum, lobe| sum + self.probabilities[lobe]);
-        let largest =
-            lobes().fold(zero, |most, lobe| most.max(self.energies[lobe] * chosen / self.probabilities[lobe]));
+        let largest = lobes().fold(zero, |most, lobe| {
+            most.max(self.energies[lobe] * chosen / self.probabilities[lobe])
+        });
         // W has one mode, between the normal plane and the pole away from wo.
         let mode = self.mode();
         let most = (0..self.bands).fold(zero, |most, j| {
@@ -219,7 +255,8 @@ impl<T: Real> MatchedReference<T> {
         let (mut lo, mut hi) = (number(-0.5) * T::PI, number(0.5) * T::PI);
         for _ in 0..60 {
             let t = number(0.5) * (lo + hi);
-            let rises = number(-2.0) * t.tan() - (number(0.5) * (self.book.theta_o - t)).tan() > T::default();
+            let rises = number(-2.0) * t.tan() - (number(0.5) * (self.book.theta_o - t)).tan()
+                > T::default();
             (lo, hi) = if rises { (t, hi) } else { (lo, t) };
         }
         number(0.5) * (lo + hi)
@@ -253,25 +290,32 @@ impl<T: Real> MatchedReference<T> {
     #[inline]
     #[must_use]
     pub fn pdf(&self, wi: [T; 3]) -> T {
-        self.book.angles(wi).map_or_else(T::default, |at| self.mixture(&self.pdfs_at(&at, wi[0])))
+        self.book
+            .angles(wi)
+            .map_or_else(T::default, |at| self.mixture(&self.pdfs_at(&at, wi[0])))
     }
 
     /// Density of each lobe alone at `wi`, per steradian.
     #[inline]
     #[must_use]
     pub fn lobe_pdfs(&self, wi: [T; 3]) -> PerLobe<T> {
-        self.book.angles(wi).map_or_else(PerLobe::default, |at| self.pdfs_at(&at, wi[0]))
+        self.book
+            .angles(wi)
+            .map_or_else(PerLobe::default, |at| self.pdfs_at(&at, wi[0]))
     }
 
     fn mixture(&self, pdfs: &PerLobe<T>) -> T {
-        Lobe::ALL.into_iter().fold(T::default(), |sum, lobe| sum + self.probabilities[lobe] * pdfs[lobe])
+        Lobe::ALL.into_iter().fold(T::default(), |sum, lobe| {
+            sum + self.probabilities[lobe] * pdfs[lobe]
+        })
     }
 
     fn pdfs_at(&self, at: &Angles<T>, sin_theta_i: T) -> PerLobe<T> {
         let height = self.heights[self.band(sin_theta_i)];
         let mut pdfs = PerLobe::default();
         for lobe in Lobe::ALL {
-            pdfs[lobe] = height * self.bell_theta(lobe, at.theta_i) * self.pdf_phi(lobe, at.phi) / at.cos_theta_i;
+            pdfs[lobe] = height * self.bell_theta(lobe, at.theta_i) * self.pdf_phi(lobe, at.phi)
+                / at.cos_theta_i;
         }
         pdfs
     }
@@ -281,7 +325,10 @@ impl<T: Real> MatchedReference<T> {
         if self.longitudinal[lobe].area <= T::default() {
             return T::default();
         }
-        let bell = self.book.shape.bell(T::from_f64(1.0), self.offset(lobe, theta_i));
+        let bell = self
+            .book
+            .shape
+            .bell(T::from_f64(1.0), self.offset(lobe, theta_i));
         let width = T::from_f64(2.0) * self.book.parameters.beta[lobe.index().min(2)];
         bell / (self.areas[lobe][self.bands] * width)
     }
@@ -291,11 +338,24 @@ impl<T: Real> MatchedReference<T> {
     #[must_use]
     pub fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         let zero = T::default();
-        let discarded = ReferenceSample { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None };
-        let Some(lobe) = super::sampler::choose(&self.probabilities, xi[0]) else { return discarded };
+        let discarded = ReferenceSample {
+            wi: [zero; 3],
+            value: [zero; 3],
+            pdf: zero,
+            weight: [zero; 3],
+            lobe: None,
+        };
+        let Some(lobe) = super::sampler::choose(&self.probabilities, xi[0]) else {
+            return discarded;
+        };
         let theta_i = self.sample_theta(lobe, xi[1]);
         let phi = wrapped(self.sample_phi(lobe, xi[2]));
-        let at = Angles { theta_i, cos_theta_i: theta_i.cos(), phi, cos_half_phi: cos_half(phi) };
+        let at = Angles {
+            theta_i,
+            cos_theta_i: theta_i.cos(),
+            phi,
+            cos_half_phi: cos_half(phi),
+        };
         let wi = self.book.direction(theta_i, phi);
         let pdf = self.mixture(&self.pdfs_at(&at, wi[0]));
         if at.cos_theta_i < T::from_f64(GRAZING) || pdf <= zero {
@@ -303,7 +363,13 @@ impl<T: Real> MatchedReference<T> {
         }
         let value = self.book.colour(&self.book.values_at(&at));
         let weight = value.map(|s| s * at.cos_theta_i / pdf);
-        ReferenceSample { wi, value, pdf, weight, lobe: Some(lobe) }
+        ReferenceSample {
+            wi,
+            value,
+            pdf,
+            weight,
+            lobe: Some(lobe),
+        }
     }
 
     /// `theta_i` of a lobe.
@@ -312,12 +378,18 @@ impl<T: Real> MatchedReference<T> {
     pub fn sample_theta(&self, lobe: Lobe, xi: T) -> T {
         let (cut, areas) = (&self.longitudinal[lobe], &self.areas[lobe]);
         let area = xi * areas[self.bands];
-        let j = (1..self.bands).find(|j| area < areas[*j]).unwrap_or(self.bands) - 1;
+        let j = (1..self.bands)
+            .find(|j| area < areas[*j])
+            .unwrap_or(self.bands)
+            - 1;
         let from = cut.below(self.offset(lobe, self.sines[j].asin()));
         // There is no direction on a pole: keep off it, as the kernels do.
         let least = T::from_f64(f64::from(f32::EPSILON) / 8.0);
         let share = (from + (area - areas[j]) / self.heights[j]) / cut.area;
-        self.theta_i(lobe, cut.sample(share.max(least).min(T::from_f64(1.0) - least)))
+        self.theta_i(
+            lobe,
+            cut.sample(share.max(least).min(T::from_f64(1.0) - least)),
+        )
     }
 
     /// Density of `theta_i`, per radian.
@@ -333,8 +405,13 @@ impl<T: Real> MatchedReference<T> {
     #[inline]
     #[must_use]
     pub fn cdf_theta(&self, lobe: Lobe, theta_i: T) -> T {
-        let (cut, areas, j) = (&self.longitudinal[lobe], &self.areas[lobe], self.band(theta_i.sin()));
-        let part = cut.below(self.offset(lobe, theta_i)) - cut.below(self.offset(lobe, self.sines[j].asin()));
+        let (cut, areas, j) = (
+            &self.longitudinal[lobe],
+            &self.areas[lobe],
+            self.band(theta_i.sin()),
+        );
+        let part = cut.below(self.offset(lobe, theta_i))
+            - cut.below(self.offset(lobe, self.sines[j].asin()));
         (areas[j] + self.heights[j] * part) / areas[self.bands]
     }
 
@@ -361,7 +438,9 @@ impl<T: Real> MatchedReference<T> {
     pub fn pdf_phi(&self, lobe: Lobe, phi: T) -> T {
         let half = T::from_f64(0.5);
         let p = &self.book.parameters;
-        let bell = |cut: &Cut<T>, width: T, from: T| half * self.book.shape.bell(width, from) / (width * cut.area);
+        let bell = |cut: &Cut<T>, width: T, from: T| {
+            half * self.book.shape.bell(width, from) / (width * cut.area)
+        };
         match lobe {
             Lobe::R | Lobe::TRT => self.book.pdf_phi(lobe, phi),
             Lobe::TT => bell(&self.transmission, p.gamma_tt, T::PI - phi.abs()),
@@ -380,11 +459,19 @@ impl<T: Real> MatchedReference<T> {
             Lobe::TT => {
                 let across = self.transmission.cdf((T::PI - phi.abs()) / p.gamma_tt);
                 // A phi above 0 comes before pi, from the first half.
-                half * if phi < zero { one + across } else { one - across }
+                half * if phi < zero {
+                    one + across
+                } else {
+                    one - across
+                }
             }
             _ => {
                 let below = self.glint.cdf((phi.abs() - p.phi_g) / p.gamma_g);
-                if phi < zero { one - half * below } else { half * below }
+                if phi < zero {
+                    one - half * below
+                } else {
+                    half * below
+                }
             }
         }
     }

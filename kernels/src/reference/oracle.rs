@@ -28,7 +28,12 @@ impl<T: Real> Oracle<T> {
     /// If there is no matched sampler of so many.
     #[inline]
     #[must_use]
-    pub fn prepare(parameters: &Parameters<T>, shape: Shape, wo: [T; 3], bands: Option<usize>) -> Self {
+    pub fn prepare(
+        parameters: &Parameters<T>,
+        shape: Shape,
+        wo: [T; 3],
+        bands: Option<usize>,
+    ) -> Self {
         match bands {
             None => Self::Published(HairReference::prepare(parameters, shape, wo)),
             Some(bands) => Self::Matched(MatchedReference::prepare(parameters, shape, wo, bands)),

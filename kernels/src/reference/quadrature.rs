@@ -62,5 +62,8 @@ fn rule<T: Real>(f: &impl Fn(T) -> T, lo: T, hi: T) -> T {
         let x = T::from_f64(node) * radius;
         T::from_f64(weight) * (f(middle - x) + f(middle + x))
     };
-    RULE.into_iter().map(pair).fold(T::default(), |sum, part| sum + part) * radius
+    RULE.into_iter()
+        .map(pair)
+        .fold(T::default(), |sum, part| sum + part)
+        * radius
 }

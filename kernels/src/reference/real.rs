@@ -207,9 +207,10 @@ macro_rules! real {
 }
 
 real!(
-    f32, erfcf, sinf, cosf, tanf, asinf, atanf, atan2f, expf, sqrtf, hypotf, expm1f, logf, log1pf, lgammaf, powf,
-    roundf, tanhf, -87.3
+    f32, erfcf, sinf, cosf, tanf, asinf, atanf, atan2f, expf, sqrtf, hypotf, expm1f, logf, log1pf,
+    lgammaf, powf, roundf, tanhf, -87.3
 );
 real!(
-    f64, erfc, sin, cos, tan, asin, atan, atan2, exp, sqrt, hypot, expm1, log, log1p, lgamma, pow, round, tanh, -708.3
+    f64, erfc, sin, cos, tan, asin, atan, atan2, exp, sqrt, hypot, expm1, log, log1p, lgamma, pow,
+    round, tanh, -708.3
 );

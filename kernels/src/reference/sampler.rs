@@ -14,12 +14,25 @@ impl<T: Real> HairReference<T> {
     #[must_use]
     pub fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
         let zero = T::default();
-        let discarded = ReferenceSample { wi: [zero; 3], value: [zero; 3], pdf: zero, weight: [zero; 3], lobe: None };
-        let Some(lobe) = choose(&self.probabilities, xi[0]) else { return discarded };
+        let discarded = ReferenceSample {
+            wi: [zero; 3],
+            value: [zero; 3],
+            pdf: zero,
+            weight: [zero; 3],
+            lobe: None,
+        };
+        let Some(lobe) = choose(&self.probabilities, xi[0]) else {
+            return discarded;
+        };
         let theta_i = self.sample_theta(lobe, xi[1]);
         let phi = self.sample_phi(lobe, xi[2]);
         let phi = wrapped(phi);
-        let at = Angles { theta_i, cos_theta_i: theta_i.cos(), phi, cos_half_phi: cos_half(phi) };
+        let at = Angles {
+            theta_i,
+            cos_theta_i: theta_i.cos(),
+            phi,
+            cos_half_phi: cos_half(phi),
+        };
         if at.cos_theta_i < T::from_f64(GRAZING) {
             return discarded;
         }
@@ -29,14 +42,23 @@ impl<T: Real> HairReference<T> {
         }
         let value = self.colour(&self.values_at(&at));
         let weight = value.map(|s| s * at.cos_theta_i / pdf);
-        ReferenceSample { wi: self.direction(theta_i, phi), value, pdf, weight, lobe: Some(lobe) }
+        ReferenceSample {
+            wi: self.direction(theta_i, phi),
+            value,
+            pdf,
+            weight,
+            lobe: Some(lobe),
+        }
     }
 
     /// The direction a lobe alone draws from two uniform numbers; nothing is discarded.
     #[inline]
     #[must_use]
     pub fn sample_lobe(&self, lobe: Lobe, xi_theta: T, xi_phi: T) -> [T; 3] {
-        self.direction(self.sample_theta(lobe, xi_theta), self.sample_phi(lobe, xi_phi))
+        self.direction(
+            self.sample_theta(lobe, xi_theta),
+            self.sample_phi(lobe, xi_phi),
+        )
     }
 
     /// `theta_i = 2 beta tan(xi (A - B) + B) + 2 alpha - theta_o`: section 3.2.1, appendix A, ERRATA E1.
@@ -110,7 +132,11 @@ impl<T: Real> HairReference<T> {
     pub(super) fn direction(&self, theta_i: T, phi: T) -> [T; 3] {
         let phi_i = self.phi_o - phi;
         let cos_theta_i = theta_i.cos();
-        [theta_i.sin(), cos_theta_i * phi_i.cos(), cos_theta_i * phi_i.sin()]
+        [
+            theta_i.sin(),
+            cos_theta_i * phi_i.cos(),
+            cos_theta_i * phi_i.sin(),
+        ]
     }
 }
 

@@ -40,7 +40,9 @@ pub struct Choices<'a> {
 #[inline]
 #[must_use]
 pub fn choose<'a>(contribution: [&'a [f32]; 3], weight: &'a [f32], k: u32, u: f32) -> Choices<'a> {
-    let len = contribution.iter().fold(weight.len(), |len, column| len.min(column.len()));
+    let len = contribution
+        .iter()
+        .fold(weight.len(), |len, column| len.min(column.len()));
     let weight = weight.get(..len).unwrap_or_default();
     let (mut sum, mut last) = (0.0, 0);
     for (index, &weight) in weight.iter().enumerate() {
@@ -49,16 +51,34 @@ pub fn choose<'a>(contribution: [&'a [f32]; 3], weight: &'a [f32], k: u32, u: f3
             last = index;
         }
     }
-    let u = f64::from(if u > 0.0 { u.min(1.0 - f32::EPSILON / 2.0) } else { 0.0 });
+    let u = f64::from(if u > 0.0 {
+        u.min(1.0 - f32::EPSILON / 2.0)
+    } else {
+        0.0
+    });
     let k = if sum > 0.0 { k } else { 0 };
-    Choices { contribution, weight, at: 0, before: 0.0, sum, step: sum / f64::from(k.max(1)), u, chosen: 0, k, last }
+    Choices {
+        contribution,
+        weight,
+        at: 0,
+        before: 0.0,
+        sum,
+        step: sum / f64::from(k.max(1)),
+        u,
+        chosen: 0,
+        k,
+        last,
+    }
 }
 
 impl Choices<'_> {
     /// The sum of all weights: the estimate of the mean over the channels, were everything visible.
     #[inline]
     #[must_use]
-    #[expect(clippy::cast_possible_truncation, reason = "rounding to a float is the purpose")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "rounding to a float is the purpose"
+    )]
     pub fn total(&self) -> f32 {
         self.sum.min(f64::from(f32::MAX)) as f32
     }
@@ -68,7 +88,10 @@ impl Iterator for Choices<'_> {
     type Item = Choice;
 
     #[inline]
-    #[expect(clippy::cast_possible_truncation, reason = "rounding to a float is the purpose")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "rounding to a float is the purpose"
+    )]
     fn next(&mut self) -> Option<Choice> {
         while self.chosen < self.k {
             let index = self.at;
@@ -80,16 +103,25 @@ impl Iterator for Choices<'_> {
             if index == self.last {
                 self.chosen = self.k;
             }
-            while self.chosen < self.k && (self.u + f64::from(self.chosen)) * self.step < self.before {
+            while self.chosen < self.k
+                && (self.u + f64::from(self.chosen)) * self.step < self.before
+            {
                 self.chosen += 1;
             }
             let count = self.chosen - from;
             if count > 0 {
-                let f = self.contribution.map(|column| column.get(index).copied().map_or(0.0, f64::from));
+                let f = self
+                    .contribution
+                    .map(|column| column.get(index).copied().map_or(0.0, f64::from));
                 // In double precision: of a faint candidate it is more than a float holds.
-                let scale = f64::from(count) * self.step * 3.0 / (f[0] + f[1] + f[2]).max(f64::MIN_POSITIVE);
+                let scale = f64::from(count) * self.step * 3.0
+                    / (f[0] + f[1] + f[2]).max(f64::MIN_POSITIVE);
                 let contribution = f.map(|f| (f * scale).min(f64::from(f32::MAX)) as f32);
-                return Some(Choice { index, count, contribution });
+                return Some(Choice {
+                    index,
+                    count,
+                    contribution,
+                });
             }
         }
         None

@@ -90,15 +90,33 @@ impl<const N: usize> Pool<N> {
     ///
     /// If there are more or less numbers than candidates.
     #[inline]
-    pub fn propose<M: Model>(&mut self, gather: &Gather<M>, xi: [&[f32]; 3]) -> Result<(), LengthError> {
-        gather.propose_batch(xi, self.bsdf_candidates().wi).map_err(|LengthError { field, len, expected }| {
-            // The numbers are the first slices of that call, and the room of the pool is what they must fill.
-            if field.starts_with("wi") {
-                LengthError { field: "xi.lobe", len: expected, expected: len }
-            } else {
-                LengthError { field, len, expected }
-            }
-        })
+    pub fn propose<M: Model>(
+        &mut self,
+        gather: &Gather<M>,
+        xi: [&[f32]; 3],
+    ) -> Result<(), LengthError> {
+        gather.propose_batch(xi, self.bsdf_candidates().wi).map_err(
+            |LengthError {
+                 field,
+                 len,
+                 expected,
+             }| {
+                // The numbers are the first slices of that call, and the room of the pool is what they must fill.
+                if field.starts_with("wi") {
+                    LengthError {
+                        field: "xi.lobe",
+                        len: expected,
+                        expected: len,
+                    }
+                } else {
+                    LengthError {
+                        field,
+                        len,
+                        expected,
+                    }
+                }
+            },
+        )
     }
 
     /// The BSDF's candidates: directions to look up, and where radiance and density go.
@@ -116,8 +134,14 @@ impl<const N: usize> Pool<N> {
     #[inline]
     fn candidates(&mut self, from: usize, to: usize) -> CandidateColumns<'_> {
         CandidateColumns {
-            wi: self.wi.each_mut().map(|column| column.get_mut(from..to).unwrap_or_default()),
-            radiance: self.radiance.each_mut().map(|column| column.get_mut(from..to).unwrap_or_default()),
+            wi: self
+                .wi
+                .each_mut()
+                .map(|column| column.get_mut(from..to).unwrap_or_default()),
+            radiance: self
+                .radiance
+                .each_mut()
+                .map(|column| column.get_mut(from..to).unwrap_or_default()),
             pdf_light: self.pdf_light.get_mut(from..to).unwrap_or_default(),
         }
     }
@@ -136,9 +160,16 @@ impl<const N: usize> Pool<N> {
     pub fn look_up(&mut self, mut light: impl FnMut(Vec3) -> ([f32; 3], f32)) {
         let mut columns = self.bsdf_candidates();
         for i in 0..columns.pdf_light.len() {
-            let [x, y, z] = columns.wi.each_ref().map(|column| column.get(i).copied().unwrap_or_default());
+            let [x, y, z] = columns
+                .wi
+                .each_ref()
+                .map(|column| column.get(i).copied().unwrap_or_default());
             let wi = Vec3::new(x, y, z);
-            let (radiance, pdf) = if wi == Vec3::ZERO { ([0.0; 3], 0.0) } else { light(wi) };
+            let (radiance, pdf) = if wi == Vec3::ZERO {
+                ([0.0; 3], 0.0)
+            } else {
+                light(wi)
+            };
             set(&mut columns.radiance, i, radiance);
             set(&mut [&mut *columns.pdf_light], i, [pdf]);
         }
@@ -149,12 +180,21 @@ impl<const N: usize> Pool<N> {
     pub fn weigh<M: Model>(&mut self, gather: &Gather<M>) {
         let len = self.len;
         let candidates = CandidateSlices {
-            wi: self.wi.each_ref().map(|column| column.get(..len).unwrap_or_default()),
-            radiance: self.radiance.each_ref().map(|column| column.get(..len).unwrap_or_default()),
+            wi: self
+                .wi
+                .each_ref()
+                .map(|column| column.get(..len).unwrap_or_default()),
+            radiance: self
+                .radiance
+                .each_ref()
+                .map(|column| column.get(..len).unwrap_or_default()),
             pdf_light: self.pdf_light.get(..len).unwrap_or_default(),
         };
         let out = WeightSlices {
-            contribution: self.contribution.each_mut().map(|column| column.get_mut(..len).unwrap_or_default()),
+            contribution: self
+                .contribution
+                .each_mut()
+                .map(|column| column.get_mut(..len).unwrap_or_default()),
             weight: self.weight.get_mut(..len).unwrap_or_default(),
         };
         let written = gather.weigh_batch(candidates, self.counts, self.partition, out);
@@ -165,7 +205,10 @@ impl<const N: usize> Pool<N> {
     #[inline]
     pub fn choose(&self, k: u32, u: f32) -> impl Iterator<Item = (Vec3, Choice)> {
         self.choices(k, u).map(|choice| {
-            let [x, y, z] = self.wi.each_ref().map(|column| column.get(choice.index).copied().unwrap_or_default());
+            let [x, y, z] = self
+                .wi
+                .each_ref()
+                .map(|column| column.get(choice.index).copied().unwrap_or_default());
             (Vec3::new(x, y, z), choice)
         })
     }
@@ -175,7 +218,12 @@ impl<const N: usize> Pool<N> {
     #[must_use]
     pub fn choices(&self, k: u32, u: f32) -> Choices<'_> {
         let contribution = self.contribution.each_ref().map(|column| &column[..]);
-        choose(contribution, self.weight.get(..self.len).unwrap_or_default(), k, u)
+        choose(
+            contribution,
+            self.weight.get(..self.len).unwrap_or_default(),
+            k,
+            u,
+        )
     }
 }
 

@@ -24,7 +24,11 @@ impl Default for Reservoir8 {
     #[inline]
     fn default() -> Self {
         let zero = f32x8::ZERO;
-        Self { wi: Vec3x::new(zero, zero, zero), contribution: [zero; 3], sum: zero }
+        Self {
+            wi: Vec3x::new(zero, zero, zero),
+            contribution: [zero; 3],
+            sum: zero,
+        }
     }
 }
 
@@ -41,7 +45,11 @@ impl Reservoir8 {
     /// As [`add`](Self::add), on a given instruction set.
     #[inline]
     pub fn add_at(&mut self, level: Level, wi: &Vec3x8, candidate: &Weighed8, u: &f32x8) {
-        let other = Self { wi: *wi, contribution: candidate.contribution, sum: candidate.weight };
+        let other = Self {
+            wi: *wi,
+            contribution: candidate.contribution,
+            sum: candidate.weight,
+        };
         self.merge_at(level, &other, u);
     }
 
@@ -56,7 +64,11 @@ impl Reservoir8 {
     /// As [`merge`](Self::merge), on a given instruction set.
     #[inline]
     pub fn merge_at(&mut self, level: Level, other: &Self, u: &f32x8) {
-        *self = level.run(Merge { a: self, b: other, u });
+        *self = level.run(Merge {
+            a: self,
+            b: other,
+            u,
+        });
     }
 
     /// What the kept direction of each lane adds where it is visible, linear RGB.

@@ -3,11 +3,14 @@
 //! `wide` chooses its instructions at compile time, so that a plain build has SSE2 alone; this newtype is private to
 //! the crate, and `dispatch` is the only place that names it as a type.
 
-#![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
+#![allow(
+    unsafe_code,
+    reason = "intrinsics of target features that `dispatch` has checked"
+)]
 
 use super::lanes::{
-    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused, sealed::Sealed,
-    select_of_four, select_of_three,
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused,
+    sealed::Sealed, select_of_four, select_of_three,
 };
 use core::arch::asm;
 #[cfg(target_arch = "x86")]
@@ -105,28 +108,44 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn times_sign(self, sign: Self) -> Self {
-        Self(avx2!(_mm256_xor_ps(self.0, _mm256_and_ps(_mm256_set1_ps(-0.0), sign.0))))
+        Self(avx2!(_mm256_xor_ps(
+            self.0,
+            _mm256_and_ps(_mm256_set1_ps(-0.0), sign.0)
+        )))
     }
     #[inline(always)]
     fn negate(mask: __m256, x: Self) -> Self {
-        Self(avx2!(_mm256_xor_ps(x.0, _mm256_and_ps(mask, _mm256_set1_ps(-0.0)))))
+        Self(avx2!(_mm256_xor_ps(
+            x.0,
+            _mm256_and_ps(mask, _mm256_set1_ps(-0.0))
+        )))
     }
     #[inline(always)]
     fn bits_shl_23(self) -> Self {
-        Self(avx2!(_mm256_castsi256_ps(_mm256_slli_epi32::<23>(_mm256_castps_si256(self.0)))))
+        Self(avx2!(_mm256_castsi256_ps(_mm256_slli_epi32::<23>(
+            _mm256_castps_si256(self.0)
+        ))))
     }
     #[inline(always)]
     fn split_exponent(self) -> (Self, Self) {
         avx2!({
             let bits = _mm256_castps_si256(self.0);
-            let exponent =
-                _mm256_srli_epi32::<23>(_mm256_add_epi32(bits, _mm256_set1_epi32(ROUND_EXPONENT.cast_signed())));
+            let exponent = _mm256_srli_epi32::<23>(_mm256_add_epi32(
+                bits,
+                _mm256_set1_epi32(ROUND_EXPONENT.cast_signed()),
+            ));
             let mantissa = _mm256_sub_epi32(
                 _mm256_add_epi32(bits, _mm256_set1_epi32(ONE.cast_signed())),
                 _mm256_slli_epi32::<23>(exponent),
             );
-            let number = _mm256_castsi256_ps(_mm256_or_si256(exponent, _mm256_set1_epi32(INTEGER.cast_signed())));
-            (Self(_mm256_castsi256_ps(mantissa)), Self(_mm256_sub_ps(number, _mm256_set1_ps(INTEGER_BIAS))))
+            let number = _mm256_castsi256_ps(_mm256_or_si256(
+                exponent,
+                _mm256_set1_epi32(INTEGER.cast_signed()),
+            ));
+            (
+                Self(_mm256_castsi256_ps(mantissa)),
+                Self(_mm256_sub_ps(number, _mm256_set1_ps(INTEGER_BIAS))),
+            )
         })
     }
     #[inline(always)]
@@ -149,7 +168,10 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn swap(mask: __m256, a: Self, b: Self) -> (Self, Self) {
         let kept = avx2!(_mm256_and_ps(_mm256_xor_ps(a.0, b.0), mask));
-        (Self(avx2!(_mm256_xor_ps(b.0, kept))), Self(avx2!(_mm256_xor_ps(a.0, kept))))
+        (
+            Self(avx2!(_mm256_xor_ps(b.0, kept))),
+            Self(avx2!(_mm256_xor_ps(a.0, kept))),
+        )
     }
     #[inline(always)]
     fn keep(mask: __m256, x: Self) -> Self {
@@ -165,14 +187,29 @@ impl Lanes for Avx2 {
         avx2!({
             let none = _mm256_setzero_ps();
             let at_least = [
-                if count > 0 { _mm256_cmp_ps::<_CMP_GE_OQ>(x.0, bounds[0].0) } else { none },
-                if count > 1 { _mm256_cmp_ps::<_CMP_GE_OQ>(x.0, bounds[1].0) } else { none },
-                if count > 2 { _mm256_cmp_ps::<_CMP_GE_OQ>(x.0, bounds[2].0) } else { none },
+                if count > 0 {
+                    _mm256_cmp_ps::<_CMP_GE_OQ>(x.0, bounds[0].0)
+                } else {
+                    none
+                },
+                if count > 1 {
+                    _mm256_cmp_ps::<_CMP_GE_OQ>(x.0, bounds[1].0)
+                } else {
+                    none
+                },
+                if count > 2 {
+                    _mm256_cmp_ps::<_CMP_GE_OQ>(x.0, bounds[2].0)
+                } else {
+                    none
+                },
             ];
             // A set mask is -1 as an integer.
             let [a, b, c] = [at_least[0], at_least[1], at_least[2]];
             let sum = _mm256_add_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b));
-            let number = _mm256_sub_epi32(_mm256_setzero_si256(), _mm256_add_epi32(sum, _mm256_castps_si256(c)));
+            let number = _mm256_sub_epi32(
+                _mm256_setzero_si256(),
+                _mm256_add_epi32(sum, _mm256_castps_si256(c)),
+            );
             Indices { number, at_least }
         })
     }
@@ -246,7 +283,9 @@ impl Broadcast<Avx2> for f32 {
     fn look_up_half(table: &[f32; 2], index: Indices) -> Avx2 {
         Avx2(avx2!({
             // Either entry in every second lane: the upper of an index's two bits is which.
-            let two = _mm256_castpd_ps(_mm256_set1_pd(table.as_ptr().cast::<f64>().read_unaligned()));
+            let two = _mm256_castpd_ps(_mm256_set1_pd(
+                table.as_ptr().cast::<f64>().read_unaligned(),
+            ));
             _mm256_permutevar_ps(two, _mm256_srli_epi32::<1>(index.number))
         }))
     }
@@ -263,11 +302,22 @@ impl Broadcast<Avx2> for f32x8 {
     }
     #[inline(always)]
     fn look_up(table: &[f32x8; 4], index: Indices) -> Avx2 {
-        select_of_four([table[0].lanes(), table[1].lanes(), table[2].lanes(), table[3].lanes()], index.at_least)
+        select_of_four(
+            [
+                table[0].lanes(),
+                table[1].lanes(),
+                table[2].lanes(),
+                table[3].lanes(),
+            ],
+            index.at_least,
+        )
     }
     #[inline(always)]
     fn look_up_three(table: &[f32x8; 4], index: Indices) -> Avx2 {
-        select_of_three([table[0].lanes(), table[1].lanes(), table[2].lanes()], index.at_least)
+        select_of_three(
+            [table[0].lanes(), table[1].lanes(), table[2].lanes()],
+            index.at_least,
+        )
     }
     #[inline(always)]
     fn look_up_half(table: &[f32x8; 2], index: Indices) -> Avx2 {

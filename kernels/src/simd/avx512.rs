@@ -3,11 +3,14 @@
 //! Packets of eight are [`Avx2`](super::avx2::Avx2) there, too: `dispatch` compiles it for AVX-512 once more. Multiplication
 //! fuses as on AVX2, and the results are the same to the bit.
 
-#![allow(unsafe_code, reason = "intrinsics of target features that `dispatch` has checked")]
+#![allow(
+    unsafe_code,
+    reason = "intrinsics of target features that `dispatch` has checked"
+)]
 
 use super::lanes::{
-    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused, sealed::Sealed,
-    select_of_four,
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused,
+    sealed::Sealed, select_of_four,
 };
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
@@ -102,28 +105,46 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn times_sign(self, sign: Self) -> Self {
-        Self(avx512!(_mm512_xor_ps(self.0, _mm512_and_ps(_mm512_set1_ps(-0.0), sign.0))))
+        Self(avx512!(_mm512_xor_ps(
+            self.0,
+            _mm512_and_ps(_mm512_set1_ps(-0.0), sign.0)
+        )))
     }
     #[inline(always)]
     fn negate(mask: __mmask16, x: Self) -> Self {
-        Self(avx512!(_mm512_mask_xor_ps(x.0, mask, x.0, _mm512_set1_ps(-0.0))))
+        Self(avx512!(_mm512_mask_xor_ps(
+            x.0,
+            mask,
+            x.0,
+            _mm512_set1_ps(-0.0)
+        )))
     }
     #[inline(always)]
     fn bits_shl_23(self) -> Self {
-        Self(avx512!(_mm512_castsi512_ps(_mm512_slli_epi32::<23>(_mm512_castps_si512(self.0)))))
+        Self(avx512!(_mm512_castsi512_ps(_mm512_slli_epi32::<23>(
+            _mm512_castps_si512(self.0)
+        ))))
     }
     #[inline(always)]
     fn split_exponent(self) -> (Self, Self) {
         avx512!({
             let bits = _mm512_castps_si512(self.0);
-            let exponent =
-                _mm512_srli_epi32::<23>(_mm512_add_epi32(bits, _mm512_set1_epi32(ROUND_EXPONENT.cast_signed())));
+            let exponent = _mm512_srli_epi32::<23>(_mm512_add_epi32(
+                bits,
+                _mm512_set1_epi32(ROUND_EXPONENT.cast_signed()),
+            ));
             let mantissa = _mm512_sub_epi32(
                 _mm512_add_epi32(bits, _mm512_set1_epi32(ONE.cast_signed())),
                 _mm512_slli_epi32::<23>(exponent),
             );
-            let number = _mm512_castsi512_ps(_mm512_or_si512(exponent, _mm512_set1_epi32(INTEGER.cast_signed())));
-            (Self(_mm512_castsi512_ps(mantissa)), Self(_mm512_sub_ps(number, _mm512_set1_ps(INTEGER_BIAS))))
+            let number = _mm512_castsi512_ps(_mm512_or_si512(
+                exponent,
+                _mm512_set1_epi32(INTEGER.cast_signed()),
+            ));
+            (
+                Self(_mm512_castsi512_ps(mantissa)),
+                Self(_mm512_sub_ps(number, _mm512_set1_ps(INTEGER_BIAS))),
+            )
         })
     }
     #[inline(always)]
@@ -153,9 +174,21 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn search(x: Self, bounds: [Self; 3], count: usize) -> Indices16 {
         let at_least = avx512!([
-            if count > 0 { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[0].0) } else { 0 },
-            if count > 1 { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[1].0) } else { 0 },
-            if count > 2 { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[2].0) } else { 0 },
+            if count > 0 {
+                _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[0].0)
+            } else {
+                0
+            },
+            if count > 1 {
+                _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[1].0)
+            } else {
+                0
+            },
+            if count > 2 {
+                _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[2].0)
+            } else {
+                0
+            },
         ]);
         let number = avx512!({
             // Not a sum of masks, which the compiler makes one of bytes.
@@ -189,7 +222,10 @@ impl Broadcast<Avx512> for f32 {
     // One shuffle in place of three blends.
     #[inline(always)]
     fn look_up(table: &[f32; 4], index: Indices16) -> Avx512 {
-        Avx512(avx512!(_mm512_permutevar_ps(_mm512_broadcast_f32x4(_mm_loadu_ps(table.as_ptr())), index.number)))
+        Avx512(avx512!(_mm512_permutevar_ps(
+            _mm512_broadcast_f32x4(_mm_loadu_ps(table.as_ptr())),
+            index.number
+        )))
     }
     #[inline(always)]
     fn look_up_three(table: &[f32; 4], index: Indices16) -> Avx512 {
@@ -199,7 +235,9 @@ impl Broadcast<Avx512> for f32 {
     fn look_up_half(table: &[f32; 2], index: Indices16) -> Avx512 {
         Avx512(avx512!({
             // Either entry in every second lane: the upper of an index's two bits is which.
-            let two = _mm512_castpd_ps(_mm512_set1_pd(table.as_ptr().cast::<f64>().read_unaligned()));
+            let two = _mm512_castpd_ps(_mm512_set1_pd(
+                table.as_ptr().cast::<f64>().read_unaligned(),
+            ));
             _mm512_permutevar_ps(two, _mm512_srli_epi32::<1>(index.number))
         }))
     }

@@ -1,5 +1,8 @@
 //! Rows of numbers over columns: slices of one length, which is checked once per call.
-#![allow(unsafe_code, reason = "a check per packet and column is most of what a short call costs")]
+#![allow(
+    unsafe_code,
+    reason = "a check per packet and column is most of what a short call costs"
+)]
 
 use super::lanes::{Broadcast, Lanes, Packet};
 use core::marker::PhantomData;
@@ -65,7 +68,13 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
     fn new(inputs: &[&[f32]; I], outputs: &mut [&mut [f32]; N]) -> Self {
         let len = inputs[0].len();
         let (from, to) = ([ptr::null(); I], [ptr::null_mut(); N]);
-        let mut columns = Self { inputs: from, outputs: to, len, absent: 0, slices: PhantomData };
+        let mut columns = Self {
+            inputs: from,
+            outputs: to,
+            len,
+            absent: 0,
+            slices: PhantomData,
+        };
         each!(i < I, {
             columns.inputs[i] = inputs[i].as_ptr();
             columns.absent |= u32::from(inputs[i].len() != len) << i;
@@ -82,8 +91,14 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     fn after(&self, first: usize) -> Self {
         let mut columns = *self;
-        each!(i < I, columns.inputs[i] = columns.inputs[i].wrapping_add(first));
-        each!(i < N, columns.outputs[i] = columns.outputs[i].wrapping_add(first));
+        each!(
+            i < I,
+            columns.inputs[i] = columns.inputs[i].wrapping_add(first)
+        );
+        each!(
+            i < N,
+            columns.outputs[i] = columns.outputs[i].wrapping_add(first)
+        );
         columns.len -= first;
         columns
     }
@@ -95,7 +110,11 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
     /// same wherever it is computed.
     #[inline(always)]
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    pub(crate) fn in_packets<const W: usize>(&self, done: usize, run: impl Fn(&Self, usize)) -> usize {
+    pub(crate) fn in_packets<const W: usize>(
+        &self,
+        done: usize,
+        run: impl Fn(&Self, usize),
+    ) -> usize {
         let (packets, left) = ((self.len - done) / W, (self.len - done) % W);
         if packets > 0 {
             run(&self.after(done), packets);
@@ -158,8 +177,11 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
     /// There are as many packets.
     #[inline(always)]
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    pub(crate) unsafe fn packets<R: Row<I, N>, L: Packet<W>, const W: usize>(&self, row: R, packets: usize)
-    where
+    pub(crate) unsafe fn packets<R: Row<I, N>, L: Packet<W>, const W: usize>(
+        &self,
+        row: R,
+        packets: usize,
+    ) where
         f32: Broadcast<L>,
     {
         let columns = *self;
@@ -175,8 +197,11 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
     ///
     /// There are as many rows.
     #[inline(always)]
-    pub(crate) unsafe fn packet<R: Row<I, N>, L: Packet<W>, const W: usize>(&self, row: R, at: usize)
-    where
+    pub(crate) unsafe fn packet<R: Row<I, N>, L: Packet<W>, const W: usize>(
+        &self,
+        row: R,
+        at: usize,
+    ) where
         f32: Broadcast<L>,
     {
         const { assert!(I <= 11 && N <= 11, "every column is read or written") };

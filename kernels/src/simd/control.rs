@@ -5,7 +5,10 @@
 #[inline(never)]
 #[must_use]
 pub fn control() -> u32 {
-    #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "there is no register to read"))]
+    #[cfg_attr(
+        not(target_arch = "x86_64"),
+        expect(unused_mut, reason = "there is no register to read")
+    )]
     let mut register = 0;
     #[cfg(target_arch = "x86_64")]
     // SAFETY: every x86-64 CPU has the register.

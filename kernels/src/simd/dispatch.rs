@@ -1,5 +1,8 @@
 //! Run-time dispatch: the only place that picks a backend.
-#![allow(unsafe_code, reason = "calls into functions of target features that a `Level` proves present")]
+#![allow(
+    unsafe_code,
+    reason = "calls into functions of target features that a `Level` proves present"
+)]
 
 use super::columns::{Columns, Row};
 use super::lanes::{Broadcast, Lanes, Scalar};
@@ -11,7 +14,9 @@ use wide::f32x8;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 cpufeatures::new!(avx2_fma, "avx2", "fma");
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-cpufeatures::new!(avx512, "avx2", "fma", "avx512f", "avx512vl", "avx512dq", "avx512bw");
+cpufeatures::new!(
+    avx512, "avx2", "fma", "avx512f", "avx512vl", "avx512dq", "avx512bw"
+);
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 cpufeatures::new!(avx, "avx");
 
@@ -22,7 +27,10 @@ cpufeatures::new!(avx, "avx");
 #[inline(always)]
 pub(crate) fn clean_upper_halves() {
     // A build for AVX has no legacy SSE instructions.
-    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), not(target_feature = "avx")))]
+    #[cfg(all(
+        any(target_arch = "x86", target_arch = "x86_64"),
+        not(target_feature = "avx")
+    ))]
     if avx::get() {
         #[target_feature(enable = "avx")]
         fn clean() {
@@ -84,7 +92,10 @@ impl Level {
     #[inline]
     pub fn available() -> impl Iterator<Item = Self> {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        let more = [avx2_fma::get().then_some(Self(Kind::Avx2)), avx512::get().then_some(Self(Kind::Avx512))];
+        let more = [
+            avx2_fma::get().then_some(Self(Kind::Avx2)),
+            avx512::get().then_some(Self(Kind::Avx512)),
+        ];
         #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
         let more: [Option<Self>; 0] = [];
         core::iter::once(Self::portable()).chain(more.into_iter().flatten())
@@ -257,36 +268,52 @@ impl Level {
     ) {
         if R::OPTIONAL {
             self.run_columns(row, &Columns::some(&inputs, outputs));
-        } else if let Some(columns) = Columns::all(inputs, outputs.each_mut().map(|column| &mut **column)) {
+        } else if let Some(columns) =
+            Columns::all(inputs, outputs.each_mut().map(|column| &mut **column))
+        {
             self.run_columns(row, &columns);
         }
     }
 
     /// Runs `row` over columns of one length.
     #[inline(always)]
-    pub(crate) fn run_columns<R: Row<I, N>, const I: usize, const N: usize>(self, row: R, columns: &Columns<'_, I, N>) {
+    pub(crate) fn run_columns<R: Row<I, N>, const I: usize, const N: usize>(
+        self,
+        row: R,
+        columns: &Columns<'_, I, N>,
+    ) {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         if self.0 != Kind::Portable {
             let mut done = 0;
             if self.0 == Kind::Avx512 {
                 // SAFETY: a `Level` of this kind is made only where these features were found; there are as many packets.
                 done = if R::PAIRS {
-                    columns.in_packets::<32>(done, |columns, packets| unsafe { pairs_avx512(row, columns, packets) })
+                    columns.in_packets::<32>(done, |columns, packets| unsafe {
+                        pairs_avx512(row, columns, packets)
+                    })
                 } else {
-                    columns.in_packets::<16>(done, |columns, packets| unsafe { rows_avx512(row, columns, packets) })
+                    columns.in_packets::<16>(done, |columns, packets| unsafe {
+                        rows_avx512(row, columns, packets)
+                    })
                 };
             }
             // SAFETY: as above, and a level with AVX-512 has those of AVX2.
             done = if R::PAIRS {
-                columns.in_packets::<16>(done, |columns, packets| unsafe { pairs_avx2(row, columns, packets) })
+                columns.in_packets::<16>(done, |columns, packets| unsafe {
+                    pairs_avx2(row, columns, packets)
+                })
             } else {
-                columns.in_packets::<8>(done, |columns, packets| unsafe { rows_avx2(row, columns, packets) })
+                columns.in_packets::<8>(done, |columns, packets| unsafe {
+                    rows_avx2(row, columns, packets)
+                })
             };
             // SAFETY: as above; there are eight rows.
             columns.in_eights(done, |columns, at| unsafe { eight_avx2(row, columns, at) });
             return;
         }
         // SAFETY: there are eight rows.
-        columns.in_eights(0, |columns, at| unsafe { columns.packet::<R, f32x8, 8>(row, at) });
+        columns.in_eights(0, |columns, at| unsafe {
+            columns.packet::<R, f32x8, 8>(row, at)
+        });
     }
 }

@@ -33,7 +33,12 @@ pub trait LaneStruct: Copy + Debug {
 
 /// One number per lane, with the arithmetic that models are written in.
 pub trait Lanes:
-    Scalar + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+    Scalar
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
 {
     /// One truth value per lane.
     type Mask: Copy;
@@ -219,7 +224,8 @@ pub(crate) fn difference_fused<L: Lanes>(a: L, b: L, c: L, d: L) -> L {
 #[inline(always)]
 pub(crate) fn difference_split<L: Lanes>([a, b, c, d]: [L; 4], halves: [[L; 2]; 4]) -> L {
     let (left, right) = (a * b, c * d);
-    (left - right) + (rounding_error(left, halves[0], halves[1]) - rounding_error(right, halves[2], halves[3]))
+    (left - right)
+        + (rounding_error(left, halves[0], halves[1]) - rounding_error(right, halves[2], halves[3]))
 }
 
 /// Rounding error of a product of two factors: exact, as the products of halves are.
@@ -235,7 +241,11 @@ pub(crate) const UPPER: u32 = 0xffff_f000;
 /// The entry of `table` for an index given by where it is at least 1, 2 and 3.
 #[inline(always)]
 pub(crate) fn select_of_four<L: Lanes>(table: [L; 4], [one, two, three]: [L::Mask; 3]) -> L {
-    L::select(two, L::select(three, table[3], table[2]), L::select(one, table[1], table[0]))
+    L::select(
+        two,
+        L::select(three, table[3], table[2]),
+        L::select(one, table[1], table[0]),
+    )
 }
 
 /// The same of a table whose last two entries are equal.

@@ -68,7 +68,10 @@ impl<L: Lanes> Lanes for Pair<L> {
     }
     #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
-        Self(L::difference_of_products(a.0, b.0, c.0, d.0), L::difference_of_products(a.1, b.1, c.1, d.1))
+        Self(
+            L::difference_of_products(a.0, b.0, c.0, d.0),
+            L::difference_of_products(a.1, b.1, c.1, d.1),
+        )
     }
     #[inline(always)]
     fn alone(self) -> Self {
@@ -121,7 +124,10 @@ impl<L: Lanes> Lanes for Pair<L> {
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-        Self(L::select(mask.0, yes.0, no.0), L::select(mask.1, yes.1, no.1))
+        Self(
+            L::select(mask.0, yes.0, no.0),
+            L::select(mask.1, yes.1, no.1),
+        )
     }
     #[inline(always)]
     fn swap(mask: Self::Mask, a: Self, b: Self) -> (Self, Self) {
@@ -145,7 +151,10 @@ impl<L: Lanes> Lanes for Pair<L> {
     }
     #[inline(always)]
     fn search(x: Self, [a, b, c]: [Self; 3], count: usize) -> Self::Index {
-        (L::search(x.0, [a.0, b.0, c.0], count), L::search(x.1, [a.1, b.1, c.1], count))
+        (
+            L::search(x.0, [a.0, b.0, c.0], count),
+            L::search(x.1, [a.1, b.1, c.1], count),
+        )
     }
     #[inline(always)]
     fn is_index(index: Self::Index, entry: usize) -> Self::Mask {
@@ -168,15 +177,24 @@ where
     }
     #[inline(always)]
     fn look_up(table: &[f32; 4], index: (L::Index, L::Index)) -> Pair<L> {
-        Pair(<f32 as Broadcast<L>>::look_up(table, index.0), <f32 as Broadcast<L>>::look_up(table, index.1))
+        Pair(
+            <f32 as Broadcast<L>>::look_up(table, index.0),
+            <f32 as Broadcast<L>>::look_up(table, index.1),
+        )
     }
     #[inline(always)]
     fn look_up_three(table: &[f32; 4], index: (L::Index, L::Index)) -> Pair<L> {
-        Pair(<f32 as Broadcast<L>>::look_up_three(table, index.0), <f32 as Broadcast<L>>::look_up_three(table, index.1))
+        Pair(
+            <f32 as Broadcast<L>>::look_up_three(table, index.0),
+            <f32 as Broadcast<L>>::look_up_three(table, index.1),
+        )
     }
     #[inline(always)]
     fn look_up_half(table: &[f32; 2], index: (L::Index, L::Index)) -> Pair<L> {
-        Pair(<f32 as Broadcast<L>>::look_up_half(table, index.0), <f32 as Broadcast<L>>::look_up_half(table, index.1))
+        Pair(
+            <f32 as Broadcast<L>>::look_up_half(table, index.0),
+            <f32 as Broadcast<L>>::look_up_half(table, index.1),
+        )
     }
 }
 
@@ -193,7 +211,10 @@ where
         let [a, b, c, d] = table;
         let first = [a.0.store(), b.0.store(), c.0.store(), d.0.store()];
         let second = [a.1.store(), b.1.store(), c.1.store(), d.1.store()];
-        Self(L::Stored::look_up(&first, index.0), L::Stored::look_up(&second, index.1))
+        Self(
+            L::Stored::look_up(&first, index.0),
+            L::Stored::look_up(&second, index.1),
+        )
     }
     #[inline(always)]
     fn look_up_three(table: &[Self; 4], index: (L::Index, L::Index)) -> Self {
@@ -203,7 +224,10 @@ where
     fn look_up_half(table: &[Self; 2], index: (L::Index, L::Index)) -> Self {
         let [a, b] = table;
         let (first, second) = ([a.0.store(), b.0.store()], [a.1.store(), b.1.store()]);
-        Self(L::Stored::look_up_half(&first, index.0), L::Stored::look_up_half(&second, index.1))
+        Self(
+            L::Stored::look_up_half(&first, index.0),
+            L::Stored::look_up_half(&second, index.1),
+        )
     }
 }
 

@@ -1,17 +1,23 @@
 //! Eight lanes through `wide`: the instruction set the program was compiled for, whatever the machine has.
 
-#![allow(unsafe_code, reason = "intrinsics of target features that the program is compiled for")]
+#![allow(
+    unsafe_code,
+    reason = "intrinsics of target features that the program is compiled for"
+)]
 
 use super::lanes::{
-    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, UPPER, difference_fused, difference_split,
-    sealed::Sealed, select_of_four, select_of_three,
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, UPPER, difference_fused,
+    difference_split, sealed::Sealed, select_of_four, select_of_three,
 };
 use wide::{f32x8, u32x8};
 
 impl Sealed for f32x8 {}
 
 /// Whether `wide`'s `mul_add` rounds once in this build.
-pub(crate) const FUSES: bool = cfg!(any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon")));
+pub(crate) const FUSES: bool = cfg!(any(
+    target_feature = "fma",
+    all(target_arch = "aarch64", target_feature = "neon")
+));
 
 /// Masks of the sign, and of everything but the sign.
 const SIGN: f32x8 = f32x8::new([-0.0; 8]);
@@ -23,7 +29,10 @@ const MAGNITUDE: f32x8 = f32x8::new([f32::from_bits(0x7fff_ffff); 8]);
 /// times as long at opt-level s.
 #[inline(always)]
 fn splat(x: f32) -> f32x8 {
-    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+    #[cfg(all(
+        any(target_arch = "x86", target_arch = "x86_64"),
+        target_feature = "sse2"
+    ))]
     {
         #[cfg(target_arch = "x86")]
         use core::arch::x86 as arch;
@@ -56,7 +65,10 @@ fn splat(x: f32) -> f32x8 {
         unsafe { core::mem::transmute::<[v128; 2], f32x8>([half, half]) }
     }
     #[cfg(not(any(
-        all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
+        all(
+            any(target_arch = "x86", target_arch = "x86_64"),
+            target_feature = "sse2"
+        ),
         all(target_arch = "aarch64", target_feature = "neon"),
         all(target_arch = "wasm32", target_feature = "simd128"),
     )))]
@@ -93,7 +105,11 @@ impl Lanes for f32x8 {
     // `wide` splats the sign that it negates with, at a cost (see `splat`).
     #[inline(always)]
     fn mul_sub(self, a: Self, b: Self) -> Self {
-        if FUSES { f32x8::mul_add(self, a, b ^ SIGN) } else { self * a - b }
+        if FUSES {
+            f32x8::mul_add(self, a, b ^ SIGN)
+        } else {
+            self * a - b
+        }
     }
     #[inline(always)]
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
@@ -148,7 +164,10 @@ impl Lanes for f32x8 {
         let bits = self.to_bits();
         let exponent = (bits + ROUND) >> 23_u32;
         let mantissa = bits + ONES - (exponent << 23_u32);
-        (f32x8::from_bits(mantissa), f32x8::from_bits(exponent | INTEGERS) - splat(INTEGER_BIAS))
+        (
+            f32x8::from_bits(mantissa),
+            f32x8::from_bits(exponent | INTEGERS) - splat(INTEGER_BIAS),
+        )
     }
     #[inline(always)]
     fn lt(self, other: Self) -> f32x8 {
@@ -178,9 +197,21 @@ impl Lanes for f32x8 {
     #[inline(always)]
     fn search(x: Self, bounds: [Self; 3], count: usize) -> [f32x8; 3] {
         [
-            if count > 0 { x.simd_ge(bounds[0]) } else { f32x8::ZERO },
-            if count > 1 { x.simd_ge(bounds[1]) } else { f32x8::ZERO },
-            if count > 2 { x.simd_ge(bounds[2]) } else { f32x8::ZERO },
+            if count > 0 {
+                x.simd_ge(bounds[0])
+            } else {
+                f32x8::ZERO
+            },
+            if count > 1 {
+                x.simd_ge(bounds[1])
+            } else {
+                f32x8::ZERO
+            },
+            if count > 2 {
+                x.simd_ge(bounds[2])
+            } else {
+                f32x8::ZERO
+            },
         ]
     }
     #[inline(always)]

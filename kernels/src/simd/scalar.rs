@@ -3,12 +3,16 @@
 //! Selections are marked unpredictable: as branches, which the compiler makes of them here and there, they would be
 //! mispredicted half of the time.
 
-#![allow(unsafe_code, reason = "an intrinsic of a target feature that the program is compiled for")]
+#![allow(
+    unsafe_code,
+    reason = "an intrinsic of a target feature that the program is compiled for"
+)]
 
 use core::hint::select_unpredictable;
 
 use super::lanes::{
-    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, UPPER, difference_split, sealed::Sealed,
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, ROUND_EXPONENT, UPPER, difference_split,
+    sealed::Sealed,
 };
 
 impl Sealed for f32 {}
@@ -120,7 +124,10 @@ impl Lanes for f32 {
         let bits = self.to_bits();
         let exponent = bits.wrapping_add(ROUND_EXPONENT) >> 23;
         let mantissa = bits.wrapping_add(ONE).wrapping_sub(exponent << 23);
-        (f32::from_bits(mantissa), f32::from_bits(exponent | INTEGER) - INTEGER_BIAS)
+        (
+            f32::from_bits(mantissa),
+            f32::from_bits(exponent | INTEGER) - INTEGER_BIAS,
+        )
     }
     #[inline(always)]
     fn lt(self, other: Self) -> bool {
@@ -140,7 +147,10 @@ impl Lanes for f32 {
     }
     #[inline(always)]
     fn swap(mask: bool, a: Self, b: Self) -> (Self, Self) {
-        (select_unpredictable(mask, a, b), select_unpredictable(mask, b, a))
+        (
+            select_unpredictable(mask, a, b),
+            select_unpredictable(mask, b, a),
+        )
     }
     #[inline(always)]
     fn keep(mask: bool, x: Self) -> Self {

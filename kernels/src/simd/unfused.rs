@@ -138,14 +138,23 @@ impl Broadcast<Self> for Unfused {
     }
     #[inline(always)]
     fn look_up(table: &[Self; 4], index: [f32x8; 3]) -> Self {
-        Self(<f32x8 as Broadcast<f32x8>>::look_up(&table.map(|entry| entry.0), index))
+        Self(<f32x8 as Broadcast<f32x8>>::look_up(
+            &table.map(|entry| entry.0),
+            index,
+        ))
     }
     #[inline(always)]
     fn look_up_three(table: &[Self; 4], index: [f32x8; 3]) -> Self {
-        Self(<f32x8 as Broadcast<f32x8>>::look_up_three(&table.map(|entry| entry.0), index))
+        Self(<f32x8 as Broadcast<f32x8>>::look_up_three(
+            &table.map(|entry| entry.0),
+            index,
+        ))
     }
     #[inline(always)]
     fn look_up_half(table: &[Self; 2], index: [f32x8; 3]) -> Self {
-        Self(<f32x8 as Broadcast<f32x8>>::look_up_half(&table.map(|entry| entry.0), index))
+        Self(<f32x8 as Broadcast<f32x8>>::look_up_half(
+            &table.map(|entry| entry.0),
+            index,
+        ))
     }
 }

@@ -10,7 +10,11 @@ use hairis::{Lobe, PerLobe};
 fn by_panels(point: &impl Reference<f64>, theta_o: f64, width: f64) -> PerLobe<[f64; 3]> {
     let peaks = [-7.5, 3.75, 11.25].map(|tilt| (2.0 * tilt * DEG - theta_o, 2.0 * width));
     let poles = [(FRAC_PI_2, 1e-4), (-FRAC_PI_2, 1e-4)];
-    let theta = rule(&panels(-FRAC_PI_2 + 1e-5, FRAC_PI_2 - 1e-5, &[peaks.as_slice(), &poles].concat()));
+    let theta = rule(&panels(
+        -FRAC_PI_2 + 1e-5,
+        FRAC_PI_2 - 1e-5,
+        &[peaks.as_slice(), &poles].concat(),
+    ));
     let phi = rule(&panels(0.0, PI, &[(PI, width), (35.0 * DEG, width)]));
     let mut sums = PerLobe([[0.0; 3]; 4]);
     for &(t, w_t) in &theta {
@@ -18,7 +22,9 @@ fn by_panels(point: &impl Reference<f64>, theta_o: f64, width: f64) -> PerLobe<[
             let lobes = point.lobes(direction(t, 0.3 - phi));
             let w = 2.0 * w_t * w_phi * t.cos() * t.cos();
             for lobe in Lobe::ALL {
-                sums[lobe] = core::array::from_fn(|c| sums[lobe][c] + w * lobes[lobe].value * lobes[lobe].color[c]);
+                sums[lobe] = core::array::from_fn(|c| {
+                    sums[lobe][c] + w * lobes[lobe].value * lobes[lobe].color[c]
+                });
             }
         }
     }
@@ -29,11 +35,17 @@ fn by_panels(point: &impl Reference<f64>, theta_o: f64, width: f64) -> PerLobe<[
 fn albedos_are_the_integrals_of_the_lobes() {
     // Measured: 3.7e-9. Along the fibre the caps of 1e-5 rad, which panels leave out, hold up to 4e-4 of a narrow lobe.
     let mut worst = 0.0_f64;
-    for (shape, width) in SHAPES.into_iter().flat_map(|shape| [0.5, 3.0, 15.0, 60.0].map(|width| (shape, width))) {
+    for (shape, width) in SHAPES
+        .into_iter()
+        .flat_map(|shape| [0.5, 3.0, 15.0, 60.0].map(|width| (shape, width)))
+    {
         for theta_o in THETA_O.into_iter().filter(|theta_o| theta_o.abs() < 90.0) {
             let p = with_tilt_and_width([-7.5, 3.75, 11.25], width);
             let point = Oracle::prepare(&p, shape, direction(theta_o * DEG, 0.3), None);
-            let (found, expected) = (point.albedo(), by_panels(&point, theta_o * DEG, width * DEG));
+            let (found, expected) = (
+                point.albedo(),
+                by_panels(&point, theta_o * DEG, width * DEG),
+            );
             for lobe in Lobe::ALL {
                 for (found, expected) in found[lobe].into_iter().zip(expected[lobe]) {
                     worst = worst.max((found - expected).abs() / expected.max(1e-9));
@@ -52,11 +64,21 @@ fn lobes_sum_to_the_value_and_to_the_density() {
         let point = Oracle::prepare(&p, Shape::Gaussian, direction(0.4, 0.3), bands);
         for xi in points(200) {
             let drawn = Reference::sample(&point, xi);
-            let (value, lobes) = (Reference::eval(&point, drawn.wi), Reference::lobes(&point, drawn.wi));
+            let (value, lobes) = (
+                Reference::eval(&point, drawn.wi),
+                Reference::lobes(&point, drawn.wi),
+            );
             let sum: f64 = lobes.0.iter().map(|lobe| lobe.value * lobe.color[1]).sum();
-            assert!((sum / value[1] - 1.0).abs() < 1e-14, "{bands:?} {xi:?}: {sum} of {}", value[1]);
+            assert!(
+                (sum / value[1] - 1.0).abs() < 1e-14,
+                "{bands:?} {xi:?}: {sum} of {}",
+                value[1]
+            );
             let largest = lobes.0.iter().map(|lobe| lobe.pdf).fold(0.0, f64::max);
-            assert!(Reference::pdf(&point, drawn.wi) <= largest, "{bands:?} {xi:?}: a mixture is below its largest");
+            assert!(
+                Reference::pdf(&point, drawn.wi) <= largest,
+                "{bands:?} {xi:?}: a mixture is below its largest"
+            );
         }
     }
 }

@@ -16,8 +16,12 @@ fn reflected(gather: &dyn ErasedGather, mesh: &Mesh, channel: usize) -> Integral
             v.resize(out.len(), 0.0);
             v
         });
-        let written = gather.value_slices(Level::detect(), wi, value.each_mut().map(|v| &mut v[..]));
-        assert!(written.is_ok(), "slices of one length are accepted: {written:?}");
+        let written =
+            gather.value_slices(Level::detect(), wi, value.each_mut().map(|v| &mut v[..]));
+        assert!(
+            written.is_ok(),
+            "slices of one length are accepted: {written:?}"
+        );
         for (n, x) in out.iter_mut().enumerate() {
             *x = value[channel][n] * wi[1][n].hypot(wi[2][n]);
         }
@@ -46,7 +50,10 @@ pub fn albedo_is_the_integral(subject: &dyn ErasedSubject) -> Outcome {
                     if c > 0 && albedo[lobe][c] == albedo[lobe][c - 1] {
                         continue;
                     }
-                    let (got, want) = (f64::from(albedo[lobe][c]), reflected(&*alone, &mesh, c).total());
+                    let (got, want) = (
+                        f64::from(albedo[lobe][c]),
+                        reflected(&*alone, &mesh, c).total(),
+                    );
                     // A lobe that lies off the sphere returns next to nothing.
                     worst.see((got - want).abs() / want.max(1e-3), || {
                         format!("{got}, integral {want}: channel {c} of {lobe:?}, {name} {hit:?}")
@@ -66,13 +73,22 @@ pub fn albedo_is_the_integral(subject: &dyn ErasedSubject) -> Outcome {
 /// At the first hit where they do not, or if the model claims it without a white material.
 pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "white materials return all light";
-    let Some(tolerance) = subject.claims().furnace else { return Ok(()) };
+    let Some(tolerance) = subject.claims().furnace else {
+        return Ok(());
+    };
     let white = subject.set(Which::White);
     if white.len() == 0 {
-        return Err(Failure::new(NAME, "the subject has no white material to test it on"));
+        return Err(Failure::new(
+            NAME,
+            "the subject has no white material to test it on",
+        ));
     }
     let mut worst = Worst::new(NAME, "the sum of albedos", tolerance);
-    let mut integral = Worst::new(NAME, "the integral of S cos theta_i", tolerance.max(subject.claims().integral));
+    let mut integral = Worst::new(
+        NAME,
+        "the integral of S cos theta_i",
+        tolerance.max(subject.claims().integral),
+    );
     let mut draws = Draws(0xf00d);
     for material in white.iter() {
         let name = material.name();
@@ -80,7 +96,9 @@ pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
             let albedo = material.prepare(hit).albedo().0;
             for c in 0..3 {
                 let sum: f64 = albedo.iter().map(|lobe| f64::from(lobe[c])).sum();
-                worst.see((sum - 1.0).abs(), || format!("{sum}: channel {c}, {name} {hit:?}"))?;
+                worst.see((sum - 1.0).abs(), || {
+                    format!("{sum}: channel {c}, {name} {hit:?}")
+                })?;
             }
         }
         for hit in hits() {
@@ -108,14 +126,24 @@ pub fn weights_are_bounded(subject: &dyn ErasedSubject) -> Outcome {
     for material in subject.set(Which::Everyday).iter() {
         let name = material.name();
         for (round, hit) in hits_and(50, &mut draws).into_iter().enumerate() {
-            let mask = if round % 2 == 0 { LobeMask::ALL } else { masks[round / 2 % 15 + 1] };
-            let Some(bound) = material.weight_bound(&hit, mask) else { continue };
+            let mask = if round % 2 == 0 {
+                LobeMask::ALL
+            } else {
+                masks[round / 2 % 15 + 1]
+            };
+            let Some(bound) = material.weight_bound(&hit, mask) else {
+                continue;
+            };
             let gather = material.prepare(hit).with_lobes(mask);
             for packet in 0..PACKETS {
                 let mut xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
                 if packet % 4 == 0 {
                     // The ends of a lobe are where weights are large.
-                    xi[packet / 4 % 8][1 + packet % 2] = if packet % 8 == 0 { 0.0 } else { crate::probe::LAST };
+                    xi[packet / 4 % 8][1 + packet % 2] = if packet % 8 == 0 {
+                        0.0
+                    } else {
+                        crate::probe::LAST
+                    };
                 }
                 for level in Level::available() {
                     let eight = gather.sample8(level, &triples(&xi));
@@ -123,7 +151,9 @@ pub fn weights_are_bounded(subject: &dyn ErasedSubject) -> Outcome {
                         let most = s.weight.into_iter().fold(0.0, f32::max);
                         (closest, seen) = (closest.max(f64::from(most) / bound), seen + 1);
                         if f64::from(most) > bound * (1.0 + 1e-5) {
-                            let message = format!("{most} is above {bound}: {s:?} {name} {mask:?} {hit:?} on {level}");
+                            let message = format!(
+                                "{most} is above {bound}: {s:?} {name} {mask:?} {hit:?} on {level}"
+                            );
                             return Err(Failure::new(NAME, message));
                         }
                     }
@@ -146,13 +176,16 @@ pub fn weights_are_bounded(subject: &dyn ErasedSubject) -> Outcome {
 pub fn eval_is_reciprocal(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "S is reciprocal";
     let claims = subject.claims();
-    let Some(tolerance) = claims.reciprocal else { return Ok(()) };
+    let Some(tolerance) = claims.reciprocal else {
+        return Ok(());
+    };
     let mut worst = Worst::new(NAME, "S with its directions exchanged", tolerance);
     let mut draws = Draws(0x4ec1);
     for material in subject.set(Which::Everyday).iter() {
         let name = material.name();
         for round in 0..2000 {
-            let mut any = || direction(draws.between(-FRAC_PI_2, FRAC_PI_2), draws.between(-PI, PI));
+            let mut any =
+                || direction(draws.between(-FRAC_PI_2, FRAC_PI_2), draws.between(-PI, PI));
             let (a, mut b) = (any(), any());
             let here = Nearby::new(material, Hit { wo: a, h: 0.0 }, claims.near_field);
             if round % 2 == 0 {
@@ -165,7 +198,9 @@ pub fn eval_is_reciprocal(subject: &dyn ErasedSubject) -> Outcome {
             let (forth, back) = (here.gather().eval(b), there.eval(a));
             // Densities are not reciprocal.
             let error = here.error(Eval { pdf: 0.0, ..back }, Eval { pdf: 0.0, ..forth }, b);
-            worst.see(error, || format!("{forth:?} and {back:?}: {name} {a:?} {b:?}"))?;
+            worst.see(error, || {
+                format!("{forth:?} and {back:?}: {name} {a:?} {b:?}")
+            })?;
         }
     }
     worst.report()

@@ -37,7 +37,9 @@ pub fn samples_follow_density(subject: &dyn ErasedSubject) -> Outcome {
             let expected = Integral::density(&*gather, &mesh).mass;
             let mut observed = vec![0_u32; rows * width];
             let mut live = 0_u32;
-            for direction in Samples::draw(&*gather, columns(claims.samples, |_| draws.xi3())).live() {
+            for direction in
+                Samples::draw(&*gather, columns(claims.samples, |_| draws.xi3())).live()
+            {
                 let [i, j] = mesh.find(direction);
                 observed[i * width + j] += 1;
                 live += 1;
@@ -47,14 +49,24 @@ pub fn samples_follow_density(subject: &dyn ErasedSubject) -> Outcome {
                 continue;
             }
             let discarded = f64::from(claims.samples - live);
-            let cells = pooled(&expected, &observed, count, discarded, count * claims.integral);
+            let cells = pooled(
+                &expected,
+                &observed,
+                count,
+                discarded,
+                count * claims.integral,
+            );
             let statistic: f64 = cells.iter().map(Cell::term).sum();
             let p = chi_square_tail(statistic, cells.len().max(2) - 1);
             worst = worst.min(p);
             if p.is_nan() || p < least {
                 let mut cells = cells;
                 cells.sort_by(|a, b| b.term().total_cmp(&a.term()));
-                let table: Vec<String> = cells.iter().take(6).map(|cell| cell.describe(&mesh)).collect();
+                let table: Vec<String> = cells
+                    .iter()
+                    .take(6)
+                    .map(|cell| cell.describe(&mesh))
+                    .collect();
                 let message = format!(
                     "chi-square {statistic:.0} of {} cells has probability {p:.1e}, allowed {least:.1e}: {name} {hit:?}; \
                      the worst cells: {}",
@@ -80,17 +92,32 @@ struct Cell {
 impl Cell {
     fn term(&self) -> f64 {
         let difference = self.observed - self.expected;
-        if difference == 0.0 { 0.0 } else { difference * difference / self.expected }
+        if difference == 0.0 {
+            0.0
+        } else {
+            difference * difference / self.expected
+        }
     }
 
     fn describe(&self, mesh: &Mesh) -> String {
         let width = mesh.size()[1];
-        let Self { from, to, expected, observed } = self;
+        let Self {
+            from,
+            to,
+            expected,
+            observed,
+        } = self;
         let Some(theta) = mesh.theta.get(from / width) else {
             return format!("{observed} for {expected:.1} discarded");
         };
-        let (phi, theta_to, phi_to) = (mesh.phi[from % width], mesh.theta[to / width + 1], mesh.phi[to % width + 1]);
-        format!("{observed} for {expected:.1} from theta {theta:.4} phi {phi:.4} to {theta_to:.4} {phi_to:.4}")
+        let (phi, theta_to, phi_to) = (
+            mesh.phi[from % width],
+            mesh.theta[to / width + 1],
+            mesh.phi[to % width + 1],
+        );
+        format!(
+            "{observed} for {expected:.1} from theta {theta:.4} phi {phi:.4} to {theta_to:.4} {phi_to:.4}"
+        )
     }
 }
 
@@ -101,7 +128,12 @@ fn pooled(mass: &[f64], observed: &[u32], count: f64, discarded: f64, uncertain:
     let mut cells: Vec<Cell> = Vec::new();
     let mut open: Option<Cell> = None;
     for (n, (mass, observed)) in mass.iter().zip(observed).enumerate() {
-        let cell = open.get_or_insert(Cell { from: n, to: n, expected: 0.0, observed: 0.0 });
+        let cell = open.get_or_insert(Cell {
+            from: n,
+            to: n,
+            expected: 0.0,
+            observed: 0.0,
+        });
         cell.to = n;
         cell.expected += mass * count;
         cell.observed += f64::from(*observed);
@@ -126,7 +158,12 @@ fn pooled(mass: &[f64], observed: &[u32], count: f64, discarded: f64, uncertain:
             last.expected += expected;
             last.observed += discarded;
         }
-        _ => cells.push(Cell { from: mass.len(), to: mass.len(), expected: expected.max(1e-9), observed: discarded }),
+        _ => cells.push(Cell {
+            from: mass.len(),
+            to: mass.len(),
+            expected: expected.max(1e-9),
+            observed: discarded,
+        }),
     }
     cells
 }

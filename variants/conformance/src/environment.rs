@@ -15,7 +15,9 @@ use hairis::{Hit, Level, Vec3x, control, set_control};
 const NAME: &str = "results are finite however they are rounded";
 
 /// Rounding to nearest, down, up and towards 0, each with denormals and without.
-const MODES: [u32; 8] = [0x0000, 0x2000, 0x4000, 0x6000, 0x8040, 0xa040, 0xc040, 0xe040];
+const MODES: [u32; 8] = [
+    0x0000, 0x2000, 0x4000, 0x6000, 0x8040, 0xa040, 0xc040, 0xe040,
+];
 /// Rounding down, without denormals.
 pub(crate) const DOWN: u32 = MODES[5];
 /// Packets per material and mode.
@@ -47,18 +49,29 @@ fn raised<T>(f: impl FnOnce() -> T) -> u32 {
 
 /// Names of exceptions. Not generic, so compiled once.
 fn names(flags: u32) -> String {
-    let names: Vec<&str> = FLAGS.into_iter().filter(|(flag, _)| flags & flag != 0).map(|(_, name)| name).collect();
+    let names: Vec<&str> = FLAGS
+        .into_iter()
+        .filter(|(flag, _)| flags & flag != 0)
+        .map(|(_, name)| name)
+        .collect();
     names.join(", ")
 }
 
 /// Fails if `f` raises an exception.
 fn quiet<T>(what: &str, at: impl FnOnce() -> String, f: impl FnOnce() -> T) -> Outcome {
     let flags = raised(f);
-    if flags == 0 { Ok(()) } else { Err(exceptions(what, flags, &at())) }
+    if flags == 0 {
+        Ok(())
+    } else {
+        Err(exceptions(what, flags, &at()))
+    }
 }
 
 fn exceptions(what: &str, flags: u32, at: &str) -> Failure {
-    Failure::new("everyday input raises no exception", format!("{what} raises {}: {at}", names(flags)))
+    Failure::new(
+        "everyday input raises no exception",
+        format!("{what} raises {}: {at}", names(flags)),
+    )
 }
 
 /// A unit direction: any, along an axis, or next to that of the fibre.
@@ -85,7 +98,10 @@ fn unit(draws: &mut Draws) -> Direction {
 /// At the first result that is not.
 pub fn any_rounding_is_finite(subject: &dyn ErasedSubject) -> Outcome {
     for mode in MODES {
-        let in_mode = |failure: Failure| Failure { message: format!("mode {mode:#x}: {}", failure.message), ..failure };
+        let in_mode = |failure: Failure| Failure {
+            message: format!("mode {mode:#x}: {}", failure.message),
+            ..failure
+        };
         with_mode(mode, || totality::sweep(subject, ROUNDS, unit)).map_err(in_mode)?;
         with_mode(mode, || slices_are_finite(subject)).map_err(in_mode)?;
     }
@@ -96,16 +112,24 @@ fn slices_are_finite(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0xf1);
     for material in subject.set(Which::WithExtremes).iter() {
         let (name, gather) = (material.name(), material.prepare(draws.hit()));
-        let rows: Vec<(Direction, [f32; 3])> = (0..69).map(|_| (unit(&mut draws), draws.xi3())).collect();
+        let rows: Vec<(Direction, [f32; 3])> =
+            (0..69).map(|_| (unit(&mut draws), draws.xi3())).collect();
         let wi = columns(69, |n| {
             let (wi, _) = rows[n as usize];
             [wi.x, wi.y, wi.z]
         });
         let xi = columns(69, |n| rows[n as usize].1);
         for level in Level::available() {
-            let (mut evals, mut samples) = ([const { [0.0_f32; 69] }; 4], [const { [0.0_f32; 69] }; COLUMNS]);
+            let (mut evals, mut samples) = (
+                [const { [0.0_f32; 69] }; 4],
+                [const { [0.0_f32; 69] }; COLUMNS],
+            );
             let lengths = gather
-                .eval_slices(Some(level), wi.each_ref().map(|c| &c[..]), evals.each_mut().map(|c| &mut c[..]))
+                .eval_slices(
+                    Some(level),
+                    wi.each_ref().map(|c| &c[..]),
+                    evals.each_mut().map(|c| &mut c[..]),
+                )
                 .and(gather.sample_slices(
                     Some(level),
                     xi.each_ref().map(|c| &c[..]),
@@ -117,7 +141,10 @@ fn slices_are_finite(subject: &dyn ErasedSubject) -> Outcome {
                 || !evals.iter().chain(numbers).flatten().all(sound)
                 || ![u, v, w].into_iter().flatten().all(|x| x.is_finite())
             {
-                return Err(Failure::new(NAME, format!("slices of {name} on {level}: {evals:?} {samples:?}")));
+                return Err(Failure::new(
+                    NAME,
+                    format!("slices of {name} on {level}: {evals:?} {samples:?}"),
+                ));
             }
         }
     }
@@ -134,7 +161,14 @@ pub fn everyday_input_raises_no_exception(subject: &dyn ErasedSubject) -> Outcom
     let mut draws = Draws(0xfe);
     for material in subject.set(Which::Everyday).iter() {
         let name = material.name();
-        if material.prepare(draws.hit()).albedo().0.as_flattened().iter().all(|albedo| *albedo == 0.0) {
+        if material
+            .prepare(draws.hit())
+            .albedo()
+            .0
+            .as_flattened()
+            .iter()
+            .all(|albedo| *albedo == 0.0)
+        {
             continue;
         }
         for round in 0..EVERYDAY {
@@ -148,7 +182,9 @@ pub fn everyday_input_raises_no_exception(subject: &dyn ErasedSubject) -> Outcom
             scalar_is_quiet(material, &*one, hits[0], (wi[0], xi[0]))?;
             for level in Level::available() {
                 let at = || format!("{name} on {level}, {hits:?} {wi:?}");
-                quiet("prepare8", at, || Material::prepare_packed([material; 8], level, hits8))?;
+                quiet("prepare8", at, || {
+                    Material::prepare_packed([material; 8], level, hits8)
+                })?;
                 let each = Material::prepare_packed([material; 8], level, hits8);
                 quiet("eval_pdf8 of one hit", at, || one.eval8(level, &wi8))?;
                 quiet("eval_pdf8 of eight hits", at, || each.eval(level, &wi8))?;
@@ -163,7 +199,11 @@ pub fn everyday_input_raises_no_exception(subject: &dyn ErasedSubject) -> Outcom
                 let len = round % 9;
                 quiet("eval_pdf_batch", at, || {
                     let out = room.each_mut().map(|column| &mut column[..len]);
-                    one.eval_slices(Some(level), by_axis.each_ref().map(|column| &column[..len]), out)
+                    one.eval_slices(
+                        Some(level),
+                        by_axis.each_ref().map(|column| &column[..len]),
+                        out,
+                    )
                 })?;
             }
         }

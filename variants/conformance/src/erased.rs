@@ -9,8 +9,9 @@ use crate::subject::{Claims, ParamsOf, Reference, Subject};
 use core::fmt;
 use hairis::wide::f32x8;
 use hairis::{
-    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level, Lobe, LobeEval, LobeEval8,
-    LobeMask, Model, PerLobe, Sample, Sample8, SampleSlices, SampleWeightSlices, Vec3x, Vec3x8,
+    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level, Lobe,
+    LobeEval, LobeEval8, LobeMask, Model, PerLobe, Sample, Sample8, SampleSlices,
+    SampleWeightSlices, Vec3x, Vec3x8,
 };
 
 /// A direction, or any vector, in the fibre's frame.
@@ -49,7 +50,9 @@ impl dyn ErasedSubject + '_ {
 
     /// Each lobe alone, and all together.
     pub(crate) fn parts(&self) -> impl Iterator<Item = LobeMask> + use<> {
-        self.slots().map(|lobe| LobeMask::of(&[lobe])).chain([LobeMask::ALL])
+        self.slots()
+            .map(|lobe| LobeMask::of(&[lobe]))
+            .chain([LobeMask::ALL])
     }
 }
 
@@ -73,7 +76,8 @@ pub trait MaterialSet {
     fn name(&self, index: usize) -> &'static str;
     fn prepare(&self, index: usize, hit: Hit) -> Box<dyn ErasedGather>;
     fn prepare8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn ErasedGather8>;
-    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8) -> Box<dyn ErasedGather8>;
+    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8)
+    -> Box<dyn ErasedGather8>;
     fn edges(&self, index: usize, hit: &Hit) -> [Vec<f64>; 2];
     fn weight_bound(&self, index: usize, hit: &Hit, lobes: LobeMask) -> Option<f64>;
     fn reference(&self, index: usize, hit: &Hit) -> Option<Box<dyn Reference>>;
@@ -106,8 +110,14 @@ impl Material<'_> {
     }
 
     /// Eight hits on eight materials of one set.
-    pub(crate) fn prepare_packed(materials: [Self; 8], level: Level, hits: Hit8) -> Box<dyn ErasedGather8> {
-        materials[0].set.prepare_packed(materials.map(|material| material.index), level, hits)
+    pub(crate) fn prepare_packed(
+        materials: [Self; 8],
+        level: Level,
+        hits: Hit8,
+    ) -> Box<dyn ErasedGather8> {
+        materials[0]
+            .set
+            .prepare_packed(materials.map(|material| material.index), level, hits)
     }
 
     pub(crate) fn edges(&self, hit: &Hit) -> [Vec<f64>; 2] {
@@ -133,18 +143,34 @@ pub(crate) struct Set<'s, S: Subject> {
 
 impl<'s, S: Subject> Set<'s, S> {
     pub(crate) fn new(subject: &'s S, which: Which) -> Self {
-        let mut materials = if matches!(which, Which::White) { subject.white() } else { subject.materials() };
+        let mut materials = if matches!(which, Which::White) {
+            subject.white()
+        } else {
+            subject.materials()
+        };
         match which {
             Which::Everyday | Which::White => {}
             Which::WithExtremes => materials.extend(subject.extremes()),
             Which::WithRandom => {
                 let random = subject.random_materials();
-                materials.extend(random.into_iter().map(|params| ("a random material", params)));
+                materials.extend(
+                    random
+                        .into_iter()
+                        .map(|params| ("a random material", params)),
+                );
             }
         }
         let (names, params): (Vec<_>, Vec<_>) = materials.into_iter().unzip();
-        let bsdfs = params.iter().map(|params| Bsdf::new(&subject.model(), params)).collect();
-        Self { subject, names, params, bsdfs }
+        let bsdfs = params
+            .iter()
+            .map(|params| Bsdf::new(&subject.model(), params))
+            .collect();
+        Self {
+            subject,
+            names,
+            params,
+            bsdfs,
+        }
     }
 }
 
@@ -165,7 +191,12 @@ impl<S: Subject> MaterialSet for Set<'_, S> {
         Box::new(self.bsdfs[index].prepare8_at(level, hits))
     }
 
-    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8) -> Box<dyn ErasedGather8> {
+    fn prepare_packed(
+        &self,
+        index: [usize; 8],
+        level: Level,
+        hits: Hit8,
+    ) -> Box<dyn ErasedGather8> {
         Box::new(Bsdf8::pack(index.map(|i| &self.bsdfs[i])).prepare8_at(level, hits))
     }
 
@@ -204,10 +235,20 @@ pub trait ErasedGather: fmt::Debug {
     fn albedo(&self) -> PerLobe<[f32; 3]>;
     fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedGather>;
     fn conserving(&self) -> Box<dyn ErasedGather>;
-    fn eval_slices(&self, level: Option<Level>, wi: [&[f32]; 3], out: [&mut [f32]; 4]) -> SliceResult;
+    fn eval_slices(
+        &self,
+        level: Option<Level>,
+        wi: [&[f32]; 3],
+        out: [&mut [f32]; 4],
+    ) -> SliceResult;
     fn value_slices(&self, level: Level, wi: [&[f32]; 3], out: [&mut [f32]; 3]) -> SliceResult;
     fn pdf_slice(&self, level: Level, wi: [&[f32]; 3], out: &mut [f32]) -> SliceResult;
-    fn sample_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; COLUMNS]) -> SliceResult;
+    fn sample_slices(
+        &self,
+        level: Option<Level>,
+        xi: [&[f32]; 3],
+        out: [&mut [f32]; COLUMNS],
+    ) -> SliceResult;
     fn weight_slices(
         &self,
         level: Option<Level>,
@@ -261,9 +302,17 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
         Box::new(self.conserving())
     }
 
-    fn eval_slices(&self, level: Option<Level>, wi: [&[f32]; 3], out: [&mut [f32]; 4]) -> SliceResult {
+    fn eval_slices(
+        &self,
+        level: Option<Level>,
+        wi: [&[f32]; 3],
+        out: [&mut [f32]; 4],
+    ) -> SliceResult {
         let [r, g, b, pdf] = out;
-        let out = EvalSlices { value: [r, g, b], pdf };
+        let out = EvalSlices {
+            value: [r, g, b],
+            pdf,
+        };
         match level {
             Some(level) => self.eval_pdf_batch_at(level, wi, out),
             None => self.eval_pdf_batch(wi, out),
@@ -278,9 +327,20 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
         self.pdf_batch_at(level, wi, out)
     }
 
-    fn sample_slices(&self, level: Option<Level>, xi: [&[f32]; 3], out: [&mut [f32]; COLUMNS]) -> SliceResult {
+    fn sample_slices(
+        &self,
+        level: Option<Level>,
+        xi: [&[f32]; 3],
+        out: [&mut [f32]; COLUMNS],
+    ) -> SliceResult {
         let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = out;
-        let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight: [wr, wg, wb], slot };
+        let out = SampleSlices {
+            wi: [u, v, w],
+            value: [r, g, b],
+            pdf,
+            weight: [wr, wg, wb],
+            slot,
+        };
         match level {
             Some(level) => self.sample_batch_at(level, xi, out),
             None => self.sample_batch(xi, out),
@@ -294,7 +354,11 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
         out: [&mut [f32]; WEIGHT_COLUMNS.len()],
     ) -> SliceResult {
         let [u, v, w, pdf, wr, wg, wb] = out;
-        let out = SampleWeightSlices { wi: [u, v, w], pdf, weight: [wr, wg, wb] };
+        let out = SampleWeightSlices {
+            wi: [u, v, w],
+            pdf,
+            weight: [wr, wg, wb],
+        };
         match level {
             Some(level) => self.sample_weight_batch_at(level, xi, out),
             None => self.sample_weight_batch(xi, out),

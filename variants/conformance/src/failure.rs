@@ -13,7 +13,10 @@ pub struct Failure {
 
 impl Failure {
     pub(crate) fn new(property: &'static str, message: impl Into<String>) -> Self {
-        Self { property, message: message.into() }
+        Self {
+            property,
+            message: message.into(),
+        }
     }
 }
 
@@ -44,7 +47,12 @@ pub(crate) struct Worst {
 
 impl Worst {
     pub(crate) fn new(property: &'static str, what: &'static str, tolerance: f64) -> Self {
-        Self { property, what, tolerance, error: 0.0 }
+        Self {
+            property,
+            what,
+            tolerance,
+            error: 0.0,
+        }
     }
 
     /// Fails if `error` is above the tolerance or not a number.
@@ -59,13 +67,26 @@ impl Worst {
     }
 
     fn failure(&self, error: f64, at: &str) -> Failure {
-        let Self { property, what, tolerance, .. } = self;
-        Failure::new(property, format!("{what} is off by {error:.3e}, allowed {tolerance:.1e}: {at}"))
+        let Self {
+            property,
+            what,
+            tolerance,
+            ..
+        } = self;
+        Failure::new(
+            property,
+            format!("{what} is off by {error:.3e}, allowed {tolerance:.1e}: {at}"),
+        )
     }
 
     /// Prints the worst case, for the record of a tolerance.
     pub(crate) fn report(self) -> Outcome {
-        let Self { property, what, tolerance, error } = self;
+        let Self {
+            property,
+            what,
+            tolerance,
+            error,
+        } = self;
         println!("{property}: {what} measured {error:.2e}, allowed {tolerance:.1e}");
         Ok(())
     }

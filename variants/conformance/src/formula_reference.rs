@@ -28,7 +28,9 @@ impl<R: reference::Reference<f64>> Reference for FormulaReference<R> {
 
     fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
         let drawn = self.formulas.sample(xi);
-        drawn.lobe.map_or(ReferenceSample::Discarded, |lobe| ReferenceSample::Drawn(lobe.index(), drawn.wi))
+        drawn.lobe.map_or(ReferenceSample::Discarded, |lobe| {
+            ReferenceSample::Drawn(lobe.index(), drawn.wi)
+        })
     }
 
     fn tolerance(&self) -> Tolerance {

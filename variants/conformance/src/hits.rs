@@ -45,9 +45,12 @@ pub fn hits_equal_packets(subject: &dyn HitsSubject) -> Outcome {
             let index = indices(&mut draws, len, materials.len());
             let each: Vec<_> = index.iter().map(|i| materials[*i as usize]).collect();
             let expected = Expected::new(&each, level, &slices.rows);
-            slices.check(&expected, len, &format!("materials {index:?}, {at}"), |out| {
-                set.call(HitMaterials::PerHit(&index), level, slices.call(out))
-            })?;
+            slices.check(
+                &expected,
+                len,
+                &format!("materials {index:?}, {at}"),
+                |out| set.call(HitMaterials::PerHit(&index), level, slices.call(out)),
+            )?;
         }
     }
     with_mode(DOWN, || any_rounding_is_finite(set))?;
@@ -63,12 +66,22 @@ fn any_rounding_is_finite(set: &dyn HitsSet) -> Outcome {
     for level in Level::available() {
         let mut all = [const { [0.0; LONGEST] }; 8];
         let [r, g, b, pdf, wr, wg, wb, density] = all.each_mut().map(|column| &mut column[..]);
-        let evals = EvalColumns { value: Some([r, g, b]), pdf: Some(pdf) };
-        let samples = SampleColumns { weight: Some([wr, wg, wb]), pdf: Some(density), ..SampleColumns::default() };
+        let evals = EvalColumns {
+            value: Some([r, g, b]),
+            pdf: Some(pdf),
+        };
+        let samples = SampleColumns {
+            weight: Some([wr, wg, wb]),
+            pdf: Some(density),
+            ..SampleColumns::default()
+        };
         let call = |out| set.call(HitMaterials::PerHit(&index), level, slices.call(out));
         let lengths = call(Columns::Eval(evals)).and(call(Columns::Sample(samples)));
         if lengths.is_err() || !all.iter().flatten().all(|x| x.is_finite() && *x >= 0.0) {
-            return Err(Failure::new(NAME, format!("rounded down on {level}: {all:?}")));
+            return Err(Failure::new(
+                NAME,
+                format!("rounded down on {level}: {all:?}"),
+            ));
         }
     }
     Ok(())
@@ -96,7 +109,11 @@ struct Row {
 
 impl Row {
     fn new(draws: &mut Draws) -> Self {
-        Self { hit: draws.hit(), wi: draws.direction(), xi: draws.xi3() }
+        Self {
+            hit: draws.hit(),
+            wi: draws.direction(),
+            xi: draws.xi3(),
+        }
     }
 }
 
@@ -110,15 +127,30 @@ struct Slices {
 
 impl Slices {
     fn new(rows: &[Row], offset: usize, has_h: bool) -> Self {
-        let row = |row: &Row| Row { hit: Hit { h: if has_h { row.hit.h } else { 0.0 }, ..row.hit }, ..*row };
+        let row = |row: &Row| Row {
+            hit: Hit {
+                h: if has_h { row.hit.h } else { 0.0 },
+                ..row.hit
+            },
+            ..*row
+        };
         let rows: Vec<_> = rows.iter().map(row).collect();
         let of =
-            |Row { hit: Hit { wo, h }, wi, xi }: &Row| [wo.x, wo.y, wo.z, *h, wi.x, wi.y, wi.z, xi[0], xi[1], xi[2]];
+            |Row {
+                 hit: Hit { wo, h },
+                 wi,
+                 xi,
+             }: &Row| [wo.x, wo.y, wo.z, *h, wi.x, wi.y, wi.z, xi[0], xi[1], xi[2]];
         let columns = core::array::from_fn(|n| {
             let room = core::iter::repeat_n(9.0, offset);
             room.chain(rows.iter().map(|row| of(row)[n])).collect()
         });
-        Self { rows, columns, offset, has_h }
+        Self {
+            rows,
+            columns,
+            offset,
+            has_h,
+        }
     }
 
     fn three(&self, from: usize) -> [&[f32]; 3] {
@@ -127,8 +159,15 @@ impl Slices {
 
     /// The arguments of a call for these results: directions to evaluate, or numbers to sample with.
     fn call<'a>(&'a self, out: Columns<'a>) -> HitsCall<'a> {
-        let hits = HitSlices { wo: self.three(0), h: self.has_h.then(|| &self.columns[3][self.offset..]) };
-        let inputs = self.three(if matches!(out, Columns::Eval(_)) { 4 } else { 7 });
+        let hits = HitSlices {
+            wo: self.three(0),
+            h: self.has_h.then(|| &self.columns[3][self.offset..]),
+        };
+        let inputs = self.three(if matches!(out, Columns::Eval(_)) {
+            4
+        } else {
+            7
+        });
         HitsCall { hits, inputs, out }
     }
 
@@ -143,9 +182,16 @@ impl Slices {
         for [value, pdf] in EVAL_CHOICES {
             let mut room = Room::<4>::new(self.offset, len);
             let [r, g, b, density] = room.slices();
-            let out = EvalColumns { value: value.then_some([r, g, b]), pdf: pdf.then_some(density) };
+            let out = EvalColumns {
+                value: value.then_some([r, g, b]),
+                pdf: pdf.then_some(density),
+            };
             call(Columns::Eval(out)).map_err(refused)?;
-            room.check(&chosen(&expected.evals, [value, value, value, pdf]), "value and density", at)?;
+            room.check(
+                &chosen(&expected.evals, [value, value, value, pdf]),
+                "value and density",
+                at,
+            )?;
         }
         for [wi, value, pdf, weight, slot] in SAMPLE_CHOICES {
             let mut room = Room::<COLUMNS>::new(self.offset, len);
@@ -158,7 +204,9 @@ impl Slices {
                 slot: slot.then_some(lobe),
             };
             call(Columns::Sample(out)).map_err(refused)?;
-            let asked = [wi, wi, wi, value, value, value, pdf, weight, weight, weight, slot];
+            let asked = [
+                wi, wi, wi, value, value, value, pdf, weight, weight, weight, slot,
+            ];
             room.check(&chosen(&expected.samples, asked), "samples", at)?;
         }
         Ok(())
@@ -167,7 +215,15 @@ impl Slices {
 
 /// The results with the columns that are not asked for untouched.
 fn chosen<const N: usize>(results: &[[u32; N]], asked: [bool; N]) -> Vec<[u32; N]> {
-    let row = |row: &[u32; N]| core::array::from_fn(|n| if asked[n] { row[n] } else { UNTOUCHED.to_bits() });
+    let row = |row: &[u32; N]| {
+        core::array::from_fn(|n| {
+            if asked[n] {
+                row[n]
+            } else {
+                UNTOUCHED.to_bits()
+            }
+        })
+    };
     results.iter().map(row).collect()
 }
 
@@ -179,7 +235,10 @@ struct Expected {
 
 impl Expected {
     fn new(materials: &[Material<'_>], level: Level, rows: &[Row]) -> Self {
-        let mut all = Self { evals: Vec::new(), samples: Vec::new() };
+        let mut all = Self {
+            evals: Vec::new(),
+            samples: Vec::new(),
+        };
         for (materials, rows) in materials.chunks(8).zip(rows.chunks(8)) {
             let lane = |lane: usize| lane % rows.len();
             let packed = core::array::from_fn(|i| materials[lane(i)]);
@@ -207,24 +266,55 @@ fn arguments_are_checked(set: &dyn HitsSet) -> Outcome {
         if let Some(last) = all.last_mut() {
             *last = index;
         }
-        let out = EvalColumns { pdf: Some(&mut pdf), ..EvalColumns::default() };
-        let got = set.eval_each(&all, HitSlices { wo: [&u, v, w], h: Some(h) }, [x, y, z], out);
+        let out = EvalColumns {
+            pdf: Some(&mut pdf),
+            ..EvalColumns::default()
+        };
+        let got = set.eval_each(
+            &all,
+            HitSlices {
+                wo: [&u, v, w],
+                h: Some(h),
+            },
+            [x, y, z],
+            out,
+        );
         if got == Err(want) && pdf.iter().all(|x| *x == UNTOUCHED) {
             return Ok(());
         }
-        Err(Failure::new(NAME, format!("{got:?} for {want:?}, densities {pdf:?}")))
+        Err(Failure::new(
+            NAME,
+            format!("{got:?} for {want:?}, densities {pdf:?}"),
+        ))
     };
     const EXPECTED: usize = 5;
     for (wrong, field) in NAMES.into_iter().enumerate() {
         for len in [0, 4, 6] {
             let mut lens = [EXPECTED; 8];
             lens[wrong] = len;
-            refused_as(LengthError { field, len, expected: EXPECTED }.into(), lens, 0)?;
+            refused_as(
+                LengthError {
+                    field,
+                    len,
+                    expected: EXPECTED,
+                }
+                .into(),
+                lens,
+                0,
+            )?;
         }
     }
     let (materials, most) = (set.len(), u32::MAX);
     for index in [u32::try_from(materials).unwrap_or(most), most] {
-        refused_as(HitsError::Material { hit: EXPECTED - 1, index, materials }, [EXPECTED; 8], index)?;
+        refused_as(
+            HitsError::Material {
+                hit: EXPECTED - 1,
+                index,
+                materials,
+            },
+            [EXPECTED; 8],
+            index,
+        )?;
     }
     Ok(())
 }

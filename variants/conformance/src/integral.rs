@@ -9,7 +9,11 @@ use hairis::Level;
 /// Kronrod's extension of Gauss' rule of three points, from -1 to 1: node, weight, and Gauss' weight.
 const RULE: [[f64; 3]; 7] = [
     [-0.960_491_268_708_020_3, 0.104_656_226_026_467_27, 0.0],
-    [-0.774_596_669_241_483_4, 0.268_488_089_868_333_44, 5.0 / 9.0],
+    [
+        -0.774_596_669_241_483_4,
+        0.268_488_089_868_333_44,
+        5.0 / 9.0,
+    ],
     [-0.434_243_749_346_802_56, 0.401_397_414_775_962_2, 0.0],
     [0.0, 0.450_916_538_658_474_14, 8.0 / 9.0],
     [0.434_243_749_346_802_56, 0.401_397_414_775_962_2, 0.0],
@@ -50,33 +54,59 @@ impl Integral {
         let mut todo: Vec<Rectangle> = (0..rows * width)
             .map(|of| {
                 let (i, j) = (of / width, of % width);
-                let (theta, phi) = ([mesh.theta[i], mesh.theta[i + 1]], [mesh.phi[j], mesh.phi[j + 1]]);
-                Rectangle { theta, phi, of, depth: 0 }
+                let (theta, phi) = (
+                    [mesh.theta[i], mesh.theta[i + 1]],
+                    [mesh.phi[j], mesh.phi[j + 1]],
+                );
+                Rectangle {
+                    theta,
+                    phi,
+                    of,
+                    depth: 0,
+                }
             })
             .collect();
-        let mut integral = Self { mass: vec![0.0; rows * width], unresolved: 0.0 };
+        let mut integral = Self {
+            mass: vec![0.0; rows * width],
+            unresolved: 0.0,
+        };
         let mut buffers = [[0.0; ROW * POINTS]; 4];
         while !todo.is_empty() {
             let some = todo.split_off(todo.len().saturating_sub(ROW));
             let [u, v, w, out] = &mut buffers;
             let mut cosines = [[0.0; RULE.len()]; ROW];
             for (n, rectangle) in some.iter().enumerate() {
-                cosines[n] = rectangle.nodes([&mut *u, &mut *v, &mut *w].map(|x| &mut x[n * POINTS..(n + 1) * POINTS]));
+                cosines[n] = rectangle.nodes(
+                    [&mut *u, &mut *v, &mut *w].map(|x| &mut x[n * POINTS..(n + 1) * POINTS]),
+                );
             }
             let used = some.len() * POINTS;
             f([&u[..used], &v[..used], &w[..used]], &mut out[..used]);
             for (n, rectangle) in some.iter().enumerate() {
-                integral.add(rectangle, &out[n * POINTS..(n + 1) * POINTS], &cosines[n], &mut todo);
+                integral.add(
+                    rectangle,
+                    &out[n * POINTS..(n + 1) * POINTS],
+                    &cosines[n],
+                    &mut todo,
+                );
             }
         }
         integral
     }
 
     /// Adds what a rectangle has, or puts off its halves.
-    fn add(&mut self, rectangle: &Rectangle, values: &[f32], cosines: &[f64; RULE.len()], todo: &mut Vec<Rectangle>) {
+    fn add(
+        &mut self,
+        rectangle: &Rectangle,
+        values: &[f32],
+        cosines: &[f64; RULE.len()],
+        todo: &mut Vec<Rectangle>,
+    ) {
         let [theta, phi] = [rectangle.theta, rectangle.phi].map(|ends| 0.5 * (ends[1] - ends[0]));
         let (mut fine, mut coarse_theta, mut coarse_phi) = (0.0, 0.0, 0.0);
-        for ((row, cos), [_, w_theta, gauss_theta]) in values.chunks(RULE.len()).zip(cosines).zip(RULE) {
+        for ((row, cos), [_, w_theta, gauss_theta]) in
+            values.chunks(RULE.len()).zip(cosines).zip(RULE)
+        {
             let (mut sum, mut gauss) = (0.0, 0.0);
             for (value, [_, w, g]) in row.iter().zip(RULE) {
                 sum += w * f64::from(*value);
@@ -87,16 +117,25 @@ impl Integral {
             coarse_phi += w_theta * cos * gauss;
         }
         let area = theta * phi;
-        let [by_theta, by_phi] = [coarse_theta, coarse_phi].map(|coarse| area * (fine - coarse).abs());
+        let [by_theta, by_phi] =
+            [coarse_theta, coarse_phi].map(|coarse| area * (fine - coarse).abs());
         let error = by_theta.max(by_phi);
         // NaN is not divided: the sum is NaN then.
         if error > ERROR && rectangle.depth < DEPTH {
             let halves = |[lo, hi]: [f64; 2]| [[lo, 0.5 * (lo + hi)], [0.5 * (lo + hi), hi]];
             let depth = rectangle.depth + 1;
             if by_theta > by_phi {
-                todo.extend(halves(rectangle.theta).map(|theta| Rectangle { theta, depth, ..*rectangle }));
+                todo.extend(halves(rectangle.theta).map(|theta| Rectangle {
+                    theta,
+                    depth,
+                    ..*rectangle
+                }));
             } else {
-                todo.extend(halves(rectangle.phi).map(|phi| Rectangle { phi, depth, ..*rectangle }));
+                todo.extend(halves(rectangle.phi).map(|phi| Rectangle {
+                    phi,
+                    depth,
+                    ..*rectangle
+                }));
             }
             return;
         }
@@ -108,7 +147,10 @@ impl Integral {
     pub(crate) fn density(gather: &dyn ErasedGather, mesh: &Mesh) -> Self {
         Self::new(mesh, |wi, out| {
             let written = gather.pdf_slice(Level::detect(), wi, out);
-            assert!(written.is_ok(), "slices of one length are accepted: {written:?}");
+            assert!(
+                written.is_ok(),
+                "slices of one length are accepted: {written:?}"
+            );
         })
     }
 
@@ -128,7 +170,8 @@ impl Rectangle {
             let (sin, cos) = at(self.theta, x).sin_cos();
             cosines[i] = cos;
             for (j, (sin_phi, cos_phi)) in azimuths.into_iter().enumerate() {
-                let Direction { x, y, z } = Direction::new(narrow(sin), narrow(cos * cos_phi), narrow(cos * sin_phi));
+                let Direction { x, y, z } =
+                    Direction::new(narrow(sin), narrow(cos * cos_phi), narrow(cos * sin_phi));
                 let point = i * RULE.len() + j;
                 (u[point], v[point], w[point]) = (x, y, z);
             }
@@ -159,8 +202,11 @@ pub fn density_integrates_to_one(subject: &dyn ErasedSubject) -> Outcome {
                 let mesh = Mesh::new(subject, material, &hit, &*gather, mask);
                 let integral = Integral::density(&*gather, &mesh);
                 if integral.unresolved > claims.integral {
-                    let message =
-                        format!("quadrature left {:.1e} unresolved: state the edges. {}", integral.unresolved, at());
+                    let message = format!(
+                        "quadrature left {:.1e} unresolved: state the edges. {}",
+                        integral.unresolved,
+                        at()
+                    );
                     return Err(Failure::new(NAME, message));
                 }
                 let kept = Samples::draw(&*gather, points.clone()).kept();
@@ -170,7 +216,9 @@ pub fn density_integrates_to_one(subject: &dyn ErasedSubject) -> Outcome {
                     continue;
                 }
                 discarded.see(1.0 - kept, at)?;
-                worst.see((got - kept).abs(), || format!("got {got}, kept {kept}. {}", at()))?;
+                worst.see((got - kept).abs(), || {
+                    format!("got {got}, kept {kept}. {}", at())
+                })?;
             }
         }
     }

@@ -31,7 +31,11 @@ pub fn even_points_invert_density(subject: &dyn ErasedSubject) -> Outcome {
                 let mesh = Mesh::new(subject, material, &hit, &*gather, mask);
                 let [rows, width] = mesh.size();
                 // Drawn less expected.
-                let mut mass: Vec<f64> = Integral::density(&*gather, &mesh).mass.iter().map(|mass| -mass).collect();
+                let mut mass: Vec<f64> = Integral::density(&*gather, &mesh)
+                    .mass
+                    .iter()
+                    .map(|mass| -mass)
+                    .collect();
                 let share = 1.0 / f64::from(claims.points);
                 for direction in Samples::draw(&*gather, points.clone()).live() {
                     let [i, j] = mesh.find(direction);

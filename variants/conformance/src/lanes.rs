@@ -27,10 +27,19 @@ impl<'a> Mixed<'a> {
         let wi = core::array::from_fn(|lane| {
             let any = draws.direction();
             let drawn = material[lane].prepare(hits[lane]).sample(draws.xi3());
-            if lane % 2 == 0 { drawn.map_or(any, |s| s.wi.into()) } else { any }
+            if lane % 2 == 0 {
+                drawn.map_or(any, |s| s.wi.into())
+            } else {
+                any
+            }
         });
         let xi = core::array::from_fn(|_| draws.xi3());
-        Self { material, hits, wi, xi }
+        Self {
+            material,
+            hits,
+            wi,
+            xi,
+        }
     }
 
     fn permuted(&self, order: [usize; 8]) -> Self {
@@ -47,8 +56,19 @@ impl<'a> Mixed<'a> {
     }
 
     fn at(&self, lane: usize, level: Level) -> String {
-        let Self { material, hits, wi, xi } = self;
-        format!("{} lane {lane} on {level} {:?} {:?} xi {:?}", material[lane].name(), hits[lane], wi[lane], xi[lane])
+        let Self {
+            material,
+            hits,
+            wi,
+            xi,
+        } = self;
+        format!(
+            "{} lane {lane} on {level} {:?} {:?} xi {:?}",
+            material[lane].name(),
+            hits[lane],
+            wi[lane],
+            xi[lane]
+        )
     }
 }
 
@@ -71,7 +91,8 @@ fn each_mixed(
 /// Every number of one lane of a packet of samples.
 pub(crate) fn sample_bits(s: &Sample8, lane: usize) -> [u32; 11] {
     let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
-    [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot].map(|x| x.as_array()[lane].to_bits())
+    [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
+        .map(|x| x.as_array()[lane].to_bits())
 }
 
 pub(crate) fn eval_bits(e: Eval) -> [u32; 4] {
@@ -107,15 +128,22 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
                 let of_lane = each.lane(lane);
                 let apart = of_lane.eval8(level, &wi);
                 if eval_bits(apart.lane(lane)) != eval_bits(evals.lane(lane)) {
-                    let message =
-                        format!("`lane` gives {:?}, the packet {:?}: {}", apart.lane(lane), evals.lane(lane), at());
+                    let message = format!(
+                        "`lane` gives {:?}, the packet {:?}: {}",
+                        apart.lane(lane),
+                        evals.lane(lane),
+                        at()
+                    );
                     return Err(Failure::new(NAME, message));
                 }
                 let want = one.eval(m.wi[lane]);
                 for got in [evals.lane(lane), eight.lane(lane)] {
                     if same_bits(&claims, level) {
                         if eval_bits(got) != eval_bits(want) {
-                            return Err(Failure::new(NAME, format!("bits of {got:?}, one lane {want:?}: {}", at())));
+                            return Err(Failure::new(
+                                NAME,
+                                format!("bits of {got:?}, one lane {want:?}: {}", at()),
+                            ));
                         }
                     } else if cos_theta(m.wi[lane]) > 1e-3 {
                         worst.see(nearby.error(got, want, m.wi[lane]), || {
@@ -132,7 +160,10 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
                         sample_is_near(got, want, &nearby, m.xi[lane], claims.direction)
                     };
                     if !close {
-                        return Err(Failure::new(NAME, format!("sample {got:?}, one lane {want:?}: {}", at())));
+                        return Err(Failure::new(
+                            NAME,
+                            format!("sample {got:?}, one lane {want:?}: {}", at()),
+                        ));
                     }
                 }
             }
@@ -159,15 +190,21 @@ pub fn lanes_permute(subject: &dyn ErasedSubject) -> Outcome {
         for level in Level::available() {
             let (g, h) = (m.prepare(level), p.prepare(level));
             let (a, b) = (g.eval(level, &packet(&m.wi)), h.eval(level, &packet(&p.wi)));
-            let (s, t) = (g.sample(level, &triples(&m.xi)), h.sample(level, &triples(&p.xi)));
+            let (s, t) = (
+                g.sample(level, &triples(&m.xi)),
+                h.sample(level, &triples(&p.xi)),
+            );
             for (to, from) in order.into_iter().enumerate() {
-                let same =
-                    eval_bits(a.lane(from)) == eval_bits(b.lane(to)) && sample_bits(&s, from) == sample_bits(&t, to);
+                let same = eval_bits(a.lane(from)) == eval_bits(b.lane(to))
+                    && sample_bits(&s, from) == sample_bits(&t, to);
                 if !same {
                     let (a, b) = (a.lane(from), b.lane(to));
                     return Err(Failure::new(
                         NAME,
-                        format!("moved to lane {to} {a:?} becomes {b:?}: {}", m.at(from, level)),
+                        format!(
+                            "moved to lane {to} {a:?} becomes {b:?}: {}",
+                            m.at(from, level)
+                        ),
                     ));
                 }
             }
@@ -192,25 +229,47 @@ pub fn levels_agree(subject: &dyn ErasedSubject) -> Outcome {
             let packed = Material::prepare_packed([material; 8], level, hits);
             let shared = material.prepare8(level, hits);
             let lane = packed.lane(3);
-            let evals = [packed.eval(level, &wi), shared.eval(level, &wi), lane.eval8(level, &wi)];
-            let samples = [packed.sample(level, &xi), shared.sample(level, &xi), lane.sample8(level, &xi)];
+            let evals = [
+                packed.eval(level, &wi),
+                shared.eval(level, &wi),
+                lane.eval8(level, &wi),
+            ];
+            let samples = [
+                packed.sample(level, &xi),
+                shared.sample(level, &xi),
+                lane.sample8(level, &xi),
+            ];
             for n in 0..8 {
                 let e = evals.each_ref().map(|e| eval_bits(e.lane(n)));
                 let s = samples.each_ref().map(|s| sample_bits(s, n));
                 if e[0] != e[1] || e[0] != e[2] || s[0] != s[1] || s[0] != s[2] {
-                    let message = format!("packed, shared and `lane` differ: {evals:?} {samples:?} {}", m.at(n, level));
+                    let message = format!(
+                        "packed, shared and `lane` differ: {evals:?} {samples:?} {}",
+                        m.at(n, level)
+                    );
                     return Err(Failure::new(NAME, message));
                 }
             }
             by_level.push((level, m.prepare(level)));
         }
-        for pair in by_level.windows(2).filter(|pair| pair[0].0.fuses() == pair[1].0.fuses()) {
-            let [a, b] = [&pair[0], &pair[1]].map(|(level, g)| (g.eval(*level, &wi), g.sample(*level, &xi)));
+        for pair in by_level
+            .windows(2)
+            .filter(|pair| pair[0].0.fuses() == pair[1].0.fuses())
+        {
+            let [a, b] =
+                [&pair[0], &pair[1]].map(|(level, g)| (g.eval(*level, &wi), g.sample(*level, &xi)));
             for n in 0..8 {
-                if eval_bits(a.0.lane(n)) != eval_bits(b.0.lane(n)) || sample_bits(&a.1, n) != sample_bits(&b.1, n) {
+                if eval_bits(a.0.lane(n)) != eval_bits(b.0.lane(n))
+                    || sample_bits(&a.1, n) != sample_bits(&b.1, n)
+                {
                     return Err(Failure::new(
                         NAME,
-                        format!("{} and {} differ: {}", pair[0].0, pair[1].0, m.at(n, pair[1].0)),
+                        format!(
+                            "{} and {} differ: {}",
+                            pair[0].0,
+                            pair[1].0,
+                            m.at(n, pair[1].0)
+                        ),
                     ));
                 }
             }
@@ -240,24 +299,37 @@ pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
             for lobe in Lobe::ALL {
                 let bits = |l: &PerLobe<hairis::LobeEval8>| {
                     let l = &l[lobe];
-                    [l.value, l.pdf, l.color[0], l.color[1], l.color[2]].map(|x: f32x8| x.as_array()[lane].to_bits())
+                    [l.value, l.pdf, l.color[0], l.color[1], l.color[2]]
+                        .map(|x: f32x8| x.as_array()[lane].to_bits())
                 };
                 if bits(&lobes) != bits(&alone) {
-                    return Err(Failure::new(NAME, format!("lobes {lobes:?}, one lane {alone:?}: {}", at())));
+                    return Err(Failure::new(
+                        NAME,
+                        format!("lobes {lobes:?}, one lane {alone:?}: {}", at()),
+                    ));
                 }
                 let one_color = alone[lobe].color.map(|color| color.as_array()[lane]);
                 for c in 0..3 {
-                    let (got, want) = (f64::from(albedo[lobe][c].as_array()[lane]), f64::from(one_albedo[lobe][c]));
+                    let (got, want) = (
+                        f64::from(albedo[lobe][c].as_array()[lane]),
+                        f64::from(one_albedo[lobe][c]),
+                    );
                     // A lobe that lies off the sphere returns next to nothing, with the digits of its tail.
                     let floor = 1e-4 * f64::from(one_color[c]).max(1e-20);
-                    worst.see(relative(got, want, floor), || format!("{lobe:?} {got}, one lane {want}: {}", at()))?;
+                    worst.see(relative(got, want, floor), || {
+                        format!("{lobe:?} {got}, one lane {want}: {}", at())
+                    })?;
                 }
             }
             if !claims.near_field {
-                let [a, b] = [-0.9, 0.4].map(|h| m.material[lane].prepare(Hit { h, ..m.hits[lane] }));
+                let [a, b] =
+                    [-0.9, 0.4].map(|h| m.material[lane].prepare(Hit { h, ..m.hits[lane] }));
                 let same_eval = eval_bits(a.eval(m.wi[lane])) == eval_bits(b.eval(m.wi[lane]));
                 if !same_eval || a.sample(m.xi[lane]) != b.sample(m.xi[lane]) {
-                    return Err(Failure::new(NAME, format!("h changes the results, but is not claimed to: {}", at())));
+                    return Err(Failure::new(
+                        NAME,
+                        format!("h changes the results, but is not claimed to: {}", at()),
+                    ));
                 }
             }
         }

@@ -31,7 +31,11 @@ pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
             let (whole, lobes) = (gather.eval(wi), gather.lobes(wi));
             let at = || format!("{name} {hit:?} {wi:?} {lobes:?}, whole {whole:?}");
             for c in 0..3 {
-                let sum = lobes.0.iter().map(|l| f64::from(l.value) * f64::from(l.color[c])).sum();
+                let sum = lobes
+                    .0
+                    .iter()
+                    .map(|l| f64::from(l.value) * f64::from(l.color[c]))
+                    .sum();
                 worst.see(relative(f64::from(whole.value[c]), sum, 1e-20), at)?;
             }
             let mut densities = Vec::new();
@@ -47,7 +51,8 @@ pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
                 if alone.pdf > 0.0 {
                     densities.push(f64::from(alone.pdf));
                     let error = relative(f64::from(alone.pdf), f64::from(lobes[lobe].pdf), 1e-20);
-                    alone_worst.see(error, || format!("density of {lobe:?} {alone:?}, {}", at()))?;
+                    alone_worst
+                        .see(error, || format!("density of {lobe:?} {alone:?}, {}", at()))?;
                 }
             }
             let most = densities.iter().fold(0.0, |a: f64, x| a.max(*x));
@@ -55,7 +60,10 @@ pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
             if pdf > most * (1.0 + claims.lobe_sum) + 1e-20 {
                 return Err(Failure::new(
                     NAME,
-                    format!("the density is above those of all lobes {densities:?}: {}", at()),
+                    format!(
+                        "the density is above those of all lobes {densities:?}: {}",
+                        at()
+                    ),
                 ));
             }
         }
@@ -81,11 +89,16 @@ pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
         let name = material.name();
         for _ in 0..ROUNDS / 4 {
             let hit = draws.hit();
-            let (gather, each) = (material.prepare(hit), material.prepare8(level, hits8(&[hit; 8])));
+            let (gather, each) = (
+                material.prepare(hit),
+                material.prepare8(level, hits8(&[hit; 8])),
+            );
             let wi = core::array::from_fn(|_| draws.direction());
             let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
-            let single: Vec<(Lobe, Eval)> =
-                subject.slots().map(|lobe| (lobe, gather.with_lobes(LobeMask::of(&[lobe])).eval(wi[0]))).collect();
+            let single: Vec<(Lobe, Eval)> = subject
+                .slots()
+                .map(|lobe| (lobe, gather.with_lobes(LobeMask::of(&[lobe])).eval(wi[0])))
+                .collect();
             for mask in masks() {
                 let (part, part8) = (gather.with_lobes(mask), each.with_lobes(mask));
                 let (e, eight) = (part.eval(wi[0]), part8.eval(level, &packet(&wi)));
@@ -98,37 +111,53 @@ pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
                         let error = relative(f64::from(got.value[c]), sum, 1e-20);
                         let leak = sum == 0.0 && got.value[c] != 0.0;
                         if leak {
-                            return Err(Failure::new(NAME, format!("masked lobes scatter {got:?}: {}", at())));
+                            return Err(Failure::new(
+                                NAME,
+                                format!("masked lobes scatter {got:?}: {}", at()),
+                            ));
                         }
                         if got == e {
                             worst.see(error, || format!("{got:?}, sum {sum}: {}", at()))?;
                         }
                     }
                     if mask == LobeMask::NONE && (got.pdf != 0.0 || got.value != [0.0; 3]) {
-                        return Err(Failure::new(NAME, format!("no lobes, yet {got:?}: {}", at())));
+                        return Err(Failure::new(
+                            NAME,
+                            format!("no lobes, yet {got:?}: {}", at()),
+                        ));
                     }
                 }
                 for lobe in Lobe::ALL.into_iter().filter(|lobe| !mask.contains(*lobe)) {
                     let l = part.lobes(wi[0])[lobe];
                     if l.value * l.color.iter().sum::<f32>() != 0.0 {
-                        return Err(Failure::new(NAME, format!("{lobe:?} is masked, yet scatters {l:?}: {}", at())));
+                        return Err(Failure::new(
+                            NAME,
+                            format!("{lobe:?} is masked, yet scatters {l:?}: {}", at()),
+                        ));
                     }
                 }
                 let samples = part8.sample(level, &triples(&xi));
                 for (lane, xi) in xi.into_iter().enumerate() {
                     for s in [part.sample(xi), samples.lane(lane)].into_iter().flatten() {
                         if !mask.contains(s.lobe) || s.lobe.index() >= subject.lobe_count() {
-                            return Err(Failure::new(NAME, format!("{s:?} is of a masked lobe, xi {xi:?}: {}", at())));
+                            return Err(Failure::new(
+                                NAME,
+                                format!("{s:?} is of a masked lobe, xi {xi:?}: {}", at()),
+                            ));
                         }
                     }
                 }
                 let other = *draws.pick(&masks());
-                let common: Vec<Lobe> =
-                    Lobe::ALL.into_iter().filter(|lobe| mask.contains(*lobe) && other.contains(*lobe)).collect();
+                let common: Vec<Lobe> = Lobe::ALL
+                    .into_iter()
+                    .filter(|lobe| mask.contains(*lobe) && other.contains(*lobe))
+                    .collect();
                 let twice = part.with_lobes(other).eval(wi[0]);
                 let once = gather.with_lobes(LobeMask::of(&common)).eval(wi[0]);
                 let error = relative(f64::from(twice.pdf), f64::from(once.pdf), 1e-20);
-                nested.see(error, || format!("{twice:?}, at once {once:?}: {} then {other:?}", at()))?;
+                nested.see(error, || {
+                    format!("{twice:?}, at once {once:?}: {} then {other:?}", at())
+                })?;
             }
         }
     }

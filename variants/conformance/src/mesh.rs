@@ -71,8 +71,15 @@ impl Samples {
     pub(crate) fn draw(gather: &dyn ErasedGather, xi: [Vec<f32>; 3]) -> Self {
         let mut columns: [Vec<f32>; COLUMNS] = core::array::from_fn(|_| vec![0.0; xi[0].len()]);
         let inputs = xi.each_ref().map(|column| &column[..]);
-        let written = gather.sample_slices(Some(Level::detect()), inputs, columns.each_mut().map(|c| &mut c[..]));
-        assert!(written.is_ok(), "slices of one length are accepted: {written:?}");
+        let written = gather.sample_slices(
+            Some(Level::detect()),
+            inputs,
+            columns.each_mut().map(|c| &mut c[..]),
+        );
+        assert!(
+            written.is_ok(),
+            "slices of one length are accepted: {written:?}"
+        );
         Self { columns }
     }
 
@@ -98,9 +105,15 @@ fn quantiles(mut sorted: Vec<f64>) -> Vec<f64> {
     if count == 0 {
         return sorted;
     }
-    let tails =
-        [1, 6, 30, 120].into_iter().flat_map(|per_mille| [per_mille, 1000 - per_mille]).map(|n| n * count / 1000);
-    (0..12).map(|n| n * count / 12).chain(tails).map(|n| sorted[n.min(count - 1)]).collect()
+    let tails = [1, 6, 30, 120]
+        .into_iter()
+        .flat_map(|per_mille| [per_mille, 1000 - per_mille])
+        .map(|n| n * count / 1000);
+    (0..12)
+        .map(|n| n * count / 12)
+        .chain(tails)
+        .map(|n| sorted[n.min(count - 1)])
+        .collect()
 }
 
 /// Sorts edges, adds the ends of the domain, and halves what is too wide, by itself or beside its neighbours.
@@ -118,7 +131,11 @@ fn graded(mut edges: Vec<f64>, end: f64) -> Vec<f64> {
             if width[n] > GRADE * before.min(after).max(CLOSEST) {
                 // One step away from the narrower neighbour.
                 let step = 2.0 * before.min(after).max(CLOSEST);
-                added.push(if before <= after { ends[0] + step } else { ends[1] - step });
+                added.push(if before <= after {
+                    ends[0] + step
+                } else {
+                    ends[1] - step
+                });
             } else if width[n] > WIDEST * 2.0 * end {
                 added.push(0.5 * (ends[0] + ends[1]));
             }
@@ -138,14 +155,26 @@ mod tests {
     #[test]
     fn meshes_widen_step_by_step() {
         let edges = graded(vec![0.3, 0.3001, 0.3002, 7.0, -1.0], 1.5);
-        assert!(edges[0] == -1.5 && edges[edges.len() - 1] == 1.5, "the ends: {edges:?}");
-        assert!(edges.contains(&0.3001) && edges.contains(&-1.0), "what was asked for: {edges:?}");
+        assert!(
+            edges[0] == -1.5 && edges[edges.len() - 1] == 1.5,
+            "the ends: {edges:?}"
+        );
+        assert!(
+            edges.contains(&0.3001) && edges.contains(&-1.0),
+            "what was asked for: {edges:?}"
+        );
         let widths: Vec<f64> = edges.windows(2).map(|ends| ends[1] - ends[0]).collect();
         for pair in widths.windows(2) {
             let ratio = pair[0] / pair[1];
-            assert!(ratio < 1.001 * GRADE && ratio > 0.999 / GRADE, "neighbours of ratio {ratio}");
+            assert!(
+                ratio < 1.001 * GRADE && ratio > 0.999 / GRADE,
+                "neighbours of ratio {ratio}"
+            );
         }
         assert!(edges.len() < 100, "{} edges", edges.len());
-        assert!(quantiles(vec![f64::NAN]).is_empty(), "no samples, no quantiles");
+        assert!(
+            quantiles(vec![f64::NAN]).is_empty(),
+            "no samples, no quantiles"
+        );
     }
 }

@@ -20,7 +20,12 @@ pub(crate) struct Nearby<'a> {
 
 impl<'a> Nearby<'a> {
     pub(crate) fn new(material: Material<'a>, hit: Hit, near_field: bool) -> Self {
-        Self { material, hit, near_field, gather: material.prepare(hit) }
+        Self {
+            material,
+            hit,
+            near_field,
+            gather: material.prepare(hit),
+        }
     }
 
     pub(crate) fn gather(&self) -> &dyn ErasedGather {
@@ -31,9 +36,16 @@ impl<'a> Nearby<'a> {
     fn gathers(&self) -> impl Iterator<Item = Box<dyn ErasedGather>> {
         let Hit { wo, h } = self.hit;
         let moved = rounded(wo, ROUNDING).map(|wo| Hit { wo, h });
-        let by = if self.near_field { narrow(ROUNDING) } else { 0.0 };
+        let by = if self.near_field {
+            narrow(ROUNDING)
+        } else {
+            0.0
+        };
         let across = [h + by, h - by].map(|h| Hit { wo, h });
-        moved.into_iter().chain(across).map(|hit| self.material.prepare(hit))
+        moved
+            .into_iter()
+            .chain(across)
+            .map(|hit| self.material.prepare(hit))
     }
 
     /// The largest change of value and density as `wi` and the hit are rounded.
@@ -42,7 +54,10 @@ impl<'a> Nearby<'a> {
         let centre = numbers(self.gather.eval(wi));
         let moved = rounded(wi, ROUNDING).map(|wi| self.gather.eval(wi));
         let mut spread = [0.0; 4];
-        for e in moved.into_iter().chain(self.gathers().map(|gather| gather.eval(wi))) {
+        for e in moved
+            .into_iter()
+            .chain(self.gathers().map(|gather| gather.eval(wi)))
+        {
             for ((most, x), c) in spread.iter_mut().zip(numbers(e)).zip(centre) {
                 *most = f64::max(*most, (x - c).abs());
             }
@@ -58,9 +73,15 @@ impl<'a> Nearby<'a> {
             return 0.0;
         }
         let errors = got.into_iter().zip(want).zip(self.spread(wi));
-        let beyond = |((got, want), by): ((f64, f64), f64)| ((got - want).abs() - by).max(0.0) / want.abs().max(FLOOR);
+        let beyond = |((got, want), by): ((f64, f64), f64)| {
+            ((got - want).abs() - by).max(0.0) / want.abs().max(FLOOR)
+        };
         // A maximum ignores NaN, which is never right.
-        if got.iter().any(|x| x.is_nan()) { f64::NAN } else { errors.map(beyond).fold(0.0, f64::max) }
+        if got.iter().any(|x| x.is_nan()) {
+            f64::NAN
+        } else {
+            errors.map(beyond).fold(0.0, f64::max)
+        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! NaN and infinite inputs give nothing: no value, no density, and samples that are discarded.
 
-use crate::erased::{COLUMNS, Direction, ErasedGather, ErasedGather8, ErasedSubject, Material, Which};
+use crate::erased::{
+    COLUMNS, Direction, ErasedGather, ErasedGather8, ErasedSubject, Material, Which,
+};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, hits8, packet, triples};
 use hairis::wide::f32x8;
@@ -46,19 +48,33 @@ fn black(e: Eval) -> bool {
 /// Whether every lane is discarded, and has nothing.
 fn discarded(s: &Sample8) -> bool {
     let numbers = [&s.pdf].into_iter().chain(&s.value).chain(&s.weight);
-    numbers.into_iter().all(|x| x.to_array() == [0.0; 8]) && s.slot.to_array() == [-1.0; 8] && s.live() == 0
+    numbers.into_iter().all(|x| x.to_array() == [0.0; 8])
+        && s.slot.to_array() == [-1.0; 8]
+        && s.live() == 0
 }
 
 fn no_lobes(lobes: &[[f32x8; 2]]) -> bool {
-    lobes.as_flattened().iter().all(|x| x.to_array() == [0.0; 8])
+    lobes
+        .as_flattened()
+        .iter()
+        .all(|x| x.to_array() == [0.0; 8])
 }
 
 /// Describes any result other than zero at this direction, or of these numbers.
-fn at_one(gather: &dyn ErasedGather, wi: Option<Direction>, xi: Option<[f32; 3]>) -> Option<String> {
+fn at_one(
+    gather: &dyn ErasedGather,
+    wi: Option<Direction>,
+    xi: Option<[f32; 3]>,
+) -> Option<String> {
     if let Some(wi) = wi {
         let e = gather.eval(wi);
         let lobes = gather.lobes(wi);
-        if !black(e) || lobes.0.iter().any(|lobe| lobe.value != 0.0 || lobe.pdf != 0.0) {
+        if !black(e)
+            || lobes
+                .0
+                .iter()
+                .any(|lobe| lobe.value != 0.0 || lobe.pdf != 0.0)
+        {
             return Some(format!("{e:?} {lobes:?}, one lane"));
         }
     }
@@ -68,13 +84,21 @@ fn at_one(gather: &dyn ErasedGather, wi: Option<Direction>, xi: Option<[f32; 3]>
     }
     for level in Level::available() {
         if let Some(wi) = wi {
-            let (e, lobes) = (gather.eval8(level, &packet(&[wi; 8])), gather.lobes8(level, &packet(&[wi; 8])));
-            if !(0..8).all(|lane| black(e.lane(lane))) || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf])) {
+            let (e, lobes) = (
+                gather.eval8(level, &packet(&[wi; 8])),
+                gather.lobes8(level, &packet(&[wi; 8])),
+            );
+            if !(0..8).all(|lane| black(e.lane(lane)))
+                || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf]))
+            {
                 return Some(format!("{e:?} {lobes:?}, {level}"));
             }
             let mut out = [const { [1.0; ROWS] }; 4];
-            let written =
-                gather.eval_slices(Some(level), [&[wi.x; ROWS], &[wi.y; ROWS], &[wi.z; ROWS]], slices(&mut out));
+            let written = gather.eval_slices(
+                Some(level),
+                [&[wi.x; ROWS], &[wi.y; ROWS], &[wi.z; ROWS]],
+                slices(&mut out),
+            );
             if written.is_err() || out.as_flattened().iter().any(|x| *x != 0.0) {
                 return Some(format!("{out:?}, slices on {level}"));
             }
@@ -85,10 +109,13 @@ fn at_one(gather: &dyn ErasedGather, wi: Option<Direction>, xi: Option<[f32; 3]>
                 return Some(format!("{s:?}, {level}"));
             }
             let mut out = [const { [1.0; ROWS] }; COLUMNS];
-            let written =
-                gather.sample_slices(Some(level), [&[xi[0]; ROWS], &[xi[1]; ROWS], &[xi[2]; ROWS]], slices(&mut out));
-            let nothing =
-                out[3..10].as_flattened().iter().all(|x| *x == 0.0) && out[10].iter().all(|slot| *slot == -1.0);
+            let written = gather.sample_slices(
+                Some(level),
+                [&[xi[0]; ROWS], &[xi[1]; ROWS], &[xi[2]; ROWS]],
+                slices(&mut out),
+            );
+            let nothing = out[3..10].as_flattened().iter().all(|x| *x == 0.0)
+                && out[10].iter().all(|slot| *slot == -1.0);
             if written.is_err() || !nothing {
                 return Some(format!("{out:?}, slices on {level}"));
             }
@@ -110,12 +137,16 @@ fn at_each(
 ) -> Option<String> {
     if let Some(wi) = wi {
         let (e, lobes) = (each.eval(level, &packet(&wi)), each.lobes(&packet(&wi)));
-        if !(0..8).all(|lane| black(e.lane(lane))) || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf])) {
+        if !(0..8).all(|lane| black(e.lane(lane)))
+            || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf]))
+        {
             return Some(format!("{e:?} {lobes:?}, eight hits on {level}"));
         }
     }
     let sample = xi.map(|xi| each.sample(level, &triples(&xi)));
-    sample.filter(|s| !discarded(s)).map(|s| format!("{s:?}, eight hits on {level}"))
+    sample
+        .filter(|s| !discarded(s))
+        .map(|s| format!("{s:?}, eight hits on {level}"))
 }
 
 /// A `wo` of which a component is NaN or infinite sees nothing, such a `wi` receives nothing, and samples of numbers of which
@@ -130,7 +161,10 @@ pub fn inputs_that_are_no_numbers_are_black(subject: &dyn ErasedSubject) -> Outc
         let name = material.name();
         for _ in 0..ROUNDS {
             let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
-            let odd_hits = hits.map(|hit| Hit { wo: vector(&mut draws), ..hit });
+            let odd_hits = hits.map(|hit| Hit {
+                wo: vector(&mut draws),
+                ..hit
+            });
             let wi: [Direction; 8] = core::array::from_fn(|_| draws.direction());
             let odd_wi: [Direction; 8] = core::array::from_fn(|_| vector(&mut draws));
             let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
@@ -152,7 +186,12 @@ pub fn inputs_that_are_no_numbers_are_black(subject: &dyn ErasedSubject) -> Outc
                 let seen = material.prepare8(level, hits8(&hits));
                 faults.push(at_each(&*seen, level, Some(odd_wi), Some(odd_xi)));
                 let albedo = unseen.albedo(level);
-                if albedo.0.as_flattened().iter().any(|x| x.to_array() != [0.0; 8]) {
+                if albedo
+                    .0
+                    .as_flattened()
+                    .iter()
+                    .any(|x| x.to_array() != [0.0; 8])
+                {
                     faults.push(Some(format!("albedos {albedo:?}, {level}")));
                 }
             }

@@ -10,7 +10,10 @@ use std::sync::OnceLock;
 pub(crate) const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// The nearest single-precision number.
-#[expect(clippy::cast_possible_truncation, reason = "rounding to a float is the purpose")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding to a float is the purpose"
+)]
 #[must_use]
 pub fn narrow(x: f64) -> f32 {
     x as f32
@@ -30,7 +33,9 @@ pub struct Draws(pub u64);
 fn run_seed() -> u64 {
     static SEED: OnceLock<u64> = OnceLock::new();
     *SEED.get_or_init(|| match std::env::var("HAIRIS_SEED") {
-        Ok(text) => text.parse().unwrap_or_else(|_| panic!("HAIRIS_SEED must be a whole number, got {text:?}")),
+        Ok(text) => text
+            .parse()
+            .unwrap_or_else(|_| panic!("HAIRIS_SEED must be a whole number, got {text:?}")),
         Err(_) => 0,
     })
 }
@@ -73,7 +78,10 @@ impl Draws {
 
     /// A hit from any direction.
     pub(crate) fn hit(&mut self) -> Hit {
-        Hit { wo: self.direction(), h: narrow(self.between(-1.0, 1.0)) }
+        Hit {
+            wo: self.direction(),
+            h: narrow(self.between(-1.0, 1.0)),
+        }
     }
 }
 
@@ -122,7 +130,11 @@ pub(crate) fn rounded(v: Direction, by: f64) -> [Direction; 8] {
     let moved = |x: f32, y: f32, z: f32| Vec3x::new(v.x + x, v.y + y, v.z + z);
     let turned = |by: f64| {
         // On the axis every way across is as good.
-        let [y, z] = if cos > 0.0 { [v.y, v.z].map(|x| f64::from(x) / cos) } else { [1.0, 0.0] };
+        let [y, z] = if cos > 0.0 {
+            [v.y, v.z].map(|x| f64::from(x) / cos)
+        } else {
+            [1.0, 0.0]
+        };
         let across = -by * f64::from(v.x);
         moved(narrow(by * cos), narrow(across * y), narrow(across * z))
     };
@@ -142,18 +154,27 @@ pub(crate) fn rounded(v: Direction, by: f64) -> [Direction; 8] {
 pub(crate) fn hits() -> [Hit; 7] {
     const THETA_O: [f64; 7] = [0.0, 25.0, -50.0, 70.0, -82.0, 87.0, 89.9];
     const H: [f32; 7] = [0.0, 0.35, -0.8, 0.99, -0.6, 0.999, -0.1];
-    core::array::from_fn(|i| Hit { wo: direction(THETA_O[i].to_radians(), 0.9 * i as f64 - 2.5), h: H[i] })
+    core::array::from_fn(|i| Hit {
+        wo: direction(THETA_O[i].to_radians(), 0.9 * i as f64 - 2.5),
+        h: H[i],
+    })
 }
 
 /// The same, and `count` from anywhere.
 pub(crate) fn hits_and(count: usize, draws: &mut Draws) -> Vec<Hit> {
-    hits().into_iter().chain((0..count).map(|_| draws.hit())).collect()
+    hits()
+        .into_iter()
+        .chain((0..count).map(|_| draws.hit()))
+        .collect()
 }
 
 /// Every subset of the slots, the empty one first and all of them last.
 pub(crate) fn masks() -> Vec<LobeMask> {
     let subset = |bits: usize| {
-        let lobes: Vec<Lobe> = Lobe::ALL.into_iter().filter(|lobe| bits >> lobe.index() & 1 == 1).collect();
+        let lobes: Vec<Lobe> = Lobe::ALL
+            .into_iter()
+            .filter(|lobe| bits >> lobe.index() & 1 == 1)
+            .collect();
         LobeMask::of(&lobes)
     };
     (0..16).map(subset).collect()
@@ -161,12 +182,19 @@ pub(crate) fn masks() -> Vec<LobeMask> {
 
 /// Eight vectors as lanes.
 pub(crate) fn packet(v: &[Direction; 8]) -> Vec3x8 {
-    Vec3x::new(f32x8::new(v.map(|v| v.x)), f32x8::new(v.map(|v| v.y)), f32x8::new(v.map(|v| v.z)))
+    Vec3x::new(
+        f32x8::new(v.map(|v| v.x)),
+        f32x8::new(v.map(|v| v.y)),
+        f32x8::new(v.map(|v| v.z)),
+    )
 }
 
 /// Eight hits as lanes.
 pub(crate) fn hits8(hits: &[Hit; 8]) -> Hit8 {
-    Hit { wo: packet(&hits.map(|hit| hit.wo)), h: f32x8::new(hits.map(|hit| hit.h)) }
+    Hit {
+        wo: packet(&hits.map(|hit| hit.wo)),
+        h: f32x8::new(hits.map(|hit| hit.h)),
+    }
 }
 
 /// Eight triples of numbers as lanes.
@@ -193,10 +221,14 @@ const DIRECTIONS: [[u32; 32]; 2] = {
 /// axis, and so does each of as many equal rectangles of any two but for a few.
 pub(crate) fn sobol(n: u32) -> [f32; 3] {
     let sum = |directions: &[u32; 32]| {
-        let bits = directions.iter().enumerate().filter(|(bit, _)| n >> bit & 1 == 1);
+        let bits = directions
+            .iter()
+            .enumerate()
+            .filter(|(bit, _)| n >> bit & 1 == 1);
         bits.fold(0, |sum, (_, direction)| sum ^ direction)
     };
-    [n.reverse_bits(), sum(&DIRECTIONS[0]), sum(&DIRECTIONS[1])].map(|x| (x >> 8) as f32 / 16_777_216.0)
+    [n.reverse_bits(), sum(&DIRECTIONS[0]), sum(&DIRECTIONS[1])]
+        .map(|x| (x >> 8) as f32 / 16_777_216.0)
 }
 
 /// `count` triples by component.
@@ -229,6 +261,12 @@ mod tests {
         }
         let mut third: Vec<f32> = points.iter().map(|[.., z]| *z).collect();
         third.sort_by(f32::total_cmp);
-        assert!(third.iter().enumerate().all(|(n, z)| *z == n as f32 / COUNT as f32), "the third coordinate");
+        assert!(
+            third
+                .iter()
+                .enumerate()
+                .all(|(n, z)| *z == n as f32 / COUNT as f32),
+            "the third coordinate"
+        );
     }
 }

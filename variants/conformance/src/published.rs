@@ -74,7 +74,11 @@ pub struct Formulas {
 impl Formulas {
     /// Formulas of a model.
     pub const fn of<S: Published>() -> Self {
-        Self { shape: S::SHAPE, bands: S::BANDS, by_channel: S::BY_CHANNEL }
+        Self {
+            shape: S::SHAPE,
+            bands: S::BANDS,
+            by_channel: S::BY_CHANNEL,
+        }
     }
 }
 
@@ -98,7 +102,9 @@ impl fmt::Debug for Tested {
 impl Tested {
     /// The model `S`.
     pub fn new<S: Published>() -> Self {
-        let forms = S::forms().into_iter().map(|(model, factor)| (Box::new(model) as Box<dyn AnyModel>, factor));
+        let forms = S::forms()
+            .into_iter()
+            .map(|(model, factor)| (Box::new(model) as Box<dyn AnyModel>, factor));
         let samplers: [(_, Box<dyn AnyModel>); 4] = [
             (None, Box::new(Hair(S::bell()))),
             (Some(5), Box::new(Matched::<_, 5>(S::bell()))),

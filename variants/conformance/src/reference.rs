@@ -13,13 +13,22 @@ const HITS: usize = 40;
 const PACKETS: usize = 4;
 
 /// Error of `got`, less what moving the direction by the tolerated rounding changes, over the tolerance.
-fn excess(got: f64, at: impl Fn([f64; 3]) -> f64, wi: Direction, relative_to: f64, tolerance: &Tolerance) -> f64 {
+fn excess(
+    got: f64,
+    at: impl Fn([f64; 3]) -> f64,
+    wi: Direction,
+    relative_to: f64,
+    tolerance: &Tolerance,
+) -> f64 {
     let want = at(double(wi));
     let plain = relative(got, want, tolerance.floor) / relative_to;
     if plain <= 1.0 || plain.is_nan() {
         return plain;
     }
-    let by = rounded(wi, tolerance.rounding).map(|wi| (at(double(wi)) - want).abs()).into_iter().fold(0.0, f64::max);
+    let by = rounded(wi, tolerance.rounding)
+        .map(|wi| (at(double(wi)) - want).abs())
+        .into_iter()
+        .fold(0.0, f64::max);
     ((got - want).abs() - by).max(0.0) / (want.abs().max(tolerance.floor) * relative_to)
 }
 
@@ -36,7 +45,9 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
     for material in subject.set(Which::WithRandom).iter() {
         let name = material.name();
         for hit in hits_and(HITS, &mut draws) {
-            let Some(reference) = material.reference(&hit) else { return Ok(()) };
+            let Some(reference) = material.reference(&hit) else {
+                return Ok(());
+            };
             let tolerance = reference.tolerance();
             let gather = material.prepare(hit);
             for n in 0..PACKETS {
@@ -47,15 +58,22 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                     if (lane + n) % 2 == 0 { any } else { drawn }
                 });
                 let levels = Level::available().map(|level| {
-                    let (e, s) = (gather.eval8(level, &packet(&wi)), gather.sample8(level, &triples(&xi)));
+                    let (e, s) = (
+                        gather.eval8(level, &packet(&wi)),
+                        gather.sample8(level, &triples(&xi)),
+                    );
                     (e, s, level.name())
                 });
                 let levels: Vec<_> = levels.collect();
                 for lane in (0..8).filter(|lane| cos_theta(wi[*lane]) > 1e-3) {
-                    let lanes = levels.iter().map(|(e, s, level)| (e.lane(lane), s.lane(lane), *level));
+                    let lanes = levels
+                        .iter()
+                        .map(|(e, s, level)| (e.lane(lane), s.lane(lane), *level));
                     let one = (gather.eval(wi[lane]), gather.sample(xi[lane]), "one lane");
                     for (e, s, level) in lanes.chain([one]) {
-                        let at = || format!("{name} {hit:?} {:?} xi {:?} on {level}", wi[lane], xi[lane]);
+                        let at = || {
+                            format!("{name} {hit:?} {:?} xi {:?} on {level}", wi[lane], xi[lane])
+                        };
                         see_eval(&mut worst, &*reference, e, wi[lane], &tolerance, &at)?;
                         compare_sample(&*reference, s, xi[lane], &tolerance, &at)?;
                         compared += 1;
@@ -65,10 +83,19 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                         continue;
                     }
                     for lobe in Lobe::ALL {
-                        for (part, got) in [lobes[lobe].value, lobes[lobe].pdf].into_iter().enumerate() {
-                            let of = |d| reference.lobes(d).map_or(0.0, |all| all[lobe.index()][part]);
-                            let error = excess(f64::from(got), of, wi[lane], tolerance.lobes, &tolerance);
-                            worst[2].see(error, || format!("{lobe:?} {lobes:?}: {name} {hit:?} {:?}", wi[lane]))?;
+                        for (part, got) in
+                            [lobes[lobe].value, lobes[lobe].pdf].into_iter().enumerate()
+                        {
+                            let of = |d| {
+                                reference
+                                    .lobes(d)
+                                    .map_or(0.0, |all| all[lobe.index()][part])
+                            };
+                            let error =
+                                excess(f64::from(got), of, wi[lane], tolerance.lobes, &tolerance);
+                            worst[2].see(error, || {
+                                format!("{lobe:?} {lobes:?}: {name} {hit:?} {:?}", wi[lane])
+                            })?;
                         }
                     }
                 }
@@ -87,16 +114,42 @@ fn see_eval(
     tolerance: &Tolerance,
     at: &impl Fn() -> String,
 ) -> Outcome {
-    let want =
-        || format!("{got:?}, reference {:?} {}: {}", reference.eval(double(wi)), reference.pdf(double(wi)), at());
+    let want = || {
+        format!(
+            "{got:?}, reference {:?} {}: {}",
+            reference.eval(double(wi)),
+            reference.pdf(double(wi)),
+            at()
+        )
+    };
     for (c, x) in got.value.into_iter().enumerate() {
-        value.see(excess(f64::from(x), |d| reference.eval(d)[c], wi, tolerance.value, tolerance), want)?;
+        value.see(
+            excess(
+                f64::from(x),
+                |d| reference.eval(d)[c],
+                wi,
+                tolerance.value,
+                tolerance,
+            ),
+            want,
+        )?;
     }
-    pdf.see(excess(f64::from(got.pdf), |d| reference.pdf(d), wi, tolerance.pdf, tolerance), want)
+    pdf.see(
+        excess(
+            f64::from(got.pdf),
+            |d| reference.pdf(d),
+            wi,
+            tolerance.pdf,
+            tolerance,
+        ),
+        want,
+    )
 }
 
 /// How far the numbers of a sample, and with them the shares of its lobes, may be off: a few roundings.
-const NUMBERS: [f64; 11] = [-4e-7, -2e-7, -1e-7, -5e-8, -2e-8, 0.0, 2e-8, 5e-8, 1e-7, 2e-7, 4e-7];
+const NUMBERS: [f64; 11] = [
+    -4e-7, -2e-7, -1e-7, -5e-8, -2e-8, 0.0, 2e-8, 5e-8, 1e-7, 2e-7, 4e-7,
+];
 
 /// The sample has the lobe of the reference's, and its direction to the tolerance and to what rounding the numbers moves it:
 /// it lies between the samples of numbers on both sides. At the boundary of two lobes, and next to the axis, either is right.
@@ -113,7 +166,9 @@ fn compare_sample(
         (ReferenceSample::Unknown, _) | (ReferenceSample::Discarded, None) => Some(0.0),
         (ReferenceSample::Discarded, Some(s)) => (cos_theta(s.wi.into()) < 1e-3).then_some(0.0),
         (ReferenceSample::Drawn(_, [_, v, w]), None) => (v.hypot(w) < 1e-3).then_some(0.0),
-        (ReferenceSample::Drawn(slot, wi), Some(s)) => (slot == s.lobe.index()).then(|| apart(double(s.wi.into()), wi)),
+        (ReferenceSample::Drawn(slot, wi), Some(s)) => {
+            (slot == s.lobe.index()).then(|| apart(double(s.wi.into()), wi))
+        }
     };
     let near = |want| distance(want).is_some_and(|off| off <= tolerance.direction);
     if near(reference.sample(xi)) {
@@ -125,7 +180,12 @@ fn compare_sample(
             xi[axis] = (xi[axis] + by).clamp(0.0, 1.0 - 1e-9);
             reference.sample(xi)
         });
-        let is_between = |pair: &[ReferenceSample]| match (pair[0], pair[1], distance(pair[0]), distance(pair[1])) {
+        let is_between = |pair: &[ReferenceSample]| match (
+            pair[0],
+            pair[1],
+            distance(pair[0]),
+            distance(pair[1]),
+        ) {
             (ReferenceSample::Drawn(_, a), ReferenceSample::Drawn(_, b), Some(from), Some(to)) => {
                 from.max(to) <= 1.1 * apart(a, b) + tolerance.direction
             }
@@ -135,9 +195,20 @@ fn compare_sample(
             return Ok(());
         }
     }
-    Err(Failure::new(NAME, format!("sample {got:?}, reference {:?}: {}", reference.sample(xi), at())))
+    Err(Failure::new(
+        NAME,
+        format!(
+            "sample {got:?}, reference {:?}: {}",
+            reference.sample(xi),
+            at()
+        ),
+    ))
 }
 
 fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.into_iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    a.into_iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).powi(2))
+        .sum::<f64>()
+        .sqrt()
 }

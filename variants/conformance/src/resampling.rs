@@ -55,7 +55,15 @@ impl Light {
     fn look_up(&self, wi: Vec3) -> ([f32; 3], f32) {
         let (inside, outside) = (2.0 * PI * (1.0 - self.edge), 2.0 * PI * (1.0 + self.edge));
         if wi.dot(self.axis) >= self.edge {
-            (self.cap, self.share / inside + if self.edge == -1.0 { 1.0 - self.share } else { 0.0 } / inside)
+            (
+                self.cap,
+                self.share / inside
+                    + if self.edge == -1.0 {
+                        1.0 - self.share
+                    } else {
+                        0.0
+                    } / inside,
+            )
         } else {
             (self.around, (1.0 - self.share) / outside.max(1e-6))
         }
@@ -70,7 +78,8 @@ impl Light {
             // Below the edge, which itself is of the cap.
             (self.edge - (1.0 - x) * (1.0 + self.edge)).max(-1.0)
         };
-        let (sin, (sin_phi, cos_phi)) = ((1.0 - cos * cos).max(0.0).sqrt(), (2.0 * PI * y).sin_cos());
+        let (sin, (sin_phi, cos_phi)) =
+            ((1.0 - cos * cos).max(0.0).sqrt(), (2.0 * PI * y).sin_cos());
         let (a, b) = self.axis.any_orthonormal_pair();
         (a * (sin * cos_phi) + b * (sin * sin_phi) + self.axis * cos).normalize()
     }
@@ -79,7 +88,11 @@ impl Light {
 /// Hair in between: none of the light from every second of some cells.
 fn visible(wi: Vec3) -> f64 {
     let cells = (wi * 3.0 + Vec3::splat(10.0)).floor();
-    if (cells.x + cells.y + cells.z) % 2.0 < 1.0 { 1.0 } else { 0.0 }
+    if (cells.x + cells.y + cells.z) % 2.0 < 1.0 {
+        1.0
+    } else {
+        0.0
+    }
 }
 
 /// Mean over the channels.
@@ -99,13 +112,23 @@ impl Plain<'_> {
         let (radiance, pdf_light) = self.light.look_up(wi);
         let eval = self.gather.eval(wi.into());
         let cos = f64::from(wi.y).hypot(f64::from(wi.z));
-        let f = (0..3).map(|c| f64::from(eval.value[c]) * f64::from(radiance[c])).sum::<f64>() / 3.0;
-        [f * cos * visible(wi), f64::from(eval.pdf), f64::from(pdf_light)]
+        let f = (0..3)
+            .map(|c| f64::from(eval.value[c]) * f64::from(radiance[c]))
+            .sum::<f64>()
+            / 3.0;
+        [
+            f * cos * visible(wi),
+            f64::from(eval.pdf),
+            f64::from(pdf_light),
+        ]
     }
 
     fn estimate(&self, draws: &mut Draws) -> f64 {
         let over = |[f, bsdf, light]: [f64; 3]| if f > 0.0 { f / (bsdf + light) } else { 0.0 };
-        let from_bsdf = self.gather.sample(draws.xi3()).map_or(0.0, |sample| over(self.terms(sample.wi)));
+        let from_bsdf = self
+            .gather
+            .sample(draws.xi3())
+            .map_or(0.0, |sample| over(self.terms(sample.wi)));
         from_bsdf + over(self.terms(self.light.draw(draws)))
     }
 
@@ -114,7 +137,8 @@ impl Plain<'_> {
         let mut pool = Pool::<16>::new(counts, partition).expect("16 candidates at most");
         let xi: Vec<[f32; 3]> = (0..counts.bsdf).map(|_| draws.xi3()).collect();
         let xi = [0, 1, 2].map(|axis| xi.iter().map(|xi| xi[axis]).collect::<Vec<_>>());
-        self.gather.propose(&mut pool, xi.each_ref().map(|column| &column[..]));
+        self.gather
+            .propose(&mut pool, xi.each_ref().map(|column| &column[..]));
         for i in 0..counts.light as usize {
             let wi = self.light.draw(draws);
             let (radiance, pdf) = self.light.look_up(wi);
@@ -125,13 +149,18 @@ impl Plain<'_> {
         let chosen: Vec<_> = pool.choose(k, draws.xi()).collect();
         let count: u32 = chosen.iter().map(|(_, choice)| choice.count).sum();
         assert!(chosen.is_empty() || count == k, "{count} of {k} choices");
-        chosen.iter().map(|(wi, choice)| visible(*wi) * mean(choice.contribution)).sum()
+        chosen
+            .iter()
+            .map(|(wi, choice)| visible(*wi) * mean(choice.contribution))
+            .sum()
     }
 
     /// The light's share by resampling, and the rest where a path's next direction meets it.
     fn path(&self, partition: Partition, draws: &mut Draws) -> f64 {
         let direct = self.pooled(Counts { bsdf: 0, light: 8 }, partition, 1, draws);
-        let Some(next) = self.gather.sample(draws.xi3()) else { return direct };
+        let Some(next) = self.gather.sample(draws.xi3()) else {
+            return direct;
+        };
         let ([f, bsdf, _], (_, pdf_light)) = (self.terms(next.wi), self.light.look_up(next.wi));
         let rest = 1.0 - f64::from(partition.light_share(pdf_light, next.pdf));
         direct + if f > 0.0 { rest * f / bsdf } else { 0.0 }
@@ -149,14 +178,28 @@ fn reservoirs(gather: &dyn LitGather8, light: Light, level: Level, draws: &mut D
             packet(&core::array::from_fn(|_| light.draw(draws).into()))
         };
         let found: [([f32; 3], f32); 8] = core::array::from_fn(|lane| light.look_up(wi.lane(lane)));
-        let (radiance, pdf) = (triples(&found.map(|(rgb, _)| rgb)), f32x8::new(found.map(|(_, pdf)| pdf)));
+        let (radiance, pdf) = (
+            triples(&found.map(|(rgb, _)| rgb)),
+            f32x8::new(found.map(|(_, pdf)| pdf)),
+        );
         let weighed = gather.weigh(level, &wi, &radiance, &pdf, counts);
-        kept[i % 2].add_at(level, &wi, &weighed, &f32x8::new(core::array::from_fn(|_| draws.xi())));
+        kept[i % 2].add_at(
+            level,
+            &wi,
+            &weighed,
+            &f32x8::new(core::array::from_fn(|_| draws.xi())),
+        );
     }
     let [mut all, other] = kept;
-    all.merge_at(level, &other, &f32x8::new(core::array::from_fn(|_| draws.xi())));
+    all.merge_at(
+        level,
+        &other,
+        &f32x8::new(core::array::from_fn(|_| draws.xi())),
+    );
     let light = all.estimate_at(level);
-    core::array::from_fn(|lane| visible(all.wi.lane(lane)) * mean(light.map(|c| c.as_array()[lane])))
+    core::array::from_fn(|lane| {
+        visible(all.wi.lane(lane)) * mean(light.map(|c| c.as_array()[lane]))
+    })
 }
 
 /// Sums of estimates and of their squares.
@@ -183,7 +226,10 @@ impl Sums {
     /// Mean and its variance.
     fn mean(&self) -> [f64; 2] {
         let mean = self.sum / self.n;
-        [mean, (self.squares / self.n - mean * mean).max(0.0) / self.n]
+        [
+            mean,
+            (self.squares / self.n - mean * mean).max(0.0) / self.n,
+        ]
     }
 }
 
@@ -212,31 +258,47 @@ pub fn check(subject: &dyn LitSubject, factor: f64) -> Outcome {
         let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
         for light in Light::all(&mut draws) {
             // Errors of a cell: its resampled estimates, from their number, against plain ones.
-            let mut cell = |hit: Hit, draws: &mut Draws, resampled: &dyn Fn(usize, &mut Draws) -> Sums| {
-                let gather = set.lit(index, hit);
-                let apart = |count: usize, draws: &mut Draws| {
-                    let resampled = resampled(count, draws);
-                    // Drawn for each cell alone, so that the cells' errors are independent.
-                    let plain = Sums::of(4 * count, || Plain { gather: &*gather, light }.estimate(draws));
-                    let ([a, a_var], [b, b_var]) = (resampled.mean(), plain.mean());
-                    let error = (a_var + b_var).sqrt();
-                    // Estimates without any spread, and hits that see next to nothing, are left out.
-                    (error > 1e-5 * b.abs() && b > 0.0).then(|| (factor * a - b) / error)
+            let mut cell =
+                |hit: Hit, draws: &mut Draws, resampled: &dyn Fn(usize, &mut Draws) -> Sums| {
+                    let gather = set.lit(index, hit);
+                    let apart = |count: usize, draws: &mut Draws| {
+                        let resampled = resampled(count, draws);
+                        // Drawn for each cell alone, so that the cells' errors are independent.
+                        let plain = Sums::of(4 * count, || {
+                            Plain {
+                                gather: &*gather,
+                                light,
+                            }
+                            .estimate(draws)
+                        });
+                        let ([a, a_var], [b, b_var]) = (resampled.mean(), plain.mean());
+                        let error = (a_var + b_var).sqrt();
+                        // Estimates without any spread, and hits that see next to nothing, are left out.
+                        (error > 1e-5 * b.abs() && b > 0.0).then(|| (factor * a - b) / error)
+                    };
+                    let first = apart(ESTIMATES, draws);
+                    let far = first.is_some_and(|z| z.abs() > ONE_IN_1000);
+                    errors.extend(if far {
+                        apart(AGAIN * ESTIMATES, draws)
+                    } else {
+                        first
+                    });
                 };
-                let first = apart(ESTIMATES, draws);
-                let far = first.is_some_and(|z| z.abs() > ONE_IN_1000);
-                errors.extend(if far { apart(AGAIN * ESTIMATES, draws) } else { first });
-            };
             for (n, hit) in hits.into_iter().enumerate() {
                 let gather = set.lit(index, hit);
-                let one = Plain { gather: &*gather, light };
+                let one = Plain {
+                    gather: &*gather,
+                    light,
+                };
                 let estimate = |draws: &mut Draws| match n % 4 {
                     0 => one.pooled(Counts { bsdf: 4, light: 4 }, Partition::All, 1, draws),
                     1 => one.pooled(Counts { bsdf: 6, light: 10 }, Partition::All, 4, draws),
                     2 => one.path(Partition::Balance, draws),
                     _ => one.path(Partition::Power, draws),
                 };
-                cell(hit, &mut draws, &|count, draws| Sums::of(count, || estimate(draws)));
+                cell(hit, &mut draws, &|count, draws| {
+                    Sums::of(count, || estimate(draws))
+                });
             }
             for (level, lane) in Level::available().zip(0..) {
                 let gather = set.lit8(index, level, hits8(&hits));
@@ -246,13 +308,17 @@ pub fn check(subject: &dyn LitSubject, factor: f64) -> Outcome {
             }
         }
     }
-    let (n, apart) = (errors.len() as f64, errors.iter().filter(|z| z.abs() > ONE_IN_1000).count());
+    let (n, apart) = (
+        errors.len() as f64,
+        errors.iter().filter(|z| z.abs() > ONE_IN_1000).count(),
+    );
     let aside = errors.iter().sum::<f64>() / n.sqrt();
     // Poisson: 1e-3 of the cells, and as many more as chance exceeds once in 1000.
     let allowed = 2.0 + 1e-3 * n + 3.1 * (1e-3 * n).sqrt();
     if apart as f64 > allowed || aside.abs() > ONE_IN_1000 {
-        let message =
-            format!("{apart} of {n} cells are {ONE_IN_1000} standard errors apart, all on average {aside:.2}");
+        let message = format!(
+            "{apart} of {n} cells are {ONE_IN_1000} standard errors apart, all on average {aside:.2}"
+        );
         return Err(Failure::new(NAME, message));
     }
     Ok(())
@@ -267,8 +333,12 @@ fn any_rounding_is_finite(subject: &dyn LitSubject) -> Outcome {
         let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
         for light in Light::all(&mut draws) {
             let estimates = with_mode(DOWN, || {
-                let one = Plain { gather: &*set.lit(index, hits[0]), light };
-                let mut all = vec![one.pooled(Counts { bsdf: 6, light: 10 }, Partition::All, 4, &mut draws)];
+                let one = Plain {
+                    gather: &*set.lit(index, hits[0]),
+                    light,
+                };
+                let mut all =
+                    vec![one.pooled(Counts { bsdf: 6, light: 10 }, Partition::All, 4, &mut draws)];
                 all.push(one.path(Partition::Power, &mut draws));
                 for level in Level::available() {
                     let gather = set.lit8(index, level, hits8(&hits));
@@ -277,7 +347,10 @@ fn any_rounding_is_finite(subject: &dyn LitSubject) -> Outcome {
                 all
             });
             if !estimates.iter().all(|x| x.is_finite() && *x >= 0.0) {
-                return Err(Failure::new(NAME, format!("{name} {hits:?}, rounded down: {estimates:?}")));
+                return Err(Failure::new(
+                    NAME,
+                    format!("{name} {hits:?}, rounded down: {estimates:?}"),
+                ));
             }
         }
     }

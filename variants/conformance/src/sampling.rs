@@ -53,10 +53,20 @@ pub fn samples_agree_with_eval(subject: &dyn ErasedSubject) -> Outcome {
                         continue;
                     }
                     let e = gather.eval(wi);
-                    let error = nearby.error(Eval { value: s.value, pdf: s.pdf }, e, wi);
+                    let error = nearby.error(
+                        Eval {
+                            value: s.value,
+                            pdf: s.pdf,
+                        },
+                        e,
+                        wi,
+                    );
                     worst.see(error, || format!("evaluation gives {e:?}: {}", at()))?;
                     if gather.lobes(wi)[s.lobe].pdf <= 0.0 {
-                        return Err(Failure::new(NAME, format!("its own lobe has no density there: {}", at())));
+                        return Err(Failure::new(
+                            NAME,
+                            format!("its own lobe has no density there: {}", at()),
+                        ));
                     }
                 }
             }

@@ -23,27 +23,44 @@ pub(crate) struct Room<const N: usize> {
 
 impl<const N: usize> Room<N> {
     pub(crate) fn new(offset: usize, len: usize) -> Self {
-        Self { columns: core::array::from_fn(|_| vec![UNTOUCHED; offset + len + MARGIN]), offset, len }
+        Self {
+            columns: core::array::from_fn(|_| vec![UNTOUCHED; offset + len + MARGIN]),
+            offset,
+            len,
+        }
     }
 
     pub(crate) fn slices(&mut self) -> [&mut [f32]; N] {
         let (offset, len) = (self.offset, self.len);
-        self.columns.each_mut().map(|column| &mut column[offset..offset + len])
+        self.columns
+            .each_mut()
+            .map(|column| &mut column[offset..offset + len])
     }
 
     /// Whether the results are those wanted, and nothing is written beside them.
     pub(crate) fn check(&self, want: &[[u32; N]], what: &str, at: &str) -> Outcome {
         for (n, column) in self.columns.iter().enumerate() {
-            let margins = column[..self.offset].iter().chain(&column[self.offset + self.len..]);
+            let margins = column[..self.offset]
+                .iter()
+                .chain(&column[self.offset + self.len..]);
             if margins.into_iter().any(|x| *x != UNTOUCHED) {
-                return Err(Failure::new(NAME, format!("{what}: column {n} is written beyond its end: {at}")));
+                return Err(Failure::new(
+                    NAME,
+                    format!("{what}: column {n} is written beyond its end: {at}"),
+                ));
             }
         }
         for (i, want) in want.iter().take(self.len).enumerate() {
-            let got = self.columns.each_ref().map(|column| column[self.offset + i].to_bits());
+            let got = self
+                .columns
+                .each_ref()
+                .map(|column| column[self.offset + i].to_bits());
             if got != *want {
                 let [got, want] = [got, *want].map(|bits| bits.map(f32::from_bits));
-                return Err(Failure::new(NAME, format!("{what}, entry {i}: {got:?}, the packet {want:?}: {at}")));
+                return Err(Failure::new(
+                    NAME,
+                    format!("{what}, entry {i}: {got:?}, the packet {want:?}: {at}"),
+                ));
             }
         }
         Ok(())
@@ -61,19 +78,29 @@ pub fn slices_equal_packets(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0x511c);
     for (n, material) in subject.set(Which::WithExtremes).iter().enumerate() {
         let (name, gather) = (material.name(), material.prepare(draws.hit()));
-        let rows: [(Direction, [f32; 3]); LONGEST] = core::array::from_fn(|_| (draws.direction(), draws.xi3()));
+        let rows: [(Direction, [f32; 3]); LONGEST] =
+            core::array::from_fn(|_| (draws.direction(), draws.xi3()));
         for level in Level::available() {
             let expected = Expected::new(&*gather, level, &rows);
             for len in 0..=LONGEST {
                 // Every length with each material, every alignment with some.
                 for offset in (0..8).filter(|offset| n == 0 || (len + offset + n) % 8 == 0) {
-                    expected.check(&*gather, level, offset, len, &format!("{name} on {level}, {len} at {offset}"))?;
+                    expected.check(
+                        &*gather,
+                        level,
+                        offset,
+                        len,
+                        &format!("{name} on {level}, {len} at {offset}"),
+                    )?;
                 }
             }
         }
         if n == 0 {
             lengths_are_checked(&*gather)?;
-            found_level_is_default(&*gather, &Expected::new(&*gather, Level::detect(), &rows).inputs)?;
+            found_level_is_default(
+                &*gather,
+                &Expected::new(&*gather, Level::detect(), &rows).inputs,
+            )?;
         }
     }
     Ok(())
@@ -91,7 +118,11 @@ impl Expected {
         let components: [fn(&Direction) -> f32; 3] = [|v| v.x, |v| v.y, |v| v.z];
         let wi = components.map(|of| rows.iter().map(|(wi, _)| of(wi)).collect());
         let xi = [0, 1, 2].map(|axis| rows.iter().map(|(_, xi)| xi[axis]).collect::<Vec<f32>>());
-        let mut all = Self { inputs: [wi, xi], evals: Vec::new(), samples: Vec::new() };
+        let mut all = Self {
+            inputs: [wi, xi],
+            evals: Vec::new(),
+            samples: Vec::new(),
+        };
         for eight in rows.chunks(8) {
             let padded: [_; 8] = core::array::from_fn(|lane| eight[lane % eight.len()]);
             let evals = gather.eval8(level, &packet(&padded.map(|(wi, _)| wi)));
@@ -104,20 +135,34 @@ impl Expected {
         all
     }
 
-    fn check(&self, gather: &dyn ErasedGather, level: Level, offset: usize, len: usize, at: &str) -> Outcome {
+    fn check(
+        &self,
+        gather: &dyn ErasedGather,
+        level: Level,
+        offset: usize,
+        len: usize,
+        at: &str,
+    ) -> Outcome {
         let refused = |e: LengthError| Failure::new(NAME, format!("{e}: {at}"));
         // Inputs are read at an alignment of their own.
         let from = (offset + len) % 8;
-        let inputs = self
-            .inputs
+        let inputs = self.inputs.each_ref().map(|columns| {
+            columns
+                .each_ref()
+                .map(|column| [&vec![9.0; from][..], &column[..len]].concat())
+        });
+        let [wi, xi] = inputs
             .each_ref()
-            .map(|columns| columns.each_ref().map(|column| [&vec![9.0; from][..], &column[..len]].concat()));
-        let [wi, xi] = inputs.each_ref().map(|columns| columns.each_ref().map(|column| &column[from..]));
+            .map(|columns| columns.each_ref().map(|column| &column[from..]));
         let mut out = Room::<4>::new(offset, len);
-        gather.eval_slices(Some(level), wi, out.slices()).map_err(refused)?;
+        gather
+            .eval_slices(Some(level), wi, out.slices())
+            .map_err(refused)?;
         out.check(&self.evals, "value and density", at)?;
         let mut values = Room::<3>::new(offset, len);
-        gather.value_slices(level, wi, values.slices()).map_err(refused)?;
+        gather
+            .value_slices(level, wi, values.slices())
+            .map_err(refused)?;
         let colors: Vec<_> = self.evals.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
         values.check(&colors, "value alone", at)?;
         let mut densities = Room::<1>::new(offset, len);
@@ -126,20 +171,30 @@ impl Expected {
         let pdfs: Vec<_> = self.evals.iter().map(|[.., pdf]| [*pdf]).collect();
         densities.check(&pdfs, "density alone", at)?;
         let mut samples = Room::<COLUMNS>::new(offset, len);
-        gather.sample_slices(Some(level), xi, samples.slices()).map_err(refused)?;
+        gather
+            .sample_slices(Some(level), xi, samples.slices())
+            .map_err(refused)?;
         samples.check(&self.samples, "samples", at)?;
         let mut weights = Room::<{ WEIGHT_COLUMNS.len() }>::new(offset, len);
-        gather.weight_slices(Some(level), xi, weights.slices()).map_err(refused)?;
-        let some: Vec<_> = self.samples.iter().map(|sample| WEIGHT_COLUMNS.map(|column| sample[column])).collect();
+        gather
+            .weight_slices(Some(level), xi, weights.slices())
+            .map_err(refused)?;
+        let some: Vec<_> = self
+            .samples
+            .iter()
+            .map(|sample| WEIGHT_COLUMNS.map(|column| sample[column]))
+            .collect();
         weights.check(&some, "weights of samples", at)
     }
 }
 
 /// Names of the slices of an evaluation, and of samples.
-const EVAL_SLICES: [&str; 7] = ["wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf"];
+const EVAL_SLICES: [&str; 7] = [
+    "wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf",
+];
 const SAMPLE_SLICES: [&str; 3 + COLUMNS] = [
-    "xi.lobe", "xi.theta", "xi.phi", "wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf", "weight.r",
-    "weight.g", "weight.b", "slot",
+    "xi.lobe", "xi.theta", "xi.phi", "wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b",
+    "pdf", "weight.r", "weight.g", "weight.b", "slot",
 ];
 
 /// A slice of another length is refused by its name, and nothing is written.
@@ -148,15 +203,25 @@ fn lengths_are_checked(gather: &dyn ErasedGather) -> Outcome {
         for (expected, len) in [(5, 0), (5, 4), (5, 6), (5, 40), (16, 17)] {
             let length = |n: usize, wrong: usize| if n == wrong { len } else { expected };
             let check = |field: &'static str, got: Result<(), LengthError>, out: &[Vec<f32>]| {
-                let want = Err(LengthError { field, len, expected });
+                let want = Err(LengthError {
+                    field,
+                    len,
+                    expected,
+                });
                 let written = out.iter().flatten().any(|x| *x != UNTOUCHED);
                 if got == want && !written {
                     return Ok(());
                 }
-                let and = if written { ", yet something is written" } else { "" };
+                let and = if written {
+                    ", yet something is written"
+                } else {
+                    ""
+                };
                 Err(Failure::new(
                     NAME,
-                    format!("slices of different lengths give {got:?} for {want:?}{and} on {level}"),
+                    format!(
+                        "slices of different lengths give {got:?} for {want:?}{and} on {level}"
+                    ),
                 ))
             };
             for (wrong, name) in EVAL_SLICES.into_iter().enumerate().skip(1) {
@@ -169,8 +234,10 @@ fn lengths_are_checked(gather: &dyn ErasedGather) -> Outcome {
                 // Value and density alone each have some of the slices.
                 let mut out = room();
                 let [r, g, b, pdf] = out.each_mut().map(|c| &mut c[..]);
-                let (value, density) =
-                    (gather.value_slices(level, read, [r, g, b]), gather.pdf_slice(level, read, pdf));
+                let (value, density) = (
+                    gather.value_slices(level, read, [r, g, b]),
+                    gather.pdf_slice(level, read, pdf),
+                );
                 if name != "pdf" {
                     check(name, value, &out[..3])?;
                 }
@@ -181,13 +248,16 @@ fn lengths_are_checked(gather: &dyn ErasedGather) -> Outcome {
             for (wrong, name) in SAMPLE_SLICES.into_iter().enumerate().skip(1) {
                 let inputs = [0, 1, 2].map(|n| vec![0.5; length(n, wrong)]);
                 let read = inputs.each_ref().map(|column| &column[..]);
-                let mut out: [Vec<f32>; COLUMNS] = core::array::from_fn(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
-                let got = gather.sample_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
+                let mut out: [Vec<f32>; COLUMNS] =
+                    core::array::from_fn(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
+                let got =
+                    gather.sample_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
                 check(name, got, &out)?;
                 // Weights alone have some of the slices.
                 if wrong < 3 || WEIGHT_COLUMNS.contains(&(wrong - 3)) {
                     let mut out = WEIGHT_COLUMNS.map(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
-                    let got = gather.weight_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
+                    let got =
+                        gather.weight_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
                     check(name, got, &out)?;
                 }
             }
@@ -198,21 +268,41 @@ fn lengths_are_checked(gather: &dyn ErasedGather) -> Outcome {
 
 /// Without a level, slices run on the one that is found.
 fn found_level_is_default(gather: &dyn ErasedGather, inputs: &[[Vec<f32>; 3]; 2]) -> Outcome {
-    let [wi, xi] = inputs.each_ref().map(|columns| columns.each_ref().map(|column| &column[..13]));
-    let refused = |e: LengthError| Failure::new(NAME, format!("{e}: 13 entries, at the level found"));
+    let [wi, xi] = inputs
+        .each_ref()
+        .map(|columns| columns.each_ref().map(|column| &column[..13]));
+    let refused =
+        |e: LengthError| Failure::new(NAME, format!("{e}: 13 entries, at the level found"));
     let (mut found, mut default) = (Room::<4>::new(0, 13), Room::<4>::new(0, 13));
-    gather.eval_slices(Some(Level::detect()), wi, found.slices()).map_err(refused)?;
-    gather.eval_slices(None, wi, default.slices()).map_err(refused)?;
-    let (mut found_samples, mut samples) = (Room::<COLUMNS>::new(0, 13), Room::<COLUMNS>::new(0, 13));
-    gather.sample_slices(Some(Level::detect()), xi, found_samples.slices()).map_err(refused)?;
-    gather.sample_slices(None, xi, samples.slices()).map_err(refused)?;
+    gather
+        .eval_slices(Some(Level::detect()), wi, found.slices())
+        .map_err(refused)?;
+    gather
+        .eval_slices(None, wi, default.slices())
+        .map_err(refused)?;
+    let (mut found_samples, mut samples) =
+        (Room::<COLUMNS>::new(0, 13), Room::<COLUMNS>::new(0, 13));
+    gather
+        .sample_slices(Some(Level::detect()), xi, found_samples.slices())
+        .map_err(refused)?;
+    gather
+        .sample_slices(None, xi, samples.slices())
+        .map_err(refused)?;
     let mut weights = Room::<{ WEIGHT_COLUMNS.len() }>::new(0, 13);
-    gather.weight_slices(None, xi, weights.slices()).map_err(refused)?;
-    let same = WEIGHT_COLUMNS.iter().zip(&weights.columns).all(|(n, column)| samples.columns[*n] == *column);
+    gather
+        .weight_slices(None, xi, weights.slices())
+        .map_err(refused)?;
+    let same = WEIGHT_COLUMNS
+        .iter()
+        .zip(&weights.columns)
+        .all(|(n, column)| samples.columns[*n] == *column);
     if found.columns == default.columns && found_samples.columns == samples.columns && same {
         return Ok(());
     }
-    Err(Failure::new(NAME, "without a level they differ from those on the level found"))
+    Err(Failure::new(
+        NAME,
+        "without a level they differ from those on the level found",
+    ))
 }
 
 #[cfg(test)]
@@ -229,8 +319,15 @@ mod tests {
             room.check(&want, "ones", "here")
         };
         assert!(room(2..7).is_ok(), "all and no more");
-        for (writes, why) in [(2..6, "entry 4"), (3..7, "entry 0"), (1..7, "beyond"), (2..8, "beyond")] {
-            let failure = room(writes.clone()).expect_err("too few or too many").message;
+        for (writes, why) in [
+            (2..6, "entry 4"),
+            (3..7, "entry 0"),
+            (1..7, "beyond"),
+            (2..8, "beyond"),
+        ] {
+            let failure = room(writes.clone())
+                .expect_err("too few or too many")
+                .message;
             assert!(failure.contains(why), "{writes:?}: {failure}");
         }
     }

@@ -5,7 +5,11 @@ use statrs::function::gamma::gamma_ur;
 /// Probability of a chi-square value of at least `x` with `freedom` degrees.
 pub(crate) fn chi_square_tail(x: f64, freedom: usize) -> f64 {
     // The incomplete gamma function has no value at 0, where every statistic is as large.
-    if x == 0.0 { 1.0 } else { gamma_ur(0.5 * freedom as f64, 0.5 * x) }
+    if x == 0.0 {
+        1.0
+    } else {
+        gamma_ur(0.5 * freedom as f64, 0.5 * x)
+    }
 }
 
 /// Edges between cells of an angle, which find its cell without the arc tangent: that takes longer than to draw a sample.
@@ -19,7 +23,12 @@ impl AngleEdges {
     /// - Domain: ascending, from -pi to pi.
     #[must_use]
     pub fn new(angles: &[f64]) -> Self {
-        Self(angles.iter().map(|x| angle_order(x.sin_cos().into())).collect())
+        Self(
+            angles
+                .iter()
+                .map(|x| angle_order(x.sin_cos().into()))
+                .collect(),
+        )
     }
 
     /// Number of edges at or below the angle of a sine and a cosine, both times one length; 0 if both are 0.
@@ -34,7 +43,11 @@ impl AngleEdges {
 #[inline]
 fn angle_order([sin, cos]: [f64; 2]) -> f64 {
     let quarter = sin / (sin.abs() + cos.abs());
-    if cos >= 0.0 { quarter } else { 2.0_f64.copysign(sin) - quarter }
+    if cos >= 0.0 {
+        quarter
+    } else {
+        2.0_f64.copysign(sin) - quarter
+    }
 }
 
 /// Outcome of a chi-square test.
@@ -63,7 +76,12 @@ pub struct ChiSquare {
 /// - Domain: p-value NaN when the lengths differ, an expected count is negative or not finite, or fewer than two cells are left.
 #[must_use]
 pub fn chi_square(observed: &[u64], expected: &[f64], min_expected: f64) -> ChiSquare {
-    let mut result = ChiSquare { statistic: f64::NAN, degrees_of_freedom: 0, p_value: f64::NAN, pooled: 0 };
+    let mut result = ChiSquare {
+        statistic: f64::NAN,
+        degrees_of_freedom: 0,
+        p_value: f64::NAN,
+        pooled: 0,
+    };
     if observed.len() != expected.len() || expected.iter().any(|e| !(e.is_finite() && *e >= 0.0)) {
         return result;
     }
@@ -179,15 +197,18 @@ mod tests {
         assert!((r.statistic - 520.0 / 34.0).abs() < 1e-12, "{r:?}");
         // Q(5/2, x/2) in closed form: erfc and two terms.
         let x: f64 = 520.0 / 34.0;
-        let want =
-            erfc((0.5 * x).sqrt()) + (2.0 * x / core::f64::consts::PI).sqrt() * (-x / 2.0).exp() * (1.0 + x / 3.0);
+        let want = erfc((0.5 * x).sqrt())
+            + (2.0 * x / core::f64::consts::PI).sqrt() * (-x / 2.0).exp() * (1.0 + x / 3.0);
         assert!((r.p_value - want).abs() < 1e-13, "{} {want}", r.p_value);
     }
 
     #[test]
     fn pooling_keeps_totals_and_counts() {
         let r = chi_square(&[1, 2, 3, 40, 54], &[1.0, 2.0, 3.0, 40.0, 54.0], 5.0);
-        assert_eq!((r.pooled, r.degrees_of_freedom, r.statistic, r.p_value), (3, 2, 0.0, 1.0));
+        assert_eq!(
+            (r.pooled, r.degrees_of_freedom, r.statistic, r.p_value),
+            (3, 2, 0.0, 1.0)
+        );
         // 4.9 never reaches the limit alone and joins the cell of 40.
         let r = chi_square(&[5, 40, 55], &[4.9, 40.1, 55.0], 5.0);
         assert_eq!((r.pooled, r.degrees_of_freedom), (1, 1));
@@ -197,9 +218,15 @@ mod tests {
     #[test]
     fn angles_are_in_order() {
         let all = (-1000..=1000).map(|k| f64::from(k) * core::f64::consts::PI / 1000.0);
-        let order: Vec<f64> = all.map(|x| angle_order([3.0 * x.sin(), 3.0 * x.cos()])).collect();
+        let order: Vec<f64> = all
+            .map(|x| angle_order([3.0 * x.sin(), 3.0 * x.cos()]))
+            .collect();
         assert!(order.is_sorted_by(|a, b| a < b), "{order:?}");
-        assert_eq!([[0.0, -1.0], [-0.0, -1.0]].map(angle_order), [2.0, -2.0], "the seam");
+        assert_eq!(
+            [[0.0, -1.0], [-0.0, -1.0]].map(angle_order),
+            [2.0, -2.0],
+            "the seam"
+        );
         assert_eq!(
             [order[0], order[500], order[1000], order[1500], order[2000]].map(f64::round),
             [-2.0, -1.0, 0.0, 1.0, 2.0]
@@ -208,8 +235,14 @@ mod tests {
 
     #[test]
     fn chi_square_edges() {
-        assert_eq!(chi_square(&[1, 99, 100], &[0.0, 100.0, 100.0], 5.0).p_value, 0.0);
-        assert_eq!(chi_square(&[0, 100, 100], &[0.0, 100.0, 100.0], 5.0).p_value, 1.0);
+        assert_eq!(
+            chi_square(&[1, 99, 100], &[0.0, 100.0, 100.0], 5.0).p_value,
+            0.0
+        );
+        assert_eq!(
+            chi_square(&[0, 100, 100], &[0.0, 100.0, 100.0], 5.0).p_value,
+            1.0
+        );
         assert!(chi_square(&[1], &[1.0, 2.0], 5.0).p_value.is_nan());
         assert!(chi_square(&[1, 2], &[f64::NAN, 2.0], 5.0).p_value.is_nan());
         assert!(chi_square(&[10], &[10.0], 5.0).p_value.is_nan());
@@ -263,13 +296,22 @@ mod tests {
         // Percentiles of the chi-square distribution, from tables of five decimals or closed forms.
         let two = |x: f64| (-0.5 * x).exp();
         for x in [0.1, 1.0, 5.0, 30.0] {
-            assert!((chi_square_tail(x, 2) / two(x) - 1.0).abs() < 1e-9, "two degrees at {x}");
+            assert!(
+                (chi_square_tail(x, 2) / two(x) - 1.0).abs() < 1e-9,
+                "two degrees at {x}"
+            );
         }
-        for (x, freedom, tail) in
-            [(3.841_459, 1, 0.05), (18.307_04, 10, 0.05), (23.209_25, 10, 0.01), (149.449_25, 100, 0.001)]
-        {
+        for (x, freedom, tail) in [
+            (3.841_459, 1, 0.05),
+            (18.307_04, 10, 0.05),
+            (23.209_25, 10, 0.01),
+            (149.449_25, 100, 0.001),
+        ] {
             let got = chi_square_tail(x, freedom);
-            assert!((got / tail - 1.0).abs() < 1e-4, "{freedom} degrees at {x}: {got}, not {tail}");
+            assert!(
+                (got / tail - 1.0).abs() < 1e-4,
+                "{freedom} degrees at {x}: {got}, not {tail}"
+            );
         }
     }
 }

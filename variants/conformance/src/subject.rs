@@ -185,6 +185,13 @@ pub struct Tolerance {
 
 impl Default for Tolerance {
     fn default() -> Self {
-        Self { value: 1e-5, pdf: 1e-5, lobes: 1e-5, floor: 1e-20, rounding: 2.5e-7, direction: 1e-4 }
+        Self {
+            value: 1e-5,
+            pdf: 1e-5,
+            lobes: 1e-5,
+            floor: 1e-20,
+            rounding: 2.5e-7,
+            direction: 1e-4,
+        }
     }
 }

@@ -55,18 +55,33 @@ const NUMBERS: [f32; 12] = [
 /// A vector of odd components, or a direction next to the axis, or any direction.
 fn vector(draws: &mut Draws) -> Direction {
     match draws.pick(&[0, 0, 1, 2, 3]) {
-        0 => Vec3x::new(*draws.pick(&COMPONENTS), *draws.pick(&COMPONENTS), *draws.pick(&COMPONENTS)),
+        0 => Vec3x::new(
+            *draws.pick(&COMPONENTS),
+            *draws.pick(&COMPONENTS),
+            *draws.pick(&COMPONENTS),
+        ),
         1 => {
             let off = *draws.pick(&[1e-38, 1e-20, 1e-12, 1e-7, 0.99e-5, 1.01e-5, 1e-4_f32]);
-            Vec3x::new(*draws.pick(&[1.0, -1.0, LAST]), off * *draws.pick(&[1.0, -1.0]), off * *draws.pick(&[0.0, 1.0]))
+            Vec3x::new(
+                *draws.pick(&[1.0, -1.0, LAST]),
+                off * *draws.pick(&[1.0, -1.0]),
+                off * *draws.pick(&[0.0, 1.0]),
+            )
         }
-        2 => direction(draws.between(-1.6, 1.6), *draws.pick(&[0.0, 0.5, 1.0]) * core::f64::consts::PI),
+        2 => direction(
+            draws.between(-1.6, 1.6),
+            *draws.pick(&[0.0, 0.5, 1.0]) * core::f64::consts::PI,
+        ),
         _ => draws.direction(),
     }
 }
 
 fn number(draws: &mut Draws) -> f32 {
-    if *draws.pick(&[true, false]) { *draws.pick(&NUMBERS) } else { draws.xi() }
+    if *draws.pick(&[true, false]) {
+        *draws.pick(&NUMBERS)
+    } else {
+        draws.xi()
+    }
 }
 
 /// Whether a number is what values, densities and weights have to be.
@@ -79,13 +94,26 @@ fn sound_eval(e: &Eval) -> bool {
 }
 
 fn sound_lobe(lobe: &LobeEval) -> bool {
-    [&lobe.color[..], &[lobe.value, lobe.pdf]].concat().into_iter().all(sound)
+    [&lobe.color[..], &[lobe.value, lobe.pdf]]
+        .concat()
+        .into_iter()
+        .all(sound)
 }
 
 /// Reason why a lane of a sample is not valid.
-fn fault(s: &Sample8, lane: usize, mask: LobeMask, subject: &dyn ErasedSubject) -> Option<&'static str> {
+fn fault(
+    s: &Sample8,
+    lane: usize,
+    mask: LobeMask,
+    subject: &dyn ErasedSubject,
+) -> Option<&'static str> {
     let at = |x: &hairis::wide::f32x8| x.as_array()[lane];
-    let (value, pdf, weight, slot) = (s.value.each_ref().map(at), at(&s.pdf), s.weight.each_ref().map(at), at(&s.slot));
+    let (value, pdf, weight, slot) = (
+        s.value.each_ref().map(at),
+        at(&s.pdf),
+        s.weight.each_ref().map(at),
+        at(&s.slot),
+    );
     let wi = [at(&s.wi.x), at(&s.wi.y), at(&s.wi.z)];
     let lobe = subject.slots().find(|lobe| lobe.index() as f32 == slot);
     if !value.iter().chain(&weight).chain([&pdf]).all(|x| sound(*x)) {
@@ -98,12 +126,18 @@ fn fault(s: &Sample8, lane: usize, mask: LobeMask, subject: &dyn ErasedSubject) 
     let live = s.live() >> lane & 1 == 1;
     match lobe {
         None if slot != -1.0 => Some("the slot is none of the model's and not -1"),
-        None if !zero || live || s.lane(lane).is_some() => Some("a discarded sample has a value, density or weight"),
+        None if !zero || live || s.lane(lane).is_some() => {
+            Some("a discarded sample has a value, density or weight")
+        }
         None => None,
         Some(_) if !live || s.lane(lane).is_none() => Some("a sample has a slot, but no density"),
         Some(lobe) if !mask.contains(lobe) => Some("the lobe is masked"),
         Some(_) => {
-            let length = wi.into_iter().map(|x| f64::from(x).powi(2)).sum::<f64>().sqrt();
+            let length = wi
+                .into_iter()
+                .map(|x| f64::from(x).powi(2))
+                .sum::<f64>()
+                .sqrt();
             ((length - 1.0).abs() > 1e-5).then_some("the direction is not a unit vector")
         }
     }
@@ -121,7 +155,11 @@ pub fn results_are_finite(subject: &dyn ErasedSubject) -> Outcome {
 }
 
 /// The same for so many packets per material, of these directions.
-pub(crate) fn sweep(subject: &dyn ErasedSubject, rounds: usize, vector: fn(&mut Draws) -> Direction) -> Outcome {
+pub(crate) fn sweep(
+    subject: &dyn ErasedSubject,
+    rounds: usize,
+    vector: fn(&mut Draws) -> Direction,
+) -> Outcome {
     let mut draws = Draws(0x0707);
     let masks = masks();
     for material in subject.set(Which::WithExtremes).iter() {
@@ -129,14 +167,24 @@ pub(crate) fn sweep(subject: &dyn ErasedSubject, rounds: usize, vector: fn(&mut 
         for round in 0..rounds {
             let hits: [Hit; 8] = core::array::from_fn(|_| {
                 let h = *draws.pick(&[0.0, -0.0, 1.0, -1.0, 1e-40, 0.3, LAST, -1.5, 1e30]);
-                Hit { wo: vector(&mut draws), h }
+                Hit {
+                    wo: vector(&mut draws),
+                    h,
+                }
             });
             let wi: [Direction; 8] = core::array::from_fn(|_| vector(&mut draws));
-            let xi: [[f32; 3]; 8] = core::array::from_fn(|_| core::array::from_fn(|_| number(&mut draws)));
-            let mask = if round % 2 == 0 { LobeMask::ALL } else { *draws.pick(&masks) };
+            let xi: [[f32; 3]; 8] =
+                core::array::from_fn(|_| core::array::from_fn(|_| number(&mut draws)));
+            let mask = if round % 2 == 0 {
+                LobeMask::ALL
+            } else {
+                *draws.pick(&masks)
+            };
             let fail = |what: &str, lane: usize, how: &str, got: String| {
                 let (hit, wi, xi) = (hits[lane], wi[lane], xi[lane]);
-                let message = format!("{what}: {name} {mask:?} lane {lane} {how} {hit:?} {wi:?} xi {xi:?}: {got}");
+                let message = format!(
+                    "{what}: {name} {mask:?} lane {lane} {how} {hit:?} {wi:?} xi {xi:?}: {got}"
+                );
                 Err(Failure::new(NAME, message))
             };
             let (wi8, xi8) = (packet(&wi), triples(&xi));
@@ -157,10 +205,15 @@ pub(crate) fn sweep(subject: &dyn ErasedSubject, rounds: usize, vector: fn(&mut 
                             );
                         }
                     }
-                    for (s, of) in samples.iter().zip(["eight hits", "one hit (that of lane 0)"]) {
+                    for (s, of) in samples
+                        .iter()
+                        .zip(["eight hits", "one hit (that of lane 0)"])
+                    {
                         // Beyond the range of uniform numbers any lobe may be drawn.
                         let within = xi[lane].iter().all(|xi| *xi < 1.0);
-                        if let Some(why) = fault(s, lane, if within { mask } else { LobeMask::ALL }, subject) {
+                        if let Some(why) =
+                            fault(s, lane, if within { mask } else { LobeMask::ALL }, subject)
+                        {
                             return fail(why, lane, &format!("{of} {level}"), format!("{s:?}"));
                         }
                     }
@@ -169,33 +222,55 @@ pub(crate) fn sweep(subject: &dyn ErasedSubject, rounds: usize, vector: fn(&mut 
             let lane = round % 8;
             let gather = material.prepare(hits[lane]).with_lobes(mask);
             let e = gather.eval(wi[lane]);
-            if !sound_eval(&e) || (mask == LobeMask::NONE && (e.pdf != 0.0 || e.value != [0.0; 3])) {
+            if !sound_eval(&e) || (mask == LobeMask::NONE && (e.pdf != 0.0 || e.value != [0.0; 3]))
+            {
                 return fail("a value or density", lane, "scalar", format!("{e:?}"));
             }
             let lobes = gather.lobes(wi[lane]);
             let named = subject.lobe_count();
             for lobe in Lobe::ALL {
-                let beyond = lobe.index() >= named && (lobes[lobe].value != 0.0 || lobes[lobe].pdf != 0.0);
+                let beyond =
+                    lobe.index() >= named && (lobes[lobe].value != 0.0 || lobes[lobe].pdf != 0.0);
                 if !sound_lobe(&lobes[lobe]) || beyond {
-                    return fail("a lobe's value, color or density", lane, "scalar", format!("{lobes:?}"));
+                    return fail(
+                        "a lobe's value, color or density",
+                        lane,
+                        "scalar",
+                        format!("{lobes:?}"),
+                    );
                 }
             }
             // One lane repeats, bit for bit: there is no state.
             let sample = gather.sample(xi[lane]);
             if let Some(s) = sample {
                 let numbers = [s.value, s.weight].concat();
-                let length = f64::from(s.wi.x).hypot(f64::from(s.wi.y)).hypot(f64::from(s.wi.z));
+                let length = f64::from(s.wi.x)
+                    .hypot(f64::from(s.wi.y))
+                    .hypot(f64::from(s.wi.z));
                 let unit = (length - 1.0).abs() <= 1e-5;
                 let masked = !mask.contains(s.lobe) && xi[lane].iter().all(|xi| *xi < 1.0);
-                if !numbers.into_iter().all(sound) || !sound(s.pdf) || s.pdf == 0.0 || !unit || masked {
+                if !numbers.into_iter().all(sound)
+                    || !sound(s.pdf)
+                    || s.pdf == 0.0
+                    || !unit
+                    || masked
+                {
                     return fail("a sample", lane, "scalar", format!("{s:?}"));
                 }
             }
             if sample != gather.sample(xi[lane]) {
-                return fail("a sample differs when it is drawn again", lane, "scalar", format!("{sample:?}"));
+                return fail(
+                    "a sample differs when it is drawn again",
+                    lane,
+                    "scalar",
+                    format!("{sample:?}"),
+                );
             }
             if round % 16 == 0 {
-                for (gather, what) in [(&gather, "an albedo"), (&gather.conserving(), "an albedo of conserving hair")] {
+                for (gather, what) in [
+                    (&gather, "an albedo"),
+                    (&gather.conserving(), "an albedo of conserving hair"),
+                ] {
                     let albedo = gather.albedo().0;
                     if !albedo.as_flattened().iter().all(|x| sound(*x)) {
                         return fail(what, lane, "scalar", format!("{albedo:?}"));

@@ -5,8 +5,8 @@ use core::f32::consts::{FRAC_1_PI, PI};
 use core::ops::Deref;
 use hairis::math::{atan2_upper, sin_cos_half_turn};
 use hairis::{
-    Broadcast, Drawn, Eval, GRAZING, Hit, LaneStruct, Lanes, Lobe, LobeEval, LobeMask, Model, PerLobe, Scalar, Vec3x,
-    lanes3, store3,
+    Broadcast, Drawn, Eval, GRAZING, Hit, LaneStruct, Lanes, Lobe, LobeEval, LobeMask, Model,
+    PerLobe, Scalar, Vec3x, lanes3, store3,
 };
 use hairis_conformance::{Claims, Materials, Subject};
 
@@ -109,12 +109,25 @@ impl<T: LaneStruct> LaneStruct for Faulty<T> {
         if fault == WRONG_PACK {
             items[6] = items[5];
         }
-        Faulty { fault, constants: T::pack(items.map(|item| &item.constants)) }
+        Faulty {
+            fault,
+            constants: T::pack(items.map(|item| &item.constants)),
+        }
     }
 
     fn lane(eight: &Self::Eight, lane: usize) -> Self::One {
         let fault = eight.fault;
-        Faulty { fault, constants: T::lane(&eight.constants, if fault == WRONG_LANE && lane == 3 { 4 } else { lane }) }
+        Faulty {
+            fault,
+            constants: T::lane(
+                &eight.constants,
+                if fault == WRONG_LANE && lane == 3 {
+                    4
+                } else {
+                    lane
+                },
+            ),
+        }
     }
 }
 
@@ -125,7 +138,10 @@ const fn width_of<L>() -> usize {
 
 /// The lobes at a direction, neither with its colour, its cosine, and whether there are any.
 #[inline(always)]
-fn shapes<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, wi: Vec3x<L>) -> ([LobeEval<L>; 2], L, L::Mask) {
+fn shapes<L: Lanes, C: Broadcast<L>>(
+    gather: &Point<C>,
+    wi: Vec3x<L>,
+) -> ([LobeEval<L>; 2], L, L::Mask) {
     let c = L::splat;
     let width: L = gather.width.lanes();
     let cos_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
@@ -135,7 +151,11 @@ fn shapes<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, wi: Vec3x<L>) -> ([LobeE
     // NaN where wo is no direction.
     let sound = L::and(sound, off.abs().lt(c(4.0)));
     let bell = L::quotient(width, off.mul_add(off, width * width));
-    let diffuse = LobeEval { value: c(FRAC_1_PI * FRAC_1_PI), color: lanes3(&gather.kd), pdf: c(0.25 * FRAC_1_PI) };
+    let diffuse = LobeEval {
+        value: c(FRAC_1_PI * FRAC_1_PI),
+        color: lanes3(&gather.kd),
+        pdf: c(0.25 * FRAC_1_PI),
+    };
     let cone = LobeEval {
         value: bell * c(0.5 * FRAC_1_PI * FRAC_1_PI),
         color: lanes3(&gather.ks),
@@ -147,11 +167,18 @@ fn shapes<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, wi: Vec3x<L>) -> ([LobeE
 /// `sin theta_i` at which the cone's cdf is `xi`.
 #[inline(always)]
 fn cone_sine<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, xi: L) -> L {
-    let (one, width, sin_theta_o) = (L::splat(1.0), gather.width.lanes(), gather.sin_theta_o.lanes());
+    let (one, width, sin_theta_o) = (
+        L::splat(1.0),
+        gather.width.lanes(),
+        gather.sin_theta_o.lanes(),
+    );
     let (s, c) = sin_cos_half_turn(xi * gather.span.lanes() * L::splat(0.5));
     let (sin, cos) = ((s + s) * c, c * c - s * s);
     let lo = sin_theta_o - one;
-    let x = L::quotient(width * lo.mul_add(cos, width * sin), width.mul_add(cos, -(lo * sin)));
+    let x = L::quotient(
+        width * lo.mul_add(cos, width * sin),
+        width.mul_add(cos, -(lo * sin)),
+    );
     (-one).max(one.min(x - sin_theta_o))
 }
 
@@ -170,7 +197,9 @@ impl Fiber {
         let mut value = [limit; 3];
         let mut channel = 0;
         while channel < 3 {
-            let mut sum = diffuse.value.mul_add(diffuse.color[channel], cone.value * cone.color[channel]);
+            let mut sum = diffuse
+                .value
+                .mul_add(diffuse.color[channel], cone.value * cone.color[channel]);
             if gather.fault == NOT_RECIPROCAL {
                 sum = sum * wi.x.mul_add(c(0.01), c(1.0));
             }
@@ -219,16 +248,36 @@ impl Model for Fiber {
     fn material(&self, params: &Params) -> Faulty<Material<f32>> {
         let (d, s) = (params.kd.iter().sum::<f32>(), params.ks.iter().sum::<f32>());
         let share = |x: f32| if d + s > 0.0 { x / (d + s) } else { 0.0 };
-        let constants = Material { kd: params.kd, ks: params.ks, width: params.width, selection: [share(d), share(s)] };
-        Faulty { fault: params.fault, constants }
+        let constants = Material {
+            kd: params.kd,
+            ks: params.ks,
+            width: params.width,
+            selection: [share(d), share(s)],
+        };
+        Faulty {
+            fault: params.fault,
+            constants,
+        }
     }
 
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L>>(material: &Faulty<Material<C>>, hit: Hit<L>) -> Faulty<Point<L::Stored>> {
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        material: &Faulty<Material<C>>,
+        hit: Hit<L>,
+    ) -> Faulty<Point<L::Stored>> {
         let (zero, one, tiny) = (L::splat(0.0), L::splat(1.0), L::splat(1e-30));
-        let largest = hit.wo.x.abs().max(hit.wo.y.abs().max(hit.wo.z.abs())).max(tiny);
+        let largest = hit
+            .wo
+            .x
+            .abs()
+            .max(hit.wo.y.abs().max(hit.wo.z.abs()))
+            .max(tiny);
         let Vec3x { x, y, z } = hit.wo;
-        let wo = Vec3x::new(L::quotient(x, largest), L::quotient(y, largest), L::quotient(z, largest));
+        let wo = Vec3x::new(
+            L::quotient(x, largest),
+            L::quotient(y, largest),
+            L::quotient(z, largest),
+        );
         let length = wo.dot(wo).sqrt();
         let mut sin_theta_o = L::select(tiny.lt(length), L::quotient(wo.x, length), zero);
         if material.fault == READS_H {
@@ -239,28 +288,52 @@ impl Model for Fiber {
             sin_theta_o = sin_theta_o + (hit.wo.x * zero + hit.wo.y * zero + hit.wo.z * zero);
         }
         let width = material.width.lanes();
-        let span = atan2_upper(width + width, width.mul_add(width, sin_theta_o.mul_add(sin_theta_o, -one)));
+        let span = atan2_upper(
+            width + width,
+            width.mul_add(width, sin_theta_o.mul_add(sin_theta_o, -one)),
+        );
         let constants = Point {
             kd: store3(lanes3(&material.kd)),
             ks: store3(lanes3(&material.ks)),
             width: width.store(),
-            selection: [material.selection[0].lanes().store(), material.selection[1].lanes().store()],
+            selection: [
+                material.selection[0].lanes().store(),
+                material.selection[1].lanes().store(),
+            ],
             sin_theta_o: sin_theta_o.store(),
             span: span.store(),
         };
-        Faulty { fault: material.fault, constants }
+        Faulty {
+            fault: material.fault,
+            constants,
+        }
     }
 
     #[inline(always)]
     fn restrict<C: Lanes>(gather: &Faulty<Point<C>>, lobes: LobeMask) -> Faulty<Point<C>> {
-        let (d, s) = (C::splat(lobes.factor(DIFFUSE)), C::splat(lobes.factor(CONE)));
+        let (d, s) = (
+            C::splat(lobes.factor(DIFFUSE)),
+            C::splat(lobes.factor(CONE)),
+        );
         let [p_d, p_s] = [gather.selection[0] * d, gather.selection[1] * s];
         // Quotients: that of a number and itself is 1 however it is rounded.
         let sum = (p_d + p_s).max(C::splat(f32::MIN_POSITIVE));
         let times = |x: [C; 3], by: C| [x[0] * by, x[1] * by, x[2] * by];
-        let kd = if gather.fault == MASK_LEAKS { times(gather.kd, d.max(C::splat(1e-4))) } else { times(gather.kd, d) };
-        let constants = Point { kd, ks: times(gather.ks, s), selection: [p_d / sum, p_s / sum], ..gather.constants };
-        Faulty { fault: gather.fault, constants }
+        let kd = if gather.fault == MASK_LEAKS {
+            times(gather.kd, d.max(C::splat(1e-4)))
+        } else {
+            times(gather.kd, d)
+        };
+        let constants = Point {
+            kd,
+            ks: times(gather.ks, s),
+            selection: [p_d / sum, p_s / sum],
+            ..gather.constants
+        };
+        Faulty {
+            fault: gather.fault,
+            constants,
+        }
     }
 
     #[inline(always)]
@@ -270,13 +343,28 @@ impl Model for Fiber {
     }
 
     #[inline(always)]
-    fn lobes<L: Lanes, C: Broadcast<L>>(gather: &Faulty<Point<C>>, wi: Vec3x<L>) -> PerLobe<LobeEval<L>> {
+    fn lobes<L: Lanes, C: Broadcast<L>>(
+        gather: &Faulty<Point<C>>,
+        wi: Vec3x<L>,
+    ) -> PerLobe<LobeEval<L>> {
         let ([diffuse, cone], _, sound) = shapes(gather, wi);
         let zero = L::splat(0.0);
         let limit = L::select(sound, L::splat(f32::MAX), zero);
-        let none = LobeEval { value: zero, color: [zero; 3], pdf: zero };
-        let diffuse = LobeEval { value: diffuse.value.min(limit), pdf: diffuse.pdf.min(limit), ..diffuse };
-        let cone = LobeEval { value: cone.value.min(limit), pdf: cone.pdf.min(limit), ..cone };
+        let none = LobeEval {
+            value: zero,
+            color: [zero; 3],
+            pdf: zero,
+        };
+        let diffuse = LobeEval {
+            value: diffuse.value.min(limit),
+            pdf: diffuse.pdf.min(limit),
+            ..diffuse
+        };
+        let cone = LobeEval {
+            value: cone.value.min(limit),
+            pdf: cone.pdf.min(limit),
+            ..cone
+        };
         PerLobe([diffuse, cone, none, none])
     }
 
@@ -346,11 +434,27 @@ impl Model for Fiber {
             sum = sum + ((L::splat(1.0) - sin) * (L::splat(1.0) + sin)).sqrt();
             step += 1;
         }
-        let loss = if gather.fault == ALBEDO_TOO_LOW { 0.99 } else { 1.0 };
+        let loss = if gather.fault == ALBEDO_TOO_LOW {
+            0.99
+        } else {
+            1.0
+        };
         let seen = gather.sin_theta_o.lanes().lt(L::splat(2.0));
-        let kd = [L::keep(seen, kd[0]), L::keep(seen, kd[1]), L::keep(seen, kd[2])];
-        let by = L::keep(seen, sum * gather.span.lanes() * L::splat(loss * FRAC_1_PI / f32::from(STEPS)));
-        PerLobe([kd, [ks[0] * by, ks[1] * by, ks[2] * by], [zero; 3], [zero; 3]])
+        let kd = [
+            L::keep(seen, kd[0]),
+            L::keep(seen, kd[1]),
+            L::keep(seen, kd[2]),
+        ];
+        let by = L::keep(
+            seen,
+            sum * gather.span.lanes() * L::splat(loss * FRAC_1_PI / f32::from(STEPS)),
+        );
+        PerLobe([
+            kd,
+            [ks[0] * by, ks[1] * by, ks[2] * by],
+            [zero; 3],
+            [zero; 3],
+        ])
     }
 }
 
@@ -366,32 +470,90 @@ impl Subject for Broken {
 
     fn materials(&self) -> Materials<Self> {
         vec![
-            ("everyday", Params { fault: self.0, kd: [0.4, 0.3, 0.2], ks: [0.5, 0.4, 0.6], width: 0.1 }),
-            ("narrow", Params { fault: self.0, kd: [0.1, 0.3, 0.2], ks: [0.5, 0.9, 0.0], width: 0.01 }),
-            ("black", Params { fault: self.0, kd: [0.0; 3], ks: [0.0; 3], width: 0.1 }),
+            (
+                "everyday",
+                Params {
+                    fault: self.0,
+                    kd: [0.4, 0.3, 0.2],
+                    ks: [0.5, 0.4, 0.6],
+                    width: 0.1,
+                },
+            ),
+            (
+                "narrow",
+                Params {
+                    fault: self.0,
+                    kd: [0.1, 0.3, 0.2],
+                    ks: [0.5, 0.9, 0.0],
+                    width: 0.01,
+                },
+            ),
+            (
+                "black",
+                Params {
+                    fault: self.0,
+                    kd: [0.0; 3],
+                    ks: [0.0; 3],
+                    width: 0.1,
+                },
+            ),
         ]
     }
 
     fn extremes(&self) -> Materials<Self> {
-        vec![("cone alone", Params { fault: self.0, kd: [0.0; 3], ks: [1e30, 0.0, 1e-30], width: 0.03 })]
+        vec![(
+            "cone alone",
+            Params {
+                fault: self.0,
+                kd: [0.0; 3],
+                ks: [1e30, 0.0, 1e-30],
+                width: 0.03,
+            },
+        )]
     }
 
     fn white(&self) -> Materials<Self> {
-        vec![("diffuse alone", Params { fault: self.0, kd: [1.0; 3], ks: [0.0; 3], width: 0.1 })]
+        vec![(
+            "diffuse alone",
+            Params {
+                fault: self.0,
+                kd: [1.0; 3],
+                ks: [0.0; 3],
+                width: 0.1,
+            },
+        )]
     }
 
     fn claims(&self) -> Claims {
-        Claims { reciprocal: Some(2e-6), furnace: Some(1e-5), albedo: 2e-3, direction: 2e-5, ..Claims::default() }
+        Claims {
+            reciprocal: Some(2e-6),
+            furnace: Some(1e-5),
+            albedo: 2e-3,
+            direction: 2e-5,
+            ..Claims::default()
+        }
     }
 
     /// Lobe by lobe the weight is `4 kd cos / (pi p)`, or `ks cos span / (pi p)`, where `span <= pi`: `p` is the lobe's share.
     fn weight_bound(&self, params: &Params, _hit: &Hit, lobes: LobeMask) -> Option<f64> {
         let sum = |color: [f32; 3]| color.iter().map(|x| f64::from(*x)).sum::<f64>();
         let most = |color: [f32; 3]| f64::from(color.into_iter().fold(0.0, f32::max));
-        let lit = |lobe, color: [f32; 3]| if lobes.contains(lobe) { color } else { [0.0; 3] };
+        let lit = |lobe, color: [f32; 3]| {
+            if lobes.contains(lobe) {
+                color
+            } else {
+                [0.0; 3]
+            }
+        };
         let (kd, ks) = (lit(DIFFUSE, params.kd), lit(CONE, params.ks));
         let total = sum(kd) + sum(ks);
-        let ratio = |color, by: f64| if sum(color) > 0.0 { by * most(color) * total / sum(color) } else { 0.0 };
+        let ratio = |color, by: f64| {
+            if sum(color) > 0.0 {
+                by * most(color) * total / sum(color)
+            } else {
+                0.0
+            }
+        };
         (total > 0.0).then(|| ratio(kd, 4.0 / core::f64::consts::PI).max(ratio(ks, 1.0)))
     }
 }

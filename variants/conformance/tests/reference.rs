@@ -43,18 +43,28 @@ impl Formulas {
 impl Reference for Formulas {
     fn eval(&self, wi: [f64; 3]) -> [f64; 3] {
         let [diffuse, cone] = self.both(wi);
-        [0, 1, 2].map(|c| (self.kd[c] * diffuse[0] + self.ks[c] * cone[0]) * (1.0 + self.errors.value))
+        [0, 1, 2]
+            .map(|c| (self.kd[c] * diffuse[0] + self.ks[c] * cone[0]) * (1.0 + self.errors.value))
     }
 
     fn pdf(&self, wi: [f64; 3]) -> f64 {
         let [diffuse, cone] = self.both(wi);
         let mixed = self.share() * diffuse[1] + (1.0 - self.share()) * cone[1];
-        if self.lit() { mixed * (1.0 + self.errors.pdf) } else { 0.0 }
+        if self.lit() {
+            mixed * (1.0 + self.errors.pdf)
+        } else {
+            0.0
+        }
     }
 
     fn lobes(&self, wi: [f64; 3]) -> Option<[[f64; 2]; 4]> {
         let [diffuse, cone] = self.both(wi);
-        Some([diffuse, cone.map(|x| x * (1.0 + self.errors.lobe)), [0.0; 2], [0.0; 2]])
+        Some([
+            diffuse,
+            cone.map(|x| x * (1.0 + self.errors.lobe)),
+            [0.0; 2],
+            [0.0; 2],
+        ])
     }
 
     fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
@@ -64,15 +74,26 @@ impl Reference for Formulas {
         let (lo, hi) = (self.angle(-1.0), self.angle(1.0));
         let diffuse = xi[0] < self.share() + self.errors.choice;
         let cone = self.width * (lo + xi[1] * (hi - lo)).tan() - self.sin_theta_o;
-        let sin = if diffuse { 2.0 * xi[1] - 1.0 } else { cone.clamp(-1.0, 1.0) };
+        let sin = if diffuse {
+            2.0 * xi[1] - 1.0
+        } else {
+            cone.clamp(-1.0, 1.0)
+        };
         let (cos, phi) = (((1.0 - sin) * (1.0 + sin)).sqrt(), 2.0 * PI * (xi[2] - 0.5));
         let wi = [sin, cos * phi.cos(), cos * phi.sin()];
-        if cos < 1e-5 { ReferenceSample::Discarded } else { ReferenceSample::Drawn(usize::from(!diffuse), wi) }
+        if cos < 1e-5 {
+            ReferenceSample::Discarded
+        } else {
+            ReferenceSample::Drawn(usize::from(!diffuse), wi)
+        }
     }
 
     // The cone inverts the difference of two arc tangents, rounded to 1e-7 rad, over its width: 2.1e-4 where it is narrow.
     fn tolerance(&self) -> Tolerance {
-        Tolerance { direction: 3e-4, ..Tolerance::default() }
+        Tolerance {
+            direction: 3e-4,
+            ..Tolerance::default()
+        }
     }
 }
 
@@ -82,7 +103,10 @@ impl Formulas {
         let off = u + self.sin_theta_o;
         let bell = self.width / (off * off + self.width * self.width);
         let span = self.angle(1.0) - self.angle(-1.0);
-        [[1.0 / (PI * PI), 0.25 / PI], [bell / (2.0 * PI * PI), bell / (2.0 * PI * span)]]
+        [
+            [1.0 / (PI * PI), 0.25 / PI],
+            [bell / (2.0 * PI * PI), bell / (2.0 * PI * span)],
+        ]
     }
 }
 
@@ -105,10 +129,19 @@ impl Subject for Beside {
     }
 
     fn random_materials(&self) -> Vec<Params> {
-        vec![Params { fault: SOUND, kd: [0.3, 0.0, 0.9], ks: [0.0, 0.7, 0.2], width: 0.4 }]
+        vec![Params {
+            fault: SOUND,
+            kd: [0.3, 0.0, 0.9],
+            ks: [0.0, 0.7, 0.2],
+            width: 0.4,
+        }]
     }
 
-    fn reference(&self, params: &<Self::Model as Model>::Params, hit: &Hit) -> Option<Box<dyn Reference>> {
+    fn reference(
+        &self,
+        params: &<Self::Model as Model>::Params,
+        hit: &Hit,
+    ) -> Option<Box<dyn Reference>> {
         let [u, v, w] = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
         Some(Box::new(Formulas {
             kd: params.kd.map(f64::from),
@@ -129,10 +162,22 @@ fn the_sound_model_agrees() {
 fn each_error_is_found() {
     let none = Errors::default();
     let cases = [
-        (Errors { value: 1e-4, ..none }, "S is off"),
+        (
+            Errors {
+                value: 1e-4,
+                ..none
+            },
+            "S is off",
+        ),
         (Errors { pdf: -1e-4, ..none }, "density is off"),
         (Errors { lobe: 1e-4, ..none }, "lobe is off"),
-        (Errors { choice: 0.01, ..none }, "sample"),
+        (
+            Errors {
+                choice: 0.01,
+                ..none
+            },
+            "sample",
+        ),
     ];
     for (errors, why) in cases {
         crate::assert_fails(agrees_with_reference(&Beside(errors)), why);

@@ -17,13 +17,19 @@ pub struct OffsetNodes<const PACKETS: usize> {
 
 impl<const PACKETS: usize> OffsetNodes<PACKETS> {
     /// The nodes: zeros of the Legendre polynomial of degree `8 PACKETS`, by Newton's method in `f64`.
-    #[expect(clippy::cast_possible_truncation, reason = "nodes and weights in [-1, 1]")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "nodes and weights in [-1, 1]"
+    )]
     #[inline(never)]
     #[must_use]
     pub fn new() -> Self {
         let n = 8 * PACKETS;
         let degree = n as f64;
-        let mut nodes = Self { h: [[0.0; 8]; PACKETS], weight: [[0.0; 8]; PACKETS] };
+        let mut nodes = Self {
+            h: [[0.0; 8]; PACKETS],
+            weight: [[0.0; 8]; PACKETS],
+        };
         for i in 0..n {
             let mut x = libm::cos(core::f64::consts::PI * (i as f64 + 0.75) / (degree + 0.5));
             let mut slope = 1.0;
@@ -54,7 +60,11 @@ impl<const PACKETS: usize> Default for OffsetNodes<PACKETS> {
 impl ChiangDesc {
     /// Nodes of `h` that the far field of this roughness needs: `1.7 / s`, `s` the [scale](Self::azimuthal_scale) of the
     /// azimuth, in whole packets of eight. Below a `beta_n` of .05 it is cheaper to draw `h` per hit.
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 8 to 10,300")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 8 to 10,300"
+    )]
     #[inline]
     #[must_use]
     pub fn far_field_nodes(&self) -> usize {
@@ -88,10 +98,17 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
     /// The shading point of a material seen from `wo`, whose domain is that of [`Bsdf::prepare`].
     #[inline]
     #[must_use]
-    pub fn prepare(bsdf: &Bsdf<Chiang<BY_CHANNEL>>, nodes: &OffsetNodes<PACKETS>, wo: impl Into<Vec3x<f32>>) -> Self {
+    pub fn prepare(
+        bsdf: &Bsdf<Chiang<BY_CHANNEL>>,
+        nodes: &OffsetNodes<PACKETS>,
+        wo: impl Into<Vec3x<f32>>,
+    ) -> Self {
         let Vec3x { x, y, z } = wo.into();
         let wo = Vec3x8::new(f32x8::splat(x), f32x8::splat(y), f32x8::splat(z));
-        Self { near: nodes.h.map(|h| bsdf.prepare8(Hit::new(wo, f32x8::new(h)))), nodes: *nodes }
+        Self {
+            near: nodes.h.map(|h| bsdf.prepare8(Hit::new(wo, f32x8::new(h)))),
+            nodes: *nodes,
+        }
     }
 
     /// S at `wi`, without the cosine, and the density of sampling it, per steradian.
@@ -109,7 +126,10 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
             }
         }
         let [r, g, b, pdf] = sum.map(total);
-        Eval { value: [r, g, b], pdf }
+        Eval {
+            value: [r, g, b],
+            pdf,
+        }
     }
 
     /// A direction for three uniform numbers in `[0, 1)`: the first chooses the node, its lobe and the azimuth. `None` is a
@@ -124,17 +144,29 @@ impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL>
             node += 1;
         }
         let near = self.near.get(node / 8)?.lane(node % 8);
-        let drawn = near.sample([(rest / weight(node)).min(1.0 - f32::EPSILON / 2.0), second, third])?;
+        let drawn = near.sample([
+            (rest / weight(node)).min(1.0 - f32::EPSILON / 2.0),
+            second,
+            third,
+        ])?;
         let Eval { value, pdf } = self.eval_pdf(drawn.wi);
         let by = libm::hypotf(drawn.wi.y, drawn.wi.z) / pdf;
-        (pdf > 1e-30).then(|| Sample { value, pdf, weight: value.map(|s| (s * by).min(f32::MAX)), ..drawn })
+        (pdf > 1e-30).then(|| Sample {
+            value,
+            pdf,
+            weight: value.map(|s| (s * by).min(f32::MAX)),
+            ..drawn
+        })
     }
 
     /// The shading point with only some of its lobes.
     #[inline]
     #[must_use]
     pub fn with_lobes(&self, lobes: LobeMask) -> Self {
-        Self { near: self.near.map(|near| near.with_lobes(lobes)), ..*self }
+        Self {
+            near: self.near.map(|near| near.with_lobes(lobes)),
+            ..*self
+        }
     }
 
     /// Directional albedo of each lobe, linear RGB: the mean over the nodes.

@@ -15,9 +15,16 @@ const SHIFTS: [(&str, Shifts); 2] = [("d-eon", Shifts::DEon), ("small-angle", Sh
 
 impl Parameters for ChiangParams {
     const FIELDS: &'static [Field] = &[
-        Field::new("beta_m", Kind::Number).log_uniform(0.1, 1.0).narrow(0.02),
-        Field::new("beta_n", Kind::Number).log_uniform(0.1, 1.0).narrow(0.02),
-        Field::new("tilt", Kind::Number).uniform(-5.0, 5.0).degrees().optional(),
+        Field::new("beta_m", Kind::Number)
+            .log_uniform(0.1, 1.0)
+            .narrow(0.02),
+        Field::new("beta_n", Kind::Number)
+            .log_uniform(0.1, 1.0)
+            .narrow(0.02),
+        Field::new("tilt", Kind::Number)
+            .uniform(-5.0, 5.0)
+            .degrees()
+            .optional(),
         Field::new("eta", Kind::Number).uniform(1.3, 1.7).optional(),
         Field::new("sigma_a", Kind::Rgb).log_uniform(0.05, 5.0),
         Field::new("melanin", Kind::Numbers(&["eumelanin", "pheomelanin"])).instead_of("sigma_a"),
@@ -29,7 +36,10 @@ impl Parameters for ChiangParams {
     #[inline]
     fn values(&self) -> Values {
         let d = self.desc();
-        let shifts = SHIFTS.iter().find(|(_, shifts)| *shifts == d.shifts).map_or(SHIFTS[0].0, |(word, _)| word);
+        let shifts = SHIFTS
+            .iter()
+            .find(|(_, shifts)| *shifts == d.shifts)
+            .map_or(SHIFTS[0].0, |(word, _)| word);
         Values::none(Self::FIELDS)
             .with("beta_m", &[d.beta_m])
             .with("beta_n", &[d.beta_n])
@@ -52,7 +62,10 @@ impl Parameters for ChiangParams {
             tilt: number("tilt"),
             eta: number("eta"),
             sigma_a: values.get("sigma_a"),
-            shifts: SHIFTS.iter().find(|(one, _)| *one == word).map_or(Shifts::default(), |(_, shifts)| *shifts),
+            shifts: SHIFTS
+                .iter()
+                .find(|(one, _)| *one == word)
+                .map_or(Shifts::default(), |(_, shifts)| *shifts),
         };
         let desc = if values.has("melanin") {
             let [eumelanin, pheomelanin] = values.get("melanin");
@@ -124,7 +137,11 @@ impl<const BY_CHANNEL: bool> Registered for Chiang<BY_CHANNEL> {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn reference_at<T: Real>(formulas: &ChiangConstants<T>, wo: [T; 3], h: T) -> ChiangReference<T> {
+    fn reference_at<T: Real>(
+        formulas: &ChiangConstants<T>,
+        wo: [T; 3],
+        h: T,
+    ) -> ChiangReference<T> {
         formulas.prepare(wo, h)
     }
 
@@ -143,5 +160,9 @@ impl<const BY_CHANNEL: bool> Registered for Chiang<BY_CHANNEL> {
 #[cfg(feature = "textbook")]
 #[inline]
 const fn selection<const BY_CHANNEL: bool>() -> Selection {
-    if BY_CHANNEL { Selection::ByChannel } else { Selection::Mean }
+    if BY_CHANNEL {
+        Selection::ByChannel
+    } else {
+        Selection::Mean
+    }
 }

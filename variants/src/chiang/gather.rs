@@ -68,7 +68,10 @@ lane_struct! {
 
 impl ChiangMaterial<f32> {
     /// The material of checked parameters.
-    #[expect(clippy::cast_possible_truncation, reason = "constants of a material, computed in f64")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "constants of a material, computed in f64"
+    )]
     #[inline]
     #[must_use]
     pub(super) fn new(params: &ChiangParams) -> Self {
@@ -105,7 +108,10 @@ pub(super) type Four<L> = Pair<Pair<L>>;
 /// The four numbers of a table as one packet.
 #[inline(always)]
 pub(super) fn four<L: Lanes, C: Broadcast<L>>(x: &[C; 4]) -> Four<L> {
-    Pair(Pair(x[0].lanes(), x[1].lanes()), Pair(x[2].lanes(), x[3].lanes()))
+    Pair(
+        Pair(x[0].lanes(), x[1].lanes()),
+        Pair(x[2].lanes(), x[3].lanes()),
+    )
 }
 
 /// The same number for all four.
@@ -123,7 +129,10 @@ pub(super) fn apart<L: Lanes>(Pair(Pair(a, b), Pair(c, d)): Four<L>) -> [L; 4] {
 /// Product of two complex numbers.
 #[inline(always)]
 fn product<L: Lanes>([a, b]: [L; 2], [c, d]: [L; 2]) -> [L; 2] {
-    [L::difference_of_products(a, c, b, d), L::difference_of_products(a, d, -b, c)]
+    [
+        L::difference_of_products(a, c, b, d),
+        L::difference_of_products(a, d, -b, c),
+    ]
 }
 
 /// Fresnel reflectance and transmittance of unpolarised light at the cosine `c`; `k` is `sqrt(eta^2 - 1 + c^2)`.
@@ -143,18 +152,35 @@ fn fresnel<L: Lanes>(c: L, k: L, eta_sq: L, eta_sq_less_one: L) -> [L; 2] {
     let r_p = eta_sq_less_one * t_p * (c * c).mul_sub(eta_sq + one, one);
     let reflected = (L::splat(0.5) * r_s.mul_add(r_s, r_p * r_p)).min(one);
     let passed = (c + c) * k * eta_sq.mul_add(t_p, t_s);
-    [L::select(none, L::splat(0.0), reflected), L::select(none, one, passed)]
+    [
+        L::select(none, L::splat(0.0), reflected),
+        L::select(none, one, passed),
+    ]
 }
 
 /// The shading point of a material hit from `hit.wo` at `hit.h`.
 #[inline(always)]
-pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit<L>) -> ChiangGather<L::Stored> {
+pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
+    m: &ChiangMaterial<C>,
+    hit: Hit<L>,
+) -> ChiangGather<L::Stored> {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let Direction { vector, sin_theta: sin_o, cos_theta: cos_o, .. } = Direction::normalized(hit.wo);
+    let Direction {
+        vector,
+        sin_theta: sin_o,
+        cos_theta: cos_o,
+        ..
+    } = Direction::normalized(hit.wo);
     let off_axis = c(1e-18).lt(cos_o);
-    let inv_cos_o = L::quotient(L::select(off_axis, one, zero), L::select(off_axis, cos_o, one));
-    let azimuth_o = [L::select(off_axis, vector.y * inv_cos_o, one), vector.z * inv_cos_o];
+    let inv_cos_o = L::quotient(
+        L::select(off_axis, one, zero),
+        L::select(off_axis, cos_o, one),
+    );
+    let azimuth_o = [
+        L::select(off_axis, vector.y * inv_cos_o, one),
+        vector.z * inv_cos_o,
+    ];
 
     // The angles about the fibre: of the hit, from its normal to wo, and of the ray inside.
     let sin_gamma_o = hit.h;
@@ -182,7 +208,8 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
         attenuation[3 + channel] = tt.store();
         attenuation[6 + channel] = trt.store();
         // Over the loss of a passage, `1 - F T`: the light that does not return to the inside.
-        attenuation[9 + channel] = L::quotient(trt * (f * t), f.mul_add(absorbed, passed).max(c(1e-30))).store();
+        attenuation[9 + channel] =
+            L::quotient(trt * (f * t), f.mul_add(absorbed, passed).max(c(1e-30))).store();
         channel += 1;
     }
 
@@ -194,9 +221,14 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
     let tt = product(r, passage);
     let trt = product(tt, passage);
     let rest = product(trt, passage);
-    let [v, w] = [Pair(Pair(r[0], tt[0]), Pair(trt[0], rest[0])), Pair(Pair(r[1], tt[1]), Pair(trt[1], rest[1]))];
+    let [v, w] = [
+        Pair(Pair(r[0], tt[0]), Pair(trt[0], rest[0])),
+        Pair(Pair(r[1], tt[1]), Pair(trt[1], rest[1])),
+    ];
     // Back to unit length, from which rounding has taken little.
-    let by = v.mul_add(v, w * w).mul_add(Four::splat(-0.5), Four::splat(1.5));
+    let by = v
+        .mul_add(v, w * w)
+        .mul_add(Four::splat(-0.5), Four::splat(1.5));
 
     // Cones: theta_o less the shift; past the pole it folds back.
     let (sin, cos) = (four(&m.sin_shift), four(&m.cos_shift));
@@ -208,7 +240,10 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
         sin_cone: store4(apart(sin_cone)),
         cos_cone: store4(apart(cos_cone)),
         concentration: store4(apart(concentration)),
-        spread: store4(apart(Four::quotient(same(one), concentration.max(same(c(1e-8))).sqrt()))),
+        spread: store4(apart(Four::quotient(
+            same(one),
+            concentration.max(same(c(1e-8))).sqrt(),
+        ))),
         azimuth_v: store4(apart(v * by)),
         azimuth_w: store4(apart(w * by)),
         attenuation,
@@ -221,7 +256,11 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(m: &ChiangMaterial<C>, hit: Hit
 /// Attenuation of lobe `p`, linear RGB.
 #[inline(always)]
 pub(super) fn attenuation<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, p: usize) -> [L; 3] {
-    lanes3(&[gather.attenuation[3 * p], gather.attenuation[3 * p + 1], gather.attenuation[3 * p + 2]])
+    lanes3(&[
+        gather.attenuation[3 * p],
+        gather.attenuation[3 * p + 1],
+        gather.attenuation[3 * p + 2],
+    ])
 }
 
 /// Attenuation of the four lobes in one channel.
@@ -234,7 +273,9 @@ fn channel<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, c: usize) -> Fou
 /// The mean of each lobe's attenuation over the channels.
 #[inline(always)]
 pub(super) fn mean_shares<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>) -> PerLobe<L> {
-    PerLobe(apart((channel(gather, 0) + channel(gather, 1) + channel(gather, 2)) * Four::splat(1.0 / 3.0)))
+    PerLobe(apart(
+        (channel(gather, 0) + channel(gather, 1) + channel(gather, 2)) * Four::splat(1.0 / 3.0),
+    ))
 }
 
 /// `sqrt(sum over the channels of (A_pc / mu_c)^2)`, `mu_c` the sum over the lobes.
@@ -246,7 +287,11 @@ pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather
         let lobes: Four<L> = channel(gather, c);
         let [r, tt, trt, rest] = apart(lobes);
         let total = (r + tt) + (trt + rest);
-        let share = lobes * same(L::keep(L::splat(f32::MIN_POSITIVE).lt(total), L::quotient(L::splat(1.0), total)));
+        let share = lobes
+            * same(L::keep(
+                L::splat(f32::MIN_POSITIVE).lt(total),
+                L::quotient(L::splat(1.0), total),
+            ));
         sum = share.mul_add(share, sum);
         c += 1;
     }

@@ -20,8 +20,14 @@ pub(super) const SERIES: [f32; 8] = [
     3.643_167_776e-12,
 ];
 /// `exp(-x) I0(x) sqrt(x)` in powers of `1 / x`, above it.
-pub(super) const TAIL: [f32; 6] =
-    [0.398_942_300_81, 0.049_868_737_73, 0.027_805_208_42, 0.037_460_558_19, -0.055_432_330_86, 0.535_620_729_8];
+pub(super) const TAIL: [f32; 6] = [
+    0.398_942_300_81,
+    0.049_868_737_73,
+    0.027_805_208_42,
+    0.037_460_558_19,
+    -0.055_432_330_86,
+    0.535_620_729_8,
+];
 
 /// Density `M N` of each lobe, per steradian, and `1 / cos theta_i`.
 ///
@@ -29,7 +35,10 @@ pub(super) const TAIL: [f32; 6] =
 /// `I0e(x) = exp(-x) I0(x)`, is d'Eon's term without its overflow. `N = e / (s (1 + e)^2 K)`, with `e = exp(-|delta| / s)`.
 /// One exponential is that of `M`, of the Bessel function's series and of `N` together: no product of two tails is denormal.
 #[inline(always)]
-pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi: &Direction<L>) -> ([L; 4], L) {
+pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
+    gather: &ChiangGather<C>,
+    wi: &Direction<L>,
+) -> ([L; 4], L) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     let (m, cos_i) = (&gather.widths, wi.cos_theta);
@@ -40,12 +49,22 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     // |delta| / 2 of R, TT and TRT, from the tangent of half of it or of what it lacks of an eighth turn. The rest has no
     // azimuth: TRT's is in its place, and costs nothing.
     let [v, w] = [&gather.azimuth_v, &gather.azimuth_w];
-    let (v, w) = (four(&[v[0], v[1], v[2], v[2]]), four(&[w[0], w[1], w[2], w[2]]));
+    let (v, w) = (
+        four(&[v[0], v[1], v[2], v[2]]),
+        four(&[w[0], w[1], w[2], w[2]]),
+    );
     let (wi_v, wi_w) = (same(wi.vector.y), same(wi.vector.z));
     let (cross, dot) = (v.mul_sub(wi_w, w * wi_v).abs(), v.mul_add(wi_v, w * wi_w));
-    let angle = atan_eighth_turn(Four::quotient(cross.min(dot.abs()), same(cos_i) + cross.max(dot.abs())));
+    let angle = atan_eighth_turn(Four::quotient(
+        cross.min(dot.abs()),
+        same(cos_i) + cross.max(dot.abs()),
+    ));
     let half = Four::select(dot.abs().lt(cross), Four::splat(FRAC_PI_4) - angle, angle);
-    let half = Four::select(dot.lt(Four::splat(0.0)), Four::splat(FRAC_PI_2) - half, half);
+    let half = Four::select(
+        dot.lt(Four::splat(0.0)),
+        Four::splat(FRAC_PI_2) - half,
+        half,
+    );
     let exponent = half * same(m.four_inv_scale.lanes());
 
     // (1 + e)^-2, by one division.
@@ -59,7 +78,10 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
 
     // The chord between theta_i and -theta' on the unit circle, squared: 4 sin^2 of half their angle. Of no half angles: their
     // roundings would count twice, and those of the cosines vanish at the poles with them.
-    let (across, along) = (same(cos_i) - four(&gather.cos_cone), same(wi.sin_theta) + four(&gather.sin_cone));
+    let (across, along) = (
+        same(cos_i) - four(&gather.cos_cone),
+        same(wi.sin_theta) + four(&gather.sin_cone),
+    );
     let chord_sq = across.mul_add(across, along * along);
     let x = same(cos_i) * four(&gather.concentration);
     let small = x.lt(Four::splat(SEAM));
@@ -67,7 +89,11 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, wi:
     let root = same(inv_root_i) * four(&gather.spread);
     // Either is held within bounds that it keeps where it is chosen: elsewhere powers would overflow.
     let (below, above) = (x.min(Four::splat(8.0)), root.min(Four::splat(1.0)));
-    let bessel = Four::select(small, polynomial(below * below, SERIES), polynomial(above * above, TAIL) * root);
+    let bessel = Four::select(
+        small,
+        polynomial(below * below, SERIES),
+        polynomial(above * above, TAIL) * root,
+    );
     let sum = chord_sq.mul_add(four(&m.inv_variance), exponent) + Four::keep(small, x + x);
     // Alone: in vectors of three lobes, what nobody uses overflows.
     let densities = gaussian(sum).alone() * bessel * (logistic * four(&m.norm));

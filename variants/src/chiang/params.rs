@@ -80,9 +80,18 @@ impl ChiangDesc {
     /// If a concentration is negative or not finite.
     #[inline]
     pub fn with_melanin(self, eumelanin: f32, pheomelanin: f32) -> Result<Self, ParamError> {
-        check(is_intensity(eumelanin), ParamError::Scalar("eumelanin", eumelanin))?;
-        check(is_intensity(pheomelanin), ParamError::Scalar("pheomelanin", pheomelanin))?;
-        Ok(Self { sigma_a: melanin(eumelanin, pheomelanin).map(|c| c.min(f32::MAX)), ..self })
+        check(
+            is_intensity(eumelanin),
+            ParamError::Scalar("eumelanin", eumelanin),
+        )?;
+        check(
+            is_intensity(pheomelanin),
+            ParamError::Scalar("pheomelanin", pheomelanin),
+        )?;
+        Ok(Self {
+            sigma_a: melanin(eumelanin, pheomelanin).map(|c| c.min(f32::MAX)),
+            ..self
+        })
     }
 
     /// The same fibre with an artist's melanin: how dark, and how red.
@@ -131,7 +140,10 @@ impl ChiangDesc {
             let log = libm::logf(c.max(1e-3)) * by;
             log * log
         };
-        Ok(Self { sigma_a: color.map(absorption), ..self })
+        Ok(Self {
+            sigma_a: color.map(absorption),
+            ..self
+        })
     }
 
     /// The colour of a mass of such hair: the inverse of [`with_color`](Self::with_color).
@@ -139,7 +151,8 @@ impl ChiangDesc {
     #[must_use]
     pub fn color(&self) -> [f32; 3] {
         let scale = color_denominator(self.beta_n);
-        self.sigma_a.map(|sigma| libm::expf(-libm::sqrtf(sigma) * scale))
+        self.sigma_a
+            .map(|sigma| libm::expf(-libm::sqrtf(sigma) * scale))
     }
 
     /// Longitudinal width of R, degrees: `sqrt(v)` of [`longitudinal_variance`](Self::longitudinal_variance).
@@ -180,7 +193,9 @@ impl ChiangDesc {
     #[inline]
     pub(super) fn scale(&self) -> f64 {
         let n = f64::from(self.beta_n);
-        libm::sqrt(core::f64::consts::PI / 8.0) * n * (0.265 + n * (1.194 + 5.372 * libm::pow(n, 20.0)))
+        libm::sqrt(core::f64::consts::PI / 8.0)
+            * n
+            * (0.265 + n * (1.194 + 5.372 * libm::pow(n, 20.0)))
     }
 
     /// Shifts of `theta_i + theta_o` for R, TT, TRT and the rest, rad.
@@ -212,10 +227,17 @@ impl Default for ChiangDesc {
 /// Absorption of eumelanin and pheomelanin: d'Eon et al. 2011.
 const fn melanin(eumelanin: f32, pheomelanin: f32) -> [f32; 3] {
     let (e, f) = (eumelanin, pheomelanin);
-    [0.419 * e + 0.187 * f, 0.697 * e + 0.4 * f, 1.37 * e + 1.05 * f]
+    [
+        0.419 * e + 0.187 * f,
+        0.697 * e + 0.4 * f,
+        1.37 * e + 1.05 * f,
+    ]
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "rounding is what the call is for; no value here overflows")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rounding is what the call is for; no value here overflows"
+)]
 #[inline]
 fn rounded(value: f64) -> f32 {
     value as f32

@@ -6,7 +6,9 @@ mod cone;
 mod parameters;
 
 use super::params::Selection;
-use crate::reference::{Fixed, choose, discarded, finish_sample, fixed, inclination, mix, sum_to_one};
+use crate::reference::{
+    Fixed, choose, discarded, finish_sample, fixed, inclination, mix, sum_to_one,
+};
 use azimuth::Logistic;
 use cone::Cone;
 use hairis::reference::{LobeAt, Real, Reference, ReferenceSample};
@@ -71,7 +73,12 @@ impl<T: Real> ChiangConstants<T> {
             sigma_a: parameters.sigma_a,
             selection,
             variances: parameters.variances(),
-            shifts: PerLobe(parameters.shifts_rad().0.map(|shift| [shift.sin(), shift.cos()])),
+            shifts: PerLobe(
+                parameters
+                    .shifts_rad()
+                    .0
+                    .map(|shift| [shift.sin(), shift.cos()]),
+            ),
             logistic: Logistic::new(parameters.scale()),
         }
     }
@@ -82,20 +89,32 @@ impl<T: Real> ChiangConstants<T> {
     pub fn prepare(&self, wo: [T; 3], h: T) -> ChiangReference<T> {
         let number = T::from_f64;
         let (zero, one, two) = (T::default(), number(1.0), number(2.0));
-        let Fixed { sin_theta_o, cos_theta_o, phi_o } = fixed(wo);
+        let Fixed {
+            sin_theta_o,
+            cos_theta_o,
+            phi_o,
+        } = fixed(wo);
         let h = h.max(-one).min(one);
 
         // Cones about theta' = theta_o - shift, folded back beyond a pole.
         let cone = |lobe: Lobe| {
             let [sin, cos] = self.shifts[lobe];
             let folded = (cos_theta_o * cos + sin_theta_o * sin).abs();
-            Cone::new(self.variances[lobe], sin_theta_o * cos - cos_theta_o * sin, folded)
+            Cone::new(
+                self.variances[lobe],
+                sin_theta_o * cos - cos_theta_o * sin,
+                folded,
+            )
         };
 
         // The refracted ray: sin gamma_t = h / eta', of the projected index eta' = sqrt(eta^2 - sin^2 theta_o) / cos theta_o.
         let contrast = (self.eta - one) * (self.eta + one);
         let root = (contrast + cos_theta_o * cos_theta_o).sqrt();
-        let sin_gamma_t = if root > zero { (h * cos_theta_o / root).max(-one).min(one) } else { h };
+        let sin_gamma_t = if root > zero {
+            (h * cos_theta_o / root).max(-one).min(one)
+        } else {
+            h
+        };
         let cos_gamma_t = ((one - sin_gamma_t) * (one + sin_gamma_t)).sqrt();
         let (gamma_o, gamma_t) = (h.asin(), sin_gamma_t.asin());
         let centre = |p: f64| number(2.0 * p) * gamma_t - two * gamma_o + number(p) * T::PI;
@@ -104,7 +123,11 @@ impl<T: Real> ChiangConstants<T> {
 
         let cos_gamma_o = ((one - h) * (one + h)).sqrt();
         let [fresnel, passed] = fresnel(contrast, self.eta, cos_theta_o * cos_gamma_o);
-        let attenuation = attenuation(fresnel, passed, self.sigma_a.map(|sigma| sigma * path_length));
+        let attenuation = attenuation(
+            fresnel,
+            passed,
+            self.sigma_a.map(|sigma| sigma * path_length),
+        );
         ChiangReference {
             phi_o,
             cones: PerLobe([cone(Lobe::R), cone(Lobe::TT), cone(Lobe::TRT), cone(REST)]),
@@ -122,7 +145,12 @@ impl<T: Real> ChiangReference<T> {
     /// Computes the constants of `parameters`, `wo` and the offset `h`; for many hits, see [`ChiangConstants`].
     #[inline]
     #[must_use]
-    pub fn prepare(parameters: &ChiangParameters<T>, selection: Selection, wo: [T; 3], h: T) -> Self {
+    pub fn prepare(
+        parameters: &ChiangParameters<T>,
+        selection: Selection,
+        wo: [T; 3],
+        h: T,
+    ) -> Self {
         ChiangConstants::new(parameters, selection).prepare(wo, h)
     }
 
@@ -186,7 +214,8 @@ impl<T: Real> ChiangReference<T> {
         if lobe == REST {
             T::from_f64(0.5) / T::PI
         } else {
-            self.logistic.density(azimuth::wrap(phi - self.centres[lobe]))
+            self.logistic
+                .density(azimuth::wrap(phi - self.centres[lobe]))
         }
     }
 
@@ -204,8 +233,13 @@ impl<T: Real> ChiangReference<T> {
     fn lobes_at(&self, sin_theta_i: T, cos_theta_i: T, phi: T) -> PerLobe<LobeAt<T>> {
         let mut lobes = PerLobe::default();
         for lobe in Lobe::ALL {
-            let pdf = self.cones[lobe].density(sin_theta_i, cos_theta_i) * self.azimuthal(lobe, phi);
-            lobes[lobe] = LobeAt { value: pdf / cos_theta_i, color: self.attenuation[lobe], pdf };
+            let pdf =
+                self.cones[lobe].density(sin_theta_i, cos_theta_i) * self.azimuthal(lobe, phi);
+            lobes[lobe] = LobeAt {
+                value: pdf / cos_theta_i,
+                color: self.attenuation[lobe],
+                pdf,
+            };
         }
         lobes
     }
@@ -224,14 +258,21 @@ impl<T: Real> ChiangReference<T> {
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
-        let Some((lobe, rest)) = choose(&self.probabilities, xi[0]) else { return discarded() };
+        let Some((lobe, rest)) = choose(&self.probabilities, xi[0]) else {
+            return discarded();
+        };
         let inclination @ [sin_theta_i, cos_theta_i] = self.sample_inclination(lobe, xi[1], xi[2]);
         let phi = self.centres[lobe] + self.sample_azimuth(lobe, rest);
         if cos_theta_i < crate::reference::grazing() {
             return discarded();
         }
         let lobes = self.lobes_at(sin_theta_i, cos_theta_i, phi);
-        finish_sample(lobe, inclination, self.phi_o + phi, mix(&lobes, &self.probabilities))
+        finish_sample(
+            lobe,
+            inclination,
+            self.phi_o + phi,
+            mix(&lobes, &self.probabilities),
+        )
     }
 
     /// Sampled sine and cosine of `theta_i` of a lobe: d'Eon et al. 2013.
@@ -259,14 +300,22 @@ impl<T: Real> ChiangReference<T> {
     #[inline]
     #[must_use]
     pub fn sample_azimuth(&self, lobe: Lobe, xi: T) -> T {
-        if lobe == REST { T::PI * (xi + xi - T::from_f64(1.0)) } else { self.logistic.sample(xi) }
+        if lobe == REST {
+            T::PI * (xi + xi - T::from_f64(1.0))
+        } else {
+            self.logistic.sample(xi)
+        }
     }
 
     /// The inverse of [`sample_azimuth`](Self::sample_azimuth).
     #[inline]
     #[must_use]
     pub fn cdf_azimuth(&self, lobe: Lobe, x: T) -> T {
-        if lobe == REST { T::from_f64(0.5) * (x / T::PI + T::from_f64(1.0)) } else { self.logistic.cdf(x) }
+        if lobe == REST {
+            T::from_f64(0.5) * (x / T::PI + T::from_f64(1.0))
+        } else {
+            self.logistic.cdf(x)
+        }
     }
 }
 
@@ -281,8 +330,12 @@ fn fresnel<T: Real>(contrast: T, eta: T, cos: T) -> [T; 2] {
     }
     let parallel_sum = eta_sq * cos + inner;
     let [perpendicular, parallel] = [(cos - inner) / outer, (eta_sq * cos - inner) / parallel_sum];
-    let passed = two * cos * inner * (one / (outer * outer) + eta_sq / (parallel_sum * parallel_sum));
-    [half * (perpendicular * perpendicular + parallel * parallel), passed]
+    let passed =
+        two * cos * inner * (one / (outer * outer) + eta_sq / (parallel_sum * parallel_sum));
+    [
+        half * (perpendicular * perpendicular + parallel * parallel),
+        passed,
+    ]
 }
 
 /// A of R, TT, TRT and of all the rest, a geometric series: Chiang et al. 2016, section 3; `depth` is that of one passage.
@@ -305,12 +358,21 @@ fn probabilities<T: Real>(attenuation: &PerLobe<[T; 3]>, selection: Selection) -
     let zero = T::default();
     let mut returned = [zero; 3];
     for (channel, sum) in returned.iter_mut().enumerate() {
-        *sum = attenuation.0.into_iter().fold(zero, |sum, lobe| sum + lobe[channel]);
+        *sum = attenuation
+            .0
+            .into_iter()
+            .fold(zero, |sum, lobe| sum + lobe[channel]);
     }
     sum_to_one(attenuation.0.map(|lobe| match selection {
         Selection::Mean => lobe[0] + lobe[1] + lobe[2],
         Selection::ByChannel => {
-            let share = |c: usize| if returned[c] > zero { lobe[c] / returned[c] } else { zero };
+            let share = |c: usize| {
+                if returned[c] > zero {
+                    lobe[c] / returned[c]
+                } else {
+                    zero
+                }
+            };
             let [r, g, b] = [share(0), share(1), share(2)];
             (r * r + g * g + b * b).sqrt()
         }

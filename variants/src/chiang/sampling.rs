@@ -7,7 +7,11 @@ use hairis::{Broadcast, Direction, Lanes};
 
 /// A direction of a lobe: the angle from its cone, the turn about the cone, and the azimuth.
 #[inline(always)]
-pub(super) fn sample<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, lobe: L::Index, xi: [L; 3]) -> Direction<L> {
+pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
+    gather: &ChiangGather<C>,
+    lobe: L::Index,
+    xi: [L; 3],
+) -> Direction<L> {
     let c = L::splat;
     let (zero, one, two) = (c(0.0), c(1.0), c(2.0));
     let m = &gather.widths;
@@ -19,7 +23,10 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, lobe: 
     let radius = (drop * (two - drop)).sqrt();
     let (minus_cos, sin) = sin_cos_half_turn((xi[2] - c(0.5)) * c(PI));
     let (towards, across) = (-(radius * minus_cos), radius * sin);
-    let (sin_cone, cos_cone) = (C::look_up(&gather.sin_cone, lobe), C::look_up(&gather.cos_cone, lobe));
+    let (sin_cone, cos_cone) = (
+        C::look_up(&gather.sin_cone, lobe),
+        C::look_up(&gather.cos_cone, lobe),
+    );
     let along = one - drop;
     let sin_i = towards.mul_sub(cos_cone, along * sin_cone);
     let plane = along.mul_add(cos_cone, towards * sin_cone);
@@ -32,10 +39,15 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, lobe: 
     let logistic = log2(ratio) * (m.scale.lanes() * c(0.5 * LN_2));
     let uniform = (xi[0] - c(0.5)) * c(PI);
     let half_turn = c(0.5 * PI);
-    let half = L::select(L::is_index(lobe, 3), uniform, logistic).min(half_turn).max(-half_turn);
+    let half = L::select(L::is_index(lobe, 3), uniform, logistic)
+        .min(half_turn)
+        .max(-half_turn);
     let (sin, cos) = sin_cos_half_turn(half);
     let (sin_x, cos_x) = ((sin + sin) * cos, cos.mul_sub(cos, sin * sin));
-    let (v, w) = (C::look_up(&gather.azimuth_v, lobe), C::look_up(&gather.azimuth_w, lobe));
+    let (v, w) = (
+        C::look_up(&gather.azimuth_v, lobe),
+        C::look_up(&gather.azimuth_w, lobe),
+    );
     let phi = [v.mul_add(sin_x, w * cos_x), v.mul_sub(cos_x, w * sin_x)];
     Direction::from_sin_cos([sin_i, cos_i], phi)
 }

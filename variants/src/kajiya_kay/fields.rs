@@ -11,13 +11,18 @@ use crate::Accuracy;
 #[cfg(feature = "textbook")]
 use hairis::reference::Real;
 
-const FORMS: [(&str, Form); 2] = [("reciprocal", Form::Reciprocal), ("published", Form::Published)];
+const FORMS: [(&str, Form); 2] = [
+    ("reciprocal", Form::Reciprocal),
+    ("published", Form::Published),
+];
 
 impl Parameters for KajiyaKayParams {
     const FIELDS: &'static [Field] = &[
         Field::new("kd", Kind::Rgb).uniform(0.0, 0.6),
         Field::new("ks", Kind::Rgb).uniform(0.0, 0.4),
-        Field::new("exponent", Kind::Number).log_uniform(2.0, 500.0).narrow(1000.0),
+        Field::new("exponent", Kind::Number)
+            .log_uniform(2.0, 500.0)
+            .narrow(1000.0),
         Field::new("form", Kind::Word(&[FORMS[0].0, FORMS[1].0])).optional(),
     ];
     const PRESETS: &'static [(&'static str, Self)] = &Self::presets();
@@ -25,7 +30,10 @@ impl Parameters for KajiyaKayParams {
     #[inline]
     fn values(&self) -> Values {
         let d = self.desc();
-        let form = FORMS.iter().find(|(_, form)| *form == d.form).map_or(FORMS[0].0, |(word, _)| word);
+        let form = FORMS
+            .iter()
+            .find(|(_, form)| *form == d.form)
+            .map_or(FORMS[0].0, |(word, _)| word);
         Values::none(Self::FIELDS)
             .with("kd", &d.kd)
             .with("ks", &d.ks)
@@ -36,9 +44,17 @@ impl Parameters for KajiyaKayParams {
     #[inline]
     fn from_values(values: &Values) -> Result<Self, ParamError> {
         let word = values.word("form");
-        let form = FORMS.iter().find(|(one, _)| *one == word).map_or(Form::default(), |(_, form)| *form);
+        let form = FORMS
+            .iter()
+            .find(|(one, _)| *one == word)
+            .map_or(Form::default(), |(_, form)| *form);
         let [exponent] = values.get("exponent");
-        Self::new(&KajiyaKayDesc { kd: values.get("kd"), ks: values.get("ks"), exponent, form })
+        Self::new(&KajiyaKayDesc {
+            kd: values.get("kd"),
+            ks: values.get("ks"),
+            exponent,
+            form,
+        })
     }
 }
 
@@ -70,15 +86,27 @@ impl Registered for KajiyaKay {
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn exact_formulas<T: Real>(params: &KajiyaKayParams, exact: &Values<T>) -> KajiyaKayConstants<T> {
+    fn exact_formulas<T: Real>(
+        params: &KajiyaKayParams,
+        exact: &Values<T>,
+    ) -> KajiyaKayConstants<T> {
         let [exponent] = exact.get("exponent");
         let form = params.desc().form;
-        KajiyaKayConstants::new(&KajiyaKayParameters { kd: exact.get("kd"), ks: exact.get("ks"), exponent, form })
+        KajiyaKayConstants::new(&KajiyaKayParameters {
+            kd: exact.get("kd"),
+            ks: exact.get("ks"),
+            exponent,
+            form,
+        })
     }
 
     #[cfg(feature = "textbook")]
     #[inline]
-    fn reference_at<T: Real>(formulas: &KajiyaKayConstants<T>, wo: [T; 3], _h: T) -> KajiyaKayReference<T> {
+    fn reference_at<T: Real>(
+        formulas: &KajiyaKayConstants<T>,
+        wo: [T; 3],
+        _h: T,
+    ) -> KajiyaKayReference<T> {
         formulas.prepare(wo)
     }
 
@@ -87,7 +115,9 @@ impl Registered for KajiyaKay {
     #[inline]
     fn slack(params: &KajiyaKayParams, _wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
         let (desc, [_, v, w]) = (params.desc(), wi);
-        let peak = 0.5 / (core::f64::consts::PI * super::cosine_integral(f64::from(desc.exponent) + 2.0));
-        desc.ks.map(|ks| 1e-17 * f64::from(ks) * peak / libm::hypot(v, w))
+        let peak =
+            0.5 / (core::f64::consts::PI * super::cosine_integral(f64::from(desc.exponent) + 2.0));
+        desc.ks
+            .map(|ks| 1e-17 * f64::from(ks) * peak / libm::hypot(v, w))
     }
 }

@@ -39,7 +39,12 @@ pub struct KajiyaKayDesc {
 }
 
 impl KajiyaKayDesc {
-    const DEFAULT: Self = Self { kd: [0.3; 3], ks: [0.2; 3], exponent: 80.0, form: Form::Reciprocal };
+    const DEFAULT: Self = Self {
+        kd: [0.3; 3],
+        ks: [0.2; 3],
+        exponent: 80.0,
+        form: Form::Reciprocal,
+    };
 
     /// The same fibre with a highlight of this half width at half height in `theta_i + theta_o`.
     ///
@@ -58,11 +63,17 @@ impl KajiyaKayDesc {
     #[inline]
     pub fn with_width_deg(self, width_deg: f32) -> Result<Self, ParamError> {
         let [least, most] = WIDTHS;
-        check((least..=most).contains(&width_deg), ParamError::Degrees("width_deg", width_deg, WIDTHS))?;
+        check(
+            (least..=most).contains(&width_deg),
+            ParamError::Degrees("width_deg", width_deg, WIDTHS),
+        )?;
         // ln cos w = ln(1 - 2 sin^2(w/2)): a narrow highlight loses nothing.
         let sin = libm::sinf(0.5 * width_deg * PI / 180.0);
         let exponent = -LN_2 / libm::log1pf(-2.0 * sin * sin);
-        Ok(Self { exponent: exponent.clamp(EXPONENTS[0], EXPONENTS[1]), ..self })
+        Ok(Self {
+            exponent: exponent.clamp(EXPONENTS[0], EXPONENTS[1]),
+            ..self
+        })
     }
 
     /// Half width of the highlight at half height in `theta_i + theta_o`, degrees: `acos(2^(-1 / exponent))`.
@@ -113,7 +124,12 @@ const BLACK: KajiyaKayParams = look([0.015, 0.012, 0.01], [0.09, 0.09, 0.09], 12
 const WHITE: KajiyaKayParams = look([0.68, 0.66, 0.63], [0.18, 0.18, 0.18], 40.0);
 
 const fn look(kd: [f32; 3], ks: [f32; 3], exponent: f32) -> KajiyaKayParams {
-    KajiyaKayParams(KajiyaKayDesc { kd, ks, exponent, form: Form::Reciprocal })
+    KajiyaKayParams(KajiyaKayDesc {
+        kd,
+        ks,
+        exponent,
+        form: Form::Reciprocal,
+    })
 }
 
 /// Presets. The looks are ours; `kd + ks` is below 1 in every channel, so that no preset gains energy.
@@ -148,7 +164,11 @@ impl KajiyaKayParams {
     pub fn scaled(&self, factor: f32) -> Result<Self, ParamError> {
         check(is_intensity(factor), ParamError::Scalar("factor", factor))?;
         let times = |rgb: [f32; 3]| rgb.map(|c| c * factor);
-        Self::new(&KajiyaKayDesc { kd: times(self.0.kd), ks: times(self.0.ks), ..self.0 })
+        Self::new(&KajiyaKayDesc {
+            kd: times(self.0.kd),
+            ks: times(self.0.ks),
+            ..self.0
+        })
     }
 
     /// Blond: a highlight of 8.7 degrees.

@@ -1,7 +1,9 @@
 //! Kajiya and Kay's model, formula by formula, in either precision.
 
 use super::params::{Form, KajiyaKayParams};
-use crate::reference::{Fixed, choose, discarded, finish_sample, fixed, inclination, mix, sum_to_one};
+use crate::reference::{
+    Fixed, choose, discarded, finish_sample, fixed, inclination, mix, sum_to_one,
+};
 use hairis::reference::{LobeAt, Real, Reference, ReferenceSample, integrate};
 use hairis::{Lobe, PerLobe};
 
@@ -25,7 +27,12 @@ impl<T: Real> From<&KajiyaKayParams> for KajiyaKayParameters<T> {
     #[inline]
     fn from(params: &KajiyaKayParams) -> Self {
         let d = params.desc();
-        Self { kd: d.kd.map(T::from_f32), ks: d.ks.map(T::from_f32), exponent: T::from_f32(d.exponent), form: d.form }
+        Self {
+            kd: d.kd.map(T::from_f32),
+            ks: d.ks.map(T::from_f32),
+            exponent: T::from_f32(d.exponent),
+            form: d.form,
+        }
     }
 }
 
@@ -124,9 +131,15 @@ impl<T: Real> KajiyaKayConstants<T> {
     #[inline]
     #[must_use]
     pub fn prepare(&self, wo: [T; 3]) -> KajiyaKayReference<T> {
-        let Fixed { sin_theta_o, cos_theta_o, .. } = fixed(wo);
+        let Fixed {
+            sin_theta_o,
+            cos_theta_o,
+            ..
+        } = fixed(wo);
         let returned = match self.parameters.form {
-            Form::Reciprocal => cos_theta_o * cos_theta_o + sin_theta_o * sin_theta_o * self.grazing,
+            Form::Reciprocal => {
+                cos_theta_o * cos_theta_o + sin_theta_o * sin_theta_o * self.grazing
+            }
             Form::Published => cos_theta_o.hypot(sin_theta_o * self.grazing),
         };
         let ([diffuse, specular], zero) = (self.weights, T::default());
@@ -185,12 +198,16 @@ impl<T: Real> KajiyaKayReference<T> {
         let highlight = cos_sum.max(T::default()).powf(p.exponent);
         let weighted = positive_power(cos_theta_i, p.form);
         let per_cosine = weighted / cos_theta_i;
-        lobes[DIFFUSE] =
-            LobeAt { value: T::from_f64(1.0) / (T::PI * T::PI), color: p.kd, pdf: cos_theta_i / (T::PI * T::PI) };
+        lobes[DIFFUSE] = LobeAt {
+            value: T::from_f64(1.0) / (T::PI * T::PI),
+            color: p.kd,
+            pdf: cos_theta_i / (T::PI * T::PI),
+        };
         lobes[SPECULAR] = LobeAt {
             value: highlight * per_cosine / (two * T::PI * self.norm * cos_theta_i),
             color: p.ks,
-            pdf: highlight * per_cosine / (T::PI * self.norm_pdf * (weighted + positive_power(cos_mirrored, p.form))),
+            pdf: highlight * per_cosine
+                / (T::PI * self.norm_pdf * (weighted + positive_power(cos_mirrored, p.form))),
         };
         lobes
     }
@@ -203,11 +220,21 @@ impl<T: Real> KajiyaKayReference<T> {
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
-        let Some((lobe, rest)) = choose(&self.probabilities, xi[0]) else { return discarded() };
-        let (inclination, xi_phi) =
-            if lobe == DIFFUSE { (from_disk(xi[1], rest), xi[2]) } else { self.sample_specular(xi[1], rest, xi[2]) };
+        let Some((lobe, rest)) = choose(&self.probabilities, xi[0]) else {
+            return discarded();
+        };
+        let (inclination, xi_phi) = if lobe == DIFFUSE {
+            (from_disk(xi[1], rest), xi[2])
+        } else {
+            self.sample_specular(xi[1], rest, xi[2])
+        };
         let phi_i = T::PI * (T::from_f64(2.0) * xi_phi - T::from_f64(1.0));
-        finish_sample(lobe, inclination, phi_i, mix(&self.lobes_at(inclination), &self.probabilities))
+        finish_sample(
+            lobe,
+            inclination,
+            phi_i,
+            mix(&self.lobes_at(inclination), &self.probabilities),
+        )
     }
 
     /// Sampled sine and cosine of `theta_i` of the highlight, and the remainder of `xi_sign` for the azimuth: the angle of
@@ -219,9 +246,18 @@ impl<T: Real> KajiyaKayReference<T> {
         let (sin_o, cos_o) = (self.sin_theta_o, self.cos_theta_o);
         let [sin_x, cos_x] = self.sample_angle(xi_radius, xi_turn);
         let share = self.share_kept(sin_x, cos_x);
-        let (sin_x, rest) =
-            if xi_sign < share { (sin_x, xi_sign / share) } else { (-sin_x, (xi_sign - share) / (one - share)) };
-        ([sin_x * cos_o - cos_x * sin_o, (cos_x * cos_o + sin_x * sin_o).max(zero)], rest)
+        let (sin_x, rest) = if xi_sign < share {
+            (sin_x, xi_sign / share)
+        } else {
+            (-sin_x, (xi_sign - share) / (one - share))
+        };
+        (
+            [
+                sin_x * cos_o - cos_x * sin_o,
+                (cos_x * cos_o + sin_x * sin_o).max(zero),
+            ],
+            rest,
+        )
     }
 
     /// Sine and cosine of an angle x from the cone of mirror directions, of density `cos^p x / B(p)`: the polar method, of squared
@@ -241,7 +277,11 @@ impl<T: Real> KajiyaKayReference<T> {
         let kept = positive_power(cos_x * cos_o + sin_x * sin_o, self.parameters.form);
         let turned = positive_power(cos_x * cos_o - sin_x * sin_o, self.parameters.form);
         // Both are 0 for wo along the fibre and x = 0 alone, a sample that is discarded.
-        if kept + turned > T::default() { kept / (kept + turned) } else { T::from_f64(1.0) }
+        if kept + turned > T::default() {
+            kept / (kept + turned)
+        } else {
+            T::from_f64(1.0)
+        }
     }
 
     /// The share of `ks` that comes back: the integral of `cos_+^p x cos_+^m (x - theta_o)` over x, over `B(p + m)`.
@@ -275,7 +315,10 @@ impl<T: Real> KajiyaKayReference<T> {
 fn from_disk<T: Real>(radius_sq: T, xi_turn: T) -> [T; 2] {
     let one = T::from_f64(1.0);
     let (sin, cos) = ((T::PI * xi_turn).sin(), (T::PI * xi_turn).cos());
-    [radius_sq.sqrt() * cos, (one - radius_sq + radius_sq * sin * sin).sqrt().min(one)]
+    [
+        radius_sq.sqrt() * cos,
+        (one - radius_sq + radius_sq * sin * sin).sqrt().min(one),
+    ]
 }
 
 crate::reference::implement! { KajiyaKayReference }

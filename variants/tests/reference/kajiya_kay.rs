@@ -1,6 +1,8 @@
 //! Kajiya and Kay's formulas: energy, reciprocity, densities, sampling.
 
-use super::support::{DEG, LargestError, cdf_gap, cells, chi_square, corners, direction, points, rule, sum};
+use super::support::{
+    DEG, LargestError, cdf_gap, cells, chi_square, corners, direction, points, rule, sum,
+};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::Lobe;
 use hairis::reference::{Real, Reference};
@@ -17,18 +19,32 @@ const SPECULAR: Lobe = Lobe::slot(1);
 const GRAZING: f64 = 1.000_01e-5;
 
 fn parameters(exponent: f64, form: Form) -> KajiyaKayParameters<f64> {
-    KajiyaKayParameters { kd: [0.3, 0.2, 0.1], ks: [0.2, 0.25, 0.3], exponent, form }
+    KajiyaKayParameters {
+        kd: [0.3, 0.2, 0.1],
+        ks: [0.2, 0.25, 0.3],
+        exponent,
+        form,
+    }
 }
 
 /// The highlight alone.
 fn specular(exponent: f64, form: Form) -> KajiyaKayParameters<f64> {
-    KajiyaKayParameters { kd: [0.0; 3], ks: [1.0; 3], ..parameters(exponent, form) }
+    KajiyaKayParameters {
+        kd: [0.0; 3],
+        ks: [1.0; 3],
+        ..parameters(exponent, form)
+    }
 }
 
 /// (parameters, `theta_o`) over the grid, `theta_o` in radians.
-fn grid(build: fn(f64, Form) -> KajiyaKayParameters<f64>) -> impl Iterator<Item = (KajiyaKayParameters<f64>, f64)> {
-    let cases = FORMS.into_iter().flat_map(|form| EXPONENTS.map(|exponent| (exponent, form)));
-    cases.flat_map(move |(exponent, form)| THETA_O.map(|theta| (build(exponent, form), theta * DEG)))
+fn grid(
+    build: fn(f64, Form) -> KajiyaKayParameters<f64>,
+) -> impl Iterator<Item = (KajiyaKayParameters<f64>, f64)> {
+    let cases = FORMS
+        .into_iter()
+        .flat_map(|form| EXPONENTS.map(|exponent| (exponent, form)));
+    cases
+        .flat_map(move |(exponent, form)| THETA_O.map(|theta| (build(exponent, form), theta * DEG)))
 }
 
 /// Panels of `theta_i` between the discarded caps: the peak, and the kinks at `theta_i + theta_o` and
@@ -36,9 +52,18 @@ fn grid(build: fn(f64, Form) -> KajiyaKayParameters<f64>) -> impl Iterator<Item 
 fn inclinations(exponent: f64, theta_o: f64) -> Vec<(f64, f64)> {
     let edge = FRAC_PI_2 - GRAZING;
     let rights = [-3.0, -1.0, 1.0, 3.0].map(|turns| turns * FRAC_PI_2);
-    let mut peaks = vec![(-theta_o, exponent.sqrt().recip()), (edge, 1e-4), (-edge, 1e-4)];
+    let mut peaks = vec![
+        (-theta_o, exponent.sqrt().recip()),
+        (edge, 1e-4),
+        (-edge, 1e-4),
+    ];
     peaks.extend(rights.map(|right| (right - theta_o, 1e-4)));
-    rule(-edge, edge, &peaks, &rights.map(|right| right - 2.0 * theta_o))
+    rule(
+        -edge,
+        edge,
+        &peaks,
+        &rights.map(|right| right - 2.0 * theta_o),
+    )
 }
 
 #[test]
@@ -47,7 +72,12 @@ fn powers_of_a_cosine_integrate_to_b() {
     let mut worst = LargestError::default();
     for n in EXPONENTS.into_iter().chain([0.5, 2.0, 3.0]) {
         let found = sum(
-            &rule(-FRAC_PI_2, FRAC_PI_2, &[(0.0, 1.0 / n.sqrt()), (FRAC_PI_2, 1e-6), (-FRAC_PI_2, 1e-6)], &[]),
+            &rule(
+                -FRAC_PI_2,
+                FRAC_PI_2,
+                &[(0.0, 1.0 / n.sqrt()), (FRAC_PI_2, 1e-6), (-FRAC_PI_2, 1e-6)],
+                &[],
+            ),
             |x| x.cos().powf(n),
         );
         worst.see(cosine_power_integral(n) / found - 1.0);
@@ -57,8 +87,11 @@ fn powers_of_a_cosine_integrate_to_b() {
 
 #[test]
 fn the_albedo_is_the_integral_of_the_value() {
-    let (mut diffuse, mut highlight, mut trait_sum) =
-        (LargestError::default(), LargestError::default(), LargestError::default());
+    let (mut diffuse, mut highlight, mut trait_sum) = (
+        LargestError::default(),
+        LargestError::default(),
+        LargestError::default(),
+    );
     for (p, theta_o) in grid(parameters) {
         let fiber = KajiyaKayFiber::prepare(&p, direction(theta_o, 0.7));
         let rule = inclinations(p.exponent, theta_o);
@@ -72,7 +105,11 @@ fn the_albedo_is_the_integral_of_the_value() {
         let albedo = Reference::albedo(&fiber);
         diffuse.see(lobe(0) - albedo.0[0][1]);
         highlight.see(lobe(1) - albedo.0[1][1]);
-        let whole = 2.0 * PI * sum(&rule, |t| fiber.eval(direction(t, 0.2))[1] * t.cos() * t.cos());
+        let whole = 2.0
+            * PI
+            * sum(&rule, |t| {
+                fiber.eval(direction(t, 0.2))[1] * t.cos() * t.cos()
+            });
         trait_sum.see(whole - albedo.0[0][1] - albedo.0[1][1]);
     }
     diffuse.assert_below(1e-15, "diffuse albedo");
@@ -88,8 +125,13 @@ fn the_highlight_never_gains_energy() {
             let mut before = 1.0 + 1e-11;
             for step in 0..=90 {
                 let theta_o = f64::from(step) * DEG;
-                let rho = KajiyaKayFiber::prepare(&specular(exponent, form), direction(theta_o, 0.0)).specular_albedo();
-                assert!(rho <= before && rho >= 0.0, "{form:?} p {exponent} theta_o {step}: {rho} after {before}");
+                let rho =
+                    KajiyaKayFiber::prepare(&specular(exponent, form), direction(theta_o, 0.0))
+                        .specular_albedo();
+                assert!(
+                    rho <= before && rho >= 0.0,
+                    "{form:?} p {exponent} theta_o {step}: {rho} after {before}"
+                );
                 before = rho + 1e-11;
                 if step == 0 {
                     excess.see(rho - 1.0);
@@ -106,9 +148,13 @@ fn the_reciprocal_form_is_reciprocal_and_the_published_one_is_not() {
     let (mut worst, mut published) = (LargestError::default(), LargestError::default());
     for exponent in EXPONENTS {
         for [a, b, c] in points(200) {
-            let [one, other] = [direction((a - 0.5) * 3.1, 6.0 * b), direction((c - 0.5) * 3.1, 6.0 * a)];
+            let [one, other] = [
+                direction((a - 0.5) * 3.1, 6.0 * b),
+                direction((c - 0.5) * 3.1, 6.0 * a),
+            ];
             let pair = |form| {
-                let value = |wo, wi| KajiyaKayFiber::prepare(&parameters(exponent, form), wo).eval(wi)[0];
+                let value =
+                    |wo, wi| KajiyaKayFiber::prepare(&parameters(exponent, form), wo).eval(wi)[0];
                 value(one, other) / value(other, one) - 1.0
             };
             worst.see(pair(Form::Reciprocal));
@@ -126,10 +172,17 @@ fn densities_integrate_to_one() {
     for (p, theta_o) in grid(parameters) {
         let fiber = KajiyaKayFiber::prepare(&p, direction(theta_o, 0.7));
         let rule = inclinations(p.exponent, theta_o);
-        let mass = |pdf: &dyn Fn([f64; 3]) -> f64| 2.0 * PI * sum(&rule, |t| pdf(direction(t, 0.2)) * t.cos());
+        let mass = |pdf: &dyn Fn([f64; 3]) -> f64| {
+            2.0 * PI * sum(&rule, |t| pdf(direction(t, 0.2)) * t.cos())
+        };
         let of = |lobe: usize| mass(&|wi| fiber.lobes(wi).0[lobe].pdf);
         for mass in [of(0), of(1), mass(&|wi| fiber.pdf(wi))] {
-            if theta_o.abs() < 80.0 * DEG { &mut worst } else { &mut grazing }.see(mass - 1.0);
+            if theta_o.abs() < 80.0 * DEG {
+                &mut worst
+            } else {
+                &mut grazing
+            }
+            .see(mass - 1.0);
         }
     }
     worst.assert_below(2e-10, "mass of the densities");
@@ -194,43 +247,75 @@ fn the_highlights_variance_is_as_stated() {
         (20.0, [0.004, 0.000, 0.19, 0.89], [0.109, 0.043]),
         (80.0, [0.000, 0.000, 0.035, 0.52], [0.078, 0.018]),
     ];
-    let published =
-        [(5.0, [0.012, 0.009, 0.042, 0.24]), (20.0, [0.001, 0.001, 0.007, 0.16]), (80.0, [0.000, 0.000, 0.000, 0.05])];
+    let published = [
+        (5.0, [0.012, 0.009, 0.042, 0.24]),
+        (20.0, [0.001, 0.001, 0.007, 0.16]),
+        (80.0, [0.000, 0.000, 0.000, 0.05]),
+    ];
     let variance = |p: &KajiyaKayParameters<f64>, theta_o: f64| {
         let fiber = KajiyaKayFiber::prepare(p, direction(theta_o, 0.0));
         let moment = |t: f64| {
             let (value, pdf) = fiber.eval_pdf(direction(t, 0.0));
             let f = value[0] * t.cos();
-            if pdf > 0.0 { f * f / pdf * t.cos() } else { 0.0 }
+            if pdf > 0.0 {
+                f * f / pdf * t.cos()
+            } else {
+                0.0
+            }
         };
         let rho = fiber.specular_albedo();
-        (2.0 * PI * sum(&inclinations(p.exponent, theta_o), moment) / (rho * rho) - 1.0, rho)
+        (
+            2.0 * PI * sum(&inclinations(p.exponent, theta_o), moment) / (rho * rho) - 1.0,
+            rho,
+        )
     };
     for (exponent, expected, albedos) in reciprocal {
         for (i, theta) in theta_o.into_iter().enumerate() {
             let (found, rho) = variance(&specular(exponent, Form::Reciprocal), theta * DEG);
             println!("reciprocal p {exponent} theta_o {theta}: V {found:.4} rho {rho:.4}");
-            assert!((found - expected[i]).abs() < 6e-3, "p {exponent} theta_o {theta}: {found}");
-            assert!(i < 2 || (rho - albedos[i - 2]).abs() < 6e-4, "p {exponent} theta_o {theta}: albedo {rho}");
+            assert!(
+                (found - expected[i]).abs() < 6e-3,
+                "p {exponent} theta_o {theta}: {found}"
+            );
+            assert!(
+                i < 2 || (rho - albedos[i - 2]).abs() < 6e-4,
+                "p {exponent} theta_o {theta}: albedo {rho}"
+            );
         }
     }
     for (exponent, expected) in published {
         for (theta, expected) in theta_o.into_iter().zip(expected) {
             let (found, _) = variance(&specular(exponent, Form::Published), theta * DEG);
             println!("published p {exponent} theta_o {theta}: V {found:.4}");
-            assert!((found - expected).abs() < 6e-3, "p {exponent} theta_o {theta}: {found}");
+            assert!(
+                (found - expected).abs() < 6e-3,
+                "p {exponent} theta_o {theta}: {found}"
+            );
         }
     }
 }
 
 #[test]
 fn samples_pass_chi_square_on_the_sphere() {
-    let cases = [(1.0, 30.0), (5.0, 75.0), (80.0, 45.0), (80.0, -85.0), (1000.0, 10.0)];
-    for (form, (exponent, theta_o)) in FORMS.into_iter().flat_map(|form| cases.map(|case| (form, case))) {
-        let fiber = KajiyaKayFiber::prepare(&parameters(exponent, form), direction(theta_o * DEG, 0.7));
+    let cases = [
+        (1.0, 30.0),
+        (5.0, 75.0),
+        (80.0, 45.0),
+        (80.0, -85.0),
+        (1000.0, 10.0),
+    ];
+    for (form, (exponent, theta_o)) in FORMS
+        .into_iter()
+        .flat_map(|form| cases.map(|case| (form, case)))
+    {
+        let fiber =
+            KajiyaKayFiber::prepare(&parameters(exponent, form), direction(theta_o * DEG, 0.7));
         let p = chi_square(&fiber, &inclinations(exponent, theta_o * DEG), &[]);
         // Sidak's correction of .01 over ten runs.
-        assert!(p > 1e-3, "{form:?} p {exponent} theta_o {theta_o}: p-value {p}");
+        assert!(
+            p > 1e-3,
+            "{form:?} p {exponent} theta_o {theta_o}: p-value {p}"
+        );
     }
 }
 
@@ -256,15 +341,39 @@ fn single_precision_follows_and_is_total() {
         }
         for xi in corners() {
             let drawn = fiber.sample(xi);
-            let finite = drawn.wi.iter().chain(&drawn.value).chain(&drawn.weight).chain([&drawn.pdf]);
-            assert!(finite.clone().all(|x| x.is_finite()), "{p:?} {theta_o} {xi:?}: {drawn:?}");
-            assert!(drawn.pdf >= 0.0 && drawn.lobe.is_some() == (drawn.pdf > 0.0), "{drawn:?}");
+            let finite = drawn
+                .wi
+                .iter()
+                .chain(&drawn.value)
+                .chain(&drawn.weight)
+                .chain([&drawn.pdf]);
+            assert!(
+                finite.clone().all(|x| x.is_finite()),
+                "{p:?} {theta_o} {xi:?}: {drawn:?}"
+            );
+            assert!(
+                drawn.pdf >= 0.0 && drawn.lobe.is_some() == (drawn.pdf > 0.0),
+                "{drawn:?}"
+            );
         }
     }
     worst.assert_below(1.5e-7, "f32 over f64, by exponent");
-    let nothing = KajiyaKayParameters { kd: [0.0; 3], ks: [0.0; 3], ..parameters(80.0, Form::Reciprocal) };
-    assert_eq!(KajiyaKayFiber::prepare(&nothing, [0.0, 1.0, 0.0]).sample([0.5; 3]).lobe, None, "nothing scatters");
+    let nothing = KajiyaKayParameters {
+        kd: [0.0; 3],
+        ks: [0.0; 3],
+        ..parameters(80.0, Form::Reciprocal)
+    };
+    assert_eq!(
+        KajiyaKayFiber::prepare(&nothing, [0.0, 1.0, 0.0])
+            .sample([0.5; 3])
+            .lobe,
+        None,
+        "nothing scatters"
+    );
     let bright = KajiyaKayParams::default().scaled(1e37).unwrap();
     let bright = KajiyaKayReference::<f32>::prepare(&(&bright).into(), [0.0, 1.0, 0.0]);
-    assert!(bright.sample([0.9, 0.5, 0.5]).weight[0].is_finite(), "bright colours");
+    assert!(
+        bright.sample([0.9, 0.5, 0.5]).weight[0].is_finite(),
+        "bright colours"
+    );
 }

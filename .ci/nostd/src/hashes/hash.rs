@@ -42,7 +42,16 @@ impl Hash {
     }
 
     pub fn sample(&mut self, sample: Option<Sample>) {
-        let Some(Sample { wi, value, pdf, weight, lobe }) = sample else { return self.number(-1.0) };
+        let Some(Sample {
+            wi,
+            value,
+            pdf,
+            weight,
+            lobe,
+        }) = sample
+        else {
+            return self.number(-1.0);
+        };
         self.vec3(wi);
         self.numbers(&value);
         self.numbers(&weight);

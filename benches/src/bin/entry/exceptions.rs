@@ -4,7 +4,9 @@
 //! depends on its options, and the tests are compiled with others.
 
 use core::hint::black_box;
-use hairis::{Bsdf, Eval, Gather, Hit, LobeEval, Model, PerLobe, Sample, Vec3x, control, set_control};
+use hairis::{
+    Bsdf, Eval, Gather, Hit, LobeEval, Model, PerLobe, Sample, Vec3x, control, set_control,
+};
 use hairis_benches::inputs::{Inputs, materials};
 use hairis_variants::{ModelId, Registered, Visitor};
 
@@ -33,7 +35,15 @@ calls! {
 /// Prints how many calls of each model raise an exception. Whether there are none.
 pub(crate) fn check() -> bool {
     let inputs = Inputs::draw();
-    ModelId::ALL.iter().map(|id| id.visit(OfModel { inputs: &inputs, id: *id })).fold(true, |all, quiet| all & quiet)
+    ModelId::ALL
+        .iter()
+        .map(|id| {
+            id.visit(OfModel {
+                inputs: &inputs,
+                id: *id,
+            })
+        })
+        .fold(true, |all, quiet| all & quiet)
 }
 
 struct OfModel<'a> {
@@ -45,10 +55,25 @@ impl Visitor for OfModel<'_> {
     type Output = bool;
 
     fn visit<M: Registered>(self) -> bool {
-        let names = ["prepare", "eval_pdf", "pdf", "lobes", "sample", "albedo", "conserving"];
+        let names = [
+            "prepare",
+            "eval_pdf",
+            "pdf",
+            "lobes",
+            "sample",
+            "albedo",
+            "conserving",
+        ];
         let mut counts = [0; 7];
         let materials = materials::<M>();
-        for (i, ((wo, wi), xi)) in self.inputs.wo.iter().zip(&self.inputs.wi).zip(&self.inputs.xi).enumerate() {
+        for (i, ((wo, wi), xi)) in self
+            .inputs
+            .wo
+            .iter()
+            .zip(&self.inputs.wi)
+            .zip(&self.inputs.xi)
+            .enumerate()
+        {
             let hit = Hit::new(Vec3x::from(*wo), 2.0 * self.inputs.xi[i ^ 1][0] - 1.0);
             let (bsdf, wi) = (&materials[i % 8], Vec3x::from(*wi));
             let gather = prepare(bsdf, hit);
@@ -65,8 +90,16 @@ impl Visitor for OfModel<'_> {
                 *count += u32::from(raised);
             }
         }
-        for (name, count) in names.into_iter().zip(counts).filter(|(_, count)| *count > 0) {
-            println!("FAIL {:?} {name}: {count} calls of {} raise an exception", self.id, self.inputs.wi.len());
+        for (name, count) in names
+            .into_iter()
+            .zip(counts)
+            .filter(|(_, count)| *count > 0)
+        {
+            println!(
+                "FAIL {:?} {name}: {count} calls of {} raise an exception",
+                self.id,
+                self.inputs.wi.len()
+            );
         }
         counts == [0; 7]
     }

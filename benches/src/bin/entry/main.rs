@@ -21,13 +21,21 @@ fn main() -> ExitCode {
     let words: Vec<String> = args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let mut runner = match words[..] {
-        ["list"] => Runner { name: "*", work: Work::List, found: false },
-        ["run", name, passes] if passes.parse::<u32>().is_ok() => {
-            Runner { name, work: Work::Run(passes.parse().unwrap_or(0)), found: false }
-        }
-        ["time", name, seconds] if seconds.parse::<f64>().is_ok() => {
-            Runner { name, work: Work::Time(seconds.parse().unwrap_or(0.0)), found: false }
-        }
+        ["list"] => Runner {
+            name: "*",
+            work: Work::List,
+            found: false,
+        },
+        ["run", name, passes] if passes.parse::<u32>().is_ok() => Runner {
+            name,
+            work: Work::Run(passes.parse().unwrap_or(0)),
+            found: false,
+        },
+        ["time", name, seconds] if seconds.parse::<f64>().is_ok() => Runner {
+            name,
+            work: Work::Time(seconds.parse().unwrap_or(0.0)),
+            found: false,
+        },
         ["keep"] => {
             outlined::keep();
             return ExitCode::SUCCESS;
@@ -70,7 +78,9 @@ impl Visitor for Runner<'_> {
             println!("{name}");
             return false;
         }
-        self.name.strip_suffix('*').map_or(name == self.name, |start| name.starts_with(start))
+        self.name
+            .strip_suffix('*')
+            .map_or(name == self.name, |start| name.starts_with(start))
     }
 
     fn visit<T: Task>(&mut self, name: &Name, mut task: T) {
@@ -102,8 +112,15 @@ fn time<T: Task>(task: &mut T, seconds: f64) -> f64 {
         pass(task, passes);
         start.elapsed().as_secs_f64()
     };
-    let once = (0..5).map(|_| stretch(1)).fold(f64::INFINITY, f64::min).max(1e-9);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to a thousand")]
+    let once = (0..5)
+        .map(|_| stretch(1))
+        .fold(f64::INFINITY, f64::min)
+        .max(1e-9);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 1 to a thousand"
+    )]
     let passes = (1e-3 / once).ceil().clamp(1.0, 1e3) as u32;
     let start = Instant::now();
     let mut stretches = Vec::new();

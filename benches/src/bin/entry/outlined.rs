@@ -5,8 +5,8 @@ use core::hint::black_box;
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{
-    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Gaussian, Hair, LengthError, Level, Matched, Model, Sample,
-    Sample8, SampleSlices, Vec3x8,
+    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Gaussian, Hair, LengthError, Level,
+    Matched, Model, Sample, Sample8, SampleSlices, Vec3x8,
 };
 use hairis_variants::Cauchy;
 

@@ -16,7 +16,11 @@ impl Columns {
     /// # Errors
     ///
     /// Errors of `out`.
-    pub fn write_parquet(&self, notes: Vec<(String, String)>, out: impl Write + Send) -> io::Result<()> {
+    pub fn write_parquet(
+        &self,
+        notes: Vec<(String, String)>,
+        out: impl Write + Send,
+    ) -> io::Result<()> {
         let field = |(name, values): &(_, ColumnValues)| match values {
             ColumnValues::Text(_) => format!("required binary {name} (STRING);"),
             ColumnValues::Whole(_) => format!("required int32 {name};"),
@@ -24,7 +28,10 @@ impl Columns {
         };
         let fields: String = self.0.iter().map(field).collect();
         let schema = parse_message_type(&format!("message study {{ {fields} }}"))?;
-        let notes = notes.into_iter().map(|(key, value)| KeyValue::new(key, value)).collect();
+        let notes = notes
+            .into_iter()
+            .map(|(key, value)| KeyValue::new(key, value))
+            .collect();
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
             .set_max_row_group_row_count(None)
@@ -33,19 +40,37 @@ impl Columns {
         let mut file = SerializedFileWriter::new(out, Arc::new(schema), Arc::new(properties))?;
         let mut group = file.next_row_group()?;
         for (_, values) in &self.0 {
-            let Some(mut column) = group.next_column()? else { break };
+            let Some(mut column) = group.next_column()? else {
+                break;
+            };
             match values {
                 ColumnValues::Text(values) => {
-                    let values: Vec<ByteArray> = values.iter().map(|value| ByteArray::from(&**value)).collect();
-                    column.typed::<ByteArrayType>().write_batch(&values, None, None)?;
+                    let values: Vec<ByteArray> = values
+                        .iter()
+                        .map(|value| ByteArray::from(&**value))
+                        .collect();
+                    column
+                        .typed::<ByteArrayType>()
+                        .write_batch(&values, None, None)?;
                 }
                 ColumnValues::Whole(values) => {
-                    column.typed::<Int32Type>().write_batch(values, None, None)?;
+                    column
+                        .typed::<Int32Type>()
+                        .write_batch(values, None, None)?;
                 }
                 ColumnValues::Number(values) => {
-                    let there: Vec<i16> = values.iter().map(|value| i16::from(value.is_finite())).collect();
-                    let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-                    column.typed::<DoubleType>().write_batch(&finite, Some(&there), None)?;
+                    let there: Vec<i16> = values
+                        .iter()
+                        .map(|value| i16::from(value.is_finite()))
+                        .collect();
+                    let finite: Vec<f64> = values
+                        .iter()
+                        .copied()
+                        .filter(|value| value.is_finite())
+                        .collect();
+                    column
+                        .typed::<DoubleType>()
+                        .write_batch(&finite, Some(&there), None)?;
                 }
             }
             column.close()?;

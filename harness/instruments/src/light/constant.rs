@@ -33,10 +33,17 @@ impl Light for Constant {
         // (1 - y)(1 + y) by its factors: no cancellation near the poles.
         let r = (4.0 * xi[0] * (1.0 - xi[0])).max(0.0).sqrt();
         let (sin_phi, cos_phi) = (2.0 * PI * xi[1]).sin_cos();
-        LightSample { dir: DVec3::new(r * cos_phi, y, r * sin_phi), radiance: [1.0; 3], pdf: 0.25 / PI }
+        LightSample {
+            dir: DVec3::new(r * cos_phi, y, r * sin_phi),
+            radiance: [1.0; 3],
+            pdf: 0.25 / PI,
+        }
     }
 
     fn see8(&self, _dir: &Vec3x8) -> Seen8 {
-        Seen8 { radiance: [f32x8::splat(1.0); 3], pdf: f32x8::splat(rounded(0.25 / PI)) }
+        Seen8 {
+            radiance: [f32x8::splat(1.0); 3],
+            pdf: f32x8::splat(rounded(0.25 / PI)),
+        }
     }
 }

@@ -81,7 +81,10 @@ impl Environment {
             return Err(format!("the map has no pixels: {width} x {height}"));
         }
         if width.checked_mul(height) != Some(pixels.len()) {
-            return Err(format!("{width} x {height} pixels expected, {} given", pixels.len()));
+            return Err(format!(
+                "{width} x {height} pixels expected, {} given",
+                pixels.len()
+            ));
         }
         let mut repairs = PixelRepairs::default();
         for channel in pixels.iter_mut().flatten() {
@@ -94,8 +97,15 @@ impl Environment {
             *count += 1;
             *channel = repaired;
         }
-        let edges: Vec<f64> =
-            (0..=height).map(|j| if 2 * j == height { 0.0 } else { (PI * j as f64 / height as f64).cos() }).collect();
+        let edges: Vec<f64> = (0..=height)
+            .map(|j| {
+                if 2 * j == height {
+                    0.0
+                } else {
+                    (PI * j as f64 / height as f64).cos()
+                }
+            })
+            .collect();
         let mut columns = Vec::with_capacity(pixels.len());
         let mut rows = Vec::with_capacity(height);
         let mut total = 0.0;
@@ -112,7 +122,18 @@ impl Environment {
         let column_guide = columns.chunks_exact(width).flat_map(guide).collect();
         let texels = pixels.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
         let name = name.into();
-        let mut map = Self { name, width, height, texels, edges, rows, columns, row_guide, column_guide, repairs };
+        let mut map = Self {
+            name,
+            width,
+            height,
+            texels,
+            edges,
+            rows,
+            columns,
+            row_guide,
+            column_guide,
+            repairs,
+        };
         for place in 0..map.texels.len() {
             map.texels[place][3] = rounded(map.density(colour(map.texels[place])));
         }
@@ -141,7 +162,11 @@ impl Environment {
                 self.name, self.width, self.height
             ));
         }
-        let PixelRepairs { nan, negative, infinite } = self.repairs;
+        let PixelRepairs {
+            nan,
+            negative,
+            infinite,
+        } = self.repairs;
         if nan + negative + infinite > 0 {
             notes.push(format!("{}: repaired channels: {nan} NaN and {negative} negative set to 0, {infinite} infinite set to {INFINITE_PIXEL}", self.name));
         }
@@ -164,7 +189,9 @@ impl Environment {
         self.texels
             .iter()
             .flat_map(|texel| &texel[..3])
-            .fold(start, |hash, channel| mix(hash ^ u64::from(channel.to_bits())))
+            .fold(start, |hash, channel| {
+                mix(hash ^ u64::from(channel.to_bits()))
+            })
     }
 
     fn total(&self) -> f64 {
@@ -207,7 +234,11 @@ impl Environment {
     fn draw<const N: usize>(&self, xi: [[f64; 2]; N]) -> [LightSample; N] {
         if self.is_black() {
             let dir = |[a, b]: [f64; 2]| Self::direction(b, 1.0 - 2.0 * a);
-            return xi.map(|xi| LightSample { dir: dir(xi), radiance: [0.0; 3], pdf: 0.25 / PI });
+            return xi.map(|xi| LightSample {
+                dir: dir(xi),
+                radiance: [0.0; 3],
+                pdf: 0.25 / PI,
+            });
         }
         let rows = xi.map(|[xi, _]| {
             let index = self.row_guide[cell(xi, self.height)] as usize;
@@ -215,11 +246,18 @@ impl Environment {
         });
         let of_row = |k: usize| rows[k].0 * self.width..(rows[k].0 + 1) * self.width;
         let totals: [f64; N] = array::from_fn(|k| self.columns[of_row(k).end - 1]);
-        let starts: [usize; N] =
-            array::from_fn(|k| self.column_guide[of_row(k).start + cell(xi[k][1], self.width)] as usize);
+        let starts: [usize; N] = array::from_fn(|k| {
+            self.column_guide[of_row(k).start + cell(xi[k][1], self.width)] as usize
+        });
         let sums: [f64; N] = array::from_fn(|k| self.columns[of_row(k).start + starts[k]]);
-        let columns: [(usize, f64); N] =
-            array::from_fn(|k| search(&self.columns[of_row(k)], totals[k], (starts[k], sums[k]), xi[k][1]));
+        let columns: [(usize, f64); N] = array::from_fn(|k| {
+            search(
+                &self.columns[of_row(k)],
+                totals[k],
+                (starts[k], sums[k]),
+                xi[k][1],
+            )
+        });
         let drawn: [[f32; 4]; N] = array::from_fn(|k| self.texels[of_row(k).start + columns[k].0]);
         array::from_fn(|k| {
             let ((j, down), (i, across)) = (rows[k], columns[k]);
@@ -227,9 +265,17 @@ impl Environment {
             let dir = Self::direction((i as f64 + across) / self.width as f64, cosine);
             // On an edge between texels rounding may land in the next one, and value and density must be of one texel.
             let inside = |x: f64| (EDGE..1.0 - EDGE).contains(&x);
-            let texel = if inside(down) && inside(across) { drawn[k] } else { self.texels[self.texel(dir)] };
+            let texel = if inside(down) && inside(across) {
+                drawn[k]
+            } else {
+                self.texels[self.texel(dir)]
+            };
             let radiance = colour(texel);
-            LightSample { dir, radiance, pdf: self.density(radiance) }
+            LightSample {
+                dir,
+                radiance,
+                pdf: self.density(radiance),
+            }
         })
     }
 }
@@ -255,8 +301,14 @@ impl Light for Environment {
 
     /// To the bit what [`radiance`](Light::radiance) and [`pdf`](Light::pdf) give in double precision, rounded.
     fn see8(&self, dir: &Vec3x8) -> Seen8 {
-        let [row, column] = Level::detect().run(Places { dir, texels: [self.height as f32, self.width as f32] });
-        let [rows, columns] = [row.fast_trunc_int().to_array(), column.fast_trunc_int().to_array()];
+        let [row, column] = Level::detect().run(Places {
+            dir,
+            texels: [self.height as f32, self.width as f32],
+        });
+        let [rows, columns] = [
+            row.fast_trunc_int().to_array(),
+            column.fast_trunc_int().to_array(),
+        ];
         let doubt = in_doubt(row, self.height as f32) | in_doubt(column, self.width as f32);
         let mut seen = [[0.0; 8]; 4];
         for lane in 0..8 {
@@ -264,14 +316,18 @@ impl Light for Environment {
                 self.texel(dir.lane(lane).as_dvec3())
             } else {
                 // Above 0 and below the size: in doubt otherwise.
-                rows[lane].unsigned_abs() as usize * self.width + columns[lane].unsigned_abs() as usize
+                rows[lane].unsigned_abs() as usize * self.width
+                    + columns[lane].unsigned_abs() as usize
             };
             for (of, number) in seen.iter_mut().zip(self.texels[texel]) {
                 of[lane] = number;
             }
         }
         let [r, g, b, pdf] = seen.map(f32x8::new);
-        Seen8 { radiance: [r, g, b], pdf }
+        Seen8 {
+            radiance: [r, g, b],
+            pdf,
+        }
     }
 
     /// Gauss-Legendre in each texel, 4 by 4 nodes and 3 by 3 for the error; texels of no light are skipped. Exact edges, but lobes of `f` much narrower than
@@ -287,7 +343,10 @@ impl Light for Environment {
             let sums = rules.each_ref().map(|rule| {
                 let mut sum = [0.0; 3];
                 for [cosine, w] in rule.on(self.edges[j + 1], self.edges[j]) {
-                    for [turn, v] in rule.on(i as f64 / self.width as f64, (i + 1) as f64 / self.width as f64) {
+                    for [turn, v] in rule.on(
+                        i as f64 / self.width as f64,
+                        (i + 1) as f64 / self.width as f64,
+                    ) {
                         let y = f(Self::direction(turn, cosine));
                         for c in 0..3 {
                             sum[c] += 2.0 * PI * w * v * radiance[c] * y[c];
@@ -302,6 +361,10 @@ impl Light for Environment {
             }
         }
         let converged = sphere.tolerance.is_met(&value, &error);
-        Integral { value, error, converged }
+        Integral {
+            value,
+            error,
+            converged,
+        }
     }
 }

@@ -27,7 +27,10 @@ impl LightError {
             0 => String::new(),
             _ => format!(": {nan} NaN and {negative} negative channels count as 0"),
         };
-        Self { path: path.to_owned(), reason: format!("the map gives no light{repairs}; pass another file") }
+        Self {
+            path: path.to_owned(),
+            reason: format!("the map gives no light{repairs}; pass another file"),
+        }
     }
 }
 
@@ -48,10 +51,18 @@ impl Environment {
     /// [`LightError`], one line that names the file and the reason.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, LightError> {
         let path = path.as_ref();
-        let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
+        let name = path.file_name().map_or_else(
+            || path.display().to_string(),
+            |n| n.to_string_lossy().into_owned(),
+        );
         read_map(path)
-            .and_then(|([width, height], pixels)| Self::from_pixels(name, width, height, pixels).map_err(damaged))
-            .map_err(|reason| LightError { path: path.to_owned(), reason })
+            .and_then(|([width, height], pixels)| {
+                Self::from_pixels(name, width, height, pixels).map_err(damaged)
+            })
+            .map_err(|reason| LightError {
+                path: path.to_owned(),
+                reason,
+            })
     }
 }
 
@@ -64,11 +75,17 @@ fn read_map(path: &Path) -> Result<Map, String> {
     if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
         return Err("is a directory, not an environment map".to_owned());
     }
-    let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(unreadable)?;
+    let reader = ImageReader::open(path)
+        .and_then(ImageReader::with_guessed_format)
+        .map_err(unreadable)?;
     let is_exr = match reader.format() {
         Some(ImageFormat::Hdr) => false,
         Some(ImageFormat::OpenExr) => true,
-        Some(other) => return Err(format!("unsupported: {other:?} is not Radiance HDR or OpenEXR")),
+        Some(other) => {
+            return Err(format!(
+                "unsupported: {other:?} is not Radiance HDR or OpenEXR"
+            ));
+        }
         None => return Err("unsupported: not a Radiance HDR or OpenEXR file".to_owned()),
     };
     let refuse = |e: ImageError| match e {
@@ -95,16 +112,29 @@ fn read_map(path: &Path) -> Result<Map, String> {
     decoder.set_limits(limits).map_err(refuse)?;
     match DynamicImage::from_decoder(decoder).map_err(refuse)? {
         DynamicImage::ImageRgb32F(map) => Ok((size, map.pixels().map(|p| p.0).collect())),
-        DynamicImage::ImageRgba32F(map) => Ok((size, map.pixels().map(|p| [p.0[0], p.0[1], p.0[2]]).collect())),
+        DynamicImage::ImageRgba32F(map) => Ok((
+            size,
+            map.pixels().map(|p| [p.0[0], p.0[1], p.0[2]]).collect(),
+        )),
         other => Err(format!("unsupported: pixels of type {:?}", other.color())),
     }
 }
 
 /// The map of an `OpenEXR` file that has luminance (channel Y) and no colour; `None` for any other file.
 fn luminance_map(path: &Path) -> Result<Option<Map>, String> {
-    let Ok(meta) = MetaData::read_from_file(path, false) else { return Ok(None) };
-    let has = |header: &Header, name: &str| header.channels.list.iter().any(|channel| channel.name == *name);
-    let Some(header) = meta.headers.iter().find(|header| has(header, "Y")) else { return Ok(None) };
+    let Ok(meta) = MetaData::read_from_file(path, false) else {
+        return Ok(None);
+    };
+    let has = |header: &Header, name: &str| {
+        header
+            .channels
+            .list
+            .iter()
+            .any(|channel| channel.name == *name)
+    };
+    let Some(header) = meta.headers.iter().find(|header| has(header, "Y")) else {
+        return Ok(None);
+    };
     if has(header, "RY") || has(header, "BY") {
         return Err("unsupported: luminance with chroma; convert it to RGB".to_owned());
     }
@@ -140,5 +170,8 @@ fn damaged(e: impl fmt::Display) -> String {
 
 /// A foreign error's message on one line.
 fn line(e: &dyn fmt::Display) -> String {
-    e.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+    e.to_string()
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
 }

@@ -40,7 +40,8 @@ impl Rectangle {
         let [a, b] = HALF;
         // The strip between the centre plane and x subtends 2 atan(x b / sqrt(x^2 + b^2 + 1)): invert for x.
         let t = ((2.0 * xi[0] - 1.0) * 0.25 * self.solid_angle()).tan();
-        let x = (t * ((b * b + 1.0) / ((b - t) * (b + t)).max(f64::MIN_POSITIVE)).sqrt()).clamp(-a, a);
+        let x =
+            (t * ((b * b + 1.0) / ((b - t) * (b + t)).max(f64::MIN_POSITIVE)).sqrt()).clamp(-a, a);
         // Across the strip the sine of the angle to the plane of x and the height is uniform.
         let rho_sq = x * x + 1.0;
         let s = (2.0 * xi[1] - 1.0) * b / (rho_sq + b * b).sqrt();
@@ -64,7 +65,11 @@ impl Light for Rectangle {
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
         let [x, z] = self.point(xi);
-        LightSample { dir: DVec3::new(x, 1.0, z).normalize(), radiance: [1.0; 3], pdf: 1.0 / self.solid_angle() }
+        LightSample {
+            dir: DVec3::new(x, 1.0, z).normalize(),
+            radiance: [1.0; 3],
+            pdf: 1.0 / self.solid_angle(),
+        }
     }
 
     fn see8(&self, dir: &Vec3x8) -> Seen8 {
@@ -73,19 +78,31 @@ impl Light for Rectangle {
         let within = |x: f32x8, half: f64| x.abs().simd_le(dir.y * splat(half));
         let hit = dir.y.simd_gt(f32x8::ZERO) & within(dir.x, HALF[0]) & within(dir.z, HALF[1]);
         let on = |x: f64| hit.select(splat(x), f32x8::ZERO);
-        Seen8 { radiance: [on(1.0); 3], pdf: on(1.0 / self.solid_angle()) }
+        Seen8 {
+            radiance: [on(1.0); 3],
+            pdf: on(1.0 / self.solid_angle()),
+        }
     }
 
     fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {
         // In angles rather than lengths, x = tan(a) and z = tan(b): the integrand is then flat along the light.
-        let edges = |half: f64| (0..=16).map(|i| half.atan() * (f64::from(i) / 8.0 - 1.0)).collect::<Vec<f64>>();
+        let edges = |half: f64| {
+            (0..=16)
+                .map(|i| half.atan() * (f64::from(i) / 8.0 - 1.0))
+                .collect::<Vec<f64>>()
+        };
         let integrand = |a: f64, b: f64| {
             let (x, z) = (a.tan(), b.tan());
             let rho_sq = x * x + z * z + 1.0;
             let jacobian = 1.0 / (rho_sq * rho_sq.sqrt()) * (x * x + 1.0) * (z * z + 1.0);
             f(DVec3::new(x, 1.0, z).normalize()).map(|v| v * jacobian)
         };
-        integrate_rectangle(integrand, &edges(HALF[0]), &edges(HALF[1]), &sphere.tolerance)
+        integrate_rectangle(
+            integrand,
+            &edges(HALF[0]),
+            &edges(HALF[1]),
+            &sphere.tolerance,
+        )
     }
 }
 
@@ -97,9 +114,16 @@ mod tests {
     fn corners_come_from_the_corners_of_the_square() {
         let r = Rectangle;
         let last = 1.0 - f64::EPSILON / 2.0;
-        for (xi, want) in [([0.0, 0.0], [-2.0, -0.5]), ([last, last], [2.0, 0.5]), ([0.5, 0.5], [0.0, 0.0])] {
+        for (xi, want) in [
+            ([0.0, 0.0], [-2.0, -0.5]),
+            ([last, last], [2.0, 0.5]),
+            ([0.5, 0.5], [0.0, 0.0]),
+        ] {
             let got = r.point(xi);
-            assert!((got[0] - want[0]).abs() < 1e-12 && (got[1] - want[1]).abs() < 1e-12, "{xi:?}: {got:?}");
+            assert!(
+                (got[0] - want[0]).abs() < 1e-12 && (got[1] - want[1]).abs() < 1e-12,
+                "{xi:?}: {got:?}"
+            );
         }
     }
 }

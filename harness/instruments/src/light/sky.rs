@@ -19,15 +19,41 @@ const SUN_DEG: [f64; 2] = [40.0, 35.0];
 
 /// Perez coefficients of Y, x, y: each of the five is `slope * turbidity + offset`.
 const PEREZ: [[[f64; 2]; 5]; 3] = [
-    [[0.1787, -1.4630], [-0.3554, 0.4275], [-0.0227, 5.3251], [0.1206, -2.5771], [-0.0670, 0.3703]],
-    [[-0.0193, -0.2592], [-0.0665, 0.0008], [-0.0004, 0.2125], [-0.0641, -0.8989], [-0.0033, 0.0452]],
-    [[-0.0167, -0.2608], [-0.0950, 0.0092], [-0.0079, 0.2102], [-0.0441, -1.6537], [-0.0109, 0.0529]],
+    [
+        [0.1787, -1.4630],
+        [-0.3554, 0.4275],
+        [-0.0227, 5.3251],
+        [0.1206, -2.5771],
+        [-0.0670, 0.3703],
+    ],
+    [
+        [-0.0193, -0.2592],
+        [-0.0665, 0.0008],
+        [-0.0004, 0.2125],
+        [-0.0641, -0.8989],
+        [-0.0033, 0.0452],
+    ],
+    [
+        [-0.0167, -0.2608],
+        [-0.0950, 0.0092],
+        [-0.0079, 0.2102],
+        [-0.0441, -1.6537],
+        [-0.0109, 0.0529],
+    ],
 ];
 
 /// Zenith chromaticity x and y: rows for the turbidity squared, to the first power and constant; columns for the sun's angle cubed down to constant.
 const ZENITH: [[[f64; 4]; 3]; 2] = [
-    [[0.00166, -0.00375, 0.00209, 0.0], [-0.02903, 0.06377, -0.03202, 0.00394], [0.11693, -0.21196, 0.06052, 0.25886]],
-    [[0.00275, -0.00610, 0.00317, 0.0], [-0.04214, 0.08970, -0.04153, 0.00516], [0.15346, -0.26756, 0.06670, 0.26688]],
+    [
+        [0.00166, -0.00375, 0.00209, 0.0],
+        [-0.02903, 0.06377, -0.03202, 0.00394],
+        [0.11693, -0.21196, 0.06052, 0.25886],
+    ],
+    [
+        [0.00275, -0.00610, 0.00317, 0.0],
+        [-0.04214, 0.08970, -0.04153, 0.00516],
+        [0.15346, -0.26756, 0.06670, 0.26688],
+    ],
 ];
 
 /// A clear sky with its sun and a grey ground.
@@ -57,7 +83,10 @@ impl Default for Sky {
     fn default() -> Self {
         let [elevation, azimuth] = SUN_DEG.map(f64::to_radians);
         let [(sin_e, cos_e), (sin_a, cos_a)] = [elevation, azimuth].map(f64::sin_cos);
-        Self { sun: DVec3::new(cos_e * sin_a, sin_e, -cos_e * cos_a), sun_polar: 0.5 * PI - elevation }
+        Self {
+            sun: DVec3::new(cos_e * sin_a, sin_e, -cos_e * cos_a),
+            sun_polar: 0.5 * PI - elevation,
+        }
     }
 }
 
@@ -70,7 +99,8 @@ impl Sky {
         let [luminance, x, y] = from_fn(|k| {
             let [a, b, c, d, e] = PEREZ[k].map(|[slope, offset]| slope * TURBIDITY + offset);
             let perez = |cos_t: f64, cos_g: f64| {
-                (1.0 + a * (b / cos_t).exp()) * (1.0 + c * (d * cos_g.acos()).exp() + e * cos_g * cos_g)
+                (1.0 + a * (b / cos_t).exp())
+                    * (1.0 + c * (d * cos_g.acos()).exp() + e * cos_g * cos_g)
             };
             self.zenith(k) * perez(cos_theta, cos_gamma) / perez(1.0, self.sun_polar.cos())
         });
@@ -117,7 +147,11 @@ impl Sky {
             let (i, j) = (k % width, k / width);
             let polar = PI * (j as f64 + 0.5) / height as f64;
             let azimuth = 2.0 * PI * ((i as f64 + 0.5) / width as f64 - 0.5);
-            let dir = DVec3::new(polar.sin() * azimuth.sin(), polar.cos(), -polar.sin() * azimuth.cos());
+            let dir = DVec3::new(
+                polar.sin() * azimuth.sin(),
+                polar.cos(),
+                -polar.sin() * azimuth.cos(),
+            );
             let solid_angle = 2.0 * PI / width as f64 * (edge(j) - edge(j + 1));
             let sky = self.sky_radiance(dir);
             // |dir - sun|^2 is the squared angle to first order, and exact enough over a bell of half a degree.
@@ -130,10 +164,15 @@ impl Sky {
             sky_and_bell.push((sky, bell));
         }
         let sun = self.sun_irradiance().map(|e| e / bell_sum);
-        let lit = sky_and_bell.iter().map(|(sky, bell)| from_fn(|c| rounded(sky[c] + sun[c] * bell)));
+        let lit = sky_and_bell
+            .iter()
+            .map(|(sky, bell)| from_fn(|c| rounded(sky[c] + sun[c] * bell)));
         let ground = from_fn(|c| rounded(GROUND / PI * (irradiance[c] + sun[c] * bell_cosine)));
-        let pixels = lit.chain(core::iter::repeat_n(ground, width * height - upper)).collect();
-        Environment::from_pixels("clear sky", width, height, pixels).expect("a pixel for each texel")
+        let pixels = lit
+            .chain(core::iter::repeat_n(ground, width * height - upper))
+            .collect();
+        Environment::from_pixels("clear sky", width, height, pixels)
+            .expect("a pixel for each texel")
     }
 }
 
@@ -148,7 +187,11 @@ fn xyy_to_rgb(x: f64, y: f64, big_y: f64) -> [f64; 3] {
     ]
     .map(|v| v.max(0.0));
     let now = luminance(rgb);
-    if now > 0.0 { rgb.map(|v| v * big_y / now) } else { [0.0; 3] }
+    if now > 0.0 {
+        rgb.map(|v| v * big_y / now)
+    } else {
+        [0.0; 3]
+    }
 }
 
 #[cfg(test)]
@@ -161,14 +204,18 @@ mod tests {
         let rgb = xyy_to_rgb(0.312_7, 0.329_0, 2.0);
         assert!(rgb.iter().all(|v| (v - 2.0).abs() < 2e-3), "{rgb:?}");
         let blue = xyy_to_rgb(0.15, 0.02, 1.0);
-        assert!(blue.iter().all(|v| *v >= 0.0) && (luminance(blue) - 1.0).abs() < 1e-12, "{blue:?}");
+        assert!(
+            blue.iter().all(|v| *v >= 0.0) && (luminance(blue) - 1.0).abs() < 1e-12,
+            "{blue:?}"
+        );
     }
 
     #[test]
     fn zenith_luminance_matches_the_paper_formula() {
         // T = 3, sun at 50 degrees from the zenith: chi = (4/9 - 3/120)(180 - 100) degrees = 33.5556 degrees.
         let sky = Sky::default();
-        let want = (4.0453 * 3.0 - 4.9710) * 33.555_555_555_6_f64.to_radians().tan() - 0.2155 * 3.0 + 2.4192;
+        let want = (4.0453 * 3.0 - 4.9710) * 33.555_555_555_6_f64.to_radians().tan() - 0.2155 * 3.0
+            + 2.4192;
         assert!((luminance(sky.sky_radiance(DVec3::Y)) - want).abs() < 1e-9);
     }
 
@@ -178,14 +225,20 @@ mod tests {
         let zenith = sky.sky_radiance(DVec3::Y);
         assert!(zenith[2] > zenith[0], "blue overhead: {zenith:?}");
         let sun = sky.sun_irradiance();
-        assert!(sun[0] > sun[1] && sun[1] > sun[2] && (60.0..110.0).contains(&luminance(sun)), "{sun:?}");
+        assert!(
+            sun[0] > sun[1] && sun[1] > sun[2] && (60.0..110.0).contains(&luminance(sun)),
+            "{sun:?}"
+        );
         let map = sky.environment();
         assert_eq!(map.repairs(), crate::light::PixelRepairs::default());
         assert!(map.notes().is_empty(), "{:?}", map.notes());
         let at_sun = luminance(map.radiance(sky.sun));
         assert!(at_sun > 1e4, "the sun shines: {at_sun}");
         let down = map.radiance(-DVec3::Y);
-        assert!(luminance(down) > 1.0 && luminance(down) < 10.0, "the ground reflects some klx: {down:?}");
+        assert!(
+            luminance(down) > 1.0 && luminance(down) < 10.0,
+            "the ground reflects some klx: {down:?}"
+        );
         assert_eq!(map.digest(), sky.environment().digest());
     }
 }

@@ -16,7 +16,11 @@ const MEAN: [f64; 3] = [1.0, 0.9, 0.8];
 const CONTRAST: [f64; 3] = [0.5, 0.6, 0.8];
 
 /// Contrast of the luminance.
-const SLOPE: f64 = luminance([MEAN[0] * CONTRAST[0], MEAN[1] * CONTRAST[1], MEAN[2] * CONTRAST[2]]) / luminance(MEAN);
+const SLOPE: f64 = luminance([
+    MEAN[0] * CONTRAST[0],
+    MEAN[1] * CONTRAST[1],
+    MEAN[2] * CONTRAST[2],
+]) / luminance(MEAN);
 
 /// A linear gradient over the sphere: `mean (1 + contrast dot(axis, dir))` in each channel, its luminance sampled exactly.
 ///
@@ -41,7 +45,10 @@ impl Light for Smooth {
 
     fn see(&self, dir: DVec3) -> ([f64; 3], f64) {
         let t = AXIS.dot(unit_or_up(dir));
-        (core::array::from_fn(|c| MEAN[c] * (1.0 + CONTRAST[c] * t)), (1.0 + SLOPE * t) * (0.25 / PI))
+        (
+            core::array::from_fn(|c| MEAN[c] * (1.0 + CONTRAST[c] * t)),
+            (1.0 + SLOPE * t) * (0.25 / PI),
+        )
     }
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
@@ -58,7 +65,9 @@ impl Light for Smooth {
         let t = Vec3x8::splat(AXIS.as_vec3()).dot(*dir);
         let splat = |x: f64| f32x8::splat(rounded(x));
         Seen8 {
-            radiance: core::array::from_fn(|c| splat(MEAN[c] * CONTRAST[c]).mul_add(t, splat(MEAN[c]))),
+            radiance: core::array::from_fn(|c| {
+                splat(MEAN[c] * CONTRAST[c]).mul_add(t, splat(MEAN[c]))
+            }),
             pdf: (splat(SLOPE) * t + splat(1.0)) * splat(0.25 / PI),
         }
     }

@@ -32,7 +32,10 @@ impl Sun {
     #[must_use]
     pub fn five_degrees(towards: DVec3) -> Self {
         let half_sin = (0.25 * 5.0_f64.to_radians()).sin();
-        Self { axis: unit_or_up(towards), height: 2.0 * half_sin * half_sin }
+        Self {
+            axis: unit_or_up(towards),
+            height: 2.0 * half_sin * half_sin,
+        }
     }
 
     /// Solid angle of the disc, in sr.
@@ -63,14 +66,23 @@ impl Light for Sun {
 
     fn sample(&self, xi: [f64; 2]) -> LightSample {
         let pdf = 1.0 / self.solid_angle();
-        LightSample { dir: self.direction(self.height * xi[0], 2.0 * PI * xi[1]), radiance: [pdf; 3], pdf }
+        LightSample {
+            dir: self.direction(self.height * xi[0], 2.0 * PI * xi[1]),
+            radiance: [pdf; 3],
+            pdf,
+        }
     }
 
     fn see8(&self, dir: &Vec3x8) -> Seen8 {
         let away = Vec3x8::splat(-self.axis.as_vec3()).plus(*dir);
-        let inside = away.dot(away).simd_le(f32x8::splat(rounded(2.0 * self.height)));
+        let inside = away
+            .dot(away)
+            .simd_le(f32x8::splat(rounded(2.0 * self.height)));
         let pdf = inside.select(f32x8::splat(rounded(1.0 / self.solid_angle())), f32x8::ZERO);
-        Seen8 { radiance: [pdf; 3], pdf }
+        Seen8 {
+            radiance: [pdf; 3],
+            pdf,
+        }
     }
 
     fn integrate(&self, f: &dyn Fn(DVec3) -> [f64; 3], sphere: &SphereIntegrator) -> Integral<3> {
@@ -78,7 +90,9 @@ impl Light for Sun {
         let rim = self.height.sqrt();
         let radiance = 1.0 / self.solid_angle();
         integrate_rectangle(
-            |radius, phi| f(self.direction(radius * radius, phi)).map(|v| radiance * v * 2.0 * radius),
+            |radius, phi| {
+                f(self.direction(radius * radius, phi)).map(|v| radiance * v * 2.0 * radius)
+            },
             &[0.0, 0.25 * rim, 0.5 * rim, rim],
             &[0.0, 0.5 * PI, PI, 1.5 * PI, 2.0 * PI],
             &sphere.tolerance,

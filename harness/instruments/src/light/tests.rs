@@ -17,7 +17,11 @@ fn small_map() -> Environment {
         .map(|k| {
             let [a, b, c] = xi.next_xi_f32::<3>();
             let sun = if k == 37 { 500.0 } else { 1.0 };
-            if k / 16 == 2 || k % 16 == 5 { [0.0; 3] } else { [sun * a, sun * b, sun * c] }
+            if k / 16 == 2 || k % 16 == 5 {
+                [0.0; 3]
+            } else {
+                [sun * a, sun * b, sun * c]
+            }
         })
         .collect();
     Environment::from_pixels("small", 16, 8, pixels).expect("valid")
@@ -42,8 +46,15 @@ fn total_radiance(map: &Environment) -> [f64; 3] {
     for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
         let edge = |j: usize| (PI * j as f64 / height as f64).cos();
         let solid_angle = 2.0 * PI / width as f64 * (edge(j) - edge(j + 1));
-        let [polar, turn] = [PI * (j as f64 + 0.5) / height as f64, 2.0 * PI * ((i as f64 + 0.5) / width as f64 - 0.5)];
-        let dir = DVec3::new(polar.sin() * turn.sin(), polar.cos(), -polar.sin() * turn.cos());
+        let [polar, turn] = [
+            PI * (j as f64 + 0.5) / height as f64,
+            2.0 * PI * ((i as f64 + 0.5) / width as f64 - 0.5),
+        ];
+        let dir = DVec3::new(
+            polar.sin() * turn.sin(),
+            polar.cos(),
+            -polar.sin() * turn.cos(),
+        );
         sum = [0, 1, 2].map(|c: usize| sum[c] + map.radiance(dir)[c] * solid_angle);
     }
     sum
@@ -57,7 +68,11 @@ fn tight() -> SphereIntegrator {
 fn densities_integrate_to_one_over_their_support() {
     for light in lights() {
         // The reference integral runs over radiance times f: with f = pdf / radiance it is the mass where the light shines.
-        let f = |dir: DVec3| light.radiance(dir).map(|l| if l > 0.0 { light.pdf(dir) / l } else { 0.0 });
+        let f = |dir: DVec3| {
+            light
+                .radiance(dir)
+                .map(|l| if l > 0.0 { light.pdf(dir) / l } else { 0.0 })
+        };
         let mass = light.integrate(&f, &tight()).value;
         let dark = light.integrate(&|_| [1.0; 3], &tight()).value;
         for c in 0..3 {
@@ -95,7 +110,11 @@ fn eight_lanes_see_what_one_sees() {
         for k in 0..2_500 {
             // Half of the directions are the light's own, so that small ones are met.
             let dirs: [DVec3; 8] = core::array::from_fn(|lane| {
-                if lane % 2 == 0 { light.sample(xi.next_xi()).dir } else { Constant.sample(xi.next_xi()).dir }
+                if lane % 2 == 0 {
+                    light.sample(xi.next_xi()).dir
+                } else {
+                    Constant.sample(xi.next_xi()).dir
+                }
             });
             let seen = light.see8(&dirs.map(|dir| dir.as_vec3()).into());
             for (lane, dir) in dirs.into_iter().enumerate() {
@@ -107,11 +126,19 @@ fn eight_lanes_see_what_one_sees() {
                 // Edges may be rounded across.
                 far += i32::from(!same);
                 lit += i32::from(radiance[0] > 0.0);
-                assert!(got.iter().all(|c| c.is_finite() && *c >= 0.0), "{}: {got:?} at {k}", light.name());
+                assert!(
+                    got.iter().all(|c| c.is_finite() && *c >= 0.0),
+                    "{}: {got:?} at {k}",
+                    light.name()
+                );
             }
         }
         assert!(far <= 4, "{}: {far} of 20000 differ", light.name());
-        assert!(lit > 5_000 || light.name() == "black", "{}: only {lit} saw it", light.name());
+        assert!(
+            lit > 5_000 || light.name() == "black",
+            "{}: only {lit} saw it",
+            light.name()
+        );
     }
 }
 
@@ -123,7 +150,11 @@ fn maps_are_told_apart_by_their_digest() {
         pixels[k][1] = 2.0;
         pixels
     };
-    let of = |w, h, pixels| Environment::from_pixels("m", w, h, pixels).expect("valid").digest();
+    let of = |w, h, pixels| {
+        Environment::from_pixels("m", w, h, pixels)
+            .expect("valid")
+            .digest()
+    };
     assert_eq!(map.digest(), small_map().digest());
     assert_eq!(of(4, 2, pixels(3)), of(4, 2, pixels(3)));
     assert_ne!(of(4, 2, pixels(3)), of(4, 2, pixels(4)), "another pixel");
@@ -136,17 +167,45 @@ fn samples_agree_with_radiance_and_density() {
     for (k, light) in lights().iter().enumerate() {
         let mut xi = Independent::new(1, stream_id(&[1, k as u64]));
         let edges = [0.0, 1e-300, 0.25, 0.5, 0.75, last];
-        let corners = edges.iter().flat_map(|&a| edges.iter().map(move |&b| [a, b]));
+        let corners = edges
+            .iter()
+            .flat_map(|&a| edges.iter().map(move |&b| [a, b]));
         let random: Vec<[f64; 2]> = (0..20_000).map(|_| xi.next_xi()).collect();
         for xi in corners.chain(random) {
             let s = light.sample(xi);
-            assert!((s.dir.length() - 1.0).abs() < 1e-14, "{}: {xi:?} {s:?}", light.name());
-            assert!(s.pdf.is_finite() && s.pdf > 0.0, "{}: {xi:?} {s:?}", light.name());
-            assert_eq!(light.radiance(s.dir), s.radiance, "{}: {xi:?}", light.name());
-            assert!((light.pdf(s.dir) / s.pdf - 1.0).abs() < 1e-12, "{}: {xi:?} {s:?}", light.name());
+            assert!(
+                (s.dir.length() - 1.0).abs() < 1e-14,
+                "{}: {xi:?} {s:?}",
+                light.name()
+            );
+            assert!(
+                s.pdf.is_finite() && s.pdf > 0.0,
+                "{}: {xi:?} {s:?}",
+                light.name()
+            );
+            assert_eq!(
+                light.radiance(s.dir),
+                s.radiance,
+                "{}: {xi:?}",
+                light.name()
+            );
+            assert!(
+                (light.pdf(s.dir) / s.pdf - 1.0).abs() < 1e-12,
+                "{}: {xi:?} {s:?}",
+                light.name()
+            );
             // Length does not matter.
-            assert!((light.pdf(s.dir * 2.0) / s.pdf - 1.0).abs() < 1e-12, "{}: {xi:?} {s:?}", light.name());
-            assert_eq!(light.radiance(s.dir * 2.0), s.radiance, "{}: {xi:?}", light.name());
+            assert!(
+                (light.pdf(s.dir * 2.0) / s.pdf - 1.0).abs() < 1e-12,
+                "{}: {xi:?} {s:?}",
+                light.name()
+            );
+            assert_eq!(
+                light.radiance(s.dir * 2.0),
+                s.radiance,
+                "{}: {xi:?}",
+                light.name()
+            );
         }
     }
 }
@@ -154,7 +213,10 @@ fn samples_agree_with_radiance_and_density() {
 #[test]
 fn estimates_equal_the_quadrature_of_radiance() {
     // Against f = 1 and against a tilted f, so that a density right in total but wrong in place is seen.
-    let fs: [fn(DVec3) -> [f64; 3]; 2] = [|_| [1.0; 3], |d| [1.0 + 0.9 * d.x, (d.z - 0.2).powi(2), (2.0 * d.y).exp()]];
+    let fs: [fn(DVec3) -> [f64; 3]; 2] = [
+        |_| [1.0; 3],
+        |d| [1.0 + 0.9 * d.x, (d.z - 0.2).powi(2), (2.0 * d.y).exp()],
+    ];
     for (k, light) in lights().iter().enumerate() {
         for (tilt, f) in fs.iter().enumerate() {
             let truth = light.integrate(&f, &tight());
@@ -185,7 +247,10 @@ fn estimates_equal_the_quadrature_of_radiance() {
 fn reference_integrals_have_closed_forms() {
     let one = |_: DVec3| [1.0; 3];
     let constant = Constant.integrate(&one, &tight()).value;
-    assert!(constant.iter().all(|v| (v - 4.0 * PI).abs() < 1e-10), "{constant:?}");
+    assert!(
+        constant.iter().all(|v| (v - 4.0 * PI).abs() < 1e-10),
+        "{constant:?}"
+    );
     let smooth = Smooth.integrate(&one, &tight()).value;
     for (v, mean) in smooth.iter().zip([1.0, 0.9, 0.8]) {
         assert!((v - 4.0 * PI * mean).abs() < 1e-9, "{smooth:?}");
@@ -194,7 +259,10 @@ fn reference_integrals_have_closed_forms() {
     assert!(sun.iter().all(|v| (v - 1.0).abs() < 1e-10), "{sun:?}");
     let area = Rectangle;
     let got = area.integrate(&one, &tight());
-    assert!(got.converged && (got.value[0] / area.solid_angle() - 1.0).abs() < 1e-10, "{got:?}");
+    assert!(
+        got.converged && (got.value[0] / area.solid_angle() - 1.0).abs() < 1e-10,
+        "{got:?}"
+    );
     let map = small_map();
     let got = map.integrate(&one, &tight()).value;
     for (v, want) in got.iter().zip(total_radiance(&map)) {
@@ -211,13 +279,20 @@ fn fit(light: &dyn Light, stream: u64, mass: &[f64], cell: impl Fn(DVec3) -> usi
         counts[cell(light.sample(xi.next_xi()).dir)] += 1;
     }
     let total: f64 = mass.iter().sum();
-    assert!((total - 1.0).abs() < 1e-9, "{}: the cells hold {total}", light.name());
+    assert!(
+        (total - 1.0).abs() < 1e-9,
+        "{}: the cells hold {total}",
+        light.name()
+    );
     let expected: Vec<f64> = mass.iter().map(|m| m * f64::from(n)).collect();
     chi_square(&counts, &expected, 5.0).p_value
 }
 
 fn bin(x: f64, n: usize) -> usize {
-    (0..n).rev().find(|&i| x >= i as f64 / n as f64).unwrap_or(0)
+    (0..n)
+        .rev()
+        .find(|&i| x >= i as f64 / n as f64)
+        .unwrap_or(0)
 }
 
 #[test]
@@ -226,7 +301,9 @@ fn samples_follow_their_density() {
     let n = 24;
     let even = vec![1.0 / (n * n) as f64; n * n];
     let turn = |a: f64, b: f64| bin(0.5 + a.atan2(b) / (2.0 * PI), n);
-    let p = fit(&Constant, 0, &even, |d| bin(0.5 + 0.5 * d.y, n) * n + turn(d.x, d.z));
+    let p = fit(&Constant, 0, &even, |d| {
+        bin(0.5 + 0.5 * d.y, n) * n + turn(d.x, d.z)
+    });
     assert!(p > level, "constant: {p}");
     // Smooth: bands of equal height hold the integral of its linear density.
     let smooth = Smooth;
@@ -239,14 +316,17 @@ fn samples_follow_their_density() {
         })
         .collect();
     let [e1, e2] = tangents(axis);
-    let p = fit(&smooth, 1, &mass, |d| bin(0.5 + 0.5 * d.dot(axis), n) * n + turn(d.dot(e1), d.dot(e2)));
+    let p = fit(&smooth, 1, &mass, |d| {
+        bin(0.5 + 0.5 * d.dot(axis), n) * n + turn(d.dot(e1), d.dot(e2))
+    });
     assert!(p > level, "smooth: {p}");
     let sun = Sun::five_degrees(DVec3::new(0.4, 0.7, -0.3));
     let axis = DVec3::new(0.4, 0.7, -0.3).normalize();
     let [e1, e2] = tangents(axis);
     let height = 1.0 - 2.5_f64.to_radians().cos();
-    let p =
-        fit(&sun, 2, &even, |d| bin(0.5 * (d - axis).length_squared() / height, n) * n + turn(d.dot(e1), d.dot(e2)));
+    let p = fit(&sun, 2, &even, |d| {
+        bin(0.5 * (d - axis).length_squared() / height, n) * n + turn(d.dot(e1), d.dot(e2))
+    });
     assert!(p > level, "sun: {p}");
     let light = Rectangle;
     let mass: Vec<f64> = (0..n * n)
@@ -255,11 +335,14 @@ fn samples_follow_their_density() {
             let z = |j: usize| j as f64 / n as f64 - 0.5;
             let corner = |x: f64, z: f64| (x * z).atan2((x * x + z * z + 1.0).sqrt());
             let (i, j) = (k / n, k % n);
-            (corner(x(i + 1), z(j + 1)) - corner(x(i), z(j + 1)) - corner(x(i + 1), z(j)) + corner(x(i), z(j)))
+            (corner(x(i + 1), z(j + 1)) - corner(x(i), z(j + 1)) - corner(x(i + 1), z(j))
+                + corner(x(i), z(j)))
                 / light.solid_angle()
         })
         .collect();
-    let p = fit(&light, 4, &mass, |d| bin(0.5 + 0.25 * d.x / d.y, n) * n + bin(0.5 + d.z / d.y, n));
+    let p = fit(&light, 4, &mass, |d| {
+        bin(0.5 + 0.25 * d.x / d.y, n) * n + bin(0.5 + d.z / d.y, n)
+    });
     assert!(p > level, "{}: {p}", light.name());
     // The map: four cells a texel, so that the spread within a texel is tested too.
     let map = small_map();
@@ -267,9 +350,15 @@ fn samples_follow_their_density() {
     let polar = |j: usize| (PI * j as f64 / h as f64).cos();
     let mass: Vec<f64> = (0..w * h)
         .map(|k| {
-            let (theta, phi) =
-                (PI * ((k / w) as f64 + 0.5) / h as f64, 2.0 * PI * (((k % w) as f64 + 0.5) / w as f64 - 0.5));
-            let dir = DVec3::new(theta.sin() * phi.sin(), theta.cos(), -theta.sin() * phi.cos());
+            let (theta, phi) = (
+                PI * ((k / w) as f64 + 0.5) / h as f64,
+                2.0 * PI * (((k % w) as f64 + 0.5) / w as f64 - 0.5),
+            );
+            let dir = DVec3::new(
+                theta.sin() * phi.sin(),
+                theta.cos(),
+                -theta.sin() * phi.cos(),
+            );
             map.pdf(dir) * 2.0 * PI / w as f64 * (polar(k / w) - polar(k / w + 1))
         })
         .collect();

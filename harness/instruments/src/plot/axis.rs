@@ -33,32 +33,52 @@ pub struct Axis {
 impl Axis {
     /// A linear axis. Put the unit in the label. It spans 0 unless the values are close together and far from it.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Linear, range: None, step: None }
+        Self {
+            label: label.into(),
+            scale: Scale::Linear,
+            range: None,
+            step: None,
+        }
     }
 
     /// A logarithmic axis. Put the unit in the label.
     pub fn log(label: impl Into<String>) -> Self {
-        Self { scale: Scale::Log, ..Self::linear(label) }
+        Self {
+            scale: Scale::Log,
+            ..Self::linear(label)
+        }
     }
 
     /// An axis of angles in degrees, spread by their sine.
     pub(super) fn sine(label: impl Into<String>) -> Self {
-        Self { scale: Scale::Sine, ..Self::linear(label) }
+        Self {
+            scale: Scale::Sine,
+            ..Self::linear(label)
+        }
     }
 
     /// The values to span, in place of those of the data; what lies outside is cut off.
     pub fn range(self, low: f64, high: f64) -> Self {
-        Self { range: Some((low, high)), ..self }
+        Self {
+            range: Some((low, high)),
+            ..self
+        }
     }
 
     /// The distance between labels of a linear axis.
     pub fn step(self, step: f64) -> Self {
-        Self { step: Some(step), ..self }
+        Self {
+            step: Some(step),
+            ..self
+        }
     }
 
     /// The axis with a range if it has none yet.
     pub(super) fn or_range(self, low: f64, high: f64) -> Self {
-        Self { range: self.range.or(Some((low, high))), ..self }
+        Self {
+            range: self.range.or(Some((low, high))),
+            ..self
+        }
     }
 
     /// Whether `value` has a place on the axis.
@@ -78,7 +98,13 @@ impl Axis {
     /// The axis laid along the pixels from `start` to `end`, wide enough for `values`.
     pub(super) fn fit(self, values: &[f64], start: f64, end: f64) -> Fitted {
         let (low, high) = self.ends(values);
-        Fitted { axis: self, low, high, start, end }
+        Fitted {
+            axis: self,
+            low,
+            high,
+            start,
+            end,
+        }
     }
 
     /// The ends of an axis wide enough for `values`, in scaled units.
@@ -93,7 +119,9 @@ impl Axis {
         let mut ends: Option<(f64, f64)> = None;
         for value in values.iter().filter(|value| self.shows(**value)) {
             let value = self.scaled(*value).clamp(-most, most);
-            ends = Some(ends.map_or((value, value), |(low, high)| (low.min(value), high.max(value))));
+            ends = Some(ends.map_or((value, value), |(low, high)| {
+                (low.min(value), high.max(value))
+            }));
         }
         let (mut low, mut high) = ends.unwrap_or((0.0, 1.0));
         if is_log {
@@ -104,7 +132,11 @@ impl Axis {
         if high - low > 0.5 * size {
             (low, high) = (low.min(0.0), high.max(0.0));
         }
-        let room = if high - low > 1e-9 * size { 0.05 * (high - low) } else { (0.5 * size).max(0.5) };
+        let room = if high - low > 1e-9 * size {
+            0.05 * (high - low)
+        } else {
+            (0.5 * size).max(0.5)
+        };
         let beyond = |end: f64| if end == 0.0 && high > low { 0.0 } else { room };
         (low - beyond(low), high + beyond(high))
     }
@@ -147,7 +179,11 @@ impl Fitted {
     /// The values at the ends of a linear or logarithmic axis.
     pub(super) fn ends(&self) -> [f64; 2] {
         let ends = [self.low, self.high];
-        if self.axis.scale == Scale::Log { ends.map(|end| 10.0_f64.powf(end)) } else { ends }
+        if self.axis.scale == Scale::Log {
+            ends.map(|end| 10.0_f64.powf(end))
+        } else {
+            ends
+        }
     }
 
     pub(super) fn ticks(&self) -> Vec<Tick> {
@@ -162,11 +198,18 @@ impl Fitted {
 
     fn linear_ticks(&self, [low, high]: [f64; 2]) -> Vec<Tick> {
         let room = (self.end - self.start).abs() / 70.0;
-        let step = self.axis.step.filter(|s| *s > 0.0 && (high - low) / s < 100.0);
+        let step = self
+            .axis
+            .step
+            .filter(|s| *s > 0.0 && (high - low) / s < 100.0);
         let step = step.unwrap_or_else(|| nice_step((high - low) / room.clamp(2.0, 10.0)));
         let first = (low / step - 1e-6).ceil();
-        let values = (0..200).map(|n| (first + f64::from(n)) * step).take_while(|v| *v <= high + 1e-6 * step);
-        values.map(|value| (self.pixel(value), Some(number::tick(value + 0.0, step)))).collect()
+        let values = (0..200)
+            .map(|n| (first + f64::from(n)) * step)
+            .take_while(|v| *v <= high + 1e-6 * step);
+        values
+            .map(|value| (self.pixel(value), Some(number::tick(value + 0.0, step))))
+            .collect()
     }
 
     fn log_ticks(&self) -> Vec<Tick> {
@@ -195,7 +238,10 @@ impl Fitted {
 /// The least of 1, 2, 5, 10 .. times a power of ten that is not much below `step`.
 pub(super) fn nice_step(step: f64) -> f64 {
     let power = 10.0_f64.powf(step.log10().floor());
-    let digit = [1.0, 2.0, 5.0].into_iter().find(|d| d * power >= step * 0.75).unwrap_or(10.0);
+    let digit = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|d| d * power >= step * 0.75)
+        .unwrap_or(10.0);
     digit * power
 }
 
@@ -204,29 +250,62 @@ mod tests {
     use super::*;
 
     fn labels(axis: &Axis, values: &[f64]) -> Vec<String> {
-        axis.clone().fit(values, 0.0, 500.0).ticks().into_iter().filter_map(|tick| tick.1).collect()
+        axis.clone()
+            .fit(values, 0.0, 500.0)
+            .ticks()
+            .into_iter()
+            .filter_map(|tick| tick.1)
+            .collect()
     }
 
     #[test]
     fn labels_are_round_numbers() {
-        assert_eq!(labels(&Axis::linear("x"), &[0.0, 0.93]), ["0.0", "0.2", "0.4", "0.6", "0.8"], "fifths");
+        assert_eq!(
+            labels(&Axis::linear("x"), &[0.0, 0.93]),
+            ["0.0", "0.2", "0.4", "0.6", "0.8"],
+            "fifths"
+        );
         assert_eq!(
             labels(&Axis::linear("x").range(-90.0, 90.0).step(45.0), &[]),
             ["−90", "−45", "0", "45", "90"],
             "given"
         );
-        assert_eq!(labels(&Axis::log("x"), &[1.0, 1e5]), ["1", "10", "100", "1000", "10⁴", "10⁵"], "decades");
+        assert_eq!(
+            labels(&Axis::log("x"), &[1.0, 1e5]),
+            ["1", "10", "100", "1000", "10⁴", "10⁵"],
+            "decades"
+        );
     }
 
     #[test]
     fn any_data_gives_a_usable_axis() {
-        let odd = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -1.0, 1e308, -1e308, 1e-308, 5e-324];
-        for axis in [Axis::linear("x"), Axis::log("x"), Axis::log("x").range(0.0, 1.0)] {
+        let odd = [
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            0.0,
+            -1.0,
+            1e308,
+            -1e308,
+            1e-308,
+            5e-324,
+        ];
+        for axis in [
+            Axis::linear("x"),
+            Axis::log("x"),
+            Axis::log("x").range(0.0, 1.0),
+        ] {
             for n in 0..odd.len() {
                 let fitted = axis.clone().fit(&odd[n..], 10.0, 90.0);
-                assert!(fitted.low < fitted.high && (fitted.high - fitted.low).is_finite(), "{axis:?} {fitted:?}");
+                assert!(
+                    fitted.low < fitted.high && (fitted.high - fitted.low).is_finite(),
+                    "{axis:?} {fitted:?}"
+                );
                 for value in odd {
-                    assert!(value.is_nan() || fitted.pixel(value).is_finite(), "{value} {fitted:?}");
+                    assert!(
+                        value.is_nan() || fitted.pixel(value).is_finite(),
+                        "{value} {fitted:?}"
+                    );
                 }
                 assert!(fitted.ticks().len() < 400, "{fitted:?}");
             }

@@ -17,9 +17,18 @@ use crate::table::number;
 /// assert!(svg.contains("7.10"));
 /// ```
 #[must_use]
-pub fn bars(title: &str, y: Axis, groups: &[String], series: &[(String, Vec<Bar>)], level: f64) -> String {
+pub fn bars(
+    title: &str,
+    y: Axis,
+    groups: &[String],
+    series: &[(String, Vec<Bar>)],
+    level: f64,
+) -> String {
     let all = series.iter().flat_map(|(_, bars)| bars);
-    let ends: Vec<f64> = all.flat_map(|bar| [bar.value, bar.low, bar.high]).chain([0.0, level]).collect();
+    let ends: Vec<f64> = all
+        .flat_map(|bar| [bar.value, bar.low, bar.high])
+        .chain([0.0, level])
+        .collect();
     let x = Axis::linear("").range(0.0, groups.len().max(1) as f64);
     let (mut canvas, x, y) = plot(title, 320.0, (x, &[]), (y, &ends));
     let group_width = x.pixel(1.0) - x.pixel(0.0);
@@ -31,7 +40,9 @@ pub fn bars(title: &str, y: Axis, groups: &[String], series: &[(String, Vec<Bar>
         let middle = x.pixel(g as f64 + 0.5);
         below = below.max(canvas.lines(group, (middle, y.start + 16.0), group_width - 12.0, TICK));
         for (s, (name, bars)) in series.iter().enumerate() {
-            let Some(bar) = bars.get(g).filter(|b| y.axis.shows(b.value)) else { continue };
+            let Some(bar) = bars.get(g).filter(|b| y.axis.shows(b.value)) else {
+                continue;
+            };
             let number = number::plain(bar.value, 3);
             description += &format!(" {group}, {name}: {number}.");
             let center = middle + (s as f64 + 0.5 - 0.5 * series.len() as f64) * bar_width;
@@ -41,7 +52,11 @@ pub fn bars(title: &str, y: Axis, groups: &[String], series: &[(String, Vec<Bar>
             if bar_width > 26.0 {
                 // A bar that hangs from its level has its number below.
                 let ends = [end, y.pixel(bar.low), y.pixel(bar.high)].into_iter();
-                let at = if end > base { ends.fold(end, f64::max) + 9.0 } else { ends.fold(end, f64::min) - 9.0 };
+                let at = if end > base {
+                    ends.fold(end, f64::max) + 9.0
+                } else {
+                    ends.fold(end, f64::min) - 9.0
+                };
                 canvas.text(&number, (center, at), Type { color: INK, ..TICK });
             }
         }

@@ -23,12 +23,28 @@ pub(super) struct Type {
 }
 
 /// Names of axes and entries of legends.
-pub(super) const LABEL: Type = Type { size: 15.5, anchor: "middle", bold: false, upright: false, color: INK };
+pub(super) const LABEL: Type = Type {
+    size: 15.5,
+    anchor: "middle",
+    bold: false,
+    upright: false,
+    color: INK,
+};
 /// Labels of ticks, and notes.
-pub(super) const TICK: Type = Type { size: 14.0, color: FAINT_INK, ..LABEL };
+pub(super) const TICK: Type = Type {
+    size: 14.0,
+    color: FAINT_INK,
+    ..LABEL
+};
 /// Titles of panels.
-pub(super) const HEADING: Type = Type { bold: true, ..LABEL };
-const TITLE: Type = Type { size: 17.0, ..HEADING };
+pub(super) const HEADING: Type = Type {
+    bold: true,
+    ..LABEL
+};
+const TITLE: Type = Type {
+    size: 17.0,
+    ..HEADING
+};
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,14 +58,22 @@ pub(super) struct Pen {
 
 impl Pen {
     pub(super) const fn new(color: Color, width: f64) -> Self {
-        Self { color, width, dash: 0, alpha: 1.0 }
+        Self {
+            color,
+            width,
+            dash: 0,
+            alpha: 1.0,
+        }
     }
 }
 
 /// Frames and ticks.
 pub(super) const THIN: Pen = Pen::new(INK, 1.0);
 /// Grid lines, which let colours through.
-pub(super) const GRID: Pen = Pen { alpha: 0.14, ..THIN };
+pub(super) const GRID: Pen = Pen {
+    alpha: 0.14,
+    ..THIN
+};
 
 /// A place on the sheet, pixels from its top left.
 pub(super) type Place = (f64, f64);
@@ -63,20 +87,29 @@ pub(super) struct Canvas {
     path: String,
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "sheets are far smaller than 2^31 and `as` saturates")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "sheets are far smaller than 2^31 and `as` saturates"
+)]
 fn fine(pixels: f64) -> i32 {
     (pixels * FINE).round() as i32
 }
 
 fn path_data(points: &[Place]) -> String {
-    let points: Vec<String> = points.iter().map(|(x, y)| format!("{},{}", fine(*x), fine(*y))).collect();
+    let points: Vec<String> = points
+        .iter()
+        .map(|(x, y)| format!("{},{}", fine(*x), fine(*y)))
+        .collect();
     format!("M{}", points.join(" "))
 }
 
 impl Canvas {
     /// A sheet with its title, and the height below which it is empty.
     pub(super) fn new(title: &str) -> (Self, f64) {
-        let mut canvas = Self { title: escape(title), ..Self::default() };
+        let mut canvas = Self {
+            title: escape(title),
+            ..Self::default()
+        };
         let bottom = canvas.lines(title, (0.5 * WIDTH, 20.0), WIDTH - 24.0, TITLE);
         (canvas, bottom)
     }
@@ -107,12 +140,22 @@ impl Canvas {
 
     fn flush(&mut self) {
         if !self.path.is_empty() {
-            self.svg.push_str(&format!("<path {} d=\"{}\"/>\n", self.style, self.path));
+            self.svg
+                .push_str(&format!("<path {} d=\"{}\"/>\n", self.style, self.path));
         }
         self.path.clear();
     }
 
-    pub(super) fn line(&mut self, points: &[Place], Pen { color, width, dash, alpha }: Pen) {
+    pub(super) fn line(
+        &mut self,
+        points: &[Place],
+        Pen {
+            color,
+            width,
+            dash,
+            alpha,
+        }: Pen,
+    ) {
         if points.len() < 2 {
             return;
         }
@@ -126,7 +169,10 @@ impl Canvas {
     pub(super) fn block(&mut self, (x0, y0): Place, (x1, y1): Place, color: Color, alpha: f64) {
         let (left, top) = (fine(x0.min(x1)), fine(y0.min(y1)));
         let (width, height) = (fine(x0.max(x1)) - left, fine(y0.max(y1)) - top);
-        self.add(format!("fill=\"{color}\" opacity=\"{alpha}\""), &format!("M{left} {top}h{width}v{height}h-{width}z"));
+        self.add(
+            format!("fill=\"{color}\" opacity=\"{alpha}\""),
+            &format!("M{left} {top}h{width}v{height}h-{width}z"),
+        );
     }
 
     pub(super) fn frame(&mut self, (x0, y0): Place, (x1, y1): Place, pen: Pen) {
@@ -136,7 +182,9 @@ impl Canvas {
     pub(super) fn dot(&mut self, (x, y): Place, radius: f64, color: Color, alpha: f64) {
         // A line of no length with round ends is a disc.
         let width = fine(2.0 * radius);
-        let style = format!("stroke=\"{color}\" stroke-width=\"{width}\" stroke-linecap=\"round\" opacity=\"{alpha}\"");
+        let style = format!(
+            "stroke=\"{color}\" stroke-width=\"{width}\" stroke-linecap=\"round\" opacity=\"{alpha}\""
+        );
         self.add(style, &format!("M{} {}h0", fine(x), fine(y)));
     }
 
@@ -147,18 +195,35 @@ impl Canvas {
         if shape.is_empty() {
             return self.dot((x, y), SIZE, color, 1.0);
         }
-        let corners: Vec<Place> = shape.chunks_exact(2).map(|at| (x + SIZE * at[0], y + SIZE * at[1])).collect();
+        let corners: Vec<Place> = shape
+            .chunks_exact(2)
+            .map(|at| (x + SIZE * at[0], y + SIZE * at[1]))
+            .collect();
         self.add(format!("fill=\"{color}\""), &(path_data(&corners) + "z"));
     }
 
     /// A text whose middle height is at `place`.
     pub(super) fn text(&mut self, text: &str, (x, y): Place, set: Type) {
         self.flush();
-        let Type { size, anchor, bold, upright, color } = set;
+        let Type {
+            size,
+            anchor,
+            bold,
+            upright,
+            color,
+        } = set;
         // From the middle of the letters to their base line.
         let drop = 0.35 * size;
-        let (x, y) = if upright { (fine(x + drop), fine(y)) } else { (fine(x), fine(y + drop)) };
-        let turn = if upright { format!(" transform=\"rotate(270, {x}, {y})\"") } else { String::new() };
+        let (x, y) = if upright {
+            (fine(x + drop), fine(y))
+        } else {
+            (fine(x), fine(y + drop))
+        };
+        let turn = if upright {
+            format!(" transform=\"rotate(270, {x}, {y})\"")
+        } else {
+            String::new()
+        };
         let weight = if bold { " font-weight=\"bold\"" } else { "" };
         let (size, text) = (fine(size), escape(text));
         self.svg.push_str(&format!(

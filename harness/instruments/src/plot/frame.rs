@@ -21,14 +21,27 @@ pub struct Bar {
 
 impl From<f64> for Bar {
     fn from(value: f64) -> Self {
-        Self { value, low: value, high: value }
+        Self {
+            value,
+            low: value,
+            high: value,
+        }
     }
 }
 
 /// Whiskers of one standard error.
 impl From<Estimate> for Bar {
-    fn from(Estimate { value, standard_error }: Estimate) -> Self {
-        Self { value, low: value - standard_error, high: value + standard_error }
+    fn from(
+        Estimate {
+            value,
+            standard_error,
+        }: Estimate,
+    ) -> Self {
+        Self {
+            value,
+            low: value - standard_error,
+            high: value + standard_error,
+        }
     }
 }
 
@@ -60,33 +73,73 @@ pub(super) fn plot(
 }
 
 fn widest_label(axis: &Fitted) -> f64 {
-    axis.ticks().iter().filter_map(|(_, label)| label.as_deref()).map(|label| TICK.width(label)).fold(20.0, f64::max)
+    axis.ticks()
+        .iter()
+        .filter_map(|(_, label)| label.as_deref())
+        .map(|label| TICK.width(label))
+        .fold(20.0, f64::max)
 }
 
 /// Draws an axis at the start of another one, with its grid lines across to the end of that.
 pub(super) fn draw_axis(canvas: &mut Canvas, axis: &Fitted, across: &Fitted, upright: bool) {
-    let place = |along: f64, across: f64| if upright { (across, along) } else { (along, across) };
+    let place = |along: f64, across: f64| {
+        if upright {
+            (across, along)
+        } else {
+            (along, across)
+        }
+    };
     let base = across.start;
-    let (outwards, anchor) = if upright { (-1.0, "end") } else { (1.0, "middle") };
-    let [text_gap, title_gap] = if upright { [-9.0, -22.0 - widest_label(axis)] } else { [15.0, 36.0] };
+    let (outwards, anchor) = if upright {
+        (-1.0, "end")
+    } else {
+        (1.0, "middle")
+    };
+    let [text_gap, title_gap] = if upright {
+        [-9.0, -22.0 - widest_label(axis)]
+    } else {
+        [15.0, 36.0]
+    };
     let ticks = axis.ticks();
     for (at, label) in &ticks {
-        let alpha = if label.is_some() { GRID.alpha } else { 0.5 * GRID.alpha };
-        canvas.line(&[place(*at, base), place(*at, across.end)], Pen { alpha, ..GRID });
+        let alpha = if label.is_some() {
+            GRID.alpha
+        } else {
+            0.5 * GRID.alpha
+        };
+        canvas.line(
+            &[place(*at, base), place(*at, across.end)],
+            Pen { alpha, ..GRID },
+        );
     }
     for (at, label) in &ticks {
         let Some(label) = label else { continue };
         canvas.line(&[place(*at, base), place(*at, base + 5.0 * outwards)], THIN);
         canvas.text(label, place(*at, base + text_gap), Type { anchor, ..TICK });
     }
-    canvas.text(&axis.axis.label, place(axis.along(0.5), base + title_gap), Type { upright, ..LABEL });
+    canvas.text(
+        &axis.axis.label,
+        place(axis.along(0.5), base + title_gap),
+        Type { upright, ..LABEL },
+    );
 }
 
 /// Draws a legend below `top`, each entry with its mark, and returns where it ends.
-pub(super) fn legend(canvas: &mut Canvas, names: &[&str], top: f64, mark: &dyn Fn(&mut Canvas, usize, Place)) -> f64 {
+pub(super) fn legend(
+    canvas: &mut Canvas,
+    names: &[&str],
+    top: f64,
+    mark: &dyn Fn(&mut Canvas, usize, Place),
+) -> f64 {
     const LEFT: f64 = 12.0;
-    let widest = names.iter().map(|name| 58.0 + LABEL.width(name)).fold(1.0, f64::max);
-    let fit = (1..=names.len()).rev().find(|n| LEFT + *n as f64 * widest <= WIDTH).unwrap_or(1);
+    let widest = names
+        .iter()
+        .map(|name| 58.0 + LABEL.width(name))
+        .fold(1.0, f64::max);
+    let fit = (1..=names.len())
+        .rev()
+        .find(|n| LEFT + *n as f64 * widest <= WIDTH)
+        .unwrap_or(1);
     // As few rows as fit, evenly filled.
     let rows = names.len().div_ceil(fit);
     let columns = names.len().div_ceil(rows.max(1)).max(1);
@@ -94,7 +147,14 @@ pub(super) fn legend(canvas: &mut Canvas, names: &[&str], top: f64, mark: &dyn F
         let x = LEFT + (i % columns) as f64 * widest;
         let y = top + ((i / columns) as f64 + 0.5) * LEGEND_LINE;
         mark(canvas, i, (x, y));
-        canvas.text(name, (x + 42.0, y), Type { anchor: "start", ..LABEL });
+        canvas.text(
+            name,
+            (x + 42.0, y),
+            Type {
+                anchor: "start",
+                ..LABEL
+            },
+        );
     }
     top + rows as f64 * LEGEND_LINE
 }

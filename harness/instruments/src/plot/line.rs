@@ -18,36 +18,63 @@ pub struct Series {
 
 impl Series {
     /// A line with a marker at each point, for measured values; their errors are drawn as bars.
-    pub fn new<B: Into<Bar>>(name: impl Into<String>, points: impl IntoIterator<Item = (f64, B)>) -> Self {
+    pub fn new<B: Into<Bar>>(
+        name: impl Into<String>,
+        points: impl IntoIterator<Item = (f64, B)>,
+    ) -> Self {
         let points = points.into_iter().map(|(x, y)| (x, y.into())).collect();
-        Self { name: name.into(), points, markers: true, pen: None }
+        Self {
+            name: name.into(),
+            points,
+            markers: true,
+            pen: None,
+        }
     }
 
     /// A line without markers, for functions.
     pub fn curve(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        Self { markers: false, ..Self::new(name, points) }
+        Self {
+            markers: false,
+            ..Self::new(name, points)
+        }
     }
 
     /// A dotted line to compare others with.
     pub fn guide(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        Self { pen: Some(Pen { dash: DOTS, ..Pen::new(INK, 1.8) }), ..Self::curve(name, points) }
+        Self {
+            pen: Some(Pen {
+                dash: DOTS,
+                ..Pen::new(INK, 1.8)
+            }),
+            ..Self::curve(name, points)
+        }
     }
 
     /// The numbers of its colour and of its dash, in place of the next ones: for series that belong together.
     pub fn styled(self, color: usize, dash: usize) -> Self {
-        Self { pen: Some(pen(color, dash)), ..self }
+        Self {
+            pen: Some(pen(color, dash)),
+            ..self
+        }
     }
 
     fn draw(&self, canvas: &mut Canvas, index: usize, x: &Fitted, y: &Fitted) {
         let pen = self.pen.unwrap_or(pen(index, index));
         let place = |(at, bar): &(f64, Bar)| (x.pixel(*at), y.pixel(bar.value));
         // What cannot be shown breaks the line.
-        for run in self.points.split(|(at, bar)| !x.spans(*at) || !y.spans(bar.value)) {
+        for run in self
+            .points
+            .split(|(at, bar)| !x.spans(*at) || !y.spans(bar.value))
+        {
             canvas.line(&run.iter().map(place).collect::<Vec<_>>(), pen);
             for point in run {
                 point.1.whiskers(canvas, x.pixel(point.0), y, pen.color);
                 if self.markers || run.len() == 1 {
-                    canvas.marker(place(point), if self.markers { index } else { 0 }, pen.color);
+                    canvas.marker(
+                        place(point),
+                        if self.markers { index } else { 0 },
+                        pen.color,
+                    );
                 }
             }
         }
@@ -56,7 +83,10 @@ impl Series {
 
 /// The pen of a colour and a dash, by their numbers.
 pub(super) const fn pen(color: usize, dash: usize) -> Pen {
-    Pen { dash, ..Pen::new(series_color(color), 2.2) }
+    Pen {
+        dash,
+        ..Pen::new(series_color(color), 2.2)
+    }
 }
 
 /// Series of points over two axes, as SVG.
@@ -95,6 +125,11 @@ pub fn lines(title: &str, x: Axis, y: Axis, series: &[Series]) -> String {
             canvas.marker((x + 18.0, y), i, pen.color);
         }
     });
-    let description = format!("{} against {}: {}.", y.axis.label, x.axis.label, names.join(", "));
+    let description = format!(
+        "{} against {}: {}.",
+        y.axis.label,
+        x.axis.label,
+        names.join(", ")
+    );
     canvas.finish(&description, bottom + 8.0)
 }

@@ -16,7 +16,11 @@ impl fmt::Display for Color {
 fn mix(start: u32, end: u32, t: f64) -> Color {
     let channel = |shift: u32| {
         let [a, b] = [start, end].map(|color| f64::from((color >> shift) & 0xFF));
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "between 0 and 255"
+        )]
         let mixed = (a + (b - a) * t).round() as u32;
         mixed << shift
     };
@@ -35,7 +39,9 @@ pub(super) const PAPER: Color = Color(WHITE);
 pub(super) const MARK: Color = Color(0xAA_003C);
 
 /// The colours of Okabe and Ito (2008), darkest contrasts first; the yellow, too pale for lines on white, is last.
-const SERIES: [u32; 7] = [0x00_72B2, 0xD5_5E00, 0x00_9E73, 0xCC_79A7, 0x56_B4E9, 0x22_2222, 0xE6_9F00];
+const SERIES: [u32; 7] = [
+    0x00_72B2, 0xD5_5E00, 0x00_9E73, 0xCC_79A7, 0x56_B4E9, 0x22_2222, 0xE6_9F00,
+];
 
 /// The colour of the series number `index`.
 pub(super) const fn series_color(index: usize) -> Color {
@@ -43,12 +49,18 @@ pub(super) const fn series_color(index: usize) -> Color {
 }
 
 /// Matplotlib's viridis at nine equal steps.
-const VIRIDIS: [u32; 9] =
-    [0x44_0154, 0x47_2C7A, 0x3B_518B, 0x2C_718E, 0x21_908D, 0x27_AD81, 0x5C_C863, 0xAA_DC32, 0xFD_E725];
+const VIRIDIS: [u32; 9] = [
+    0x44_0154, 0x47_2C7A, 0x3B_518B, 0x2C_718E, 0x21_908D, 0x27_AD81, 0x5C_C863, 0xAA_DC32,
+    0xFD_E725,
+];
 
 /// Perceptually uniform (viridis), dark to bright as `t` goes from 0 to 1.
 pub(super) fn scale_color(t: f64) -> Color {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 7")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to 7"
+    )]
     let step = (8.0 * t).clamp(0.0, 7.0) as usize;
     mix(VIRIDIS[step], VIRIDIS[step + 1], 8.0 * t - step as f64)
 }
@@ -79,8 +91,8 @@ pub(super) const MARKERS: [&[f64]; 6] = [
     &[0.0, -1.2, 1.1, 0.8, -1.1, 0.8],
     &[0.0, -1.3, 1.3, 0.0, 0.0, 1.3, -1.3, 0.0],
     &[
-        0.0, -0.4, 0.7, -1.1, 1.1, -0.7, 0.4, 0.0, 1.1, 0.7, 0.7, 1.1, 0.0, 0.4, -0.7, 1.1, -1.1, 0.7, -0.4, 0.0, -1.1,
-        -0.7, -0.7, -1.1,
+        0.0, -0.4, 0.7, -1.1, 1.1, -0.7, 0.4, 0.0, 1.1, 0.7, 0.7, 1.1, 0.0, 0.4, -0.7, 1.1, -1.1,
+        0.7, -0.4, 0.0, -1.1, -0.7, -0.7, -1.1,
     ],
     &[0.0, 1.2, 1.1, -0.8, -1.1, -0.8],
 ];

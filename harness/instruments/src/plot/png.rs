@@ -11,7 +11,10 @@ use std::sync::Arc;
 /// Pixels of the picture to one of the chart.
 const SCALE: f32 = 2.0;
 
-const FONTS: [&[u8]; 2] = [include_bytes!("font/DejaVuSans.ttf"), include_bytes!("font/DejaVuSans-Bold.ttf")];
+const FONTS: [&[u8]; 2] = [
+    include_bytes!("font/DejaVuSans.ttf"),
+    include_bytes!("font/DejaVuSans-Bold.ttf"),
+];
 
 /// A chart as a PNG of twice its size in pixels.
 ///
@@ -30,16 +33,28 @@ pub fn png(svg: &str) -> io::Result<Vec<u8>> {
 }
 
 fn draw(svg: &str) -> io::Result<Pixmap> {
-    let mut options = Options { font_family: "DejaVu Sans".to_owned(), ..Options::default() };
+    let mut options = Options {
+        font_family: "DejaVu Sans".to_owned(),
+        ..Options::default()
+    };
     let fonts = options.fontdb_mut();
     for font in FONTS {
         fonts.load_font_source(resvg::usvg::fontdb::Source::Binary(Arc::new(font)));
     }
     fonts.set_sans_serif_family("DejaVu Sans");
     let tree = Tree::from_str(svg, &options).map_err(io::Error::other)?;
-    let size = tree.size().to_int_size().scale_by(SCALE).ok_or_else(|| io::Error::other("a drawing without extent"))?;
-    let mut pixels = Pixmap::new(size.width(), size.height()).ok_or_else(|| io::Error::other("a drawing too large"))?;
-    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+    let size = tree
+        .size()
+        .to_int_size()
+        .scale_by(SCALE)
+        .ok_or_else(|| io::Error::other("a drawing without extent"))?;
+    let mut pixels = Pixmap::new(size.width(), size.height())
+        .ok_or_else(|| io::Error::other("a drawing too large"))?;
+    resvg::render(
+        &tree,
+        Transform::from_scale(SCALE, SCALE),
+        &mut pixels.as_mut(),
+    );
     Ok(pixels)
 }
 
@@ -53,14 +68,20 @@ mod tests {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"60\" height=\"30\"><rect width=\"60\" height=\"30\" \
              fill=\"#fff\"/><text x=\"5\" y=\"20\" font-family=\"sans-serif\" font-weight=\"{weight}\">{text}</text></svg>"
         );
-        draw(&svg).expect("a drawing").pixels().iter().filter(|pixel| pixel.red() < 128).count()
+        draw(&svg)
+            .expect("a drawing")
+            .pixels()
+            .iter()
+            .filter(|pixel| pixel.red() < 128)
+            .count()
     }
 
     #[test]
     fn every_character_of_the_charts_is_in_the_font() {
         let (nothing, unknown) = (ink("", "normal"), ink("\u{4e00}", "normal"));
         assert_eq!(nothing, 0);
-        for c in "aZ09αβγθφσκₒᵢ_⁰¹²³⁴⁵⁶⁷⁸⁹⁻×±−°·≈∞√µ–—’→".chars() {
+        for c in "aZ09αβγθφσκₒᵢ_⁰¹²³⁴⁵⁶⁷⁸⁹⁻×±−°·≈∞√µ–—’→".chars()
+        {
             for weight in ["normal", "bold"] {
                 let ink = ink(&c.to_string(), weight);
                 assert!(ink > 0 && ink != unknown, "{c} is not drawn");

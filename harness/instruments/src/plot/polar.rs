@@ -44,39 +44,74 @@ pub fn polar(title: &str, radius: &str, names: &[&str], panels: &[PolarPanel]) -
         canvas.line(&[(x, y), (x + 36.0, y)], pen(i, i));
     });
     let panels: Vec<&str> = panels.iter().map(|panel| panel.title.as_str()).collect();
-    let description = format!("Polar plots, {radius}: {}; {}.", panels.join(", "), names.join(", "));
+    let description = format!(
+        "Polar plots, {radius}: {}; {}.",
+        panels.join(", "),
+        names.join(", ")
+    );
     canvas.finish(&description, bottom + 8.0)
 }
 
 impl PolarPanel {
     fn draw(&self, canvas: &mut Canvas, center: Place) {
         let is_usable = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
-        let values = self.lines.iter().flatten().filter(|p| is_usable(p)).map(|p| p.1);
+        let values = self
+            .lines
+            .iter()
+            .flatten()
+            .filter(|p| is_usable(p))
+            .map(|p| p.1);
         let most = values.fold(0.0, f64::max);
-        let most = if most > 0.0 { most.min(1e300) * 1.02 } else { 1.0 };
-        let scale = Axis::linear("").range(0.0, most).step(nice_step(most / 4.0)).fit(&[], 0.0, RADIUS);
+        let most = if most > 0.0 {
+            most.min(1e300) * 1.02
+        } else {
+            1.0
+        };
+        let scale = Axis::linear("")
+            .range(0.0, most)
+            .step(nice_step(most / 4.0))
+            .fit(&[], 0.0, RADIUS);
         let at = |angle: f64, r: f64| (center.0 + r * angle.cos(), center.1 - r * angle.sin());
-        let ring = |r: f64| (0..=120).map(|i| at(f64::from(3 * i).to_radians(), r)).collect::<Vec<Place>>();
+        let ring = |r: f64| {
+            (0..=120)
+                .map(|i| at(f64::from(3 * i).to_radians(), r))
+                .collect::<Vec<Place>>()
+        };
         for degrees in (-150..=180).step_by(30).map(f64::from) {
             canvas.line(&[center, at(degrees.to_radians(), RADIUS)], GRID);
             let label = format!("{degrees}°").replace('-', "−");
             canvas.text(&label, at(degrees.to_radians(), RADIUS + 20.0), TICK);
         }
-        let ticks: Vec<_> = scale.ticks().into_iter().filter(|(r, _)| *r > 0.0).collect();
+        let ticks: Vec<_> = scale
+            .ticks()
+            .into_iter()
+            .filter(|(r, _)| *r > 0.0)
+            .collect();
         for (r, _) in &ticks {
             canvas.line(&ring(*r), GRID);
         }
         canvas.line(&ring(RADIUS), THIN);
         for (i, points) in self.lines.iter().enumerate() {
             for run in points.split(|p| !is_usable(p)) {
-                let path: Vec<Place> = run.iter().map(|(angle, r)| at(*angle, scale.pixel(*r))).collect();
+                let path: Vec<Place> = run
+                    .iter()
+                    .map(|(angle, r)| at(*angle, scale.pixel(*r)))
+                    .collect();
                 canvas.line(&path, pen(i, i));
             }
         }
         for (r, label) in ticks {
             let (x, y) = at(75.0_f64.to_radians(), r);
             canvas.block((x - 15.0, y - 8.0), (x + 15.0, y + 8.0), PAPER, 0.8);
-            canvas.text(&label.unwrap_or_default(), (x, y), Type { color: INK, size: 13.0, ..TICK });
+            canvas.text(
+                &label.unwrap_or_default(),
+                (x, y),
+                Type {
+                    color: INK,
+                    size: 13.0,
+                    ..TICK
+                },
+            );
         }
         let (name, angle) = &self.arrow;
         let tip = at(*angle, RADIUS);

@@ -24,7 +24,10 @@ impl SphereGrid {
             let theta = -middle(row, rows).asin();
             values.extend((0..columns).map(|column| value(theta, PI * middle(column, columns))));
         }
-        Self { columns: usize::from(columns.max(1)), values }
+        Self {
+            columns: usize::from(columns.max(1)),
+            values,
+        }
     }
 
     /// The least and the greatest finite value.
@@ -46,7 +49,10 @@ impl SphereGrid {
         let last = f64::from(levels - 1);
         let rows = self.values.len() / self.columns;
         let corner = |row: usize, column: usize| {
-            (x.along(column as f64 / self.columns as f64), y.along(1.0 - row as f64 / rows as f64))
+            (
+                x.along(column as f64 / self.columns as f64),
+                y.along(1.0 - row as f64 / rows as f64),
+            )
         };
         // One pass a colour, each over all cells of that colour and of later ones: a colour becomes one path, and no
         // paper shines through the seams between colours.
@@ -57,7 +63,12 @@ impl SphereGrid {
                 for run in values.chunk_by(|a, b| is(*a) == is(*b)) {
                     let end = start + run.len();
                     if is(run[0]) {
-                        canvas.block(corner(row, start), corner(row + 1, end), color(level / last), 1.0);
+                        canvas.block(
+                            corner(row, start),
+                            corner(row + 1, end),
+                            color(level / last),
+                            1.0,
+                        );
                     }
                     start = end;
                 }
@@ -73,8 +84,14 @@ fn map(
     (low, high): (Place, Place),
     paint: &dyn Fn(&mut Canvas, &Fitted, &Fitted),
 ) {
-    let x = Axis::linear("azimuth φ (°)").range(-180.0, 180.0).step(90.0).fit(&[], low.0, high.0);
-    let y = Axis::sine(inclination).range(-90.0, 90.0).step(45.0).fit(&[], high.1, low.1);
+    let x = Axis::linear("azimuth φ (°)")
+        .range(-180.0, 180.0)
+        .step(90.0)
+        .fit(&[], low.0, high.0);
+    let y = Axis::sine(inclination)
+        .range(-90.0, 90.0)
+        .step(45.0)
+        .fit(&[], high.1, low.1);
     paint(canvas, &x, &y);
     draw_axis(canvas, &x, &y, false);
     draw_axis(canvas, &y, &x, true);
@@ -84,7 +101,10 @@ fn map(
 /// The place of a direction (radians) on a map.
 fn place(x: &Fitted, y: &Fitted, [theta, phi]: [f64; 2]) -> Place {
     let turns = phi / (2.0 * PI) + 0.5;
-    (x.along(turns - turns.floor()), y.pixel(theta.to_degrees().clamp(-90.0, 90.0)))
+    (
+        x.along(turns - turns.floor()),
+        y.pixel(theta.to_degrees().clamp(-90.0, 90.0)),
+    )
 }
 
 /// A map of the sphere coloured by a scalar, as SVG, with a bar of its colours: viridis; if some values are negative, blue
@@ -102,21 +122,47 @@ pub fn heat_map(title: &str, value: Axis, grid: &SphereGrid) -> String {
     let (low, high) = ((70.0, top), (WIDTH - 20.0, top + 240.0));
     // The colours end where the values do; white is in the middle of differences.
     let (least, most) = grid.range().unwrap_or((0.0, 1.0));
-    let (start, color): (f64, fn(f64) -> Color) =
-        if least < 0.0 { (-most.max(-least), signed_color) } else { (least, scale_color) };
-    let bar = value.or_range(start, most.max(-least)).fit(&[least, most], low.0, high.0);
-    map(&mut canvas, "inclination θ (°)", (low, high), &|canvas, x, y| {
-        grid.fill(canvas, (x, y), 49, &|v| bar.share(v), color);
-    });
+    let (start, color): (f64, fn(f64) -> Color) = if least < 0.0 {
+        (-most.max(-least), signed_color)
+    } else {
+        (least, scale_color)
+    };
+    let bar = value
+        .or_range(start, most.max(-least))
+        .fit(&[least, most], low.0, high.0);
+    map(
+        &mut canvas,
+        "inclination θ (°)",
+        (low, high),
+        &|canvas, x, y| {
+            grid.fill(canvas, (x, y), 49, &|v| bar.share(v), color);
+        },
+    );
     let (bar_top, bar_bottom) = (high.1 + 62.0, high.1 + 80.0);
     for i in (0..STEPS).map(f64::from) {
         let left = (bar.along(i / f64::from(STEPS)), bar_top);
-        canvas.block(left, (high.0, bar_bottom), color((i + 0.5) / f64::from(STEPS)), 1.0);
+        canvas.block(
+            left,
+            (high.0, bar_bottom),
+            color((i + 0.5) / f64::from(STEPS)),
+            1.0,
+        );
     }
     canvas.frame((low.0, bar_top), (high.0, bar_bottom), THIN);
-    draw_axis(&mut canvas, &bar, &Axis::linear("").fit(&[], bar_bottom, bar_top), false);
+    draw_axis(
+        &mut canvas,
+        &bar,
+        &Axis::linear("").fit(&[], bar_bottom, bar_top),
+        false,
+    );
     let [least, most] = bar.ends().map(|end| number::plain(end, 3));
-    canvas.finish(&format!("{} over the sphere, from {least} to {most}.", bar.axis.label), bar_bottom + 52.0)
+    canvas.finish(
+        &format!(
+            "{} over the sphere, from {least} to {most}.",
+            bar.axis.label
+        ),
+        bar_bottom + 52.0,
+    )
 }
 
 /// One map of directions.
@@ -149,21 +195,46 @@ pub fn scatter_maps(title: &str, panels: &[ScatterPanel], mark: &str, at: [f64; 
         for ((panel, left), name) in row.iter().zip(LEFT).zip(["inclination θ (°)", ""]) {
             let low = (left, top + 22.0);
             canvas.text(&panel.title, (left + 0.5 * SIZE.0, top + 8.0), HEADING);
-            map(&mut canvas, name, (low, (low.0 + SIZE.0, low.1 + SIZE.1)), &|canvas, x, y| {
-                let most = panel.density.range().map_or(0.0, |(_, high)| high);
-                // The square root lets the tails show.
-                let share = |v: f64| if most > 0.0 { (v / most).max(0.0).sqrt() } else { 0.0 };
-                panel.density.fill(canvas, (x, y), 24, &share, soft_color);
-                for at in panel.points.iter().filter(|at| at.iter().all(|angle| angle.is_finite())) {
-                    canvas.dot(place(x, y, *at), 0.8, series_color(0), 0.85);
-                }
-                canvas.marker(place(x, y, at), CROSS, MARK);
-            });
+            map(
+                &mut canvas,
+                name,
+                (low, (low.0 + SIZE.0, low.1 + SIZE.1)),
+                &|canvas, x, y| {
+                    let most = panel.density.range().map_or(0.0, |(_, high)| high);
+                    // The square root lets the tails show.
+                    let share = |v: f64| {
+                        if most > 0.0 {
+                            (v / most).max(0.0).sqrt()
+                        } else {
+                            0.0
+                        }
+                    };
+                    panel.density.fill(canvas, (x, y), 24, &share, soft_color);
+                    for at in panel
+                        .points
+                        .iter()
+                        .filter(|at| at.iter().all(|angle| angle.is_finite()))
+                    {
+                        canvas.dot(place(x, y, *at), 0.8, series_color(0), 0.85);
+                    }
+                    canvas.marker(place(x, y, at), CROSS, MARK);
+                },
+            );
         }
         top += SIZE.1 + 82.0;
     }
     canvas.marker((LEFT[0] + 6.0, top + 8.0), CROSS, MARK);
-    canvas.text(mark, (LEFT[0] + 18.0, top + 8.0), Type { anchor: "start", ..TICK });
+    canvas.text(
+        mark,
+        (LEFT[0] + 18.0, top + 8.0),
+        Type {
+            anchor: "start",
+            ..TICK
+        },
+    );
     let names: Vec<&str> = panels.iter().map(|panel| panel.title.as_str()).collect();
-    canvas.finish(&format!("Directions on maps of the sphere: {}.", names.join("; ")), top + 24.0)
+    canvas.finish(
+        &format!("Directions on maps of the sphere: {}.", names.join("; ")),
+        top + 24.0,
+    )
 }

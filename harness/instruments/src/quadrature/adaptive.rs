@@ -6,14 +6,46 @@ use std::collections::BTreeMap;
 /// Positive nodes of the 15-point Kronrod rule, outermost first, then 0, each with its weight and that of the embedded 7-point
 /// Gauss rule, 0 at the nodes it lacks (QUADPACK, Piessens et al. 1983).
 const RULE: [[f64; 3]; 8] = [
-    [0.991_455_371_120_812_639_206, 0.022_935_322_010_529_224_963, 0.0],
-    [0.949_107_912_342_758_524_526, 0.063_092_092_629_978_553_290, 0.129_484_966_168_869_693_270],
-    [0.864_864_423_359_769_072_789, 0.104_790_010_322_250_183_839, 0.0],
-    [0.741_531_185_599_394_439_863, 0.140_653_259_715_525_918_745, 0.279_705_391_489_276_667_901],
-    [0.586_087_235_467_691_130_294, 0.169_004_726_639_267_902_826, 0.0],
-    [0.405_845_151_377_397_166_906, 0.190_350_578_064_785_409_913, 0.381_830_050_505_118_944_950],
-    [0.207_784_955_007_898_467_600, 0.204_432_940_075_298_892_414, 0.0],
-    [0.0, 0.209_482_141_084_727_828_012, 0.417_959_183_673_469_387_755],
+    [
+        0.991_455_371_120_812_639_206,
+        0.022_935_322_010_529_224_963,
+        0.0,
+    ],
+    [
+        0.949_107_912_342_758_524_526,
+        0.063_092_092_629_978_553_290,
+        0.129_484_966_168_869_693_270,
+    ],
+    [
+        0.864_864_423_359_769_072_789,
+        0.104_790_010_322_250_183_839,
+        0.0,
+    ],
+    [
+        0.741_531_185_599_394_439_863,
+        0.140_653_259_715_525_918_745,
+        0.279_705_391_489_276_667_901,
+    ],
+    [
+        0.586_087_235_467_691_130_294,
+        0.169_004_726_639_267_902_826,
+        0.0,
+    ],
+    [
+        0.405_845_151_377_397_166_906,
+        0.190_350_578_064_785_409_913,
+        0.381_830_050_505_118_944_950,
+    ],
+    [
+        0.207_784_955_007_898_467_600,
+        0.204_432_940_075_298_892_414,
+        0.0,
+    ],
+    [
+        0.0,
+        0.209_482_141_084_727_828_012,
+        0.417_959_183_673_469_387_755,
+    ],
 ];
 
 /// Tolerance of an adaptive integral.
@@ -30,7 +62,11 @@ pub struct Tolerance {
 impl Default for Tolerance {
     /// 1e-10 relative, 1e-300 absolute, at most 20 000 panels.
     fn default() -> Self {
-        Self { absolute: 1e-300, relative: 1e-10, max_panels: 20_000 }
+        Self {
+            absolute: 1e-300,
+            relative: 1e-10,
+            max_panels: 20_000,
+        }
     }
 }
 
@@ -38,7 +74,10 @@ impl Tolerance {
     /// The default with another relative error.
     #[must_use]
     pub fn relative(relative: f64) -> Self {
-        Self { relative, ..Self::default() }
+        Self {
+            relative,
+            ..Self::default()
+        }
     }
 
     /// Whether an integral with these errors, all numbers, is within the tolerance.
@@ -84,9 +123,17 @@ type Panels = BTreeMap<[u64; 3], Panel>;
 impl Panel {
     fn key(&self) -> [u64; 3] {
         // A NaN counts as an infinite error, so that it is split, reported and never hidden.
-        let worst = self.sums[1].iter().fold(0.0, |a: f64, &e| a.max(if e.is_nan() { f64::INFINITY } else { e }));
+        let worst = self.sums[1].iter().fold(0.0, |a: f64, &e| {
+            a.max(if e.is_nan() { f64::INFINITY } else { e })
+        });
         // Bits in the order of the numbers.
-        [worst, self.lo[0], self.lo[1]].map(|x| if x.is_sign_negative() { !x.to_bits() } else { x.to_bits() | 1 << 63 })
+        [worst, self.lo[0], self.lo[1]].map(|x| {
+            if x.is_sign_negative() {
+                !x.to_bits()
+            } else {
+                x.to_bits() | 1 << 63
+            }
+        })
     }
 }
 
@@ -117,8 +164,14 @@ pub fn integrate<const N: usize>(
     tolerance: &Tolerance,
 ) -> Integral<N> {
     let edges = clean(breakpoints);
-    let domain: Vec<_> = edges.windows(2).map(|x| ([x[0], 0.0], [x[1], 0.0])).collect();
-    adapt(&domain, tolerance, &mut |lo, hi| on_line(&mut |x| padded(f(x)), lo, hi)).leading()
+    let domain: Vec<_> = edges
+        .windows(2)
+        .map(|x| ([x[0], 0.0], [x[1], 0.0]))
+        .collect();
+    adapt(&domain, tolerance, &mut |lo, hi| {
+        on_line(&mut |x| padded(f(x)), lo, hi)
+    })
+    .leading()
 }
 
 /// Integral of `f(x, y)` over the rectangle spanned by two sets of breakpoints.
@@ -134,15 +187,25 @@ pub fn integrate_rectangle<const N: usize>(
     tolerance: &Tolerance,
 ) -> Integral<N> {
     let (xs, ys) = (clean(x_breakpoints), clean(y_breakpoints));
-    let domain: Vec<_> = xs.windows(2).flat_map(|x| ys.windows(2).map(move |y| ([x[0], y[0]], [x[1], y[1]]))).collect();
-    adapt(&domain, tolerance, &mut |lo, hi| on_rectangle(&mut |x, y| padded(f(x, y)), lo, hi)).leading()
+    let domain: Vec<_> = xs
+        .windows(2)
+        .flat_map(|x| ys.windows(2).map(move |y| ([x[0], y[0]], [x[1], y[1]])))
+        .collect();
+    adapt(&domain, tolerance, &mut |lo, hi| {
+        on_rectangle(&mut |x, y| padded(f(x, y)), lo, hi)
+    })
+    .leading()
 }
 
 impl Integral<MOST> {
     /// The components that the integrand has.
     fn leading<const N: usize>(&self) -> Integral<N> {
         let [value, error] = [self.value, self.error].map(|all| array::from_fn(|c| all[c]));
-        Integral { value, error, converged: self.converged }
+        Integral {
+            value,
+            error,
+            converged: self.converged,
+        }
     }
 }
 
@@ -162,7 +225,12 @@ fn on_line(f: &mut dyn FnMut(f64) -> Components, lo: [f64; 2], hi: [f64; 2]) -> 
         add(&mut gauss, g, y);
     }
     let error = distance(kronrod, gauss).map(|e| e * half);
-    Panel { lo, hi, sums: [kronrod.map(|v| v * half), error], split: 0 }
+    Panel {
+        lo,
+        hi,
+        sums: [kronrod.map(|v| v * half), error],
+        split: 0,
+    }
 }
 
 /// The product rule on a cell.
@@ -193,7 +261,12 @@ fn on_rectangle(f: &mut dyn FnMut(f64, f64) -> Components, lo: [f64; 2], hi: [f6
     let worst = |error: &Components| error.iter().copied().fold(0.0, f64::max);
     let split = usize::from(worst(&error_y) > worst(&error_x));
     let error = array::from_fn(|c| area * (error_x[c] + error_y[c]));
-    Panel { lo, hi, sums: [value.map(|v| v * area), error], split }
+    Panel {
+        lo,
+        hi,
+        sums: [value.map(|v| v * area), error],
+        split,
+    }
 }
 
 /// The fifteen nodes on [-1, 1], each with its Kronrod and its Gauss weight.
@@ -218,7 +291,11 @@ fn distance(a: Components, b: Components) -> Components {
 
 /// Breakpoints sorted, finite and without repeats.
 fn clean(breakpoints: &[f64]) -> Vec<f64> {
-    let mut edges: Vec<f64> = breakpoints.iter().copied().filter(|x| x.is_finite()).collect();
+    let mut edges: Vec<f64> = breakpoints
+        .iter()
+        .copied()
+        .filter(|x| x.is_finite())
+        .collect();
     edges.sort_by(f64::total_cmp);
     edges.dedup();
     edges
@@ -231,7 +308,12 @@ fn adapt(
     measure: &mut dyn FnMut([f64; 2], [f64; 2]) -> Panel,
 ) -> Integral<MOST> {
     let mut panels = Panels::new();
-    panels.extend(domain.iter().map(|(lo, hi)| measure(*lo, *hi)).map(|panel| (panel.key(), panel)));
+    panels.extend(
+        domain
+            .iter()
+            .map(|(lo, hi)| measure(*lo, *hi))
+            .map(|panel| (panel.key(), panel)),
+    );
     // Panels too small to halve in f64 wait here with their error.
     let mut done = Panels::new();
     let mut running = total(&panels, &done);
@@ -244,7 +326,9 @@ fn adapt(
                 break;
             }
         }
-        let Some((key, worst)) = panels.pop_last() else { break };
+        let Some((key, worst)) = panels.pop_last() else {
+            break;
+        };
         let axis = worst.split;
         let middle = 0.5 * (worst.lo[axis] + worst.hi[axis]);
         if middle <= worst.lo[axis] || middle >= worst.hi[axis] {
@@ -263,7 +347,11 @@ fn adapt(
         panels.extend(halves.map(|panel| (panel.key(), panel)));
     }
     let [value, error] = running;
-    Integral { value, error, converged: tolerance.is_met(&value, &error) }
+    Integral {
+        value,
+        error,
+        converged: tolerance.is_met(&value, &error),
+    }
 }
 
 /// Sums over all panels, by ascending error, which is also roughly ascending value: small terms first.
@@ -271,7 +359,9 @@ fn total(panels: &Panels, done: &Panels) -> Sums {
     let all: BTreeMap<_, _> = panels.iter().chain(done).collect();
     let mut sums = [[0.0; MOST]; 2];
     for panel in all.into_values() {
-        sums.iter_mut().zip(panel.sums).for_each(|(sum, more)| add(sum, 1.0, more));
+        sums.iter_mut()
+            .zip(panel.sums)
+            .for_each(|(sum, more)| add(sum, 1.0, more));
     }
     sums
 }

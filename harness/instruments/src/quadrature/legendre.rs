@@ -56,7 +56,9 @@ impl GaussLegendre {
     /// Nodes and weights carried to [a, b].
     pub fn on(&self, a: f64, b: f64) -> impl Iterator<Item = [f64; 2]> + '_ {
         let (centre, half) = (0.5 * (a + b), 0.5 * (b - a));
-        self.nodes.iter().map(move |[x, w]| [centre + half * x, half * w])
+        self.nodes
+            .iter()
+            .map(move |[x, w]| [centre + half * x, half * w])
     }
 }
 
@@ -65,7 +67,10 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut previous, mut current) = (1.0, x);
     for k in 2..=n {
         let k = k as f64;
-        (previous, current) = (current, ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k);
+        (previous, current) = (
+            current,
+            ((2.0 * k - 1.0) * x * current - (k - 1.0) * previous) / k,
+        );
     }
     (current, n as f64 * (x * current - previous) / (x * x - 1.0))
 }
@@ -88,7 +93,10 @@ mod tests {
             [outer, (322.0 - r) / 900.0],
         ];
         for (got, want) in rule.nodes().iter().zip(want) {
-            assert!((got[0] - want[0]).abs() < 4e-16 && (got[1] - want[1]).abs() < 4e-16, "{got:?} {want:?}");
+            assert!(
+                (got[0] - want[0]).abs() < 4e-16 && (got[1] - want[1]).abs() < 4e-16,
+                "{got:?} {want:?}"
+            );
         }
     }
 
@@ -101,7 +109,10 @@ mod tests {
             assert!((total - 2.0).abs() < 1e-13, "order {n}: {total}");
             let degree = i32::try_from(2 * n - 1).expect("small");
             let got: f64 = rule.on(0.0, 1.0).map(|[x, w]| w * x.powi(degree)).sum();
-            assert!((got * f64::from(degree + 1) - 1.0).abs() < 1e-12, "order {n}: {got}");
+            assert!(
+                (got * f64::from(degree + 1) - 1.0).abs() < 1e-12,
+                "order {n}: {got}"
+            );
         }
         assert_eq!(GaussLegendre::new(0).nodes(), [[0.0, 2.0]]);
     }

@@ -71,24 +71,35 @@ impl SphereIntegrator {
     /// A bell of width `beta` in `theta_h = (theta_i + theta_o)/2` has width `2 beta` in `theta_i`, about `2 alpha - theta_o`.
     #[must_use]
     pub fn theta_lobe(self, centre: f64, width: f64) -> Self {
-        bell_breakpoints(0.0, width).into_iter().fold(self, |q, d| q.theta_break(centre + d))
+        bell_breakpoints(0.0, width)
+            .into_iter()
+            .fold(self, |q, d| q.theta_break(centre + d))
     }
 
     /// Adds the breakpoints of a bell in `phi`: its centre, and 3 and 12 widths either side, wrapped. In rad.
     #[must_use]
     pub fn phi_lobe(self, centre: f64, width: f64) -> Self {
         // Beyond half a turn the wrapped tails would only shred the circle.
-        bell_breakpoints(0.0, width).into_iter().filter(|d| d.abs() < PI).fold(self, |q, d| q.phi_break(centre + d))
+        bell_breakpoints(0.0, width)
+            .into_iter()
+            .filter(|d| d.abs() < PI)
+            .fold(self, |q, d| q.phi_break(centre + d))
     }
 
     /// Integral of `f(theta, phi)` over the sphere. The cosine of the measure is applied here; `f` is per steradian.
-    pub fn integrate<const N: usize>(&self, mut f: impl FnMut(f64, f64) -> [f64; N]) -> Integral<N> {
+    pub fn integrate<const N: usize>(
+        &self,
+        mut f: impl FnMut(f64, f64) -> [f64; N],
+    ) -> Integral<N> {
         let integrand = |theta: f64, phi| f(theta, phi).map(|v| v * theta.cos());
         integrate_rectangle(integrand, &self.theta, &self.phi, &self.tolerance)
     }
 
     /// Integral of a function of direction over the sphere.
-    pub fn integrate_direction<const N: usize>(&self, mut f: impl FnMut(DVec3) -> [f64; N]) -> Integral<N> {
+    pub fn integrate_direction<const N: usize>(
+        &self,
+        mut f: impl FnMut(DVec3) -> [f64; N],
+    ) -> Integral<N> {
         self.integrate(|theta, phi| f(fibre_direction(theta, phi)))
     }
 }
@@ -117,16 +128,22 @@ mod tests {
             .integrate(|theta, phi| [bell(theta - theta_0) * bell(wrap(phi - phi_0))]);
         let line = width * (2.0 * PI).sqrt();
         let want = line * line * theta_0.cos() * (-0.5 * width * width).exp();
-        assert!(r.converged && (r.value[0] / want - 1.0).abs() < 1e-8, "{r:?} {want}");
+        assert!(
+            r.converged && (r.value[0] / want - 1.0).abs() < 1e-8,
+            "{r:?} {want}"
+        );
     }
 
     #[test]
     fn cauchy_tails_and_rgb() {
         let c = |x: f64, b: f64| b * b / (x * x + b * b);
-        let r = SphereIntegrator::new().theta_lobe(-0.3, 0.01).phi_lobe(1.0, 0.02).integrate(|t, p| {
-            let v = c(t + 0.3, 0.01) * c(p - 1.0, 0.02) / t.cos();
-            [v, 2.0 * v, 0.5 * v]
-        });
+        let r = SphereIntegrator::new()
+            .theta_lobe(-0.3, 0.01)
+            .phi_lobe(1.0, 0.02)
+            .integrate(|t, p| {
+                let v = c(t + 0.3, 0.01) * c(p - 1.0, 0.02) / t.cos();
+                [v, 2.0 * v, 0.5 * v]
+            });
         let theta = 0.01 * (((FRAC_PI_2 + 0.3) / 0.01).atan() + ((FRAC_PI_2 - 0.3) / 0.01).atan());
         let phi = 0.02 * (((PI - 1.0) / 0.02).atan() + ((PI + 1.0) / 0.02).atan());
         for (got, scale) in r.value.iter().zip([1.0, 2.0, 0.5]) {
@@ -137,7 +154,11 @@ mod tests {
 
     #[test]
     fn foreign_breakpoints_are_dropped_or_wrapped() {
-        let q = SphereIntegrator::new().theta_break(2.0).theta_break(f64::NAN).phi_break(7.0).phi_break(f64::INFINITY);
+        let q = SphereIntegrator::new()
+            .theta_break(2.0)
+            .theta_break(f64::NAN)
+            .phi_break(7.0)
+            .phi_break(f64::INFINITY);
         let r = q.integrate(|_, _| [1.0]);
         assert!((r.value[0] - 4.0 * PI).abs() < 1e-12 && r.converged);
         assert_eq!(q.tolerance.relative, 1e-8);

@@ -37,8 +37,16 @@ impl Halton {
     /// When `dims` exceeds the number of [`HALTON_BASES`].
     #[must_use]
     pub fn new(dims: usize, seed: u64, stream: u64) -> Self {
-        assert!(dims <= HALTON_BASES.len(), "Halton has {} dimensions, {dims} asked for", HALTON_BASES.len());
-        Self { dims, key: mix(mix(seed) ^ stream), index: 0 }
+        assert!(
+            dims <= HALTON_BASES.len(),
+            "Halton has {} dimensions, {dims} asked for",
+            HALTON_BASES.len()
+        );
+        Self {
+            dims,
+            key: mix(mix(seed) ^ stream),
+            index: 0,
+        }
     }
 
     /// Coordinate `dim` of the point at `index`, in [0, 1).
@@ -70,7 +78,12 @@ impl Halton {
 
 impl XiSource for Halton {
     fn next_point(&mut self, point: &mut [f64]) {
-        assert!(point.len() <= self.dims, "{} coordinates asked of a Halton source with {}", point.len(), self.dims);
+        assert!(
+            point.len() <= self.dims,
+            "{} coordinates asked of a Halton source with {}",
+            point.len(),
+            self.dims
+        );
         for (dim, x) in point.iter_mut().enumerate() {
             *x = self.coordinate(dim, self.index);
         }
@@ -85,7 +98,10 @@ mod tests {
     use hairis_conformance::statistics::{chi_square, ks_p_value, ks_statistic};
 
     fn cell(x: f64, cells: u32) -> usize {
-        (0..cells as usize).rev().find(|&i| x >= i as f64 / f64::from(cells)).unwrap_or(0)
+        (0..cells as usize)
+            .rev()
+            .find(|&i| x >= i as f64 / f64::from(cells))
+            .unwrap_or(0)
     }
 
     #[test]
@@ -100,7 +116,10 @@ mod tests {
                     let [x, y, z] = halton.next_xi::<3>();
                     counts[(cell(x, 4) * 9 + cell(y, 9)) * 5 + cell(z, 5)] += 1;
                 }
-                assert!(counts.iter().all(|&c| c == 1), "stream {stream} block {block}");
+                assert!(
+                    counts.iter().all(|&c| c == 1),
+                    "stream {stream} block {block}"
+                );
             }
         }
     }
@@ -109,11 +128,15 @@ mod tests {
     fn one_point_is_uniform_over_randomisations() {
         for dim in 0..6 {
             for index in [0, 1, 77, u64::MAX] {
-                let mut s: Vec<f64> =
-                    (0..20_000).map(|stream| Halton::new(6, 3, stream).coordinate(dim, index)).collect();
+                let mut s: Vec<f64> = (0..20_000)
+                    .map(|stream| Halton::new(6, 3, stream).coordinate(dim, index))
+                    .collect();
                 let d = ks_statistic(&mut s, |x| x);
                 // 24 tests in all: Sidak at 1%.
-                assert!(ks_p_value(d, s.len()) > crate::stats::sidak(0.01, 24), "dim {dim} index {index}: {d}");
+                assert!(
+                    ks_p_value(d, s.len()) > crate::stats::sidak(0.01, 24),
+                    "dim {dim} index {index}: {d}"
+                );
             }
         }
     }
@@ -126,7 +149,9 @@ mod tests {
             let h = Halton::new(3, 8, stream);
             counts[cell(h.coordinate(2, 0), 5) * 5 + cell(h.coordinate(2, 1), 5)] += 1;
         }
-        let expected: Vec<f64> = (0..25).map(|i| if i % 6 == 0 { 0.0 } else { 2_000.0 }).collect();
+        let expected: Vec<f64> = (0..25)
+            .map(|i| if i % 6 == 0 { 0.0 } else { 2_000.0 })
+            .collect();
         let p = chi_square(&counts, &expected, 5.0).p_value;
         assert!(p > 0.01, "p {p}");
     }

@@ -56,7 +56,12 @@ impl Stratified {
     pub fn new(counts: &[usize], seed: u64, stream: u64) -> Self {
         let counts: Vec<usize> = counts.iter().map(|&c| c.max(1)).collect();
         let cells = counts.iter().product();
-        Self { counts, order: (0..cells).collect(), next: cells, rng: Independent::new(seed, stream) }
+        Self {
+            counts,
+            order: (0..cells).collect(),
+            next: cells,
+            rng: Independent::new(seed, stream),
+        }
     }
 
     /// Points in one randomisation.
@@ -68,7 +73,12 @@ impl Stratified {
 
 impl XiSource for Stratified {
     fn next_point(&mut self, point: &mut [f64]) {
-        assert!(point.len() <= self.counts.len(), "more coordinates than axes: {} of {:?}", point.len(), self.counts);
+        assert!(
+            point.len() <= self.counts.len(),
+            "more coordinates than axes: {} of {:?}",
+            point.len(),
+            self.counts
+        );
         if self.next >= self.order.len() {
             for i in (1..self.order.len()).rev() {
                 let j = self.rng.next_below(i + 1);
@@ -100,7 +110,11 @@ mod tests {
         assert_eq!(strata(0, 2), [1, 1]);
         for n in 1..200 {
             for dims in 1..4 {
-                assert_eq!(strata(n, dims).iter().product::<usize>(), n, "{n} in {dims}");
+                assert_eq!(
+                    strata(n, dims).iter().product::<usize>(),
+                    n,
+                    "{n} in {dims}"
+                );
             }
         }
     }
@@ -114,7 +128,12 @@ mod tests {
             let mut order = Vec::new();
             for _ in 0..24 {
                 let [x, y, z] = source.next_xi::<3>();
-                let cell = |x: f64, n: usize| (0..n).rev().find(|&i| x >= i as f64 / n as f64).unwrap_or(0);
+                let cell = |x: f64, n: usize| {
+                    (0..n)
+                        .rev()
+                        .find(|&i| x >= i as f64 / n as f64)
+                        .unwrap_or(0)
+                };
                 let c = (cell(z, 2) * 3 + cell(y, 3)) * 4 + cell(x, 4);
                 counts[c] += 1;
                 order.push(c);
@@ -127,7 +146,9 @@ mod tests {
 
     #[test]
     fn the_first_point_is_uniform_over_randomisations() {
-        let mut s: Vec<f64> = (0..20_000).map(|stream| Stratified::new(&[4, 4], 6, stream).next_xi::<2>()[1]).collect();
+        let mut s: Vec<f64> = (0..20_000)
+            .map(|stream| Stratified::new(&[4, 4], 6, stream).next_xi::<2>()[1])
+            .collect();
         let d = ks_statistic(&mut s, |x| x);
         assert!(ks_p_value(d, s.len()) > 0.01, "distance {d}");
     }

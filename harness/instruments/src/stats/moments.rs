@@ -13,12 +13,18 @@ pub struct Estimate {
 
 impl Estimate {
     /// A figure that is not known.
-    pub const UNKNOWN: Self = Self { value: f64::NAN, standard_error: f64::NAN };
+    pub const UNKNOWN: Self = Self {
+        value: f64::NAN,
+        standard_error: f64::NAN,
+    };
 
     /// A figure without error.
     #[must_use]
     pub const fn exact(value: f64) -> Self {
-        Self { value, standard_error: 0.0 }
+        Self {
+            value,
+            standard_error: 0.0,
+        }
     }
 
     /// Distance to `truth` in standard errors.
@@ -28,7 +34,11 @@ impl Estimate {
     #[must_use]
     pub fn z_score(&self, truth: f64) -> f64 {
         let d = self.value - truth;
-        if d == 0.0 { 0.0 } else { d / self.standard_error }
+        if d == 0.0 {
+            0.0
+        } else {
+            d / self.standard_error
+        }
     }
 
     /// Quotient of two independent estimates, with its first-order standard error.
@@ -48,20 +58,29 @@ impl Estimate {
     /// A product or quotient of both: the squares of the relative errors add.
     fn combined(&self, other: &Self, value: f64) -> Self {
         let relative = (self.standard_error / self.value).hypot(other.standard_error / other.value);
-        Self { value, standard_error: (value * relative).abs() }
+        Self {
+            value,
+            standard_error: (value * relative).abs(),
+        }
     }
 
     /// Estimate times an exact number.
     #[must_use]
     pub fn scale(&self, factor: f64) -> Self {
-        Self { value: self.value * factor, standard_error: (self.standard_error * factor).abs() }
+        Self {
+            value: self.value * factor,
+            standard_error: (self.standard_error * factor).abs(),
+        }
     }
 
     /// Effective samples in 1000, `1000 / (1 + V)`, of samples of this relative variance V.
     #[must_use]
     pub fn effective_per_1000(&self) -> Self {
         let value = 1e3 / (1.0 + self.value);
-        Self { value, standard_error: value * self.standard_error / (1.0 + self.value) }
+        Self {
+            value,
+            standard_error: value * self.standard_error / (1.0 + self.value),
+        }
     }
 
     /// Geometric mean of independent estimates of positive figures; NaN without estimates.
@@ -69,8 +88,14 @@ impl Estimate {
     pub fn geometric_mean(estimates: &[Self]) -> Self {
         let n = estimates.len() as f64;
         let value = (estimates.iter().map(|one| one.value.ln()).sum::<f64>() / n).exp();
-        let squares = estimates.iter().map(|one| (one.standard_error / one.value).powi(2)).sum::<f64>();
-        Self { value, standard_error: value * squares.sqrt() / n }
+        let squares = estimates
+            .iter()
+            .map(|one| (one.standard_error / one.value).powi(2))
+            .sum::<f64>();
+        Self {
+            value,
+            standard_error: value * squares.sqrt() / n,
+        }
     }
 }
 
@@ -114,7 +139,8 @@ impl Moments {
         let delta_n_sq = delta_n * delta_n;
         let term = delta * delta_n * n1;
         self.mean += delta_n;
-        self.sum_fourth += term * delta_n_sq * (n * n - 3.0 * n + 3.0) + 6.0 * delta_n_sq * self.sum_sq
+        self.sum_fourth += term * delta_n_sq * (n * n - 3.0 * n + 3.0)
+            + 6.0 * delta_n_sq * self.sum_sq
             - 4.0 * delta_n * self.sum_cube;
         self.sum_cube += term * delta_n * (n - 2.0) - 3.0 * delta_n * self.sum_sq;
         self.sum_sq += term;
@@ -151,7 +177,10 @@ impl Moments {
     /// Mean with its standard error `sqrt(variance / n)`.
     #[must_use]
     pub fn mean_estimate(&self) -> Estimate {
-        Estimate { value: self.mean, standard_error: (self.variance() / self.count as f64).sqrt() }
+        Estimate {
+            value: self.mean,
+            standard_error: (self.variance() / self.count as f64).sqrt(),
+        }
     }
 
     /// Relative variance `V = variance / mean^2` of one sample, with its standard error by the delta method.
@@ -176,7 +205,10 @@ impl Moments {
         let skew = m3 / m / (m * m);
         let kurt = m4 / (m * m) / (m * m);
         let n_var = kurt - v * v - 4.0 * v * skew + 4.0 * v * v * v;
-        Estimate { value: v, standard_error: (n_var.max(0.0) / self.count as f64).sqrt() }
+        Estimate {
+            value: v,
+            standard_error: (n_var.max(0.0) / self.count as f64).sqrt(),
+        }
     }
 }
 
@@ -201,7 +233,9 @@ mod tests {
 
     #[test]
     fn known_small_set() {
-        let m: Moments = [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0].into_iter().collect();
+        let m: Moments = [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0]
+            .into_iter()
+            .collect();
         assert_eq!(m.count(), 8);
         assert!((m.mean() - 5.0).abs() < 1e-15);
         assert!((m.variance() - 32.0 / 7.0).abs() < 1e-14);
@@ -215,7 +249,11 @@ mod tests {
     fn a_large_offset_does_not_eat_the_variance() {
         let mut xi = Independent::new(3, 1);
         let moments: Moments = (0..5_000).map(|_| 1e6 + exponential(&mut xi)).collect();
-        assert!((moments.variance() - 1.0).abs() < 0.15, "{}", moments.variance());
+        assert!(
+            (moments.variance() - 1.0).abs() < 0.15,
+            "{}",
+            moments.variance()
+        );
     }
 
     #[test]
@@ -224,8 +262,10 @@ mod tests {
         // for the order 1/sqrt(n) bias of the delta method (-0.14 and 1.16 measured for the exponential, -0.005 and 0.996 for the uniform).
         type Draw = fn(&mut Independent) -> f64;
         let uniform: Draw = |xi| xi.next_f64();
-        let cases: [(Draw, f64, f64, &str); 2] =
-            [(exponential, 1.0, 4.0, "exponential"), (uniform, 1.0 / 3.0, 0.237_037_037, "uniform")];
+        let cases: [(Draw, f64, f64, &str); 2] = [
+            (exponential, 1.0, 4.0, "exponential"),
+            (uniform, 1.0 / 3.0, 0.237_037_037, "uniform"),
+        ];
         for (draw, v, n_var, name) in cases {
             let mut z = Moments::new();
             let mut se = Moments::new();
@@ -238,9 +278,17 @@ mod tests {
             }
 
             assert!(z.mean().abs() < 0.2, "{name}: mean z {}", z.mean());
-            assert!((z.variance() - 1.0).abs() < 0.25, "{name}: variance of z {}", z.variance());
+            assert!(
+                (z.variance() - 1.0).abs() < 0.25,
+                "{name}: variance of z {}",
+                z.variance()
+            );
             let want = (n_var / 1_000.0_f64).sqrt();
-            assert!((se.mean() / want - 1.0).abs() < 0.05, "{name}: mean error {} want {want}", se.mean());
+            assert!(
+                (se.mean() / want - 1.0).abs() < 0.05,
+                "{name}: mean error {} want {want}",
+                se.mean()
+            );
         }
     }
 
@@ -253,28 +301,72 @@ mod tests {
         let zero: Moments = [0.0, 0.0].into_iter().collect();
         assert!(zero.relative_variance().value.is_nan());
         let constant: Moments = [3.0; 10].into_iter().collect();
-        assert_eq!(constant.relative_variance(), Estimate { value: 0.0, standard_error: 0.0 });
+        assert_eq!(
+            constant.relative_variance(),
+            Estimate {
+                value: 0.0,
+                standard_error: 0.0
+            }
+        );
         let tiny: Moments = [1e-70, 3e-70].into_iter().collect();
         assert!((tiny.relative_variance().value - 0.5).abs() < 1e-12);
-        assert!([1.0, f64::NAN].into_iter().collect::<Moments>().mean().is_nan());
+        assert!(
+            [1.0, f64::NAN]
+                .into_iter()
+                .collect::<Moments>()
+                .mean()
+                .is_nan()
+        );
     }
 
     #[test]
     fn estimates_combine() {
-        let a = Estimate { value: 6.0, standard_error: 0.3 };
-        let b = Estimate { value: 2.0, standard_error: 0.1 };
+        let a = Estimate {
+            value: 6.0,
+            standard_error: 0.3,
+        };
+        let b = Estimate {
+            value: 2.0,
+            standard_error: 0.1,
+        };
         let r = a.ratio(&b);
-        assert!((r.value - 3.0).abs() < 1e-15 && (r.standard_error - 3.0 * 0.05 * 2.0_f64.sqrt()).abs() < 1e-15);
+        assert!(
+            (r.value - 3.0).abs() < 1e-15
+                && (r.standard_error - 3.0 * 0.05 * 2.0_f64.sqrt()).abs() < 1e-15
+        );
         let p = a.times(&b);
-        assert!((p.value - 12.0).abs() < 1e-15 && (p.standard_error - 12.0 * 0.05 * 2.0_f64.sqrt()).abs() < 1e-15);
+        assert!(
+            (p.value - 12.0).abs() < 1e-15
+                && (p.standard_error - 12.0 * 0.05 * 2.0_f64.sqrt()).abs() < 1e-15
+        );
         let mean = Estimate::geometric_mean(&[a, b]);
         assert!((mean.value * mean.value - 12.0).abs() < 1e-14, "{mean:?}");
-        assert!((2.0 * mean.standard_error / mean.value - 0.05 * 2.0_f64.sqrt()).abs() < 1e-15, "{mean:?}");
+        assert!(
+            (2.0 * mean.standard_error / mean.value - 0.05 * 2.0_f64.sqrt()).abs() < 1e-15,
+            "{mean:?}"
+        );
         assert!(Estimate::geometric_mean(&[]).value.is_nan());
-        let effective = Estimate { value: 3.0, standard_error: 0.4 }.effective_per_1000();
+        let effective = Estimate {
+            value: 3.0,
+            standard_error: 0.4,
+        }
+        .effective_per_1000();
         assert_eq!((effective.value, effective.standard_error), (250.0, 25.0));
-        assert_eq!(a.scale(-2.0), Estimate { value: -12.0, standard_error: 0.6 });
-        assert_eq!(Estimate { value: 1.0, standard_error: 0.0 }.z_score(1.0), 0.0);
+        assert_eq!(
+            a.scale(-2.0),
+            Estimate {
+                value: -12.0,
+                standard_error: 0.6
+            }
+        );
+        assert_eq!(
+            Estimate {
+                value: 1.0,
+                standard_error: 0.0
+            }
+            .z_score(1.0),
+            0.0
+        );
         assert_eq!(a.z_score(5.4), (6.0 - 5.4) / 0.3);
     }
 }

@@ -9,13 +9,23 @@
 /// - Domain: NaN without samples.
 #[must_use]
 pub fn percentile(sorted: &[f64], p: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let Some(last) = sorted.len().checked_sub(1) else {
+        return f64::NAN;
+    };
     let h = p.clamp(0.0, 1.0) * last as f64;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to `last`")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to `last`"
+    )]
     let lo = h as usize;
     let (t, hi) = (h.fract(), (lo + 1).min(last));
     // Equal neighbours must give themselves, also when they are infinite.
-    if t == 0.0 || sorted[lo] == sorted[hi] { sorted[lo] } else { sorted[lo] + t * (sorted[hi] - sorted[lo]) }
+    if t == 0.0 || sorted[lo] == sorted[hi] {
+        sorted[lo]
+    } else {
+        sorted[lo] + t * (sorted[hi] - sorted[lo])
+    }
 }
 
 #[cfg(test)]
@@ -25,7 +35,15 @@ mod tests {
     #[test]
     fn percentiles_match_type_seven() {
         let s = [1.0, 2.0, 3.0, 4.0];
-        for (p, want) in [(0.0, 1.0), (0.25, 1.75), (0.5, 2.5), (0.75, 3.25), (1.0, 4.0), (2.0, 4.0), (-1.0, 1.0)] {
+        for (p, want) in [
+            (0.0, 1.0),
+            (0.25, 1.75),
+            (0.5, 2.5),
+            (0.75, 3.25),
+            (1.0, 4.0),
+            (2.0, 4.0),
+            (-1.0, 1.0),
+        ] {
             assert_eq!(percentile(&s, p), want, "p {p}");
         }
         assert!(percentile(&[], 0.5).is_nan());

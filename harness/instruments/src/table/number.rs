@@ -22,8 +22,16 @@ pub fn with_error(value: f64, error: f64) -> String {
         // The error is below the last digit shown.
         return plain(value, 6);
     }
-    let text = minus(&format!("{:.places$} ± {:.places$}", value / unit, error / unit));
-    if power.is_empty() { text } else { format!("({text}){power}") }
+    let text = minus(&format!(
+        "{:.places$} ± {:.places$}",
+        value / unit,
+        error / unit
+    ));
+    if power.is_empty() {
+        text
+    } else {
+        format!("({text}){power}")
+    }
 }
 
 /// [`with_error`] of an estimate.
@@ -82,7 +90,11 @@ pub(crate) fn power(digit: i32, exponent: f64) -> String {
         return plain(f64::from(digit) * 10.0_f64.powf(exponent), 1);
     }
     let power = power_of_ten(exponent);
-    if digit == 1 { power } else { format!("{digit}×{power}") }
+    if digit == 1 {
+        power
+    } else {
+        format!("{digit}×{power}")
+    }
 }
 
 /// Decimal places that a standard error deserves: rounding to one digit is too coarse for 1 to 3.
@@ -92,13 +104,23 @@ fn error_places(error: f64) -> usize {
 }
 
 /// Decimal places that show `digits` significant digits of `value`.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0 .. 17 before the cast")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "clamped to 0 .. 17 before the cast"
+)]
 fn places(value: f64, digits: usize) -> usize {
     let digits = digits as f64;
     // Rounding may carry into one more digit: 0.0996 to two digits is 0.10.
-    let exponent = (value.abs() * (1.0 + 0.5 * 10.0_f64.powf(-digits))).log10().floor();
+    let exponent = (value.abs() * (1.0 + 0.5 * 10.0_f64.powf(-digits)))
+        .log10()
+        .floor();
     let places = digits - 1.0 - exponent;
-    if places.is_finite() { places.clamp(0.0, 17.0) as usize } else { 0 }
+    if places.is_finite() {
+        places.clamp(0.0, 17.0) as usize
+    } else {
+        0
+    }
 }
 
 fn minus(text: &str) -> String {
@@ -114,17 +136,28 @@ fn unit(value: f64, digits: usize) -> (f64, String) {
     // Rounding may carry into one more digit: 9.96e-5 to one digit is 10^-4.
     let half = 0.5 * 10.0_f64.powf(-(digits as f64));
     let exponent = (size / (1.0 - half)).log10().floor();
-    (10.0_f64.powf(exponent), format!("×{}", power_of_ten(exponent)))
+    (
+        10.0_f64.powf(exponent),
+        format!("×{}", power_of_ten(exponent)),
+    )
 }
 
 /// A power of ten as it is written.
 fn power_of_ten(exponent: f64) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
-        '0'..='9' => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][usize::from(c as u8 - b'0')],
+        '0'..='9' => {
+            ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][usize::from(c as u8 - b'0')]
+        }
         other => other,
     };
-    format!("10{}", format!("{exponent:.0}").chars().map(raised).collect::<String>())
+    format!(
+        "10{}",
+        format!("{exponent:.0}")
+            .chars()
+            .map(raised)
+            .collect::<String>()
+    )
 }
 
 #[cfg(test)]
@@ -153,11 +186,19 @@ mod tests {
     #[test]
     fn numbers_have_their_units() {
         assert_eq!(ratio(13.42), "13.4×", "a ratio");
-        assert_eq!(ratio_with_error(13.42, 0.21), "13.42× ± 0.21", "a ratio with an error");
+        assert_eq!(
+            ratio_with_error(13.42, 0.21),
+            "13.42× ± 0.21",
+            "a ratio with an error"
+        );
         assert_eq!(percent(0.123_4), "12.3 %", "a share");
         assert_eq!(plain(f64::NEG_INFINITY, 3), "−∞", "infinite");
         assert_eq!(plain(0.000_012_3, 2), "1.2×10⁻⁵", "small");
         assert_eq!(plain(999.96, 4), "1000", "a carry");
-        assert_eq!([plain(9.96e-5, 1), plain(9.94e-5, 2)], ["1×10⁻⁴", "9.9×10⁻⁵"], "a carry into the exponent");
+        assert_eq!(
+            [plain(9.96e-5, 1), plain(9.94e-5, 2)],
+            ["1×10⁻⁴", "9.9×10⁻⁵"],
+            "a carry into the exponent"
+        );
     }
 }

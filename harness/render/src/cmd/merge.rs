@@ -13,7 +13,11 @@ use hairis_instruments::error::Error;
 /// If a part cannot be read, is missing, or belongs to another run; or the file cannot be written.
 pub(super) fn run(flags: &Merge) -> Result<(), Error> {
     check_out(&flags.out)?;
-    let parts = flags.parts.iter().map(|path| Ok((path.clone(), Part::read(path)?))).collect::<Result<_, Error>>()?;
+    let parts = flags
+        .parts
+        .iter()
+        .map(|path| Ok((path.clone(), Part::read(path)?)))
+        .collect::<Result<_, Error>>()?;
     let Part { run, film, .. } = Part::merge(parts)?;
     finish(&film, &Beside::film(&film, &run), &flags.out, None)
 }

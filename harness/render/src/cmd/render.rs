@@ -51,7 +51,10 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         profile: flags.profile,
         ..Settings::default()
     };
-    let out = flags.out.clone().unwrap_or_else(|| PathBuf::from(format!("out/render/{}.exr", flags.scene.word())));
+    let out = flags
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("out/render/{}.exr", flags.scene.word())));
     let hair = hair(flags, &settings)?;
     let env = flags.env.as_deref().map(environment).transpose()?;
     let pixels = crop.len() as u64;
@@ -62,7 +65,10 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
             strands
         }
         None => {
-            memory::check(scenes::estimate_segments(flags.scene, flags.strands)?, pixels)?;
+            memory::check(
+                scenes::estimate_segments(flags.scene, flags.strands)?,
+                pixels,
+            )?;
             scenes::grow(flags.scene, flags.strands)?
         }
     };
@@ -70,16 +76,31 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         whole(path, |out| write_mitsuba(&strands, out))?;
     }
     let run = describe(flags, &settings, crop, env.as_ref())?;
-    let parts = Parts { strands, imported: flags.import.is_some(), hair, env, size: flags.size.0, turn: flags.turn };
+    let parts = Parts {
+        strands,
+        imported: flags.import.is_some(),
+        hair,
+        env,
+        size: flags.size.0,
+        turn: flags.turn,
+    };
     let backdrop = flags.backdrop.map(glam::Vec3::splat);
-    let scene = Scene { backdrop, rectangle_sampling: flags.rectangles, ..scenes::build(flags.scene, parts)? };
+    let scene = Scene {
+        backdrop,
+        rectangle_sampling: flags.rectangles,
+        ..scenes::build(flags.scene, parts)?
+    };
     check_out(&out)?;
     let shard = flags.shard.unwrap_or(Shard::WHOLE);
     let part_path = match flags.shard {
         Some(shard) => out.with_extension(format!("{}-of-{}.part", shard.index(), shard.of())),
         None => part::path(&out),
     };
-    let fresh = Part { run, film: Film::new(crop).shard(shard), finished: false };
+    let fresh = Part {
+        run,
+        film: Film::new(crop).shard(shard),
+        finished: false,
+    };
     let samples = flags.spp.unwrap_or(defaults.samples);
     let most = flags.time.is_none().then_some(samples);
     let mut part = Part::resume(&part_path, fresh, most)?;
@@ -94,24 +115,48 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
             // Ignore errors: a short run has left none.
             let _ = fs::remove_file(part_path.with_extension(preview));
         }
-        let line = format!("wrote {}: join the parts by `hairis-render merge`\n", part_path.display());
-        return io::stdout().write_all(line.as_bytes()).map_err(Error::Write);
+        let line = format!(
+            "wrote {}: join the parts by `hairis-render merge`\n",
+            part_path.display()
+        );
+        return io::stdout()
+            .write_all(line.as_bytes())
+            .map_err(Error::Write);
     }
-    finish(&part.film, &Beside::film(&part.film, &part.run), &out, flags.exposure)?;
+    finish(
+        &part.film,
+        &Beside::film(&part.film, &part.run),
+        &out,
+        flags.exposure,
+    )?;
     // A larger --spp goes on from it.
     part.finished = true;
     part.write(&part_path)
 }
 
 /// Writes a picture that is whole, and says so.
-pub(super) fn finish(film: &Film, beside: &Beside, out: &Path, exposure: Option<f64>) -> Result<(), Error> {
+pub(super) fn finish(
+    film: &Film,
+    beside: &Beside,
+    out: &Path,
+    exposure: Option<f64>,
+) -> Result<(), Error> {
     let picture = film.picture();
-    picture::write(&picture, beside, out, exposure.unwrap_or_else(|| picture::exposure(&picture)))?;
+    picture::write(
+        &picture,
+        beside,
+        out,
+        exposure.unwrap_or_else(|| picture::exposure(&picture)),
+    )?;
     let [r, g, b] = picture.mean();
     let (samples, seconds) = (film.samples(), film.seconds());
-    let line =
-        format!("wrote {}: {samples} samples, mean {r:.5} {g:.5} {b:.5}, {seconds:.1} s of CPU time\n", out.display());
-    io::stdout().write_all(line.as_bytes()).map_err(Error::Write)
+    let line = format!(
+        "wrote {}: {samples} samples, mean {r:.5} {g:.5} {b:.5}, {seconds:.1} s of CPU time\n",
+        out.display()
+    );
+    io::stdout()
+        .write_all(line.as_bytes())
+        .map_err(Error::Write)
 }
 
 /// The hair that the flags ask for.
@@ -119,13 +164,21 @@ fn hair(flags: &Render, settings: &Settings) -> Result<Hair, Error> {
     if flags.scene == Name::FurnaceIso && flags.hair.is_none() {
         return Ok(Hair::Isotropic);
     }
-    let preset = flags.hair.as_deref().unwrap_or_else(|| flags.scene.defaults().preset);
-    let sampler = flags.sampler.as_deref().unwrap_or_else(|| default_sampler(&flags.model));
+    let preset = flags
+        .hair
+        .as_deref()
+        .unwrap_or_else(|| flags.scene.defaults().preset);
+    let sampler = flags
+        .sampler
+        .as_deref()
+        .unwrap_or_else(|| default_sampler(&flags.model));
     let choice = Choice::find(&flags.model, sampler, preset)?;
     let energy = flags.energy.unwrap_or(Energy::Raw);
     let hair = choice.hair(energy)?;
     let [mean, worst] = hair.mean_and_worst_albedo();
-    say(&format!("albedo of the hair: mean {mean:.3}, largest {worst:.3}"));
+    say(&format!(
+        "albedo of the hair: mean {mean:.3}, largest {worst:.3}"
+    ));
     if flags.energy.is_none() {
         check_paths(&hair, settings, preset, "use --energy per-wo")?;
     }
@@ -134,18 +187,29 @@ fn hair(flags: &Render, settings: &Settings) -> Result<Hair, Error> {
 
 /// Makes the folder of a file, and sees that files can be written there.
 pub(super) fn check_out(path: &Path) -> Result<(), Error> {
-    let refuse = |source| Error::Output { path: path.to_owned(), source };
+    let refuse = |source| Error::Output {
+        path: path.to_owned(),
+        source,
+    };
     if path.extension().is_none_or(|end| end != "exr") {
-        return Err(Error::Usage(format!("the picture must end in .exr, got {}", path.display())));
+        return Err(Error::Usage(format!(
+            "the picture must end in .exr, got {}",
+            path.display()
+        )));
     }
     if path.is_dir() {
         return Err(refuse(io::ErrorKind::IsADirectory.into()));
     }
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+    if let Some(folder) = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+    {
         fs::create_dir_all(folder).map_err(refuse)?;
     }
     let probe = path.with_extension("exr.new");
-    fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)).map_err(refuse)
+    fs::write(&probe, "")
+        .and_then(|()| fs::remove_file(&probe))
+        .map_err(refuse)
 }
 
 /// Reads an environment map, and remarks on what is odd about it.
@@ -159,14 +223,26 @@ pub(crate) fn environment(path: &Path) -> Result<Environment, Error> {
 
 /// Reads hair, and remarks on what is odd about it.
 fn read_hair(flags: &Render, path: &Path) -> Result<Strands, Error> {
-    let follow = Follow { strands: flags.follow, spread: flags.spread };
-    let options = Import { radius: flags.radius, scale: flags.scale, up: flags.up, follow, ..Import::default() };
+    let follow = Follow {
+        strands: flags.follow,
+        spread: flags.spread,
+    };
+    let options = Import {
+        radius: flags.radius,
+        scale: flags.scale,
+        up: flags.up,
+        follow,
+        ..Import::default()
+    };
     let imported = import(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
     for remark in imported.remarks {
         say(&format!("{}: {remark}", path.display()));
     }
     if imported.strands.strands() == 0 {
-        return Err(Error::Usage(format!("{}: there is no strand to render", path.display())));
+        return Err(Error::Usage(format!(
+            "{}: there is no strand to render",
+            path.display()
+        )));
     }
     Ok(imported.strands)
 }
@@ -186,23 +262,40 @@ fn passes(
     let start = Instant::now();
     let mut written = start;
     let mut done = part.film.samples();
-    let is_over = |done: u32| flags.time.map_or(done >= samples, |time| start.elapsed().as_secs_f64() >= time);
+    let is_over = |done: u32| {
+        flags.time.map_or(done >= samples, |time| {
+            start.elapsed().as_secs_f64() >= time
+        })
+    };
     while !is_over(done) {
-        let next = if flags.time.is_some() { done + pass } else { (done + pass).min(samples) };
+        let next = if flags.time.is_some() {
+            done + pass
+        } else {
+            (done + pass).min(samples)
+        };
         let share = |part: f64| match flags.time {
             Some(time) => (start.elapsed().as_secs_f64() / time).min(1.0),
             None => (f64::from(done) + part * f64::from(next - done)) / f64::from(samples),
         };
         bar.set_message(format!("{done} samples"));
-        transport::render(scene, settings, &mut part.film, next, &|part| show(share(part)));
+        transport::render(scene, settings, &mut part.film, next, &|part| {
+            show(share(part))
+        });
         done = next;
         let [least, most] = PREVIEW;
         if written.elapsed() >= (start.elapsed() / 2).clamp(least, most) && !is_over(done) {
             part.write(part_path)?;
             let picture = part.film.picture();
-            let exposure = flags.exposure.unwrap_or_else(|| picture::exposure(&picture));
+            let exposure = flags
+                .exposure
+                .unwrap_or_else(|| picture::exposure(&picture));
             let growing = part_path.with_extension("exr");
-            picture::write(&picture, &Beside::film(&part.film, &part.run), &growing, exposure)?;
+            picture::write(
+                &picture,
+                &Beside::film(&part.film, &part.run),
+                &growing,
+                exposure,
+            )?;
             written = Instant::now();
         }
     }

@@ -19,12 +19,22 @@ pub(super) struct Map {
 impl Map {
     /// Of signed errors: blue below 0, red above, white at 0; full colours at `most`.
     pub(super) fn signed(name: &'static str, most: f64, remarks: &'static [&'static str]) -> Self {
-        Self { name, remarks, most, is_signed: true }
+        Self {
+            name,
+            remarks,
+            most,
+            is_signed: true,
+        }
     }
 
     /// Of squared errors: by their logarithm, yellow at `most`.
     pub(super) fn squared(name: &'static str, most: f64, remarks: &'static [&'static str]) -> Self {
-        Self { name, remarks, most, is_signed: false }
+        Self {
+            name,
+            remarks,
+            most,
+            is_signed: false,
+        }
     }
 
     /// Place of an error on the scale: from -1, or 0 for squares, to 1.
@@ -38,29 +48,53 @@ impl Map {
 
     fn color(&self, place: f64) -> image::Rgb<u8> {
         const DARK: [[f64; 3]; 2] = [[5.0, 48.0, 97.0], [103.0, 0.0, 31.0]];
-        const HEAT: [[f64; 3]; 5] =
-            [[0.0, 0.0, 4.0], [87.0, 16.0, 110.0], [188.0, 55.0, 84.0], [249.0, 142.0, 9.0], [252.0, 255.0, 164.0]];
+        const HEAT: [[f64; 3]; 5] = [
+            [0.0, 0.0, 4.0],
+            [87.0, 16.0, 110.0],
+            [188.0, 55.0, 84.0],
+            [249.0, 142.0, 9.0],
+            [252.0, 255.0, 164.0],
+        ];
         let (from, to, share) = if self.is_signed {
-            ([255.0; 3], DARK[usize::from(place > 0.0)], place.abs().sqrt())
+            (
+                [255.0; 3],
+                DARK[usize::from(place > 0.0)],
+                place.abs().sqrt(),
+            )
         } else {
             let at = place * (HEAT.len() - 1) as f64;
-            let stop = (0..HEAT.len() - 2).rev().find(|stop| *stop as f64 <= at).unwrap_or(0);
+            let stop = (0..HEAT.len() - 2)
+                .rev()
+                .find(|stop| *stop as f64 <= at)
+                .unwrap_or(0);
             (HEAT[stop], HEAT[stop + 1], at - stop as f64)
         };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a byte")]
-        image::Rgb(core::array::from_fn(|c| (from[c] + (to[c] - from[c]) * share).round() as u8))
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a byte"
+        )]
+        image::Rgb(core::array::from_fn(|c| {
+            (from[c] + (to[c] - from[c]) * share).round() as u8
+        }))
     }
 
     /// Errors as colours, row by row.
     pub(super) fn image(&self, errors: &[f64], [width, height]: [u32; 2]) -> RgbImage {
-        RgbImage::from_fn(width, height, |x, y| self.color(self.place(errors[(y * width + x) as usize])))
+        RgbImage::from_fn(width, height, |x, y| {
+            self.color(self.place(errors[(y * width + x) as usize]))
+        })
     }
 
     /// The colours from the lower end of the scale to the upper.
     pub(super) fn legend(&self, width: u32) -> RgbImage {
         RgbImage::from_fn(width, 1, |x, _| {
             let share = f64::from(x) / f64::from(width.max(2) - 1);
-            self.color(if self.is_signed { 2.0 * share - 1.0 } else { share })
+            self.color(if self.is_signed {
+                2.0 * share - 1.0
+            } else {
+                share
+            })
         })
     }
 
@@ -73,20 +107,30 @@ impl Map {
             [0.0, 0.5, 1.0].map(|share| most * 10.0_f64.powf(DECADES * (share - 1.0)))
         };
         let [low, middle, high] = values.map(|value| number::plain(value, 1));
-        [(0.0, "start", low), (0.5, "middle", middle), (1.0, "end", high)]
+        [
+            (0.0, "start", low),
+            (0.5, "middle", middle),
+            (1.0, "end", high),
+        ]
     }
 }
 
 /// Upper end of a scale that covers all but a few of the values, those that are 0 apart: 1, 2 or 5 times a power of ten.
 pub(super) fn scale<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
-    let mut values: Vec<f64> = values.map(|value| value.abs()).filter(|value| *value > 0.0).collect();
+    let mut values: Vec<f64> = values
+        .map(|value| value.abs())
+        .filter(|value| *value > 0.0)
+        .collect();
     values.sort_by(f64::total_cmp);
     if values.is_empty() {
         return 1.0;
     }
     let covered = hairis_instruments::stats::percentile(&values, COVERED);
     let power = 10.0_f64.powf(covered.log10().floor());
-    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= covered).unwrap_or(10.0);
+    let factor = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|factor| factor * power >= covered)
+        .unwrap_or(10.0);
     factor * power
 }
 
@@ -100,18 +144,39 @@ mod tests {
         assert_eq!(image.get_pixel(1, 0).0, [255; 3]);
         assert!(image.get_pixel(0, 0).0[2] > image.get_pixel(0, 0).0[0]);
         assert!(image.get_pixel(2, 0).0[0] > image.get_pixel(2, 0).0[2]);
-        assert_eq!(image.get_pixel(2, 0), image.get_pixel(3, 0), "the end of the scale");
+        assert_eq!(
+            image.get_pixel(2, 0),
+            image.get_pixel(3, 0),
+            "the end of the scale"
+        );
     }
 
     #[test]
     fn squares_are_told_apart_over_four_decades() {
         let map = Map::squared("noise", 2.0, &[]);
         let image = map.image(&[0.0, 2e-4, 2e-3, 2e-2, 0.2, 2.0, 9.0], [7, 1]);
-        let light = |x: u32| image.get_pixel(x, 0).0.iter().map(|byte| u32::from(*byte)).sum::<u32>();
-        assert!((1..5).all(|x| light(x) < light(x + 1)), "lighter for larger errors");
-        assert_eq!([light(0), light(6)], [light(1), light(5)], "the ends of the scale");
+        let light = |x: u32| {
+            image
+                .get_pixel(x, 0)
+                .0
+                .iter()
+                .map(|byte| u32::from(*byte))
+                .sum::<u32>()
+        };
+        assert!(
+            (1..5).all(|x| light(x) < light(x + 1)),
+            "lighter for larger errors"
+        );
+        assert_eq!(
+            [light(0), light(6)],
+            [light(1), light(5)],
+            "the ends of the scale"
+        );
         assert_eq!(map.legend(5).get_pixel(4, 0), image.get_pixel(5, 0));
-        assert_eq!(map.ticks().map(|(_, _, text)| text), ["0.0002", "0.02", "2"]);
+        assert_eq!(
+            map.ticks().map(|(_, _, text)| text),
+            ["0.0002", "0.02", "2"]
+        );
     }
 
     #[test]
@@ -119,7 +184,10 @@ mod tests {
         let mut values = vec![0.3; 1000];
         values.extend([-7.0, 0.0, 1e9]);
         assert_eq!(scale(values.iter()), 0.5);
-        assert!((scale([0.7, 0.7].iter()) - 1.0).abs() < 1e-12 && (scale([-2e-3].iter()) - 2e-3).abs() < 1e-12);
+        assert!(
+            (scale([0.7, 0.7].iter()) - 1.0).abs() < 1e-12
+                && (scale([-2e-3].iter()) - 2e-3).abs() < 1e-12
+        );
         assert_eq!(scale([].iter()), 1.0);
     }
 }

@@ -28,7 +28,11 @@ pub(super) const SAMPLERS: [&str; 4] = [UNIFORM, PUBLISHED, RESAMPLED, BEST];
 
 /// How the model draws directions, and which samples count.
 fn strategy(sampler: &'static str) -> (&'static str, Mis) {
-    if sampler == RESAMPLED { (BEST, Mis::Resampled) } else { (sampler, Mis::Both) }
+    if sampler == RESAMPLED {
+        (BEST, Mis::Resampled)
+    } else {
+        (sampler, Mis::Both)
+    }
 }
 
 /// How much is rendered.
@@ -79,23 +83,43 @@ impl Plan {
 
     /// What a scene with hair of a model depends on, but for the light.
     pub(super) fn scene(&self, name: Name, model: &str, preset: &str) -> String {
-        let Self { side, strands, rectangle_sampling: rectangles, .. } = self;
+        let Self {
+            side,
+            strands,
+            rectangle_sampling: rectangles,
+            ..
+        } = self;
         let name = name.word();
-        format!("scene={name} model={model} hair={preset} side={side} strands={strands} rectangles={rectangles:?}")
+        format!(
+            "scene={name} model={model} hair={preset} side={side} strands={strands} rectangles={rectangles:?}"
+        )
     }
 
     /// How the samplers' pictures of a scene are made, but for what is their own.
     fn settings(&self, name: Name, seed: u64) -> Settings {
         let defaults = name.defaults();
         let integrator = self.integrator.unwrap_or(defaults.integrator);
-        Settings { integrator, multiple: defaults.multiple, seed, ..Settings::default() }
+        Settings {
+            integrator,
+            multiple: defaults.multiple,
+            seed,
+            ..Settings::default()
+        }
     }
 
     /// Refuses a scene with hair that paths do not converge in.
     pub(super) fn check(&self, name: Name) -> Result<(), Error> {
         let (preset, settings) = (name.defaults().preset, self.settings(name, 1));
-        let remedy = format!("leave out scene {}, or use --integrator gather", name.word());
-        check_paths(&Choice::find(MODEL, BEST, preset)?.hair(Energy::Raw)?, &settings, preset, &remedy)
+        let remedy = format!(
+            "leave out scene {}, or use --integrator gather",
+            name.word()
+        );
+        check_paths(
+            &Choice::find(MODEL, BEST, preset)?.hair(Energy::Raw)?,
+            &settings,
+            preset,
+            &remedy,
+        )
     }
 
     /// Steps of progress for a count of scenes.
@@ -151,29 +175,59 @@ impl Measured {
         step: &dyn Fn(&str),
     ) -> Result<Self, Error> {
         let defaults = name.defaults();
-        let title = map.as_ref().map(|map| hairis_instruments::light::Light::name(map).to_owned());
+        let title = map
+            .as_ref()
+            .map(|map| hairis_instruments::light::Light::name(map).to_owned());
         let digest = map.as_ref().map_or(0, Environment::digest);
         let hair = |sampler| Choice::find(MODEL, sampler, defaults.preset)?.hair(Energy::Raw);
         let strands = scenes::grow(name, plan.strands)?;
-        let parts = Parts { strands, imported: false, hair: hair(BEST)?, env: map, size: [plan.side; 2], turn: 0.0 };
+        let parts = Parts {
+            strands,
+            imported: false,
+            hair: hair(BEST)?,
+            env: map,
+            size: [plan.side; 2],
+            turn: 0.0,
+        };
         step(&format!("{}: tree", name.word()));
-        let mut scene = Scene { rectangle_sampling: plan.rectangle_sampling, ..scenes::build(name, parts)? };
+        let mut scene = Scene {
+            rectangle_sampling: plan.rectangle_sampling,
+            ..scenes::build(name, parts)?
+        };
         let settings = plan.settings(name, seed);
         let integrator = settings.integrator;
         let kind = usize::from(integrator != Integrator::Gather);
         let halves = plan.reference[kind];
-        let of_scene = format!("{} env={digest:016x} reference={halves}", plan.scene(name, MODEL, defaults.preset));
+        let of_scene = format!(
+            "{} env={digest:016x} reference={halves}",
+            plan.scene(name, MODEL, defaults.preset)
+        );
         step(&format!("{}: reference", name.word()));
         let reference = store.reference(name.word(), &of_scene, &scene, &settings, halves)?;
-        let counted = Settings { profile: true, ..settings };
-        let visible = film(&scene, &counted, Crop::whole([plan.side; 2]), 4).profile.visible();
+        let counted = Settings {
+            profile: true,
+            ..settings
+        };
+        let visible = film(&scene, &counted, Crop::whole([plan.side; 2]), 4)
+            .profile
+            .visible();
         let measure = |scene: &mut Scene, sampler: &'static str, samples: u32| {
             let (drawn, mis) = strategy(sampler);
             scene.hair = hair(drawn)?;
-            let (settings, runs) = (Settings { mis, sequence: plan.sequence, ..settings }, plan.runs);
+            let (settings, runs) = (
+                Settings {
+                    mis,
+                    sequence: plan.sequence,
+                    ..settings
+                },
+                plan.runs,
+            );
             let file = format!("{}-{sampler}-{samples}", name.word());
-            let of_runs = format!("{of_scene} sampler={drawn} samples={samples} runs={runs} {settings:?}");
-            store.get(&file, &of_runs, || Runs::render(scene, &settings, &reference, samples, runs))
+            let of_runs =
+                format!("{of_scene} sampler={drawn} samples={samples} runs={runs} {settings:?}");
+            store.get(&file, &of_runs, || {
+                Runs::render(scene, &settings, &reference, samples, runs)
+            })
         };
         let mut all = Vec::new();
         for sampler in SAMPLERS {
@@ -181,25 +235,51 @@ impl Measured {
                 step(&format!("{}: {sampler}, {samples} samples", name.word()));
                 measure(&mut scene, sampler, *samples)
             };
-            all.push((sampler, plan.samples[kind].iter().map(run).collect::<Result<Vec<Runs>, Error>>()?));
+            all.push((
+                sampler,
+                plan.samples[kind]
+                    .iter()
+                    .map(run)
+                    .collect::<Result<Vec<Runs>, Error>>()?,
+            ));
         }
         // The middle count: the largest is kept for the numbers.
         let shown = shown(plan.samples[kind].len());
-        let least = all.iter().map(|(_, runs)| runs[shown].seconds).fold(f64::INFINITY, f64::min);
+        let least = all
+            .iter()
+            .map(|(_, runs)| runs[shown].seconds)
+            .fold(f64::INFINITY, f64::min);
         let mut samplers = Vec::new();
         for (sampler, runs) in all {
             step(&format!("{}: {sampler}, equal time", name.word()));
             let equal_time = measure(&mut scene, sampler, runs[shown].samples_in(least))?;
-            samplers.push(BySampler { name: sampler, runs, equal_time });
+            samplers.push(BySampler {
+                name: sampler,
+                runs,
+                equal_time,
+            });
         }
         let (map, preset) = (title, defaults.preset);
-        Ok(Self { name, map, integrator, preset, of_scene, seed, halves, visible, reference, samplers })
+        Ok(Self {
+            name,
+            map,
+            integrator,
+            preset,
+            of_scene,
+            seed,
+            halves,
+            visible,
+            reference,
+            samplers,
+        })
     }
 
     /// Name of the scene on the page.
     pub(super) fn title(&self) -> String {
         let word = self.name.word();
-        self.map.as_ref().map_or_else(|| word.to_owned(), |map| format!("{word} ({map})"))
+        self.map
+            .as_ref()
+            .map_or_else(|| word.to_owned(), |map| format!("{word} ({map})"))
     }
 
     /// Place of the count of samples that pictures show.
@@ -210,19 +290,40 @@ impl Measured {
     /// Writes the pictures as files: the reference, and each sampler's at equal samples and at equal time.
     pub(super) fn write_pictures(&self, out: &Path) -> Result<(), Error> {
         let exposure = picture::exposure(&self.reference.picture);
-        let stem = self.title().replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+        let stem = self
+            .title()
+            .replace(|c: char| !c.is_ascii_alphanumeric(), "-");
         let write = |what: &str, picture: &Picture, sampler: &str, samples: u32, seconds: f64| {
             let path = out.join(format!("{stem}-{what}.exr"));
-            picture::write(picture, &self.beside(sampler, samples, seconds), &path, exposure)
+            picture::write(
+                picture,
+                &self.beside(sampler, samples, seconds),
+                &path,
+                exposure,
+            )
         };
-        let Reference { picture, seconds, .. } = &self.reference;
+        let Reference {
+            picture, seconds, ..
+        } = &self.reference;
         write("reference", picture, BEST, 2 * self.halves, *seconds)?;
-        for BySampler { name, runs, equal_time } in &self.samplers {
+        for BySampler {
+            name,
+            runs,
+            equal_time,
+        } in &self.samplers
+        {
             let equal_samples = &runs[self.shown()];
-            for (what, runs) in
-                [(equal_samples.samples.to_string(), equal_samples), ("equal-time".to_owned(), equal_time)]
-            {
-                write(&format!("{name}-{what}"), &runs.picture, name, runs.samples, runs.seconds)?;
+            for (what, runs) in [
+                (equal_samples.samples.to_string(), equal_samples),
+                ("equal-time".to_owned(), equal_time),
+            ] {
+                write(
+                    &format!("{name}-{what}"),
+                    &runs.picture,
+                    name,
+                    runs.samples,
+                    runs.seconds,
+                )?;
             }
         }
         Ok(())
@@ -232,14 +333,20 @@ impl Measured {
     fn beside(&self, sampler: &str, samples: u32, seconds: f64) -> Beside {
         let machine = machine!();
         let attributes = vec![
-            ("run", format!("{} sampler={sampler} {}", self.of_scene, build())),
+            (
+                "run",
+                format!("{} sampler={sampler} {}", self.of_scene, build()),
+            ),
             ("seed", self.seed.to_string()),
             ("commit", machine.commit.to_owned()),
             ("machine", machine.summary()),
             ("samplesPerPixel", samples.to_string()),
             ("secondsOfCpuTime", format!("{seconds:.3}")),
         ];
-        Beside { attributes, ..Beside::default() }
+        Beside {
+            attributes,
+            ..Beside::default()
+        }
     }
 }
 

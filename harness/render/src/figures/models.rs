@@ -39,24 +39,65 @@ impl Preset {
         // A quarter of what references of paths take: looks need less than errors.
         let samples = plan.reference[1] / 4;
         let strands = scenes::grow(scene, plan.strands)?;
-        let hair = |model: &str| Choice::find(model, default_sampler(model), name)?.hair(Energy::Raw);
+        let hair =
+            |model: &str| Choice::find(model, default_sampler(model), name)?.hair(Energy::Raw);
         let names = ModelId::defaults_of_names().map(ModelId::name);
-        let hairs = names.map(|model| Ok((model, hair(model)?))).collect::<Result<Vec<_>, Error>>()?;
-        let Some((_, first)) = hairs.first() else { return Ok(Self { name, samples, models: Vec::new() }) };
-        let parts = Parts { strands, imported: false, hair: *first, env: None, size: [plan.side; 2], turn: 0.0 };
-        let mut scene = Scene { rectangle_sampling: plan.rectangle_sampling, ..scenes::build(scene, parts)? };
+        let hairs = names
+            .map(|model| Ok((model, hair(model)?)))
+            .collect::<Result<Vec<_>, Error>>()?;
+        let Some((_, first)) = hairs.first() else {
+            return Ok(Self {
+                name,
+                samples,
+                models: Vec::new(),
+            });
+        };
+        let parts = Parts {
+            strands,
+            imported: false,
+            hair: *first,
+            env: None,
+            size: [plan.side; 2],
+            turn: 0.0,
+        };
+        let mut scene = Scene {
+            rectangle_sampling: plan.rectangle_sampling,
+            ..scenes::build(scene, parts)?
+        };
         let defaults = Name::Head.defaults();
-        let settings =
-            Settings { integrator: defaults.integrator, multiple: defaults.multiple, seed, ..Settings::default() };
+        let settings = Settings {
+            integrator: defaults.integrator,
+            multiple: defaults.multiple,
+            seed,
+            ..Settings::default()
+        };
         let mut models = Vec::new();
         for (model, hair) in hairs {
-            check_paths(&hair, &settings, name, &format!("model {model} cannot be compared"))?;
+            check_paths(
+                &hair,
+                &settings,
+                name,
+                &format!("model {model} cannot be compared"),
+            )?;
             step(&format!("{name}: {model}"));
             scene.hair = hair;
             let of_model = plan.scene(Name::Head, model, name);
-            models.push((model, store.reference(&format!("{name}-{model}"), &of_model, &scene, &settings, samples)?));
+            models.push((
+                model,
+                store.reference(
+                    &format!("{name}-{model}"),
+                    &of_model,
+                    &scene,
+                    &settings,
+                    samples,
+                )?,
+            ));
         }
-        Ok(Self { name, samples, models })
+        Ok(Self {
+            name,
+            samples,
+            models,
+        })
     }
 
     /// The preset.
@@ -99,16 +140,30 @@ pub(super) fn section(presets: &[Preset]) -> std::io::Result<Section> {
                 number::plain(100.0 * look, 3),
             ]);
         }
-        let Some((_, first)) = preset.models.first() else { continue };
+        let Some((_, first)) = preset.models.first() else {
+            continue;
+        };
         let mut columns = Vec::new();
         let mut squares = vec![0.0; first.picture.pixels.len()];
         for (name, of) in &preset.models {
             let signed = first.relative(&first.signed(&of.picture));
-            squares.iter_mut().zip(&signed).for_each(|(sum, difference)| *sum += difference * difference);
+            squares
+                .iter_mut()
+                .zip(&signed)
+                .for_each(|(sum, difference)| *sum += difference * difference);
             let remark = format!("{}, {} samples", preset.name, preset.samples());
             // Legends take the place of the first one's difference from itself.
-            let errors = if columns.is_empty() { Vec::new() } else { vec![signed] };
-            columns.push(Column { title: (*name).to_owned(), remark, picture: &of.picture, errors });
+            let errors = if columns.is_empty() {
+                Vec::new()
+            } else {
+                vec![signed]
+            };
+            columns.push(Column {
+                title: (*name).to_owned(),
+                remark,
+                picture: &of.picture,
+                errors,
+            });
         }
         let map = Map::signed(
             "relative difference from the published model",

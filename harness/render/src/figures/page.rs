@@ -31,11 +31,19 @@ pub(super) fn write(
     out: &Path,
 ) -> Result<(), Error> {
     let path = out.join("report.html");
-    let page = page(all, presets, plan, flags).map_err(|source| Error::Output { path: path.clone(), source })?;
+    let page = page(all, presets, plan, flags).map_err(|source| Error::Output {
+        path: path.clone(),
+        source,
+    })?;
     whole(&path, |out| out.write_all(page.html().as_bytes()))
 }
 
-fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> std::io::Result<Report> {
+fn page(
+    all: &[Measured],
+    presets: &[Preset],
+    plan: &Plan,
+    flags: &Figures,
+) -> std::io::Result<Report> {
     let machine = machine!();
     let mut sections = vec![Section::new("Summary").tables([summary(all)])];
     for measured in all {
@@ -44,9 +52,22 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
     if !presets.is_empty() {
         sections.push(models::section(presets)?);
     }
-    let Plan { side, strands, runs, sequence, rectangle_sampling, .. } = plan;
-    let mut verdicts = vec![["Where the sampler does not matter".to_owned(), verdict::scenes(all)]];
-    verdicts.extend(all.iter().map(|measured| [measured.title(), headline(measured)]));
+    let Plan {
+        side,
+        strands,
+        runs,
+        sequence,
+        rectangle_sampling,
+        ..
+    } = plan;
+    let mut verdicts = vec![[
+        "Where the sampler does not matter".to_owned(),
+        verdict::scenes(all),
+    ]];
+    verdicts.extend(
+        all.iter()
+            .map(|measured| [measured.title(), headline(measured)]),
+    );
     let method = Section::new("Method and machine")
         .paragraph(format!(
             "Pictures of {side} by {side} pixels, procedural hair of {strands} strands, published model, sampled by \
@@ -80,11 +101,16 @@ fn page(all: &[Measured], presets: &[Preset], plan: &Plan, flags: &Figures) -> s
 /// The error of each sampler in each scene.
 fn overview(all: &[Measured]) -> Drawing {
     let measure = Measure::TrimmedRelMse;
-    let axis = Axis::linear(format!("{} × time, relative to matched (×)", measure.name()));
+    let axis = Axis::linear(format!(
+        "{} × time, relative to matched (×)",
+        measure.name()
+    ));
     let scenes: Vec<String> = all.iter().map(Measured::title).collect();
     let (mut series, mut left_out) = (Vec::new(), Vec::new());
     // All scenes have the same samplers; the last is the one that the others are relative to.
-    let samplers = all.first().map_or(&[][..], |first| first.samplers.as_slice());
+    let samplers = all
+        .first()
+        .map_or(&[][..], |first| first.samplers.as_slice());
     let others = samplers.len().saturating_sub(1);
     for (place, sampler) in samplers.iter().take(others).enumerate() {
         let mut gains: Vec<Bar> = Vec::new();
@@ -93,7 +119,11 @@ fn overview(all: &[Measured]) -> Drawing {
             if is_below {
                 left_out.push(format!("{} in {}", sampler.name, measured.title()));
             }
-            gains.push(if is_below { f64::NAN.into() } else { ratio.into() });
+            gains.push(if is_below {
+                f64::NAN.into()
+            } else {
+                ratio.into()
+            });
         }
         series.push((sampler.name.to_owned(), gains));
     }
@@ -105,22 +135,37 @@ fn overview(all: &[Measured]) -> Drawing {
 
 /// Names the points that a chart leaves out.
 fn left_out_text(names: &[String]) -> String {
-    if names.is_empty() { String::new() } else { format!(" Left out, below the reference: {}.", names.join(", ")) }
+    if names.is_empty() {
+        String::new()
+    } else {
+        format!(" Left out, below the reference: {}.", names.join(", "))
+    }
 }
 
 /// How many times as large errors times time are, scene by scene.
 fn summary(all: &[Measured]) -> Table {
-    let mut table =
-        Table::new("Error × time, relative to matched").texts(["scene", "light"]).numbers(["visible", "samples"]);
-    let Some(first) = all.first() else { return table };
+    let mut table = Table::new("Error × time, relative to matched")
+        .texts(["scene", "light"])
+        .numbers(["visible", "samples"]);
+    let Some(first) = all.first() else {
+        return table;
+    };
     for sampler in first.samplers.iter().rev().skip(1).rev() {
-        table = table.numbers(MEASURES.map(|measure| format!("{}, {}", sampler.name, measure.name())));
+        table =
+            table.numbers(MEASURES.map(|measure| format!("{}, {}", sampler.name, measure.name())));
     }
     for measured in all {
         let shown = measured.shown();
-        let Some(best) = measured.samplers.last() else { continue };
+        let Some(best) = measured.samplers.last() else {
+            continue;
+        };
         let visible = format!("{:.0} %", 100.0 * measured.visible);
-        let mut row = vec![measured.title(), kind(measured).to_owned(), visible, best.runs[shown].samples.to_string()];
+        let mut row = vec![
+            measured.title(),
+            kind(measured).to_owned(),
+            visible,
+            best.runs[shown].samples.to_string(),
+        ];
         for sampler in measured.samplers.iter().rev().skip(1).rev() {
             row.extend(MEASURES.map(|measure| gain(measured, sampler, measure).text()));
         }
@@ -155,14 +200,26 @@ pub(super) fn kind(measured: &Measured) -> &'static str {
 
 /// A number from an error, marked if the error is below the reference.
 fn marked(runs: &Runs, measure: Measure, text: String) -> String {
-    if runs.is_below_reference(measure) { text + BELOW } else { text }
+    if runs.is_below_reference(measure) {
+        text + BELOW
+    } else {
+        text
+    }
 }
 
 fn section(measured: &Measured) -> std::io::Result<Section> {
     let title = measured.title();
     let shown = measured.shown();
-    let at_samples: Vec<&Runs> = measured.samplers.iter().map(|sampler| &sampler.runs[shown]).collect();
-    let at_time: Vec<&Runs> = measured.samplers.iter().map(|sampler| &sampler.equal_time).collect();
+    let at_samples: Vec<&Runs> = measured
+        .samplers
+        .iter()
+        .map(|sampler| &sampler.runs[shown])
+        .collect();
+    let at_time: Vec<&Runs> = measured
+        .samplers
+        .iter()
+        .map(|sampler| &sampler.equal_time)
+        .collect();
     let maps = Maps::new(measured, &[at_samples.as_slice(), &at_time].concat());
     let samples = measured.samplers[0].runs[shown].samples;
     let caption = format!(
@@ -170,14 +227,29 @@ fn section(measured: &Measured) -> std::io::Result<Section> {
          for all samplers and both figures of this scene.",
         at_samples[0].errors.len()
     );
-    let (equal_samples, equal_time) = (maps.panel(measured, &at_samples)?, maps.panel(measured, &at_time)?);
+    let (equal_samples, equal_time) = (
+        maps.panel(measured, &at_samples)?,
+        maps.panel(measured, &at_time)?,
+    );
     let (chart, left_out) = convergence(measured);
-    let convergence = format!("relMSE against samples; bars are one standard error.{}", left_out_text(&left_out));
+    let convergence = format!(
+        "relMSE against samples; bars are one standard error.{}",
+        left_out_text(&left_out)
+    );
     Ok(Section::new(title)
-        .paragraph(format!("Light: {}; hair: `{}`. {}", kind(measured), measured.preset, visible(measured)))
+        .paragraph(format!(
+            "Light: {}; hair: `{}`. {}",
+            kind(measured),
+            measured.preset,
+            visible(measured)
+        ))
         .paragraph(sentence(measured))
         .figures([
-            Drawing::new("", equal_samples, format!("Equal samples: {samples} per pixel. {caption}")),
+            Drawing::new(
+                "",
+                equal_samples,
+                format!("Equal samples: {samples} per pixel. {caption}"),
+            ),
             Drawing::new("", equal_time, format!("Equal time. {caption}")),
             Drawing::new("", chart, convergence),
         ])
@@ -194,36 +266,70 @@ impl Maps {
     /// Scales that cover the errors of all runs.
     fn new(measured: &Measured, all: &[&Runs]) -> Self {
         let reference = &measured.reference;
-        let bias: Vec<f64> = all.iter().flat_map(|runs| reference.relative(&runs.bias)).collect();
-        let squares: Vec<f64> = all.iter().flat_map(|runs| reference.relative_squares(&runs.squares)).collect();
+        let bias: Vec<f64> = all
+            .iter()
+            .flat_map(|runs| reference.relative(&runs.bias))
+            .collect();
+        let squares: Vec<f64> = all
+            .iter()
+            .flat_map(|runs| reference.relative_squares(&runs.squares))
+            .collect();
         let mut sums = vec![0.0; reference.picture.pixels.len()];
         for runs in all {
-            sums.iter_mut().zip(&runs.squares).for_each(|(sum, square)| *sum += square);
+            sums.iter_mut()
+                .zip(&runs.squares)
+                .for_each(|(sum, square)| *sum += square);
         }
         let signed = Map::signed(
             "bias: the mean of all pictures, minus the reference",
             scale(bias.iter()),
-            &["blue: too dark, red: too bright;", "what noise leaves has both signs"],
+            &[
+                "blue: too dark, red: too bright;",
+                "what noise leaves has both signs",
+            ],
         );
-        let squared =
-            Map::squared("noise: mean squared error of all pictures", scale(squares.iter()), &["by its logarithm"]);
-        Self { crops: crops(&reference.picture, &sums), maps: [signed, squared] }
+        let squared = Map::squared(
+            "noise: mean squared error of all pictures",
+            scale(squares.iter()),
+            &["by its logarithm"],
+        );
+        Self {
+            crops: crops(&reference.picture, &sums),
+            maps: [signed, squared],
+        }
     }
 
     fn panel(&self, measured: &Measured, of: &[&Runs]) -> std::io::Result<String> {
         let reference = &measured.reference;
         let (title, remark) = ("reference".to_owned(), String::new());
-        let mut columns = vec![Column { title, remark, picture: &reference.picture, errors: Vec::new() }];
+        let mut columns = vec![Column {
+            title,
+            remark,
+            picture: &reference.picture,
+            errors: Vec::new(),
+        }];
         for (sampler, runs) in measured.samplers.iter().zip(of) {
             let error = number::plain(runs.mean(Measure::RelMse).value, 3);
             columns.push(Column {
                 title: sampler.name.to_owned(),
-                remark: marked(runs, Measure::RelMse, format!("{} samples, relMSE {error}", runs.samples)),
+                remark: marked(
+                    runs,
+                    Measure::RelMse,
+                    format!("{} samples, relMSE {error}", runs.samples),
+                ),
                 picture: &runs.picture,
-                errors: vec![reference.relative(&runs.bias), reference.relative_squares(&runs.squares)],
+                errors: vec![
+                    reference.relative(&runs.bias),
+                    reference.relative_squares(&runs.squares),
+                ],
             });
         }
-        panel(&columns, &self.crops, &self.maps, exposure(&reference.picture))
+        panel(
+            &columns,
+            &self.crops,
+            &self.maps,
+            exposure(&reference.picture),
+        )
     }
 }
 
@@ -233,16 +339,33 @@ fn convergence(measured: &Measured) -> (String, Vec<String>) {
     let point = |runs: &Runs| (f64::from(runs.samples), runs.mean(measure));
     let (mut series, mut left_out) = (Vec::new(), Vec::new());
     for sampler in &measured.samplers {
-        let (below, clear): (Vec<&Runs>, Vec<&Runs>) =
-            sampler.runs.iter().partition(|runs| runs.is_below_reference(measure));
-        left_out.extend(below.iter().map(|runs| format!("{} at {} samples", sampler.name, runs.samples)));
+        let (below, clear): (Vec<&Runs>, Vec<&Runs>) = sampler
+            .runs
+            .iter()
+            .partition(|runs| runs.is_below_reference(measure));
+        left_out.extend(
+            below
+                .iter()
+                .map(|runs| format!("{} at {} samples", sampler.name, runs.samples)),
+        );
         series.push(Series::new(sampler.name, clear.into_iter().map(point)));
     }
     if let Some([first, .., last]) = measured.samplers.last().map(|sampler| &sampler.runs[..]) {
         let [(n, error), (end, _)] = [first, last].map(point);
-        series.push(Series::guide("slope −1", [(n, error.value), (end, error.value * n / end)]));
+        series.push(Series::guide(
+            "slope −1",
+            [(n, error.value), (end, error.value * n / end)],
+        ));
     }
-    (lines("Convergence", Axis::log("samples per pixel"), Axis::log(measure.name()), &series), left_out)
+    (
+        lines(
+            "Convergence",
+            Axis::log("samples per pixel"),
+            Axis::log(measure.name()),
+            &series,
+        ),
+        left_out,
+    )
 }
 
 fn table(measured: &Measured) -> Table {
@@ -261,7 +384,10 @@ fn table(measured: &Measured) -> Table {
     ]);
     for sampler in &measured.samplers {
         for (place, runs) in sampler.runs.iter().enumerate() {
-            let best = measured.samplers.last().map_or(runs, |best| &best.runs[place]);
+            let best = measured
+                .samplers
+                .last()
+                .map_or(runs, |best| &best.runs[place]);
             let root = |measure| {
                 let root = runs.mean(measure).value.max(0.0).sqrt();
                 marked(runs, measure, number::plain(root, 3))

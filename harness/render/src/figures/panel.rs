@@ -26,16 +26,32 @@ pub(super) struct Column<'a> {
 }
 
 /// Rows of pictures, of crops and of error maps, as SVG.
-pub(super) fn panel(columns: &[Column], crops: &[Crop; 2], maps: &[Map], exposure: f64) -> io::Result<String> {
-    let Some(first) = columns.first() else { return Ok(String::new()) };
+pub(super) fn panel(
+    columns: &[Column],
+    crops: &[Crop; 2],
+    maps: &[Map],
+    exposure: f64,
+) -> io::Result<String> {
+    let Some(first) = columns.first() else {
+        return Ok(String::new());
+    };
     let [width, height] = first.picture.size;
     let shown = WIDTH * height / width.max(1);
     let total: u32 = columns.iter().map(|_| WIDTH + GAP).sum();
     let step = LABEL + shown + GAP;
-    let parts = ["the brightest part", "the part of the largest squared error"];
-    let parts = ["A", "B"].into_iter().zip(parts).map(|(name, part)| format!("{name}: {part}, {ZOOM} times as large"));
-    let names: Vec<String> =
-        [String::new()].into_iter().chain(parts).chain(maps.iter().map(|map| map.name.to_owned())).collect();
+    let parts = [
+        "the brightest part",
+        "the part of the largest squared error",
+    ];
+    let parts = ["A", "B"]
+        .into_iter()
+        .zip(parts)
+        .map(|(name, part)| format!("{name}: {part}, {ZOOM} times as large"));
+    let names: Vec<String> = [String::new()]
+        .into_iter()
+        .chain(parts)
+        .chain(maps.iter().map(|map| map.name.to_owned()))
+        .collect();
     let rows = LABEL + step * u32::try_from(names.len()).unwrap_or(0);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{total}\" height=\"{rows}\" viewBox=\"0 0 {total} {rows}\" \
@@ -43,16 +59,28 @@ pub(super) fn panel(columns: &[Column], crops: &[Crop; 2], maps: &[Map], exposur
          <rect width=\"{total}\" height=\"{rows}\" fill=\"#fff\"/>\n"
     );
     for (row, name) in (0..).zip(&names) {
-        text(&mut svg, [0, LABEL + row * step + 12], "fill=\"#444\"", name);
+        text(
+            &mut svg,
+            [0, LABEL + row * step + 12],
+            "fill=\"#444\"",
+            name,
+        );
     }
     let place = |row: u32| 2 * LABEL + row * step;
     for (x, column) in (0..).step_by((WIDTH + GAP) as usize).zip(columns) {
         text(&mut svg, [x, 13], "font-weight=\"bold\"", &column.title);
         text(&mut svg, [x, LABEL + 12], "fill=\"#444\"", &column.remark);
         let image = preview(column.picture, exposure);
-        let part = |crop: &Crop| crop_imm(&image, crop.x, crop.y, crop.width, crop.height).to_image();
-        let maps = maps.iter().zip(&column.errors).map(|(map, errors)| map.image(errors, column.picture.size));
-        let images = [image.clone()].into_iter().chain(crops.iter().map(part)).chain(maps);
+        let part =
+            |crop: &Crop| crop_imm(&image, crop.x, crop.y, crop.width, crop.height).to_image();
+        let maps = maps
+            .iter()
+            .zip(&column.errors)
+            .map(|(map, errors)| map.image(errors, column.picture.size));
+        let images = [image.clone()]
+            .into_iter()
+            .chain(crops.iter().map(part))
+            .chain(maps);
         for (row, image) in (0..).zip(images) {
             let size = [WIDTH, shown];
             picture(&mut svg, [x, place(row)], size, &enlarge(&image))?;
@@ -60,7 +88,8 @@ pub(super) fn panel(columns: &[Column], crops: &[Crop; 2], maps: &[Map], exposur
     }
     let scale = f64::from(WIDTH) / f64::from(width.max(1));
     for (crop, name) in crops.iter().zip(["A", "B"]) {
-        let [x, y, w, h] = [crop.x, crop.y, crop.width, crop.height].map(|side| f64::from(side) * scale);
+        let [x, y, w, h] =
+            [crop.x, crop.y, crop.width, crop.height].map(|side| f64::from(side) * scale);
         let y = y + f64::from(place(0));
         svg.push_str(&format!(
             "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" fill=\"none\" stroke=\"#ffd500\" \
@@ -74,9 +103,18 @@ pub(super) fn panel(columns: &[Column], crops: &[Crop; 2], maps: &[Map], exposur
             let y = place(row);
             picture(&mut svg, [0, y], [WIDTH, 16], &map.legend(WIDTH))?;
             for (share, anchor, label) in map.ticks() {
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a width")]
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "a share of a width"
+                )]
                 let x = (share * f64::from(WIDTH)) as u32;
-                text(&mut svg, [x, y + 30], &format!("text-anchor=\"{anchor}\""), &label);
+                text(
+                    &mut svg,
+                    [x, y + 30],
+                    &format!("text-anchor=\"{anchor}\""),
+                    &label,
+                );
             }
             for (line, remark) in (0..).zip(map.remarks) {
                 text(&mut svg, [0, y + 52 + 16 * line], "fill=\"#444\"", remark);
@@ -89,11 +127,19 @@ pub(super) fn panel(columns: &[Column], crops: &[Crop; 2], maps: &[Map], exposur
 
 fn text(svg: &mut String, [x, y]: [u32; 2], style: &str, text: &str) {
     if !text.is_empty() {
-        svg.push_str(&format!("<text x=\"{x}\" y=\"{y}\" {style}>{}</text>\n", escape(text)));
+        svg.push_str(&format!(
+            "<text x=\"{x}\" y=\"{y}\" {style}>{}</text>\n",
+            escape(text)
+        ));
     }
 }
 
-fn picture(svg: &mut String, [x, y]: [u32; 2], [width, height]: [u32; 2], image: &RgbImage) -> io::Result<()> {
+fn picture(
+    svg: &mut String,
+    [x, y]: [u32; 2],
+    [width, height]: [u32; 2],
+    image: &RgbImage,
+) -> io::Result<()> {
     svg.push_str(&format!(
         "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
          style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>\n",
@@ -105,23 +151,44 @@ fn picture(svg: &mut String, [x, y]: [u32; 2], [width, height]: [u32; 2], image:
 /// At least as many pixels as are shown, each a square: viewers that smooth what they enlarge then keep the pixels.
 fn enlarge(image: &RgbImage) -> RgbImage {
     let by = (2 * WIDTH).div_ceil(image.width().max(1)).max(1);
-    resize(image, image.width() * by, image.height() * by, FilterType::Nearest)
+    resize(
+        image,
+        image.width() * by,
+        image.height() * by,
+        FilterType::Nearest,
+    )
 }
 
 /// Two parts of `1 / ZOOM` the size that do not overlap: the brightest, and that of the largest squared error.
 pub(super) fn crops(picture: &Picture, squares: &[f64]) -> [Crop; 2] {
     let [width, height] = picture.size.map(|side| (side / ZOOM).max(1));
-    let starts = |side: u32, part: u32| (0..=side.saturating_sub(part)).step_by((part / 2).max(1) as usize);
+    let starts =
+        |side: u32, part: u32| (0..=side.saturating_sub(part)).step_by((part / 2).max(1) as usize);
     let places: Vec<Crop> = starts(picture.size[1], height)
-        .flat_map(|y| starts(picture.size[0], width).map(move |x| Crop { x, y, width, height }))
+        .flat_map(|y| {
+            starts(picture.size[0], width).map(move |x| Crop {
+                x,
+                y,
+                width,
+                height,
+            })
+        })
         .collect();
     let most = |values: &[f64], taken: Option<Crop>| {
-        let sum = |part: &Crop| part.pixels().map(|at| values[Crop::whole(picture.size).index(at)]).sum::<f64>();
+        let sum = |part: &Crop| {
+            part.pixels()
+                .map(|at| values[Crop::whole(picture.size).index(at)])
+                .sum::<f64>()
+        };
         let apart = |part: &&Crop| {
-            taken.is_none_or(|taken| part.x.abs_diff(taken.x) >= width || part.y.abs_diff(taken.y) >= height)
+            taken.is_none_or(|taken| {
+                part.x.abs_diff(taken.x) >= width || part.y.abs_diff(taken.y) >= height
+            })
         };
         let free = places.iter().filter(apart);
-        free.max_by(|a, b| sum(a).total_cmp(&sum(b))).copied().unwrap_or(Crop::whole([width, height]))
+        free.max_by(|a, b| sum(a).total_cmp(&sum(b)))
+            .copied()
+            .unwrap_or(Crop::whole([width, height]))
     };
     let brightest = most(&picture.luminances(), None);
     [brightest, most(squares, Some(brightest))]
@@ -134,13 +201,30 @@ mod tests {
     #[test]
     fn a_panel_needs_no_other_file() {
         let picture = Picture::black([16, 16]);
-        let column = |errors| Column { title: "<b>".to_owned(), remark: String::new(), picture: &picture, errors };
-        let columns = [column(vec![]), column(vec![vec![0.5; 256], vec![0.25; 256]])];
-        let maps = [Map::signed("bias", 1.0, &["blue"]), Map::squared("noise", 1.0, &[])];
+        let column = |errors| Column {
+            title: "<b>".to_owned(),
+            remark: String::new(),
+            picture: &picture,
+            errors,
+        };
+        let columns = [
+            column(vec![]),
+            column(vec![vec![0.5; 256], vec![0.25; 256]]),
+        ];
+        let maps = [
+            Map::signed("bias", 1.0, &["blue"]),
+            Map::squared("noise", 1.0, &[]),
+        ];
         let svg = panel(&columns, &crops(&picture, &[0.0; 256]), &maps, 1.0).expect("a drawing");
         // Picture and two crops of both, two legends, two maps.
-        assert!(svg.contains("&lt;b&gt;") && svg.matches("data:image/png;base64,").count() == 10, "{svg}");
-        assert!(!svg.replace("http://www.w3.org/2000/svg", "").contains("http"));
+        assert!(
+            svg.contains("&lt;b&gt;") && svg.matches("data:image/png;base64,").count() == 10,
+            "{svg}"
+        );
+        assert!(
+            !svg.replace("http://www.w3.org/2000/svg", "")
+                .contains("http")
+        );
     }
 
     #[test]
@@ -151,11 +235,17 @@ mod tests {
         let mut squares = vec![0.0; 256];
         squares[16 * 2 + 3] = 1.0;
         let [brightest, worst] = crops(&picture, &squares);
-        assert!(holds(&brightest, [13, 9]) && holds(&worst, [3, 2]), "{brightest:?} {worst:?}");
+        assert!(
+            holds(&brightest, [13, 9]) && holds(&worst, [3, 2]),
+            "{brightest:?} {worst:?}"
+        );
         // The largest error lies in the brightest part: the next largest is shown.
         squares[16 * 9 + 13] = 2.0;
         let [brightest, worst] = crops(&picture, &squares);
-        assert!(brightest.pixels().all(|pixel| !holds(&worst, pixel)), "{brightest:?} {worst:?}");
+        assert!(
+            brightest.pixels().all(|pixel| !holds(&worst, pixel)),
+            "{brightest:?} {worst:?}"
+        );
         assert!(holds(&worst, [3, 2]), "{worst:?}");
     }
 }

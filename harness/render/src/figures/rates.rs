@@ -11,11 +11,21 @@ const MEASURE: Measure = Measure::RelMse;
 /// The level of relMSE that most samplers reach within their counts of samples: 1, 2 or 5 times a power of ten; of several
 /// the one nearest to what the last sampler has at the count that pictures show.
 pub(super) fn level(measured: &Measured) -> f64 {
-    let all: Vec<&[Runs]> = measured.samplers.iter().map(|sampler| sampler.runs.as_slice()).collect();
-    let near = all.last().map_or(1.0, |best| best[measured.shown()].mean(MEASURE).value.max(1e-9));
-    let levels = (-9..=3).flat_map(|power| [1.0, 2.0, 5.0].map(|factor| factor * 10.0_f64.powi(power)));
-    let reached =
-        |level: f64| all.iter().filter(|runs| matches!(reach(runs, MEASURE, level), Some(Reach::At(_)))).count();
+    let all: Vec<&[Runs]> = measured
+        .samplers
+        .iter()
+        .map(|sampler| sampler.runs.as_slice())
+        .collect();
+    let near = all.last().map_or(1.0, |best| {
+        best[measured.shown()].mean(MEASURE).value.max(1e-9)
+    });
+    let levels =
+        (-9..=3).flat_map(|power| [1.0, 2.0, 5.0].map(|factor| factor * 10.0_f64.powi(power)));
+    let reached = |level: f64| {
+        all.iter()
+            .filter(|runs| matches!(reach(runs, MEASURE, level), Some(Reach::At(_))))
+            .count()
+    };
     let rank = |level: f64| (reached(level), -(level / near).ln().abs());
     levels
         .map(|level| (rank(level), level))
@@ -27,14 +37,19 @@ pub(super) fn level(measured: &Measured) -> f64 {
 pub(super) fn table(measured: &Measured) -> Table {
     let level = level(measured);
     let level_text = number::plain(level, 1);
-    let mut table =
-        Table::new(format!("Samples and time to a relMSE of {level_text}, and slopes")).texts(["sampler"]).numbers([
-            format!("samples to a relMSE of {level_text}"),
-            format!("time to a relMSE of {level_text} (s)"),
-            "slope of log MSE".to_owned(),
-            "slope of log relMSE".to_owned(),
-        ]);
-    let slope = |of: Option<Estimate>| of.map_or_else(|| "n/a".to_owned(), |slope| number::estimate(&slope));
+    let mut table = Table::new(format!(
+        "Samples and time to a relMSE of {level_text}, and slopes"
+    ))
+    .texts(["sampler"])
+    .numbers([
+        format!("samples to a relMSE of {level_text}"),
+        format!("time to a relMSE of {level_text} (s)"),
+        "slope of log MSE".to_owned(),
+        "slope of log relMSE".to_owned(),
+    ]);
+    let slope = |of: Option<Estimate>| {
+        of.map_or_else(|| "n/a".to_owned(), |slope| number::estimate(&slope))
+    };
     for sampler in &measured.samplers {
         let [samples, seconds] = match reach(&sampler.runs, MEASURE, level) {
             None => ["n/a".to_owned(), "n/a".to_owned()],
@@ -42,8 +57,13 @@ pub(super) fn table(measured: &Measured) -> Table {
             Some(Reach::Below(samples)) => [format!("below {samples}"), String::new()],
             Some(Reach::Above(samples)) => [format!("above {samples}"), String::new()],
         };
-        let slopes = [Measure::Mse, Measure::RelMse].map(|measure| slope(slope_of(&sampler.runs, measure)));
-        table.push([sampler.name.to_owned(), samples, seconds].into_iter().chain(slopes));
+        let slopes =
+            [Measure::Mse, Measure::RelMse].map(|measure| slope(slope_of(&sampler.runs, measure)));
+        table.push(
+            [sampler.name.to_owned(), samples, seconds]
+                .into_iter()
+                .chain(slopes),
+        );
     }
     table.note(
         "Samples and time: interpolated in logarithms of both. Slopes: against log samples, over all counts whose error is not below \

@@ -41,12 +41,20 @@ impl Store {
     /// If there can be no such folder, or if it holds measurements in another format.
     pub(super) fn new(out: &Path) -> Result<Self, Error> {
         let folder = out.join("unfinished");
-        let refuse = |source| Error::Output { path: folder.clone(), source };
+        let refuse = |source| Error::Output {
+            path: folder.clone(),
+            source,
+        };
         fs::create_dir_all(&folder).map_err(refuse)?;
         for entry in fs::read_dir(&folder).map_err(refuse)? {
             check_format(&entry.map_err(refuse)?.path())?;
         }
-        Ok(Self { folder, build: build(), used: RefCell::default(), resumed: Cell::new(0) })
+        Ok(Self {
+            folder,
+            build: build(),
+            used: RefCell::default(),
+            resumed: Cell::new(0),
+        })
     }
 
     /// A measurement: read if an earlier run has finished it, made and written if not. `settings` is a line of everything
@@ -55,9 +63,16 @@ impl Store {
     /// # Errors
     ///
     /// If the file cannot be written.
-    pub(super) fn get(&self, name: &str, settings: &str, measure: impl FnOnce() -> Runs) -> Result<Runs, Error> {
+    pub(super) fn get(
+        &self,
+        name: &str,
+        settings: &str,
+        measure: impl FnOnce() -> Runs,
+    ) -> Result<Runs, Error> {
         let key = format!("{settings} {}", self.build);
-        let path = self.folder.join(format!("{name}-{:016x}.part", digest(key.as_bytes())));
+        let path = self
+            .folder
+            .join(format!("{name}-{:016x}.part", digest(key.as_bytes())));
         let is_new = self.used.borrow_mut().insert(path.clone());
         if let Some(found) = read(&path, &key) {
             self.resumed.set(self.resumed.get() + usize::from(is_new));
@@ -85,7 +100,9 @@ impl Store {
     ) -> Result<Reference, Error> {
         let half = |half: u64| {
             let of_half = format!("{of_scene} samples={samples} half={half} {settings:?}");
-            self.get(&format!("{name}-reference-{half}"), &of_half, || Runs::half(scene, settings, samples, half))
+            self.get(&format!("{name}-reference-{half}"), &of_half, || {
+                Runs::half(scene, settings, samples, half)
+            })
         };
         let (a, b) = (half(0)?, half(1)?);
         Ok(Reference::new(&a.picture, &b.picture).with_seconds(a.seconds + b.seconds))
@@ -119,7 +136,9 @@ fn check_format(path: &Path) -> Result<(), Error> {
     let line = fs::File::open(path).map(|file| BufReader::new(file.take(80)).read_line(&mut first));
     if line.is_ok() && first.starts_with(FORMAT) && first.trim_end() != MAGIC {
         let (path, got) = (path.display(), first.trim_end());
-        return Err(Error::Usage(format!("{path}: expected \"{MAGIC}\", got \"{got}\": remove the file")));
+        return Err(Error::Usage(format!(
+            "{path}: expected \"{MAGIC}\", got \"{got}\": remove the file"
+        )));
     }
     Ok(())
 }
@@ -140,27 +159,55 @@ fn read(path: &Path, key: &str) -> Option<Runs> {
 
 /// Two lines of text, the numbers, and a digest of all that.
 fn bytes(measured: &Runs, key: &str) -> Vec<u8> {
-    let Runs { samples, seconds, errors, variance, picture, bias, squares } = measured;
+    let Runs {
+        samples,
+        seconds,
+        errors,
+        variance,
+        picture,
+        bias,
+        squares,
+    } = measured;
     let mut bytes = format!("{MAGIC}\n{key}\n").into_bytes();
     bytes.extend(samples.to_le_bytes());
     bytes.extend((errors.len() as u64).to_le_bytes());
     bytes.extend(picture.size.into_iter().flat_map(u32::to_le_bytes));
     let times = [*seconds, variance.value, variance.standard_error];
-    let errors = errors.iter().flat_map(|Errors { values, own }| values.iter().chain(own)).copied();
-    let pixels = picture.pixels.iter().flatten().chain(bias).chain(squares).copied();
-    bytes.extend(times.into_iter().chain(errors).chain(pixels).flat_map(f64::to_le_bytes));
+    let errors = errors
+        .iter()
+        .flat_map(|Errors { values, own }| values.iter().chain(own))
+        .copied();
+    let pixels = picture
+        .pixels
+        .iter()
+        .flatten()
+        .chain(bias)
+        .chain(squares)
+        .copied();
+    bytes.extend(
+        times
+            .into_iter()
+            .chain(errors)
+            .chain(pixels)
+            .flat_map(f64::to_le_bytes),
+    );
     seal(&mut bytes);
     bytes
 }
 
 fn parse(bytes: &[u8], key: &str) -> Option<Runs> {
-    let rest = unseal(bytes)?.strip_prefix(MAGIC.as_bytes())?.strip_prefix(b"\n")?;
+    let rest = unseal(bytes)?
+        .strip_prefix(MAGIC.as_bytes())?
+        .strip_prefix(b"\n")?;
     let rest = rest.strip_prefix(key.as_bytes())?.strip_prefix(b"\n")?;
     let mut rest = Reader::new(rest);
     let (samples, pictures) = (rest.number()?, u64::from_le_bytes(rest.bytes()?));
     let size = [rest.number()?, rest.number()?];
     let seconds = rest.double()?;
-    let variance = Estimate { value: rest.double()?, standard_error: rest.double()? };
+    let variance = Estimate {
+        value: rest.double()?,
+        standard_error: rest.double()?,
+    };
     let mut errors = Vec::new();
     for _ in 0..pictures {
         let mut measured = Errors::default();
@@ -170,7 +217,11 @@ fn parse(bytes: &[u8], key: &str) -> Option<Runs> {
         errors.push(measured);
     }
     let count = Crop::whole(size).len();
-    let mut doubles = |count: usize| (0..count).map(|_| rest.double()).collect::<Option<Vec<f64>>>();
+    let mut doubles = |count: usize| {
+        (0..count)
+            .map(|_| rest.double())
+            .collect::<Option<Vec<f64>>>()
+    };
     let pixels = doubles(3 * count)?.as_chunks::<3>().0.to_vec();
     let mapped = if pictures == 0 { 0 } else { count };
     let (bias, squares) = (doubles(mapped)?, doubles(mapped)?);
@@ -190,14 +241,25 @@ mod tests {
     use super::*;
 
     fn runs() -> Runs {
-        let errors = [1.0, 3.0].map(|x| Errors { values: [x, 0.7 * x, 0.5 * x, 0.25 * x], own: [1e-9; 4] });
-        let pixels = (0..12_u8).map(|k| [1.0, 0.1, 1.0 / 3.0].map(|x| x * f64::from(k))).collect();
+        let errors = [1.0, 3.0].map(|x| Errors {
+            values: [x, 0.7 * x, 0.5 * x, 0.25 * x],
+            own: [1e-9; 4],
+        });
+        let pixels = (0..12_u8)
+            .map(|k| [1.0, 0.1, 1.0 / 3.0].map(|x| x * f64::from(k)))
+            .collect();
         Runs {
             samples: 16,
             seconds: 0.75,
             errors: errors.to_vec(),
-            variance: Estimate { value: 2.0, standard_error: 0.25 },
-            picture: Picture { size: [4, 3], pixels },
+            variance: Estimate {
+                value: 2.0,
+                standard_error: 0.25,
+            },
+            picture: Picture {
+                size: [4, 3],
+                pixels,
+            },
             bias: vec![-0.125; 12],
             squares: vec![0.1; 12],
         }
@@ -222,15 +284,27 @@ mod tests {
             made
         };
         assert!(get(&store, "seed=1"));
-        assert!(!get(&store, "seed=1") && store.resumed() == 0, "the same run");
+        assert!(
+            !get(&store, "seed=1") && store.resumed() == 0,
+            "the same run"
+        );
         let again = Store::new(folder.path()).expect("a folder");
-        assert!(!get(&again, "seed=1") && again.resumed() == 1, "the next run");
+        assert!(
+            !get(&again, "seed=1") && again.resumed() == 1,
+            "the next run"
+        );
         assert!(get(&again, "seed=2"), "another seed");
-        let other = Store { build: "commit=other".to_owned(), ..Store::new(folder.path()).expect("a folder") };
+        let other = Store {
+            build: "commit=other".to_owned(),
+            ..Store::new(folder.path()).expect("a folder")
+        };
         assert!(get(&other, "seed=1"), "another build");
         other.remove();
         again.remove();
-        assert!(!folder.path().join("unfinished").exists(), "both have left nothing");
+        assert!(
+            !folder.path().join("unfinished").exists(),
+            "both have left nothing"
+        );
     }
 
     #[test]
@@ -242,7 +316,10 @@ mod tests {
         let path = store.folder.join("box-uniform-4-0123.part");
         fs::write(&path, "hairis-render measurement 1\nscene=box\n\u{0}").expect("written");
         let message = Store::new(folder.path()).expect_err("refused").to_string();
-        assert!(message.contains("box-uniform-4-0123.part") && message.contains("measurement 1\""), "{message}");
+        assert!(
+            message.contains("box-uniform-4-0123.part") && message.contains("measurement 1\""),
+            "{message}"
+        );
     }
 
     #[test]
@@ -251,7 +328,10 @@ mod tests {
         let store = Store::new(folder.path()).expect("a folder");
         store.get("area", "seed=1", runs).expect("written");
         let path = only_file(&store);
-        let (good, key) = (fs::read(&path).expect("there"), format!("seed=1 {}", store.build));
+        let (good, key) = (
+            fs::read(&path).expect("there"),
+            format!("seed=1 {}", store.build),
+        );
         assert_eq!(parse(&good, &key), Some(runs()));
         for byte in 0..good.len() {
             let mut bad = good.clone();
@@ -266,6 +346,9 @@ mod tests {
             runs()
         };
         store.get("area", "seed=1", make).expect("written");
-        assert!(made && fs::read(&path).expect("there") == good, "whole again");
+        assert!(
+            made && fs::read(&path).expect("there") == good,
+            "whole again"
+        );
     }
 }

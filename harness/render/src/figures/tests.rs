@@ -12,8 +12,14 @@ use core::panic::AssertUnwindSafe;
 use std::panic::catch_unwind;
 use std::path::Path;
 
-const TINY: Plan =
-    Plan { side: 12, strands: 200, samples: [&[2, 4], &[2, 4]], reference: [8, 4], runs: 3, ..Plan::QUICK };
+const TINY: Plan = Plan {
+    side: 12,
+    strands: 200,
+    samples: [&[2, 4], &[2, 4]],
+    reference: [8, 4],
+    runs: 3,
+    ..Plan::QUICK
+};
 
 /// Measures a scene, and stops at the given step of progress; with the count of measurements that were there.
 fn measured(plan: &Plan, seed: u64, out: &Path, last: usize) -> Option<(Measured, usize)> {
@@ -23,7 +29,8 @@ fn measured(plan: &Plan, seed: u64, out: &Path, last: usize) -> Option<(Measured
         steps.set(steps.get() + 1);
         assert!(steps.get() < last, "stopped at {what}");
     };
-    let run = || Measured::render(Name::AreaHead, None, plan, seed, &store, &step).expect("rendered");
+    let run =
+        || Measured::render(Name::AreaHead, None, plan, seed, &store, &step).expect("rendered");
     let measured = catch_unwind(AssertUnwindSafe(run)).ok()?;
     Some((measured, store.resumed()))
 }
@@ -31,7 +38,11 @@ fn measured(plan: &Plan, seed: u64, out: &Path, last: usize) -> Option<(Measured
 /// All of the runs but their times.
 fn results(measured: &Measured) -> Vec<Runs> {
     let runs = measured.samplers.iter().flat_map(|sampler| &sampler.runs);
-    runs.map(|runs| Runs { seconds: 0.0, ..runs.clone() }).collect()
+    runs.map(|runs| Runs {
+        seconds: 0.0,
+        ..runs.clone()
+    })
+    .collect()
 }
 
 #[test]
@@ -41,7 +52,10 @@ fn a_run_that_is_stopped_goes_on_to_the_same_results() {
     let (expected, resumed) = measured(&TINY, 1, at_once, usize::MAX).expect("whole");
     assert_eq!(resumed, 0);
     for last in [2, 3, 6, 9] {
-        assert!(measured(&TINY, 1, stopped, last).is_none(), "stopped at step {last}");
+        assert!(
+            measured(&TINY, 1, stopped, last).is_none(),
+            "stopped at step {last}"
+        );
     }
     // The two halves of the reference, and six runs before the stop.
     let (got, resumed) = measured(&TINY, 1, stopped, usize::MAX).expect("whole");
@@ -51,22 +65,64 @@ fn a_run_that_is_stopped_goes_on_to_the_same_results() {
     // Finished measurements keep their times, so that counts at equal time are the same, too.
     let (again, _) = measured(&TINY, 1, stopped, usize::MAX).expect("whole");
     for (a, b) in again.samplers.iter().zip(&got.samplers) {
-        assert!(a.runs == b.runs && a.equal_time == b.equal_time, "{}", a.name);
+        assert!(
+            a.runs == b.runs && a.equal_time == b.equal_time,
+            "{}",
+            a.name
+        );
     }
 }
 
 #[test]
 fn other_settings_use_no_results_of_a_run() {
     let folder = tempfile::TempDir::new().expect("a folder");
-    let resumed = |plan: &Plan, seed: u64| measured(plan, seed, folder.path(), usize::MAX).expect("whole").1;
+    let resumed = |plan: &Plan, seed: u64| {
+        measured(plan, seed, folder.path(), usize::MAX)
+            .expect("whole")
+            .1
+    };
     assert_eq!(resumed(&TINY, 1), 0);
     assert_eq!(resumed(&TINY, 2), 0, "another seed");
-    assert_eq!(resumed(&Plan { strands: 201, ..TINY }, 1), 0, "other hair");
-    assert_eq!(resumed(&Plan { rectangle_sampling: RectangleSampling::Area, ..TINY }, 1), 0, "lights drawn otherwise");
+    assert_eq!(
+        resumed(
+            &Plan {
+                strands: 201,
+                ..TINY
+            },
+            1
+        ),
+        0,
+        "other hair"
+    );
+    assert_eq!(
+        resumed(
+            &Plan {
+                rectangle_sampling: RectangleSampling::Area,
+                ..TINY
+            },
+            1
+        ),
+        0,
+        "lights drawn otherwise"
+    );
     assert_eq!(resumed(&Plan { side: 13, ..TINY }, 1), 0, "another size");
-    assert_eq!(resumed(&Plan { reference: [9, 4], ..TINY }, 1), 0, "another reference");
+    assert_eq!(
+        resumed(
+            &Plan {
+                reference: [9, 4],
+                ..TINY
+            },
+            1
+        ),
+        0,
+        "another reference"
+    );
     // The halves of the reference are those of the first run.
-    assert_eq!(resumed(&Plan { runs: 4, ..TINY }, 1), 2, "more pictures per error");
+    assert_eq!(
+        resumed(&Plan { runs: 4, ..TINY }, 1),
+        2,
+        "more pictures per error"
+    );
 }
 
 #[test]
@@ -84,9 +140,18 @@ fn pictures_of_models_are_kept() {
 
 #[test]
 fn hair_that_paths_do_not_converge_in_is_refused() {
-    let paths = Plan { integrator: Some(Integrator::Path), ..TINY };
-    let message = paths.check(Name::AreaSoft).expect_err("refused").to_string();
-    assert!(message.contains("area-soft") && message.contains("default") && message.contains("0.98"), "{message}");
+    let paths = Plan {
+        integrator: Some(Integrator::Path),
+        ..TINY
+    };
+    let message = paths
+        .check(Name::AreaSoft)
+        .expect_err("refused")
+        .to_string();
+    assert!(
+        message.contains("area-soft") && message.contains("default") && message.contains("0.98"),
+        "{message}"
+    );
     for name in super::SCENES {
         TINY.check(name).expect("its own integrator");
     }

@@ -28,7 +28,10 @@ impl Gain {
     /// How many times as large an error is in `runs` as in `best`.
     pub(super) fn new(runs: &Runs, best: &Runs, measure: Measure, with_time: bool) -> Self {
         let is_below = runs.is_below_reference(measure) || best.is_below_reference(measure);
-        Self { ratio: runs.ratio(best, measure, with_time), is_below }
+        Self {
+            ratio: runs.ratio(best, measure, with_time),
+            is_below,
+        }
     }
 
     /// In words.
@@ -39,7 +42,11 @@ impl Gain {
 
     /// Whether it is above 1 by a gain, is below it by one, or is neither, by what is left of it within two standard errors.
     fn side(&self) -> Ordering {
-        let Estimate { value, standard_error, .. } = self.ratio;
+        let Estimate {
+            value,
+            standard_error,
+            ..
+        } = self.ratio;
         if self.is_below {
             Ordering::Equal
         } else if value > GAIN && value - 2.0 * standard_error > 1.0 {
@@ -53,7 +60,11 @@ impl Gain {
 
     /// Whether it lies between 1 / `GAIN` and `GAIN` with two standard errors to spare: there is no gain, rather than none found.
     fn is_none(&self) -> bool {
-        let Estimate { value, standard_error, .. } = self.ratio;
+        let Estimate {
+            value,
+            standard_error,
+            ..
+        } = self.ratio;
         let spare = 2.0 * standard_error;
         !self.is_below && value + spare < GAIN && value - spare > 1.0 / GAIN
     }
@@ -73,8 +84,15 @@ fn headline_gains(measured: &Measured, sampler: &BySampler) -> [Gain; 2] {
 /// Whether it matters how directions are drawn: with every sampler that draws them, both errors times time are those of the last.
 /// Rays chosen from candidates are another way to choose rays, and do not count here.
 fn matters(measured: &Measured) -> bool {
-    let drawn = measured.samplers.iter().rev().skip(1).filter(|one| one.name != RESAMPLED);
-    !drawn.flat_map(|one| headline_gains(measured, one)).all(|gain| gain.is_none())
+    let drawn = measured
+        .samplers
+        .iter()
+        .rev()
+        .skip(1)
+        .filter(|one| one.name != RESAMPLED);
+    !drawn
+        .flat_map(|one| headline_gains(measured, one))
+        .all(|gain| gain.is_none())
 }
 
 /// The margin of [`Gain::is_none`], in words.
@@ -85,12 +103,20 @@ fn within() -> String {
 /// Names the samplers that the last one beats, loses to and equals, by the two errors that say most.
 fn answer(measured: &Measured) -> String {
     use Ordering::{Greater, Less};
-    let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
+    let [others @ .., best] = measured.samplers.as_slice() else {
+        return String::new();
+    };
     let matters = matters(measured);
-    let others: Vec<&BySampler> = others.iter().filter(|one| matters || one.name == RESAMPLED).collect();
+    let others: Vec<&BySampler> = others
+        .iter()
+        .filter(|one| matters || one.name == RESAMPLED)
+        .collect();
     let of = |before: &str, is: &dyn Fn([Gain; 2]) -> bool, behind: &str| {
-        let named: Vec<&str> =
-            others.iter().filter(|one| is(headline_gains(measured, one))).map(|one| one.name).collect();
+        let named: Vec<&str> = others
+            .iter()
+            .filter(|one| is(headline_gains(measured, one)))
+            .map(|one| one.name)
+            .collect();
         (!named.is_empty()).then(|| format!("{before} {}{behind}", listed(&named)))
     };
     let has = |gains: [Gain; 2], side: Ordering| gains.iter().any(|gain| gain.side() == side);
@@ -98,17 +124,43 @@ fn answer(measured: &Measured) -> String {
     let is_none = |gains: [Gain; 2]| gains.iter().all(Gain::is_none);
     let within = format!("is {}", within());
     let parts = [
-        of("beats", &|gains| has(gains, Greater) && !has(gains, Less), ""),
-        of("loses to", &|gains| has(gains, Less) && !has(gains, Greater), ""),
+        of(
+            "beats",
+            &|gains| has(gains, Greater) && !has(gains, Less),
+            "",
+        ),
+        of(
+            "loses to",
+            &|gains| has(gains, Less) && !has(gains, Greater),
+            "",
+        ),
         of(&within, &|gains| is_none(gains), ""),
-        of("does not differ measurably from", &|gains| is_equal(gains) && !is_none(gains), ""),
-        of("against", &|gains| has(gains, Greater) && has(gains, Less), ", it depends on the error"),
+        of(
+            "does not differ measurably from",
+            &|gains| is_equal(gains) && !is_none(gains),
+            "",
+        ),
+        of(
+            "against",
+            &|gains| has(gains, Greater) && has(gains, Less),
+            ", it depends on the error",
+        ),
     ];
-    let compared = format!("`{}` {}.", best.name, parts.into_iter().flatten().collect::<Vec<String>>().join("; "));
+    let compared = format!(
+        "`{}` {}.",
+        best.name,
+        parts
+            .into_iter()
+            .flatten()
+            .collect::<Vec<String>>()
+            .join("; ")
+    );
     if matters {
         compared
     } else {
-        format!("The sampler does not matter: uniform, published and matched directions do equally well. {compared}")
+        format!(
+            "The sampler does not matter: uniform, published and matched directions do equally well. {compared}"
+        )
     }
 }
 
@@ -122,9 +174,13 @@ fn listed(names: &[&str]) -> String {
 
 /// The scenes where the sampler does not matter, and the rule.
 pub(super) fn scenes(all: &[Measured]) -> String {
-    let (yes, no): (Vec<&Measured>, Vec<&Measured>) = all.iter().partition(|measured| matters(measured));
+    let (yes, no): (Vec<&Measured>, Vec<&Measured>) =
+        all.iter().partition(|measured| matters(measured));
     let names = |scenes: &[&Measured]| {
-        let titles: Vec<String> = scenes.iter().map(|measured| format!("`{}`", measured.title())).collect();
+        let titles: Vec<String> = scenes
+            .iter()
+            .map(|measured| format!("`{}`", measured.title()))
+            .collect();
         listed(&titles.iter().map(String::as_str).collect::<Vec<&str>>())
     };
     let rule = format!(
@@ -141,24 +197,41 @@ pub(super) fn scenes(all: &[Measured]) -> String {
 
 /// The answer, with the two errors that say most in short.
 pub(super) fn headline(measured: &Measured) -> String {
-    let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
+    let [others @ .., best] = measured.samplers.as_slice() else {
+        return String::new();
+    };
     let one = |one: &BySampler| {
         let gains = headline_gains(measured, one);
         let [trimmed, square] = gains.map(|gain| ratio(gain.ratio.value));
-        let mark = if gains.iter().any(|gain| gain.is_below) { BELOW } else { "" };
+        let mark = if gains.iter().any(|gain| gain.is_below) {
+            BELOW
+        } else {
+            ""
+        };
         format!("{} {trimmed} ({square}){mark}", one.name)
     };
     let list = others.iter().map(one).collect::<Vec<String>>().join(", ");
-    format!("{} Trimmed relMSE × time (MSE × time), relative to `{}`: {list}.", answer(measured), best.name)
+    format!(
+        "{} Trimmed relMSE × time (MSE × time), relative to `{}`: {list}.",
+        answer(measured),
+        best.name
+    )
 }
 
 /// All errors, with their standard errors.
 pub(super) fn sentence(measured: &Measured) -> String {
     let samples = measured.samplers[0].runs[measured.shown()].samples;
-    let [others @ .., best] = measured.samplers.as_slice() else { return String::new() };
+    let [others @ .., best] = measured.samplers.as_slice() else {
+        return String::new();
+    };
     let list = |measure: Measure| {
-        let one = |one: &BySampler| format!("{} with {}", gain(measured, one, measure).text(), one.name);
-        format!("{} {}", measure.name(), others.iter().map(one).collect::<Vec<String>>().join(", "))
+        let one =
+            |one: &BySampler| format!("{} with {}", gain(measured, one, measure).text(), one.name);
+        format!(
+            "{} {}",
+            measure.name(),
+            others.iter().map(one).collect::<Vec<String>>().join(", ")
+        )
     };
     let numbers = format!(
         "At {samples} samples, error × time relative to `{}`: {}. Trimmed: without the worst 0.1 % of the pixels.",
@@ -170,7 +243,10 @@ pub(super) fn sentence(measured: &Measured) -> String {
 
 /// How many rays see a light.
 pub(super) fn visible(measured: &Measured) -> String {
-    format!("{:.0} % of the rays towards lights reach them.", 100.0 * measured.visible)
+    format!(
+        "{:.0} % of the rays towards lights reach them.",
+        100.0 * measured.visible
+    )
 }
 
 #[cfg(test)]
@@ -179,14 +255,31 @@ mod tests {
 
     #[test]
     fn no_gain_is_not_the_same_as_none_found() {
-        let gain = |value, standard_error, is_below| Gain { ratio: Estimate { value, standard_error }, is_below };
+        let gain = |value, standard_error, is_below| Gain {
+            ratio: Estimate {
+                value,
+                standard_error,
+            },
+            is_below,
+        };
         assert!(gain(1.07, 0.01, false).is_none() && gain(0.9, 0.01, false).is_none());
-        for unclear in [gain(1.07, 0.1, false), gain(3.0, 1.5, false), gain(1.07, 0.01, true), gain(0.9, 0.03, false)] {
-            assert!(!unclear.is_none() && unclear.side() == Ordering::Equal, "{unclear:?}");
+        for unclear in [
+            gain(1.07, 0.1, false),
+            gain(3.0, 1.5, false),
+            gain(1.07, 0.01, true),
+            gain(0.9, 0.03, false),
+        ] {
+            assert!(
+                !unclear.is_none() && unclear.side() == Ordering::Equal,
+                "{unclear:?}"
+            );
         }
         assert_eq!(gain(1.3, 0.1, false).side(), Ordering::Greater);
         assert_eq!(gain(0.5, 0.1, false).side(), Ordering::Less);
         assert!(gain(1.3, 0.1, true).text().ends_with(BELOW));
-        assert!(!gain(1.0, f64::NAN, false).is_none(), "an error that is not known");
+        assert!(
+            !gain(1.0, f64::NAN, false).is_none(),
+            "an error that is not known"
+        );
     }
 }

@@ -16,14 +16,24 @@ impl<'a> Bytes<'a> {
     /// Refuses a file that is shorter than its header.
     pub(super) fn header(self, needed: u64) -> Result<(), Wrong> {
         let got = self.len();
-        if got < needed { Err((got, Problem::Header { needed, got })) } else { Ok(()) }
+        if got < needed {
+            Err((got, Problem::Header { needed, got }))
+        } else {
+            Ok(())
+        }
     }
 
     /// Refuses a file of another length than its header says, and any that is longer than what is read.
     pub(super) fn length(self, expected: u64) -> Result<(), Wrong> {
         let got = self.len();
         if expected > LONGEST_FILE {
-            Err((4, Problem::TooLarge { bytes: expected, most: LONGEST_FILE }))
+            Err((
+                4,
+                Problem::TooLarge {
+                    bytes: expected,
+                    most: LONGEST_FILE,
+                },
+            ))
         } else if got != expected {
             Err((got.min(expected), Problem::Length { expected, got }))
         } else {
@@ -34,7 +44,11 @@ impl<'a> Bytes<'a> {
     /// The bytes at `offset`; 0 beyond the end, which callers have checked.
     fn some<const N: usize>(self, offset: u64) -> [u8; N] {
         let start = usize::try_from(offset).unwrap_or(usize::MAX);
-        self.0.get(start..).and_then(|bytes| bytes.first_chunk()).copied().unwrap_or([0; N])
+        self.0
+            .get(start..)
+            .and_then(|bytes| bytes.first_chunk())
+            .copied()
+            .unwrap_or([0; N])
     }
 
     pub(super) fn u16(self, offset: u64) -> u16 {
@@ -53,7 +67,11 @@ impl<'a> Bytes<'a> {
     pub(super) fn position(self, offset: u64) -> Result<Vec3, Wrong> {
         let component = |axis: u64| {
             let value = self.f32(offset + 4 * axis);
-            if value.abs() <= 1e6 { Ok(value) } else { Err((offset + 4 * axis, Problem::Coordinate { value })) }
+            if value.abs() <= 1e6 {
+                Ok(value)
+            } else {
+                Err((offset + 4 * axis, Problem::Coordinate { value }))
+            }
         };
         Ok(Vec3::new(component(0)?, component(1)?, component(2)?))
     }

@@ -22,21 +22,51 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
     bytes.header(HEADER)?;
     let signature = bytes.u32(0).to_le_bytes();
     if &signature != b"HAIR" {
-        return Err((0, Problem::Signature { expected: "\"HAIR\"", got: signature }));
+        return Err((
+            0,
+            Problem::Signature {
+                expected: "\"HAIR\"",
+                got: signature,
+            },
+        ));
     }
     let [strands, points, flags, default_segments] = [4, 8, 12, 16].map(|offset| bytes.u32(offset));
     if strands == 0 {
-        return Err((4, Problem::Count { expected: "there must be a strand", got: strands }));
+        return Err((
+            4,
+            Problem::Count {
+                expected: "there must be a strand",
+                got: strands,
+            },
+        ));
     }
     if flags & POINTS == 0 {
-        return Err((12, Problem::Flags { expected: "have points (2)", got: flags }));
+        return Err((
+            12,
+            Problem::Flags {
+                expected: "have points (2)",
+                got: flags,
+            },
+        ));
     }
     if flags > 31 {
-        return Err((12, Problem::Flags { expected: "be at most 31", got: flags }));
+        return Err((
+            12,
+            Problem::Flags {
+                expected: "be at most 31",
+                got: flags,
+            },
+        ));
     }
     if flags & SEGMENTS == 0 && default_segments == 0 {
         let expected = "there must be segments per strand, or a default of at least 1";
-        return Err((16, Problem::Count { expected, got: default_segments }));
+        return Err((
+            16,
+            Problem::Count {
+                expected,
+                got: default_segments,
+            },
+        ));
     }
 
     // Where arrays begin, and the file's length.
@@ -61,7 +91,11 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
     let has = move |flag: u32| flags & flag != 0;
     let segments_of = move |strand: u32| {
         let own = || u64::from(bytes.u16(segments_at + 2 * u64::from(strand)));
-        if has(SEGMENTS) { own() } else { u64::from(default_segments) }
+        if has(SEGMENTS) {
+            own()
+        } else {
+            u64::from(default_segments)
+        }
     };
     let needed = if has(SEGMENTS) {
         (0..strands).map(|strand| segments_of(strand) + 1).sum()
@@ -69,16 +103,27 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
         u64::from(strands) * (u64::from(default_segments) + 1)
     };
     if needed != u64::from(points) {
-        return Err((8, Problem::Points { needed, got: u64::from(points) }));
+        return Err((
+            8,
+            Problem::Points {
+                needed,
+                got: u64::from(points),
+            },
+        ));
     }
     for point in 0..u64::from(points) {
         bytes.position(points_at + 12 * point)?;
     }
     let thickness_of = move |point: u64| {
-        let offset = if has(THICKNESS) { thickness_at + 4 * point } else { THICKNESS_AT };
+        let offset = if has(THICKNESS) {
+            thickness_at + 4 * point
+        } else {
+            THICKNESS_AT
+        };
         (offset, bytes.f32(offset))
     };
-    for (offset, value) in (0..if has(THICKNESS) { u64::from(points) } else { 1 }).map(thickness_of) {
+    for (offset, value) in (0..if has(THICKNESS) { u64::from(points) } else { 1 }).map(thickness_of)
+    {
         if !(0.0..=1e6).contains(&value) {
             return Err((offset, Problem::Thickness { value }));
         }
@@ -92,7 +137,10 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
             let position = bytes.position(points_at + 12 * point).unwrap_or_default();
             (position, 0.5 * thickness_of(point).1)
         };
-        RawStrand { offset: points_at + 12 * range.start, nodes: Box::new(range.map(node)) }
+        RawStrand {
+            offset: points_at + 12 * range.start,
+            nodes: Box::new(range.map(node)),
+        }
     });
     let unused = [(TRANSPARENCY, "transparency"), (COLOURS, "colours")];
     Ok(Raw {
@@ -100,6 +148,10 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
         strands: Box::new(strands_of_file),
         count: strands as usize,
         radii: true,
-        unused: unused.into_iter().filter(|&(flag, _)| has(flag)).map(|(_, name)| name).collect(),
+        unused: unused
+            .into_iter()
+            .filter(|&(flag, _)| has(flag))
+            .map(|(_, name)| name)
+            .collect(),
     })
 }

@@ -111,23 +111,43 @@ pub enum Problem {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Ending => f.write_str("the name of a file of hair must end in .hair (cyHair) or .tfx (TressFX)"),
+            Self::Ending => f.write_str(
+                "the name of a file of hair must end in .hair (cyHair) or .tfx (TressFX)",
+            ),
             Self::Read(source) => write!(f, "cannot be read: {source}"),
             Self::TooLong { most } => write!(f, "a file of hair must have at most {most} bytes"),
-            Self::Option { name, value } => write!(f, "`{name}` must be in [1e-6, 1e6], got {value}"),
+            Self::Option { name, value } => {
+                write!(f, "`{name}` must be in [1e-6, 1e6], got {value}")
+            }
             Self::Header { needed, got } => write!(f, "the header has {needed} bytes, got {got}"),
             Self::Signature { expected, got } => {
-                write!(f, "must begin with {expected}, got \"{}\"", got.escape_ascii())
+                write!(
+                    f,
+                    "must begin with {expected}, got \"{}\"",
+                    got.escape_ascii()
+                )
             }
             Self::Flags { expected, got } => write!(f, "flags must {expected}, got {got}"),
             Self::Count { expected, got } => write!(f, "{expected}, got {got}"),
             Self::Points { needed, got } => write!(f, "strands need {needed} points, got {got}"),
-            Self::TooLarge { bytes, most } => write!(f, "arrays must have at most {most} bytes, got {bytes}"),
-            Self::Length { expected, got } => write!(f, "the file must have {expected} bytes, got {got}"),
-            Self::Section { header, got } => write!(f, "sections must begin after byte {header}, got {got}"),
-            Self::Coordinate { value } => write!(f, "coordinates must be finite and at most 1e6, got {value}"),
-            Self::Thickness { value } => write!(f, "thickness must be finite and at least 0, got {value}"),
-            Self::NoRadius => f.write_str("thickness must be above 0 somewhere, got 0 everywhere; give a radius"),
+            Self::TooLarge { bytes, most } => {
+                write!(f, "arrays must have at most {most} bytes, got {bytes}")
+            }
+            Self::Length { expected, got } => {
+                write!(f, "the file must have {expected} bytes, got {got}")
+            }
+            Self::Section { header, got } => {
+                write!(f, "sections must begin after byte {header}, got {got}")
+            }
+            Self::Coordinate { value } => {
+                write!(f, "coordinates must be finite and at most 1e6, got {value}")
+            }
+            Self::Thickness { value } => {
+                write!(f, "thickness must be finite and at least 0, got {value}")
+            }
+            Self::NoRadius => {
+                f.write_str("thickness must be above 0 somewhere, got 0 everywhere; give a radius")
+            }
             Self::Geometry(error) => write!(f, "{error}"),
         }
     }
@@ -136,7 +156,12 @@ impl fmt::Display for Problem {
 impl fmt::Display for ImportError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.offset {
-            Some(offset) => write!(f, "{}: byte {offset}: {}", self.path.display(), self.problem),
+            Some(offset) => write!(
+                f,
+                "{}: byte {offset}: {}",
+                self.path.display(),
+                self.problem
+            ),
             None => write!(f, "{}: {}", self.path.display(), self.problem),
         }
     }

@@ -15,13 +15,20 @@ pub struct Follow {
 
 impl Default for Follow {
     fn default() -> Self {
-        Self { strands: 0, spread: 0.5 }
+        Self {
+            strands: 0,
+            spread: 0.5,
+        }
     }
 }
 
 impl Follow {
     /// The nodes of all strands about one: itself first. A strand depends on its number, that of its guide, and the guide.
-    pub(super) fn about(self, guide: usize, nodes: &[(Vec3, f32)]) -> impl Iterator<Item = Vec<(Vec3, f32)>> + '_ {
+    pub(super) fn about(
+        self,
+        guide: usize,
+        nodes: &[(Vec3, f32)],
+    ) -> impl Iterator<Item = Vec<(Vec3, f32)>> + '_ {
         let along = match nodes {
             [root, next, ..] => (next.0 - root.0).normalize_or_zero(),
             _ => Vec3::ZERO,
@@ -35,8 +42,9 @@ impl Follow {
             // Roots stay on the skin, which hair leaves upright.
             let root = root.reject_from_normalized(along);
             let last = nodes.len().saturating_sub(1).max(1) as f32;
-            let moved =
-                |(k, (place, radius)): (usize, &(Vec3, f32))| (*place + root.lerp(tip, k as f32 / last), *radius);
+            let moved = |(k, (place, radius)): (usize, &(Vec3, f32))| {
+                (*place + root.lerp(tip, k as f32 / last), *radius)
+            };
             nodes.iter().enumerate().map(moved).collect()
         })
     }
@@ -54,20 +62,37 @@ mod tests {
     #[test]
     fn strands_stay_near_their_guide() {
         let nodes: Vec<(Vec3, f32)> = (0..5_u8).map(|k| (f32::from(k) * Vec3::Y, 0.01)).collect();
-        let follow = Follow { strands: 200, spread: 0.3 };
+        let follow = Follow {
+            strands: 200,
+            spread: 0.3,
+        };
         let strands: Vec<_> = follow.about(7, &nodes).collect();
         assert_eq!((strands.len(), &strands[0]), (201, &nodes));
         let mut mean = Vec3::ZERO;
         for strand in &strands {
-            assert!(strand[0].0.y.abs() < 1e-6, "the root is on the skin: {}", strand[0].0);
+            assert!(
+                strand[0].0.y.abs() < 1e-6,
+                "the root is on the skin: {}",
+                strand[0].0
+            );
             for (node, guide) in strand.iter().zip(&nodes) {
-                assert!(node.0.distance(guide.0) <= 0.3 + 1e-6 && node.1 == guide.1, "{node:?}");
+                assert!(
+                    node.0.distance(guide.0) <= 0.3 + 1e-6 && node.1 == guide.1,
+                    "{node:?}"
+                );
             }
             mean += (strand[4].0 - nodes[4].0) / strands.len() as f32;
         }
         // Deviation of an axis: 0.3 / sqrt 5.
-        assert!(mean.abs().max_element() < 4.0 * 0.3 / (5.0 * 201_f32).sqrt(), "{mean}");
-        assert_ne!(follow.about(8, &nodes).last(), strands.last().cloned(), "another guide");
+        assert!(
+            mean.abs().max_element() < 4.0 * 0.3 / (5.0 * 201_f32).sqrt(),
+            "{mean}"
+        );
+        assert_ne!(
+            follow.about(8, &nodes).last(),
+            strands.last().cloned(),
+            "another guide"
+        );
         assert_eq!(Follow::default().about(7, &nodes).count(), 1);
     }
 }

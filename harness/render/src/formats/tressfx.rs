@@ -15,24 +15,44 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
     bytes.header(HEADER)?;
     if bytes.f32(0) != VERSION {
         let got = bytes.u32(0).to_le_bytes();
-        return Err((0, Problem::Signature { expected: "version 4 as a float, \"\\x00\\x00\\x80@\"", got }));
+        return Err((
+            0,
+            Problem::Signature {
+                expected: "version 4 as a float, \"\\x00\\x00\\x80@\"",
+                got,
+            },
+        ));
     }
     let (strands, nodes) = (bytes.u32(4), bytes.u32(8));
     if strands == 0 {
-        return Err((4, Problem::Count { expected: "there must be a strand", got: strands }));
+        return Err((
+            4,
+            Problem::Count {
+                expected: "there must be a strand",
+                got: strands,
+            },
+        ));
     }
     if !(4..=64).contains(&nodes) || !nodes.is_power_of_two() {
         return Err((
             8,
-            Problem::Count { expected: "nodes per strand must be a power of two from 4 to 64", got: nodes },
+            Problem::Count {
+                expected: "nodes per strand must be a power of two from 4 to 64",
+                got: nodes,
+            },
         ));
     }
     // At most 2^38: no section ends beyond 2^42.
     let of_nodes = u64::from(strands) * u64::from(nodes);
     let of_strands = u64::from(strands);
     // Where the header has the beginning of a section, and the section's bytes.
-    let sections =
-        [(12, 16 * of_nodes), (16, 8 * of_strands), (20, 8 * of_nodes), (24, 4 * of_strands), (28, 16 * of_nodes)];
+    let sections = [
+        (12, 16 * of_nodes),
+        (16, 8 * of_strands),
+        (20, 8 * of_nodes),
+        (24, 4 * of_strands),
+        (28, 16 * of_nodes),
+    ];
     let mut end = HEADER;
     for (offset, size) in sections {
         let start = bytes.u32(offset);
@@ -40,7 +60,13 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
             continue;
         }
         if u64::from(start) < HEADER {
-            return Err((offset, Problem::Section { header: HEADER, got: u64::from(start) }));
+            return Err((
+                offset,
+                Problem::Section {
+                    header: HEADER,
+                    got: u64::from(start),
+                },
+            ));
         }
         end = end.max(u64::from(start) + size);
     }
@@ -53,7 +79,10 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
     let strand = move |strand: u64| {
         let offset = start + 16 * strand * nodes;
         let node = move |k: u64| (bytes.position(offset + 16 * k).unwrap_or_default(), 0.0);
-        RawStrand { offset, nodes: Box::new((0..nodes).map(node)) }
+        RawStrand {
+            offset,
+            nodes: Box::new((0..nodes).map(node)),
+        }
     };
     let unused = [
         (16, "texture coordinates of strands"),
@@ -66,6 +95,10 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
         strands: Box::new((0..strands).map(strand)),
         count: usize::try_from(strands).unwrap_or(usize::MAX),
         radii: false,
-        unused: unused.into_iter().filter(|&(offset, _)| bytes.u32(offset) != 0).map(|(_, name)| name).collect(),
+        unused: unused
+            .into_iter()
+            .filter(|&(offset, _)| bytes.u32(offset) != 0)
+            .map(|(_, name)| name)
+            .collect(),
     })
 }

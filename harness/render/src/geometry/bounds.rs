@@ -13,7 +13,10 @@ pub struct Bounds {
 
 impl Bounds {
     /// Holds nothing.
-    pub const EMPTY: Self = Self { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY };
+    pub const EMPTY: Self = Self {
+        lo: Vec3::INFINITY,
+        hi: Vec3::NEG_INFINITY,
+    };
 
     /// Whether it holds nothing.
     #[must_use]
@@ -25,14 +28,20 @@ impl Bounds {
     #[inline]
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
-        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+        Self {
+            lo: self.lo.min(other.lo),
+            hi: self.hi.max(other.hi),
+        }
     }
 
     /// The smallest box that holds it and a point.
     #[inline]
     #[must_use]
     pub fn with(&self, point: Vec3) -> Self {
-        Self { lo: self.lo.min(point), hi: self.hi.max(point) }
+        Self {
+            lo: self.lo.min(point),
+            hi: self.hi.max(point),
+        }
     }
 
     /// Centre.

@@ -28,7 +28,14 @@ pub enum Kind {
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 6] = [Self::Straight, Self::Wavy, Self::Curly, Self::Fur, Self::Patch, Self::Single];
+    pub const ALL: [Self; 6] = [
+        Self::Straight,
+        Self::Wavy,
+        Self::Curly,
+        Self::Fur,
+        Self::Patch,
+        Self::Single,
+    ];
 
     /// Name on the command line.
     #[must_use]
@@ -117,7 +124,13 @@ impl Groom {
         };
         match kind {
             Kind::Straight => straight,
-            Kind::Wavy => Self { curl_radius: 0.25, clump: 0.7, frizz: 0.1, nodes: 24, ..straight },
+            Kind::Wavy => Self {
+                curl_radius: 0.25,
+                clump: 0.7,
+                frizz: 0.1,
+                nodes: 24,
+                ..straight
+            },
             Kind::Curly => Self {
                 length: 16.0,
                 curl_radius: 0.55,
@@ -128,9 +141,29 @@ impl Groom {
                 nodes: 64,
                 ..straight
             },
-            Kind::Fur => Self { length: 3.0, gravity: 0.05, lift: 1.0, clump: 0.3, frizz: 0.08, nodes: 8, ..straight },
-            Kind::Patch => Self { length: 18.0, frizz: 0.03, nodes: 12, ..straight },
-            Kind::Single => Self { length: 10.0, radius: 0.1, taper: 0.0, frizz: 0.0, nodes: 2, ..straight },
+            Kind::Fur => Self {
+                length: 3.0,
+                gravity: 0.05,
+                lift: 1.0,
+                clump: 0.3,
+                frizz: 0.08,
+                nodes: 8,
+                ..straight
+            },
+            Kind::Patch => Self {
+                length: 18.0,
+                frizz: 0.03,
+                nodes: 12,
+                ..straight
+            },
+            Kind::Single => Self {
+                length: 10.0,
+                radius: 0.1,
+                taper: 0.0,
+                frizz: 0.0,
+                nodes: 2,
+                ..straight
+            },
         }
     }
 
@@ -152,7 +185,10 @@ impl Groom {
     /// If a setting is out of its range.
     pub fn grow(&self, flattening: &Flattening) -> Result<Strands, GeometryError> {
         self.check()?;
-        let polylines: Vec<_> = (0..self.strands).into_par_iter().map(self.polylines(flattening)).collect();
+        let polylines: Vec<_> = (0..self.strands)
+            .into_par_iter()
+            .map(self.polylines(flattening))
+            .collect();
         let mut builder = Strands::builder();
         for polyline in polylines {
             builder.push(polyline)?;
@@ -168,12 +204,18 @@ impl Groom {
     pub fn estimate_segments(&self, flattening: &Flattening) -> Result<u64, GeometryError> {
         self.check()?;
         let strands = self.strands.min(256);
-        let nodes: usize = (0..strands).map(self.polylines(flattening)).map(|polyline| polyline.len()).sum();
+        let nodes: usize = (0..strands)
+            .map(self.polylines(flattening))
+            .map(|polyline| polyline.len())
+            .sum();
         Ok(nodes as u64 * self.strands as u64 / strands as u64)
     }
 
     /// The flattened nodes of a strand, each with its radius.
-    fn polylines<'a>(&'a self, flattening: &'a Flattening) -> impl Fn(usize) -> Vec<(Vec3, f32)> + Send + Sync + 'a {
+    fn polylines<'a>(
+        &'a self,
+        flattening: &'a Flattening,
+    ) -> impl Fn(usize) -> Vec<(Vec3, f32)> + Send + Sync + 'a {
         // Doubled ends take a sixth of the distance of two nodes from either end.
         let grow: Box<dyn Fn(usize) -> Vec<Vec3> + Send + Sync + 'a> = match self.kind {
             Kind::Straight | Kind::Wavy | Kind::Curly | Kind::Fur => {
@@ -181,7 +223,11 @@ impl Groom {
                 Box::new(move |strand| head.strand(strand))
             }
             Kind::Patch => Box::new(move |strand| sheet::strand(self, strand)),
-            Kind::Single => Box::new(move |_| [Vec3::NEG_X, Vec3::X].map(|end| 0.75 * self.length * end).to_vec()),
+            Kind::Single => Box::new(move |_| {
+                [Vec3::NEG_X, Vec3::X]
+                    .map(|end| 0.75 * self.length * end)
+                    .to_vec()
+            }),
         };
         let radius = move |s: f32| self.radius * (1.0 - self.taper * s * s * s);
         move |strand: usize| {
@@ -195,12 +241,20 @@ impl Groom {
     }
 
     fn check(&self) -> Result<(), GeometryError> {
-        let counts =
-            [("strands", self.strands, 1 << 24), ("nodes", self.nodes, 1024), ("clumps", self.clumps, 1 << 24)];
+        let counts = [
+            ("strands", self.strands, 1 << 24),
+            ("nodes", self.nodes, 1024),
+            ("clumps", self.clumps, 1 << 24),
+        ];
         for (name, value, most) in counts {
             let least = if name == "nodes" { 2 } else { 1 };
             if !(least..=most).contains(&value) {
-                return Err(GeometryError::Count { name, value, least, most });
+                return Err(GeometryError::Count {
+                    name,
+                    value,
+                    least,
+                    most,
+                });
             }
         }
         let ranges = [
@@ -217,7 +271,12 @@ impl Groom {
         ];
         for (name, value, least, most) in ranges {
             if !(least..=most).contains(&value) {
-                return Err(GeometryError::Setting { name, value, least, most });
+                return Err(GeometryError::Setting {
+                    name,
+                    value,
+                    least,
+                    most,
+                });
             }
         }
         Ok(())

@@ -32,20 +32,28 @@ impl<'a> Spline<'a> {
     /// Point and derivative at `x` in `[0, 1]` of a span.
     fn at(&self, span: usize, x: f32) -> (Vec3, Vec3) {
         let last = self.nodes.len() - 1;
-        let [a, b, c, d] = [span.saturating_sub(1), span, span + 1, (span + 2).min(last)].map(|k| self.nodes[k]);
+        let [a, b, c, d] =
+            [span.saturating_sub(1), span, span + 1, (span + 2).min(last)].map(|k| self.nodes[k]);
         let y = 1.0 - x;
         match self.basis {
             Basis::BSpline => {
                 let inner = |x: f32| (3.0 * x - 6.0) * x * x + 4.0;
                 let point = (a * (y * y * y) + b * inner(x) + c * inner(y) + d * (x * x * x)) / 6.0;
                 let slope = |x: f32| (1.5 * x - 2.0) * x;
-                (point, d * (0.5 * x * x) - a * (0.5 * y * y) + b * slope(x) - c * slope(y))
+                (
+                    point,
+                    d * (0.5 * x * x) - a * (0.5 * y * y) + b * slope(x) - c * slope(y),
+                )
             }
             Basis::CatmullRom => {
                 let (from, to) = (0.5 * (c - a), 0.5 * (d - b));
                 let (chord, shift) = (c - b, x * x * (3.0 - 2.0 * x));
                 let point = b + chord * shift + from * (x * y * y) - to * (x * x * y);
-                (point, chord * (6.0 * x * y) + from * (y * (1.0 - 3.0 * x)) - to * (x * (2.0 - 3.0 * x)))
+                (
+                    point,
+                    chord * (6.0 * x * y) + from * (y * (1.0 - 3.0 * x))
+                        - to * (x * (2.0 - 3.0 * x)),
+                )
             }
         }
     }
@@ -69,18 +77,31 @@ pub struct Flattening {
 
 impl Default for Flattening {
     fn default() -> Self {
-        Self { radii: 3.0, centimetres: 0.02, turn: 15_f32.to_radians(), halvings: 8 }
+        Self {
+            radii: 3.0,
+            centimetres: 0.02,
+            turn: 15_f32.to_radians(),
+            halvings: 8,
+        }
     }
 }
 
 impl Flattening {
     /// The same, with no more halvings than this.
     pub(crate) fn at_most(self, halvings: i32) -> Self {
-        Self { halvings: self.halvings.min(halvings), ..self }
+        Self {
+            halvings: self.halvings.min(halvings),
+            ..self
+        }
     }
 
     /// Appends the curve as nodes of a polyline. `radius` is that at a part of the curve, from 0 at the root to 1.
-    pub(crate) fn append(&self, spline: &Spline, radius: impl Fn(f32) -> f32, nodes: &mut Vec<(Vec3, f32)>) {
+    pub(crate) fn append(
+        &self,
+        spline: &Spline,
+        radius: impl Fn(f32) -> f32,
+        nodes: &mut Vec<(Vec3, f32)>,
+    ) {
         let tolerance = (self.radii * radius(0.0)).min(self.centimetres);
         let shortest = 0.5_f32.powi(self.halvings);
         let part = |span: usize, x: f32| (span as f32 + x) / spline.spans() as f32;
@@ -89,7 +110,9 @@ impl Flattening {
             let mut stack = vec![(0.0_f32, 1.0_f32)];
             while let Some((from, to)) = stack.pop() {
                 let middle = 0.5 * (from + to);
-                if to - from <= shortest || self.is_flat([from, middle, to].map(|x| spline.at(span, x)), tolerance) {
+                if to - from <= shortest
+                    || self.is_flat([from, middle, to].map(|x| spline.at(span, x)), tolerance)
+                {
                     nodes.push((spline.at(span, to).0, radius(part(span, to))));
                 } else {
                     stack.extend([(middle, to), (from, middle)]);
@@ -114,7 +137,10 @@ mod tests {
     use super::*;
 
     fn helix() -> Vec<Vec3> {
-        (0..20).map(|k| 0.6 * k as f32).map(|a| Vec3::new(0.2 * a, libm::cosf(a), libm::sinf(a))).collect()
+        (0..20)
+            .map(|k| 0.6 * k as f32)
+            .map(|a| Vec3::new(0.2 * a, libm::cosf(a), libm::sinf(a)))
+            .collect()
     }
 
     #[test]
@@ -124,12 +150,19 @@ mod tests {
             let spline = Spline::new(&nodes, basis).expect("twenty nodes");
             for (span, x) in [(0, 0.3), (7, 0.0), (7, 0.5), (18, 0.9)] {
                 let step = 0.01;
-                let numeric = (spline.at(span, x + step).0 - spline.at(span, x - step).0) / (2.0 * step);
+                let numeric =
+                    (spline.at(span, x + step).0 - spline.at(span, x - step).0) / (2.0 * step);
                 let (_, exact) = spline.at(span, x);
-                assert!(numeric.distance(exact) < 2e-4, "{basis:?} at {span} + {x}: {numeric} and {exact}");
+                assert!(
+                    numeric.distance(exact) < 2e-4,
+                    "{basis:?} at {span} + {x}: {numeric} and {exact}"
+                );
             }
             let (ends, starts) = (spline.at(6, 1.0), spline.at(7, 0.0));
-            assert!(ends.0.distance(starts.0) < 1e-5 && ends.1.distance(starts.1) < 1e-5, "{basis:?} has a gap");
+            assert!(
+                ends.0.distance(starts.0) < 1e-5 && ends.1.distance(starts.1) < 1e-5,
+                "{basis:?} has a gap"
+            );
         }
     }
 
@@ -140,7 +173,10 @@ mod tests {
         for span in 0..19 {
             for (x, node) in [(0.0, nodes[span]), (1.0, nodes[span + 1])] {
                 let point = spline.at(span, x).0;
-                assert!(point.distance(node) < 1e-6, "span {span}: {point} for {node}");
+                assert!(
+                    point.distance(node) < 1e-6,
+                    "span {span}: {point} for {node}"
+                );
             }
         }
     }
@@ -150,25 +186,67 @@ mod tests {
         let nodes = helix();
         let spline = Spline::new(&nodes, Basis::BSpline).expect("twenty nodes");
         for (flattening, worst) in [
-            (Flattening { radii: 1.0, centimetres: 1.0, turn: 9.0, halvings: 8 }, 0.01),
-            (Flattening { radii: 1.0, centimetres: 0.001, turn: 9.0, halvings: 8 }, 0.001),
-            (Flattening { radii: 99.0, centimetres: 1.0, turn: 0.1, halvings: 8 }, 0.1),
+            (
+                Flattening {
+                    radii: 1.0,
+                    centimetres: 1.0,
+                    turn: 9.0,
+                    halvings: 8,
+                },
+                0.01,
+            ),
+            (
+                Flattening {
+                    radii: 1.0,
+                    centimetres: 0.001,
+                    turn: 9.0,
+                    halvings: 8,
+                },
+                0.001,
+            ),
+            (
+                Flattening {
+                    radii: 99.0,
+                    centimetres: 1.0,
+                    turn: 0.1,
+                    halvings: 8,
+                },
+                0.1,
+            ),
         ] {
             let mut polyline = Vec::new();
             flattening.append(&spline, |_| 0.01, &mut polyline);
-            let segments: Vec<Vec3> = polyline.windows(2).map(|ends| ends[1].0 - ends[0].0).collect();
-            let turn = segments.windows(2).map(|pair| pair[0].angle_between(pair[1])).fold(0.0, f32::max);
-            assert!(turn <= flattening.turn + 1e-3, "{flattening:?}: turns by {turn}");
-            let off = (0..19 * 64).map(|i| spline.at(i / 64, (i % 64) as f32 / 64.0).0).map(|point| {
-                let nearest = |ends: &[(Vec3, f32)]| {
-                    let edge = ends[1].0 - ends[0].0;
-                    let s = ((point - ends[0].0).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
-                    point.distance(ends[0].0 + s * edge)
-                };
-                polyline.windows(2).map(nearest).fold(f32::INFINITY, f32::min)
-            });
+            let segments: Vec<Vec3> = polyline
+                .windows(2)
+                .map(|ends| ends[1].0 - ends[0].0)
+                .collect();
+            let turn = segments
+                .windows(2)
+                .map(|pair| pair[0].angle_between(pair[1]))
+                .fold(0.0, f32::max);
+            assert!(
+                turn <= flattening.turn + 1e-3,
+                "{flattening:?}: turns by {turn}"
+            );
+            let off = (0..19 * 64)
+                .map(|i| spline.at(i / 64, (i % 64) as f32 / 64.0).0)
+                .map(|point| {
+                    let nearest = |ends: &[(Vec3, f32)]| {
+                        let edge = ends[1].0 - ends[0].0;
+                        let s =
+                            ((point - ends[0].0).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+                        point.distance(ends[0].0 + s * edge)
+                    };
+                    polyline
+                        .windows(2)
+                        .map(nearest)
+                        .fold(f32::INFINITY, f32::min)
+                });
             let off = off.fold(0.0, f32::max);
-            assert!(off <= 1.1 * worst && off > 0.05 * worst.min(0.01), "{flattening:?}: off by {off}");
+            assert!(
+                off <= 1.1 * worst && off > 0.05 * worst.min(0.01),
+                "{flattening:?}: off by {off}"
+            );
         }
     }
 }

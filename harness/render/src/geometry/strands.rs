@@ -86,7 +86,9 @@ impl Strands {
 
     /// The numbers of all segments, each with that of its strand, in ascending order.
     pub fn numbers(&self) -> impl Iterator<Item = (u32, u32)> {
-        (0..).zip(self.first.windows(2)).flat_map(|(strand, ends)| (ends[0]..ends[1] - 1).map(move |k| (strand, k)))
+        (0..)
+            .zip(self.first.windows(2))
+            .flat_map(|(strand, ends)| (ends[0]..ends[1] - 1).map(move |k| (strand, k)))
     }
 
     /// The point of the axis at `s`, 0 at the end of the root and 1 at that of the tip.
@@ -126,7 +128,10 @@ impl Strands {
     /// The largest radius; 0 without strands.
     #[must_use]
     pub fn thickest(&self) -> f32 {
-        self.nodes.iter().map(|node| node.radius).fold(0.0, f32::max)
+        self.nodes
+            .iter()
+            .map(|node| node.radius)
+            .fold(0.0, f32::max)
     }
 
     /// The radius at a node.
@@ -151,7 +156,9 @@ impl Strands {
         let k = segment as usize;
         let tangent = self.tangents[k] + s * (self.tangents[k + 1] - self.tangents[k]);
         // Where a strand turns back at both ends, the tangents of the nodes may cancel.
-        tangent.try_normalize().unwrap_or_else(|| (self.nodes[k + 1].position - self.nodes[k].position).normalize())
+        tangent
+            .try_normalize()
+            .unwrap_or_else(|| (self.nodes[k + 1].position - self.nodes[k].position).normalize())
     }
 }
 
@@ -172,7 +179,10 @@ impl Builder {
     ///
     /// If a coordinate or radius is not finite, a coordinate above 1e6 cm in magnitude, or a radius negative or above
     /// 1e6 cm; and if there are too many nodes. Nothing is added then.
-    pub fn push(&mut self, nodes: impl IntoIterator<Item = (Vec3, f32)>) -> Result<(), GeometryError> {
+    pub fn push(
+        &mut self,
+        nodes: impl IntoIterator<Item = (Vec3, f32)>,
+    ) -> Result<(), GeometryError> {
         let start = self.nodes.len();
         let mut dropped = 0;
         for (node, (position, radius)) in nodes.into_iter().enumerate() {
@@ -202,7 +212,8 @@ impl Builder {
             self.nodes.truncate(start);
             self.dropped_strands += 1;
         } else {
-            self.last.push(u32::try_from(self.nodes.len()).map_err(|_| GeometryError::TooMany)?);
+            self.last
+                .push(u32::try_from(self.nodes.len()).map_err(|_| GeometryError::TooMany)?);
         }
         Ok(())
     }
@@ -235,14 +246,25 @@ impl Builder {
             let direction = |k: usize| (strand[k + 1].position - strand[k].position).normalize();
             let mut before = direction(0);
             for (k, node) in strand.iter().enumerate() {
-                bounds = bounds.with(node.position - node.radius).with(node.position + node.radius);
-                let after = if k + 1 < strand.len() { direction(k) } else { before };
+                bounds = bounds
+                    .with(node.position - node.radius)
+                    .with(node.position + node.radius);
+                let after = if k + 1 < strand.len() {
+                    direction(k)
+                } else {
+                    before
+                };
                 // A strand that turns back on itself has no mean direction there.
                 tangents.push((before + after).try_normalize().unwrap_or(before));
                 before = after;
             }
         }
-        Strands { nodes: self.nodes, tangents, first, bounds }
+        Strands {
+            nodes: self.nodes,
+            tangents,
+            first,
+            bounds,
+        }
     }
 }
 
@@ -294,15 +316,31 @@ impl fmt::Display for GeometryError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Position { node, position } => {
-                write!(f, "coordinates must be finite and at most {FARTHEST} cm, got {position} at node {node}")
+                write!(
+                    f,
+                    "coordinates must be finite and at most {FARTHEST} cm, got {position} at node {node}"
+                )
             }
             Self::Radius { node, radius } => {
-                write!(f, "radius must be in [0, {FARTHEST}] cm, got {radius} at node {node}")
+                write!(
+                    f,
+                    "radius must be in [0, {FARTHEST}] cm, got {radius} at node {node}"
+                )
             }
-            Self::Setting { name, value, least, most } => {
+            Self::Setting {
+                name,
+                value,
+                least,
+                most,
+            } => {
                 write!(f, "`{name}` must be in [{least}, {most}], got {value}")
             }
-            Self::Count { name, value, least, most } => {
+            Self::Count {
+                name,
+                value,
+                least,
+                most,
+            } => {
                 write!(f, "`{name}` must be from {least} to {most}, got {value}")
             }
             Self::TooMany => write!(f, "strands must have fewer than {MOST_NODES} nodes in all"),
@@ -319,39 +357,77 @@ mod tests {
     #[test]
     fn wrong_nodes_are_refused_and_leave_nothing() {
         let mut builder = Strands::builder();
-        builder.push([(Vec3::ZERO, 0.1), (Vec3::X, 0.1)]).expect("a cylinder");
-        for position in [Vec3::new(f32::NAN, 0.0, 0.0), Vec3::new(0.0, 0.0, f32::INFINITY), Vec3::new(0.0, -1.1e6, 0.0)]
-        {
-            let error = builder.push([(Vec3::Y, 0.1), (position, 0.1)]).expect_err("a node nowhere");
-            assert!(matches!(error, GeometryError::Position { node: 1, .. }), "{error}");
+        builder
+            .push([(Vec3::ZERO, 0.1), (Vec3::X, 0.1)])
+            .expect("a cylinder");
+        for position in [
+            Vec3::new(f32::NAN, 0.0, 0.0),
+            Vec3::new(0.0, 0.0, f32::INFINITY),
+            Vec3::new(0.0, -1.1e6, 0.0),
+        ] {
+            let error = builder
+                .push([(Vec3::Y, 0.1), (position, 0.1)])
+                .expect_err("a node nowhere");
+            assert!(
+                matches!(error, GeometryError::Position { node: 1, .. }),
+                "{error}"
+            );
         }
         for radius in [f32::NAN, f32::INFINITY, -0.1] {
-            let error = builder.push([(Vec3::Y, radius), (Vec3::X, 0.1)]).expect_err("no radius");
-            assert!(matches!(error, GeometryError::Radius { node: 0, .. }), "{error}");
+            let error = builder
+                .push([(Vec3::Y, radius), (Vec3::X, 0.1)])
+                .expect_err("no radius");
+            assert!(
+                matches!(error, GeometryError::Radius { node: 0, .. }),
+                "{error}"
+            );
         }
         let strands = builder.finish();
-        assert_eq!((strands.strands(), strands.nodes()), (1, 2), "what was right");
+        assert_eq!(
+            (strands.strands(), strands.nodes()),
+            (1, 2),
+            "what was right"
+        );
     }
 
     #[test]
     fn nodes_and_strands_without_length_are_dropped() {
         let mut builder = Strands::builder();
-        builder.push([(Vec3::ZERO, 0.1), (Vec3::ZERO, 0.2), (Vec3::X, 0.1)]).expect("finite nodes");
+        builder
+            .push([(Vec3::ZERO, 0.1), (Vec3::ZERO, 0.2), (Vec3::X, 0.1)])
+            .expect("finite nodes");
         builder.push([(Vec3::ONE, 0.1); 3]).expect("finite nodes");
         builder.push([]).expect("no node is wrong");
-        assert_eq!((builder.dropped_nodes(), builder.dropped_strands()), (3, 2), "one, and all but one of three");
+        assert_eq!(
+            (builder.dropped_nodes(), builder.dropped_strands()),
+            (3, 2),
+            "one, and all but one of three"
+        );
         let strands = builder.finish();
-        assert_eq!((strands.strands(), strands.segments(), strands.node_radius(0)), (1, 1, 0.1), "what is left");
+        assert_eq!(
+            (
+                strands.strands(),
+                strands.segments(),
+                strands.node_radius(0)
+            ),
+            (1, 1, 0.1),
+            "what is left"
+        );
     }
 
     #[test]
     fn strands_that_turn_back_have_tangents() {
         let mut builder = Strands::builder();
-        builder.push([Vec3::ZERO, Vec3::X, Vec3::ZERO, Vec3::X].map(|p| (p, 0.1))).expect("finite nodes");
+        builder
+            .push([Vec3::ZERO, Vec3::X, Vec3::ZERO, Vec3::X].map(|p| (p, 0.1)))
+            .expect("finite nodes");
         let strands = builder.finish();
         for (k, direction) in [(0, Vec3::X), (1, Vec3::NEG_X), (2, Vec3::X)] {
             let tangent = strands.tangent(k, 0.5);
-            assert!(tangent.is_normalized() && tangent.dot(direction).abs() > 0.999, "{tangent} on segment {k}");
+            assert!(
+                tangent.is_normalized() && tangent.dot(direction).abs() > 0.999,
+                "{tangent} on segment {k}"
+            );
         }
     }
 }

@@ -71,21 +71,38 @@ impl Rectangle {
     /// A light with a corner, two edges at a right angle, and a radiance. It shines to the side of the origin.
     #[must_use]
     pub fn light(corner: Vec3, edge_a: Vec3, edge_b: Vec3, emission: Vec3) -> Self {
-        Self { emission, ..Self::wall(corner, edge_a, edge_b, Vec3::ZERO) }
+        Self {
+            emission,
+            ..Self::wall(corner, edge_a, edge_b, Vec3::ZERO)
+        }
     }
 
     /// A wall that reflects. Its normal is on the side of the origin.
     #[must_use]
     pub fn wall(corner: Vec3, edge_a: Vec3, edge_b: Vec3, albedo: Vec3) -> Self {
         let normal = edge_a.cross(edge_b).normalize();
-        let normal = if normal.dot(corner) > 0.0 { -normal } else { normal };
-        Self { corner, edges: [edge_a, edge_b], normal, emission: Vec3::ZERO, albedo }
+        let normal = if normal.dot(corner) > 0.0 {
+            -normal
+        } else {
+            normal
+        };
+        Self {
+            corner,
+            edges: [edge_a, edge_b],
+            normal,
+            emission: Vec3::ZERO,
+            albedo,
+        }
     }
 
     /// The same rectangle, its normal on the side of a point.
     #[must_use]
     pub fn facing(self, point: Vec3) -> Self {
-        let normal = if self.normal.dot(point - self.corner) < 0.0 { -self.normal } else { self.normal };
+        let normal = if self.normal.dot(point - self.corner) < 0.0 {
+            -self.normal
+        } else {
+            self.normal
+        };
         Self { normal, ..self }
     }
 
@@ -101,7 +118,12 @@ impl Rectangle {
         let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
         let corner = self.corner + self.edges[0];
         let edges = [-mirror(self.edges[0]), mirror(self.edges[1])];
-        Self { corner: mirror(corner), edges, normal: mirror(self.normal), ..*self }
+        Self {
+            corner: mirror(corner),
+            edges,
+            normal: mirror(self.normal),
+            ..*self
+        }
     }
 
     /// Distance along a ray, if it meets the rectangle beyond `t_min`.
@@ -112,7 +134,8 @@ impl Rectangle {
         let t = (self.corner - origin).dot(self.normal) / towards;
         let place = origin + t * direction - self.corner;
         let within = |edge: Vec3| (0.0..=edge.length_squared()).contains(&place.dot(edge));
-        (t > t_min && t < f32::INFINITY && within(self.edges[0]) && within(self.edges[1])).then_some(t)
+        (t > t_min && t < f32::INFINITY && within(self.edges[0]) && within(self.edges[1]))
+            .then_some(t)
     }
 
     /// View from a point, to be shared by all directions drawn there. `None` from behind.
@@ -133,7 +156,14 @@ impl Rectangle {
             RectangleSampling::SolidAngle => Projected::new(lo, hi, height),
             RectangleSampling::Area => None,
         };
-        Some(View { emission: self.emission, axes, lo, hi, height, projected })
+        Some(View {
+            emission: self.emission,
+            axes,
+            lo,
+            hi,
+            height,
+            projected,
+        })
     }
 }
 
@@ -152,10 +182,19 @@ impl Projected {
         let slope = |side: f64| side / length(side, height);
         let ([x0, y0], [x1, y1]) = (lo.map(slope), hi.map(slope));
         // The spherical rectangle's angles, whose sum exceeds 2 pi by its area.
-        let angles = [(x1 * y0).acos(), (-x1 * y1).acos(), (x0 * y1).acos(), (-x0 * y0).acos()];
+        let angles = [
+            (x1 * y0).acos(),
+            (-x1 * y1).acos(),
+            (x0 * y1).acos(),
+            (-x0 * y0).acos(),
+        ];
         let start = 2.0 * PI - angles[2] - angles[3];
         let solid_angle = angles[0] + angles[1] - start;
-        (solid_angle > SMALL).then_some(Self { solid_angle, start, normals: [-y0, y1] })
+        (solid_angle > SMALL).then_some(Self {
+            solid_angle,
+            start,
+            normals: [-y0, y1],
+        })
     }
 }
 
@@ -184,7 +223,10 @@ impl View {
     #[inline]
     #[must_use]
     pub fn see(&self, direction: Vec3) -> Seen {
-        Seen { radiance: self.emission, pdf: self.pdf(direction) }
+        Seen {
+            radiance: self.emission,
+            pdf: self.pdf(direction),
+        }
     }
 
     /// A direction drawn from two uniform numbers.
@@ -203,7 +245,12 @@ impl View {
 
     /// A point of the rectangle, in its frame.
     fn point(&self, xi: [f64; 2]) -> [f64; 2] {
-        let Some(Projected { solid_angle, start, normals: [below, above] }) = self.projected else {
+        let Some(Projected {
+            solid_angle,
+            start,
+            normals: [below, above],
+        }) = self.projected
+        else {
             return [0, 1].map(|k| self.lo[k] + xi[k] * (self.hi[k] - self.lo[k]));
         };
         // The x up to which the solid angle is its share `xi`.
@@ -215,7 +262,8 @@ impl View {
         let distance = length(x, self.height);
         let sine = |y: f64| y / length(y, distance);
         let s = sine(self.lo[1]) + xi[1] * (sine(self.hi[1]) - sine(self.lo[1]));
-        let y = (s * distance / (1.0 - s * s).max(f64::MIN_POSITIVE).sqrt()).clamp(self.lo[1], self.hi[1]);
+        let y = (s * distance / (1.0 - s * s).max(f64::MIN_POSITIVE).sqrt())
+            .clamp(self.lo[1], self.hi[1]);
         [x, y]
     }
 }
@@ -229,17 +277,30 @@ mod tests {
     use hairis_instruments::stats::Moments;
 
     fn tilted() -> Rectangle {
-        let (a, b) = (Vec3::new(3.0, 1.0, 0.0), Vec3::new(-1.0, 3.0, 2.0).cross(Vec3::new(3.0, 1.0, 0.0)).normalize());
+        let (a, b) = (
+            Vec3::new(3.0, 1.0, 0.0),
+            Vec3::new(-1.0, 3.0, 2.0)
+                .cross(Vec3::new(3.0, 1.0, 0.0))
+                .normalize(),
+        );
         Rectangle::light(Vec3::new(-2.0, 2.0, 1.0), a, 1.5 * b, Vec3::ONE)
     }
 
     fn solid_angle(lamp: &Rectangle, origin: Vec3) -> f64 {
-        1.0 / f64::from(lamp.view(origin, SolidAngle).expect("in front").pdf(Vec3::Y))
+        1.0 / f64::from(
+            lamp.view(origin, SolidAngle)
+                .expect("in front")
+                .pdf(Vec3::Y),
+        )
     }
 
     #[test]
     fn the_solid_angle_is_the_integral_over_the_area() {
-        for origin in [Vec3::ZERO, Vec3::new(-1.0, 0.5, 0.7), Vec3::new(0.0, -300.0, 10.0)] {
+        for origin in [
+            Vec3::ZERO,
+            Vec3::new(-1.0, 0.5, 0.7),
+            Vec3::new(0.0, -300.0, 10.0),
+        ] {
             let lamp = tilted();
             let [a, b] = lamp.edges;
             let mut sum = 0.0;
@@ -255,7 +316,10 @@ mod tests {
             let area = f64::from(a.length() * b.length());
             let expected = sum * area / f64::from(steps).powi(2);
             let got = solid_angle(&lamp, origin);
-            assert!((got / expected - 1.0).abs() < 2e-4, "{origin}: {got} for {expected}");
+            assert!(
+                (got / expected - 1.0).abs() < 2e-4,
+                "{origin}: {got} for {expected}"
+            );
         }
     }
 
@@ -271,8 +335,16 @@ mod tests {
                 for j in 0..6 {
                     let share = |k: u16| f32::from(k) / 6.0;
                     let corner = lamp.corner + share(i) * lamp.edges[0] + share(j) * lamp.edges[1];
-                    let part = Rectangle { corner, edges: lamp.edges.map(|edge| edge / 6.0), ..lamp };
-                    let share = if sampling == Area { 1.0 / 36.0 } else { solid_angle(&part, origin) / whole };
+                    let part = Rectangle {
+                        corner,
+                        edges: lamp.edges.map(|edge| edge / 6.0),
+                        ..lamp
+                    };
+                    let share = if sampling == Area {
+                        1.0 / 36.0
+                    } else {
+                        solid_angle(&part, origin) / whole
+                    };
                     expected.push(60_000.0 * share);
                 }
             }
@@ -284,31 +356,49 @@ mod tests {
                 let sample = view.sample(xi.next_xi_f32());
                 let place = origin + sample.distance * sample.direction - lamp.corner;
                 let cell = |edge: Vec3| {
-                    (0..6_usize).rev().find(|k| place.dot(edge) / edge.length_squared() * 6.0 >= *k as f32)
+                    (0..6_usize)
+                        .rev()
+                        .find(|k| place.dot(edge) / edge.length_squared() * 6.0 >= *k as f32)
                 };
-                counts[6 * cell(lamp.edges[0]).unwrap_or(0) + cell(lamp.edges[1]).unwrap_or(0)] += 1;
+                counts[6 * cell(lamp.edges[0]).unwrap_or(0) + cell(lamp.edges[1]).unwrap_or(0)] +=
+                    1;
                 // Rounding may put a sample of the rim outside.
                 let on_rim = [lamp.edges[0], lamp.edges[1]].iter().any(|edge| {
                     let share = place.dot(*edge) / edge.length_squared();
                     share.min(1.0 - share) < 1e-5
                 });
                 let met = lamp.meet(origin, sample.direction, 0.0);
-                assert!(on_rim || met.is_some_and(|t| (t / sample.distance - 1.0).abs() < 1e-4), "{sample:?} misses");
-                assert!((view.pdf(sample.direction) / sample.pdf - 1.0).abs() < 1e-5, "{sample:?}");
+                assert!(
+                    on_rim || met.is_some_and(|t| (t / sample.distance - 1.0).abs() < 1e-4),
+                    "{sample:?} misses"
+                );
+                assert!(
+                    (view.pdf(sample.direction) / sample.pdf - 1.0).abs() < 1e-5,
+                    "{sample:?}"
+                );
                 inverse.push(1.0 / f64::from(sample.pdf));
             }
             let p = chi_square(&counts, &expected, 5.0).p_value;
             assert!(p > 1e-3, "{sampling:?}: p {p}");
             let mean = inverse.mean_estimate();
             let apart = (mean.value - whole).abs();
-            assert!(apart < 4.0 * mean.standard_error + 1e-6 * whole, "{sampling:?}: {mean:?} for {whole}");
+            assert!(
+                apart < 4.0 * mean.standard_error + 1e-6 * whole,
+                "{sampling:?}: {mean:?} for {whole}"
+            );
         }
     }
 
     #[test]
     fn a_tiny_solid_angle_has_the_density_of_its_area() {
-        let lamp = Rectangle::light(Vec3::new(-1.0, 9000.0, -1.0), 2.0 * Vec3::X, 2.0 * Vec3::Z, Vec3::ONE);
-        let [by_angle, by_area] = [SolidAngle, Area].map(|sampling| lamp.view(Vec3::ZERO, sampling).expect("in front"));
+        let lamp = Rectangle::light(
+            Vec3::new(-1.0, 9000.0, -1.0),
+            2.0 * Vec3::X,
+            2.0 * Vec3::Z,
+            Vec3::ONE,
+        );
+        let [by_angle, by_area] =
+            [SolidAngle, Area].map(|sampling| lamp.view(Vec3::ZERO, sampling).expect("in front"));
         assert_eq!(by_angle.sample([0.25, 0.75]), by_area.sample([0.25, 0.75]));
         assert!((by_angle.pdf(Vec3::Y) / (9000.0_f32.powi(2) / 4.0) - 1.0).abs() < 1e-6);
         assert_eq!(by_area.pdf(Vec3::NEG_Y), 0.0);
@@ -322,9 +412,16 @@ mod tests {
         let mirror = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
         for sampling in [SolidAngle, Area] {
             assert!(lamp.view(behind, sampling).is_none(), "{sampling:?}");
-            let [a, b] = [lamp.view(Vec3::X, sampling), mirrored.view(Vec3::NEG_X, sampling)].map(Option::unwrap);
+            let [a, b] = [
+                lamp.view(Vec3::X, sampling),
+                mirrored.view(Vec3::NEG_X, sampling),
+            ]
+            .map(Option::unwrap);
             let (a, b) = (a.sample([0.3, 0.6]), b.sample([0.7, 0.6]));
-            assert!((mirror(a.direction) - b.direction).length() < 1e-5, "{a:?} {b:?}");
+            assert!(
+                (mirror(a.direction) - b.direction).length() < 1e-5,
+                "{a:?} {b:?}"
+            );
             assert!((a.pdf / b.pdf - 1.0).abs() < 1e-5, "{a:?} {b:?}");
         }
     }

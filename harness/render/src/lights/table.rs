@@ -38,7 +38,13 @@ impl Table {
         let start = mix(seed ^ 0x74_6162_6c65);
         let even = Even::square([low(start), low(mix(start))]);
         let block = |first| sky.sample8(&even.eight(first));
-        Some(Self { blocks: (0..).step_by(8).take(length.div_ceil(8)).map(block).collect() })
+        Some(Self {
+            blocks: (0..)
+                .step_by(8)
+                .take(length.div_ceil(8))
+                .map(block)
+                .collect(),
+        })
     }
 
     /// A block's place, from a uniform number.
@@ -63,7 +69,9 @@ impl Table {
     /// Makes all densities wrong by a factor.
     #[cfg(test)]
     pub(crate) fn scale_density(&mut self, by: f32) {
-        self.blocks.iter_mut().for_each(|block| block.pdf *= f32x8::splat(by));
+        self.blocks
+            .iter_mut()
+            .for_each(|block| block.pdf *= f32x8::splat(by));
     }
 }
 
@@ -82,7 +90,12 @@ impl<'a> Tables<'a> {
     /// Tables of some length.
     #[must_use]
     pub fn new(sky: &'a Sky, seed: u64, length: usize) -> Self {
-        Self { sky, seed, length, tables: (0..TABLES).map(|_| OnceLock::new()).collect() }
+        Self {
+            sky,
+            seed,
+            length,
+            tables: (0..TABLES).map(|_| OnceLock::new()).collect(),
+        }
     }
 
     /// Replaces the table of the first pass.
@@ -116,7 +129,12 @@ mod tests {
 
     fn map() -> Environment {
         let mut xi = Independent::new(4, 0);
-        let pixels = (0..32).map(|k| xi.next_xi_f32::<3>().map(|x| if k == 9 { 20.0 * x } else { x })).collect();
+        let pixels = (0..32)
+            .map(|k| {
+                xi.next_xi_f32::<3>()
+                    .map(|x| if k == 9 { 20.0 * x } else { x })
+            })
+            .collect();
         Environment::from_pixels("small", 8, 4, pixels).expect("valid")
     }
 
@@ -127,8 +145,14 @@ mod tests {
         let sky = Sky::Map(Box::new(map.clone()));
         let texel = |dir: glam::Vec3| {
             let (polar, turn) = (dir.y.clamp(-1.0, 1.0).acos(), dir.x.atan2(-dir.z));
-            let cell = |x: f32, n: usize| (0..n).rev().find(|k| x * n as f32 >= *k as f32).unwrap_or(0);
-            cell(polar / core::f32::consts::PI, 4) * 8 + cell(0.5 + turn / core::f32::consts::TAU, 8)
+            let cell = |x: f32, n: usize| {
+                (0..n)
+                    .rev()
+                    .find(|k| x * n as f32 >= *k as f32)
+                    .unwrap_or(0)
+            };
+            cell(polar / core::f32::consts::PI, 4) * 8
+                + cell(0.5 + turn / core::f32::consts::TAU, 8)
         };
         let mut counts = [[0_u64; 32]; 3];
         let seeds = 3000;
@@ -159,23 +183,50 @@ mod tests {
             let table = Table::draw(&sky, seed, 1 << 14).expect("a sky");
             let one = |block: &LightSample8| {
                 let up = block.direction.y * block.direction.y;
-                (up * block.radiance[1] / block.pdf).to_array().iter().map(|x| f64::from(*x)).sum::<f64>()
+                (up * block.radiance[1] / block.pdf)
+                    .to_array()
+                    .iter()
+                    .map(|x| f64::from(*x))
+                    .sum::<f64>()
             };
             let count = 8.0 * table.blocks.len() as f64;
             moments.push(table.blocks.iter().map(one).sum::<f64>() / count);
             let seen = sky.see8(&table.block(5).direction);
-            assert_eq!((seen.pdf, seen.radiance), (table.block(5).pdf, table.block(5).radiance));
+            assert_eq!(
+                (seen.pdf, seen.radiance),
+                (table.block(5).pdf, table.block(5).radiance)
+            );
         }
         let got = moments.mean_estimate();
         // Independent directions would leave some 5e-3 of it in each table.
-        assert!(8.0 * got.standard_error < 5e-4 * got.value && got.standard_error > 0.0, "{got:?}");
-        let truth = map.integrate(&|dir| [dir.y * dir.y; 3], &hairis_instruments::quadrature::SphereIntegrator::new());
-        assert!((got.value / truth.value[1] - 1.0).abs() < 1e-4, "{got:?} for {:?}", truth.value);
+        assert!(
+            8.0 * got.standard_error < 5e-4 * got.value && got.standard_error > 0.0,
+            "{got:?}"
+        );
+        let truth = map.integrate(
+            &|dir| [dir.y * dir.y; 3],
+            &hairis_instruments::quadrature::SphereIntegrator::new(),
+        );
+        assert!(
+            (got.value / truth.value[1] - 1.0).abs() < 1e-4,
+            "{got:?} for {:?}",
+            truth.value
+        );
         assert!(Table::draw(&Sky::Black, 1, 16).is_none());
         let bytes = |length| size_of_val(&Table::draw(&sky, 1, length).expect("a sky").blocks[..]);
         assert_eq!([bytes(1 << 14), bytes(usize::MAX)], [1 << 19, 1 << 23]);
         let tables = Tables::new(&sky, 1, 64);
-        let first = |pass| tables.of_pass(pass).expect("a sky").block(0).direction.lane(0);
-        assert!(first(0) != first(1) && first(3) == first(3 + TABLES), "a table per pass");
+        let first = |pass| {
+            tables
+                .of_pass(pass)
+                .expect("a sky")
+                .block(0)
+                .direction
+                .lane(0)
+        };
+        assert!(
+            first(0) != first(1) && first(3) == first(3 + TABLES),
+            "a table per pass"
+        );
     }
 }

@@ -24,7 +24,10 @@ impl Even<2> {
     /// Points of a square, from a shift in units of 2^-32.
     #[must_use]
     pub fn square(shift: [u32; 2]) -> Self {
-        Self { shift, steps: SQUARE }
+        Self {
+            shift,
+            steps: SQUARE,
+        }
     }
 }
 
@@ -32,7 +35,11 @@ impl Even<3> {
     /// Points of a cube, from a shift in `[0, 1)`.
     #[must_use]
     pub fn cube(shift: [f32; 3]) -> Self {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of 24 bits below 2^32")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a number of 24 bits below 2^32"
+        )]
         let shift = shift.map(|x| (x * 4_294_967_296.0) as u32);
         Self { shift, steps: CUBE }
     }
@@ -43,7 +50,9 @@ impl<const D: usize> Even<D> {
     #[inline]
     #[must_use]
     pub fn at(&self, i: u32) -> [f32; D] {
-        core::array::from_fn(|axis| unit(self.shift[axis].wrapping_add(self.steps[axis].wrapping_mul(i))))
+        core::array::from_fn(|axis| {
+            unit(self.shift[axis].wrapping_add(self.steps[axis].wrapping_mul(i)))
+        })
     }
 
     /// Points `first` to `first + 7`: by axis, one per lane.
@@ -78,7 +87,10 @@ mod tests {
             let g = (0..60).fold(2.0_f64, |g, _| (1.0 + g).powf(1.0 / f64::from(d + 1)));
             for (step, power) in steps.iter().zip(1..) {
                 let expected = g.powi(-power) * 4_294_967_296.0;
-                assert!((f64::from(*step) - expected).abs() < 1.0, "{step} for {expected}");
+                assert!(
+                    (f64::from(*step) - expected).abs() < 1.0,
+                    "{step} for {expected}"
+                );
             }
         }
     }
@@ -89,10 +101,15 @@ mod tests {
             let even = Even::square([123_456_789, 3_987_654_321]);
             let mut counts = [[0_u32; 4]; 4];
             for i in 0..64 {
-                let [x, y] = even.at(first + i).map(|x| (0..4).rev().find(|k| x * 4.0 >= *k as f32).unwrap_or(0));
+                let [x, y] = even
+                    .at(first + i)
+                    .map(|x| (0..4).rev().find(|k| x * 4.0 >= *k as f32).unwrap_or(0));
                 counts[x][y] += 1;
             }
-            assert!(counts.iter().flatten().all(|count| (2..=6).contains(count)), "{counts:?}");
+            assert!(
+                counts.iter().flatten().all(|count| (2..=6).contains(count)),
+                "{counts:?}"
+            );
         }
     }
 

@@ -13,7 +13,10 @@ const CELLS: usize = SIDE * SIDE;
 /// - `key`: of the seed, the pixel and the pair of coordinates.
 /// - Uniform on its own, since every cell is equally likely: estimates are unbiased.
 pub(super) fn pair(key: u64, sample: u32) -> [f32; 2] {
-    let cell = cell(mix(key ^ (sample as usize / CELLS) as u64), sample as usize % CELLS);
+    let cell = cell(
+        mix(key ^ (sample as usize / CELLS) as u64),
+        sample as usize % CELLS,
+    );
     let jitter = mix(mix(key) ^ u64::from(sample));
     let place = |cell: usize, jitter: f32| (cell as f32 + jitter) * (1.0 / SIDE as f32);
     // A jitter of 22 bits, so that the sum is exact and below 1.
@@ -43,7 +46,10 @@ mod tests {
             for sample in 16 * block..16 * (block + 1) {
                 let [x, y] = pair(mix(key), sample).map(|x| {
                     assert!((0.0..1.0).contains(&x), "{x}");
-                    (0..4).rev().find(|cell| x * 4.0 >= *cell as f32).unwrap_or(0)
+                    (0..4)
+                        .rev()
+                        .find(|cell| x * 4.0 >= *cell as f32)
+                        .unwrap_or(0)
                 });
                 counts[4 * y + x] += 1;
             }

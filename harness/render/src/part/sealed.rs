@@ -5,7 +5,10 @@ use hairis_instruments::sequence::mix;
 /// A number that differs where bytes do, but by chance.
 pub(crate) fn digest(bytes: &[u8]) -> u64 {
     bytes.chunks(8).fold(bytes.len() as u64, |hash, chunk| {
-        mix(hash ^ chunk.iter().fold(0, |word, byte| word << 8 | u64::from(*byte)))
+        mix(hash
+            ^ chunk
+                .iter()
+                .fold(0, |word, byte| word << 8 | u64::from(*byte)))
     })
 }
 

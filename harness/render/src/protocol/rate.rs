@@ -7,7 +7,9 @@ use hairis_instruments::stats::Estimate;
 pub(super) fn average(values: impl Iterator<Item = (usize, f64)>, left_out: Option<usize>) -> f64 {
     let (sum, count) = values
         .filter(|(place, _)| Some(*place) != left_out)
-        .fold((0.0, 0.0), |(sum, count), (_, value)| (sum + value, count + 1.0));
+        .fold((0.0, 0.0), |(sum, count), (_, value)| {
+            (sum + value, count + 1.0)
+        });
     sum / count
 }
 
@@ -21,8 +23,15 @@ pub fn jackknife(count: usize, statistic: impl Fn(Option<usize>) -> f64) -> Esti
     let n = count as f64;
     let mean = without.iter().sum::<f64>() / n;
     let squares: f64 = without.iter().map(|one| (one - mean).powi(2)).sum();
-    let standard_error = if count < 2 { f64::NAN } else { ((n - 1.0) / n * squares).sqrt() };
-    Estimate { value, standard_error }
+    let standard_error = if count < 2 {
+        f64::NAN
+    } else {
+        ((n - 1.0) / n * squares).sqrt()
+    };
+    Estimate {
+        value,
+        standard_error,
+    }
 }
 
 /// Slope of `log y` against `log x`.
@@ -30,8 +39,12 @@ pub fn jackknife(count: usize, statistic: impl Fn(Option<usize>) -> f64) -> Esti
 pub fn slope(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     let n = logs.len() as f64;
-    let (x, y) = logs.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
-    let (xy, xx) = logs.iter().fold((0.0, 0.0), |(a, b), l| (a + (l.0 - x) * (l.1 - y), b + (l.0 - x).powi(2)));
+    let (x, y) = logs
+        .iter()
+        .fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
+    let (xy, xx) = logs.iter().fold((0.0, 0.0), |(a, b), l| {
+        (a + (l.0 - x) * (l.1 - y), b + (l.0 - x).powi(2))
+    });
     xy / xx
 }
 
@@ -43,8 +56,14 @@ pub fn crossing(points: &[(f64, f64)], level: f64) -> Option<f64> {
     if *above < level {
         return None;
     }
-    let [(x0, y0), (x1, y1)] = points.windows(2).find_map(|pair| (pair[1].1 <= level).then_some([pair[0], pair[1]]))?;
-    let share = if y1 < y0 { (y0 / level).ln() / (y0 / y1).ln() } else { 0.0 };
+    let [(x0, y0), (x1, y1)] = points
+        .windows(2)
+        .find_map(|pair| (pair[1].1 <= level).then_some([pair[0], pair[1]]))?;
+    let share = if y1 < y0 {
+        (y0 / level).ln() / (y0 / y1).ln()
+    } else {
+        0.0
+    };
     Some(x0 * (x1 / x0).powf(share))
 }
 
@@ -61,12 +80,21 @@ pub enum Reach {
 
 /// Those whose error is not below the reference.
 fn clear(runs: &[Runs], measure: Measure) -> Vec<&Runs> {
-    runs.iter().filter(|runs| !runs.is_below_reference(measure)).collect()
+    runs.iter()
+        .filter(|runs| !runs.is_below_reference(measure))
+        .collect()
 }
 
 /// Points of an error over another number of each, without one picture.
-fn points(runs: &[&Runs], measure: Measure, kept: Option<usize>, of: impl Fn(&Runs) -> f64) -> Vec<(f64, f64)> {
-    runs.iter().map(|runs| (of(runs), runs.mean_without(measure, kept))).collect()
+fn points(
+    runs: &[&Runs],
+    measure: Measure,
+    kept: Option<usize>,
+    of: impl Fn(&Runs) -> f64,
+) -> Vec<(f64, f64)> {
+    runs.iter()
+        .map(|runs| (of(runs), runs.mean_without(measure, kept)))
+        .collect()
 }
 
 /// Samples and time at which an error falls to a level, by ascending count of samples; interpolated in logarithms.
@@ -75,7 +103,9 @@ pub fn reach(runs: &[Runs], measure: Measure, level: f64) -> Option<Reach> {
     let clear = clear(runs, measure);
     let (first, last) = (clear.first()?, clear.last()?);
     let to = |of: fn(&Runs) -> f64| {
-        jackknife(first.errors.len(), |kept| crossing(&points(&clear, measure, kept, of), level).unwrap_or(f64::NAN))
+        jackknife(first.errors.len(), |kept| {
+            crossing(&points(&clear, measure, kept, of), level).unwrap_or(f64::NAN)
+        })
     };
     let samples = to(|runs| f64::from(runs.samples));
     Some(if first.mean(measure).value < level {
@@ -92,7 +122,11 @@ pub fn reach(runs: &[Runs], measure: Measure, level: f64) -> Option<Reach> {
 pub fn slope_of(runs: &[Runs], measure: Measure) -> Option<Estimate> {
     let clear = clear(runs, measure);
     let count = clear.first()?.errors.len();
-    let of = |kept| slope(&points(&clear, measure, kept, |runs| f64::from(runs.samples)));
+    let of = |kept| {
+        slope(&points(&clear, measure, kept, |runs| {
+            f64::from(runs.samples)
+        }))
+    };
     (clear.len() > 1).then(|| jackknife(count, of))
 }
 
@@ -107,7 +141,8 @@ mod tests {
         let values = [1.0, 2.0, 4.0, 7.0];
         let estimate = jackknife(4, |kept| average(values.into_iter().enumerate(), kept));
         assert_eq!(estimate.value, 3.5);
-        let expected = (values.iter().map(|v| (v - 3.5_f64).powi(2)).sum::<f64>() / 3.0 / 4.0).sqrt();
+        let expected =
+            (values.iter().map(|v| (v - 3.5_f64).powi(2)).sum::<f64>() / 3.0 / 4.0).sqrt();
         assert!((estimate.standard_error - expected).abs() < 1e-12);
         assert!((slope(&[(1.0, 8.0), (2.0, 2.0), (4.0, 0.5)]) + 2.0).abs() < 1e-12);
     }
@@ -115,16 +150,32 @@ mod tests {
     #[test]
     fn crossings_are_interpolated_in_logarithms() {
         let points = [(4.0, 0.4), (16.0, 0.1), (64.0, 0.025)];
-        for (level, expected) in [(0.4, 4.0), (0.2, 8.0), (0.1, 16.0), (0.05, 32.0), (0.025, 64.0)] {
+        for (level, expected) in [
+            (0.4, 4.0),
+            (0.2, 8.0),
+            (0.1, 16.0),
+            (0.05, 32.0),
+            (0.025, 64.0),
+        ] {
             let at = crossing(&points, level).expect("within");
             assert!((at / expected - 1.0).abs() < 1e-12, "{level}: {at}");
         }
-        assert_eq!([crossing(&points, 0.5), crossing(&points, 0.02), crossing(&[], 1.0)], [None; 3]);
+        assert_eq!(
+            [
+                crossing(&points, 0.5),
+                crossing(&points, 0.02),
+                crossing(&[], 1.0)
+            ],
+            [None; 3]
+        );
     }
 
     /// Pictures with errors of 1 / S, more or less, and two seconds per sample.
     fn runs(samples: u32, own: f64) -> Runs {
-        let error = |by: f64| Errors { values: [by / f64::from(samples); 4], own: [own; 4] };
+        let error = |by: f64| Errors {
+            values: [by / f64::from(samples); 4],
+            own: [own; 4],
+        };
         Runs {
             samples,
             seconds: 2.0 * f64::from(samples),
@@ -139,21 +190,40 @@ mod tests {
     #[test]
     fn samples_and_time_to_an_error_have_their_own_error() {
         let all = [4, 16, 64].map(|samples| runs(samples, 1e-6));
-        let Some(Reach::At([samples, seconds])) = reach(&all, Measure::RelMse, 1.0 / 32.0) else { panic!("within") };
-        assert!((samples.value - 32.0).abs() < 1e-9 && (seconds.value - 64.0).abs() < 1e-9, "{samples:?} {seconds:?}");
+        let Some(Reach::At([samples, seconds])) = reach(&all, Measure::RelMse, 1.0 / 32.0) else {
+            panic!("within")
+        };
+        assert!(
+            (samples.value - 32.0).abs() < 1e-9 && (seconds.value - 64.0).abs() < 1e-9,
+            "{samples:?} {seconds:?}"
+        );
         // The error of the mean is 0.1 / sqrt(3), and samples go with it.
-        assert!((samples.standard_error / 32.0 - 0.0577).abs() < 5e-3, "{samples:?}");
+        assert!(
+            (samples.standard_error / 32.0 - 0.0577).abs() < 5e-3,
+            "{samples:?}"
+        );
         assert_eq!(reach(&all, Measure::RelMse, 1.0), Some(Reach::Below(4)));
         assert_eq!(reach(&all, Measure::RelMse, 1e-3), Some(Reach::Above(64)));
         let slope = slope_of(&all, Measure::Mse).expect("three counts");
-        assert!((slope.value + 1.0).abs() < 1e-12 && slope.standard_error < 1e-12, "{slope:?}");
+        assert!(
+            (slope.value + 1.0).abs() < 1e-12 && slope.standard_error < 1e-12,
+            "{slope:?}"
+        );
     }
 
     #[test]
     fn errors_below_the_reference_do_not_count() {
         let all = [4, 16, 64].map(|samples| runs(samples, 0.02));
-        assert!(all[2].is_below_reference(Measure::Mse) && !all[1].is_below_reference(Measure::Mse));
-        assert_eq!(reach(&all, Measure::Mse, 1.0 / 32.0), Some(Reach::Above(16)));
-        assert!(slope_of(&all[..1], Measure::Mse).is_none() && slope_of(&all[2..], Measure::Mse).is_none());
+        assert!(
+            all[2].is_below_reference(Measure::Mse) && !all[1].is_below_reference(Measure::Mse)
+        );
+        assert_eq!(
+            reach(&all, Measure::Mse, 1.0 / 32.0),
+            Some(Reach::Above(16))
+        );
+        assert!(
+            slope_of(&all[..1], Measure::Mse).is_none()
+                && slope_of(&all[2..], Measure::Mse).is_none()
+        );
     }
 }

@@ -31,7 +31,12 @@ impl Runs {
     #[must_use]
     pub fn half(scene: &Scene, settings: &Settings, samples: u32, half: u64) -> Self {
         let seed = (settings.seed ^ 0x7265_6665_7265_6e63).wrapping_add(half);
-        let film = film(scene, &Settings { seed, ..*settings }, Crop::whole(scene.camera.size()), samples);
+        let film = film(
+            scene,
+            &Settings { seed, ..*settings },
+            Crop::whole(scene.camera.size()),
+            samples,
+        );
         Self {
             samples,
             seconds: film.seconds(),
@@ -45,36 +50,71 @@ impl Runs {
 
     /// Renders `runs` pictures and compares them with a reference.
     #[must_use]
-    pub fn render(scene: &Scene, settings: &Settings, reference: &Reference, samples: u32, runs: u32) -> Self {
+    pub fn render(
+        scene: &Scene,
+        settings: &Settings,
+        reference: &Reference,
+        samples: u32,
+        runs: u32,
+    ) -> Self {
         let whole = Crop::whole(scene.camera.size());
         let one = |run: u32| -> Film {
-            let seed = settings.seed.wrapping_mul(1000).wrapping_add(u64::from(run));
+            let seed = settings
+                .seed
+                .wrapping_mul(1000)
+                .wrapping_add(u64::from(run));
             film(scene, &Settings { seed, ..*settings }, whole, samples)
         };
         let films: Vec<Film> = (0..runs.max(1)).map(one).collect();
         let pictures: Vec<Picture> = films.iter().map(Film::picture).collect();
-        let seconds = films.iter().map(Film::seconds).fold(f64::INFINITY, f64::min);
+        let seconds = films
+            .iter()
+            .map(Film::seconds)
+            .fold(f64::INFINITY, f64::min);
         Self::of(&pictures, reference, samples, seconds)
     }
 
     /// Compares pictures with a reference.
-    pub(super) fn of(pictures: &[Picture], reference: &Reference, samples: u32, seconds: f64) -> Self {
-        let errors: Vec<Vec<f64>> = pictures.iter().map(|picture| reference.signed(picture)).collect();
+    pub(super) fn of(
+        pictures: &[Picture],
+        reference: &Reference,
+        samples: u32,
+        seconds: f64,
+    ) -> Self {
+        let errors: Vec<Vec<f64>> = pictures
+            .iter()
+            .map(|picture| reference.signed(picture))
+            .collect();
         let pixels = 0..reference.picture.pixels.len();
         let mean = |of: fn(f64) -> f64| {
-            let pixel = |k: usize| errors.iter().map(|errors| of(errors[k])).sum::<f64>() / errors.len() as f64;
+            let pixel = |k: usize| {
+                errors.iter().map(|errors| of(errors[k])).sum::<f64>() / errors.len() as f64
+            };
             pixels.clone().map(pixel).collect()
         };
         // The reference is one number per pixel: errors vary as luminances do.
         let variance = |kept: Option<usize>| {
-            let errors = || errors.iter().enumerate().filter(|(run, _)| Some(*run) != kept);
-            let pixel = |k: usize| errors().map(|(_, errors)| errors[k]).collect::<Moments>().variance();
+            let errors = || {
+                errors
+                    .iter()
+                    .enumerate()
+                    .filter(|(run, _)| Some(*run) != kept)
+            };
+            let pixel = |k: usize| {
+                errors()
+                    .map(|(_, errors)| errors[k])
+                    .collect::<Moments>()
+                    .variance()
+            };
             f64::from(samples) * pixels.clone().map(pixel).sum::<f64>() / pixels.len() as f64
         };
         Self {
             samples,
             seconds,
-            errors: pictures.iter().map(|picture| reference.errors(picture)).collect(),
+            errors: pictures
+                .iter()
+                .map(|picture| reference.errors(picture))
+                .collect(),
             variance: jackknife(errors.len(), variance),
             picture: pictures[0].clone(),
             bias: mean(|error| error),
@@ -84,7 +124,13 @@ impl Runs {
 
     /// Mean of an error over the pictures but one.
     pub(super) fn mean_without(&self, measure: Measure, left_out: Option<usize>) -> f64 {
-        average(self.errors.iter().map(|errors| errors.value(measure)).enumerate(), left_out)
+        average(
+            self.errors
+                .iter()
+                .map(|errors| errors.value(measure))
+                .enumerate(),
+            left_out,
+        )
     }
 
     /// Mean of an error over the pictures, with its standard error.
@@ -96,15 +142,27 @@ impl Runs {
     /// How many times as large an error, if told to times time, is here as in `other`, with its standard error.
     #[must_use]
     pub fn ratio(&self, other: &Self, measure: Measure, with_time: bool) -> Estimate {
-        let by = if with_time { self.seconds / other.seconds } else { 1.0 };
+        let by = if with_time {
+            self.seconds / other.seconds
+        } else {
+            1.0
+        };
         let runs = self.errors.len().min(other.errors.len());
-        jackknife(runs, |kept| by * self.mean_without(measure, kept) / other.mean_without(measure, kept))
+        jackknife(runs, |kept| {
+            by * self.mean_without(measure, kept) / other.mean_without(measure, kept)
+        })
     }
 
     /// Whether an error is too small for the noise of the reference: below twice what that noise adds to it.
     #[must_use]
     pub fn is_below_reference(&self, measure: Measure) -> bool {
-        let own = average(self.errors.iter().map(|errors| errors.own(measure)).enumerate(), None);
+        let own = average(
+            self.errors
+                .iter()
+                .map(|errors| errors.own(measure))
+                .enumerate(),
+            None,
+        );
         self.mean(measure).value < 2.0 * own
     }
 
@@ -112,7 +170,11 @@ impl Runs {
     #[must_use]
     pub fn samples_in(&self, seconds: f64) -> u32 {
         let samples = f64::from(self.samples) * seconds / self.seconds.max(1e-9);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped"
+        )]
         let samples = samples.round().clamp(1.0, 1e6) as u32;
         samples
     }
@@ -129,19 +191,41 @@ mod tests {
         let mut xi = Independent::new(3, 0);
         let reference = Reference::new(&noisy(&mut xi, 0.0), &noisy(&mut xi, 0.0));
         let brighter = |mut picture: Picture| {
-            picture.pixels.iter_mut().flatten().for_each(|channel| *channel += 0.3);
+            picture
+                .pixels
+                .iter_mut()
+                .flatten()
+                .for_each(|channel| *channel += 0.3);
             picture
         };
         let pictures: Vec<Picture> = (0..8).map(|_| brighter(noisy(&mut xi, 0.1))).collect();
         let runs = Runs::of(&pictures, &reference, 16, 1.0);
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         // The mean of eight has a deviation of 0.1 / sqrt(8 * 20,000) over all pixels.
-        assert!((mean(&runs.bias) - 0.3).abs() < 1e-3, "{}", mean(&runs.bias));
-        assert!((mean(&runs.squares) - 0.1).abs() < 1e-3, "0.3^2 + 0.1^2: {}", mean(&runs.squares));
+        assert!(
+            (mean(&runs.bias) - 0.3).abs() < 1e-3,
+            "{}",
+            mean(&runs.bias)
+        );
+        assert!(
+            (mean(&runs.squares) - 0.1).abs() < 1e-3,
+            "0.3^2 + 0.1^2: {}",
+            mean(&runs.squares)
+        );
         let square = runs.mean(Measure::Mse).value;
-        assert!((mean(&runs.squares) / square - 1.0).abs() < 1e-9, "the map's mean is the MSE: {square}");
-        let Estimate { value, standard_error } = runs.variance;
-        assert!((value - 0.16).abs() < 4.0 * standard_error, "16 times 0.01: {:?}", runs.variance);
+        assert!(
+            (mean(&runs.squares) / square - 1.0).abs() < 1e-9,
+            "the map's mean is the MSE: {square}"
+        );
+        let Estimate {
+            value,
+            standard_error,
+        } = runs.variance;
+        assert!(
+            (value - 0.16).abs() < 4.0 * standard_error,
+            "16 times 0.01: {:?}",
+            runs.variance
+        );
         assert!(standard_error < 0.003, "{:?}", runs.variance);
     }
 }

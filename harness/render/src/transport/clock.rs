@@ -12,7 +12,8 @@ pub fn seconds_of_thread() -> f64 {
     }
     #[cfg(not(unix))]
     {
-        static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
+        static START: std::sync::LazyLock<std::time::Instant> =
+            std::sync::LazyLock::new(std::time::Instant::now);
         START.elapsed().as_secs_f64()
     }
 }

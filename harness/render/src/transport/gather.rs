@@ -36,7 +36,13 @@ const STEP: usize = POOL as usize;
 ///
 /// The last pool of resampled rays is smaller unless the count is a multiple of [`POOL`]. A tile that ends in such a pool is
 /// made again from the first sample.
-pub(super) fn tile(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile: &mut Tile, samples: u32) {
+pub(super) fn tile(
+    scene: &Scene,
+    tables: &Tables<'_>,
+    settings: &Settings,
+    tile: &mut Tile,
+    samples: u32,
+) {
     if tile.samples >= samples {
         return;
     }
@@ -59,7 +65,9 @@ pub(super) fn tile(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile
                     point.light(scene, settings, first, radiances);
                 }
             }
-            radiances.iter().for_each(|radiance| sums.add(*radiance / settings.rays as f32));
+            radiances
+                .iter()
+                .for_each(|radiance| sums.add(*radiance / settings.rays as f32));
             lap(Phase::Rest);
         }
     }
@@ -78,7 +86,12 @@ fn points_of(scene: &Scene, settings: &Settings, pixel: [u32; 2], points: &mut V
         lap(Phase::Rays);
         match met {
             // Pixels have 14 bits a side, and rays 12: keys differ.
-            Met::Hair(hit) => points.push(Point::new(scene, &camera_ray, hit, key(pixel) | u64::from(ray) << 16)),
+            Met::Hair(hit) => points.push(Point::new(
+                scene,
+                &camera_ray,
+                hit,
+                key(pixel) | u64::from(ray) << 16,
+            )),
             met => beside += scene.see_from_camera(&camera_ray, &met).unwrap_or_default(),
         }
     }
@@ -90,11 +103,20 @@ impl Point {
         let wo = -ray.direction;
         let frame = FiberFrame::from_tangent_normal(scene.strands.tangent(hit.segment, hit.s), wo);
         let origin = scene.strands.position(hit.segment, hit.s);
-        let (local, eight) = (Hit::new(frame.to_local(wo), hit.h), FiberFrame8::splat(&frame));
+        let (local, eight) = (
+            Hit::new(frame.to_local(wo), hit.h),
+            FiberFrame8::splat(&frame),
+        );
         lap(Phase::Frames);
         let prepared = scene.hair.prepare(local);
         lap(Phase::Kernels);
-        Self { hit, origin, frame: eight, prepared, key }
+        Self {
+            hit,
+            origin,
+            frame: eight,
+            prepared,
+            key,
+        }
     }
 
     /// Adds the radiance towards the camera of each sample from `first` on.
@@ -129,25 +151,64 @@ impl Point {
         candidates: &mut Candidates,
         radiances: &mut [Vec3],
     ) {
-        let Self { origin, frame, prepared, .. } = self;
-        let streams = Streams::new(&mut Numbers::new(settings.sequence, settings.seed, self.key, 0));
+        let Self {
+            origin,
+            frame,
+            prepared,
+            ..
+        } = self;
+        let streams = Streams::new(&mut Numbers::new(
+            settings.sequence,
+            settings.seed,
+            self.key,
+            0,
+        ));
         let table = tables.of_pass(first / PER_TABLE);
         let count = radiances.len() as f32;
-        let place = Place { scene, table, origin: *origin, frame, prepared };
+        let place = Place {
+            scene,
+            table,
+            origin: *origin,
+            frame,
+            prepared,
+        };
         let mut radiances = radiances.iter_mut();
-        candidates.pool(&place, &streams, first / POOL, radiances.len(), |candidate, radiance| {
-            let ray = leave(scene, &self.hit, *origin, candidate.direction, candidate.cos);
-            let sample = radiances.next();
-            if sees(scene, &Ray { t_max: candidate.distance, ..ray })
-                && let Some(sample) = sample
-            {
-                *sample += count * radiance;
-            }
-            lap(Phase::Rays);
-        });
+        candidates.pool(
+            &place,
+            &streams,
+            first / POOL,
+            radiances.len(),
+            |candidate, radiance| {
+                let ray = leave(
+                    scene,
+                    &self.hit,
+                    *origin,
+                    candidate.direction,
+                    candidate.cos,
+                );
+                let sample = radiances.next();
+                if sees(
+                    scene,
+                    &Ray {
+                        t_max: candidate.distance,
+                        ..ray
+                    },
+                ) && let Some(sample) = sample
+                {
+                    *sample += count * radiance;
+                }
+                lap(Phase::Rays);
+            },
+        );
     }
 
-    fn by_light(&self, scene: &Scene, settings: &Settings, xi: &[[f32; 8]; 3], radiances: &mut [Vec3]) {
+    fn by_light(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        xi: &[[f32; 8]; 3],
+        radiances: &mut [Vec3],
+    ) {
         let lights = scene.sample_lights8(|_| self.origin, xi, None);
         lap(Phase::Light);
         let wi = self.frame.to_local(&lights.direction);
@@ -155,22 +216,41 @@ impl Point {
         let (eval, cos) = (self.prepared.eval8(&wi), cosine(&wi).to_array());
         lap(Phase::Kernels);
         for (sum, (lane, cos)) in radiances.iter_mut().zip(cos.into_iter().enumerate()) {
-            let Some(light) = lights.lane(lane, 1.0) else { continue };
+            let Some(light) = lights.lane(lane, 1.0) else {
+                continue;
+            };
             let eval = eval.lane(lane);
             let weight = settings.mis.of_light(light.pdf, eval.pdf) * cos / light.pdf;
             let radiance = light.radiance * Vec3::from_array(eval.value) * weight;
             let ray = leave(scene, &self.hit, self.origin, light.direction, cos);
-            if radiance.max_element() > 0.0 && sees(scene, &Ray { t_max: light.distance, ..ray }) {
+            if radiance.max_element() > 0.0
+                && sees(
+                    scene,
+                    &Ray {
+                        t_max: light.distance,
+                        ..ray
+                    },
+                )
+            {
                 *sum += radiance;
             }
         }
         lap(Phase::Rays);
     }
 
-    fn by_bsdf(&self, scene: &Scene, settings: &Settings, xi: &[[f32; 8]; 3], radiances: &mut [Vec3]) {
+    fn by_bsdf(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        xi: &[[f32; 8]; 3],
+        radiances: &mut [Vec3],
+    ) {
         let sample = self.prepared.sample8(xi);
         lap(Phase::Kernels);
-        let (cos, directions) = (cosine(&sample.wi).to_array(), self.frame.to_world(&sample.wi));
+        let (cos, directions) = (
+            cosine(&sample.wi).to_array(),
+            self.frame.to_world(&sample.wi),
+        );
         lap(Phase::Frames);
         let lights = scene.lights_along(self.origin, &directions);
         lap(Phase::Light);
@@ -179,12 +259,22 @@ impl Point {
             if pdf <= 0.0 {
                 continue;
             }
-            let Some(light) = lights.lane(lane, 1.0) else { continue };
+            let Some(light) = lights.lane(lane, 1.0) else {
+                continue;
+            };
             let weight = settings.mis.of_bsdf(pdf, light.pdf);
             let of_bsdf = Vec3::from_array([0, 1, 2].map(|c| sample.weight[c].as_array()[lane]));
             let radiance = light.radiance * of_bsdf * weight;
             let ray = leave(scene, &self.hit, self.origin, light.direction, cos);
-            if radiance.max_element() > 0.0 && sees(scene, &Ray { t_max: light.distance, ..ray }) {
+            if radiance.max_element() > 0.0
+                && sees(
+                    scene,
+                    &Ray {
+                        t_max: light.distance,
+                        ..ray
+                    },
+                )
+            {
                 *sum += radiance;
             }
         }

@@ -19,7 +19,11 @@ const MOST_SURVIVAL: f32 = 0.95;
 
 /// Follows all paths of a wave to their ends.
 pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave) {
-    let depth = if settings.integrator == Integrator::Direct { 1 } else { settings.depth };
+    let depth = if settings.integrator == Integrator::Direct {
+        1
+    } else {
+        settings.depth
+    };
     lap(Phase::Numbers);
     for scatterings in 0.. {
         trace(scene, settings, wave, scatterings == 0);
@@ -46,15 +50,23 @@ pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave:
 /// Finds what every ray meets, and counts the light that it sees.
 fn trace(scene: &Scene, settings: &Settings, wave: &mut Wave, is_first: bool) {
     wave.met.clear();
-    wave.met.extend(wave.paths.iter().map(|path| scene.closest(&path.ray)));
+    wave.met
+        .extend(wave.paths.iter().map(|path| scene.closest(&path.ray)));
     lap(Phase::Rays);
     for k in 0..wave.paths.len() {
         let path = wave.paths[k];
         if is_first {
-            wave.add(path.slot, scene.see_from_camera(&path.ray, &wave.met[k]).unwrap_or_default());
+            wave.add(
+                path.slot,
+                scene
+                    .see_from_camera(&path.ray, &wave.met[k])
+                    .unwrap_or_default(),
+            );
             continue;
         }
-        let Some(seen) = scene.see(&path.ray, &wave.met[k]) else { continue };
+        let Some(seen) = scene.see(&path.ray, &wave.met[k]) else {
+            continue;
+        };
         let weight = settings.mis.of_bsdf(path.pdf, seen.pdf);
         wave.add(path.slot, path.throughput * seen.radiance * weight);
     }
@@ -70,7 +82,8 @@ fn surfaces(scene: &Scene, settings: &Settings, wave: &mut Wave) {
             Met::Hair(hit) => wave.hits.push((k, *hit)),
             Met::Surface(point, normal, albedo) => {
                 let origin = *point + scene.gap * *normal;
-                wave.shadows.extend(reflect(scene, settings, path, origin, *normal, *albedo));
+                wave.shadows
+                    .extend(reflect(scene, settings, path, origin, *normal, *albedo));
             }
             Met::Nothing | Met::Light(_) => path.alive = false,
         }
@@ -89,13 +102,22 @@ fn reflect(
 ) -> Option<Shadow> {
     path.throughput *= albedo;
     let [x, y, choice, _] = path.numbers.four();
-    let light = (settings.mis != Mis::Bsdf).then(|| scene.sample_light(origin, [x, y, choice])).flatten();
+    let light = (settings.mis != Mis::Bsdf)
+        .then(|| scene.sample_light(origin, [x, y, choice]))
+        .flatten();
     let shadow = light.and_then(|light| {
         let pdf = light.direction.dot(normal) / PI;
         let weight = settings.mis.of_light(light.pdf, pdf) * pdf / light.pdf;
-        let ray = Ray { t_max: light.distance, ..Ray::new(origin, light.direction) };
+        let ray = Ray {
+            t_max: light.distance,
+            ..Ray::new(origin, light.direction)
+        };
         let radiance = path.throughput * light.radiance * weight;
-        (pdf > 0.0).then_some(Shadow { ray, radiance, slot: path.slot })
+        (pdf > 0.0).then_some(Shadow {
+            ray,
+            radiance,
+            slot: path.slot,
+        })
     });
     let [x, y, _, roulette] = path.numbers.four();
     let (sin, cos) = (TAU * y).sin_cos();
@@ -111,16 +133,23 @@ fn reflect(
 
 /// Scatters at hair, eight hits at a time. Lanes of the last packet that have no hit repeat its first.
 fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave) {
-    let Wave { paths, hits, shadows, .. } = wave;
+    let Wave {
+        paths,
+        hits,
+        shadows,
+        ..
+    } = wave;
     for packet in hits.chunks(8) {
         let lanes = |lane: usize| packet.get(lane).unwrap_or(&packet[0]);
         let at = |lane: usize| (&paths[lanes(lane).0 as usize], lanes(lane).1);
         let wo: [Vec3; 8] = core::array::from_fn(|lane| -at(lane).0.ray.direction);
-        let tangents: [Vec3; 8] = core::array::from_fn(|lane| scene.strands.tangent(at(lane).1.segment, at(lane).1.s));
+        let tangents: [Vec3; 8] =
+            core::array::from_fn(|lane| scene.strands.tangent(at(lane).1.segment, at(lane).1.s));
         let wo = Vec3x8::from(wo);
         let frames = FiberFrame8::from_tangents_normals(&tangents.into(), &wo);
         let h = f32x8::new(core::array::from_fn(|lane| at(lane).1.h));
-        let origins: [Vec3; 8] = core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
+        let origins: [Vec3; 8] =
+            core::array::from_fn(|lane| scene.strands.position(at(lane).1.segment, at(lane).1.s));
         let hits = Hit8::new(frames.to_local(&wo), h);
         lap(Phase::Frames);
         let prepared = scene.hair.prepare8(&hits);
@@ -142,13 +171,30 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
         if settings.mis == Mis::Resampled {
             let sample = |lane: usize| paths[lanes(lane).0 as usize].numbers.sample();
             let tables = core::array::from_fn(|lane| tables.of_pass(sample(lane) / PASS));
-            let chosen = resampled::of_lights(scene, &tables, &origins, &frames, &prepared, &numbers);
-            for ((index, hit), (lane, chosen)) in packet.iter().zip(chosen.into_iter().enumerate()) {
-                let Some((candidate, radiance)) = chosen else { continue };
+            let chosen =
+                resampled::of_lights(scene, &tables, &origins, &frames, &prepared, &numbers);
+            for ((index, hit), (lane, chosen)) in packet.iter().zip(chosen.into_iter().enumerate())
+            {
+                let Some((candidate, radiance)) = chosen else {
+                    continue;
+                };
                 let path = &paths[*index as usize];
-                let ray = leave(scene, hit, origins[lane], candidate.direction, candidate.cos);
-                let ray = Ray { t_max: candidate.distance, ..ray };
-                shadows.push(Shadow { ray, radiance: path.throughput * radiance, slot: path.slot });
+                let ray = leave(
+                    scene,
+                    hit,
+                    origins[lane],
+                    candidate.direction,
+                    candidate.cos,
+                );
+                let ray = Ray {
+                    t_max: candidate.distance,
+                    ..ray
+                };
+                shadows.push(Shadow {
+                    ray,
+                    radiance: path.throughput * radiance,
+                    slot: path.slot,
+                });
             }
         } else if settings.mis != Mis::Bsdf {
             let xi = [0, 1, 2].map(|axis| numbers.map(|four| four[axis]));
@@ -159,15 +205,25 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
             let (eval, cos) = (prepared.eval8(&wi), cosine(&wi).to_array());
             lap(Phase::Kernels);
             for (lane, (index, hit)) in packet.iter().enumerate() {
-                let Some(light) = lights.lane(lane, 1.0) else { continue };
+                let Some(light) = lights.lane(lane, 1.0) else {
+                    continue;
+                };
                 let path = &paths[*index as usize];
                 let eval = eval.lane(lane);
                 let weight = settings.mis.of_light(light.pdf, eval.pdf) * cos[lane] / light.pdf;
-                let radiance = path.throughput * light.radiance * Vec3::from_array(eval.value) * weight;
+                let radiance =
+                    path.throughput * light.radiance * Vec3::from_array(eval.value) * weight;
                 if radiance.max_element() > 0.0 {
                     let ray = leave(scene, hit, origins[lane], light.direction, cos[lane]);
-                    let ray = Ray { t_max: light.distance, ..ray };
-                    shadows.push(Shadow { ray, radiance, slot: path.slot });
+                    let ray = Ray {
+                        t_max: light.distance,
+                        ..ray
+                    };
+                    shadows.push(Shadow {
+                        ray,
+                        radiance,
+                        slot: path.slot,
+                    });
                 }
             }
         }
@@ -184,7 +240,13 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
             path.pdf = at(&sample.pdf);
             path.alive = path.pdf > 0.0;
             path.throughput *= Vec3::from_array([0, 1, 2].map(|c| at(&sample.weight[c])));
-            path.ray = leave(scene, hit, origins[lane], directions.lane(lane).normalize_or(Vec3::Y), cos[lane]);
+            path.ray = leave(
+                scene,
+                hit,
+                origins[lane],
+                directions.lane(lane).normalize_or(Vec3::Y),
+                cos[lane],
+            );
             path.from_hair = true;
         }
         lap(Phase::Frames);
@@ -193,9 +255,18 @@ fn hair(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave
 
 /// A ray from the axis of a fibre, in a direction of inclination `cos_theta`.
 #[inline]
-pub(super) fn leave(scene: &Scene, hit: &tree::Hit, origin: Vec3, direction: Vec3, cos_theta: f32) -> Ray {
+pub(super) fn leave(
+    scene: &Scene,
+    hit: &tree::Hit,
+    origin: Vec3,
+    direction: Vec3,
+    cos_theta: f32,
+) -> Ray {
     let radius = scene.strands.radius(hit.segment, hit.s);
-    Ray { skip: Some(Skip::leaving(hit.strand, radius, cos_theta)), ..Ray::new(origin, direction) }
+    Ray {
+        skip: Some(Skip::leaving(hit.strand, radius, cos_theta)),
+        ..Ray::new(origin, direction)
+    }
 }
 
 /// Removes paths that have ended, and with `roulette` ends some of the others, each with a probability that grows as its

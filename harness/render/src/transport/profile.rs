@@ -43,7 +43,10 @@ impl Profile {
 
     /// Adds those of another.
     pub fn add(&mut self, other: Self) {
-        self.seconds.iter_mut().zip(other.seconds).for_each(|(sum, seconds)| *sum += seconds);
+        self.seconds
+            .iter_mut()
+            .zip(other.seconds)
+            .for_each(|(sum, seconds)| *sum += seconds);
         self.towards += other.towards;
         self.reached += other.reached;
     }
@@ -63,9 +66,15 @@ impl Profile {
 
 impl fmt::Display for Profile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let share = |(phase, name): (Phase, &str)| format!("{name} {:.1} %", 100.0 * self.share(phase));
+        let share =
+            |(phase, name): (Phase, &str)| format!("{name} {:.1} %", 100.0 * self.share(phase));
         write!(f, "{}; ", Self::PHASES.map(share).join(", "))?;
-        write!(f, "{:.1} % of {} rays towards lights reach them", 100.0 * self.visible(), self.towards)
+        write!(
+            f,
+            "{:.1} % of {} rays towards lights reach them",
+            100.0 * self.visible(),
+            self.towards
+        )
     }
 }
 
@@ -123,7 +132,11 @@ mod tests {
     #[test]
     fn laps_add_up_to_the_whole() {
         lap(Phase::Rays);
-        assert_eq!(stop(), Profile::default(), "nothing is measured before the start");
+        assert_eq!(
+            stop(),
+            Profile::default(),
+            "nothing is measured before the start"
+        );
         let begin = Instant::now();
         start();
         std::thread::sleep(core::time::Duration::from_millis(3));
@@ -131,9 +144,15 @@ mod tests {
         (0..4).for_each(|ray| count_ray(ray == 3));
         lap(Phase::Rest);
         let profile = stop();
-        let (whole, sum) = (begin.elapsed().as_secs_f64(), profile.seconds.iter().sum::<f64>());
+        let (whole, sum) = (
+            begin.elapsed().as_secs_f64(),
+            profile.seconds.iter().sum::<f64>(),
+        );
         assert!(sum >= 3e-3 && sum <= whole, "{sum} of {whole}");
-        assert!(profile.share(Phase::Light) > 0.5 && profile.share(Phase::Rays) == 0.0, "{profile}");
+        assert!(
+            profile.share(Phase::Light) > 0.5 && profile.share(Phase::Rays) == 0.0,
+            "{profile}"
+        );
         assert_eq!(profile.visible(), 0.25);
         let mut twice = profile;
         twice.add(profile);

@@ -108,13 +108,23 @@ impl Candidates {
 
     /// Draws and weighs `each` candidates of each technique, after those that the point had `before`.
     fn draw(&mut self, place: &Place<'_>, streams: &Streams, before: u32, each: u32) {
-        let Place { scene, table, origin, frame, prepared } = *place;
+        let Place {
+            scene,
+            table,
+            origin,
+            frame,
+            prepared,
+        } = *place;
         self.clear();
-        let counts = Counts { bsdf: each, light: each };
+        let counts = Counts {
+            bsdf: each,
+            light: each,
+        };
         let start = table.map_or(0, |table| table.place(streams.place));
         for first in (0..each).step_by(8) {
             let sky = table.map(|table| table.block(start + ((before + first) / 8) as usize));
-            let mut light = scene.sample_lights8(|_| origin, &streams.light.eight(before + first), sky);
+            let mut light =
+                scene.sample_lights8(|_| origin, &streams.light.eight(before + first), sky);
             lap(Phase::Light);
             scene.remove_blocked(origin, &mut light);
             lap(Phase::Rays);
@@ -136,8 +146,14 @@ impl Candidates {
             lap(Phase::Rays);
             let drawn = sample.pdf.simd_gt(f32x8::ZERO);
             light.pdf &= drawn;
-            light.radiance.iter_mut().for_each(|channel| *channel &= drawn);
-            let eval = Eval8 { value: sample.value, pdf: sample.pdf };
+            light
+                .radiance
+                .iter_mut()
+                .for_each(|channel| *channel &= drawn);
+            let eval = Eval8 {
+                value: sample.value,
+                pdf: sample.pdf,
+            };
             self.push(&eval, &cosine(&sample.wi), &light, counts, each - first);
             lap(Phase::Rest);
         }
@@ -155,7 +171,11 @@ pub(super) fn of_lights(
     numbers: &[[f32; 4]; 8],
 ) -> [Option<(Candidate, Vec3)>; 8] {
     let counts = Counts { bsdf: 0, light: 8 };
-    let mut candidates = [[Candidate { direction: Vec3::ZERO, cos: 0.0, distance: 0.0 }; OF_LIGHTS]; 8];
+    let mut candidates = [[Candidate {
+        direction: Vec3::ZERO,
+        cos: 0.0,
+        distance: 0.0,
+    }; OF_LIGHTS]; 8];
     let mut contribution = [[[0.0; OF_LIGHTS]; 3]; 8];
     let mut weight = [[0.0; OF_LIGHTS]; 8];
     let even = numbers.map(|[x, y, choice, _]| Even::cube([x, y, choice]));
@@ -179,9 +199,13 @@ pub(super) fn of_lights(
         let weighed = Weighed8::new(&eval, &cos, &radiance, &pdf, counts, Partition::Power);
         for lane in 0..8 {
             let distance = lights.distance.as_array()[lane];
-            candidates[lane][k] =
-                Candidate { direction: lights.direction.lane(lane), cos: cos.as_array()[lane], distance };
-            (0..3).for_each(|c| contribution[lane][c][k] = weighed.contribution[c].as_array()[lane]);
+            candidates[lane][k] = Candidate {
+                direction: lights.direction.lane(lane),
+                cos: cos.as_array()[lane],
+                distance,
+            };
+            (0..3)
+                .for_each(|c| contribution[lane][c][k] = weighed.contribution[c].as_array()[lane]);
             weight[lane][k] = weighed.weight.as_array()[lane];
         }
         lap(Phase::Rest);
@@ -189,7 +213,10 @@ pub(super) fn of_lights(
     core::array::from_fn(|lane| {
         let contribution = contribution[lane].each_ref().map(|column| &column[..]);
         let choice = choose(contribution, &weight[lane], 1, numbers[lane][3]).next()?;
-        Some((candidates[lane][choice.index], Vec3::from_array(choice.contribution)))
+        Some((
+            candidates[lane][choice.index],
+            Vec3::from_array(choice.contribution),
+        ))
     })
 }
 
@@ -206,7 +233,11 @@ fn transposed(blocks: &[Option<&LightSample8>; 8], k: usize) -> LightSample8 {
             lanes(|one| &one.direction.z),
         ),
         distance: lanes(|one| &one.distance),
-        radiance: [lanes(|one| &one.radiance[0]), lanes(|one| &one.radiance[1]), lanes(|one| &one.radiance[2])],
+        radiance: [
+            lanes(|one| &one.radiance[0]),
+            lanes(|one| &one.radiance[1]),
+            lanes(|one| &one.radiance[2]),
+        ],
         pdf: lanes(|one| &one.pdf),
     }
 }

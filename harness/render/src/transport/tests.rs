@@ -13,17 +13,39 @@ use rayon::prelude::*;
 /// A few strands on a head under a map with bright texels; with two lamps as well.
 fn under_map(lamps: bool) -> Scene {
     let mut xi = Independent::new(21, 0);
-    let bright = |k: usize| if matches!(k, 70 | 137 | 300) { 60.0 } else { 1.0 };
-    let pixels = (0..512).map(|k| xi.next_xi_f32::<3>().map(|x| bright(k) * x)).collect();
+    let bright = |k: usize| {
+        if matches!(k, 70 | 137 | 300) {
+            60.0
+        } else {
+            1.0
+        }
+    };
+    let pixels = (0..512)
+        .map(|k| xi.next_xi_f32::<3>().map(|x| bright(k) * x))
+        .collect();
     let env = Environment::from_pixels("small", 32, 16, pixels).expect("valid");
-    let hair = Choice::find("gaussian", "matched", "blond").and_then(|hair| hair.hair(Energy::Raw)).expect("listed");
+    let hair = Choice::find("gaussian", "matched", "blond")
+        .and_then(|hair| hair.hair(Energy::Raw))
+        .expect("listed");
     let strands = scenes::grow(Name::Env, 1500).expect("a few");
-    let parts = Parts { strands, imported: false, hair, env: Some(env), size: [32; 2], turn: 0.0 };
+    let parts = Parts {
+        strands,
+        imported: false,
+        hair,
+        env: Some(env),
+        size: [32; 2],
+        turn: 0.0,
+    };
     let mut scene = scenes::build(Name::Env, parts).expect("a scene");
     if lamps {
         for x in [-30.0, 20.0] {
             let corner = Vec3::new(x, 20.0, 10.0);
-            let lamp = Rectangle::light(corner, 10.0 * Vec3::X, Vec3::new(0.0, 6.0, 8.0), Vec3::splat(20.0));
+            let lamp = Rectangle::light(
+                corner,
+                10.0 * Vec3::X,
+                Vec3::new(0.0, 6.0, 8.0),
+                Vec3::splat(20.0),
+            );
             scene.rectangles.push(lamp.facing(Vec3::ZERO));
         }
     }
@@ -33,19 +55,28 @@ fn under_map(lamps: bool) -> Scene {
 /// Mean luminance of pictures of many seeds, whose first tables have densities that are wrong by a factor.
 fn mean(scene: &Scene, integrator: Integrator, mis: Mis, samples: u32, factor: f32) -> Estimate {
     let luminance = |seed: u64| -> f64 {
-        let settings = Settings { integrator, mis, seed, ..Settings::default() };
+        let settings = Settings {
+            integrator,
+            mis,
+            seed,
+            ..Settings::default()
+        };
         let length = resampled::length(integrator);
         let mut tables = Tables::new(&scene.sky, seed, length);
         if factor != 1.0 {
             let mut table = Table::draw(&scene.sky, seed, length);
-            table.iter_mut().for_each(|table| table.scale_density(factor));
+            table
+                .iter_mut()
+                .for_each(|table| table.scale_density(factor));
             tables.set(table);
         }
         let mut film = Film::new(Crop::whole(scene.camera.size()));
         for tile in &mut film.tiles {
             match integrator {
                 Integrator::Gather => gather::tile(scene, &tables, &settings, tile, samples),
-                Integrator::Direct | Integrator::Path => paths(scene, &tables, &settings, tile, samples),
+                Integrator::Direct | Integrator::Path => {
+                    paths(scene, &tables, &settings, tile, samples)
+                }
             }
         }
         film.picture().luminances().iter().sum()
@@ -61,7 +92,8 @@ fn apart(a: &Estimate, b: &Estimate) -> f64 {
 
 #[test]
 fn candidates_from_a_table_are_unbiased() {
-    let gather = |scene: &Scene, mis, samples, factor| mean(scene, Integrator::Gather, mis, samples, factor);
+    let gather =
+        |scene: &Scene, mis, samples, factor| mean(scene, Integrator::Gather, mis, samples, factor);
     for lamps in [false, true] {
         let scene = under_map(lamps);
         let expected = gather(&scene, Mis::Both, 32, 1.0);
@@ -69,10 +101,16 @@ fn candidates_from_a_table_are_unbiased() {
         for samples in [16, 5, 43] {
             let got = gather(&scene, Mis::Resampled, samples, 1.0);
             assert!(got.standard_error < 3e-3 * got.value, "{got:?}");
-            assert!(apart(&got, &expected).abs() < 4.0, "{samples} rays, lamps {lamps}: {got:?} for {expected:?}");
+            assert!(
+                apart(&got, &expected).abs() < 4.0,
+                "{samples} rays, lamps {lamps}: {got:?} for {expected:?}"
+            );
         }
         let scaled = gather(&scene, Mis::Resampled, 32, 1.02);
-        assert!(lamps || apart(&scaled, &expected) < -4.0, "a density 2% off shows: {scaled:?} for {expected:?}");
+        assert!(
+            lamps || apart(&scaled, &expected) < -4.0,
+            "a density 2% off shows: {scaled:?} for {expected:?}"
+        );
     }
 }
 
@@ -81,8 +119,12 @@ fn paths_have_the_same_light_from_a_table() {
     for lamps in [false, true] {
         let scene = under_map(lamps);
         // Samples of two passes, the second incomplete.
-        let [got, expected] = [Mis::Resampled, Mis::Both].map(|mis| mean(&scene, Integrator::Path, mis, 6, 1.0));
+        let [got, expected] =
+            [Mis::Resampled, Mis::Both].map(|mis| mean(&scene, Integrator::Path, mis, 6, 1.0));
         assert!(got.standard_error < 1e-2 * got.value, "{got:?}");
-        assert!(apart(&got, &expected).abs() < 4.0, "lamps {lamps}: {got:?} for {expected:?}");
+        assert!(
+            apart(&got, &expected).abs() < 4.0,
+            "lamps {lamps}: {got:?} for {expected:?}"
+        );
     }
 }

@@ -47,15 +47,25 @@ pub(super) struct Wave {
 
 impl Wave {
     /// Camera rays of some samples of every pixel.
-    pub(super) fn start(&mut self, scene: &Scene, settings: &Settings, place: Crop, samples: Range<u32>) {
+    pub(super) fn start(
+        &mut self,
+        scene: &Scene,
+        settings: &Settings,
+        place: Crop,
+        samples: Range<u32>,
+    ) {
         self.paths.clear();
         for pixel in place.pixels() {
             for sample in samples.clone() {
-                let mut numbers = Numbers::new(settings.sequence, settings.seed, key(pixel), sample);
+                let mut numbers =
+                    Numbers::new(settings.sequence, settings.seed, key(pixel), sample);
                 let [x, y, ..] = numbers.four();
                 let ray = scene.camera.ray(pixel[0] as f32 + x, pixel[1] as f32 + y);
                 let slot = self.paths.len();
-                #[expect(clippy::cast_possible_truncation, reason = "a tile has a few thousand samples")]
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    reason = "a tile has a few thousand samples"
+                )]
                 let slot = slot as u32;
                 self.paths.push(Path {
                     ray,

@@ -37,13 +37,24 @@ impl Block {
             (number[lane], strand[lane]) = (k, of);
         }
         let [start, edge] = [start, edge].map(|vectors| vectors.map(f32x8::new));
-        Self { start, edge, radius: f32x8::new(radius), widening: f32x8::new(widening), number, strand }
+        Self {
+            start,
+            edge,
+            radius: f32x8::new(radius),
+            widening: f32x8::new(widening),
+            number,
+            strand,
+        }
     }
 
     /// Where the ray passes nearer to an axis than the radius there, before `limit`: lanes as bits, distances, and places
     /// along the segments.
     #[inline(always)]
-    pub(super) fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2])
+    pub(super) fn meet<L: Lanes<Stored = f32x8>>(
+        &self,
+        ray: &Spread<L>,
+        limit: f32,
+    ) -> (u32, [f32x8; 2])
     where
         f32x8: Broadcast<L>,
     {
@@ -53,17 +64,35 @@ impl Block {
             self.start[1].lanes() - ray.origin[1],
             self.start[2].lanes() - ray.origin[2],
         ];
-        let edge: [L; 3] = [self.edge[0].lanes(), self.edge[1].lanes(), self.edge[2].lanes()];
+        let edge: [L; 3] = [
+            self.edge[0].lanes(),
+            self.edge[1].lanes(),
+            self.edge[2].lanes(),
+        ];
         let from_along = from[0].mul_add(dx, from[1].mul_add(dy, from[2] * dz));
         let edge_along = edge[0].mul_add(dx, edge[1].mul_add(dy, edge[2] * dz));
         // Start and edge without their parts along the ray, the first with its sign turned.
-        let start = [from_along.mul_sub(dx, from[0]), from_along.mul_sub(dy, from[1]), from_along.mul_sub(dz, from[2])];
-        let edge = [edge[0] - edge_along * dx, edge[1] - edge_along * dy, edge[2] - edge_along * dz];
+        let start = [
+            from_along.mul_sub(dx, from[0]),
+            from_along.mul_sub(dy, from[1]),
+            from_along.mul_sub(dz, from[2]),
+        ];
+        let edge = [
+            edge[0] - edge_along * dx,
+            edge[1] - edge_along * dy,
+            edge[2] - edge_along * dz,
+        ];
         // The place nearest to the ray.
         let edge_sq = edge[0].mul_add(edge[0], edge[1].mul_add(edge[1], edge[2] * edge[2]));
         let start_edge = start[0].mul_add(edge[0], start[1].mul_add(edge[1], start[2] * edge[2]));
-        let s = (start_edge / edge_sq.max(L::splat(1e-30))).max(L::splat(0.0)).min(L::splat(1.0));
-        let axis = [s.mul_sub(edge[0], start[0]), s.mul_sub(edge[1], start[1]), s.mul_sub(edge[2], start[2])];
+        let s = (start_edge / edge_sq.max(L::splat(1e-30)))
+            .max(L::splat(0.0))
+            .min(L::splat(1.0));
+        let axis = [
+            s.mul_sub(edge[0], start[0]),
+            s.mul_sub(edge[1], start[1]),
+            s.mul_sub(edge[2], start[2]),
+        ];
         let distance_sq = axis[0].mul_add(axis[0], axis[1].mul_add(axis[1], axis[2] * axis[2]));
         let radius = s.mul_add(self.widening.lanes(), self.radius.lanes());
         let t = s.mul_add(edge_along, from_along);
@@ -75,7 +104,8 @@ impl Block {
     /// Whether the segment is of a strand that the ray leaves, and at a distance that it ignores.
     #[inline(always)]
     pub(super) fn skipped(&self, lane: usize, t: f32, ray: &Ray) -> bool {
-        ray.skip.is_some_and(|skip| skip.strand == self.strand[lane] && t < skip.before)
+        ray.skip
+            .is_some_and(|skip| skip.strand == self.strand[lane] && t < skip.before)
     }
 
     /// Number of the segment.
@@ -94,7 +124,13 @@ impl Block {
         // A ray along the axis has no side.
         let side = edge.cross(ray.direction).normalize_or_zero();
         let h = (from_axis.dot(side) / radius).clamp(-1.0, 1.0);
-        Hit { t, segment: self.number[lane], strand: self.strand[lane], s, h }
+        Hit {
+            t,
+            segment: self.number[lane],
+            strand: self.strand[lane],
+            s,
+            h,
+        }
     }
 }
 

@@ -33,7 +33,12 @@ pub(super) fn build(strands: &Strands) -> (Vec<Node>, Vec<Block>) {
     };
     let (mut nodes, mut ranges) = (Vec::new(), Vec::new());
     place(root, &mut nodes, &mut ranges);
-    let block = |range: Range<usize>| Block::new(strands, primitives[range].iter().map(|p| (p.strand, p.number)));
+    let block = |range: Range<usize>| {
+        Block::new(
+            strands,
+            primitives[range].iter().map(|p| (p.strand, p.number)),
+        )
+    };
     (nodes, ranges.into_par_iter().map(block).collect())
 }
 
@@ -41,14 +46,27 @@ pub(super) fn build(strands: &Strands) -> (Vec<Node>, Vec<Block>) {
 /// both ends; they have some slack against rounding, for rays that start within a few scenes' sizes.
 fn primitives(strands: &Strands) -> Vec<Primitive> {
     let bounds = strands.bounds();
-    let slack =
-        if bounds.is_empty() { 0.0 } else { bounds.lo.abs().max(bounds.hi.abs()).max_element() / (1 << 21) as f32 };
+    let slack = if bounds.is_empty() {
+        0.0
+    } else {
+        bounds.lo.abs().max(bounds.hi.abs()).max_element() / (1 << 21) as f32
+    };
     let sphere = |k, s| {
         let (centre, radius): (Vec3, f32) = (strands.position(k, s), strands.radius(k, s) + slack);
-        Bounds { lo: centre - radius, hi: centre + radius }
+        Bounds {
+            lo: centre - radius,
+            hi: centre + radius,
+        }
     };
     let box_of = |k| sphere(k, 0.0).union(&sphere(k, 1.0));
-    strands.numbers().map(|(strand, number)| Primitive { bounds: box_of(number), strand, number }).collect()
+    strands
+        .numbers()
+        .map(|(strand, number)| Primitive {
+            bounds: box_of(number),
+            strand,
+            number,
+        })
+        .collect()
 }
 
 /// The tree over `primitives`, whose order it changes; `first` is the place of the first of them among all.
@@ -58,33 +76,54 @@ fn draft(primitives: &mut [Primitive], extent: Extent, first: usize, depth: usiz
     }
     let large = primitives.len() > PARALLEL;
     let mut next = first;
-    let parts = divide(primitives, extent, depth < BY_COST).into_iter().map(|(part, extent)| {
-        let first = next;
-        next += part.len();
-        (part, extent, first)
-    });
+    let parts = divide(primitives, extent, depth < BY_COST)
+        .into_iter()
+        .map(|(part, extent)| {
+            let first = next;
+            next += part.len();
+            (part, extent, first)
+        });
     let below = |(part, extent, first): (&mut [Primitive], Extent, usize)| {
         (extent.bounds, draft(part, extent, first, depth + 1))
     };
     Draft::Node(if large {
-        parts.collect::<Vec<_>>().into_par_iter().map(below).collect()
+        parts
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .map(below)
+            .collect()
     } else {
         parts.map(below).collect()
     })
 }
 
 /// At most eight parts, in order. The part with the largest surface is divided first, or the one with the most segments.
-fn divide(primitives: &mut [Primitive], extent: Extent, by_cost: bool) -> Vec<(&mut [Primitive], Extent)> {
+fn divide(
+    primitives: &mut [Primitive],
+    extent: Extent,
+    by_cost: bool,
+) -> Vec<(&mut [Primitive], Extent)> {
     let mut parts = vec![(primitives, extent)];
     while parts.len() < 8 {
         let weight = |(part, extent): &(&mut [Primitive], Extent)| {
-            if by_cost { extent.bounds.half_area() } else { part.len() as f32 }
+            if by_cost {
+                extent.bounds.half_area()
+            } else {
+                part.len() as f32
+            }
         };
-        let large = parts.iter().enumerate().filter(|(_, (part, _))| part.len() > 8);
+        let large = parts
+            .iter()
+            .enumerate()
+            .filter(|(_, (part, _))| part.len() > 8);
         let largest = large.max_by(|(_, a), (_, b)| weight(a).total_cmp(&weight(b)));
         let Some((index, _)) = largest else { break };
         let (part, extent) = parts.remove(index);
-        let middle = if by_cost { split(part, &extent) } else { middle(part.len()) };
+        let middle = if by_cost {
+            split(part, &extent)
+        } else {
+            middle(part.len())
+        };
         let (lower, upper) = part.split_at_mut(middle);
         let (lower_extent, upper_extent) = (Extent::of(lower), Extent::of(upper));
         parts.insert(index, (upper, upper_extent));
@@ -94,7 +133,11 @@ fn divide(primitives: &mut [Primitive], extent: Extent, by_cost: bool) -> Vec<(&
 }
 
 /// Writes a node and all below it, and gives its index. Blocks are listed by their segments.
-fn place(children: Vec<(Bounds, Draft)>, nodes: &mut Vec<Node>, blocks: &mut Vec<Range<usize>>) -> usize {
+fn place(
+    children: Vec<(Bounds, Draft)>,
+    nodes: &mut Vec<Node>,
+    blocks: &mut Vec<Range<usize>>,
+) -> usize {
     let index = nodes.len();
     nodes.push(Node::new(&[]));
     let mut links = Vec::with_capacity(8);

@@ -24,11 +24,17 @@ impl Child {
     pub(super) const ROOT: Self = Self(0);
 
     pub(super) fn node(index: usize) -> Self {
-        Self(u32::try_from(index << 1).expect("segments are counted in 31 bits, and nodes are fewer"))
+        Self(
+            u32::try_from(index << 1)
+                .expect("segments are counted in 31 bits, and nodes are fewer"),
+        )
     }
 
     pub(super) fn block(index: usize) -> Self {
-        Self(u32::try_from(index << 1 | 1).expect("segments are counted in 31 bits, and blocks are fewer"))
+        Self(
+            u32::try_from(index << 1 | 1)
+                .expect("segments are counted in 31 bits, and blocks are fewer"),
+        )
     }
 
     #[inline(always)]
@@ -54,7 +60,10 @@ impl Node {
             }
             links[lane] = *child;
         }
-        Self { bounds: [lo.map(f32x8::new), hi.map(f32x8::new)], children: links }
+        Self {
+            bounds: [lo.map(f32x8::new), hi.map(f32x8::new)],
+            children: links,
+        }
     }
 
     /// The boxes that the ray passes before `limit`: lanes as bits, and where it enters them.
@@ -70,8 +79,12 @@ impl Node {
             let sign = ray.negative[axis];
             let enter: L = self.bounds[sign][axis].lanes();
             let leave: L = self.bounds[1 - sign][axis].lanes();
-            near = enter.mul_sub(ray.inverse[axis], ray.origin_inverse[axis]).max(near);
-            far = leave.mul_sub(ray.inverse[axis], ray.origin_inverse[axis]).min(far);
+            near = enter
+                .mul_sub(ray.inverse[axis], ray.origin_inverse[axis])
+                .max(near);
+            far = leave
+                .mul_sub(ray.inverse[axis], ray.origin_inverse[axis])
+                .min(far);
             axis += 1;
         }
         (bits::<L>(near.lt(far * L::splat(ROUNDING))), near.store())

@@ -20,7 +20,12 @@ impl Ray {
     /// A ray without end that leaves no strand.
     #[must_use]
     pub const fn new(origin: Vec3, direction: Vec3) -> Self {
-        Self { origin, direction, t_max: f32::INFINITY, skip: None }
+        Self {
+            origin,
+            direction,
+            t_max: f32::INFINITY,
+            skip: None,
+        }
     }
 }
 
@@ -43,7 +48,10 @@ impl Skip {
     #[inline]
     #[must_use]
     pub fn leaving(strand: u32, radius: f32, cos_theta: f32) -> Self {
-        Self { strand, before: 1.5 * radius / cos_theta.max(0.01) }
+        Self {
+            strand,
+            before: 1.5 * radius / cos_theta.max(0.01),
+        }
     }
 }
 
@@ -83,9 +91,21 @@ impl<L: Lanes> Spread<L> {
         Self {
             origin: [L::splat(o.x), L::splat(o.y), L::splat(o.z)],
             direction: [L::splat(d.x), L::splat(d.y), L::splat(d.z)],
-            inverse: [L::splat(inverse[0]), L::splat(inverse[1]), L::splat(inverse[2])],
-            origin_inverse: [L::splat(o.x * inverse[0]), L::splat(o.y * inverse[1]), L::splat(o.z * inverse[2])],
-            negative: [usize::from(inverse[0] < 0.0), usize::from(inverse[1] < 0.0), usize::from(inverse[2] < 0.0)],
+            inverse: [
+                L::splat(inverse[0]),
+                L::splat(inverse[1]),
+                L::splat(inverse[2]),
+            ],
+            origin_inverse: [
+                L::splat(o.x * inverse[0]),
+                L::splat(o.y * inverse[1]),
+                L::splat(o.z * inverse[2]),
+            ],
+            negative: [
+                usize::from(inverse[0] < 0.0),
+                usize::from(inverse[1] < 0.0),
+                usize::from(inverse[2] < 0.0),
+            ],
         }
     }
 }
@@ -93,5 +113,9 @@ impl<L: Lanes> Spread<L> {
 /// `1 / x`, at most 1e18 in magnitude, so that no product with it is NaN.
 #[inline(always)]
 fn reciprocal(x: f32) -> f32 {
-    if x.abs() < 1e-18 { 1e18_f32.copysign(x) } else { 1.0 / x }
+    if x.abs() < 1e-18 {
+        1e18_f32.copysign(x)
+    } else {
+        1.0 / x
+    }
 }

@@ -27,7 +27,10 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    const EMPTY: Self = Self { bounds: Bounds::EMPTY, centres: Bounds::EMPTY };
+    const EMPTY: Self = Self {
+        bounds: Bounds::EMPTY,
+        centres: Bounds::EMPTY,
+    };
 
     /// Extent of `primitives`.
     pub(super) fn of(primitives: &[Primitive]) -> Self {
@@ -35,13 +38,18 @@ impl Extent {
             let chunks = primitives.par_chunks(PARALLEL / 4);
             return chunks.map(Self::of).reduce(
                 || Self::EMPTY,
-                |a, b| Self { bounds: a.bounds.union(&b.bounds), centres: a.centres.union(&b.centres) },
+                |a, b| Self {
+                    bounds: a.bounds.union(&b.bounds),
+                    centres: a.centres.union(&b.centres),
+                },
             );
         }
-        primitives.iter().fold(Self::EMPTY, |extent, primitive| Self {
-            bounds: extent.bounds.union(&primitive.bounds),
-            centres: extent.centres.with(primitive.bounds.centre()),
-        })
+        primitives
+            .iter()
+            .fold(Self::EMPTY, |extent, primitive| Self {
+                bounds: extent.bounds.union(&primitive.bounds),
+                centres: extent.centres.with(primitive.bounds.centre()),
+            })
     }
 }
 
@@ -53,14 +61,24 @@ struct Bin {
 }
 
 impl Bin {
-    const EMPTY: Self = Self { bounds: Bounds::EMPTY, count: 0 };
+    const EMPTY: Self = Self {
+        bounds: Bounds::EMPTY,
+        count: 0,
+    };
 
     fn and(&self, other: &Self) -> Self {
-        Self { bounds: self.bounds.union(&other.bounds), count: self.count + other.count }
+        Self {
+            bounds: self.bounds.union(&other.bounds),
+            count: self.count + other.count,
+        }
     }
 
     fn cost(&self, in_blocks: bool) -> f32 {
-        let count = if in_blocks { self.count.div_ceil(8) } else { self.count };
+        let count = if in_blocks {
+            self.count.div_ceil(8)
+        } else {
+            self.count
+        };
         self.bounds.half_area() * count as f32
     }
 }
@@ -74,20 +92,27 @@ impl Bins {
     fn of(primitives: &[Primitive], scale: &Scale) -> Self {
         if primitives.len() > PARALLEL {
             let chunks = primitives.par_chunks(PARALLEL / 4);
-            return chunks.map(|chunk| Self::of(chunk, scale)).reduce(|| Self::EMPTY, |a, b| a.and(&b));
+            return chunks
+                .map(|chunk| Self::of(chunk, scale))
+                .reduce(|| Self::EMPTY, |a, b| a.and(&b));
         }
         let mut bins = Self::EMPTY;
         for primitive in primitives {
             for (bins, place) in bins.0.iter_mut().zip(scale.bins(primitive)) {
                 let bin = &mut bins[place];
-                *bin = bin.and(&Bin { bounds: primitive.bounds, count: 1 });
+                *bin = bin.and(&Bin {
+                    bounds: primitive.bounds,
+                    count: 1,
+                });
             }
         }
         bins
     }
 
     fn and(&self, other: &Self) -> Self {
-        Self(core::array::from_fn(|axis| core::array::from_fn(|i| self.0[axis][i].and(&other.0[axis][i]))))
+        Self(core::array::from_fn(|axis| {
+            core::array::from_fn(|i| self.0[axis][i].and(&other.0[axis][i]))
+        }))
     }
 
     /// The cheapest place: axis, and the first bin of the upper half. None if all centres are in one bin.
@@ -125,8 +150,17 @@ impl Scale {
     fn of(extent: &Extent) -> Self {
         let size = extent.centres.size();
         // A little less than all, so that the largest centre is in the last bin.
-        let bins = Vec3::from_array(size.to_array().map(|x| if x > 1e-20 { BINS as f32 * 0.9999 / x } else { 0.0 }));
-        Self { lo: extent.centres.lo, bins }
+        let bins = Vec3::from_array(size.to_array().map(|x| {
+            if x > 1e-20 {
+                BINS as f32 * 0.9999 / x
+            } else {
+                0.0
+            }
+        }));
+        Self {
+            lo: extent.centres.lo,
+            bins,
+        }
     }
 
     fn bins(&self, primitive: &Primitive) -> [usize; 3] {

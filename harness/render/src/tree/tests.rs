@@ -33,7 +33,9 @@ fn search_all(tree: &Tree, ray: &Ray) -> Option<Hit> {
         let (met, [t, s]) = tree.level.run(Alone(block, ray));
         for lane in (0..8).filter(|lane| met >> lane & 1 == 1) {
             let hit = block.hit(lane, ray, t.as_array()[lane], s.as_array()[lane]);
-            let ignored = ray.skip.is_some_and(|skip| skip.strand == hit.strand && hit.t < skip.before);
+            let ignored = ray
+                .skip
+                .is_some_and(|skip| skip.strand == hit.strand && hit.t < skip.before);
             let before = |best: Hit| (hit.t, hit.segment) < (best.t, best.segment);
             if hit.t < ray.t_max && !ignored && best.is_none_or(before) {
                 best = Some(hit);
@@ -100,14 +102,19 @@ fn ray(strands: &Strands, segments: &[(u32, u32)], numbers: &mut Numbers) -> Ray
     let target = strands.position(segment, s);
     let direction = numbers.direction();
     let ray = match numbers.index(6) {
-        0 => Ray::new(target + 0.3 * numbers.vector() - 30.0 * direction, direction),
+        0 => Ray::new(
+            target + 0.3 * numbers.vector() - 30.0 * direction,
+            direction,
+        ),
         1 => Ray::new(10.0 * numbers.vector(), direction),
         2 => {
-            let edge = (strands.position(segment, 1.0) - strands.position(segment, 0.0)).normalize();
+            let edge =
+                (strands.position(segment, 1.0) - strands.position(segment, 0.0)).normalize();
             Ray::new(target - 5.0 * edge, edge)
         }
         3 => {
-            let axis = Vec3::AXES[numbers.index(3)] * if numbers.index(2) == 0 { 1.0 } else { -1.0 };
+            let axis =
+                Vec3::AXES[numbers.index(3)] * if numbers.index(2) == 0 { 1.0 } else { -1.0 };
             Ray::new(target - 15.0 * axis, axis)
         }
         4 => {
@@ -117,10 +124,20 @@ fn ray(strands: &Strands, segments: &[(u32, u32)], numbers: &mut Numbers) -> Ray
         }
         _ => {
             let across = strands.tangent(segment, s).cross(direction).length();
-            Ray { skip: Some(Skip::leaving(strand, strands.radius(segment, s), across)), ..Ray::new(target, direction) }
+            Ray {
+                skip: Some(Skip::leaving(strand, strands.radius(segment, s), across)),
+                ..Ray::new(target, direction)
+            }
         }
     };
-    if numbers.index(4) == 0 { Ray { t_max: 20.0 * numbers.number(), ..ray } } else { ray }
+    if numbers.index(4) == 0 {
+        Ray {
+            t_max: 20.0 * numbers.number(),
+            ..ray
+        }
+    } else {
+        ray
+    }
 }
 
 #[test]
@@ -136,43 +153,88 @@ fn tree_finds_what_a_search_of_all_finds() {
             let ray = ray(&strands, &segments, &mut numbers);
             let expected = search_all(&tree, &ray);
             assert_eq!(tree.closest(&ray), expected, "ray {i} on {level}: {ray:?}");
-            assert_eq!(tree.occluded(&ray), expected.is_some(), "ray {i} on {level}: {ray:?}");
+            assert_eq!(
+                tree.occluded(&ray),
+                expected.is_some(),
+                "ray {i} on {level}: {ray:?}"
+            );
             hits += usize::from(expected.is_some());
             // Limits and strands to skip count: without them there are more hits.
-            beyond += usize::from(expected.is_none() && tree.occluded(&Ray::new(ray.origin, ray.direction)));
+            beyond += usize::from(
+                expected.is_none() && tree.occluded(&Ray::new(ray.origin, ray.direction)),
+            );
         }
-        assert!((5_000..9_900).contains(&hits) && beyond > 500, "{hits} hits, {beyond} beyond limits on {level}");
+        assert!(
+            (5_000..9_900).contains(&hits) && beyond > 500,
+            "{hits} hits, {beyond} beyond limits on {level}"
+        );
     }
 }
 
 #[test]
 fn hits_end_before_t_max_and_begin_after_the_origin() {
     let mut builder = Builder::default();
-    builder.push([(Vec3::NEG_X, 0.5), (Vec3::X, 0.5)]).expect("a cylinder");
+    builder
+        .push([(Vec3::NEG_X, 0.5), (Vec3::X, 0.5)])
+        .expect("a cylinder");
     let tree = Tree::build(&builder.finish()).expect("a small scene");
-    let from = |y: f32, t_max: f32| Ray { t_max, ..Ray::new(Vec3::new(0.0, y, 0.0), Vec3::NEG_Y) };
+    let from = |y: f32, t_max: f32| Ray {
+        t_max,
+        ..Ray::new(Vec3::new(0.0, y, 0.0), Vec3::NEG_Y)
+    };
     assert_eq!(tree.closest(&from(2.0, 2.0)), None, "at t_max itself");
     assert!(!tree.occluded(&from(2.0, 2.0)), "at t_max itself");
-    assert_eq!(tree.closest(&from(2.0, 2.0_f32.next_up())).map(|hit| hit.t), Some(2.0), "just before t_max");
+    assert_eq!(
+        tree.closest(&from(2.0, 2.0_f32.next_up())).map(|hit| hit.t),
+        Some(2.0),
+        "just before t_max"
+    );
     assert_eq!(tree.closest(&from(0.0, 9.0)), None, "from the axis itself");
-    assert_eq!(tree.closest(&from(0.25, 9.0)).map(|hit| hit.t), Some(0.25), "from within the radius");
-    let skipping = |before| Ray { skip: Some(Skip { strand: 0, before }), ..from(0.25, 9.0) };
-    assert_eq!(tree.closest(&skipping(0.3)), None, "the strand that the ray leaves");
-    assert!(tree.closest(&skipping(0.25)).is_some(), "as far as the ray has left it");
+    assert_eq!(
+        tree.closest(&from(0.25, 9.0)).map(|hit| hit.t),
+        Some(0.25),
+        "from within the radius"
+    );
+    let skipping = |before| Ray {
+        skip: Some(Skip { strand: 0, before }),
+        ..from(0.25, 9.0)
+    };
+    assert_eq!(
+        tree.closest(&skipping(0.3)),
+        None,
+        "the strand that the ray leaves"
+    );
+    assert!(
+        tree.closest(&skipping(0.25)).is_some(),
+        "as far as the ray has left it"
+    );
 }
 
 #[test]
 fn equal_segments_go_by_number() {
     let mut builder = Strands::builder();
     for _ in 0..1000 {
-        builder.push([(Vec3::NEG_X, 0.1), (Vec3::X, 0.1)]).expect("a cylinder");
+        builder
+            .push([(Vec3::NEG_X, 0.1), (Vec3::X, 0.1)])
+            .expect("a cylinder");
     }
     let strands = builder.finish();
     let tree = Tree::build(&strands).expect("a small scene");
     let mut ray = Ray::new(Vec3::new(0.1, 0.05, 3.0), Vec3::NEG_Z);
-    assert_eq!(tree.closest(&ray).map(|hit| hit.segment), Some(0), "the first of equal ones");
-    ray.skip = Some(Skip { strand: 0, before: 4.0 });
-    assert_eq!(tree.closest(&ray).map(|hit| (hit.strand, hit.segment)), Some((1, 2)), "the first that is not skipped");
+    assert_eq!(
+        tree.closest(&ray).map(|hit| hit.segment),
+        Some(0),
+        "the first of equal ones"
+    );
+    ray.skip = Some(Skip {
+        strand: 0,
+        before: 4.0,
+    });
+    assert_eq!(
+        tree.closest(&ray).map(|hit| (hit.strand, hit.segment)),
+        Some((1, 2)),
+        "the first that is not skipped"
+    );
     assert_eq!(tree.size().blocks, 125, "blocks are full");
 }
 
@@ -184,7 +246,9 @@ fn small_scenes() {
     assert!(!empty.occluded(&ray), "nothing to meet");
     for segments in [1, 7, 8, 9, 64, 65] {
         let mut builder = Strands::builder();
-        builder.push((0..=segments).map(|k| (Vec3::new(k as f32 - 0.5, 0.0, 0.0), 0.1))).expect("a cylinder");
+        builder
+            .push((0..=segments).map(|k| (Vec3::new(k as f32 - 0.5, 0.0, 0.0), 0.1)))
+            .expect("a cylinder");
         let tree = Tree::build(&builder.finish()).expect("a small scene");
         for k in 0..segments {
             let ray = Ray::new(Vec3::new(k as f32, 5.0, 0.05), Vec3::NEG_Y);
@@ -198,28 +262,45 @@ fn small_scenes() {
 fn thin_scenes_are_refused() {
     let scene = |length: f32| {
         let mut builder = Strands::builder();
-        builder.push([(Vec3::ZERO, 0.001), (Vec3::X * length, 0.0)]).expect("a cone");
+        builder
+            .push([(Vec3::ZERO, 0.001), (Vec3::X * length, 0.0)])
+            .expect("a cone");
         Tree::build(&builder.finish())
     };
     assert!(scene(99.0).is_ok(), "1e5 radii");
     let error = scene(101.0).expect_err("more than 1e5 radii");
-    assert!(matches!(error, TreeError::Scale { radius: 0.001, .. }), "{error}");
-    assert!(error.to_string().contains("101") && error.to_string().contains("0.001"), "{error}");
+    assert!(
+        matches!(error, TreeError::Scale { radius: 0.001, .. }),
+        "{error}"
+    );
+    assert!(
+        error.to_string().contains("101") && error.to_string().contains("0.001"),
+        "{error}"
+    );
 }
 
 #[test]
 fn strands_and_trees_are_the_same_for_any_number_of_threads() {
     let groom = Groom::new(Kind::Curly, 400);
     let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
         pool.install(|| {
-            let strands = groom.grow(&Flattening::default()).expect("settings in range");
+            let strands = groom
+                .grow(&Flattening::default())
+                .expect("settings in range");
             let tree = Tree::build(&strands).expect("a small scene");
             (strands, format!("{:?} {:?}", tree.nodes, tree.blocks))
         })
     };
     let one = with(1);
-    assert!(one.0.segments() > 40_000, "enough for sets to be looked at in parallel: {}", one.0.segments());
+    assert!(
+        one.0.segments() > 40_000,
+        "enough for sets to be looked at in parallel: {}",
+        one.0.segments()
+    );
     for threads in [2, 7] {
         assert!(with(threads) == one, "{threads} threads");
     }

@@ -95,13 +95,23 @@ const STACK: usize = 7 * DEEPEST + 1;
 
 /// The nearest hit, or with `ANY` the first that is found, of which only that it is there is known.
 #[inline(always)]
-fn search<L: Lanes<Stored = f32x8>, C: Count, const ANY: bool>(tree: &Tree, ray: &Ray, visits: &mut C) -> Option<Hit>
+fn search<L: Lanes<Stored = f32x8>, C: Count, const ANY: bool>(
+    tree: &Tree,
+    ray: &Ray,
+    visits: &mut C,
+) -> Option<Hit>
 where
     f32x8: Broadcast<L>,
 {
     let spread = Spread::<L>::new(ray);
     // No segment has a number below 0: what is at `t_max` itself is not met.
-    let mut best = Best { t: ray.t_max, s: 0.0, block: usize::MAX, lane: 0, number: 0 };
+    let mut best = Best {
+        t: ray.t_max,
+        s: 0.0,
+        block: usize::MAX,
+        lane: 0,
+        number: 0,
+    };
     let mut stack = [(Child::ROOT, 0.0_f32); STACK];
     let mut waiting = 1;
     while waiting > 0 {
@@ -122,7 +132,13 @@ where
                 let (t, number) = (t.as_array()[lane], block.number(lane));
                 let nearer = t < best.t || (t == best.t && number < best.number);
                 if nearer && !block.skipped(lane, t, ray) {
-                    best = Best { t, s: s.as_array()[lane], block: child.index(), lane, number };
+                    best = Best {
+                        t,
+                        s: s.as_array()[lane],
+                        block: child.index(),
+                        lane,
+                        number,
+                    };
                     if ANY {
                         met = 0;
                         waiting = 0;

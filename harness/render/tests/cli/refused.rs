@@ -10,17 +10,33 @@ fn bad_flags_are_refused() {
     let folder = TempDir::new().expect("a folder");
     for (flags, words) in [
         (&["render", "nowhere"][..], &["nowhere", "head"][..]),
-        (&["render", "head", "--size", "0x40"], &["--size", "0x40", "1 to 16384"]),
-        (&["render", "head", "--size", "20000x40"], &["--size", "20000x40", "1 to 16384"]),
-        (&["render", "head", "--mis", "all"], &["--mis", "all", "both"]),
+        (
+            &["render", "head", "--size", "0x40"],
+            &["--size", "0x40", "1 to 16384"],
+        ),
+        (
+            &["render", "head", "--size", "20000x40"],
+            &["--size", "20000x40", "1 to 16384"],
+        ),
+        (
+            &["render", "head", "--mis", "all"],
+            &["--mis", "all", "both"],
+        ),
         (&["figures", "--shard", "3/2"], &["--shard", "3/2"]),
     ] {
         let output = run(&folder, flags);
         let errors = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{flags:?}: {errors}");
-        assert!(words.iter().all(|word| errors.contains(word)), "{flags:?}: {errors}");
+        assert!(
+            words.iter().all(|word| errors.contains(word)),
+            "{flags:?}: {errors}"
+        );
     }
-    assert_eq!(fs::read_dir(folder.path()).expect("there").count(), 0, "nothing is written");
+    assert_eq!(
+        fs::read_dir(folder.path()).expect("there").count(),
+        0,
+        "nothing is written"
+    );
 }
 
 #[test]
@@ -29,8 +45,11 @@ fn bad_values_are_refused_in_one_line() {
     fs::write(folder.path().join("file"), "no folder").expect("written");
     fs::write(folder.path().join("cut.hair"), b"HAIR\x01\0\0\0").expect("written");
     fs::write(folder.path().join("cut.tfx"), [0; 90]).expect("written");
-    fs::write(folder.path().join("cut.hdr"), "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n\x02\x02")
-        .expect("written");
+    fs::write(
+        folder.path().join("cut.hdr"),
+        "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n\x02\x02",
+    )
+    .expect("written");
     for (flags, words) in [
         (&["--spp", "0"][..], &["--spp", "got 0"][..]),
         (&["--aa", "0"], &["--aa", "got 0"]),
@@ -48,11 +67,20 @@ fn bad_values_are_refused_in_one_line() {
         (&["--import", "cut.hair"], &["cut.hair"]),
         (&["--import", "cut.tfx"], &["cut.tfx"]),
         (&["--env", "cut.hdr"], &["cut.hdr"]),
-        (&["--hair", "default", "--integrator", "path"], &["default", "--energy per-wo"]),
+        (
+            &["--hair", "default", "--integrator", "path"],
+            &["default", "--energy per-wo"],
+        ),
     ] {
         let all: Vec<&str> = ["render", "head"].iter().chain(flags).copied().collect();
         let line = refuse(&folder, &all);
-        assert!(words.iter().all(|word| line.contains(word)), "{flags:?}: {line}");
+        assert!(
+            words.iter().all(|word| line.contains(word)),
+            "{flags:?}: {line}"
+        );
     }
-    assert!(!folder.path().join("out/render/head.exr").exists(), "nothing is rendered");
+    assert!(
+        !folder.path().join("out/render/head.exr").exists(),
+        "nothing is rendered"
+    );
 }

@@ -46,23 +46,33 @@ pub(super) const fn block_len(path: CodePath) -> usize {
 }
 
 /// The answers to a block of lines, in order. Numbers have as few digits as reading them back in the same precision allows.
-pub(super) fn answers(path: CodePath, block: &[Result<Request, String>]) -> serde_json::Result<Vec<String>> {
+pub(super) fn answers(
+    path: CodePath,
+    block: &[Result<Request, String>],
+) -> serde_json::Result<Vec<String>> {
     let mut lines = vec![String::new(); block.len()];
     for (line, request) in lines.iter_mut().zip(block) {
         match request {
             Err(error) => *line = json!({ "error": error }).to_string(),
-            Ok(request) if path == CodePath::F64 => *line = serde_json::to_string(&textbook(request))?,
+            Ok(request) if path == CodePath::F64 => {
+                *line = serde_json::to_string(&textbook(request))?
+            }
             Ok(_) => {}
         }
     }
     // The requests of each model together; the answers then go back to their places.
     for model in ModelId::ALL.iter().filter(|_| path != CodePath::F64) {
-        let requests = block.iter().enumerate().filter_map(|(at, line)| Some((at, line.as_ref().ok()?)));
-        let (places, requests): (Vec<usize>, Vec<&Request>) = requests.filter(|(_, of)| of.model == *model).unzip();
+        let requests = block
+            .iter()
+            .enumerate()
+            .filter_map(|(at, line)| Some((at, line.as_ref().ok()?)));
+        let (places, requests): (Vec<usize>, Vec<&Request>) =
+            requests.filter(|(_, of)| of.model == *model).unzip();
         let found: Vec<_> = match path {
             CodePath::X8 => requests.chunks(8).flat_map(eight).collect(),
             CodePath::Batch => {
-                let is_shared = |a: &&Request, b: &&Request| (a.wo, a.h) == (b.wo, b.h) && a.values == b.values;
+                let is_shared =
+                    |a: &&Request, b: &&Request| (a.wo, a.h) == (b.wo, b.h) && a.values == b.values;
                 requests.chunk_by(is_shared).flat_map(batch).collect()
             }
             CodePath::Scalar | CodePath::F64 => requests.into_iter().map(scalar).collect(),
@@ -85,7 +95,9 @@ fn scalar(request: &Request) -> Answer<f32> {
         }
     };
     let densities = gather.lobes(wi).0.map(|lobe| lobe.pdf);
-    answer(request.model, found, densities, &|| gather.lobes(request.wo).0.map(|lobe| lobe.color))
+    answer(request.model, found, densities, &|| {
+        gather.lobes(request.wo).0.map(|lobe| lobe.color)
+    })
 }
 
 /// Up to eight lines in a call, all of one model: every lane has its own material, shading point and query. Spare lanes repeat
@@ -94,7 +106,10 @@ fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
     let lane = |i: usize| group[i.min(group.len() - 1)];
     let materials = AnyBsdf8::pack(from_fn(|i| &lane(i).bsdf)).expect("requests of one model");
     let wo = Vec3x8::from(from_fn(|i| lane(i).wo));
-    let gathers = materials.prepare8(Hit { wo, h: f32x8::new(from_fn(|i| lane(i).h)) });
+    let gathers = materials.prepare8(Hit {
+        wo,
+        h: f32x8::new(from_fn(|i| lane(i).h)),
+    });
     // A lane whose line has no xi samples as well; its sample is ignored.
     let xi: [[f32; 3]; 8] = from_fn(|i| match lane(i).query {
         Query::Wi(_) => [0.5; 3],
@@ -105,7 +120,11 @@ fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
         Query::Wi(wi) => wi,
         Query::Xi(_) => samples.wi.lane(i),
     }));
-    let (evals, lobes, at_wo) = (gathers.eval_pdf8(&wi), gathers.lobes8(&wi), gathers.lobes8(&wo));
+    let (evals, lobes, at_wo) = (
+        gathers.eval_pdf8(&wi),
+        gathers.lobes8(&wi),
+        gathers.lobes8(&wo),
+    );
     let of_lane = |(i, request): (usize, &&Request)| {
         let found = match request.query {
             Query::Wi(_) => valued(evals.lane(i)),
@@ -127,15 +146,20 @@ fn batch(run: &[&Request]) -> Vec<Answer<f32>> {
             Query::Xi(numbers) => xi.push(numbers),
         }
     }
-    let mut values = batch_values(&gather, &wi).into_iter().zip(batch_densities(&gather, &wi));
-    let (wi, samples): (Vec<Vec3>, Vec<Found<f32>>) = batch_samples(&gather, &xi).into_iter().unzip();
+    let mut values = batch_values(&gather, &wi)
+        .into_iter()
+        .zip(batch_densities(&gather, &wi));
+    let (wi, samples): (Vec<Vec3>, Vec<Found<f32>>) =
+        batch_samples(&gather, &xi).into_iter().unzip();
     let mut samples = samples.into_iter().zip(batch_densities(&gather, &wi));
     let of_line = |request: &&Request| {
         let (found, densities) = match request.query {
             Query::Wi(_) => values.next()?,
             Query::Xi(_) => samples.next()?,
         };
-        Some(answer(request.model, found, densities, &|| gather.lobes(request.wo).0.map(|lobe| lobe.color)))
+        Some(answer(request.model, found, densities, &|| {
+            gather.lobes(request.wo).0.map(|lobe| lobe.color)
+        }))
     };
     run.iter().filter_map(of_line).collect()
 }
@@ -155,22 +179,48 @@ fn at(columns: &[Vec<f32>; 3], i: usize) -> [f32; 3] {
 /// Values and densities.
 fn batch_values(gather: &AnyGather, wi: &[Vec3]) -> Vec<Found<f32>> {
     let (mut value, mut pdf) = (columns(wi), vec![0.0; wi.len()]);
-    let out = EvalSlices { value: value.each_mut().map(Vec::as_mut_slice), pdf: &mut pdf };
-    gather.eval_pdf_batch(columns(wi).each_ref().map(Vec::as_slice), out).expect(ONE_LENGTH);
-    (0..wi.len()).map(|i| Found::Value(at(&value, i), pdf[i])).collect()
+    let out = EvalSlices {
+        value: value.each_mut().map(Vec::as_mut_slice),
+        pdf: &mut pdf,
+    };
+    gather
+        .eval_pdf_batch(columns(wi).each_ref().map(Vec::as_slice), out)
+        .expect(ONE_LENGTH);
+    (0..wi.len())
+        .map(|i| Found::Value(at(&value, i), pdf[i]))
+        .collect()
 }
 
 /// Samples, each after its direction.
 fn batch_samples(gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)> {
     let mut vectors: [[Vec<f32>; 3]; 3] = from_fn(|_| columns(xi));
     let (mut pdf, mut slot) = (vec![0.0; xi.len()], vec![0.0; xi.len()]);
-    let [wi, value, weight] = vectors.each_mut().map(|v| v.each_mut().map(Vec::as_mut_slice));
-    let out = SampleSlices { wi, value, pdf: &mut pdf, weight, slot: &mut slot };
-    gather.sample_batch(columns(xi).each_ref().map(Vec::as_slice), out).expect(ONE_LENGTH);
+    let [wi, value, weight] = vectors
+        .each_mut()
+        .map(|v| v.each_mut().map(Vec::as_mut_slice));
+    let out = SampleSlices {
+        wi,
+        value,
+        pdf: &mut pdf,
+        weight,
+        slot: &mut slot,
+    };
+    gather
+        .sample_batch(columns(xi).each_ref().map(Vec::as_slice), out)
+        .expect(ONE_LENGTH);
     let sample = |i: usize| {
         let [wi, value, weight] = vectors.each_ref().map(|vector| at(vector, i));
-        let lobe = Lobe::ALL.into_iter().zip(0_u8..).find(|(_, number)| f32::from(*number) == slot[i]);
-        let sample = lobe.map(|(lobe, _)| Sample { wi: wi.into(), value, pdf: pdf[i], weight, lobe });
+        let lobe = Lobe::ALL
+            .into_iter()
+            .zip(0_u8..)
+            .find(|(_, number)| f32::from(*number) == slot[i]);
+        let sample = lobe.map(|(lobe, _)| Sample {
+            wi: wi.into(),
+            value,
+            pdf: pdf[i],
+            weight,
+            lobe,
+        });
         (wi.into(), drawn(sample))
     };
     (0..xi.len()).map(sample).collect()
@@ -180,28 +230,51 @@ fn batch_samples(gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)>
 fn batch_densities(gather: &AnyGather, wi: &[Vec3]) -> Vec<[f32; 4]> {
     let eight = |wi: &[Vec3]| {
         let lobes = gather.lobes8(&Vec3x8::from(from_fn(|i| wi[i.min(wi.len() - 1)])));
-        (0..wi.len()).map(|i| densities_of_lane(&lobes, i)).collect::<Vec<_>>()
+        (0..wi.len())
+            .map(|i| densities_of_lane(&lobes, i))
+            .collect::<Vec<_>>()
     };
     wi.chunks(8).flat_map(eight).collect()
 }
 
 /// The formulas in double precision, for the numbers of the line as they are.
 fn textbook(request: &Request) -> Answer<f64> {
-    let Request { model, values, exact: Exact { values: exact, wo, h, query: numbers }, .. } = request;
-    let point = model.exact_reference(values, exact, *wo, *h).expect("checked when it was read");
+    let Request {
+        model,
+        values,
+        exact:
+            Exact {
+                values: exact,
+                wo,
+                h,
+                query: numbers,
+            },
+        ..
+    } = request;
+    let point = model
+        .exact_reference(values, exact, *wo, *h)
+        .expect("checked when it was read");
     let (found, wi) = match request.query {
-        Query::Wi(_) => (Found::Value(point.eval(*numbers), point.pdf(*numbers)), *numbers),
+        Query::Wi(_) => (
+            Found::Value(point.eval(*numbers), point.pdf(*numbers)),
+            *numbers,
+        ),
         Query::Xi(_) => {
             let sample = point.sample(*numbers);
             (Found::Sample(sample), sample.wi)
         }
     };
     let densities = point.lobes(wi).0.map(|lobe| lobe.pdf);
-    answer(*model, found, densities, &|| point.lobes(*wo).0.map(|lobe| lobe.color))
+    answer(*model, found, densities, &|| {
+        point.lobes(*wo).0.map(|lobe| lobe.color)
+    })
 }
 
 fn gather(request: &Request) -> AnyGather {
-    request.bsdf.prepare(Hit { wo: request.wo.into(), h: request.h })
+    request.bsdf.prepare(Hit {
+        wo: request.wo.into(),
+        h: request.h,
+    })
 }
 
 /// Result of a query: a value and its density, or a sample.
@@ -216,14 +289,29 @@ const fn valued(eval: Eval) -> Found<f32> {
 
 /// A sample of the kernels, or the zeros of a discarded one.
 fn drawn(sample: Option<Sample>) -> Found<f32> {
-    let none = ReferenceSample { wi: [0.0; 3], value: [0.0; 3], pdf: 0.0, weight: [0.0; 3], lobe: None };
-    Found::Sample(sample.map_or(none, |Sample { wi, value, pdf, weight, lobe }| ReferenceSample {
-        wi: wi.into(),
-        value,
-        pdf,
-        weight,
-        lobe: Some(lobe),
-    }))
+    let none = ReferenceSample {
+        wi: [0.0; 3],
+        value: [0.0; 3],
+        pdf: 0.0,
+        weight: [0.0; 3],
+        lobe: None,
+    };
+    Found::Sample(sample.map_or(
+        none,
+        |Sample {
+             wi,
+             value,
+             pdf,
+             weight,
+             lobe,
+         }| ReferenceSample {
+            wi: wi.into(),
+            value,
+            pdf,
+            weight,
+            lobe: Some(lobe),
+        },
+    ))
 }
 
 /// The answer, with the densities of the model's own lobes, and their colours if it reports them.
@@ -236,15 +324,40 @@ fn answer<T: Copy + Default>(
     let names = model.lobes();
     let (wi, s, pdf, choice) = match found {
         Found::Value(s, pdf) => (None, s, pdf, None),
-        Found::Sample(ReferenceSample { wi, value, pdf, weight, lobe }) => {
+        Found::Sample(ReferenceSample {
+            wi,
+            value,
+            pdf,
+            weight,
+            lobe,
+        }) => {
             if lobe.is_none() {
                 densities = [T::default(); 4];
             }
-            (Some(wi), value, pdf, Some(Choice { lobe: lobe.map(|lobe| names[lobe.index()]), weight }))
+            (
+                Some(wi),
+                value,
+                pdf,
+                Some(Choice {
+                    lobe: lobe.map(|lobe| names[lobe.index()]),
+                    weight,
+                }),
+            )
         }
     };
-    let colors = model.colors().map(|name| (name, colors()[..names.len()].to_vec())).into_iter().collect();
-    Answer { wi, s, pdf, pdf_lobe: densities[..names.len()].to_vec(), choice, colors }
+    let colors = model
+        .colors()
+        .map(|name| (name, colors()[..names.len()].to_vec()))
+        .into_iter()
+        .collect();
+    Answer {
+        wi,
+        s,
+        pdf,
+        pdf_lobe: densities[..names.len()].to_vec(),
+        choice,
+        colors,
+    }
 }
 
 fn densities_of_lane(lobes: &PerLobe<LobeEval8>, lane: usize) -> [f32; 4] {

@@ -58,20 +58,34 @@ impl Json {
         let parsed = Self::deserialize(tracked).and_then(|json| input.end().map(|()| json));
         parsed.map_err(|error| {
             let text = error.to_string();
-            let problem = text.rsplit_once(" at line ").map_or(&*text, |(problem, _)| problem);
-            let path = track.path().iter().fold(String::new(), |path, segment| match segment {
-                Segment::Map { key } => join(&path, key),
-                Segment::Seq { index } => format!("{path}[{index}]"),
-                _ => path,
-            });
-            let [field, intro] = if path.is_empty() { ["line", "not JSON: "] } else { [&*path, ""] };
-            refusal(field, format!("{intro}{problem} (column {})", error.column()))
+            let problem = text
+                .rsplit_once(" at line ")
+                .map_or(&*text, |(problem, _)| problem);
+            let path = track
+                .path()
+                .iter()
+                .fold(String::new(), |path, segment| match segment {
+                    Segment::Map { key } => join(&path, key),
+                    Segment::Seq { index } => format!("{path}[{index}]"),
+                    _ => path,
+                });
+            let [field, intro] = if path.is_empty() {
+                ["line", "not JSON: "]
+            } else {
+                [&*path, ""]
+            };
+            refusal(
+                field,
+                format!("{intro}{problem} (column {})", error.column()),
+            )
         })
     }
 
     /// The text of the object's field `name`, if there is one.
     pub(super) fn peek(&self, name: &str) -> Option<&str> {
-        let Self::Object(Entries(entries)) = self else { return None };
+        let Self::Object(Entries(entries)) = self else {
+            return None;
+        };
         entries.iter().find_map(|(field, value)| match value {
             Self::Text(text) if field == name => Some(&**text),
             _ => None,
@@ -79,7 +93,11 @@ impl Json {
     }
 
     /// The fields of an object at `path`, empty for that of the line: all of them `known`, and none given twice.
-    pub(super) fn fields(self, path: &str, known: &[&str]) -> Result<BTreeMap<String, Self>, String> {
+    pub(super) fn fields(
+        self,
+        path: &str,
+        known: &[&str],
+    ) -> Result<BTreeMap<String, Self>, String> {
         let Self::Object(Entries(entries)) = self else {
             let field = if path.is_empty() { "line" } else { path };
             return Err(refusal(field, format!("must be an object, got {self}")));
@@ -88,7 +106,10 @@ impl Json {
         for (name, value) in entries {
             let at = join(path, &name);
             if !known.contains(&&*name) {
-                return Err(refusal(&at, format!("unknown field, expected one of {}", known.join(", "))));
+                return Err(refusal(
+                    &at,
+                    format!("unknown field, expected one of {}", known.join(", ")),
+                ));
             }
             if fields.insert(name, value).is_some() {
                 return Err(refusal(&at, "given twice"));
@@ -115,7 +136,11 @@ impl fmt::Display for Json {
 /// The path of a field of the object at `path`.
 pub(super) fn join(path: &str, name: &str) -> String {
     let name = shortened(name);
-    if path.is_empty() { name } else { format!("{path}.{name}") }
+    if path.is_empty() {
+        name
+    } else {
+        format!("{path}.{name}")
+    }
 }
 
 /// Enough of a text to recognise it.

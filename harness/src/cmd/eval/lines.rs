@@ -14,7 +14,10 @@ pub(super) struct Lines<R> {
 
 impl<R: Read> Lines<R> {
     pub(super) fn new(input: BufReader<R>) -> Self {
-        Self { input, line: Vec::new() }
+        Self {
+            input,
+            line: Vec::new(),
+        }
     }
 
     /// Whether a whole line can be had without waiting for one.
@@ -26,7 +29,11 @@ impl<R: Read> Lines<R> {
     pub(super) fn next(&mut self) -> io::Result<Option<Result<&str, String>>> {
         self.line.clear();
         // One byte more than the longest line, for its end.
-        let read = self.input.by_ref().take(LONGEST as u64 + 1).read_until(b'\n', &mut self.line)?;
+        let read = self
+            .input
+            .by_ref()
+            .take(LONGEST as u64 + 1)
+            .read_until(b'\n', &mut self.line)?;
         if read == 0 {
             return Ok(None);
         }
@@ -34,10 +41,17 @@ impl<R: Read> Lines<R> {
             self.line.pop();
         } else if self.line.len() > LONGEST {
             self.input.skip_until(b'\n')?;
-            return Ok(Some(Err(refusal("line", format!("longer than {LONGEST} bytes")))));
+            return Ok(Some(Err(refusal(
+                "line",
+                format!("longer than {LONGEST} bytes"),
+            ))));
         }
-        let text = core::str::from_utf8(&self.line)
-            .map_err(|error| refusal("line", format!("not UTF-8 after byte {}", error.valid_up_to())));
+        let text = core::str::from_utf8(&self.line).map_err(|error| {
+            refusal(
+                "line",
+                format!("not UTF-8 after byte {}", error.valid_up_to()),
+            )
+        });
         Ok(Some(text))
     }
 }

@@ -61,10 +61,18 @@ impl Request {
     pub(super) fn parse(line: &str) -> Result<Self, String> {
         let line = Json::parse(line)?;
         // The fields of a line are those of its model; of the first, where the name is not that of any.
-        let first = line.peek("model").and_then(|name| ModelId::find(name, None)).unwrap_or(ModelId::ALL[0]);
+        let first = line
+            .peek("model")
+            .and_then(|name| ModelId::find(name, None))
+            .unwrap_or(ModelId::ALL[0]);
         let choice = first.choice().map(|(field, _)| field);
         let h = first.is_near_field().then_some("h");
-        let known = ["model"].into_iter().chain(choice).chain(["params"]).chain(h).chain(["wo", "wi", "xi"]);
+        let known = ["model"]
+            .into_iter()
+            .chain(choice)
+            .chain(["params"])
+            .chain(h)
+            .chain(["wo", "wi", "xi"]);
         let line = line.fields("", &known.collect::<Vec<_>>())?;
         let given = |name: &str| line.get(name).ok_or_else(|| refusal(name, "missing"));
 
@@ -73,12 +81,21 @@ impl Request {
         let mut model = first;
         if let Some((field, json)) = choice.and_then(|field| Some((field, line.get(field)?))) {
             let of_name = ModelId::ALL.iter().filter(|id| id.name() == first.name());
-            let words: Vec<_> = of_name.filter_map(|id| id.choice()).map(|(_, word)| word).collect();
-            model = ModelId::find(first.name(), Some(words[word(field, json, &words)?])).unwrap_or(first);
+            let words: Vec<_> = of_name
+                .filter_map(|id| id.choice())
+                .map(|(_, word)| word)
+                .collect();
+            model = ModelId::find(first.name(), Some(words[word(field, json, &words)?]))
+                .unwrap_or(first);
         }
         let (values, exact) = read(model.defaults(), given("params")?.clone())?;
-        let bsdf = model.bsdf(&values).map_err(|error| refused(model.fields(), &error, &exact))?;
-        let h = line.get("h").map_or(Ok(0.0), |json| number("h", json))?.clamp(-1.0, 1.0);
+        let bsdf = model
+            .bsdf(&values)
+            .map_err(|error| refused(model.fields(), &error, &exact))?;
+        let h = line
+            .get("h")
+            .map_or(Ok(0.0), |json| number("h", json))?
+            .clamp(-1.0, 1.0);
         let wo = direction("wo", given("wo")?)?;
         let (query, numbers) = match [line.get("wi"), line.get("xi")] {
             [Some(wi), None] => {
@@ -90,36 +107,74 @@ impl Request {
                 (Query::Xi(single_xi(xi)), xi)
             }
             [None, None] => return Err(refusal("wi", "missing; give wi or xi")),
-            [Some(_), Some(_)] => return Err(refusal("wi", "given together with xi; give one of them")),
+            [Some(_), Some(_)] => {
+                return Err(refusal("wi", "given together with xi; give one of them"));
+            }
         };
-        let exact = Exact { values: exact, wo, h, query: numbers };
-        Ok(Self { model, values, bsdf, wo: single3(wo), h: single(h), query, exact })
+        let exact = Exact {
+            values: exact,
+            wo,
+            h,
+            query: numbers,
+        };
+        Ok(Self {
+            model,
+            values,
+            bsdf,
+            wo: single3(wo),
+            h: single(h),
+            query,
+            exact,
+        })
     }
 }
 
 /// The values that `params` gives in place of the defaults, rounded, and as they are in the input.
 fn read(mut values: Values, params: Json) -> Result<(Values, Values<f64>), String> {
     let fields = values.fields();
-    let given = params.fields("params", &fields.iter().map(|field| field.name).collect::<Vec<_>>())?;
-    for head in fields.iter().filter(|field| field.instead_of.is_none()).map(|field| field.name) {
+    let given = params.fields(
+        "params",
+        &fields.iter().map(|field| field.name).collect::<Vec<_>>(),
+    )?;
+    for head in fields
+        .iter()
+        .filter(|field| field.instead_of.is_none())
+        .map(|field| field.name)
+    {
         // A group of fields, exactly one of which is given; a field alone may be missing for now.
-        let group = fields.iter().filter(|field| field.name == head || field.instead_of == Some(head));
+        let group = fields
+            .iter()
+            .filter(|field| field.name == head || field.instead_of == Some(head));
         let group: Vec<&str> = group.map(|field| field.name).collect();
-        let found: Vec<&str> = group.iter().copied().filter(|name| given.contains_key(*name)).collect();
+        let found: Vec<&str> = group
+            .iter()
+            .copied()
+            .filter(|name| given.contains_key(*name))
+            .collect();
         if found.is_empty() && group.len() > 1 {
-            return Err(refusal(&join("params", head), format!("missing; give one of {}", group.join(", "))));
+            return Err(refusal(
+                &join("params", head),
+                format!("missing; give one of {}", group.join(", ")),
+            ));
         }
         if let [first, others @ ..] = &*found
             && !others.is_empty()
         {
-            let problem = format!("given together with {}; give one of them", others.join(", "));
+            let problem = format!(
+                "given together with {}; give one of them",
+                others.join(", ")
+            );
             return Err(refusal(&join("params", first), problem));
         }
     }
     let mut exact = values.map(f64::from);
     for field in fields {
         let at = join("params", field.name);
-        let is_grouped = || fields.iter().any(|other| other.instead_of == Some(field.name));
+        let is_grouped = || {
+            fields
+                .iter()
+                .any(|other| other.instead_of == Some(field.name))
+        };
         let json = match given.get(field.name) {
             None if field.optional || field.instead_of.is_some() || is_grouped() => continue,
             json => json.ok_or_else(|| refusal(&at, "missing"))?,
@@ -134,7 +189,10 @@ fn read(mut values: Values, params: Json) -> Result<(Values, Values<f64>), Strin
             kind => numbers(&at, json, kind.width())?,
         };
         exact = exact.with(field.name, &numbers);
-        values = values.with(field.name, &numbers.iter().map(|x| single(*x)).collect::<Vec<_>>());
+        values = values.with(
+            field.name,
+            &numbers.iter().map(|x| single(*x)).collect::<Vec<_>>(),
+        );
     }
     Ok((values, exact))
 }
@@ -142,16 +200,26 @@ fn read(mut values: Values, params: Json) -> Result<(Values, Values<f64>), Strin
 /// A refusal with the text of [`ParamError`], and the field's name and value as they are in the input.
 fn refused(fields: &[Field], error: &ParamError, exact: &Values<f64>) -> String {
     let text = error.to_string();
-    let rule = text.split_once(" must ").and_then(|(_, rest)| rest.rsplit_once(", got "));
+    let rule = text
+        .split_once(" must ")
+        .and_then(|(_, rest)| rest.rsplit_once(", got "));
     let (Some((field, number)), Some((rule, value))) = (Field::refused(fields, error), rule) else {
         return refusal("params", text);
     };
     let is_list = field.kind.width() > 1;
-    let item = number.filter(|_| is_list).map_or_else(String::new, |number| format!("[{number}]"));
+    let item = number
+        .filter(|_| is_list)
+        .map_or_else(String::new, |number| format!("[{number}]"));
     let numbers = exact.numbers(field.name);
-    let problem = match if is_list { number.and_then(|number| numbers.get(number)) } else { numbers.first() } {
+    let problem = match if is_list {
+        number.and_then(|number| numbers.get(number))
+    } else {
+        numbers.first()
+    } {
         // Finite in the input, but too large for single precision.
-        Some(value) if single(*value).is_infinite() => format!("too large for single precision, got {value:e}"),
+        Some(value) if single(*value).is_infinite() => {
+            format!("too large for single precision, got {value:e}")
+        }
         Some(value) => format!("must {rule}, got {value}"),
         None => format!("must {rule}, got {value}"),
     };
@@ -180,11 +248,19 @@ fn number(path: &str, json: &Json) -> Result<f64, String> {
 /// The `len` numbers at `path`.
 fn numbers(path: &str, json: &Json, len: usize) -> Result<Vec<f64>, String> {
     match json {
-        Json::Array(items) if items.len() == len => {
-            items.iter().zip(0..).map(|(json, i)| number(&format!("{path}[{i}]"), json)).collect()
-        }
-        Json::Array(items) => Err(refusal(path, format!("must have {len} numbers, got {}", items.len()))),
-        other => Err(refusal(path, format!("must be an array of {len} numbers, got {other}"))),
+        Json::Array(items) if items.len() == len => items
+            .iter()
+            .zip(0..)
+            .map(|(json, i)| number(&format!("{path}[{i}]"), json))
+            .collect(),
+        Json::Array(items) => Err(refusal(
+            path,
+            format!("must have {len} numbers, got {}", items.len()),
+        )),
+        other => Err(refusal(
+            path,
+            format!("must be an array of {len} numbers, got {other}"),
+        )),
     }
 }
 
@@ -193,9 +269,16 @@ fn direction(path: &str, json: &Json) -> Result<[f64; 3], String> {
     let numbers = numbers(path, json, 3)?;
     let length = numbers[0].hypot(numbers[1]).hypot(numbers[2]);
     if (length - 1.0).abs() > LENGTH_TOLERANCE {
-        return Err(refusal(path, format!("must be a unit vector (to {LENGTH_TOLERANCE}), got length {length}")));
+        return Err(refusal(
+            path,
+            format!("must be a unit vector (to {LENGTH_TOLERANCE}), got length {length}"),
+        ));
     }
-    let divisor = if (length - 1.0).abs() <= ROUNDED { 1.0 } else { length };
+    let divisor = if (length - 1.0).abs() <= ROUNDED {
+        1.0
+    } else {
+        length
+    };
     Ok([0, 1, 2].map(|row| numbers[row] / divisor))
 }
 
@@ -203,13 +286,19 @@ fn direction(path: &str, json: &Json) -> Result<[f64; 3], String> {
 fn uniform(path: &str, json: &Json) -> Result<[f64; 3], String> {
     let xi = numbers(path, json, 3)?;
     match xi.iter().position(|x| !(0.0..1.0).contains(x)) {
-        Some(i) => Err(refusal(&format!("{path}[{i}]"), format!("must be in [0, 1), got {}", xi[i]))),
+        Some(i) => Err(refusal(
+            &format!("{path}[{i}]"),
+            format!("must be in [0, 1), got {}", xi[i]),
+        )),
         None => Ok([xi[0], xi[1], xi[2]]),
     }
 }
 
 /// The nearest number of single precision.
-#[expect(clippy::cast_possible_truncation, reason = "single precision is what is asked for")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "single precision is what is asked for"
+)]
 pub(super) fn single(x: f64) -> f32 {
     x as f32
 }
@@ -239,10 +328,16 @@ mod tests {
 
     #[test]
     fn words_and_fields_that_may_be_missing() {
-        let read = params::<KajiyaKayParams>(r#"{"kd":[0.1,0.2,0.3],"ks":[0,0,0],"exponent":9,"form":"published"}"#);
+        let read = params::<KajiyaKayParams>(
+            r#"{"kd":[0.1,0.2,0.3],"ks":[0,0,0],"exponent":9,"form":"published"}"#,
+        );
         let read = read.expect("legal").values();
-        assert_eq!((read.word("form"), read.numbers("exponent")), ("published", &[9.0][..]));
-        let read = params::<KajiyaKayParams>(r#"{"kd":[0.1,0.2,0.3],"ks":[0,0,0],"exponent":9}"#).expect("legal");
+        assert_eq!(
+            (read.word("form"), read.numbers("exponent")),
+            ("published", &[9.0][..])
+        );
+        let read = params::<KajiyaKayParams>(r#"{"kd":[0.1,0.2,0.3],"ks":[0,0,0],"exponent":9}"#)
+            .expect("legal");
         assert_eq!(read.values().word("form"), "reciprocal");
         for (text, problem) in [
             (r#"{"ks":[0,0,0],"exponent":9}"#, "params.kd: missing"),
@@ -250,16 +345,27 @@ mod tests {
                 r#"{"kd":[0,0,0],"ks":[0,0,0],"exponent":9,"form":"new"}"#,
                 "params.form: must be \"reciprocal\" or \"published\", got \"new\"",
             ),
-            (r#"{"kd":[0,-1,0],"ks":[0,0,0],"exponent":9}"#, "params.kd[1]: must be finite and at least 0, got -1"),
-            (r#"{"kd":[0,0,0],"ks":[0,0,0],"exponent":0.1}"#, "params.exponent: must be in [1, 10000], got 0.1"),
+            (
+                r#"{"kd":[0,-1,0],"ks":[0,0,0],"exponent":9}"#,
+                "params.kd[1]: must be finite and at least 0, got -1",
+            ),
+            (
+                r#"{"kd":[0,0,0],"ks":[0,0,0],"exponent":0.1}"#,
+                "params.exponent: must be in [1, 10000], got 0.1",
+            ),
         ] {
-            assert_eq!(params::<KajiyaKayParams>(text), Err(problem.to_owned()), "{text}");
+            assert_eq!(
+                params::<KajiyaKayParams>(text),
+                Err(problem.to_owned()),
+                "{text}"
+            );
         }
     }
 
     #[test]
     fn one_field_of_a_group() {
-        let read = |rest: &str| params::<ChiangParams>(&format!(r#"{{"beta_m":0.3,"beta_n":0.3{rest}}}"#));
+        let read =
+            |rest: &str| params::<ChiangParams>(&format!(r#"{{"beta_m":0.3,"beta_n":0.3{rest}}}"#));
         assert_eq!(read(r#","melanin":[0.3,0]"#), Ok(ChiangParams::blond()));
         assert_eq!(
             read(r#","tilt":0,"eta":1.5,"sigma_a":[0,1,2]"#).map(|read| read.desc().sigma_a),
@@ -267,11 +373,26 @@ mod tests {
         );
         assert!(read(r#","color":[0.5,0.4,0.3]"#).is_ok(), "a colour");
         for (rest, problem) in [
-            ("", "params.sigma_a: missing; give one of sigma_a, melanin, color"),
-            (r#","melanin":[0,0],"color":[0,0,0]"#, "params.melanin: given together with color; give one of them"),
-            (r#","melanin":[0,-1]"#, "params.melanin[1]: must be finite and at least 0, got -1"),
-            (r#","color":[0,1.5,0]"#, "params.color: must be in [0, 1], got 1.5"),
-            (r#","sigma_a":[0,0,0],"eta":0.5"#, "params.eta: must be in [1, 4], got 0.5"),
+            (
+                "",
+                "params.sigma_a: missing; give one of sigma_a, melanin, color",
+            ),
+            (
+                r#","melanin":[0,0],"color":[0,0,0]"#,
+                "params.melanin: given together with color; give one of them",
+            ),
+            (
+                r#","melanin":[0,-1]"#,
+                "params.melanin[1]: must be finite and at least 0, got -1",
+            ),
+            (
+                r#","color":[0,1.5,0]"#,
+                "params.color: must be in [0, 1], got 1.5",
+            ),
+            (
+                r#","sigma_a":[0,0,0],"eta":0.5"#,
+                "params.eta: must be in [1, 4], got 0.5",
+            ),
         ] {
             assert_eq!(read(rest), Err(problem.to_owned()), "{rest}");
         }

@@ -14,7 +14,14 @@ use std::path::Path;
 
 /// The sentences, in the order in which one would ask.
 pub(super) fn findings(of: &Study, difference: &Difference) -> Vec<String> {
-    [worth(of), which(of), looks(difference), cost(of), where_not(difference)].into()
+    [
+        worth(of),
+        which(of),
+        looks(difference),
+        cost(of),
+        where_not(difference),
+    ]
+    .into()
 }
 
 /// `1.39×`, with its standard error if that shows.
@@ -52,13 +59,19 @@ fn listed(words: &[String]) -> String {
 /// Calls `words` with the place and the name of each light, and lists the results.
 fn by_light(of: &Study, words: &dyn Fn(usize, &str) -> Option<String>) -> String {
     let lights = of.lights().iter().enumerate();
-    listed(&lights.filter_map(|(light, name)| words(light, said(name))).collect::<Vec<_>>())
+    listed(
+        &lights
+            .filter_map(|(light, name)| words(light, said(name)))
+            .collect::<Vec<_>>(),
+    )
 }
 
 /// Calls `words` with the name of each sampler of [`TOLD`], and with the sampler on either model, the Gaussian one first.
 fn of_told(words: &dyn Fn(&str, [Estimator; 2]) -> Option<String>) -> Vec<String> {
     let pair = |sampler| ModelKind::ALL.map(|model| (model, Some(sampler)));
-    TOLD.into_iter().filter_map(|sampler| words(sampler.name(), pair(sampler))).collect()
+    TOLD.into_iter()
+        .filter_map(|sampler| words(sampler.name(), pair(sampler)))
+        .collect()
 }
 
 /// Is the replacement worth it?
@@ -66,7 +79,11 @@ fn worth(of: &Study) -> String {
     let parts = of_told(&|sampler, pair| {
         let lights = by_light(of, &|light, name| {
             let gain = of.equal_time(pair, light, Counted::Sample)?;
-            let unsure = if Sign::of(gain) == Sign::Unsure { ", no difference within the errors" } else { "" };
+            let unsure = if Sign::of(gain) == Sign::Unsure {
+                ", no difference within the errors"
+            } else {
+                ""
+            };
             Some(format!("{} under {name}{unsure}", times(gain)))
         });
         Some(format!("with `{sampler}` {lights}"))
@@ -81,15 +98,31 @@ fn worth(of: &Study) -> String {
 /// The samplers that are not told from the best of a model under a light, with the best one's gain over `published`; a
 /// look-up of the light is counted if it was timed.
 fn best(of: &Study, model: ModelKind, light: usize) -> Option<(Vec<Strategy>, Estimate)> {
-    let counted = if of.times.look_up(light).value.is_finite() { Counted::LookUp } else { Counted::Sample };
+    let counted = if of.times.look_up(light).value.is_finite() {
+        Counted::LookUp
+    } else {
+        Counted::Sample
+    };
     let gain = |strategy: Strategy| {
         let other = (model, strategy);
         let over_published = of.equal_time([published(other), other], light, counted)?;
-        Some((strategy, if other == published(other) { Estimate::exact(1.0) } else { over_published }))
+        Some((
+            strategy,
+            if other == published(other) {
+                Estimate::exact(1.0)
+            } else {
+                over_published
+            },
+        ))
     };
     let gains: Vec<_> = samplers().filter_map(gain).collect();
-    let most = gains.iter().map(|(_, gain)| *gain).max_by(|a, b| a.value.total_cmp(&b.value))?;
-    let level = gains.iter().filter(|(_, gain)| Sign::of(most.ratio(gain)) != Sign::Above);
+    let most = gains
+        .iter()
+        .map(|(_, gain)| *gain)
+        .max_by(|a, b| a.value.total_cmp(&b.value))?;
+    let level = gains
+        .iter()
+        .filter(|(_, gain)| Sign::of(most.ratio(gain)) != Sign::Above);
     Some((level.map(|(strategy, _)| *strategy).collect(), most))
 }
 
@@ -98,8 +131,15 @@ fn which(of: &Study) -> String {
     let parts = ModelKind::ALL.map(|model| {
         let lights = by_light(of, &|light, light_name| {
             let (samplers, gain) = best(of, model, light)?;
-            let names: Vec<String> = samplers.iter().map(|strategy| format!("`{}`", name(*strategy))).collect();
-            Some(format!("{} under {light_name} ({})", names.join(" or "), times(gain)))
+            let names: Vec<String> = samplers
+                .iter()
+                .map(|strategy| format!("`{}`", name(*strategy)))
+                .collect();
+            Some(format!(
+                "{} under {light_name} ({})",
+                names.join(" or "),
+                times(gain)
+            ))
         });
         format!("on the {} model {lights}", model.title())
     });
@@ -120,19 +160,29 @@ pub(super) fn verdicts(of: &Study, difference: &Difference) -> Vec<[String; 2]> 
             let less = 1.0 - 1.0 / gain.median.value;
             let change = match Sign::of(gain.median) {
                 Sign::Above => format!("{} fewer samples", percent(less)),
-                Sign::Below if less < -1.0 => format!("{} as many samples", number::ratio(1.0 - less)),
+                Sign::Below if less < -1.0 => {
+                    format!("{} as many samples", number::ratio(1.0 - less))
+                }
                 Sign::Below => format!("{} more samples", percent(-less)),
                 Sign::Unsure => "as many samples".to_owned(),
             };
             let [fewer, more] = gain.shares.map(|share| format!("{:.0} %", 100.0 * share));
-            Some(format!("{change} with `{sampler}` (fewer in {fewer} of the cells, more in {more})"))
+            Some(format!(
+                "{change} with `{sampler}` (fewer in {fewer} of the cells, more in {more})"
+            ))
         });
         if !parts.is_empty() {
-            verdicts.push([format!("Under {}", in_words(said(name))), format!("Cauchy takes {}.", listed(&parts))]);
+            verdicts.push([
+                format!("Under {}", in_words(said(name))),
+                format!("Cauchy takes {}.", listed(&parts)),
+            ]);
         }
     }
     let [plain, blurred] = l1(difference).map(|of| percent(of.median));
-    verdicts.push(["Looks".to_owned(), format!("Cauchy looks {plain} different ({blurred} blurred by 10°).")]);
+    verdicts.push([
+        "Looks".to_owned(),
+        format!("Cauchy looks {plain} different ({blurred} blurred by 10°)."),
+    ]);
     verdicts
 }
 
@@ -146,8 +196,17 @@ fn l1(difference: &Difference) -> [Summary; 2] {
 fn limit(of: &Study) -> Option<String> {
     let (light, name) = of.lights().iter().enumerate().next_back()?;
     let gains = |strategy: Strategy| {
-        let gain = |model| Some(times(of.gain([published((model, None)), (model, strategy)], light)?.median));
-        Some(format!("{} (Gaussian) and {} (Cauchy)", gain(ModelKind::Gaussian)?, gain(ModelKind::Cauchy)?))
+        let gain = |model| {
+            Some(times(
+                of.gain([published((model, None)), (model, strategy)], light)?
+                    .median,
+            ))
+        };
+        Some(format!(
+            "{} (Gaussian) and {} (Cauchy)",
+            gain(ModelKind::Gaussian)?,
+            gain(ModelKind::Cauchy)?
+        ))
     };
     Some(format!(
         " How far can that go? V of `published` over that of perfect sampling, which draws in proportion to S cos θᵢ, blind to \
@@ -184,19 +243,28 @@ fn cost(of: &Study) -> String {
     let parts = of_told(&|sampler, pair| {
         let [gaussian, cauchy] = pair.map(|one| of.ns(one, MANY));
         let words = match Sign::of(gaussian.ratio(&cauchy)) {
-            Sign::Above => format!("the Cauchy model is {} as fast", times(gaussian.ratio(&cauchy))),
-            Sign::Below => format!("the Gaussian model is {} as fast", times(cauchy.ratio(&gaussian))),
+            Sign::Above => format!(
+                "the Cauchy model is {} as fast",
+                times(gaussian.ratio(&cauchy))
+            ),
+            Sign::Below => format!(
+                "the Gaussian model is {} as fast",
+                times(cauchy.ratio(&gaussian))
+            ),
             Sign::Unsure => "no difference is seen".to_owned(),
         };
         let [gaussian, cauchy] = pair.map(|one| {
             let [many, one] = [MANY, 1].map(|n| number::plain(of.ns(one, n).value, 3));
             format!("{many} ns ({one} ns)")
         });
-        Some(format!("`{sampler}` {gaussian} on the Gaussian model and {cauchy} on the Cauchy one: {words}"))
+        Some(format!(
+            "`{sampler}` {gaussian} on the Gaussian model and {cauchy} on the Cauchy one: {words}"
+        ))
     });
     let look_ups = by_light(of, &|light, name| {
         let ns = of.times.look_up(light).value;
-        ns.is_finite().then(|| format!("{} ns ({name})", number::plain(ns, 2)))
+        ns.is_finite()
+            .then(|| format!("{} ns ({name})", number::plain(ns, 2)))
     });
     format!(
         "What does it cost? Time of a sample on this machine, eight lanes, one thread, at {MANY} (1) samples per shading \
@@ -209,7 +277,9 @@ fn cost(of: &Study) -> String {
 fn where_not(difference: &Difference) -> String {
     let mut found = difference.along(difference.grid.widths(), Width::Paper, |f| f.plain.l1);
     found.sort_by(|(_, a), (_, b)| a.median.total_cmp(&b.median));
-    let most = found.last().map(|(beta, l1)| format!("β_R = {beta}° (median L1 {})", percent(l1.median)));
+    let most = found
+        .last()
+        .map(|(beta, l1)| format!("β_R = {beta}° (median L1 {})", percent(l1.median)));
     format!(
         "Where not? In the cells that need more samples, by two standard errors: their shares are given above. The looks \
          change most at {}.",

@@ -33,7 +33,10 @@ pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
     let (widths, inclinations) = (of.grid.widths(), of.grid.inclinations());
     let by_factor = Width::ALL.map(|width| {
         let points = of.along(widths, width, |f| 100.0 * f.plain.l1).into_iter();
-        Series::new(named(of, width), points.map(|(beta, found)| (beta, found.median)))
+        Series::new(
+            named(of, width),
+            points.map(|(beta, found)| (beta, found.median)),
+        )
     });
     let kinds: [NamedDifference; 4] = [
         ("as they are", |f| 100.0 * f.plain.l1),
@@ -41,14 +44,21 @@ pub(super) fn charts(of: &Difference) -> Vec<Drawing> {
         ("blurred by 10°", |f| 100.0 * f.blurred.l1),
         ("shape alone, blurred", |f| 100.0 * f.blurred_shape.l1),
     ];
-    let bar = |value: f64, found: Summary| Bar { value, low: found.least, high: found.most };
+    let bar = |value: f64, found: Summary| Bar {
+        value,
+        low: found.least,
+        high: found.most,
+    };
     let by_kind = kinds.map(|(name, figure)| {
         let points = of.along(widths, Width::Paper, figure).into_iter();
         Series::new(name, points.map(|(x, found)| (x, bar(found.median, found))))
     });
     let albedos = Width::ALL.map(|width| {
         let points = of.along(inclinations, width, albedo_ratio).into_iter();
-        Series::new(named(of, width), points.map(|(x, found)| (x, bar(found.geometric_mean, found))))
+        Series::new(
+            named(of, width),
+            points.map(|(x, found)| (x, bar(found.geometric_mean, found))),
+        )
     });
     let theta_o = Axis::linear("inclination of the viewer, θₒ (°)");
     let ratio = Axis::linear("ratio of the albedos");

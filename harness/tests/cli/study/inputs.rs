@@ -14,7 +14,9 @@ use tempfile::TempDir;
 fn map(dir: &Path, [width, height]: [u32; 2], pixel: [f32; 3]) -> PathBuf {
     let path = dir.join("map.exr");
     let map = Rgb32FImage::from_pixel(width, height, image::Rgb(pixel));
-    image::DynamicImage::ImageRgb32F(map).save_with_format(&path, ImageFormat::OpenExr).unwrap();
+    image::DynamicImage::ImageRgb32F(map)
+        .save_with_format(&path, ImageFormat::OpenExr)
+        .unwrap();
     path
 }
 
@@ -23,7 +25,10 @@ fn maps_without_light_are_refused() {
     let dir = TempDir::new().unwrap();
     let out = dir.path().join("out");
     for (pixel, words) in [
-        ([0.0; 3], "map.exr: the map gives no light; pass another file"),
+        (
+            [0.0; 3],
+            "map.exr: the map gives no light; pass another file",
+        ),
         (
             [f32::NAN; 3],
             "map.exr: the map gives no light: 24 NaN and 0 negative channels count as 0; pass another file",
@@ -31,7 +36,14 @@ fn maps_without_light_are_refused() {
     ] {
         let path = map(dir.path(), [4, 2], pixel);
         for name in ["compare", "study"] {
-            let args = [name, "--quick", "--out", out.to_str().unwrap(), "--env", path.to_str().unwrap()];
+            let args = [
+                name,
+                "--quick",
+                "--out",
+                out.to_str().unwrap(),
+                "--env",
+                path.to_str().unwrap(),
+            ];
             assert_refused(&run(&args, b""), words);
         }
     }
@@ -45,15 +57,36 @@ fn a_stretched_map_is_reported() {
     // The folder cannot be made: the run ends before its work begins.
     let out = path.join("out");
     for name in ["compare", "study"] {
-        let run = run(&[name, "--quick", "--out", out.to_str().unwrap(), "--env", path.to_str().unwrap()], b"");
-        assert_eq!((run.code, run.err.len()), (Some(2), 2), "{name}: {:?}", run.err);
-        assert!(run.err[0].contains("4 x 4 is not 2:1; it is stretched"), "{name}: {:?}", run.err);
+        let run = run(
+            &[
+                name,
+                "--quick",
+                "--out",
+                out.to_str().unwrap(),
+                "--env",
+                path.to_str().unwrap(),
+            ],
+            b"",
+        );
+        assert_eq!(
+            (run.code, run.err.len()),
+            (Some(2), 2),
+            "{name}: {:?}",
+            run.err
+        );
+        assert!(
+            run.err[0].contains("4 x 4 is not 2:1; it is stretched"),
+            "{name}: {:?}",
+            run.err
+        );
     }
 }
 
 /// A `claims.json` that belongs to the reference.
 fn claims() -> Value {
-    let header = hairis_harness::study::part::read(&reference().join(super::WHOLE)).unwrap().header;
+    let header = hairis_harness::study::part::read(&reference().join(super::WHOLE))
+        .unwrap()
+        .header;
     json!({
         "settings": { "seed": 1, "quick": true, "cells": CELLS, "samples": header.samples },
         "machine": { "commit": "abc" },
@@ -70,16 +103,30 @@ fn claims_of_another_run_stay_out_of_the_report() {
     };
     let study = Study::read(&[reference().to_owned()]).unwrap();
     for (text, problem) in [
-        (with("quick", json!(false)), "it belongs to a run with quick false, expected true"),
-        (with("cells", json!(3024)), "it belongs to a run with cells 3024, expected 48"),
+        (
+            with("quick", json!(false)),
+            "it belongs to a run with quick false, expected true",
+        ),
+        (
+            with("cells", json!(3024)),
+            "it belongs to a run with cells 3024, expected 48",
+        ),
         ("{\"claims\":[{\"quo".to_owned(), "it is damaged"),
         ("{\"claims\":7}".to_owned(), "it is damaged"),
     ] {
-        assert_eq!(study.claims(text.as_bytes()), Err(problem.to_owned()), "{text}");
+        assert_eq!(
+            study.claims(text.as_bytes()),
+            Err(problem.to_owned()),
+            "{text}"
+        );
     }
-    for (text, problem) in
-        [(claims().to_string(), None), (with("seed", json!(2)), Some("it belongs to a run with seed 2, expected 1"))]
-    {
+    for (text, problem) in [
+        (claims().to_string(), None),
+        (
+            with("seed", json!(2)),
+            Some("it belongs to a run with seed 2, expected 1"),
+        ),
+    ] {
         let dir = TempDir::new().unwrap();
         fs::write(dir.path().join("claims.json"), &text).unwrap();
         let run = merge(dir.path(), &[reference()]);
@@ -90,20 +137,33 @@ fn claims_of_another_run_stay_out_of_the_report() {
             problem.is_none(),
             "{text}"
         );
-        let said = run.err.iter().find(|line| line.contains("claims.json: left out of the report"));
+        let said = run
+            .err
+            .iter()
+            .find(|line| line.contains("claims.json: left out of the report"));
         assert_eq!(said.is_some(), problem.is_some(), "{text}: {:?}", run.err);
-        assert!(problem.is_none_or(|problem| said.is_some_and(|said| said.contains(problem))), "{text}: {said:?}");
+        assert!(
+            problem.is_none_or(|problem| said.is_some_and(|said| said.contains(problem))),
+            "{text}: {said:?}"
+        );
     }
 }
 
 #[test]
 fn a_reader_that_leaves_is_told_where_the_tables_are() {
     let dir = TempDir::new().unwrap();
-    let args = ["merge", dir.path().to_str().unwrap(), reference().to_str().unwrap()];
+    let args = [
+        "merge",
+        dir.path().to_str().unwrap(),
+        reference().to_str().unwrap(),
+    ];
     let mut child = command(&args).stdin(Stdio::null()).spawn().unwrap();
     drop(child.stdout.take());
     let run = finish(child.wait_with_output().unwrap());
     assert_eq!(run.code, Some(0), "{:?}", run.err);
-    let words = format!("standard output was closed; the tables are in {}", dir.path().join("report.html").display());
+    let words = format!(
+        "standard output was closed; the tables are in {}",
+        dir.path().join("report.html").display()
+    );
     assert!(run.err.contains(&words), "{:?}", run.err);
 }

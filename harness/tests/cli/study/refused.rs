@@ -13,7 +13,10 @@ fn shards_that_are_none_are_refused() {
     let shape = "--shard must be I/N with whole numbers";
     for (shard, words) in [
         ("5/4", "--shard I must be from 1 to N, got \"5/4\""),
-        ("49/49", "--shard N must be at most 48, the number of cells, got \"49/49\""),
+        (
+            "49/49",
+            "--shard N must be at most 48, the number of cells, got \"49/49\"",
+        ),
         ("99999/100000", "--shard N must be at most 48"),
         ("0/4", "--shard I must be from 1 to N"),
         ("0/0", "--shard I must be from 1 to N"),
@@ -27,7 +30,11 @@ fn shards_that_are_none_are_refused() {
         assert_refused(&study(dir.path(), "1", &["--shard", shard]), words);
     }
     assert_refused(&study(dir.path(), "1", &["--shard=-1/4"]), shape);
-    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0, "nothing was written");
+    assert_eq!(
+        fs::read_dir(dir.path()).unwrap().count(),
+        0,
+        "nothing was written"
+    );
 }
 
 #[test]
@@ -63,8 +70,15 @@ fn cells_of_another_run_are_refused() {
     let words = "cells-1-of-1.jsonl: belongs to a run with seed 1, expected 2; pass another --out or delete the file";
     assert_refused(&study(dir.path(), "1", &["--seed", "2"]), words);
     let path = dir.path().to_str().unwrap();
-    assert_refused(&run(&["study", "--out", path], b""), "belongs to a run with quick true, expected false");
-    assert_eq!(fs::read(dir.path().join(WHOLE)).unwrap(), before, "a refused file is left alone");
+    assert_refused(
+        &run(&["study", "--out", path], b""),
+        "belongs to a run with quick true, expected false",
+    );
+    assert_eq!(
+        fs::read(dir.path().join(WHOLE)).unwrap(),
+        before,
+        "a refused file is left alone"
+    );
 
     // An older program, another instruction set.
     let whole = part::read(&dir.path().join(WHOLE)).unwrap();
@@ -72,14 +86,20 @@ fn cells_of_another_run_are_refused() {
         let mut header = serde_json::to_value(&whole.header).unwrap();
         header[field] = "other".into();
         fs::write(dir.path().join(WHOLE), part::line(&header).unwrap()).unwrap();
-        assert_refused(&study(dir.path(), "1", &[]), &format!("belongs to a run with {field} \"other\""));
+        assert_refused(
+            &study(dir.path(), "1", &[]),
+            &format!("belongs to a run with {field} \"other\""),
+        );
     }
     // The format before there were rays: nothing of pools in its header.
     let mut header = serde_json::to_value(&whole.header).unwrap();
     header["format"] = "hairis-study-3".into();
     header.as_object_mut().unwrap().remove("pools");
     fs::write(dir.path().join(WHOLE), part::line(&header).unwrap()).unwrap();
-    assert_refused(&study(dir.path(), "1", &[]), "belongs to a run with format \"hairis-study-3\"");
+    assert_refused(
+        &study(dir.path(), "1", &[]),
+        "belongs to a run with format \"hairis-study-3\"",
+    );
 }
 
 #[test]
@@ -88,8 +108,14 @@ fn files_that_are_no_parts_are_refused_and_left_alone() {
     let path = dir.path().join(WHOLE);
     for text in ["something else\n", "something without an end", "{}\n", "\n"] {
         fs::write(&path, text).unwrap();
-        assert_refused(&study(dir.path(), "1", &[]), "cells-1-of-1.jsonl: is no part of a study");
-        assert_refused(&merge(dir.path(), &[dir.path()]), "cells-1-of-1.jsonl: is no part of a study");
+        assert_refused(
+            &study(dir.path(), "1", &[]),
+            "cells-1-of-1.jsonl: is no part of a study",
+        );
+        assert_refused(
+            &merge(dir.path(), &[dir.path()]),
+            "cells-1-of-1.jsonl: is no part of a study",
+        );
         assert_eq!(fs::read_to_string(&path).unwrap(), text);
     }
 }
@@ -106,15 +132,28 @@ fn damage_before_the_last_line_is_refused() {
         fs::write(&path, format!("{}\n", lines.join("\n"))).unwrap();
     };
     with(7, &lines[6][..100]);
-    assert_refused(&study(dir.path(), "1", &[]), "line 7 is damaged: not a cell");
+    assert_refused(
+        &study(dir.path(), "1", &[]),
+        "line 7 is damaged: not a cell",
+    );
     let sealed = |cell: usize| {
-        let line = part::line(&part::Finished { cell, rows: Vec::new() }).unwrap();
+        let line = part::line(&part::Finished {
+            cell,
+            rows: Vec::new(),
+        })
+        .unwrap();
         String::from_utf8(line).unwrap().trim_end().to_owned()
     };
     with(9, &sealed(48));
-    assert_refused(&study(dir.path(), "1", &[]), "line 9 is damaged: cell 48 is not of shard 1/1");
+    assert_refused(
+        &study(dir.path(), "1", &[]),
+        "line 9 is damaged: cell 48 is not of shard 1/1",
+    );
     with(3, &sealed(4));
-    assert_refused(&merge(dir.path(), &[dir.path()]), "line 3 is damaged: 0 rows");
+    assert_refused(
+        &merge(dir.path(), &[dir.path()]),
+        "line 3 is damaged: 0 rows",
+    );
     with(4, &lines[3].replacen("1.", "2.", 1));
     let words = "line 4 is damaged: its checksum is wrong; delete the line, and `hairis study` computes it again";
     assert_refused(&merge(dir.path(), &[dir.path()]), words);
@@ -122,7 +161,11 @@ fn damage_before_the_last_line_is_refused() {
     with(4, "");
     let text = fs::read_to_string(&path).unwrap().replace("\n\n", "\n");
     fs::write(&path, text).unwrap();
-    assert_eq!(study(dir.path(), "2", &[]).code, Some(0), "the line is computed again");
+    assert_eq!(
+        study(dir.path(), "2", &[]).code,
+        Some(0),
+        "the line is computed again"
+    );
 }
 
 #[test]
@@ -135,12 +178,25 @@ fn parts_that_do_not_belong_together_are_refused() {
         assert_eq!(run.code, Some(0), "{:?}", run.err);
         dir
     };
-    let (first, other_seed, other_split) = (shard("1", "1/24"), shard("2", "2/24"), shard("1", "3/30"));
+    let (first, other_seed, other_split) =
+        (shard("1", "1/24"), shard("2", "2/24"), shard("1", "3/30"));
     let merged = |a: &TempDir, b: &TempDir| merge(out.path(), &[a.path(), b.path()]);
-    assert_refused(&merged(&first, &other_seed), "cells-2-of-24.jsonl: belongs to a run with seed 2, but");
-    assert_refused(&merged(&first, &other_split), "cells-3-of-30.jsonl: is one of 30 parts, but");
-    assert_refused(&merge(out.path(), &[out.path()]), "contains no part of a study");
-    assert_refused(&merge(out.path(), &[Path::new("/nonexistent")]), "/nonexistent: cannot read");
+    assert_refused(
+        &merged(&first, &other_seed),
+        "cells-2-of-24.jsonl: belongs to a run with seed 2, but",
+    );
+    assert_refused(
+        &merged(&first, &other_split),
+        "cells-3-of-30.jsonl: is one of 30 parts, but",
+    );
+    assert_refused(
+        &merge(out.path(), &[out.path()]),
+        "contains no part of a study",
+    );
+    assert_refused(
+        &merge(out.path(), &[Path::new("/nonexistent")]),
+        "/nonexistent: cannot read",
+    );
 
     // The same cell with other figures.
     let changed = TempDir::new().unwrap();
@@ -148,7 +204,9 @@ fn parts_that_do_not_belong_together_are_refused() {
     let mut read = part::read(&first.path().join(name)).unwrap();
     read.finished[0].rows[0][0] = Some(2.0);
     let mut text = part::line(&read.header).unwrap();
-    read.finished.iter().for_each(|cell| text.extend(part::line(cell).unwrap()));
+    read.finished
+        .iter()
+        .for_each(|cell| text.extend(part::line(cell).unwrap()));
     fs::write(changed.path().join(name), text).unwrap();
     assert_refused(&merged(&first, &changed), "differs in cell");
 }
@@ -157,7 +215,10 @@ fn parts_that_do_not_belong_together_are_refused() {
 fn a_folder_that_cannot_be_written_is_refused() {
     let dir = TempDir::new().unwrap();
     fs::write(dir.path().join("file"), "").unwrap();
-    assert_refused(&study(&dir.path().join("file/out"), "1", &[]), "cannot write");
+    assert_refused(
+        &study(&dir.path().join("file/out"), "1", &[]),
+        "cannot write",
+    );
     fs::create_dir(dir.path().join(WHOLE)).unwrap();
     assert_refused(&study(dir.path(), "1", &[]), "cannot write");
 }

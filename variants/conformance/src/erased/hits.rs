@@ -45,7 +45,13 @@ type HitsResult = Result<(), HitsError>;
 pub trait HitsSet: MaterialSet {
     fn call(&self, of: HitMaterials<'_>, level: Level, call: HitsCall<'_>) -> HitsResult;
     /// Evaluates hits of one material each on the level that is found.
-    fn eval_each(&self, index: &[u32], hits: HitSlices<'_>, wi: [&[f32]; 3], out: EvalColumns<'_>) -> HitsResult;
+    fn eval_each(
+        &self,
+        index: &[u32],
+        hits: HitSlices<'_>,
+        wi: [&[f32]; 3],
+        out: EvalColumns<'_>,
+    ) -> HitsResult;
 }
 
 /// Materials of the hits.
@@ -66,7 +72,10 @@ impl<S: Subject> HitsSet for Set<'_, S> {
                 Columns::Sample(out) => self.bsdfs[index].sample_hits_at(level, hits, inputs, out),
             }?),
             HitMaterials::PerHit(index) => {
-                let table = MaterialTable { materials: &self.bsdfs, index };
+                let table = MaterialTable {
+                    materials: &self.bsdfs,
+                    index,
+                };
                 match out {
                     Columns::Eval(out) => table.eval_pdf_hits_at(level, hits, inputs, out),
                     Columns::Sample(out) => table.sample_hits_at(level, hits, inputs, out),
@@ -75,7 +84,17 @@ impl<S: Subject> HitsSet for Set<'_, S> {
         }
     }
 
-    fn eval_each(&self, index: &[u32], hits: HitSlices<'_>, wi: [&[f32]; 3], out: EvalColumns<'_>) -> HitsResult {
-        MaterialTable { materials: &self.bsdfs, index }.eval_pdf_hits(hits, wi, out)
+    fn eval_each(
+        &self,
+        index: &[u32],
+        hits: HitSlices<'_>,
+        wi: [&[f32]; 3],
+        out: EvalColumns<'_>,
+    ) -> HitsResult {
+        MaterialTable {
+            materials: &self.bsdfs,
+            index,
+        }
+        .eval_pdf_hits(hits, wi, out)
     }
 }

@@ -56,7 +56,14 @@ impl<M: Model + 'static> LitGather for Gather<M> {
 /// Eight shading points that weigh a candidate each.
 pub trait LitGather8 {
     fn propose(&self, level: Level, xi: &[f32x8; 3]) -> Vec3x8;
-    fn weigh(&self, level: Level, wi: &Vec3x8, radiance: &[f32x8; 3], pdf: &f32x8, counts: Counts) -> Weighed8;
+    fn weigh(
+        &self,
+        level: Level,
+        wi: &Vec3x8,
+        radiance: &[f32x8; 3],
+        pdf: &f32x8,
+        counts: Counts,
+    ) -> Weighed8;
 }
 
 impl<M: Model + 'static> LitGather8 for Gather8<M> {
@@ -64,7 +71,14 @@ impl<M: Model + 'static> LitGather8 for Gather8<M> {
         self.propose8_at(level, xi)
     }
 
-    fn weigh(&self, level: Level, wi: &Vec3x8, radiance: &[f32x8; 3], pdf: &f32x8, counts: Counts) -> Weighed8 {
+    fn weigh(
+        &self,
+        level: Level,
+        wi: &Vec3x8,
+        radiance: &[f32x8; 3],
+        pdf: &f32x8,
+        counts: Counts,
+    ) -> Weighed8 {
         self.weigh8_at(level, wi, radiance, pdf, counts, Partition::All)
     }
 }

@@ -2,7 +2,9 @@
 
 use super::handles::Bsdf;
 use super::quadrature::{integrate, panels};
-use super::support::{Draws, Kind, LargestError, Point, direction, for_each_point, narrow, packet, parameters};
+use super::support::{
+    Draws, Kind, LargestError, Point, direction, for_each_point, narrow, packet, parameters,
+};
 use super::{PublishedReference, Tested};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
@@ -25,14 +27,22 @@ fn integrals(reference: &PublishedReference, point: &Point) -> PerLobe<f64> {
         let phi_0 = [0.0, PI, 0.0, p.phi_g][lobe.index()];
         // Towards the pole opposite to wo the cosine of theta_d has a scale of its own.
         let to_pole = FRAC_PI_2 - point.theta_o.abs();
-        let bells = [(centre, 2.0 * p.beta[l(lobe)]), (-FRAC_PI_2, to_pole), (FRAC_PI_2, to_pole)];
+        let bells = [
+            (centre, 2.0 * p.beta[l(lobe)]),
+            (-FRAC_PI_2, to_pole),
+            (FRAC_PI_2, to_pole),
+        ];
         let theta = panels(-FRAC_PI_2 + 1e-5, FRAC_PI_2 - 1e-5, &bells);
         let phi = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt)]);
         let longitude = integrate(&theta, |theta| at(lobe, theta, phi_0) * theta.cos().powi(2));
         let azimuth = 2.0 * integrate(&phi, |phi| at(lobe, theta_0, phi));
         // A lobe so far off the sphere that even its largest value is 0 returns nothing.
         let largest = at(lobe, theta_0, phi_0);
-        all[lobe] = if largest > 0.0 { longitude * azimuth / largest } else { 0.0 };
+        all[lobe] = if largest > 0.0 {
+            longitude * azimuth / largest
+        } else {
+            0.0
+        };
     }
     all
 }
@@ -49,14 +59,25 @@ pub fn albedo_is_the_integral(tested: &Tested) {
             let got = bsdf.prepare(point.wo).albedo();
             let want = integrals(reference, point);
             let d = point.params.desc();
-            let colors = PerLobe([d.intensity_r, d.intensity_tt, d.intensity_trt, d.intensity_trt]);
+            let colors = PerLobe([
+                d.intensity_r,
+                d.intensity_tt,
+                d.intensity_trt,
+                d.intensity_trt,
+            ]);
             for lobe in Lobe::ALL {
                 for c in 0..3 {
                     let want = want[lobe] * f64::from(colors[lobe][c]);
                     // A lobe that lies off the sphere returns next to nothing.
-                    worst.see((f64::from(got[lobe][c]) - want).abs() / want.max(1e-3), || {
-                        format!("{kind:?} {lobe:?} got {} want {want} theta_o {} {:?}", got[lobe][c], point.theta_o, d)
-                    });
+                    worst.see(
+                        (f64::from(got[lobe][c]) - want).abs() / want.max(1e-3),
+                        || {
+                            format!(
+                                "{kind:?} {lobe:?} got {} want {want} theta_o {} {:?}",
+                                got[lobe][c], point.theta_o, d
+                            )
+                        },
+                    );
                 }
             }
         });
@@ -68,21 +89,60 @@ pub fn albedo_is_the_integral(tested: &Tested) {
 fn any_widths() -> Vec<HairParams> {
     let mut draws = Draws(33);
     let black = [0.0; 3];
-    let small = HairDesc { alpha_r: -1.494, alpha_tt: -1.494, alpha_trt: -1.494, ..HairDesc::default() };
-    let small = HairDesc { beta_r: 0.0847, beta_tt: 0.0847, beta_trt: 0.0847, ..small };
-    let bright = HairDesc { alpha_tt: 1.356_512_9, beta_tt: 3.96e-4, intensity_tt: [7318.0; 3], ..HairDesc::default() };
-    let bright = HairDesc { intensity_r: black, intensity_trt: black, ..bright };
-    let grazing = HairDesc { alpha_trt: 0.0, beta_trt: 1e-4, gamma_tt: 1e-4, gamma_g: 1e-4, ..HairDesc::default() };
-    let grazing = HairDesc { intensity_trt: [3283.0, 1565.0, 5134.0], intensity_g: 0.848, phi_g: 0.0, ..grazing };
-    let grazing = HairDesc { intensity_r: black, intensity_tt: black, ..grazing };
+    let small = HairDesc {
+        alpha_r: -1.494,
+        alpha_tt: -1.494,
+        alpha_trt: -1.494,
+        ..HairDesc::default()
+    };
+    let small = HairDesc {
+        beta_r: 0.0847,
+        beta_tt: 0.0847,
+        beta_trt: 0.0847,
+        ..small
+    };
+    let bright = HairDesc {
+        alpha_tt: 1.356_512_9,
+        beta_tt: 3.96e-4,
+        intensity_tt: [7318.0; 3],
+        ..HairDesc::default()
+    };
+    let bright = HairDesc {
+        intensity_r: black,
+        intensity_trt: black,
+        ..bright
+    };
+    let grazing = HairDesc {
+        alpha_trt: 0.0,
+        beta_trt: 1e-4,
+        gamma_tt: 1e-4,
+        gamma_g: 1e-4,
+        ..HairDesc::default()
+    };
+    let grazing = HairDesc {
+        intensity_trt: [3283.0, 1565.0, 5134.0],
+        intensity_g: 0.848,
+        phi_g: 0.0,
+        ..grazing
+    };
+    let grazing = HairDesc {
+        intensity_r: black,
+        intensity_tt: black,
+        ..grazing
+    };
     let known = [small, bright, grazing].map(|desc| HairParams::new(&desc).unwrap());
-    known.into_iter().chain((0..60).map(|_| draws.params(1e4))).collect()
+    known
+        .into_iter()
+        .chain((0..60).map(|_| draws.params(1e4)))
+        .collect()
 }
 
 /// Distances of `wo` from a pole, ever closer and on it, and the side of the pole.
 fn any_inclinations() -> impl Iterator<Item = (f64, f64)> {
     let near = (0..24).map(|i| 0.5 * f64::exp(-0.62 * f64::from(i)));
-    near.chain((0..12).map(|i| FRAC_PI_2 - 0.09 * f64::from(i))).chain([0.0]).flat_map(|off| [(off, 1.0), (off, -1.0)])
+    near.chain((0..12).map(|i| FRAC_PI_2 - 0.09 * f64::from(i)))
+        .chain([0.0])
+        .flat_map(|off| [(off, 1.0), (off, -1.0)])
 }
 
 /// The direction so far from a pole, rounded, and its inclination.
@@ -100,16 +160,26 @@ fn exact(tested: &Tested, p: &Parameters<f64>, theta_o: f64) -> PerLobe<f64> {
         let poles = [-FRAC_PI_2, FRAC_PI_2].map(|pole| [(pole, to_pole.max(1e-9)), (pole, 1e-9)]);
         let bells = [&[(centre, 2.0 * p.beta[l])], poles.as_flattened()].concat();
         integrate(&panels(-FRAC_PI_2, FRAC_PI_2, &bells), |theta_i| {
-            let bell = tested.formulas.shape.bell(p.beta[l], 0.5 * (theta_i + theta_o) - p.alpha[l]);
+            let bell = tested
+                .formulas
+                .shape
+                .bell(p.beta[l], 0.5 * (theta_i + theta_o) - p.alpha[l]);
             let cos_theta_d = (0.5 * (theta_i - theta_o)).cos();
             bell * (theta_i.cos() / cos_theta_d.max(1e-300)).powi(2)
         })
     });
     let azimuth = |centre: f64, width: f64| {
-        2.0 * integrate(&panels(0.0, PI, &[(centre, width)]), |phi| tested.formulas.shape.bell(width, phi - centre))
+        2.0 * integrate(&panels(0.0, PI, &[(centre, width)]), |phi| {
+            tested.formulas.shape.bell(width, phi - centre)
+        })
     };
     let [r, tt, trt] = longitude;
-    PerLobe([4.0 * r, azimuth(PI, p.gamma_tt) * tt, 4.0 * trt, azimuth(p.phi_g, p.gamma_g) * p.intensity_g * trt])
+    PerLobe([
+        4.0 * r,
+        azimuth(PI, p.gamma_tt) * tt,
+        4.0 * trt,
+        azimuth(p.phi_g, p.gamma_g) * p.intensity_g * trt,
+    ])
 }
 
 pub fn albedo_of_any_width_is_the_integral(tested: &Tested) {
@@ -117,44 +187,70 @@ pub fn albedo_of_any_width_is_the_integral(tested: &Tested) {
     for (model, factor) in tested.forms() {
         for params in any_widths() {
             let (bsdf, p) = (Bsdf::new(model, &params), parameters(&params, factor));
-            for at in any_inclinations().chain([(FRAC_PI_2 - 1.495, -1.0)]).filter(|(off, _)| *off > 1e-5) {
+            for at in any_inclinations()
+                .chain([(FRAC_PI_2 - 1.495, -1.0)])
+                .filter(|(off, _)| *off > 1e-5)
+            {
                 let (wo, theta_o) = off_pole(at);
                 let (got, want) = (bsdf.prepare(wo).albedo(), exact(tested, &p, theta_o));
                 let d = params.desc();
-                let colors = PerLobe([d.intensity_r, d.intensity_tt, d.intensity_trt, d.intensity_trt]);
+                let colors = PerLobe([
+                    d.intensity_r,
+                    d.intensity_tt,
+                    d.intensity_trt,
+                    d.intensity_trt,
+                ]);
                 for lobe in Lobe::ALL.into_iter().filter(|lobe| colors[*lobe][0] > 0.0) {
                     let got = f64::from(got[lobe][0]) / f64::from(colors[lobe][0]);
                     // A lobe that lies off the sphere returns next to nothing.
                     worst.see((got - want[lobe]).abs() / want[lobe].max(1e-9), || {
-                        format!("{lobe:?} got {got} want {} theta_o {theta_o} {d:?}", want[lobe])
+                        format!(
+                            "{lobe:?} got {got} want {} theta_o {theta_o} {d:?}",
+                            want[lobe]
+                        )
                     });
                 }
             }
         }
     }
-    worst.check("albedo of any width against quadrature", tested.rows.albedo_any);
+    worst.check(
+        "albedo of any width against quadrature",
+        tested.rows.albedo_any,
+    );
 }
 
 pub fn conserving_hair_returns_at_most_what_it_receives(tested: &Tested) {
     let (mut worst, mut lanes) = (LargestError::default(), LargestError::default());
-    let sums =
-        |PerLobe(lobes): PerLobe<[f32; 3]>| [0, 1, 2].map(|c| lobes.iter().map(|lobe| f64::from(lobe[c])).sum::<f64>());
-    let presets: Vec<HairParams> = HairParams::presets().into_iter().map(|(_, params)| params).collect();
+    let sums = |PerLobe(lobes): PerLobe<[f32; 3]>| {
+        [0, 1, 2].map(|c| lobes.iter().map(|lobe| f64::from(lobe[c])).sum::<f64>())
+    };
+    let presets: Vec<HairParams> = HairParams::presets()
+        .into_iter()
+        .map(|(_, params)| params)
+        .collect();
     for (model, factor) in tested.forms() {
         for params in any_widths().into_iter().chain(presets.clone()) {
             let raw = Bsdf::new(model, &params);
             let (p, d) = (parameters(&params, factor), params.desc());
             for at in any_inclinations().filter(|(off, _)| *off > 1e-5) {
                 let (wo, theta_o) = off_pole(at);
-                let (got, PerLobe([r, tt, trt, glint])) =
-                    (sums(model.conserving_albedo(&params, wo.into())), exact(tested, &p, theta_o));
+                let (got, PerLobe([r, tt, trt, glint])) = (
+                    sums(model.conserving_albedo(&params, wo.into())),
+                    exact(tested, &p, theta_o),
+                );
                 for (c, got) in got.into_iter().enumerate() {
-                    let [i_r, i_tt, i_trt] = [d.intensity_r[c], d.intensity_tt[c], d.intensity_trt[c]].map(f64::from);
+                    let [i_r, i_tt, i_trt] =
+                        [d.intensity_r[c], d.intensity_tt[c], d.intensity_trt[c]].map(f64::from);
                     let want = (r * i_r + tt * i_tt + (trt + glint) * i_trt).min(1.0);
-                    worst.see((got - want).abs() / want.max(1e-6), || format!("{got} for {want}: {theta_o} {d:?}"));
+                    worst.see((got - want).abs() / want.max(1e-6), || {
+                        format!("{got} for {want}: {theta_o} {d:?}")
+                    });
                 }
                 for level in Level::available() {
-                    let eight = raw.prepare8_at(level, &packet(&[wo])).conserving_at(level).lane(5);
+                    let eight = raw
+                        .prepare8_at(level, &packet(&[wo]))
+                        .conserving_at(level)
+                        .lane(5);
                     for (eight, one) in sums(eight.albedo()).into_iter().zip(got) {
                         lanes.see((eight - one).abs() / one.max(1e-6), || {
                             format!("{eight} of eight, {one}: {theta_o} {d:?}")
@@ -164,8 +260,14 @@ pub fn conserving_hair_returns_at_most_what_it_receives(tested: &Tested) {
             }
         }
     }
-    worst.check("albedo of hair that conserves against the smaller of quadrature and 1", 1e-3);
-    lanes.check("albedo of hair that conserves, eight lanes against one", 1e-4);
+    worst.check(
+        "albedo of hair that conserves against the smaller of quadrature and 1",
+        1e-3,
+    );
+    lanes.check(
+        "albedo of hair that conserves, eight lanes against one",
+        1e-4,
+    );
 }
 
 pub fn max_albedo_bounds_lobes_of_any_width(tested: &Tested) {
@@ -179,7 +281,8 @@ pub fn max_albedo_bounds_lobes_of_any_width(tested: &Tested) {
             for at in any_inclinations() {
                 let PerLobe([r, tt, trt, glint]) = exact(tested, &p, off_pole(at).1);
                 for c in 0..3 {
-                    let [i_r, i_tt, i_trt] = [d.intensity_r[c], d.intensity_tt[c], d.intensity_trt[c]].map(f64::from);
+                    let [i_r, i_tt, i_trt] =
+                        [d.intensity_r[c], d.intensity_tt[c], d.intensity_trt[c]].map(f64::from);
                     seen = seen.max(r * i_r + tt * i_tt + (trt + glint) * i_trt);
                 }
             }
@@ -210,11 +313,21 @@ pub fn max_albedo_bounds_a_scan_ten_times_as_fine(tested: &Tested) {
     let mut draws = Draws(31);
     let random: Vec<HairParams> = (0..24).map(|_| draws.params(10.0)).collect();
     for (model, _) in tested.forms() {
-        for params in HairParams::presets().into_iter().map(|(_, p)| p).chain(random.clone()) {
+        for params in HairParams::presets()
+            .into_iter()
+            .map(|(_, p)| p)
+            .chain(random.clone())
+        {
             let bsdf = Bsdf::new(model, &params);
             let (most, seen) = (bsdf.max_albedo(), scanned(&bsdf, 1800));
-            assert!(seen <= most, "{seen} is above max_albedo {most}: {params:?}");
-            assert!(most <= seen * 1.02, "max_albedo {most} is no least bound of {seen}: {params:?}");
+            assert!(
+                seen <= most,
+                "{seen} is above max_albedo {most}: {params:?}"
+            );
+            assert!(
+                most <= seen * 1.02,
+                "max_albedo {most} is no least bound of {seen}: {params:?}"
+            );
         }
     }
 }
@@ -224,14 +337,27 @@ pub fn scaled_hair_returns_at_most_what_it_receives(tested: &Tested) {
     let random: Vec<HairParams> = (0..24).map(|_| draws.params(10.0)).collect();
     let mut scaled_down = 0;
     for (model, _) in tested.forms() {
-        for params in HairParams::presets().into_iter().map(|(_, p)| p).chain(random.clone()) {
+        for params in HairParams::presets()
+            .into_iter()
+            .map(|(_, p)| p)
+            .chain(random.clone())
+        {
             let scale = Bsdf::new(model, &params).conserving_scale();
             scaled_down += usize::from(scale < 1.0);
             assert!(scale > 0.0 && scale <= 1.0, "scale {scale}: {params:?}");
             let most = scanned(&Bsdf::new(model, &params.scaled(scale).unwrap()), 1800);
-            assert!(most <= 1.0, "scaled by {scale} it still returns {most}: {params:?}");
-            assert!(scale == 1.0 || most > 0.97, "scaled by {scale} more than need be, to {most}: {params:?}");
+            assert!(
+                most <= 1.0,
+                "scaled by {scale} it still returns {most}: {params:?}"
+            );
+            assert!(
+                scale == 1.0 || most > 0.97,
+                "scaled by {scale} more than need be, to {most}: {params:?}"
+            );
         }
     }
-    assert!(scaled_down > 5, "only {scaled_down} materials needed a scale");
+    assert!(
+        scaled_down > 5,
+        "only {scaled_down} materials needed a scale"
+    );
 }

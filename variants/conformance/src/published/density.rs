@@ -21,7 +21,10 @@ fn integrals(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -
             f64::from(gather.lobes(wi)[lobe].pdf) * theta.cos()
         };
         let centre = 2.0 * p.alpha[l] - theta_o;
-        let (theta_0, phi_0) = (centre.clamp(-1.4, 1.4), [0.0, PI, 0.0, p.phi_g][lobe.index()]);
+        let (theta_0, phi_0) = (
+            centre.clamp(-1.4, 1.4),
+            [0.0, PI, 0.0, p.phi_g][lobe.index()],
+        );
         let inner = FRAC_PI_2 - 1e-5;
         let mut ends = panels(-inner, inner, &[(centre, p.beta[l])]);
         // The density jumps between bands: panels end there.
@@ -34,16 +37,24 @@ fn integrals(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -
         }
         // Directions closer to the axis are discarded: their part of the density.
         let caps = reference.cdf_theta(lobe, -inner) + 1.0 - reference.cdf_theta(lobe, inner);
-        caps + integrate(&ends, |theta| at(theta, phi_0)) * 2.0 * integrate(&phi, |phi| at(theta_0, phi)) / largest
+        caps + integrate(&ends, |theta| at(theta, phi_0))
+            * 2.0
+            * integrate(&phi, |phi| at(theta_0, phi))
+            / largest
     })
 }
 
 fn see(tested: &Tested, worst: &mut LargestError, bands: usize, kind: Kind, theta_o: &[f64]) {
-    for params in materials(kind).iter().step_by(if kind == Kind::Grid { 37 } else { 1 }) {
+    for params in materials(kind)
+        .iter()
+        .step_by(if kind == Kind::Grid { 37 } else { 1 })
+    {
         for degrees in theta_o {
             let all = integrals(tested, bands, params, degrees.to_radians());
             for (lobe, integral) in Lobe::ALL.into_iter().zip(all).filter(|(_, x)| !x.is_nan()) {
-                worst.see((integral - 1.0).abs(), || format!("{bands} {lobe:?} {degrees} {integral} {params:?}"));
+                worst.see((integral - 1.0).abs(), || {
+                    format!("{bands} {lobe:?} {degrees} {integral} {params:?}")
+                });
             }
         }
     }
@@ -59,6 +70,9 @@ pub fn each_lobe_integrates_to_one(tested: &Tested) {
         for bands in [5, 9, 25] {
             see(tested, &mut worst, bands, kind, &THETA_O);
         }
-        worst.check(&format!("{kind:?} integral of a lobe's density, off 1"), limit);
+        worst.check(
+            &format!("{kind:?} integral of a lobe's density, off 1"),
+            limit,
+        );
     }
 }

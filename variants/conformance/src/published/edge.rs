@@ -16,33 +16,68 @@ fn material<'a>(tested: &'a Tested, desc: &HairDesc) -> Bsdf<'a> {
 
 /// A sample of one lane, the same of every level if they round alike.
 fn samples(gather: &Gather, xi: [f32; 3]) -> Vec<Option<Sample>> {
-    let wide = Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
+    let wide =
+        Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
     wide.chain([gather.sample(xi)]).collect()
 }
 
 fn assert_sound(sample: &Sample, at: &str) {
     let numbers = [sample.value, sample.weight].concat();
-    assert!(numbers.iter().all(|x| x.is_finite() && *x >= 0.0), "{at}: {sample:?}");
-    assert!(sample.pdf.is_finite() && sample.pdf > 0.0, "{at}: {sample:?}");
+    assert!(
+        numbers.iter().all(|x| x.is_finite() && *x >= 0.0),
+        "{at}: {sample:?}"
+    );
+    assert!(
+        sample.pdf.is_finite() && sample.pdf > 0.0,
+        "{at}: {sample:?}"
+    );
     assert!((sample.wi.length() - 1.0).abs() < 1e-6, "{at}: {sample:?}");
 }
 
 fn widths(width: f32) -> HairDesc {
     let (beta_r, beta_tt, beta_trt) = (width, width, width);
-    HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: width, gamma_g: width, ..HairDesc::default() }
+    HairDesc {
+        beta_r,
+        beta_tt,
+        beta_trt,
+        gamma_tt: width,
+        gamma_g: width,
+        ..HairDesc::default()
+    }
 }
 
 pub fn ends_of_xi_give_sound_samples_of_every_lobe(tested: &Tested) {
-    let wos = [Vec3::Y, Vec3::X, -Vec3::X, Vec3::ZERO, Vec3::new(0.6, 0.0, -0.8), Vec3::new(-0.9999, 0.01, 0.01)];
+    let wos = [
+        Vec3::Y,
+        Vec3::X,
+        -Vec3::X,
+        Vec3::ZERO,
+        Vec3::new(0.6, 0.0, -0.8),
+        Vec3::new(-0.9999, 0.01, 0.01),
+    ];
     let mut seen = [0; 4];
     for desc in [widths(MIN_WIDTH), widths(0.1), widths(MAX_WIDTH)] {
-        for (alpha, phi_g) in [(0.0, 0.0), (FRAC_PI_2, PI), (-FRAC_PI_2, FRAC_PI_2), (0.3, 0.7)] {
-            let desc = HairDesc { alpha_r: alpha, alpha_tt: -alpha, alpha_trt: alpha, phi_g, ..desc };
+        for (alpha, phi_g) in [
+            (0.0, 0.0),
+            (FRAC_PI_2, PI),
+            (-FRAC_PI_2, FRAC_PI_2),
+            (0.3, 0.7),
+        ] {
+            let desc = HairDesc {
+                alpha_r: alpha,
+                alpha_tt: -alpha,
+                alpha_trt: alpha,
+                phi_g,
+                ..desc
+            };
             for wo in wos {
                 let gather = material(tested, &desc).prepare(wo);
                 for lobe in Lobe::ALL {
                     let alone = gather.with_lobes(LobeMask::of(&[lobe]));
-                    for xi in ENDS.iter().flat_map(|a| ENDS.iter().flat_map(|b| ENDS.map(|c| [*a, *b, c]))) {
+                    for xi in ENDS
+                        .iter()
+                        .flat_map(|a| ENDS.iter().flat_map(|b| ENDS.map(|c| [*a, *b, c])))
+                    {
                         for sample in samples(&alone, xi).into_iter().flatten() {
                             assert_sound(&sample, &format!("xi {xi:?} wo {wo:?} {desc:?}"));
                             assert_eq!(sample.lobe, lobe, "xi {xi:?} wo {wo:?} {desc:?}");
@@ -53,24 +88,53 @@ pub fn ends_of_xi_give_sound_samples_of_every_lobe(tested: &Tested) {
             }
         }
     }
-    assert!(seen.iter().all(|n| *n > 2000), "hardly any sample was kept: {seen:?}");
+    assert!(
+        seen.iter().all(|n| *n > 2000),
+        "hardly any sample was kept: {seen:?}"
+    );
 }
 
 /// Where R and TRT-g vanish, what is left of them is a difference of rounded numbers, and nothing else has their colours.
 pub fn nothing_is_negative_on_the_seam(tested: &Tested) {
     let black = [0.0; 3];
-    let colours =
-        HairDesc { intensity_r: [0.0, 0.0, 1.0], intensity_tt: black, intensity_trt: [1.0, 1.0, 0.0], ..widths(0.3) };
-    let gather = |wo| material(tested, &HairDesc { phi_g: 3.0, gamma_g: 0.35, ..colours }).prepare(wo);
+    let colours = HairDesc {
+        intensity_r: [0.0, 0.0, 1.0],
+        intensity_tt: black,
+        intensity_trt: [1.0, 1.0, 0.0],
+        ..widths(0.3)
+    };
+    let gather = |wo| {
+        material(
+            tested,
+            &HairDesc {
+                phi_g: 3.0,
+                gamma_g: 0.35,
+                ..colours
+            },
+        )
+        .prepare(wo)
+    };
     let mut seen = 0;
-    for (y, z) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (0.6, 0.8), (1.0, 0.0), (0.3, -0.7)] {
+    for (y, z) in [
+        (1.0, 1.0),
+        (-1.0, 1.0),
+        (1.0, -1.0),
+        (-1.0, -1.0),
+        (0.6, 0.8),
+        (1.0, 0.0),
+        (0.3, -0.7),
+    ] {
         for x in [0.0, 0.4, -2.0] {
             let gather = gather(Vec3::new(x, y, z).normalize());
             for xi_lobe in (0..32_u8).map(|i| f32::from(i) / 32.0) {
-                for (xi_theta, xi_phi) in
-                    [0.02, 0.3, 0.5, 0.81].into_iter().flat_map(|a| [0.0, 0.5, LAST].map(|b| (a, b)))
+                for (xi_theta, xi_phi) in [0.02, 0.3, 0.5, 0.81]
+                    .into_iter()
+                    .flat_map(|a| [0.0, 0.5, LAST].map(|b| (a, b)))
                 {
-                    for sample in samples(&gather, [xi_lobe, xi_theta, xi_phi]).into_iter().flatten() {
+                    for sample in samples(&gather, [xi_lobe, xi_theta, xi_phi])
+                        .into_iter()
+                        .flatten()
+                    {
                         assert_sound(&sample, "on the seam");
                         seen += 1;
                     }
@@ -86,19 +150,35 @@ pub fn the_axis_scatters_nothing(tested: &Tested) {
         for wo in [Vec3::Y, Vec3::X, -Vec3::X, Vec3::ZERO] {
             let gather = material(tested, &desc).prepare(wo);
             let beside = 0.99 * GRAZING;
-            let axis = [Vec3::X, -Vec3::X, Vec3::new(1.0, beside, 0.0), Vec3::new(-1.0, 0.0, -beside), Vec3::ZERO];
+            let axis = [
+                Vec3::X,
+                -Vec3::X,
+                Vec3::new(1.0, beside, 0.0),
+                Vec3::new(-1.0, 0.0, -beside),
+                Vec3::ZERO,
+            ];
             for wi in axis {
                 for level in Level::available() {
                     let eight = gather.eval_pdf8_at(level, &packet(&[wi])).lane(2);
                     for e in [gather.eval_pdf(wi), eight] {
-                        assert_eq!((e.value, e.pdf), ([0.0; 3], 0.0), "{level} wi {wi:?} wo {wo:?}");
+                        assert_eq!(
+                            (e.value, e.pdf),
+                            ([0.0; 3], 0.0),
+                            "{level} wi {wi:?} wo {wo:?}"
+                        );
                     }
                 }
                 let lobes = gather.lobes(wi);
-                assert!(lobes.0.iter().all(|l| l.value == 0.0 && l.pdf == 0.0), "lobes at wi {wi:?} wo {wo:?}");
+                assert!(
+                    lobes.0.iter().all(|l| l.value == 0.0 && l.pdf == 0.0),
+                    "lobes at wi {wi:?} wo {wo:?}"
+                );
             }
             let near = gather.eval_pdf(Vec3::new(0.0, 1.0, 0.0));
-            assert!(f64::from(near.pdf) > tested.pdf_floor || near.value[0] <= 1e-20, "off the axis: {near:?}");
+            assert!(
+                f64::from(near.pdf) > tested.pdf_floor || near.value[0] <= 1e-20,
+                "off the axis: {near:?}"
+            );
         }
     }
 }
@@ -126,7 +206,10 @@ pub fn vectors_that_are_no_direction_give_zero(tested: &Tested) {
     ];
     for wi in odd {
         for level in Level::available() {
-            for e in [gather.eval_pdf(wi), gather.eval_pdf8_at(level, &packet(&[wi])).lane(7)] {
+            for e in [
+                gather.eval_pdf(wi),
+                gather.eval_pdf8_at(level, &packet(&[wi])).lane(7),
+            ] {
                 assert_eq!((e.value, e.pdf), ([0.0; 3], 0.0), "{level} {wi:?}");
             }
         }
@@ -139,7 +222,10 @@ pub fn the_seam_is_no_edge(tested: &Tested) {
         let wo = Vec3::new(0.0, y, z);
         let gather = material(tested, &HairDesc::default()).prepare(wo);
         let on = gather.lobes(-wo);
-        assert!(on[Lobe::R].value.abs() < 1e-7 && on[Lobe::TRT].pdf.abs() < 1e-7, "R and TRT-g on the seam: {on:?}");
+        assert!(
+            on[Lobe::R].value.abs() < 1e-7 && on[Lobe::TRT].pdf.abs() < 1e-7,
+            "R and TRT-g on the seam: {on:?}"
+        );
         assert!(on[Lobe::TT].value > 0.2, "TT on the seam: {on:?}");
         let side = |s: f32| {
             let turned = Vec3::new(0.0, -y + s * z, -z - s * y);
@@ -147,8 +233,13 @@ pub fn the_seam_is_no_edge(tested: &Tested) {
         };
         for s in [0.0, 1e-7, 1e-5, 1e-3] {
             let (left, right) = (side(s), side(-s));
-            let difference = (left.pdf / right.pdf - 1.0).abs().max((left.value[0] / right.value[0] - 1.0).abs());
-            assert!(difference < 2e-6, "the sides of the seam at {s}: {left:?} {right:?}");
+            let difference = (left.pdf / right.pdf - 1.0)
+                .abs()
+                .max((left.value[0] / right.value[0] - 1.0).abs());
+            assert!(
+                difference < 2e-6,
+                "the sides of the seam at {s}: {left:?} {right:?}"
+            );
         }
     }
 }
@@ -163,7 +254,9 @@ pub fn a_zero_wo_counts_as_the_normal_plane(tested: &Tested) {
         let unit = bsdf.prepare(wo).eval_pdf(wi);
         for length in [1e-20, 0.01, 3.0, 100.0, 1e20, 1e38] {
             let e = bsdf.prepare(wo * length).eval_pdf(wi);
-            let off = (e.pdf / unit.pdf - 1.0).abs().max((e.value[1] / unit.value[1] - 1.0).abs());
+            let off = (e.pdf / unit.pdf - 1.0)
+                .abs()
+                .max((e.value[1] / unit.value[1] - 1.0).abs());
             assert!(off < 1e-5, "wo times {length}: {e:?} in place of {unit:?}");
         }
     }
@@ -173,13 +266,59 @@ pub fn lobes_without_energy_are_never_drawn(tested: &Tested) {
     let black = [0.0; 3];
     let base = widths(0.3);
     let cases = [
-        (HairDesc { intensity_r: black, ..base }, [false, true, true, true]),
-        (HairDesc { intensity_tt: black, ..base }, [true, false, true, true]),
-        (HairDesc { intensity_trt: black, ..base }, [true, true, false, false]),
-        (HairDesc { intensity_g: 0.0, ..base }, [true, true, true, false]),
-        (HairDesc { intensity_r: black, intensity_trt: black, ..base }, [false, true, false, false]),
-        (HairDesc { intensity_tt: black, intensity_trt: black, ..base }, [true, false, false, false]),
-        (HairDesc { intensity_r: black, intensity_tt: black, intensity_g: 0.0, ..base }, [false, false, true, false]),
+        (
+            HairDesc {
+                intensity_r: black,
+                ..base
+            },
+            [false, true, true, true],
+        ),
+        (
+            HairDesc {
+                intensity_tt: black,
+                ..base
+            },
+            [true, false, true, true],
+        ),
+        (
+            HairDesc {
+                intensity_trt: black,
+                ..base
+            },
+            [true, true, false, false],
+        ),
+        (
+            HairDesc {
+                intensity_g: 0.0,
+                ..base
+            },
+            [true, true, true, false],
+        ),
+        (
+            HairDesc {
+                intensity_r: black,
+                intensity_trt: black,
+                ..base
+            },
+            [false, true, false, false],
+        ),
+        (
+            HairDesc {
+                intensity_tt: black,
+                intensity_trt: black,
+                ..base
+            },
+            [true, false, false, false],
+        ),
+        (
+            HairDesc {
+                intensity_r: black,
+                intensity_tt: black,
+                intensity_g: 0.0,
+                ..base
+            },
+            [false, false, true, false],
+        ),
     ];
     for (desc, lit) in cases {
         let gather = material(tested, &desc).prepare(Vec3::new(0.28, 0.96, 0.0));
@@ -187,15 +326,24 @@ pub fn lobes_without_energy_are_never_drawn(tested: &Tested) {
         let mut draws = Draws(41);
         let mut take = |sample: Option<Sample>| {
             let Some(sample) = sample else { return };
-            assert!(lit[sample.lobe.index()], "{:?} has no energy: {desc:?}", sample.lobe);
+            assert!(
+                lit[sample.lobe.index()],
+                "{:?} has no energy: {desc:?}",
+                sample.lobe
+            );
             seen[sample.lobe.index()] = true;
         };
         for _ in 0..100_000 / 8 {
-            let eight = gather.sample8_at(Level::detect(), &lanes_of(&core::array::from_fn(|_| draws.xi3())));
+            let eight = gather.sample8_at(
+                Level::detect(),
+                &lanes_of(&core::array::from_fn(|_| draws.xi3())),
+            );
             (0..8).for_each(|lane| take(eight.lane(lane)));
         }
         for xi in [0.0, f32::from_bits(1), f32::EPSILON / 2.0, LAST, 1.0] {
-            samples(&gather, [xi, 0.4, 0.4]).into_iter().for_each(&mut take);
+            samples(&gather, [xi, 0.4, 0.4])
+                .into_iter()
+                .for_each(&mut take);
         }
         assert_eq!(seen, lit, "lobes seen in 10^5 draws of {desc:?}");
     }
@@ -203,7 +351,12 @@ pub fn lobes_without_energy_are_never_drawn(tested: &Tested) {
 
 pub fn black_hair_scatters_and_samples_nothing(tested: &Tested) {
     let black = [0.0; 3];
-    let desc = HairDesc { intensity_r: black, intensity_tt: black, intensity_trt: black, ..HairDesc::default() };
+    let desc = HairDesc {
+        intensity_r: black,
+        intensity_tt: black,
+        intensity_trt: black,
+        ..HairDesc::default()
+    };
     let bsdf = material(tested, &desc);
     let gather = bsdf.prepare(Vec3::Y);
     for wi in [Vec3::Y, -Vec3::Y, Vec3::new(0.6, 0.0, 0.8)] {
@@ -230,8 +383,16 @@ pub fn grazing_samples_are_discarded(tested: &Tested) {
             assert_eq!(sample, None, "theta_i of -pi/2 was kept");
         }
         let eight = gather.sample8_at(Level::detect(), &lanes_of(&[[0.1, 0.0, 0.3]; 8]));
-        assert_eq!((eight.live(), eight.slot.to_array()), (0, [-1.0; 8]), "a discarded lane");
-        assert_eq!((eight.pdf.to_array(), eight.weight[0].to_array()), ([0.0; 8], [0.0; 8]), "a discarded lane");
+        assert_eq!(
+            (eight.live(), eight.slot.to_array()),
+            (0, [-1.0; 8]),
+            "a discarded lane"
+        );
+        assert_eq!(
+            (eight.pdf.to_array(), eight.weight[0].to_array()),
+            ([0.0; 8], [0.0; 8]),
+            "a discarded lane"
+        );
         for sample in samples(&gather, [0.1, 0.001, 0.3]) {
             assert!(sample.is_some(), "a sample off the axis was discarded");
         }
@@ -242,9 +403,16 @@ pub fn grazing_samples_are_discarded(tested: &Tested) {
 pub fn an_azimuth_next_to_nothing_is_still_an_azimuth(tested: &Tested) {
     let gather = material(tested, &HairDesc::default()).prepare(Vec3::new(1.0, 1e-15, 0.0));
     let reference = material(tested, &HairDesc::default()).prepare(Vec3::new(1.0, 1e-6, 0.0));
-    for wi in [Vec3::new(1.0, 2e-5, 0.0), Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.6, 0.0, 0.8)] {
+    for wi in [
+        Vec3::new(1.0, 2e-5, 0.0),
+        Vec3::new(0.6, 0.8, 0.0),
+        Vec3::new(-0.6, 0.0, 0.8),
+    ] {
         let (got, want) = (gather.eval_pdf(wi), reference.eval_pdf(wi));
-        assert!((got.pdf / want.pdf - 1.0).abs() < 1e-4, "{wi}: {got:?} against {want:?}");
+        assert!(
+            (got.pdf / want.pdf - 1.0).abs() < 1e-4,
+            "{wi}: {got:?} against {want:?}"
+        );
         for (got, want) in got.value.iter().zip(want.value) {
             assert!((got / want - 1.0).abs() < 0.2, "{wi}: {got} against {want}");
         }
@@ -253,10 +421,31 @@ pub fn an_azimuth_next_to_nothing_is_still_an_azimuth(tested: &Tested) {
 
 /// Nor have their squares digits, where they are denormals.
 pub fn a_direction_next_to_the_axis_is_still_a_direction(tested: &Tested) {
-    for off in [1e-15, 1e-18, 1e-19, 1e-20, 1e-21, 3e-22, 3e-23, 1e-38, f32::from_bits(1)] {
-        for wo in [Vec3::new(1.0, off, 0.0), Vec3::new(-1.0, -off, off), Vec3::new(1e3, 0.0, 1e3 * off)] {
+    for off in [
+        1e-15,
+        1e-18,
+        1e-19,
+        1e-20,
+        1e-21,
+        3e-22,
+        3e-23,
+        1e-38,
+        f32::from_bits(1),
+    ] {
+        for wo in [
+            Vec3::new(1.0, off, 0.0),
+            Vec3::new(-1.0, -off, off),
+            Vec3::new(1e3, 0.0, 1e3 * off),
+        ] {
             let gather = material(tested, &widths(0.3)).prepare(wo);
-            for xi in ENDS.iter().flat_map(|a| [[*a, 0.5, 0.3], [0.9, *a, 0.6], [0.1, 0.4, *a], [0.5, 0.4, *a]]) {
+            for xi in ENDS.iter().flat_map(|a| {
+                [
+                    [*a, 0.5, 0.3],
+                    [0.9, *a, 0.6],
+                    [0.1, 0.4, *a],
+                    [0.5, 0.4, *a],
+                ]
+            }) {
                 for sample in samples(&gather, xi).into_iter().flatten() {
                     assert_sound(&sample, &format!("xi {xi:?} wo {wo:?}"));
                 }
@@ -267,13 +456,28 @@ pub fn a_direction_next_to_the_axis_is_still_a_direction(tested: &Tested) {
 
 /// The strength of the glints and their colour may each be absurd where their product is not.
 pub fn absurd_glints_of_a_faint_colour_do_not_overflow(tested: &Tested) {
-    let usual = HairDesc { intensity_g: 2.0, intensity_trt: [0.15; 3], phi_g: PI, ..HairDesc::default() };
-    let absurd = HairDesc { intensity_g: 3e37, intensity_trt: [1e-38; 3], ..usual };
+    let usual = HairDesc {
+        intensity_g: 2.0,
+        intensity_trt: [0.15; 3],
+        phi_g: PI,
+        ..HairDesc::default()
+    };
+    let absurd = HairDesc {
+        intensity_g: 3e37,
+        intensity_trt: [1e-38; 3],
+        ..usual
+    };
     let [usual, absurd] = [usual, absurd].map(|desc| material(tested, &desc).prepare(Vec3::Y));
     let wi = Vec3::new(0.1, -0.99, -0.05).normalize();
     let only = LobeMask::of(&[Lobe::GLINT]);
-    let (usual, absurd) = (usual.with_lobes(only).eval(wi), absurd.with_lobes(only).eval(wi));
+    let (usual, absurd) = (
+        usual.with_lobes(only).eval(wi),
+        absurd.with_lobes(only).eval(wi),
+    );
     for (usual, absurd) in usual.iter().zip(absurd) {
-        assert!((absurd / usual - 1.0).abs() < 1e-4, "{absurd} against {usual}");
+        assert!(
+            (absurd / usual - 1.0).abs() < 1e-4,
+            "{absurd} against {usual}"
+        );
     }
 }

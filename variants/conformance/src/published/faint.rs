@@ -13,7 +13,8 @@ fn gather(tested: &Tested, desc: &HairDesc, wo: Vec3) -> Gather {
 
 /// The sample of one lane, and of every level.
 fn samples(gather: &Gather, xi: [f32; 3]) -> Vec<Option<Sample>> {
-    let wide = Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
+    let wide =
+        Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
     wide.chain([gather.sample(xi)]).collect()
 }
 
@@ -28,7 +29,10 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
     for wo in [Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.96, 0.0, 0.28)] {
         let usual = gather(tested, &HairDesc::default(), wo).with_lobes(only);
         for intensity in [1e-10, 1e-30, 1e-37, 1e-39, 1e-42, 1e-45] {
-            let desc = HairDesc { intensity_tt: [intensity; 3], ..HairDesc::default() };
+            let desc = HairDesc {
+                intensity_tt: [intensity; 3],
+                ..HairDesc::default()
+            };
             let faint = gather(tested, &desc, wo).with_lobes(only);
             for _ in 0..200 {
                 let xi = draws.xi3();
@@ -36,15 +40,24 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
                     let (Some(faint), Some(usual)) = (faint, usual) else {
                         panic!("{faint:?} {usual:?} at {intensity}")
                     };
-                    let at = || format!("{faint:?}, as bright as usual {usual:?}, at {intensity} xi {xi:?}");
+                    let at = || {
+                        format!("{faint:?}, as bright as usual {usual:?}, at {intensity} xi {xi:?}")
+                    };
                     assert_eq!((faint.lobe, faint.wi), (usual.lobe, usual.wi), "{}", at());
                     assert!(near(faint.pdf, usual.pdf, 1e-5), "{}", at());
                 }
                 let wi = usual.sample(xi).unwrap().wi;
                 for level in Level::available() {
-                    let eight = |gather: &Gather| gather.eval_pdf8_at(level, &packet(&[wi])).lane(3);
-                    for (got, want) in [(eight(&faint), eight(&usual)), (faint.eval_pdf(wi), usual.eval_pdf(wi))] {
-                        assert!(near(got.pdf, want.pdf, 1e-5), "{got:?}, as bright as usual {want:?}, {level} {wi}");
+                    let eight =
+                        |gather: &Gather| gather.eval_pdf8_at(level, &packet(&[wi])).lane(3);
+                    for (got, want) in [
+                        (eight(&faint), eight(&usual)),
+                        (faint.eval_pdf(wi), usual.eval_pdf(wi)),
+                    ] {
+                        assert!(
+                            near(got.pdf, want.pdf, 1e-5),
+                            "{got:?}, as bright as usual {want:?}, {level} {wi}"
+                        );
                     }
                 }
             }
@@ -56,9 +69,13 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
 pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with(tested: &Tested) {
     let black = [0.0; 3];
     let mut seen = 0;
-    for (alpha_trt, beta_trt) in
-        [(-FRAC_PI_2, 0.063), (-FRAC_PI_2, 0.0628), (-FRAC_PI_2, 0.07), (-1.3, 0.05), (1.4, 0.1)]
-    {
+    for (alpha_trt, beta_trt) in [
+        (-FRAC_PI_2, 0.063),
+        (-FRAC_PI_2, 0.0628),
+        (-FRAC_PI_2, 0.07),
+        (-1.3, 0.05),
+        (1.4, 0.1),
+    ] {
         let desc = HairDesc {
             intensity_r: black,
             intensity_tt: black,
@@ -78,12 +95,19 @@ pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with(tested: &Tested) {
             let eight = |level| {
                 (
                     gather.eval_pdf8_at(level, &packet(&[wi])).lane(2).pdf,
-                    gather.lobes8_at(level, &packet(&[wi]))[Lobe::TRT].pdf.to_array()[2],
+                    gather.lobes8_at(level, &packet(&[wi]))[Lobe::TRT]
+                        .pdf
+                        .to_array()[2],
                 )
             };
-            for (pdf, lobe) in Level::available().map(eight).chain([(gather.pdf(wi), gather.lobes(wi)[Lobe::TRT].pdf)])
+            for (pdf, lobe) in Level::available()
+                .map(eight)
+                .chain([(gather.pdf(wi), gather.lobes(wi)[Lobe::TRT].pdf)])
             {
-                assert!(lobe == pdf || near(lobe, pdf, 1e-4), "{lobe} where {pdf} is drawn: {wi} {desc:?}");
+                assert!(
+                    lobe == pdf || near(lobe, pdf, 1e-4),
+                    "{lobe} where {pdf} is drawn: {wi} {desc:?}"
+                );
                 seen += usize::from(pdf > 0.0);
             }
         }

@@ -14,7 +14,16 @@ fn hair(draws: &mut Draws) -> (HairParams, f64) {
     let mut angle = |lo: f64, hi: f64| narrow(draws.scale(lo, hi).to_radians());
     let (gamma_tt, gamma_g, phi_g) = (angle(1.0, 60.0), angle(1.0, 40.0), angle(10.0, 80.0));
     let intensity_g = narrow(draws.scale(0.1, 10.0));
-    let desc = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt, gamma_g, phi_g, intensity_g, ..HairDesc::default() };
+    let desc = HairDesc {
+        beta_r,
+        beta_tt,
+        beta_trt,
+        gamma_tt,
+        gamma_g,
+        phi_g,
+        intensity_g,
+        ..HairDesc::default()
+    };
     let theta_o = draws.sign() * 89.9_f64.min(draws.between(0.0, 100.0));
     (HairParams::new(&desc).unwrap(), theta_o.to_radians())
 }
@@ -25,19 +34,43 @@ fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
     for round in 0..16_000 {
         let (params, theta_o) = hair(&mut draws);
         let wo = direction(theta_o, draws.between(-PI, PI));
-        let mask = if round % 4 == 0 { LobeMask::of(&[Lobe::ALL[draws.below(4)]]) } else { LobeMask::ALL };
-        let gather = Bsdf::new(tested.sampler(Some(bands)), &params).prepare(wo).with_lobes(mask);
-        let reference = MatchedReference::prepare(&parameters(&params, 1.0), tested.formulas.shape, double(wo), bands);
+        let mask = if round % 4 == 0 {
+            LobeMask::of(&[Lobe::ALL[draws.below(4)]])
+        } else {
+            LobeMask::ALL
+        };
+        let gather = Bsdf::new(tested.sampler(Some(bands)), &params)
+            .prepare(wo)
+            .with_lobes(mask);
+        let reference = MatchedReference::prepare(
+            &parameters(&params, 1.0),
+            tested.formulas.shape,
+            double(wo),
+            bands,
+        );
         let limit = reference.weight_bound(mask);
         if mask == LobeMask::ALL {
-            let mean: f64 = gather.albedo().0.iter().flatten().map(|x| f64::from(*x) / 3.0).sum();
-            worst[1].see(limit / mean, || format!("{bands} theta_o {theta_o} {params:?}"));
+            let mean: f64 = gather
+                .albedo()
+                .0
+                .iter()
+                .flatten()
+                .map(|x| f64::from(*x) / 3.0)
+                .sum();
+            worst[1].see(limit / mean, || {
+                format!("{bands} theta_o {theta_o} {params:?}")
+            });
         }
         for _ in 0..4 {
-            let eight = gather.sample8_at(Level::detect(), &lanes_of(&core::array::from_fn(|_| draws.xi3())));
+            let eight = gather.sample8_at(
+                Level::detect(),
+                &lanes_of(&core::array::from_fn(|_| draws.xi3())),
+            );
             for s in (0..8).filter_map(|lane| eight.lane(lane)) {
                 let weight = s.weight.iter().map(|x| f64::from(*x) / 3.0).sum::<f64>();
-                worst[0].see(weight / limit, || format!("{bands} theta_o {theta_o} {mask:?} {s:?} {params:?}"));
+                worst[0].see(weight / limit, || {
+                    format!("{bands} theta_o {theta_o} {mask:?} {s:?} {params:?}")
+                });
             }
         }
     }
@@ -48,8 +81,16 @@ pub fn weights_are_below_their_bound_and_close_to_the_mean(tested: &Tested) {
     for (worst, bands) in worst.iter_mut().zip([5, 9, 25]) {
         scan(tested, bands, worst);
     }
-    for ((bands, limit), [bound, mean]) in [5, 9, 25].into_iter().zip(tested.rows.weight).zip(&worst) {
-        bound.check(&format!("{bands} bands: largest weight over its bound"), 1.0 + 1e-4);
-        mean.check(&format!("{bands} bands: bound on weights over the mean"), limit);
+    for ((bands, limit), [bound, mean]) in
+        [5, 9, 25].into_iter().zip(tested.rows.weight).zip(&worst)
+    {
+        bound.check(
+            &format!("{bands} bands: largest weight over its bound"),
+            1.0 + 1e-4,
+        );
+        mean.check(
+            &format!("{bands} bands: bound on weights over the mean"),
+            limit,
+        );
     }
 }

@@ -4,15 +4,20 @@
 use crate::erased::{Direction, ErasedGather, ErasedGather8};
 use hairis::wide::f32x8;
 use hairis::{
-    Conserving, Eval, Eval8, HairParams, Hit, Hit8, Level, LobeEval, LobeEval8, LobeMask, PerLobe, Sample, Sample8,
-    Vec3x8,
+    Conserving, Eval, Eval8, HairParams, Hit, Hit8, Level, LobeEval, LobeEval8, LobeMask, PerLobe,
+    Sample, Sample8, Vec3x8,
 };
 
 /// A model of the family.
 pub(super) trait AnyModel {
     fn prepare(&self, params: &HairParams, hit: Hit) -> Box<dyn ErasedGather>;
     fn prepare8(&self, params: &HairParams, level: Level, hits: Hit8) -> Box<dyn ErasedGather8>;
-    fn prepare_packed(&self, params: [&HairParams; 8], level: Level, hits: Hit8) -> Box<dyn ErasedGather8>;
+    fn prepare_packed(
+        &self,
+        params: [&HairParams; 8],
+        level: Level,
+        hits: Hit8,
+    ) -> Box<dyn ErasedGather8>;
     /// The constants of a shading point, by the function for one lane and by that for lanes.
     fn constants(&self, params: &HairParams, hit: Hit) -> [String; 2];
     /// Albedo of hair that conserves energy.
@@ -30,18 +35,28 @@ impl<M: hairis::Model<Params = HairParams> + 'static> AnyModel for M {
         Box::new(hairis::Bsdf::new(self, params).prepare8_at(level, hits))
     }
 
-    fn prepare_packed(&self, params: [&HairParams; 8], level: Level, hits: Hit8) -> Box<dyn ErasedGather8> {
+    fn prepare_packed(
+        &self,
+        params: [&HairParams; 8],
+        level: Level,
+        hits: Hit8,
+    ) -> Box<dyn ErasedGather8> {
         let bsdfs = params.map(|params| hairis::Bsdf::new(self, params));
         Box::new(hairis::Bsdf8::pack(bsdfs.each_ref()).prepare8_at(level, hits))
     }
 
     fn constants(&self, params: &HairParams, hit: Hit) -> [String; 2] {
         let material = self.material(params);
-        [format!("{:?}", M::prepare_one(&material, hit)), format!("{:?}", M::prepare::<f32, f32>(&material, hit))]
+        [
+            format!("{:?}", M::prepare_one(&material, hit)),
+            format!("{:?}", M::prepare::<f32, f32>(&material, hit)),
+        ]
     }
 
     fn conserving_albedo(&self, params: &HairParams, hit: Hit) -> PerLobe<[f32; 3]> {
-        hairis::Bsdf::new(&Conserving(*self), params).prepare(hit).albedo()
+        hairis::Bsdf::new(&Conserving(*self), params)
+            .prepare(hit)
+            .albedo()
     }
 
     fn max_albedo(&self, params: &HairParams) -> f32 {
@@ -62,7 +77,10 @@ pub(super) struct Bsdf<'a> {
 
 impl<'a> Bsdf<'a> {
     pub(super) fn new(model: &'a dyn AnyModel, params: &HairParams) -> Self {
-        Self { model, params: *params }
+        Self {
+            model,
+            params: *params,
+        }
     }
 
     pub(super) fn prepare(&self, hit: impl Into<Hit>) -> Gather {
@@ -74,8 +92,16 @@ impl<'a> Bsdf<'a> {
     }
 
     /// Eight hits on eight materials of one model.
-    pub(super) fn prepare_packed(bsdfs: [&Self; 8], level: Level, hits: impl Into<Hit8>) -> Gather8 {
-        Gather8(bsdfs[0].model.prepare_packed(bsdfs.map(|bsdf| &bsdf.params), level, hits.into()))
+    pub(super) fn prepare_packed(
+        bsdfs: [&Self; 8],
+        level: Level,
+        hits: impl Into<Hit8>,
+    ) -> Gather8 {
+        Gather8(
+            bsdfs[0]
+                .model
+                .prepare_packed(bsdfs.map(|bsdf| &bsdf.params), level, hits.into()),
+        )
     }
 
     pub(super) fn max_albedo(&self) -> f32 {

@@ -3,7 +3,9 @@
 
 use super::Tested;
 use super::handles::{Bsdf, Gather8};
-use super::support::{Draws, Kind, LargestError, Point, for_each_point, lanes_of, materials, packet, parameters};
+use super::support::{
+    Draws, Kind, LargestError, Point, for_each_point, lanes_of, materials, packet, parameters,
+};
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{Drawn, Eval, Hit, Level, Lobe, PerLobe, Sample8};
@@ -14,7 +16,13 @@ fn eval_bits(e: Eval) -> [u32; 4] {
 
 /// Every number of one lane of a packet of samples.
 fn sample_lane(s: &Sample8, lane: usize) -> [f32; 11] {
-    let Drawn { wi, value: [r, g, b], pdf, weight: [wr, wg, wb], slot } = *s;
+    let Drawn {
+        wi,
+        value: [r, g, b],
+        pdf,
+        weight: [wr, wg, wb],
+        slot,
+    } = *s;
     [wi.x, wi.y, wi.z, r, g, b, pdf, wr, wg, wb, slot].map(|x: f32x8| x.as_array()[lane])
 }
 
@@ -38,14 +46,25 @@ struct MixedPacket<'a> {
 fn mixed<'a>(tested: &'a Tested, draws: &mut Draws) -> MixedPacket<'a> {
     let (model, factor) = tested.first();
     let params: [_; 8] = core::array::from_fn(|_| draws.params(1e3));
-    let wo: [_; 8] =
-        core::array::from_fn(|lane| draws.near_lobes(&parameters(&params[lane], factor), 0.0, 0.0).normalize());
+    let wo: [_; 8] = core::array::from_fn(|lane| {
+        draws
+            .near_lobes(&parameters(&params[lane], factor), 0.0, 0.0)
+            .normalize()
+    });
     let wi = core::array::from_fn(|lane| {
-        let (theta_o, phi_o) = (f64::from(wo[lane].x.asin()), f64::from(wo[lane].z.atan2(wo[lane].y)));
+        let (theta_o, phi_o) = (
+            f64::from(wo[lane].x.asin()),
+            f64::from(wo[lane].z.atan2(wo[lane].y)),
+        );
         draws.near_lobes(&parameters(&params[lane], factor), theta_o, phi_o)
     });
     let xi = core::array::from_fn(|_| draws.xi3());
-    MixedPacket { bsdf: params.map(|p| Bsdf::new(model, &p)), wo, wi, xi }
+    MixedPacket {
+        bsdf: params.map(|p| Bsdf::new(model, &p)),
+        wo,
+        wi,
+        xi,
+    }
 }
 
 fn gathers(m: &MixedPacket<'_>, level: Level) -> Gather8 {
@@ -53,18 +72,27 @@ fn gathers(m: &MixedPacket<'_>, level: Level) -> Gather8 {
 }
 
 pub fn every_lane_position_equals_one_lane(tested: &Tested) {
-    assert!(Level::available().next() == Some(Level::portable()), "the portable level runs everywhere");
+    assert!(
+        Level::available().next() == Some(Level::portable()),
+        "the portable level runs everywhere"
+    );
     for_each_point(tested, Kind::Wide, |bsdf, _, point| {
         let gather = bsdf.prepare(point.wo);
         let mut draws = Draws(point.seed);
         for eight in point.directions(32).chunks(8) {
             let xi: [_; 8] = core::array::from_fn(|_| draws.xi3());
             for level in unfused() {
-                let (evals, samples) =
-                    (gather.eval_pdf8_at(level, &packet(eight)), gather.sample8_at(level, &lanes_of(&xi)));
+                let (evals, samples) = (
+                    gather.eval_pdf8_at(level, &packet(eight)),
+                    gather.sample8_at(level, &lanes_of(&xi)),
+                );
                 for (lane, wi) in eight.iter().enumerate() {
                     let (one, wide) = (gather.eval_pdf(*wi), evals.lane(lane));
-                    assert_eq!(eval_bits(one), eval_bits(wide), "{level} lane {lane} wi {wi:?}: {one:?} {wide:?}");
+                    assert_eq!(
+                        eval_bits(one),
+                        eval_bits(wide),
+                        "{level} lane {lane} wi {wi:?}: {one:?} {wide:?}"
+                    );
                     let (one, wide) = (gather.sample(xi[lane]), samples.lane(lane));
                     assert_eq!(one, wide, "{level} lane {lane} xi {:?}", xi[lane]);
                 }
@@ -79,14 +107,31 @@ pub fn eight_shading_points_equal_one_each(tested: &Tested) {
         let m = mixed(tested, &mut draws);
         for level in unfused() {
             let gather = gathers(&m, level);
-            let (evals, samples) =
-                (gather.eval_pdf8_at(level, &packet(&m.wi)), gather.sample8_at(level, &lanes_of(&m.xi)));
+            let (evals, samples) = (
+                gather.eval_pdf8_at(level, &packet(&m.wi)),
+                gather.sample8_at(level, &lanes_of(&m.xi)),
+            );
             for lane in 0..8 {
                 let one = m.bsdf[lane].prepare(m.wo[lane]);
-                let at = || format!("{level} lane {lane} wo {:?} {:?}", m.wo[lane], m.bsdf[lane].params);
-                assert_eq!(eval_bits(one.eval_pdf(m.wi[lane])), eval_bits(evals.lane(lane)), "{}", at());
+                let at = || {
+                    format!(
+                        "{level} lane {lane} wo {:?} {:?}",
+                        m.wo[lane], m.bsdf[lane].params
+                    )
+                };
+                assert_eq!(
+                    eval_bits(one.eval_pdf(m.wi[lane])),
+                    eval_bits(evals.lane(lane)),
+                    "{}",
+                    at()
+                );
                 assert_eq!(one.sample(m.xi[lane]), samples.lane(lane), "{}", at());
-                assert_eq!(format!("{one:?}"), format!("{:?}", gather.lane(lane)), "{}", at());
+                assert_eq!(
+                    format!("{one:?}"),
+                    format!("{:?}", gather.lane(lane)),
+                    "{}",
+                    at()
+                );
             }
         }
     }
@@ -115,13 +160,31 @@ pub fn one_shading_point_in_every_lane_equals_a_shared_one(tested: &Tested) {
         for level in Level::available() {
             let eight = Bsdf::prepare_packed([&bsdf; 8], level, &wo);
             let same = bsdf.prepare8_at(level, &wo);
-            assert_eq!(format!("{eight:?}"), format!("{same:?}"), "{level}: packed and shared material");
+            assert_eq!(
+                format!("{eight:?}"),
+                format!("{same:?}"),
+                "{level}: packed and shared material"
+            );
             let shared = eight.lane(3);
-            let (a, b) = (eight.eval_pdf8_at(level, &packet(&m.wi)), shared.eval_pdf8_at(level, &packet(&m.wi)));
-            let (s, t) = (eight.sample8_at(level, &lanes_of(&m.xi)), shared.sample8_at(level, &lanes_of(&m.xi)));
+            let (a, b) = (
+                eight.eval_pdf8_at(level, &packet(&m.wi)),
+                shared.eval_pdf8_at(level, &packet(&m.wi)),
+            );
+            let (s, t) = (
+                eight.sample8_at(level, &lanes_of(&m.xi)),
+                shared.sample8_at(level, &lanes_of(&m.xi)),
+            );
             for lane in 0..8 {
-                assert_eq!(eval_bits(a.lane(lane)), eval_bits(b.lane(lane)), "{level} lane {lane} {params:?}");
-                assert_eq!(sample_bits(&s, lane), sample_bits(&t, lane), "{level} lane {lane} {params:?}");
+                assert_eq!(
+                    eval_bits(a.lane(lane)),
+                    eval_bits(b.lane(lane)),
+                    "{level} lane {lane} {params:?}"
+                );
+                assert_eq!(
+                    sample_bits(&s, lane),
+                    sample_bits(&t, lane),
+                    "{level} lane {lane} {params:?}"
+                );
             }
         }
     }
@@ -143,11 +206,25 @@ pub fn permuted_lanes_permute_the_results(tested: &Tested) {
         };
         for level in Level::available() {
             let (g, h) = (gathers(&m, level), gathers(&p, level));
-            let (a, b) = (g.eval_pdf8_at(level, &packet(&m.wi)), h.eval_pdf8_at(level, &packet(&p.wi)));
-            let (s, t) = (g.sample8_at(level, &lanes_of(&m.xi)), h.sample8_at(level, &lanes_of(&p.xi)));
+            let (a, b) = (
+                g.eval_pdf8_at(level, &packet(&m.wi)),
+                h.eval_pdf8_at(level, &packet(&p.wi)),
+            );
+            let (s, t) = (
+                g.sample8_at(level, &lanes_of(&m.xi)),
+                h.sample8_at(level, &lanes_of(&p.xi)),
+            );
             for (to, from) in order.into_iter().enumerate() {
-                assert_eq!(eval_bits(a.lane(from)), eval_bits(b.lane(to)), "{level}: lane {from} moved to {to}");
-                assert_eq!(sample_bits(&s, from), sample_bits(&t, to), "{level}: lane {from} moved to {to}");
+                assert_eq!(
+                    eval_bits(a.lane(from)),
+                    eval_bits(b.lane(to)),
+                    "{level}: lane {from} moved to {to}"
+                );
+                assert_eq!(
+                    sample_bits(&s, from),
+                    sample_bits(&t, to),
+                    "{level}: lane {from} moved to {to}"
+                );
             }
         }
     }
@@ -172,14 +249,21 @@ pub fn levels_agree_with_one_lane(tested: &Tested) {
         for eight in tame(point).chunks(8) {
             let xi: [_; 8] = core::array::from_fn(|_| draws.xi3());
             for level in Level::available() {
-                let (evals, samples) =
-                    (gather.eval_pdf8_at(level, &packet(eight)), gather.sample8_at(level, &lanes_of(&xi)));
+                let (evals, samples) = (
+                    gather.eval_pdf8_at(level, &packet(eight)),
+                    gather.sample8_at(level, &lanes_of(&xi)),
+                );
                 for (lane, wi) in eight.iter().enumerate() {
                     let at = || format!("{level} wo {:?} wi {wi:?} xi {:?}", point.wo, xi[lane]);
                     let (a, b) = (gather.eval_pdf(*wi), evals.lane(lane));
-                    worst[0].see(super::support::relative(b.value[0], f64::from(a.value[0]), 1e-20), at);
+                    worst[0].see(
+                        super::support::relative(b.value[0], f64::from(a.value[0]), 1e-20),
+                        at,
+                    );
                     worst[1].see(super::support::relative(b.pdf, f64::from(a.pdf), 0.0), at);
-                    let (Some(a), Some(b)) = (gather.sample(xi[lane]), samples.lane(lane)) else { continue };
+                    let (Some(a), Some(b)) = (gather.sample(xi[lane]), samples.lane(lane)) else {
+                        continue;
+                    };
                     assert_eq!(a.lobe, b.lobe, "{}", at());
                     worst[2].see(f64::from((a.wi - b.wi).length()), at);
                 }
@@ -188,7 +272,10 @@ pub fn levels_agree_with_one_lane(tested: &Tested) {
     });
     worst[0].check("S of a level against one lane", tested.rows.levels[0]);
     worst[1].check("pdf of a level against one lane", tested.rows.levels[1]);
-    worst[2].check("direction of a level against one lane", tested.rows.levels[2]);
+    worst[2].check(
+        "direction of a level against one lane",
+        tested.rows.levels[2],
+    );
 }
 
 /// The bits of each lane's albedos.
@@ -202,17 +289,47 @@ pub fn levels_that_round_alike_give_the_same_bits(tested: &Tested) {
     let mut draws = Draws(14);
     for _ in 0..500 {
         let m = mixed(tested, &mut draws);
-        for pair in levels.windows(2).filter(|pair| pair[0].fuses() == pair[1].fuses()) {
+        for pair in levels
+            .windows(2)
+            .filter(|pair| pair[0].fuses() == pair[1].fuses())
+        {
             let g = gathers(&m, pair[0]);
             let h = gathers(&m, pair[1]);
-            assert_eq!(format!("{g:?}"), format!("{h:?}"), "prepared on {} and {}", pair[0], pair[1]);
+            assert_eq!(
+                format!("{g:?}"),
+                format!("{h:?}"),
+                "prepared on {} and {}",
+                pair[0],
+                pair[1]
+            );
             let albedos = [pair[0], pair[1]].map(|level| albedo_bits(&g.albedo8_at(level)));
-            assert_eq!(albedos[0], albedos[1], "albedos on {} and {}", pair[0], pair[1]);
-            let of = |level| (g.eval_pdf8_at(level, &packet(&m.wi)), g.sample8_at(level, &lanes_of(&m.xi)));
+            assert_eq!(
+                albedos[0], albedos[1],
+                "albedos on {} and {}",
+                pair[0], pair[1]
+            );
+            let of = |level| {
+                (
+                    g.eval_pdf8_at(level, &packet(&m.wi)),
+                    g.sample8_at(level, &lanes_of(&m.xi)),
+                )
+            };
             let ((a, s), (b, t)) = (of(pair[0]), of(pair[1]));
             for lane in 0..8 {
-                assert_eq!(eval_bits(a.lane(lane)), eval_bits(b.lane(lane)), "{} {}", pair[0], pair[1]);
-                assert_eq!(sample_bits(&s, lane), sample_bits(&t, lane), "{} {}", pair[0], pair[1]);
+                assert_eq!(
+                    eval_bits(a.lane(lane)),
+                    eval_bits(b.lane(lane)),
+                    "{} {}",
+                    pair[0],
+                    pair[1]
+                );
+                assert_eq!(
+                    sample_bits(&s, lane),
+                    sample_bits(&t, lane),
+                    "{} {}",
+                    pair[0],
+                    pair[1]
+                );
             }
         }
     }
@@ -224,10 +341,23 @@ pub fn lobes_and_albedo_agree_with_one_lane(tested: &Tested) {
     for _ in 0..200 {
         let m = mixed(tested, &mut draws);
         let gather = gathers(&m, Level::detect());
-        let (lobes, albedo) = (gather.lobes8(&packet(&m.wi)), gather.albedo8_at(Level::detect()));
+        let (lobes, albedo) = (
+            gather.lobes8(&packet(&m.wi)),
+            gather.albedo8_at(Level::detect()),
+        );
         for level in unfused() {
-            for (lane, bits) in albedo_bits(&gather.albedo8_at(level)).into_iter().enumerate() {
-                let one: Vec<u32> = gather.lane(lane).albedo().0.as_flattened().iter().map(|x| x.to_bits()).collect();
+            for (lane, bits) in albedo_bits(&gather.albedo8_at(level))
+                .into_iter()
+                .enumerate()
+            {
+                let one: Vec<u32> = gather
+                    .lane(lane)
+                    .albedo()
+                    .0
+                    .as_flattened()
+                    .iter()
+                    .map(|x| x.to_bits())
+                    .collect();
                 assert_eq!(bits, one, "albedo of lane {lane} on {level}");
             }
         }
@@ -237,16 +367,29 @@ pub fn lobes_and_albedo_agree_with_one_lane(tested: &Tested) {
             for lobe in Lobe::ALL {
                 let (a, b) = (lobes[lobe], alone[lobe]);
                 let bits = |x: f32x8, lane: usize| x.as_array()[lane].to_bits();
-                assert_eq!(bits(a.value, lane), bits(b.value, 0), "value of {lobe:?} in lane {lane}");
-                assert_eq!(bits(a.pdf, lane), bits(b.pdf, 0), "pdf of {lobe:?} in lane {lane}");
+                assert_eq!(
+                    bits(a.value, lane),
+                    bits(b.value, 0),
+                    "value of {lobe:?} in lane {lane}"
+                );
+                assert_eq!(
+                    bits(a.pdf, lane),
+                    bits(b.pdf, 0),
+                    "pdf of {lobe:?} in lane {lane}"
+                );
                 for c in 0..3 {
-                    assert_eq!(bits(a.color[c], lane), bits(b.color[c], 0), "color of {lobe:?} in lane {lane}");
+                    assert_eq!(
+                        bits(a.color[c], lane),
+                        bits(b.color[c], 0),
+                        "color of {lobe:?} in lane {lane}"
+                    );
                     let (wide, scalar) = (albedo[lobe][c].as_array()[lane], alone_albedo[lobe][c]);
                     // A lobe that lies off the sphere returns next to nothing, with the digits of its tail.
                     let floor = 1e-4 * f64::from(a.color[c].as_array()[lane]).max(1e-20);
-                    worst.see(super::support::relative(wide, f64::from(scalar), floor), || {
-                        format!("{lobe:?}: {wide}, one lane {scalar}")
-                    });
+                    worst.see(
+                        super::support::relative(wide, f64::from(scalar), floor),
+                        || format!("{lobe:?}: {wide}, one lane {scalar}"),
+                    );
                 }
             }
         }
@@ -260,5 +403,15 @@ pub fn a_hit_is_its_direction(tested: &Tested) {
     let bsdf = Bsdf::new(model, &hairis::HairParams::default());
     let wo = Vec3::new(0.6, 0.8, 0.0);
     let plain = format!("{:?}", bsdf.prepare(wo));
-    assert_eq!(plain, format!("{:?}", bsdf.prepare(Hit { wo: wo.into(), h: 0.7 })), "h must not matter");
+    assert_eq!(
+        plain,
+        format!(
+            "{:?}",
+            bsdf.prepare(Hit {
+                wo: wo.into(),
+                h: 0.7
+            })
+        ),
+        "h must not matter"
+    );
 }

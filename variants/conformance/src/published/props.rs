@@ -2,7 +2,9 @@
 
 use super::Tested;
 use super::handles::{Bsdf, Gather8};
-use super::support::{Draws, LargestError, direction, lanes_of, materials, narrow, packet, relative};
+use super::support::{
+    Draws, LargestError, direction, lanes_of, materials, narrow, packet, relative,
+};
 use super::support::{Kind, angles};
 use core::f64::consts::PI;
 use glam::Vec3;
@@ -12,8 +14,22 @@ use hairis::{HairParams, Level, Lobe};
 /// Cases of each property of random inputs.
 const CASES: u64 = 20_000;
 
-const SPECIAL: [f32; 14] =
-    [0.0, -0.0, 1.0, -1.0, 1e-5, 0.999_999_94, 2.0, f32::MAX, f32::MIN, f32::MIN_POSITIVE, 1e-45, -1e-45, 1e19, -1e-19];
+const SPECIAL: [f32; 14] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    1e-5,
+    0.999_999_94,
+    2.0,
+    f32::MAX,
+    f32::MIN,
+    f32::MIN_POSITIVE,
+    1e-45,
+    -1e-45,
+    1e19,
+    -1e-19,
+];
 
 /// Any finite float, special ones and those of directions more often than chance.
 pub fn finite(draws: &mut Draws) -> f32 {
@@ -29,7 +45,10 @@ pub fn finite(draws: &mut Draws) -> f32 {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "half of the bits are enough")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "half of the bits are enough"
+)]
 fn any_bits(draws: &mut Draws) -> f32 {
     f32::from_bits(draws.bits() as u32)
 }
@@ -59,13 +78,22 @@ fn numbers(gather: &Gather8, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>,
     let first = |x: &f32x8| x.as_array()[0];
     let e = gather.eval_pdf8_at(level, &packet(&[wi]));
     let s = gather.sample8_at(level, &lanes_of(&[xi; 8]));
-    let mut positive: Vec<f32> =
-        e.value.iter().chain([&e.pdf, &s.pdf]).chain(&s.value).chain(&s.weight).map(first).collect();
+    let mut positive: Vec<f32> = e
+        .value
+        .iter()
+        .chain([&e.pdf, &s.pdf])
+        .chain(&s.value)
+        .chain(&s.weight)
+        .map(first)
+        .collect();
     for lobe in gather.lobes8(&packet(&[wi])).0 {
         positive.extend([first(&lobe.value), first(&lobe.pdf)]);
         positive.extend(lobe.color.iter().map(first));
     }
-    (positive, [s.wi.x, s.wi.y, s.wi.z, s.slot].iter().map(first).collect())
+    (
+        positive,
+        [s.wi.x, s.wi.y, s.wi.z, s.slot].iter().map(first).collect(),
+    )
 }
 
 /// Every number of one lane.
@@ -100,7 +128,11 @@ pub fn finite_inputs_give_finite_outputs(tested: &Tested) {
         }
         for (positive, any) in all {
             let at = || format!("wo {wo:?} wi {wi:?} xi {xi:?} {params:?}");
-            assert!(positive.iter().all(|x| x.is_finite() && *x >= 0.0), "{positive:?} {}", at());
+            assert!(
+                positive.iter().all(|x| x.is_finite() && *x >= 0.0),
+                "{positive:?} {}",
+                at()
+            );
             assert!(any.iter().all(|x| x.is_finite()), "{any:?} {}", at());
         }
     }
@@ -110,11 +142,15 @@ pub fn nothing_panics_on_nan_and_infinity(tested: &Tested) {
     let mut draws = Draws(55);
     for _ in 0..CASES {
         let params = params(&mut draws);
-        let [wo, wi] = [three(&mut draws, anything), three(&mut draws, anything)].map(Vec3::from_array);
+        let [wo, wi] =
+            [three(&mut draws, anything), three(&mut draws, anything)].map(Vec3::from_array);
         let xi = three(&mut draws, anything);
         let bsdf = Bsdf::new(tested.model(), &params);
         let (positive, _) = scalar_numbers(&bsdf, Vec3::Y, wi, [0.5; 3]);
-        assert!(positive.iter().all(|x| *x >= 0.0), "wi {wi:?} {params:?}: {positive:?}");
+        assert!(
+            positive.iter().all(|x| *x >= 0.0),
+            "wi {wi:?} {params:?}: {positive:?}"
+        );
         let _ = scalar_numbers(&bsdf, wo, wi, xi);
         for level in Level::available() {
             let gather = Bsdf::prepare_packed([&bsdf; 8], level, &packet(&[wo]));
@@ -130,48 +166,68 @@ pub fn a_sample_agrees_with_eval_and_pdf(tested: &Tested) {
         for _ in 0..10_000 {
             let params = draws.params(10.0);
             let d = params.desc();
-            let width =
-                [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g].into_iter().fold(4.0, f32::min) * factor;
+            let width = [d.beta_r, d.beta_tt, d.beta_trt, d.gamma_tt, d.gamma_g]
+                .into_iter()
+                .fold(4.0, f32::min)
+                * factor;
             // Effect of a rounded direction on a bell of that width.
             let scale = f64::from(width) / (f64::from(width) + 0.1);
             let wo = direction(draws.between(-1.5, 1.5), draws.between(-PI, PI));
             let gather = Bsdf::new(model, &params).prepare(wo);
             for _ in 0..8 {
                 let xi = draws.xi3();
-                let wide = Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(1));
+                let wide = Level::available()
+                    .map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(1));
                 for s in wide.chain([gather.sample(xi)]).flatten() {
                     let [theta, phi] = angles(wo, s.wi);
                     if theta.cos() < 1e-2 || PI - phi < 1e-2 || (phi - 0.5 * PI).abs() < 1e-3 {
                         continue;
                     }
                     let e = gather.eval_pdf(s.wi);
-                    worst
-                        .see(relative(s.pdf, f64::from(e.pdf), 0.0) * scale, || format!("{s:?} {e:?} wo {wo:?} {d:?}"));
+                    worst.see(relative(s.pdf, f64::from(e.pdf), 0.0) * scale, || {
+                        format!("{s:?} {e:?} wo {wo:?} {d:?}")
+                    });
                     let by = f64::from(s.value[1]) * theta.cos() / f64::from(s.pdf);
                     let weight = relative(s.weight[1], by, 1e-20);
-                    assert!(weight < 1e-4, "weight is not value cos / pdf, off by {weight}: {s:?}");
+                    assert!(
+                        weight < 1e-4,
+                        "weight is not value cos / pdf, off by {weight}: {s:?}"
+                    );
                 }
             }
         }
     }
-    worst.check("sample against pdf, times width / (width + 0.1)", tested.rows.sample_eval);
+    worst.check(
+        "sample against pdf, times width / (width + 0.1)",
+        tested.rows.sample_eval,
+    );
 }
 
 pub fn eval_is_reciprocal(tested: &Tested) {
     let mut worst = LargestError::default();
     let mut draws = Draws(51);
     for (model, _) in tested.forms() {
-        for params in materials(Kind::Wide).into_iter().chain(materials(Kind::Grid).into_iter().step_by(17)) {
+        for params in materials(Kind::Wide)
+            .into_iter()
+            .chain(materials(Kind::Grid).into_iter().step_by(17))
+        {
             let bsdf = Bsdf::new(model, &params);
             for _ in 0..2000 {
-                let mut any = || direction(draws.sign() * draws.between(0.0, 1.5), draws.between(-PI, PI));
+                let mut any = || {
+                    direction(
+                        draws.sign() * draws.between(0.0, 1.5),
+                        draws.between(-PI, PI),
+                    )
+                };
                 let (a, b) = (any(), any());
                 if PI - angles(a, b)[1] < 1e-3 {
                     continue;
                 }
                 let (there, back) = (bsdf.prepare(a).eval(b), bsdf.prepare(b).eval(a));
                 for c in 0..3 {
-                    worst.see(relative(there[c], f64::from(back[c]), 1e-12), || format!("{a:?} {b:?} {params:?}"));
+                    worst.see(relative(there[c], f64::from(back[c]), 1e-12), || {
+                        format!("{a:?} {b:?} {params:?}")
+                    });
                 }
             }
         }
@@ -188,8 +244,14 @@ pub fn every_lobe_has_a_density_of_its_own(tested: &Tested) {
     for _ in 0..10_000 {
         if let Some(s) = gather.sample(draws.xi3()) {
             seen[s.lobe.index()] += 1;
-            assert!(gather.lobes(s.wi)[s.lobe].pdf > 0.0, "{s:?} has no density from its own lobe");
+            assert!(
+                gather.lobes(s.wi)[s.lobe].pdf > 0.0,
+                "{s:?} has no density from its own lobe"
+            );
         }
     }
-    assert!(Lobe::ALL.into_iter().all(|lobe| seen[lobe.index()] > 50), "lobes seen: {seen:?}");
+    assert!(
+        Lobe::ALL.into_iter().all(|lobe| seen[lobe.index()] > 50),
+        "lobes seen: {seen:?}"
+    );
 }

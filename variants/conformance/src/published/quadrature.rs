@@ -62,7 +62,11 @@ fn quadrature_knows_its_integrals() {
     let ends = panels(-3.0, 3.0, &[(0.4, 0.01)]);
     let cauchy = integrate(&ends, |x| 0.01 / (PI * ((x - 0.4).powi(2) + 1e-4)));
     let exact = ((2.6_f64 / 0.01).atan() + (3.4_f64 / 0.01).atan()) / PI;
-    assert!((cauchy - exact).abs() < 1e-10, "truncated Cauchy {cauchy} against {exact}");
-    let gaussian = integrate(&ends, |x| (-(x - 0.4).powi(2) / 2e-4).exp()) / (0.01 * (2.0 * PI).sqrt());
+    assert!(
+        (cauchy - exact).abs() < 1e-10,
+        "truncated Cauchy {cauchy} against {exact}"
+    );
+    let gaussian =
+        integrate(&ends, |x| (-(x - 0.4).powi(2) / 2e-4).exp()) / (0.01 * (2.0 * PI).sqrt());
     assert!((gaussian - 1.0).abs() < 1e-9, "Gaussian {gaussian}");
 }

@@ -6,7 +6,10 @@ use hairis::{Lobe, LobeMask, PerLobe};
 
 /// The reference of a model, in double precision.
 #[derive(Clone, Copy, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one at a time lives on the stack of a test")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one at a time lives on the stack of a test"
+)]
 pub enum PublishedReference {
     /// With the published sampler.
     Published(HairReference<f64>),
@@ -31,12 +34,20 @@ impl PublishedReference {
     /// The reference for these parameters at the shading point of `wo`.
     #[must_use]
     pub fn prepare(formulas: &Formulas, parameters: &Parameters<f64>, wo: [f64; 3]) -> Self {
-        let Formulas { shape, bands, by_channel } = *formulas;
+        let Formulas {
+            shape,
+            bands,
+            by_channel,
+        } = *formulas;
         let Some(bands) = bands else {
             return Self::Published(HairReference::prepare(parameters, shape, wo));
         };
         let formulas = MatchedReference::prepare(parameters, shape, wo, bands);
-        Self::Matched(if by_channel { formulas.by_channel() } else { formulas })
+        Self::Matched(if by_channel {
+            formulas.by_channel()
+        } else {
+            formulas
+        })
     }
 
     both! {

@@ -1,6 +1,8 @@
 //! Samples against the reference: cdf of the drawn angle, value, density and weight at the drawn direction.
 
-use super::support::{Draws, Kind, LargestError, Point, angles, double, for_each_point, lanes_of, relative};
+use super::support::{
+    Draws, Kind, LargestError, Point, angles, double, for_each_point, lanes_of, relative,
+};
 use super::{PublishedReference, Tested};
 use core::f64::consts::PI;
 use hairis::{Level, Lobe, LobeMask, Sample};
@@ -31,10 +33,19 @@ fn phi(point: &Point, sample: &Sample) -> f64 {
 }
 
 /// Errors of a sample at the direction it returned: S, density, weight, and the length of the direction.
-fn see(tested: &Tested, worst: &mut [LargestError; 4], reference: &PublishedReference, point: &Point, sample: &Sample) {
+fn see(
+    tested: &Tested,
+    worst: &mut [LargestError; 4],
+    reference: &PublishedReference,
+    point: &Point,
+    sample: &Sample,
+) {
     let at = || format!("{sample:?} wo {:?} {:?}", point.wo, point.params);
     let d = double(sample.wi);
-    worst[3].see((d.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs(), at);
+    worst[3].see(
+        (d.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs(),
+        at,
+    );
     let [theta, phi] = angles(point.wo, sample.wi);
     if theta.cos() < 1e-3 || (phi - 0.5 * PI).abs() < 1e-6 {
         return;
@@ -62,9 +73,14 @@ fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 
         let mut draws = Draws(point.seed);
         for _ in 0..per_point {
             let xi = draw8(&mut draws);
-            let wide: Vec<_> = Level::available().map(|level| gather.sample8_at(level, &lanes_of(&xi))).collect();
+            let wide: Vec<_> = Level::available()
+                .map(|level| gather.sample8_at(level, &lanes_of(&xi)))
+                .collect();
             for (lane, xi) in xi.iter().enumerate() {
-                let all = wide.iter().map(|eight| eight.lane(lane)).chain([gather.sample(*xi)]);
+                let all = wide
+                    .iter()
+                    .map(|eight| eight.lane(lane))
+                    .chain([gather.sample(*xi)]);
                 for sample in all.flatten() {
                     see(tested, &mut worst, reference, point, &sample);
                     let chosen = reference.sample(xi.map(f64::from)).lobe;
@@ -76,19 +92,34 @@ fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 
                     // Within a rounding of the next lobe, or so close to the axis that either may discard.
                     let grazing = chosen.is_none() && angles(point.wo, sample.wi)[0].cos() < 1e-3;
                     // At the very end of a Gaussian either may find no density left.
-                    let end = chosen.is_none() && tested.formulas.bands.is_some() && (xi[1] == 0.0 || xi[1] == LAST);
+                    let end = chosen.is_none()
+                        && tested.formulas.bands.is_some()
+                        && (xi[1] == 0.0 || xi[1] == LAST);
                     let near = grazing || end || edges.iter().any(|d| *d < 1e-6);
-                    assert!(near || chosen == Some(sample.lobe), "{chosen:?} {sample:?} xi {xi:?} {point:?}");
+                    assert!(
+                        near || chosen == Some(sample.lobe),
+                        "{chosen:?} {sample:?} xi {xi:?} {point:?}"
+                    );
                 }
             }
             // The cdf of what each lobe draws is the number it was drawn with.
             for lobe in Lobe::ALL {
                 let alone = gather.with_lobes(LobeMask::of(&[lobe]));
-                let wide: Vec<_> = Level::available().map(|level| alone.sample8_at(level, &lanes_of(&xi))).collect();
+                let wide: Vec<_> = Level::available()
+                    .map(|level| alone.sample8_at(level, &lanes_of(&xi)))
+                    .collect();
                 for (lane, xi) in xi.iter().enumerate() {
-                    let all = wide.iter().map(|eight| eight.lane(lane)).chain([alone.sample(*xi)]);
+                    let all = wide
+                        .iter()
+                        .map(|eight| eight.lane(lane))
+                        .chain([alone.sample(*xi)]);
                     for sample in all.flatten() {
-                        let at = || format!("{lobe:?} xi {xi:?} {sample:?} wo {:?} {:?}", point.wo, point.params);
+                        let at = || {
+                            format!(
+                                "{lobe:?} xi {xi:?} {sample:?} wo {:?} {:?}",
+                                point.wo, point.params
+                            )
+                        };
                         assert_eq!(sample.lobe, lobe, "only this lobe may be drawn");
                         let got = reference.cdf_theta(lobe, angles(point.wo, sample.wi)[0]);
                         theta.see((got - f64::from(xi[1])).abs(), at);
@@ -102,19 +133,40 @@ fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 
     worst[0].check(&format!("{kind:?} S of a sample"), s);
     worst[1].check(&format!("{kind:?} pdf of a sample"), pdf);
     worst[2].check(&format!("{kind:?} weight of a sample"), weight);
-    worst[3].check(&format!("{kind:?} length of a sample"), tested.rows.sample_length);
+    worst[3].check(
+        &format!("{kind:?} length of a sample"),
+        tested.rows.sample_length,
+    );
     theta.check(&format!("{kind:?} cdf of theta"), cdf[0]);
     azimuth.check(&format!("{kind:?} cdf of phi"), cdf[1]);
 }
 
 pub fn samples_on_the_grid(tested: &Tested) {
-    check(tested, Kind::Grid, 3, tested.rows.grid_sample, tested.rows.grid_cdf);
+    check(
+        tested,
+        Kind::Grid,
+        3,
+        tested.rows.grid_sample,
+        tested.rows.grid_cdf,
+    );
 }
 
 pub fn samples_of_narrow_lobes(tested: &Tested) {
-    check(tested, Kind::Narrow, 256, tested.rows.narrow_sample, tested.rows.narrow_cdf);
+    check(
+        tested,
+        Kind::Narrow,
+        256,
+        tested.rows.narrow_sample,
+        tested.rows.narrow_cdf,
+    );
 }
 
 pub fn samples_of_wide_lobes(tested: &Tested) {
-    check(tested, Kind::Wide, 256, tested.rows.wide_sample, tested.rows.wide_cdf);
+    check(
+        tested,
+        Kind::Wide,
+        256,
+        tested.rows.wide_sample,
+        tested.rows.wide_cdf,
+    );
 }

@@ -22,14 +22,27 @@ pub fn samples_next_to_the_seam_report_their_own_direction(tested: &Tested) {
         (0.3, 0.0175, 3.12),
         (1.0, 1.0, 0.4),
     ] {
-        let params = HairDesc { gamma_tt, gamma_g, phi_g, ..HairDesc::default() };
+        let params = HairDesc {
+            gamma_tt,
+            gamma_g,
+            phi_g,
+            ..HairDesc::default()
+        };
         let params = HairParams::new(&params).unwrap();
-        for (theta_o, phi_o) in [(0.0, 0.0), (0.3, 0.785), (-0.9, 2.4), (1.2, -1.1), (0.7, 3.1)] {
+        for (theta_o, phi_o) in [
+            (0.0, 0.0),
+            (0.3, 0.785),
+            (-0.9, 2.4),
+            (1.2, -1.1),
+            (0.7, 3.1),
+        ] {
             let wo = direction(theta_o, phi_o);
             let gather = Bsdf::new(tested.model(), &params).prepare(wo);
             let reference = oracle(&tested.formulas, &params, 1.0, wo);
             for xi_phi in about_a_half() {
-                let xi = core::array::from_fn(|lane| [(lane as f32 + 0.5) / 8.0, 0.11 * lane as f32 + 0.05, xi_phi]);
+                let xi = core::array::from_fn(|lane| {
+                    [(lane as f32 + 0.5) / 8.0, 0.11 * lane as f32 + 0.05, xi_phi]
+                });
                 for sample in Level::available().flat_map(|level| {
                     let eight = gather.sample8_at(level, &lanes_of(&xi));
                     (0..8).filter_map(move |lane| eight.lane(lane))
@@ -51,7 +64,11 @@ pub fn samples_next_to_the_seam_report_their_own_direction(tested: &Tested) {
         }
     }
     assert!(glints > 1000, "hardly any glint: {glints}");
-    for ((worst, bound), what) in worst.iter().zip(tested.rows.seam).zip(["S", "pdf", "weight"]) {
+    for ((worst, bound), what) in worst
+        .iter()
+        .zip(tested.rows.seam)
+        .zip(["S", "pdf", "weight"])
+    {
         worst.check(&format!("{what} of a sample on the seam"), bound);
     }
 }

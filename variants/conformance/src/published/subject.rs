@@ -23,7 +23,14 @@ impl<P> Family<P> {
 
 fn widths(width: f32) -> HairDesc {
     let (beta_r, beta_tt, beta_trt) = (width, width, width);
-    HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: width, gamma_g: width, ..HairDesc::default() }
+    HairDesc {
+        beta_r,
+        beta_tt,
+        beta_trt,
+        gamma_tt: width,
+        gamma_g: width,
+        ..HairDesc::default()
+    }
 }
 
 fn material(desc: &HairDesc) -> HairParams {
@@ -42,15 +49,32 @@ impl<P: Published> Subject for Family<P> {
     }
 
     fn materials(&self) -> Materials<Self> {
-        let tilted = HairDesc { alpha_r: 0.2, alpha_tt: -0.15, alpha_trt: -0.35, phi_g: 0.7, ..widths(0.3) };
-        let black = HairDesc { intensity_r: [0.0; 3], intensity_tt: [0.0; 3], intensity_trt: [0.0; 3], ..widths(0.3) };
+        let tilted = HairDesc {
+            alpha_r: 0.2,
+            alpha_tt: -0.15,
+            alpha_trt: -0.35,
+            phi_g: 0.7,
+            ..widths(0.3)
+        };
+        let black = HairDesc {
+            intensity_r: [0.0; 3],
+            intensity_tt: [0.0; 3],
+            intensity_trt: [0.0; 3],
+            ..widths(0.3)
+        };
         let narrow = widths(narrow(0.5_f64.to_radians()));
         vec![
             ("default", HairParams::default()),
             ("brown", HairParams::brown()),
             ("tilted", material(&tilted)),
             ("half a degree", material(&narrow)),
-            ("sixty degrees", material(&HairDesc { intensity_g: 5.0, ..widths(1.047) })),
+            (
+                "sixty degrees",
+                material(&HairDesc {
+                    intensity_g: 5.0,
+                    ..widths(1.047)
+                }),
+            ),
             ("all colours black", material(&black)),
         ]
     }
@@ -114,19 +138,29 @@ impl<P: Published> Subject for Family<P> {
     /// The bound is on the mean of the channels.
     fn weight_bound(&self, params: &HairParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
         let reference = oracle(&Formulas::of::<P>(), params, P::forms()[0].1, vector(hit));
-        matches!(reference, PublishedReference::Matched(_)).then(|| 3.0 * reference.weight_bound(lobes))
+        matches!(reference, PublishedReference::Matched(_))
+            .then(|| 3.0 * reference.weight_bound(lobes))
     }
 
     fn reference(&self, params: &ParamsOf<Self>, hit: &Hit) -> Option<Box<dyn Reference>> {
         let p = parameters(params, P::forms()[0].1);
-        let least = p.beta.into_iter().chain([p.gamma_tt, p.gamma_g]).fold(f64::MAX, f64::min);
+        let least = p
+            .beta
+            .into_iter()
+            .chain([p.gamma_tt, p.gamma_g])
+            .fold(f64::MAX, f64::min);
         let [value, pdf, lobe_value, lobe_pdf] = match least {
             0.0..0.01 => P::ROWS.narrow,
             0.01..1.0 => P::ROWS.grid,
             _ => P::ROWS.wide,
         };
-        let tolerance =
-            Tolerance { value, pdf, lobes: lobe_value.max(lobe_pdf), rounding: 5e-7, ..Tolerance::default() };
+        let tolerance = Tolerance {
+            value,
+            pdf,
+            lobes: lobe_value.max(lobe_pdf),
+            rounding: 5e-7,
+            ..Tolerance::default()
+        };
         Some(Box::new(FlooredReference {
             reference: oracle(&Formulas::of::<P>(), params, P::forms()[0].1, vector(hit)),
             floor: P::PDF_FLOOR,
@@ -160,7 +194,9 @@ impl Reference for FlooredReference {
 
     fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
         let drawn = self.reference.sample(xi);
-        drawn.lobe.map_or(ReferenceSample::Discarded, |lobe| ReferenceSample::Drawn(lobe.index(), drawn.wi))
+        drawn.lobe.map_or(ReferenceSample::Discarded, |lobe| {
+            ReferenceSample::Drawn(lobe.index(), drawn.wi)
+        })
     }
 
     fn tolerance(&self) -> Tolerance {

@@ -54,7 +54,8 @@ impl Draws {
             1 => MAX_WIDTH,
             _ => narrow(self.scale(1.001e-4, 3.1)),
         };
-        let (beta_r, beta_tt, beta_trt, gamma_tt, gamma_g) = (width(), width(), width(), width(), width());
+        let (beta_r, beta_tt, beta_trt, gamma_tt, gamma_g) =
+            (width(), width(), width(), width(), width());
         let right = core::f32::consts::FRAC_PI_2;
         let mut shift = || match self.below(8) {
             0 => right,
@@ -128,7 +129,12 @@ pub fn parameters(params: &HairParams, factor: f32) -> Parameters<f64> {
 }
 
 /// The reference at the shading point of `wo`.
-pub fn oracle(formulas: &Formulas, params: &HairParams, factor: f32, wo: Vec3) -> PublishedReference {
+pub fn oracle(
+    formulas: &Formulas,
+    params: &HairParams,
+    factor: f32,
+    wo: Vec3,
+) -> PublishedReference {
     PublishedReference::prepare(formulas, &parameters(params, factor), double(wo))
 }
 
@@ -155,8 +161,16 @@ impl LargestError {
     /// Fails if the worst is above `bound`; prints it for the record (`cargo test -- --nocapture`).
     #[track_caller]
     pub fn check(&self, row: &str, bound: f64) {
-        println!("{row}: measured {:.8e}, bound {bound:.1e}, at {}", self.error, self.at);
-        assert!(self.error <= bound, "{row}: {:.3e} is above {bound:.1e} at {}", self.error, self.at);
+        println!(
+            "{row}: measured {:.8e}, bound {bound:.1e}, at {}",
+            self.error, self.at
+        );
+        assert!(
+            self.error <= bound,
+            "{row}: {:.3e} is above {bound:.1e} at {}",
+            self.error,
+            self.at
+        );
     }
 }
 
@@ -176,20 +190,41 @@ pub fn materials(kind: Kind) -> Vec<HairParams> {
     let uniform = |deg: f64| {
         let width = narrow(deg * DEG);
         let (beta_r, beta_tt, beta_trt) = (width, width, width);
-        let widths = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: width, gamma_g: width, ..HairDesc::default() };
-        let tilted = HairDesc { alpha_r: 0.2, alpha_tt: -0.15, alpha_trt: -0.35, phi_g: 0.7, ..widths };
-        [widths, tilted].map(|d| HairParams::new(&d).unwrap()).to_vec()
+        let widths = HairDesc {
+            beta_r,
+            beta_tt,
+            beta_trt,
+            gamma_tt: width,
+            gamma_g: width,
+            ..HairDesc::default()
+        };
+        let tilted = HairDesc {
+            alpha_r: 0.2,
+            alpha_tt: -0.15,
+            alpha_trt: -0.35,
+            phi_g: 0.7,
+            ..widths
+        };
+        [widths, tilted]
+            .map(|d| HairParams::new(&d).unwrap())
+            .to_vec()
     };
     match kind {
         Kind::Narrow => uniform(0.5),
         Kind::Wide => uniform(60.0),
         Kind::Grid => {
-            let mut all: Vec<_> = HairParams::presets().into_iter().map(|(_, params)| params).collect();
+            let mut all: Vec<_> = HairParams::presets()
+                .into_iter()
+                .map(|(_, params)| params)
+                .collect();
             for beta in [2.5, 5.0, 7.5, 10.0, 15.0, 20.0] {
                 for gamma_tt in [5.0, 10.0, 25.0, 45.0] {
                     for gamma_g in [5.0, 10.0, 20.0] {
                         for phi_g in [20.0, 35.0, 45.0] {
-                            all.extend([0.5, 5.0].map(|i_g| grid_point(beta, gamma_tt, gamma_g, phi_g, i_g)));
+                            all.extend(
+                                [0.5, 5.0]
+                                    .map(|i_g| grid_point(beta, gamma_tt, gamma_g, phi_g, i_g)),
+                            );
                         }
                     }
                 }
@@ -200,18 +235,39 @@ pub fn materials(kind: Kind) -> Vec<HairParams> {
 }
 
 /// A point of the grid of the efficiency figures, in degrees.
-pub fn grid_point(beta_r: f64, gamma_tt: f64, gamma_g: f64, phi_g: f64, intensity_g: f32) -> HairParams {
+pub fn grid_point(
+    beta_r: f64,
+    gamma_tt: f64,
+    gamma_g: f64,
+    phi_g: f64,
+    intensity_g: f32,
+) -> HairParams {
     let [beta_r, beta_tt, beta_trt] = [1.0, 0.5, 2.0].map(|k| narrow(k * beta_r * DEG));
     let [gamma_tt, gamma_g, phi_g] = [gamma_tt, gamma_g, phi_g].map(|x| narrow(x * DEG));
-    let desc = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt, gamma_g, phi_g, intensity_g, ..HairDesc::default() };
+    let desc = HairDesc {
+        beta_r,
+        beta_tt,
+        beta_trt,
+        gamma_tt,
+        gamma_g,
+        phi_g,
+        intensity_g,
+        ..HairDesc::default()
+    };
     HairParams::new(&desc).unwrap()
 }
 
 /// Inclinations of `wo`, degrees: grazing on both sides, and tilted.
-pub const THETA_O: [f64; 12] = [0.0, 15.0, -30.0, 45.0, -60.0, 75.0, -80.0, 85.0, 89.0, -89.0, 89.9, -89.9];
+pub const THETA_O: [f64; 12] = [
+    0.0, 15.0, -30.0, 45.0, -60.0, 75.0, -80.0, 85.0, 89.0, -89.0, 89.9, -89.9,
+];
 
 /// A material of one kind with its reference, for every form of the model, material and inclination.
-pub(super) fn for_each_point(tested: &Tested, kind: Kind, mut f: impl FnMut(&Bsdf<'_>, &PublishedReference, &Point)) {
+pub(super) fn for_each_point(
+    tested: &Tested,
+    kind: Kind,
+    mut f: impl FnMut(&Bsdf<'_>, &PublishedReference, &Point),
+) {
     for (model, factor) in tested.forms() {
         for (index, params) in materials(kind).iter().enumerate() {
             let bsdf = Bsdf::new(model, params);
@@ -220,7 +276,14 @@ pub(super) fn for_each_point(tested: &Tested, kind: Kind, mut f: impl FnMut(&Bsd
                 let wo = direction(theta_o, phi_o);
                 let seed = (index * 100 + turn) as u64;
                 let p = parameters(params, factor);
-                let point = Point { params: *params, p, wo, theta_o, phi_o, seed };
+                let point = Point {
+                    params: *params,
+                    p,
+                    wo,
+                    theta_o,
+                    phi_o,
+                    seed,
+                };
                 f(&bsdf, &oracle(&tested.formulas, params, factor, wo), &point);
             }
         }

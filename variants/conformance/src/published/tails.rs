@@ -3,7 +3,9 @@
 
 use super::Tested;
 use super::handles::Bsdf;
-use super::support::{DEG, LargestError, angles, direction, double, lanes_of, narrow, oracle, relative};
+use super::support::{
+    DEG, LargestError, angles, direction, double, lanes_of, narrow, oracle, relative,
+};
 use core::f64::consts::PI;
 use hairis::{HairDesc, HairParams, Level, Lobe};
 
@@ -71,7 +73,9 @@ fn errors(
                         continue;
                     }
                     worst[1].see(error, at);
-                    for ((got, weight), want) in sample.value.into_iter().zip(sample.weight).zip(value) {
+                    for ((got, weight), want) in
+                        sample.value.into_iter().zip(sample.weight).zip(value)
+                    {
                         worst[0].see(relative(got, want, tested.pdf_floor), at);
                         worst[2].see(relative(weight, want * theta_i.cos() / pdf, 1e-20), at);
                     }
@@ -86,21 +90,52 @@ fn errors(
 fn degrees() -> Vec<HairDesc> {
     let of = |width: f32| {
         let (beta_r, beta_tt, beta_trt) = (width, width, width);
-        HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: width, gamma_g: width, ..HairDesc::default() }
+        HairDesc {
+            beta_r,
+            beta_tt,
+            beta_trt,
+            gamma_tt: width,
+            gamma_g: width,
+            ..HairDesc::default()
+        }
     };
     let mut all = Vec::new();
-    for base in [of(narrow(DEG)), of(0.019_24), of(0.05), HairDesc { beta_r: 0.019_24, ..HairDesc::default() }] {
-        all.extend([base, HairDesc { alpha_r: 0.2, alpha_tt: -0.15, alpha_trt: -0.35, phi_g: 0.7, ..base }]);
+    for base in [
+        of(narrow(DEG)),
+        of(0.019_24),
+        of(0.05),
+        HairDesc {
+            beta_r: 0.019_24,
+            ..HairDesc::default()
+        },
+    ] {
+        all.extend([
+            base,
+            HairDesc {
+                alpha_r: 0.2,
+                alpha_tt: -0.15,
+                alpha_trt: -0.35,
+                phi_g: 0.7,
+                ..base
+            },
+        ]);
     }
     all
 }
 
 pub fn samples_in_the_tails_report_their_own_direction(tested: &Tested) {
-    let (worst, seen) = errors(tested, &degrees(), (0..40).map(|i| 0.077 * f64::from(i) - 1.5));
+    let (worst, seen) = errors(
+        tested,
+        &degrees(),
+        (0..40).map(|i| 0.077 * f64::from(i) - 1.5),
+    );
     assert!(seen > 50_000, "hardly any sample: {seen}");
-    for ((worst, bound), what) in
-        worst.iter().zip(tested.rows.tail_sample).zip(["S", "pdf", "weight", "pdf next to the seam"])
-    {
+    for ((worst, bound), what) in worst.iter().zip(tested.rows.tail_sample).zip([
+        "S",
+        "pdf",
+        "weight",
+        "pdf next to the seam",
+    ]) {
         worst.check(&format!("{what} of a sample in the tails"), bound);
     }
 }
@@ -109,13 +144,26 @@ pub fn samples_in_the_tails_report_their_own_direction(tested: &Tested) {
 pub fn samples_of_lobes_off_the_sphere_report_their_own_direction(tested: &Tested) {
     let off: Vec<HairDesc> = degrees()
         .into_iter()
-        .flat_map(|base| [0.1, 0.15, 0.2].map(|by| HairDesc { alpha_r: by, alpha_tt: by, alpha_trt: by, ..base }))
+        .flat_map(|base| {
+            [0.1, 0.15, 0.2].map(|by| HairDesc {
+                alpha_r: by,
+                alpha_tt: by,
+                alpha_trt: by,
+                ..base
+            })
+        })
         .collect();
     let (worst, seen) = errors(tested, &off, (0..32).map(|i| -1.56 + 0.006 * f64::from(i)));
     assert!(seen > 10_000, "hardly any sample: {seen}");
-    for ((worst, bound), what) in
-        worst.iter().zip(tested.rows.off_sphere_sample).zip(["S", "pdf", "weight", "pdf next to the seam"])
-    {
-        worst.check(&format!("{what} of a sample of a lobe off the sphere"), bound);
+    for ((worst, bound), what) in worst.iter().zip(tested.rows.off_sphere_sample).zip([
+        "S",
+        "pdf",
+        "weight",
+        "pdf next to the seam",
+    ]) {
+        worst.check(
+            &format!("{what} of a sample of a lobe off the sphere"),
+            bound,
+        );
     }
 }

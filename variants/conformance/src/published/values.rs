@@ -14,8 +14,9 @@ fn scan(tested: &Tested, kind: Kind, per_point: usize) -> [LargestError; 4] {
         let gather = bsdf.prepare(point.wo);
         for eight in point.directions(per_point).chunks(8) {
             let wi = packet(eight);
-            let wide: Vec<_> =
-                Level::available().map(|level| (level, bsdf.prepare(point.wo).eval_pdf8_at(level, &wi))).collect();
+            let wide: Vec<_> = Level::available()
+                .map(|level| (level, bsdf.prepare(point.wo).eval_pdf8_at(level, &wi)))
+                .collect();
             let wide_lobes = gather.lobes8(&wi);
             for (lane, wi) in eight.iter().enumerate() {
                 let d = super::support::double(*wi);
@@ -39,12 +40,20 @@ fn scan(tested: &Tested, kind: Kind, per_point: usize) -> [LargestError; 4] {
                     // Normalised, a lobe of the last few powers of two of a Gaussian would show its cut.
                     let cut = lobe_values[lobe] < tested.pdf_floor;
                     for [value, pdf] in [[scalar[lobe].value, scalar[lobe].pdf], wide] {
-                        let at = || format!("{lobe:?} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
+                        let at =
+                            || format!("{lobe:?} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
                         worst[2].see(relative(value, lobe_values[lobe], FLOOR), at);
                         if cut {
                             continue;
                         }
-                        worst[3].see(relative(pdf, lobe_pdfs[lobe], tested.pdf_floor.max(f64::MIN_POSITIVE)), at);
+                        worst[3].see(
+                            relative(
+                                pdf,
+                                lobe_pdfs[lobe],
+                                tested.pdf_floor.max(f64::MIN_POSITIVE),
+                            ),
+                            at,
+                        );
                     }
                 }
             }
@@ -55,7 +64,11 @@ fn scan(tested: &Tested, kind: Kind, per_point: usize) -> [LargestError; 4] {
 
 fn check(tested: &Tested, kind: Kind, per_point: usize, bounds: [f64; 4]) {
     let names = ["S", "pdf", "S of a lobe", "pdf of a lobe"];
-    for ((name, worst), bound) in names.into_iter().zip(scan(tested, kind, per_point)).zip(bounds) {
+    for ((name, worst), bound) in names
+        .into_iter()
+        .zip(scan(tested, kind, per_point))
+        .zip(bounds)
+    {
         worst.check(&format!("{kind:?} {name}"), bound);
     }
 }

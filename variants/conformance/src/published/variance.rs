@@ -15,13 +15,22 @@ const PHI_O: f64 = 0.4;
 type Shares<'a> = &'a dyn Fn(&HairParams, f64) -> PerLobe<f64>;
 
 fn published(tested: &Tested, params: &HairParams, theta_o: f64) -> PerLobe<f64> {
-    HairReference::prepare(&parameters(params, 1.0), tested.formulas.shape, double(direction(theta_o, PHI_O)))
-        .probabilities()
+    HairReference::prepare(
+        &parameters(params, 1.0),
+        tested.formulas.shape,
+        double(direction(theta_o, PHI_O)),
+    )
+    .probabilities()
 }
 
 fn matched(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -> PerLobe<f64> {
-    MatchedReference::prepare(&parameters(params, 1.0), tested.formulas.shape, double(direction(theta_o, PHI_O)), bands)
-        .probabilities()
+    MatchedReference::prepare(
+        &parameters(params, 1.0),
+        tested.formulas.shape,
+        double(direction(theta_o, PHI_O)),
+        bands,
+    )
+    .probabilities()
 }
 
 /// Quadrature in one angle: its weights, and each lobe's value and density there, the other angle at a peak.
@@ -34,17 +43,28 @@ struct Line {
 /// `theta` and `phi` where a lobe is large.
 fn peak(params: &HairParams, theta_o: f64, lobe: Lobe) -> [f64; 2] {
     let p = parameters(params, 1.0);
-    [(2.0 * p.alpha[lobe.index().min(2)] - theta_o).clamp(-1.3, 1.3), [0.0, PI, 0.0, p.phi_g][lobe.index()]]
+    [
+        (2.0 * p.alpha[lobe.index().min(2)] - theta_o).clamp(-1.3, 1.3),
+        [0.0, PI, 0.0, p.phi_g][lobe.index()],
+    ]
 }
 
 fn line(gather: &Gather, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 2]) -> Line {
     let of = |lobe: Lobe, x: f64| {
         let [theta, phi] = at(lobe, x);
         let l = gather.lobes(direction(theta, PHI_O - phi))[lobe];
-        [f64::from(l.value) * theta.cos().powi(2), f64::from(l.pdf) * theta.cos()]
+        [
+            f64::from(l.value) * theta.cos().powi(2),
+            f64::from(l.pdf) * theta.cos(),
+        ]
     };
-    let column = |k: usize| Lobe::ALL.map(|lobe| points.iter().map(|(x, _)| of(lobe, *x)[k]).collect());
-    Line { weights: points.iter().map(|(_, w)| *w).collect(), value: column(0), density: column(1) }
+    let column =
+        |k: usize| Lobe::ALL.map(|lobe| points.iter().map(|(x, _)| of(lobe, *x)[k]).collect());
+    Line {
+        weights: points.iter().map(|(_, w)| *w).collect(),
+        value: column(0),
+        density: column(1),
+    }
 }
 
 /// The line in `theta_i`: values absolute, densities to an integral of 1; the density jumps at `jumps`.
@@ -52,10 +72,16 @@ fn longitude(gather: &Gather, params: &HairParams, theta_o: f64, jumps: &[f64]) 
     let p = parameters(params, 1.0);
     let bell = |l: usize| (2.0 * p.alpha[l] - theta_o, p.beta[l]);
     let pole = FRAC_PI_2 - theta_o;
-    let mut ends = panels(-FRAC_PI_2 + 1e-5, FRAC_PI_2 - 1e-5, &[bell(0), bell(1), bell(2), (-FRAC_PI_2, pole)]);
+    let mut ends = panels(
+        -FRAC_PI_2 + 1e-5,
+        FRAC_PI_2 - 1e-5,
+        &[bell(0), bell(1), bell(2), (-FRAC_PI_2, pole)],
+    );
     ends.extend(jumps.iter().filter(|x| x.abs() < FRAC_PI_2 - 1e-5));
     ends.sort_by(f64::total_cmp);
-    let mut line = line(gather, &rule(&ends), |lobe, theta| [theta, peak(params, theta_o, lobe)[1]]);
+    let mut line = line(gather, &rule(&ends), |lobe, theta| {
+        [theta, peak(params, theta_o, lobe)[1]]
+    });
     unit(&mut line.density, &line.weights);
     line
 }
@@ -63,12 +89,19 @@ fn longitude(gather: &Gather, params: &HairParams, theta_o: f64, jumps: &[f64]) 
 /// The line in `phi`: values to a peak of 1, densities to an integral of 1.
 fn azimuth(gather: &Gather, params: &HairParams, theta_o: f64) -> Line {
     let p = parameters(params, 1.0);
-    let ends = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt), (FRAC_PI_2, 1.0)]);
+    let ends = panels(
+        0.0,
+        PI,
+        &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt), (FRAC_PI_2, 1.0)],
+    );
     let points: Vec<_> = rule(&ends).into_iter().map(|(x, w)| (x, 2.0 * w)).collect();
-    let mut line = line(gather, &points, |lobe, phi| [peak(params, theta_o, lobe)[0], phi]);
+    let mut line = line(gather, &points, |lobe, phi| {
+        [peak(params, theta_o, lobe)[0], phi]
+    });
     for lobe in Lobe::ALL {
         let [theta, phi] = peak(params, theta_o, lobe);
-        let top = f64::from(gather.lobes(direction(theta, PHI_O - phi))[lobe].value) * theta.cos().powi(2);
+        let top = f64::from(gather.lobes(direction(theta, PHI_O - phi))[lobe].value)
+            * theta.cos().powi(2);
         line.value[lobe.index()].iter_mut().for_each(|x| *x /= top);
     }
     unit(&mut line.density, &line.weights);
@@ -108,7 +141,9 @@ fn v(long: &Line, round: &Line, params: &HairParams, shares: PerLobe<f64>) -> f6
 /// The inclinations where the density of a sampler of so many bands jumps: the same for all hair.
 fn jumps(tested: &Tested, bands: usize) -> Vec<f64> {
     let p = parameters(&HairParams::default(), 1.0);
-    MatchedReference::prepare(&p, tested.formulas.shape, [0.0, 1.0, 0.0], bands).bands().collect()
+    MatchedReference::prepare(&p, tested.formulas.shape, [0.0, 1.0, 0.0], bands)
+        .bands()
+        .collect()
 }
 
 /// V at every point of the grid.
@@ -128,7 +163,10 @@ fn over_grid(model: &dyn AnyModel, shares: Shares<'_>, jumps: &[f64]) -> Vec<f64
                             let mut line = longitude(&gather, &params, theta_o, jumps);
                             // The strength of the glints is in their value; the rest is the same for all of these.
                             if let Some(long) = &long {
-                                line = Line { density: long.density.clone(), ..line };
+                                line = Line {
+                                    density: long.density.clone(),
+                                    ..line
+                                };
                             }
                             let round = azimuth(&gather, &params, theta_o);
                             all.push(v(&line, &round, &params, shares(&params, theta_o)));
@@ -146,8 +184,15 @@ fn over_grid(model: &dyn AnyModel, shares: Shares<'_>, jumps: &[f64]) -> Vec<f64
 fn gain(tested: &Tested, bands: usize, published: &[f64], v: &[f64]) -> [f64; 3] {
     let n = narrow(v.len() as f64);
     let mean = |x: &[f64]| x.iter().sum::<f64>() / f64::from(n);
-    let logs: Vec<f64> = published.iter().zip(v).map(|(published, v)| (published / v).ln()).collect();
-    let (geometric, least) = (mean(&logs).exp(), logs.iter().fold(f64::MAX, |a, x| a.min(*x)).exp());
+    let logs: Vec<f64> = published
+        .iter()
+        .zip(v)
+        .map(|(published, v)| (published / v).ln())
+        .collect();
+    let (geometric, least) = (
+        mean(&logs).exp(),
+        logs.iter().fold(f64::MAX, |a, x| a.min(*x)).exp(),
+    );
     let most = v.iter().fold(0.0, |a: f64, x| a.max(*x));
     println!(
         "{:?} {bands} bands: V {:.5} (at most {most:.5}; published {:.4}), gain {geometric:.2}, at least {least:.2}, {} points",
@@ -160,12 +205,24 @@ fn gain(tested: &Tested, bands: usize, published: &[f64], v: &[f64]) -> [f64; 3]
 }
 
 pub fn variance_falls_by_what_is_promised(tested: &Tested) {
-    let published = over_grid(tested.sampler(None), &|params, theta_o| published(tested, params, theta_o), &[]);
+    let published = over_grid(
+        tested.sampler(None),
+        &|params, theta_o| published(tested, params, theta_o),
+        &[],
+    );
     let gains = [5, 9, 25].map(|bands| {
         let shares = |params: &HairParams, theta_o: f64| matched(tested, bands, params, theta_o);
-        gain(tested, bands, &published, &over_grid(tested.sampler(Some(bands)), &shares, &jumps(tested, bands)))
+        gain(
+            tested,
+            bands,
+            &published,
+            &over_grid(tested.sampler(Some(bands)), &shares, &jumps(tested, bands)),
+        )
     });
     for (got, [v, gain, least]) in gains.iter().zip(tested.rows.gain) {
-        assert!(got[0] <= v && got[1] >= gain && got[2] >= least, "{got:?}, not {v}, {gain}, {least}");
+        assert!(
+            got[0] <= v && got[1] >= gain && got[2] >= least,
+            "{got:?}, not {v}, {gain}, {least}"
+        );
     }
 }

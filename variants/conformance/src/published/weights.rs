@@ -17,7 +17,9 @@
 
 use super::Tested;
 use super::handles::Bsdf;
-use super::support::{Draws, LargestError, angles, direction, double, lanes_of, oracle, parameters};
+use super::support::{
+    Draws, LargestError, angles, direction, double, lanes_of, oracle, parameters,
+};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::{HairDesc, HairParams, Level, Lobe, LobeMask, Sample};
@@ -31,7 +33,10 @@ fn span(lo: f64, hi: f64, b: f64) -> f64 {
 fn bounds(tested: &Tested, params: &HairParams, factor: f32, wo: Vec3, mask: LobeMask) -> [f64; 3] {
     let p = parameters(params, factor);
     let probability = oracle(&tested.formulas, params, factor, wo).probabilities();
-    let total: f64 = Lobe::ALL.into_iter().map(|l| probability[l] * f64::from(mask.factor(l))).sum();
+    let total: f64 = Lobe::ALL
+        .into_iter()
+        .map(|l| probability[l] * f64::from(mask.factor(l)))
+        .sum();
     let [_, y, z] = double(wo);
     let theta_o = double(wo)[0].atan2(y.hypot(z));
     let longitude = |l: usize| {
@@ -47,12 +52,21 @@ fn bounds(tested: &Tested, params: &HairParams, factor: f32, wo: Vec3, mask: Lob
         8.0 * longitude(2) * k,
         4.0 * longitude(2) * glint * k * k * p.intensity_g,
     ];
-    let color = [p.intensity_r, p.intensity_tt, p.intensity_trt, p.intensity_trt];
+    let color = [
+        p.intensity_r,
+        p.intensity_tt,
+        p.intensity_trt,
+        p.intensity_trt,
+    ];
     core::array::from_fn(|c| {
         let of = |l: Lobe| {
             let i = l.index();
             let lit = mask.contains(l) && color[i][c] > 0.0 && ratio[i] > 0.0;
-            if lit { ratio[i] * color[i][c] * total / probability[l] } else { 0.0 }
+            if lit {
+                ratio[i] * color[i][c] * total / probability[l]
+            } else {
+                0.0
+            }
         };
         Lobe::ALL.into_iter().map(of).fold(0.0, f64::max)
     })
@@ -66,15 +80,30 @@ fn w(wo: Vec3, wi: Vec3) -> f64 {
 }
 
 /// The largest weight of a sample over `W` times its bound.
-fn worst_ratio(worst: &mut LargestError, limit: [f64; 3], wo: Vec3, sample: &Sample, params: &HairParams) {
+fn worst_ratio(
+    worst: &mut LargestError,
+    limit: [f64; 3],
+    wo: Vec3,
+    sample: &Sample,
+    params: &HairParams,
+) {
     let w = w(wo, sample.wi);
-    assert!(w <= 4.0 * (1.0 + 1e-6), "W = {w} wo {wo:?} wi {:?}", sample.wi);
+    assert!(
+        w <= 4.0 * (1.0 + 1e-6),
+        "W = {w} wo {wo:?} wi {:?}",
+        sample.wi
+    );
     for (weight, limit) in sample.weight.into_iter().zip(limit) {
         let weight = f64::from(weight);
-        assert!(weight <= 4.0 * limit * (1.0 + 1e-3), "a firefly: {sample:?} wo {wo:?} {params:?}");
+        assert!(
+            weight <= 4.0 * limit * (1.0 + 1e-3),
+            "a firefly: {sample:?} wo {wo:?} {params:?}"
+        );
         // Next to the axis W is made of rounding errors.
         if w > 1e-4 && limit > 0.0 {
-            worst.see(weight / (w * limit), || format!("{sample:?} wo {wo:?} {params:?}"));
+            worst.see(weight / (w * limit), || {
+                format!("{sample:?} wo {wo:?} {params:?}")
+            });
         }
     }
 }
@@ -85,7 +114,14 @@ fn material(draws: &mut Draws) -> HairParams {
     let d = *any.desc();
     let wide = |x: f32| x.max(2e-2);
     let (beta_r, beta_tt, beta_trt) = (wide(d.beta_r), wide(d.beta_tt), wide(d.beta_trt));
-    let widths = HairDesc { beta_r, beta_tt, beta_trt, gamma_tt: wide(d.gamma_tt), gamma_g: wide(d.gamma_g), ..d };
+    let widths = HairDesc {
+        beta_r,
+        beta_tt,
+        beta_trt,
+        gamma_tt: wide(d.gamma_tt),
+        gamma_g: wide(d.gamma_g),
+        ..d
+    };
     HairParams::new(&widths).unwrap()
 }
 
@@ -109,7 +145,9 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
                 let xi = core::array::from_fn(|_| draws.xi3());
                 for level in Level::available() {
                     let eight = gather.sample8_at(level, &lanes_of(&xi));
-                    let all = (0..8).filter_map(|lane| eight.lane(lane)).chain(gather.sample(xi[0]));
+                    let all = (0..8)
+                        .filter_map(|lane| eight.lane(lane))
+                        .chain(gather.sample(xi[0]));
                     for sample in all.filter(|s| no_glints || angles(wo, s.wi)[1] < FRAC_PI_2) {
                         worst_ratio(&mut worst, limit, wo, &sample, &params);
                         checked += 1;
@@ -118,7 +156,10 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
             }
         }
     }
-    assert!(checked > 300_000, "only {checked} samples fell under the hypothesis");
+    assert!(
+        checked > 300_000,
+        "only {checked} samples fell under the hypothesis"
+    );
     worst.check("weight over its bound", tested.rows.weight_bound);
 }
 
@@ -134,10 +175,15 @@ pub fn the_bound_is_reached(tested: &Tested) {
             let limit = bounds(tested, &params, factor, wo, mask)[0];
             let mut most = 0.0_f64;
             for _ in 0..20_000 {
-                let Some(sample) = gather.sample(draws.xi3()) else { continue };
+                let Some(sample) = gather.sample(draws.xi3()) else {
+                    continue;
+                };
                 most = most.max(f64::from(sample.weight[0]) / (limit * w(wo, sample.wi)));
             }
-            assert!(most > 0.99, "{lobe:?}: no weight above {most} of its bound, which then is not tight");
+            assert!(
+                most > 0.99,
+                "{lobe:?}: no weight above {most} of its bound, which then is not tight"
+            );
         }
     }
 }
@@ -162,12 +208,22 @@ pub fn the_published_flaw_is_there(tested: &Tested) {
         let wo = direction(0.3, 0.0);
         let gather = Bsdf::new(model, &params).prepare(wo);
         let limit = bounds(tested, &params, factor, wo, LobeMask::ALL)[0];
-        let weight = |xi_phi| gather.sample([0.0, 0.5, xi_phi]).map_or(0.0, |s: Sample| f64::from(s.weight[0]));
+        let weight = |xi_phi| {
+            gather
+                .sample([0.0, 0.5, xi_phi])
+                .map_or(0.0, |s: Sample| f64::from(s.weight[0]))
+        };
         let towards = [1e-3, 1e-5, 1e-7].map(weight);
         assert!(towards.is_sorted(), "weights towards the seam: {towards:?}");
-        assert!(towards[2] > 20.0 * limit, "no weight far above the bound {limit}: {towards:?}");
+        assert!(
+            towards[2] > 20.0 * limit,
+            "no weight far above the bound {limit}: {towards:?}"
+        );
         // cos(phi/2) falls as the root of xi, and the weight grows as its inverse.
         let growth = towards[2] / towards[1];
-        assert!((growth / 10.0 - 1.0).abs() < 0.05, "growth {growth} for a hundredth of xi, not 10: {towards:?}");
+        assert!(
+            (growth / 10.0 - 1.0).abs() < 0.05,
+            "growth {growth} for a hundredth of xi, not 10: {towards:?}"
+        );
     }
 }

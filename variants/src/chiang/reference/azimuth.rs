@@ -15,7 +15,11 @@ impl<T: Real> Logistic<T> {
     pub(super) fn new(scale: T) -> Self {
         let (one, two) = (T::from_f64(1.0), T::from_f64(2.0));
         let tail = (-T::PI / scale).exp();
-        Self { scale, below: tail / (one + tail), within: (T::PI / (two * scale)).tanh() }
+        Self {
+            scale,
+            below: tail / (one + tail),
+            within: (T::PI / (two * scale)).tanh(),
+        }
     }
 
     /// `e / (s (1 + e)^2 K)`, with `e = exp(-|x| / s)` and K the mass within `[-pi, pi]`.

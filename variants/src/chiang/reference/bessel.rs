@@ -42,9 +42,16 @@ fn summed<T: Real>(x: T) -> T {
 
 fn fitted<T: Real>(x: T) -> T {
     let one = T::from_f64(1.0);
-    if x < T::from_f32(SEAM) { (-x).exp() * polynomial(&SERIES, x * x) } else { polynomial(&TAIL, one / x) / x.sqrt() }
+    if x < T::from_f32(SEAM) {
+        (-x).exp() * polynomial(&SERIES, x * x)
+    } else {
+        polynomial(&TAIL, one / x) / x.sqrt()
+    }
 }
 
 fn polynomial<T: Real>(coefficients: &[f32], x: T) -> T {
-    coefficients.iter().rev().fold(T::default(), |sum, c| sum * x + T::from_f32(*c))
+    coefficients
+        .iter()
+        .rev()
+        .fold(T::default(), |sum, c| sum * x + T::from_f32(*c))
 }

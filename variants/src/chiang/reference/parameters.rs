@@ -42,7 +42,14 @@ impl<T: Real> ChiangParameters<T> {
     #[must_use]
     pub fn with_melanin(self, eumelanin: T, pheomelanin: T) -> Self {
         let channel = |e: f64, p: f64| T::from_f64(e) * eumelanin + T::from_f64(p) * pheomelanin;
-        Self { sigma_a: [channel(0.419, 0.187), channel(0.697, 0.4), channel(1.37, 1.05)], ..self }
+        Self {
+            sigma_a: [
+                channel(0.419, 0.187),
+                channel(0.697, 0.4),
+                channel(1.37, 1.05),
+            ],
+            ..self
+        }
     }
 
     /// The same fibre with the absorption of a colour: see [`ChiangDesc::with_color`](crate::ChiangDesc::with_color).
@@ -51,12 +58,17 @@ impl<T: Real> ChiangParameters<T> {
     pub fn with_color(self, color: [T; 3]) -> Self {
         let (number, n) = (T::from_f64, self.beta_n);
         let coefficients = [0.245, 5.574, -10.73, 2.532, -0.215, 5.969];
-        let denominator = coefficients.into_iter().fold(T::default(), |sum, c| sum * n + number(c));
+        let denominator = coefficients
+            .into_iter()
+            .fold(T::default(), |sum, c| sum * n + number(c));
         let absorption = |c: T| {
             let root = c.max(number(1e-3)).ln() / denominator;
             root * root
         };
-        Self { sigma_a: color.map(absorption), ..self }
+        Self {
+            sigma_a: color.map(absorption),
+            ..self
+        }
     }
 
     /// Longitudinal variances of R, TT, TRT and the rest: `v0`, `v0 / 4`, `4 v0`, `4 v0`, with

@@ -2,7 +2,11 @@
 
 /// The cell of [0, 1] cut in `n` that holds `x`.
 pub(super) fn cell(x: f64, n: usize) -> usize {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0..=n; NaN becomes 0")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to 0..=n; NaN becomes 0"
+    )]
     let i = (x * n as f64).clamp(0.0, n as f64) as usize;
     i.min(n - 1)
 }
@@ -38,9 +42,20 @@ pub(super) fn search(cumulative: &[f64], total: f64, start: (usize, f64), xi: f6
             index += 1;
         }
     }
-    let before = if index == 0 { 0.0 } else { cumulative[index - 1] };
+    let before = if index == 0 {
+        0.0
+    } else {
+        cumulative[index - 1]
+    };
     let rest = (target - before) / (cumulative[index] - before);
-    (index, if rest.is_finite() { rest.clamp(0.0, 1.0) } else { 0.5 })
+    (
+        index,
+        if rest.is_finite() {
+            rest.clamp(0.0, 1.0)
+        } else {
+            0.5
+        },
+    )
 }
 
 #[cfg(test)]
@@ -71,12 +86,15 @@ mod tests {
                     continue;
                 }
                 let guide: Vec<u32> = guide(&cumulative).collect();
-                let edges =
-                    (0..=length).map(|k| f64::from(k) / f64::from(length)).chain([f64::EPSILON, 1.0 - f64::EPSILON]);
+                let edges = (0..=length)
+                    .map(|k| f64::from(k) / f64::from(length))
+                    .chain([f64::EPSILON, 1.0 - f64::EPSILON]);
                 for xi in edges.chain((0..1000).map(|_| xi.next_f64())) {
                     let xi = xi.min(1.0 - f64::EPSILON / 2.0);
                     let target = (xi * sum).min(sum * (1.0 - f64::EPSILON / 2.0));
-                    let expected = cumulative.partition_point(|c| *c <= target).min(cumulative.len() - 1);
+                    let expected = cumulative
+                        .partition_point(|c| *c <= target)
+                        .min(cumulative.len() - 1);
                     let start = |guide: &[u32]| {
                         let index = guide[cell(xi, guide.len())] as usize;
                         (index, cumulative[index])

@@ -40,6 +40,8 @@ impl Kernel for Places<'_> {
 pub(super) fn in_doubt(place: f32x8, texels: f32) -> u32 {
     let half = f32x8::splat(0.5);
     let whole = place.fast_trunc_int().round_float();
-    let inside = (place - whole - half).abs().simd_lt(half - f32x8::splat(DOUBT * texels));
+    let inside = (place - whole - half)
+        .abs()
+        .simd_lt(half - f32x8::splat(DOUBT * texels));
     !inside.to_bitmask() & 0xff
 }

@@ -16,8 +16,14 @@ fn texel(x: u32, y: u32) -> [f32; 3] {
 fn write(dir: &Path, name: &str) -> PathBuf {
     let path = dir.join(name);
     let map = Rgb32FImage::from_fn(16, 8, |x, y| image::Rgb(texel(x, y)));
-    let format = if name.ends_with("hdr") { ImageFormat::Hdr } else { ImageFormat::OpenExr };
-    image::DynamicImage::ImageRgb32F(map).save_with_format(&path, format).expect("written");
+    let format = if name.ends_with("hdr") {
+        ImageFormat::Hdr
+    } else {
+        ImageFormat::OpenExr
+    };
+    image::DynamicImage::ImageRgb32F(map)
+        .save_with_format(&path, format)
+        .expect("written");
     path
 }
 
@@ -29,12 +35,26 @@ fn both_formats_read_back() {
         assert_eq!((map.size(), map.name()), ([16, 8], name));
         assert!(map.notes().is_empty());
         for (x, y) in [(0, 0), (15, 7), (5, 2)] {
-            let (theta, phi) = (PI * (f64::from(y) + 0.5) / 8.0, 2.0 * PI * ((f64::from(x) + 0.5) / 16.0 - 0.5));
-            let got = map.radiance(DVec3::new(theta.sin() * phi.sin(), theta.cos(), -theta.sin() * phi.cos()));
+            let (theta, phi) = (
+                PI * (f64::from(y) + 0.5) / 8.0,
+                2.0 * PI * ((f64::from(x) + 0.5) / 16.0 - 0.5),
+            );
+            let got = map.radiance(DVec3::new(
+                theta.sin() * phi.sin(),
+                theta.cos(),
+                -theta.sin() * phi.cos(),
+            ));
             // Eight bits of mantissa shared by the channels: half a step of the largest.
-            let bound = if name.ends_with("hdr") { 16.0 / 128.0 } else { 0.0 };
+            let bound = if name.ends_with("hdr") {
+                16.0 / 128.0
+            } else {
+                0.0
+            };
             for (got, want) in got.iter().zip(texel(x, y)) {
-                assert!((got - f64::from(want)).abs() <= bound, "{name} ({x}, {y}): {got} {want}");
+                assert!(
+                    (got - f64::from(want)).abs() <= bound,
+                    "{name} ({x}, {y}): {got} {want}"
+                );
             }
         }
     }
@@ -46,11 +66,21 @@ fn content_decides_and_alpha_is_ignored() {
     let exr = write(dir.path(), "real.exr");
     let renamed = dir.path().join("renamed.hdr");
     std::fs::rename(exr, &renamed).expect("renamed");
-    assert_eq!(Environment::load(&renamed).expect("an EXR under another name").size(), [16, 8]);
+    assert_eq!(
+        Environment::load(&renamed)
+            .expect("an EXR under another name")
+            .size(),
+        [16, 8]
+    );
     let path = dir.path().join("alpha.exr");
     let map = Rgba32FImage::from_fn(4, 2, |_, _| image::Rgba([1.0, 2.0, 3.0, 0.25]));
-    image::DynamicImage::ImageRgba32F(map).save_with_format(&path, ImageFormat::OpenExr).expect("written");
-    assert_eq!(Environment::load(&path).expect("alpha").radiance(DVec3::X), [1.0, 2.0, 3.0]);
+    image::DynamicImage::ImageRgba32F(map)
+        .save_with_format(&path, ImageFormat::OpenExr)
+        .expect("written");
+    assert_eq!(
+        Environment::load(&path).expect("alpha").radiance(DVec3::X),
+        [1.0, 2.0, 3.0]
+    );
 }
 
 #[test]
@@ -59,8 +89,13 @@ fn luminance_alone_is_a_grey_map() {
     let dir = directory();
     let path = dir.path().join("grey.exr");
     let luminance = |at: Vec2<usize>| (1.0 + at.x() as f32 + 10.0 * at.y() as f32,);
-    let channels = SpecificChannels::build().with_channel("Y").with_pixel_fn(luminance);
-    Image::from_channels((4, 2), channels).write().to_file(&path).expect("written");
+    let channels = SpecificChannels::build()
+        .with_channel("Y")
+        .with_pixel_fn(luminance);
+    Image::from_channels((4, 2), channels)
+        .write()
+        .to_file(&path)
+        .expect("written");
     let map = Environment::load(&path).expect("luminance");
     assert_eq!((map.size(), map.name()), ([4, 2], "grey.exr"));
     // The lower row, and the column to the right of the middle.
@@ -70,24 +105,46 @@ fn luminance_alone_is_a_grey_map() {
     std::fs::write(&cut, &bytes[..bytes.len() - 5]).expect("written");
     one_line(&Environment::load(&cut).expect_err("cut"), &cut);
 
-    let channels = SpecificChannels::build().with_channel("BY").with_channel("RY").with_channel("Y");
+    let channels = SpecificChannels::build()
+        .with_channel("BY")
+        .with_channel("RY")
+        .with_channel("Y");
     let path = dir.path().join("chroma.exr");
-    let image = Image::from_channels((4, 2), channels.with_pixel_fn(|_| (0.0_f32, 0.0_f32, 1.0_f32)));
+    let image = Image::from_channels(
+        (4, 2),
+        channels.with_pixel_fn(|_| (0.0_f32, 0.0_f32, 1.0_f32)),
+    );
     image.write().to_file(&path).expect("written");
     let error = Environment::load(&path).expect_err("chroma");
-    assert!(error.to_string().contains("unsupported: luminance with chroma"), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("unsupported: luminance with chroma"),
+        "{error}"
+    );
 }
 
 #[test]
 fn bad_pixels_of_a_file_are_counted() {
     let dir = directory();
     let path = dir.path().join("bad.exr");
-    let map =
-        Rgb32FImage::from_fn(4, 2, |x, _| image::Rgb(if x == 0 { [f32::NAN, -1.0, f32::INFINITY] } else { [1.0; 3] }));
-    image::DynamicImage::ImageRgb32F(map).save_with_format(&path, ImageFormat::OpenExr).expect("written");
+    let map = Rgb32FImage::from_fn(4, 2, |x, _| {
+        image::Rgb(if x == 0 {
+            [f32::NAN, -1.0, f32::INFINITY]
+        } else {
+            [1.0; 3]
+        })
+    });
+    image::DynamicImage::ImageRgb32F(map)
+        .save_with_format(&path, ImageFormat::OpenExr)
+        .expect("written");
     assert_eq!(
         Environment::load(&path).expect("repaired").repairs(),
-        PixelRepairs { nan: 2, negative: 2, infinite: 2 }
+        PixelRepairs {
+            nan: 2,
+            negative: 2,
+            infinite: 2
+        }
     );
 }
 
@@ -99,7 +156,8 @@ fn every_cut_is_an_error_and_no_panic() {
         let cut = dir.path().join(format!("cut-{name}"));
         for length in 0..bytes.len() {
             std::fs::write(&cut, &bytes[..length]).expect("written");
-            let error = Environment::load(&cut).expect_err(&format!("{name} cut to {length} of {}", bytes.len()));
+            let error = Environment::load(&cut)
+                .expect_err(&format!("{name} cut to {length} of {}", bytes.len()));
             one_line(&error, &cut);
         }
     }
@@ -118,7 +176,10 @@ fn damaged_bytes_never_panic() {
                 copy[at] = value;
                 std::fs::write(&bad, &copy).expect("written");
                 match Environment::load(&bad) {
-                    Ok(map) => assert!(map.sample([0.5, 0.5]).pdf.is_finite(), "{name} byte {at} = {value}"),
+                    Ok(map) => assert!(
+                        map.sample([0.5, 0.5]).pdf.is_finite(),
+                        "{name} byte {at} = {value}"
+                    ),
                     Err(error) => one_line(&error, &bad),
                 }
             }
@@ -144,16 +205,37 @@ fn each_refusal_says_why() {
     assert!(error.to_string().contains("cannot read"), "{error}");
     one_line(&error, &missing);
     let error = Environment::load(dir.path()).expect_err("directory");
-    assert!(error.to_string().ends_with("is a directory, not an environment map"), "{error}");
+    assert!(
+        error
+            .to_string()
+            .ends_with("is a directory, not an environment map"),
+        "{error}"
+    );
     one_line(&error, dir.path());
     let cases: [(&str, &[u8], &str); 7] = [
-        ("zero.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 16\n", "no pixels"),
-        ("huge.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 65536 +X 65536\n", "2^25"),
+        (
+            "zero.hdr",
+            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 16\n",
+            "no pixels",
+        ),
+        (
+            "huge.hdr",
+            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 65536 +X 65536\n",
+            "2^25",
+        ),
         ("text.hdr", b"hello, this is no picture", "damaged"),
         ("empty.exr", b"", "damaged"),
         ("notes.txt", b"hello, this is no picture", "unsupported"),
-        ("picture.png", b"\x89PNG\r\n\x1a\n0000000000000000", "unsupported"),
-        ("picture.hdr", b"\x89PNG\r\n\x1a\n0000000000000000", "unsupported"),
+        (
+            "picture.png",
+            b"\x89PNG\r\n\x1a\n0000000000000000",
+            "unsupported",
+        ),
+        (
+            "picture.hdr",
+            b"\x89PNG\r\n\x1a\n0000000000000000",
+            "unsupported",
+        ),
     ];
     for (name, bytes, want) in cases {
         let path = dir.path().join(name);

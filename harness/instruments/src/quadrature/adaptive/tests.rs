@@ -4,15 +4,25 @@ use core::f64::consts::{PI, SQRT_2};
 #[test]
 fn the_rules_are_exact_to_their_degrees() {
     for degree in 0..=23 {
-        let want = if degree % 2 == 1 { 0.0 } else { 2.0 / f64::from(degree + 1) };
+        let want = if degree % 2 == 1 {
+            0.0
+        } else {
+            2.0 / f64::from(degree + 1)
+        };
         let (mut kronrod, mut gauss) = (0.0, 0.0);
         for [x, k, g] in nodes() {
             kronrod += k * x.powi(degree);
             gauss += g * x.powi(degree);
         }
-        assert!((kronrod - want).abs() < 1e-15, "Kronrod, degree {degree}: {kronrod}");
+        assert!(
+            (kronrod - want).abs() < 1e-15,
+            "Kronrod, degree {degree}: {kronrod}"
+        );
         if degree <= 13 {
-            assert!((gauss - want).abs() < 1e-15, "Gauss, degree {degree}: {gauss}");
+            assert!(
+                (gauss - want).abs() < 1e-15,
+                "Gauss, degree {degree}: {gauss}"
+            );
         }
     }
 }
@@ -26,20 +36,41 @@ fn narrow_bells_are_found_through_a_breakpoint() {
         inside.chain([-PI, PI]).collect::<Vec<f64>>()
     };
     for width in [1.0, 0.1, 1e-2, 1e-4] {
-        let r = integrate(|x| [(-0.5 * (x / width) * (x / width)).exp()], &edges(width), &tolerance);
+        let r = integrate(
+            |x| [(-0.5 * (x / width) * (x / width)).exp()],
+            &edges(width),
+            &tolerance,
+        );
         let want = width * (2.0 * PI).sqrt() * libm::erf(PI / width / SQRT_2);
-        assert!(r.converged && (r.value[0] / want - 1.0).abs() < 1e-12, "width {width}: {r:?}");
-        let r = integrate(|x| [width / (x * x + width * width)], &[-1.0, 0.0, 2.0], &tolerance);
+        assert!(
+            r.converged && (r.value[0] / want - 1.0).abs() < 1e-12,
+            "width {width}: {r:?}"
+        );
+        let r = integrate(
+            |x| [width / (x * x + width * width)],
+            &[-1.0, 0.0, 2.0],
+            &tolerance,
+        );
         let want = (2.0 / width).atan() + (1.0 / width).atan();
-        assert!(r.converged && (r.value[0] / want - 1.0).abs() < 1e-12, "Cauchy of width {width}: {r:?}");
+        assert!(
+            r.converged && (r.value[0] / want - 1.0).abs() < 1e-12,
+            "Cauchy of width {width}: {r:?}"
+        );
     }
 }
 
 #[test]
 fn components_share_the_panels() {
-    let r = integrate(|x: f64| [1.0, x.sqrt(), 0.0], &[0.0, 1.0], &Tolerance::relative(1e-9));
+    let r = integrate(
+        |x: f64| [1.0, x.sqrt(), 0.0],
+        &[0.0, 1.0],
+        &Tolerance::relative(1e-9),
+    );
     assert!(r.converged && r.value[2] == 0.0 && r.error[2] == 0.0);
-    assert!((r.value[0] - 1.0).abs() < 1e-14 && (r.value[1] - 2.0 / 3.0).abs() < 1e-9, "{r:?}");
+    assert!(
+        (r.value[0] - 1.0).abs() < 1e-14 && (r.value[1] - 2.0 / 3.0).abs() < 1e-9,
+        "{r:?}"
+    );
 }
 
 #[test]
@@ -51,20 +82,48 @@ fn rectangle_product_and_kink() {
         &Tolerance::relative(1e-12),
     );
     let kink = (0.09 + 0.49) / 2.0 + (0.49 + 0.09) / 2.0;
-    assert!(r.converged && (r.value[0] - 1.0 / 6.0).abs() < 1e-14 && (r.value[1] - kink).abs() < 1e-14, "{r:?}");
+    assert!(
+        r.converged && (r.value[0] - 1.0 / 6.0).abs() < 1e-14 && (r.value[1] - kink).abs() < 1e-14,
+        "{r:?}"
+    );
     // A kink that no breakpoint announces still converges.
-    let r = integrate_rectangle(|x, y| [(x - y).abs()], &[0.0, 1.0], &[0.0, 1.0], &Tolerance::relative(1e-5));
-    assert!(r.converged && (r.value[0] - 1.0 / 3.0).abs() < 1e-5, "{r:?}");
+    let r = integrate_rectangle(
+        |x, y| [(x - y).abs()],
+        &[0.0, 1.0],
+        &[0.0, 1.0],
+        &Tolerance::relative(1e-5),
+    );
+    assert!(
+        r.converged && (r.value[0] - 1.0 / 3.0).abs() < 1e-5,
+        "{r:?}"
+    );
 }
 
 #[test]
 fn degenerate_inputs() {
     let r = integrate(|_| [1.0], &[2.0], &Tolerance::default());
     assert_eq!((r.value, r.converged), ([0.0], true));
-    let r = integrate(|_| [f64::NAN], &[0.0, 1.0], &Tolerance { max_panels: 10, ..Tolerance::default() });
+    let r = integrate(
+        |_| [f64::NAN],
+        &[0.0, 1.0],
+        &Tolerance {
+            max_panels: 10,
+            ..Tolerance::default()
+        },
+    );
     assert!(!r.converged && r.value[0].is_nan());
-    let r = integrate(|x: f64| [1.0 / x], &[0.0, 1.0], &Tolerance { max_panels: 100, ..Tolerance::default() });
-    assert!(!r.converged, "a divergent integral is not reported as one: {r:?}");
+    let r = integrate(
+        |x: f64| [1.0 / x],
+        &[0.0, 1.0],
+        &Tolerance {
+            max_panels: 100,
+            ..Tolerance::default()
+        },
+    );
+    assert!(
+        !r.converged,
+        "a divergent integral is not reported as one: {r:?}"
+    );
     let r = integrate(|_| [0.0], &[0.0, 1.0], &Tolerance::default());
     assert_eq!((r.value, r.converged), ([0.0], true));
 }

@@ -57,19 +57,39 @@ pub(super) fn describe(
         export: _,
         out: _,
     } = flags;
-    let Settings { integrator, sequence, seed, mis, depth, roulette, multiple, rays, profile: _ } = settings;
-    let Crop { x, y, width, height } = crop;
+    let Settings {
+        integrator,
+        sequence,
+        seed,
+        mis,
+        depth,
+        roulette,
+        multiple,
+        rays,
+        profile: _,
+    } = settings;
+    let Crop {
+        x,
+        y,
+        width,
+        height,
+    } = crop;
     let file = match import {
         Some(path) => {
-            let unreadable = |source| Error::Usage(format!("{}: cannot read: {source}", path.display()));
+            let unreadable =
+                |source| Error::Usage(format!("{}: cannot read: {source}", path.display()));
             digest(&fs::read(path).map_err(unreadable)?)
         }
         None => 0,
     };
     let env = env.map_or(0, Environment::digest);
     let words = [
-        format!("scene={scene:?} model={model} sampler={sampler:?} hair={hair:?} energy={energy:?}"),
-        format!("size={columns}x{rows} crop={x},{y},{width},{height} turn={turn} backdrop={backdrop:?} env={env:016x}"),
+        format!(
+            "scene={scene:?} model={model} sampler={sampler:?} hair={hair:?} energy={energy:?}"
+        ),
+        format!(
+            "size={columns}x{rows} crop={x},{y},{width},{height} turn={turn} backdrop={backdrop:?} env={env:016x}"
+        ),
         format!("strands={strands} import={file:016x} scale={scale:?} radius={radius:?} up={up:?}"),
         format!("follow={follow} spread={spread} rectangles={rectangles:?}"),
         format!("integrator={integrator:?} xi={sequence:?} seed={seed} mis={mis:?}"),

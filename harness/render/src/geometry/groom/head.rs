@@ -41,12 +41,22 @@ impl HeadGroom {
             let root = root(index, groom.clumps, &mut random);
             Clump {
                 root,
-                guide: fall(&groom, root, side(root), GUIDE_LENGTH * groom.length, 0.03, &mut random),
+                guide: fall(
+                    &groom,
+                    root,
+                    side(root),
+                    GUIDE_LENGTH * groom.length,
+                    0.03,
+                    &mut random,
+                ),
                 phase: random.phase(),
                 curl_length: groom.curl_length * (1.0 + 0.15 * random.normal_cut()),
             }
         };
-        Self { groom, clumps: (0..groom.clumps).map(clump).collect() }
+        Self {
+            groom,
+            clumps: (0..groom.clumps).map(clump).collect(),
+        }
     }
 
     /// The nodes of a strand.
@@ -57,14 +67,23 @@ impl HeadGroom {
         let length = groom.length * (1.0 + groom.length_spread * random.normal_cut());
         let clump = self.nearest(root);
         // That of its clump: a strand drawn to a guide on the other side would go through the head.
-        let mut nodes = fall(groom, root, side(clump.root), length, 0.06 + groom.frizz, &mut random);
+        let mut nodes = fall(
+            groom,
+            root,
+            side(clump.root),
+            length,
+            0.06 + groom.frizz,
+            &mut random,
+        );
         let phase = clump.phase + 0.5 * random.normal();
         let curl_radius = groom.curl_radius * (1.0 + 0.2 * random.normal_cut());
         let step = length / (groom.nodes - 1) as f32;
         for (k, node) in nodes.iter_mut().enumerate().skip(1) {
             let s = k as f32 / (groom.nodes - 1) as f32;
             let guide = clump.guide[k];
-            let (side, other) = (guide - clump.guide[k - 1]).normalize().any_orthonormal_pair();
+            let (side, other) = (guide - clump.guide[k - 1])
+                .normalize()
+                .any_orthonormal_pair();
             let angle = phase + TAU * k as f32 * step / clump.curl_length;
             let curl = curl_radius * (4.0 * s).min(1.0);
             let frizz = Vec3::new(random.normal(), random.normal(), random.normal());
@@ -80,7 +99,8 @@ impl HeadGroom {
         let below = self.clumps.partition_point(|clump| clump.root.y > root.y);
         let (upper, lower) = self.clumps.split_at(below);
         let mut best = (f32::INFINITY, &self.clumps[0]);
-        let sides: [&mut dyn Iterator<Item = &Clump>; 2] = [&mut upper.iter().rev(), &mut lower.iter()];
+        let sides: [&mut dyn Iterator<Item = &Clump>; 2] =
+            [&mut upper.iter().rev(), &mut lower.iter()];
         for clumps in sides {
             for clump in clumps {
                 let distance = root.distance_squared(clump.root);
@@ -102,7 +122,11 @@ fn root(index: usize, count: usize, random: &mut Random) -> Vec3 {
     #[expect(clippy::cast_possible_truncation, reason = "rounded to the nearest")]
     let azimuth = (GOLDEN_ANGLE * index as f64 % core::f64::consts::TAU) as f32;
     let across = (1.0 - y * y).max(0.0).sqrt();
-    Vec3::new(across * libm::cosf(azimuth), y, across * libm::sinf(azimuth))
+    Vec3::new(
+        across * libm::cosf(azimuth),
+        y,
+        across * libm::sinf(azimuth),
+    )
 }
 
 /// The side of the parting to which combed hair falls: 1 or -1, along x.
@@ -111,20 +135,31 @@ fn side(root: Vec3) -> f32 {
 }
 
 /// Nodes of a strand that leaves the head along its normal, or combed, and bends down, round the head.
-fn fall(groom: &Groom, root: Vec3, side: f32, length: f32, waviness: f32, random: &mut Random) -> Vec<Vec3> {
+fn fall(
+    groom: &Groom,
+    root: Vec3,
+    side: f32,
+    length: f32,
+    waviness: f32,
+    random: &mut Random,
+) -> Vec<Vec3> {
     let step = length / (groom.nodes - 1) as f32;
     let aside = 0.015 * Vec3::new(-root.z, 0.0, root.x);
     let phases = Vec3::new(random.phase(), random.phase(), random.phase());
     let mut position = root * HEAD;
     let normal = (root / HEAD).normalize();
     let from_parting = side * root.y.max(0.0).powi(2) * Vec3::X;
-    let away = (from_parting + Vec3::NEG_Y).reject_from_normalized(normal).normalize_or_zero();
+    let away = (from_parting + Vec3::NEG_Y)
+        .reject_from_normalized(normal)
+        .normalize_or_zero();
     let mut direction = (groom.lift * normal + (1.0 - groom.lift) * away).normalize();
     let shell = (CLEARANCE + DEPTH * (1.0 - groom.lift) * random.uniform()) * HEAD;
     let mut nodes = vec![position];
     for k in 1..groom.nodes {
         let s = k as f32 * step;
-        let wave = (phases + s * Vec3::new(1.7, 2.3, 2.9)).to_array().map(libm::sinf);
+        let wave = (phases + s * Vec3::new(1.7, 2.3, 2.9))
+            .to_array()
+            .map(libm::sinf);
         let pull = groom.gravity * Vec3::NEG_Y + aside + waviness * Vec3::from_array(wave);
         direction = (direction + step * pull).normalize();
         position += step * direction;

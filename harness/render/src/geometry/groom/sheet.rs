@@ -19,12 +19,17 @@ pub(super) fn strand(groom: &Groom, strand: usize) -> Vec<Vec3> {
     let y = -DEPTH * random.uniform();
     let z = WIDTH * (random.uniform() - 0.5);
     let x = STAGGER * (random.uniform() - 0.5) - 0.5 * groom.length;
-    let (rise, sway, phase) = (WAVE * random.normal(), WAVE * random.normal(), random.phase());
+    let (rise, sway, phase) = (
+        WAVE * random.normal(),
+        WAVE * random.normal(),
+        random.phase(),
+    );
     (0..groom.nodes)
         .map(|k| {
             let s = k as f32 / (groom.nodes - 1) as f32;
             let arch = ARCH * (2.0 * s - 1.0) * (2.0 * s - 1.0);
-            let up = rise * libm::sinf(phase + 5.0 * s) - arch + 0.2 * groom.frizz * random.normal();
+            let up =
+                rise * libm::sinf(phase + 5.0 * s) - arch + 0.2 * groom.frizz * random.normal();
             let aside = sway * libm::cosf(phase + 6.0 * s) + 0.2 * groom.frizz * random.normal();
             Vec3::new(x + groom.length * s, y + up, z + aside)
         })

@@ -51,16 +51,38 @@ impl Candidates {
 
     /// Weighs eight directions, and keeps the first `limit` of them.
     #[inline]
-    pub(super) fn push(&mut self, eval: &Eval8, cos: &f32x8, light: &LightSample8, counts: Counts, limit: u32) {
-        let weighed = Weighed8::new(eval, cos, &light.radiance, &light.pdf, counts, Partition::All);
+    pub(super) fn push(
+        &mut self,
+        eval: &Eval8,
+        cos: &f32x8,
+        light: &LightSample8,
+        counts: Counts,
+        limit: u32,
+    ) {
+        let weighed = Weighed8::new(
+            eval,
+            cos,
+            &light.radiance,
+            &light.pdf,
+            counts,
+            Partition::All,
+        );
         let range = self.len..self.len + 8;
-        let write = |column: &mut [f32; MOST], lanes: &f32x8| column[range.clone()].copy_from_slice(lanes.as_array());
+        let write = |column: &mut [f32; MOST], lanes: &f32x8| {
+            column[range.clone()].copy_from_slice(lanes.as_array())
+        };
         let Vec3x8 { x, y, z } = light.direction;
-        self.direction.iter_mut().zip([x, y, z]).for_each(|(column, lanes)| write(column, &lanes));
+        self.direction
+            .iter_mut()
+            .zip([x, y, z])
+            .for_each(|(column, lanes)| write(column, &lanes));
         write(&mut self.cos, cos);
         write(&mut self.distance, &light.distance);
         let ([r, g, b], weight) = (weighed.contribution, weighed.weight);
-        self.weighed.iter_mut().zip([r, g, b, weight]).for_each(|(column, lanes)| write(column, &lanes));
+        self.weighed
+            .iter_mut()
+            .zip([r, g, b, weight])
+            .for_each(|(column, lanes)| write(column, &lanes));
         let cells = cells(&light.direction).into_iter().zip(weight.as_array());
         for (to, (cell, weight)) in self.cell[range].iter_mut().zip(cells) {
             *to = if *weight > 0.0 { cell } else { NO_WEIGHT };
@@ -79,7 +101,11 @@ impl Candidates {
         choose([r, g, b], weight, rays, u).map(|choice| {
             let at = usize::from(self.order[choice.index]);
             let direction = Vec3::from_array(self.direction.each_ref().map(|column| column[at]));
-            let candidate = Candidate { direction, cos: self.cos[at], distance: self.distance[at] };
+            let candidate = Candidate {
+                direction,
+                cos: self.cos[at],
+                distance: self.distance[at],
+            };
             (candidate, Vec3::from_array(choice.contribution))
         })
     }

@@ -14,10 +14,13 @@ static CURVE: [u8; CELLS] = curve();
 /// The cell of a unit vector per lane.
 #[inline]
 pub(super) fn cells(direction: &Vec3x8) -> [u8; 8] {
-    let [a, b] = Level::detect().run(Unfold(direction)).map(|side| side.fast_trunc_int().to_array());
+    let [a, b] = Level::detect()
+        .run(Unfold(direction))
+        .map(|side| side.fast_trunc_int().to_array());
     // Numbers beyond the square, and those that are none, go into some cell.
     core::array::from_fn(|lane| {
-        CURVE[(a[lane].cast_unsigned() as usize % SIDE) * SIDE + b[lane].cast_unsigned() as usize % SIDE]
+        CURVE[(a[lane].cast_unsigned() as usize % SIDE) * SIDE
+            + b[lane].cast_unsigned() as usize % SIDE]
     })
 }
 
@@ -44,7 +47,11 @@ impl Kernel for Unfold<'_> {
         let folded = [(one - b.abs()).times_sign(a), (one - a.abs()).times_sign(b)];
         // A little less than half the side, so that both edges are within.
         let half = c(0.5 * SIDE as f32);
-        let place = |upper: L, lower: L| L::select(below, lower, upper).mul_add(half * c(1.0 - 1e-6), half).store();
+        let place = |upper: L, lower: L| {
+            L::select(below, lower, upper)
+                .mul_add(half * c(1.0 - 1e-6), half)
+                .store()
+        };
         [place(a, folded[0]), place(b, folded[1])]
     }
 }
@@ -97,7 +104,8 @@ mod tests {
         let mut xi = Independent::new(3, 0);
         let mut members = vec![Vec::new(); CELLS];
         for _ in 0..4000 {
-            let dirs: [Vec3; 8] = core::array::from_fn(|_| crate::lights::uniform_direction(xi.next_xi_f32()));
+            let dirs: [Vec3; 8] =
+                core::array::from_fn(|_| crate::lights::uniform_direction(xi.next_xi_f32()));
             for (dir, cell) in dirs.iter().zip(cells(&dirs.into())) {
                 members[usize::from(cell)].push(*dir);
             }
@@ -106,10 +114,27 @@ mod tests {
             let mean = members.iter().sum::<Vec3>().normalize();
             assert!(members.len() > 200, "{} directions", members.len());
             // The sphere has cells of 0.2 sr, longer where it is unfolded.
-            assert!(members.iter().all(|dir| dir.dot(mean) > 0.7), "about {mean}");
+            assert!(
+                members.iter().all(|dir| dir.dot(mean) > 0.7),
+                "about {mean}"
+            );
         }
-        let none =
-            cells(&[Vec3::ZERO, Vec3::NAN, Vec3::INFINITY, Vec3::Y, -Vec3::Y, Vec3::X, -Vec3::X, Vec3::Z].into());
-        assert!(none.iter().all(|cell| usize::from(*cell) < CELLS), "{none:?}");
+        let none = cells(
+            &[
+                Vec3::ZERO,
+                Vec3::NAN,
+                Vec3::INFINITY,
+                Vec3::Y,
+                -Vec3::Y,
+                Vec3::X,
+                -Vec3::X,
+                Vec3::Z,
+            ]
+            .into(),
+        );
+        assert!(
+            none.iter().all(|cell| usize::from(*cell) < CELLS),
+            "{none:?}"
+        );
     }
 }
