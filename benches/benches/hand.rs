@@ -19,8 +19,8 @@ mod x86 {
     use glam::Vec3;
     use hairis::wide::f32x8;
     use hairis::{
-        Bell, Bsdf, EvalColumns, EvalSlices, Gather, Gaussian, Hair, HairParams, HitSlices, Level,
-        Matched,
+        Bell, Bsdf, EvalColumns, EvalSlices, Gaussian, HairParams, HitSlices, Level, Matched,
+        Material, Published,
     };
     use hairis::{Model, SampleColumns, SampleWeightSlices, Vec3x};
     use hairis_benches::cpu;
@@ -60,7 +60,7 @@ mod x86 {
                     level,
                     turns,
                 },
-                &Hair(Gaussian),
+                &Published(Gaussian),
                 &inputs,
             );
             hits(
@@ -218,20 +218,20 @@ mod x86 {
         [f32x8::ZERO; 3]
     }
 
-    fn gather<B: Bell>(bell: B, inputs: &Inputs) -> (Gather<Hair<B>>, Constants) {
+    fn bsdf<B: Bell>(bell: B, inputs: &Inputs) -> (Bsdf<Published<B>>, Constants) {
         let (params, wo) = (HairParams::default(), inputs.wo[0]);
         (
-            Bsdf::new(&Hair(bell), &params).prepare(wo),
+            Material::new(&Published(bell), &params).prepare(wo),
             Constants::new(params.desc(), wo.to_array()),
         )
     }
 
     fn eval<B: Bell, const CAUCHY: bool>(run: Run<'_>, set: Set, bell: B, inputs: &Inputs) {
-        let (gather, constants) = &gather(bell, inputs);
+        let (bsdf, constants) = &bsdf(bell, inputs);
         let wi: Vec<[f32; 3]> = inputs.wi.iter().map(Vec3::to_array).collect();
         let level = run.level;
         let ours = |from: [&[f32]; 3], [r, g, b, pdf]: [&mut [f32]; 4]| {
-            let done = gather.eval_pdf_batch_at(
+            let done = bsdf.eval_pdf_batch_at(
                 level,
                 from,
                 EvalSlices {
@@ -259,7 +259,7 @@ mod x86 {
                         &LANES,
                         [x.as_mut_array(), y.as_mut_array(), z.as_mut_array()],
                     );
-                    let eval = gather.eval_pdf8_at(level, &Vec3x::new(x, y, z));
+                    let eval = bsdf.eval_pdf8_at(level, &Vec3x::new(x, y, z));
                     let [r, g, b] = &eval.value;
                     used(
                         &mut sum,
@@ -287,7 +287,7 @@ mod x86 {
     }
 
     fn sample(run: Run<'_>, set: Set, inputs: &Inputs) {
-        let (gather, constants) = &gather(Gaussian, inputs);
+        let (bsdf, constants) = &bsdf(Gaussian, inputs);
         let (level, xi) = (run.level, &inputs.xi);
         let ours = |from: [&[f32]; 3], [u, v, w, pdf, r, g, b]: [&mut [f32]; 7]| {
             let out = SampleWeightSlices {
@@ -295,7 +295,7 @@ mod x86 {
                 pdf,
                 weight: [r, g, b],
             };
-            black_box(gather.sample_weight_batch_at(level, from, out).is_ok());
+            black_box(bsdf.sample_weight_batch_at(level, from, out).is_ok());
         };
         run.columns("slices", (xi, DIRECTIONS), ours, |from, to| {
             set.sample::<false>(constants, from, to)
@@ -316,7 +316,7 @@ mod x86 {
                         &LANES,
                         [x.as_mut_array(), y.as_mut_array(), z.as_mut_array()],
                     );
-                    let s = gather.sample8_at(level, &from);
+                    let s = bsdf.sample8_at(level, &from);
                     let ([r, g, b], wi) = (&s.weight, &s.wi);
                     let wi = [wi.x.as_array(), wi.y.as_array(), wi.z.as_array()];
                     let [u, v, w] = wi;
@@ -365,8 +365,8 @@ mod x86 {
     /// Slices of hits, each with a `wo` of its own, beside slices of the published model at one hit: the columns of a path tracer.
     fn hits<M: Model<Params = HairParams>>(run: Run<'_>, model: &M, inputs: &Inputs) {
         let (level, params) = (run.level, HairParams::default());
-        let bsdf = Bsdf::new(model, &params);
-        let one = Bsdf::new(&Hair(Gaussian), &params).prepare(inputs.wo[0]);
+        let material = Material::new(model, &params);
+        let one = Material::new(&Published(Gaussian), &params).prepare(inputs.wo[0]);
         let wo: [Column; 3] = columns(0, &arrays(&inputs.wo));
         let wi: [Column; 3] = columns(3, &arrays(&inputs.wi));
         let xi: [Column; 3] = columns(3, &inputs.xi);
@@ -386,7 +386,8 @@ mod x86 {
                     pdf: Some(pdf),
                 };
                 black_box(
-                    bsdf.eval_pdf_hits_at(level, black_box(hits), parts(&wi), out)
+                    material
+                        .eval_pdf_hits_at(level, black_box(hits), parts(&wi), out)
                         .is_ok(),
                 );
             },
@@ -414,7 +415,8 @@ mod x86 {
                     ..SampleColumns::default()
                 };
                 black_box(
-                    bsdf.sample_hits_at(level, black_box(hits), parts(&xi), out)
+                    material
+                        .sample_hits_at(level, black_box(hits), parts(&xi), out)
                         .is_ok(),
                 );
             },

@@ -16,7 +16,7 @@ use core::marker::PhantomData;
 use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::wide::f32x8;
-use hairis::{Bsdf, EvalSlices, Level, ParamError, SampleSlices, Vec3x8};
+use hairis::{EvalSlices, Level, Material, ParamError, SampleSlices, Vec3x8};
 use hairis_variants::{AnyReference, ModelId, Parameters, Registered, Visitor};
 use serde::Serialize;
 
@@ -224,16 +224,16 @@ impl Contenders {
 }
 
 /// A material: the kernel's, and the formulas on the libm crate and on std.
-struct Material<M: Registered> {
-    bsdf: Bsdf<M>,
+struct Implementations<M: Registered> {
+    material: Material<M>,
     libm: M::Formulas<f32>,
     std: M::Formulas<Platform>,
 }
 
-impl<M: Registered> Material<M> {
+impl<M: Registered> Implementations<M> {
     fn new(params: &M::Params) -> Self {
         Self {
-            bsdf: Bsdf::new(&M::MODEL, params),
+            material: Material::new(&M::MODEL, params),
             libm: M::formulas(params),
             std: M::formulas(params),
         }
@@ -251,7 +251,11 @@ impl<M: Registered> Material<M> {
 
 fn prepare<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let params = &inputs.params[0];
-    let Material::<M> { bsdf, libm, std } = Material::new(params);
+    let Implementations::<M> {
+        material,
+        libm,
+        std,
+    } = Implementations::new(params);
     let wo = arrays(&inputs.wo);
     let contenders = Contenders::new(
         task(&wo, move |wo| {
@@ -263,10 +267,12 @@ fn prepare<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
                 PhantomData,
             )
         }),
-        task(&inputs.wo, move |wo| bsdf.prepare(*wo)),
+        task(&inputs.wo, move |wo| material.prepare(*wo)),
     )
     .levels(EIGHT, |level| {
-        task(&packets(&inputs.wo), move |wo| bsdf.prepare8_at(level, wo))
+        task(&packets(&inputs.wo), move |wo| {
+            material.prepare8_at(level, wo)
+        })
     });
     Ok((
         contenders,
@@ -280,13 +286,16 @@ fn eval_pdf<M: Registered>(
     every_way: bool,
 ) -> Entrants {
     let (wo, wi) = (inputs.wo[0], arrays(&inputs.wi));
-    let material = Material::<M>::new(params);
-    let ((libm, std), gather) = (material.references(wo), material.bsdf.prepare(wo));
+    let implementations = Implementations::<M>::new(params);
+    let ((libm, std), bsdf) = (
+        implementations.references(wo),
+        implementations.material.prepare(wo),
+    );
     let slices = |len| {
         let wi = &wi;
         move |level| -> Box<dyn Pass> {
             let call = move |wi: [&[f32]; 3], [r, g, b, pdf]: [&mut [f32]; 4]| {
-                gather.eval_pdf_batch_at(
+                bsdf.eval_pdf_batch_at(
                     level,
                     wi,
                     EvalSlices {
@@ -301,19 +310,17 @@ fn eval_pdf<M: Registered>(
     let mut contenders = Contenders::new(
         task(&wi, move |wi| libm.eval_pdf(*wi)),
         task(&wi, move |wi| std.eval_pdf(platform(*wi))),
-        task(&inputs.wi, move |wi| gather.eval_pdf(*wi)),
+        task(&inputs.wi, move |wi| bsdf.eval_pdf(*wi)),
     )
     .levels(EIGHT, |level| {
-        task(&packets(&inputs.wi), move |wi| {
-            gather.eval_pdf8_at(level, wi)
-        })
+        task(&packets(&inputs.wi), move |wi| bsdf.eval_pdf8_at(level, wi))
     })
     .levels(SLICES, slices(TIMED_DIRECTIONS));
     if every_way {
         let (eights, _) = inputs.wi.as_chunks::<8>();
         let fresh = |level| {
             task(eights, move |wi| {
-                gather.eval_pdf8_at(level, &Vec3x8::from(*wi))
+                bsdf.eval_pdf8_at(level, &Vec3x8::from(*wi))
             })
         };
         contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
@@ -330,8 +337,11 @@ fn sample<M: Registered>(
     every_way: bool,
 ) -> Entrants {
     let (wo, xi) = (inputs.wo[0], &inputs.xi);
-    let material = Material::<M>::new(params);
-    let ((libm, std), gather) = (material.references(wo), material.bsdf.prepare(wo));
+    let implementations = Implementations::<M>::new(params);
+    let ((libm, std), bsdf) = (
+        implementations.references(wo),
+        implementations.material.prepare(wo),
+    );
     let slices = |len| {
         move |level| -> Box<dyn Pass> {
             let call =
@@ -344,7 +354,7 @@ fn sample<M: Registered>(
                         weight: [wr, wg, wb],
                         slot,
                     };
-                    gather.sample_batch_at(level, xi, out)
+                    bsdf.sample_batch_at(level, xi, out)
                 };
             Box::new(Slices::new(len, xi, call))
         }
@@ -352,10 +362,10 @@ fn sample<M: Registered>(
     let mut contenders = Contenders::new(
         task(xi, move |xi| libm.sample(*xi)),
         task(xi, move |xi| std.sample(platform(*xi))),
-        task(xi, move |xi| gather.sample(*xi)),
+        task(xi, move |xi| bsdf.sample(*xi)),
     )
     .levels(EIGHT, |level| {
-        task(&xi_packets(xi), move |xi| gather.sample8_at(level, xi))
+        task(&xi_packets(xi), move |xi| bsdf.sample8_at(level, xi))
     })
     .levels(SLICES, slices(TIMED_DIRECTIONS));
     if every_way {
@@ -363,7 +373,7 @@ fn sample<M: Registered>(
         let packed = |xi: &[[f32; 3]; 8]| -> [f32x8; 3] {
             core::array::from_fn(|k| f32x8::new(xi.map(|xi| xi[k])))
         };
-        let fresh = |level| task(eights, move |xi| gather.sample8_at(level, &packed(xi)));
+        let fresh = |level| task(eights, move |xi| bsdf.sample8_at(level, &packed(xi)));
         contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
     }
     Ok((

@@ -10,7 +10,9 @@ use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
 use hairis::reference::Reference;
-use hairis::{Bsdf, Bsdf8, EvalSlices, Gather, Gather8, Level, SampleSlices, SampleWeightSlices};
+use hairis::{
+    Bsdf, Bsdf8, EvalSlices, Level, Material, Material8, SampleSlices, SampleWeightSlices,
+};
 use hairis_variants::{ModelId, Parameters, Registered};
 use std::sync::LazyLock;
 
@@ -224,26 +226,26 @@ impl<M: Registered> Of<'_, M> {
         M::reference(&M::Params::default(), wo, 0.0)
     }
 
-    fn bsdf(&self) -> Bsdf<M> {
-        Bsdf::new(&M::MODEL, &M::Params::default())
+    fn material(&self) -> Material<M> {
+        Material::new(&M::MODEL, &M::Params::default())
     }
 
-    fn mixed(&self) -> Bsdf8<M> {
-        Bsdf8::pack(materials::<M>().each_ref())
+    fn mixed(&self) -> Material8<M> {
+        Material8::pack(materials::<M>().each_ref())
     }
 
     /// The one shading point of evaluations and samples.
-    fn gather(&self) -> Gather<M> {
-        self.bsdf().prepare(self.inputs.wo[0])
+    fn bsdf(&self) -> Bsdf<M> {
+        self.material().prepare(self.inputs.wo[0])
     }
 
     /// Eight shading points on eight heads of hair.
-    fn gather8(&self, level: Level) -> Gather8<M> {
+    fn bsdf8(&self, level: Level) -> Bsdf8<M> {
         self.mixed()
             .prepare8_at(level, &packets(&self.inputs.wo[..8])[0])
     }
 
-    /// The query at [`gather`](Self::gather).
+    /// The query at [`bsdf`](Self::bsdf).
     fn at_one(&self, given: Given) -> Asked {
         Asked {
             values: M::Params::default().values(),
@@ -252,7 +254,7 @@ impl<M: Registered> Of<'_, M> {
         }
     }
 
-    /// The query at a lane of [`gather8`](Self::gather8).
+    /// The query at a lane of [`bsdf8`](Self::bsdf8).
     fn at_lane(&self, i: usize, given: Given) -> Asked {
         Asked {
             values: params::<M>()[i % 8].values(),
@@ -290,20 +292,20 @@ impl<M: Registered> Of<'_, M> {
             })
         });
         self.show(visitor, "prepare", "scalar", shared, || {
-            let bsdf = self.bsdf();
-            Each::new(1, inputs.wo.clone(), move |wo| bsdf.prepare(*wo))
+            let material = self.material();
+            Each::new(1, inputs.wo.clone(), move |wo| material.prepare(*wo))
         });
         for level in Level::available() {
             self.show(visitor, "prepare8-shared", label(level), shared, || {
-                let bsdf = self.bsdf();
+                let material = self.material();
                 Each::new(8, packets(&inputs.wo), move |wo| {
-                    bsdf.prepare8_at(level, wo)
+                    material.prepare8_at(level, wo)
                 })
             });
             self.show(visitor, "prepare8-mixed", label(level), mixed, || {
-                let bsdf = self.mixed();
+                let material = self.mixed();
                 Each::new(8, packets(&inputs.wo), move |wo| {
-                    bsdf.prepare8_at(level, wo)
+                    material.prepare8_at(level, wo)
                 })
             });
         }
@@ -318,20 +320,20 @@ impl<M: Registered> Of<'_, M> {
             Each::new(1, arrays(&inputs.wi), move |wi| reference.eval_pdf(*wi))
         });
         self.show(visitor, "eval_pdf", "scalar", one, || {
-            let gather = self.gather();
-            Each::new(1, inputs.wi.clone(), move |wi| gather.eval_pdf(*wi))
+            let bsdf = self.bsdf();
+            Each::new(1, inputs.wi.clone(), move |wi| bsdf.eval_pdf(*wi))
         });
         for level in Level::available() {
             self.show(visitor, "eval_pdf8", label(level), one, || {
-                let gather = self.gather();
+                let bsdf = self.bsdf();
                 Each::new(8, packets(&inputs.wi), move |wi| {
-                    gather.eval_pdf8_at(level, wi)
+                    bsdf.eval_pdf8_at(level, wi)
                 })
             });
             self.show(visitor, "eval_pdf8-points", label(level), lane, || {
-                let gather = self.gather8(level);
+                let bsdf = self.bsdf8(level);
                 Each::new(8, packets(&inputs.wi), move |wi| {
-                    gather.eval_pdf8_at(level, wi)
+                    bsdf.eval_pdf8_at(level, wi)
                 })
             });
             for (entry, len) in [
@@ -339,12 +341,12 @@ impl<M: Registered> Of<'_, M> {
                 ("eval_pdf_batch-short", SHORT),
             ] {
                 self.show(visitor, entry, label(level), one, || {
-                    let gather = self.gather();
+                    let bsdf = self.bsdf();
                     Slices::new(
                         len,
                         &arrays(&inputs.wi),
                         move |wi, [r, g, b, pdf]: [&mut [f32]; 4]| {
-                            gather.eval_pdf_batch_at(
+                            bsdf.eval_pdf_batch_at(
                                 level,
                                 wi,
                                 EvalSlices {
@@ -357,19 +359,19 @@ impl<M: Registered> Of<'_, M> {
                 });
             }
             self.show(visitor, "eval_batch", label(level), one, || {
-                let gather = self.gather();
+                let bsdf = self.bsdf();
                 Slices::new(
                     DIRECTIONS,
                     &arrays(&inputs.wi),
-                    move |wi, value: [&mut [f32]; 3]| gather.eval_batch_at(level, wi, value),
+                    move |wi, value: [&mut [f32]; 3]| bsdf.eval_batch_at(level, wi, value),
                 )
             });
             self.show(visitor, "pdf_batch", label(level), one, || {
-                let gather = self.gather();
+                let bsdf = self.bsdf();
                 Slices::new(
                     DIRECTIONS,
                     &arrays(&inputs.wi),
-                    move |wi, [pdf]: [&mut [f32]; 1]| gather.pdf_batch_at(level, wi, pdf),
+                    move |wi, [pdf]: [&mut [f32]; 1]| bsdf.pdf_batch_at(level, wi, pdf),
                 )
             });
         }
@@ -384,24 +386,24 @@ impl<M: Registered> Of<'_, M> {
             Each::new(1, inputs.xi.clone(), move |xi| reference.sample(*xi))
         });
         self.show(visitor, "sample", "scalar", one, || {
-            let gather = self.gather();
-            Each::new(1, inputs.xi.clone(), move |xi| gather.sample(*xi))
+            let bsdf = self.bsdf();
+            Each::new(1, inputs.xi.clone(), move |xi| bsdf.sample(*xi))
         });
         for level in Level::available() {
             self.show(visitor, "sample8", label(level), one, || {
-                let gather = self.gather();
+                let bsdf = self.bsdf();
                 Each::new(8, xi_packets(&inputs.xi), move |xi| {
-                    gather.sample8_at(level, xi)
+                    bsdf.sample8_at(level, xi)
                 })
             });
             self.show(visitor, "sample8-points", label(level), lane, || {
-                let gather = self.gather8(level);
+                let bsdf = self.bsdf8(level);
                 Each::new(8, xi_packets(&inputs.xi), move |xi| {
-                    gather.sample8_at(level, xi)
+                    bsdf.sample8_at(level, xi)
                 })
             });
             self.show(visitor, "sample_weight_batch", label(level), one, || {
-                let gather = self.gather();
+                let bsdf = self.bsdf();
                 Slices::new(
                     DIRECTIONS,
                     &inputs.xi,
@@ -411,7 +413,7 @@ impl<M: Registered> Of<'_, M> {
                             pdf,
                             weight: [r, g, b],
                         };
-                        gather.sample_weight_batch_at(level, xi, out)
+                        bsdf.sample_weight_batch_at(level, xi, out)
                     },
                 )
                 .read_by(|[u, v, w, pdf, ..]| Answer {
@@ -427,14 +429,14 @@ impl<M: Registered> Of<'_, M> {
             });
             for (entry, len) in [("sample_batch", DIRECTIONS), ("sample_batch-short", SHORT)] {
                 self.show(visitor, entry, label(level), one, || {
-                    let gather = self.gather();
+                    let bsdf = self.bsdf();
                     Slices::new(
                         len,
                         &inputs.xi,
                         move |xi, [r, g, b, pdf, u, v, w, weight_r, weight_g, weight_b, slot]: [&mut [f32]; 11]| {
                             let weight = [weight_r, weight_g, weight_b];
                             let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight, slot };
-                            gather.sample_batch_at(level, xi, out)
+                            bsdf.sample_batch_at(level, xi, out)
                         },
                     )
                 });
@@ -464,27 +466,27 @@ impl<M: Registered> Of<'_, M> {
             })
         });
         self.show(visitor, "prepare-sample", "scalar", scalar, || {
-            let (bsdf, xi) = (self.bsdf(), xi.to_vec());
+            let (material, xi) = (self.material(), xi.to_vec());
             Each::new(samples, inputs.wo.clone(), move |wo| {
-                let gather = bsdf.prepare(*wo);
-                last(&xi, |xi| gather.sample(*xi))
+                let bsdf = material.prepare(*wo);
+                last(&xi, |xi| bsdf.sample(*xi))
             })
         });
         for level in Level::available() {
             // Eight directions at one shading point; of the last packet only the requested lanes count.
             self.show(visitor, "prepare-sample8", label(level), one, || {
-                let (bsdf, xi) = (self.bsdf(), eights[..packets_at_one].to_vec());
+                let (material, xi) = (self.material(), eights[..packets_at_one].to_vec());
                 Each::new(samples, inputs.wo.clone(), move |wo| {
-                    let gather = bsdf.prepare(*wo);
-                    last(&xi, |xi| gather.sample8_at(level, xi))
+                    let bsdf = material.prepare(*wo);
+                    last(&xi, |xi| bsdf.sample8_at(level, xi))
                 })
             });
             // Eight shading points on eight heads of hair.
             self.show(visitor, "prepare8-sample8", label(level), eight, || {
-                let (bsdf, xi) = (self.mixed(), eights[..samples].to_vec());
+                let (material, xi) = (self.mixed(), eights[..samples].to_vec());
                 Each::new(8 * samples, packets(&inputs.wo), move |wo| {
-                    let gather = bsdf.prepare8_at(level, wo);
-                    last(&xi, |xi| gather.sample8_at(level, xi))
+                    let bsdf = material.prepare8_at(level, wo);
+                    last(&xi, |xi| bsdf.sample8_at(level, xi))
                 })
             });
         }

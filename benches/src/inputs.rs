@@ -3,7 +3,7 @@
 use core::array::from_fn;
 use core::f32::consts::TAU;
 use glam::Vec3;
-use hairis::{Bsdf, Vec3x8};
+use hairis::{Material, Vec3x8};
 use hairis_variants::{Parameters, Registered};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -86,8 +86,8 @@ pub fn params<M: Registered>() -> [M::Params; 8] {
 
 /// The materials of [`params`].
 #[must_use]
-pub fn materials<M: Registered>() -> [Bsdf<M>; 8] {
-    params::<M>().map(|params| Bsdf::new(&M::MODEL, &params))
+pub fn materials<M: Registered>() -> [Material<M>; 8] {
+    params::<M>().map(|params| Material::new(&M::MODEL, &params))
 }
 
 /// A column of [`DIRECTIONS`] numbers for slices, at an address chosen by its number.

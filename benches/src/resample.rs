@@ -9,7 +9,7 @@ use hairis::resample::{
     CandidateSlices, Counts, Partition, Reservoir8, Weighed8, WeightSlices, choose,
 };
 use hairis::wide::f32x8;
-use hairis::{Gather, Gather8, LengthError, Level, Model, Vec3x8};
+use hairis::{Bsdf, Bsdf8, LengthError, Level, Model, Vec3x8};
 
 /// Candidates of each technique in a pool.
 const EACH: usize = 32;
@@ -55,7 +55,7 @@ pub fn looked_up(wi: &[Vec3]) -> Vec<[f32; 7]> {
 /// chooses 16 rays. The directions of a call are its candidates.
 #[derive(Debug)]
 pub struct PoolTask<M: Model> {
-    gather: Gather<M>,
+    bsdf: Bsdf<M>,
     level: Level,
     xi: [Column; 3],
     /// Candidates of the light.
@@ -76,11 +76,11 @@ struct Columns {
 impl<M: Model> PoolTask<M> {
     /// Pools at this hit, with the numbers and the directions of `inputs`.
     #[must_use]
-    pub fn new(gather: Gather<M>, level: Level, inputs: &Inputs) -> Self {
+    pub fn new(bsdf: Bsdf<M>, level: Level, inputs: &Inputs) -> Self {
         let block = looked_up(&inputs.wi);
         let (three, one) = ([[0.0; ALL]; 3], [0.0; ALL]);
         Self {
-            gather,
+            bsdf,
             level,
             xi: from_fn(|k| Column::new(k, inputs.xi.iter().map(|xi| xi[k]))),
             block: from_fn(|k| Column::new(3 + k, block.iter().map(|row| row[k]))),
@@ -108,7 +108,7 @@ impl<M: Model> PoolTask<M> {
             .each_ref()
             .map(|column| column.part(at, EACH));
         let proposed = wi.each_mut().map(|column| &mut column[..EACH]);
-        self.gather.propose_batch_at(self.level, xi, proposed)?;
+        self.bsdf.propose_batch_at(self.level, xi, proposed)?;
         for (radiance, wi) in radiance.iter_mut().zip(&*wi) {
             for (radiance, x) in radiance[..EACH].iter_mut().zip(wi) {
                 *radiance = sky_along(*x);
@@ -131,7 +131,7 @@ impl<M: Model> PoolTask<M> {
             contribution: contribution.each_mut().map(|column| &mut column[..]),
             weight,
         };
-        self.gather
+        self.bsdf
             .weigh_batch_at(self.level, candidates, COUNTS, Partition::All, out)
     }
 }
@@ -220,18 +220,18 @@ impl Stream {
     /// Proposes, looks up, weighs and adds all candidates; then the estimate.
     #[inline(always)]
     #[must_use]
-    pub fn keep<M: Model>(&self, gather: &Gather8<M>, level: Level) -> Kept {
+    pub fn keep<M: Model>(&self, bsdf: &Bsdf8<M>, level: Level) -> Kept {
         let pdf = f32x8::splat(SKY_PDF);
         let mut reservoir = Reservoir8::default();
         let mut add = |wi: &Vec3x8, u: &f32x8| {
-            let weighed = gather.weigh8_at(level, wi, &sky8(wi), &pdf, COUNTS, Partition::All);
+            let weighed = bsdf.weigh8_at(level, wi, &sky8(wi), &pdf, COUNTS, Partition::All);
             reservoir.add_at(level, wi, &weighed, u);
         };
         let (first, second) = self.u.split_at(PACKETS);
         self.xi
             .iter()
             .zip(first)
-            .for_each(|(xi, u)| add(&gather.propose8_at(level, xi), u));
+            .for_each(|(xi, u)| add(&bsdf.propose8_at(level, xi), u));
         self.wi.iter().zip(second).for_each(|(wi, u)| add(wi, u));
         Kept {
             reservoir,

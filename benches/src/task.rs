@@ -9,7 +9,7 @@ use core::marker::PhantomData;
 use glam::Vec3;
 use hairis::reference::{self, Real, Reference};
 use hairis::wide::f32x8;
-use hairis::{Eval, Eval8, Gather, Gather8, LengthError, Model, Sample, Sample8, Vec3x8};
+use hairis::{Bsdf, Bsdf8, Eval, Eval8, LengthError, Model, Sample, Sample8, Vec3x8};
 
 /// Direction at which prepared shading points are evaluated to check them: no lobe is negligible there.
 pub const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
@@ -354,13 +354,13 @@ impl<R: Reference<T>, T: Single> Output for Point<R, T> {
     }
 }
 
-impl<M: Model> Output for Gather<M> {
+impl<M: Model> Output for Bsdf<M> {
     fn answers(&self, out: &mut Vec<Answer>) {
         self.eval_pdf(PROBE).answers(out);
     }
 }
 
-impl<M: Model> Output for Gather8<M> {
+impl<M: Model> Output for Bsdf8<M> {
     fn answers(&self, out: &mut Vec<Answer>) {
         self.eval_pdf8(&Vec3x8::splat(PROBE)).answers(out);
     }

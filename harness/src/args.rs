@@ -13,7 +13,7 @@ pub struct Args {
 }
 
 const FORMAT: &str = r#"A request. Angles are in radians, directions of unit length in the frame of the fibre:
-  {"model":"gaussian"|"cauchy", "sampler":"ou"|"matched"|"matched-5"|"matched-25" (default "ou"),
+  {"model":"gaussian"|"cauchy", "sampler":"published"|"matched"|"matched-5"|"matched-25" (default "published"),
    "params":{"alpha":[R,TT,TRT], "beta":[R,TT,TRT], "gamma_tt":x, "gamma_g":x, "phi_g":x,
              "i_r":[r,g,b], "i_tt":[r,g,b], "i_trt":[r,g,b], "i_g":x},
    "wo":[u,v,w], "wi":[u,v,w]}     or "xi":[lobe,theta,phi] in place of "wi"

@@ -6,11 +6,11 @@ pub use looks::{maps, polar};
 
 use core::f64::consts::{PI, SQRT_2};
 use glam::Vec3;
-use hairis::{Bsdf, Gaussian, Hair, HairParams, Lobe, LobeMask};
+use hairis::{Gaussian, HairParams, Lobe, LobeMask, Material, Published};
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::plot::{Axis, ScatterPanel, Series, SphereGrid, lines, scatter_maps};
 use hairis_instruments::report::Drawing;
-use hairis_variants::{AnyBsdf, AnyGather};
+use hairis_variants::{AnyBsdf, AnyMaterial};
 
 /// Widths of the bells shown, degrees.
 const WIDTHS: [f64; 3] = [5.0, 10.0, 20.0];
@@ -77,8 +77,8 @@ pub fn bells() -> [Drawing; 2] {
 }
 
 /// `S cos theta_i`, the mean of the channels.
-fn reflected(gather: &AnyGather, theta: f64, phi: f64) -> f64 {
-    let [r, g, b] = gather
+fn reflected(bsdf: &AnyBsdf, theta: f64, phi: f64) -> f64 {
+    let [r, g, b] = bsdf
         .eval(fibre_direction(theta, phi).as_vec3())
         .map(f64::from);
     (r + g + b) / 3.0 * theta.cos()
@@ -96,21 +96,20 @@ fn angles_of(wi: Vec3) -> [f64; 2] {
 /// `xi` are the points of the unit cube, the same ones for all six maps: a Halton sequence, as in the paper.
 #[must_use]
 pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) -> Drawing {
-    let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params))
+    let bsdf = AnyMaterial::from(Material::new(&Published(Gaussian), params))
         .prepare(fibre_direction(theta_o, 0.0).as_vec3());
     let panel = |(title, lobes, is_uniform): (&str, LobeMask, bool)| {
-        let gather = gather.with_lobes(lobes);
+        let bsdf = bsdf.with_lobes(lobes);
         let angles = |xi: &[f32; 3]| {
             let [_, a, b] = xi.map(f64::from);
             let uniform = [(2.0 * a - 1.0).asin(), 2.0 * PI * b];
             if is_uniform {
                 Some(uniform)
             } else {
-                Some(angles_of(gather.sample(*xi)?.wi))
+                Some(angles_of(bsdf.sample(*xi)?.wi))
             }
         };
-        let density =
-            SphereGrid::sample((80, 160), &mut |theta, phi| reflected(&gather, theta, phi));
+        let density = SphereGrid::sample((80, 160), &mut |theta, phi| reflected(&bsdf, theta, phi));
         ScatterPanel {
             title: title.to_owned(),
             points: xi.iter().filter_map(angles).collect(),
@@ -311,9 +310,9 @@ mod tests {
             ],
             0.0,
         );
-        let gather = AnyBsdf::from(Bsdf::new(&Hair(Gaussian), &default_hair()))
+        let bsdf = AnyMaterial::from(Material::new(&Published(Gaussian), &default_hair()))
             .prepare(fibre_direction(0.35, 0.0).as_vec3());
-        let grid = SphereGrid::sample((90, 180), &mut |theta, phi| reflected(&gather, theta, phi));
+        let grid = SphereGrid::sample((90, 180), &mut |theta, phi| reflected(&bsdf, theta, phi));
         let heat = heat_map(
             "S cos θᵢ of the default hair, θₒ = 20°",
             Axis::linear("S cos θᵢ (1/sr)"),

@@ -8,7 +8,7 @@ use glam::Vec3;
 use hairis::reference::{MatchedReference, Parameters};
 use hairis::{Eval8, HairParams, LobeMask, Sample8, Vec3x8};
 use hairis_instruments::direction::{cosine, fibre_direction};
-use hairis_variants::{AnyBsdf, AnyGather, ModelId, Parameters as _};
+use hairis_variants::{AnyBsdf, AnyMaterial, ModelId, Parameters as _};
 use serde::Serialize;
 use wide::f32x8;
 
@@ -114,7 +114,7 @@ pub(crate) const UNIFORM_PDF: f32 = 0.25 / PI;
 /// A shading point with one of the samplers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scatter {
-    gather: AnyGather,
+    bsdf: AnyBsdf,
     is_uniform: bool,
 }
 
@@ -122,27 +122,27 @@ impl Scatter {
     /// This hair, seen from `wo`.
     pub(crate) fn new(model: ModelKind, sampler: Sampler, params: &HairParams, wo: Vec3) -> Self {
         Self {
-            gather: bsdf(model, sampler, params).prepare(wo),
+            bsdf: material(model, sampler, params).prepare(wo),
             is_uniform: sampler == Sampler::Uniform,
         }
     }
 
     /// A prepared shading point, with the model's own sampler or with uniform directions.
-    pub(crate) const fn at(gather: AnyGather, is_uniform: bool) -> Self {
-        Self { gather, is_uniform }
+    pub(crate) const fn at(bsdf: AnyBsdf, is_uniform: bool) -> Self {
+        Self { bsdf, is_uniform }
     }
 
     pub(crate) fn sample8(&self, xi: &[f32x8; 3]) -> Sample8 {
         if self.is_uniform {
             let wi = uniform8(xi);
-            uniform_sample8(wi, self.gather.eval_pdf8(&wi))
+            uniform_sample8(wi, self.bsdf.eval_pdf8(&wi))
         } else {
-            self.gather.sample8(xi)
+            self.bsdf.sample8(xi)
         }
     }
 
     pub(crate) fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8 {
-        let eval = self.gather.eval_pdf8(wi);
+        let eval = self.bsdf.eval_pdf8(wi);
         if self.is_uniform {
             Eval8 {
                 pdf: f32x8::splat(UNIFORM_PDF),
@@ -159,10 +159,10 @@ impl Scatter {
 /// # Panics
 ///
 /// Never: every sampler of the models is registered, and their parameters are those of hair.
-pub(crate) fn bsdf(model: ModelKind, sampler: Sampler, params: &HairParams) -> AnyBsdf {
+pub(crate) fn material(model: ModelKind, sampler: Sampler, params: &HairParams) -> AnyMaterial {
     let word = sampler.bands().map(|_| sampler.name());
     let id = ModelId::find(model.name(), word).expect("a registered sampler");
-    id.bsdf(&params.values()).expect("parameters of hair")
+    id.material(&params.values()).expect("parameters of hair")
 }
 
 /// Eight directions uniform on the sphere, from the last two of three numbers.
@@ -228,10 +228,10 @@ mod tests {
         let mut from = Independent::new(1, 1);
         for model in ModelKind::ALL {
             for sampler in Sampler::ALL {
-                let gather = Scatter::new(model, sampler, &params, wo);
+                let bsdf = Scatter::new(model, sampler, &params, wo);
                 for _ in 0..200 {
-                    let sample = gather.sample8(&numbers(&mut from));
-                    let eval = gather.eval_pdf8(&sample.wi);
+                    let sample = bsdf.sample8(&numbers(&mut from));
+                    let eval = bsdf.eval_pdf8(&sample.wi);
                     for lane in 0..8 {
                         let at = |x: &f32x8| f64::from(x.as_array()[lane]);
                         if at(&sample.pdf) == 0.0 {
@@ -270,10 +270,10 @@ mod tests {
                 {
                     let bound =
                         weight_bound(model, sampler, &params, theta_o).expect("there is one");
-                    let gather = Scatter::new(model, sampler, &params, wo);
+                    let bsdf = Scatter::new(model, sampler, &params, wo);
                     let mut most = 0.0_f32;
                     for _ in 0..20_000 {
-                        let weight = gather.sample8(&numbers(&mut from)).weight;
+                        let weight = bsdf.sample8(&numbers(&mut from)).weight;
                         most = (weight[0] + weight[1] + weight[2])
                             .to_array()
                             .into_iter()

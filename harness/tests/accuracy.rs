@@ -6,7 +6,7 @@ use core::fmt::Write as _;
 use glam::Vec3;
 use hairis::reference::{HairReference, Parameters, Shape};
 use hairis::{HairParams, Level, Vec3x8};
-use hairis_variants::{AnyBsdf, AnyBsdf8, ModelId, Parameters as _};
+use hairis_variants::{AnyMaterial, AnyMaterial8, ModelId, Parameters as _};
 
 const CASES: usize = 10_000;
 const SEED: u64 = 0x0a17;
@@ -59,7 +59,7 @@ fn check(model: ModelId, shape: Shape, s_bound: f64) {
 }
 
 fn scalar(model: ModelId, case: &Case) -> Answer {
-    let eval = bsdf(model, case).prepare(case.wo).eval_pdf(case.wi);
+    let eval = material(model, case).prepare(case.wo).eval_pdf(case.wi);
     (eval.value, eval.pdf)
 }
 
@@ -68,19 +68,19 @@ fn eight(model: ModelId, level: Level, cases: &[Case]) -> Vec<Answer> {
     let (groups, rest) = cases.as_chunks::<8>();
     assert!(rest.is_empty(), "a number of cases that eight divides");
     let group = |group: &[Case; 8]| {
-        let materials: [AnyBsdf; 8] = from_fn(|i| bsdf(model, &group[i]));
+        let materials: [AnyMaterial; 8] = from_fn(|i| material(model, &group[i]));
         let wo = Vec3x8::from(group.map(|case| case.wo));
-        let gathers = AnyBsdf8::pack(materials.each_ref())
+        let bsdfs = AnyMaterial8::pack(materials.each_ref())
             .unwrap()
             .prepare8_at(level, &wo);
-        let evals = gathers.eval_pdf8_at(level, &Vec3x8::from(group.map(|case| case.wi)));
+        let evals = bsdfs.eval_pdf8_at(level, &Vec3x8::from(group.map(|case| case.wi)));
         [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| (evals.lane(lane).value, evals.lane(lane).pdf))
     };
     groups.iter().flat_map(group).collect()
 }
 
-fn bsdf(model: ModelId, case: &Case) -> AnyBsdf {
-    model.bsdf(&params(case).values()).unwrap()
+fn material(model: ModelId, case: &Case) -> AnyMaterial {
+    model.material(&params(case).values()).unwrap()
 }
 
 fn params(case: &Case) -> HairParams {

@@ -12,7 +12,7 @@ use hairis_instruments::sequence::Independent;
 pub(crate) enum Region {
     /// Uniform on the sphere, as `wo` is.
     Sphere,
-    /// Within a few widths of the centre of a lobe, in longitude and azimuth.
+    /// Within a few widths of the centre of a lobe, in inclination and azimuth.
     Peaks,
     /// `wo`, `wi` or both between 1e-3 and 0.1 rad from the axis.
     Grazing,
@@ -124,9 +124,9 @@ impl Cases {
     }
 
     fn directions(&mut self, region: Region, desc: &HairDesc) -> (Vec3, Vec3) {
-        let (mut cos_o, mut sin_o) = self.longitude();
+        let (mut cos_o, mut sin_o) = self.inclination();
         let phi_o = self.between(-PI, PI);
-        let (mut cos_i, mut sin_i) = self.longitude();
+        let (mut cos_i, mut sin_i) = self.inclination();
         let mut phi = self.between(-PI, PI);
         match region {
             Region::Sphere => {}
@@ -170,7 +170,7 @@ impl Cases {
     }
 
     /// Cosine and sine of the inclination of a direction uniform on the sphere.
-    fn longitude(&mut self) -> (f64, f64) {
+    fn inclination(&mut self) -> (f64, f64) {
         let sin: f64 = self.between(-1.0, 1.0);
         ((1.0 - sin * sin).sqrt(), sin)
     }

@@ -7,7 +7,7 @@ use glam::Vec3;
 use hairis::reference::{HairReference, MatchedReference, Parameters, Shape};
 use hairis::wide::f32x8;
 use hairis::{
-    Bsdf, Gaussian, HairDesc, HairParams, Lobe, LobeMask, Matched, Model, PerLobe, Sample8,
+    Gaussian, HairDesc, HairParams, Lobe, LobeMask, Matched, Material, Model, PerLobe, Sample8,
 };
 use hairis_conformance::statistics::{AngleEdges, ChiSquare, chi_square, ks_statistic};
 use hairis_instruments::sequence::Independent;
@@ -91,20 +91,20 @@ type Draw = Box<dyn Fn(&[f32x8; 3]) -> Sample8>;
 /// Samples of a model of the registry.
 fn registered(model: ModelId) -> impl Fn(&HairParams, Vec3, LobeMask) -> Draw {
     move |params, wo, mask| {
-        let gather = model
-            .bsdf(&params.values())
+        let bsdf = model
+            .material(&params.values())
             .unwrap()
             .prepare(wo)
             .with_lobes(mask);
-        Box::new(move |xi| gather.sample8(xi))
+        Box::new(move |xi| bsdf.sample8(xi))
     }
 }
 
 /// Samples of a model that is not in the registry.
 fn of_type<M: Model + 'static>(model: M) -> impl Fn(&M::Params, Vec3, LobeMask) -> Draw {
     move |params, wo, mask| {
-        let gather = Bsdf::new(&model, params).prepare(wo).with_lobes(mask);
-        Box::new(move |xi| gather.sample8(xi))
+        let bsdf = Material::new(&model, params).prepare(wo).with_lobes(mask);
+        Box::new(move |xi| bsdf.sample8(xi))
     }
 }
 

@@ -6,7 +6,8 @@ use core::f64::consts::PI;
 use glam::Vec3;
 use hairis::reference::{HairReference, Parameters, Shape};
 use hairis::{
-    Bell, Bsdf, EvalSlices, Gaussian, Hair, HairDesc, HairParams, Level, SampleWeightSlices,
+    Bell, EvalSlices, Gaussian, HairDesc, HairParams, Level, Material, Published,
+    SampleWeightSlices,
 };
 use hairis_benches::hand::{Constants, Set};
 use hairis_variants::Cauchy;
@@ -230,13 +231,13 @@ fn eval<B: Bell, const CAUCHY: bool>(
                 by_hand.each_mut().map(|column| &mut column[..]),
             );
             let [r, g, b, pdf] = ours.each_mut().map(|column| &mut column[..]);
-            let gather = Bsdf::new(&Hair(bell), hit.params).prepare(Vec3::from_array(hit.wo));
+            let bsdf =
+                Material::new(&Published(bell), hit.params).prepare(Vec3::from_array(hit.wo));
             let out = EvalSlices {
                 value: [r, g, b],
                 pdf,
             };
-            gather
-                .eval_pdf_batch_at(hit.level, hit.columns, out)
+            bsdf.eval_pdf_batch_at(hit.level, hit.columns, out)
                 .expect("one length");
             for i in 0..ROWS {
                 let (value, pdf) = hit
@@ -319,14 +320,14 @@ fn samples_are_within_the_bounds() {
                 by_hand.each_mut().map(|column| &mut column[..]),
             );
             let [u, v, w, pdf, r, g, b] = ours.each_mut().map(|column| &mut column[..]);
-            let gather = Bsdf::new(&Hair(Gaussian), hit.params).prepare(Vec3::from_array(hit.wo));
+            let bsdf =
+                Material::new(&Published(Gaussian), hit.params).prepare(Vec3::from_array(hit.wo));
             let out = SampleWeightSlices {
                 wi: [u, v, w],
                 pdf,
                 weight: [r, g, b],
             };
-            gather
-                .sample_weight_batch_at(hit.level, hit.columns, out)
+            bsdf.sample_weight_batch_at(hit.level, hit.columns, out)
                 .expect("one length");
             // The kernels of eight.
             let mut eight = [[0.0; 8]; 7];

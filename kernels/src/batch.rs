@@ -4,14 +4,14 @@
 //! on many CPUs: a load waits for an earlier store whose address has the same lower twelve bits. A few unused numbers
 //! between columns avoid it.
 
-use crate::packet::{AtGather, Pdf, Samples, Value, ValuePdf, Weights};
+use crate::packet::{AtBsdf, Pdf, Samples, Value, ValuePdf, Weights};
 use crate::simd::dispatch::clean_upper_halves;
 use crate::slices::{
     EvalSlices, LengthError, SampleSlices, SampleWeightSlices, WI, XI, check_columns,
 };
-use crate::{Gather, Level, Model};
+use crate::{Bsdf, Level, Model};
 
-impl<M: Model> Gather<M> {
+impl<M: Model> Bsdf<M> {
     /// Value and density of many directions: `wi` by component u, v, w.
     ///
     /// Nothing is read or written beyond the slices, which may be of any length and alignment.
@@ -21,12 +21,12 @@ impl<M: Model> Gather<M> {
     /// If the slices differ in length; nothing is written then.
     ///
     /// ```
-    /// use hairis::{Bsdf, EvalSlices, Gaussian, Hair, HairParams};
-    /// let gather = Bsdf::new(&Hair(Gaussian), &HairParams::default()).prepare(glam::Vec3::Y);
+    /// use hairis::{Material, EvalSlices, Gaussian, Published, HairParams};
+    /// let bsdf = Material::new(&Published(Gaussian), &HairParams::default()).prepare(glam::Vec3::Y);
     /// let wi = [[0.0; 11], [0.6; 11], [0.8; 11]];
     /// let (mut value, mut pdf) = ([[0.0; 11]; 3], [0.0; 11]);
     /// let [r, g, b] = &mut value;
-    /// gather.eval_pdf_batch([&wi[0], &wi[1], &wi[2]], EvalSlices { value: [r, g, b], pdf: &mut pdf })?;
+    /// bsdf.eval_pdf_batch([&wi[0], &wi[1], &wi[2]], EvalSlices { value: [r, g, b], pdf: &mut pdf })?;
     /// assert!(pdf.iter().all(|pdf| *pdf > 0.0));
     /// # Ok::<(), hairis::LengthError>(())
     /// ```
@@ -55,7 +55,7 @@ impl<M: Model> Gather<M> {
             &["value.r", "value.g", "value.b", "pdf"],
             [r, g, b, out.pdf],
         )?;
-        level.run_columns(AtGather::<M, ValuePdf>::new(&self.inner), &columns);
+        level.run_columns(AtBsdf::<M, ValuePdf>::new(&self.inner), &columns);
         Ok(())
     }
 
@@ -83,7 +83,7 @@ impl<M: Model> Gather<M> {
     ) -> Result<(), LengthError> {
         clean_upper_halves();
         let columns = check_columns(&WI, wi, &["value.r", "value.g", "value.b"], value)?;
-        level.run_columns(AtGather::<M, Value>::new(&self.inner), &columns);
+        level.run_columns(AtBsdf::<M, Value>::new(&self.inner), &columns);
         Ok(())
     }
 
@@ -111,11 +111,11 @@ impl<M: Model> Gather<M> {
     ) -> Result<(), LengthError> {
         clean_upper_halves();
         let columns = check_columns(&WI, wi, &["pdf"], [pdf])?;
-        level.run_columns(AtGather::<M, Pdf>::new(&self.inner), &columns);
+        level.run_columns(AtBsdf::<M, Pdf>::new(&self.inner), &columns);
         Ok(())
     }
 
-    /// Many samples: `xi` by component, for the lobe, the longitude and the azimuth, each in `[0, 1)`.
+    /// Many samples: `xi` by component, for the lobe, the inclination and the azimuth, each in `[0, 1)`.
     ///
     /// # Errors
     ///
@@ -145,7 +145,7 @@ impl<M: Model> Gather<M> {
             &SAMPLE,
             [u, v, w, r, g, b, out.pdf, wr, wg, wb, out.slot],
         )?;
-        level.run_columns(AtGather::<M, Samples>::new(&self.inner), &columns);
+        level.run_columns(AtBsdf::<M, Samples>::new(&self.inner), &columns);
         Ok(())
     }
 
@@ -179,7 +179,7 @@ impl<M: Model> Gather<M> {
         clean_upper_halves();
         let ([u, v, w], [wr, wg, wb]) = (out.wi, out.weight);
         let columns = check_columns(&XI, xi, &WEIGHTS, [u, v, w, out.pdf, wr, wg, wb])?;
-        level.run_columns(AtGather::<M, Weights>::new(&self.inner), &columns);
+        level.run_columns(AtBsdf::<M, Weights>::new(&self.inner), &columns);
         Ok(())
     }
 }

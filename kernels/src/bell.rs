@@ -11,7 +11,7 @@ use crate::simd::pair::Pair;
 /// speed mark all functions `#[inline(always)]` and pass no closures on.
 ///
 /// ```
-/// use hairis::{Bell, Bsdf, Hair, HairParams, Lanes};
+/// use hairis::{Bell, Material, Published, HairParams, Lanes};
 /// use glam::Vec3;
 /// /// A parabola with its corners rounded: `max(0, 1 - s/8)^4`.
 /// #[derive(Clone, Copy, Debug)]
@@ -23,7 +23,7 @@ use crate::simd::pair::Pair;
 ///         (x * x) * (x * x)
 ///     }
 /// }
-/// let hair = Bsdf::new(&Hair(Bump), &HairParams::default());
+/// let hair = Material::new(&Published(Bump), &HairParams::default());
 /// assert!(hair.prepare(Vec3::Y).pdf(Vec3::Y) > 0.0);
 /// ```
 pub trait Bell: Copy {

@@ -12,30 +12,30 @@ use wide::f32x8;
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::{Bsdf, Gaussian, Hair, HairParams};
-/// let hair = Bsdf::new(&Hair(Gaussian), &HairParams::default());
-/// let gather = hair.prepare(Vec3::new(0.6, 0.8, 0.0)); // wo, in the fibre's frame
-/// let sample = gather.sample([0.2, 0.5, 0.5]).expect("not along the fibre");
-/// assert!((gather.pdf(sample.wi) / sample.pdf - 1.0).abs() < 1e-4);
+/// use hairis::{Material, Gaussian, Published, HairParams};
+/// let hair = Material::new(&Published(Gaussian), &HairParams::default());
+/// let bsdf = hair.prepare(Vec3::new(0.6, 0.8, 0.0)); // wo, in the fibre's frame
+/// let sample = bsdf.sample([0.2, 0.5, 0.5]).expect("not along the fibre");
+/// assert!((bsdf.pdf(sample.wi) / sample.pdf - 1.0).abs() < 1e-4);
 /// ```
-pub struct Bsdf<M: Model> {
+pub struct Material<M: Model> {
     pub(crate) material: M::Material<f32>,
 }
 
 /// Eight materials, one per lane: for eight shading points on different hair.
-pub struct Bsdf8<M: Model> {
+pub struct Material8<M: Model> {
     pub(crate) material: M::Material<f32x8>,
 }
 
 /// A prepared shading point: a material seen from one direction. Evaluate and sample it any number of times, one direction or
 /// eight at a time.
-pub struct Gather<M: Model> {
-    pub(crate) inner: M::Gather<f32>,
+pub struct Bsdf<M: Model> {
+    pub(crate) inner: M::Prepared<f32>,
 }
 
 /// Eight shading points, one per lane.
-pub struct Gather8<M: Model> {
-    pub(crate) inner: M::Gather<f32x8>,
+pub struct Bsdf8<M: Model> {
+    pub(crate) inner: M::Prepared<f32x8>,
 }
 
 macro_rules! plain_data {
@@ -55,9 +55,9 @@ macro_rules! plain_data {
         }
     )* };
 }
-plain_data! { Bsdf material; Bsdf8 material; Gather inner; Gather8 inner; }
+plain_data! { Material material; Material8 material; Bsdf inner; Bsdf8 inner; }
 
-impl<M: Model> Bsdf<M> {
+impl<M: Model> Material<M> {
     /// The material of checked parameters.
     #[inline]
     #[must_use]
@@ -73,9 +73,9 @@ impl<M: Model> Bsdf<M> {
     ///   azimuth counts as 0. NaN and infinite ones see black.
     #[inline]
     #[must_use]
-    pub fn prepare(&self, hit: impl Into<Hit>) -> Gather<M> {
+    pub fn prepare(&self, hit: impl Into<Hit>) -> Bsdf<M> {
         let Hit { wo, h } = hit.into();
-        Gather {
+        Bsdf {
             inner: M::prepare_one(
                 &self.material,
                 Hit {
@@ -89,14 +89,14 @@ impl<M: Model> Bsdf<M> {
     /// Eight shading points on this material, one per lane: a [`Hit8`], or eight `wo`.
     #[inline]
     #[must_use]
-    pub fn prepare8(&self, hits: impl Into<Hit8>) -> Gather8<M> {
+    pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
         self.prepare8_at(Level::detect(), hits)
     }
 
     /// As [`prepare8`](Self::prepare8), on a given instruction set.
     #[inline]
     #[must_use]
-    pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8<M> {
+    pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Bsdf8<M> {
         level.run(Prepare::<M, f32, _> {
             material: &self.material,
             hits,
@@ -173,7 +173,7 @@ impl<M: Model> Bsdf<M> {
     }
 }
 
-/// Inclinations per side of the normal plane on which [`Bsdf::max_albedo`] looks, the pole left out.
+/// Inclinations per side of the normal plane on which [`Material::max_albedo`] looks, the pole left out.
 const INCLINATIONS: u16 = 147;
 
 /// Their angles from the pole: albedos change on any scale there, and slowly elsewhere.
@@ -185,11 +185,11 @@ fn angle_from_pole(step: f32) -> f32 {
     (grown * step.min(1.0) + 0.1 * grown * (step - EVEN_FROM).max(0.0)).min(FRAC_PI_2)
 }
 
-impl<M: Model> Bsdf8<M> {
+impl<M: Model> Material8<M> {
     /// Eight materials, one per lane.
     #[inline]
     #[must_use]
-    pub fn pack(materials: [&Bsdf<M>; 8]) -> Self {
+    pub fn pack(materials: [&Material<M>; 8]) -> Self {
         Self {
             material: <M::Material<f32> as LaneStruct>::pack(materials.map(|m| &m.material)),
         }
@@ -198,14 +198,14 @@ impl<M: Model> Bsdf8<M> {
     /// Eight shading points, lane by lane: a [`Hit8`], or eight `wo`.
     #[inline]
     #[must_use]
-    pub fn prepare8(&self, hits: impl Into<Hit8>) -> Gather8<M> {
+    pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
         self.prepare8_at(Level::detect(), hits)
     }
 
     /// As [`prepare8`](Self::prepare8), on a given instruction set.
     #[inline]
     #[must_use]
-    pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8<M> {
+    pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Bsdf8<M> {
         level.run(Prepare::<M, f32x8, _> {
             material: &self.material,
             hits,
@@ -213,7 +213,7 @@ impl<M: Model> Bsdf8<M> {
     }
 }
 
-impl<M: Model> Gather<M> {
+impl<M: Model> Bsdf<M> {
     /// S at `wi`, without the cosine, linear RGB, per steradian. Every scalar call takes a `Vec3`, a `Vec3A` or a
     /// [`Vec3x`].
     ///
@@ -254,7 +254,7 @@ impl<M: Model> Gather<M> {
     #[inline]
     #[must_use]
     pub fn sample(&self, xi: [f32; 3]) -> Option<Sample> {
-        Sample::from_drawn(&M::sample::<f32, f32>(
+        Sample::from_lanes(&M::sample::<f32, f32>(
             &self.inner,
             [xi[0].alone(), xi[1].alone(), xi[2].alone()],
         ))
@@ -272,7 +272,7 @@ impl<M: Model> Gather<M> {
     #[must_use]
     pub fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
         level.run(EvalPdf::<M, f32> {
-            gather: &self.inner,
+            prepared: &self.inner,
             wi,
         })
     }
@@ -289,7 +289,7 @@ impl<M: Model> Gather<M> {
     #[must_use]
     pub fn lobes8_at(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8> {
         level.run(Lobes::<M, f32> {
-            gather: &self.inner,
+            prepared: &self.inner,
             wi,
         })
     }
@@ -306,7 +306,7 @@ impl<M: Model> Gather<M> {
     #[must_use]
     pub fn sample8_at(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
         level.run(SampleWi::<M, f32> {
-            gather: &self.inner,
+            prepared: &self.inner,
             xi,
         })
     }
@@ -314,7 +314,7 @@ impl<M: Model> Gather<M> {
     /// The constants of the model at this shading point.
     #[inline]
     #[must_use]
-    pub const fn constants(&self) -> &M::Gather<f32> {
+    pub const fn constants(&self) -> &M::Prepared<f32> {
         &self.inner
     }
 
@@ -337,7 +337,7 @@ impl<M: Model> Gather<M> {
     }
 }
 
-impl<M: Model> Gather8<M> {
+impl<M: Model> Bsdf8<M> {
     /// Value and density at `wi`, each lane at its own shading point.
     #[inline]
     #[must_use]
@@ -350,7 +350,7 @@ impl<M: Model> Gather8<M> {
     #[must_use]
     pub fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
         level.run(EvalPdf::<M, f32x8> {
-            gather: &self.inner,
+            prepared: &self.inner,
             wi,
         })
     }
@@ -367,7 +367,7 @@ impl<M: Model> Gather8<M> {
     #[must_use]
     pub fn lobes8_at(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8> {
         level.run(Lobes::<M, f32x8> {
-            gather: &self.inner,
+            prepared: &self.inner,
             wi,
         })
     }
@@ -384,7 +384,7 @@ impl<M: Model> Gather8<M> {
     #[must_use]
     pub fn sample8_at(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
         level.run(SampleWi::<M, f32x8> {
-            gather: &self.inner,
+            prepared: &self.inner,
             xi,
         })
     }
@@ -392,7 +392,7 @@ impl<M: Model> Gather8<M> {
     /// The constants of the model at these shading points.
     #[inline]
     #[must_use]
-    pub const fn constants(&self) -> &M::Gather<f32x8> {
+    pub const fn constants(&self) -> &M::Prepared<f32x8> {
         &self.inner
     }
 
@@ -403,9 +403,9 @@ impl<M: Model> Gather8<M> {
     /// If `lane` is above 7.
     #[inline]
     #[must_use]
-    pub fn lane(&self, lane: usize) -> Gather<M> {
-        Gather {
-            inner: <M::Gather<f32> as LaneStruct>::lane(&self.inner, lane),
+    pub fn lane(&self, lane: usize) -> Bsdf<M> {
+        Bsdf {
+            inner: <M::Prepared<f32> as LaneStruct>::lane(&self.inner, lane),
         }
     }
 
@@ -430,7 +430,7 @@ impl<M: Model> Gather8<M> {
     #[must_use]
     pub fn albedo8_at(&self, level: Level) -> PerLobe<[f32x8; 3]> {
         level.run(Albedo::<M> {
-            gather: &self.inner,
+            prepared: &self.inner,
         })
     }
 }

@@ -1,12 +1,12 @@
 //! Energy per direction: a model that returns no more light than arrives.
 
-use crate::model::{Drawn, Eval, Hit, LobeEval};
+use crate::model::{Eval, Hit, LobeEval, SampleLanes};
 use crate::{
-    Broadcast, Gather, Gather8, Kernel, Lanes, Level, LobeMask, Model, PerLobe, Scalar, Vec3x,
+    Broadcast, Bsdf, Bsdf8, Kernel, Lanes, Level, LobeMask, Model, PerLobe, Scalar, Vec3x,
 };
 use wide::f32x8;
 
-impl<M: Model> Gather<M> {
+impl<M: Model> Bsdf<M> {
     /// The shading point with each channel divided by its albedo where that is above 1: see [`Conserving`].
     ///
     /// With some lobes alone, give the lobes first: `with_lobes` of a shading point that conserves keeps its factors.
@@ -19,7 +19,7 @@ impl<M: Model> Gather<M> {
     }
 }
 
-impl<M: Model> Gather8<M> {
+impl<M: Model> Bsdf8<M> {
     /// The shading points with each channel divided by its albedo where that is above 1: see [`Conserving`].
     #[inline]
     #[must_use]
@@ -32,27 +32,27 @@ impl<M: Model> Gather8<M> {
     #[must_use]
     pub fn conserving_at(&self, level: Level) -> Self {
         level.run(Conserve::<M> {
-            gather: &self.inner,
+            prepared: &self.inner,
         })
     }
 }
 
 struct Conserve<'a, M: Model> {
-    gather: &'a M::Gather<f32x8>,
+    prepared: &'a M::Prepared<f32x8>,
 }
 
 impl<M: Model> Kernel for Conserve<'_, M> {
     type Constant = f32x8;
-    type Output = Gather8<M>;
+    type Output = Bsdf8<M>;
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Gather8<M>
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Bsdf8<M>
     where
         f32x8: Broadcast<L>,
     {
-        Gather8 {
-            inner: M::conserve::<L>(self.gather),
+        Bsdf8 {
+            inner: M::conserve::<L>(self.prepared),
         }
     }
 }
@@ -62,21 +62,21 @@ impl<M: Model> Kernel for Conserve<'_, M> {
 ///
 /// The factor depends on `wo` alone, `min(1, 1 / albedo(wo))`. The model is not reciprocal where it is below 1:
 /// `S(wo, wi) / S(wi, wo)` is the ratio of two factors. Light hair keeps its brightness, while
-/// [`Bsdf::conserving_scale`](crate::Bsdf::conserving_scale), one factor from the worst direction, darkens it but keeps the
+/// [`Material::conserving_scale`](crate::Material::conserving_scale), one factor from the worst direction, darkens it but keeps the
 /// model reciprocal.
 ///
 /// - Accuracy: the albedo is at most 1.001.
-/// - Cost: two thirds of the time of [`Gather::albedo`](crate::Gather::albedo) for every shading point; packets of eight take a
+/// - Cost: two thirds of the time of [`Bsdf::albedo`](crate::Bsdf::albedo) for every shading point; packets of eight take a
 ///   tenth per hit.
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::{Bsdf, Conserving, Gaussian, Hair, HairParams, PerLobe};
+/// use hairis::{Material, Conserving, Gaussian, Published, HairParams, PerLobe};
 /// let grazing = Vec3::new(0.99, 0.14, 0.0).normalize();
 /// let red = |PerLobe(lobes): PerLobe<[f32; 3]>| lobes.iter().map(|lobe| lobe[0]).sum::<f32>();
 /// let params = HairParams::default();
-/// assert!(red(Bsdf::new(&Hair(Gaussian), &params).prepare(grazing).albedo()) > 1.5);
-/// let hair = Bsdf::new(&Conserving(Hair(Gaussian)), &params);
+/// assert!(red(Material::new(&Published(Gaussian), &params).prepare(grazing).albedo()) > 1.5);
+/// let hair = Material::new(&Conserving(Published(Gaussian)), &params);
 /// assert!((red(hair.prepare(grazing).albedo()) - 1.0).abs() < 1e-3);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,7 +85,7 @@ pub struct Conserving<M>(pub M);
 impl<M: Model> Model for Conserving<M> {
     type Params = M::Params;
     type Material<C: Scalar> = M::Material<C>;
-    type Gather<C: Scalar> = M::Gather<C>;
+    type Prepared<C: Scalar> = M::Prepared<C>;
 
     const LOBES: &'static [&'static str] = M::LOBES;
 
@@ -98,40 +98,40 @@ impl<M: Model> Model for Conserving<M> {
     fn prepare<L: Lanes, C: Broadcast<L>>(
         material: &M::Material<C>,
         hit: Hit<L>,
-    ) -> M::Gather<L::Stored> {
+    ) -> M::Prepared<L::Stored> {
         M::conserve::<L>(&M::prepare::<L, C>(material, hit))
     }
 
     #[inline(always)]
-    fn prepare_one(material: &M::Material<f32>, hit: Hit<f32>) -> M::Gather<f32> {
+    fn prepare_one(material: &M::Material<f32>, hit: Hit<f32>) -> M::Prepared<f32> {
         M::conserve::<f32>(&M::prepare_one(material, hit))
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes>(gather: &M::Gather<C>, lobes: LobeMask) -> M::Gather<C> {
-        M::restrict(gather, lobes)
+    fn restrict<C: Lanes>(prepared: &M::Prepared<C>, lobes: LobeMask) -> M::Prepared<C> {
+        M::restrict(prepared, lobes)
     }
 
     #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L>>(gather: &M::Gather<C>, wi: Vec3x<L>) -> Eval<L> {
-        M::eval(gather, wi)
+    fn eval<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>, wi: Vec3x<L>) -> Eval<L> {
+        M::eval(prepared, wi)
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(
-        gather: &M::Gather<C>,
+        prepared: &M::Prepared<C>,
         wi: Vec3x<L>,
     ) -> PerLobe<LobeEval<L>> {
-        M::lobes(gather, wi)
+        M::lobes(prepared, wi)
     }
 
     #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L>>(gather: &M::Gather<C>, xi: [L; 3]) -> Drawn<L> {
-        M::sample(gather, xi)
+    fn sample<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>, xi: [L; 3]) -> SampleLanes<L> {
+        M::sample(prepared, xi)
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &M::Gather<C>) -> PerLobe<[L; 3]> {
-        M::albedo(gather)
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &M::Prepared<C>) -> PerLobe<[L; 3]> {
+        M::albedo(prepared)
     }
 }

@@ -7,7 +7,7 @@ mod results;
 mod sampling;
 mod view;
 
-pub use gather::{HairGather, HairMaterial, HairSampler};
+pub use gather::{PublishedConstants, PublishedMaterial, PublishedPrepared};
 pub use view::{HairLobes, HairView};
 
 pub(crate) use angles::{Angles, LobeTerms};
@@ -16,7 +16,7 @@ pub(crate) use results::{finish_eval, finish_lobes, finish_sample, mix_densities
 pub(crate) use sampling::{FoldedXi, direction_from_angles};
 pub(crate) use view::{prepare as prepare_view, times};
 
-use crate::model::{Drawn, Eval, Hit, LobeEval};
+use crate::model::{Eval, Hit, LobeEval, SampleLanes};
 use crate::{Bell, Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3x};
 
 /// Cosine of the inclination below which a direction lies on the fibre's axis: value and density are 0 there, and a
@@ -27,91 +27,97 @@ pub const GRAZING: f32 = 1e-5;
 /// they publish.
 ///
 /// `S = sum of I M(theta_h) N(phi) / cos^2 theta_d` over R, TT, TRT-g and the glints. It is reciprocal. It does not
-/// conserve energy: see [`Conserving`](crate::Conserving) and [`Bsdf::conserving_scale`](crate::Bsdf::conserving_scale).
+/// conserve energy: see [`Conserving`](crate::Conserving) and [`Material::conserving_scale`](crate::Material::conserving_scale).
 ///
 /// - Source: Ou et al. 2012, equation 1, table 2 and section 3.2, with the misprints of `ERRATA.md` mended.
 /// - Units: value and density per steradian.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Hair<B>(pub B);
+pub struct Published<B>(pub B);
 
-impl<B: Bell> Model for Hair<B> {
+impl<B: Bell> Model for Published<B> {
     type Params = HairParams;
-    type Material<C: Scalar> = HairMaterial<C>;
-    type Gather<C: Scalar> = HairGather<C>;
+    type Material<C: Scalar> = PublishedMaterial<C>;
+    type Prepared<C: Scalar> = PublishedPrepared<C>;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "glint"];
 
     #[inline]
-    fn material(&self, params: &HairParams) -> HairMaterial<f32> {
-        HairMaterial::of(self.0, params)
+    fn material(&self, params: &HairParams) -> PublishedMaterial<f32> {
+        PublishedMaterial::of(self.0, params)
     }
 
     #[inline(always)]
     fn prepare<L: Lanes, C: Broadcast<L>>(
-        material: &HairMaterial<C>,
+        material: &PublishedMaterial<C>,
         hit: Hit<L>,
-    ) -> HairGather<L::Stored> {
+    ) -> PublishedPrepared<L::Stored> {
         gather::prepare(material, hit.wo)
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes>(gather: &HairGather<C>, lobes: LobeMask) -> HairGather<C> {
-        gather.restrict(lobes)
+    fn restrict<C: Lanes>(
+        prepared: &PublishedPrepared<C>,
+        lobes: LobeMask,
+    ) -> PublishedPrepared<C> {
+        prepared.restrict(lobes)
     }
 
     #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, wi: Vec3x<L>) -> Eval<L> {
-        let (angles, sound) = Angles::from_direction(&gather.view, wi);
-        let terms = angles.eval_lobes::<B, C>(&gather.view);
+    fn eval<L: Lanes, C: Broadcast<L>>(prepared: &PublishedPrepared<C>, wi: Vec3x<L>) -> Eval<L> {
+        let (angles, sound) = Angles::from_direction(&prepared.view, wi);
+        let terms = angles.eval_lobes::<B, C>(&prepared.view);
         finish_eval(
-            &gather.view,
+            &prepared.view,
             &angles,
             sound,
             &terms,
-            mix_densities(terms.density, &gather.weight),
+            mix_densities(terms.density, &prepared.weight),
         )
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(
-        gather: &HairGather<C>,
+        prepared: &PublishedPrepared<C>,
         wi: Vec3x<L>,
     ) -> PerLobe<LobeEval<L>> {
-        let (angles, sound) = Angles::from_direction(&gather.view, wi);
-        let terms = angles.eval_lobes::<B, C>(&gather.view);
+        let (angles, sound) = Angles::from_direction(&prepared.view, wi);
+        let terms = angles.eval_lobes::<B, C>(&prepared.view);
         let density = [
-            terms.density[0] * gather.density[0].lanes(),
-            terms.density[1] * gather.density[1].lanes(),
-            terms.density[2] * gather.density[2].lanes(),
-            terms.density[3] * gather.density[3].lanes(),
+            terms.density[0] * prepared.density[0].lanes(),
+            terms.density[1] * prepared.density[1].lanes(),
+            terms.density[2] * prepared.density[2].lanes(),
+            terms.density[3] * prepared.density[3].lanes(),
         ];
-        finish_lobes(&gather.view, &angles, sound, &terms, density)
+        finish_lobes(&prepared.view, &angles, sound, &terms, density)
     }
 
     #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>, xi: [L; 3]) -> Drawn<L> {
-        let (wi, choice, angles) = sampling::draw(gather, xi);
-        let terms = angles.eval_lobes::<B, C>(&gather.view);
+    fn sample<L: Lanes, C: Broadcast<L>>(
+        prepared: &PublishedPrepared<C>,
+        xi: [L; 3],
+    ) -> SampleLanes<L> {
+        let (wi, choice, angles) = sampling::draw(prepared, xi);
+        let terms = angles.eval_lobes::<B, C>(&prepared.view);
         finish_sample(
-            &gather.view,
+            &prepared.view,
             wi,
             choice,
             &angles,
             &terms,
-            mix_densities(terms.density, &gather.weight),
+            mix_densities(terms.density, &prepared.weight),
         )
     }
 
     #[inline(always)]
-    fn conserve<L: Lanes>(gather: &HairGather<L::Stored>) -> HairGather<L::Stored> {
-        HairGather {
-            view: albedo::conserve::<B, L>(&gather.view),
-            ..*gather
+    fn conserve<L: Lanes>(prepared: &PublishedPrepared<L::Stored>) -> PublishedPrepared<L::Stored> {
+        PublishedPrepared {
+            view: albedo::conserve::<B, L>(&prepared.view),
+            ..*prepared
         }
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &HairGather<C>) -> PerLobe<[L; 3]> {
-        albedo::albedo::<B, L, C>(&gather.view)
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &PublishedPrepared<C>) -> PerLobe<[L; 3]> {
+        albedo::albedo::<B, L, C>(&prepared.view)
     }
 }

@@ -4,17 +4,17 @@ use crate::packet::{AtHits, EightHits, HitEvals, HitRow, HitSamples};
 use crate::simd::columns::copy_few;
 use crate::simd::dispatch::clean_upper_halves;
 use crate::slices::{EvalColumns, HitSlices, LengthError, SampleColumns, WI, XI, check_lengths};
-use crate::{Bsdf, Bsdf8, Level, Model};
+use crate::{Level, Material, Material8, Model};
 use core::fmt;
 use wide::f32x8;
 
 /// Materials of a slice call: a table, and the index of each hit's material in it.
 ///
-/// Eight hits in a row with one material take the path of [`Bsdf::eval_pdf_hits`]; hits sorted by material are the fastest.
+/// Eight hits in a row with one material take the path of [`Material::eval_pdf_hits`]; hits sorted by material are the fastest.
 #[derive(Debug)]
 pub struct MaterialTable<'a, M: Model> {
     /// The materials.
-    pub materials: &'a [Bsdf<M>],
+    pub materials: &'a [Material<M>],
     /// Index of each hit's material.
     pub index: &'a [u32],
 }
@@ -72,10 +72,10 @@ impl From<LengthError> for HitsError {
     }
 }
 
-impl<M: Model> Bsdf<M> {
+impl<M: Model> Material<M> {
     /// Value and density of many directions, each at a hit of its own on this material: `wi` by component u, v, w.
     ///
-    /// The same numbers as [`prepare8`](Self::prepare8) and [`eval_pdf8`](crate::Gather8::eval_pdf8) give, for half the time:
+    /// The same numbers as [`prepare8`](Self::prepare8) and [`eval_pdf8`](crate::Bsdf8::eval_pdf8) give, for half the time:
     /// the constants of a hit stay in registers. Nothing is read or written beyond the slices, which may be of any length and
     /// alignment.
     ///
@@ -84,8 +84,8 @@ impl<M: Model> Bsdf<M> {
     /// If the slices differ in length; nothing is written then.
     ///
     /// ```
-    /// use hairis::{Bsdf, EvalColumns, Gaussian, Hair, HairParams, HitSlices};
-    /// let hair = Bsdf::new(&Hair(Gaussian), &HairParams::default());
+    /// use hairis::{Material, EvalColumns, Gaussian, Published, HairParams, HitSlices};
+    /// let hair = Material::new(&Published(Gaussian), &HairParams::default());
     /// let (wo, wi) = ([[0.0; 11], [0.6; 11], [0.8; 11]], [[0.1; 11], [0.7; 11], [0.7; 11]]);
     /// let hits = HitSlices { wo: [&wo[0], &wo[1], &wo[2]], h: None };
     /// let mut pdf = [0.0; 11];
@@ -127,7 +127,7 @@ impl<M: Model> Bsdf<M> {
         Ok(())
     }
 
-    /// Many samples, each at a hit of its own on this material: `xi` by component, for the lobe, the longitude and the
+    /// Many samples, each at a hit of its own on this material: `xi` by component, for the lobe, the inclination and the
     /// azimuth, each in `[0, 1)`.
     ///
     /// # Errors
@@ -135,8 +135,8 @@ impl<M: Model> Bsdf<M> {
     /// If the slices differ in length; nothing is written then.
     ///
     /// ```
-    /// use hairis::{Bsdf, Gaussian, Hair, HairParams, HitSlices, SampleColumns};
-    /// let hair = Bsdf::new(&Hair(Gaussian), &HairParams::default());
+    /// use hairis::{Material, Gaussian, Published, HairParams, HitSlices, SampleColumns};
+    /// let hair = Material::new(&Published(Gaussian), &HairParams::default());
     /// let (wo, xi) = ([[0.0; 11], [0.6; 11], [0.8; 11]], [[0.1; 11], [0.5; 11], [0.7; 11]]);
     /// let hits = HitSlices { wo: [&wo[0], &wo[1], &wo[2]], h: None };
     /// let (mut wi, mut pdf, mut weight) = ([[0.0; 11]; 3], [0.0; 11], [[0.0; 11]; 3]);
@@ -185,7 +185,7 @@ impl<M: Model> Bsdf<M> {
 }
 
 impl<M: Model> MaterialTable<'_, M> {
-    /// As [`Bsdf::eval_pdf_hits`], each hit with the material of its index.
+    /// As [`Material::eval_pdf_hits`], each hit with the material of its index.
     ///
     /// # Errors
     ///
@@ -216,7 +216,7 @@ impl<M: Model> MaterialTable<'_, M> {
         self.run::<HitEvals, 4>(level, hits.with(wi, WI)?, out.columns(hits.len())?)
     }
 
-    /// As [`Bsdf::sample_hits`], each hit with the material of its index.
+    /// As [`Material::sample_hits`], each hit with the material of its index.
     ///
     /// # Errors
     ///
@@ -297,7 +297,7 @@ impl<M: Model> MaterialTable<'_, M> {
                     copy_few(column, &mut lanes);
                     f32x8::new(lanes)
                 });
-                let Bsdf8 { material } = Bsdf8::pack(lanes);
+                let Material8 { material } = Material8::pack(lanes);
                 let output = level.run(EightHits::<M, K, N>::new(&material, &input));
                 for (lanes, column) in output.iter().zip(outputs) {
                     copy_few(lanes.as_array(), column);

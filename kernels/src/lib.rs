@@ -1,19 +1,19 @@
 //! Hair scattering, evaluated and sampled eight lanes at a time, without std and without an allocator.
 //!
-//! [`Hair`] is the model of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the importance sampler published there.
+//! [`Published`] is the model of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the importance sampler published there.
 //! [`Matched`] is the same model with a sampler of lower variance. Their bells are Gaussians ([`Gaussian`]) or any other
 //! [`Bell`]; the all-Cauchy variant is in the crate `hairis-variants`. Other scattering models implement [`LobeModel`], once
 //! over [`Lanes`]; scalar calls, eight lanes, run-time dispatch and slices follow.
 //!
 //! ```
 //! use glam::Vec3;
-//! use hairis::{Bsdf, FiberFrame, Gaussian, Hair, HairParams};
+//! use hairis::{Material, FiberFrame, Gaussian, Published, HairParams};
 //!
-//! let hair = Bsdf::new(&Hair(Gaussian), &HairParams::brown()); // once per material
+//! let hair = Material::new(&Published(Gaussian), &HairParams::brown()); // once per material
 //! let frame = FiberFrame::from_tangent(Vec3::new(0.1, 0.9, 0.2)); // once per hit, root to tip
-//! let gather = hair.prepare(frame.to_local(Vec3::new(0.6, 0.0, 0.8))); // towards the viewer
+//! let bsdf = hair.prepare(frame.to_local(Vec3::new(0.6, 0.0, 0.8))); // towards the viewer
 //!
-//! let sample = gather.sample([0.3, 0.6, 0.9]).expect("not along the fibre"); // once per path
+//! let sample = bsdf.sample([0.3, 0.6, 0.9]).expect("not along the fibre"); // once per path
 //! let towards_light = frame.to_world(sample.wi);
 //! assert!(towards_light.is_normalized() && sample.weight[0] > 0.0);
 //! ```
@@ -23,10 +23,10 @@
 //! | step | once per | call |
 //! |---|---|---|
 //! | describe | material | [`HairDesc`] and [`HairParams::new`], a preset, or [`HairParams::from_artist`] |
-//! | build | material | [`Bsdf::new`]; eight different ones: [`Bsdf8::pack`] |
-//! | prepare | hit | [`Bsdf::prepare`]; eight hits: [`Bsdf::prepare8`], [`Bsdf8::prepare8`] |
-//! | evaluate, sample | direction | [`Gather::eval_pdf`], [`Gather::sample`]; eight directions at one hit: [`Gather::eval_pdf8`], [`Gather::sample8`]; one at each of eight hits: [`Gather8::eval_pdf8`], [`Gather8::sample8`]; slices: [`Gather::eval_pdf_batch`], [`Gather::sample_batch`], [`Gather::sample_weight_batch`] |
-//! | both in one | hit and direction | slices of hits: [`Bsdf::eval_pdf_hits`], [`Bsdf::sample_hits`]; a material per hit: [`MaterialTable`] |
+//! | build | material | [`Material::new`]; eight different ones: [`Material8::pack`] |
+//! | prepare | hit | [`Material::prepare`]; eight hits: [`Material::prepare8`], [`Material8::prepare8`] |
+//! | evaluate, sample | direction | [`Bsdf::eval_pdf`], [`Bsdf::sample`]; eight directions at one hit: [`Bsdf::eval_pdf8`], [`Bsdf::sample8`]; one at each of eight hits: [`Bsdf8::eval_pdf8`], [`Bsdf8::sample8`]; slices: [`Bsdf::eval_pdf_batch`], [`Bsdf::sample_batch`], [`Bsdf::sample_weight_batch`] |
+//! | both in one | hit and direction | slices of hits: [`Material::eval_pdf_hits`], [`Material::sample_hits`]; a material per hit: [`MaterialTable`] |
 //!
 //! # Conventions
 //!
@@ -37,8 +37,8 @@
 //! - **Relative angles.** `phi = phi_o - phi_i`, `theta_h = (theta_i + theta_o) / 2`, `theta_d = (theta_o - theta_i) / 2`.
 //! - **Measures.** `L_o` is the integral of `L_i S cos theta_i` over `wi`. `eval` is S without the cosine; `pdf` is per
 //!   steradian; `weight` is `S cos theta_i / pdf`. Angles are radians.
-//! - **Lanes.** A lane is one sample: of the one shading point of a [`Gather`], or of the shading point in the same lane
-//!   of a [`Gather8`]. Lanes never mix.
+//! - **Lanes.** A lane is one sample: of the one shading point of a [`Bsdf`], or of the shading point in the same lane
+//!   of a [`Bsdf8`]. Lanes never mix.
 //! - **Totality.** Parameters are checked once, by [`HairParams::new`]. After that nothing fails: for every finite
 //!   input, results are finite and not negative. Directions within [`GRAZING`] of the axis have value and density 0,
 //!   and a sample there is discarded. It counts; do not draw it again.
@@ -48,7 +48,7 @@
 //!   discards it, or counts as the end of the range.) The rule holds for every model and entry point (test
 //!   `inputs_that_are_no_numbers_are_black`).
 //! - **Energy.** The model is reciprocal but does not conserve energy. Before path tracing, wrap it in [`Conserving`], or scale
-//!   the material by [`Bsdf::conserving_scale`] through [`HairParams::scaled`].
+//!   the material by [`Material::conserving_scale`] through [`HairParams::scaled`].
 //! - **Bits.** Results depend on whether a level fuses multiply and add ([`Level::fuses`]), in the last bits, and on
 //!   nothing else of the machine or the build. What takes no level, scalar calls and frames, never fuses. This needs IEEE
 //!   single precision: x87 arithmetic (`i586`) rounds otherwise.
@@ -64,7 +64,7 @@
 //! # What this crate does not do
 //!
 //! It traces no rays, reads no files, and draws no random numbers except through [`random`]. Multiple scattering is the
-//! path tracer's task. Spectral hosts take the lobes without their colours from [`Gather::lobes`].
+//! path tracer's task. Spectral hosts take the lobes without their colours from [`Bsdf::lobes`].
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 
@@ -94,17 +94,20 @@ mod slices;
 mod truncated;
 
 pub use bell::{Bell, Gaussian};
-pub use bsdf::{Bsdf, Bsdf8, Gather, Gather8};
+pub use bsdf::{Bsdf, Bsdf8, Material, Material8};
 pub use direction::Direction;
 pub use energy::Conserving;
 pub use error::ParamError;
 pub use frame::{FiberFrame, FiberFrame8, Vec3x, Vec3x8};
-pub use hair::{GRAZING, Hair, HairGather, HairLobes, HairMaterial, HairSampler, HairView};
+pub use hair::{
+    GRAZING, HairLobes, HairView, Published, PublishedConstants, PublishedMaterial,
+    PublishedPrepared,
+};
 pub use hits::{HitsError, MaterialTable};
 pub use lobe::{Lobe, LobeMask, PerLobe};
 pub use lobe_model::{LobeModel, Mixed, Mixture};
-pub use matched::{Matched, MatchedBell, MatchedGather, MatchedMaterial};
-pub use model::{Drawn, Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Model, Sample, Sample8};
+pub use matched::{Matched, MatchedBell, MatchedMaterial, MatchedPrepared};
+pub use model::{Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Model, Sample, Sample8, SampleLanes};
 pub use params::{
     ArtistControls, Glints, HairDesc, HairParams, Highlight, MAX_WIDTH, MIN_WIDTH, Transmission,
 };

@@ -5,7 +5,7 @@ mod mixture;
 pub use mixture::Mixture;
 
 use crate::lobe::LobeMask;
-use crate::model::{Drawn, Eval, Hit, LobeEval};
+use crate::model::{Eval, Hit, LobeEval, SampleLanes};
 use crate::{Broadcast, Direction, LaneStruct, Lanes, Lobe, Model, PerLobe, Scalar, Vec3x, lanes3};
 use wide::f32x8;
 
@@ -31,7 +31,7 @@ use wide::f32x8;
 /// use core::f32::consts::FRAC_1_PI;
 /// use glam::Vec3;
 /// use hairis::{
-///     Broadcast, Bsdf, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Scalar, lane_struct, lanes3,
+///     Broadcast, Material, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Scalar, lane_struct, lanes3,
 /// };
 ///
 /// /// A fibre that scatters evenly: `S cos theta_i = albedo / (4 pi)`, whatever the direction.
@@ -63,14 +63,14 @@ use wide::f32x8;
 ///     }
 ///
 ///     #[inline(always)]
-///     fn weights<L: Lanes, C: Broadcast<L>>(_gather: &Albedo<C>) -> PerLobe<L> {
+///     fn weights<L: Lanes, C: Broadcast<L>>(_prepared: &Albedo<C>) -> PerLobe<L> {
 ///         PerLobe::padded([L::splat(1.0)], L::splat(0.0))
 ///     }
 ///
 ///     #[inline(always)]
-///     fn lobes<L: Lanes, C: Broadcast<L>>(gather: &Albedo<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>> {
+///     fn lobes<L: Lanes, C: Broadcast<L>>(prepared: &Albedo<C>, wi: &Direction<L>) -> PerLobe<LobeEval<L>> {
 ///         let pdf = L::splat(0.25 * FRAC_1_PI);
-///         let lobe = LobeEval { value: pdf / wi.cos_theta, color: lanes3(&gather.rgb), pdf };
+///         let lobe = LobeEval { value: pdf / wi.cos_theta, color: lanes3(&prepared.rgb), pdf };
 ///         PerLobe::padded([lobe], LobeEval::none())
 ///     }
 ///
@@ -81,9 +81,9 @@ use wide::f32x8;
 ///     }
 /// }
 ///
-/// let gather = Bsdf::new(&Even, &[0.9, 0.5, 0.1]).prepare(Vec3::Y);
-/// let sample = gather.sample([0.2, 0.6, 0.3]).expect("not along the fibre");
-/// assert!((sample.weight[0] - 0.9).abs() < 1e-6 && (gather.albedo().0[0][2] - 0.1).abs() < 1e-6);
+/// let prepared = Material::new(&Even, &[0.9, 0.5, 0.1]).prepare(Vec3::Y);
+/// let sample = prepared.sample([0.2, 0.6, 0.3]).expect("not along the fibre");
+/// assert!((sample.weight[0] - 0.9).abs() < 1e-6 && (prepared.albedo().0[0][2] - 0.1).abs() < 1e-6);
 /// ```
 pub trait LobeModel: Copy {
     /// Parameters of a material, checked.
@@ -185,10 +185,10 @@ const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 /// The sums over the lobes; 0 where the direction is none.
 #[inline(always)]
 fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(
-    gather: &Mixed<M::Prepared<C>, C>,
+    prepared: &Mixed<M::Prepared<C>, C>,
     wi: &Direction<L>,
 ) -> Eval<L> {
-    let (PerLobe(lobes), mixture) = (M::lobes(&gather.prepared, wi), &gather.mixture);
+    let (PerLobe(lobes), mixture) = (M::lobes(&prepared.prepared, wi), &prepared.mixture);
     let value = lobes[0].value * mixture.kept[0].lanes();
     let [r, g, b] = lobes[0].color;
     let mut sum = [
@@ -240,7 +240,7 @@ fn within<L: Lanes>(x: L, limit: L) -> L {
 impl<M: LobeModel> Model for M {
     type Params = M::Params;
     type Material<C: Scalar> = M::Material<C>;
-    type Gather<C: Scalar> = Mixed<M::Prepared<C>, C>;
+    type Prepared<C: Scalar> = Mixed<M::Prepared<C>, C>;
 
     const LOBES: &'static [&'static str] = {
         assert!(
@@ -280,12 +280,12 @@ impl<M: LobeModel> Model for M {
 
     #[inline(always)]
     fn restrict<C: Lanes>(
-        gather: &Mixed<M::Prepared<C>, C>,
+        prepared: &Mixed<M::Prepared<C>, C>,
         lobes: LobeMask,
     ) -> Mixed<M::Prepared<C>, C> {
         let Mixture {
             selection, kept, ..
-        } = gather.mixture;
+        } = prepared.mixture;
         let kept = [
             kept[0] * C::splat(lobes.factor(Lobe::ALL[0])),
             kept[1] * C::splat(lobes.factor(Lobe::ALL[1])),
@@ -294,26 +294,29 @@ impl<M: LobeModel> Model for M {
         ];
         Mixed {
             mixture: Mixture::new(selection, kept),
-            ..*gather
+            ..*prepared
         }
     }
 
     #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>, C>, wi: Vec3x<L>) -> Eval<L> {
-        total::<M, L, C>(gather, &Direction::new(wi))
+    fn eval<L: Lanes, C: Broadcast<L>>(
+        prepared: &Mixed<M::Prepared<C>, C>,
+        wi: Vec3x<L>,
+    ) -> Eval<L> {
+        total::<M, L, C>(prepared, &Direction::new(wi))
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(
-        gather: &Mixed<M::Prepared<C>, C>,
+        prepared: &Mixed<M::Prepared<C>, C>,
         wi: Vec3x<L>,
     ) -> PerLobe<LobeEval<L>> {
         let wi = Direction::new(wi);
         let limit = limit::<L>(wi.is_sound());
-        let mut lobes = <M as LobeModel>::lobes(&gather.prepared, &wi);
+        let mut lobes = <M as LobeModel>::lobes(&prepared.prepared, &wi);
         let mut l = 0;
         while l < M::LOBES.len() {
-            let kept: L = gather.mixture.kept[l].lanes();
+            let kept: L = prepared.mixture.kept[l].lanes();
             lobes.0[l].value = within(lobes.0[l].value * kept, limit);
             lobes.0[l].pdf = within(lobes.0[l].pdf * kept, limit);
             l += 1;
@@ -323,12 +326,12 @@ impl<M: LobeModel> Model for M {
 
     #[inline(always)]
     fn sample<L: Lanes, C: Broadcast<L>>(
-        gather: &Mixed<M::Prepared<C>, C>,
+        prepared: &Mixed<M::Prepared<C>, C>,
         xi: [L; 3],
-    ) -> Drawn<L> {
+    ) -> SampleLanes<L> {
         let c = L::splat;
         let (zero, most) = (c(0.0), c(BELOW_ONE));
-        let m = &gather.mixture;
+        let m = &prepared.mixture;
         let lobe = L::search(xi[0], lanes3(&m.bounds), M::LOBES.len() - 1);
         // Stretch the first number again, from the nearer end, where differences are exact: a rare lobe keeps the low bits.
         let (start, start_less_one) = (
@@ -348,13 +351,13 @@ impl<M: LobeModel> Model for M {
             zero.max(xi[1].min(most)),
             zero.max(xi[2].min(most)),
         ];
-        let wi = M::sample_lobe(&gather.prepared, lobe, xi);
-        let Eval { value, pdf } = total::<M, L, C>(gather, &wi);
+        let wi = M::sample_lobe(&prepared.prepared, lobe, xi);
+        let Eval { value, pdf } = total::<M, L, C>(prepared, &wi);
         let sound = L::and(L::and(wi.is_sound(), c(LEAST_DENSITY).lt(pdf)), numbers);
         let limit = limit::<L>(sound);
         let by = L::quotient(wi.cos_theta, pdf);
         let Vec3x { x, y, z } = wi.vector;
-        Drawn {
+        SampleLanes {
             wi: Vec3x::new(L::keep(sound, x), L::keep(sound, y), L::keep(sound, z)),
             value: [
                 value[0].min(limit),
@@ -372,12 +375,12 @@ impl<M: LobeModel> Model for M {
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &Mixed<M::Prepared<C>, C>) -> PerLobe<[L; 3]> {
-        let mut albedo = <M as LobeModel>::albedo::<L, C>(&gather.prepared);
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &Mixed<M::Prepared<C>, C>) -> PerLobe<[L; 3]> {
+        let mut albedo = <M as LobeModel>::albedo::<L, C>(&prepared.prepared);
         let most = L::splat(f32::MAX);
         let mut l = 0;
         while l < Lobe::COUNT {
-            let kept: L = gather.mixture.kept[l].lanes();
+            let kept: L = prepared.mixture.kept[l].lanes();
             let [r, g, b] = albedo.0[l];
             albedo.0[l] = [
                 (r * kept).min(most),

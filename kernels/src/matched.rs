@@ -9,18 +9,18 @@ mod material;
 mod sampling;
 
 pub use bell::MatchedBell;
-pub use gather::MatchedGather;
+pub use gather::MatchedPrepared;
 pub use material::MatchedMaterial;
 
 use crate::hair::{
     Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities, times,
 };
-use crate::model::{Drawn, Eval, Hit, LobeEval};
+use crate::model::{Eval, Hit, LobeEval, SampleLanes};
 use crate::simd::pair::Pair;
 use crate::simd::unfused::Unfused;
 use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3x};
 
-/// The model of [`Hair`](crate::Hair), with the same parameters, values and albedo, and a sampler that follows them closer
+/// The model of [`Published`](crate::Hair), with the same parameters, values and albedo, and a sampler that follows them closer
 /// than the published one.
 ///
 /// Each lobe is drawn from its own bells, cut to the sphere: truncated Gaussians on the Gaussian model, truncated Cauchys
@@ -71,11 +71,11 @@ use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::{Bsdf, Gaussian, Hair, HairParams, Matched};
-/// let (hair, matched) = (Hair(Gaussian), Matched::<_>(Gaussian));
+/// use hairis::{Material, Gaussian, Published, HairParams, Matched};
+/// let (hair, matched) = (Published(Gaussian), Matched::<_>(Gaussian));
 /// let wo = Vec3::new(0.6, 0.8, 0.0);
-/// let [hair, matched] = [Bsdf::new(&hair, &HairParams::default()).prepare(wo).eval(Vec3::Y),
-///     Bsdf::new(&matched, &HairParams::default()).prepare(wo).eval(Vec3::Y)];
+/// let [hair, matched] = [Material::new(&hair, &HairParams::default()).prepare(wo).eval(Vec3::Y),
+///     Material::new(&matched, &HairParams::default()).prepare(wo).eval(Vec3::Y)];
 /// assert_eq!(hair, matched); // one model, two samplers
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,7 +86,7 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
 {
     type Params = HairParams;
     type Material<C: Scalar> = MatchedMaterial<C>;
-    type Gather<C: Scalar> = MatchedGather<C, BANDS>;
+    type Prepared<C: Scalar> = MatchedPrepared<C, BANDS>;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "glint"];
 
@@ -99,86 +99,92 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
     fn prepare<L: Lanes, C: Broadcast<L>>(
         material: &MatchedMaterial<C>,
         hit: Hit<L>,
-    ) -> MatchedGather<L::Stored, BANDS> {
+    ) -> MatchedPrepared<L::Stored, BANDS> {
         gather::prepare::<B, L, C, Pair<L>, 3, BANDS, BY_CHANNEL>(material, hit.wo)
     }
 
     #[inline(always)]
-    fn prepare_one(material: &MatchedMaterial<f32>, hit: Hit<f32>) -> MatchedGather<f32, BANDS> {
+    fn prepare_one(material: &MatchedMaterial<f32>, hit: Hit<f32>) -> MatchedPrepared<f32, BANDS> {
         gather::prepare::<B, f32, f32, Unfused, 1, BANDS, BY_CHANNEL>(material, hit.wo)
     }
 
     #[inline(always)]
     fn restrict<C: Lanes>(
-        gather: &MatchedGather<C, BANDS>,
+        prepared: &MatchedPrepared<C, BANDS>,
         lobes: LobeMask,
-    ) -> MatchedGather<C, BANDS> {
-        gather.restrict(lobes)
+    ) -> MatchedPrepared<C, BANDS> {
+        prepared.restrict(lobes)
     }
 
     #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, wi: Vec3x<L>) -> Eval<L> {
-        let (angles, sound) = Angles::from_direction(&gather.view, wi);
-        let terms = angles.eval_lobes::<B, C>(&gather.view);
+    fn eval<L: Lanes, C: Broadcast<L>>(
+        prepared: &MatchedPrepared<C, BANDS>,
+        wi: Vec3x<L>,
+    ) -> Eval<L> {
+        let (angles, sound) = Angles::from_direction(&prepared.view, wi);
+        let terms = angles.eval_lobes::<B, C>(&prepared.view);
         finish_eval(
-            &gather.view,
+            &prepared.view,
             &angles,
             sound,
             &terms,
-            density(gather, &angles, &terms),
+            density(prepared, &angles, &terms),
         )
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(
-        gather: &MatchedGather<C, BANDS>,
+        prepared: &MatchedPrepared<C, BANDS>,
         wi: Vec3x<L>,
     ) -> PerLobe<LobeEval<L>> {
-        let (angles, sound) = Angles::from_direction(&gather.view, wi);
-        let terms = angles.eval_lobes::<B, C>(&gather.view);
-        let height = gather.height::<L>(angles.sin_theta_i);
-        let [by_area, by_extent] = gather.lone_density::<B, L>();
+        let (angles, sound) = Angles::from_direction(&prepared.view, wi);
+        let terms = angles.eval_lobes::<B, C>(&prepared.view);
+        let height = prepared.height::<L>(angles.sin_theta_i);
+        let [by_area, by_extent] = prepared.lone_density::<B, L>();
         let density = times(times(times(terms.value, [height; 4]), by_area), by_extent);
-        finish_lobes(&gather.view, &angles, sound, &terms, density)
+        finish_lobes(&prepared.view, &angles, sound, &terms, density)
     }
 
     #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>, xi: [L; 3]) -> Drawn<L> {
-        let (wi, choice, angles) = sampling::draw::<B, L, C, BANDS>(gather, xi);
-        let terms = angles.eval_lobes::<B, C>(&gather.view);
+    fn sample<L: Lanes, C: Broadcast<L>>(
+        prepared: &MatchedPrepared<C, BANDS>,
+        xi: [L; 3],
+    ) -> SampleLanes<L> {
+        let (wi, choice, angles) = sampling::draw::<B, L, C, BANDS>(prepared, xi);
+        let terms = angles.eval_lobes::<B, C>(&prepared.view);
         finish_sample(
-            &gather.view,
+            &prepared.view,
             wi,
             choice,
             &angles,
             &terms,
-            density(gather, &angles, &terms),
+            density(prepared, &angles, &terms),
         )
     }
 
     #[inline(always)]
     fn conserve<L: Lanes>(
-        gather: &MatchedGather<L::Stored, BANDS>,
-    ) -> MatchedGather<L::Stored, BANDS> {
-        MatchedGather {
-            view: albedo::conserve::<B, L>(&gather.view),
-            ..*gather
+        prepared: &MatchedPrepared<L::Stored, BANDS>,
+    ) -> MatchedPrepared<L::Stored, BANDS> {
+        MatchedPrepared {
+            view: albedo::conserve::<B, L>(&prepared.view),
+            ..*prepared
         }
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &MatchedGather<C, BANDS>) -> PerLobe<[L; 3]> {
-        albedo::albedo::<B, L, C>(&gather.view)
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &MatchedPrepared<C, BANDS>) -> PerLobe<[L; 3]> {
+        albedo::albedo::<B, L, C>(&prepared.view)
     }
 }
 
 /// The mixture density times `cos theta_i`.
 #[inline(always)]
 fn density<L: Lanes, C: Broadcast<L>, const N: usize>(
-    gather: &MatchedGather<C, N>,
+    prepared: &MatchedPrepared<C, N>,
     angles: &Angles<L>,
     terms: &LobeTerms<L>,
 ) -> L {
-    mix_densities(terms.value, &gather.weight)
-        * (gather.height(angles.sin_theta_i) * gather.scale.lanes())
+    mix_densities(terms.value, &prepared.weight)
+        * (prepared.height(angles.sin_theta_i) * prepared.scale.lanes())
 }

@@ -6,7 +6,7 @@ use wide::f32x8;
 
 /// A scattering model, written once over [`Lanes`].
 ///
-/// [`Bsdf`](crate::Bsdf) makes scalar calls, eight lanes (eight directions at one shading point, or eight shading points),
+/// [`Material`](crate::Material) makes scalar calls, eight lanes (eight directions at one shading point, or eight shading points),
 /// run-time dispatch and slices of it. Authors implement [`LobeModel`](crate::LobeModel), which needs less and gives a
 /// `Model`; this trait is for models that compute several lobes together, as the published one does.
 ///
@@ -27,7 +27,7 @@ pub trait Model: Copy {
     /// Constants of a material: one number each (`C = f32`), or one per lane (`C = f32x8`).
     type Material<C: Scalar>: LaneStruct<One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
     /// Constants of a shading point.
-    type Gather<C: Scalar>: LaneStruct<One = Self::Gather<f32>, Eight = Self::Gather<f32x8>>;
+    type Prepared<C: Scalar>: LaneStruct<One = Self::Prepared<f32>, Eight = Self::Prepared<f32x8>>;
 
     /// Names of the lobes, in slot order: at most [`Lobe::COUNT`].
     const LOBES: &'static [&'static str];
@@ -39,40 +39,43 @@ pub trait Model: Copy {
     fn prepare<L: Lanes, C: Broadcast<L>>(
         material: &Self::Material<C>,
         hit: Hit<L>,
-    ) -> Self::Gather<L::Stored>;
+    ) -> Self::Prepared<L::Stored>;
 
     /// The same for one hit. A model whose lobes take the same steps may put them into lanes here.
     #[inline(always)]
-    fn prepare_one(material: &Self::Material<f32>, hit: Hit<f32>) -> Self::Gather<f32> {
+    fn prepare_one(material: &Self::Material<f32>, hit: Hit<f32>) -> Self::Prepared<f32> {
         Self::prepare::<f32, f32>(material, hit)
     }
 
     /// The shading point with only the lobes of `lobes`: the others neither scatter nor are sampled.
-    fn restrict<C: Lanes>(gather: &Self::Gather<C>, lobes: LobeMask) -> Self::Gather<C>;
+    fn restrict<C: Lanes>(prepared: &Self::Prepared<C>, lobes: LobeMask) -> Self::Prepared<C>;
 
     /// Value and density of the direction `wi`.
-    fn eval<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>, wi: Vec3x<L>) -> Eval<L>;
+    fn eval<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>, wi: Vec3x<L>) -> Eval<L>;
 
     /// Each lobe's value, colour and own density at `wi`.
     fn lobes<L: Lanes, C: Broadcast<L>>(
-        gather: &Self::Gather<C>,
+        prepared: &Self::Prepared<C>,
         wi: Vec3x<L>,
     ) -> PerLobe<LobeEval<L>>;
 
     /// A direction drawn with three uniform numbers in `[0, 1)`. The first chooses the lobe, and may serve again.
-    fn sample<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>, xi: [L; 3]) -> Drawn<L>;
+    fn sample<L: Lanes, C: Broadcast<L>>(
+        prepared: &Self::Prepared<C>,
+        xi: [L; 3],
+    ) -> SampleLanes<L>;
 
     /// The shading point with each channel scaled so that no more light returns than arrives: see
-    /// [`Gather::conserving`](crate::Gather::conserving).
+    /// [`Bsdf::conserving`](crate::Bsdf::conserving).
     ///
     /// Provided: the shading point as it is, for models whose parameters see to that.
     #[inline(always)]
-    fn conserve<L: Lanes>(gather: &Self::Gather<L::Stored>) -> Self::Gather<L::Stored> {
-        *gather
+    fn conserve<L: Lanes>(prepared: &Self::Prepared<L::Stored>) -> Self::Prepared<L::Stored> {
+        *prepared
     }
 
     /// Directional albedo of each lobe, linear RGB: the integral of `S cos theta_i` over all `wi`.
-    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &Self::Gather<C>) -> PerLobe<[L; 3]>;
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &Self::Prepared<C>) -> PerLobe<[L; 3]>;
 }
 
 /// The hit of a ray on a fibre: the direction it came from, and its offset from the axis.
@@ -235,7 +238,7 @@ impl<L: Lanes> LobeEval<L> {
 /// A sampled direction, per lane; value, pdf and weight 0 and slot -1 where it was discarded. What models return; users
 /// see [`Sample`] and [`Sample8`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drawn<L> {
+pub struct SampleLanes<L> {
     /// Towards the light, in the fibre's frame, unit.
     pub wi: Vec3x<L>,
     /// S at `wi`, without the cosine, linear RGB, per steradian.
@@ -248,11 +251,11 @@ pub struct Drawn<L> {
     pub slot: L,
 }
 
-impl<L: Lanes> Drawn<L> {
+impl<L: Lanes> SampleLanes<L> {
     /// The lanes in their storage form.
     #[inline(always)]
-    pub fn store(self) -> Drawn<L::Stored> {
-        Drawn {
+    pub fn store(self) -> SampleLanes<L::Stored> {
+        SampleLanes {
             wi: self.wi.store(),
             value: crate::simd::lanes::store3(self.value),
             pdf: self.pdf.store(),
@@ -280,13 +283,13 @@ pub struct Sample {
 impl Sample {
     /// The sample of one lane; `None` if it was discarded.
     #[inline]
-    pub(crate) fn from_drawn(drawn: &Drawn<f32>) -> Option<Self> {
-        let lobe = Lobe::from_number(drawn.slot)?;
+    pub(crate) fn from_lanes(lanes: &SampleLanes<f32>) -> Option<Self> {
+        let lobe = Lobe::from_number(lanes.slot)?;
         Some(Self {
-            wi: drawn.wi.into(),
-            value: drawn.value,
-            pdf: drawn.pdf,
-            weight: drawn.weight,
+            wi: lanes.wi.into(),
+            value: lanes.value,
+            pdf: lanes.pdf,
+            weight: lanes.weight,
             lobe,
         })
     }
@@ -295,7 +298,7 @@ impl Sample {
 /// Eight sampled directions: of one shading point, or one of each of eight.
 ///
 /// A discarded lane has value, pdf and weight 0 and slot -1, and counts as a sample whose contribution is 0.
-pub type Sample8 = Drawn<f32x8>;
+pub type Sample8 = SampleLanes<f32x8>;
 
 impl Sample8 {
     /// The lanes that were not discarded: bit `i` for lane `i`.
@@ -318,7 +321,7 @@ impl Sample8 {
     #[must_use]
     pub fn lane(&self, lane: usize) -> Option<Sample> {
         let at = |x: &f32x8| x.as_array()[lane];
-        Sample::from_drawn(&Drawn {
+        Sample::from_lanes(&SampleLanes {
             wi: self.wi.lane(lane).into(),
             value: [at(&self.value[0]), at(&self.value[1]), at(&self.value[2])],
             pdf: at(&self.pdf),

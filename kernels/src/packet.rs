@@ -1,9 +1,9 @@
 //! Functions of a model as kernels of the vector layer: packets of eight, and rows of columns.
 
-use crate::model::{Drawn, Eval8, Hit8, LobeEval8, Sample8};
+use crate::model::{Eval8, Hit8, LobeEval8, Sample8, SampleLanes};
 use crate::resample::{Weighed8, Weighing};
 use crate::{
-    Broadcast, Constant, Gather8, Hit, Kernel, Lanes, Model, PerLobe, Row, Vec3x, Vec3x8,
+    Broadcast, Bsdf8, Constant, Hit, Kernel, Lanes, Model, PerLobe, Row, Vec3x, Vec3x8,
     fresh_lanes3, store3,
 };
 use core::marker::PhantomData;
@@ -17,11 +17,11 @@ pub(crate) struct Prepare<'a, M: Model, C: Constant, H> {
 
 impl<M: Model, C: Constant, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
     type Constant = C;
-    type Output = Gather8<M>;
+    type Output = Bsdf8<M>;
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Gather8<M>
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Bsdf8<M>
     where
         C: Broadcast<L>,
         f32x8: Broadcast<L>,
@@ -31,18 +31,18 @@ impl<M: Model, C: Constant, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
             wo: Vec3x::load(&hits.wo),
             h: hits.h.lanes(),
         };
-        Gather8 {
+        Bsdf8 {
             inner: M::prepare::<L, C>(self.material, hit),
         }
     }
 }
 
 /// Declares the kernel of one of a model's functions at a shading point, of eight lanes each.
-macro_rules! at_gather {
-    ($(#[$meta:meta])* $name:ident($input:ident: &$Input:ty) -> $Output:ty, $M:ident $L:ident $gather:ident $body:expr) => {
+macro_rules! at_bsdf {
+    ($(#[$meta:meta])* $name:ident($input:ident: &$Input:ty) -> $Output:ty, $M:ident $L:ident $prepared:ident $body:expr) => {
         $(#[$meta])*
         pub(crate) struct $name<'a, M: Model, C: Constant> {
-            pub(crate) gather: &'a M::Gather<C>,
+            pub(crate) prepared: &'a M::Prepared<C>,
             pub(crate) $input: &'a $Input,
         }
 
@@ -56,32 +56,32 @@ macro_rules! at_gather {
                 C: Broadcast<$L>,
                 f32x8: Broadcast<$L>,
             {
-                let Self { $gather, $input } = self;
+                let Self { $prepared, $input } = self;
                 $body
             }
         }
     };
 }
 
-at_gather! {
+at_bsdf! {
     /// Value and density of eight directions.
-    EvalPdf(wi: &Vec3x8) -> Eval8, M L gather M::eval::<L, C>(gather, Vec3x::load_fresh(wi)).store()
+    EvalPdf(wi: &Vec3x8) -> Eval8, M L prepared M::eval::<L, C>(prepared, Vec3x::load_fresh(wi)).store()
 }
-at_gather! {
+at_bsdf! {
     /// Each lobe's value, colour and density at eight directions.
-    Lobes(wi: &Vec3x8) -> PerLobe<LobeEval8>, M L gather {
-        let [a, b, c, d] = M::lobes::<L, C>(gather, Vec3x::load_fresh(wi)).0;
+    Lobes(wi: &Vec3x8) -> PerLobe<LobeEval8>, M L prepared {
+        let [a, b, c, d] = M::lobes::<L, C>(prepared, Vec3x::load_fresh(wi)).0;
         PerLobe([a.store(), b.store(), c.store(), d.store()])
     }
 }
-at_gather! {
+at_bsdf! {
     /// Eight sampled directions.
-    SampleWi(xi: &[f32x8; 3]) -> Sample8, M L gather M::sample::<L, C>(gather, fresh_lanes3(xi)).store()
+    SampleWi(xi: &[f32x8; 3]) -> Sample8, M L prepared M::sample::<L, C>(prepared, fresh_lanes3(xi)).store()
 }
 
 /// The directional albedos of eight shading points.
 pub(crate) struct Albedo<'a, M: Model> {
-    pub(crate) gather: &'a M::Gather<f32x8>,
+    pub(crate) prepared: &'a M::Prepared<f32x8>,
 }
 
 impl<M: Model> Kernel for Albedo<'_, M> {
@@ -94,68 +94,68 @@ impl<M: Model> Kernel for Albedo<'_, M> {
     where
         f32x8: Broadcast<L>,
     {
-        let [a, b, c, d] = M::albedo::<L, f32x8>(self.gather).0;
+        let [a, b, c, d] = M::albedo::<L, f32x8>(self.prepared).0;
         PerLobe([store3(a), store3(b), store3(c), store3(d)])
     }
 }
 
 /// A row of a batch: the columns `K` of one shading point.
-pub(crate) struct AtGather<'a, M: Model, K> {
-    gather: &'a M::Gather<f32>,
+pub(crate) struct AtBsdf<'a, M: Model, K> {
+    prepared: &'a M::Prepared<f32>,
     columns: PhantomData<K>,
 }
 
-impl<'a, M: Model, K> AtGather<'a, M, K> {
+impl<'a, M: Model, K> AtBsdf<'a, M, K> {
     #[inline(always)]
-    pub(crate) fn new(gather: &'a M::Gather<f32>) -> Self {
+    pub(crate) fn new(prepared: &'a M::Prepared<f32>) -> Self {
         Self {
-            gather,
+            prepared,
             columns: PhantomData,
         }
     }
 }
 
-impl<M: Model, K> Clone for AtGather<'_, M, K> {
+impl<M: Model, K> Clone for AtBsdf<'_, M, K> {
     #[inline(always)]
     fn clone(&self) -> Self {
         *self
     }
 }
-impl<M: Model, K> Copy for AtGather<'_, M, K> {}
+impl<M: Model, K> Copy for AtBsdf<'_, M, K> {}
 
 /// Columns of S. Terms that only the density needs are not computed.
 pub(crate) struct Value;
-impl<M: Model> Row<3, 3> for AtGather<'_, M, Value> {
+impl<M: Model> Row<3, 3> for AtBsdf<'_, M, Value> {
     #[inline(always)]
     fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 3]
     where
         f32: Broadcast<L>,
     {
-        M::eval::<L, f32>(self.gather, Vec3x::new(x, y, z)).value
+        M::eval::<L, f32>(self.prepared, Vec3x::new(x, y, z)).value
     }
 }
 
 /// The column of the density.
 pub(crate) struct Pdf;
-impl<M: Model> Row<3, 1> for AtGather<'_, M, Pdf> {
+impl<M: Model> Row<3, 1> for AtBsdf<'_, M, Pdf> {
     #[inline(always)]
     fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 1]
     where
         f32: Broadcast<L>,
     {
-        [M::eval::<L, f32>(self.gather, Vec3x::new(x, y, z)).pdf]
+        [M::eval::<L, f32>(self.prepared, Vec3x::new(x, y, z)).pdf]
     }
 }
 
 /// Columns of S and of the density.
 pub(crate) struct ValuePdf;
-impl<M: Model> Row<3, 4> for AtGather<'_, M, ValuePdf> {
+impl<M: Model> Row<3, 4> for AtBsdf<'_, M, ValuePdf> {
     #[inline(always)]
     fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 4]
     where
         f32: Broadcast<L>,
     {
-        let eval = M::eval::<L, f32>(self.gather, Vec3x::new(x, y, z));
+        let eval = M::eval::<L, f32>(self.prepared, Vec3x::new(x, y, z));
         let [r, g, b] = eval.value;
         [r, g, b, eval.pdf]
     }
@@ -163,25 +163,25 @@ impl<M: Model> Row<3, 4> for AtGather<'_, M, ValuePdf> {
 
 /// Columns of samples.
 pub(crate) struct Samples;
-impl<M: Model> Row<3, 11> for AtGather<'_, M, Samples> {
+impl<M: Model> Row<3, 11> for AtBsdf<'_, M, Samples> {
     #[inline(always)]
     fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11]
     where
         f32: Broadcast<L>,
     {
-        columns(M::sample::<L, f32>(self.gather, xi))
+        columns(M::sample::<L, f32>(self.prepared, xi))
     }
 }
 
 /// Columns of samples without value and slot.
 pub(crate) struct Weights;
-impl<M: Model> Row<3, 7> for AtGather<'_, M, Weights> {
+impl<M: Model> Row<3, 7> for AtBsdf<'_, M, Weights> {
     #[inline(always)]
     fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 7]
     where
         f32: Broadcast<L>,
     {
-        let s = M::sample::<L, f32>(self.gather, xi);
+        let s = M::sample::<L, f32>(self.prepared, xi);
         let [r, g, b] = s.weight;
         [s.wi.x, s.wi.y, s.wi.z, s.pdf, r, g, b]
     }
@@ -189,7 +189,7 @@ impl<M: Model> Row<3, 7> for AtGather<'_, M, Weights> {
 
 /// The numbers of a sample in the order of its slices.
 #[inline(always)]
-fn columns<L>(s: Drawn<L>) -> [L; 11] {
+fn columns<L>(s: SampleLanes<L>) -> [L; 11] {
     let ([r, g, b], [wr, wg, wb]) = (s.value, s.weight);
     [s.wi.x, s.wi.y, s.wi.z, r, g, b, s.pdf, wr, wg, wb, s.slot]
 }
@@ -208,8 +208,8 @@ impl<M: Model> HitRow<M, 4> for HitEvals {
         material: &M::Material<C>,
         [u, v, w, h, x, y, z]: [L; 7],
     ) -> [L; 4] {
-        let gather = M::prepare::<L, C>(material, Hit::new(Vec3x::new(u, v, w), h));
-        let eval = M::eval::<L, L::Stored>(&gather, Vec3x::new(x, y, z));
+        let prepared = M::prepare::<L, C>(material, Hit::new(Vec3x::new(u, v, w), h));
+        let eval = M::eval::<L, L::Stored>(&prepared, Vec3x::new(x, y, z));
         let [r, g, b] = eval.value;
         [r, g, b, eval.pdf]
     }
@@ -223,8 +223,8 @@ impl<M: Model> HitRow<M, 11> for HitSamples {
         material: &M::Material<C>,
         [u, v, w, h, x, y, z]: [L; 7],
     ) -> [L; 11] {
-        let gather = M::prepare::<L, C>(material, Hit::new(Vec3x::new(u, v, w), h));
-        columns(M::sample::<L, L::Stored>(&gather, [x, y, z]))
+        let prepared = M::prepare::<L, C>(material, Hit::new(Vec3x::new(u, v, w), h));
+        columns(M::sample::<L, L::Stored>(&prepared, [x, y, z]))
     }
 }
 
@@ -256,7 +256,7 @@ impl<M: Model, K: HitRow<M, N>, const N: usize> Row<7, N> for AtHits<'_, M, K> {
     const OPTIONAL: bool = true;
     // A measure of the code that makes these constants. For two packets of `Matched` with 25 bands, 904 bytes, it is 60 kB, where
     // CPUs cache 32 to 64; with 9 bands, 520 bytes, it fits.
-    const PAIRS: bool = size_of::<M::Gather<f32>>() <= 768;
+    const PAIRS: bool = size_of::<M::Prepared<f32>>() <= 768;
 
     #[inline(always)]
     fn row<L: Lanes>(self, input: [L; 7]) -> [L; N]
@@ -318,7 +318,7 @@ impl<M: Model, K: HitRow<M, N>, const N: usize> Kernel for EightHits<'_, M, K, N
 }
 
 /// Columns of the BSDF's candidates: directions that were not discarded.
-pub(crate) type Proposals<'a, M> = AtGather<'a, M, Proposed>;
+pub(crate) type Proposals<'a, M> = AtBsdf<'a, M, Proposed>;
 pub(crate) struct Proposed;
 impl<M: Model> Row<3, 3> for Proposals<'_, M> {
     #[inline(always)]
@@ -326,13 +326,13 @@ impl<M: Model> Row<3, 3> for Proposals<'_, M> {
     where
         f32: Broadcast<L>,
     {
-        proposed(M::sample::<L, f32>(self.gather, xi))
+        proposed(M::sample::<L, f32>(self.prepared, xi))
     }
 }
 
 /// The direction of a sample, 0 if it was discarded.
 #[inline(always)]
-fn proposed<L: Lanes>(sample: Drawn<L>) -> [L; 3] {
+fn proposed<L: Lanes>(sample: SampleLanes<L>) -> [L; 3] {
     let kept = L::splat(0.0).lt(sample.pdf);
     [
         L::keep(kept, sample.wi.x),
@@ -344,15 +344,15 @@ fn proposed<L: Lanes>(sample: Drawn<L>) -> [L; 3] {
 /// Columns of candidates' contributions and weights.
 #[derive(Clone, Copy)]
 pub(crate) struct Weighs<'a, M: Model> {
-    at: AtGather<'a, M, ValuePdf>,
+    at: AtBsdf<'a, M, ValuePdf>,
     weighing: Weighing,
 }
 
 impl<'a, M: Model> Weighs<'a, M> {
     #[inline(always)]
-    pub(crate) fn new(gather: &'a M::Gather<f32>, weighing: Weighing) -> Self {
+    pub(crate) fn new(prepared: &'a M::Prepared<f32>, weighing: Weighing) -> Self {
         Self {
-            at: AtGather::new(gather),
+            at: AtBsdf::new(prepared),
             weighing,
         }
     }
@@ -365,7 +365,7 @@ impl<M: Model> Row<7, 4> for Weighs<'_, M> {
         f32: Broadcast<L>,
     {
         weighed::<M, L, f32>(
-            self.at.gather,
+            self.at.prepared,
             self.weighing,
             Vec3x::new(x, y, z),
             [r, g, b],
@@ -376,20 +376,20 @@ impl<M: Model> Row<7, 4> for Weighs<'_, M> {
 
 #[inline(always)]
 fn weighed<M: Model, L: Lanes, C: Broadcast<L>>(
-    gather: &M::Gather<C>,
+    prepared: &M::Prepared<C>,
     weighing: Weighing,
     wi: Vec3x<L>,
     radiance: [L; 3],
     pdf_light: L,
 ) -> [L; 4] {
     let cos_theta_i = wi.y.mul_add(wi.y, wi.z * wi.z).sqrt();
-    let eval = M::eval::<L, C>(gather, wi);
+    let eval = M::eval::<L, C>(prepared, wi);
     weighing.weigh(eval.value, eval.pdf, cos_theta_i, radiance, pdf_light)
 }
 
 /// A candidate of the BSDF for each of eight hits.
 pub(crate) struct ProposalsOf<'a, M: Model> {
-    pub(crate) gather: &'a M::Gather<f32x8>,
+    pub(crate) prepared: &'a M::Prepared<f32x8>,
     pub(crate) xi: &'a [f32x8; 3],
 }
 
@@ -403,7 +403,7 @@ impl<M: Model> Kernel for ProposalsOf<'_, M> {
         f32x8: Broadcast<L>,
     {
         let [x, y, z] = store3(proposed(M::sample::<L, f32x8>(
-            self.gather,
+            self.prepared,
             fresh_lanes3(self.xi),
         )));
         Vec3x::new(x, y, z)
@@ -412,7 +412,7 @@ impl<M: Model> Kernel for ProposalsOf<'_, M> {
 
 /// Contribution and weight of a candidate for each of eight hits.
 pub(crate) struct WeighOf<'a, M: Model> {
-    pub(crate) gather: &'a M::Gather<f32x8>,
+    pub(crate) prepared: &'a M::Prepared<f32x8>,
     pub(crate) wi: &'a Vec3x8,
     pub(crate) radiance: &'a [f32x8; 3],
     pub(crate) pdf_light: &'a f32x8,
@@ -430,7 +430,7 @@ impl<M: Model> Kernel for WeighOf<'_, M> {
     {
         let (wi, light) = (Vec3x::load_fresh(self.wi), self.pdf_light.fresh_lanes());
         let [r, g, b, weight] = weighed::<M, L, f32x8>(
-            self.gather,
+            self.prepared,
             self.weighing,
             wi,
             fresh_lanes3(self.radiance),

@@ -151,7 +151,7 @@ impl HairParams {
     }
 
     /// The same hair with every intensity multiplied by `factor`: with
-    /// [`Bsdf::conserving_scale`](crate::Bsdf::conserving_scale), hair that returns at most the light it receives.
+    /// [`Material::conserving_scale`](crate::Material::conserving_scale), hair that returns at most the light it receives.
     ///
     /// # Errors
     ///

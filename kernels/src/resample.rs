@@ -4,9 +4,9 @@
 //! A ray costs as much as tens of candidates. Draw `n_b` directions from the BSDF and `n_l` from the light, weigh each by the
 //! light that it would bring without occlusion, and trace the few that are chosen:
 //!
-//! 1. **Propose.** [`Gather::propose_batch`] draws the BSDF's candidates; the host draws the light's.
+//! 1. **Propose.** [`Bsdf::propose_batch`] draws the BSDF's candidates; the host draws the light's.
 //! 2. **Look up.** The host finds the radiance of each direction, and the light's density there.
-//! 3. **Weigh.** [`Gather::weigh_batch`] gives each candidate its contribution `f = L S cos theta_i` and its weight `w`, the mean
+//! 3. **Weigh.** [`Bsdf::weigh_batch`] gives each candidate its contribution `f = L S cos theta_i` and its weight `w`, the mean
 //!    of `f` over the channels by `n_b p_b + n_l p_l`.
 //! 4. **Choose.** [`choose`] picks `k` of them by one uniform number; equal choices are one ray. The direct light is the sum of
 //!    `V * contribution` over the choices, V being visibility.
@@ -27,7 +27,7 @@
 use crate::packet::{Proposals, ProposalsOf, WeighOf, Weighs};
 use crate::simd::dispatch::clean_upper_halves;
 use crate::slices::{LengthError, WI, XI, check_columns};
-use crate::{Eval8, Gather, Gather8, Lanes, Level, Model, Vec3x8};
+use crate::{Bsdf, Bsdf8, Eval8, Lanes, Level, Model, Vec3x8};
 use wide::f32x8;
 
 mod choice;
@@ -156,7 +156,7 @@ pub struct CandidateSlices<'a> {
     pub pdf_light: &'a [f32],
 }
 
-/// Output of [`Gather::weigh_batch`]: one entry per candidate.
+/// Output of [`Bsdf::weigh_batch`]: one entry per candidate.
 #[derive(Debug)]
 pub struct WeightSlices<'a> {
     /// Light that the direction would bring, `L S cos theta_i`, linear RGB, without visibility.
@@ -193,7 +193,7 @@ const WEIGHT: [&str; 4] = [
 
 impl Weighed8 {
     /// Candidates whose values and densities the host has, for densities that are not the model's own: a mixture with another
-    /// technique, say. Otherwise [`Gather8::weigh8`] and [`Gather::weigh_batch`] do it in one pass.
+    /// technique, say. Otherwise [`Bsdf8::weigh8`] and [`Bsdf::weigh_batch`] do it in one pass.
     #[inline]
     #[must_use]
     pub fn new(
@@ -214,7 +214,7 @@ impl Weighed8 {
     }
 }
 
-impl<M: Model> Gather<M> {
+impl<M: Model> Bsdf<M> {
     /// Candidates of the BSDF: as [`sample_batch`](Self::sample_batch), directions alone. Those of discarded samples are 0, which
     /// weighs nothing.
     ///
@@ -289,7 +289,7 @@ impl<M: Model> Gather<M> {
     }
 }
 
-impl<M: Model> Gather8<M> {
+impl<M: Model> Bsdf8<M> {
     /// A candidate of the BSDF for each hit; 0 where the sample was discarded.
     #[inline]
     #[must_use]
@@ -302,7 +302,7 @@ impl<M: Model> Gather8<M> {
     #[must_use]
     pub fn propose8_at(&self, level: Level, xi: &[f32x8; 3]) -> Vec3x8 {
         level.run(ProposalsOf::<M> {
-            gather: &self.inner,
+            prepared: &self.inner,
             xi,
         })
     }
@@ -335,7 +335,7 @@ impl<M: Model> Gather8<M> {
     ) -> Weighed8 {
         let weighing = Weighing::new(counts, partition);
         level.run(WeighOf::<M> {
-            gather: &self.inner,
+            prepared: &self.inner,
             wi,
             radiance,
             pdf_light,

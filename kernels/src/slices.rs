@@ -31,7 +31,7 @@ impl fmt::Display for LengthError {
 
 impl core::error::Error for LengthError {}
 
-/// Output of [`Gather::eval_pdf_batch`](crate::Gather::eval_pdf_batch): one entry per direction.
+/// Output of [`Bsdf::eval_pdf_batch`](crate::Bsdf::eval_pdf_batch): one entry per direction.
 #[derive(Debug)]
 pub struct EvalSlices<'a> {
     /// S, red, green and blue, per steradian.
@@ -40,7 +40,7 @@ pub struct EvalSlices<'a> {
     pub pdf: &'a mut [f32],
 }
 
-/// Output of [`Gather::sample_batch`](crate::Gather::sample_batch): one entry per sample, all 0 but the direction and the slot for a discarded one.
+/// Output of [`Bsdf::sample_batch`](crate::Bsdf::sample_batch): one entry per sample, all 0 but the direction and the slot for a discarded one.
 #[derive(Debug)]
 pub struct SampleSlices<'a> {
     /// Towards the light, in the fibre's frame: u, v, w.
@@ -55,7 +55,7 @@ pub struct SampleSlices<'a> {
     pub slot: &'a mut [f32],
 }
 
-/// Output of [`Gather::sample_weight_batch`](crate::Gather::sample_weight_batch): one entry per sample, all 0 but the direction for a
+/// Output of [`Bsdf::sample_weight_batch`](crate::Bsdf::sample_weight_batch): one entry per sample, all 0 but the direction for a
 /// discarded one: its density is 0.
 #[derive(Debug)]
 pub struct SampleWeightSlices<'a> {
@@ -70,14 +70,14 @@ pub struct SampleWeightSlices<'a> {
 /// Hits by column, one entry per hit.
 #[derive(Clone, Copy, Debug)]
 pub struct HitSlices<'a> {
-    /// Towards the viewer, in the fibre's frame: u, v, w. Of any length, as for [`Bsdf::prepare`](crate::Bsdf::prepare).
+    /// Towards the viewer, in the fibre's frame: u, v, w. Of any length, as for [`Material::prepare`](crate::Material::prepare).
     pub wo: [&'a [f32]; 3],
     /// Offset across the fibre, as [`Hit::h`](crate::Hit::h): clamped to `[-1, 1]`, NaN counts as 0. `None` is 0 for all
     /// hits; models of the far field ignore it.
     pub h: Option<&'a [f32]>,
 }
 
-/// Output of [`Bsdf::eval_pdf_hits`](crate::Bsdf::eval_pdf_hits): one entry per hit. Columns that are `None` are not written.
+/// Output of [`Material::eval_pdf_hits`](crate::Material::eval_pdf_hits): one entry per hit. Columns that are `None` are not written.
 #[derive(Debug, Default)]
 pub struct EvalColumns<'a> {
     /// S, red, green and blue, per steradian.
@@ -86,7 +86,7 @@ pub struct EvalColumns<'a> {
     pub pdf: Option<&'a mut [f32]>,
 }
 
-/// Output of [`Bsdf::sample_hits`](crate::Bsdf::sample_hits): one entry per hit, all 0 but the direction and the slot for a discarded sample.
+/// Output of [`Material::sample_hits`](crate::Material::sample_hits): one entry per hit, all 0 but the direction and the slot for a discarded sample.
 /// Columns that are `None` are not written.
 #[derive(Debug, Default)]
 pub struct SampleColumns<'a> {

@@ -1,4 +1,4 @@
-//! The Cauchy distribution cut to an interval: the published sampler's longitude, TT azimuth and glint azimuth.
+//! The Cauchy distribution cut to an interval: the published sampler's inclination, TT azimuth and glint azimuth.
 
 use crate::Lanes;
 use crate::math::{atan2_upper, tan_half_turn};

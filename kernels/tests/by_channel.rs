@@ -3,7 +3,7 @@
 use crate::family::Bands;
 use crate::support::{Draws, direction, double, lanes_of, oracle};
 use core::f64::consts::PI;
-use hairis::{Bsdf, Gaussian, HairDesc, HairParams, LobeMask, Matched, Model, PerLobe};
+use hairis::{Gaussian, HairDesc, HairParams, LobeMask, Matched, Material, Model, PerLobe};
 use hairis_conformance::published::Formulas;
 
 /// The model.
@@ -30,7 +30,7 @@ fn measure<M: Model<Params = HairParams>>(
     theta_o: f64,
 ) -> ([f64; 4], [f64; 3], [f64; 3]) {
     const CELLS: usize = 64;
-    let gather = Bsdf::new(&model, params).prepare(direction(theta_o, 0.3));
+    let bsdf = Material::new(&model, params).prepare(direction(theta_o, 0.3));
     let mut draws = Draws(17);
     let (mut first, mut second) = ([0.0; 4], [0.0; 4]);
     for cell in 0..CELLS * CELLS * CELLS / 8 {
@@ -39,7 +39,7 @@ fn measure<M: Model<Params = HairParams>>(
             [i / (CELLS * CELLS), i / CELLS % CELLS, i % CELLS]
                 .map(|at| (at as f32 + draws.xi()) / CELLS as f32)
         });
-        let sample = gather.sample8(&lanes_of(&xi));
+        let sample = bsdf.sample8(&lanes_of(&xi));
         for lane in 0..8 {
             let w = sample
                 .lane(lane)
@@ -55,7 +55,7 @@ fn measure<M: Model<Params = HairParams>>(
         }
     }
     let n = (CELLS * CELLS * CELLS) as f64;
-    let PerLobe(lobes) = gather.albedo();
+    let PerLobe(lobes) = bsdf.albedo();
     let albedo = core::array::from_fn(|c| lobes.iter().map(|lobe| f64::from(lobe[c])).sum());
     let v = core::array::from_fn(|i| n * second[i] / (first[i] * first[i]) - 1.0);
     (v, core::array::from_fn(|c| first[c] / n), albedo)
@@ -105,9 +105,9 @@ fn weights_are_below_their_bound() {
             LobeMask::ALL
         };
         let limit = oracle(&Formulas::of::<Bands<9, true>>(), &params, 1.0, wo).weight_bound(mask);
-        let gather = Bsdf::new(&model, &params).prepare(wo).with_lobes(mask);
+        let bsdf = Material::new(&model, &params).prepare(wo).with_lobes(mask);
         for _ in 0..500 {
-            if let Some(s) = gather.sample(draws.xi3()) {
+            if let Some(s) = bsdf.sample(draws.xi3()) {
                 let mean = s.weight.iter().map(|x| f64::from(*x)).sum::<f64>() / 3.0;
                 closest = closest.max(mean / limit);
                 assert!(

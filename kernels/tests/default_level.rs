@@ -1,7 +1,7 @@
 //! Packets whose calls name no level: they run on the one that is found.
 
 use crate::support::{Draws, direction, lanes_of, packet};
-use hairis::{Bsdf, Bsdf8, Gaussian, Hair, HairDesc, HairParams, Level};
+use hairis::{Gaussian, HairDesc, HairParams, Level, Material, Material8, Published};
 
 #[test]
 fn packets_without_a_level_run_on_the_one_found() {
@@ -11,8 +11,9 @@ fn packets_without_a_level_run_on_the_one_found() {
         ..HairDesc::default()
     })
     .unwrap();
-    let [a, b] = [HairParams::default(), narrow].map(|params| Bsdf::new(&Hair(Gaussian), &params));
-    let packed = Bsdf8::pack([&a, &b, &b, &a, &a, &b, &a, &b]);
+    let [a, b] =
+        [HairParams::default(), narrow].map(|params| Material::new(&Published(Gaussian), &params));
+    let packed = Material8::pack([&a, &b, &b, &a, &a, &b, &a, &b]);
     let level = Level::detect();
     for _ in 0..100 {
         let mut eight = || {

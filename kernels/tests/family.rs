@@ -2,15 +2,15 @@
 
 use crate::rows::{MATCHED, PUBLISHED};
 use hairis::reference::Shape;
-use hairis::{Gaussian, Hair, Matched};
-use hairis_conformance::published::{Family, Published, Rows};
+use hairis::{Gaussian, Matched, Published};
+use hairis_conformance::published::{Family, FamilyModel, Rows};
 use hairis_conformance::{conformance, published};
 
 /// The published sampler.
 pub(crate) struct PublishedHair;
 
-impl Published for PublishedHair {
-    type Model = Hair<Gaussian>;
+impl FamilyModel for PublishedHair {
+    type Model = Published<Gaussian>;
     type Bell = Gaussian;
     const SHAPE: Shape = Shape::Gaussian;
     // `exp(-x^2/2) (1 + x^2)` at `x = 1`, `2 / sqrt(e)`.
@@ -24,14 +24,14 @@ impl Published for PublishedHair {
     }
 
     fn forms() -> Vec<(Self::Model, f32)> {
-        vec![(Hair(Gaussian), 1.0)]
+        vec![(Published(Gaussian), 1.0)]
     }
 }
 
 /// The matched sampler of so many bands.
 pub(crate) struct Bands<const BANDS: usize, const BY_CHANNEL: bool = false>;
 
-impl<const BANDS: usize, const BY_CHANNEL: bool> Published for Bands<BANDS, BY_CHANNEL> {
+impl<const BANDS: usize, const BY_CHANNEL: bool> FamilyModel for Bands<BANDS, BY_CHANNEL> {
     type Model = Matched<Gaussian, BANDS, BY_CHANNEL>;
     type Bell = Gaussian;
     const SHAPE: Shape = Shape::Gaussian;

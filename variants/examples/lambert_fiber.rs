@@ -11,8 +11,8 @@ use glam::Vec3;
 use hairis::math::{atan2_upper, sin_cos_half_turn};
 use hairis::wide::f32x8;
 use hairis::{
-    Broadcast, Bsdf, Bsdf8, Direction, Hit, Lanes, Level, Lobe, LobeEval, LobeMask, LobeModel,
-    Model, PerLobe, Scalar, Vec3x8, lane_struct, lanes3,
+    Broadcast, Direction, Hit, Lanes, Level, Lobe, LobeEval, LobeMask, LobeModel, Material,
+    Material8, Model, PerLobe, Scalar, Vec3x8, lane_struct, lanes3,
 };
 
 /// The marker that the trait is implemented on.
@@ -34,7 +34,7 @@ pub(crate) struct Params {
 
 lane_struct! {
     /// Constants of a material.
-    pub(crate) struct Material {
+    pub(crate) struct Constants {
         /// Colours, linear RGB: of the diffuse lobe and of the cone.
         kd: [C; 3],
         ks: [C; 3],
@@ -47,7 +47,7 @@ lane_struct! {
 lane_struct! {
     /// Constants of a shading point.
     pub(crate) struct Point {
-        material: (Material<C>),
+        material: (Constants<C>),
         sin_theta_o: C,
         /// Angle that the cone's density is uniform over.
         span: C,
@@ -56,14 +56,14 @@ lane_struct! {
 
 impl LobeModel for LambertFiber {
     type Params = Params;
-    type Material<C: Scalar> = Material<C>;
+    type Material<C: Scalar> = Constants<C>;
     type Prepared<C: Scalar> = Point<C>;
 
     const LOBES: &'static [&'static str] = &["diffuse", "cone"];
 
-    fn material(&self, params: &Params) -> Material<f32> {
+    fn material(&self, params: &Params) -> Constants<f32> {
         let Params { kd, ks, width } = *params;
-        Material {
+        Constants {
             kd,
             ks,
             width,
@@ -72,7 +72,10 @@ impl LobeModel for LambertFiber {
     }
 
     #[inline(always)]
-    fn prepare<L: Lanes, C: Broadcast<L>>(material: &Material<C>, hit: Hit<L>) -> Point<L::Stored> {
+    fn prepare<L: Lanes, C: Broadcast<L>>(
+        material: &Constants<C>,
+        hit: Hit<L>,
+    ) -> Point<L::Stored> {
         let sin = Direction::normalized(hit.wo).sin_theta;
         let width = material.width.lanes();
         let span = atan2_upper(
@@ -142,13 +145,13 @@ impl LobeModel for LambertFiber {
 }
 
 /// The integral of a shading point's density over the sphere, by midpoints in `sin theta` (it does not see `phi`).
-pub(crate) fn pdf_integral(gather: &hairis::Gather<LambertFiber>) -> f64 {
+pub(crate) fn pdf_integral(prepared: &hairis::Bsdf<LambertFiber>) -> f64 {
     const STEPS: u16 = 20_000;
     let mut sum = 0.0;
     for step in 0..STEPS {
         let sin = (f32::from(step) + 0.5) * 2.0 / f32::from(STEPS) - 1.0;
         let wi = Vec3::new(sin, ((1.0 - sin) * (1.0 + sin)).sqrt(), 0.0);
-        sum += f64::from(gather.pdf(wi));
+        sum += f64::from(prepared.pdf(wi));
     }
     sum * 4.0 * core::f64::consts::PI / f64::from(STEPS)
 }
@@ -157,7 +160,7 @@ pub(crate) fn pdf_integral(gather: &hairis::Gather<LambertFiber>) -> f64 {
 pub(crate) fn main() {
     let fibers: [_; 8] = core::array::from_fn(|i| {
         let t = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7][i];
-        Bsdf::new(
+        Material::new(
             &LambertFiber,
             &Params {
                 kd: [t, 0.3, 0.2],
@@ -178,9 +181,9 @@ pub(crate) fn main() {
     ];
 
     for level in Level::available() {
-        let gather = Bsdf8::pack(fibers.each_ref()).prepare8_at(level, &Vec3x8::from(wo));
-        let eval = gather.eval_pdf8_at(level, &wi.into());
-        let samples = gather.sample8_at(level, &xi.map(f32x8::new));
+        let prepared = Material8::pack(fibers.each_ref()).prepare8_at(level, &Vec3x8::from(wo));
+        let eval = prepared.eval_pdf8_at(level, &wi.into());
+        let samples = prepared.sample8_at(level, &xi.map(f32x8::new));
         println!("eight fibres on {level}: S (red), pdf, sampled wi, weight (red)");
         for lane in 0..8 {
             let one = fibers[lane].prepare(wo[lane]);

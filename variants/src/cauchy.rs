@@ -2,7 +2,7 @@
 
 use core::f32::consts::FRAC_PI_2;
 use hairis::math::{atan_unit, tan_half_turn};
-use hairis::{Bell, Hair, Lanes, Matched, MatchedBell, ParamError};
+use hairis::{Bell, Lanes, Matched, MatchedBell, ParamError, Published};
 
 /// The bell `1 / (1 + s)`, a Cauchy whose scale is the width: every Gaussian of the published model becomes this.
 ///
@@ -11,9 +11,9 @@ use hairis::{Bell, Hair, Lanes, Matched, MatchedBell, ParamError};
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::{Bsdf, HairParams};
+/// use hairis::{Material, HairParams};
 /// use hairis_variants::Cauchy;
-/// let hair = Bsdf::new(&Cauchy::PAPER.model(), &HairParams::default());
+/// let hair = Material::new(&Cauchy::PAPER.model(), &HairParams::default());
 /// let sample = hair.prepare(Vec3::Y).sample([0.5, 0.25, 0.75]).expect("not along the fibre");
 /// assert!(sample.weight.iter().all(|w| *w > 0.0));
 /// ```
@@ -51,8 +51,8 @@ impl Cauchy {
     /// The model made of this bell.
     #[inline]
     #[must_use]
-    pub const fn model(self) -> Hair<Self> {
-        Hair(self)
+    pub const fn model(self) -> Published<Self> {
+        Published(self)
     }
 
     /// The model made of this bell, with the matched sampler.

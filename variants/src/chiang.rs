@@ -10,7 +10,7 @@ mod reference;
 mod sampling;
 
 pub use far_field::{FarField, OffsetNodes};
-pub use gather::{ChiangGather, ChiangMaterial, ChiangWidths};
+pub use gather::{ChiangMaterial, ChiangPrepared, ChiangWidths};
 pub use params::{ChiangDesc, ChiangParams, Selection, Shifts};
 #[cfg(feature = "textbook")]
 pub use reference::{ChiangConstants, ChiangParameters, ChiangReference, bessel_i0_scaled};
@@ -37,13 +37,13 @@ use hairis::{Broadcast, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Sca
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::{Bsdf, Hit};
+/// use hairis::{Material, Hit};
 /// use hairis_variants::{Chiang, ChiangParams};
-/// let hair = Bsdf::new(&Chiang::MEAN, &ChiangParams::white());
-/// let gather = hair.prepare(Hit::new(Vec3::new(0.6, 0.8, 0.0), 0.3));
-/// let sample = gather.sample([0.5, 0.25, 0.75]).expect("not along the fibre");
+/// let hair = Material::new(&Chiang::MEAN, &ChiangParams::white());
+/// let prepared = hair.prepare(Hit::new(Vec3::new(0.6, 0.8, 0.0), 0.3));
+/// let sample = prepared.sample([0.5, 0.25, 0.75]).expect("not along the fibre");
 /// assert!(sample.weight.iter().all(|w| *w > 0.9 && *w < 1.0)); // hardly any absorption
-/// let spectral = gather.constants().prepared();
+/// let spectral = prepared.constants().prepared();
 /// assert!(spectral.fresnel() > 0.0 && spectral.path_length() < 2.5); // radii
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,7 +62,7 @@ impl Chiang<true> {
 impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
     type Params = ChiangParams;
     type Material<C: Scalar> = ChiangMaterial<C>;
-    type Prepared<C: Scalar> = ChiangGather<C>;
+    type Prepared<C: Scalar> = ChiangPrepared<C>;
 
     const LOBES: &'static [&'static str] = &["r", "tt", "trt", "trrt+"];
 
@@ -75,31 +75,31 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
     fn prepare<L: Lanes, C: Broadcast<L>>(
         material: &ChiangMaterial<C>,
         hit: Hit<L>,
-    ) -> ChiangGather<L::Stored> {
+    ) -> ChiangPrepared<L::Stored> {
         gather::prepare(material, hit)
     }
 
     #[inline(always)]
-    fn weights<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>) -> PerLobe<L> {
+    fn weights<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C>) -> PerLobe<L> {
         if BY_CHANNEL {
-            gather::shares_by_channel(gather)
+            gather::shares_by_channel(prepared)
         } else {
-            gather::mean_shares(gather)
+            gather::mean_shares(prepared)
         }
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(
-        gather: &ChiangGather<C>,
+        prepared: &ChiangPrepared<C>,
         wi: &Direction<L>,
     ) -> PerLobe<LobeEval<L>> {
-        let (pdf, inv_cos) = lobes::densities(gather, wi);
+        let (pdf, inv_cos) = lobes::densities(prepared, wi);
         let mut lobes = [LobeEval::none(); 4];
         let mut p = 0;
         while p < 4 {
             lobes[p] = LobeEval {
                 value: pdf[p] * inv_cos,
-                color: gather::attenuation(gather, p),
+                color: gather::attenuation(prepared, p),
                 pdf: pdf[p],
             };
             p += 1;
@@ -109,17 +109,22 @@ impl<const BY_CHANNEL: bool> LobeModel for Chiang<BY_CHANNEL> {
 
     #[inline(always)]
     fn sample_lobe<L: Lanes, C: Broadcast<L>>(
-        gather: &ChiangGather<C>,
+        prepared: &ChiangPrepared<C>,
         lobe: L::Index,
         xi: [L; 3],
     ) -> Direction<L> {
-        sampling::sample(gather, lobe, xi)
+        sampling::sample(prepared, lobe, xi)
     }
 
     /// Closed form: the attenuations.
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>) -> PerLobe<[L; 3]> {
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C>) -> PerLobe<[L; 3]> {
         let of = gather::attenuation;
-        PerLobe([of(gather, 0), of(gather, 1), of(gather, 2), of(gather, 3)])
+        PerLobe([
+            of(prepared, 0),
+            of(prepared, 1),
+            of(prepared, 2),
+            of(prepared, 3),
+        ])
     }
 }

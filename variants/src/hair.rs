@@ -1,7 +1,7 @@
 //! The published model and its variants in the registry: parameters, names, formulas.
 
 use crate::{Cauchy, Field, Kind, Parameters, Registered, Values};
-use hairis::{Gaussian, Hair, HairDesc, HairParams, Matched, MatchedBell, ParamError};
+use hairis::{Gaussian, HairDesc, HairParams, Matched, MatchedBell, ParamError, Published};
 
 #[cfg(feature = "textbook")]
 use crate::Accuracy;
@@ -131,9 +131,9 @@ impl RegisteredBell for Cauchy {
 
 /// Of the published sampler a weight is a value over a density: its bound is the sum of theirs. A cdf moves by 20 times as
 /// much as the angle on the narrowest lobe, of a degree, and the angle of a rounded direction by 2e-7 rad.
-impl<B: RegisteredBell> Registered for Hair<B> {
+impl<B: RegisteredBell> Registered for Published<B> {
     const NAME: &'static str = B::NAME;
-    const CHOICE: Option<(&'static str, &'static str)> = Some(("sampler", "ou"));
+    const CHOICE: Option<(&'static str, &'static str)> = Some(("sampler", "published"));
     const MODEL: Self = Self(B::BELL);
 
     #[cfg(feature = "textbook")]

@@ -36,9 +36,9 @@ use hairis::{
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::Bsdf;
+/// use hairis::Material;
 /// use hairis_variants::{KajiyaKay, KajiyaKayParams};
-/// let hair = Bsdf::new(&KajiyaKay, &KajiyaKayParams::brown());
+/// let hair = Material::new(&KajiyaKay, &KajiyaKayParams::brown());
 /// let sample = hair.prepare(Vec3::new(0.6, 0.8, 0.0)).sample([0.5, 0.25, 0.75]).expect("not along the fibre");
 /// assert!(sample.weight.iter().all(|w| *w > 0.0));
 /// ```
@@ -71,7 +71,7 @@ lane_struct! {
 
 lane_struct! {
     /// The constants of a shading point of Kajiya and Kay's model.
-    pub struct KajiyaKayGather {
+    pub struct KajiyaKayPrepared {
         /// Sine and cosine of `theta_o`.
         pub theta_o: [C; 2],
         /// Weights of the lobes.
@@ -90,7 +90,7 @@ fn power<L: Lanes>(reciprocal: L::Mask, cos: L) -> L {
 impl LobeModel for KajiyaKay {
     type Params = KajiyaKayParams;
     type Material<C: Scalar> = KajiyaKayMaterial<C>;
-    type Prepared<C: Scalar> = KajiyaKayGather<C>;
+    type Prepared<C: Scalar> = KajiyaKayPrepared<C>;
 
     const LOBES: &'static [&'static str] = &["diffuse", "specular"];
 
@@ -130,7 +130,7 @@ impl LobeModel for KajiyaKay {
     fn prepare<L: Lanes, C: Broadcast<L>>(
         m: &KajiyaKayMaterial<C>,
         hit: Hit<L>,
-    ) -> KajiyaKayGather<L::Stored> {
+    ) -> KajiyaKayPrepared<L::Stored> {
         let Direction {
             sin_theta,
             cos_theta,
@@ -139,7 +139,7 @@ impl LobeModel for KajiyaKay {
         let returned = cos_theta.mul_add(cos_theta, sin_theta * sin_theta * m.grazing.lanes());
         let reciprocal = L::splat(0.5).lt(m.reciprocal.lanes());
         let specular = m.mean[1].lanes() * L::select(reciprocal, returned, returned.sqrt());
-        KajiyaKayGather {
+        KajiyaKayPrepared {
             theta_o: [sin_theta.store(), cos_theta.store()],
             weights: [m.mean[0].lanes().store(), specular.store()],
             material: m.spread::<L>(),
@@ -147,22 +147,22 @@ impl LobeModel for KajiyaKay {
     }
 
     #[inline(always)]
-    fn weights<L: Lanes, C: Broadcast<L>>(gather: &KajiyaKayGather<C>) -> PerLobe<L> {
+    fn weights<L: Lanes, C: Broadcast<L>>(prepared: &KajiyaKayPrepared<C>) -> PerLobe<L> {
         PerLobe::padded(
-            [gather.weights[0].lanes(), gather.weights[1].lanes()],
+            [prepared.weights[0].lanes(), prepared.weights[1].lanes()],
             L::splat(0.0),
         )
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(
-        gather: &KajiyaKayGather<C>,
+        prepared: &KajiyaKayPrepared<C>,
         wi: &Direction<L>,
     ) -> PerLobe<LobeEval<L>> {
         let (c, zero, one) = (L::splat, L::splat(0.0), L::splat(1.0));
         let (m, [sin_o, cos_o]) = (
-            &gather.material,
-            [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()],
+            &prepared.material,
+            [prepared.theta_o[0].lanes(), prepared.theta_o[1].lanes()],
         );
         let (sin_i, cos_i) = (wi.sin_theta, wi.cos_theta);
         let reciprocal = c(0.5).lt(m.reciprocal.lanes());
@@ -197,19 +197,19 @@ impl LobeModel for KajiyaKay {
 
     #[inline(always)]
     fn sample_lobe<L: Lanes, C: Broadcast<L>>(
-        gather: &KajiyaKayGather<C>,
+        prepared: &KajiyaKayPrepared<C>,
         lobe: L::Index,
         xi: [L; 3],
     ) -> Direction<L> {
         let (c, zero, one) = (L::splat, L::splat(0.0), L::splat(1.0));
-        let [sin_o, cos_o] = [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()];
+        let [sin_o, cos_o] = [prepared.theta_o[0].lanes(), prepared.theta_o[1].lanes()];
         let is_diffuse = L::is_index(lobe, 0);
-        let reciprocal = c(0.5).lt(gather.material.reciprocal.lanes());
+        let reciprocal = c(0.5).lt(prepared.material.reciprocal.lanes());
 
         // The polar method for a power of the cosine: 2 for the diffuse lobe, p for the specular one. `rest` is what the
         // squared radius of a point in the disk leaves of 1.
         let (rest, radius_sq) =
-            gaussian_and_complement(log2_one_plus(-xi[1]) * gather.material.inv_exponent.lanes());
+            gaussian_and_complement(log2_one_plus(-xi[1]) * prepared.material.inv_exponent.lanes());
         let (rest, radius_sq) = (
             L::select(is_diffuse, one - xi[1], rest),
             L::select(is_diffuse, xi[1], radius_sq),
@@ -246,11 +246,11 @@ impl LobeModel for KajiyaKay {
     /// The diffuse lobe returns `kd`; the specular one by 32 nodes over the sum `x` of the inclinations, out to where `cos^p x`
     /// is 1e-9 and the light is on the sphere. To 1e-6 of `ks`.
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &KajiyaKayGather<C>) -> PerLobe<[L; 3]> {
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &KajiyaKayPrepared<C>) -> PerLobe<[L; 3]> {
         let (c, zero, half_turn) = (L::splat, L::splat(0.0), L::splat(FRAC_PI_2));
         let (m, [sin_o, cos_o]) = (
-            &gather.material,
-            [gather.theta_o[0].lanes(), gather.theta_o[1].lanes()],
+            &prepared.material,
+            [prepared.theta_o[0].lanes(), prepared.theta_o[1].lanes()],
         );
         let reciprocal = c(0.5).lt(m.reciprocal.lanes());
         let theta_o = half_atan2(sin_o, cos_o, c(1.0)) * c(2.0);

@@ -2,13 +2,13 @@
 //!
 //! | model | content | conserves energy | reciprocal | source |
 //! |---|---|---|---|---|
-//! | [`Cauchy`] in [`hairis::Hair`] | the published model with every Gaussian a Cauchy | no | yes | Ou et al. 2012, section 3.3 |
+//! | [`Cauchy`] in [`hairis::Published`] | the published model with every Gaussian a Cauchy | no | yes | Ou et al. 2012, section 3.3 |
 //! | [`KajiyaKay`] | a diffuse cylinder and one cone of highlights | `kd + ks` of its parameters | one of two forms | Kajiya & Kay 1989 |
 //! | [`Chiang`] | near field, absorption in place of colours | yes | no | Chiang et al. 2016; d'Eon et al. 2011 |
 //!
 //! A model of your own needs no change in the kernels: `examples/lambert_fiber.rs` is one. A model of this crate also has
 //! [`Parameters`], an implementation of [`Registered`], and a line in `registry.rs`, the only list of models. Hosts can then
-//! choose it at run time ([`ModelId`], [`AnyBsdf`]), and the harness and the benches include it.
+//! choose it at run time ([`ModelId`], [`AnyMaterial`]), and the harness and the benches include it.
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 
@@ -29,11 +29,11 @@ pub use parameters::{Draw, Field, Kind, Parameters, Values};
 #[cfg(feature = "textbook")]
 pub use registry::{Accuracy, AnyReference};
 #[cfg(feature = "any")]
-pub use registry::{AnyBsdf, AnyBsdf8, AnyGather, AnyGather8};
+pub use registry::{AnyBsdf, AnyBsdf8, AnyMaterial, AnyMaterial8};
 pub use registry::{ModelId, Registered, Visitor};
 
 /// The all-Cauchy variant of the published model, see [`Cauchy`].
-pub type AllCauchy = hairis::Hair<Cauchy>;
+pub type AllCauchy = hairis::Published<Cauchy>;
 
 /// The all-Cauchy variant with the matched sampler, see [`hairis::Matched`].
 pub type MatchedCauchy = hairis::Matched<Cauchy>;

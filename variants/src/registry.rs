@@ -9,7 +9,7 @@ mod any;
 mod formulas;
 
 use crate::{AllCauchy, Cauchy, Chiang, Field, KajiyaKay, Parameters, Values};
-use hairis::{Gaussian, Hair, Matched, Model};
+use hairis::{Gaussian, Matched, Model, Published};
 
 #[cfg(any(feature = "any", feature = "textbook"))]
 use hairis::{ParamError, PerLobe};
@@ -18,8 +18,8 @@ use {
     glam::Vec3,
     hairis::wide::f32x8,
     hairis::{
-        Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level,
-        LobeEval, LobeEval8, LobeMask, Sample, Sample8, SampleSlices, SampleWeightSlices, Vec3x8,
+        Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Hit, Hit8, LengthError, Level, LobeEval, LobeEval8,
+        LobeMask, Material, Material8, Sample, Sample8, SampleSlices, SampleWeightSlices, Vec3x8,
     },
 };
 
@@ -238,16 +238,16 @@ macro_rules! models {
             /// use hairis_variants::ModelId;
             /// let id = ModelId::find("gaussian", Some("matched")).expect("a model of the list");
             /// let (_, red) = id.presets().find(|(name, _)| *name == "red").expect("a preset");
-            /// let gather = id.bsdf(&red)?.prepare(glam::Vec3::new(0.6, 0.0, 0.8));
-            /// let sample = gather.sample([0.3, 0.6, 0.9]).expect("not along the fibre");
+            /// let bsdf = id.material(&red)?.prepare(glam::Vec3::new(0.6, 0.0, 0.8));
+            /// let sample = bsdf.sample([0.3, 0.6, 0.9]).expect("not along the fibre");
             /// assert!(sample.weight[0] > 0.0 && sample.lobe.index() < id.lobes().len());
             /// # Ok::<(), hairis::ParamError>(())
             /// ```
             #[inline(never)]
-            pub fn bsdf(self, values: &Values) -> Result<AnyBsdf, ParamError> {
+            pub fn material(self, values: &Values) -> Result<AnyMaterial, ParamError> {
                 Ok(match self {
                     $(Self::$variant => {
-                        AnyBsdf::$variant(Bsdf::new(&<$model>::MODEL, &Parameters::from_values(values)?))
+                        AnyMaterial::$variant(Material::new(&<$model>::MODEL, &Parameters::from_values(values)?))
                     }),*
                 })
             }
@@ -263,7 +263,7 @@ macro_rules! models {
 
 models! {
     /// The published model with the published sampler.
-    Gaussian: Hair<Gaussian>;
+    Gaussian: Published<Gaussian>;
     /// The published model, sampler matched with five bands.
     GaussianMatched5: Matched<Gaussian, 5>;
     /// The published model, sampler matched with nine bands.
@@ -300,7 +300,8 @@ impl ModelId {
         matches!(Self::find(self.name(), None), Some(first) if first as usize == self as usize)
     }
 
-    /// The entry of this name, with this word of its [`choice`](Self::choice); without a word, the first of the name.
+    /// The entry of this name, with this word of its [`choice`](Self::choice); without a word, the first of the name. `ou` is
+    /// accepted for `published`.
     ///
     /// ```
     /// use hairis_variants::ModelId;
@@ -310,6 +311,10 @@ impl ModelId {
     #[inline]
     #[must_use]
     pub const fn find(name: &str, word: Option<&str>) -> Option<Self> {
+        let word = match word {
+            Some(word) if same(word, "ou") => Some("published"),
+            word => word,
+        };
         let mut place = 0;
         while place < Self::ALL.len() {
             let id = Self::ALL[place];

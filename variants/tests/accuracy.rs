@@ -8,7 +8,7 @@ use crate::support::{Draws, direction, narrow, packet};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::reference::LobeAt;
-use hairis::{Bsdf, Eval, Gather, Hit, Level, Lobe, LobeEval, Model, PerLobe, Sample};
+use hairis::{Bsdf, Eval, Hit, Level, Lobe, LobeEval, Material, Model, PerLobe, Sample};
 use hairis_variants::KajiyaKay;
 use hairis_variants::chiang::{
     Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, Selection, Shifts,
@@ -44,11 +44,11 @@ fn hit(draws: &mut Draws) -> Hit {
 
 /// Eight directions: half of them samples, half from anywhere, grazing ones included.
 fn directions<M: Model>(
-    gather: &Gather<M>,
+    bsdf: &Bsdf<M>,
     draws: &mut Draws,
 ) -> ([[f32; 3]; 8], [Option<Sample>; 8], [Vec3; 8]) {
     let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
-    let samples = xi.map(|xi| gather.sample(xi));
+    let samples = xi.map(|xi| bsdf.sample(xi));
     let any: [Vec3; 8] =
         core::array::from_fn(|_| direction(inclination(draws), draws.between(-PI, PI)));
     (
@@ -179,9 +179,9 @@ impl Errors {
 }
 
 /// Results of one lane, and of eight.
-fn evals<M: Model>(gather: &Gather<M>, wi: &[Vec3; 8]) -> [[Eval; 2]; 8] {
-    let eight = gather.eval_pdf8_at(Level::detect(), &packet(wi));
-    core::array::from_fn(|k| [gather.eval_pdf(wi[k]), eight.lane(k)])
+fn evals<M: Model>(bsdf: &Bsdf<M>, wi: &[Vec3; 8]) -> [[Eval; 2]; 8] {
+    let eight = bsdf.eval_pdf8_at(Level::detect(), &packet(wi));
+    core::array::from_fn(|k| [bsdf.eval_pdf(wi[k]), eight.lane(k)])
 }
 
 /// Roughnesses from one end to the other, each end more often than chance.
@@ -217,7 +217,7 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
         };
         let params = ChiangParams::new(&desc).unwrap();
         let hit = hit(&mut draws);
-        let gather = Bsdf::new(&Chiang::MEAN, &params).prepare(hit);
+        let bsdf = Material::new(&Chiang::MEAN, &params).prepare(hit);
         let p = ChiangParameters::<f64>::from(&params);
         let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
         let book = ChiangReference::prepare(&p, Selection::Mean, wo, f64::from(hit.h));
@@ -225,7 +225,7 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
         // A passage multiplies by exp(-sigma_a l), whose exponent takes six roundings; up to three passages.
         for lobe in Lobe::ALL {
             for c in 0..3 {
-                let (got, want) = (f64::from(gather.albedo()[lobe][c]), book.albedo()[lobe][c]);
+                let (got, want) = (f64::from(bsdf.albedo()[lobe][c]), book.albedo()[lobe][c]);
                 let depth = lobe.index() as f64 * p.sigma_a[c] * book.path_length();
                 if want > LEAST {
                     attenuation.see(got / want - 1.0, 2e-6 + 3.6e-7 * depth, || {
@@ -237,7 +237,7 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
         // Peaks are as steep as they are narrow; beyond exp(-12) of the peak errors grow with the exponent.
         let (v, width) = (p.variances(), p.variances()[Lobe::TT].sqrt().min(p.scale()));
         let shares = book.probabilities();
-        let (xi, samples, wi) = directions(&gather, &mut draws);
+        let (xi, samples, wi) = directions(&bsdf, &mut draws);
         let bounds_at = |d: [f64; 3]| {
             let theta_i = d[0].atan2(d[1].hypot(d[2]));
             Lobe::ALL.map(|lobe| {
@@ -245,12 +245,12 @@ fn the_energy_conserving_fibre_is_as_accurate_as_its_widths_allow() {
                 (5e-6 + 5e-7 / width) * (2.0 * half * half / v[lobe] / 12.0).max(1.0)
             })
         };
-        for (k, evals) in evals(&gather, &wi).into_iter().enumerate() {
+        for (k, evals) in evals(&bsdf, &wi).into_iter().enumerate() {
             let d = double(wi[k]);
             let bounds = bounds_at(d);
             let at = || format!("{:?} {desc:?} {hit:?}", wi[k]);
             errors.see_eval(
-                (gather.lobes(wi[k]), evals),
+                (bsdf.lobes(wi[k]), evals),
                 (book.lobes(d), book.eval_pdf(d)),
                 (bounds, shares),
                 &at,
@@ -328,11 +328,11 @@ fn kajiya_and_kay_s_fibre_is_as_accurate_as_its_exponent_allows() {
             };
             let params = KajiyaKayParams::new(&desc).unwrap();
             let hit = hit(&mut draws);
-            let gather = Bsdf::new(&KajiyaKay, &params).prepare(hit);
+            let bsdf = Material::new(&KajiyaKay, &params).prepare(hit);
             let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
             let book = KajiyaKayReference::prepare(&(&params).into(), wo);
             let theta_o = wo[0].atan2(wo[1].hypot(wo[2]));
-            let (_, samples, wi) = directions(&gather, &mut draws);
+            let (_, samples, wi) = directions(&bsdf, &mut draws);
             let bounds_at = |d: [f64; 3]| {
                 let sum = theta_o + d[0].atan2(d[1].hypot(d[2]));
                 // cos^p changes by p tan(sum) per radian; its logarithm is rounded; the density has 1 / cos theta_i.
@@ -341,13 +341,13 @@ fn kajiya_and_kay_s_fibre_is_as_accurate_as_its_exponent_allows() {
                     - 4e-7 * p * sum.cos().max(1e-300).ln();
                 [1e-6, specular, 1.0, 1.0]
             };
-            for (k, evals) in evals(&gather, &wi).into_iter().enumerate() {
+            for (k, evals) in evals(&bsdf, &wi).into_iter().enumerate() {
                 let d = double(wi[k]);
                 let bounds = bounds_at(d);
                 let at = || format!("{:?} {desc:?} {hit:?}", wi[k]);
                 let want = book.eval_pdf(d);
                 errors.see_eval(
-                    (gather.lobes(wi[k]), evals),
+                    (bsdf.lobes(wi[k]), evals),
                     (book.lobes(d), want),
                     (bounds, book.probabilities()),
                     &at,

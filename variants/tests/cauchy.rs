@@ -1,7 +1,7 @@
 //! Properties of the Cauchy variant alone: its factors, and weights that do not vary with the azimuth.
 
 use crate::support::{Draws, direction};
-use hairis::{Bell, Bsdf, Hair, HairDesc, HairParams, Lobe, LobeMask, ParamError};
+use hairis::{Bell, HairDesc, HairParams, Lobe, LobeMask, Material, ParamError, Published};
 use hairis_variants::{AllCauchy, Cauchy};
 
 #[test]
@@ -24,7 +24,11 @@ fn width_factors_match_what_they_are_named_for() {
             "{bell:?}"
         );
     }
-    assert_eq!(AllCauchy::default(), Hair(Cauchy::PAPER), "the default");
+    assert_eq!(
+        AllCauchy::default(),
+        Published(Cauchy::PAPER),
+        "the default"
+    );
 }
 
 #[test]
@@ -62,8 +66,8 @@ fn a_factor_is_the_same_as_wider_parameters() {
         gamma_g: d.gamma_g * 2.0,
         ..d
     };
-    let wide = Bsdf::new(&Cauchy::PAPER.model(), &HairParams::new(&wide).unwrap());
-    let factor = Bsdf::new(
+    let wide = Material::new(&Cauchy::PAPER.model(), &HairParams::new(&wide).unwrap());
+    let factor = Material::new(
         &Cauchy::with_width_factor(2.0).unwrap().model(),
         &HairParams::default(),
     );
@@ -78,10 +82,10 @@ fn a_factor_is_the_same_as_wider_parameters() {
 fn a_lobe_alone_has_weights_of_w_alone() {
     // The sampler's density is the lobe but for W: at one theta the weight is one number, whatever the azimuth.
     let mut draws = Draws(61);
-    let gather =
-        Bsdf::new(&Cauchy::PAPER.model(), &HairParams::default()).prepare(direction(0.5, 1.0));
+    let bsdf =
+        Material::new(&Cauchy::PAPER.model(), &HairParams::default()).prepare(direction(0.5, 1.0));
     for lobe in Lobe::ALL {
-        let alone = gather.with_lobes(LobeMask::of(&[lobe]));
+        let alone = bsdf.with_lobes(LobeMask::of(&[lobe]));
         for _ in 0..200 {
             let xi_theta = draws.xi();
             let mut weights = (0..8)

@@ -2,7 +2,7 @@
 //! field.
 
 use crate::support::Draws;
-use hairis::{Bsdf, Hit, LobeMask};
+use hairis::{Hit, LobeMask, Material};
 use hairis_conformance::{
     Claims, FormulaReference, Materials, Reference, Subject, Tolerance, conformance,
 };
@@ -230,11 +230,11 @@ fn the_far_field_is_the_mean_over_h_and_conserves_energy() {
         sigma_a: [0.0; 3],
         ..ChiangDesc::default()
     });
-    let bsdf = Bsdf::new(&Chiang::MEAN, &clear);
+    let material = Material::new(&Chiang::MEAN, &clear);
     let mut draws = Draws(0xfa);
     for _ in 0..20 {
         let wo = crate::support::direction(draws.between(-1.5, 1.5), draws.between(-3.1, 3.1));
-        let far = FarField::prepare(&bsdf, &nodes, wo);
+        let far = FarField::prepare(&material, &nodes, wo);
         let returned: f32 = far.albedo().0.iter().map(|lobe| lobe[1]).sum();
         assert!(
             (returned - 1.0).abs() < 2e-6,
@@ -257,7 +257,8 @@ fn the_far_field_is_the_mean_over_h_and_conserves_energy() {
                 let (mut mean, mut square) = (0.0, 0.0);
                 for _ in 0..n {
                     let pdf = f64::from(
-                        bsdf.prepare(Hit::new(wo, 2.0 * draws.xi() - 1.0))
+                        material
+                            .prepare(Hit::new(wo, 2.0 * draws.xi() - 1.0))
                             .pdf(sample.wi),
                     );
                     mean += pdf / f64::from(n);
@@ -285,22 +286,22 @@ fn the_far_field_takes_as_many_nodes_as_its_rule_says() {
             "beta_n {beta_n}: {} nodes",
             desc.far_field_nodes()
         );
-        let bsdf = Bsdf::new(&Chiang::MEAN, &params(desc));
+        let material = Material::new(&Chiang::MEAN, &params(desc));
         let wo = crate::support::direction(0.5, 0.4);
-        let exact = FarField::prepare(&bsdf, &reference, wo);
+        let exact = FarField::prepare(&material, &reference, wo);
         let pdf = |wi| match packets {
             1 => {
-                FarField::prepare(&bsdf, &OffsetNodes::<1>::new(), wo)
+                FarField::prepare(&material, &OffsetNodes::<1>::new(), wo)
                     .eval_pdf(wi)
                     .pdf
             }
             2 => {
-                FarField::prepare(&bsdf, &OffsetNodes::<2>::new(), wo)
+                FarField::prepare(&material, &OffsetNodes::<2>::new(), wo)
                     .eval_pdf(wi)
                     .pdf
             }
             _ => {
-                FarField::prepare(&bsdf, &OffsetNodes::<4>::new(), wo)
+                FarField::prepare(&material, &OffsetNodes::<4>::new(), wo)
                     .eval_pdf(wi)
                     .pdf
             }

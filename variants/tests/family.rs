@@ -2,16 +2,16 @@
 
 use crate::rows::{MATCHED, PUBLISHED};
 use hairis::reference::Shape;
-use hairis::{Hair, Matched};
-use hairis_conformance::published::{Family, Published, Rows};
+use hairis::{Matched, Published};
+use hairis_conformance::published::{Family, FamilyModel, Rows};
 use hairis_conformance::{conformance, published};
 use hairis_variants::Cauchy;
 
 /// The published sampler, which follows this model exactly.
 pub(crate) struct PublishedHair;
 
-impl Published for PublishedHair {
-    type Model = Hair<Cauchy>;
+impl FamilyModel for PublishedHair {
+    type Model = Published<Cauchy>;
     type Bell = Cauchy;
     const SHAPE: Shape = Shape::Cauchy;
     const OVER_CAUCHY: f64 = 1.0;
@@ -35,7 +35,7 @@ impl Published for PublishedHair {
 /// The matched sampler.
 pub(crate) struct Bands;
 
-impl Published for Bands {
+impl FamilyModel for Bands {
     type Model = Matched<Cauchy>;
     type Bell = Cauchy;
     const SHAPE: Shape = Shape::Cauchy;

@@ -7,7 +7,7 @@ mod example;
 use crate::support::{Draws, direction, double, lanes_of, packet};
 use example::{CONE, DIFFUSE, LambertFiber, Params, pdf_integral};
 use glam::Vec3;
-use hairis::{Bsdf, Bsdf8, EvalSlices, Hit, Level, Lobe, LobeMask};
+use hairis::{EvalSlices, Hit, Level, Lobe, LobeMask, Material, Material8};
 use hairis_conformance::{Claims, Materials, Subject};
 
 /// The example under the suite that every model passes.
@@ -113,21 +113,21 @@ fn the_example_runs() {
 fn the_density_integrates_to_one() {
     for width in [0.01, 0.1, 1.0] {
         for theta in [0.0, 0.7, -1.5] {
-            let gather =
-                Bsdf::new(&LambertFiber, &Params { width, ..FIBER }).prepare(direction(theta, 0.3));
+            let prepared = Material::new(&LambertFiber, &Params { width, ..FIBER })
+                .prepare(direction(theta, 0.3));
             for lobes in [
                 LobeMask::ALL,
                 LobeMask::of(&[DIFFUSE]),
                 LobeMask::of(&[CONE]),
             ] {
-                let integral = pdf_integral(&gather.with_lobes(lobes));
+                let integral = pdf_integral(&prepared.with_lobes(lobes));
                 assert!(
                     (integral - 1.0).abs() < 2e-4,
                     "{lobes:?} width {width} theta {theta}: {integral}"
                 );
             }
             assert_eq!(
-                gather.with_lobes(LobeMask::NONE).pdf(Vec3::Y),
+                prepared.with_lobes(LobeMask::NONE).pdf(Vec3::Y),
                 0.0,
                 "no lobe, no density"
             );
@@ -138,15 +138,15 @@ fn the_density_integrates_to_one() {
 #[test]
 fn it_is_what_its_formula_says() {
     let mut draws = Draws(71);
-    let bsdf = Bsdf::new(&LambertFiber, &FIBER);
+    let material = Material::new(&LambertFiber, &FIBER);
     for _ in 0..2000 {
         let mut any = || direction(draws.between(-1.5, 1.5), draws.between(-3.1, 3.1));
         let (wo, wi) = (any(), any());
         let off = double(wo)[0] + double(wi)[0];
         let w = f64::from(FIBER.width);
         let pi_sq = core::f64::consts::PI.powi(2);
-        let got = bsdf.prepare(wo).eval(wi);
-        let back = bsdf.prepare(wi).eval(wo);
+        let got = material.prepare(wo).eval(wi);
+        let back = material.prepare(wi).eval(wo);
         for c in 0..3 {
             let cone = f64::from(FIBER.ks[c]) * w / (2.0 * pi_sq * (off * off + w * w));
             let want = f64::from(FIBER.kd[c]) / pi_sq + cone;
@@ -168,13 +168,13 @@ fn weights_are_bounded_and_estimate_the_albedo() {
     let shares = [0.9 / 2.4, 1.5 / 2.4];
     let mut draws = Draws(72);
     for theta in [0.0, 0.9, -1.4] {
-        let gather = Bsdf::new(&LambertFiber, &FIBER).prepare(direction(theta, 1.0));
+        let prepared = Material::new(&LambertFiber, &FIBER).prepare(direction(theta, 1.0));
         let mut sum = 0.0;
         let count = 1 << 16;
         let limit =
             (4.0 * FIBER.kd[0] / core::f32::consts::PI / shares[0]).max(FIBER.ks[0] / shares[1]);
         for _ in 0..count / 8 {
-            let eight = gather.sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
+            let eight = prepared.sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
             for s in (0..8).filter_map(|lane| eight.lane(lane)) {
                 assert!(
                     s.weight[0] <= limit * 1.000_01,
@@ -184,7 +184,7 @@ fn weights_are_bounded_and_estimate_the_albedo() {
                 sum += f64::from(s.weight[0]);
             }
         }
-        let (mean, albedo) = (sum / f64::from(count), gather.albedo());
+        let (mean, albedo) = (sum / f64::from(count), prepared.albedo());
         let want = f64::from(albedo[DIFFUSE][0] + albedo[CONE][0]);
         // Weights are below 1.4: the standard error of 65 536 is below 0.003.
         assert!(
@@ -198,14 +198,16 @@ fn weights_are_bounded_and_estimate_the_albedo() {
 fn the_cdf_of_the_cone_is_xi() {
     let (theta, width) = (0.6_f64, f64::from(FIBER.width));
     let wo = direction(theta, 0.0);
-    let gather = Bsdf::new(&LambertFiber, &FIBER)
+    let prepared = Material::new(&LambertFiber, &FIBER)
         .prepare(wo)
         .with_lobes(LobeMask::of(&[CONE]));
     let angle = |sin: f64| ((sin + double(wo)[0]) / width).atan();
     let mut draws = Draws(73);
     for _ in 0..2000 {
         let xi = draws.xi3();
-        let Some(s) = gather.sample(xi) else { continue };
+        let Some(s) = prepared.sample(xi) else {
+            continue;
+        };
         let cdf = (angle(double(s.wi)[0]) - angle(-1.0)) / (angle(1.0) - angle(-1.0));
         assert!(
             (cdf - f64::from(xi[1])).abs() < 2e-6,
@@ -220,7 +222,7 @@ fn every_service_of_the_crate_works_on_it() {
     let mut draws = Draws(74);
     let fibers: [_; 8] = core::array::from_fn(|_| {
         let width = crate::support::narrow(draws.scale(0.01, 1.0));
-        Bsdf::new(
+        Material::new(
             &LambertFiber,
             &Params {
                 kd: draws.xi3(),
@@ -235,7 +237,7 @@ fn every_service_of_the_crate_works_on_it() {
         core::array::from_fn(|_| any()),
     );
     for level in Level::available() {
-        let eight = Bsdf8::pack(fibers.each_ref()).prepare8_at(level, &packet(&wo));
+        let eight = Material8::pack(fibers.each_ref()).prepare8_at(level, &packet(&wo));
         let evals = eight.eval_pdf8_at(level, &packet(&wi));
         for lane in 0..8 {
             let one = eight.lane(lane);
@@ -279,7 +281,7 @@ fn every_service_of_the_crate_works_on_it() {
 
 #[test]
 fn it_is_total() {
-    let gather = |wo| Bsdf::new(&LambertFiber, &FIBER).prepare(wo);
+    let prepared = |wo| Material::new(&LambertFiber, &FIBER).prepare(wo);
     for wo in [
         Vec3::ZERO,
         Vec3::X,
@@ -294,7 +296,7 @@ fn it_is_total() {
             Vec3::splat(1e-44),
             Vec3::Y,
         ] {
-            let e = gather(wo).eval_pdf(wi);
+            let e = prepared(wo).eval_pdf(wi);
             assert!(
                 e.pdf.is_finite() && e.value[0].is_finite() && e.pdf >= 0.0,
                 "{wo:?} {wi:?}: {e:?}"
@@ -305,7 +307,7 @@ fn it_is_total() {
             );
         }
         for xi in [0.0, 0.5, 1.0 - f32::EPSILON / 2.0] {
-            if let Some(s) = gather(wo).sample([xi, xi, xi]) {
+            if let Some(s) = prepared(wo).sample([xi, xi, xi]) {
                 assert!(
                     s.weight[0].is_finite() && (s.wi.length() - 1.0).abs() < 1e-6,
                     "{wo:?} {xi}: {s:?}"

@@ -3,9 +3,10 @@
 use crate::support::{Draws, direction, lanes_of, packet};
 use core::fmt::Debug;
 use glam::Vec3;
-use hairis::{Bsdf, Bsdf8, EvalSlices, HairParams, Hit, Level, Lobe, LobeMask, ParamError};
+use hairis::{EvalSlices, HairParams, Hit, Level, Lobe, LobeMask, Material, Material8, ParamError};
 use hairis_variants::{
-    AnyBsdf8, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters, Registered, Visitor,
+    AnyMaterial8, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters, Registered,
+    Visitor,
 };
 
 #[test]
@@ -100,8 +101,8 @@ impl Visitor for Compare {
             .map(|(_, params)| *params)
             .collect();
         let presets: [M::Params; 8] = core::array::from_fn(|i| presets[i % presets.len()]);
-        let bsdfs = presets.map(|params| Bsdf::new(&M::MODEL, &params));
-        let any = presets.map(|params| id.bsdf(&params.values()).expect("a preset is legal"));
+        let materials = presets.map(|params| Material::new(&M::MODEL, &params));
+        let any = presets.map(|params| id.material(&params.values()).expect("a preset is legal"));
         let mut some = || direction(draws.between(-1.5, 1.5), draws.between(-3.1, 3.1));
         let (wo, wi): ([Vec3; 8], [Vec3; 8]) = (
             core::array::from_fn(|_| some()),
@@ -112,7 +113,7 @@ impl Visitor for Compare {
             wo: wo[0].into(),
             h: 0.4,
         };
-        let (one, chosen) = (bsdfs[0].prepare(hit), any[0].prepare(hit));
+        let (one, chosen) = (materials[0].prepare(hit), any[0].prepare(hit));
         assert_eq!(chosen.model(), id, "the entry it came from");
         for lobes in [LobeMask::ALL, LobeMask::of(&[Lobe::slot(0)])] {
             let (one, chosen) = (one.with_lobes(lobes), chosen.with_lobes(lobes));
@@ -165,8 +166,8 @@ impl Visitor for Compare {
         .unwrap();
         same(&(value, pdf), &(value_of_type, pdf_of_type));
 
-        let eight = Bsdf8::pack(bsdfs.each_ref()).prepare8(&packet(&wo));
-        let chosen = AnyBsdf8::pack(any.each_ref())
+        let eight = Material8::pack(materials.each_ref()).prepare8(&packet(&wo));
+        let chosen = AnyMaterial8::pack(any.each_ref())
             .expect("of one model")
             .prepare8(&packet(&wo));
         same(
@@ -190,7 +191,7 @@ impl Visitor for Compare {
             &chosen.lane(3).eval_pdf(wi[3]),
             &eight.lane(3).eval_pdf(wi[3]),
         );
-        same(&any[1].conserving_scale(), &bsdfs[1].conserving_scale());
+        same(&any[1].conserving_scale(), &materials[1].conserving_scale());
     }
 }
 
@@ -213,7 +214,7 @@ fn a_model_chosen_at_run_time_is_the_model() {
 #[test]
 fn different_models_do_not_share_lanes() {
     let [a, b] = [ModelId::Gaussian, ModelId::Cauchy]
-        .map(|id| id.bsdf(&id.defaults()).expect("the default is legal"));
-    assert!(AnyBsdf8::pack([&a, &a, &a, &b, &a, &a, &a, &a]).is_none());
-    assert!(AnyBsdf8::pack([&a; 8]).is_some());
+        .map(|id| id.material(&id.defaults()).expect("the default is legal"));
+    assert!(AnyMaterial8::pack([&a, &a, &a, &b, &a, &a, &a, &a]).is_none());
+    assert!(AnyMaterial8::pack([&a; 8]).is_some());
 }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{
-    Bsdf, Eval, EvalSlices, Hit, Level, Lobe, LobeMask, Model, SampleSlices, SampleWeightSlices,
+    Material, Eval, EvalSlices, Hit, Level, Lobe, LobeMask, Model, SampleSlices, SampleWeightSlices,
     Vec3x8,
 };
 use hairis_variants::{ModelId, Parameters, Registered, Visitor};
@@ -80,23 +80,23 @@ impl Visitor for Everything<'_> {
             }
             params = M::Params::from_values(&old.with(field.name, new)).unwrap_or(params);
         }
-        calls(&Bsdf::new(&M::MODEL, &params), numbers);
+        calls(&Material::new(&M::MODEL, &params), numbers);
     }
 }
 
-fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
-    let gather = bsdf.prepare(Hit::new(numbers.direction(), 2.0 * numbers.unit() - 1.0));
-    let gather = if numbers.byte() < 64 {
-        gather.with_lobes(LobeMask::of(&[Lobe::slot(numbers.byte() % 4)]))
+fn calls<M: Model>(material: &Material<M>, numbers: &mut Numbers<'_>) {
+    let bsdf = material.prepare(Hit::new(numbers.direction(), 2.0 * numbers.unit() - 1.0));
+    let bsdf = if numbers.byte() < 64 {
+        bsdf.with_lobes(LobeMask::of(&[Lobe::slot(numbers.byte() % 4)]))
     } else {
-        gather
+        bsdf
     };
     let wi: [Vec3; 8] = core::array::from_fn(|_| numbers.direction());
     let xi: [[f32; 3]; 8] =
         core::array::from_fn(|_| [numbers.unit(), numbers.unit(), numbers.unit()]);
     for (wi, xi) in wi.iter().zip(xi) {
-        sound_eval(gather.eval_pdf(*wi));
-        gather.lobes(*wi).0.iter().for_each(|lobe| {
+        sound_eval(bsdf.eval_pdf(*wi));
+        bsdf.lobes(*wi).0.iter().for_each(|lobe| {
             sound(&[
                 lobe.value,
                 lobe.pdf,
@@ -105,7 +105,7 @@ fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
                 lobe.color[2],
             ])
         });
-        if let Some(sample) = gather.sample(xi) {
+        if let Some(sample) = bsdf.sample(xi) {
             sound(&sample.value);
             sound(&sample.weight);
             sound(&[sample.pdf]);
@@ -115,7 +115,7 @@ fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
             );
         }
     }
-    gather.albedo().0.iter().for_each(|lobe| sound(lobe));
+    bsdf.albedo().0.iter().for_each(|lobe| sound(lobe));
     let (wi8, xi8) = (
         Vec3x8::from(wi),
         core::array::from_fn(|row| f32x8::new(xi.map(|xi| xi[row]))),
@@ -126,9 +126,9 @@ fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
     let (wi, xi) = (columns(wi.map(Vec3::into)), columns(xi));
     let len = usize::from(numbers.byte()) % 9;
     for level in Level::available() {
-        let eval = gather.eval_pdf8_at(level, &wi8);
-        let samples = gather.sample8_at(level, &xi8);
-        let points = bsdf.prepare8_at(level, &wi8);
+        let eval = bsdf.eval_pdf8_at(level, &wi8);
+        let samples = bsdf.sample8_at(level, &xi8);
+        let points = material.prepare8_at(level, &wi8);
         for lane in 0..8 {
             sound_eval(eval.lane(lane));
             if let Some(sample) = samples.lane(lane) {
@@ -143,7 +143,7 @@ fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
             value: [r, g, b],
             pdf: &mut pdf[..len],
         };
-        gather
+        bsdf
             .eval_pdf_batch_at(level, [&wi[0][..len], &wi[1][..len], &wi[2][..len]], out)
             .expect("one length");
         for i in 0..len {
@@ -164,7 +164,7 @@ fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
             weight: [x, y, z],
             slot,
         };
-        gather
+        bsdf
             .sample_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
             .expect("one length");
         rows[3..10].iter().for_each(|row| sound(row));
@@ -175,7 +175,7 @@ fn calls<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers<'_>) {
             pdf,
             weight: [x, y, z],
         };
-        gather
+        bsdf
             .sample_weight_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
             .expect("one length");
         let same = weights

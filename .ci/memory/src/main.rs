@@ -5,8 +5,8 @@
 
 use hairis::wide::f32x8;
 use hairis::{
-    Bsdf, EvalSlices, Gather, Gaussian, Hair, HairParams, Level, Matched, Model, SampleSlices,
-    SampleWeightSlices, Vec3x8,
+    Bsdf, EvalSlices, Gaussian, HairParams, Level, Matched, Material, Model, Published,
+    SampleSlices, SampleWeightSlices, Vec3x8,
 };
 
 /// Numbers in [0, 1), by a linear congruence.
@@ -24,7 +24,7 @@ impl Numbers {
     }
 }
 
-fn slices<M: Model>(gather: &Gather<M>, numbers: &mut Numbers) -> u64 {
+fn slices<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers) -> u64 {
     let mut calls = 0;
     for level in Level::available() {
         for len in 0..70 {
@@ -43,14 +43,11 @@ fn slices<M: Model>(gather: &Gather<M>, numbers: &mut Numbers) -> u64 {
                     value: [&mut *r, &mut *g, &mut *b],
                     pdf: &mut *pdf,
                 };
-                gather
-                    .eval_pdf_batch_at(level, input, out)
+                bsdf.eval_pdf_batch_at(level, input, out)
                     .expect("one length");
-                gather
-                    .eval_batch_at(level, input, [&mut *x, &mut *y, &mut *z])
+                bsdf.eval_batch_at(level, input, [&mut *x, &mut *y, &mut *z])
                     .expect("one length");
-                gather
-                    .pdf_batch_at(level, input, &mut *slot)
+                bsdf.pdf_batch_at(level, input, &mut *slot)
                     .expect("one length");
                 let same = r
                     .iter()
@@ -65,9 +62,7 @@ fn slices<M: Model>(gather: &Gather<M>, numbers: &mut Numbers) -> u64 {
                     weight: [x, y, z],
                     slot,
                 };
-                gather
-                    .sample_batch_at(level, input, out)
-                    .expect("one length");
+                bsdf.sample_batch_at(level, input, out).expect("one length");
                 let [u, v, w, pdf, x, y, z, ..] =
                     output.each_mut().map(|block| &mut block[offset..]);
                 let out = SampleWeightSlices {
@@ -75,8 +70,7 @@ fn slices<M: Model>(gather: &Gather<M>, numbers: &mut Numbers) -> u64 {
                     pdf,
                     weight: [x, y, z],
                 };
-                gather
-                    .sample_weight_batch_at(level, input, out)
+                bsdf.sample_weight_batch_at(level, input, out)
                     .expect("one length");
                 calls += 5;
             }
@@ -86,7 +80,7 @@ fn slices<M: Model>(gather: &Gather<M>, numbers: &mut Numbers) -> u64 {
 }
 
 /// Packets from boxes: loads and stores of whole vectors.
-fn packets<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers) -> u64 {
+fn packets<M: Model>(material: &Material<M>, numbers: &mut Numbers) -> u64 {
     let mut calls = 0;
     for level in Level::available() {
         for _ in 0..16 {
@@ -101,7 +95,7 @@ fn packets<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers) -> u64 {
             let xi = Box::new(core::array::from_fn(|_| {
                 f32x8::new(core::array::from_fn(|_| numbers.next()))
             }));
-            let points = Box::new(bsdf.prepare8_at(level, &*wi));
+            let points = Box::new(material.prepare8_at(level, &*wi));
             let all = [
                 points.eval_pdf8_at(level, &wi).pdf,
                 points.sample8_at(level, &xi).pdf,
@@ -129,8 +123,8 @@ fn main() {
     }
     let params = HairParams::brown();
     let (hair, matched) = (
-        Bsdf::new(&Hair(Gaussian), &params),
-        Bsdf::new(&Matched::<_>(Gaussian), &params),
+        Material::new(&Published(Gaussian), &params),
+        Material::new(&Matched::<_>(Gaussian), &params),
     );
     let calls = slices(&hair.prepare(glam::Vec3::new(0.6, 0.8, 0.0)), &mut numbers)
         + slices(

@@ -10,9 +10,9 @@ use core::array::from_fn;
 use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{
-    Broadcast, Bsdf, Bsdf8, EvalSlices, FiberFrame, FiberFrame8, Gather, Gather8, Gaussian, Hair,
-    HairParams, Hit, Hit8, Kernel, Lanes, Level, Lobe, LobeMask, Matched, Model, SampleSlices,
-    Vec3x, Vec3x8, math, random,
+    Broadcast, Bsdf, Bsdf8, EvalSlices, FiberFrame, FiberFrame8, Gaussian, HairParams, Hit, Hit8,
+    Kernel, Lanes, Level, Lobe, LobeMask, Matched, Material, Material8, Model, Published,
+    SampleSlices, Vec3x, Vec3x8, math, random,
 };
 use hairis_variants::chiang::{FarField, OffsetNodes};
 use hairis_variants::{
@@ -52,7 +52,7 @@ fn directions8(numbers: &mut Numbers) -> Vec3x8 {
 
 /// Eight gather points, lane by lane, at a level.
 struct Hits<M: Model<Params: Parameters>> {
-    materials: [Bsdf<M>; 8],
+    materials: [Material<M>; 8],
     hits: [Hit8; HITS],
     wi: [Vec3x8; PACKETS],
     xi: [[f32x8; 3]; PACKETS],
@@ -75,8 +75,8 @@ impl<M: Model<Params: Parameters>> Hits<M> {
         let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
         Self {
             materials: from_fn(|lane| match lane {
-                7 => Bsdf::new(&model, &narrow),
-                _ => Bsdf::new(&model, &presets[lane % presets.len()].1),
+                7 => Material::new(&model, &narrow),
+                _ => Material::new(&model, &presets[lane % presets.len()].1),
             }),
             hits: from_fn(|_| {
                 let wo = directions8(&mut numbers);
@@ -95,7 +95,7 @@ impl<M: Model<Params: Parameters>> Hits<M> {
         Hit::new(wo.lane(lane), h.as_array()[lane])
     }
 
-    fn each_scalar(&self, mut f: impl FnMut(&Gather<M>)) {
+    fn each_scalar(&self, mut f: impl FnMut(&Bsdf<M>)) {
         for index in 0..HITS {
             for lane in 0..8 {
                 f(&self.materials[lane].prepare(self.hit(index, lane)));
@@ -107,25 +107,21 @@ impl<M: Model<Params: Parameters>> Hits<M> {
     fn scalar(&self, model: &str) {
         let [mut eval, mut lobes, mut sample, mut albedo, mut some] = [Hash::NEW; 5];
         let mask = LobeMask::of(&[Lobe::slot(1), Lobe::slot(0)]);
-        self.each_scalar(|gather| {
+        self.each_scalar(|bsdf| {
             for (wi, xi) in self.wi.iter().zip(&self.xi) {
                 for lane in 0..8 {
                     let (wi, xi) = (wi.lane(lane), from_fn(|i| xi[i].as_array()[lane]));
-                    eval.eval(gather.eval_pdf(wi));
-                    eval.numbers(&gather.eval(wi));
-                    eval.number(gather.pdf(wi));
-                    lobes.lobes(&gather.lobes(wi));
-                    sample.sample(gather.sample(xi));
-                    some.sample(gather.with_lobes(mask).sample(xi));
-                    some.eval(gather.with_lobes(mask).eval_pdf(wi));
+                    eval.eval(bsdf.eval_pdf(wi));
+                    eval.numbers(&bsdf.eval(wi));
+                    eval.number(bsdf.pdf(wi));
+                    lobes.lobes(&bsdf.lobes(wi));
+                    sample.sample(bsdf.sample(xi));
+                    some.sample(bsdf.with_lobes(mask).sample(xi));
+                    some.eval(bsdf.with_lobes(mask).eval_pdf(wi));
                 }
             }
-            for gather in [gather, &gather.conserving()] {
-                gather
-                    .albedo()
-                    .0
-                    .iter()
-                    .for_each(|lobe| albedo.numbers(lobe));
+            for bsdf in [bsdf, &bsdf.conserving()] {
+                bsdf.albedo().0.iter().for_each(|lobe| albedo.numbers(lobe));
             }
         });
         let print = |hash: Hash, entry| hash.print("scalar", entry, model, "one-lane");
@@ -144,11 +140,11 @@ impl<M: Model<Params: Parameters>> Hits<M> {
     /// Calls on one gather point, at a level.
     fn one_point(&self, level: Level, model: &str) {
         let [mut eval, mut lobes, mut sample, mut slices, mut samples] = [Hash::NEW; 5];
-        self.each_scalar(|gather| {
+        self.each_scalar(|bsdf| {
             for (wi, xi) in self.wi.iter().zip(&self.xi) {
-                eval.eval8(&gather.eval_pdf8_at(level, wi));
-                lobes.lobes8(&gather.lobes8_at(level, wi));
-                sample.sample8(&gather.sample8_at(level, xi));
+                eval.eval8(&bsdf.eval_pdf8_at(level, wi));
+                lobes.lobes8(&bsdf.lobes8_at(level, wi));
+                sample.sample8(&bsdf.sample8_at(level, xi));
             }
         });
         let mut numbers = Numbers(0x2545_f491_4f6c_dd1d);
@@ -160,14 +156,14 @@ impl<M: Model<Params: Parameters>> Hits<M> {
                 (wi[row][i], xi[row][i]) = (direction[row], uniform[row]);
             }
         }
-        self.each_scalar(|gather| {
-            hash_slices(gather, level, &wi, &mut slices);
-            hash_samples(gather, level, &xi, &mut samples);
+        self.each_scalar(|bsdf| {
+            hash_slices(bsdf, level, &wi, &mut slices);
+            hash_samples(bsdf, level, &xi, &mut samples);
         });
         let print = |hash: Hash, entry| hash.print(rounding(level), entry, model, level.name());
-        print(eval, "Gather::eval_pdf8");
-        print(lobes, "Gather::lobes8");
-        print(sample, "Gather::sample8");
+        print(eval, "Bsdf::eval_pdf8");
+        print(lobes, "Bsdf::lobes8");
+        print(sample, "Bsdf::sample8");
         print(slices, "eval_batch");
         print(samples, "sample_batch");
     }
@@ -176,9 +172,9 @@ impl<M: Model<Params: Parameters>> Hits<M> {
     fn eight_points(&self, level: Level, model: &str) {
         let mut prepare = [Hash::NEW; 2];
         let [mut eval, mut lobes, mut sample, mut albedo, mut some] = [Hash::NEW; 5];
-        let packed = Bsdf8::pack(from_fn(|lane| &self.materials[lane]));
+        let packed = Material8::pack(from_fn(|lane| &self.materials[lane]));
         for hits in &self.hits {
-            let points: [Gather8<M>; 2] = [
+            let points: [Bsdf8<M>; 2] = [
                 self.materials[0].prepare8_at(level, hits),
                 packed.prepare8_at(level, hits),
             ];
@@ -205,25 +201,25 @@ impl<M: Model<Params: Parameters>> Hits<M> {
             }
         }
         let print = |hash: Hash, entry| hash.print(rounding(level), entry, model, level.name());
-        print(prepare[0], "Bsdf::prepare8");
-        print(prepare[1], "Bsdf8::prepare8");
-        print(eval, "Gather8::eval_pdf8");
-        print(lobes, "Gather8::lobes8");
-        print(sample, "Gather8::sample8");
-        print(some, "Gather8::with_lobes");
-        print(albedo, "Gather8::albedo8");
+        print(prepare[0], "Material::prepare8");
+        print(prepare[1], "Material8::prepare8");
+        print(eval, "Bsdf8::eval_pdf8");
+        print(lobes, "Bsdf8::lobes8");
+        print(sample, "Bsdf8::sample8");
+        print(some, "Bsdf8::with_lobes");
+        print(albedo, "Bsdf8::albedo8");
     }
 }
 
 fn hash_slices<M: Model<Params: Parameters>>(
-    gather: &Gather<M>,
+    bsdf: &Bsdf<M>,
     level: Level,
     wi: &[[f32; LEN]; 3],
     hash: &mut Hash,
 ) {
     let wi = [&wi[0][..], &wi[1][..], &wi[2][..]];
     let (mut value, mut pdf) = ([[0.0; LEN]; 3], [0.0; LEN]);
-    let mut passed = gather.eval_pdf_batch_at(
+    let mut passed = bsdf.eval_pdf_batch_at(
         level,
         wi,
         EvalSlices {
@@ -233,15 +229,15 @@ fn hash_slices<M: Model<Params: Parameters>>(
     );
     value.iter().for_each(|row| hash.numbers(row));
     hash.numbers(&pdf);
-    passed = passed.and(gather.eval_batch_at(level, wi, value.each_mut().map(|x| &mut x[..])));
-    passed = passed.and(gather.pdf_batch_at(level, wi, &mut pdf));
+    passed = passed.and(bsdf.eval_batch_at(level, wi, value.each_mut().map(|x| &mut x[..])));
+    passed = passed.and(bsdf.pdf_batch_at(level, wi, &mut pdf));
     value.iter().for_each(|row| hash.numbers(row));
     hash.numbers(&pdf);
     assert!(passed.is_ok(), "slices of one length");
 }
 
 fn hash_samples<M: Model<Params: Parameters>>(
-    gather: &Gather<M>,
+    bsdf: &Bsdf<M>,
     level: Level,
     xi: &[[f32; LEN]; 3],
     hash: &mut Hash,
@@ -256,8 +252,7 @@ fn hash_samples<M: Model<Params: Parameters>>(
         slot,
     };
     assert!(
-        gather
-            .sample_batch_at(level, [&xi[0], &xi[1], &xi[2]], out)
+        bsdf.sample_batch_at(level, [&xi[0], &xi[1], &xi[2]], out)
             .is_ok(),
         "slices of one length"
     );
@@ -276,7 +271,7 @@ fn every_entry<M: Model<Params: Parameters>>(model: M, name: &str) {
 
 /// Samplers matched in other numbers of bands are the same code.
 fn models() {
-    every_entry(Hair(Gaussian), "gaussian");
+    every_entry(Published(Gaussian), "gaussian");
     every_entry(Matched::<_>(Gaussian), "gaussian/matched");
     every_entry(
         Matched::<_, 9, true>(Gaussian),
@@ -442,7 +437,7 @@ fn far_field() {
     let nodes = OffsetNodes::<4>::new();
     for (_, params) in ChiangParams::presets() {
         let point = FarField::prepare(
-            &Bsdf::new(&Chiang::<false>, &params),
+            &Material::new(&Chiang::<false>, &params),
             &nodes,
             direction(&mut numbers),
         );

@@ -15,7 +15,7 @@ mod numbers;
 mod system;
 
 use glam::Vec3;
-use hairis::{Bsdf, EvalSlices, Gaussian, Hair, HairParams, Model, Vec3x8, random};
+use hairis::{EvalSlices, Gaussian, HairParams, Material, Model, Published, Vec3x8, random};
 use hairis_variants::Cauchy;
 use numbers::Numbers;
 
@@ -35,13 +35,13 @@ fn check<M: Model<Params = HairParams>>(model: &M, first: i32) -> Result<(), i32
         HairParams::brown(),
         HairParams::black(),
     ]
-    .map(|p| Bsdf::new(model, &p));
+    .map(|p| Material::new(model, &p));
     let wo = [
         Vec3::new(0.6, 0.8, 0.0),
         Vec3::new(-0.96, 0.0, 0.28),
         Vec3::Y,
     ];
-    let gathers = [
+    let bsdfs = [
         hair[0].prepare(wo[0]),
         hair[1].prepare(wo[1]),
         hair[2].prepare(wo[2]),
@@ -49,9 +49,9 @@ fn check<M: Model<Params = HairParams>>(model: &M, first: i32) -> Result<(), i32
     let mut numbers = Numbers(0x9e37_79b9_7f4a_7c15);
     for _ in 0..100 {
         let xi = random::xi8(&mut numbers);
-        for gather in &gathers {
-            let samples = gather.sample8(&xi);
-            let evals = gather.eval_pdf8(&samples.wi);
+        for bsdf in &bsdfs {
+            let samples = bsdf.sample8(&xi);
+            let evals = bsdf.eval_pdf8(&samples.wi);
             let (mut value, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
             let [r, g, b] = &mut value;
             let wi = [
@@ -64,8 +64,7 @@ fn check<M: Model<Params = HairParams>>(model: &M, first: i32) -> Result<(), i32
                 pdf: &mut pdf,
             };
             ensure(
-                gather
-                    .eval_pdf_batch([&wi[0][..], &wi[1][..], &wi[2][..]], out)
+                bsdf.eval_pdf_batch([&wi[0][..], &wi[1][..], &wi[2][..]], out)
                     .is_ok(),
                 1,
             )?;
@@ -73,7 +72,7 @@ fn check<M: Model<Params = HairParams>>(model: &M, first: i32) -> Result<(), i32
                 let Some(sample) = samples.lane(lane) else {
                     continue;
                 };
-                let one = gather.eval_pdf(sample.wi);
+                let one = bsdf.eval_pdf(sample.wi);
                 ensure(close(sample.pdf, evals.lane(lane).pdf), 2)?;
                 ensure(close(sample.pdf, one.pdf), 3)?;
                 ensure(
@@ -83,14 +82,14 @@ fn check<M: Model<Params = HairParams>>(model: &M, first: i32) -> Result<(), i32
                 )?;
             }
         }
-        let points = hairis::Bsdf8::pack(core::array::from_fn(|i| &hair[i % 3]));
+        let points = hairis::Material8::pack(core::array::from_fn(|i| &hair[i % 3]));
         let points = points.prepare8(&Vec3x8::from(core::array::from_fn(|i| wo[i % 3])));
         let samples = points.sample8(&xi);
         for lane in 0..8 {
             let Some(sample) = samples.lane(lane) else {
                 continue;
             };
-            ensure(close(sample.pdf, gathers[lane % 3].pdf(sample.wi)), 5)?;
+            ensure(close(sample.pdf, bsdfs[lane % 3].pdf(sample.wi)), 5)?;
         }
     }
     Ok(())
@@ -111,7 +110,7 @@ fn start() -> i32 {
     }
     #[cfg(feature = "neg-alloc")]
     drop(alloc::boxed::Box::new(hairis::Level::detect()));
-    match check(&Hair(Gaussian), 10).and_then(|()| check(&Cauchy::PAPER.model(), 20)) {
+    match check(&Published(Gaussian), 10).and_then(|()| check(&Cauchy::PAPER.model(), 20)) {
         Ok(()) => {
             #[cfg(feature = "bits")]
             hashes::print();

@@ -2,8 +2,8 @@
 
 use super::inputs::pairs;
 use super::{
-    Contenders, EIGHT, EIGHT_AT_ONE, Entrants, HITS, Material, TIMED_DIRECTIONS, TimedInputs,
-    Truth, truth,
+    Contenders, EIGHT, EIGHT_AT_ONE, Entrants, HITS, Implementations, TIMED_DIRECTIONS,
+    TimedInputs, Truth, truth,
 };
 use crate::inputs::{arrays, packets, xi_packets};
 use crate::platform::{Platform, platform};
@@ -11,7 +11,7 @@ use crate::task::{Answer, Output, Pass, Several, Slices, task};
 use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::wide::f32x8;
-use hairis::{Bsdf8, EvalColumns, HitSlices, Sample8, SampleColumns};
+use hairis::{EvalColumns, HitSlices, Material8, Sample8, SampleColumns};
 use hairis_variants::Registered;
 
 /// The first `N` samples of a packet.
@@ -39,7 +39,11 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
     inputs: &TimedInputs<M::Params>,
 ) -> Entrants {
     let params = &inputs.params[0];
-    let Material::<M> { bsdf, libm, std } = Material::new(params);
+    let Implementations::<M> {
+        material,
+        libm,
+        std,
+    } = Implementations::new(params);
     let (rows, _) = inputs.xi.as_chunks::<N>();
     let wo = &inputs.wo[..rows.len()];
     let in_turn = |i| i;
@@ -60,7 +64,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
             xi.iter().for_each(|xi| keep(&point.sample(platform(*xi))));
         }),
         several(pairs(wo, rows), in_turn, move |(wo, xi), keep| {
-            let point = bsdf.prepare(*wo);
+            let point = material.prepare(*wo);
             xi.iter().for_each(|xi| keep(&point.sample(*xi)));
         }),
     )
@@ -69,7 +73,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
             pairs(&packets(wo), &by_sample),
             place,
             move |(wo, xi), keep| {
-                let points = bsdf.prepare8_at(level, wo);
+                let points = material.prepare8_at(level, wo);
                 xi.iter().for_each(|xi| keep(&points.sample8_at(level, xi)));
             },
         )
@@ -84,7 +88,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
         let packed: Vec<_> = rows.iter().map(packed).collect();
         contenders = contenders.levels(EIGHT_AT_ONE, |level| {
             several(pairs(wo, &packed), in_turn, move |(wo, xi), keep| {
-                let point = bsdf.prepare(*wo);
+                let point = material.prepare(*wo);
                 xi.iter()
                     .for_each(|xi| keep(&Leading::<N>(point.sample8_at(level, xi))));
             })
@@ -101,7 +105,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
                     weight,
                     slot: Some(slot),
                 };
-                bsdf.sample_hits_at(
+                material.sample_hits_at(
                     level,
                     HitSlices {
                         wo: [x, y, z],
@@ -136,7 +140,11 @@ fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
 /// A shading point and an evaluation at it, all on the same hair.
 pub(super) fn eval<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let params = &inputs.params[0];
-    let Material::<M> { bsdf, libm, std } = Material::new(params);
+    let Implementations::<M> {
+        material,
+        libm,
+        std,
+    } = Implementations::new(params);
     let both = pairs(&arrays(&inputs.wo), &arrays(&inputs.wi));
     let eights = pairs(&packets(&inputs.wo), &packets(&inputs.wi));
     let contenders = Contenders::new(
@@ -147,12 +155,12 @@ pub(super) fn eval<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
             M::reference_at(&std, platform(*wo), Platform(0.0)).eval_pdf(platform(*wi))
         }),
         task(&pairs(&inputs.wo, &inputs.wi), move |(wo, wi)| {
-            bsdf.prepare(*wo).eval_pdf(*wi)
+            material.prepare(*wo).eval_pdf(*wi)
         }),
     )
     .levels(EIGHT, |level| {
         task(&eights, move |(wo, wi)| {
-            bsdf.prepare8_at(level, wo).eval_pdf8_at(level, wi)
+            material.prepare8_at(level, wo).eval_pdf8_at(level, wi)
         })
     })
     .levels(HITS, |level| {
@@ -161,7 +169,7 @@ pub(super) fn eval<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
                 value: Some([r, g, b]),
                 pdf: Some(pdf),
             };
-            bsdf.eval_pdf_hits_at(
+            material.eval_pdf_hits_at(
                 level,
                 HitSlices {
                     wo: [x, y, z],
@@ -185,12 +193,12 @@ pub(super) fn eval<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
 
 /// A shading point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
 pub(super) fn mixed<M: Registered>(inputs: &TimedInputs<M::Params>, pack_each: bool) -> Entrants {
-    let materials = inputs.params.each_ref().map(Material::<M>::new);
+    let each = inputs.params.each_ref().map(Implementations::<M>::new);
     let (libm, std) = (
-        materials.each_ref().map(|of| of.libm),
-        materials.each_ref().map(|of| of.std),
+        each.each_ref().map(|one| one.libm),
+        each.each_ref().map(|one| one.std),
     );
-    let bsdfs = materials.map(|of| of.bsdf);
+    let materials = each.map(|one| one.material);
     let numbered: Vec<(usize, Vec3)> = inputs
         .wo
         .iter()
@@ -200,7 +208,7 @@ pub(super) fn mixed<M: Registered>(inputs: &TimedInputs<M::Params>, pack_each: b
     let arrays: Vec<(usize, [f32; 3])> =
         numbered.iter().map(|(i, wo)| (*i, wo.to_array())).collect();
     let eights = pairs(&packets(&inputs.wo), &xi_packets(&inputs.xi));
-    let packed = Bsdf8::pack(bsdfs.each_ref());
+    let packed = Material8::pack(materials.each_ref());
     let contenders = Contenders::new(
         task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
             M::reference_at(&libm[*i], *wo, 0.0).sample(*xi)
@@ -209,13 +217,13 @@ pub(super) fn mixed<M: Registered>(inputs: &TimedInputs<M::Params>, pack_each: b
             M::reference_at(&std[*i], platform(*wo), Platform(0.0)).sample(platform(*xi))
         }),
         task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| {
-            bsdfs[*i].prepare(*wo).sample(*xi)
+            materials[*i].prepare(*wo).sample(*xi)
         }),
     )
     .levels(EIGHT, |level| {
         if pack_each {
             task(&eights, move |(wo, xi)| {
-                Bsdf8::pack(bsdfs.each_ref())
+                Material8::pack(materials.each_ref())
                     .prepare8_at(level, wo)
                     .sample8_at(level, xi)
             })

@@ -17,9 +17,9 @@ impl<M: Registered> Of<'_, M> {
         for level in Level::available() {
             let drawn = |i| self.at_one(Given::Xi(inputs.xi[i]));
             self.show(visitor, "propose_batch", label(level), drawn, || {
-                let gather = self.gather();
+                let bsdf = self.bsdf();
                 let call = move |xi: [&[f32]; 3], wi: [&mut [f32]; 3]| {
-                    gather.propose_batch_at(level, xi, wi)
+                    bsdf.propose_batch_at(level, xi, wi)
                 };
                 Slices::new(DIRECTIONS, &inputs.xi, call).read_by(|wi| proposed(wi.into()))
             });
@@ -30,15 +30,15 @@ impl<M: Registered> Of<'_, M> {
                 label(level),
                 drawn_in_lane,
                 || {
-                    let gather = self.gather8(level);
+                    let bsdf = self.bsdf8(level);
                     Each::new(8, xi_packets(&inputs.xi), move |xi| {
-                        gather.propose8_at(level, xi)
+                        bsdf.propose8_at(level, xi)
                     })
                 },
             );
             let weighed = |i| self.at_one(Given::Candidate(inputs.wi[i]));
             self.show(visitor, "weigh_batch", label(level), weighed, || {
-                let gather = self.gather();
+                let bsdf = self.bsdf();
                 Slices::new(
                     DIRECTIONS,
                     &looked_up(&inputs.wi),
@@ -53,7 +53,7 @@ impl<M: Registered> Of<'_, M> {
                             contribution: [fr, fg, fb],
                             weight,
                         };
-                        gather.weigh_batch_at(level, candidates, COUNTS, Partition::All, out)
+                        bsdf.weigh_batch_at(level, candidates, COUNTS, Partition::All, out)
                     },
                 )
             });
@@ -64,13 +64,13 @@ impl<M: Registered> Of<'_, M> {
                 label(level),
                 weighed_in_lane,
                 || {
-                    let (gather, pdf) = (self.gather8(level), f32x8::splat(SKY_PDF));
+                    let (bsdf, pdf) = (self.bsdf8(level), f32x8::splat(SKY_PDF));
                     let candidates: Vec<_> = packets(&inputs.wi)
                         .into_iter()
                         .map(|wi| (wi, sky8(&wi)))
                         .collect();
                     Each::new(8, candidates, move |(wi, radiance)| {
-                        gather.weigh8_at(level, wi, radiance, &pdf, COUNTS, Partition::All)
+                        bsdf.weigh8_at(level, wi, radiance, &pdf, COUNTS, Partition::All)
                     })
                 },
             );
@@ -84,13 +84,13 @@ impl<M: Registered> Of<'_, M> {
                 })
             };
             self.show(visitor, "pool-32-32-16", label(level), in_pool, || {
-                PoolTask::new(self.gather(), level, inputs)
+                PoolTask::new(self.bsdf(), level, inputs)
             });
             let kept = |i| self.at_lane(i, Given::Kept);
             self.show(visitor, "reservoir8-4-4", label(level), kept, || {
-                let gather = self.gather8(level);
+                let bsdf = self.bsdf8(level);
                 Each::new(STREAMED, Stream::of(inputs), move |stream: &Stream| {
-                    stream.keep(&gather, level)
+                    stream.keep(&bsdf, level)
                 })
             });
         }

@@ -27,8 +27,8 @@ pub struct Constants {
     /// Shares of the lobes in the density.
     weights: [f32; 4],
     bounds: [f32; 3],
-    /// Truncated Cauchy of each lobe's longitude: span and tangent of the middle; width and shift.
-    longitude: [Table; 4],
+    /// Truncated Cauchy of each lobe's inclination: span and tangent of the middle; width and shift.
+    inclination: [Table; 4],
     /// The same of the azimuth: span, middle, half width, half of the centre; entries of TT first.
     azimuth: [Table; 4],
 }
@@ -102,7 +102,7 @@ impl Constants {
             ]
             .map(|x| x as f32),
             bounds: [p[0], p[0] + p[1], p[0] + p[1] + p[2]].map(|x| x as f32),
-            longitude: [
+            inclination: [
                 by_lobe(theta.map(|t| t[0])),
                 by_lobe(theta.map(|t| t[1])),
                 by_lobe(beta),
@@ -321,11 +321,11 @@ pub(super) fn sample<V: Vector>(c: &Constants, xi: [V; 3]) -> [V; 7] {
     let (is_tt, is_glint) = (V::is_tt(lobe), V::is_glint(lobe));
     let is_bell = V::either(is_tt, is_glint);
 
-    let u = (xi[1] - half) * V::look_up(&c.longitude[0], lobe);
-    let x = invert(u, V::look_up(&c.longitude[1], lobe));
+    let u = (xi[1] - half) * V::look_up(&c.inclination[0], lobe);
+    let x = invert(u, V::look_up(&c.inclination[1], lobe));
     let half_theta_i = x.mul_sub(
-        V::look_up(&c.longitude[2], lobe),
-        V::look_up(&c.longitude[3], lobe),
+        V::look_up(&c.inclination[2], lobe),
+        V::look_up(&c.inclination[3], lobe),
     );
     let [n, d] = tan_quarter_turn(half_theta_i);
     let n_sq = n * n;

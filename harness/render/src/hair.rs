@@ -87,13 +87,13 @@ impl Choice {
     ///
     /// If a value is out of its range.
     pub fn hair(&self, energy: Energy) -> Result<Hair, Error> {
-        let bsdf = self.id.bsdf(&self.values)?;
+        let material = self.id.material(&self.values)?;
         let scale = match energy {
             Energy::Raw => Scale::Factor(1.0),
-            Energy::Scaled => Scale::Factor(bsdf.conserving_scale()),
+            Energy::Scaled => Scale::Factor(material.conserving_scale()),
             Energy::PerWo => Scale::PerWo,
         };
-        Ok(Hair::Model(bsdf, self.sampling, scale))
+        Ok(Hair::Model(material, self.sampling, scale))
     }
 
     /// Name of the sampler in reports.

@@ -6,7 +6,7 @@ use glam::Vec3;
 use hairis::wide::f32x8;
 use hairis::{Eval8, Hit, Hit8, Sample8, Vec3x8};
 use hairis_instruments::direction::cosine;
-use hairis_variants::{AnyBsdf, AnyGather, AnyGather8};
+use hairis_variants::{AnyBsdf, AnyBsdf8, AnyMaterial};
 
 /// How directions are drawn at a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub enum Sampling {
 #[expect(clippy::large_enum_variant, reason = "there is one per scene")]
 pub enum Hair {
     /// A model of the registry.
-    Model(AnyBsdf, Sampling, Scale),
+    Model(AnyMaterial, Sampling, Scale),
     /// Scatters equally into all directions and absorbs nothing: `S cos theta_i = 1 / (4 pi)`. For tests of transport.
     Isotropic,
 }
@@ -52,8 +52,8 @@ impl Scale {
     reason = "on the stack of a wave, and read at once"
 )]
 enum Points {
-    Each(AnyGather8),
-    One(AnyGather),
+    Each(AnyBsdf8),
+    One(AnyBsdf),
 }
 
 /// Prepared hits.
@@ -66,8 +66,8 @@ impl Hair {
     #[must_use]
     pub fn prepare8(&self, hits: &Hit8) -> Prepared {
         Prepared(match self {
-            Self::Model(bsdf, sampling, scale) => {
-                let points = bsdf.prepare8(hits);
+            Self::Model(material, sampling, scale) => {
+                let points = material.prepare8(hits);
                 let points = if *scale == Scale::PerWo {
                     points.conserving()
                 } else {
@@ -84,8 +84,8 @@ impl Hair {
     #[must_use]
     pub fn prepare(&self, hit: Hit) -> Prepared {
         Prepared(match self {
-            Self::Model(bsdf, sampling, scale) => Some((
-                Points::One(point(bsdf, hit, *scale)),
+            Self::Model(material, sampling, scale) => Some((
+                Points::One(point(material, hit, *scale)),
                 *sampling,
                 scale.factor(),
             )),
@@ -96,11 +96,11 @@ impl Hair {
     /// Directional albedo at an inclination of `wo` in rad and an offset `h`.
     #[must_use]
     pub fn albedo(&self, theta_o: f32, h: f32) -> [f32; 3] {
-        let Self::Model(bsdf, _, scale) = self else {
+        let Self::Model(material, _, scale) = self else {
             return [1.0; 3];
         };
         let hit = Hit::new(Vec3::new(theta_o.sin(), theta_o.cos(), 0.0), h);
-        let lobes = point(bsdf, hit, *scale).albedo().0;
+        let lobes = point(material, hit, *scale).albedo().0;
         core::array::from_fn(|c| lobes.iter().map(|lobe| lobe[c]).sum::<f32>() * scale.factor())
     }
 
@@ -111,7 +111,7 @@ impl Hair {
     pub fn mean_and_worst_albedo(&self) -> [f32; 2] {
         const STEPS: u16 = 90;
         let offsets: &[f32] = match self {
-            Self::Model(bsdf, ..) if bsdf.model().is_near_field() => {
+            Self::Model(material, ..) if material.model().is_near_field() => {
                 &[-0.9, -0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7, 0.9]
             }
             _ => &[0.0],
@@ -134,8 +134,8 @@ impl Hair {
 }
 
 /// One hit.
-fn point(bsdf: &AnyBsdf, hit: Hit, scale: Scale) -> AnyGather {
-    let point = bsdf.prepare(hit);
+fn point(material: &AnyMaterial, hit: Hit, scale: Scale) -> AnyBsdf {
+    let point = material.prepare(hit);
     if scale == Scale::PerWo {
         point.conserving()
     } else {

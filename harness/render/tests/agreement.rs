@@ -78,7 +78,7 @@ fn samplers_weightings_and_sequences_agree() {
             }
             one.rectangle_sampling = RectangleSampling::SolidAngle;
         }
-        for sampler in ["uniform", "ou", "matched-5", "matched-25"] {
+        for sampler in ["uniform", "published", "matched-5", "matched-25"] {
             one.hair = hair("gaussian", sampler, preset);
             check(&one, sampler, base);
         }
@@ -226,7 +226,7 @@ fn at_the_highlight(alpha: f32) -> Scene {
         .1
         .with("alpha", &[alpha; 3]);
     let hair = Hair::Model(
-        id.bsdf(&values).expect("in range"),
+        id.material(&values).expect("in range"),
         Sampling::Own,
         Scale::Factor(1.0),
     );

@@ -233,7 +233,7 @@ fn all_samplers_are_tested() {
     let tested = [
         "uniform",
         "published",
-        "ou",
+        "published",
         "matched-5",
         "matched",
         "matched-25",

@@ -7,7 +7,7 @@ use glam::Vec3;
 use hairis::reference::Reference;
 use hairis::{Eval, Hit, Level, Lobe, ParamError, Sample, Vec3x8};
 use hairis_instruments::direction::to_f64;
-use hairis_variants::{Accuracy, AnyBsdf8, AnyReference, ModelId, Values};
+use hairis_variants::{Accuracy, AnyMaterial8, AnyReference, ModelId, Values};
 use wide::f32x8;
 
 /// Rounding error of an azimuth, rad: a few units in the last place of a component near 1.
@@ -79,7 +79,7 @@ pub(super) fn measure(
     let materials = packet
         .values
         .iter()
-        .map(|values| model.bsdf(values))
+        .map(|values| model.material(values))
         .collect::<Result<Vec<_>, _>>()?;
     let hit = |k: usize| Hit {
         wo: packet.wo[k].into(),
@@ -88,13 +88,13 @@ pub(super) fn measure(
     let xi: [f32x8; 3] = core::array::from_fn(|k| f32x8::new(packet.xi.map(|xi| xi[k])));
     let answers: [(Eval, Option<Sample>); 8] = match path {
         CodePath::One => core::array::from_fn(|k| {
-            let gather = materials[k].prepare(hit(k));
-            (gather.eval_pdf(packet.wi[k]), gather.sample(packet.xi[k]))
+            let bsdf = materials[k].prepare(hit(k));
+            (bsdf.eval_pdf(packet.wi[k]), bsdf.sample(packet.xi[k]))
         }),
         CodePath::Shared(level) => {
-            let gather = materials[0].prepare(hit(0));
-            let eval = gather.eval_pdf8_at(level, &Vec3x8::from(packet.wi_shared));
-            let sample = gather.sample8_at(level, &xi);
+            let bsdf = materials[0].prepare(hit(0));
+            let eval = bsdf.eval_pdf8_at(level, &Vec3x8::from(packet.wi_shared));
+            let sample = bsdf.sample8_at(level, &xi);
             core::array::from_fn(|k| (eval.lane(k), sample.lane(k)))
         }
         CodePath::Points(level) => {
@@ -102,11 +102,11 @@ pub(super) fn measure(
                 wo: Vec3x8::from(packet.wo),
                 h: f32x8::new(packet.h),
             };
-            let materials = AnyBsdf8::pack(core::array::from_fn(|k| &materials[k]))
+            let materials = AnyMaterial8::pack(core::array::from_fn(|k| &materials[k]))
                 .expect("eight of one model");
-            let gather = materials.prepare8_at(level, hits);
-            let eval = gather.eval_pdf8_at(level, &Vec3x8::from(packet.wi));
-            let sample = gather.sample8_at(level, &xi);
+            let bsdf = materials.prepare8_at(level, hits);
+            let eval = bsdf.eval_pdf8_at(level, &Vec3x8::from(packet.wi));
+            let sample = bsdf.sample8_at(level, &xi);
             core::array::from_fn(|k| (eval.lane(k), sample.lane(k)))
         }
     };

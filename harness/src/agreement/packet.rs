@@ -113,7 +113,7 @@ impl Region {
         let mut edge = || 1e-2 * log_uniform(from, 1e-5) as f32;
         match self {
             Self::General => {}
-            // The ends of the longitude.
+            // The ends of the inclination.
             Self::Axis => xi[1] = if xi[1] < 0.5 { edge() } else { 1.0 - edge() },
             // The ends for the cosines of R and TRT, the middle for TT.
             Self::Back => {

@@ -216,7 +216,7 @@ mod tests {
     use crate::study::Grid;
     use crate::subject::random_hair;
     use hairis::reference::HairReference;
-    use hairis::{Bsdf, Gaussian, Hair};
+    use hairis::{Gaussian, Material, Published};
     use hairis_instruments::direction::fibre_direction;
     use hairis_instruments::sequence::Independent;
     use hairis_variants::Cauchy;
@@ -265,13 +265,13 @@ mod tests {
             let kernels = [
                 (
                     Kind::GAUSSIAN,
-                    Bsdf::new(&Hair(Gaussian), &params)
+                    Material::new(&Published(Gaussian), &params)
                         .prepare(wo.as_vec3())
                         .albedo(),
                 ),
                 (
                     Kind::cauchy(1.0),
-                    Bsdf::new(&Cauchy::PAPER.model(), &params)
+                    Material::new(&Cauchy::PAPER.model(), &params)
                         .prepare(wo.as_vec3())
                         .albedo(),
                 ),

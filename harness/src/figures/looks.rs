@@ -3,11 +3,11 @@
 use crate::difference::{SIGMA_DEG, blurred};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
-use hairis::{Bell, Bsdf, Gaussian, Hair, HairParams};
+use hairis::{Bell, Gaussian, HairParams, Material, Published};
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::plot::{Axis, PolarPanel, SphereGrid, heat_map};
 use hairis_instruments::report::Drawing;
-use hairis_variants::{AnyBsdf, Cauchy};
+use hairis_variants::{AnyMaterial, Cauchy};
 
 fn direction(theta: f64, phi: f64) -> Vec3 {
     fibre_direction(theta, phi).as_vec3()
@@ -17,9 +17,9 @@ fn direction(theta: f64, phi: f64) -> Vec3 {
 const CELLS: (u16, u16) = (60, 120);
 
 /// S of the published model or of a variant, the mean of RGB.
-fn scatter(bsdf: impl Into<AnyBsdf>, theta_o: f64) -> impl Fn(Vec3) -> f64 {
-    let gather = bsdf.into().prepare(direction(theta_o, 0.0));
-    move |wi| gather.eval(wi).into_iter().map(f64::from).sum::<f64>() / 3.0
+fn scatter(material: impl Into<AnyMaterial>, theta_o: f64) -> impl Fn(Vec3) -> f64 {
+    let bsdf = material.into().prepare(direction(theta_o, 0.0));
+    move |wi| bsdf.eval(wi).into_iter().map(f64::from).sum::<f64>() / 3.0
 }
 
 /// S around the fibre and along it, of the Gaussian model and of Cauchy models by name, seen from the inclination
@@ -32,16 +32,16 @@ pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> 
     const STEPS: i32 = 1440;
     let mut models = vec![(
         "Gaussian (published)",
-        AnyBsdf::from(Bsdf::new(&Hair(Gaussian), params)),
+        AnyMaterial::from(Material::new(&Published(Gaussian), params)),
     )];
     models.extend(
         variants
             .iter()
-            .map(|(name, bell)| (*name, Bsdf::new(&bell.model(), params).into())),
+            .map(|(name, bell)| (*name, Material::new(&bell.model(), params).into())),
     );
     let panel = |title: &str, angle: &str, arrow, wi: &dyn Fn(f64) -> Vec3| {
-        let line = |(_, bsdf): &(&str, AnyBsdf)| {
-            let s = scatter(*bsdf, theta_o);
+        let line = |(_, material): &(&str, AnyMaterial)| {
+            let s = scatter(*material, theta_o);
             (0..=STEPS)
                 .map(|i| 2.0 * PI * f64::from(i) / f64::from(STEPS))
                 .map(|t| (t, s(wi(t))))
@@ -96,8 +96,8 @@ pub fn polar(params: &HairParams, theta_o: f64, variants: &[(&str, Cauchy)]) -> 
 /// (radians) at azimuth 0; then of what it has more of `S cos theta_i` after the blur of [`difference`](crate::difference).
 #[must_use]
 pub fn maps(params: &HairParams, theta_o: f64, cauchy: Cauchy) -> [Drawing; 4] {
-    let a = scatter(Bsdf::new(&Hair(Gaussian), params), theta_o);
-    let b = scatter(Bsdf::new(&cauchy.model(), params), theta_o);
+    let a = scatter(Material::new(&Published(Gaussian), params), theta_o);
+    let b = scatter(Material::new(&cauchy.model(), params), theta_o);
     let gaussian = SphereGrid::sample(CELLS, &mut |theta, phi| a(direction(theta, phi)));
     let other = SphereGrid::sample(CELLS, &mut |theta, phi| b(direction(theta, phi)));
     let more = SphereGrid::sample(CELLS, &mut |theta, phi| {

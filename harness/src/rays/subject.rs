@@ -68,7 +68,7 @@ impl RaySubject {
         let hit = Hit::new(viewer(pose), OFFSETS[pose]);
         let bsdf = self
             .id
-            .bsdf(&self.id.defaults())
+            .material(&self.id.defaults())
             .expect("defaults are accepted");
         Scatter::at(bsdf.prepare(hit), self.is_uniform)
     }

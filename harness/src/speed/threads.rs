@@ -80,12 +80,12 @@ pub(super) fn run(model: ModelId, inputs: &TimedInputs) -> Result<Vec<ThreadsRes
     let Ok(pools) = pools else {
         return Ok(Vec::new());
     };
-    let gather = model.bsdf(&model.defaults())?.prepare(inputs.wo[0]);
+    let bsdf = model.material(&model.defaults())?.prepare(inputs.wo[0]);
     let wi: Vec<[f32; 3]> = inputs.wi.iter().map(|wi| wi.to_array()).collect();
     let eval = time(&pools, &wi, |chunk: &mut Chunk<4>| {
         let [r, g, b, pdf] = chunk.out.each_mut().map(Vec::as_mut_slice);
         // The columns of a chunk are of one length.
-        let _ = gather.eval_pdf_batch(
+        let _ = bsdf.eval_pdf_batch(
             chunk.inputs.each_ref().map(Vec::as_slice),
             EvalSlices {
                 value: [r, g, b],
@@ -102,7 +102,7 @@ pub(super) fn run(model: ModelId, inputs: &TimedInputs) -> Result<Vec<ThreadsRes
             weight: [wr, wg, wb],
             slot,
         };
-        let _ = gather.sample_batch(chunk.inputs.each_ref().map(Vec::as_slice), out);
+        let _ = bsdf.sample_batch(chunk.inputs.each_ref().map(Vec::as_slice), out);
     });
     let rows = |(op, ns): (TimedOp, Vec<Vec<f64>>)| {
         let of = |(threads, times): (&usize, &Vec<f64>)| {

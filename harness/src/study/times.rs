@@ -10,7 +10,7 @@
 
 use crate::lights::lights;
 use crate::rays::{RaySubject, RayTimes, measure_times, numbers};
-use crate::sampler::{Sampler, bsdf, uniform_sample8, uniform8};
+use crate::sampler::{Sampler, material, uniform_sample8, uniform8};
 use crate::speed::{median_error, quartiles, stretch};
 use crate::subject::ModelKind;
 use core::hint::black_box;
@@ -223,15 +223,15 @@ fn measure(seed: u64, rounds: usize, lights: &[&dyn Light]) -> Vec<(Timed, TimeS
 
 /// Directions of the published sampler on the default hair, sixteen per shading point.
 fn directions(from: &mut Independent) -> Vec<Vec3x8> {
-    let bsdf = bsdf(
+    let material = material(
         ModelKind::Gaussian,
         Sampler::Published,
         &HairParams::default(),
     );
     let of_packet = |_| {
         let points = Points::draw(from);
-        let gather = bsdf.prepare8(&points.wo);
-        points.xi.map(|xi| gather.sample8(&xi).wi)
+        let bsdf = material.prepare8(&points.wo);
+        points.xi.map(|xi| bsdf.sample8(&xi).wi)
     };
     (0..LOOK_UP_PACKETS).flat_map(of_packet).collect()
 }
@@ -259,18 +259,18 @@ fn pass<'a>(
     points: &[Points],
     per_point: usize,
 ) -> Box<dyn Pass + 'a> {
-    let bsdf = bsdf(model, sampler, &HairParams::default());
+    let material = material(model, sampler, &HairParams::default());
     task(points, move |points| {
-        let gather = bsdf.prepare8(&points.wo);
+        let bsdf = material.prepare8(&points.wo);
         let uniform = |xi: &[f32x8; 3]| {
             let wi = uniform8(xi);
-            uniform_sample8(wi, gather.eval_pdf8(&wi))
+            uniform_sample8(wi, bsdf.eval_pdf8(&wi))
         };
         let xi = &points.xi[..per_point];
         if sampler == Sampler::Uniform {
             each(xi, uniform)
         } else {
-            each(xi, |xi| gather.sample8(xi))
+            each(xi, |xi| bsdf.sample8(xi))
         }
     })
 }

@@ -4,7 +4,7 @@ use super::{PATHS, eval, numbers, with_xi};
 use crate::cases::{Case, Cases, angles};
 use serde_json::{Value, json};
 
-const SAMPLERS: [&str; 4] = ["ou", "matched-5", "matched", "matched-25"];
+const SAMPLERS: [&str; 4] = ["published", "matched-5", "matched", "matched-25"];
 
 /// Relative error that the bounds of the kernels allow. All paths are asked about the same rounded input.
 ///
@@ -12,7 +12,7 @@ const SAMPLERS: [&str; 4] = ["ou", "matched-5", "matched", "matched-25"];
 fn allowed(sampler: &str, model: &str, quantity: &str) -> f64 {
     match (sampler, model, quantity) {
         (_, "gaussian", "s") => 1e-4,
-        (_, "gaussian", "pdf" | "pdf_lobe") if sampler != "ou" => 1e-4,
+        (_, "gaussian", "pdf" | "pdf_lobe") if sampler != "published" => 1e-4,
         _ => 1e-5,
     }
 }
@@ -21,7 +21,7 @@ fn allowed(sampler: &str, model: &str, quantity: &str) -> f64 {
 fn floor(sampler: &str, model: &str, quantity: &str) -> f64 {
     match (sampler, model, quantity) {
         (_, "gaussian", "s") => 1e-27,
-        (_, "gaussian", _) if sampler != "ou" => 1e-20,
+        (_, "gaussian", _) if sampler != "published" => 1e-20,
         _ => 0.0,
     }
 }

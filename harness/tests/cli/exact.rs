@@ -69,7 +69,10 @@ fn the_published_model() {
         })
     };
     for (model, shape) in [("gaussian", Shape::Gaussian), ("cauchy", Shape::Cauchy)] {
-        assert_exact(&line(model, "ou"), &HairReference::prepare(&p, shape, WO));
+        assert_exact(
+            &line(model, "published"),
+            &HairReference::prepare(&p, shape, WO),
+        );
         assert_exact(
             &line(model, "matched"),
             &MatchedReference::prepare(&p, shape, WO, 9),

@@ -40,11 +40,11 @@ fn bad_values() -> Vec<(Value, &'static str)> {
         (with("/model", json!(3)), "model: must be a string, got 3"),
         (
             and("", "sampler", json!("uniform")),
-            "sampler: must be \"ou\" or ",
+            "sampler: must be \"published\" or ",
         ),
         (
             and("", "sampler", json!("best")),
-            "sampler: must be \"ou\" or \"matched-5\" or \"matched\" or \"matched-25\", got \"best\"",
+            "sampler: must be \"published\" or \"matched-5\" or \"matched\" or \"matched-25\", got \"best\"",
         ),
         (without("", "params"), "params: missing"),
         (
@@ -253,7 +253,7 @@ fn limits_written_in_double_precision_are_accepted() {
         with("/wi", json!([0.0, 1.0009, 0.0])),
         with("/wo", json!([0.9991, 0.0, 0.0])),
         super::with_xi(good(), [0.999_999_999_999, 0.0, 0.999_999_999_999]),
-        and("", "sampler", json!("ou")),
+        and("", "sampler", json!("published")),
         and("", "sampler", json!("matched")),
         and("", "sampler", json!("matched-5")),
         and("", "sampler", json!("matched-25")),

@@ -86,7 +86,7 @@ pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> 
     );
     // The azimuthal term of R and TRT-g, cos(phi / 2), has an area of 4.
     let four = L::splat(4.0);
-    let area = longitudes::<B, L, C, _>(view, &GRADED);
+    let area = inclinations::<B, L, C, _>(view, &GRADED);
     PerLobe([
         lobe(view, 0, area[0] * four, r),
         lobe(view, 1, area[1] * hair.azimuth_area[0].lanes(), tt),
@@ -113,7 +113,7 @@ fn lobe<L: Lanes, C: Broadcast<L>>(view: &HairView<C>, l: usize, area: L, color:
 pub(crate) fn conserve<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> HairView<L::Stored> {
     let hair = &view.lobes;
     let (four, most) = (L::splat(4.0), L::splat(f32::MAX));
-    let [r, tt, trt] = longitudes::<B, L, L::Stored, _>(view, &COARSE);
+    let [r, tt, trt] = inclinations::<B, L, L::Stored, _>(view, &COARSE);
     let glints = hair.azimuth_area[1].lanes() * hair.strength[3].lanes();
     let r = r * four * hair.strength[0].lanes();
     let tt = tt * hair.azimuth_area[0].lanes() * hair.strength[1].lanes();
@@ -145,7 +145,7 @@ pub(crate) fn conserve<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> HairVie
 
 /// [`longitudinal`] of R, TT and TRT.
 #[inline(always)]
-fn longitudes<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(
+fn inclinations<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(
     view: &HairView<C>,
     rule: &[[f32; 3]; N],
 ) -> [L; 3] {

@@ -8,7 +8,7 @@ use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 crate::lane_struct! {
     /// The published sampler's constants of a material; arrays of two are TT and the glints.
-    pub struct HairSampler {
+    pub struct PublishedConstants {
         /// The azimuth's truncated Cauchy on one side: tangent of the middle of its angles.
         pub azimuth_middle: [C; 2],
         /// Angle from end to end, rad; below 0 for TT, whose cdf runs towards its centre.
@@ -24,29 +24,29 @@ crate::lane_struct! {
 
 crate::lane_struct! {
     /// The constants of a material of the published model.
-    pub struct HairMaterial {
+    pub struct PublishedMaterial {
         /// Its lobes.
         pub lobes: (HairLobes<C>),
         /// The sampler's constants of these lobes.
-        pub sampler: (HairSampler<C>),
+        pub sampler: (PublishedConstants<C>),
     }
 }
 
 crate::lane_struct! {
     /// The constants of a shading point of the published model: those of its material, and those of `wo`.
-    pub struct HairGather {
+    pub struct PublishedPrepared {
         /// The lobes as seen from `wo`.
         pub view: (HairView<C>),
-        /// The longitude's truncated Cauchy: tangent of the middle of its angles.
-        pub longitude_middle: [C; 4],
+        /// The inclination's truncated Cauchy: tangent of the middle of its angles.
+        pub inclination_middle: [C; 4],
         /// Angle from end to end (A - B in the paper), rad.
-        pub longitude_span: [C; 4],
+        pub inclination_span: [C; 4],
         /// Density of each lobe but for its shape and for `1 / cos theta_i`.
         pub density: [C; 4],
         /// The same times the probability of the lobe.
         pub weight: [C; 4],
         /// The constants of the material.
-        pub sampler: (HairSampler<C>),
+        pub sampler: (PublishedConstants<C>),
     }
 }
 
@@ -77,7 +77,7 @@ pub(crate) fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3], L) {
     (p, bounds, inv_total)
 }
 
-impl HairMaterial<f32> {
+impl PublishedMaterial<f32> {
     /// The material of checked parameters.
     #[inline]
     #[must_use]
@@ -89,7 +89,7 @@ impl HairMaterial<f32> {
         let tt = TruncatedCauchy::new(0.0, PI, gamma_tt);
         let [b_r, b_tt, b_trt, _] = lobes.beta;
         let (p, bounds, _) = selection(energies(&[b_r, b_tt, b_trt], gamma_tt, gamma_g, params));
-        let sampler = HairSampler {
+        let sampler = PublishedConstants {
             azimuth_middle: [tt.tan_mid, glint.tan_mid],
             azimuth_span: [-tt.span, glint.span],
             azimuth_density: [
@@ -140,27 +140,31 @@ fn energies(beta: &[f32; 3], gamma_tt: f32, gamma_g: f32, params: &HairParams) -
     })
 }
 
-/// Truncated Cauchy of a lobe's longitude: the ends are those of all lobes, but for the shift.
+/// Truncated Cauchy of a lobe's inclination: the ends are those of all lobes, but for the shift.
 #[inline(always)]
-fn longitude<L: Lanes, C: Broadcast<L>>([lo, hi]: [L; 2], shift: L, beta: C) -> TruncatedCauchy<L> {
+fn inclination<L: Lanes, C: Broadcast<L>>(
+    [lo, hi]: [L; 2],
+    shift: L,
+    beta: C,
+) -> TruncatedCauchy<L> {
     TruncatedCauchy::new(lo + shift, hi + shift, beta.lanes())
 }
 
 /// The shading point of a material seen from `wo`.
 #[inline(always)]
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
-    m: &HairMaterial<C>,
+    m: &PublishedMaterial<C>,
     wo: Vec3x<L>,
-) -> HairGather<L::Stored> {
+) -> PublishedPrepared<L::Stored> {
     let c = L::splat;
     let (hair, sampler) = (&m.lobes, &m.sampler);
     let view = view::prepare(hair, wo);
     let quarter_o = view.quarter_o.lanes();
     let ends = [quarter_o - c(FRAC_PI_4), quarter_o + c(FRAC_PI_4)];
     let [r, tt, trt] = [
-        longitude::<L, C>(ends, view.shift[0].lanes(), hair.beta[0]),
-        longitude::<L, C>(ends, view.shift[1].lanes(), hair.beta[1]),
-        longitude::<L, C>(ends, view.shift[2].lanes(), hair.beta[2]),
+        inclination::<L, C>(ends, view.shift[0].lanes(), hair.beta[0]),
+        inclination::<L, C>(ends, view.shift[1].lanes(), hair.beta[1]),
+        inclination::<L, C>(ends, view.shift[2].lanes(), hair.beta[2]),
     ];
     let span = [r.span, tt.span, trt.span];
 
@@ -189,17 +193,17 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         density[3] * p[3].lanes(),
     ];
 
-    HairGather {
+    PublishedPrepared {
         view,
-        longitude_middle: store4([r.tan_mid, tt.tan_mid, trt.tan_mid, trt.tan_mid]),
-        longitude_span: store4([span[0], span[1], span[2], span[2]]),
+        inclination_middle: store4([r.tan_mid, tt.tan_mid, trt.tan_mid, trt.tan_mid]),
+        inclination_span: store4([span[0], span[1], span[2], span[2]]),
         density: store4(density),
         weight: store4(weight),
         sampler: sampler.spread::<L>(),
     }
 }
 
-impl<C: Lanes> HairGather<C> {
+impl<C: Lanes> PublishedPrepared<C> {
     /// The shading point with only some of its lobes.
     #[inline(always)]
     pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
@@ -208,7 +212,7 @@ impl<C: Lanes> HairGather<C> {
         Self {
             view: self.view.restrict(lobes),
             weight: times(self.density, p),
-            sampler: HairSampler {
+            sampler: PublishedConstants {
                 selection: p,
                 bounds,
                 ..self.sampler

@@ -2,7 +2,7 @@
 
 use super::{Angles, GRAZING, HairView, LobeTerms};
 use crate::lanes3;
-use crate::model::{Drawn, Eval, LobeEval};
+use crate::model::{Eval, LobeEval, SampleLanes};
 use crate::{Broadcast, Lanes, PerLobe, Vec3x};
 
 /// The density below which a sample is discarded: next to denormals its weight would have no digits.
@@ -95,7 +95,7 @@ pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
     angles: &Angles<L>,
     terms: &LobeTerms<L>,
     density: L,
-) -> Drawn<L> {
+) -> SampleLanes<L> {
     let cos = angles.cos_theta_i;
     let sound = L::and(
         L::splat(GRAZING).lt(cos),
@@ -109,7 +109,7 @@ pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
         cos * cos * inv_cos_sq_theta_d,
         density.max(L::splat(LEAST_DENSITY)),
     );
-    Drawn {
+    SampleLanes {
         wi,
         value: scale3(sum, inv_cos_sq_theta_d, limit),
         pdf: (density * angles.inv_cos_theta_i).min(limit),

@@ -1,6 +1,6 @@
-//! The published sampler: a lobe by its energy, then longitude and azimuth by inversion (section 3.2 of the paper).
+//! The published sampler: a lobe by its energy, then inclination and azimuth by inversion (section 3.2 of the paper).
 
-use super::{Angles, HairGather, HairView};
+use super::{Angles, HairView, PublishedPrepared};
 use crate::lanes3;
 use crate::math::{half_angle, sin_cos_absolute, sin_cos_twice};
 use crate::simd::pair::Pair;
@@ -11,25 +11,25 @@ use core::f32::consts::FRAC_PI_4;
 /// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its angles.
 #[inline(always)]
 pub(super) fn draw<L: Lanes, C: Broadcast<L>>(
-    gather: &HairGather<C>,
+    prepared: &PublishedPrepared<C>,
     xi: [L; 3],
 ) -> (Vec3x<L>, L::Index, Angles<L>) {
     let c = L::splat;
     let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
-    let (view, hair, sampler) = (&gather.view, &gather.view.lobes, &gather.sampler);
+    let (view, hair, sampler) = (&prepared.view, &prepared.view.lobes, &prepared.sampler);
     let choice = L::search(xi[0], lanes3(&sampler.bounds), 3);
     // The second operand wins over NaN: that of a number stays, and the sample has no inclination, or no density.
     let along = zero.max(one.min(xi[0].mul_add(zero, xi[1])));
 
-    // Longitude: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Interleaved with the azimuth.
+    // Inclination: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Interleaved with the azimuth.
     let folded = FoldedXi::of(xi[2]);
     let both = TruncatedCauchy {
         tan_mid: Pair(
-            C::look_up_three(&gather.longitude_middle, choice),
+            C::look_up_three(&prepared.inclination_middle, choice),
             C::look_up_half(&sampler.azimuth_middle, choice),
         ),
         span: Pair(
-            C::look_up_three(&gather.longitude_span, choice),
+            C::look_up_three(&prepared.inclination_span, choice),
             C::look_up_half(&sampler.azimuth_span, choice),
         ),
     };
@@ -68,7 +68,7 @@ impl<L: Lanes> FoldedXi<L> {
 /// Far below the cosine of any kept sample. Its reciprocal is finite, and so are products with it.
 const LEAST_COSINE: f32 = 1e-20;
 
-/// The direction at a longitude and at an azimuth, and its angles. Angles that keep their digits in the direction are reused, not
+/// The direction at an inclination and at an azimuth, and its angles. Angles that keep their digits in the direction are reused, not
 /// recomputed from it.
 ///
 /// `from_quarter` is half of `theta_i` plus `quarter_o`. The azimuth is on the side of `folded`. `psi` is half of `|phi|` for the glints and half of `pi - |phi|` for TT; R and TRT-g

@@ -1,4 +1,4 @@
-//! Cumulative integrals of the lobes' longitudes over the bands.
+//! Cumulative integrals of the lobes' inclinations over the bands.
 
 use super::MatchedBell;
 use super::bands::bands;
@@ -7,9 +7,9 @@ use super::hemispheres::Hemispheres;
 use crate::Lanes;
 use core::f32::consts::FRAC_PI_4;
 
-/// Cumulative integrals of a longitude, from the lower pole and from the upper one inwards.
+/// Cumulative integrals of an inclination, from the lower pole and from the upper one inwards.
 #[derive(Clone, Copy)]
-struct Longitude<P> {
+struct Inclination<P> {
     shift: P,
     inv_beta: P,
     origin: P,
@@ -19,7 +19,7 @@ struct Longitude<P> {
     area: P,
 }
 
-impl<P: Lanes> Longitude<P> {
+impl<P: Lanes> Inclination<P> {
     /// At the poles.
     #[inline(always)]
     fn at_poles<B: MatchedBell, L, const K: usize>(quarter_o: P, shift: P, inv_beta: P) -> Self
@@ -95,7 +95,7 @@ macro_rules! for_each {
     };
 }
 
-/// Cdf of the longitudes over the bands, as [`MatchedGather`] has it; arrays of three are R, TT and TRT.
+/// Cdf of the inclinations over the bands, as [`MatchedPrepared`] has it; arrays of three are R, TT and TRT.
 pub(super) struct BandCdf<L: Lanes, const N: usize> {
     pub(super) origin: [L; 3],
     pub(super) height: [L::Stored; N],
@@ -123,9 +123,9 @@ pub(super) fn integrate_bands<
     let none = L::splat(0.0);
     let (quarter_o, shift, inv_beta) =
         (P::of(quarter_o), P::of_lobes(shift), P::of_lobes(inv_beta));
-    let mut lobes = [Longitude::at_poles::<B, L, K>(quarter_o, shift[0], inv_beta[0]); K];
+    let mut lobes = [Inclination::at_poles::<B, L, K>(quarter_o, shift[0], inv_beta[0]); K];
     for_each!(k < K, {
-        lobes[k] = Longitude::at_poles::<B, L, K>(quarter_o, shift[k], inv_beta[k]);
+        lobes[k] = Inclination::at_poles::<B, L, K>(quarter_o, shift[k], inv_beta[k]);
     });
     let mut of_lobes = [P::splat(0.0); K];
     for_each!(k < K, {

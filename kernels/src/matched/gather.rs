@@ -24,10 +24,10 @@ const LEAST_CHANNEL: f32 = 1e-18;
 ///
 /// Arrays of four are in the order of [`Lobe`], of two TT and the glints, of `N` from the lower pole to the upper.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MatchedGather<C, const N: usize> {
+pub struct MatchedPrepared<C, const N: usize> {
     /// The lobes as seen from `wo`.
     pub view: HairView<C>,
-    /// Origin of the integrals of each longitude.
+    /// Origin of the integrals of each inclination.
     pub origin: [C; 4],
     /// The constant for W in each band; ascends to the band in the middle.
     pub height: [C; N],
@@ -63,7 +63,7 @@ pub struct MatchedGather<C, const N: usize> {
 pub(super) fn prepare<B, L, C, P, const K: usize, const N: usize, const BY_CHANNEL: bool>(
     m: &MatchedMaterial<C>,
     wo: Vec3x<L>,
-) -> MatchedGather<L::Stored, N>
+) -> MatchedPrepared<L::Stored, N>
 where
     B: MatchedBell,
     L: Lanes,
@@ -80,7 +80,7 @@ where
         lanes3(&hair.inv_beta),
     );
     let cdf = integrate_bands::<B, L, P, K, N>(view.quarter_o.lanes(), shift, inv_beta, theta_o);
-    // The glints share the longitude of TRT.
+    // The glints share the inclination of TRT.
     let [r, tt, trt] = cdf.area;
     let total = [r, tt, trt, trt];
 
@@ -116,7 +116,7 @@ where
         l += 1;
     }
 
-    MatchedGather {
+    MatchedPrepared {
         view,
         origin: shared4(cdf.origin),
         height: cdf.height,
@@ -180,7 +180,7 @@ fn spread2<L: Lanes, C: Broadcast<L>>(x: &[C; 2]) -> [L::Stored; 2] {
     [x[0].lanes().store(), x[1].lanes().store()]
 }
 
-impl<C, const N: usize> MatchedGather<C, N> {
+impl<C, const N: usize> MatchedPrepared<C, N> {
     /// W in the band of an inclination.
     #[inline(always)]
     pub(super) fn height<L: Lanes>(&self, sin_theta_i: L) -> L
@@ -235,7 +235,7 @@ impl<C, const N: usize> MatchedGather<C, N> {
     }
 }
 
-impl<C: Lanes, const N: usize> MatchedGather<C, N> {
+impl<C: Lanes, const N: usize> MatchedPrepared<C, N> {
     /// The shading point with only some of its lobes.
     #[inline(always)]
     pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
@@ -252,7 +252,7 @@ impl<C: Lanes, const N: usize> MatchedGather<C, N> {
     }
 }
 
-impl<const N: usize> MatchedGather<f32x8, N> {
+impl<const N: usize> MatchedPrepared<f32x8, N> {
     /// The numbers of one lane.
     ///
     /// # Panics
@@ -260,9 +260,9 @@ impl<const N: usize> MatchedGather<f32x8, N> {
     /// If `lane` is above 7.
     #[inline]
     #[must_use]
-    pub fn lane(&self, lane: usize) -> MatchedGather<f32, N> {
+    pub fn lane(&self, lane: usize) -> MatchedPrepared<f32, N> {
         let at = |x: f32x8| x.as_array()[lane];
-        MatchedGather {
+        MatchedPrepared {
             view: self.view.lane(lane),
             origin: self.origin.map(at),
             height: self.height.map(at),
@@ -282,17 +282,17 @@ impl<const N: usize> MatchedGather<f32x8, N> {
     }
 }
 
-impl<C: Scalar, const N: usize> LaneStruct for MatchedGather<C, N> {
-    type One = MatchedGather<f32, N>;
-    type Eight = MatchedGather<f32x8, N>;
+impl<C: Scalar, const N: usize> LaneStruct for MatchedPrepared<C, N> {
+    type One = MatchedPrepared<f32, N>;
+    type Eight = MatchedPrepared<f32x8, N>;
     #[inline]
-    fn pack(g: [&MatchedGather<f32, N>; 8]) -> MatchedGather<f32x8, N> {
+    fn pack(g: [&MatchedPrepared<f32, N>; 8]) -> MatchedPrepared<f32x8, N> {
         macro_rules! n {
             ($f:ident) => {
                 core::array::from_fn(|i| f32x8::new(g.map(|g| g.$f[i])))
             };
         }
-        MatchedGather {
+        MatchedPrepared {
             view: HairView::pack(g.map(|g| &g.view)),
             origin: n!(origin),
             height: n!(height),
@@ -313,7 +313,7 @@ impl<C: Scalar, const N: usize> LaneStruct for MatchedGather<C, N> {
         }
     }
     #[inline]
-    fn lane(eight: &MatchedGather<f32x8, N>, lane: usize) -> MatchedGather<f32, N> {
+    fn lane(eight: &MatchedPrepared<f32x8, N>, lane: usize) -> MatchedPrepared<f32, N> {
         eight.lane(lane)
     }
 }

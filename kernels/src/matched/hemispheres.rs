@@ -1,4 +1,4 @@
-//! Longitudes of the three lobes in both hemispheres, in lanes: below the normal plane and above it.
+//! Inclinations of the three lobes in both hemispheres, in lanes: below the normal plane and above it.
 
 use crate::Lanes;
 use crate::simd::pair::Pair;

@@ -18,7 +18,7 @@ crate::lane_struct! {
         pub importance: [C; 4],
         /// Intensity of each lobe in each channel, to the same scale: the channels of R first.
         pub intensity: [C; 12],
-        /// Integral of a lobe without its colour, per unit of its longitude's integral.
+        /// Integral of a lobe without its colour, per unit of its inclination's integral.
         pub extent: [C; 4],
         /// Integral of the azimuth's bell over one side.
         pub azimuth_mass: [C; 2],
@@ -29,7 +29,7 @@ crate::lane_struct! {
     }
 }
 
-/// Integral of each lobe without its colour, per unit of its longitude's integral.
+/// Integral of each lobe without its colour, per unit of its inclination's integral.
 #[inline(always)]
 pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(
     hair: &HairLobes<C>,

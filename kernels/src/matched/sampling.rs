@@ -1,6 +1,6 @@
 //! A direction from three uniform numbers.
 
-use super::{MatchedBell, MatchedGather};
+use super::{MatchedBell, MatchedPrepared};
 use crate::hair::{Angles, FoldedXi, direction_from_angles};
 use crate::lanes3;
 use crate::simd::pair::Pair;
@@ -14,29 +14,29 @@ const LEAST_SHARE: f32 = f32::EPSILON / 8.0;
 /// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its angles.
 #[inline(always)]
 pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
-    gather: &MatchedGather<C, N>,
+    prepared: &MatchedPrepared<C, N>,
     xi: [L; 3],
 ) -> (Vec3x<L>, L::Index, Angles<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let (view, hair) = (&gather.view, &gather.view.lobes);
-    let choice = L::search(xi[0], lanes3(&gather.bounds), 3);
+    let (view, hair) = (&prepared.view, &prepared.view.lobes);
+    let choice = L::search(xi[0], lanes3(&prepared.bounds), 3);
 
-    // Longitude: the number's share of the integral of M W, from the nearer pole. As a function of it the integral of M is the
+    // Inclination: the number's share of the integral of M W, from the nearer pole. As a function of it the integral of M is the
     // least of the bands' lines: outwards they are steeper. Above the middle it is the negative integral.
-    let total = C::look_up_three(&gather.area, choice);
+    let total = C::look_up_three(&prepared.area, choice);
     let area = xi[1] * total;
-    let lower = area.lt(C::look_up_three(&gather.below, choice));
+    let lower = area.lt(C::look_up_three(&prepared.below, choice));
     let area = L::select(lower, area, total - area);
-    let mut integral = line::<L, C, N>(gather, choice, lower, area, 0);
+    let mut integral = line::<L, C, N>(prepared, choice, lower, area, 0);
     let mut j = 1;
     while j <= N / 2 {
-        integral = integral.min(line::<L, C, N>(gather, choice, lower, area, j));
+        integral = integral.min(line::<L, C, N>(prepared, choice, lower, area, j));
         j += 1;
     }
     let [first, minus_last] = [
-        C::look_up_three(&gather.offset[0], choice),
-        C::look_up_three(&gather.offset[N - 1], choice),
+        C::look_up_three(&prepared.offset[0], choice),
+        C::look_up_three(&prepared.offset[N - 1], choice),
     ];
     let whole = first + minus_last;
     let (least, most) = (
@@ -52,14 +52,14 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let share = L::select(is_glint, one - folded.across, folded.across);
     let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON / 2.0)));
     let (mass, from) = (
-        C::look_up_half(&gather.azimuth_mass, choice),
-        C::look_up_half(&gather.azimuth_from, choice),
+        C::look_up_half(&prepared.azimuth_mass, choice),
+        C::look_up_half(&prepared.azimuth_from, choice),
     );
 
     // Side by side.
     let origin = Pair(
-        C::look_up_three(&gather.origin, choice),
-        C::look_up_half(&gather.azimuth_origin, choice),
+        C::look_up_three(&prepared.origin, choice),
+        C::look_up_half(&prepared.azimuth_origin, choice),
     );
     let Pair(x, y) = B::invert(origin, Pair(integral, share.mul_add(mass, from)));
     // NaN if any number is, or infinite: the sample has no inclination then, and no density. Rounding may take another past
@@ -75,7 +75,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
 /// The line of band `j` of a side at an area from its pole.
 #[inline(always)]
 fn line<L: Lanes, C: Broadcast<L>, const N: usize>(
-    gather: &MatchedGather<C, N>,
+    prepared: &MatchedPrepared<C, N>,
     choice: L::Index,
     lower: L::Mask,
     area: L,
@@ -83,20 +83,20 @@ fn line<L: Lanes, C: Broadcast<L>, const N: usize>(
 ) -> L {
     let middle = j == N / 2;
     let above = if middle {
-        &gather.offset_above
+        &prepared.offset_above
     } else {
-        &gather.offset[N - 1 - j]
+        &prepared.offset[N - 1 - j]
     };
     let offset = L::select(
         lower,
-        C::look_up_three(&gather.offset[j], choice),
+        C::look_up_three(&prepared.offset[j], choice),
         C::look_up_three(above, choice),
     );
-    let slope = gather.slope[j].lanes();
+    let slope = prepared.slope[j].lanes();
     let slope = if middle {
         slope
     } else {
-        L::select(lower, slope, gather.slope[N - 1 - j].lanes())
+        L::select(lower, slope, prepared.slope[N - 1 - j].lanes())
     };
     slope.mul_add(area, offset)
 }

@@ -109,7 +109,7 @@ const WHITE: HairParams = Look {
 /// that of Sadeghi et al. 2010. Intensities are ours: but for [`default_set`](Self::default_set), the light a fibre
 /// returns, averaged over directions, is below what it receives in every channel (figures beside each, Gaussian
 /// model; test `params::presets_return_less_than_they_receive`). From grazing directions it may still return up to
-/// twice as much, as the model does not conserve energy: see [`Bsdf::conserving_scale`](crate::Bsdf::conserving_scale).
+/// twice as much, as the model does not conserve energy: see [`Material::conserving_scale`](crate::Material::conserving_scale).
 impl HairParams {
     /// Blond: bright, warm, translucent; `beta_r` 8 degrees, soft glints. Returns (.81 .62 .34) of the light.
     #[inline]

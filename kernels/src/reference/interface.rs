@@ -123,7 +123,7 @@ fn albedo<T: Real>(book: &HairReference<T>) -> PerLobe<[T; 3]> {
     let (zero, half, two) = (T::default(), T::from_f64(0.5), T::from_f64(2.0));
     let p = &book.parameters;
     let (shape, right) = (book.shape, T::PI * half);
-    let longitude = |i: usize| {
+    let inclination = |i: usize| {
         let theta_o = book.theta_o;
         let integrand = |theta_i: T| {
             let ratio = theta_i.cos() / (half * (theta_o - theta_i)).cos();
@@ -148,11 +148,11 @@ fn albedo<T: Real>(book: &HairReference<T>) -> PerLobe<[T; 3]> {
         cosine,
         p.intensity_g * azimuth(p.phi_g, p.gamma_g),
     ];
-    let longitudes = [longitude(0), longitude(1), longitude(2)];
+    let inclinations = [inclination(0), inclination(1), inclination(2)];
     let colours = colours(p);
     let mut albedo = PerLobe::default();
     for lobe in Lobe::ALL {
-        let area = areas[lobe.index()] * longitudes[lobe.index().min(2)];
+        let area = areas[lobe.index()] * inclinations[lobe.index().min(2)];
         albedo[lobe] = colours[lobe].map(|c| c * area);
     }
     albedo

@@ -148,14 +148,14 @@ impl<T: Real> MatchedReference<T> {
             }
             this.areas[lobe] = areas;
             // Nothing is drawn from a bell that is 0 all over the sphere.
-            let longitude = number(2.0)
+            let inclination = number(2.0)
                 * p.beta[i]
                 * if cut.area > zero {
                     this.areas[lobe][bands]
                 } else {
                     zero
                 };
-            this.extents[lobe] = azimuth[lobe] * longitude;
+            this.extents[lobe] = azimuth[lobe] * inclination;
             this.energies[lobe] = intensity[lobe] * this.extents[lobe];
         }
         this.probabilities = shares(&this.energies);

@@ -1,7 +1,7 @@
 //! The candidates of one hit, stored by column.
 
 use super::{CandidateSlices, Choice, Choices, Counts, Partition, WeightSlices, choose};
-use crate::{Gather, LengthError, Model};
+use crate::{Bsdf, LengthError, Model};
 use glam::Vec3;
 
 /// The candidates of one hit, at most `N`: those of the BSDF first. Keep one per thread and use it again.
@@ -9,15 +9,15 @@ use glam::Vec3;
 /// ```
 /// use glam::Vec3;
 /// use hairis::resample::{Counts, Partition, Pool};
-/// use hairis::{Bsdf, Gaussian, Hair, HairParams};
+/// use hairis::{Material, Gaussian, Published, HairParams};
 ///
 /// // A sky that is brighter above, and a light sampler that draws it uniformly: density 1 / (4 pi).
 /// let sky = |wi: Vec3| ([1.0 + wi.y, 1.0, 1.0], 0.079_577_47);
-/// let gather = Bsdf::new(&Hair(Gaussian), &HairParams::brown()).prepare(Vec3::Y);
+/// let prepared = Material::new(&Published(Gaussian), &HairParams::brown()).prepare(Vec3::Y);
 ///
 /// let mut pool = Pool::<16>::new(Counts { bsdf: 8, light: 8 }, Partition::All).expect("16 candidates");
 /// let xi = core::array::from_fn::<f32, 8, _>(|i| (i as f32 + 0.5) / 8.0);
-/// pool.propose(&gather, [&xi, &xi, &xi])?; // from the BSDF
+/// pool.propose(&prepared, [&xi, &xi, &xi])?; // from the BSDF
 /// for i in 0..8 {
 ///     let (z, phi) = (xi[i] * 2.0 - 1.0, 2.4 * i as f32);
 ///     let r = (1.0 - z * z).sqrt();
@@ -25,7 +25,7 @@ use glam::Vec3;
 ///     pool.set_light(i, wi, sky(wi).0, sky(wi).1); // from the light
 /// }
 /// pool.look_up(sky);
-/// pool.weigh(&gather);
+/// pool.weigh(&prepared);
 /// let mut direct = [0.0; 3];
 /// for (wi, choice) in pool.choose(4, 0.3) {
 ///     let visible = wi.y > 0.0; // a ray
@@ -92,31 +92,33 @@ impl<const N: usize> Pool<N> {
     #[inline]
     pub fn propose<M: Model>(
         &mut self,
-        gather: &Gather<M>,
+        prepared: &Bsdf<M>,
         xi: [&[f32]; 3],
     ) -> Result<(), LengthError> {
-        gather.propose_batch(xi, self.bsdf_candidates().wi).map_err(
-            |LengthError {
-                 field,
-                 len,
-                 expected,
-             }| {
-                // The numbers are the first slices of that call, and the room of the pool is what they must fill.
-                if field.starts_with("wi") {
-                    LengthError {
-                        field: "xi.lobe",
-                        len: expected,
-                        expected: len,
+        prepared
+            .propose_batch(xi, self.bsdf_candidates().wi)
+            .map_err(
+                |LengthError {
+                     field,
+                     len,
+                     expected,
+                 }| {
+                    // The numbers are the first slices of that call, and the room of the pool is what they must fill.
+                    if field.starts_with("wi") {
+                        LengthError {
+                            field: "xi.lobe",
+                            len: expected,
+                            expected: len,
+                        }
+                    } else {
+                        LengthError {
+                            field,
+                            len,
+                            expected,
+                        }
                     }
-                } else {
-                    LengthError {
-                        field,
-                        len,
-                        expected,
-                    }
-                }
-            },
-        )
+                },
+            )
     }
 
     /// The BSDF's candidates: directions to look up, and where radiance and density go.
@@ -177,7 +179,7 @@ impl<const N: usize> Pool<N> {
 
     /// Weighs the candidates, once all are looked up.
     #[inline]
-    pub fn weigh<M: Model>(&mut self, gather: &Gather<M>) {
+    pub fn weigh<M: Model>(&mut self, prepared: &Bsdf<M>) {
         let len = self.len;
         let candidates = CandidateSlices {
             wi: self
@@ -197,7 +199,7 @@ impl<const N: usize> Pool<N> {
                 .map(|column| column.get_mut(..len).unwrap_or_default()),
             weight: self.weight.get_mut(..len).unwrap_or_default(),
         };
-        let written = gather.weigh_batch(candidates, self.counts, self.partition, out);
+        let written = prepared.weigh_batch(candidates, self.counts, self.partition, out);
         debug_assert!(written.is_ok(), "all columns have the length of the pool");
     }
 

@@ -36,7 +36,7 @@ impl Reservoir8 {
     /// Adds a candidate per lane, kept if `u` times the sum of the weights is below its own. `u` is uniform in `[0, 1)`, drawn
     /// anew for each candidate: one number that is rescaled runs out of bits after twenty.
     ///
-    /// The candidate's weight counts the candidates of one hit: see [`Gather8::weigh8`](crate::Gather8::weigh8).
+    /// The candidate's weight counts the candidates of one hit: see [`Bsdf8::weigh8`](crate::Bsdf8::weigh8).
     #[inline]
     pub fn add(&mut self, wi: &Vec3x8, candidate: &Weighed8, u: &f32x8) {
         self.add_at(Level::detect(), wi, candidate, u);

@@ -1,6 +1,6 @@
 //! Energy and weights: albedo, furnace, bounds of weights, reciprocity.
 
-use crate::erased::{ErasedGather, ErasedSubject, Which};
+use crate::erased::{ErasedBsdf, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::integral::Integral;
 use crate::mesh::Mesh;
@@ -10,14 +10,13 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::{Eval, Hit, Level, LobeMask};
 
 /// Integral of `S cos theta_i` of one channel.
-fn reflected(gather: &dyn ErasedGather, mesh: &Mesh, channel: usize) -> Integral {
+fn reflected(bsdf: &dyn ErasedBsdf, mesh: &Mesh, channel: usize) -> Integral {
     Integral::new(mesh, |wi, out| {
         let mut value = [const { Vec::new() }; 3].map(|mut v: Vec<f32>| {
             v.resize(out.len(), 0.0);
             v
         });
-        let written =
-            gather.value_slices(Level::detect(), wi, value.each_mut().map(|v| &mut v[..]));
+        let written = bsdf.value_slices(Level::detect(), wi, value.each_mut().map(|v| &mut v[..]));
         assert!(
             written.is_ok(),
             "slices of one length are accepted: {written:?}"
@@ -40,11 +39,11 @@ pub fn albedo_is_the_integral(subject: &dyn ErasedSubject) -> Outcome {
     for material in subject.set(Which::Everyday).iter() {
         let name = material.name();
         for hit in hits() {
-            let gather = material.prepare(hit);
-            let albedo = gather.albedo();
+            let bsdf = material.prepare(hit);
+            let albedo = bsdf.albedo();
             for lobe in subject.slots() {
                 let mask = LobeMask::of(&[lobe]);
-                let alone = gather.with_lobes(mask);
+                let alone = bsdf.with_lobes(mask);
                 let mesh = Mesh::new(subject, material, &hit, &*alone, mask);
                 for c in 0..3 {
                     if c > 0 && albedo[lobe][c] == albedo[lobe][c - 1] {
@@ -102,9 +101,9 @@ pub fn white_furnace(subject: &dyn ErasedSubject) -> Outcome {
             }
         }
         for hit in hits() {
-            let gather = material.prepare(hit);
-            let mesh = Mesh::new(subject, material, &hit, &*gather, LobeMask::ALL);
-            let sum = reflected(&*gather, &mesh, 0).total();
+            let bsdf = material.prepare(hit);
+            let mesh = Mesh::new(subject, material, &hit, &*bsdf, LobeMask::ALL);
+            let sum = reflected(&*bsdf, &mesh, 0).total();
             integral.see((sum - 1.0).abs(), || format!("{sum}: {name} {hit:?}"))?;
         }
     }
@@ -134,7 +133,7 @@ pub fn weights_are_bounded(subject: &dyn ErasedSubject) -> Outcome {
             let Some(bound) = material.weight_bound(&hit, mask) else {
                 continue;
             };
-            let gather = material.prepare(hit).with_lobes(mask);
+            let bsdf = material.prepare(hit).with_lobes(mask);
             for packet in 0..PACKETS {
                 let mut xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
                 if packet % 4 == 0 {
@@ -146,7 +145,7 @@ pub fn weights_are_bounded(subject: &dyn ErasedSubject) -> Outcome {
                     };
                 }
                 for level in Level::available() {
-                    let eight = gather.sample8(level, &triples(&xi));
+                    let eight = bsdf.sample8(level, &triples(&xi));
                     for s in (0..8).filter_map(|lane| eight.lane(lane)) {
                         let most = s.weight.into_iter().fold(0.0, f32::max);
                         (closest, seen) = (closest.max(f64::from(most) / bound), seen + 1);
@@ -189,13 +188,13 @@ pub fn eval_is_reciprocal(subject: &dyn ErasedSubject) -> Outcome {
             let (a, mut b) = (any(), any());
             let here = Nearby::new(material, Hit { wo: a, h: 0.0 }, claims.near_field);
             if round % 2 == 0 {
-                b = here.gather().sample(draws.xi3()).map_or(b, |s| s.wi.into());
+                b = here.bsdf().sample(draws.xi3()).map_or(b, |s| s.wi.into());
             }
             if cos_theta(a).min(cos_theta(b)) < 1e-3 {
                 continue;
             }
             let there = material.prepare(Hit { wo: b, h: 0.0 });
-            let (forth, back) = (here.gather().eval(b), there.eval(a));
+            let (forth, back) = (here.bsdf().eval(b), there.eval(a));
             // Densities are not reciprocal.
             let error = here.error(Eval { pdf: 0.0, ..back }, Eval { pdf: 0.0, ..forth }, b);
             worst.see(error, || {

@@ -31,14 +31,13 @@ pub fn samples_follow_density(subject: &dyn ErasedSubject) -> Outcome {
     for material in materials.iter() {
         let name = material.name();
         for hit in hits() {
-            let gather = material.prepare(hit);
-            let mesh = Mesh::new(subject, material, &hit, &*gather, LobeMask::ALL);
+            let bsdf = material.prepare(hit);
+            let mesh = Mesh::new(subject, material, &hit, &*bsdf, LobeMask::ALL);
             let [rows, width] = mesh.size();
-            let expected = Integral::density(&*gather, &mesh).mass;
+            let expected = Integral::density(&*bsdf, &mesh).mass;
             let mut observed = vec![0_u32; rows * width];
             let mut live = 0_u32;
-            for direction in
-                Samples::draw(&*gather, columns(claims.samples, |_| draws.xi3())).live()
+            for direction in Samples::draw(&*bsdf, columns(claims.samples, |_| draws.xi3())).live()
             {
                 let [i, j] = mesh.find(direction);
                 observed[i * width + j] += 1;

@@ -5,7 +5,7 @@
 //! in their unused lanes what raises an exception; divisions are kept from it ([`Lanes::quotient`](hairis::Lanes::quotient)). Run
 //! these properties in a release build too. Only x86-64 is tested.
 
-use crate::erased::{COLUMNS, Direction, ErasedGather, ErasedSubject, Material, Which};
+use crate::erased::{COLUMNS, Direction, ErasedBsdf, ErasedSubject, NamedMaterial, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, columns, hits8, packet, triples};
 use crate::totality;
@@ -111,7 +111,7 @@ pub fn any_rounding_is_finite(subject: &dyn ErasedSubject) -> Outcome {
 fn slices_are_finite(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0xf1);
     for material in subject.set(Which::WithExtremes).iter() {
-        let (name, gather) = (material.name(), material.prepare(draws.hit()));
+        let (name, bsdf) = (material.name(), material.prepare(draws.hit()));
         let rows: Vec<(Direction, [f32; 3])> =
             (0..69).map(|_| (unit(&mut draws), draws.xi3())).collect();
         let wi = columns(69, |n| {
@@ -124,13 +124,13 @@ fn slices_are_finite(subject: &dyn ErasedSubject) -> Outcome {
                 [const { [0.0_f32; 69] }; 4],
                 [const { [0.0_f32; 69] }; COLUMNS],
             );
-            let lengths = gather
+            let lengths = bsdf
                 .eval_slices(
                     Some(level),
                     wi.each_ref().map(|c| &c[..]),
                     evals.each_mut().map(|c| &mut c[..]),
                 )
-                .and(gather.sample_slices(
+                .and(bsdf.sample_slices(
                     Some(level),
                     xi.each_ref().map(|c| &c[..]),
                     samples.each_mut().map(|c| &mut c[..]),
@@ -183,9 +183,9 @@ pub fn everyday_input_raises_no_exception(subject: &dyn ErasedSubject) -> Outcom
             for level in Level::available() {
                 let at = || format!("{name} on {level}, {hits:?} {wi:?}");
                 quiet("prepare8", at, || {
-                    Material::prepare_packed([material; 8], level, hits8)
+                    NamedMaterial::prepare_packed([material; 8], level, hits8)
                 })?;
-                let each = Material::prepare_packed([material; 8], level, hits8);
+                let each = NamedMaterial::prepare_packed([material; 8], level, hits8);
                 quiet("eval_pdf8 of one hit", at, || one.eval8(level, &wi8))?;
                 quiet("eval_pdf8 of eight hits", at, || each.eval(level, &wi8))?;
                 quiet("sample8 of one hit", at, || one.sample8(level, &xi8))?;
@@ -213,8 +213,8 @@ pub fn everyday_input_raises_no_exception(subject: &dyn ErasedSubject) -> Outcom
 
 /// The same of one lane.
 fn scalar_is_quiet(
-    material: Material<'_>,
-    one: &dyn ErasedGather,
+    material: NamedMaterial<'_>,
+    one: &dyn ErasedBsdf,
     hit: Hit,
     (wi, xi): (Direction, [f32; 3]),
 ) -> Outcome {

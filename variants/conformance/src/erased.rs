@@ -9,8 +9,8 @@ use crate::subject::{Claims, ParamsOf, Reference, Subject};
 use core::fmt;
 use hairis::wide::f32x8;
 use hairis::{
-    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gather, Gather8, Hit, Hit8, LengthError, Level, Lobe,
-    LobeEval, LobeEval8, LobeMask, Model, PerLobe, Sample, Sample8, SampleSlices,
+    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Hit, Hit8, LengthError, Level, Lobe, LobeEval, LobeEval8,
+    LobeMask, Material, Material8, Model, PerLobe, Sample, Sample8, SampleSlices,
     SampleWeightSlices, Vec3x, Vec3x8,
 };
 
@@ -74,38 +74,37 @@ impl<S: Subject> ErasedSubject for S {
 pub trait MaterialSet {
     fn len(&self) -> usize;
     fn name(&self, index: usize) -> &'static str;
-    fn prepare(&self, index: usize, hit: Hit) -> Box<dyn ErasedGather>;
-    fn prepare8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn ErasedGather8>;
-    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8)
-    -> Box<dyn ErasedGather8>;
+    fn prepare(&self, index: usize, hit: Hit) -> Box<dyn ErasedBsdf>;
+    fn prepare8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8>;
+    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8>;
     fn edges(&self, index: usize, hit: &Hit) -> [Vec<f64>; 2];
     fn weight_bound(&self, index: usize, hit: &Hit, lobes: LobeMask) -> Option<f64>;
     fn reference(&self, index: usize, hit: &Hit) -> Option<Box<dyn Reference>>;
 }
 
 impl dyn MaterialSet + '_ {
-    pub(crate) fn iter(&self) -> impl Iterator<Item = Material<'_>> {
-        (0..self.len()).map(|index| Material { set: self, index })
+    pub(crate) fn iter(&self) -> impl Iterator<Item = NamedMaterial<'_>> {
+        (0..self.len()).map(|index| NamedMaterial { set: self, index })
     }
 }
 
 /// One material of a set.
 #[derive(Clone, Copy)]
-pub(crate) struct Material<'a> {
+pub(crate) struct NamedMaterial<'a> {
     set: &'a dyn MaterialSet,
     index: usize,
 }
 
-impl Material<'_> {
+impl NamedMaterial<'_> {
     pub(crate) fn name(&self) -> &'static str {
         self.set.name(self.index)
     }
 
-    pub(crate) fn prepare(&self, hit: Hit) -> Box<dyn ErasedGather> {
+    pub(crate) fn prepare(&self, hit: Hit) -> Box<dyn ErasedBsdf> {
         self.set.prepare(self.index, hit)
     }
 
-    pub(crate) fn prepare8(&self, level: Level, hits: Hit8) -> Box<dyn ErasedGather8> {
+    pub(crate) fn prepare8(&self, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
         self.set.prepare8(self.index, level, hits)
     }
 
@@ -114,7 +113,7 @@ impl Material<'_> {
         materials: [Self; 8],
         level: Level,
         hits: Hit8,
-    ) -> Box<dyn ErasedGather8> {
+    ) -> Box<dyn ErasedBsdf8> {
         materials[0]
             .set
             .prepare_packed(materials.map(|material| material.index), level, hits)
@@ -138,7 +137,7 @@ pub(crate) struct Set<'s, S: Subject> {
     subject: &'s S,
     names: Vec<&'static str>,
     params: Vec<ParamsOf<S>>,
-    pub(crate) bsdfs: Vec<Bsdf<S::Model>>,
+    pub(crate) materials: Vec<Material<S::Model>>,
 }
 
 impl<'s, S: Subject> Set<'s, S> {
@@ -161,15 +160,15 @@ impl<'s, S: Subject> Set<'s, S> {
             }
         }
         let (names, params): (Vec<_>, Vec<_>) = materials.into_iter().unzip();
-        let bsdfs = params
+        let materials = params
             .iter()
-            .map(|params| Bsdf::new(&subject.model(), params))
+            .map(|params| Material::new(&subject.model(), params))
             .collect();
         Self {
             subject,
             names,
             params,
-            bsdfs,
+            materials,
         }
     }
 }
@@ -183,21 +182,16 @@ impl<S: Subject> MaterialSet for Set<'_, S> {
         self.names[index]
     }
 
-    fn prepare(&self, index: usize, hit: Hit) -> Box<dyn ErasedGather> {
-        Box::new(self.bsdfs[index].prepare(hit))
+    fn prepare(&self, index: usize, hit: Hit) -> Box<dyn ErasedBsdf> {
+        Box::new(self.materials[index].prepare(hit))
     }
 
-    fn prepare8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn ErasedGather8> {
-        Box::new(self.bsdfs[index].prepare8_at(level, hits))
+    fn prepare8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
+        Box::new(self.materials[index].prepare8_at(level, hits))
     }
 
-    fn prepare_packed(
-        &self,
-        index: [usize; 8],
-        level: Level,
-        hits: Hit8,
-    ) -> Box<dyn ErasedGather8> {
-        Box::new(Bsdf8::pack(index.map(|i| &self.bsdfs[i])).prepare8_at(level, hits))
+    fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
+        Box::new(Material8::pack(index.map(|i| &self.materials[i])).prepare8_at(level, hits))
     }
 
     fn edges(&self, index: usize, hit: &Hit) -> [Vec<f64>; 2] {
@@ -216,14 +210,14 @@ impl<S: Subject> MaterialSet for Set<'_, S> {
 /// Columns of a sample in slices: direction, value, density, weight, slot.
 pub(crate) const COLUMNS: usize = 11;
 
-/// Places of the columns of [`ErasedGather::weight_slices`] among those of [`ErasedGather::sample_slices`].
+/// Places of the columns of [`ErasedBsdf::weight_slices`] among those of [`ErasedBsdf::sample_slices`].
 pub(crate) const WEIGHT_COLUMNS: [usize; 7] = [0, 1, 2, 6, 7, 8, 9];
 
 /// Outcome of a call on slices: an error if their lengths differ.
 type SliceResult = Result<(), LengthError>;
 
-/// [`Gather`] of any model. Without a level, slices run on the one that is found.
-pub trait ErasedGather: fmt::Debug {
+/// [`Bsdf`] of any model. Without a level, slices run on the one that is found.
+pub trait ErasedBsdf: fmt::Debug {
     fn eval(&self, wi: Direction) -> Eval;
     fn value(&self, wi: Direction) -> [f32; 3];
     fn pdf(&self, wi: Direction) -> f32;
@@ -233,8 +227,8 @@ pub trait ErasedGather: fmt::Debug {
     fn sample(&self, xi: [f32; 3]) -> Option<Sample>;
     fn sample8(&self, level: Level, xi: &[f32x8; 3]) -> Sample8;
     fn albedo(&self) -> PerLobe<[f32; 3]>;
-    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedGather>;
-    fn conserving(&self) -> Box<dyn ErasedGather>;
+    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedBsdf>;
+    fn conserving(&self) -> Box<dyn ErasedBsdf>;
     fn eval_slices(
         &self,
         level: Option<Level>,
@@ -257,7 +251,7 @@ pub trait ErasedGather: fmt::Debug {
     ) -> SliceResult;
 }
 
-impl<M: Model + 'static> ErasedGather for Gather<M> {
+impl<M: Model + 'static> ErasedBsdf for Bsdf<M> {
     fn eval(&self, wi: Direction) -> Eval {
         self.eval_pdf(wi)
     }
@@ -294,11 +288,11 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
         self.albedo()
     }
 
-    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedGather> {
+    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedBsdf> {
         Box::new(self.with_lobes(lobes))
     }
 
-    fn conserving(&self) -> Box<dyn ErasedGather> {
+    fn conserving(&self) -> Box<dyn ErasedBsdf> {
         Box::new(self.conserving())
     }
 
@@ -366,18 +360,18 @@ impl<M: Model + 'static> ErasedGather for Gather<M> {
     }
 }
 
-/// [`Gather8`] of any model.
-pub trait ErasedGather8: fmt::Debug {
+/// [`Bsdf8`] of any model.
+pub trait ErasedBsdf8: fmt::Debug {
     fn eval(&self, level: Level, wi: &Vec3x8) -> Eval8;
     fn lobes(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
     fn sample(&self, level: Level, xi: &[f32x8; 3]) -> Sample8;
     fn albedo(&self, level: Level) -> PerLobe<[f32x8; 3]>;
-    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedGather8>;
-    fn conserving(&self, level: Level) -> Box<dyn ErasedGather8>;
-    fn lane(&self, lane: usize) -> Box<dyn ErasedGather>;
+    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedBsdf8>;
+    fn conserving(&self, level: Level) -> Box<dyn ErasedBsdf8>;
+    fn lane(&self, lane: usize) -> Box<dyn ErasedBsdf>;
 }
 
-impl<M: Model + 'static> ErasedGather8 for Gather8<M> {
+impl<M: Model + 'static> ErasedBsdf8 for Bsdf8<M> {
     fn eval(&self, level: Level, wi: &Vec3x8) -> Eval8 {
         self.eval_pdf8_at(level, wi)
     }
@@ -394,15 +388,15 @@ impl<M: Model + 'static> ErasedGather8 for Gather8<M> {
         self.albedo8_at(level)
     }
 
-    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedGather8> {
+    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedBsdf8> {
         Box::new(self.with_lobes(lobes))
     }
 
-    fn conserving(&self, level: Level) -> Box<dyn ErasedGather8> {
+    fn conserving(&self, level: Level) -> Box<dyn ErasedBsdf8> {
         Box::new(self.conserving_at(level))
     }
 
-    fn lane(&self, lane: usize) -> Box<dyn ErasedGather> {
+    fn lane(&self, lane: usize) -> Box<dyn ErasedBsdf> {
         Box::new(self.lane(lane))
     }
 }

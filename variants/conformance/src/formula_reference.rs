@@ -29,7 +29,7 @@ impl<R: reference::Reference<f64>> Reference for FormulaReference<R> {
     fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
         let drawn = self.formulas.sample(xi);
         drawn.lobe.map_or(ReferenceSample::Discarded, |lobe| {
-            ReferenceSample::Drawn(lobe.index(), drawn.wi)
+            ReferenceSample::SampleLanes(lobe.index(), drawn.wi)
         })
     }
 

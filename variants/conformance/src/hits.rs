@@ -2,7 +2,7 @@
 
 use crate::environment::{DOWN, with_mode};
 use crate::erased::hits::{Columns, HitMaterials, HitsCall, HitsSet, HitsSubject};
-use crate::erased::{COLUMNS, Direction, Material, MaterialSet};
+use crate::erased::{COLUMNS, Direction, MaterialSet, NamedMaterial};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
 use crate::probe::{Draws, hits8, packet, triples};
@@ -21,7 +21,7 @@ const SAMPLE_CHOICES: [[bool; 5]; 4] = [
     [false; 5],
 ];
 
-/// Slices of hits give the bits that [`Bsdf8::prepare8`](hairis::Bsdf8::prepare8) and then eight lanes give: on one material,
+/// Slices of hits give the bits that [`Material8::prepare8`](hairis::Material8::prepare8) and then eight lanes give: on one material,
 /// and on a table of materials in runs and at random; without `h`, they are hits on the axis. Columns that are left out are not written, nor is
 /// anything beyond a slice. Slices of different lengths and indices beyond the table are refused, and then nothing is written.
 /// Where the host rounds down and takes denormals for 0, results are finite and not negative.
@@ -234,7 +234,7 @@ struct Expected {
 }
 
 impl Expected {
-    fn new(materials: &[Material<'_>], level: Level, rows: &[Row]) -> Self {
+    fn new(materials: &[NamedMaterial<'_>], level: Level, rows: &[Row]) -> Self {
         let mut all = Self {
             evals: Vec::new(),
             samples: Vec::new(),
@@ -243,9 +243,9 @@ impl Expected {
             let lane = |lane: usize| lane % rows.len();
             let packed = core::array::from_fn(|i| materials[lane(i)]);
             let row: [Row; 8] = core::array::from_fn(|i| rows[lane(i)]);
-            let gather = Material::prepare_packed(packed, level, hits8(&row.map(|row| row.hit)));
-            let evals = gather.eval(level, &packet(&row.map(|row| row.wi)));
-            let samples = gather.sample(level, &triples(&row.map(|row| row.xi)));
+            let bsdf = NamedMaterial::prepare_packed(packed, level, hits8(&row.map(|row| row.hit)));
+            let evals = bsdf.eval(level, &packet(&row.map(|row| row.wi)));
+            let samples = bsdf.sample(level, &triples(&row.map(|row| row.xi)));
             for lane in 0..rows.len() {
                 all.evals.push(eval_bits(evals.lane(lane)));
                 all.samples.push(sample_bits(&samples, lane));

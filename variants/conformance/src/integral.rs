@@ -1,6 +1,6 @@
 //! The density integrates to the share of samples that are kept: of all lobes, and of each alone.
 
-use crate::erased::{Direction, ErasedGather, ErasedSubject, Which};
+use crate::erased::{Direction, ErasedBsdf, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::mesh::{Mesh, Samples};
 use crate::probe::{columns, hits, narrow, sobol};
@@ -144,9 +144,9 @@ impl Integral {
     }
 
     /// The density of a shading point.
-    pub(crate) fn density(gather: &dyn ErasedGather, mesh: &Mesh) -> Self {
+    pub(crate) fn density(bsdf: &dyn ErasedBsdf, mesh: &Mesh) -> Self {
         Self::new(mesh, |wi, out| {
-            let written = gather.pdf_slice(Level::detect(), wi, out);
+            let written = bsdf.pdf_slice(Level::detect(), wi, out);
             assert!(
                 written.is_ok(),
                 "slices of one length are accepted: {written:?}"
@@ -197,10 +197,10 @@ pub fn density_integrates_to_one(subject: &dyn ErasedSubject) -> Outcome {
         for hit in hits() {
             let all = material.prepare(hit);
             for mask in subject.parts() {
-                let gather = all.with_lobes(mask);
+                let bsdf = all.with_lobes(mask);
                 let at = || format!("{name} {mask:?} {hit:?}");
-                let mesh = Mesh::new(subject, material, &hit, &*gather, mask);
-                let integral = Integral::density(&*gather, &mesh);
+                let mesh = Mesh::new(subject, material, &hit, &*bsdf, mask);
+                let integral = Integral::density(&*bsdf, &mesh);
                 if integral.unresolved > claims.integral {
                     let message = format!(
                         "quadrature left {:.1e} unresolved: state the edges. {}",
@@ -209,7 +209,7 @@ pub fn density_integrates_to_one(subject: &dyn ErasedSubject) -> Outcome {
                     );
                     return Err(Failure::new(NAME, message));
                 }
-                let kept = Samples::draw(&*gather, points.clone()).kept();
+                let kept = Samples::draw(&*bsdf, points.clone()).kept();
                 let got = integral.total();
                 // A lobe without energy scatters nothing.
                 if got == 0.0 && kept == 0.0 {

@@ -27,17 +27,17 @@ pub fn even_points_invert_density(subject: &dyn ErasedSubject) -> Outcome {
         for hit in hits() {
             let all = material.prepare(hit);
             for mask in subject.parts() {
-                let gather = all.with_lobes(mask);
-                let mesh = Mesh::new(subject, material, &hit, &*gather, mask);
+                let bsdf = all.with_lobes(mask);
+                let mesh = Mesh::new(subject, material, &hit, &*bsdf, mask);
                 let [rows, width] = mesh.size();
-                // Drawn less expected.
-                let mut mass: Vec<f64> = Integral::density(&*gather, &mesh)
+                // SampleLanes less expected.
+                let mut mass: Vec<f64> = Integral::density(&*bsdf, &mesh)
                     .mass
                     .iter()
                     .map(|mass| -mass)
                     .collect();
                 let share = 1.0 / f64::from(claims.points);
-                for direction in Samples::draw(&*gather, points.clone()).live() {
+                for direction in Samples::draw(&*bsdf, points.clone()).live() {
                     let [i, j] = mesh.find(direction);
                     mass[i * width + j] += share;
                 }

@@ -1,6 +1,6 @@
 //! Eight lanes give the results of one, whatever their position and on every level.
 
-use crate::erased::{Direction, ErasedGather8, ErasedSubject, Material, Which};
+use crate::erased::{Direction, ErasedBsdf8, ErasedSubject, NamedMaterial, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::near::{Nearby, sample_is_near};
 use crate::probe::{Draws, cos_theta, hits8, packet, relative, triples};
@@ -13,14 +13,14 @@ const ROUNDS: usize = 2000;
 
 /// Eight materials, each with its hit, a direction and three numbers.
 struct Mixed<'a> {
-    material: [Material<'a>; 8],
+    material: [NamedMaterial<'a>; 8],
     hits: [Hit; 8],
     wi: [Direction; 8],
     xi: [[f32; 3]; 8],
 }
 
 impl<'a> Mixed<'a> {
-    fn new(materials: &[Material<'a>], draws: &mut Draws) -> Self {
+    fn new(materials: &[NamedMaterial<'a>], draws: &mut Draws) -> Self {
         let material: [_; 8] = core::array::from_fn(|_| *draws.pick(materials));
         let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
         // Half of the directions where the lobes are, half anywhere.
@@ -51,8 +51,8 @@ impl<'a> Mixed<'a> {
         }
     }
 
-    fn prepare(&self, level: Level) -> Box<dyn ErasedGather8> {
-        Material::prepare_packed(self.material, level, hits8(&self.hits))
+    fn prepare(&self, level: Level) -> Box<dyn ErasedBsdf8> {
+        NamedMaterial::prepare_packed(self.material, level, hits8(&self.hits))
     }
 
     fn at(&self, lane: usize, level: Level) -> String {
@@ -123,7 +123,7 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
             for lane in 0..8 {
                 let at = || m.at(lane, level);
                 let nearby = Nearby::new(m.material[lane], m.hits[lane], claims.near_field);
-                let one = nearby.gather();
+                let one = nearby.bsdf();
                 let eight = one.eval8(level, &wi);
                 let of_lane = each.lane(lane);
                 let apart = of_lane.eval8(level, &wi);
@@ -223,10 +223,10 @@ pub fn levels_agree(subject: &dyn ErasedSubject) -> Outcome {
     const NAME: &str = "packed and shared materials, and levels that fuse alike, agree";
     each_mixed(subject, 0x1e7e, ROUNDS / 2, |m, _, round| {
         let (wi, xi) = (packet(&m.wi), triples(&m.xi));
-        let mut by_level: Vec<(Level, Box<dyn ErasedGather8>)> = Vec::new();
+        let mut by_level: Vec<(Level, Box<dyn ErasedBsdf8>)> = Vec::new();
         for level in Level::available() {
             let (material, hits) = (m.material[round % 8], hits8(&[m.hits[round % 8]; 8]));
-            let packed = Material::prepare_packed([material; 8], level, hits);
+            let packed = NamedMaterial::prepare_packed([material; 8], level, hits);
             let shared = material.prepare8(level, hits);
             let lane = packed.lane(3);
             let evals = [

@@ -3,16 +3,16 @@
 //! A model in a crate of its own takes this package as a dev-dependency and writes, in its tests:
 //!
 //! ```
-//! use hairis::{Gaussian, Hair, HairParams};
+//! use hairis::{Gaussian, Published, HairParams};
 //! use hairis_conformance::{Claims, Materials, Subject};
 //!
 //! struct Published;
 //!
 //! impl Subject for Published {
-//!     type Model = Hair<Gaussian>;
+//!     type Model = Published<Gaussian>;
 //!
 //!     fn model(&self) -> Self::Model {
-//!         Hair(Gaussian)
+//!         Published(Gaussian)
 //!     }
 //!
 //!     fn materials(&self) -> Materials<Self> {

@@ -24,11 +24,11 @@ pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
         let name = material.name();
         for round in 0..ROUNDS {
             let hit = draws.hit();
-            let gather = material.prepare(hit);
+            let bsdf = material.prepare(hit);
             let any = draws.direction();
-            let drawn = gather.sample(draws.xi3()).map_or(any, |s| s.wi.into());
+            let drawn = bsdf.sample(draws.xi3()).map_or(any, |s| s.wi.into());
             let wi = if round % 3 == 0 { any } else { drawn };
-            let (whole, lobes) = (gather.eval(wi), gather.lobes(wi));
+            let (whole, lobes) = (bsdf.eval(wi), bsdf.lobes(wi));
             let at = || format!("{name} {hit:?} {wi:?} {lobes:?}, whole {whole:?}");
             for c in 0..3 {
                 let sum = lobes
@@ -40,7 +40,7 @@ pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
             }
             let mut densities = Vec::new();
             for lobe in subject.slots() {
-                let alone = gather.with_lobes(LobeMask::of(&[lobe])).eval(wi);
+                let alone = bsdf.with_lobes(LobeMask::of(&[lobe])).eval(wi);
                 for (value, color) in alone.value.into_iter().zip(lobes[lobe].color) {
                     let want = f64::from(lobes[lobe].value) * f64::from(color);
                     alone_worst.see(relative(f64::from(value), want, 1e-20), || {
@@ -89,7 +89,7 @@ pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
         let name = material.name();
         for _ in 0..ROUNDS / 4 {
             let hit = draws.hit();
-            let (gather, each) = (
+            let (bsdf, each) = (
                 material.prepare(hit),
                 material.prepare8(level, hits8(&[hit; 8])),
             );
@@ -97,10 +97,10 @@ pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
             let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
             let single: Vec<(Lobe, Eval)> = subject
                 .slots()
-                .map(|lobe| (lobe, gather.with_lobes(LobeMask::of(&[lobe])).eval(wi[0])))
+                .map(|lobe| (lobe, bsdf.with_lobes(LobeMask::of(&[lobe])).eval(wi[0])))
                 .collect();
             for mask in masks() {
-                let (part, part8) = (gather.with_lobes(mask), each.with_lobes(mask));
+                let (part, part8) = (bsdf.with_lobes(mask), each.with_lobes(mask));
                 let (e, eight) = (part.eval(wi[0]), part8.eval(level, &packet(&wi)));
                 let at = || format!("{name} {mask:?} {hit:?} {:?}", wi[0]);
                 for got in [e, eight.lane(0)] {
@@ -153,7 +153,7 @@ pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
                     .filter(|lobe| mask.contains(*lobe) && other.contains(*lobe))
                     .collect();
                 let twice = part.with_lobes(other).eval(wi[0]);
-                let once = gather.with_lobes(LobeMask::of(&common)).eval(wi[0]);
+                let once = bsdf.with_lobes(LobeMask::of(&common)).eval(wi[0]);
                 let error = relative(f64::from(twice.pdf), f64::from(once.pdf), 1e-20);
                 nested.see(error, || {
                     format!("{twice:?}, at once {once:?}: {} then {other:?}", at())

@@ -4,7 +4,7 @@
 //! on a sphere misses lobes below a degree. From there the mesh widens by a constant factor, so that tails are resolved,
 //! too. Only where the edges lie depends on the samples; what they enclose is integrated from the density alone.
 
-use crate::erased::{COLUMNS, ErasedGather, ErasedSubject, Material};
+use crate::erased::{COLUMNS, ErasedBsdf, ErasedSubject, NamedMaterial};
 use crate::probe::{angles, columns, sides, sobol};
 use crate::statistics::AngleEdges;
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -31,14 +31,14 @@ impl Mesh {
     /// A mesh for the density of a shading point: of all its lobes, or of those in `mask`.
     pub(crate) fn new(
         subject: &dyn ErasedSubject,
-        material: Material<'_>,
+        material: NamedMaterial<'_>,
         hit: &Hit,
-        gather: &dyn ErasedGather,
+        bsdf: &dyn ErasedBsdf,
         mask: LobeMask,
     ) -> Self {
         let [mut theta, mut phi] = material.edges(hit);
         for lobe in subject.slots().filter(|lobe| mask.contains(*lobe)) {
-            let alone = gather.with_lobes(LobeMask::of(&[lobe]));
+            let alone = bsdf.with_lobes(LobeMask::of(&[lobe]));
             let samples = Samples::draw(&*alone, columns(SAMPLES, sobol));
             let drawn: Vec<[f64; 2]> = samples.live().map(angles).collect();
             theta.extend(quantiles(drawn.iter().map(|[theta, _]| *theta).collect()));
@@ -68,10 +68,10 @@ pub(crate) struct Samples {
 
 impl Samples {
     /// The samples that these numbers give.
-    pub(crate) fn draw(gather: &dyn ErasedGather, xi: [Vec<f32>; 3]) -> Self {
+    pub(crate) fn draw(bsdf: &dyn ErasedBsdf, xi: [Vec<f32>; 3]) -> Self {
         let mut columns: [Vec<f32>; COLUMNS] = core::array::from_fn(|_| vec![0.0; xi[0].len()]);
         let inputs = xi.each_ref().map(|column| &column[..]);
-        let written = gather.sample_slices(
+        let written = bsdf.sample_slices(
             Some(Level::detect()),
             inputs,
             columns.each_mut().map(|c| &mut c[..]),

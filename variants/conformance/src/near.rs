@@ -1,6 +1,6 @@
 //! Effect of rounded inputs on results: the difference allowed between two evaluations of one formula.
 
-use crate::erased::{Direction, ErasedGather, Material};
+use crate::erased::{Direction, ErasedBsdf, NamedMaterial};
 use crate::probe::{cos_theta, distance, narrow, rounded};
 use hairis::{Eval, Hit, Sample};
 
@@ -12,28 +12,28 @@ const FLOOR: f64 = 1e-20;
 
 /// A shading point, and those of the hits that its hit may be taken for once it is rounded.
 pub(crate) struct Nearby<'a> {
-    material: Material<'a>,
+    material: NamedMaterial<'a>,
     hit: Hit,
     near_field: bool,
-    gather: Box<dyn ErasedGather>,
+    bsdf: Box<dyn ErasedBsdf>,
 }
 
 impl<'a> Nearby<'a> {
-    pub(crate) fn new(material: Material<'a>, hit: Hit, near_field: bool) -> Self {
+    pub(crate) fn new(material: NamedMaterial<'a>, hit: Hit, near_field: bool) -> Self {
         Self {
             material,
             hit,
             near_field,
-            gather: material.prepare(hit),
+            bsdf: material.prepare(hit),
         }
     }
 
-    pub(crate) fn gather(&self) -> &dyn ErasedGather {
-        &*self.gather
+    pub(crate) fn bsdf(&self) -> &dyn ErasedBsdf {
+        &*self.bsdf
     }
 
     /// The shading points of rounded hits.
-    fn gathers(&self) -> impl Iterator<Item = Box<dyn ErasedGather>> {
+    fn bsdfs(&self) -> impl Iterator<Item = Box<dyn ErasedBsdf>> {
         let Hit { wo, h } = self.hit;
         let moved = rounded(wo, ROUNDING).map(|wo| Hit { wo, h });
         let by = if self.near_field {
@@ -51,12 +51,12 @@ impl<'a> Nearby<'a> {
     /// The largest change of value and density as `wi` and the hit are rounded.
     fn spread(&self, wi: Direction) -> [f64; 4] {
         let numbers = |e: Eval| [e.value[0], e.value[1], e.value[2], e.pdf].map(f64::from);
-        let centre = numbers(self.gather.eval(wi));
-        let moved = rounded(wi, ROUNDING).map(|wi| self.gather.eval(wi));
+        let centre = numbers(self.bsdf.eval(wi));
+        let moved = rounded(wi, ROUNDING).map(|wi| self.bsdf.eval(wi));
         let mut spread = [0.0; 4];
         for e in moved
             .into_iter()
-            .chain(self.gathers().map(|gather| gather.eval(wi)))
+            .chain(self.bsdfs().map(|bsdf| bsdf.eval(wi)))
         {
             for ((most, x), c) in spread.iter_mut().zip(numbers(e)).zip(centre) {
                 *most = f64::max(*most, (x - c).abs());
@@ -107,10 +107,10 @@ pub(crate) fn sample_is_near(
         for by in [-2.0, -1.0, -0.5, 0.5, 1.0, 2.0] {
             let mut xi = xi;
             xi[axis] = (xi[axis] + by * narrow(ROUNDING)).clamp(0.0, 1.0 - f32::EPSILON / 2.0);
-            moved.push(nearby.gather().sample(xi));
+            moved.push(nearby.bsdf().sample(xi));
         }
     }
-    moved.extend(nearby.gathers().map(|gather| gather.sample(xi)));
+    moved.extend(nearby.bsdfs().map(|bsdf| bsdf.sample(xi)));
     // As far as rounding moves the sample of its lobe.
     let reach = moved.iter().flatten().filter_map(|a| {
         let of_lobe = |b: &Sample| b.lobe == a.lobe;

@@ -1,7 +1,7 @@
 //! NaN and infinite inputs give nothing: no value, no density, and samples that are discarded.
 
 use crate::erased::{
-    COLUMNS, Direction, ErasedGather, ErasedGather8, ErasedSubject, Material, Which,
+    COLUMNS, Direction, ErasedBsdf, ErasedBsdf8, ErasedSubject, NamedMaterial, Which,
 };
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, hits8, packet, triples};
@@ -61,14 +61,10 @@ fn no_lobes(lobes: &[[f32x8; 2]]) -> bool {
 }
 
 /// Describes any result other than zero at this direction, or of these numbers.
-fn at_one(
-    gather: &dyn ErasedGather,
-    wi: Option<Direction>,
-    xi: Option<[f32; 3]>,
-) -> Option<String> {
+fn at_one(bsdf: &dyn ErasedBsdf, wi: Option<Direction>, xi: Option<[f32; 3]>) -> Option<String> {
     if let Some(wi) = wi {
-        let e = gather.eval(wi);
-        let lobes = gather.lobes(wi);
+        let e = bsdf.eval(wi);
+        let lobes = bsdf.lobes(wi);
         if !black(e)
             || lobes
                 .0
@@ -78,15 +74,15 @@ fn at_one(
             return Some(format!("{e:?} {lobes:?}, one lane"));
         }
     }
-    let sample = xi.and_then(|xi| gather.sample(xi));
+    let sample = xi.and_then(|xi| bsdf.sample(xi));
     if sample.is_some() {
         return Some(format!("{sample:?}, one lane"));
     }
     for level in Level::available() {
         if let Some(wi) = wi {
             let (e, lobes) = (
-                gather.eval8(level, &packet(&[wi; 8])),
-                gather.lobes8(level, &packet(&[wi; 8])),
+                bsdf.eval8(level, &packet(&[wi; 8])),
+                bsdf.lobes8(level, &packet(&[wi; 8])),
             );
             if !(0..8).all(|lane| black(e.lane(lane)))
                 || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf]))
@@ -94,7 +90,7 @@ fn at_one(
                 return Some(format!("{e:?} {lobes:?}, {level}"));
             }
             let mut out = [const { [1.0; ROWS] }; 4];
-            let written = gather.eval_slices(
+            let written = bsdf.eval_slices(
                 Some(level),
                 [&[wi.x; ROWS], &[wi.y; ROWS], &[wi.z; ROWS]],
                 slices(&mut out),
@@ -104,12 +100,12 @@ fn at_one(
             }
         }
         if let Some(xi) = xi {
-            let s = gather.sample8(level, &triples(&[xi; 8]));
+            let s = bsdf.sample8(level, &triples(&[xi; 8]));
             if !discarded(&s) {
                 return Some(format!("{s:?}, {level}"));
             }
             let mut out = [const { [1.0; ROWS] }; COLUMNS];
-            let written = gather.sample_slices(
+            let written = bsdf.sample_slices(
                 Some(level),
                 [&[xi[0]; ROWS], &[xi[1]; ROWS], &[xi[2]; ROWS]],
                 slices(&mut out),
@@ -130,7 +126,7 @@ fn slices<const N: usize>(out: &mut [[f32; ROWS]; N]) -> [&mut [f32]; N] {
 
 /// Describes any result other than zero at eight shading points.
 fn at_each(
-    each: &dyn ErasedGather8,
+    each: &dyn ErasedBsdf8,
     level: Level,
     wi: Option<[Direction; 8]>,
     xi: Option<[[f32; 3]; 8]>,
@@ -181,7 +177,7 @@ pub fn inputs_that_are_no_numbers_are_black(subject: &dyn ErasedSubject) -> Outc
                 faults.push(Some(format!("albedo {albedo:?}")));
             }
             for level in Level::available() {
-                let unseen = Material::prepare_packed([material; 8], level, hits8(&odd_hits));
+                let unseen = NamedMaterial::prepare_packed([material; 8], level, hits8(&odd_hits));
                 faults.push(at_each(&*unseen, level, Some(wi), Some(xi)));
                 let seen = material.prepare8(level, hits8(&hits));
                 faults.push(at_each(&*seen, level, Some(odd_wi), Some(odd_xi)));

@@ -30,11 +30,11 @@ pub use subject::Family;
 
 use core::fmt;
 use hairis::reference::Shape;
-use hairis::{Hair, HairParams, Matched, MatchedBell, Model};
+use hairis::{HairParams, Matched, MatchedBell, Model, Published};
 use handles::AnyModel;
 
 /// A model of the family.
-pub trait Published: Sync {
+pub trait FamilyModel: Sync {
     /// The model.
     type Model: Model<Params = HairParams> + 'static;
     /// Its bell.
@@ -63,17 +63,17 @@ pub trait Published: Sync {
 /// The formulas that a model is held against.
 #[derive(Clone, Copy, Debug)]
 pub struct Formulas {
-    /// See [`Published::SHAPE`].
+    /// See [`FamilyModel::SHAPE`].
     pub shape: Shape,
-    /// See [`Published::BANDS`].
+    /// See [`FamilyModel::BANDS`].
     pub bands: Option<usize>,
-    /// See [`Published::BY_CHANNEL`].
+    /// See [`FamilyModel::BY_CHANNEL`].
     pub by_channel: bool,
 }
 
 impl Formulas {
     /// Formulas of a model.
-    pub const fn of<S: Published>() -> Self {
+    pub const fn of<S: FamilyModel>() -> Self {
         Self {
             shape: S::SHAPE,
             bands: S::BANDS,
@@ -82,7 +82,7 @@ impl Formulas {
     }
 }
 
-/// A [`Published`] model without its types, as the tests take it.
+/// A [`FamilyModel`] model without its types, as the tests take it.
 pub struct Tested {
     forms: Vec<(Box<dyn AnyModel>, f32)>,
     /// With the published sampler, and with the matched ones of 5, 9 and 25 bands.
@@ -101,12 +101,12 @@ impl fmt::Debug for Tested {
 
 impl Tested {
     /// The model `S`.
-    pub fn new<S: Published>() -> Self {
+    pub fn new<S: FamilyModel>() -> Self {
         let forms = S::forms()
             .into_iter()
             .map(|(model, factor)| (Box::new(model) as Box<dyn AnyModel>, factor));
         let samplers: [(_, Box<dyn AnyModel>); 4] = [
-            (None, Box::new(Hair(S::bell()))),
+            (None, Box::new(Published(S::bell()))),
             (Some(5), Box::new(Matched::<_, 5>(S::bell()))),
             (Some(9), Box::new(Matched::<_, 9>(S::bell()))),
             (Some(25), Box::new(Matched::<_, 25>(S::bell()))),
@@ -144,7 +144,7 @@ impl Tested {
     }
 }
 
-/// Declares a module with a `#[test]` for each test of a [`Published`] model: `common` ones, or those of the `published` or a
+/// Declares a module with a `#[test]` for each test of a [`FamilyModel`] model: `common` ones, or those of the `published` or a
 /// `matched` sampler as well.
 #[macro_export]
 #[doc(hidden)]

@@ -49,18 +49,18 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                 return Ok(());
             };
             let tolerance = reference.tolerance();
-            let gather = material.prepare(hit);
+            let bsdf = material.prepare(hit);
             for n in 0..PACKETS {
                 let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
                 let wi: [Direction; 8] = core::array::from_fn(|lane| {
                     let any = draws.direction();
-                    let drawn = gather.sample(draws.xi3()).map_or(any, |s| s.wi.into());
+                    let drawn = bsdf.sample(draws.xi3()).map_or(any, |s| s.wi.into());
                     if (lane + n) % 2 == 0 { any } else { drawn }
                 });
                 let levels = Level::available().map(|level| {
                     let (e, s) = (
-                        gather.eval8(level, &packet(&wi)),
-                        gather.sample8(level, &triples(&xi)),
+                        bsdf.eval8(level, &packet(&wi)),
+                        bsdf.sample8(level, &triples(&xi)),
                     );
                     (e, s, level.name())
                 });
@@ -69,7 +69,7 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                     let lanes = levels
                         .iter()
                         .map(|(e, s, level)| (e.lane(lane), s.lane(lane), *level));
-                    let one = (gather.eval(wi[lane]), gather.sample(xi[lane]), "one lane");
+                    let one = (bsdf.eval(wi[lane]), bsdf.sample(xi[lane]), "one lane");
                     for (e, s, level) in lanes.chain([one]) {
                         let at = || {
                             format!("{name} {hit:?} {:?} xi {:?} on {level}", wi[lane], xi[lane])
@@ -78,7 +78,7 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                         compare_sample(&*reference, s, xi[lane], &tolerance, &at)?;
                         compared += 1;
                     }
-                    let lobes = gather.lobes(wi[lane]);
+                    let lobes = bsdf.lobes(wi[lane]);
                     if reference.lobes(double(wi[lane])).is_none() {
                         continue;
                     }
@@ -165,8 +165,8 @@ fn compare_sample(
     let distance = |want: ReferenceSample| match (want, got) {
         (ReferenceSample::Unknown, _) | (ReferenceSample::Discarded, None) => Some(0.0),
         (ReferenceSample::Discarded, Some(s)) => (cos_theta(s.wi.into()) < 1e-3).then_some(0.0),
-        (ReferenceSample::Drawn(_, [_, v, w]), None) => (v.hypot(w) < 1e-3).then_some(0.0),
-        (ReferenceSample::Drawn(slot, wi), Some(s)) => {
+        (ReferenceSample::SampleLanes(_, [_, v, w]), None) => (v.hypot(w) < 1e-3).then_some(0.0),
+        (ReferenceSample::SampleLanes(slot, wi), Some(s)) => {
             (slot == s.lobe.index()).then(|| apart(double(s.wi.into()), wi))
         }
     };
@@ -186,9 +186,12 @@ fn compare_sample(
             distance(pair[0]),
             distance(pair[1]),
         ) {
-            (ReferenceSample::Drawn(_, a), ReferenceSample::Drawn(_, b), Some(from), Some(to)) => {
-                from.max(to) <= 1.1 * apart(a, b) + tolerance.direction
-            }
+            (
+                ReferenceSample::SampleLanes(_, a),
+                ReferenceSample::SampleLanes(_, b),
+                Some(from),
+                Some(to),
+            ) => from.max(to) <= 1.1 * apart(a, b) + tolerance.direction,
             _ => false,
         };
         if path.into_iter().any(near) || path.windows(2).any(is_between) {

@@ -1,7 +1,7 @@
 //! Resampled estimates of direct light have the mean of plain ones.
 
 use crate::environment::{DOWN, with_mode};
-use crate::erased::light::{LitGather, LitGather8, LitSubject};
+use crate::erased::light::{LitBsdf, LitBsdf8, LitSubject};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, hits8, packet, triples};
 use core::f32::consts::PI;
@@ -102,7 +102,7 @@ fn mean(rgb: [f32; 3]) -> f64 {
 
 /// One-sample estimates of what a direction brings by both techniques at once, in double precision and without a pool.
 struct Plain<'a> {
-    gather: &'a dyn LitGather,
+    bsdf: &'a dyn LitBsdf,
     light: Light,
 }
 
@@ -110,7 +110,7 @@ impl Plain<'_> {
     /// `f V`, and the densities of the BSDF and of the light.
     fn terms(&self, wi: Vec3) -> [f64; 3] {
         let (radiance, pdf_light) = self.light.look_up(wi);
-        let eval = self.gather.eval(wi.into());
+        let eval = self.bsdf.eval(wi.into());
         let cos = f64::from(wi.y).hypot(f64::from(wi.z));
         let f = (0..3)
             .map(|c| f64::from(eval.value[c]) * f64::from(radiance[c]))
@@ -126,7 +126,7 @@ impl Plain<'_> {
     fn estimate(&self, draws: &mut Draws) -> f64 {
         let over = |[f, bsdf, light]: [f64; 3]| if f > 0.0 { f / (bsdf + light) } else { 0.0 };
         let from_bsdf = self
-            .gather
+            .bsdf
             .sample(draws.xi3())
             .map_or(0.0, |sample| over(self.terms(sample.wi)));
         from_bsdf + over(self.terms(self.light.draw(draws)))
@@ -137,7 +137,7 @@ impl Plain<'_> {
         let mut pool = Pool::<16>::new(counts, partition).expect("16 candidates at most");
         let xi: Vec<[f32; 3]> = (0..counts.bsdf).map(|_| draws.xi3()).collect();
         let xi = [0, 1, 2].map(|axis| xi.iter().map(|xi| xi[axis]).collect::<Vec<_>>());
-        self.gather
+        self.bsdf
             .propose(&mut pool, xi.each_ref().map(|column| &column[..]));
         for i in 0..counts.light as usize {
             let wi = self.light.draw(draws);
@@ -145,7 +145,7 @@ impl Plain<'_> {
             pool.set_light(i, wi, radiance, pdf);
         }
         pool.look_up(|wi| self.light.look_up(wi));
-        self.gather.weigh(&mut pool);
+        self.bsdf.weigh(&mut pool);
         let chosen: Vec<_> = pool.choose(k, draws.xi()).collect();
         let count: u32 = chosen.iter().map(|(_, choice)| choice.count).sum();
         assert!(chosen.is_empty() || count == k, "{count} of {k} choices");
@@ -158,7 +158,7 @@ impl Plain<'_> {
     /// The light's share by resampling, and the rest where a path's next direction meets it.
     fn path(&self, partition: Partition, draws: &mut Draws) -> f64 {
         let direct = self.pooled(Counts { bsdf: 0, light: 8 }, partition, 1, draws);
-        let Some(next) = self.gather.sample(draws.xi3()) else {
+        let Some(next) = self.bsdf.sample(draws.xi3()) else {
             return direct;
         };
         let ([f, bsdf, _], (_, pdf_light)) = (self.terms(next.wi), self.light.look_up(next.wi));
@@ -168,12 +168,12 @@ impl Plain<'_> {
 }
 
 /// Estimates of eight hits with a reservoir each: the candidates in two reservoirs that are merged.
-fn reservoirs(gather: &dyn LitGather8, light: Light, level: Level, draws: &mut Draws) -> [f64; 8] {
+fn reservoirs(bsdf: &dyn LitBsdf8, light: Light, level: Level, draws: &mut Draws) -> [f64; 8] {
     let counts = Counts { bsdf: 4, light: 4 };
     let mut kept = [Reservoir8::default(); 2];
     for i in 0..8 {
         let wi = if i < 4 {
-            gather.propose(level, &triples(&core::array::from_fn(|_| draws.xi3())))
+            bsdf.propose(level, &triples(&core::array::from_fn(|_| draws.xi3())))
         } else {
             packet(&core::array::from_fn(|_| light.draw(draws).into()))
         };
@@ -182,7 +182,7 @@ fn reservoirs(gather: &dyn LitGather8, light: Light, level: Level, draws: &mut D
             triples(&found.map(|(rgb, _)| rgb)),
             f32x8::new(found.map(|(_, pdf)| pdf)),
         );
-        let weighed = gather.weigh(level, &wi, &radiance, &pdf, counts);
+        let weighed = bsdf.weigh(level, &wi, &radiance, &pdf, counts);
         kept[i % 2].add_at(
             level,
             &wi,
@@ -260,13 +260,13 @@ pub fn check(subject: &dyn LitSubject, factor: f64) -> Outcome {
             // Errors of a cell: its resampled estimates, from their number, against plain ones.
             let mut cell =
                 |hit: Hit, draws: &mut Draws, resampled: &dyn Fn(usize, &mut Draws) -> Sums| {
-                    let gather = set.lit(index, hit);
+                    let bsdf = set.lit(index, hit);
                     let apart = |count: usize, draws: &mut Draws| {
                         let resampled = resampled(count, draws);
-                        // Drawn for each cell alone, so that the cells' errors are independent.
+                        // SampleLanes for each cell alone, so that the cells' errors are independent.
                         let plain = Sums::of(4 * count, || {
                             Plain {
-                                gather: &*gather,
+                                bsdf: &*bsdf,
                                 light,
                             }
                             .estimate(draws)
@@ -285,9 +285,9 @@ pub fn check(subject: &dyn LitSubject, factor: f64) -> Outcome {
                     });
                 };
             for (n, hit) in hits.into_iter().enumerate() {
-                let gather = set.lit(index, hit);
+                let bsdf = set.lit(index, hit);
                 let one = Plain {
-                    gather: &*gather,
+                    bsdf: &*bsdf,
                     light,
                 };
                 let estimate = |draws: &mut Draws| match n % 4 {
@@ -301,9 +301,9 @@ pub fn check(subject: &dyn LitSubject, factor: f64) -> Outcome {
                 });
             }
             for (level, lane) in Level::available().zip(0..) {
-                let gather = set.lit8(index, level, hits8(&hits));
+                let bsdf = set.lit8(index, level, hits8(&hits));
                 cell(hits[lane], &mut draws, &|count, draws| {
-                    Sums::of(count, || reservoirs(&*gather, light, level, draws)[lane])
+                    Sums::of(count, || reservoirs(&*bsdf, light, level, draws)[lane])
                 });
             }
         }
@@ -334,15 +334,15 @@ fn any_rounding_is_finite(subject: &dyn LitSubject) -> Outcome {
         for light in Light::all(&mut draws) {
             let estimates = with_mode(DOWN, || {
                 let one = Plain {
-                    gather: &*set.lit(index, hits[0]),
+                    bsdf: &*set.lit(index, hits[0]),
                     light,
                 };
                 let mut all =
                     vec![one.pooled(Counts { bsdf: 6, light: 10 }, Partition::All, 4, &mut draws)];
                 all.push(one.path(Partition::Power, &mut draws));
                 for level in Level::available() {
-                    let gather = set.lit8(index, level, hits8(&hits));
-                    all.extend(reservoirs(&*gather, light, level, &mut draws));
+                    let bsdf = set.lit8(index, level, hits8(&hits));
+                    all.extend(reservoirs(&*bsdf, light, level, &mut draws));
                 }
                 all
             });

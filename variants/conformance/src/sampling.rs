@@ -28,14 +28,14 @@ pub fn samples_agree_with_eval(subject: &dyn ErasedSubject) -> Outcome {
         for _ in 0..HITS {
             let hit = draws.hit();
             let nearby = Nearby::new(material, hit, claims.near_field);
-            let gather = nearby.gather();
+            let bsdf = nearby.bsdf();
             for _ in 0..PACKETS {
                 let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
                 let packets = Level::available().flat_map(|level| {
-                    let eight = gather.sample8(level, &triples(&xi));
+                    let eight = bsdf.sample8(level, &triples(&xi));
                     (0..8).map(move |lane| (eight.lane(lane), lane, level.name()))
                 });
-                let scalar = (0..8).map(|lane| (gather.sample(xi[lane]), lane, "one lane"));
+                let scalar = (0..8).map(|lane| (bsdf.sample(xi[lane]), lane, "one lane"));
                 for (sample, lane, level) in packets.chain(scalar) {
                     let Some(s) = sample else { continue };
                     live += 1;
@@ -52,7 +52,7 @@ pub fn samples_agree_with_eval(subject: &dyn ErasedSubject) -> Outcome {
                     if cos < 1e-3 {
                         continue;
                     }
-                    let e = gather.eval(wi);
+                    let e = bsdf.eval(wi);
                     let error = nearby.error(
                         Eval {
                             value: s.value,
@@ -62,7 +62,7 @@ pub fn samples_agree_with_eval(subject: &dyn ErasedSubject) -> Outcome {
                         wi,
                     );
                     worst.see(error, || format!("evaluation gives {e:?}: {}", at()))?;
-                    if gather.lobes(wi)[s.lobe].pdf <= 0.0 {
+                    if bsdf.lobes(wi)[s.lobe].pdf <= 0.0 {
                         return Err(Failure::new(
                             NAME,
                             format!("its own lobe has no density there: {}", at()),

@@ -1,6 +1,6 @@
 //! Slices give the bits of packets, whatever their length and alignment, and nothing is written beyond them.
 
-use crate::erased::{COLUMNS, Direction, ErasedGather, ErasedSubject, WEIGHT_COLUMNS, Which};
+use crate::erased::{COLUMNS, Direction, ErasedBsdf, ErasedSubject, WEIGHT_COLUMNS, Which};
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
 use crate::probe::{Draws, packet, triples};
@@ -77,16 +77,16 @@ impl<const N: usize> Room<N> {
 pub fn slices_equal_packets(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0x511c);
     for (n, material) in subject.set(Which::WithExtremes).iter().enumerate() {
-        let (name, gather) = (material.name(), material.prepare(draws.hit()));
+        let (name, bsdf) = (material.name(), material.prepare(draws.hit()));
         let rows: [(Direction, [f32; 3]); LONGEST] =
             core::array::from_fn(|_| (draws.direction(), draws.xi3()));
         for level in Level::available() {
-            let expected = Expected::new(&*gather, level, &rows);
+            let expected = Expected::new(&*bsdf, level, &rows);
             for len in 0..=LONGEST {
                 // Every length with each material, every alignment with some.
                 for offset in (0..8).filter(|offset| n == 0 || (len + offset + n) % 8 == 0) {
                     expected.check(
-                        &*gather,
+                        &*bsdf,
                         level,
                         offset,
                         len,
@@ -96,10 +96,10 @@ pub fn slices_equal_packets(subject: &dyn ErasedSubject) -> Outcome {
             }
         }
         if n == 0 {
-            lengths_are_checked(&*gather)?;
+            lengths_are_checked(&*bsdf)?;
             found_level_is_default(
-                &*gather,
-                &Expected::new(&*gather, Level::detect(), &rows).inputs,
+                &*bsdf,
+                &Expected::new(&*bsdf, Level::detect(), &rows).inputs,
             )?;
         }
     }
@@ -114,7 +114,7 @@ struct Expected {
 }
 
 impl Expected {
-    fn new(gather: &dyn ErasedGather, level: Level, rows: &[(Direction, [f32; 3])]) -> Self {
+    fn new(bsdf: &dyn ErasedBsdf, level: Level, rows: &[(Direction, [f32; 3])]) -> Self {
         let components: [fn(&Direction) -> f32; 3] = [|v| v.x, |v| v.y, |v| v.z];
         let wi = components.map(|of| rows.iter().map(|(wi, _)| of(wi)).collect());
         let xi = [0, 1, 2].map(|axis| rows.iter().map(|(_, xi)| xi[axis]).collect::<Vec<f32>>());
@@ -125,8 +125,8 @@ impl Expected {
         };
         for eight in rows.chunks(8) {
             let padded: [_; 8] = core::array::from_fn(|lane| eight[lane % eight.len()]);
-            let evals = gather.eval8(level, &packet(&padded.map(|(wi, _)| wi)));
-            let samples = gather.sample8(level, &triples(&padded.map(|(_, xi)| xi)));
+            let evals = bsdf.eval8(level, &packet(&padded.map(|(wi, _)| wi)));
+            let samples = bsdf.sample8(level, &triples(&padded.map(|(_, xi)| xi)));
             for lane in 0..eight.len() {
                 all.evals.push(eval_bits(evals.lane(lane)));
                 all.samples.push(sample_bits(&samples, lane));
@@ -137,7 +137,7 @@ impl Expected {
 
     fn check(
         &self,
-        gather: &dyn ErasedGather,
+        bsdf: &dyn ErasedBsdf,
         level: Level,
         offset: usize,
         len: usize,
@@ -155,29 +155,25 @@ impl Expected {
             .each_ref()
             .map(|columns| columns.each_ref().map(|column| &column[from..]));
         let mut out = Room::<4>::new(offset, len);
-        gather
-            .eval_slices(Some(level), wi, out.slices())
+        bsdf.eval_slices(Some(level), wi, out.slices())
             .map_err(refused)?;
         out.check(&self.evals, "value and density", at)?;
         let mut values = Room::<3>::new(offset, len);
-        gather
-            .value_slices(level, wi, values.slices())
+        bsdf.value_slices(level, wi, values.slices())
             .map_err(refused)?;
         let colors: Vec<_> = self.evals.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
         values.check(&colors, "value alone", at)?;
         let mut densities = Room::<1>::new(offset, len);
         let [pdf] = densities.slices();
-        gather.pdf_slice(level, wi, pdf).map_err(refused)?;
+        bsdf.pdf_slice(level, wi, pdf).map_err(refused)?;
         let pdfs: Vec<_> = self.evals.iter().map(|[.., pdf]| [*pdf]).collect();
         densities.check(&pdfs, "density alone", at)?;
         let mut samples = Room::<COLUMNS>::new(offset, len);
-        gather
-            .sample_slices(Some(level), xi, samples.slices())
+        bsdf.sample_slices(Some(level), xi, samples.slices())
             .map_err(refused)?;
         samples.check(&self.samples, "samples", at)?;
         let mut weights = Room::<{ WEIGHT_COLUMNS.len() }>::new(offset, len);
-        gather
-            .weight_slices(Some(level), xi, weights.slices())
+        bsdf.weight_slices(Some(level), xi, weights.slices())
             .map_err(refused)?;
         let some: Vec<_> = self
             .samples
@@ -198,7 +194,7 @@ const SAMPLE_SLICES: [&str; 3 + COLUMNS] = [
 ];
 
 /// A slice of another length is refused by its name, and nothing is written.
-fn lengths_are_checked(gather: &dyn ErasedGather) -> Outcome {
+fn lengths_are_checked(bsdf: &dyn ErasedBsdf) -> Outcome {
     for level in Level::available() {
         for (expected, len) in [(5, 0), (5, 4), (5, 6), (5, 40), (16, 17)] {
             let length = |n: usize, wrong: usize| if n == wrong { len } else { expected };
@@ -229,14 +225,14 @@ fn lengths_are_checked(gather: &dyn ErasedGather) -> Outcome {
                 let read = inputs.each_ref().map(|column| &column[..]);
                 let room = || [3, 4, 5, 6].map(|n| vec![UNTOUCHED; length(n, wrong)]);
                 let mut out = room();
-                let got = gather.eval_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
+                let got = bsdf.eval_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
                 check(name, got, &out)?;
                 // Value and density alone each have some of the slices.
                 let mut out = room();
                 let [r, g, b, pdf] = out.each_mut().map(|c| &mut c[..]);
                 let (value, density) = (
-                    gather.value_slices(level, read, [r, g, b]),
-                    gather.pdf_slice(level, read, pdf),
+                    bsdf.value_slices(level, read, [r, g, b]),
+                    bsdf.pdf_slice(level, read, pdf),
                 );
                 if name != "pdf" {
                     check(name, value, &out[..3])?;
@@ -250,14 +246,13 @@ fn lengths_are_checked(gather: &dyn ErasedGather) -> Outcome {
                 let read = inputs.each_ref().map(|column| &column[..]);
                 let mut out: [Vec<f32>; COLUMNS] =
                     core::array::from_fn(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
-                let got =
-                    gather.sample_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
+                let got = bsdf.sample_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
                 check(name, got, &out)?;
                 // Weights alone have some of the slices.
                 if wrong < 3 || WEIGHT_COLUMNS.contains(&(wrong - 3)) {
                     let mut out = WEIGHT_COLUMNS.map(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
                     let got =
-                        gather.weight_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
+                        bsdf.weight_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
                     check(name, got, &out)?;
                 }
             }
@@ -267,30 +262,25 @@ fn lengths_are_checked(gather: &dyn ErasedGather) -> Outcome {
 }
 
 /// Without a level, slices run on the one that is found.
-fn found_level_is_default(gather: &dyn ErasedGather, inputs: &[[Vec<f32>; 3]; 2]) -> Outcome {
+fn found_level_is_default(bsdf: &dyn ErasedBsdf, inputs: &[[Vec<f32>; 3]; 2]) -> Outcome {
     let [wi, xi] = inputs
         .each_ref()
         .map(|columns| columns.each_ref().map(|column| &column[..13]));
     let refused =
         |e: LengthError| Failure::new(NAME, format!("{e}: 13 entries, at the level found"));
     let (mut found, mut default) = (Room::<4>::new(0, 13), Room::<4>::new(0, 13));
-    gather
-        .eval_slices(Some(Level::detect()), wi, found.slices())
+    bsdf.eval_slices(Some(Level::detect()), wi, found.slices())
         .map_err(refused)?;
-    gather
-        .eval_slices(None, wi, default.slices())
+    bsdf.eval_slices(None, wi, default.slices())
         .map_err(refused)?;
     let (mut found_samples, mut samples) =
         (Room::<COLUMNS>::new(0, 13), Room::<COLUMNS>::new(0, 13));
-    gather
-        .sample_slices(Some(Level::detect()), xi, found_samples.slices())
+    bsdf.sample_slices(Some(Level::detect()), xi, found_samples.slices())
         .map_err(refused)?;
-    gather
-        .sample_slices(None, xi, samples.slices())
+    bsdf.sample_slices(None, xi, samples.slices())
         .map_err(refused)?;
     let mut weights = Room::<{ WEIGHT_COLUMNS.len() }>::new(0, 13);
-    gather
-        .weight_slices(None, xi, weights.slices())
+    bsdf.weight_slices(None, xi, weights.slices())
         .map_err(refused)?;
     let same = WEIGHT_COLUMNS
         .iter()

@@ -163,7 +163,7 @@ pub enum ReferenceSample {
     /// The sample was discarded.
     Discarded,
     /// The lobe's slot and the direction.
-    Drawn(usize, [f64; 3]),
+    SampleLanes(usize, [f64; 3]),
 }
 
 /// Tolerances against the [`Reference`] at directions further than 1e-3 rad from the axis.

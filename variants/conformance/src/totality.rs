@@ -1,6 +1,6 @@
 //! Every finite input gives finite results that are not negative.
 
-use crate::erased::{Direction, ErasedSubject, Material, Which};
+use crate::erased::{Direction, ErasedSubject, NamedMaterial, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, LAST, direction, hits8, masks, packet, triples};
 use hairis::{Eval, Hit, Level, Lobe, LobeEval, LobeMask, Sample8, Vec3x};
@@ -189,7 +189,7 @@ pub(crate) fn sweep(
             };
             let (wi8, xi8) = (packet(&wi), triples(&xi));
             for level in Level::available() {
-                let each = Material::prepare_packed([material; 8], level, hits8(&hits));
+                let each = NamedMaterial::prepare_packed([material; 8], level, hits8(&hits));
                 let each = each.with_lobes(mask);
                 let one = material.prepare(hits[0]).with_lobes(mask);
                 let evals = [each.eval(level, &wi8), one.eval8(level, &wi8)];
@@ -220,13 +220,13 @@ pub(crate) fn sweep(
                 }
             }
             let lane = round % 8;
-            let gather = material.prepare(hits[lane]).with_lobes(mask);
-            let e = gather.eval(wi[lane]);
+            let bsdf = material.prepare(hits[lane]).with_lobes(mask);
+            let e = bsdf.eval(wi[lane]);
             if !sound_eval(&e) || (mask == LobeMask::NONE && (e.pdf != 0.0 || e.value != [0.0; 3]))
             {
                 return fail("a value or density", lane, "scalar", format!("{e:?}"));
             }
-            let lobes = gather.lobes(wi[lane]);
+            let lobes = bsdf.lobes(wi[lane]);
             let named = subject.lobe_count();
             for lobe in Lobe::ALL {
                 let beyond =
@@ -241,7 +241,7 @@ pub(crate) fn sweep(
                 }
             }
             // One lane repeats, bit for bit: there is no state.
-            let sample = gather.sample(xi[lane]);
+            let sample = bsdf.sample(xi[lane]);
             if let Some(s) = sample {
                 let numbers = [s.value, s.weight].concat();
                 let length = f64::from(s.wi.x)
@@ -258,7 +258,7 @@ pub(crate) fn sweep(
                     return fail("a sample", lane, "scalar", format!("{s:?}"));
                 }
             }
-            if sample != gather.sample(xi[lane]) {
+            if sample != bsdf.sample(xi[lane]) {
                 return fail(
                     "a sample differs when it is drawn again",
                     lane,
@@ -267,11 +267,11 @@ pub(crate) fn sweep(
                 );
             }
             if round % 16 == 0 {
-                for (gather, what) in [
-                    (&gather, "an albedo"),
-                    (&gather.conserving(), "an albedo of conserving hair"),
+                for (bsdf, what) in [
+                    (&bsdf, "an albedo"),
+                    (&bsdf.conserving(), "an albedo of conserving hair"),
                 ] {
-                    let albedo = gather.albedo().0;
+                    let albedo = bsdf.albedo().0;
                     if !albedo.as_flattened().iter().all(|x| sound(*x)) {
                         return fail(what, lane, "scalar", format!("{albedo:?}"));
                     }

@@ -5,8 +5,8 @@ use core::f32::consts::{FRAC_1_PI, PI};
 use core::ops::Deref;
 use hairis::math::{atan2_upper, sin_cos_half_turn};
 use hairis::{
-    Broadcast, Drawn, Eval, GRAZING, Hit, LaneStruct, Lanes, Lobe, LobeEval, LobeMask, Model,
-    PerLobe, Scalar, Vec3x, lanes3, store3,
+    Broadcast, Eval, GRAZING, Hit, LaneStruct, Lanes, Lobe, LobeEval, LobeMask, Model, PerLobe,
+    SampleLanes, Scalar, Vec3x, lanes3, store3,
 };
 use hairis_conformance::{Claims, Materials, Subject};
 
@@ -139,40 +139,40 @@ const fn width_of<L>() -> usize {
 /// The lobes at a direction, neither with its colour, its cosine, and whether there are any.
 #[inline(always)]
 fn shapes<L: Lanes, C: Broadcast<L>>(
-    gather: &Point<C>,
+    prepared: &Point<C>,
     wi: Vec3x<L>,
 ) -> ([LobeEval<L>; 2], L, L::Mask) {
     let c = L::splat;
-    let width: L = gather.width.lanes();
+    let width: L = prepared.width.lanes();
     let cos_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
     let cos = cos_sq.sqrt();
     let sound = L::and(c(GRAZING).lt(cos), wi.x.mul_add(wi.x, cos_sq).lt(c(4.0)));
-    let off = wi.x + gather.sin_theta_o.lanes();
+    let off = wi.x + prepared.sin_theta_o.lanes();
     // NaN where wo is no direction.
     let sound = L::and(sound, off.abs().lt(c(4.0)));
     let bell = L::quotient(width, off.mul_add(off, width * width));
     let diffuse = LobeEval {
         value: c(FRAC_1_PI * FRAC_1_PI),
-        color: lanes3(&gather.kd),
+        color: lanes3(&prepared.kd),
         pdf: c(0.25 * FRAC_1_PI),
     };
     let cone = LobeEval {
         value: bell * c(0.5 * FRAC_1_PI * FRAC_1_PI),
-        color: lanes3(&gather.ks),
-        pdf: L::quotient(bell * c(0.5 * FRAC_1_PI), gather.span.lanes()),
+        color: lanes3(&prepared.ks),
+        pdf: L::quotient(bell * c(0.5 * FRAC_1_PI), prepared.span.lanes()),
     };
     ([diffuse, cone], cos, sound)
 }
 
 /// `sin theta_i` at which the cone's cdf is `xi`.
 #[inline(always)]
-fn cone_sine<L: Lanes, C: Broadcast<L>>(gather: &Point<C>, xi: L) -> L {
+fn cone_sine<L: Lanes, C: Broadcast<L>>(prepared: &Point<C>, xi: L) -> L {
     let (one, width, sin_theta_o) = (
         L::splat(1.0),
-        gather.width.lanes(),
-        gather.sin_theta_o.lanes(),
+        prepared.width.lanes(),
+        prepared.sin_theta_o.lanes(),
     );
-    let (s, c) = sin_cos_half_turn(xi * gather.span.lanes() * L::splat(0.5));
+    let (s, c) = sin_cos_half_turn(xi * prepared.span.lanes() * L::splat(0.5));
     let (sin, cos) = ((s + s) * c, c * c - s * s);
     let lo = sin_theta_o - one;
     let x = L::quotient(
@@ -186,7 +186,7 @@ impl Fiber {
     /// The sums over both lobes; 0 where a lane is not sound.
     #[inline(always)]
     fn total<L: Lanes, C: Broadcast<L>>(
-        gather: &Faulty<Point<C>>,
+        prepared: &Faulty<Point<C>>,
         lobes: [LobeEval<L>; 2],
         wi: Vec3x<L>,
         sound: L::Mask,
@@ -200,36 +200,36 @@ impl Fiber {
             let mut sum = diffuse
                 .value
                 .mul_add(diffuse.color[channel], cone.value * cone.color[channel]);
-            if gather.fault == NOT_RECIPROCAL {
+            if prepared.fault == NOT_RECIPROCAL {
                 sum = sum * wi.x.mul_add(c(0.01), c(1.0));
             }
-            if gather.fault == LOBE_MISSING {
+            if prepared.fault == LOBE_MISSING {
                 sum = cone.value * cone.color[channel];
             }
-            if gather.fault == NEGATIVE {
+            if prepared.fault == NEGATIVE {
                 sum = sum - c(1e-3);
             }
-            if gather.fault == DIVIDES_BY_ZERO {
+            if prepared.fault == DIVIDES_BY_ZERO {
                 sum = sum.min(c(1.0) / L::keep(c(9.0).lt(wi.x), wi.x));
             }
-            if gather.fault == NEGATIVE_ROUNDED_DOWN {
+            if prepared.fault == NEGATIVE_ROUNDED_DOWN {
                 let tiny = wi.x * wi.x * c(1e-10);
                 sum = sum + ((c(1.0) - tiny) - c(1.0)) * c(1e9);
             }
             value[channel] = sum.min(limit);
             channel += 1;
         }
-        let [p_diffuse, p_cone] = [gather.selection[0].lanes(), gather.selection[1].lanes()];
+        let [p_diffuse, p_cone] = [prepared.selection[0].lanes(), prepared.selection[1].lanes()];
         let mut pdf = diffuse.pdf.mul_add(p_diffuse, cone.pdf * p_cone).min(limit);
-        if gather.fault == DENSITY_TOO_HIGH {
+        if prepared.fault == DENSITY_TOO_HIGH {
             pdf = pdf * c(1.02);
         }
-        if (gather.fault == WIDE_SLICES_DIFFER && width_of::<L>() > 8)
-            || (gather.fault == PACKET_DIFFERS && width_of::<L>() > 1)
+        if (prepared.fault == WIDE_SLICES_DIFFER && width_of::<L>() > 8)
+            || (prepared.fault == PACKET_DIFFERS && width_of::<L>() > 1)
         {
             pdf = pdf * c(1.0 + 4.0 * f32::EPSILON) + c(1e-4) * pdf;
         }
-        if gather.fault == NAN_AT_THE_POLE {
+        if prepared.fault == NAN_AT_THE_POLE {
             // 0 / 0 on the axis.
             let cos_sq = wi.y.mul_add(wi.y, wi.z * wi.z);
             pdf = pdf * cos_sq / (wi.y * wi.y + wi.z * wi.z);
@@ -241,7 +241,7 @@ impl Fiber {
 impl Model for Fiber {
     type Params = Params;
     type Material<C: Scalar> = Faulty<Material<C>>;
-    type Gather<C: Scalar> = Faulty<Point<C>>;
+    type Prepared<C: Scalar> = Faulty<Point<C>>;
 
     const LOBES: &'static [&'static str] = &["diffuse", "cone"];
 
@@ -310,44 +310,44 @@ impl Model for Fiber {
     }
 
     #[inline(always)]
-    fn restrict<C: Lanes>(gather: &Faulty<Point<C>>, lobes: LobeMask) -> Faulty<Point<C>> {
+    fn restrict<C: Lanes>(prepared: &Faulty<Point<C>>, lobes: LobeMask) -> Faulty<Point<C>> {
         let (d, s) = (
             C::splat(lobes.factor(DIFFUSE)),
             C::splat(lobes.factor(CONE)),
         );
-        let [p_d, p_s] = [gather.selection[0] * d, gather.selection[1] * s];
+        let [p_d, p_s] = [prepared.selection[0] * d, prepared.selection[1] * s];
         // Quotients: that of a number and itself is 1 however it is rounded.
         let sum = (p_d + p_s).max(C::splat(f32::MIN_POSITIVE));
         let times = |x: [C; 3], by: C| [x[0] * by, x[1] * by, x[2] * by];
-        let kd = if gather.fault == MASK_LEAKS {
-            times(gather.kd, d.max(C::splat(1e-4)))
+        let kd = if prepared.fault == MASK_LEAKS {
+            times(prepared.kd, d.max(C::splat(1e-4)))
         } else {
-            times(gather.kd, d)
+            times(prepared.kd, d)
         };
         let constants = Point {
             kd,
-            ks: times(gather.ks, s),
+            ks: times(prepared.ks, s),
             selection: [p_d / sum, p_s / sum],
-            ..gather.constants
+            ..prepared.constants
         };
         Faulty {
-            fault: gather.fault,
+            fault: prepared.fault,
             constants,
         }
     }
 
     #[inline(always)]
-    fn eval<L: Lanes, C: Broadcast<L>>(gather: &Faulty<Point<C>>, wi: Vec3x<L>) -> Eval<L> {
-        let (lobes, _, sound) = shapes(gather, wi);
-        Self::total(gather, lobes, wi, sound)
+    fn eval<L: Lanes, C: Broadcast<L>>(prepared: &Faulty<Point<C>>, wi: Vec3x<L>) -> Eval<L> {
+        let (lobes, _, sound) = shapes(prepared, wi);
+        Self::total(prepared, lobes, wi, sound)
     }
 
     #[inline(always)]
     fn lobes<L: Lanes, C: Broadcast<L>>(
-        gather: &Faulty<Point<C>>,
+        prepared: &Faulty<Point<C>>,
         wi: Vec3x<L>,
     ) -> PerLobe<LobeEval<L>> {
-        let ([diffuse, cone], _, sound) = shapes(gather, wi);
+        let ([diffuse, cone], _, sound) = shapes(prepared, wi);
         let zero = L::splat(0.0);
         let limit = L::select(sound, L::splat(f32::MAX), zero);
         let none = LobeEval {
@@ -369,51 +369,54 @@ impl Model for Fiber {
     }
 
     #[inline(always)]
-    fn sample<L: Lanes, C: Broadcast<L>>(gather: &Faulty<Point<C>>, xi: [L; 3]) -> Drawn<L> {
+    fn sample<L: Lanes, C: Broadcast<L>>(
+        prepared: &Faulty<Point<C>>,
+        xi: [L; 3],
+    ) -> SampleLanes<L> {
         let c = L::splat;
         let (zero, one) = (c(0.0), c(1.0));
-        let mut selection: L = gather.selection[0].lanes();
-        if gather.fault == WRONG_PROBABILITY {
+        let mut selection: L = prepared.selection[0].lanes();
+        if prepared.fault == WRONG_PROBABILITY {
             selection = selection * c(1.05);
         }
         let is_diffuse = xi[0].lt(selection);
         let mut along = xi[1];
-        if gather.fault == SKEWED_LOBE {
+        if prepared.fault == SKEWED_LOBE {
             along = along * (one - along).mul_add(c(0.02), one);
         }
-        let sin = L::select(is_diffuse, xi[1] + xi[1] - one, cone_sine(gather, along));
+        let sin = L::select(is_diffuse, xi[1] + xi[1] - one, cone_sine(prepared, along));
         let cos = ((one - sin) * (one + sin)).sqrt();
         let mut around = xi[2];
-        if gather.fault == AZIMUTH_UNEVEN {
+        if prepared.fault == AZIMUTH_UNEVEN {
             around = around * (one - around).mul_add(c(0.02), one);
         }
         // The azimuth is uniform: the double of an angle in [-pi/2, pi/2].
         let (s, k) = sin_cos_half_turn((around - c(0.5)) * c(PI));
         let mut wi = Vec3x::new(sin, cos * (k * k - s * s), cos * ((s + s) * k));
-        let (lobes, _, sound) = shapes(gather, wi);
-        let Eval { value, pdf } = Self::total(gather, lobes, wi, sound);
+        let (lobes, _, sound) = shapes(prepared, wi);
+        let Eval { value, pdf } = Self::total(prepared, lobes, wi, sound);
         let mut sound = L::and(sound, zero.lt(pdf));
-        if gather.fault != NAN_IS_A_NUMBER {
+        if prepared.fault != NAN_IS_A_NUMBER {
             sound = L::and(sound, (xi[0] + xi[1] + xi[2]).abs().lt(c(f32::INFINITY)));
         }
-        if gather.fault == DISCARDS {
+        if prepared.fault == DISCARDS {
             sound = L::and(sound, c(0.05).lt(xi[2]));
         }
         let mut by = L::select(sound, L::quotient(cos, pdf), zero);
-        if gather.fault == WEIGHT_WITHOUT_COSINE {
+        if prepared.fault == WEIGHT_WITHOUT_COSINE {
             by = L::select(sound, L::quotient(one, pdf), zero);
         }
-        if gather.fault == HEAVY_WEIGHT {
+        if prepared.fault == HEAVY_WEIGHT {
             by = L::select(c(0.999).lt(xi[1]), by * c(20.0), by);
         }
-        if gather.fault == LONG_DIRECTION {
+        if prepared.fault == LONG_DIRECTION {
             wi = wi.scale(c(1.0001));
         }
         let slot = L::select(is_diffuse, zero, one);
         let weight = [value[0] * by, value[1] * by, value[2] * by];
         // A discarded sample has nothing.
         let kept = |x: L| L::select(sound, x, zero);
-        Drawn {
+        SampleLanes {
             wi,
             value: [kept(value[0]), kept(value[1]), kept(value[2])],
             pdf: kept(pdf),
@@ -423,23 +426,26 @@ impl Model for Fiber {
     }
 
     #[inline(always)]
-    fn albedo<L: Lanes, C: Broadcast<L>>(gather: &Faulty<Point<C>>) -> PerLobe<[L; 3]> {
+    fn albedo<L: Lanes, C: Broadcast<L>>(prepared: &Faulty<Point<C>>) -> PerLobe<[L; 3]> {
         const STEPS: u16 = 256;
-        let (kd, ks) = (lanes3(&gather.kd), lanes3(&gather.ks));
+        let (kd, ks) = (lanes3(&prepared.kd), lanes3(&prepared.ks));
         let zero = L::splat(0.0);
         let mut sum = zero;
         let mut step = 0;
         while step < STEPS {
-            let sin = cone_sine(gather, L::splat((f32::from(step) + 0.5) / f32::from(STEPS)));
+            let sin = cone_sine(
+                prepared,
+                L::splat((f32::from(step) + 0.5) / f32::from(STEPS)),
+            );
             sum = sum + ((L::splat(1.0) - sin) * (L::splat(1.0) + sin)).sqrt();
             step += 1;
         }
-        let loss = if gather.fault == ALBEDO_TOO_LOW {
+        let loss = if prepared.fault == ALBEDO_TOO_LOW {
             0.99
         } else {
             1.0
         };
-        let seen = gather.sin_theta_o.lanes().lt(L::splat(2.0));
+        let seen = prepared.sin_theta_o.lanes().lt(L::splat(2.0));
         let kd = [
             L::keep(seen, kd[0]),
             L::keep(seen, kd[1]),
@@ -447,7 +453,7 @@ impl Model for Fiber {
         ];
         let by = L::keep(
             seen,
-            sum * gather.span.lanes() * L::splat(loss * FRAC_1_PI / f32::from(STEPS)),
+            sum * prepared.span.lanes() * L::splat(loss * FRAC_1_PI / f32::from(STEPS)),
         );
         PerLobe([
             kd,

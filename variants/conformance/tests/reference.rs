@@ -84,7 +84,7 @@ impl Reference for Formulas {
         if cos < 1e-5 {
             ReferenceSample::Discarded
         } else {
-            ReferenceSample::Drawn(usize::from(!diffuse), wi)
+            ReferenceSample::SampleLanes(usize::from(!diffuse), wi)
         }
     }
 

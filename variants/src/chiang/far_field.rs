@@ -2,7 +2,7 @@
 
 use super::{Chiang, ChiangDesc};
 use hairis::wide::f32x8;
-use hairis::{Bsdf, Eval, Gather8, Hit, LobeMask, PerLobe, Sample, Vec3x, Vec3x8};
+use hairis::{Bsdf8, Eval, Hit, LobeMask, Material, PerLobe, Sample, Vec3x, Vec3x8};
 
 /// Gauss-Legendre nodes of the offset `h` over `[-1, 1]`, eight per packet: build it once, for all materials and hits.
 ///
@@ -79,34 +79,36 @@ impl ChiangDesc {
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::Bsdf;
+/// use hairis::Material;
 /// use hairis_variants::{Chiang, ChiangParams, chiang::{FarField, OffsetNodes}};
 /// let nodes = OffsetNodes::<4>::new(); // once
 /// assert!(ChiangParams::blond().desc().far_field_nodes() <= 32);
-/// let hair = Bsdf::new(&Chiang::MEAN, &ChiangParams::blond());
-/// let gather = FarField::prepare(&hair, &nodes, Vec3::Y);
-/// let sample = gather.sample([0.3, 0.6, 0.9]).expect("not along the fibre");
-/// assert!((gather.eval_pdf(sample.wi).pdf / sample.pdf - 1.0).abs() < 1e-5);
+/// let hair = Material::new(&Chiang::MEAN, &ChiangParams::blond());
+/// let prepared = FarField::prepare(&hair, &nodes, Vec3::Y);
+/// let sample = prepared.sample([0.3, 0.6, 0.9]).expect("not along the fibre");
+/// assert!((prepared.eval_pdf(sample.wi).pdf / sample.pdf - 1.0).abs() < 1e-5);
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct FarField<const PACKETS: usize, const BY_CHANNEL: bool = false> {
-    near: [Gather8<Chiang<BY_CHANNEL>>; PACKETS],
+    near: [Bsdf8<Chiang<BY_CHANNEL>>; PACKETS],
     nodes: OffsetNodes<PACKETS>,
 }
 
 impl<const PACKETS: usize, const BY_CHANNEL: bool> FarField<PACKETS, BY_CHANNEL> {
-    /// The shading point of a material seen from `wo`, whose domain is that of [`Bsdf::prepare`].
+    /// The shading point of a material seen from `wo`, whose domain is that of [`Material::prepare`].
     #[inline]
     #[must_use]
     pub fn prepare(
-        bsdf: &Bsdf<Chiang<BY_CHANNEL>>,
+        material: &Material<Chiang<BY_CHANNEL>>,
         nodes: &OffsetNodes<PACKETS>,
         wo: impl Into<Vec3x<f32>>,
     ) -> Self {
         let Vec3x { x, y, z } = wo.into();
         let wo = Vec3x8::new(f32x8::splat(x), f32x8::splat(y), f32x8::splat(z));
         Self {
-            near: nodes.h.map(|h| bsdf.prepare8(Hit::new(wo, f32x8::new(h)))),
+            near: nodes
+                .h
+                .map(|h| material.prepare8(Hit::new(wo, f32x8::new(h)))),
             nodes: *nodes,
         }
     }

@@ -42,7 +42,7 @@ lane_struct! {
 
 lane_struct! {
     /// The constants of a shading point of the energy-conserving fibre.
-    pub struct ChiangGather {
+    pub struct ChiangPrepared {
         /// Sine of each lobe's cone, `theta' = theta_o - shift`.
         pub sin_cone: [C; 4],
         /// Its cosine.
@@ -163,7 +163,7 @@ fn fresnel<L: Lanes>(c: L, k: L, eta_sq: L, eta_sq_less_one: L) -> [L; 2] {
 pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     m: &ChiangMaterial<C>,
     hit: Hit<L>,
-) -> ChiangGather<L::Stored> {
+) -> ChiangPrepared<L::Stored> {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
     let Direction {
@@ -236,7 +236,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     let cos_cone = Four::difference_of_products(same(cos_o), cos, same(-sin_o), sin).abs();
     let concentration = cos_cone * four(&m.widths.inv_variance);
 
-    ChiangGather {
+    ChiangPrepared {
         sin_cone: store4(apart(sin_cone)),
         cos_cone: store4(apart(cos_cone)),
         concentration: store4(apart(concentration)),
@@ -255,36 +255,42 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
 
 /// Attenuation of lobe `p`, linear RGB.
 #[inline(always)]
-pub(super) fn attenuation<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, p: usize) -> [L; 3] {
+pub(super) fn attenuation<L: Lanes, C: Broadcast<L>>(
+    prepared: &ChiangPrepared<C>,
+    p: usize,
+) -> [L; 3] {
     lanes3(&[
-        gather.attenuation[3 * p],
-        gather.attenuation[3 * p + 1],
-        gather.attenuation[3 * p + 2],
+        prepared.attenuation[3 * p],
+        prepared.attenuation[3 * p + 1],
+        prepared.attenuation[3 * p + 2],
     ])
 }
 
 /// Attenuation of the four lobes in one channel.
 #[inline(always)]
-fn channel<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>, c: usize) -> Four<L> {
-    let a = &gather.attenuation;
+fn channel<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C>, c: usize) -> Four<L> {
+    let a = &prepared.attenuation;
     four(&[a[c], a[3 + c], a[6 + c], a[9 + c]])
 }
 
 /// The mean of each lobe's attenuation over the channels.
 #[inline(always)]
-pub(super) fn mean_shares<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>) -> PerLobe<L> {
+pub(super) fn mean_shares<L: Lanes, C: Broadcast<L>>(prepared: &ChiangPrepared<C>) -> PerLobe<L> {
     PerLobe(apart(
-        (channel(gather, 0) + channel(gather, 1) + channel(gather, 2)) * Four::splat(1.0 / 3.0),
+        (channel(prepared, 0) + channel(prepared, 1) + channel(prepared, 2))
+            * Four::splat(1.0 / 3.0),
     ))
 }
 
 /// `sqrt(sum over the channels of (A_pc / mu_c)^2)`, `mu_c` the sum over the lobes.
 #[inline(always)]
-pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather<C>) -> PerLobe<L> {
+pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(
+    prepared: &ChiangPrepared<C>,
+) -> PerLobe<L> {
     let mut sum = Four::splat(0.0);
     let mut c = 0;
     while c < 3 {
-        let lobes: Four<L> = channel(gather, c);
+        let lobes: Four<L> = channel(prepared, c);
         let [r, tt, trt, rest] = apart(lobes);
         let total = (r + tt) + (trt + rest);
         let share = lobes
@@ -298,7 +304,7 @@ pub(super) fn shares_by_channel<L: Lanes, C: Broadcast<L>>(gather: &ChiangGather
     PerLobe(apart(sum.sqrt()))
 }
 
-impl ChiangGather<f32> {
+impl ChiangPrepared<f32> {
     /// Fresnel reflectance F at the hit. With the [path length](Self::path_length) it gives a spectral host its
     /// attenuations: for an absorption sigma, `T = exp(-sigma l)`, R has `F`, TT `(1 - F)^2 T`, TRT `(1 - F)^2 F T^2`, and the
     /// rest `(1 - F)^2 F^2 T^3 / (1 - F T)`.

@@ -1,6 +1,6 @@
 //! Densities of the lobes at a direction.
 
-use super::ChiangGather;
+use super::ChiangPrepared;
 use super::gather::{Four, apart, four, same};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 use hairis::math::{atan_eighth_turn, gaussian, polynomial};
@@ -36,19 +36,19 @@ pub(super) const TAIL: [f32; 6] = [
 /// One exponential is that of `M`, of the Bessel function's series and of `N` together: no product of two tails is denormal.
 #[inline(always)]
 pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
-    gather: &ChiangGather<C>,
+    prepared: &ChiangPrepared<C>,
     wi: &Direction<L>,
 ) -> ([L; 4], L) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let (m, cos_i) = (&gather.widths, wi.cos_theta);
+    let (m, cos_i) = (&prepared.widths, wi.cos_theta);
 
     // 1 / sqrt(cos theta_i), which the tails of the Bessel functions share.
     let inv_root_i = L::quotient(one, cos_i.sqrt());
 
     // |delta| / 2 of R, TT and TRT, from the tangent of half of it or of what it lacks of an eighth turn. The rest has no
     // azimuth: TRT's is in its place, and costs nothing.
-    let [v, w] = [&gather.azimuth_v, &gather.azimuth_w];
+    let [v, w] = [&prepared.azimuth_v, &prepared.azimuth_w];
     let (v, w) = (
         four(&[v[0], v[1], v[2], v[2]]),
         four(&[w[0], w[1], w[2], w[2]]),
@@ -79,14 +79,14 @@ pub(super) fn densities<L: Lanes, C: Broadcast<L>>(
     // The chord between theta_i and -theta' on the unit circle, squared: 4 sin^2 of half their angle. Of no half angles: their
     // roundings would count twice, and those of the cosines vanish at the poles with them.
     let (across, along) = (
-        same(cos_i) - four(&gather.cos_cone),
-        same(wi.sin_theta) + four(&gather.sin_cone),
+        same(cos_i) - four(&prepared.cos_cone),
+        same(wi.sin_theta) + four(&prepared.sin_cone),
     );
     let chord_sq = across.mul_add(across, along * along);
-    let x = same(cos_i) * four(&gather.concentration);
+    let x = same(cos_i) * four(&prepared.concentration);
     let small = x.lt(Four::splat(SEAM));
     // 1 / sqrt(x).
-    let root = same(inv_root_i) * four(&gather.spread);
+    let root = same(inv_root_i) * four(&prepared.spread);
     // Either is held within bounds that it keeps where it is chosen: elsewhere powers would overflow.
     let (below, above) = (x.min(Four::splat(8.0)), root.min(Four::splat(1.0)));
     let bessel = Four::select(

@@ -1,6 +1,6 @@
 //! A direction from three uniform numbers.
 
-use super::ChiangGather;
+use super::ChiangPrepared;
 use core::f32::consts::{LN_2, PI};
 use hairis::math::{log2, log2_one_plus, sin_cos_half_turn};
 use hairis::{Broadcast, Direction, Lanes};
@@ -8,15 +8,15 @@ use hairis::{Broadcast, Direction, Lanes};
 /// A direction of a lobe: the angle from its cone, the turn about the cone, and the azimuth.
 #[inline(always)]
 pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
-    gather: &ChiangGather<C>,
+    prepared: &ChiangPrepared<C>,
     lobe: L::Index,
     xi: [L; 3],
 ) -> Direction<L> {
     let c = L::splat;
     let (zero, one, two) = (c(0.0), c(1.0), c(2.0));
-    let m = &gather.widths;
+    let m = &prepared.widths;
 
-    // Longitude (d'Eon 2013): 1 less the cosine of the angle from the cone; the turn's cosine is even.
+    // Inclination (d'Eon 2013): 1 less the cosine of the angle from the cone; the turn's cosine is even.
     let cut = C::look_up(&m.cut, lobe);
     let by = C::look_up(&m.variance, lobe) * c(-LN_2);
     let drop = zero.max((log2_one_plus(-(xi[1] * cut)) * by).min(two));
@@ -24,8 +24,8 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
     let (minus_cos, sin) = sin_cos_half_turn((xi[2] - c(0.5)) * c(PI));
     let (towards, across) = (-(radius * minus_cos), radius * sin);
     let (sin_cone, cos_cone) = (
-        C::look_up(&gather.sin_cone, lobe),
-        C::look_up(&gather.cos_cone, lobe),
+        C::look_up(&prepared.sin_cone, lobe),
+        C::look_up(&prepared.cos_cone, lobe),
     );
     let along = one - drop;
     let sin_i = towards.mul_sub(cos_cone, along * sin_cone);
@@ -45,8 +45,8 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
     let (sin, cos) = sin_cos_half_turn(half);
     let (sin_x, cos_x) = ((sin + sin) * cos, cos.mul_sub(cos, sin * sin));
     let (v, w) = (
-        C::look_up(&gather.azimuth_v, lobe),
-        C::look_up(&gather.azimuth_w, lobe),
+        C::look_up(&prepared.azimuth_v, lobe),
+        C::look_up(&prepared.azimuth_w, lobe),
     );
     let phi = [v.mul_add(sin_x, w * cos_x), v.mul_sub(cos_x, w * sin_x)];
     Direction::from_sin_cos([sin_i, cos_i], phi)

@@ -95,101 +95,101 @@ pub(super) use handle;
 macro_rules! handles {
     ($models:tt $variants:tt) => {
         any::handle! {
-            /// A material of any model of the list: see [`Bsdf`].
+            /// A material of any model of the list: see [`Material`].
             ///
             /// ```
-            /// use hairis::{Bsdf, HairParams, Level};
-            /// use hairis_variants::{AnyBsdf, Cauchy};
-            /// let red: AnyBsdf = Bsdf::new(&Cauchy::PAPER.matched(), &HairParams::red()).into();
+            /// use hairis::{Material, HairParams, Level};
+            /// use hairis_variants::{AnyMaterial, Cauchy};
+            /// let red: AnyMaterial = Material::new(&Cauchy::PAPER.matched(), &HairParams::red()).into();
             /// let sample = red.prepare(glam::Vec3::Y).sample([0.5, 0.25, 0.75]).expect("not along the fibre");
             /// assert!(sample.pdf > 0.0);
             /// ```
+            AnyMaterial Material $models
+        }
+        any::handle! {
+            /// Eight materials of one model, one per lane: see [`Material8`].
+            AnyMaterial8 Material8 $models
+        }
+        any::handle! {
+            /// A shading point of any model: see [`Bsdf`].
             AnyBsdf Bsdf $models
         }
         any::handle! {
-            /// Eight materials of one model, one per lane: see [`Bsdf8`].
+            /// Eight shading points of one model, one per lane: see [`Bsdf8`].
             AnyBsdf8 Bsdf8 $models
         }
-        any::handle! {
-            /// A shading point of any model: see [`Gather`].
-            AnyGather Gather $models
-        }
-        any::handle! {
-            /// Eight shading points of one model, one per lane: see [`Gather8`].
-            AnyGather8 Gather8 $models
-        }
 
-        impl AnyBsdf {
+        impl AnyMaterial {
             /// The shading point of a hit: a [`Hit`], or `wo` alone.
             #[inline]
             #[must_use]
-            pub fn prepare(&self, hit: impl Into<Hit>) -> AnyGather {
+            pub fn prepare(&self, hit: impl Into<Hit>) -> AnyBsdf {
                 let hit = hit.into();
                 self.prepare_hit(hit.wo.into(), hit.h)
             }
 
             #[inline(never)]
-            fn prepare_hit(&self, wo: Vec3, h: f32) -> AnyGather {
+            fn prepare_hit(&self, wo: Vec3, h: f32) -> AnyBsdf {
                 let hit = Hit { wo: wo.into(), h };
-                any::each!(@match $variants self prepare (hit) AnyGather)
+                any::each!(@match $variants self prepare (hit) AnyBsdf)
             }
 
             /// Eight shading points on this material, one per lane: a [`Hit8`], or eight `wo`.
             #[inline]
             #[must_use]
-            pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyGather8 {
+            pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyBsdf8 {
                 self.prepare8_at(Level::detect(), hits)
             }
 
             /// As [`prepare8`](Self::prepare8), on a given instruction set.
             #[inline]
             #[must_use]
-            pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> AnyGather8 {
+            pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> AnyBsdf8 {
                 self.prepare_hits(level, &hits.into())
             }
 
             any::each! { $variants
-                /// The largest directional albedo: see [`Bsdf::max_albedo`].
+                /// The largest directional albedo: see [`Material::max_albedo`].
                 #[inline(never)]
                 #[must_use]
                 pub fn max_albedo() -> f32;
-                /// The factor that keeps the directional albedo at most 1: see [`Bsdf::conserving_scale`].
+                /// The factor that keeps the directional albedo at most 1: see [`Material::conserving_scale`].
                 #[inline(never)]
                 #[must_use]
                 pub fn conserving_scale() -> f32;
             }
 
             #[inline(never)]
-            fn prepare_hits(&self, level: Level, hits: &Hit8) -> AnyGather8 {
-                any::each!(@match $variants self prepare8_at (level, *hits) AnyGather8)
+            fn prepare_hits(&self, level: Level, hits: &Hit8) -> AnyBsdf8 {
+                any::each!(@match $variants self prepare8_at (level, *hits) AnyBsdf8)
             }
         }
 
-        impl AnyBsdf8 {
+        impl AnyMaterial8 {
             any::pack! { $variants }
 
             /// Eight shading points, lane by lane: a [`Hit8`], or eight `wo`.
             #[inline]
             #[must_use]
-            pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyGather8 {
+            pub fn prepare8(&self, hits: impl Into<Hit8>) -> AnyBsdf8 {
                 self.prepare8_at(Level::detect(), hits)
             }
 
             /// As [`prepare8`](Self::prepare8), on a given instruction set.
             #[inline]
             #[must_use]
-            pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> AnyGather8 {
+            pub fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> AnyBsdf8 {
                 self.prepare_hits(level, &hits.into())
             }
 
             #[inline(never)]
-            fn prepare_hits(&self, level: Level, hits: &Hit8) -> AnyGather8 {
-                any::each!(@match $variants self prepare8_at (level, *hits) AnyGather8)
+            fn prepare_hits(&self, level: Level, hits: &Hit8) -> AnyBsdf8 {
+                any::each!(@match $variants self prepare8_at (level, *hits) AnyBsdf8)
             }
         }
 
-        impl AnyGather {
-            /// S at `wi`, without the cosine: see [`Gather::eval`].
+        impl AnyBsdf {
+            /// S at `wi`, without the cosine: see [`Bsdf::eval`].
             #[inline]
             #[must_use]
             pub fn eval(&self, wi: Vec3) -> [f32; 3] {
@@ -225,15 +225,15 @@ macro_rules! handles {
             }
 
             any::slices! { $variants
-                "Value and density of many directions: see [`Gather::eval_pdf_batch`]."
+                "Value and density of many directions: see [`Bsdf::eval_pdf_batch`]."
                 eval_pdf_batch, eval_pdf_batch_at: wi, out: EvalSlices<'_>;
-                "Value of many directions: see [`Gather::eval_batch`]."
+                "Value of many directions: see [`Bsdf::eval_batch`]."
                 eval_batch, eval_batch_at: wi, value: [&mut [f32]; 3];
-                "Density of many directions: see [`Gather::pdf_batch`]."
+                "Density of many directions: see [`Bsdf::pdf_batch`]."
                 pdf_batch, pdf_batch_at: wi, pdf: &mut [f32];
-                "Many samples: see [`Gather::sample_batch`]."
+                "Many samples: see [`Bsdf::sample_batch`]."
                 sample_batch, sample_batch_at: xi, out: SampleSlices<'_>;
-                "Direction, density and weight of many samples: see [`Gather::sample_weight_batch`]."
+                "Direction, density and weight of many samples: see [`Bsdf::sample_weight_batch`]."
                 sample_weight_batch, sample_weight_batch_at: xi, out: SampleWeightSlices<'_>;
             }
 
@@ -246,7 +246,7 @@ macro_rules! handles {
                 #[inline(never)]
                 #[must_use]
                 pub fn lobes(wi: Vec3) -> PerLobe<LobeEval>;
-                /// A direction for three uniform numbers in `[0, 1)`; `None` if it is discarded: see [`Gather::sample`].
+                /// A direction for three uniform numbers in `[0, 1)`; `None` if it is discarded: see [`Bsdf::sample`].
                 #[inline(never)]
                 #[must_use]
                 pub fn sample(xi: [f32; 3]) -> Option<Sample>;
@@ -277,7 +277,7 @@ macro_rules! handles {
             }
         }
 
-        impl AnyGather8 {
+        impl AnyBsdf8 {
             /// Value and density at `wi`, each lane at its own shading point.
             #[inline]
             #[must_use]
@@ -338,7 +338,7 @@ macro_rules! handles {
                 /// If `lane` is above 7.
                 #[inline(never)]
                 #[must_use]
-                pub fn lane(lane: usize) -> AnyGather => AnyGather;
+                pub fn lane(lane: usize) -> AnyBsdf => AnyBsdf;
             }
         }
     };
@@ -346,22 +346,22 @@ macro_rules! handles {
 #[cfg(feature = "any")]
 pub(super) use handles;
 
-/// [`AnyBsdf8`](super::AnyBsdf8) of eight materials.
+/// [`AnyMaterial8`](super::AnyMaterial8) of eight materials.
 #[cfg(feature = "any")]
 macro_rules! pack {
     ([$($variant:ident)*]) => {
         /// Eight materials, one per lane; `None` unless all are of one model.
         #[inline(never)]
         #[must_use]
-        pub fn pack(materials: [&AnyBsdf; 8]) -> Option<Self> {
+        pub fn pack(materials: [&AnyMaterial; 8]) -> Option<Self> {
             match materials[0] {
-                $(AnyBsdf::$variant(first) => {
+                $(AnyMaterial::$variant(first) => {
                     let mut same = [first; 8];
                     for (one, material) in same.iter_mut().zip(materials) {
-                        let AnyBsdf::$variant(material) = material else { return None };
+                        let AnyMaterial::$variant(material) = material else { return None };
                         *one = material;
                     }
-                    Some(Self::$variant(Bsdf8::pack(same)))
+                    Some(Self::$variant(Material8::pack(same)))
                 }),*
             }
         }

@@ -3,7 +3,7 @@
 use crate::system;
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Drawn, Eval, LobeEval, PerLobe, Sample};
+use hairis::{Eval, LobeEval, PerLobe, Sample, SampleLanes};
 
 /// FNV-1a over the bits of floats. NaN has one hash: its sign and payload are not part of IEEE arithmetic.
 #[derive(Clone, Copy)]
@@ -58,7 +58,7 @@ impl Hash {
         self.numbers(&[pdf, f32::from(lobe.index() as u8)]);
     }
 
-    pub fn sample8(&mut self, drawn: &Drawn<f32x8>) {
+    pub fn sample8(&mut self, drawn: &SampleLanes<f32x8>) {
         self.lanes(&[drawn.wi.x, drawn.wi.y, drawn.wi.z, drawn.pdf, drawn.slot]);
         self.lanes(&drawn.value);
         self.lanes(&drawn.weight);

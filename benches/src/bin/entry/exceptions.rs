@@ -5,7 +5,7 @@
 
 use core::hint::black_box;
 use hairis::{
-    Bsdf, Eval, Gather, Hit, LobeEval, Model, PerLobe, Sample, Vec3x, control, set_control,
+    Bsdf, Eval, Hit, LobeEval, Material, Model, PerLobe, Sample, Vec3x, control, set_control,
 };
 use hairis_benches::inputs::{Inputs, materials};
 use hairis_variants::{ModelId, Registered, Visitor};
@@ -23,13 +23,13 @@ macro_rules! calls {
 }
 
 calls! {
-    prepare(bsdf: &Bsdf<M>, hit: Hit) -> Gather<M> = bsdf.prepare(hit);
-    eval_pdf(gather: &Gather<M>, wi: Vec3x<f32>) -> Eval = gather.eval_pdf(wi);
-    pdf(gather: &Gather<M>, wi: Vec3x<f32>) -> f32 = gather.pdf(wi);
-    lobes(gather: &Gather<M>, wi: Vec3x<f32>) -> PerLobe<LobeEval> = gather.lobes(wi);
-    sample(gather: &Gather<M>, xi: [f32; 3]) -> Option<Sample> = gather.sample(xi);
-    albedo(gather: &Gather<M>) -> PerLobe<[f32; 3]> = gather.albedo();
-    conserving(gather: &Gather<M>) -> Gather<M> = gather.conserving();
+    prepare(material: &Material<M>, hit: Hit) -> Bsdf<M> = material.prepare(hit);
+    eval_pdf(bsdf: &Bsdf<M>, wi: Vec3x<f32>) -> Eval = bsdf.eval_pdf(wi);
+    pdf(bsdf: &Bsdf<M>, wi: Vec3x<f32>) -> f32 = bsdf.pdf(wi);
+    lobes(bsdf: &Bsdf<M>, wi: Vec3x<f32>) -> PerLobe<LobeEval> = bsdf.lobes(wi);
+    sample(bsdf: &Bsdf<M>, xi: [f32; 3]) -> Option<Sample> = bsdf.sample(xi);
+    albedo(bsdf: &Bsdf<M>) -> PerLobe<[f32; 3]> = bsdf.albedo();
+    conserving(bsdf: &Bsdf<M>) -> Bsdf<M> = bsdf.conserving();
 }
 
 /// Prints how many calls of each model raise an exception. Whether there are none.
@@ -75,16 +75,16 @@ impl Visitor for OfModel<'_> {
             .enumerate()
         {
             let hit = Hit::new(Vec3x::from(*wo), 2.0 * self.inputs.xi[i ^ 1][0] - 1.0);
-            let (bsdf, wi) = (&materials[i % 8], Vec3x::from(*wi));
-            let gather = prepare(bsdf, hit);
+            let (material, wi) = (&materials[i % 8], Vec3x::from(*wi));
+            let bsdf = prepare(material, hit);
             let raised = [
-                raises(|| prepare(bsdf, hit)),
-                raises(|| eval_pdf(&gather, wi)),
-                raises(|| pdf(&gather, wi)),
-                raises(|| lobes(&gather, wi)),
-                raises(|| sample(&gather, *xi)),
-                i % 8 == 0 && raises(|| albedo(&gather)),
-                i % 8 == 0 && raises(|| conserving(&gather)),
+                raises(|| prepare(material, hit)),
+                raises(|| eval_pdf(&bsdf, wi)),
+                raises(|| pdf(&bsdf, wi)),
+                raises(|| lobes(&bsdf, wi)),
+                raises(|| sample(&bsdf, *xi)),
+                i % 8 == 0 && raises(|| albedo(&bsdf)),
+                i % 8 == 0 && raises(|| conserving(&bsdf)),
             ];
             for (count, raised) in counts.iter_mut().zip(raised) {
                 *count += u32::from(raised);

@@ -7,7 +7,7 @@ use core::ops::Index;
 use glam::Vec3;
 use hairis::reference::{Reference, ReferenceSample};
 use hairis::{Eval, EvalSlices, Hit, Lobe, LobeEval8, PerLobe, Sample, SampleSlices, Vec3x8};
-use hairis_variants::{AnyBsdf8, AnyGather, ModelId};
+use hairis_variants::{AnyBsdf, AnyMaterial8, ModelId};
 use serde::Serialize;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -86,17 +86,17 @@ pub(super) fn answers(
 
 /// One direction per call.
 fn scalar(request: &Request) -> Answer<f32> {
-    let gather = gather(request);
+    let bsdf = bsdf(request);
     let (found, wi) = match request.query {
-        Query::Wi(wi) => (valued(gather.eval_pdf(wi)), wi),
+        Query::Wi(wi) => (valued(bsdf.eval_pdf(wi)), wi),
         Query::Xi(xi) => {
-            let sample = gather.sample(xi);
+            let sample = bsdf.sample(xi);
             (drawn(sample), sample.map_or(request.wo, |sample| sample.wi))
         }
     };
-    let densities = gather.lobes(wi).0.map(|lobe| lobe.pdf);
+    let densities = bsdf.lobes(wi).0.map(|lobe| lobe.pdf);
     answer(request.model, found, densities, &|| {
-        gather.lobes(request.wo).0.map(|lobe| lobe.color)
+        bsdf.lobes(request.wo).0.map(|lobe| lobe.color)
     })
 }
 
@@ -104,9 +104,10 @@ fn scalar(request: &Request) -> Answer<f32> {
 /// the last line.
 fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
     let lane = |i: usize| group[i.min(group.len() - 1)];
-    let materials = AnyBsdf8::pack(from_fn(|i| &lane(i).bsdf)).expect("requests of one model");
+    let materials =
+        AnyMaterial8::pack(from_fn(|i| &lane(i).material)).expect("requests of one model");
     let wo = Vec3x8::from(from_fn(|i| lane(i).wo));
-    let gathers = materials.prepare8(Hit {
+    let bsdfs = materials.prepare8(Hit {
         wo,
         h: f32x8::new(from_fn(|i| lane(i).h)),
     });
@@ -115,16 +116,12 @@ fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
         Query::Wi(_) => [0.5; 3],
         Query::Xi(xi) => xi,
     });
-    let samples = gathers.sample8(&from_fn(|row| f32x8::new(xi.map(|xi| xi[row]))));
+    let samples = bsdfs.sample8(&from_fn(|row| f32x8::new(xi.map(|xi| xi[row]))));
     let wi = Vec3x8::from(from_fn(|i| match lane(i).query {
         Query::Wi(wi) => wi,
         Query::Xi(_) => samples.wi.lane(i),
     }));
-    let (evals, lobes, at_wo) = (
-        gathers.eval_pdf8(&wi),
-        gathers.lobes8(&wi),
-        gathers.lobes8(&wo),
-    );
+    let (evals, lobes, at_wo) = (bsdfs.eval_pdf8(&wi), bsdfs.lobes8(&wi), bsdfs.lobes8(&wo));
     let of_lane = |(i, request): (usize, &&Request)| {
         let found = match request.query {
             Query::Wi(_) => valued(evals.lane(i)),
@@ -138,7 +135,7 @@ fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
 
 /// Slices: one call for all directions, and one for all samples, of lines that share a shading point.
 fn batch(run: &[&Request]) -> Vec<Answer<f32>> {
-    let gather = gather(run[0]);
+    let bsdf = bsdf(run[0]);
     let (mut wi, mut xi) = (Vec::new(), Vec::new());
     for request in run {
         match request.query {
@@ -146,19 +143,18 @@ fn batch(run: &[&Request]) -> Vec<Answer<f32>> {
             Query::Xi(numbers) => xi.push(numbers),
         }
     }
-    let mut values = batch_values(&gather, &wi)
+    let mut values = batch_values(&bsdf, &wi)
         .into_iter()
-        .zip(batch_densities(&gather, &wi));
-    let (wi, samples): (Vec<Vec3>, Vec<Found<f32>>) =
-        batch_samples(&gather, &xi).into_iter().unzip();
-    let mut samples = samples.into_iter().zip(batch_densities(&gather, &wi));
+        .zip(batch_densities(&bsdf, &wi));
+    let (wi, samples): (Vec<Vec3>, Vec<Found<f32>>) = batch_samples(&bsdf, &xi).into_iter().unzip();
+    let mut samples = samples.into_iter().zip(batch_densities(&bsdf, &wi));
     let of_line = |request: &&Request| {
         let (found, densities) = match request.query {
             Query::Wi(_) => values.next()?,
             Query::Xi(_) => samples.next()?,
         };
         Some(answer(request.model, found, densities, &|| {
-            gather.lobes(request.wo).0.map(|lobe| lobe.color)
+            bsdf.lobes(request.wo).0.map(|lobe| lobe.color)
         }))
     };
     run.iter().filter_map(of_line).collect()
@@ -177,14 +173,13 @@ fn at(columns: &[Vec<f32>; 3], i: usize) -> [f32; 3] {
 }
 
 /// Values and densities.
-fn batch_values(gather: &AnyGather, wi: &[Vec3]) -> Vec<Found<f32>> {
+fn batch_values(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<Found<f32>> {
     let (mut value, mut pdf) = (columns(wi), vec![0.0; wi.len()]);
     let out = EvalSlices {
         value: value.each_mut().map(Vec::as_mut_slice),
         pdf: &mut pdf,
     };
-    gather
-        .eval_pdf_batch(columns(wi).each_ref().map(Vec::as_slice), out)
+    bsdf.eval_pdf_batch(columns(wi).each_ref().map(Vec::as_slice), out)
         .expect(ONE_LENGTH);
     (0..wi.len())
         .map(|i| Found::Value(at(&value, i), pdf[i]))
@@ -192,7 +187,7 @@ fn batch_values(gather: &AnyGather, wi: &[Vec3]) -> Vec<Found<f32>> {
 }
 
 /// Samples, each after its direction.
-fn batch_samples(gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)> {
+fn batch_samples(bsdf: &AnyBsdf, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)> {
     let mut vectors: [[Vec<f32>; 3]; 3] = from_fn(|_| columns(xi));
     let (mut pdf, mut slot) = (vec![0.0; xi.len()], vec![0.0; xi.len()]);
     let [wi, value, weight] = vectors
@@ -205,8 +200,7 @@ fn batch_samples(gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)>
         weight,
         slot: &mut slot,
     };
-    gather
-        .sample_batch(columns(xi).each_ref().map(Vec::as_slice), out)
+    bsdf.sample_batch(columns(xi).each_ref().map(Vec::as_slice), out)
         .expect(ONE_LENGTH);
     let sample = |i: usize| {
         let [wi, value, weight] = vectors.each_ref().map(|vector| at(vector, i));
@@ -227,9 +221,9 @@ fn batch_samples(gather: &AnyGather, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)>
 }
 
 /// Densities of the lobes: they have no slice call, so eight directions per call.
-fn batch_densities(gather: &AnyGather, wi: &[Vec3]) -> Vec<[f32; 4]> {
+fn batch_densities(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<[f32; 4]> {
     let eight = |wi: &[Vec3]| {
-        let lobes = gather.lobes8(&Vec3x8::from(from_fn(|i| wi[i.min(wi.len() - 1)])));
+        let lobes = bsdf.lobes8(&Vec3x8::from(from_fn(|i| wi[i.min(wi.len() - 1)])));
         (0..wi.len())
             .map(|i| densities_of_lane(&lobes, i))
             .collect::<Vec<_>>()
@@ -270,8 +264,8 @@ fn textbook(request: &Request) -> Answer<f64> {
     })
 }
 
-fn gather(request: &Request) -> AnyGather {
-    request.bsdf.prepare(Hit {
+fn bsdf(request: &Request) -> AnyBsdf {
+    request.material.prepare(Hit {
         wo: request.wo.into(),
         h: request.h,
     })

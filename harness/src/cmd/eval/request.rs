@@ -3,7 +3,7 @@
 use super::json::{Json, join};
 use glam::Vec3;
 use hairis::ParamError;
-use hairis_variants::{AnyBsdf, Field, Kind, ModelId, Values};
+use hairis_variants::{AnyMaterial, Field, Kind, ModelId, Values};
 
 /// Tolerance of the length of a direction; it is normalised then.
 const LENGTH_TOLERANCE: f64 = 1e-3;
@@ -29,7 +29,7 @@ pub(super) fn cut(text: &str, longest: usize) -> String {
 pub(super) enum Query {
     /// The value and the densities at a unit direction.
     Wi(Vec3),
-    /// The sample of three numbers in `[0, 1)`: for the lobe, the longitude and the azimuth.
+    /// The sample of three numbers in `[0, 1)`: for the lobe, the inclination and the azimuth.
     Xi([f32; 3]),
 }
 
@@ -38,7 +38,7 @@ pub(super) enum Query {
 pub(super) struct Request {
     pub(super) model: ModelId,
     pub(super) values: Values,
-    pub(super) bsdf: AnyBsdf,
+    pub(super) material: AnyMaterial,
     /// Unit.
     pub(super) wo: Vec3,
     /// Offset across the fibre; 0 for a model of the far field.
@@ -89,8 +89,8 @@ impl Request {
                 .unwrap_or(first);
         }
         let (values, exact) = read(model.defaults(), given("params")?.clone())?;
-        let bsdf = model
-            .bsdf(&values)
+        let material = model
+            .material(&values)
             .map_err(|error| refused(model.fields(), &error, &exact))?;
         let h = line
             .get("h")
@@ -120,7 +120,7 @@ impl Request {
         Ok(Self {
             model,
             values,
-            bsdf,
+            material,
             wo: single3(wo),
             h: single(h),
             query,

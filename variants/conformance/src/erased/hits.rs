@@ -68,12 +68,16 @@ impl<S: Subject> HitsSet for Set<'_, S> {
         let HitsCall { hits, inputs, out } = call;
         match of {
             HitMaterials::Shared(index) => Ok(match out {
-                Columns::Eval(out) => self.bsdfs[index].eval_pdf_hits_at(level, hits, inputs, out),
-                Columns::Sample(out) => self.bsdfs[index].sample_hits_at(level, hits, inputs, out),
+                Columns::Eval(out) => {
+                    self.materials[index].eval_pdf_hits_at(level, hits, inputs, out)
+                }
+                Columns::Sample(out) => {
+                    self.materials[index].sample_hits_at(level, hits, inputs, out)
+                }
             }?),
             HitMaterials::PerHit(index) => {
                 let table = MaterialTable {
-                    materials: &self.bsdfs,
+                    materials: &self.materials,
                     index,
                 };
                 match out {
@@ -92,7 +96,7 @@ impl<S: Subject> HitsSet for Set<'_, S> {
         out: EvalColumns<'_>,
     ) -> HitsResult {
         MaterialTable {
-            materials: &self.bsdfs,
+            materials: &self.materials,
             index,
         }
         .eval_pdf_hits(hits, wi, out)

@@ -1,10 +1,10 @@
 //! Shading points of any model that weigh candidates.
 
-use super::{ErasedGather, MaterialSet, Set, Which};
+use super::{ErasedBsdf, MaterialSet, Set, Which};
 use crate::subject::Subject;
 use hairis::resample::{Counts, Partition, Pool, Weighed8};
 use hairis::wide::f32x8;
-use hairis::{Gather, Gather8, Hit, Hit8, Level, Model, Vec3x8};
+use hairis::{Bsdf, Bsdf8, Hit, Hit8, Level, Model, Vec3x8};
 
 /// A [`Subject`] under light: pass a reference to any subject.
 ///
@@ -23,27 +23,27 @@ impl<S: Subject> LitSubject for S {
 
 /// Materials whose shading points weigh candidates.
 pub trait LitSet: MaterialSet {
-    fn lit(&self, index: usize, hit: Hit) -> Box<dyn LitGather>;
-    fn lit8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn LitGather8>;
+    fn lit(&self, index: usize, hit: Hit) -> Box<dyn LitBsdf>;
+    fn lit8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn LitBsdf8>;
 }
 
 impl<S: Subject> LitSet for Set<'_, S> {
-    fn lit(&self, index: usize, hit: Hit) -> Box<dyn LitGather> {
-        Box::new(self.bsdfs[index].prepare(hit))
+    fn lit(&self, index: usize, hit: Hit) -> Box<dyn LitBsdf> {
+        Box::new(self.materials[index].prepare(hit))
     }
 
-    fn lit8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn LitGather8> {
-        Box::new(self.bsdfs[index].prepare8_at(level, hits))
+    fn lit8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn LitBsdf8> {
+        Box::new(self.materials[index].prepare8_at(level, hits))
     }
 }
 
 /// A shading point that weighs a pool of candidates.
-pub trait LitGather: ErasedGather {
+pub trait LitBsdf: ErasedBsdf {
     fn propose(&self, pool: &mut Pool<16>, xi: [&[f32]; 3]);
     fn weigh(&self, pool: &mut Pool<16>);
 }
 
-impl<M: Model + 'static> LitGather for Gather<M> {
+impl<M: Model + 'static> LitBsdf for Bsdf<M> {
     fn propose(&self, pool: &mut Pool<16>, xi: [&[f32]; 3]) {
         pool.propose(self, xi).expect("of one length");
     }
@@ -54,7 +54,7 @@ impl<M: Model + 'static> LitGather for Gather<M> {
 }
 
 /// Eight shading points that weigh a candidate each.
-pub trait LitGather8 {
+pub trait LitBsdf8 {
     fn propose(&self, level: Level, xi: &[f32x8; 3]) -> Vec3x8;
     fn weigh(
         &self,
@@ -66,7 +66,7 @@ pub trait LitGather8 {
     ) -> Weighed8;
 }
 
-impl<M: Model + 'static> LitGather8 for Gather8<M> {
+impl<M: Model + 'static> LitBsdf8 for Bsdf8<M> {
     fn propose(&self, level: Level, xi: &[f32x8; 3]) -> Vec3x8 {
         self.propose8_at(level, xi)
     }

@@ -1,6 +1,6 @@
 //! The directional albedo against quadrature of the reference, and the scale that keeps it at most 1.
 
-use super::handles::Bsdf;
+use super::handles::Material;
 use super::quadrature::{integrate, panels};
 use super::support::{
     Draws, Kind, LargestError, Point, direction, for_each_point, narrow, packet, parameters,
@@ -34,12 +34,12 @@ fn integrals(reference: &PublishedReference, point: &Point) -> PerLobe<f64> {
         ];
         let theta = panels(-FRAC_PI_2 + 1e-5, FRAC_PI_2 - 1e-5, &bells);
         let phi = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt)]);
-        let longitude = integrate(&theta, |theta| at(lobe, theta, phi_0) * theta.cos().powi(2));
+        let inclination = integrate(&theta, |theta| at(lobe, theta, phi_0) * theta.cos().powi(2));
         let azimuth = 2.0 * integrate(&phi, |phi| at(lobe, theta_0, phi));
         // A lobe so far off the sphere that even its largest value is 0 returns nothing.
         let largest = at(lobe, theta_0, phi_0);
         all[lobe] = if largest > 0.0 {
-            longitude * azimuth / largest
+            inclination * azimuth / largest
         } else {
             0.0
         };
@@ -51,12 +51,12 @@ pub fn albedo_is_the_integral(tested: &Tested) {
     let mut worst = LargestError::default();
     let mut turn = 0;
     for kind in [Kind::Grid, Kind::Narrow, Kind::Wide] {
-        for_each_point(tested, kind, |bsdf, reference, point| {
+        for_each_point(tested, kind, |material, reference, point| {
             turn += 1;
             if kind == Kind::Grid && turn % 7 != 0 {
                 return;
             }
-            let got = bsdf.prepare(point.wo).albedo();
+            let got = material.prepare(point.wo).albedo();
             let want = integrals(reference, point);
             let d = point.params.desc();
             let colors = PerLobe([
@@ -155,7 +155,7 @@ fn off_pole((off, side): (f64, f64)) -> (Vec3, f64) {
 /// any inclination.
 fn exact(tested: &Tested, p: &Parameters<f64>, theta_o: f64) -> PerLobe<f64> {
     let to_pole = FRAC_PI_2 - theta_o.abs();
-    let longitude = [0, 1, 2].map(|l| {
+    let inclination = [0, 1, 2].map(|l| {
         let centre = 2.0 * p.alpha[l] - theta_o;
         let poles = [-FRAC_PI_2, FRAC_PI_2].map(|pole| [(pole, to_pole.max(1e-9)), (pole, 1e-9)]);
         let bells = [&[(centre, 2.0 * p.beta[l])], poles.as_flattened()].concat();
@@ -173,7 +173,7 @@ fn exact(tested: &Tested, p: &Parameters<f64>, theta_o: f64) -> PerLobe<f64> {
             tested.formulas.shape.bell(width, phi - centre)
         })
     };
-    let [r, tt, trt] = longitude;
+    let [r, tt, trt] = inclination;
     PerLobe([
         4.0 * r,
         azimuth(PI, p.gamma_tt) * tt,
@@ -186,13 +186,13 @@ pub fn albedo_of_any_width_is_the_integral(tested: &Tested) {
     let mut worst = LargestError::default();
     for (model, factor) in tested.forms() {
         for params in any_widths() {
-            let (bsdf, p) = (Bsdf::new(model, &params), parameters(&params, factor));
+            let (material, p) = (Material::new(model, &params), parameters(&params, factor));
             for at in any_inclinations()
                 .chain([(FRAC_PI_2 - 1.495, -1.0)])
                 .filter(|(off, _)| *off > 1e-5)
             {
                 let (wo, theta_o) = off_pole(at);
-                let (got, want) = (bsdf.prepare(wo).albedo(), exact(tested, &p, theta_o));
+                let (got, want) = (material.prepare(wo).albedo(), exact(tested, &p, theta_o));
                 let d = params.desc();
                 let colors = PerLobe([
                     d.intensity_r,
@@ -230,7 +230,7 @@ pub fn conserving_hair_returns_at_most_what_it_receives(tested: &Tested) {
         .collect();
     for (model, factor) in tested.forms() {
         for params in any_widths().into_iter().chain(presets.clone()) {
-            let raw = Bsdf::new(model, &params);
+            let raw = Material::new(model, &params);
             let (p, d) = (parameters(&params, factor), params.desc());
             for at in any_inclinations().filter(|(off, _)| *off > 1e-5) {
                 let (wo, theta_o) = off_pole(at);
@@ -276,7 +276,7 @@ pub fn max_albedo_bounds_lobes_of_any_width(tested: &Tested) {
         for params in any_widths() {
             let p = parameters(&params, factor);
             let d = params.desc();
-            let most = f64::from(Bsdf::new(model, &params).max_albedo());
+            let most = f64::from(Material::new(model, &params).max_albedo());
             let mut seen = 0.0_f64;
             for at in any_inclinations() {
                 let PerLobe([r, tt, trt, glint]) = exact(tested, &p, off_pole(at).1);
@@ -297,11 +297,11 @@ pub fn max_albedo_bounds_lobes_of_any_width(tested: &Tested) {
 }
 
 /// The largest albedo on a scan of `steps` inclinations.
-fn scanned(bsdf: &Bsdf<'_>, steps: u32) -> f32 {
+fn scanned(material: &Material<'_>, steps: u32) -> f32 {
     let mut most = 0.0_f32;
     for i in 0..=steps {
         let theta = -FRAC_PI_2 + PI * f64::from(i) / f64::from(steps);
-        let albedo = bsdf.prepare(direction(theta, 0.0)).albedo();
+        let albedo = material.prepare(direction(theta, 0.0)).albedo();
         for c in 0..3 {
             most = most.max(albedo.0.iter().map(|lobe| lobe[c]).sum());
         }
@@ -318,8 +318,8 @@ pub fn max_albedo_bounds_a_scan_ten_times_as_fine(tested: &Tested) {
             .map(|(_, p)| p)
             .chain(random.clone())
         {
-            let bsdf = Bsdf::new(model, &params);
-            let (most, seen) = (bsdf.max_albedo(), scanned(&bsdf, 1800));
+            let material = Material::new(model, &params);
+            let (most, seen) = (material.max_albedo(), scanned(&material, 1800));
             assert!(
                 seen <= most,
                 "{seen} is above max_albedo {most}: {params:?}"
@@ -342,10 +342,10 @@ pub fn scaled_hair_returns_at_most_what_it_receives(tested: &Tested) {
             .map(|(_, p)| p)
             .chain(random.clone())
         {
-            let scale = Bsdf::new(model, &params).conserving_scale();
+            let scale = Material::new(model, &params).conserving_scale();
             scaled_down += usize::from(scale < 1.0);
             assert!(scale > 0.0 && scale <= 1.0, "scale {scale}: {params:?}");
-            let most = scanned(&Bsdf::new(model, &params.scaled(scale).unwrap()), 1800);
+            let most = scanned(&Material::new(model, &params.scaled(scale).unwrap()), 1800);
             assert!(
                 most <= 1.0,
                 "scaled by {scale} it still returns {most}: {params:?}"

@@ -1,7 +1,7 @@
 //! Each lobe's density integrates to 1, and so does the mixture: quadrature over the kernels' own numbers.
 
 use super::Tested;
-use super::handles::Bsdf;
+use super::handles::Material;
 use super::quadrature::{integrate, panels};
 use super::support::{Kind, LargestError, THETA_O, direction, double, materials, parameters};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -12,13 +12,13 @@ use hairis::{HairParams, Lobe};
 fn integrals(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -> [f64; 4] {
     let wo = direction(theta_o, 0.4);
     let p = parameters(params, 1.0);
-    let gather = Bsdf::new(tested.sampler(Some(bands)), params).prepare(wo);
+    let bsdf = Material::new(tested.sampler(Some(bands)), params).prepare(wo);
     let reference = MatchedReference::prepare(&p, tested.formulas.shape, double(wo), bands);
     Lobe::ALL.map(|lobe| {
         let l = lobe.index().min(2);
         let at = |theta: f64, phi: f64| {
             let wi = direction(theta, 0.4 - phi);
-            f64::from(gather.lobes(wi)[lobe].pdf) * theta.cos()
+            f64::from(bsdf.lobes(wi)[lobe].pdf) * theta.cos()
         };
         let centre = 2.0 * p.alpha[l] - theta_o;
         let (theta_0, phi_0) = (

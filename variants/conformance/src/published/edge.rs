@@ -1,7 +1,7 @@
 //! Exact cases: the ends of every range.
 
 use super::Tested;
-use super::handles::{Bsdf, Gather};
+use super::handles::{Bsdf, Material};
 use super::support::{Draws, lanes_of, packet};
 use core::f32::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
@@ -10,15 +10,14 @@ use hairis::{GRAZING, HairDesc, HairParams, Level, Lobe, LobeMask, MAX_WIDTH, MI
 const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 const ENDS: [f32; 4] = [0.0, f32::EPSILON / 2.0, 0.5, LAST];
 
-fn material<'a>(tested: &'a Tested, desc: &HairDesc) -> Bsdf<'a> {
-    Bsdf::new(tested.model(), &HairParams::new(desc).unwrap())
+fn material<'a>(tested: &'a Tested, desc: &HairDesc) -> Material<'a> {
+    Material::new(tested.model(), &HairParams::new(desc).unwrap())
 }
 
 /// A sample of one lane, the same of every level if they round alike.
-fn samples(gather: &Gather, xi: [f32; 3]) -> Vec<Option<Sample>> {
-    let wide =
-        Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
-    wide.chain([gather.sample(xi)]).collect()
+fn samples(bsdf: &Bsdf, xi: [f32; 3]) -> Vec<Option<Sample>> {
+    let wide = Level::available().map(|level| bsdf.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
+    wide.chain([bsdf.sample(xi)]).collect()
 }
 
 fn assert_sound(sample: &Sample, at: &str) {
@@ -71,9 +70,9 @@ pub fn ends_of_xi_give_sound_samples_of_every_lobe(tested: &Tested) {
                 ..desc
             };
             for wo in wos {
-                let gather = material(tested, &desc).prepare(wo);
+                let bsdf = material(tested, &desc).prepare(wo);
                 for lobe in Lobe::ALL {
-                    let alone = gather.with_lobes(LobeMask::of(&[lobe]));
+                    let alone = bsdf.with_lobes(LobeMask::of(&[lobe]));
                     for xi in ENDS
                         .iter()
                         .flat_map(|a| ENDS.iter().flat_map(|b| ENDS.map(|c| [*a, *b, c])))
@@ -103,7 +102,7 @@ pub fn nothing_is_negative_on_the_seam(tested: &Tested) {
         intensity_trt: [1.0, 1.0, 0.0],
         ..widths(0.3)
     };
-    let gather = |wo| {
+    let bsdf = |wo| {
         material(
             tested,
             &HairDesc {
@@ -125,13 +124,13 @@ pub fn nothing_is_negative_on_the_seam(tested: &Tested) {
         (0.3, -0.7),
     ] {
         for x in [0.0, 0.4, -2.0] {
-            let gather = gather(Vec3::new(x, y, z).normalize());
+            let bsdf = bsdf(Vec3::new(x, y, z).normalize());
             for xi_lobe in (0..32_u8).map(|i| f32::from(i) / 32.0) {
                 for (xi_theta, xi_phi) in [0.02, 0.3, 0.5, 0.81]
                     .into_iter()
                     .flat_map(|a| [0.0, 0.5, LAST].map(|b| (a, b)))
                 {
-                    for sample in samples(&gather, [xi_lobe, xi_theta, xi_phi])
+                    for sample in samples(&bsdf, [xi_lobe, xi_theta, xi_phi])
                         .into_iter()
                         .flatten()
                     {
@@ -148,7 +147,7 @@ pub fn nothing_is_negative_on_the_seam(tested: &Tested) {
 pub fn the_axis_scatters_nothing(tested: &Tested) {
     for desc in [widths(MIN_WIDTH), widths(0.1), widths(MAX_WIDTH)] {
         for wo in [Vec3::Y, Vec3::X, -Vec3::X, Vec3::ZERO] {
-            let gather = material(tested, &desc).prepare(wo);
+            let bsdf = material(tested, &desc).prepare(wo);
             let beside = 0.99 * GRAZING;
             let axis = [
                 Vec3::X,
@@ -159,8 +158,8 @@ pub fn the_axis_scatters_nothing(tested: &Tested) {
             ];
             for wi in axis {
                 for level in Level::available() {
-                    let eight = gather.eval_pdf8_at(level, &packet(&[wi])).lane(2);
-                    for e in [gather.eval_pdf(wi), eight] {
+                    let eight = bsdf.eval_pdf8_at(level, &packet(&[wi])).lane(2);
+                    for e in [bsdf.eval_pdf(wi), eight] {
                         assert_eq!(
                             (e.value, e.pdf),
                             ([0.0; 3], 0.0),
@@ -168,13 +167,13 @@ pub fn the_axis_scatters_nothing(tested: &Tested) {
                         );
                     }
                 }
-                let lobes = gather.lobes(wi);
+                let lobes = bsdf.lobes(wi);
                 assert!(
                     lobes.0.iter().all(|l| l.value == 0.0 && l.pdf == 0.0),
                     "lobes at wi {wi:?} wo {wo:?}"
                 );
             }
-            let near = gather.eval_pdf(Vec3::new(0.0, 1.0, 0.0));
+            let near = bsdf.eval_pdf(Vec3::new(0.0, 1.0, 0.0));
             assert!(
                 f64::from(near.pdf) > tested.pdf_floor || near.value[0] <= 1e-20,
                 "off the axis: {near:?}"
@@ -184,14 +183,14 @@ pub fn the_axis_scatters_nothing(tested: &Tested) {
 }
 
 pub fn a_direction_just_off_the_axis_has_a_density(tested: &Tested) {
-    let gather = material(tested, &widths(1.0)).prepare(Vec3::Y);
+    let bsdf = material(tested, &widths(1.0)).prepare(Vec3::Y);
     let off = 1.01 * GRAZING;
-    let e = gather.eval_pdf(Vec3::new(1.0, off, 0.0));
+    let e = bsdf.eval_pdf(Vec3::new(1.0, off, 0.0));
     assert!(e.pdf > 0.0 && e.value[0] > 0.0, "at cos theta {off}: {e:?}");
 }
 
 pub fn vectors_that_are_no_direction_give_zero(tested: &Tested) {
-    let gather = material(tested, &HairDesc::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
+    let bsdf = material(tested, &HairDesc::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
     let odd = [
         Vec3::new(2.01, 0.1, 0.0),
         Vec3::new(0.0, -2.5, 0.0),
@@ -207,8 +206,8 @@ pub fn vectors_that_are_no_direction_give_zero(tested: &Tested) {
     for wi in odd {
         for level in Level::available() {
             for e in [
-                gather.eval_pdf(wi),
-                gather.eval_pdf8_at(level, &packet(&[wi])).lane(7),
+                bsdf.eval_pdf(wi),
+                bsdf.eval_pdf8_at(level, &packet(&[wi])).lane(7),
             ] {
                 assert_eq!((e.value, e.pdf), ([0.0; 3], 0.0), "{level} {wi:?}");
             }
@@ -220,8 +219,8 @@ pub fn the_seam_is_no_edge(tested: &Tested) {
     // phi = pi: TT peaks, R and TRT-g vanish, and both sides are one.
     for (y, z) in [(1.0, 0.0), (0.0, 1.0), (0.6, -0.8)] {
         let wo = Vec3::new(0.0, y, z);
-        let gather = material(tested, &HairDesc::default()).prepare(wo);
-        let on = gather.lobes(-wo);
+        let bsdf = material(tested, &HairDesc::default()).prepare(wo);
+        let on = bsdf.lobes(-wo);
         assert!(
             on[Lobe::R].value.abs() < 1e-7 && on[Lobe::TRT].pdf.abs() < 1e-7,
             "R and TRT-g on the seam: {on:?}"
@@ -229,7 +228,7 @@ pub fn the_seam_is_no_edge(tested: &Tested) {
         assert!(on[Lobe::TT].value > 0.2, "TT on the seam: {on:?}");
         let side = |s: f32| {
             let turned = Vec3::new(0.0, -y + s * z, -z - s * y);
-            gather.eval_pdf(turned)
+            bsdf.eval_pdf(turned)
         };
         for s in [0.0, 1e-7, 1e-5, 1e-3] {
             let (left, right) = (side(s), side(-s));
@@ -245,15 +244,15 @@ pub fn the_seam_is_no_edge(tested: &Tested) {
 }
 
 pub fn a_zero_wo_counts_as_the_normal_plane(tested: &Tested) {
-    let bsdf = material(tested, &HairDesc::default());
+    let material = material(tested, &HairDesc::default());
     let wi = Vec3::new(0.3, 0.5, 0.7).normalize();
-    let zero = bsdf.prepare(Vec3::ZERO).eval_pdf(wi);
-    assert_eq!(zero, bsdf.prepare(Vec3::Y).eval_pdf(wi), "wo of zero");
+    let zero = material.prepare(Vec3::ZERO).eval_pdf(wi);
+    assert_eq!(zero, material.prepare(Vec3::Y).eval_pdf(wi), "wo of zero");
     // Length does not matter.
     for wo in [Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.28, 0.0, 0.96)] {
-        let unit = bsdf.prepare(wo).eval_pdf(wi);
+        let unit = material.prepare(wo).eval_pdf(wi);
         for length in [1e-20, 0.01, 3.0, 100.0, 1e20, 1e38] {
-            let e = bsdf.prepare(wo * length).eval_pdf(wi);
+            let e = material.prepare(wo * length).eval_pdf(wi);
             let off = (e.pdf / unit.pdf - 1.0)
                 .abs()
                 .max((e.value[1] / unit.value[1] - 1.0).abs());
@@ -321,7 +320,7 @@ pub fn lobes_without_energy_are_never_drawn(tested: &Tested) {
         ),
     ];
     for (desc, lit) in cases {
-        let gather = material(tested, &desc).prepare(Vec3::new(0.28, 0.96, 0.0));
+        let bsdf = material(tested, &desc).prepare(Vec3::new(0.28, 0.96, 0.0));
         let mut seen = [false; 4];
         let mut draws = Draws(41);
         let mut take = |sample: Option<Sample>| {
@@ -334,14 +333,14 @@ pub fn lobes_without_energy_are_never_drawn(tested: &Tested) {
             seen[sample.lobe.index()] = true;
         };
         for _ in 0..100_000 / 8 {
-            let eight = gather.sample8_at(
+            let eight = bsdf.sample8_at(
                 Level::detect(),
                 &lanes_of(&core::array::from_fn(|_| draws.xi3())),
             );
             (0..8).for_each(|lane| take(eight.lane(lane)));
         }
         for xi in [0.0, f32::from_bits(1), f32::EPSILON / 2.0, LAST, 1.0] {
-            samples(&gather, [xi, 0.4, 0.4])
+            samples(&bsdf, [xi, 0.4, 0.4])
                 .into_iter()
                 .for_each(&mut take);
         }
@@ -357,32 +356,32 @@ pub fn black_hair_scatters_and_samples_nothing(tested: &Tested) {
         intensity_trt: black,
         ..HairDesc::default()
     };
-    let bsdf = material(tested, &desc);
-    let gather = bsdf.prepare(Vec3::Y);
+    let material = material(tested, &desc);
+    let bsdf = material.prepare(Vec3::Y);
     for wi in [Vec3::Y, -Vec3::Y, Vec3::new(0.6, 0.0, 0.8)] {
-        let e = gather.eval_pdf(wi);
+        let e = bsdf.eval_pdf(wi);
         assert_eq!((e.value, e.pdf), ([0.0; 3], 0.0), "wi {wi:?}");
     }
     for xi in ENDS {
-        for sample in samples(&gather, [xi, 0.3, 0.6]) {
+        for sample in samples(&bsdf, [xi, 0.3, 0.6]) {
             assert_eq!(sample, None, "xi {xi}");
         }
     }
-    let eight = gather.sample8_at(Level::detect(), &lanes_of(&[[0.1, 0.2, 0.3]; 8]));
+    let eight = bsdf.sample8_at(Level::detect(), &lanes_of(&[[0.1, 0.2, 0.3]; 8]));
     assert_eq!(eight.live(), 0, "live lanes");
     assert_eq!(eight.slot.to_array(), [-1.0; 8], "slots");
-    assert_eq!(gather.albedo().0, [[0.0; 3]; 4], "albedo");
-    assert_eq!(bsdf.conserving_scale(), 1.0, "scale");
+    assert_eq!(bsdf.albedo().0, [[0.0; 3]; 4], "albedo");
+    assert_eq!(material.conserving_scale(), 1.0, "scale");
 }
 
 pub fn grazing_samples_are_discarded(tested: &Tested) {
     // A lobe wider than the sphere, drawn at the end of its range: theta_i is -pi/2.
     for wo in [Vec3::Y, Vec3::new(0.8, 0.6, 0.0)] {
-        let gather = material(tested, &widths(MAX_WIDTH)).prepare(wo);
-        for sample in samples(&gather, [0.1, 0.0, 0.3]) {
+        let bsdf = material(tested, &widths(MAX_WIDTH)).prepare(wo);
+        for sample in samples(&bsdf, [0.1, 0.0, 0.3]) {
             assert_eq!(sample, None, "theta_i of -pi/2 was kept");
         }
-        let eight = gather.sample8_at(Level::detect(), &lanes_of(&[[0.1, 0.0, 0.3]; 8]));
+        let eight = bsdf.sample8_at(Level::detect(), &lanes_of(&[[0.1, 0.0, 0.3]; 8]));
         assert_eq!(
             (eight.live(), eight.slot.to_array()),
             (0, [-1.0; 8]),
@@ -393,7 +392,7 @@ pub fn grazing_samples_are_discarded(tested: &Tested) {
             ([0.0; 8], [0.0; 8]),
             "a discarded lane"
         );
-        for sample in samples(&gather, [0.1, 0.001, 0.3]) {
+        for sample in samples(&bsdf, [0.1, 0.001, 0.3]) {
             assert!(sample.is_some(), "a sample off the axis was discarded");
         }
     }
@@ -401,14 +400,14 @@ pub fn grazing_samples_are_discarded(tested: &Tested) {
 
 /// Products of components next to nothing left the range of a float, and every result was the largest one.
 pub fn an_azimuth_next_to_nothing_is_still_an_azimuth(tested: &Tested) {
-    let gather = material(tested, &HairDesc::default()).prepare(Vec3::new(1.0, 1e-15, 0.0));
+    let bsdf = material(tested, &HairDesc::default()).prepare(Vec3::new(1.0, 1e-15, 0.0));
     let reference = material(tested, &HairDesc::default()).prepare(Vec3::new(1.0, 1e-6, 0.0));
     for wi in [
         Vec3::new(1.0, 2e-5, 0.0),
         Vec3::new(0.6, 0.8, 0.0),
         Vec3::new(-0.6, 0.0, 0.8),
     ] {
-        let (got, want) = (gather.eval_pdf(wi), reference.eval_pdf(wi));
+        let (got, want) = (bsdf.eval_pdf(wi), reference.eval_pdf(wi));
         assert!(
             (got.pdf / want.pdf - 1.0).abs() < 1e-4,
             "{wi}: {got:?} against {want:?}"
@@ -437,7 +436,7 @@ pub fn a_direction_next_to_the_axis_is_still_a_direction(tested: &Tested) {
             Vec3::new(-1.0, -off, off),
             Vec3::new(1e3, 0.0, 1e3 * off),
         ] {
-            let gather = material(tested, &widths(0.3)).prepare(wo);
+            let bsdf = material(tested, &widths(0.3)).prepare(wo);
             for xi in ENDS.iter().flat_map(|a| {
                 [
                     [*a, 0.5, 0.3],
@@ -446,7 +445,7 @@ pub fn a_direction_next_to_the_axis_is_still_a_direction(tested: &Tested) {
                     [0.5, 0.4, *a],
                 ]
             }) {
-                for sample in samples(&gather, xi).into_iter().flatten() {
+                for sample in samples(&bsdf, xi).into_iter().flatten() {
                     assert_sound(&sample, &format!("xi {xi:?} wo {wo:?}"));
                 }
             }

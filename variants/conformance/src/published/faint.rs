@@ -1,21 +1,20 @@
 //! Lobes next to nothing: faint ones, and those that lie off the sphere.
 
 use super::Tested;
-use super::handles::{Bsdf, Gather};
+use super::handles::{Bsdf, Material};
 use super::support::{Draws, lanes_of, packet};
 use core::f32::consts::FRAC_PI_2;
 use glam::Vec3;
 use hairis::{HairDesc, HairParams, Level, Lobe, LobeMask, Sample};
 
-fn gather(tested: &Tested, desc: &HairDesc, wo: Vec3) -> Gather {
-    Bsdf::new(tested.model(), &HairParams::new(desc).unwrap()).prepare(wo)
+fn bsdf(tested: &Tested, desc: &HairDesc, wo: Vec3) -> Bsdf {
+    Material::new(tested.model(), &HairParams::new(desc).unwrap()).prepare(wo)
 }
 
 /// The sample of one lane, and of every level.
-fn samples(gather: &Gather, xi: [f32; 3]) -> Vec<Option<Sample>> {
-    let wide =
-        Level::available().map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
-    wide.chain([gather.sample(xi)]).collect()
+fn samples(bsdf: &Bsdf, xi: [f32; 3]) -> Vec<Option<Sample>> {
+    let wide = Level::available().map(|level| bsdf.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
+    wide.chain([bsdf.sample(xi)]).collect()
 }
 
 fn near(got: f32, want: f32, by: f32) -> bool {
@@ -27,13 +26,13 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
     let mut draws = Draws(61);
     let only = LobeMask::of(&[Lobe::TT]);
     for wo in [Vec3::new(0.6, 0.8, 0.0), Vec3::new(-0.96, 0.0, 0.28)] {
-        let usual = gather(tested, &HairDesc::default(), wo).with_lobes(only);
+        let usual = bsdf(tested, &HairDesc::default(), wo).with_lobes(only);
         for intensity in [1e-10, 1e-30, 1e-37, 1e-39, 1e-42, 1e-45] {
             let desc = HairDesc {
                 intensity_tt: [intensity; 3],
                 ..HairDesc::default()
             };
-            let faint = gather(tested, &desc, wo).with_lobes(only);
+            let faint = bsdf(tested, &desc, wo).with_lobes(only);
             for _ in 0..200 {
                 let xi = draws.xi3();
                 for (faint, usual) in samples(&faint, xi).into_iter().zip(samples(&usual, xi)) {
@@ -48,8 +47,7 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
                 }
                 let wi = usual.sample(xi).unwrap().wi;
                 for level in Level::available() {
-                    let eight =
-                        |gather: &Gather| gather.eval_pdf8_at(level, &packet(&[wi])).lane(3);
+                    let eight = |bsdf: &Bsdf| bsdf.eval_pdf8_at(level, &packet(&[wi])).lane(3);
                     for (got, want) in [
                         (eight(&faint), eight(&usual)),
                         (faint.eval_pdf(wi), usual.eval_pdf(wi)),
@@ -84,7 +82,7 @@ pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with(tested: &Tested) {
             beta_trt,
             ..HairDesc::default()
         };
-        let gather = gather(tested, &desc, Vec3::Y);
+        let bsdf = bsdf(tested, &desc, Vec3::Y);
         for wi in [
             Vec3::new(-1.0, 1e-3, 0.0),
             Vec3::new(-1.0, 1e-4, 1e-4),
@@ -94,15 +92,15 @@ pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with(tested: &Tested) {
             let wi = wi.normalize();
             let eight = |level| {
                 (
-                    gather.eval_pdf8_at(level, &packet(&[wi])).lane(2).pdf,
-                    gather.lobes8_at(level, &packet(&[wi]))[Lobe::TRT]
+                    bsdf.eval_pdf8_at(level, &packet(&[wi])).lane(2).pdf,
+                    bsdf.lobes8_at(level, &packet(&[wi]))[Lobe::TRT]
                         .pdf
                         .to_array()[2],
                 )
             };
             for (pdf, lobe) in Level::available()
                 .map(eight)
-                .chain([(gather.pdf(wi), gather.lobes(wi)[Lobe::TRT].pdf)])
+                .chain([(bsdf.pdf(wi), bsdf.lobes(wi)[Lobe::TRT].pdf)])
             {
                 assert!(
                     lobe == pdf || near(lobe, pdf, 1e-4),

@@ -1,7 +1,7 @@
 //! No fireflies: every weight is below its closed-form bound, and that is a small multiple of the mean over all everyday hair.
 
 use super::Tested;
-use super::handles::Bsdf;
+use super::handles::Material;
 use super::support::{Draws, LargestError, direction, double, lanes_of, narrow, parameters};
 use core::f64::consts::PI;
 use hairis::reference::MatchedReference;
@@ -39,7 +39,7 @@ fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
         } else {
             LobeMask::ALL
         };
-        let gather = Bsdf::new(tested.sampler(Some(bands)), &params)
+        let bsdf = Material::new(tested.sampler(Some(bands)), &params)
             .prepare(wo)
             .with_lobes(mask);
         let reference = MatchedReference::prepare(
@@ -50,7 +50,7 @@ fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
         );
         let limit = reference.weight_bound(mask);
         if mask == LobeMask::ALL {
-            let mean: f64 = gather
+            let mean: f64 = bsdf
                 .albedo()
                 .0
                 .iter()
@@ -62,7 +62,7 @@ fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
             });
         }
         for _ in 0..4 {
-            let eight = gather.sample8_at(
+            let eight = bsdf.sample8_at(
                 Level::detect(),
                 &lanes_of(&core::array::from_fn(|_| draws.xi3())),
             );

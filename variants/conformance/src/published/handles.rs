@@ -1,7 +1,7 @@
 //! Handles of any model of the family, with the names of those of [`hairis`]: the tests are compiled once, and these calls once
 //! per model.
 
-use crate::erased::{Direction, ErasedGather, ErasedGather8};
+use crate::erased::{Direction, ErasedBsdf, ErasedBsdf8};
 use hairis::wide::f32x8;
 use hairis::{
     Conserving, Eval, Eval8, HairParams, Hit, Hit8, Level, LobeEval, LobeEval8, LobeMask, PerLobe,
@@ -10,14 +10,14 @@ use hairis::{
 
 /// A model of the family.
 pub(super) trait AnyModel {
-    fn prepare(&self, params: &HairParams, hit: Hit) -> Box<dyn ErasedGather>;
-    fn prepare8(&self, params: &HairParams, level: Level, hits: Hit8) -> Box<dyn ErasedGather8>;
+    fn prepare(&self, params: &HairParams, hit: Hit) -> Box<dyn ErasedBsdf>;
+    fn prepare8(&self, params: &HairParams, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8>;
     fn prepare_packed(
         &self,
         params: [&HairParams; 8],
         level: Level,
         hits: Hit8,
-    ) -> Box<dyn ErasedGather8>;
+    ) -> Box<dyn ErasedBsdf8>;
     /// The constants of a shading point, by the function for one lane and by that for lanes.
     fn constants(&self, params: &HairParams, hit: Hit) -> [String; 2];
     /// Albedo of hair that conserves energy.
@@ -27,12 +27,12 @@ pub(super) trait AnyModel {
 }
 
 impl<M: hairis::Model<Params = HairParams> + 'static> AnyModel for M {
-    fn prepare(&self, params: &HairParams, hit: Hit) -> Box<dyn ErasedGather> {
-        Box::new(hairis::Bsdf::new(self, params).prepare(hit))
+    fn prepare(&self, params: &HairParams, hit: Hit) -> Box<dyn ErasedBsdf> {
+        Box::new(hairis::Material::new(self, params).prepare(hit))
     }
 
-    fn prepare8(&self, params: &HairParams, level: Level, hits: Hit8) -> Box<dyn ErasedGather8> {
-        Box::new(hairis::Bsdf::new(self, params).prepare8_at(level, hits))
+    fn prepare8(&self, params: &HairParams, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
+        Box::new(hairis::Material::new(self, params).prepare8_at(level, hits))
     }
 
     fn prepare_packed(
@@ -40,9 +40,9 @@ impl<M: hairis::Model<Params = HairParams> + 'static> AnyModel for M {
         params: [&HairParams; 8],
         level: Level,
         hits: Hit8,
-    ) -> Box<dyn ErasedGather8> {
-        let bsdfs = params.map(|params| hairis::Bsdf::new(self, params));
-        Box::new(hairis::Bsdf8::pack(bsdfs.each_ref()).prepare8_at(level, hits))
+    ) -> Box<dyn ErasedBsdf8> {
+        let materials = params.map(|params| hairis::Material::new(self, params));
+        Box::new(hairis::Material8::pack(materials.each_ref()).prepare8_at(level, hits))
     }
 
     fn constants(&self, params: &HairParams, hit: Hit) -> [String; 2] {
@@ -54,28 +54,28 @@ impl<M: hairis::Model<Params = HairParams> + 'static> AnyModel for M {
     }
 
     fn conserving_albedo(&self, params: &HairParams, hit: Hit) -> PerLobe<[f32; 3]> {
-        hairis::Bsdf::new(&Conserving(*self), params)
+        hairis::Material::new(&Conserving(*self), params)
             .prepare(hit)
             .albedo()
     }
 
     fn max_albedo(&self, params: &HairParams) -> f32 {
-        hairis::Bsdf::new(self, params).max_albedo()
+        hairis::Material::new(self, params).max_albedo()
     }
 
     fn conserving_scale(&self, params: &HairParams) -> f32 {
-        hairis::Bsdf::new(self, params).conserving_scale()
+        hairis::Material::new(self, params).conserving_scale()
     }
 }
 
 /// A material.
 #[derive(Clone, Copy)]
-pub(super) struct Bsdf<'a> {
+pub(super) struct Material<'a> {
     model: &'a dyn AnyModel,
     pub(super) params: HairParams,
 }
 
-impl<'a> Bsdf<'a> {
+impl<'a> Material<'a> {
     pub(super) fn new(model: &'a dyn AnyModel, params: &HairParams) -> Self {
         Self {
             model,
@@ -83,25 +83,25 @@ impl<'a> Bsdf<'a> {
         }
     }
 
-    pub(super) fn prepare(&self, hit: impl Into<Hit>) -> Gather {
-        Gather(self.model.prepare(&self.params, hit.into()))
+    pub(super) fn prepare(&self, hit: impl Into<Hit>) -> Bsdf {
+        Bsdf(self.model.prepare(&self.params, hit.into()))
     }
 
-    pub(super) fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Gather8 {
-        Gather8(self.model.prepare8(&self.params, level, hits.into()))
+    pub(super) fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Bsdf8 {
+        Bsdf8(self.model.prepare8(&self.params, level, hits.into()))
     }
 
     /// Eight hits on eight materials of one model.
     pub(super) fn prepare_packed(
-        bsdfs: [&Self; 8],
+        materials: [&Self; 8],
         level: Level,
         hits: impl Into<Hit8>,
-    ) -> Gather8 {
-        Gather8(
-            bsdfs[0]
-                .model
-                .prepare_packed(bsdfs.map(|bsdf| &bsdf.params), level, hits.into()),
-        )
+    ) -> Bsdf8 {
+        Bsdf8(materials[0].model.prepare_packed(
+            materials.map(|material| &material.params),
+            level,
+            hits.into(),
+        ))
     }
 
     pub(super) fn max_albedo(&self) -> f32 {
@@ -115,9 +115,9 @@ impl<'a> Bsdf<'a> {
 
 /// A shading point.
 #[derive(Debug)]
-pub(super) struct Gather(Box<dyn ErasedGather>);
+pub(super) struct Bsdf(Box<dyn ErasedBsdf>);
 
-impl Gather {
+impl Bsdf {
     pub(super) fn eval_pdf(&self, wi: impl Into<Direction>) -> Eval {
         self.0.eval(wi.into())
     }
@@ -165,9 +165,9 @@ impl Gather {
 
 /// Eight shading points.
 #[derive(Debug)]
-pub(super) struct Gather8(Box<dyn ErasedGather8>);
+pub(super) struct Bsdf8(Box<dyn ErasedBsdf8>);
 
-impl Gather8 {
+impl Bsdf8 {
     pub(super) fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
         self.0.eval(level, wi)
     }
@@ -192,7 +192,7 @@ impl Gather8 {
         Self(self.0.with_lobes(lobes))
     }
 
-    pub(super) fn lane(&self, lane: usize) -> Gather {
-        Gather(self.0.lane(lane))
+    pub(super) fn lane(&self, lane: usize) -> Bsdf {
+        Bsdf(self.0.lane(lane))
     }
 }

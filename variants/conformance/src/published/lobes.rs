@@ -9,11 +9,11 @@ use hairis::{Level, Lobe, LobeMask};
 
 pub fn lobes_add_up(tested: &Tested) {
     let (mut s, mut pdf) = (LargestError::default(), LargestError::default());
-    for_each_point(tested, Kind::Grid, |bsdf, reference, point| {
-        let gather = bsdf.prepare(point.wo);
+    for_each_point(tested, Kind::Grid, |material, reference, point| {
+        let bsdf = material.prepare(point.wo);
         let probability = reference.probabilities();
         for wi in point.directions(8) {
-            let (lobes, all) = (gather.lobes(wi), gather.eval_pdf(wi));
+            let (lobes, all) = (bsdf.lobes(wi), bsdf.eval_pdf(wi));
             let at = || format!("wo {:?} wi {wi:?} {:?}", point.wo, point.params);
             for c in 0..3 {
                 let sum = lobes
@@ -39,19 +39,19 @@ pub fn lobes_add_up(tested: &Tested) {
 
 pub fn a_subset_scatters_and_samples_its_lobes_alone(tested: &Tested) {
     let (mut s, mut pdf) = (LargestError::default(), LargestError::default());
-    for_each_point(tested, Kind::Wide, |bsdf, reference, point| {
-        let gather = bsdf.prepare(point.wo);
-        let eight = bsdf.prepare8_at(Level::detect(), &hairis::Vec3x8::splat(point.wo));
+    for_each_point(tested, Kind::Wide, |material, reference, point| {
+        let bsdf = material.prepare(point.wo);
+        let eight = material.prepare8_at(Level::detect(), &hairis::Vec3x8::splat(point.wo));
         let mut draws = Draws(point.seed);
         for mask in masks() {
-            let part = gather.with_lobes(mask);
+            let part = bsdf.with_lobes(mask);
             let total: f64 = Lobe::ALL
                 .into_iter()
                 .map(|l| reference.probabilities()[l] * f64::from(mask.factor(l)))
                 .sum();
             for wi in point.directions(8) {
                 let at = || format!("{mask:?} wo {:?} wi {wi:?} {:?}", point.wo, point.params);
-                let (lobes, got) = (gather.lobes(wi), part.eval_pdf(wi));
+                let (lobes, got) = (bsdf.lobes(wi), part.eval_pdf(wi));
                 let of = |f: &dyn Fn(Lobe) -> f64| -> f64 {
                     Lobe::ALL
                         .into_iter()
@@ -94,7 +94,7 @@ pub fn a_subset_scatters_and_samples_its_lobes_alone(tested: &Tested) {
                 }
             }
         }
-        let none = gather.with_lobes(LobeMask::NONE);
+        let none = bsdf.with_lobes(LobeMask::NONE);
         for eight in point.directions(8).chunks(8) {
             let all = none.eval_pdf8_at(Level::detect(), &packet(eight));
             assert!(
@@ -112,11 +112,11 @@ pub fn a_subset_scatters_and_samples_its_lobes_alone(tested: &Tested) {
 }
 
 pub fn a_lobe_is_colored_by_its_parameters(tested: &Tested) {
-    for_each_point(tested, Kind::Wide, |bsdf, reference, point| {
-        let gather = bsdf.prepare(point.wo);
+    for_each_point(tested, Kind::Wide, |material, reference, point| {
+        let bsdf = material.prepare(point.wo);
         let d = point.params.desc();
         let wi = point.directions(1)[0];
-        let lobes = gather.lobes(wi);
+        let lobes = bsdf.lobes(wi);
         let colors = [
             d.intensity_r,
             d.intensity_tt,

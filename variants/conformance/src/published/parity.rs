@@ -2,13 +2,13 @@
 //! alike.
 
 use super::Tested;
-use super::handles::{Bsdf, Gather8};
+use super::handles::{Bsdf8, Material};
 use super::support::{
     Draws, Kind, LargestError, Point, for_each_point, lanes_of, materials, packet, parameters,
 };
 use glam::Vec3;
 use hairis::wide::f32x8;
-use hairis::{Drawn, Eval, Hit, Level, Lobe, PerLobe, Sample8};
+use hairis::{Eval, Hit, Level, Lobe, PerLobe, Sample8, SampleLanes};
 
 fn eval_bits(e: Eval) -> [u32; 4] {
     [e.value[0], e.value[1], e.value[2], e.pdf].map(f32::to_bits)
@@ -16,7 +16,7 @@ fn eval_bits(e: Eval) -> [u32; 4] {
 
 /// Every number of one lane of a packet of samples.
 fn sample_lane(s: &Sample8, lane: usize) -> [f32; 11] {
-    let Drawn {
+    let SampleLanes {
         wi,
         value: [r, g, b],
         pdf,
@@ -37,7 +37,7 @@ fn unfused() -> impl Iterator<Item = Level> {
 
 /// Eight different hits and materials, and eight directions and triples of numbers.
 struct MixedPacket<'a> {
-    bsdf: [Bsdf<'a>; 8],
+    material: [Material<'a>; 8],
     wo: [Vec3; 8],
     wi: [Vec3; 8],
     xi: [[f32; 3]; 8],
@@ -60,15 +60,15 @@ fn mixed<'a>(tested: &'a Tested, draws: &mut Draws) -> MixedPacket<'a> {
     });
     let xi = core::array::from_fn(|_| draws.xi3());
     MixedPacket {
-        bsdf: params.map(|p| Bsdf::new(model, &p)),
+        material: params.map(|p| Material::new(model, &p)),
         wo,
         wi,
         xi,
     }
 }
 
-fn gathers(m: &MixedPacket<'_>, level: Level) -> Gather8 {
-    Bsdf::prepare_packed(m.bsdf.each_ref(), level, &packet(&m.wo))
+fn bsdfs(m: &MixedPacket<'_>, level: Level) -> Bsdf8 {
+    Material::prepare_packed(m.material.each_ref(), level, &packet(&m.wo))
 }
 
 pub fn every_lane_position_equals_one_lane(tested: &Tested) {
@@ -76,24 +76,24 @@ pub fn every_lane_position_equals_one_lane(tested: &Tested) {
         Level::available().next() == Some(Level::portable()),
         "the portable level runs everywhere"
     );
-    for_each_point(tested, Kind::Wide, |bsdf, _, point| {
-        let gather = bsdf.prepare(point.wo);
+    for_each_point(tested, Kind::Wide, |material, _, point| {
+        let bsdf = material.prepare(point.wo);
         let mut draws = Draws(point.seed);
         for eight in point.directions(32).chunks(8) {
             let xi: [_; 8] = core::array::from_fn(|_| draws.xi3());
             for level in unfused() {
                 let (evals, samples) = (
-                    gather.eval_pdf8_at(level, &packet(eight)),
-                    gather.sample8_at(level, &lanes_of(&xi)),
+                    bsdf.eval_pdf8_at(level, &packet(eight)),
+                    bsdf.sample8_at(level, &lanes_of(&xi)),
                 );
                 for (lane, wi) in eight.iter().enumerate() {
-                    let (one, wide) = (gather.eval_pdf(*wi), evals.lane(lane));
+                    let (one, wide) = (bsdf.eval_pdf(*wi), evals.lane(lane));
                     assert_eq!(
                         eval_bits(one),
                         eval_bits(wide),
                         "{level} lane {lane} wi {wi:?}: {one:?} {wide:?}"
                     );
-                    let (one, wide) = (gather.sample(xi[lane]), samples.lane(lane));
+                    let (one, wide) = (bsdf.sample(xi[lane]), samples.lane(lane));
                     assert_eq!(one, wide, "{level} lane {lane} xi {:?}", xi[lane]);
                 }
             }
@@ -106,17 +106,17 @@ pub fn eight_shading_points_equal_one_each(tested: &Tested) {
     for _ in 0..2000 {
         let m = mixed(tested, &mut draws);
         for level in unfused() {
-            let gather = gathers(&m, level);
+            let bsdf = bsdfs(&m, level);
             let (evals, samples) = (
-                gather.eval_pdf8_at(level, &packet(&m.wi)),
-                gather.sample8_at(level, &lanes_of(&m.xi)),
+                bsdf.eval_pdf8_at(level, &packet(&m.wi)),
+                bsdf.sample8_at(level, &lanes_of(&m.xi)),
             );
             for lane in 0..8 {
-                let one = m.bsdf[lane].prepare(m.wo[lane]);
+                let one = m.material[lane].prepare(m.wo[lane]);
                 let at = || {
                     format!(
                         "{level} lane {lane} wo {:?} {:?}",
-                        m.wo[lane], m.bsdf[lane].params
+                        m.wo[lane], m.material[lane].params
                     )
                 };
                 assert_eq!(
@@ -128,7 +128,7 @@ pub fn eight_shading_points_equal_one_each(tested: &Tested) {
                 assert_eq!(one.sample(m.xi[lane]), samples.lane(lane), "{}", at());
                 assert_eq!(
                     format!("{one:?}"),
-                    format!("{:?}", gather.lane(lane)),
+                    format!("{:?}", bsdf.lane(lane)),
                     "{}",
                     at()
                 );
@@ -155,11 +155,11 @@ pub fn one_shading_point_in_every_lane_equals_a_shared_one(tested: &Tested) {
     let random: Vec<_> = (0..200).map(|_| draws.params(10.0)).collect();
     for params in materials(Kind::Wide).into_iter().chain(random) {
         let m = mixed(tested, &mut draws);
-        let bsdf = Bsdf::new(model, &params);
+        let material = Material::new(model, &params);
         let wo = packet(&[m.wo[0]]);
         for level in Level::available() {
-            let eight = Bsdf::prepare_packed([&bsdf; 8], level, &wo);
-            let same = bsdf.prepare8_at(level, &wo);
+            let eight = Material::prepare_packed([&material; 8], level, &wo);
+            let same = material.prepare8_at(level, &wo);
             assert_eq!(
                 format!("{eight:?}"),
                 format!("{same:?}"),
@@ -199,13 +199,13 @@ pub fn permuted_lanes_permute_the_results(tested: &Tested) {
             order.swap(last, draws.below(last + 1));
         }
         let p = MixedPacket {
-            bsdf: order.map(|i| m.bsdf[i]),
+            material: order.map(|i| m.material[i]),
             wo: order.map(|i| m.wo[i]),
             wi: order.map(|i| m.wi[i]),
             xi: order.map(|i| m.xi[i]),
         };
         for level in Level::available() {
-            let (g, h) = (gathers(&m, level), gathers(&p, level));
+            let (g, h) = (bsdfs(&m, level), bsdfs(&p, level));
             let (a, b) = (
                 g.eval_pdf8_at(level, &packet(&m.wi)),
                 h.eval_pdf8_at(level, &packet(&p.wi)),
@@ -243,25 +243,25 @@ fn tame(point: &Point) -> Vec<Vec3> {
 
 pub fn levels_agree_with_one_lane(tested: &Tested) {
     let mut worst: [LargestError; 3] = Default::default();
-    for_each_point(tested, Kind::Wide, |bsdf, _, point| {
-        let gather = bsdf.prepare(point.wo);
+    for_each_point(tested, Kind::Wide, |material, _, point| {
+        let bsdf = material.prepare(point.wo);
         let mut draws = Draws(point.seed + 7);
         for eight in tame(point).chunks(8) {
             let xi: [_; 8] = core::array::from_fn(|_| draws.xi3());
             for level in Level::available() {
                 let (evals, samples) = (
-                    gather.eval_pdf8_at(level, &packet(eight)),
-                    gather.sample8_at(level, &lanes_of(&xi)),
+                    bsdf.eval_pdf8_at(level, &packet(eight)),
+                    bsdf.sample8_at(level, &lanes_of(&xi)),
                 );
                 for (lane, wi) in eight.iter().enumerate() {
                     let at = || format!("{level} wo {:?} wi {wi:?} xi {:?}", point.wo, xi[lane]);
-                    let (a, b) = (gather.eval_pdf(*wi), evals.lane(lane));
+                    let (a, b) = (bsdf.eval_pdf(*wi), evals.lane(lane));
                     worst[0].see(
                         super::support::relative(b.value[0], f64::from(a.value[0]), 1e-20),
                         at,
                     );
                     worst[1].see(super::support::relative(b.pdf, f64::from(a.pdf), 0.0), at);
-                    let (Some(a), Some(b)) = (gather.sample(xi[lane]), samples.lane(lane)) else {
+                    let (Some(a), Some(b)) = (bsdf.sample(xi[lane]), samples.lane(lane)) else {
                         continue;
                     };
                     assert_eq!(a.lobe, b.lobe, "{}", at());
@@ -293,8 +293,8 @@ pub fn levels_that_round_alike_give_the_same_bits(tested: &Tested) {
             .windows(2)
             .filter(|pair| pair[0].fuses() == pair[1].fuses())
         {
-            let g = gathers(&m, pair[0]);
-            let h = gathers(&m, pair[1]);
+            let g = bsdfs(&m, pair[0]);
+            let h = bsdfs(&m, pair[1]);
             assert_eq!(
                 format!("{g:?}"),
                 format!("{h:?}"),
@@ -340,17 +340,14 @@ pub fn lobes_and_albedo_agree_with_one_lane(tested: &Tested) {
     let mut worst = LargestError::default();
     for _ in 0..200 {
         let m = mixed(tested, &mut draws);
-        let gather = gathers(&m, Level::detect());
+        let bsdf = bsdfs(&m, Level::detect());
         let (lobes, albedo) = (
-            gather.lobes8(&packet(&m.wi)),
-            gather.albedo8_at(Level::detect()),
+            bsdf.lobes8(&packet(&m.wi)),
+            bsdf.albedo8_at(Level::detect()),
         );
         for level in unfused() {
-            for (lane, bits) in albedo_bits(&gather.albedo8_at(level))
-                .into_iter()
-                .enumerate()
-            {
-                let one: Vec<u32> = gather
+            for (lane, bits) in albedo_bits(&bsdf.albedo8_at(level)).into_iter().enumerate() {
+                let one: Vec<u32> = bsdf
                     .lane(lane)
                     .albedo()
                     .0
@@ -362,7 +359,7 @@ pub fn lobes_and_albedo_agree_with_one_lane(tested: &Tested) {
             }
         }
         for lane in 0..8 {
-            let one = gather.lane(lane);
+            let one = bsdf.lane(lane);
             let (alone, alone_albedo) = (one.lobes8(&packet(&[m.wi[lane]])), one.albedo());
             for lobe in Lobe::ALL {
                 let (a, b) = (lobes[lobe], alone[lobe]);
@@ -400,14 +397,14 @@ pub fn lobes_and_albedo_agree_with_one_lane(tested: &Tested) {
 pub fn a_hit_is_its_direction(tested: &Tested) {
     // The published model ignores the offset across the fibre.
     let model = tested.model();
-    let bsdf = Bsdf::new(model, &hairis::HairParams::default());
+    let material = Material::new(model, &hairis::HairParams::default());
     let wo = Vec3::new(0.6, 0.8, 0.0);
-    let plain = format!("{:?}", bsdf.prepare(wo));
+    let plain = format!("{:?}", material.prepare(wo));
     assert_eq!(
         plain,
         format!(
             "{:?}",
-            bsdf.prepare(Hit {
+            material.prepare(Hit {
                 wo: wo.into(),
                 h: 0.7
             })

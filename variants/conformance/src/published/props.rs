@@ -1,7 +1,7 @@
 //! Properties of every input: totality over all bit patterns, reciprocity, and samples that agree with eval and pdf.
 
 use super::Tested;
-use super::handles::{Bsdf, Gather8};
+use super::handles::{Bsdf8, Material};
 use super::support::{
     Draws, LargestError, direction, lanes_of, materials, narrow, packet, relative,
 };
@@ -74,10 +74,10 @@ fn params(draws: &mut Draws) -> HairParams {
 }
 
 /// Every number of a packet of eight, for `wi` and `xi` in every lane.
-fn numbers(gather: &Gather8, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
+fn numbers(bsdf: &Bsdf8, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
     let first = |x: &f32x8| x.as_array()[0];
-    let e = gather.eval_pdf8_at(level, &packet(&[wi]));
-    let s = gather.sample8_at(level, &lanes_of(&[xi; 8]));
+    let e = bsdf.eval_pdf8_at(level, &packet(&[wi]));
+    let s = bsdf.sample8_at(level, &lanes_of(&[xi; 8]));
     let mut positive: Vec<f32> = e
         .value
         .iter()
@@ -86,7 +86,7 @@ fn numbers(gather: &Gather8, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>,
         .chain(&s.weight)
         .map(first)
         .collect();
-    for lobe in gather.lobes8(&packet(&[wi])).0 {
+    for lobe in bsdf.lobes8(&packet(&[wi])).0 {
         positive.extend([first(&lobe.value), first(&lobe.pdf)]);
         positive.extend(lobe.color.iter().map(first));
     }
@@ -97,16 +97,21 @@ fn numbers(gather: &Gather8, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>,
 }
 
 /// Every number of one lane.
-fn scalar_numbers(bsdf: &Bsdf<'_>, wo: Vec3, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
-    let gather = bsdf.prepare(wo);
-    let e = gather.eval_pdf(wi);
-    let mut positive = [&e.value[..], &[e.pdf, gather.pdf(wi)], &gather.eval(wi)].concat();
-    for lobe in gather.lobes(wi).0 {
+fn scalar_numbers(
+    material: &Material<'_>,
+    wo: Vec3,
+    wi: Vec3,
+    xi: [f32; 3],
+) -> (Vec<f32>, Vec<f32>) {
+    let bsdf = material.prepare(wo);
+    let e = bsdf.eval_pdf(wi);
+    let mut positive = [&e.value[..], &[e.pdf, bsdf.pdf(wi)], &bsdf.eval(wi)].concat();
+    for lobe in bsdf.lobes(wi).0 {
         positive.extend([lobe.value, lobe.pdf]);
     }
-    positive.extend(gather.albedo().0.as_flattened());
+    positive.extend(bsdf.albedo().0.as_flattened());
     let mut any = vec![];
-    if let Some(s) = gather.sample(xi) {
+    if let Some(s) = bsdf.sample(xi) {
         positive.extend(s.value.iter().chain(&s.weight).chain([&s.pdf]));
         any.extend(s.wi.to_array());
     }
@@ -120,11 +125,11 @@ pub fn finite_inputs_give_finite_outputs(tested: &Tested) {
         let [wo, wi] = [three(&mut draws, finite), three(&mut draws, finite)].map(Vec3::from_array);
         // Uniform numbers are in [0, 1); all else is as wild as floats are.
         let xi = three(&mut draws, finite).map(|x| x.abs().fract());
-        let bsdf = Bsdf::new(tested.model(), &params);
-        let mut all = vec![scalar_numbers(&bsdf, wo, wi, xi)];
+        let material = Material::new(tested.model(), &params);
+        let mut all = vec![scalar_numbers(&material, wo, wi, xi)];
         for level in Level::available() {
-            let gather = Bsdf::prepare_packed([&bsdf; 8], level, &packet(&[wo]));
-            all.push(numbers(&gather, level, wi, xi));
+            let bsdf = Material::prepare_packed([&material; 8], level, &packet(&[wo]));
+            all.push(numbers(&bsdf, level, wi, xi));
         }
         for (positive, any) in all {
             let at = || format!("wo {wo:?} wi {wi:?} xi {xi:?} {params:?}");
@@ -145,16 +150,16 @@ pub fn nothing_panics_on_nan_and_infinity(tested: &Tested) {
         let [wo, wi] =
             [three(&mut draws, anything), three(&mut draws, anything)].map(Vec3::from_array);
         let xi = three(&mut draws, anything);
-        let bsdf = Bsdf::new(tested.model(), &params);
-        let (positive, _) = scalar_numbers(&bsdf, Vec3::Y, wi, [0.5; 3]);
+        let material = Material::new(tested.model(), &params);
+        let (positive, _) = scalar_numbers(&material, Vec3::Y, wi, [0.5; 3]);
         assert!(
             positive.iter().all(|x| *x >= 0.0),
             "wi {wi:?} {params:?}: {positive:?}"
         );
-        let _ = scalar_numbers(&bsdf, wo, wi, xi);
+        let _ = scalar_numbers(&material, wo, wi, xi);
         for level in Level::available() {
-            let gather = Bsdf::prepare_packed([&bsdf; 8], level, &packet(&[wo]));
-            let _ = numbers(&gather, level, wi, xi);
+            let bsdf = Material::prepare_packed([&material; 8], level, &packet(&[wo]));
+            let _ = numbers(&bsdf, level, wi, xi);
         }
     }
 }
@@ -173,17 +178,17 @@ pub fn a_sample_agrees_with_eval_and_pdf(tested: &Tested) {
             // Effect of a rounded direction on a bell of that width.
             let scale = f64::from(width) / (f64::from(width) + 0.1);
             let wo = direction(draws.between(-1.5, 1.5), draws.between(-PI, PI));
-            let gather = Bsdf::new(model, &params).prepare(wo);
+            let bsdf = Material::new(model, &params).prepare(wo);
             for _ in 0..8 {
                 let xi = draws.xi3();
                 let wide = Level::available()
-                    .map(|level| gather.sample8_at(level, &lanes_of(&[xi; 8])).lane(1));
-                for s in wide.chain([gather.sample(xi)]).flatten() {
+                    .map(|level| bsdf.sample8_at(level, &lanes_of(&[xi; 8])).lane(1));
+                for s in wide.chain([bsdf.sample(xi)]).flatten() {
                     let [theta, phi] = angles(wo, s.wi);
                     if theta.cos() < 1e-2 || PI - phi < 1e-2 || (phi - 0.5 * PI).abs() < 1e-3 {
                         continue;
                     }
-                    let e = gather.eval_pdf(s.wi);
+                    let e = bsdf.eval_pdf(s.wi);
                     worst.see(relative(s.pdf, f64::from(e.pdf), 0.0) * scale, || {
                         format!("{s:?} {e:?} wo {wo:?} {d:?}")
                     });
@@ -211,7 +216,7 @@ pub fn eval_is_reciprocal(tested: &Tested) {
             .into_iter()
             .chain(materials(Kind::Grid).into_iter().step_by(17))
         {
-            let bsdf = Bsdf::new(model, &params);
+            let material = Material::new(model, &params);
             for _ in 0..2000 {
                 let mut any = || {
                     direction(
@@ -223,7 +228,7 @@ pub fn eval_is_reciprocal(tested: &Tested) {
                 if PI - angles(a, b)[1] < 1e-3 {
                     continue;
                 }
-                let (there, back) = (bsdf.prepare(a).eval(b), bsdf.prepare(b).eval(a));
+                let (there, back) = (material.prepare(a).eval(b), material.prepare(b).eval(a));
                 for c in 0..3 {
                     worst.see(relative(there[c], f64::from(back[c]), 1e-12), || {
                         format!("{a:?} {b:?} {params:?}")
@@ -238,14 +243,14 @@ pub fn eval_is_reciprocal(tested: &Tested) {
 pub fn every_lobe_has_a_density_of_its_own(tested: &Tested) {
     // The sum over lobes of probability times pdf is what `sample` draws from: none may go below 0 or be missing.
     let model = tested.model();
-    let gather = Bsdf::new(model, &HairParams::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
+    let bsdf = Material::new(model, &HairParams::default()).prepare(Vec3::new(0.6, 0.8, 0.0));
     let mut draws = Draws(52);
     let mut seen = [0; 4];
     for _ in 0..10_000 {
-        if let Some(s) = gather.sample(draws.xi3()) {
+        if let Some(s) = bsdf.sample(draws.xi3()) {
             seen[s.lobe.index()] += 1;
             assert!(
-                gather.lobes(s.wi)[s.lobe].pdf > 0.0,
+                bsdf.lobes(s.wi)[s.lobe].pdf > 0.0,
                 "{s:?} has no density from its own lobe"
             );
         }

@@ -68,19 +68,19 @@ fn see(
 fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 3], cdf: [f64; 2]) {
     let mut worst: [LargestError; 4] = Default::default();
     let (mut theta, mut azimuth) = (LargestError::default(), LargestError::default());
-    for_each_point(tested, kind, |bsdf, reference, point| {
-        let gather = bsdf.prepare(point.wo);
+    for_each_point(tested, kind, |material, reference, point| {
+        let bsdf = material.prepare(point.wo);
         let mut draws = Draws(point.seed);
         for _ in 0..per_point {
             let xi = draw8(&mut draws);
             let wide: Vec<_> = Level::available()
-                .map(|level| gather.sample8_at(level, &lanes_of(&xi)))
+                .map(|level| bsdf.sample8_at(level, &lanes_of(&xi)))
                 .collect();
             for (lane, xi) in xi.iter().enumerate() {
                 let all = wide
                     .iter()
                     .map(|eight| eight.lane(lane))
-                    .chain([gather.sample(*xi)]);
+                    .chain([bsdf.sample(*xi)]);
                 for sample in all.flatten() {
                     see(tested, &mut worst, reference, point, &sample);
                     let chosen = reference.sample(xi.map(f64::from)).lobe;
@@ -104,7 +104,7 @@ fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 
             }
             // The cdf of what each lobe draws is the number it was drawn with.
             for lobe in Lobe::ALL {
-                let alone = gather.with_lobes(LobeMask::of(&[lobe]));
+                let alone = bsdf.with_lobes(LobeMask::of(&[lobe]));
                 let wide: Vec<_> = Level::available()
                     .map(|level| alone.sample8_at(level, &lanes_of(&xi)))
                     .collect();

@@ -1,7 +1,7 @@
 //! Next to `|phi|` = pi, where glints may end: samples report value and density of the direction they return, however narrow TT is.
 
 use super::Tested;
-use super::handles::Bsdf;
+use super::handles::Material;
 use super::support::{LargestError, direction, double, lanes_of, oracle, relative};
 use hairis::{HairDesc, HairParams, Level, Lobe};
 
@@ -37,14 +37,14 @@ pub fn samples_next_to_the_seam_report_their_own_direction(tested: &Tested) {
             (0.7, 3.1),
         ] {
             let wo = direction(theta_o, phi_o);
-            let gather = Bsdf::new(tested.model(), &params).prepare(wo);
+            let bsdf = Material::new(tested.model(), &params).prepare(wo);
             let reference = oracle(&tested.formulas, &params, 1.0, wo);
             for xi_phi in about_a_half() {
                 let xi = core::array::from_fn(|lane| {
                     [(lane as f32 + 0.5) / 8.0, 0.11 * lane as f32 + 0.05, xi_phi]
                 });
                 for sample in Level::available().flat_map(|level| {
-                    let eight = gather.sample8_at(level, &lanes_of(&xi));
+                    let eight = bsdf.sample8_at(level, &lanes_of(&xi));
                     (0..8).filter_map(move |lane| eight.lane(lane))
                 }) {
                     // R and TRT-g are 0 where TT and the glints are drawn about pi, and elsewhere where they are.

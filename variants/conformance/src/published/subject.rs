@@ -1,7 +1,7 @@
 //! The family as subjects of the suite.
 
 use super::support::{double, oracle, parameters};
-use super::{Formulas, Published, PublishedReference};
+use super::{FamilyModel, Formulas, PublishedReference};
 use crate::probe::{angles, narrow};
 use crate::subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subject, Tolerance};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -41,7 +41,7 @@ fn vector(hit: &Hit) -> Vec3 {
     hit.wo.into()
 }
 
-impl<P: Published> Subject for Family<P> {
+impl<P: FamilyModel> Subject for Family<P> {
     type Model = P::Model;
 
     fn model(&self) -> P::Model {
@@ -195,7 +195,7 @@ impl Reference for FlooredReference {
     fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
         let drawn = self.reference.sample(xi);
         drawn.lobe.map_or(ReferenceSample::Discarded, |lobe| {
-            ReferenceSample::Drawn(lobe.index(), drawn.wi)
+            ReferenceSample::SampleLanes(lobe.index(), drawn.wi)
         })
     }
 

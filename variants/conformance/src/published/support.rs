@@ -2,7 +2,7 @@
 
 pub use crate::probe::{Draws, narrow};
 
-use super::handles::Bsdf;
+use super::handles::Material;
 use super::{Formulas, PublishedReference, Tested};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
@@ -108,7 +108,7 @@ pub fn double(v: Vec3) -> [f64; 3] {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 
-/// Longitude, and azimuth relative to `wo` folded into `[0, pi]`.
+/// Inclination, and azimuth relative to `wo` folded into `[0, pi]`.
 pub fn angles(wo: Vec3, wi: Vec3) -> [f64; 2] {
     let ([_, v_o, w_o], [u, v, w]) = (double(wo), double(wi));
     let (dot, cross) = (v * v_o + w * w_o, v * w_o - w * v_o);
@@ -266,11 +266,11 @@ pub const THETA_O: [f64; 12] = [
 pub(super) fn for_each_point(
     tested: &Tested,
     kind: Kind,
-    mut f: impl FnMut(&Bsdf<'_>, &PublishedReference, &Point),
+    mut f: impl FnMut(&Material<'_>, &PublishedReference, &Point),
 ) {
     for (model, factor) in tested.forms() {
         for (index, params) in materials(kind).iter().enumerate() {
-            let bsdf = Bsdf::new(model, params);
+            let material = Material::new(model, params);
             for (turn, theta_o) in THETA_O.into_iter().enumerate() {
                 let (theta_o, phi_o) = (theta_o * DEG, 0.7 * turn as f64 - 3.0);
                 let wo = direction(theta_o, phi_o);
@@ -284,7 +284,11 @@ pub(super) fn for_each_point(
                     phi_o,
                     seed,
                 };
-                f(&bsdf, &oracle(&tested.formulas, params, factor, wo), &point);
+                f(
+                    &material,
+                    &oracle(&tested.formulas, params, factor, wo),
+                    &point,
+                );
             }
         }
     }

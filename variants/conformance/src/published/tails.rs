@@ -2,7 +2,7 @@
 //! return.
 
 use super::Tested;
-use super::handles::Bsdf;
+use super::handles::Material;
 use super::support::{
     DEG, LargestError, angles, direction, double, lanes_of, narrow, oracle, relative,
 };
@@ -42,16 +42,16 @@ fn errors(
     for params in descs.iter().map(|desc| HairParams::new(desc).unwrap()) {
         for (turn, theta_o) in theta_o.clone().enumerate() {
             let wo = direction(theta_o, 0.7 * turn as f64 - 3.0);
-            let gather = Bsdf::new(tested.model(), &params).prepare(wo);
+            let bsdf = Material::new(tested.model(), &params).prepare(wo);
             let reference = oracle(&tested.formulas, &params, 1.0, wo);
             let ends = NUMBERS.iter().flat_map(|a| NUMBERS.map(|b| [*a, b]));
             for [theta, phi] in ends {
                 let xi = core::array::from_fn(|lane| [(lane as f32 + 0.5) / 8.0, theta, phi]);
                 let wide = Level::available().flat_map(|level| {
-                    let eight = gather.sample8_at(level, &lanes_of(&xi));
+                    let eight = bsdf.sample8_at(level, &lanes_of(&xi));
                     (0..8).map(move |lane| eight.lane(lane))
                 });
-                for sample in wide.chain(xi.iter().map(|xi| gather.sample(*xi))).flatten() {
+                for sample in wide.chain(xi.iter().map(|xi| bsdf.sample(*xi))).flatten() {
                     let d = double(sample.wi);
                     let [theta_i, angle] = angles(wo, sample.wi);
                     if theta_i.cos() < 1e-3 {

@@ -10,14 +10,14 @@ const FLOOR: f64 = 1e-20;
 /// Largest errors of S and of the density over the materials of a kind.
 fn scan(tested: &Tested, kind: Kind, per_point: usize) -> [LargestError; 4] {
     let mut worst: [LargestError; 4] = Default::default();
-    for_each_point(tested, kind, |bsdf, reference, point| {
-        let gather = bsdf.prepare(point.wo);
+    for_each_point(tested, kind, |material, reference, point| {
+        let bsdf = material.prepare(point.wo);
         for eight in point.directions(per_point).chunks(8) {
             let wi = packet(eight);
             let wide: Vec<_> = Level::available()
-                .map(|level| (level, bsdf.prepare(point.wo).eval_pdf8_at(level, &wi)))
+                .map(|level| (level, material.prepare(point.wo).eval_pdf8_at(level, &wi)))
                 .collect();
-            let wide_lobes = gather.lobes8(&wi);
+            let wide_lobes = bsdf.lobes8(&wi);
             for (lane, wi) in eight.iter().enumerate() {
                 let d = super::support::double(*wi);
                 let (value, pdf) = (reference.eval(d), reference.pdf(d));
@@ -29,11 +29,11 @@ fn scan(tested: &Tested, kind: Kind, per_point: usize) -> [LargestError; 4] {
                     }
                     worst[1].see(relative(got.pdf, pdf, tested.pdf_floor), at);
                 };
-                see(gather.eval_pdf(*wi), "scalar");
+                see(bsdf.eval_pdf(*wi), "scalar");
                 for (level, eval) in &wide {
                     see(eval.lane(lane), level.name());
                 }
-                let scalar = gather.lobes(*wi);
+                let scalar = bsdf.lobes(*wi);
                 for lobe in Lobe::ALL {
                     let eight = &wide_lobes[lobe];
                     let wide = [eight.value.as_array()[lane], eight.pdf.as_array()[lane]];

@@ -2,7 +2,7 @@
 //! and densities over the grid of the efficiency figures.
 
 use super::Tested;
-use super::handles::{AnyModel, Bsdf, Gather};
+use super::handles::{AnyModel, Bsdf, Material};
 use super::quadrature::{panels, rule};
 use super::support::{DEG, direction, double, grid_point, narrow, parameters};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -49,10 +49,10 @@ fn peak(params: &HairParams, theta_o: f64, lobe: Lobe) -> [f64; 2] {
     ]
 }
 
-fn line(gather: &Gather, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 2]) -> Line {
+fn line(bsdf: &Bsdf, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 2]) -> Line {
     let of = |lobe: Lobe, x: f64| {
         let [theta, phi] = at(lobe, x);
-        let l = gather.lobes(direction(theta, PHI_O - phi))[lobe];
+        let l = bsdf.lobes(direction(theta, PHI_O - phi))[lobe];
         [
             f64::from(l.value) * theta.cos().powi(2),
             f64::from(l.pdf) * theta.cos(),
@@ -68,7 +68,7 @@ fn line(gather: &Gather, points: &[(f64, f64)], at: impl Fn(Lobe, f64) -> [f64; 
 }
 
 /// The line in `theta_i`: values absolute, densities to an integral of 1; the density jumps at `jumps`.
-fn longitude(gather: &Gather, params: &HairParams, theta_o: f64, jumps: &[f64]) -> Line {
+fn inclination(bsdf: &Bsdf, params: &HairParams, theta_o: f64, jumps: &[f64]) -> Line {
     let p = parameters(params, 1.0);
     let bell = |l: usize| (2.0 * p.alpha[l] - theta_o, p.beta[l]);
     let pole = FRAC_PI_2 - theta_o;
@@ -79,7 +79,7 @@ fn longitude(gather: &Gather, params: &HairParams, theta_o: f64, jumps: &[f64]) 
     );
     ends.extend(jumps.iter().filter(|x| x.abs() < FRAC_PI_2 - 1e-5));
     ends.sort_by(f64::total_cmp);
-    let mut line = line(gather, &rule(&ends), |lobe, theta| {
+    let mut line = line(bsdf, &rule(&ends), |lobe, theta| {
         [theta, peak(params, theta_o, lobe)[1]]
     });
     unit(&mut line.density, &line.weights);
@@ -87,7 +87,7 @@ fn longitude(gather: &Gather, params: &HairParams, theta_o: f64, jumps: &[f64]) 
 }
 
 /// The line in `phi`: values to a peak of 1, densities to an integral of 1.
-fn azimuth(gather: &Gather, params: &HairParams, theta_o: f64) -> Line {
+fn azimuth(bsdf: &Bsdf, params: &HairParams, theta_o: f64) -> Line {
     let p = parameters(params, 1.0);
     let ends = panels(
         0.0,
@@ -95,13 +95,13 @@ fn azimuth(gather: &Gather, params: &HairParams, theta_o: f64) -> Line {
         &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt), (FRAC_PI_2, 1.0)],
     );
     let points: Vec<_> = rule(&ends).into_iter().map(|(x, w)| (x, 2.0 * w)).collect();
-    let mut line = line(gather, &points, |lobe, phi| {
+    let mut line = line(bsdf, &points, |lobe, phi| {
         [peak(params, theta_o, lobe)[0], phi]
     });
     for lobe in Lobe::ALL {
         let [theta, phi] = peak(params, theta_o, lobe);
-        let top = f64::from(gather.lobes(direction(theta, PHI_O - phi))[lobe].value)
-            * theta.cos().powi(2);
+        let top =
+            f64::from(bsdf.lobes(direction(theta, PHI_O - phi))[lobe].value) * theta.cos().powi(2);
         line.value[lobe.index()].iter_mut().for_each(|x| *x /= top);
     }
     unit(&mut line.density, &line.weights);
@@ -159,8 +159,8 @@ fn over_grid(model: &dyn AnyModel, shares: Shares<'_>, jumps: &[f64]) -> Vec<f64
                     for phi_g in [20.0, 35.0, 45.0] {
                         for intensity_g in [0.5, 5.0] {
                             let params = grid_point(beta, gamma_tt, gamma_g, phi_g, intensity_g);
-                            let gather = Bsdf::new(model, &params).prepare(wo);
-                            let mut line = longitude(&gather, &params, theta_o, jumps);
+                            let bsdf = Material::new(model, &params).prepare(wo);
+                            let mut line = inclination(&bsdf, &params, theta_o, jumps);
                             // The strength of the glints is in their value; the rest is the same for all of these.
                             if let Some(long) = &long {
                                 line = Line {
@@ -168,7 +168,7 @@ fn over_grid(model: &dyn AnyModel, shares: Shares<'_>, jumps: &[f64]) -> Vec<f64
                                     ..line
                                 };
                             }
-                            let round = azimuth(&gather, &params, theta_o);
+                            let round = azimuth(&bsdf, &params, theta_o);
                             all.push(v(&line, &round, &params, shares(&params, theta_o)));
                             long = Some(line);
                         }

@@ -16,7 +16,7 @@
 //! and where R and TT are black no bound exists: [`the_published_flaw_is_there`] shows it.
 
 use super::Tested;
-use super::handles::Bsdf;
+use super::handles::Material;
 use super::support::{
     Draws, LargestError, angles, direction, double, lanes_of, oracle, parameters,
 };
@@ -39,7 +39,7 @@ fn bounds(tested: &Tested, params: &HairParams, factor: f32, wo: Vec3, mask: Lob
         .sum();
     let [_, y, z] = double(wo);
     let theta_o = double(wo)[0].atan2(y.hypot(z));
-    let longitude = |l: usize| {
+    let inclination = |l: usize| {
         let centre = 0.5 * theta_o - p.alpha[l];
         p.beta[l] * span(centre - 0.25 * PI, centre + 0.25 * PI, p.beta[l])
     };
@@ -47,10 +47,10 @@ fn bounds(tested: &Tested, params: &HairParams, factor: f32, wo: Vec3, mask: Lob
     let tt = 2.0 * (PI / p.gamma_tt).atan() * p.gamma_tt;
     let glint = span(-p.phi_g, FRAC_PI_2 - p.phi_g, p.gamma_g) * p.gamma_g;
     let ratio = [
-        8.0 * longitude(0) * k,
-        2.0 * longitude(1) * tt * k * k,
-        8.0 * longitude(2) * k,
-        4.0 * longitude(2) * glint * k * k * p.intensity_g,
+        8.0 * inclination(0) * k,
+        2.0 * inclination(1) * tt * k * k,
+        8.0 * inclination(2) * k,
+        4.0 * inclination(2) * glint * k * k * p.intensity_g,
     ];
     let color = [
         p.intensity_r,
@@ -131,23 +131,23 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
     for (model, factor) in tested.forms() {
         for round in 0..2000 {
             let params = material(&mut draws);
-            let bsdf = Bsdf::new(model, &params);
+            let material = Material::new(model, &params);
             let wo = direction(draws.between(-1.57, 1.57), draws.between(-PI, PI));
             let mask = match round % 6 {
                 0 => LobeMask::of(&[Lobe::ALL[draws.below(4)]]),
                 1 => LobeMask::of(&[Lobe::R, Lobe::TT, Lobe::TRT]),
                 _ => LobeMask::ALL,
             };
-            let gather = bsdf.prepare(wo).with_lobes(mask);
+            let bsdf = material.prepare(wo).with_lobes(mask);
             let limit = bounds(tested, &params, factor, wo, mask);
             let no_glints = !mask.contains(Lobe::GLINT) || params.desc().intensity_g == 0.0;
             for _ in 0..16 {
                 let xi = core::array::from_fn(|_| draws.xi3());
                 for level in Level::available() {
-                    let eight = gather.sample8_at(level, &lanes_of(&xi));
+                    let eight = bsdf.sample8_at(level, &lanes_of(&xi));
                     let all = (0..8)
                         .filter_map(|lane| eight.lane(lane))
-                        .chain(gather.sample(xi[0]));
+                        .chain(bsdf.sample(xi[0]));
                     for sample in all.filter(|s| no_glints || angles(wo, s.wi)[1] < FRAC_PI_2) {
                         worst_ratio(&mut worst, limit, wo, &sample, &params);
                         checked += 1;
@@ -168,14 +168,14 @@ pub fn the_bound_is_reached(tested: &Tested) {
     let mut draws = Draws(22);
     for (model, factor) in tested.forms() {
         let params = HairParams::default();
-        let bsdf: Bsdf<'_> = Bsdf::new(model, &params);
+        let material: Material<'_> = Material::new(model, &params);
         for lobe in Lobe::ALL {
             let (mask, wo) = (LobeMask::of(&[lobe]), direction(0.3, 0.0));
-            let gather = bsdf.prepare(wo).with_lobes(mask);
+            let bsdf = material.prepare(wo).with_lobes(mask);
             let limit = bounds(tested, &params, factor, wo, mask)[0];
             let mut most = 0.0_f64;
             for _ in 0..20_000 {
-                let Some(sample) = gather.sample(draws.xi3()) else {
+                let Some(sample) = bsdf.sample(draws.xi3()) else {
                     continue;
                 };
                 most = most.max(f64::from(sample.weight[0]) / (limit * w(wo, sample.wi)));
@@ -206,11 +206,10 @@ pub fn the_published_flaw_is_there(tested: &Tested) {
     for (model, factor) in tested.forms() {
         let params = bright_glints([0.0; 3]);
         let wo = direction(0.3, 0.0);
-        let gather = Bsdf::new(model, &params).prepare(wo);
+        let bsdf = Material::new(model, &params).prepare(wo);
         let limit = bounds(tested, &params, factor, wo, LobeMask::ALL)[0];
         let weight = |xi_phi| {
-            gather
-                .sample([0.0, 0.5, xi_phi])
+            bsdf.sample([0.0, 0.5, xi_phi])
                 .map_or(0.0, |s: Sample| f64::from(s.weight[0]))
         };
         let towards = [1e-3, 1e-5, 1e-7].map(weight);
