@@ -17,12 +17,14 @@ mod x86 {
     use core::array::from_fn;
     use core::hint::black_box;
     use glam::Vec3;
-    use hairis::wide::f32x8;
-    use hairis::{
-        Bell, Bsdf, EvalColumns, EvalSlices, Gaussian, HairParams, HitSlices, Level, Matched,
-        Material, Published,
-    };
-    use hairis::{Model, SampleColumns, SampleWeightSlices, Vec3x};
+    use hairis::columns::{EvalColumns, EvalSlices, HitSlices};
+    use hairis::columns::{SampleColumns, SampleWeightSlices};
+    use hairis::model::Bell;
+    use hairis::model::Model;
+    use hairis::simd::Level;
+    use hairis::simd::Vec3x;
+    use hairis::simd::f32x8;
+    use hairis::{Bsdf, Gaussian, HairParams, Matched, Material, Published};
     use hairis_benches::cpu;
     use hairis_benches::hand::{Constants, Set};
     use hairis_benches::inputs::{Column, DIRECTIONS, Inputs, arrays};

@@ -1,4 +1,4 @@
-//! The elementary functions of `hairis::math` against those of `libm`: one lane, and packets and slices on every level.
+//! The elementary functions of `hairis::model::math` against those of `libm`: one lane, and packets and slices on every level.
 //!
 //! Each runs through the dispatch of the kernels: figures include reading arguments and writing results.
 //!
@@ -13,7 +13,7 @@ mod timing;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
 use glam::Vec3;
-use hairis::Level;
+use hairis::simd::Level;
 use hairis_benches::entries::label;
 use hairis_benches::inputs::{DIRECTIONS, Inputs, packets};
 use hairis_benches::math::{

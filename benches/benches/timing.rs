@@ -3,7 +3,7 @@
 use core::time::Duration;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput};
-use hairis::Level;
+use hairis::simd::Level;
 use hairis_benches::{Name, Op, Task, Visitor, entries};
 
 /// Adds all entry points of an operation, one group per model: scalar code and every level.

@@ -14,9 +14,10 @@ use crate::platform::{Platform, platform};
 use crate::task::{PROBE, Pass, Point, Slices, task};
 use core::marker::PhantomData;
 use glam::Vec3;
+use hairis::columns::{EvalSlices, SampleSlices};
 use hairis::reference::Reference;
-use hairis::wide::f32x8;
-use hairis::{EvalSlices, Level, Material, ParamError, SampleSlices, Vec3x8};
+use hairis::simd::{Level, f32x8};
+use hairis::{Material, ParamError, Vec3x8};
 use hairis_variants::{AnyReference, ModelId, Parameters, Registered, Visitor};
 use serde::Serialize;
 

@@ -9,10 +9,10 @@ use core::fmt;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
+use hairis::columns::{EvalSlices, SampleSlices, SampleWeightSlices};
 use hairis::reference::Reference;
-use hairis::{
-    Bsdf, Bsdf8, EvalSlices, Level, Material, Material8, SampleSlices, SampleWeightSlices,
-};
+use hairis::simd::Level;
+use hairis::{Bsdf, Bsdf8, Material, Material8};
 use hairis_variants::{ModelId, Parameters, Registered};
 use std::sync::LazyLock;
 

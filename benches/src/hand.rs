@@ -33,7 +33,7 @@ enum Kind {
 impl Set {
     /// The kernels for a level of `hairis`: SSE2 for the portable one.
     #[must_use]
-    pub fn of(level: hairis::Level) -> Option<Self> {
+    pub fn of(level: hairis::simd::Level) -> Option<Self> {
         match level.name() {
             "avx512" if detected!("avx512f") => Some(Self(Kind::Avx512)),
             "avx2+fma" if detected!("avx2") && detected!("fma") => Some(Self(Kind::Avx2)),

@@ -1,12 +1,12 @@
 //! The elementary functions on every level, as kernels and as rows of columns.
 
 use core::fmt::Debug;
-use hairis::wide::f32x8;
-use hairis::{Broadcast, Kernel, Lanes, Row, math};
+use hairis::model::math;
+use hairis::simd::{Broadcast, Kernel, Lanes, Row, f32x8};
 
 /// A function of two numbers with two results, on the kernel's lanes and on `libm`.
 pub trait Function: Copy + Default + Debug {
-    /// Its name in [`hairis::math`].
+    /// Its name in [`hairis::model::math`].
     const NAME: &'static str;
     /// The ranges of its arguments.
     const RANGE: [[f32; 2]; 2];

@@ -5,11 +5,13 @@ use crate::task::{Answer, Output, Task};
 use core::array::from_fn;
 use core::hint::black_box;
 use glam::Vec3;
+use hairis::columns::LengthError;
+use hairis::model::Model;
 use hairis::resample::{
     CandidateSlices, Counts, Partition, Reservoir8, Weighed8, WeightSlices, choose,
 };
-use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, LengthError, Level, Model, Vec3x8};
+use hairis::simd::{Level, f32x8};
+use hairis::{Bsdf, Bsdf8, Vec3x8};
 
 /// Candidates of each technique in a pool.
 const EACH: usize = 32;

@@ -7,9 +7,11 @@ use core::fmt;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
+use hairis::columns::LengthError;
+use hairis::model::Model;
 use hairis::reference::{self, Real, Reference};
-use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, Eval, Eval8, LengthError, Model, Sample, Sample8, Vec3x8};
+use hairis::simd::f32x8;
+use hairis::{Bsdf, Bsdf8, Eval, Eval8, Sample, Sample8, Vec3x8};
 
 /// Direction at which prepared shading points are evaluated to check them: no lobe is negligible there.
 pub const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);

@@ -310,7 +310,7 @@ mod tests {
     #[test]
     fn kernels_agree_wherever_the_azimuth_can_tell() {
         let rows = run(SEED, PACKETS).expect("hair within range");
-        let paths = 1 + 2 * hairis::Level::available().count();
+        let paths = 1 + 2 * hairis::simd::Level::available().count();
         let per_quantity = Region::ALL.len() * paths;
         let cdf = rows
             .iter()

@@ -32,7 +32,8 @@ pub(crate) use output::{Summary, albedo_ratio};
 
 use crate::study::{Cell, Grid};
 use blur::{Blur, Harmonics};
-use hairis::{Bell, HairParams, ParamError};
+use hairis::model::Bell;
+use hairis::{HairParams, ParamError};
 use hairis_variants::Cauchy;
 use lobes::{Kind, ViewedHair};
 use measure::HairValues;

@@ -53,7 +53,8 @@ pub(crate) use run::z_bound;
 
 use crate::sampler::Sampler;
 use crate::subject::ModelKind;
-use hairis::{HairDesc, HairParams, ParamError};
+use hairis::params::HairDesc;
+use hairis::{HairParams, ParamError};
 use hairis_instruments::light::Environment;
 #[cfg(test)]
 use hairis_instruments::light::Light;

@@ -144,7 +144,7 @@ pub fn sample_distributions(params: &HairParams, theta_o: f64, xi: &[[f32; 3]]) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hairis::HairDesc;
+    use hairis::params::HairDesc;
     use hairis_instruments::markup::well_formed;
     use hairis_instruments::plot::{Bar, bars, heat_map};
     use hairis_instruments::report::{Report, Section};

@@ -13,7 +13,8 @@ mod threads;
 
 use crate::subject::random;
 use core::hint::black_box;
-use hairis::{Level, ParamError};
+use hairis::ParamError;
+use hairis::simd::Level;
 pub use hairis_benches::contenders::TimedOp;
 use hairis_benches::contenders::{Contender, Contest, TIMED_DIRECTIONS, TimedInputs, contests};
 use hairis_benches::task::Pass;

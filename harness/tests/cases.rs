@@ -2,7 +2,7 @@
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::Vec3;
-use hairis::HairDesc;
+use hairis::params::HairDesc;
 use hairis_harness::subject::random_hair;
 use hairis_instruments::direction::direction;
 use hairis_instruments::sequence::Independent;

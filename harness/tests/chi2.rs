@@ -4,11 +4,11 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::fmt::Write as _;
 use glam::Vec3;
+use hairis::model::Model;
+use hairis::params::HairDesc;
 use hairis::reference::{HairReference, MatchedReference, Parameters, Shape};
-use hairis::wide::f32x8;
-use hairis::{
-    Gaussian, HairDesc, HairParams, Lobe, LobeMask, Matched, Material, Model, PerLobe, Sample8,
-};
+use hairis::simd::f32x8;
+use hairis::{Gaussian, HairParams, Lobe, LobeMask, Matched, Material, PerLobe, Sample8};
 use hairis_conformance::statistics::{AngleEdges, ChiSquare, chi_square, ks_statistic};
 use hairis_instruments::sequence::Independent;
 use hairis_instruments::stats::sidak;

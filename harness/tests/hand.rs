@@ -4,11 +4,12 @@
 
 use core::f64::consts::PI;
 use glam::Vec3;
+use hairis::columns::{EvalSlices, SampleWeightSlices};
+use hairis::model::Bell;
+use hairis::params::HairDesc;
 use hairis::reference::{HairReference, Parameters, Shape};
-use hairis::{
-    Bell, EvalSlices, Gaussian, HairDesc, HairParams, Level, Material, Published,
-    SampleWeightSlices,
-};
+use hairis::simd::Level;
+use hairis::{Gaussian, HairParams, Material, Published};
 use hairis_benches::hand::{Constants, Set};
 use hairis_variants::Cauchy;
 use rand_chacha::ChaCha8Rng;

@@ -1,6 +1,6 @@
 //! Timings: here, and not beside the code, so that what is timed is compiled once.
 
-use hairis::Level;
+use hairis::simd::Level;
 use hairis_harness::speed::{SpeedConfig, TimedOp, run};
 use hairis_variants::ModelId;
 

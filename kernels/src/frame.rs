@@ -3,7 +3,7 @@
 //! In the frame of a fibre `x` is `u`, along the fibre from root to tip; `y` is `v` and `z` is `w`, which span the
 //! normal plane. The azimuth of `v` is 0 and that of `w` is pi/2.
 
-use crate::Lanes;
+use crate::simd::Lanes;
 use crate::simd::unfused::Unfused;
 use glam::{Vec3, Vec3A};
 use wide::f32x8;
@@ -70,7 +70,7 @@ impl<L: Lanes> Vec3x<L> {
 
     /// The stored vector, which may just have been written, as lanes.
     #[inline(always)]
-    pub(crate) fn load_fresh<C: crate::Broadcast<L>>(stored: &Vec3x<C>) -> Self {
+    pub(crate) fn load_fresh<C: crate::simd::Broadcast<L>>(stored: &Vec3x<C>) -> Self {
         Self::new(
             stored.x.fresh_lanes(),
             stored.y.fresh_lanes(),
@@ -80,7 +80,7 @@ impl<L: Lanes> Vec3x<L> {
 
     /// The stored vector as lanes.
     #[inline(always)]
-    pub(crate) fn load<C: crate::Broadcast<L>>(stored: &Vec3x<C>) -> Self {
+    pub(crate) fn load<C: crate::simd::Broadcast<L>>(stored: &Vec3x<C>) -> Self {
         Self::new(stored.x.lanes(), stored.y.lanes(), stored.z.lanes())
     }
 }

@@ -2,22 +2,29 @@
 
 pub(crate) mod albedo;
 mod angles;
-mod gather;
+mod bell;
+mod matched;
+mod published;
+pub(crate) mod quadrature;
 mod results;
 mod sampling;
+mod truncated;
 mod view;
 
-pub use gather::{PublishedConstants, PublishedMaterial, PublishedPrepared};
+pub use bell::{Bell, Gaussian};
+pub use matched::{Matched, MatchedBell, MatchedMaterial, MatchedPrepared};
+pub use published::{PublishedConstants, PublishedMaterial, PublishedPrepared};
 pub use view::{HairLobes, HairView};
 
 pub(crate) use angles::{Angles, LobeTerms};
-pub(crate) use gather::selection;
+pub(crate) use published::selection;
 pub(crate) use results::{finish_eval, finish_lobes, finish_sample, mix_densities};
 pub(crate) use sampling::{FoldedXi, direction_from_angles};
 pub(crate) use view::{prepare as prepare_view, times};
 
-use crate::model::{Eval, Hit, LobeEval, SampleLanes};
-use crate::{Bell, Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3x};
+use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
+use crate::simd::{Broadcast, Lanes, Scalar, Vec3x};
+use crate::{HairParams, LobeMask, PerLobe};
 
 /// Cosine of the inclination below which a direction lies on the fibre's axis: value and density are 0 there, and a
 /// sample is discarded (section 3.3 of the paper).
@@ -51,7 +58,7 @@ impl<B: Bell> Model for Published<B> {
         material: &PublishedMaterial<C>,
         hit: Hit<L>,
     ) -> PublishedPrepared<L::Stored> {
-        gather::prepare(material, hit.wo)
+        published::prepare(material, hit.wo)
     }
 
     #[inline(always)]

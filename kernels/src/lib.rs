@@ -2,12 +2,12 @@
 //!
 //! [`Published`] is the model of Sadeghi et al. 2010 as Ou et al. 2012 state it, with the importance sampler published there.
 //! [`Matched`] is the same model with a sampler of lower variance. Their bells are Gaussians ([`Gaussian`]) or any other
-//! [`Bell`]; the all-Cauchy variant is in the crate `hairis-variants`. Other scattering models implement [`LobeModel`], once
-//! over [`Lanes`]; scalar calls, eight lanes, run-time dispatch and slices follow.
+//! [`Bell`](model::Bell); the all-Cauchy variant is in the crate `hairis-variants`. Other scattering models implement [`LobeModel`](model::LobeModel), once
+//! over [`Lanes`](simd::Lanes); scalar calls, eight lanes, run-time dispatch and slices follow.
 //!
 //! ```
 //! use glam::Vec3;
-//! use hairis::{Material, FiberFrame, Gaussian, Published, HairParams};
+//! use hairis::{FiberFrame, Gaussian, HairParams, Material, Published};
 //!
 //! let hair = Material::new(&Published(Gaussian), &HairParams::brown()); // once per material
 //! let frame = FiberFrame::from_tangent(Vec3::new(0.1, 0.9, 0.2)); // once per hit, root to tip
@@ -22,11 +22,11 @@
 //!
 //! | step | once per | call |
 //! |---|---|---|
-//! | describe | material | [`HairDesc`] and [`HairParams::new`], a preset, or [`HairParams::from_artist`] |
+//! | describe | material | [`HairDesc`](params::HairDesc) and [`HairParams::new`], a preset, or [`HairParams::from_artist`] |
 //! | build | material | [`Material::new`]; eight different ones: [`Material8::pack`] |
 //! | prepare | hit | [`Material::prepare`]; eight hits: [`Material::prepare8`], [`Material8::prepare8`] |
 //! | evaluate, sample | direction | [`Bsdf::eval_pdf`], [`Bsdf::sample`]; eight directions at one hit: [`Bsdf::eval_pdf8`], [`Bsdf::sample8`]; one at each of eight hits: [`Bsdf8::eval_pdf8`], [`Bsdf8::sample8`]; slices: [`Bsdf::eval_pdf_batch`], [`Bsdf::sample_batch`], [`Bsdf::sample_weight_batch`] |
-//! | both in one | hit and direction | slices of hits: [`Material::eval_pdf_hits`], [`Material::sample_hits`]; a material per hit: [`MaterialTable`] |
+//! | both in one | hit and direction | slices of hits: [`Material::eval_pdf_hits`], [`Material::sample_hits`]; a material per hit: [`MaterialTable`](columns::MaterialTable) |
 //!
 //! # Conventions
 //!
@@ -40,7 +40,7 @@
 //! - **Lanes.** A lane is one sample: of the one shading point of a [`Bsdf`], or of the shading point in the same lane
 //!   of a [`Bsdf8`]. Lanes never mix.
 //! - **Totality.** Parameters are checked once, by [`HairParams::new`]. After that nothing fails: for every finite
-//!   input, results are finite and not negative. Directions within [`GRAZING`] of the axis have value and density 0,
+//!   input, results are finite and not negative. Directions within [`GRAZING`](model::GRAZING) of the axis have value and density 0,
 //!   and a sample there is discarded. It counts; do not draw it again.
 //! - **NaN and infinity.** A direction that is not finite is black. With such a component in `wo` every value, density and albedo
 //!   is 0 and every sample is discarded. With one in `wi` value and density are 0. With NaN among the uniform numbers the
@@ -49,7 +49,7 @@
 //!   `inputs_that_are_no_numbers_are_black`).
 //! - **Energy.** The model is reciprocal but does not conserve energy. Before path tracing, wrap it in [`Conserving`], or scale
 //!   the material by [`Material::conserving_scale`] through [`HairParams::scaled`].
-//! - **Bits.** Results depend on whether a level fuses multiply and add ([`Level::fuses`]), in the last bits, and on
+//! - **Bits.** Results depend on whether a level fuses multiply and add ([`Level::fuses`](simd::Level::fuses)), in the last bits, and on
 //!   nothing else of the machine or the build. What takes no level, scalar calls and frames, never fuses. This needs IEEE
 //!   single precision: x87 arithmetic (`i586`) rounds otherwise.
 //!
@@ -68,64 +68,24 @@
 #![no_std]
 #![warn(clippy::missing_inline_in_public_items)]
 
-mod batch;
-mod bell;
-mod bsdf;
-mod direction;
-mod energy;
-mod error;
+pub mod columns;
 mod frame;
 mod hair;
-mod hits;
-mod lobe;
-mod lobe_model;
-mod matched;
-pub mod math;
-mod model;
-mod packet;
-mod params;
-mod quadrature;
+mod handle;
+pub mod model;
+pub mod params;
 pub mod random;
 #[cfg(feature = "textbook")]
 pub mod reference;
 pub mod resample;
-mod simd;
-mod slices;
-mod truncated;
+pub mod simd;
 
-pub use bell::{Bell, Gaussian};
-pub use bsdf::{Bsdf, Bsdf8, Material, Material8};
-pub use direction::Direction;
-pub use energy::Conserving;
-pub use error::ParamError;
-pub use frame::{FiberFrame, FiberFrame8, Vec3x, Vec3x8};
-pub use hair::{
-    GRAZING, HairLobes, HairView, Published, PublishedConstants, PublishedMaterial,
-    PublishedPrepared,
-};
-pub use hits::{HitsError, MaterialTable};
-pub use lobe::{Lobe, LobeMask, PerLobe};
-pub use lobe_model::{LobeModel, Mixed, Mixture};
-pub use matched::{Matched, MatchedBell, MatchedMaterial, MatchedPrepared};
-pub use model::{Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Model, Sample, Sample8, SampleLanes};
-pub use params::{
-    ArtistControls, Glints, HairDesc, HairParams, Highlight, MAX_WIDTH, MIN_WIDTH, Transmission,
-};
-pub use simd::columns::Row;
-#[cfg(feature = "textbook")]
-#[doc(hidden)]
-pub use simd::control::{control, set_control};
-pub use simd::dispatch::{Constant, Kernel, Level};
-pub(crate) use simd::lanes::fresh_lanes3;
-pub use simd::lanes::{Broadcast, LaneStruct, Lanes, Scalar, lanes3, lanes4, store3, store4};
-pub use simd::pair::Pair;
-pub use slices::{
-    EvalColumns, EvalSlices, HitSlices, LengthError, SampleColumns, SampleSlices,
-    SampleWeightSlices,
-};
-
-#[doc(hidden)]
-pub use wide;
+pub use frame::{FiberFrame, FiberFrame8, Vec3x8};
+pub use hair::{Gaussian, Matched, Published};
+pub use handle::{Bsdf, Bsdf8, Material, Material8};
+pub use model::{Conserving, Eval, Eval8, Hit, Hit8, Lobe, LobeMask, PerLobe, Sample, Sample8};
+pub use params::{HairParams, ParamError};
+pub use simd::f32x8;
 
 /// Examples of the package's README.
 #[cfg(doctest)]

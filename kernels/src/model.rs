@@ -1,13 +1,31 @@
-//! Scattering models: the trait behind every handle, and its inputs and results.
+//! For authors of models: the traits, their inputs and results, and the parts that the models here are made of.
+//!
+//! Implement [`LobeModel`] for a model given by its lobes, [`Bell`] for another bell in the published model, and [`Model`] for
+//! one that computes several lobes together. Vectors are in [`simd`](crate::simd), elementary functions in [`math`].
 
-use crate::{Broadcast, LaneStruct, Lanes, Lobe, LobeMask, PerLobe, Scalar, Vec3x};
+mod direction;
+mod energy;
+mod lobe;
+mod lobe_model;
+pub mod math;
+
+pub use crate::hair::{
+    Bell, GRAZING, HairLobes, HairView, MatchedBell, MatchedMaterial, MatchedPrepared,
+    PublishedConstants, PublishedMaterial, PublishedPrepared,
+};
+pub use direction::Direction;
+pub use energy::Conserving;
+pub use lobe::{Lobe, LobeMask, PerLobe};
+pub use lobe_model::{LobeModel, Mixed, Mixture};
+
+use crate::simd::{Broadcast, LaneStruct, Lanes, Scalar, Vec3x};
 use glam::{Vec3, Vec3A};
 use wide::f32x8;
 
 /// A scattering model, written once over [`Lanes`].
 ///
 /// [`Material`](crate::Material) makes scalar calls, eight lanes (eight directions at one shading point, or eight shading points),
-/// run-time dispatch and slices of it. Authors implement [`LobeModel`](crate::LobeModel), which needs less and gives a
+/// run-time dispatch and slices of it. Authors implement [`LobeModel`], which needs less and gives a
 /// `Model`; this trait is for models that compute several lobes together, as the published one does.
 ///
 /// # What an implementation promises

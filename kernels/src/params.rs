@@ -1,12 +1,13 @@
 //! Parameters of hair: validated widths, shifts and intensities.
 
-use crate::ParamError;
 use core::f32::consts::{FRAC_PI_2, PI};
 
 mod artist;
+mod error;
 mod presets;
 
 pub use artist::{ArtistControls, Glints, Highlight, Transmission};
+pub use error::ParamError;
 
 /// Smallest width accepted, rad.
 pub const MIN_WIDTH: f32 = 1e-4;
@@ -81,7 +82,8 @@ impl Default for HairDesc {
 /// Hair parameters that passed their checks: every model built on them is total.
 ///
 /// ```
-/// use hairis::{HairDesc, HairParams};
+/// use hairis::HairParams;
+/// use hairis::params::HairDesc;
 /// let glossy = HairParams::new(&HairDesc { beta_r: 0.05, ..*HairParams::black().desc() })?;
 /// assert_eq!(glossy.desc().beta_r, 0.05);
 /// # Ok::<(), hairis::ParamError>(())

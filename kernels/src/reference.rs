@@ -52,7 +52,7 @@ pub struct ReferenceSample<T> {
 /// The model and its published sampler for one set of parameters and one `wo`.
 ///
 /// ```
-/// use hairis::{HairParams, reference::{Parameters, Shape, HairReference}};
+/// use hairis::{HairParams, reference::HairReference, reference::Parameters, reference::Shape};
 /// let parameters = Parameters::<f64>::from(&HairParams::brown());
 /// let hair = HairReference::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0]);
 /// let drawn = hair.sample([0.1, 0.4, 0.7]);

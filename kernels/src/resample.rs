@@ -24,10 +24,12 @@
 //! - Radiance that is NaN or below 0 counts as 0. Contributions and weights above 1e30 count as 1e30, so that no sum overflows:
 //!   infinite radiance is such a contribution.
 
-use crate::packet::{Proposals, ProposalsOf, WeighOf, Weighs};
+use crate::columns::{LengthError, WI, XI, check_columns};
+use crate::handle::kernels::{Proposals, ProposalsOf, WeighOf, Weighs};
+use crate::model::Model;
 use crate::simd::dispatch::clean_upper_halves;
-use crate::slices::{LengthError, WI, XI, check_columns};
-use crate::{Bsdf, Bsdf8, Eval8, Lanes, Level, Model, Vec3x8};
+use crate::simd::{Lanes, Level};
+use crate::{Bsdf, Bsdf8, Eval8, Vec3x8};
 use wide::f32x8;
 
 mod choice;

@@ -3,7 +3,9 @@
 use crate::family::Bands;
 use crate::support::{Draws, direction, double, lanes_of, oracle};
 use core::f64::consts::PI;
-use hairis::{Gaussian, HairDesc, HairParams, LobeMask, Matched, Material, Model, PerLobe};
+use hairis::model::Model;
+use hairis::params::HairDesc;
+use hairis::{Gaussian, HairParams, LobeMask, Matched, Material, PerLobe};
 use hairis_conformance::published::Formulas;
 
 /// The model.

@@ -1,7 +1,9 @@
 //! Packets whose calls name no level: they run on the one that is found.
 
 use crate::support::{Draws, direction, lanes_of, packet};
-use hairis::{Gaussian, HairDesc, HairParams, Level, Material, Material8, Published};
+use hairis::params::HairDesc;
+use hairis::simd::Level;
+use hairis::{Gaussian, HairParams, Material, Material8, Published};
 
 #[test]
 fn packets_without_a_level_run_on_the_one_found() {

@@ -3,14 +3,13 @@
 use crate::support::{Draws, LargestError, narrow};
 use crate::tolerance as bound;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
-use hairis::math::{
+use hairis::model::math::{
     atan_eighth_turn, atan_unit, atan2_upper, gaussian, gaussian_and_complement, half_angle,
     half_atan2, half_atan2_parts, log2, log2_one_plus, normal_tail, normal_tail_inverse,
     normal_tail_ratio, sin_cos_absolute, sin_cos_twice, tan_half_turn,
 };
 use hairis::reference::Real;
-use hairis::wide::f32x8;
-use hairis::{Lanes, Level};
+use hairis::simd::{Lanes, Level, f32x8};
 
 const POINTS: u32 = 1 << 20;
 

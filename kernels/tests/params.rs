@@ -2,8 +2,9 @@
 
 use crate::quadrature::{panels, rule};
 use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::params::{ArtistControls, Glints, HairDesc, Highlight, Transmission};
 use hairis::reference::{HairReference, Parameters, Shape};
-use hairis::{ArtistControls, Glints, HairDesc, HairParams, Highlight, ParamError, Transmission};
+use hairis::{HairParams, ParamError};
 
 #[test]
 fn presets_pass_their_own_checks() {

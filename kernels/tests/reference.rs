@@ -6,8 +6,9 @@ mod variance;
 
 use crate::quadrature::{panels, rule};
 use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::params::HairDesc;
 use hairis::reference::{HairReference, Parameters, Real, Shape};
-use hairis::{HairDesc, HairParams, Lobe};
+use hairis::{HairParams, Lobe};
 
 const DEG: f64 = PI / 180.0;
 const SHAPES: [Shape; 2] = [Shape::Gaussian, Shape::Cauchy];
@@ -415,10 +416,9 @@ fn f32_results_are_finite() {
         [0.0, 0.0, 1.0],
         [-0.8, 0.36, -0.48],
     ];
-    for (shape, width) in SHAPES
-        .into_iter()
-        .flat_map(|shape| [hairis::MIN_WIDTH, 0.13, hairis::MAX_WIDTH].map(|w| (shape, w)))
-    {
+    for (shape, width) in SHAPES.into_iter().flat_map(|shape| {
+        [hairis::params::MIN_WIDTH, 0.13, hairis::params::MAX_WIDTH].map(|w| (shape, w))
+    }) {
         for (alpha, phi_g) in [-1.5_f32, 0.0, 1.5]
             .into_iter()
             .flat_map(|alpha| [0.0, 1.6, 3.1].map(|g| (alpha, g)))

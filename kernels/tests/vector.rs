@@ -2,8 +2,9 @@
 
 use crate::support::Draws;
 use glam::Vec3;
-use hairis::wide::f32x8;
-use hairis::{Broadcast, Direction, FiberFrame, Hit, Kernel, Lanes, Level, Row, Vec3x};
+use hairis::model::Direction;
+use hairis::simd::{Broadcast, Kernel, Lanes, Level, Row, Vec3x, f32x8};
+use hairis::{FiberFrame, Hit};
 
 /// Where each of eight numbers falls among three bounds, and what tables hold there.
 struct Search<'a, C> {
@@ -13,7 +14,7 @@ struct Search<'a, C> {
     count: usize,
 }
 
-impl<C: hairis::Constant> Kernel for Search<'_, C> {
+impl<C: hairis::simd::Constant> Kernel for Search<'_, C> {
     type Constant = C;
     type Output = [f32x8; 4];
 

@@ -8,12 +8,10 @@
 
 use core::f32::consts::FRAC_1_PI;
 use glam::Vec3;
-use hairis::math::{atan2_upper, sin_cos_half_turn};
-use hairis::wide::f32x8;
-use hairis::{
-    Broadcast, Direction, Hit, Lanes, Level, Lobe, LobeEval, LobeMask, LobeModel, Material,
-    Material8, Model, PerLobe, Scalar, Vec3x8, lane_struct, lanes3,
-};
+use hairis::model::math::{atan2_upper, sin_cos_half_turn};
+use hairis::model::{Direction, LobeEval, LobeModel, Model};
+use hairis::simd::{Broadcast, Lanes, Level, Scalar, f32x8, lane_struct, lanes3};
+use hairis::{Hit, Lobe, LobeMask, Material, Material8, PerLobe, Vec3x8};
 
 /// The marker that the trait is implemented on.
 #[derive(Clone, Copy, Debug)]

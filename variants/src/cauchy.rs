@@ -1,8 +1,10 @@
 //! The all-Cauchy variant: a bell with wider tails that the published sampler follows exactly.
 
 use core::f32::consts::FRAC_PI_2;
-use hairis::math::{atan_unit, tan_half_turn};
-use hairis::{Bell, Lanes, Matched, MatchedBell, ParamError, Published};
+use hairis::model::math::{atan_unit, tan_half_turn};
+use hairis::model::{Bell, MatchedBell};
+use hairis::simd::Lanes;
+use hairis::{Matched, ParamError, Published};
 
 /// The bell `1 / (1 + s)`, a Cauchy whose scale is the width: every Gaussian of the published model becomes this.
 ///
@@ -11,7 +13,7 @@ use hairis::{Bell, Lanes, Matched, MatchedBell, ParamError, Published};
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::{Material, HairParams};
+/// use hairis::{HairParams, Material};
 /// use hairis_variants::Cauchy;
 /// let hair = Material::new(&Cauchy::PAPER.model(), &HairParams::default());
 /// let sample = hair.prepare(Vec3::Y).sample([0.5, 0.25, 0.75]).expect("not along the fibre");

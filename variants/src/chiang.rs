@@ -15,7 +15,9 @@ pub use params::{ChiangDesc, ChiangParams, Selection, Shifts};
 #[cfg(feature = "textbook")]
 pub use reference::{ChiangConstants, ChiangParameters, ChiangReference, bessel_i0_scaled};
 
-use hairis::{Broadcast, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Scalar};
+use hairis::model::{Direction, LobeEval, LobeModel};
+use hairis::simd::{Broadcast, Lanes, Scalar};
+use hairis::{Hit, PerLobe};
 
 /// The near-field model of Chiang et al. 2016, which pbrt, Mitsuba, Cycles and `MaterialX` render.
 ///
@@ -37,7 +39,7 @@ use hairis::{Broadcast, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Sca
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::{Material, Hit};
+/// use hairis::{Hit, Material};
 /// use hairis_variants::{Chiang, ChiangParams};
 /// let hair = Material::new(&Chiang::MEAN, &ChiangParams::white());
 /// let prepared = hair.prepare(Hit::new(Vec3::new(0.6, 0.8, 0.0), 0.3));

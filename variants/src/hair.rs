@@ -1,14 +1,16 @@
 //! The published model and its variants in the registry: parameters, names, formulas.
 
 use crate::{Cauchy, Field, Kind, Parameters, Registered, Values};
-use hairis::{Gaussian, HairDesc, HairParams, Matched, MatchedBell, ParamError, Published};
+use hairis::model::MatchedBell;
+use hairis::params::HairDesc;
+use hairis::{Gaussian, HairParams, Matched, ParamError, Published};
 
 #[cfg(feature = "textbook")]
 use crate::Accuracy;
 #[cfg(feature = "textbook")]
 use hairis::{
-    Lobe,
-    reference::{self, HairReference, MatchedReference, Real, Shape},
+    Lobe, reference, reference::HairReference, reference::MatchedReference, reference::Real,
+    reference::Shape,
 };
 
 /// Half a degree, rad.

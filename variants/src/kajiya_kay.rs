@@ -12,13 +12,13 @@ pub use reference::{
 };
 
 use core::f32::consts::{FRAC_1_PI, FRAC_PI_2, LN_2, PI};
-use hairis::math::{
+use hairis::model::math::{
     GAUSS_LEGENDRE_32, gaussian, gaussian_and_complement, half_atan2, log2_near_one, log2_one_plus,
     sin_cos_half_turn,
 };
-use hairis::{
-    Broadcast, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Scalar, lane_struct, lanes3,
-};
+use hairis::model::{Direction, LobeEval, LobeModel};
+use hairis::simd::{Broadcast, Lanes, Scalar, lane_struct, lanes3};
+use hairis::{Hit, PerLobe};
 
 /// The model of Kajiya & Kay 1989, normalised, in a reciprocal form and in that of the publication.
 ///

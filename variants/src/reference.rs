@@ -46,7 +46,7 @@ pub(crate) fn inclination<T: Real>([u, v, w]: [T; 3]) -> [T; 2] {
 
 /// Directions closer than this to the fibre axis, in cosine of `theta_i`, have neither value nor density.
 pub(crate) fn grazing<T: Real>() -> T {
-    T::from_f32(hairis::GRAZING)
+    T::from_f32(hairis::model::GRAZING)
 }
 
 /// A discarded sample: it counts, with a contribution of 0.

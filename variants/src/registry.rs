@@ -9,17 +9,19 @@ mod any;
 mod formulas;
 
 use crate::{AllCauchy, Cauchy, Chiang, Field, KajiyaKay, Parameters, Values};
-use hairis::{Gaussian, Matched, Model, Published};
+use hairis::model::Model;
+use hairis::{Gaussian, Matched, Published};
 
 #[cfg(any(feature = "any", feature = "textbook"))]
 use hairis::{ParamError, PerLobe};
 #[cfg(feature = "any")]
 use {
     glam::Vec3,
-    hairis::wide::f32x8,
+    hairis::columns::{EvalSlices, LengthError, SampleSlices, SampleWeightSlices},
+    hairis::model::{LobeEval, LobeEval8},
+    hairis::simd::{Level, f32x8},
     hairis::{
-        Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Hit, Hit8, LengthError, Level, LobeEval, LobeEval8,
-        LobeMask, Material, Material8, Sample, Sample8, SampleSlices, SampleWeightSlices, Vec3x8,
+        Bsdf, Bsdf8, Eval, Eval8, Hit, Hit8, LobeMask, Material, Material8, Sample, Sample8, Vec3x8,
     },
 };
 
@@ -27,8 +29,7 @@ use {
 use core::fmt::Debug;
 #[cfg(feature = "textbook")]
 use hairis::{
-    Lobe,
-    reference::{LobeAt, Real, Reference, ReferenceSample},
+    Lobe, reference::LobeAt, reference::Real, reference::Reference, reference::ReferenceSample,
 };
 
 /// A model of the list: its names, and the formulas it is compared with.

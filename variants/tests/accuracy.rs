@@ -7,8 +7,10 @@
 use crate::support::{Draws, direction, narrow, packet};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
+use hairis::model::{LobeEval, Model};
 use hairis::reference::LobeAt;
-use hairis::{Bsdf, Eval, Hit, Level, Lobe, LobeEval, Material, Model, PerLobe, Sample};
+use hairis::simd::Level;
+use hairis::{Bsdf, Eval, Hit, Lobe, Material, PerLobe, Sample};
 use hairis_variants::KajiyaKay;
 use hairis_variants::chiang::{
     Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, Selection, Shifts,

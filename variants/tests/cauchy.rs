@@ -1,7 +1,9 @@
 //! Properties of the Cauchy variant alone: its factors, and weights that do not vary with the azimuth.
 
 use crate::support::{Draws, direction};
-use hairis::{Bell, HairDesc, HairParams, Lobe, LobeMask, Material, ParamError, Published};
+use hairis::model::Bell;
+use hairis::params::HairDesc;
+use hairis::{HairParams, Lobe, LobeMask, Material, ParamError, Published};
 use hairis_variants::{AllCauchy, Cauchy};
 
 #[test]

@@ -7,7 +7,9 @@ mod example;
 use crate::support::{Draws, direction, double, lanes_of, packet};
 use example::{CONE, DIFFUSE, LambertFiber, Params, pdf_integral};
 use glam::Vec3;
-use hairis::{EvalSlices, Hit, Level, Lobe, LobeMask, Material, Material8};
+use hairis::columns::EvalSlices;
+use hairis::simd::Level;
+use hairis::{Hit, Lobe, LobeMask, Material, Material8};
 use hairis_conformance::{Claims, Materials, Subject};
 
 /// The example under the suite that every model passes.

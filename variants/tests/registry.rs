@@ -3,7 +3,9 @@
 use crate::support::{Draws, direction, lanes_of, packet};
 use core::fmt::Debug;
 use glam::Vec3;
-use hairis::{EvalSlices, HairParams, Hit, Level, Lobe, LobeMask, Material, Material8, ParamError};
+use hairis::columns::EvalSlices;
+use hairis::simd::Level;
+use hairis::{HairParams, Hit, Lobe, LobeMask, Material, Material8, ParamError};
 use hairis_variants::{
     AnyMaterial8, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters, Registered,
     Visitor,

@@ -1,11 +1,10 @@
 //! Every entry point on numbers of any bits: nothing but NaN directions may be anything but finite and at least 0.
 
 use glam::Vec3;
-use hairis::wide::f32x8;
-use hairis::{
-    Material, Eval, EvalSlices, Hit, Level, Lobe, LobeMask, Model, SampleSlices, SampleWeightSlices,
-    Vec3x8,
-};
+use hairis::columns::{EvalSlices, SampleSlices, SampleWeightSlices};
+use hairis::model::Model;
+use hairis::simd::{Level, f32x8};
+use hairis::{Eval, Hit, Lobe, LobeMask, Material, Vec3x8};
 use hairis_variants::{ModelId, Parameters, Registered, Visitor};
 
 /// Numbers from bytes, zeros at their end.
@@ -143,8 +142,7 @@ fn calls<M: Model>(material: &Material<M>, numbers: &mut Numbers<'_>) {
             value: [r, g, b],
             pdf: &mut pdf[..len],
         };
-        bsdf
-            .eval_pdf_batch_at(level, [&wi[0][..len], &wi[1][..len], &wi[2][..len]], out)
+        bsdf.eval_pdf_batch_at(level, [&wi[0][..len], &wi[1][..len], &wi[2][..len]], out)
             .expect("one length");
         for i in 0..len {
             let Eval {
@@ -164,8 +162,7 @@ fn calls<M: Model>(material: &Material<M>, numbers: &mut Numbers<'_>) {
             weight: [x, y, z],
             slot,
         };
-        bsdf
-            .sample_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
+        bsdf.sample_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
             .expect("one length");
         rows[3..10].iter().for_each(|row| sound(row));
         let mut weights = [[0.0; 8]; 7];
@@ -175,8 +172,7 @@ fn calls<M: Model>(material: &Material<M>, numbers: &mut Numbers<'_>) {
             pdf,
             weight: [x, y, z],
         };
-        bsdf
-            .sample_weight_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
+        bsdf.sample_weight_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
             .expect("one length");
         let same = weights
             .iter()

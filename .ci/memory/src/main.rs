@@ -3,11 +3,10 @@
 //!
 //! With the argument `bad` it reads one float behind a slice: the tool must report that.
 
-use hairis::wide::f32x8;
-use hairis::{
-    Bsdf, EvalSlices, Gaussian, HairParams, Level, Matched, Material, Model, Published,
-    SampleSlices, SampleWeightSlices, Vec3x8,
-};
+use hairis::columns::{EvalSlices, SampleSlices, SampleWeightSlices};
+use hairis::model::Model;
+use hairis::simd::{Level, f32x8};
+use hairis::{Bsdf, Gaussian, HairParams, Matched, Material, Published, Vec3x8};
 
 /// Numbers in [0, 1), by a linear congruence.
 struct Numbers(u32);

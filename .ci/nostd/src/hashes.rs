@@ -8,11 +8,12 @@ mod hash;
 use crate::numbers::Numbers;
 use core::array::from_fn;
 use glam::Vec3;
-use hairis::wide::f32x8;
+use hairis::columns::{EvalSlices, SampleSlices};
+use hairis::model::{Model, math};
+use hairis::simd::{Broadcast, Kernel, Lanes, Level, Vec3x, f32x8};
 use hairis::{
-    Broadcast, Bsdf, Bsdf8, EvalSlices, FiberFrame, FiberFrame8, Gaussian, HairParams, Hit, Hit8,
-    Kernel, Lanes, Level, Lobe, LobeMask, Matched, Material, Material8, Model, Published,
-    SampleSlices, Vec3x, Vec3x8, math, random,
+    Bsdf, Bsdf8, FiberFrame, FiberFrame8, Gaussian, HairParams, Hit, Hit8, Lobe, LobeMask, Matched,
+    Material, Material8, Published, Vec3x8, random,
 };
 use hairis_variants::chiang::{FarField, OffsetNodes};
 use hairis_variants::{

@@ -15,7 +15,9 @@ mod numbers;
 mod system;
 
 use glam::Vec3;
-use hairis::{EvalSlices, Gaussian, HairParams, Material, Model, Published, Vec3x8, random};
+use hairis::columns::EvalSlices;
+use hairis::model::Model;
+use hairis::{Gaussian, HairParams, Material, Published, Vec3x8, random};
 use hairis_variants::Cauchy;
 use numbers::Numbers;
 
@@ -109,7 +111,7 @@ fn start() -> i32 {
         return 77;
     }
     #[cfg(feature = "neg-alloc")]
-    drop(alloc::boxed::Box::new(hairis::Level::detect()));
+    drop(alloc::boxed::Box::new(hairis::simd::Level::detect()));
     match check(&Published(Gaussian), 10).and_then(|()| check(&Cauchy::PAPER.model(), 20)) {
         Ok(()) => {
             #[cfg(feature = "bits")]
@@ -117,7 +119,7 @@ fn start() -> i32 {
             #[cfg(not(feature = "bits"))]
             for text in [
                 "both models agree on ",
-                hairis::Level::detect().name(),
+                hairis::simd::Level::detect().name(),
                 ", without std\n",
             ] {
                 system::write(text.as_bytes());

@@ -6,7 +6,7 @@
 
 use core::error::Error;
 use core::fmt::Write;
-use hairis::Level;
+use hairis::simd::Level;
 use hairis_benches::cpu;
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -9,9 +9,10 @@ use crate::inputs::{arrays, packets, xi_packets};
 use crate::platform::{Platform, platform};
 use crate::task::{Answer, Output, Pass, Several, Slices, task};
 use glam::Vec3;
+use hairis::columns::{EvalColumns, HitSlices, SampleColumns};
 use hairis::reference::Reference;
-use hairis::wide::f32x8;
-use hairis::{EvalColumns, HitSlices, Material8, Sample8, SampleColumns};
+use hairis::simd::f32x8;
+use hairis::{Material8, Sample8};
 use hairis_variants::Registered;
 
 /// The first `N` samples of a packet.

@@ -6,9 +6,8 @@ use crate::entries::Visitor;
 use crate::inputs::{DIRECTIONS, packets, xi_packets};
 use crate::resample::{COUNTS, PoolTask, SKY_PDF, STREAMED, Stream, looked_up, proposed, sky8};
 use crate::task::{Each, Slices};
-use hairis::Level;
 use hairis::resample::{CandidateSlices, Partition, WeightSlices};
-use hairis::wide::f32x8;
+use hairis::simd::{Level, f32x8};
 use hairis_variants::Registered;
 
 impl<M: Registered> Of<'_, M> {

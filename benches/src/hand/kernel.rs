@@ -3,7 +3,7 @@
 use super::vector::{Table, Vector};
 use core::f32::consts::{FRAC_PI_4, LOG2_E};
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4 as QUARTER, PI};
-use hairis::HairDesc;
+use hairis::params::HairDesc;
 
 /// The constants of one shading point, prepared once.
 #[derive(Clone, Copy, Debug)]

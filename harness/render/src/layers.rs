@@ -3,7 +3,7 @@
 use crate::film::Film;
 use crate::scene::{Met, Scene};
 use glam::Vec3;
-use hairis::Level;
+use hairis::simd::Level;
 use hairis_instruments::light::{luminance, rounded};
 use hairis_instruments::machine;
 use rayon::iter::{IntoParallelRefMutIterator as _, ParallelIterator as _};

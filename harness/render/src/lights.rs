@@ -9,7 +9,7 @@ pub use table::{Table, Tables};
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
 use hairis::Vec3x8;
-use hairis::wide::f32x8;
+use hairis::simd::f32x8;
 use hairis_instruments::light::{self, Environment, Light as _, Seen8, rounded};
 
 /// Light from infinitely far away.

@@ -3,7 +3,7 @@
 use crate::lights::uniform_direction;
 use core::f32::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
-use hairis::wide::f32x8;
+use hairis::simd::f32x8;
 use hairis::{Eval8, Hit, Hit8, Sample8, Vec3x8};
 use hairis_instruments::direction::cosine;
 use hairis_variants::{AnyBsdf, AnyBsdf8, AnyMaterial};

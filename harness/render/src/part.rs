@@ -6,7 +6,7 @@ pub use sealed::seal;
 pub(crate) use sealed::{Reader, digest, unseal};
 
 use crate::film::{Crop, Film, Sums, Tile};
-use hairis::Level;
+use hairis::simd::Level;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::whole;
 use hairis_instruments::machine;

@@ -7,7 +7,7 @@ use crate::material::Hair;
 use crate::tree::{self, Ray, Tree};
 use glam::Vec3;
 use hairis::Vec3x8;
-use hairis::wide::f32x8;
+use hairis::simd::f32x8;
 use hairis_instruments::light::Seen8;
 
 /// Rays to lights end this much before them.

@@ -1,7 +1,7 @@
 //! Which segment a ray meets first: a tree of boxes, eight to a node, over blocks of eight segments.
 //!
 //! It knows strands and rays, and no light. Lanes are eight boxes or eight segments that one ray is tested against, and
-//! [`hairis::Level`] finds their instruction set at run time; hits depend on [`hairis::Level::fuses`] in their last bits,
+//! [`hairis::simd::Level`] finds their instruction set at run time; hits depend on [`hairis::simd::Level::fuses`] in their last bits,
 //! and on nothing else of the machine.
 
 mod block;
@@ -19,7 +19,7 @@ pub use traverse::Visits;
 use crate::geometry::Strands;
 use block::Block;
 use core::fmt;
-use hairis::Level;
+use hairis::simd::Level;
 use node::Node;
 use traverse::{Any, Closest};
 

@@ -7,8 +7,9 @@ use super::hair::{Hair, whole_glint};
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
+use hairis::params::HairDesc;
 use hairis::reference::Parameters;
-use hairis::{HairDesc, HairParams, ParamError};
+use hairis::{HairParams, ParamError};
 
 const DENSITY: Statement = Statement {
     id: "misprint-glint-density",

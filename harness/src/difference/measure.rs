@@ -147,8 +147,9 @@ mod tests {
     use super::*;
     use crate::study::Grid;
     use core::f64::consts::PI;
+    use hairis::HairParams;
+    use hairis::params::HairDesc;
     use hairis::reference::Real;
-    use hairis::{HairDesc, HairParams};
 
     fn blur(size: usize) -> Blur {
         Blur::new(SIGMA_DEG.to_radians(), size, size)

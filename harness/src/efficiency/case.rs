@@ -7,7 +7,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use glam::{DVec3, Vec3};
 use hairis::HairParams;
 use hairis::reference::{Oracle, Parameters};
-use hairis::wide::f32x8;
+use hairis::simd::f32x8;
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::quadrature::{SphereIntegrator, Tolerance};
 use hairis_instruments::sequence::{XiSource, to_unit_f32};

@@ -3,7 +3,8 @@
 use crate::difference::{SIGMA_DEG, blurred};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
-use hairis::{Bell, Gaussian, HairParams, Material, Published};
+use hairis::model::Bell;
+use hairis::{Gaussian, HairParams, Material, Published};
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::plot::{Axis, PolarPanel, SphereGrid, heat_map};
 use hairis_instruments::report::Drawing;

@@ -2,7 +2,9 @@
 
 use super::{TimedInputs, TimedOp, quartiles};
 use core::hint::black_box;
-use hairis::{EvalSlices, Level, ParamError, SampleSlices};
+use hairis::ParamError;
+use hairis::columns::{EvalSlices, SampleSlices};
+use hairis::simd::Level;
 use hairis_variants::ModelId;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};

@@ -1,7 +1,8 @@
 //! The parameter grid.
 
 use crate::efficiency::with_beta;
-use hairis::{HairDesc, HairParams, ParamError};
+use hairis::params::HairDesc;
+use hairis::{HairParams, ParamError};
 use hairis_instruments::columns::Columns;
 
 /// Values of each axis. A cell is one of their combinations; the last axis runs fastest.

@@ -1,10 +1,11 @@
 //! Directional albedo of the published model, by quadrature over each bell.
 
 use super::{HairLobes, HairView};
-use crate::math::{FRAC_PI_2_LOW, half_atan2, sin_cos_half_turn};
-use crate::quadrature::{COARSE, GRADED};
-use crate::{Bell, Broadcast, Lanes, PerLobe};
-use crate::{lanes3, store3};
+use crate::PerLobe;
+use crate::hair::quadrature::{COARSE, GRADED};
+use crate::model::Bell;
+use crate::model::math::{FRAC_PI_2_LOW, half_atan2, sin_cos_half_turn};
+use crate::simd::{Broadcast, Lanes, lanes3, store3};
 use core::f32::consts::FRAC_PI_2;
 
 /// Nodes of an integral over `x`, the distance from the centre of a bell in widths: even in `u`, with `x = u / (1 - u^2)`, but

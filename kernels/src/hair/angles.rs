@@ -1,9 +1,9 @@
 //! Angles of a direction relative to the shading point, and the lobe terms there.
 
 use super::{GRAZING, HairView};
-use crate::lanes3;
-use crate::math::{atan_unit, half_angle, quotients};
-use crate::{Bell, Broadcast, Lanes, Vec3x};
+use crate::model::Bell;
+use crate::model::math::{atan_unit, half_angle, quotients};
+use crate::simd::{Broadcast, Lanes, Vec3x, lanes3};
 use core::f32::consts::FRAC_PI_2;
 
 /// Angles of a direction relative to the shading point.

@@ -1,9 +1,9 @@
 //! Results for a direction and for a sample, from the lobe terms and the density.
 
 use super::{Angles, GRAZING, HairView, LobeTerms};
-use crate::lanes3;
+use crate::PerLobe;
 use crate::model::{Eval, LobeEval, SampleLanes};
-use crate::{Broadcast, Lanes, PerLobe, Vec3x};
+use crate::simd::{Broadcast, Lanes, Vec3x, lanes3};
 
 /// The density below which a sample is discarded: next to denormals its weight would have no digits.
 const LEAST_DENSITY: f32 = 1e-30;

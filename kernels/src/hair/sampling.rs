@@ -1,11 +1,10 @@
 //! The published sampler: a lobe by its energy, then inclination and azimuth by inversion (section 3.2 of the paper).
 
 use super::{Angles, HairView, PublishedPrepared};
-use crate::lanes3;
-use crate::math::{half_angle, sin_cos_absolute, sin_cos_twice};
+use crate::hair::truncated::TruncatedCauchy;
+use crate::model::math::{half_angle, sin_cos_absolute, sin_cos_twice};
 use crate::simd::pair::Pair;
-use crate::truncated::TruncatedCauchy;
-use crate::{Broadcast, Lanes, Vec3x};
+use crate::simd::{Broadcast, Lanes, Vec3x, lanes3};
 use core::f32::consts::FRAC_PI_4;
 
 /// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its angles.

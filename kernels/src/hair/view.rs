@@ -1,12 +1,13 @@
 //! Lobes of a material, and the view terms of a shading point: shared by all samplers of the published model.
 
 use super::albedo::bell_area;
-use crate::math::{FRAC_PI_2_LOW, half_atan2_parts};
-use crate::{Bell, Broadcast, HairParams, Lanes, Lobe, LobeMask, Vec3x};
-use crate::{store3, store4};
+use crate::model::Bell;
+use crate::model::math::{FRAC_PI_2_LOW, half_atan2_parts};
+use crate::simd::{Broadcast, Lanes, Vec3x, store3, store4};
+use crate::{HairParams, Lobe, LobeMask};
 use core::f32::consts::PI;
 
-crate::lane_struct! {
+crate::simd::lane_struct! {
     /// The lobes of a material: the constants of its value, which every sampler reads.
     ///
     /// Arrays of two are TT and the glints, of three R, TT, TRT; arrays of four are in the order of [`Lobe`](crate::Lobe).
@@ -39,7 +40,7 @@ crate::lane_struct! {
     }
 }
 
-crate::lane_struct! {
+crate::simd::lane_struct! {
     /// View terms of a shading point, which every sampler reads: the lobes of its material, and `wo`.
     pub struct HairView {
         /// Half the sine of `theta_o`.

@@ -107,7 +107,8 @@ impl Default for Glints {
 /// [`HairParams::default`].
 ///
 /// ```
-/// use hairis::{ArtistControls, HairParams, Highlight};
+/// use hairis::HairParams;
+/// use hairis::params::{ArtistControls, Highlight};
 /// let red_sheen = ArtistControls {
 ///     secondary: Highlight { color: [0.9, 0.3, 0.1], intensity: 0.5, shift_deg: 11.0, width_deg: 14.0 },
 ///     ..ArtistControls::default()

@@ -19,7 +19,7 @@ pub struct LobeAt<T> {
 /// A model's formulas at one shading point, in either precision: the reference of conformance tests and reports.
 ///
 /// ```
-/// use hairis::{HairParams, reference::{Parameters, Reference, Shape, HairReference}};
+/// use hairis::{HairParams, reference::HairReference, reference::Parameters, reference::Reference, reference::Shape};
 /// fn reflected(point: &impl Reference<f64>) -> f64 {
 ///     point.albedo().0.iter().map(|lobe| lobe[0]).sum()
 /// }

@@ -25,7 +25,7 @@ const fn ends(bands: usize) -> &'static [f32] {
 /// The model with its matched sampler, for one set of parameters and one `wo`.
 ///
 /// ```
-/// use hairis::{HairParams, reference::{MatchedReference, Parameters, Shape}};
+/// use hairis::{HairParams, reference::MatchedReference, reference::Parameters, reference::Shape};
 /// let parameters = Parameters::<f64>::from(&HairParams::brown());
 /// let hair = MatchedReference::prepare(&parameters, Shape::Gaussian, [0.0, 1.0, 0.0], 9);
 /// let drawn = hair.sample([0.1, 0.4, 0.7]);

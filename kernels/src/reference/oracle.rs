@@ -6,7 +6,7 @@ use crate::{Lobe, PerLobe};
 /// The model for one set of parameters and one `wo`, with one of the samplers of the kernels: the reference for a kernel.
 ///
 /// ```
-/// use hairis::{Gaussian, Material, HairParams, Matched, reference::{Oracle, Parameters, Shape}};
+/// use hairis::{Gaussian, HairParams, Matched, Material, reference::Oracle, reference::Parameters, reference::Shape};
 /// let params = HairParams::brown();
 /// let oracle = Oracle::prepare(&Parameters::<f64>::from(&params), Shape::Gaussian, [0.0, 1.0, 0.0], Some(9));
 /// let kernel = Material::new(&Matched::<_>(Gaussian), &params).prepare(glam::Vec3::Y).pdf(glam::Vec3::Z);

@@ -33,7 +33,7 @@ impl Shape {
     }
 }
 
-/// Parameters of [`HairReference::prepare`](super::HairReference::prepare): a [`HairDesc`](crate::HairDesc) in either precision.
+/// Parameters of [`HairReference::prepare`](super::HairReference::prepare): a [`HairDesc`](crate::params::HairDesc) in either precision.
 /// Arrays are R, TT, TRT, or linear RGB. Nothing is checked: make it from [`HairParams`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T> {

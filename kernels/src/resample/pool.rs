@@ -1,7 +1,9 @@
 //! The candidates of one hit, stored by column.
 
 use super::{CandidateSlices, Choice, Choices, Counts, Partition, WeightSlices, choose};
-use crate::{Bsdf, LengthError, Model};
+use crate::Bsdf;
+use crate::columns::LengthError;
+use crate::model::Model;
 use glam::Vec3;
 
 /// The candidates of one hit, at most `N`: those of the BSDF first. Keep one per thread and use it again.
@@ -9,7 +11,7 @@ use glam::Vec3;
 /// ```
 /// use glam::Vec3;
 /// use hairis::resample::{Counts, Partition, Pool};
-/// use hairis::{Material, Gaussian, Published, HairParams};
+/// use hairis::{Gaussian, HairParams, Material, Published};
 ///
 /// // A sky that is brighter above, and a light sampler that draws it uniformly: density 1 / (4 pi).
 /// let sky = |wi: Vec3| ([1.0 + wi.y, 1.0, 1.0], 0.079_577_47);
@@ -34,7 +36,7 @@ use glam::Vec3;
 ///     }
 /// }
 /// assert!(direct[0] > 0.0);
-/// # Ok::<(), hairis::LengthError>(())
+/// # Ok::<(), hairis::columns::LengthError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Pool<const N: usize> {

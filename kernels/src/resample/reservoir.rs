@@ -1,8 +1,9 @@
 //! A reservoir per lane: candidates come and go, one is kept.
 
 use super::Weighed8;
+use crate::Vec3x8;
 use crate::simd::lanes::{lanes3, store3};
-use crate::{Broadcast, Kernel, Lanes, Level, Vec3x, Vec3x8};
+use crate::simd::{Broadcast, Kernel, Lanes, Level, Vec3x};
 use wide::f32x8;
 
 /// One candidate of each of eight hits, kept with probability proportional to its weight of all that were added.

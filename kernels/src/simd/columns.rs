@@ -9,7 +9,7 @@ use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 use core::ptr;
 
-/// Work of [`Level::run_rows`](crate::Level::run_rows) over columns: `I` numbers in, `N` numbers out, whatever the lanes.
+/// Work of [`Level::run_rows`](crate::simd::Level::run_rows) over columns: `I` numbers in, `N` numbers out, whatever the lanes.
 pub trait Row<const I: usize, const N: usize>: Copy {
     /// Whether columns may be left out. An empty input but the first then reads as 0, and an empty output is not written.
     const OPTIONAL: bool = false;

@@ -48,7 +48,7 @@ pub(crate) fn clean_upper_halves() {
 /// An instruction set that this CPU has: a value is the proof.
 ///
 /// ```
-/// use hairis::Level;
+/// use hairis::simd::Level;
 /// println!("eight lanes run on {}", Level::detect());
 /// assert!(Level::available().any(|level| level == Level::portable()));
 /// ```
@@ -151,8 +151,9 @@ impl fmt::Display for Level {
 /// Work of [`Level::run`] on eight lanes, whatever their backend.
 ///
 /// ```
-/// use hairis::wide::f32x8;
-/// use hairis::{Broadcast, Kernel, Lanes, Level, math};
+/// use hairis::simd::f32x8;
+/// use hairis::simd::{Broadcast, Kernel, Lanes, Level};
+/// use hairis::model::math;
 ///
 /// /// The arc tangent of eight numbers in `[-1, 1]`.
 /// struct Atan<'a>(&'a f32x8);

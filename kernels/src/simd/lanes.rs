@@ -19,7 +19,7 @@ pub(crate) mod sealed {
 pub trait Scalar: sealed::Sealed + Copy + Debug {}
 impl<T: sealed::Sealed + Copy + Debug> Scalar for T {}
 
-/// A struct of lanes, as [`lane_struct!`](crate::lane_struct) declares it: eight of one lane are one of eight.
+/// A struct of lanes, as [`lane_struct!`](crate::simd::lane_struct) declares it: eight of one lane are one of eight.
 pub trait LaneStruct: Copy + Debug {
     /// The struct of one lane.
     type One;
@@ -260,7 +260,7 @@ pub(crate) fn select_of_three<L: Lanes>(table: [L; 3], [one, two, _]: [L::Mask; 
 /// Every field is a `C`, an array `[C; N]`, or another such struct in parentheses, `(Other<C>)`.
 ///
 /// ```
-/// hairis::lane_struct! {
+/// hairis::simd::lane_struct! {
 ///     /// Constants of one shading point.
 ///     pub struct Constants {
 ///         /// Exponent of the highlight.
@@ -289,23 +289,23 @@ macro_rules! lane_struct {
             /// The same numbers in the storage of `L`: one number for all lanes becomes one per lane.
             #[inline(always)]
             #[must_use]
-            pub fn spread<L: $crate::Lanes>(&self) -> $name<L::Stored>
+            pub fn spread<L: $crate::simd::Lanes>(&self) -> $name<L::Stored>
             where
-                C: $crate::Broadcast<L>,
+                C: $crate::simd::Broadcast<L>,
             {
-                $name { $($field: $crate::lane_struct!(@spread self, L, $field, $kind),)* }
+                $name { $($field: $crate::simd::lane_struct!(@spread self, L, $field, $kind),)* }
             }
         }
 
-        impl<C: $crate::Scalar> $crate::LaneStruct for $name<C> {
+        impl<C: $crate::simd::Scalar> $crate::simd::LaneStruct for $name<C> {
             type One = $name<f32>;
-            type Eight = $name<$crate::wide::f32x8>;
+            type Eight = $name<$crate::simd::f32x8>;
             #[inline]
-            fn pack(items: [&$name<f32>; 8]) -> $name<$crate::wide::f32x8> {
+            fn pack(items: [&$name<f32>; 8]) -> $name<$crate::simd::f32x8> {
                 $name::<f32>::pack(items)
             }
             #[inline]
-            fn lane(eight: &$name<$crate::wide::f32x8>, lane: usize) -> $name<f32> {
+            fn lane(eight: &$name<$crate::simd::f32x8>, lane: usize) -> $name<f32> {
                 eight.lane(lane)
             }
         }
@@ -314,12 +314,12 @@ macro_rules! lane_struct {
             /// Eight structs as one: lane `i` holds the numbers of `items[i]`.
             #[inline]
             #[must_use]
-            pub fn pack(items: [&Self; 8]) -> $name<$crate::wide::f32x8> {
-                $name { $($field: $crate::lane_struct!(@pack items, $field, $kind),)* }
+            pub fn pack(items: [&Self; 8]) -> $name<$crate::simd::f32x8> {
+                $name { $($field: $crate::simd::lane_struct!(@pack items, $field, $kind),)* }
             }
         }
 
-        impl $name<$crate::wide::f32x8> {
+        impl $name<$crate::simd::f32x8> {
             /// The numbers of one lane.
             ///
             /// # Panics
@@ -328,31 +328,31 @@ macro_rules! lane_struct {
             #[inline]
             #[must_use]
             pub fn lane(&self, lane: usize) -> $name<f32> {
-                $name { $($field: $crate::lane_struct!(@lane self, lane, $field, $kind),)* }
+                $name { $($field: $crate::simd::lane_struct!(@lane self, lane, $field, $kind),)* }
             }
         }
     };
-    (@pack $items:ident, $field:ident, C) => { $crate::wide::f32x8::new($items.map(|item| item.$field)) };
+    (@pack $items:ident, $field:ident, C) => { $crate::simd::f32x8::new($items.map(|item| item.$field)) };
     (@pack $items:ident, $field:ident, [C; $n:literal]) => {
-        core::array::from_fn::<_, $n, _>(|i| $crate::wide::f32x8::new($items.map(|item| item.$field[i])))
+        core::array::from_fn::<_, $n, _>(|i| $crate::simd::f32x8::new($items.map(|item| item.$field[i])))
     };
     (@pack $items:ident, $field:ident, ($inner:ident<C>)) => { $inner::pack($items.map(|item| &item.$field)) };
     (@spread $this:ident, $L:ident, $field:ident, C) => {
-        $crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field))
+        $crate::simd::Lanes::store($crate::simd::Broadcast::<$L>::lanes(&$this.$field))
     };
     // Without a loop where arrays are short: compilers that save space leave it one.
-    (@spread $this:ident, $L:ident, $field:ident, [C; 2]) => { $crate::lane_struct!(@each $this, $L, $field, 0 1) };
-    (@spread $this:ident, $L:ident, $field:ident, [C; 3]) => { $crate::lane_struct!(@each $this, $L, $field, 0 1 2) };
-    (@spread $this:ident, $L:ident, $field:ident, [C; 4]) => { $crate::lane_struct!(@each $this, $L, $field, 0 1 2 3) };
+    (@spread $this:ident, $L:ident, $field:ident, [C; 2]) => { $crate::simd::lane_struct!(@each $this, $L, $field, 0 1) };
+    (@spread $this:ident, $L:ident, $field:ident, [C; 3]) => { $crate::simd::lane_struct!(@each $this, $L, $field, 0 1 2) };
+    (@spread $this:ident, $L:ident, $field:ident, [C; 4]) => { $crate::simd::lane_struct!(@each $this, $L, $field, 0 1 2 3) };
     (@each $this:ident, $L:ident, $field:ident, $($i:literal)*) => {
-        [$($crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field[$i]))),*]
+        [$($crate::simd::Lanes::store($crate::simd::Broadcast::<$L>::lanes(&$this.$field[$i]))),*]
     };
     (@spread $this:ident, $L:ident, $field:ident, [C; $n:literal]) => {{
         // A loop, not `map`: closures over lanes are not inlined into functions of target features.
-        let mut out = [$crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field[0])); $n];
+        let mut out = [$crate::simd::Lanes::store($crate::simd::Broadcast::<$L>::lanes(&$this.$field[0])); $n];
         let mut i = 1;
         while i < $n {
-            out[i] = $crate::Lanes::store($crate::Broadcast::<$L>::lanes(&$this.$field[i]));
+            out[i] = $crate::simd::Lanes::store($crate::simd::Broadcast::<$L>::lanes(&$this.$field[i]));
             i += 1;
         }
         out

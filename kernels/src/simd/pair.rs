@@ -13,7 +13,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 /// Constants are read once for both, and neither chain of results waits alone. Pairs nest.
 ///
 /// ```
-/// use hairis::{Lanes, Pair, math};
+/// use hairis::simd::{Lanes, Pair};
+/// use hairis::model::math;
 /// let Pair(sine, other) = math::sin_half_turn(Pair(0.5_f32, 1.0));
 /// assert!((sine - 0.5_f32.sin()).abs() < 1e-6 && (other - 1.0_f32.sin()).abs() < 1e-6);
 /// ```

@@ -1,4 +1,4 @@
-//! Eight portable lanes that never fuse: what is computed without a [`Level`](crate::Level) has the same bits in every build.
+//! Eight portable lanes that never fuse: what is computed without a [`Level`](crate::simd::Level) has the same bits in every build.
 
 use super::lanes::{Broadcast, Lanes, difference_split, sealed::Sealed};
 use super::portable::split;

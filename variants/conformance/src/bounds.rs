@@ -7,7 +7,8 @@ use crate::mesh::Mesh;
 use crate::near::Nearby;
 use crate::probe::{Draws, cos_theta, direction, hits, hits_and, masks, triples};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::{Eval, Hit, Level, LobeMask};
+use hairis::simd::Level;
+use hairis::{Eval, Hit, LobeMask};
 
 /// Integral of `S cos theta_i` of one channel.
 fn reflected(bsdf: &dyn ErasedBsdf, mesh: &Mesh, channel: usize) -> Integral {

@@ -2,7 +2,7 @@
 //! exception.
 //!
 //! The compiler takes the environment for the default one. At opt-levels 2 and 3 it may make vectors of scalar code, and compute
-//! in their unused lanes what raises an exception; divisions are kept from it ([`Lanes::quotient`](hairis::Lanes::quotient)). Run
+//! in their unused lanes what raises an exception; divisions are kept from it ([`Lanes::quotient`](hairis::simd::Lanes::quotient)). Run
 //! these properties in a release build too. Only x86-64 is tested.
 
 use crate::erased::{COLUMNS, Direction, ErasedBsdf, ErasedSubject, NamedMaterial, Which};
@@ -10,7 +10,8 @@ use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, columns, hits8, packet, triples};
 use crate::totality;
 use core::hint::black_box;
-use hairis::{Hit, Level, Vec3x, control, set_control};
+use hairis::Hit;
+use hairis::simd::{Level, Vec3x, control, set_control};
 
 const NAME: &str = "results are finite however they are rounded";
 

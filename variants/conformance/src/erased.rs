@@ -7,11 +7,12 @@ pub(crate) mod light;
 
 use crate::subject::{Claims, ParamsOf, Reference, Subject};
 use core::fmt;
-use hairis::wide::f32x8;
+use hairis::columns::{EvalSlices, LengthError, SampleSlices, SampleWeightSlices};
+use hairis::model::{LobeEval, LobeEval8, Model};
+use hairis::simd::{Level, Vec3x, f32x8};
 use hairis::{
-    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Hit, Hit8, LengthError, Level, Lobe, LobeEval, LobeEval8,
-    LobeMask, Material, Material8, Model, PerLobe, Sample, Sample8, SampleSlices,
-    SampleWeightSlices, Vec3x, Vec3x8,
+    Bsdf, Bsdf8, Eval, Eval8, Hit, Hit8, Lobe, LobeMask, Material, Material8, PerLobe, Sample,
+    Sample8, Vec3x8,
 };
 
 /// A direction, or any vector, in the fibre's frame.

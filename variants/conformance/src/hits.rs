@@ -7,7 +7,9 @@ use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
 use crate::probe::{Draws, hits8, packet, triples};
 use crate::slices::{Room, UNTOUCHED};
-use hairis::{EvalColumns, Hit, HitSlices, HitsError, LengthError, Level, SampleColumns};
+use hairis::Hit;
+use hairis::columns::{EvalColumns, HitSlices, HitsError, LengthError, SampleColumns};
+use hairis::simd::Level;
 
 const NAME: &str = "slices of hits give the bits of packets";
 /// Two packets of the widest level, and some.

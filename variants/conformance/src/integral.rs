@@ -4,7 +4,7 @@ use crate::erased::{Direction, ErasedBsdf, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::mesh::{Mesh, Samples};
 use crate::probe::{columns, hits, narrow, sobol};
-use hairis::Level;
+use hairis::simd::Level;
 
 /// Kronrod's extension of Gauss' rule of three points, from -1 to 1: node, weight, and Gauss' weight.
 const RULE: [[f64; 3]; 7] = [

@@ -5,8 +5,8 @@ use crate::failure::{Failure, Outcome, Worst};
 use crate::near::{Nearby, sample_is_near};
 use crate::probe::{Draws, cos_theta, hits8, packet, relative, triples};
 use crate::subject::Claims;
-use hairis::wide::f32x8;
-use hairis::{Eval, Hit, Level, Lobe, PerLobe, Sample8};
+use hairis::simd::{Level, f32x8};
+use hairis::{Eval, Hit, Lobe, PerLobe, Sample8};
 
 /// Packets of mixed materials.
 const ROUNDS: usize = 2000;
@@ -297,7 +297,7 @@ pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
             let one = each.lane(lane);
             let (alone, one_albedo) = (one.lobes8(level, &wi), one.albedo());
             for lobe in Lobe::ALL {
-                let bits = |l: &PerLobe<hairis::LobeEval8>| {
+                let bits = |l: &PerLobe<hairis::model::LobeEval8>| {
                     let l = &l[lobe];
                     [l.value, l.pdf, l.color[0], l.color[1], l.color[2]]
                         .map(|x: f32x8| x.as_array()[lane].to_bits())

@@ -3,7 +3,7 @@
 //! A model in a crate of its own takes this package as a dev-dependency and writes, in its tests:
 //!
 //! ```
-//! use hairis::{Gaussian, Published, HairParams};
+//! use hairis::{Gaussian, HairParams, Published};
 //! use hairis_conformance::{Claims, Materials, Subject};
 //!
 //! struct Published;

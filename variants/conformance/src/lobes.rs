@@ -3,7 +3,8 @@
 use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::probe::{Draws, hits8, masks, packet, relative, triples};
-use hairis::{Eval, Level, Lobe, LobeMask};
+use hairis::simd::Level;
+use hairis::{Eval, Lobe, LobeMask};
 
 /// Hits per material.
 const ROUNDS: usize = 120;

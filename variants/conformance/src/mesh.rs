@@ -8,7 +8,8 @@ use crate::erased::{COLUMNS, ErasedBsdf, ErasedSubject, NamedMaterial};
 use crate::probe::{angles, columns, sides, sobol};
 use crate::statistics::AngleEdges;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::{Hit, Level, LobeMask};
+use hairis::simd::Level;
+use hairis::{Hit, LobeMask};
 
 /// Samples per lobe that edges are taken from.
 const SAMPLES: u32 = 4096;

@@ -5,8 +5,8 @@ use crate::erased::{
 };
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, hits8, packet, triples};
-use hairis::wide::f32x8;
-use hairis::{Eval, Hit, Level, Sample8};
+use hairis::simd::{Level, f32x8};
+use hairis::{Eval, Hit, Sample8};
 
 const NAME: &str = "inputs that are no numbers are black";
 

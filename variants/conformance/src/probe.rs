@@ -2,8 +2,8 @@
 
 use crate::erased::Direction;
 use core::f64::consts::PI;
-use hairis::wide::f32x8;
-use hairis::{Hit, Hit8, Lobe, LobeMask, Vec3x, Vec3x8};
+use hairis::simd::{Vec3x, f32x8};
+use hairis::{Hit, Hit8, Lobe, LobeMask, Vec3x8};
 use std::sync::OnceLock;
 
 /// The largest uniform number.

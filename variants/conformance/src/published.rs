@@ -29,8 +29,9 @@ pub use rows::Rows;
 pub use subject::Family;
 
 use core::fmt;
+use hairis::model::{MatchedBell, Model};
 use hairis::reference::Shape;
-use hairis::{HairParams, Matched, MatchedBell, Model, Published};
+use hairis::{HairParams, Matched, Published};
 use handles::AnyModel;
 
 /// A model of the family.

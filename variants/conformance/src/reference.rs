@@ -4,7 +4,8 @@ use crate::erased::{Direction, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::probe::{Draws, cos_theta, double, hits_and, packet, relative, rounded, triples};
 use crate::subject::{Reference, ReferenceSample, Tolerance};
-use hairis::{Eval, Level, Lobe, Sample};
+use hairis::simd::Level;
+use hairis::{Eval, Lobe, Sample};
 
 const NAME: &str = "the model agrees with its reference";
 

@@ -6,9 +6,9 @@ use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, hits8, packet, triples};
 use core::f32::consts::PI;
 use glam::Vec3;
+use hairis::Hit;
 use hairis::resample::{Counts, Partition, Pool, Reservoir8};
-use hairis::wide::f32x8;
-use hairis::{Hit, Level};
+use hairis::simd::{Level, f32x8};
 
 const NAME: &str = "resampling is unbiased";
 /// Estimates per cell.

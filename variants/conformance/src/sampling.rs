@@ -4,7 +4,8 @@ use crate::erased::{ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::near::Nearby;
 use crate::probe::{Draws, cos_theta, triples};
-use hairis::{Eval, Level};
+use hairis::Eval;
+use hairis::simd::Level;
 
 /// Hits per material, and packets per hit.
 const HITS: usize = 150;

@@ -4,7 +4,8 @@ use crate::erased::{COLUMNS, Direction, ErasedBsdf, ErasedSubject, WEIGHT_COLUMN
 use crate::failure::{Failure, Outcome};
 use crate::lanes::{eval_bits, sample_bits};
 use crate::probe::{Draws, packet, triples};
-use hairis::{LengthError, Level};
+use hairis::columns::LengthError;
+use hairis::simd::Level;
 
 const NAME: &str = "slices give the bits of packets";
 /// Content of a slice that is not to be written.

@@ -1,6 +1,7 @@
 //! The model under test, and its claims.
 
-use hairis::{Hit, LobeMask, Model};
+use hairis::model::Model;
+use hairis::{Hit, LobeMask};
 
 /// Parameters of the subject's model.
 pub type ParamsOf<S> = <<S as Subject>::Model as Model>::Params;
@@ -78,7 +79,7 @@ pub struct Claims {
     pub furnace: Option<f64>,
     /// The model reads [`Hit::h`]; if not, results must not depend on it.
     pub near_field: bool,
-    /// Levels that fuse as one lane does ([`Level::fuses`](hairis::Level::fuses)) give its bits.
+    /// Levels that fuse as one lane does ([`Level::fuses`](hairis::simd::Level::fuses)) give its bits.
     pub same_bits: bool,
     /// Levels that fuse otherwise give one lane's results to this error, beyond what rounding the directions changes.
     pub lanes: f64,

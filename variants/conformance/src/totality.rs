@@ -3,7 +3,9 @@
 use crate::erased::{Direction, ErasedSubject, NamedMaterial, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, LAST, direction, hits8, masks, packet, triples};
-use hairis::{Eval, Hit, Level, Lobe, LobeEval, LobeMask, Sample8, Vec3x};
+use hairis::model::LobeEval;
+use hairis::simd::{Level, Vec3x};
+use hairis::{Eval, Hit, Lobe, LobeMask, Sample8};
 
 const NAME: &str = "results are finite and not negative";
 
@@ -107,7 +109,7 @@ fn fault(
     mask: LobeMask,
     subject: &dyn ErasedSubject,
 ) -> Option<&'static str> {
-    let at = |x: &hairis::wide::f32x8| x.as_array()[lane];
+    let at = |x: &hairis::simd::f32x8| x.as_array()[lane];
     let (value, pdf, weight, slot) = (
         s.value.each_ref().map(at),
         at(&s.pdf),

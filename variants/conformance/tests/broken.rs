@@ -3,11 +3,10 @@
 
 use core::f32::consts::{FRAC_1_PI, PI};
 use core::ops::Deref;
-use hairis::math::{atan2_upper, sin_cos_half_turn};
-use hairis::{
-    Broadcast, Eval, GRAZING, Hit, LaneStruct, Lanes, Lobe, LobeEval, LobeMask, Model, PerLobe,
-    SampleLanes, Scalar, Vec3x, lanes3, store3,
-};
+use hairis::model::math::{atan2_upper, sin_cos_half_turn};
+use hairis::model::{GRAZING, LobeEval, Model, SampleLanes};
+use hairis::simd::{Broadcast, LaneStruct, Lanes, Scalar, Vec3x, lanes3, store3};
+use hairis::{Eval, Hit, Lobe, LobeMask, PerLobe};
 use hairis_conformance::{Claims, Materials, Subject};
 
 /// Faults of a model, by number. They are constants of a material: a type per fault would be compiled for each.
@@ -53,7 +52,7 @@ pub(crate) struct Params {
     pub(crate) width: f32,
 }
 
-hairis::lane_struct! {
+hairis::simd::lane_struct! {
     /// Constants of a material.
     pub struct Material {
         /// Colours, linear RGB.
@@ -67,7 +66,7 @@ hairis::lane_struct! {
     }
 }
 
-hairis::lane_struct! {
+hairis::simd::lane_struct! {
     /// Constants of a shading point.
     pub struct Point {
         /// As in the material.

@@ -163,7 +163,7 @@ fn h_is_found_where_it_is_not_claimed() {
 #[test]
 fn slices_find_entries_that_differ_from_packets() {
     // Only levels that work off more than one packet at a time have lanes of their own for slices.
-    if hairis::Level::available().any(|level| level != hairis::Level::portable()) {
+    if hairis::simd::Level::available().any(|level| level != hairis::simd::Level::portable()) {
         assert_fails(
             slices::slices_equal_packets(&Broken(WIDE_SLICES_DIFFER)),
             "entry",

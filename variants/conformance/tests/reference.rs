@@ -2,7 +2,8 @@
 
 use crate::broken::{Broken, Fiber, Params, SOUND};
 use core::f64::consts::PI;
-use hairis::{Hit, Model};
+use hairis::Hit;
+use hairis::model::Model;
 use hairis_conformance::reference::agrees_with_reference;
 use hairis_conformance::{Claims, Materials, Reference, ReferenceSample, Subject, Tolerance};
 

@@ -1,8 +1,8 @@
 //! The far field of the near-field fibre: the mean over the offset `h`, by Gauss nodes of `h` in lanes.
 
 use super::{Chiang, ChiangDesc};
-use hairis::wide::f32x8;
-use hairis::{Bsdf8, Eval, Hit, LobeMask, Material, PerLobe, Sample, Vec3x, Vec3x8};
+use hairis::simd::{Vec3x, f32x8};
+use hairis::{Bsdf8, Eval, Hit, LobeMask, Material, PerLobe, Sample, Vec3x8};
 
 /// Gauss-Legendre nodes of the offset `h` over `[-1, 1]`, eight per packet: build it once, for all materials and hits.
 ///

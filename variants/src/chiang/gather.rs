@@ -1,8 +1,10 @@
 //! Constants of the energy-conserving fibre: per material, and per material and hit.
 
 use super::ChiangParams;
-use hairis::math::gaussian_and_complement;
-use hairis::{Broadcast, Direction, Hit, Lanes, Pair, PerLobe, lane_struct, lanes3, store4};
+use hairis::model::Direction;
+use hairis::model::math::gaussian_and_complement;
+use hairis::simd::{Broadcast, Lanes, Pair, lane_struct, lanes3, store4};
+use hairis::{Hit, PerLobe};
 
 lane_struct! {
     /// The widths of the lobes. Arrays of four are R, TT, TRT and the rest.

@@ -2,8 +2,9 @@
 
 use super::ChiangPrepared;
 use core::f32::consts::{LN_2, PI};
-use hairis::math::{log2, log2_one_plus, sin_cos_half_turn};
-use hairis::{Broadcast, Direction, Lanes};
+use hairis::model::Direction;
+use hairis::model::math::{log2, log2_one_plus, sin_cos_half_turn};
+use hairis::simd::{Broadcast, Lanes};
 
 /// A direction of a lobe: the angle from its cone, the turn about the cone, and the azimuth.
 #[inline(always)]

@@ -98,7 +98,8 @@ macro_rules! handles {
             /// A material of any model of the list: see [`Material`].
             ///
             /// ```
-            /// use hairis::{Material, HairParams, Level};
+            /// use hairis::{HairParams, Material};
+            /// use hairis::simd::Level;
             /// use hairis_variants::{AnyMaterial, Cauchy};
             /// let red: AnyMaterial = Material::new(&Cauchy::PAPER.matched(), &HairParams::red()).into();
             /// let sample = red.prepare(glam::Vec3::Y).sample([0.5, 0.25, 0.75]).expect("not along the fibre");

@@ -2,8 +2,9 @@
 
 use crate::system;
 use glam::Vec3;
-use hairis::wide::f32x8;
-use hairis::{Eval, LobeEval, PerLobe, Sample, SampleLanes};
+use hairis::model::{LobeEval, SampleLanes};
+use hairis::simd::f32x8;
+use hairis::{Eval, PerLobe, Sample};
 
 /// FNV-1a over the bits of floats. NaN has one hash: its sign and payload are not part of IEEE arithmetic.
 #[derive(Clone, Copy)]

@@ -4,9 +4,9 @@
 //! depends on its options, and the tests are compiled with others.
 
 use core::hint::black_box;
-use hairis::{
-    Bsdf, Eval, Hit, LobeEval, Material, Model, PerLobe, Sample, Vec3x, control, set_control,
-};
+use hairis::model::{LobeEval, Model};
+use hairis::simd::{Vec3x, control, set_control};
+use hairis::{Bsdf, Eval, Hit, Material, PerLobe, Sample};
 use hairis_benches::inputs::{Inputs, materials};
 use hairis_variants::{ModelId, Registered, Visitor};
 

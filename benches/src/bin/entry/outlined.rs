@@ -3,10 +3,12 @@
 
 use core::hint::black_box;
 use glam::Vec3;
-use hairis::wide::f32x8;
+use hairis::columns::{EvalSlices, LengthError, SampleSlices};
+use hairis::model::Model;
+use hairis::simd::{Level, f32x8};
 use hairis::{
-    Bsdf, Bsdf8, Eval, Eval8, EvalSlices, Gaussian, LengthError, Level, Matched, Material,
-    Material8, Model, Published, Sample, Sample8, SampleSlices, Vec3x8,
+    Bsdf, Bsdf8, Eval, Eval8, Gaussian, Matched, Material, Material8, Published, Sample, Sample8,
+    Vec3x8,
 };
 use hairis_variants::Cauchy;
 

@@ -3,7 +3,7 @@
 use super::{LightSample8, Sky};
 use crate::numbers::Even;
 #[cfg(test)]
-use hairis::wide::f32x8;
+use hairis::simd::f32x8;
 use hairis_instruments::sequence::mix;
 use std::sync::OnceLock;
 

@@ -8,7 +8,7 @@ use crate::scene::{Met, Scene};
 use crate::tree::{self, Ray, Skip};
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
-use hairis::wide::f32x8;
+use hairis::simd::f32x8;
 use hairis::{FiberFrame8, Hit8, Vec3x8};
 use hairis_instruments::direction::cosine;
 

@@ -13,7 +13,7 @@ use crate::numbers::{Even, Numbers};
 use crate::scene::Scene;
 use glam::Vec3;
 use hairis::resample::{Counts, Partition, Weighed8, choose};
-use hairis::wide::f32x8;
+use hairis::simd::f32x8;
 use hairis::{Eval8, FiberFrame8, Vec3x8};
 use hairis_instruments::direction::cosine;
 

@@ -3,8 +3,7 @@
 use super::ray::{Hit, Ray, Spread};
 use crate::geometry::Strands;
 use glam::Vec3;
-use hairis::wide::f32x8;
-use hairis::{Broadcast, Lanes};
+use hairis::simd::{Broadcast, Lanes, f32x8};
 
 /// Eight segments, lane by lane. Free lanes start at NaN, which nothing meets.
 #[derive(Clone, Copy, Debug)]

@@ -3,8 +3,7 @@
 use super::block::bits;
 use super::ray::Spread;
 use crate::geometry::Bounds;
-use hairis::wide::f32x8;
-use hairis::{Broadcast, Lanes};
+use hairis::simd::{Broadcast, Lanes, f32x8};
 
 /// Eight boxes, lane by lane, and what is in each. Free lanes hold empty boxes, which nothing passes.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! Rays and hits.
 
 use glam::Vec3;
-use hairis::Lanes;
+use hairis::simd::Lanes;
 
 /// A ray: hits are at distances between 0 and `t_max`, both excluded.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,7 @@ use super::Tree;
 use super::build::DEEPEST;
 use super::node::Child;
 use super::ray::{Hit, Ray, Spread};
-use hairis::wide::f32x8;
-use hairis::{Broadcast, Kernel, Lanes};
+use hairis::simd::{Broadcast, Kernel, Lanes, f32x8};
 
 /// Numbers of nodes and blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,7 +2,8 @@
 
 use super::{MaterialSet, Set, Which};
 use crate::subject::Subject;
-use hairis::{EvalColumns, HitSlices, HitsError, Level, MaterialTable, SampleColumns};
+use hairis::columns::{EvalColumns, HitSlices, HitsError, MaterialTable, SampleColumns};
+use hairis::simd::Level;
 
 /// The columns of a call that are asked for.
 #[derive(Debug)]

@@ -2,9 +2,10 @@
 
 use super::{ErasedBsdf, MaterialSet, Set, Which};
 use crate::subject::Subject;
+use hairis::model::Model;
 use hairis::resample::{Counts, Partition, Pool, Weighed8};
-use hairis::wide::f32x8;
-use hairis::{Bsdf, Bsdf8, Hit, Hit8, Level, Model, Vec3x8};
+use hairis::simd::{Level, f32x8};
+use hairis::{Bsdf, Bsdf8, Hit, Hit8, Vec3x8};
 
 /// A [`Subject`] under light: pass a reference to any subject.
 ///

@@ -8,8 +8,10 @@ use super::support::{
 use super::{PublishedReference, Tested};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
+use hairis::params::HairDesc;
 use hairis::reference::Parameters;
-use hairis::{HairDesc, HairParams, Level, Lobe, PerLobe};
+use hairis::simd::Level;
+use hairis::{HairParams, Lobe, PerLobe};
 
 /// Integral of each lobe's value times the cosine: a product of two line integrals, as the lobes are products.
 fn integrals(reference: &PublishedReference, point: &Point) -> PerLobe<f64> {

@@ -5,7 +5,10 @@ use super::handles::{Bsdf, Material};
 use super::support::{Draws, lanes_of, packet};
 use core::f32::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
-use hairis::{GRAZING, HairDesc, HairParams, Level, Lobe, LobeMask, MAX_WIDTH, MIN_WIDTH, Sample};
+use hairis::model::GRAZING;
+use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
+use hairis::simd::Level;
+use hairis::{HairParams, Lobe, LobeMask, Sample};
 
 const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 const ENDS: [f32; 4] = [0.0, f32::EPSILON / 2.0, 0.5, LAST];

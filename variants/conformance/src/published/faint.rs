@@ -5,7 +5,9 @@ use super::handles::{Bsdf, Material};
 use super::support::{Draws, lanes_of, packet};
 use core::f32::consts::FRAC_PI_2;
 use glam::Vec3;
-use hairis::{HairDesc, HairParams, Level, Lobe, LobeMask, Sample};
+use hairis::params::HairDesc;
+use hairis::simd::Level;
+use hairis::{HairParams, Lobe, LobeMask, Sample};
 
 fn bsdf(tested: &Tested, desc: &HairDesc, wo: Vec3) -> Bsdf {
     Material::new(tested.model(), &HairParams::new(desc).unwrap()).prepare(wo)

@@ -4,8 +4,10 @@ use super::Tested;
 use super::handles::Material;
 use super::support::{Draws, LargestError, direction, double, lanes_of, narrow, parameters};
 use core::f64::consts::PI;
+use hairis::params::HairDesc;
 use hairis::reference::MatchedReference;
-use hairis::{HairDesc, HairParams, Level, Lobe, LobeMask};
+use hairis::simd::Level;
+use hairis::{HairParams, Lobe, LobeMask};
 
 /// Hair with `beta_r` from 0.5 to 60 degrees and all else as wide as it is found, seen from up to 89.9 degrees.
 fn hair(draws: &mut Draws) -> (HairParams, f64) {

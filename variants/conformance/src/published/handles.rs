@@ -2,10 +2,10 @@
 //! per model.
 
 use crate::erased::{Direction, ErasedBsdf, ErasedBsdf8};
-use hairis::wide::f32x8;
+use hairis::model::{LobeEval, LobeEval8};
+use hairis::simd::{Level, f32x8};
 use hairis::{
-    Conserving, Eval, Eval8, HairParams, Hit, Hit8, Level, LobeEval, LobeEval8, LobeMask, PerLobe,
-    Sample, Sample8, Vec3x8,
+    Conserving, Eval, Eval8, HairParams, Hit, Hit8, LobeMask, PerLobe, Sample, Sample8, Vec3x8,
 };
 
 /// A model of the family.
@@ -26,7 +26,7 @@ pub(super) trait AnyModel {
     fn conserving_scale(&self, params: &HairParams) -> f32;
 }
 
-impl<M: hairis::Model<Params = HairParams> + 'static> AnyModel for M {
+impl<M: hairis::model::Model<Params = HairParams> + 'static> AnyModel for M {
     fn prepare(&self, params: &HairParams, hit: Hit) -> Box<dyn ErasedBsdf> {
         Box::new(hairis::Material::new(self, params).prepare(hit))
     }

@@ -5,7 +5,8 @@ use super::support::{
     Draws, Kind, LargestError, double, for_each_point, lanes_of, narrow, packet, relative,
 };
 use crate::probe::masks;
-use hairis::{Level, Lobe, LobeMask};
+use hairis::simd::Level;
+use hairis::{Lobe, LobeMask};
 
 pub fn lobes_add_up(tested: &Tested) {
     let (mut s, mut pdf) = (LargestError::default(), LargestError::default());

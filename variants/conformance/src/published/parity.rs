@@ -7,8 +7,9 @@ use super::support::{
     Draws, Kind, LargestError, Point, for_each_point, lanes_of, materials, packet, parameters,
 };
 use glam::Vec3;
-use hairis::wide::f32x8;
-use hairis::{Eval, Hit, Level, Lobe, PerLobe, Sample8, SampleLanes};
+use hairis::model::SampleLanes;
+use hairis::simd::{Level, f32x8};
+use hairis::{Eval, Hit, Lobe, PerLobe, Sample8};
 
 fn eval_bits(e: Eval) -> [u32; 4] {
     [e.value[0], e.value[1], e.value[2], e.pdf].map(f32::to_bits)

@@ -8,8 +8,8 @@ use super::support::{
 use super::support::{Kind, angles};
 use core::f64::consts::PI;
 use glam::Vec3;
-use hairis::wide::f32x8;
-use hairis::{HairParams, Level, Lobe};
+use hairis::simd::{Level, f32x8};
+use hairis::{HairParams, Lobe};
 
 /// Cases of each property of random inputs.
 const CASES: u64 = 20_000;

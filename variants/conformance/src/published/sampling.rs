@@ -5,7 +5,8 @@ use super::support::{
 };
 use super::{PublishedReference, Tested};
 use core::f64::consts::PI;
-use hairis::{Level, Lobe, LobeMask, Sample};
+use hairis::simd::Level;
+use hairis::{Lobe, LobeMask, Sample};
 
 const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 

@@ -3,7 +3,9 @@
 use super::Tested;
 use super::handles::Material;
 use super::support::{LargestError, direction, double, lanes_of, oracle, relative};
-use hairis::{HairDesc, HairParams, Level, Lobe};
+use hairis::params::HairDesc;
+use hairis::simd::Level;
+use hairis::{HairParams, Lobe};
 
 /// Numbers of 24 bits about a half, which both TT and the glints draw pi from: all next to it, and then fewer and fewer.
 fn about_a_half() -> impl Iterator<Item = f32> {

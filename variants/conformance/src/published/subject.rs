@@ -7,7 +7,8 @@ use crate::subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Su
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::marker::PhantomData;
 use glam::Vec3;
-use hairis::{HairDesc, HairParams, Hit, Lobe, LobeMask, MAX_WIDTH, MIN_WIDTH};
+use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
+use hairis::{HairParams, Hit, Lobe, LobeMask};
 
 /// A model of the family, under the general suite.
 #[derive(Clone, Copy, Debug, Default)]

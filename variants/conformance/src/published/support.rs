@@ -6,9 +6,10 @@ use super::handles::Material;
 use super::{Formulas, PublishedReference, Tested};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
+use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
 use hairis::reference::Parameters;
-use hairis::wide::f32x8;
-use hairis::{HairDesc, HairParams, MAX_WIDTH, MIN_WIDTH, Vec3x8};
+use hairis::simd::f32x8;
+use hairis::{HairParams, Vec3x8};
 
 pub const DEG: f64 = PI / 180.0;
 

@@ -7,7 +7,9 @@ use super::support::{
     DEG, LargestError, angles, direction, double, lanes_of, narrow, oracle, relative,
 };
 use core::f64::consts::PI;
-use hairis::{HairDesc, HairParams, Level, Lobe};
+use hairis::params::HairDesc;
+use hairis::simd::Level;
+use hairis::{HairParams, Lobe};
 
 const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 

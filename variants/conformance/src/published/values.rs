@@ -2,7 +2,8 @@
 
 use super::Tested;
 use super::support::{Kind, LargestError, for_each_point, packet, relative};
-use hairis::{Eval, Level, Lobe};
+use hairis::simd::Level;
+use hairis::{Eval, Lobe};
 
 /// Below this share of 1 per steradian a Gaussian is compared absolutely: it is cut to 0 at `2^-115` of its peak.
 const FLOOR: f64 = 1e-20;

@@ -22,7 +22,9 @@ use super::support::{
 };
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
-use hairis::{HairDesc, HairParams, Level, Lobe, LobeMask, Sample};
+use hairis::params::HairDesc;
+use hairis::simd::Level;
+use hairis::{HairParams, Lobe, LobeMask, Sample};
 
 /// `A - B`: the angle that the interval `[lo, hi]` subtends at a bell of width `b`.
 fn span(lo: f64, hi: f64, b: f64) -> f64 {

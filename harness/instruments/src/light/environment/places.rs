@@ -1,7 +1,8 @@
 //! Places of eight directions on a map.
 
-use hairis::math::atan2_upper;
-use hairis::{Broadcast, Kernel, Lanes, Vec3x8};
+use hairis::Vec3x8;
+use hairis::model::math::atan2_upper;
+use hairis::simd::{Broadcast, Kernel, Lanes};
 use wide::f32x8;
 
 /// Places nearer to an edge than this share of the count of texels are found in double precision.

@@ -5,7 +5,7 @@ use super::{Candidate, MOST};
 use crate::lights::LightSample8;
 use glam::Vec3;
 use hairis::resample::{Counts, Partition, Weighed8, choose};
-use hairis::wide::f32x8;
+use hairis::simd::f32x8;
 use hairis::{Eval8, Vec3x8};
 
 /// Cell of candidates without a weight, after all others.

@@ -1,7 +1,7 @@
 //! Cells of the sphere in a row, in which neighbours look in similar directions.
 
-use hairis::wide::f32x8;
-use hairis::{Broadcast, Kernel, Lanes, Level, Vec3x8};
+use hairis::Vec3x8;
+use hairis::simd::{Broadcast, Kernel, Lanes, Level, f32x8};
 
 /// Cells along a side of the square that the sphere is unfolded to.
 const SIDE: usize = 8;

@@ -4,12 +4,14 @@
 //! on many CPUs: a load waits for an earlier store whose address has the same lower twelve bits. A few unused numbers
 //! between columns avoid it.
 
-use crate::packet::{AtBsdf, Pdf, Samples, Value, ValuePdf, Weights};
-use crate::simd::dispatch::clean_upper_halves;
-use crate::slices::{
+use crate::Bsdf;
+use crate::columns::{
     EvalSlices, LengthError, SampleSlices, SampleWeightSlices, WI, XI, check_columns,
 };
-use crate::{Bsdf, Level, Model};
+use crate::handle::kernels::{AtBsdf, Pdf, Samples, Value, ValuePdf, Weights};
+use crate::model::Model;
+use crate::simd::Level;
+use crate::simd::dispatch::clean_upper_halves;
 
 impl<M: Model> Bsdf<M> {
     /// Value and density of many directions: `wi` by component u, v, w.
@@ -21,14 +23,15 @@ impl<M: Model> Bsdf<M> {
     /// If the slices differ in length; nothing is written then.
     ///
     /// ```
-    /// use hairis::{Material, EvalSlices, Gaussian, Published, HairParams};
+    /// use hairis::{Gaussian, HairParams, Material, Published};
+    /// use hairis::columns::EvalSlices;
     /// let bsdf = Material::new(&Published(Gaussian), &HairParams::default()).prepare(glam::Vec3::Y);
     /// let wi = [[0.0; 11], [0.6; 11], [0.8; 11]];
     /// let (mut value, mut pdf) = ([[0.0; 11]; 3], [0.0; 11]);
     /// let [r, g, b] = &mut value;
     /// bsdf.eval_pdf_batch([&wi[0], &wi[1], &wi[2]], EvalSlices { value: [r, g, b], pdf: &mut pdf })?;
     /// assert!(pdf.iter().all(|pdf| *pdf > 0.0));
-    /// # Ok::<(), hairis::LengthError>(())
+    /// # Ok::<(), hairis::columns::LengthError>(())
     /// ```
     #[inline]
     pub fn eval_pdf_batch(&self, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {

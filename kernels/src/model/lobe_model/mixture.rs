@@ -1,8 +1,8 @@
 //! Probabilities of the lobes.
 
-use crate::{Lanes, store3, store4};
+use crate::simd::{Lanes, store3, store4};
 
-crate::lane_struct! {
+crate::simd::lane_struct! {
     /// Probabilities of the lobes of a shading point, and the choice of one.
     pub struct Mixture {
         /// Probability of each lobe.

@@ -1,5 +1,7 @@
 //! Arguments of slice calls: structures of arrays, whose lengths are checked.
 
+pub use crate::handle::{HitsError, MaterialTable};
+
 use crate::simd::columns::Columns;
 use core::fmt;
 

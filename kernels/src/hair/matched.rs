@@ -3,24 +3,25 @@
 mod band_cdf;
 mod bands;
 mod bell;
-mod gather;
 mod hemispheres;
 mod material;
+mod prepared;
 mod sampling;
 
 pub use bell::MatchedBell;
-pub use gather::MatchedPrepared;
 pub use material::MatchedMaterial;
+pub use prepared::MatchedPrepared;
 
 use crate::hair::{
     Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities, times,
 };
-use crate::model::{Eval, Hit, LobeEval, SampleLanes};
+use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
 use crate::simd::pair::Pair;
 use crate::simd::unfused::Unfused;
-use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3x};
+use crate::simd::{Broadcast, Lanes, Scalar, Vec3x};
+use crate::{HairParams, LobeMask, PerLobe};
 
-/// The model of [`Published`](crate::Hair), with the same parameters, values and albedo, and a sampler that follows them closer
+/// The model of [`Published`](crate::Published), with the same parameters, values and albedo, and a sampler that follows them closer
 /// than the published one.
 ///
 /// Each lobe is drawn from its own bells, cut to the sphere: truncated Gaussians on the Gaussian model, truncated Cauchys
@@ -71,7 +72,7 @@ use crate::{Broadcast, HairParams, Lanes, LobeMask, Model, PerLobe, Scalar, Vec3
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::{Material, Gaussian, Published, HairParams, Matched};
+/// use hairis::{Gaussian, HairParams, Matched, Material, Published};
 /// let (hair, matched) = (Published(Gaussian), Matched::<_>(Gaussian));
 /// let wo = Vec3::new(0.6, 0.8, 0.0);
 /// let [hair, matched] = [Material::new(&hair, &HairParams::default()).prepare(wo).eval(Vec3::Y),
@@ -100,12 +101,12 @@ impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
         material: &MatchedMaterial<C>,
         hit: Hit<L>,
     ) -> MatchedPrepared<L::Stored, BANDS> {
-        gather::prepare::<B, L, C, Pair<L>, 3, BANDS, BY_CHANNEL>(material, hit.wo)
+        prepared::prepare::<B, L, C, Pair<L>, 3, BANDS, BY_CHANNEL>(material, hit.wo)
     }
 
     #[inline(always)]
     fn prepare_one(material: &MatchedMaterial<f32>, hit: Hit<f32>) -> MatchedPrepared<f32, BANDS> {
-        gather::prepare::<B, f32, f32, Unfused, 1, BANDS, BY_CHANNEL>(material, hit.wo)
+        prepared::prepare::<B, f32, f32, Unfused, 1, BANDS, BY_CHANNEL>(material, hit.wo)
     }
 
     #[inline(always)]

@@ -1,7 +1,8 @@
 //! A direction in the frame of a fibre, with the sine and the cosine of its inclination.
 
-use crate::math::sin_cos_half_turn;
-use crate::{GRAZING, Lanes, Vec3x};
+use crate::model::GRAZING;
+use crate::model::math::sin_cos_half_turn;
+use crate::simd::{Lanes, Vec3x};
 use core::f32::consts::PI;
 
 /// A unit direction in the fibre's frame: the argument and the sample of a model.

@@ -1,7 +1,7 @@
 //! The Cauchy distribution cut to an interval: the published sampler's inclination, TT azimuth and glint azimuth.
 
-use crate::Lanes;
-use crate::math::{atan2_upper, tan_half_turn};
+use crate::model::math::{atan2_upper, tan_half_turn};
+use crate::simd::Lanes;
 
 /// A Cauchy distribution of width 1 centred on 0 and cut to `[lo, hi]`, as the angles of its ends: with
 /// `x = tan y`, `y` is uniform on an interval of length `span` about `mid`.

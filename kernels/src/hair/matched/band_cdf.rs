@@ -2,9 +2,9 @@
 
 use super::MatchedBell;
 use super::bands::bands;
-use super::gather::shared4;
 use super::hemispheres::Hemispheres;
-use crate::Lanes;
+use super::prepared::shared4;
+use crate::simd::Lanes;
 use core::f32::consts::FRAC_PI_4;
 
 /// Cumulative integrals of an inclination, from the lower pole and from the upper one inwards.

@@ -4,9 +4,9 @@ mod mixture;
 
 pub use mixture::Mixture;
 
-use crate::lobe::LobeMask;
-use crate::model::{Eval, Hit, LobeEval, SampleLanes};
-use crate::{Broadcast, Direction, LaneStruct, Lanes, Lobe, Model, PerLobe, Scalar, Vec3x, lanes3};
+use crate::model::{Direction, Eval, Hit, LobeEval, LobeMask, Model, SampleLanes};
+use crate::simd::{Broadcast, LaneStruct, Lanes, Scalar, Vec3x, lanes3};
+use crate::{Lobe, PerLobe};
 use wide::f32x8;
 
 /// A scattering model given by its lobes: the trait to implement for a new model.
@@ -17,7 +17,7 @@ use wide::f32x8;
 /// # What an implementation promises
 ///
 /// - `lobes`, `weights` and `sample_lobe` give no NaN for the directions and numbers they are given: both directions unit
-///   and further than [`GRAZING`](crate::GRAZING) from the axis (but `wo`, which may lie on it), `h` in `[-1, 1]`, `xi` in
+///   and further than [`GRAZING`](crate::model::GRAZING) from the axis (but `wo`, which may lie on it), `h` in `[-1, 1]`, `xi` in
 ///   `[0, 1)`.
 /// - `sample_lobe` draws from the density that `lobes` reports, which is above 0 wherever the lobe scatters.
 /// - Every function over lanes is `#[inline(always)]`, and so is all it calls. Array `map` and closures over lanes are calls.
@@ -30,9 +30,9 @@ use wide::f32x8;
 /// ```
 /// use core::f32::consts::FRAC_1_PI;
 /// use glam::Vec3;
-/// use hairis::{
-///     Broadcast, Material, Direction, Hit, Lanes, LobeEval, LobeModel, PerLobe, Scalar, lane_struct, lanes3,
-/// };
+/// use hairis::model::{Direction, LobeEval, LobeModel};
+/// use hairis::simd::{Broadcast, Lanes, Scalar, lane_struct, lanes3};
+/// use hairis::{Hit, Material, PerLobe};
 ///
 /// /// A fibre that scatters evenly: `S cos theta_i = albedo / (4 pi)`, whatever the direction.
 /// #[derive(Clone, Copy)]
@@ -88,7 +88,7 @@ use wide::f32x8;
 pub trait LobeModel: Copy {
     /// Parameters of a material, checked.
     type Params;
-    /// Constants of a material, declared with [`lane_struct!`](crate::lane_struct).
+    /// Constants of a material, declared with [`lane_struct!`](crate::simd::lane_struct).
     type Material<C: Scalar>: LaneStruct<One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
     /// Constants of a shading point.
     type Prepared<C: Scalar>: LaneStruct<One = Self::Prepared<f32>, Eight = Self::Prepared<f32x8>>;

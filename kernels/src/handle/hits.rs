@@ -1,10 +1,12 @@
 //! Slice calls over hits: each entry has a hit and a direction of its own.
 
-use crate::packet::{AtHits, EightHits, HitEvals, HitRow, HitSamples};
+use crate::columns::{EvalColumns, HitSlices, LengthError, SampleColumns, WI, XI, check_lengths};
+use crate::handle::kernels::{AtHits, EightHits, HitEvals, HitRow, HitSamples};
+use crate::model::Model;
+use crate::simd::Level;
 use crate::simd::columns::copy_few;
 use crate::simd::dispatch::clean_upper_halves;
-use crate::slices::{EvalColumns, HitSlices, LengthError, SampleColumns, WI, XI, check_lengths};
-use crate::{Level, Material, Material8, Model};
+use crate::{Material, Material8};
 use core::fmt;
 use wide::f32x8;
 
@@ -84,7 +86,8 @@ impl<M: Model> Material<M> {
     /// If the slices differ in length; nothing is written then.
     ///
     /// ```
-    /// use hairis::{Material, EvalColumns, Gaussian, Published, HairParams, HitSlices};
+    /// use hairis::{Gaussian, HairParams, Material, Published};
+    /// use hairis::columns::{EvalColumns, HitSlices};
     /// let hair = Material::new(&Published(Gaussian), &HairParams::default());
     /// let (wo, wi) = ([[0.0; 11], [0.6; 11], [0.8; 11]], [[0.1; 11], [0.7; 11], [0.7; 11]]);
     /// let hits = HitSlices { wo: [&wo[0], &wo[1], &wo[2]], h: None };
@@ -92,7 +95,7 @@ impl<M: Model> Material<M> {
     /// let out = EvalColumns { pdf: Some(&mut pdf), ..EvalColumns::default() };
     /// hair.eval_pdf_hits(hits, [&wi[0], &wi[1], &wi[2]], out)?;
     /// assert!(pdf.iter().all(|pdf| *pdf > 0.0));
-    /// # Ok::<(), hairis::LengthError>(())
+    /// # Ok::<(), hairis::columns::LengthError>(())
     /// ```
     #[inline]
     pub fn eval_pdf_hits(
@@ -135,7 +138,8 @@ impl<M: Model> Material<M> {
     /// If the slices differ in length; nothing is written then.
     ///
     /// ```
-    /// use hairis::{Material, Gaussian, Published, HairParams, HitSlices, SampleColumns};
+    /// use hairis::{Gaussian, HairParams, Material, Published};
+    /// use hairis::columns::{HitSlices, SampleColumns};
     /// let hair = Material::new(&Published(Gaussian), &HairParams::default());
     /// let (wo, xi) = ([[0.0; 11], [0.6; 11], [0.8; 11]], [[0.1; 11], [0.5; 11], [0.7; 11]]);
     /// let hits = HitSlices { wo: [&wo[0], &wo[1], &wo[2]], h: None };
@@ -148,7 +152,7 @@ impl<M: Model> Material<M> {
     /// };
     /// hair.sample_hits(hits, [&xi[0], &xi[1], &xi[2]], out)?;
     /// assert!(pdf.iter().all(|pdf| *pdf > 0.0));
-    /// # Ok::<(), hairis::LengthError>(())
+    /// # Ok::<(), hairis::columns::LengthError>(())
     /// ```
     #[inline]
     pub fn sample_hits(

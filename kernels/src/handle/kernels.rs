@@ -1,11 +1,9 @@
 //! Functions of a model as kernels of the vector layer: packets of eight, and rows of columns.
 
-use crate::model::{Eval8, Hit8, LobeEval8, Sample8, SampleLanes};
+use crate::model::{Eval8, Hit8, LobeEval8, Model, Sample8, SampleLanes};
 use crate::resample::{Weighed8, Weighing};
-use crate::{
-    Broadcast, Bsdf8, Constant, Hit, Kernel, Lanes, Model, PerLobe, Row, Vec3x, Vec3x8,
-    fresh_lanes3, store3,
-};
+use crate::simd::{Broadcast, Constant, Kernel, Lanes, Row, Vec3x, fresh_lanes3, store3};
+use crate::{Bsdf8, Hit, PerLobe, Vec3x8};
 use core::marker::PhantomData;
 use wide::f32x8;
 

@@ -1,7 +1,7 @@
 //! The bell curves that the published model is built of: its extension point.
 
-use crate::Lanes;
-use crate::math::gaussian;
+use crate::model::math::gaussian;
+use crate::simd::Lanes;
 use crate::simd::pair::Pair;
 
 /// A bell of unit peak: every Gaussian of the published model, or what replaces it.
@@ -11,7 +11,9 @@ use crate::simd::pair::Pair;
 /// speed mark all functions `#[inline(always)]` and pass no closures on.
 ///
 /// ```
-/// use hairis::{Bell, Material, Published, HairParams, Lanes};
+/// use hairis::{HairParams, Material, Published};
+/// use hairis::model::Bell;
+/// use hairis::simd::Lanes;
 /// use glam::Vec3;
 /// /// A parabola with its corners rounded: `max(0, 1 - s/8)^4`.
 /// #[derive(Clone, Copy, Debug)]
@@ -63,7 +65,7 @@ pub trait Bell: Copy {
 /// The bell of the published model: `exp(-s/2)`, a Gaussian whose deviation is the width.
 ///
 /// - Source: Ou et al. 2012, table 2; unit peak by ERRATA E4.
-/// - Accuracy: exactly 0 from about `2^-115` down, see [`crate::math::gaussian`].
+/// - Accuracy: exactly 0 from about `2^-115` down, see [`crate::model::math::gaussian`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Gaussian;
 

@@ -1,9 +1,8 @@
 //! Energy per direction: a model that returns no more light than arrives.
 
-use crate::model::{Eval, Hit, LobeEval, SampleLanes};
-use crate::{
-    Broadcast, Bsdf, Bsdf8, Kernel, Lanes, Level, LobeMask, Model, PerLobe, Scalar, Vec3x,
-};
+use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
+use crate::simd::{Broadcast, Kernel, Lanes, Level, Scalar, Vec3x};
+use crate::{Bsdf, Bsdf8, LobeMask, PerLobe};
 use wide::f32x8;
 
 impl<M: Model> Bsdf<M> {
@@ -71,7 +70,7 @@ impl<M: Model> Kernel for Conserve<'_, M> {
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::{Material, Conserving, Gaussian, Published, HairParams, PerLobe};
+/// use hairis::{Conserving, Gaussian, HairParams, Material, PerLobe, Published};
 /// let grazing = Vec3::new(0.99, 0.14, 0.0).normalize();
 /// let red = |PerLobe(lobes): PerLobe<[f32; 3]>| lobes.iter().map(|lobe| lobe[0]).sum::<f32>();
 /// let params = HairParams::default();

@@ -1,7 +1,9 @@
 //! Bells whose distribution on an interval is known in closed form: the extension point of the matched samplers.
 
-use crate::math::{normal_tail, normal_tail_inverse};
-use crate::{Bell, Gaussian, Lanes};
+use crate::Gaussian;
+use crate::model::Bell;
+use crate::model::math::{normal_tail, normal_tail_inverse};
+use crate::simd::Lanes;
 
 /// A [`Bell`] that [`Matched`](crate::Matched) draws from: one whose integral is known, and its inverse.
 ///

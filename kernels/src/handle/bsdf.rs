@@ -1,8 +1,9 @@
 //! Public handles: a material and a shading point of any model.
 
-use crate::model::{Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Sample, Sample8};
-use crate::packet::{Albedo, EvalPdf, Lobes, Prepare, SampleWi};
-use crate::{LaneStruct, Lanes, Level, LobeMask, Model, PerLobe, Vec3x, Vec3x8};
+use crate::handle::kernels::{Albedo, EvalPdf, Lobes, Prepare, SampleWi};
+use crate::model::{Eval, Eval8, Hit, Hit8, LobeEval, LobeEval8, Model, Sample, Sample8};
+use crate::simd::{LaneStruct, Lanes, Level, Vec3x};
+use crate::{LobeMask, PerLobe, Vec3x8};
 use core::f32::consts::FRAC_PI_2;
 use core::fmt;
 use glam::Vec3;
@@ -12,7 +13,7 @@ use wide::f32x8;
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairis::{Material, Gaussian, Published, HairParams};
+/// use hairis::{Gaussian, HairParams, Material, Published};
 /// let hair = Material::new(&Published(Gaussian), &HairParams::default());
 /// let bsdf = hair.prepare(Vec3::new(0.6, 0.8, 0.0)); // wo, in the fibre's frame
 /// let sample = bsdf.sample([0.2, 0.5, 0.5]).expect("not along the fibre");

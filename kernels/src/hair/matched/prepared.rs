@@ -6,8 +6,9 @@ use super::bands::bands;
 use super::hemispheres::Hemispheres;
 use super::material::{MatchedMaterial, extent};
 use crate::hair::{prepare_view, selection, times};
-use crate::{Broadcast, HairView, LaneStruct, Lanes, Lobe, LobeMask, Scalar, Vec3x};
-use crate::{lanes3, lanes4, store3, store4};
+use crate::model::HairView;
+use crate::simd::{Broadcast, LaneStruct, Lanes, Scalar, Vec3x, lanes3, lanes4, store3, store4};
+use crate::{Lobe, LobeMask};
 use wide::f32x8;
 
 /// Energies and areas below this count as 0: next to denormals their reciprocals would have no digits. Energies are to the scale

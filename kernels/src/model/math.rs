@@ -3,9 +3,9 @@
 //! The general functions of `wide` branch on their data and cost two to four times as much. Each function here states
 //! its range, and the error measured on it by the tests (rows of `tests/tolerance.rs`). None branches.
 
-pub use crate::quadrature::GAUSS_LEGENDRE_32;
+pub use crate::hair::quadrature::GAUSS_LEGENDRE_32;
 
-use crate::Lanes;
+use crate::simd::Lanes;
 use crate::simd::pair::Pair;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 

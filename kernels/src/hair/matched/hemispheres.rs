@@ -1,6 +1,6 @@
 //! Inclinations of the three lobes in both hemispheres, in lanes: below the normal plane and above it.
 
-use crate::Lanes;
+use crate::simd::Lanes;
 use crate::simd::pair::Pair;
 use crate::simd::unfused::Unfused;
 use wide::f32x8;

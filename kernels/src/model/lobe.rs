@@ -5,7 +5,7 @@ use core::ops::{Index, IndexMut};
 /// One lobe of a scattering model: a slot from 0 to 3.
 ///
 /// The constants name the lobes of the published model. A model with other lobes names its own slots, for
-/// instance `const DIFFUSE: Lobe = Lobe::slot(0)`, and lists them in its [`Model::LOBES`](crate::Model::LOBES).
+/// instance `const DIFFUSE: Lobe = Lobe::slot(0)`, and lists them in its [`Model::LOBES`](crate::model::Model::LOBES).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Lobe(u8);
 

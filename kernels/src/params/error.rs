@@ -5,7 +5,8 @@ use core::fmt;
 /// Refusal of hair parameters: the field at fault and its value.
 ///
 /// ```
-/// use hairis::{HairDesc, HairParams, ParamError};
+/// use hairis::{HairParams, ParamError};
+/// use hairis::params::HairDesc;
 /// let refused = HairParams::new(&HairDesc { beta_tt: 0.0, ..HairDesc::default() });
 /// assert_eq!(refused, Err(ParamError::Width("beta_tt", 0.0)));
 /// ```

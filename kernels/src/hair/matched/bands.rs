@@ -1,7 +1,7 @@
 //! Bands of inclination, in each of which W is approximated by a constant.
 
 use super::hemispheres::Hemispheres;
-use crate::Lanes;
+use crate::simd::Lanes;
 
 /// A band, and the one as far on the other side of the normal plane.
 #[derive(Clone, Copy)]

@@ -2,9 +2,8 @@
 
 use super::{MatchedBell, MatchedPrepared};
 use crate::hair::{Angles, FoldedXi, direction_from_angles};
-use crate::lanes3;
 use crate::simd::pair::Pair;
-use crate::{Broadcast, Lanes, Vec3x};
+use crate::simd::{Broadcast, Lanes, Vec3x, lanes3};
 
 /// A quarter of the step between uniform numbers of 24 bits: the share of an integral that is left out at its ends, so that
 /// where they have digits for it, on narrow bells and in far tails, rounding takes no sample past them, to a pole or to where a

@@ -1,12 +1,13 @@
 //! Constants of the published sampler: per material, and per material and direction (section 3.3 of the paper).
 
 use super::view::{self, HairLobes, HairView, times};
-use crate::store4;
-use crate::truncated::TruncatedCauchy;
-use crate::{Bell, Broadcast, HairParams, Lanes, Lobe, LobeMask, Vec3x};
+use crate::hair::truncated::TruncatedCauchy;
+use crate::model::Bell;
+use crate::simd::{Broadcast, Lanes, Vec3x, store4};
+use crate::{HairParams, Lobe, LobeMask};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-crate::lane_struct! {
+crate::simd::lane_struct! {
     /// The published sampler's constants of a material; arrays of two are TT and the glints.
     pub struct PublishedConstants {
         /// The azimuth's truncated Cauchy on one side: tangent of the middle of its angles.
@@ -22,7 +23,7 @@ crate::lane_struct! {
     }
 }
 
-crate::lane_struct! {
+crate::simd::lane_struct! {
     /// The constants of a material of the published model.
     pub struct PublishedMaterial {
         /// Its lobes.
@@ -32,7 +33,7 @@ crate::lane_struct! {
     }
 }
 
-crate::lane_struct! {
+crate::simd::lane_struct! {
     /// The constants of a shading point of the published model: those of its material, and those of `wo`.
     pub struct PublishedPrepared {
         /// The lobes as seen from `wo`.

@@ -1,13 +1,15 @@
 //! Constants of a matched sampler per material.
 
 use super::MatchedBell;
-use crate::{Broadcast, HairLobes, HairParams, Lanes};
+use crate::HairParams;
+use crate::model::HairLobes;
+use crate::simd::{Broadcast, Lanes};
 use core::f32::consts::PI;
 
 /// Least share of the largest intensity, for the sampler, of a lobe that has any: alone, it is still drawn.
 const LEAST_IMPORTANCE: f64 = 1e-15;
 
-crate::lane_struct! {
+crate::simd::lane_struct! {
     /// The constants of a material with a matched sampler.
     ///
     /// Arrays of two are TT and the glints, of four in the order of [`Lobe`](crate::Lobe).
