@@ -6,9 +6,9 @@
 //! use hairis::{Gaussian, HairParams, Published};
 //! use hairis_conformance::{Claims, Materials, Subject};
 //!
-//! struct Published;
+//! struct GaussianHair;
 //!
-//! impl Subject for Published {
+//! impl Subject for GaussianHair {
 //!     type Model = Published<Gaussian>;
 //!
 //!     fn model(&self) -> Self::Model {
@@ -24,8 +24,8 @@
 //!     }
 //! }
 //!
-//! hairis_conformance::conformance!(published, Published);
-//! # hairis_conformance::not_numbers::inputs_that_are_no_numbers_are_black(&Published).unwrap();
+//! hairis_conformance::conformance!(gaussian, GaussianHair);
+//! # hairis_conformance::not_numbers::inputs_that_are_no_numbers_are_black(&GaussianHair).unwrap();
 //! ```
 //!
 //! The last line declares the module `published` with a `#[test]` for each property:
