@@ -10,12 +10,12 @@ import subprocess
 import sys
 
 ROWS = {
-    "ValuePdf": "eval_pdf_batch",
-    "Value": "eval_batch",
-    "Pdf": "pdf_batch",
-    "Samples": "sample_batch",
-    "Weights": "sample_weight_batch",
-    "Proposed": "propose_batch",
+    "ValuePdf": "eval_columns",
+    "Value": "eval_columns-value",
+    "Pdf": "eval_columns-pdf",
+    "Samples": "sample_columns",
+    "Weights": "sample_columns-weight",
+    "Proposed": "propose_columns",
 }
 PACKETS = {
     "Prepare": ("prepare8", "shared", "mixed"),
@@ -23,7 +23,7 @@ PACKETS = {
     "SampleWi": ("sample8", "", "points"),
 }
 # Weights of candidates, and packets of eight hits: the model is their only parameter.
-OF_MODEL = {"Weighs": "weigh_batch", "ProposalsOf": "propose8-points", "WeighOf": "weigh8-points"}
+OF_MODEL = {"Weighs": "weigh_columns", "ProposalsOf": "propose8-points", "WeighOf": "weigh8-points"}
 MODELS = {
     "Chiang<true>": "chiang-by-channel",
     "Chiang": "chiang",

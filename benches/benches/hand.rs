@@ -17,8 +17,8 @@ mod x86 {
     use core::array::from_fn;
     use core::hint::black_box;
     use glam::Vec3;
-    use hairis::columns::{EvalColumns, EvalSlices, HitSlices};
-    use hairis::columns::{SampleColumns, SampleWeightSlices};
+    use hairis::columns::SampleColumns;
+    use hairis::columns::{EvalColumns, HitColumns};
     use hairis::model::Bell;
     use hairis::model::Model;
     use hairis::simd::Level;
@@ -220,25 +220,25 @@ mod x86 {
         [f32x8::ZERO; 3]
     }
 
-    fn bsdf<B: Bell>(bell: B, inputs: &Inputs) -> (Bsdf<Published<B>>, Constants) {
+    fn bsdf<B: Bell>(level: Level, bell: B, inputs: &Inputs) -> (Bsdf<Published<B>>, Constants) {
         let (params, wo) = (HairParams::default(), inputs.wo[0]);
         (
-            Material::new(&Published(bell), &params).prepare(wo),
+            Material::new(&Published(bell), &params)
+                .with_level(level)
+                .prepare(wo),
             Constants::new(params.desc(), wo.to_array()),
         )
     }
 
     fn eval<B: Bell, const CAUCHY: bool>(run: Run<'_>, set: Set, bell: B, inputs: &Inputs) {
-        let (bsdf, constants) = &bsdf(bell, inputs);
+        let (bsdf, constants) = &bsdf(run.level, bell, inputs);
         let wi: Vec<[f32; 3]> = inputs.wi.iter().map(Vec3::to_array).collect();
-        let level = run.level;
         let ours = |from: [&[f32]; 3], [r, g, b, pdf]: [&mut [f32]; 4]| {
-            let done = bsdf.eval_pdf_batch_at(
-                level,
+            let done = bsdf.eval_columns(
                 from,
-                EvalSlices {
-                    value: [r, g, b],
-                    pdf,
+                EvalColumns {
+                    value: Some([r, g, b]),
+                    pdf: Some(pdf),
                 },
             );
             black_box(done.is_ok());
@@ -261,7 +261,7 @@ mod x86 {
                         &LANES,
                         [x.as_mut_array(), y.as_mut_array(), z.as_mut_array()],
                     );
-                    let eval = bsdf.eval_pdf8_at(level, &Vec3x::new(x, y, z));
+                    let eval = bsdf.eval_pdf8(&Vec3x::new(x, y, z));
                     let [r, g, b] = &eval.value;
                     used(
                         &mut sum,
@@ -289,15 +289,16 @@ mod x86 {
     }
 
     fn sample(run: Run<'_>, set: Set, inputs: &Inputs) {
-        let (bsdf, constants) = &bsdf(Gaussian, inputs);
-        let (level, xi) = (run.level, &inputs.xi);
+        let (bsdf, constants) = &bsdf(run.level, Gaussian, inputs);
+        let xi = &inputs.xi;
         let ours = |from: [&[f32]; 3], [u, v, w, pdf, r, g, b]: [&mut [f32]; 7]| {
-            let out = SampleWeightSlices {
-                wi: [u, v, w],
-                pdf,
-                weight: [r, g, b],
+            let out = SampleColumns {
+                wi: Some([u, v, w]),
+                pdf: Some(pdf),
+                weight: Some([r, g, b]),
+                ..SampleColumns::default()
             };
-            black_box(bsdf.sample_weight_batch_at(level, from, out).is_ok());
+            black_box(bsdf.sample_columns(from, out).is_ok());
         };
         run.columns("slices", (xi, DIRECTIONS), ours, |from, to| {
             set.sample::<false>(constants, from, to)
@@ -318,7 +319,7 @@ mod x86 {
                         &LANES,
                         [x.as_mut_array(), y.as_mut_array(), z.as_mut_array()],
                     );
-                    let s = bsdf.sample8_at(level, &from);
+                    let s = bsdf.sample8(&from);
                     let ([r, g, b], wi) = (&s.weight, &s.wi);
                     let wi = [wi.x.as_array(), wi.y.as_array(), wi.z.as_array()];
                     let [u, v, w] = wi;
@@ -367,12 +368,14 @@ mod x86 {
     /// Slices of hits, each with a `wo` of its own, beside slices of the published model at one hit: the columns of a path tracer.
     fn hits<M: Model<Params = HairParams>>(run: Run<'_>, model: &M, inputs: &Inputs) {
         let (level, params) = (run.level, HairParams::default());
-        let material = Material::new(model, &params);
-        let one = Material::new(&Published(Gaussian), &params).prepare(inputs.wo[0]);
+        let material = Material::new(model, &params).with_level(level);
+        let one = Material::new(&Published(Gaussian), &params)
+            .with_level(level)
+            .prepare(inputs.wo[0]);
         let wo: [Column; 3] = columns(0, &arrays(&inputs.wo));
         let wi: [Column; 3] = columns(3, &arrays(&inputs.wi));
         let xi: [Column; 3] = columns(3, &inputs.xi);
-        let hits = HitSlices {
+        let hits = HitColumns {
             wo: parts(&wo),
             h: None,
         };
@@ -387,22 +390,15 @@ mod x86 {
                     value: Some([r, g, b]),
                     pdf: Some(pdf),
                 };
-                black_box(
-                    material
-                        .eval_pdf_hits_at(level, black_box(hits), parts(&wi), out)
-                        .is_ok(),
-                );
+                black_box(material.eval_hits(black_box(hits), parts(&wi), out).is_ok());
             },
             || {
                 let [r, g, b, pdf, ..] = parts_mut(&mut of_one);
-                let out = EvalSlices {
-                    value: [r, g, b],
-                    pdf,
+                let out = EvalColumns {
+                    value: Some([r, g, b]),
+                    pdf: Some(pdf),
                 };
-                black_box(
-                    one.eval_pdf_batch_at(level, black_box(parts(&wi)), out)
-                        .is_ok(),
-                );
+                black_box(one.eval_columns(black_box(parts(&wi)), out).is_ok());
             },
         );
         run.compare(
@@ -418,21 +414,19 @@ mod x86 {
                 };
                 black_box(
                     material
-                        .sample_hits_at(level, black_box(hits), parts(&xi), out)
+                        .sample_hits(black_box(hits), parts(&xi), out)
                         .is_ok(),
                 );
             },
             || {
                 let [u, v, w, pdf, r, g, b] = parts_mut(&mut of_one);
-                let out = SampleWeightSlices {
-                    wi: [u, v, w],
-                    pdf,
-                    weight: [r, g, b],
+                let out = SampleColumns {
+                    wi: Some([u, v, w]),
+                    pdf: Some(pdf),
+                    weight: Some([r, g, b]),
+                    ..SampleColumns::default()
                 };
-                black_box(
-                    one.sample_weight_batch_at(level, black_box(parts(&xi)), out)
-                        .is_ok(),
-                );
+                black_box(one.sample_columns(black_box(parts(&xi)), out).is_ok());
             },
         );
     }

@@ -14,7 +14,7 @@ use crate::platform::{Platform, platform};
 use crate::task::{PROBE, Pass, Point, Slices, task};
 use core::marker::PhantomData;
 use glam::Vec3;
-use hairis::columns::{EvalSlices, SampleSlices};
+use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::reference::Reference;
 use hairis::simd::{Level, f32x8};
 use hairis::{Material, ParamError, Vec3x8};
@@ -271,9 +271,8 @@ fn prepare<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
         task(&inputs.wo, move |wo| material.prepare(*wo)),
     )
     .levels(EIGHT, |level| {
-        task(&packets(&inputs.wo), move |wo| {
-            material.prepare8_at(level, wo)
-        })
+        let material = material.with_level(level);
+        task(&packets(&inputs.wo), move |wo| material.prepare8(wo))
     });
     Ok((
         contenders,
@@ -295,13 +294,13 @@ fn eval_pdf<M: Registered>(
     let slices = |len| {
         let wi = &wi;
         move |level| -> Box<dyn Pass> {
+            let bsdf = bsdf.with_level(level);
             let call = move |wi: [&[f32]; 3], [r, g, b, pdf]: [&mut [f32]; 4]| {
-                bsdf.eval_pdf_batch_at(
-                    level,
+                bsdf.eval_columns(
                     wi,
-                    EvalSlices {
-                        value: [r, g, b],
-                        pdf,
+                    EvalColumns {
+                        value: Some([r, g, b]),
+                        pdf: Some(pdf),
                     },
                 )
             };
@@ -314,15 +313,15 @@ fn eval_pdf<M: Registered>(
         task(&inputs.wi, move |wi| bsdf.eval_pdf(*wi)),
     )
     .levels(EIGHT, |level| {
-        task(&packets(&inputs.wi), move |wi| bsdf.eval_pdf8_at(level, wi))
+        let bsdf = bsdf.with_level(level);
+        task(&packets(&inputs.wi), move |wi| bsdf.eval_pdf8(wi))
     })
     .levels(SLICES, slices(TIMED_DIRECTIONS));
     if every_way {
         let (eights, _) = inputs.wi.as_chunks::<8>();
         let fresh = |level| {
-            task(eights, move |wi| {
-                bsdf.eval_pdf8_at(level, &Vec3x8::from(*wi))
-            })
+            let bsdf = bsdf.with_level(level);
+            task(eights, move |wi| bsdf.eval_pdf8(&Vec3x8::from(*wi)))
         };
         contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
     }
@@ -345,17 +344,18 @@ fn sample<M: Registered>(
     );
     let slices = |len| {
         move |level| -> Box<dyn Pass> {
+            let bsdf = bsdf.with_level(level);
             let call =
                 move |xi: [&[f32]; 3],
                       [r, g, b, pdf, u, v, w, wr, wg, wb, slot]: [&mut [f32]; 11]| {
-                    let out = SampleSlices {
-                        wi: [u, v, w],
-                        value: [r, g, b],
-                        pdf,
-                        weight: [wr, wg, wb],
-                        slot,
+                    let out = SampleColumns {
+                        wi: Some([u, v, w]),
+                        value: Some([r, g, b]),
+                        pdf: Some(pdf),
+                        weight: Some([wr, wg, wb]),
+                        slot: Some(slot),
                     };
-                    bsdf.sample_batch_at(level, xi, out)
+                    bsdf.sample_columns(xi, out)
                 };
             Box::new(Slices::new(len, xi, call))
         }
@@ -366,7 +366,8 @@ fn sample<M: Registered>(
         task(xi, move |xi| bsdf.sample(*xi)),
     )
     .levels(EIGHT, |level| {
-        task(&xi_packets(xi), move |xi| bsdf.sample8_at(level, xi))
+        let bsdf = bsdf.with_level(level);
+        task(&xi_packets(xi), move |xi| bsdf.sample8(xi))
     })
     .levels(SLICES, slices(TIMED_DIRECTIONS));
     if every_way {
@@ -374,7 +375,10 @@ fn sample<M: Registered>(
         let packed = |xi: &[[f32; 3]; 8]| -> [f32x8; 3] {
             core::array::from_fn(|k| f32x8::new(xi.map(|xi| xi[k])))
         };
-        let fresh = |level| task(eights, move |xi| bsdf.sample8_at(level, &packed(xi)));
+        let fresh = |level| {
+            let bsdf = bsdf.with_level(level);
+            task(eights, move |xi| bsdf.sample8(&packed(xi)))
+        };
         contenders = contenders.levels(FRESH, fresh).levels(SHORT, slices(FEW));
     }
     Ok((

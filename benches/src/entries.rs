@@ -9,7 +9,7 @@ use core::fmt;
 use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
-use hairis::columns::{EvalSlices, SampleSlices, SampleWeightSlices};
+use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::reference::Reference;
 use hairis::simd::Level;
 use hairis::{Bsdf, Bsdf8, Material, Material8};
@@ -242,7 +242,8 @@ impl<M: Registered> Of<'_, M> {
     /// Eight shading points on eight heads of hair.
     fn bsdf8(&self, level: Level) -> Bsdf8<M> {
         self.mixed()
-            .prepare8_at(level, &packets(&self.inputs.wo[..8])[0])
+            .with_level(level)
+            .prepare8(&packets(&self.inputs.wo[..8])[0])
     }
 
     /// The query at [`bsdf`](Self::bsdf).
@@ -297,16 +298,12 @@ impl<M: Registered> Of<'_, M> {
         });
         for level in Level::available() {
             self.show(visitor, "prepare8-shared", label(level), shared, || {
-                let material = self.material();
-                Each::new(8, packets(&inputs.wo), move |wo| {
-                    material.prepare8_at(level, wo)
-                })
+                let material = self.material().with_level(level);
+                Each::new(8, packets(&inputs.wo), move |wo| material.prepare8(wo))
             });
             self.show(visitor, "prepare8-mixed", label(level), mixed, || {
-                let material = self.mixed();
-                Each::new(8, packets(&inputs.wo), move |wo| {
-                    material.prepare8_at(level, wo)
-                })
+                let material = self.mixed().with_level(level);
+                Each::new(8, packets(&inputs.wo), move |wo| material.prepare8(wo))
             });
         }
     }
@@ -325,53 +322,51 @@ impl<M: Registered> Of<'_, M> {
         });
         for level in Level::available() {
             self.show(visitor, "eval_pdf8", label(level), one, || {
-                let bsdf = self.bsdf();
-                Each::new(8, packets(&inputs.wi), move |wi| {
-                    bsdf.eval_pdf8_at(level, wi)
-                })
+                let bsdf = self.bsdf().with_level(level);
+                Each::new(8, packets(&inputs.wi), move |wi| bsdf.eval_pdf8(wi))
             });
             self.show(visitor, "eval_pdf8-points", label(level), lane, || {
                 let bsdf = self.bsdf8(level);
-                Each::new(8, packets(&inputs.wi), move |wi| {
-                    bsdf.eval_pdf8_at(level, wi)
-                })
+                Each::new(8, packets(&inputs.wi), move |wi| bsdf.eval_pdf8(wi))
             });
-            for (entry, len) in [
-                ("eval_pdf_batch", DIRECTIONS),
-                ("eval_pdf_batch-short", SHORT),
-            ] {
+            for (entry, len) in [("eval_columns", DIRECTIONS), ("eval_columns-short", SHORT)] {
                 self.show(visitor, entry, label(level), one, || {
-                    let bsdf = self.bsdf();
+                    let bsdf = self.bsdf().with_level(level);
                     Slices::new(
                         len,
                         &arrays(&inputs.wi),
                         move |wi, [r, g, b, pdf]: [&mut [f32]; 4]| {
-                            bsdf.eval_pdf_batch_at(
-                                level,
+                            bsdf.eval_columns(
                                 wi,
-                                EvalSlices {
-                                    value: [r, g, b],
-                                    pdf,
+                                EvalColumns {
+                                    value: Some([r, g, b]),
+                                    pdf: Some(pdf),
                                 },
                             )
                         },
                     )
                 });
             }
-            self.show(visitor, "eval_batch", label(level), one, || {
-                let bsdf = self.bsdf();
+            self.show(visitor, "eval_columns-value", label(level), one, || {
+                let bsdf = self.bsdf().with_level(level);
                 Slices::new(
                     DIRECTIONS,
                     &arrays(&inputs.wi),
-                    move |wi, value: [&mut [f32]; 3]| bsdf.eval_batch_at(level, wi, value),
+                    move |wi, value: [&mut [f32]; 3]| {
+                        let (value, pdf) = (Some(value), None);
+                        bsdf.eval_columns(wi, EvalColumns { value, pdf })
+                    },
                 )
             });
-            self.show(visitor, "pdf_batch", label(level), one, || {
-                let bsdf = self.bsdf();
+            self.show(visitor, "eval_columns-pdf", label(level), one, || {
+                let bsdf = self.bsdf().with_level(level);
                 Slices::new(
                     DIRECTIONS,
                     &arrays(&inputs.wi),
-                    move |wi, [pdf]: [&mut [f32]; 1]| bsdf.pdf_batch_at(level, wi, pdf),
+                    move |wi, [pdf]: [&mut [f32]; 1]| {
+                        let (value, pdf) = (None, Some(pdf));
+                        bsdf.eval_columns(wi, EvalColumns { value, pdf })
+                    },
                 )
             });
         }
@@ -391,29 +386,26 @@ impl<M: Registered> Of<'_, M> {
         });
         for level in Level::available() {
             self.show(visitor, "sample8", label(level), one, || {
-                let bsdf = self.bsdf();
-                Each::new(8, xi_packets(&inputs.xi), move |xi| {
-                    bsdf.sample8_at(level, xi)
-                })
+                let bsdf = self.bsdf().with_level(level);
+                Each::new(8, xi_packets(&inputs.xi), move |xi| bsdf.sample8(xi))
             });
             self.show(visitor, "sample8-points", label(level), lane, || {
                 let bsdf = self.bsdf8(level);
-                Each::new(8, xi_packets(&inputs.xi), move |xi| {
-                    bsdf.sample8_at(level, xi)
-                })
+                Each::new(8, xi_packets(&inputs.xi), move |xi| bsdf.sample8(xi))
             });
-            self.show(visitor, "sample_weight_batch", label(level), one, || {
-                let bsdf = self.bsdf();
+            self.show(visitor, "sample_columns-weight", label(level), one, || {
+                let bsdf = self.bsdf().with_level(level);
                 Slices::new(
                     DIRECTIONS,
                     &inputs.xi,
                     move |xi, [u, v, w, pdf, r, g, b]: [&mut [f32]; 7]| {
-                        let out = SampleWeightSlices {
-                            wi: [u, v, w],
-                            pdf,
-                            weight: [r, g, b],
+                        let out = SampleColumns {
+                            wi: Some([u, v, w]),
+                            pdf: Some(pdf),
+                            weight: Some([r, g, b]),
+                            ..SampleColumns::default()
                         };
-                        bsdf.sample_weight_batch_at(level, xi, out)
+                        bsdf.sample_columns(xi, out)
                     },
                 )
                 .read_by(|[u, v, w, pdf, ..]| Answer {
@@ -427,16 +419,19 @@ impl<M: Registered> Of<'_, M> {
                     pdf: Some(pdf),
                 })
             });
-            for (entry, len) in [("sample_batch", DIRECTIONS), ("sample_batch-short", SHORT)] {
+            for (entry, len) in [
+                ("sample_columns", DIRECTIONS),
+                ("sample_columns-short", SHORT),
+            ] {
                 self.show(visitor, entry, label(level), one, || {
-                    let bsdf = self.bsdf();
+                    let bsdf = self.bsdf().with_level(level);
                     Slices::new(
                         len,
                         &inputs.xi,
                         move |xi, [r, g, b, pdf, u, v, w, weight_r, weight_g, weight_b, slot]: [&mut [f32]; 11]| {
                             let weight = [weight_r, weight_g, weight_b];
-                            let out = SampleSlices { wi: [u, v, w], value: [r, g, b], pdf, weight, slot };
-                            bsdf.sample_batch_at(level, xi, out)
+                            let out = SampleColumns { wi: Some([u, v, w]), value: Some([r, g, b]), pdf: Some(pdf), weight: Some(weight), slot: Some(slot) };
+                            bsdf.sample_columns(xi, out)
                         },
                     )
                 });
@@ -475,18 +470,19 @@ impl<M: Registered> Of<'_, M> {
         for level in Level::available() {
             // Eight directions at one shading point; of the last packet only the requested lanes count.
             self.show(visitor, "prepare-sample8", label(level), one, || {
-                let (material, xi) = (self.material(), eights[..packets_at_one].to_vec());
+                let material = self.material().with_level(level);
+                let xi = eights[..packets_at_one].to_vec();
                 Each::new(samples, inputs.wo.clone(), move |wo| {
                     let bsdf = material.prepare(*wo);
-                    last(&xi, |xi| bsdf.sample8_at(level, xi))
+                    last(&xi, |xi| bsdf.sample8(xi))
                 })
             });
             // Eight shading points on eight heads of hair.
             self.show(visitor, "prepare8-sample8", label(level), eight, || {
-                let (material, xi) = (self.mixed(), eights[..samples].to_vec());
+                let (material, xi) = (self.mixed().with_level(level), eights[..samples].to_vec());
                 Each::new(8 * samples, packets(&inputs.wo), move |wo| {
-                    let bsdf = material.prepare8_at(level, wo);
-                    last(&xi, |xi| bsdf.sample8_at(level, xi))
+                    let bsdf = material.prepare8(wo);
+                    last(&xi, |xi| bsdf.sample8(xi))
                 })
             });
         }

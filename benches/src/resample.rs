@@ -8,9 +8,9 @@ use glam::Vec3;
 use hairis::columns::LengthError;
 use hairis::model::Model;
 use hairis::resample::{
-    CandidateSlices, Counts, Partition, Reservoir8, Weighed8, WeightSlices, choose,
+    CandidateColumns, Counts, Partition, Reservoir8, Weighed8, WeightColumns, choose,
 };
-use hairis::simd::{Level, f32x8};
+use hairis::simd::f32x8;
 use hairis::{Bsdf, Bsdf8, Vec3x8};
 
 /// Candidates of each technique in a pool.
@@ -58,7 +58,6 @@ pub fn looked_up(wi: &[Vec3]) -> Vec<[f32; 7]> {
 #[derive(Debug)]
 pub struct PoolTask<M: Model> {
     bsdf: Bsdf<M>,
-    level: Level,
     xi: [Column; 3],
     /// Candidates of the light.
     block: [Column; 7],
@@ -78,12 +77,11 @@ struct Columns {
 impl<M: Model> PoolTask<M> {
     /// Pools at this hit, with the numbers and the directions of `inputs`.
     #[must_use]
-    pub fn new(bsdf: Bsdf<M>, level: Level, inputs: &Inputs) -> Self {
+    pub fn new(bsdf: Bsdf<M>, inputs: &Inputs) -> Self {
         let block = looked_up(&inputs.wi);
         let (three, one) = ([[0.0; ALL]; 3], [0.0; ALL]);
         Self {
             bsdf,
-            level,
             xi: from_fn(|k| Column::new(k, inputs.xi.iter().map(|xi| xi[k]))),
             block: from_fn(|k| Column::new(3 + k, block.iter().map(|row| row[k]))),
             pool: Columns {
@@ -110,7 +108,7 @@ impl<M: Model> PoolTask<M> {
             .each_ref()
             .map(|column| column.part(at, EACH));
         let proposed = wi.each_mut().map(|column| &mut column[..EACH]);
-        self.bsdf.propose_batch_at(self.level, xi, proposed)?;
+        self.bsdf.propose_columns(xi, proposed)?;
         for (radiance, wi) in radiance.iter_mut().zip(&*wi) {
             for (radiance, x) in radiance[..EACH].iter_mut().zip(wi) {
                 *radiance = sky_along(*x);
@@ -124,17 +122,17 @@ impl<M: Model> PoolTask<M> {
         for (column, drawn) in columns.zip(black_box(&self.block)) {
             column[EACH..].copy_from_slice(drawn.part(at, EACH));
         }
-        let candidates = CandidateSlices {
+        let candidates = CandidateColumns {
             wi: wi.each_ref().map(|column| &column[..]),
             radiance: radiance.each_ref().map(|column| &column[..]),
             pdf_light,
         };
-        let out = WeightSlices {
+        let out = WeightColumns {
             contribution: contribution.each_mut().map(|column| &mut column[..]),
             weight,
         };
         self.bsdf
-            .weigh_batch_at(self.level, candidates, COUNTS, Partition::All, out)
+            .weigh_columns(candidates, COUNTS, Partition::All, out)
     }
 }
 
@@ -222,22 +220,22 @@ impl Stream {
     /// Proposes, looks up, weighs and adds all candidates; then the estimate.
     #[inline(always)]
     #[must_use]
-    pub fn keep<M: Model>(&self, bsdf: &Bsdf8<M>, level: Level) -> Kept {
+    pub fn keep<M: Model>(&self, bsdf: &Bsdf8<M>) -> Kept {
         let pdf = f32x8::splat(SKY_PDF);
-        let mut reservoir = Reservoir8::default();
+        let mut reservoir = Reservoir8::default().with_level(bsdf.level());
         let mut add = |wi: &Vec3x8, u: &f32x8| {
-            let weighed = bsdf.weigh8_at(level, wi, &sky8(wi), &pdf, COUNTS, Partition::All);
-            reservoir.add_at(level, wi, &weighed, u);
+            let weighed = bsdf.weigh8(wi, &sky8(wi), &pdf, COUNTS, Partition::All);
+            reservoir.add(wi, &weighed, u);
         };
         let (first, second) = self.u.split_at(PACKETS);
         self.xi
             .iter()
             .zip(first)
-            .for_each(|(xi, u)| add(&bsdf.propose8_at(level, xi), u));
+            .for_each(|(xi, u)| add(&bsdf.propose8(xi), u));
         self.wi.iter().zip(second).for_each(|(wi, u)| add(wi, u));
         Kept {
             reservoir,
-            estimate: reservoir.estimate_at(level),
+            estimate: reservoir.estimate(),
         }
     }
 }
@@ -257,6 +255,7 @@ impl Output for Kept {
                     wi,
                     contribution,
                     sum,
+                    ..
                 },
             estimate,
         } = self;

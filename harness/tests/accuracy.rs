@@ -73,8 +73,11 @@ fn eight(model: ModelId, level: Level, cases: &[Case]) -> Vec<Answer> {
         let wo = Vec3x8::from(group.map(|case| case.wo));
         let bsdfs = AnyMaterial8::pack(materials.each_ref())
             .unwrap()
-            .prepare8_at(level, &wo);
-        let evals = bsdfs.eval_pdf8_at(level, &Vec3x8::from(group.map(|case| case.wi)));
+            .with_level(level)
+            .prepare8(&wo);
+        let evals = bsdfs
+            .with_level(level)
+            .eval_pdf8(&Vec3x8::from(group.map(|case| case.wi)));
         [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| (evals.lane(lane).value, evals.lane(lane).pdf))
     };
     groups.iter().flat_map(group).collect()

@@ -4,7 +4,7 @@
 
 use core::f64::consts::PI;
 use glam::Vec3;
-use hairis::columns::{EvalSlices, SampleWeightSlices};
+use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::model::Bell;
 use hairis::params::HairDesc;
 use hairis::reference::{HairReference, Parameters, Shape};
@@ -234,11 +234,12 @@ fn eval<B: Bell, const CAUCHY: bool>(
             let [r, g, b, pdf] = ours.each_mut().map(|column| &mut column[..]);
             let bsdf =
                 Material::new(&Published(bell), hit.params).prepare(Vec3::from_array(hit.wo));
-            let out = EvalSlices {
-                value: [r, g, b],
-                pdf,
+            let out = EvalColumns {
+                value: Some([r, g, b]),
+                pdf: Some(pdf),
             };
-            bsdf.eval_pdf_batch_at(hit.level, hit.columns, out)
+            bsdf.with_level(hit.level)
+                .eval_columns(hit.columns, out)
                 .expect("one length");
             for i in 0..ROWS {
                 let (value, pdf) = hit
@@ -323,12 +324,14 @@ fn samples_are_within_the_bounds() {
             let [u, v, w, pdf, r, g, b] = ours.each_mut().map(|column| &mut column[..]);
             let bsdf =
                 Material::new(&Published(Gaussian), hit.params).prepare(Vec3::from_array(hit.wo));
-            let out = SampleWeightSlices {
-                wi: [u, v, w],
-                pdf,
-                weight: [r, g, b],
+            let out = SampleColumns {
+                wi: Some([u, v, w]),
+                pdf: Some(pdf),
+                weight: Some([r, g, b]),
+                ..SampleColumns::default()
             };
-            bsdf.sample_weight_batch_at(hit.level, hit.columns, out)
+            bsdf.with_level(hit.level)
+                .sample_columns(hit.columns, out)
                 .expect("one length");
             // The kernels of eight.
             let mut eight = [[0.0; 8]; 7];

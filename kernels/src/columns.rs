@@ -1,4 +1,4 @@
-//! Arguments of slice calls: structures of arrays, whose lengths are checked.
+//! Arguments of calls on columns: a slice per component, of one length, which is checked.
 
 pub use crate::handle::{HitsError, MaterialTable};
 
@@ -33,45 +33,9 @@ impl fmt::Display for LengthError {
 
 impl core::error::Error for LengthError {}
 
-/// Output of [`Bsdf::eval_pdf_batch`](crate::Bsdf::eval_pdf_batch): one entry per direction.
-#[derive(Debug)]
-pub struct EvalSlices<'a> {
-    /// S, red, green and blue, per steradian.
-    pub value: [&'a mut [f32]; 3],
-    /// Density, per steradian.
-    pub pdf: &'a mut [f32],
-}
-
-/// Output of [`Bsdf::sample_batch`](crate::Bsdf::sample_batch): one entry per sample, all 0 but the direction and the slot for a discarded one.
-#[derive(Debug)]
-pub struct SampleSlices<'a> {
-    /// Towards the light, in the fibre's frame: u, v, w.
-    pub wi: [&'a mut [f32]; 3],
-    /// S, red, green and blue, per steradian.
-    pub value: [&'a mut [f32]; 3],
-    /// Density, per steradian.
-    pub pdf: &'a mut [f32],
-    /// `S cos theta_i / pdf`, red, green and blue.
-    pub weight: [&'a mut [f32]; 3],
-    /// Slot of the chosen lobe as a number, -1 for a discarded sample.
-    pub slot: &'a mut [f32],
-}
-
-/// Output of [`Bsdf::sample_weight_batch`](crate::Bsdf::sample_weight_batch): one entry per sample, all 0 but the direction for a
-/// discarded one: its density is 0.
-#[derive(Debug)]
-pub struct SampleWeightSlices<'a> {
-    /// Towards the light, in the fibre's frame: u, v, w.
-    pub wi: [&'a mut [f32]; 3],
-    /// Density, per steradian.
-    pub pdf: &'a mut [f32],
-    /// `S cos theta_i / pdf`, red, green and blue.
-    pub weight: [&'a mut [f32]; 3],
-}
-
 /// Hits by column, one entry per hit.
 #[derive(Clone, Copy, Debug)]
-pub struct HitSlices<'a> {
+pub struct HitColumns<'a> {
     /// Towards the viewer, in the fibre's frame: u, v, w. Of any length, as for [`Material::prepare`](crate::Material::prepare).
     pub wo: [&'a [f32]; 3],
     /// Offset across the fibre, as [`Hit::h`](crate::Hit::h): clamped to `[-1, 1]`, NaN counts as 0. `None` is 0 for all
@@ -79,7 +43,8 @@ pub struct HitSlices<'a> {
     pub h: Option<&'a [f32]>,
 }
 
-/// Output of [`Material::eval_pdf_hits`](crate::Material::eval_pdf_hits): one entry per hit. Columns that are `None` are not written.
+/// Results of [`Bsdf::eval_columns`](crate::Bsdf::eval_columns) and [`Material::eval_hits`](crate::Material::eval_hits): one
+/// entry per direction. Columns that are `None` are not written.
 #[derive(Debug, Default)]
 pub struct EvalColumns<'a> {
     /// S, red, green and blue, per steradian.
@@ -88,8 +53,10 @@ pub struct EvalColumns<'a> {
     pub pdf: Option<&'a mut [f32]>,
 }
 
-/// Output of [`Material::sample_hits`](crate::Material::sample_hits): one entry per hit, all 0 but the direction and the slot for a discarded sample.
-/// Columns that are `None` are not written.
+/// Results of [`Bsdf::sample_columns`](crate::Bsdf::sample_columns) and [`Material::sample_hits`](crate::Material::sample_hits):
+/// one entry per sample. Columns that are `None` are not written; a path tracer needs neither value nor slot.
+///
+/// A discarded sample has slot -1, and value, density and weight 0.
 #[derive(Debug, Default)]
 pub struct SampleColumns<'a> {
     /// Towards the light, in the fibre's frame: u, v, w.
@@ -104,7 +71,7 @@ pub struct SampleColumns<'a> {
     pub slot: Option<&'a mut [f32]>,
 }
 
-impl<'a> HitSlices<'a> {
+impl<'a> HitColumns<'a> {
     pub(crate) const fn len(&self) -> usize {
         self.wo[0].len()
     }
@@ -116,100 +83,102 @@ impl<'a> HitSlices<'a> {
         [x, y, z]: [&'a [f32]; 3],
         names: [&'static str; 3],
     ) -> Result<[&'a [f32]; 7], LengthError> {
-        let [u, v, w] = self.wo;
-        check_lengths(
-            self.len(),
-            [
-                ("wo.v", Some(v.len())),
-                ("wo.w", Some(w.len())),
-                ("h", self.h.map(<[f32]>::len)),
-            ],
-        )?;
-        check_lengths(
-            self.len(),
-            [
-                (names[0], Some(x.len())),
-                (names[1], Some(y.len())),
-                (names[2], Some(z.len())),
-            ],
-        )?;
+        let ([u, v, w], len) = (self.wo, self.len());
+        check_length(len, "wo.v", Some(v))?;
+        check_length(len, "wo.w", Some(w))?;
+        check_length(len, "h", self.h)?;
+        check_lengths3(len, names, [x, y, z])?;
         Ok([u, v, w, self.h.unwrap_or_default(), x, y, z])
     }
 }
 
 impl<'a> EvalColumns<'a> {
+    /// All columns; empty ones where they are left out.
     #[inline]
     pub(crate) fn columns(self, expected: usize) -> Result<[&'a mut [f32]; 4], LengthError> {
-        check_lengths(expected, lens3(VALUE, self.value.as_ref()))?;
-        check_lengths(
-            expected,
-            [("pdf", self.pdf.as_ref().map(|column| column.len()))],
-        )?;
-        let [r, g, b] = self.value.unwrap_or_default();
-        Ok([r, g, b, self.pdf.unwrap_or_default()])
+        let [r, g, b] = three(self.value);
+        present(expected, VALUE_PDF, [r, g, b, self.pdf])
     }
 }
 
 impl<'a> SampleColumns<'a> {
+    /// All columns; empty ones where they are left out.
     #[inline]
     pub(crate) fn columns(self, expected: usize) -> Result<[&'a mut [f32]; 11], LengthError> {
-        check_lengths(expected, lens3(WI, self.wi.as_ref()))?;
-        check_lengths(expected, lens3(VALUE, self.value.as_ref()))?;
-        check_lengths(
-            expected,
-            [("pdf", self.pdf.as_ref().map(|column| column.len()))],
-        )?;
-        check_lengths(
-            expected,
-            lens3(["weight.r", "weight.g", "weight.b"], self.weight.as_ref()),
-        )?;
-        check_lengths(
-            expected,
-            [("slot", self.slot.as_ref().map(|column| column.len()))],
-        )?;
-        let [u, v, w] = self.wi.unwrap_or_default();
-        let [r, g, b] = self.value.unwrap_or_default();
-        let [wr, wg, wb] = self.weight.unwrap_or_default();
-        Ok([
-            u,
-            v,
-            w,
-            r,
-            g,
-            b,
-            self.pdf.unwrap_or_default(),
-            wr,
-            wg,
-            wb,
-            self.slot.unwrap_or_default(),
-        ])
+        let ([u, v, w], [r, g, b]) = (three(self.wi), three(self.value));
+        let [wr, wg, wb] = three(self.weight);
+        let all = [u, v, w, r, g, b, self.pdf, wr, wg, wb, self.slot];
+        present(expected, SAMPLE, all)
     }
 }
 
-/// Names of the slices of a direction.
+/// Names of the columns of a direction.
 pub(crate) const WI: [&str; 3] = ["wi.u", "wi.v", "wi.w"];
-/// Names of the slices of the uniform numbers.
+/// Names of the columns of the uniform numbers.
 pub(crate) const XI: [&str; 3] = ["xi.lobe", "xi.theta", "xi.phi"];
-/// Names of the slices of a value.
-const VALUE: [&str; 3] = ["value.r", "value.g", "value.b"];
+/// Names of the columns of an evaluation.
+pub(crate) const VALUE_PDF: [&str; 4] = ["value.r", "value.g", "value.b", "pdf"];
+/// Names of the columns of a sample.
+pub(crate) const SAMPLE: [&str; 11] = [
+    "wi.u", "wi.v", "wi.w", "value.r", "value.g", "value.b", "pdf", "weight.r", "weight.g",
+    "weight.b", "slot",
+];
 
-/// Names and lengths of three columns; no length where they are left out.
 #[inline(always)]
-fn lens3(
+fn three<'a>(columns: Option<[&'a mut [f32]; 3]>) -> [Option<&'a mut [f32]>; 3] {
+    columns.map_or([None, None, None], |columns| columns.map(Some))
+}
+
+/// The columns, of which those that are there have the expected length; empty ones for the others.
+#[inline(always)]
+fn present<'a, const N: usize>(
+    expected: usize,
+    names: [&'static str; N],
+    columns: [Option<&'a mut [f32]>; N],
+) -> Result<[&'a mut [f32]; N], LengthError> {
+    for (name, column) in names.into_iter().zip(&columns) {
+        check_length(expected, name, column.as_deref())?;
+    }
+    Ok(columns.map(Option::unwrap_or_default))
+}
+
+/// Refuses three columns of another length.
+#[inline(always)]
+pub(crate) fn check_lengths3(
+    expected: usize,
     names: [&'static str; 3],
-    columns: Option<&[&mut [f32]; 3]>,
-) -> [(&'static str, Option<usize>); 3] {
-    let len = |i: usize| columns.map(|columns| columns[i].len());
-    [(names[0], len(0)), (names[1], len(1)), (names[2], len(2))]
+    columns: [&[f32]; 3],
+) -> Result<(), LengthError> {
+    let [x, y, z] = columns;
+    check_length(expected, names[0], Some(x))?;
+    check_length(expected, names[1], Some(y))?;
+    check_length(expected, names[2], Some(z))
+}
+
+/// Refuses a column of another length.
+#[inline(always)]
+pub(crate) fn check_length<T>(
+    expected: usize,
+    field: &'static str,
+    column: Option<&[T]>,
+) -> Result<(), LengthError> {
+    match column.map(<[T]>::len) {
+        Some(len) if len != expected => Err(LengthError {
+            field,
+            len,
+            expected,
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// Columns of one length. The lengths of those that differ are put together only for the error: the check is most of what a short
 /// slice costs.
 #[inline(always)]
 pub(crate) fn check_columns<'a, const I: usize, const N: usize>(
-    in_names: &'static [&'static str; I],
+    in_names: &[&'static str; I],
     inputs: [&'a [f32]; I],
-    out_names: &'static [&'static str; N],
+    out_names: &[&'static str; N],
     outputs: [&'a mut [f32]; N],
 ) -> Result<Columns<'a, I, N>, LengthError> {
     // By value: columns that a cold call refers to would be copied to memory before every check.
@@ -242,24 +211,4 @@ fn first_that_differs<const I: usize, const N: usize>(
         len,
         expected,
     }
-}
-
-/// Refuses the first column that has a length, and not the expected one.
-#[inline(always)]
-pub(crate) fn check_lengths<const N: usize>(
-    expected: usize,
-    columns: [(&'static str, Option<usize>); N],
-) -> Result<(), LengthError> {
-    for (field, len) in columns {
-        if let Some(len) = len
-            && len != expected
-        {
-            return Err(LengthError {
-                field,
-                len,
-                expected,
-            });
-        }
-    }
-    Ok(())
 }

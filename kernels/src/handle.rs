@@ -1,9 +1,59 @@
-//! Handles of any model: a material and a BSDF, in one lane and in eight, over slices and over slices of hits.
+//! Handles of any model: a material and a BSDF, in one lane and in eight, over columns and over columns of hits.
 
-mod batch;
 mod bsdf;
+mod columns;
+mod dynamic;
 mod hits;
 pub(crate) mod kernels;
+mod material;
 
-pub use bsdf::{Bsdf, Bsdf8, Material, Material8};
+pub use bsdf::{Bsdf, Bsdf8};
+pub use dynamic::{DynBsdf, DynBsdf8, DynMaterial};
 pub use hits::{HitsError, MaterialTable};
+pub use material::{Material, Material8};
+
+/// Traits of handles, which `derive` would bound by the model's.
+macro_rules! handle_impls {
+    ($($name:ident $field:ident $constants:ident<$C:ty>;)*) => { $(
+        impl<M: $crate::model::Model> Clone for $name<M> {
+            #[inline]
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+        impl<M: $crate::model::Model> Copy for $name<M> {}
+        impl<M: $crate::model::Model<$constants<$C>: PartialEq>> PartialEq for $name<M> {
+            #[inline]
+            fn eq(&self, other: &Self) -> bool {
+                self.$field == other.$field
+            }
+        }
+        impl<M: $crate::model::Model> core::fmt::Debug for $name<M> {
+            #[inline]
+            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                f.debug_tuple(stringify!($name)).field(&self.$field).finish()
+            }
+        }
+    )* };
+}
+use handle_impls;
+
+/// The level of a handle.
+macro_rules! level_methods {
+    () => {
+        /// The same on another instruction set, which what is made of it inherits.
+        #[inline]
+        #[must_use]
+        pub const fn with_level(self, level: Level) -> Self {
+            Self { level, ..self }
+        }
+
+        /// The instruction set that calls of eight lanes and of columns run on.
+        #[inline]
+        #[must_use]
+        pub const fn level(&self) -> Level {
+            self.level
+        }
+    };
+}
+pub(crate) use level_methods;

@@ -25,8 +25,8 @@
 //! | describe | material | [`HairDesc`](params::HairDesc) and [`HairParams::new`], a preset, or [`HairParams::from_artist`] |
 //! | build | material | [`Material::new`]; eight different ones: [`Material8::pack`] |
 //! | prepare | hit | [`Material::prepare`]; eight hits: [`Material::prepare8`], [`Material8::prepare8`] |
-//! | evaluate, sample | direction | [`Bsdf::eval_pdf`], [`Bsdf::sample`]; eight directions at one hit: [`Bsdf::eval_pdf8`], [`Bsdf::sample8`]; one at each of eight hits: [`Bsdf8::eval_pdf8`], [`Bsdf8::sample8`]; slices: [`Bsdf::eval_pdf_batch`], [`Bsdf::sample_batch`], [`Bsdf::sample_weight_batch`] |
-//! | both in one | hit and direction | slices of hits: [`Material::eval_pdf_hits`], [`Material::sample_hits`]; a material per hit: [`MaterialTable`](columns::MaterialTable) |
+//! | evaluate, sample | direction | [`Bsdf::eval_pdf`], [`Bsdf::sample`]; eight directions at one hit: [`Bsdf::eval_pdf8`], [`Bsdf::sample8`]; one at each of eight hits: [`Bsdf8::eval_pdf8`], [`Bsdf8::sample8`]; columns: [`Bsdf::eval_columns`], [`Bsdf::sample_columns`] |
+//! | both in one | hit and direction | slices of hits: [`Material::eval_hits`], [`Material::sample_hits`]; a material per hit: [`MaterialTable`](columns::MaterialTable) |
 //!
 //! # Conventions
 //!

@@ -13,6 +13,7 @@ pub use crate::hair::{
     Bell, GRAZING, HairLobes, HairView, MatchedBell, MatchedMaterial, MatchedPrepared,
     PublishedConstants, PublishedMaterial, PublishedPrepared,
 };
+pub use crate::handle::{DynBsdf, DynBsdf8, DynMaterial};
 pub use direction::Direction;
 pub use energy::Conserving;
 pub use lobe::{Lobe, LobeMask, PerLobe};

@@ -4,9 +4,9 @@
 //! A ray costs as much as tens of candidates. Draw `n_b` directions from the BSDF and `n_l` from the light, weigh each by the
 //! light that it would bring without occlusion, and trace the few that are chosen:
 //!
-//! 1. **Propose.** [`Bsdf::propose_batch`] draws the BSDF's candidates; the host draws the light's.
+//! 1. **Propose.** [`Bsdf::propose_columns`] draws the BSDF's candidates; the host draws the light's.
 //! 2. **Look up.** The host finds the radiance of each direction, and the light's density there.
-//! 3. **Weigh.** [`Bsdf::weigh_batch`] gives each candidate its contribution `f = L S cos theta_i` and its weight `w`, the mean
+//! 3. **Weigh.** [`Bsdf::weigh_columns`] gives each candidate its contribution `f = L S cos theta_i` and its weight `w`, the mean
 //!    of `f` over the channels by `n_b p_b + n_l p_l`.
 //! 4. **Choose.** [`choose`] picks `k` of them by one uniform number; equal choices are one ray. The direct light is the sum of
 //!    `V * contribution` over the choices, V being visibility.
@@ -27,8 +27,8 @@
 use crate::columns::{LengthError, WI, XI, check_columns};
 use crate::handle::kernels::{Proposals, ProposalsOf, WeighOf, Weighs};
 use crate::model::Model;
+use crate::simd::Lanes;
 use crate::simd::dispatch::clean_upper_halves;
-use crate::simd::{Lanes, Level};
 use crate::{Bsdf, Bsdf8, Eval8, Vec3x8};
 use wide::f32x8;
 
@@ -149,7 +149,7 @@ fn positive<L: Lanes>(x: L) -> L {
 
 /// Candidates of one hit by column, as the host looked them up.
 #[derive(Clone, Copy, Debug)]
-pub struct CandidateSlices<'a> {
+pub struct CandidateColumns<'a> {
     /// Towards the light, in the fibre's frame: u, v, w. Those of discarded samples are 0.
     pub wi: [&'a [f32]; 3],
     /// Radiance from there, linear RGB, without visibility; times the path's throughput if that is to decide as well.
@@ -158,9 +158,9 @@ pub struct CandidateSlices<'a> {
     pub pdf_light: &'a [f32],
 }
 
-/// Output of [`Bsdf::weigh_batch`]: one entry per candidate.
+/// Output of [`Bsdf::weigh_columns`]: one entry per candidate.
 #[derive(Debug)]
-pub struct WeightSlices<'a> {
+pub struct WeightColumns<'a> {
     /// Light that the direction would bring, `L S cos theta_i`, linear RGB, without visibility.
     pub contribution: [&'a mut [f32]; 3],
     /// Weight of the candidate; 0 where it brings nothing.
@@ -195,7 +195,7 @@ const WEIGHT: [&str; 4] = [
 
 impl Weighed8 {
     /// Candidates whose values and densities the host has, for densities that are not the model's own: a mixture with another
-    /// technique, say. Otherwise [`Bsdf8::weigh8`] and [`Bsdf::weigh_batch`] do it in one pass.
+    /// technique, say. Otherwise [`Bsdf8::weigh8`] and [`Bsdf::weigh_columns`] do it in one pass.
     #[inline]
     #[must_use]
     pub fn new(
@@ -217,32 +217,18 @@ impl Weighed8 {
 }
 
 impl<M: Model> Bsdf<M> {
-    /// Candidates of the BSDF: as [`sample_batch`](Self::sample_batch), directions alone. Those of discarded samples are 0, which
-    /// weighs nothing.
+    /// Candidates of the BSDF: as [`sample_columns`](Self::sample_columns), directions alone. Those of discarded samples are 0,
+    /// which weighs nothing.
     ///
     /// # Errors
     ///
-    /// If the slices differ in length; nothing is written then.
+    /// If the columns differ in length; nothing is written then.
     #[inline]
-    pub fn propose_batch(&self, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
-        self.propose_batch_at(Level::detect(), xi, wi)
-    }
-
-    /// As [`propose_batch`](Self::propose_batch), on a given instruction set.
-    ///
-    /// # Errors
-    ///
-    /// If the slices differ in length; nothing is written then.
-    #[inline]
-    pub fn propose_batch_at(
-        &self,
-        level: Level,
-        xi: [&[f32]; 3],
-        wi: [&mut [f32]; 3],
-    ) -> Result<(), LengthError> {
+    pub fn propose_columns(&self, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError> {
         clean_upper_halves();
         let columns = check_columns(&XI, xi, &WI, wi)?;
-        level.run_columns(Proposals::<M>::new(&self.inner), &columns);
+        let row = Proposals::<M>::new(&self.prepared);
+        self.level.run_columns(row, &columns);
         Ok(())
     }
 
@@ -250,34 +236,17 @@ impl<M: Model> Bsdf<M> {
     ///
     /// # Errors
     ///
-    /// If the slices differ in length; nothing is written then.
+    /// If the columns differ in length; nothing is written then.
     #[inline]
-    pub fn weigh_batch(
+    pub fn weigh_columns(
         &self,
-        candidates: CandidateSlices<'_>,
+        candidates: CandidateColumns<'_>,
         counts: Counts,
         partition: Partition,
-        out: WeightSlices<'_>,
-    ) -> Result<(), LengthError> {
-        self.weigh_batch_at(Level::detect(), candidates, counts, partition, out)
-    }
-
-    /// As [`weigh_batch`](Self::weigh_batch), on a given instruction set.
-    ///
-    /// # Errors
-    ///
-    /// If the slices differ in length; nothing is written then.
-    #[inline]
-    pub fn weigh_batch_at(
-        &self,
-        level: Level,
-        candidates: CandidateSlices<'_>,
-        counts: Counts,
-        partition: Partition,
-        out: WeightSlices<'_>,
+        out: WeightColumns<'_>,
     ) -> Result<(), LengthError> {
         clean_upper_halves();
-        let CandidateSlices {
+        let CandidateColumns {
             wi,
             radiance,
             pdf_light,
@@ -285,8 +254,8 @@ impl<M: Model> Bsdf<M> {
         let ([u, v, w], [r, g, b], [fr, fg, fb]) = (wi, radiance, out.contribution);
         let inputs = [u, v, w, r, g, b, pdf_light];
         let columns = check_columns(&CANDIDATE, inputs, &WEIGHT, [fr, fg, fb, out.weight])?;
-        let row = Weighs::<M>::new(&self.inner, Weighing::new(counts, partition));
-        level.run_columns(row, &columns);
+        let row = Weighs::<M>::new(&self.prepared, Weighing::new(counts, partition));
+        self.level.run_columns(row, &columns);
         Ok(())
     }
 }
@@ -296,15 +265,8 @@ impl<M: Model> Bsdf8<M> {
     #[inline]
     #[must_use]
     pub fn propose8(&self, xi: &[f32x8; 3]) -> Vec3x8 {
-        self.propose8_at(Level::detect(), xi)
-    }
-
-    /// As [`propose8`](Self::propose8), on a given instruction set.
-    #[inline]
-    #[must_use]
-    pub fn propose8_at(&self, level: Level, xi: &[f32x8; 3]) -> Vec3x8 {
-        level.run(ProposalsOf::<M> {
-            prepared: &self.inner,
+        self.level.run(ProposalsOf::<M> {
+            prepared: &self.prepared,
             xi,
         })
     }
@@ -320,28 +282,12 @@ impl<M: Model> Bsdf8<M> {
         counts: Counts,
         partition: Partition,
     ) -> Weighed8 {
-        self.weigh8_at(Level::detect(), wi, radiance, pdf_light, counts, partition)
-    }
-
-    /// As [`weigh8`](Self::weigh8), on a given instruction set.
-    #[inline]
-    #[must_use]
-    pub fn weigh8_at(
-        &self,
-        level: Level,
-        wi: &Vec3x8,
-        radiance: &[f32x8; 3],
-        pdf_light: &f32x8,
-        counts: Counts,
-        partition: Partition,
-    ) -> Weighed8 {
-        let weighing = Weighing::new(counts, partition);
-        level.run(WeighOf::<M> {
-            prepared: &self.inner,
+        self.level.run(WeighOf::<M> {
+            prepared: &self.prepared,
             wi,
             radiance,
             pdf_light,
-            weighing,
+            weighing: Weighing::new(counts, partition),
         })
     }
 }

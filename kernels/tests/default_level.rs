@@ -33,53 +33,53 @@ fn packets_without_a_level_run_on_the_one_found() {
         let (shared, mixed) = (a.prepare8(&wo), packed.prepare8(&wo));
         same(
             text(&shared),
-            text(&a.prepare8_at(level, &wo)),
+            text(&a.with_level(level).prepare8(&wo)),
             "one material",
         );
         same(
             text(&mixed),
-            text(&packed.prepare8_at(level, &wo)),
+            text(&packed.with_level(level).prepare8(&wo)),
             "eight materials",
         );
         same(
             text(&mixed.eval_pdf8(&wi)),
-            text(&mixed.eval_pdf8_at(level, &wi)),
+            text(&mixed.with_level(level).eval_pdf8(&wi)),
             "values of eight hits",
         );
         same(
             text(&mixed.sample8(&xi)),
-            text(&mixed.sample8_at(level, &xi)),
+            text(&mixed.with_level(level).sample8(&xi)),
             "samples of eight hits",
         );
         same(
             text(&mixed.lobes8(&wi)),
-            text(&mixed.lobes8_at(level, &wi)),
+            text(&mixed.with_level(level).lobes8(&wi)),
             "lobes of eight hits",
         );
         same(
             text(&mixed.albedo8()),
-            text(&mixed.albedo8_at(level)),
+            text(&mixed.with_level(level).albedo8()),
             "albedos of eight hits",
         );
         same(
             text(&mixed.conserving()),
-            text(&mixed.conserving_at(level)),
+            text(&mixed.with_level(level).conserving()),
             "eight hits that conserve energy",
         );
         let one = mixed.lane(3);
         same(
             text(&one.eval_pdf8(&wi)),
-            text(&one.eval_pdf8_at(level, &wi)),
+            text(&one.with_level(level).eval_pdf8(&wi)),
             "values of one hit",
         );
         same(
             text(&one.sample8(&xi)),
-            text(&one.sample8_at(level, &xi)),
+            text(&one.with_level(level).sample8(&xi)),
             "samples of one hit",
         );
         same(
             text(&one.lobes8(&wi)),
-            text(&one.lobes8_at(level, &wi)),
+            text(&one.with_level(level).lobes8(&wi)),
             "lobes of one hit",
         );
     }

@@ -179,9 +179,11 @@ pub(crate) fn main() {
     ];
 
     for level in Level::available() {
-        let prepared = Material8::pack(fibers.each_ref()).prepare8_at(level, &Vec3x8::from(wo));
-        let eval = prepared.eval_pdf8_at(level, &wi.into());
-        let samples = prepared.sample8_at(level, &xi.map(f32x8::new));
+        let prepared = Material8::pack(fibers.each_ref())
+            .with_level(level)
+            .prepare8(&Vec3x8::from(wo));
+        let eval = prepared.with_level(level).eval_pdf8(&wi.into());
+        let samples = prepared.with_level(level).sample8(&xi.map(f32x8::new));
         println!("eight fibres on {level}: S (red), pdf, sampled wi, weight (red)");
         for lane in 0..8 {
             let one = fibers[lane].prepare(wo[lane]);

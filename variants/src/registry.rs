@@ -3,7 +3,7 @@
 //! A new model is a line of [`models!`] below, and beside its [`Model`] an implementation of [`Registered`], with
 //! [`Parameters`] for its parameters. Run-time handles, the harness and the benches then include it.
 
-#[cfg(any(feature = "any", feature = "textbook"))]
+#[cfg(feature = "any")]
 mod any;
 #[cfg(feature = "textbook")]
 mod formulas;
@@ -13,16 +13,16 @@ use hairis::model::Model;
 use hairis::{Gaussian, Matched, Published};
 
 #[cfg(any(feature = "any", feature = "textbook"))]
-use hairis::{ParamError, PerLobe};
+use hairis::ParamError;
+#[cfg(feature = "textbook")]
+use hairis::PerLobe;
 #[cfg(feature = "any")]
 use {
+    core::ops::{Deref, DerefMut},
     glam::Vec3,
-    hairis::columns::{EvalSlices, LengthError, SampleSlices, SampleWeightSlices},
-    hairis::model::{LobeEval, LobeEval8},
-    hairis::simd::{Level, f32x8},
-    hairis::{
-        Bsdf, Bsdf8, Eval, Eval8, Hit, Hit8, LobeMask, Material, Material8, Sample, Sample8, Vec3x8,
-    },
+    hairis::model::{DynBsdf, DynBsdf8, DynMaterial},
+    hairis::simd::Level,
+    hairis::{Bsdf, Bsdf8, Hit, Hit8, LobeMask, Material, Material8},
 };
 
 #[cfg(feature = "textbook")]
@@ -255,7 +255,7 @@ macro_rules! models {
         }
 
         #[cfg(feature = "any")]
-        any::handles! { [$($variant: $model;)*] [$($variant)*] }
+        any::handles! { [$($variant: $model;)*] }
 
         #[cfg(feature = "textbook")]
         formulas::formulas! { [$($variant: $model;)*] [$($variant)*] }

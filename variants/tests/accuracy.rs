@@ -182,7 +182,7 @@ impl Errors {
 
 /// Results of one lane, and of eight.
 fn evals<M: Model>(bsdf: &Bsdf<M>, wi: &[Vec3; 8]) -> [[Eval; 2]; 8] {
-    let eight = bsdf.eval_pdf8_at(Level::detect(), &packet(wi));
+    let eight = bsdf.with_level(Level::detect()).eval_pdf8(&packet(wi));
     core::array::from_fn(|k| [bsdf.eval_pdf(wi[k]), eight.lane(k)])
 }
 

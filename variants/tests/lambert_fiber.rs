@@ -7,7 +7,7 @@ mod example;
 use crate::support::{Draws, direction, double, lanes_of, packet};
 use example::{CONE, DIFFUSE, LambertFiber, Params, pdf_integral};
 use glam::Vec3;
-use hairis::columns::EvalSlices;
+use hairis::columns::EvalColumns;
 use hairis::simd::Level;
 use hairis::{Hit, Lobe, LobeMask, Material, Material8};
 use hairis_conformance::{Claims, Materials, Subject};
@@ -239,13 +239,15 @@ fn every_service_of_the_crate_works_on_it() {
         core::array::from_fn(|_| any()),
     );
     for level in Level::available() {
-        let eight = Material8::pack(fibers.each_ref()).prepare8_at(level, &packet(&wo));
-        let evals = eight.eval_pdf8_at(level, &packet(&wi));
+        let eight = Material8::pack(fibers.each_ref())
+            .with_level(level)
+            .prepare8(&packet(&wo));
+        let evals = eight.with_level(level).eval_pdf8(&packet(&wi));
         for lane in 0..8 {
             let one = eight.lane(lane);
             // Packets, batches and lanes give the same bits.
             assert_eq!(
-                one.eval_pdf8_at(level, &packet(&wi)).lane(lane),
+                one.with_level(level).eval_pdf8(&packet(&wi)).lane(lane),
                 evals.lane(lane),
                 "{level} lane {lane}"
             );
@@ -253,15 +255,15 @@ fn every_service_of_the_crate_works_on_it() {
             let (v, w) = (wi.map(|v| v.y).to_vec(), wi.map(|v| v.z).to_vec());
             let mut out = [[0.0; 8]; 4];
             let [r, g, b, pdf] = &mut out;
-            one.eval_pdf_batch_at(
-                level,
-                [&columns, &v, &w],
-                EvalSlices {
-                    value: [r, g, b],
-                    pdf,
-                },
-            )
-            .unwrap();
+            one.with_level(level)
+                .eval_columns(
+                    [&columns, &v, &w],
+                    EvalColumns {
+                        value: Some([r, g, b]),
+                        pdf: Some(pdf),
+                    },
+                )
+                .unwrap();
             assert_eq!(
                 out[3][lane].to_bits(),
                 evals.lane(lane).pdf.to_bits(),

@@ -3,7 +3,7 @@
 use crate::support::{Draws, direction, lanes_of, packet};
 use core::fmt::Debug;
 use glam::Vec3;
-use hairis::columns::EvalSlices;
+use hairis::columns::EvalColumns;
 use hairis::simd::Level;
 use hairis::{HairParams, Hit, Lobe, LobeMask, Material, Material8, ParamError};
 use hairis_variants::{
@@ -127,18 +127,18 @@ impl Visitor for Compare {
             same(&chosen.albedo(), &one.albedo());
             for level in Level::available() {
                 same(
-                    &chosen.eval_pdf8_at(level, &packet(&wi)),
-                    &one.eval_pdf8_at(level, &packet(&wi)),
+                    &chosen.with_level(level).eval_pdf8(&packet(&wi)),
+                    &one.with_level(level).eval_pdf8(&packet(&wi)),
                 );
                 same(
-                    &chosen.sample8_at(level, &lanes_of(&xi)),
-                    &one.sample8_at(level, &lanes_of(&xi)),
+                    &chosen.with_level(level).sample8(&lanes_of(&xi)),
+                    &one.with_level(level).sample8(&lanes_of(&xi)),
                 );
             }
             for level in Level::available() {
                 same(
-                    &chosen.lobes8_at(level, &packet(&wi)),
-                    &one.lobes8_at(level, &packet(&wi)),
+                    &chosen.with_level(level).lobes8(&packet(&wi)),
+                    &one.with_level(level).lobes8(&packet(&wi)),
                 );
             }
             same(&chosen.lobes8(&packet(&wi)), &one.lobes8(&packet(&wi)));
@@ -148,21 +148,21 @@ impl Visitor for Compare {
         let (mut value, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
         let [r, g, b] = &mut value;
         chosen
-            .eval_pdf_batch(
+            .eval_columns(
                 columns,
-                EvalSlices {
-                    value: [r, g, b],
-                    pdf: &mut pdf,
+                EvalColumns {
+                    value: Some([r, g, b]),
+                    pdf: Some(&mut pdf),
                 },
             )
             .unwrap();
         let (mut value_of_type, mut pdf_of_type) = ([[0.0; 8]; 3], [0.0; 8]);
         let [r, g, b] = &mut value_of_type;
-        one.eval_pdf_batch(
+        one.eval_columns(
             columns,
-            EvalSlices {
-                value: [r, g, b],
-                pdf: &mut pdf_of_type,
+            EvalColumns {
+                value: Some([r, g, b]),
+                pdf: Some(&mut pdf_of_type),
             },
         )
         .unwrap();
@@ -184,10 +184,13 @@ impl Visitor for Compare {
         same(&chosen.albedo8(), &eight.albedo8());
         for level in Level::available() {
             same(
-                &chosen.lobes8_at(level, &packet(&wi)),
-                &eight.lobes8_at(level, &packet(&wi)),
+                &chosen.with_level(level).lobes8(&packet(&wi)),
+                &eight.with_level(level).lobes8(&packet(&wi)),
             );
-            same(&chosen.albedo8_at(level), &eight.albedo8_at(level));
+            same(
+                &chosen.with_level(level).albedo8(),
+                &eight.with_level(level).albedo8(),
+            );
         }
         same(
             &chosen.lane(3).eval_pdf(wi[3]),

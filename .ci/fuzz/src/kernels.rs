@@ -1,7 +1,7 @@
 //! Every entry point on numbers of any bits: nothing but NaN directions may be anything but finite and at least 0.
 
 use glam::Vec3;
-use hairis::columns::{EvalSlices, SampleSlices, SampleWeightSlices};
+use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::model::Model;
 use hairis::simd::{Level, f32x8};
 use hairis::{Eval, Hit, Lobe, LobeMask, Material, Vec3x8};
@@ -125,24 +125,25 @@ fn calls<M: Model>(material: &Material<M>, numbers: &mut Numbers<'_>) {
     let (wi, xi) = (columns(wi.map(Vec3::into)), columns(xi));
     let len = usize::from(numbers.byte()) % 9;
     for level in Level::available() {
-        let eval = bsdf.eval_pdf8_at(level, &wi8);
-        let samples = bsdf.sample8_at(level, &xi8);
-        let points = material.prepare8_at(level, &wi8);
+        let eval = bsdf.with_level(level).eval_pdf8(&wi8);
+        let samples = bsdf.with_level(level).sample8(&xi8);
+        let points = material.with_level(level).prepare8(&wi8);
         for lane in 0..8 {
             sound_eval(eval.lane(lane));
             if let Some(sample) = samples.lane(lane) {
                 sound(&sample.weight);
                 sound(&[sample.pdf]);
             }
-            sound_eval(points.eval_pdf8_at(level, &wi8).lane(lane));
+            sound_eval(points.with_level(level).eval_pdf8(&wi8).lane(lane));
         }
         let (mut value, mut pdf) = ([[0.0; 8]; 3], [0.0; 8]);
         let [r, g, b] = value.each_mut().map(|row| &mut row[..len]);
-        let out = EvalSlices {
-            value: [r, g, b],
-            pdf: &mut pdf[..len],
+        let out = EvalColumns {
+            value: Some([r, g, b]),
+            pdf: Some(&mut pdf[..len]),
         };
-        bsdf.eval_pdf_batch_at(level, [&wi[0][..len], &wi[1][..len], &wi[2][..len]], out)
+        bsdf.with_level(level)
+            .eval_columns([&wi[0][..len], &wi[1][..len], &wi[2][..len]], out)
             .expect("one length");
         for i in 0..len {
             let Eval {
@@ -155,24 +156,27 @@ fn calls<M: Model>(material: &Material<M>, numbers: &mut Numbers<'_>) {
         }
         let mut rows = [[0.0; 8]; 11];
         let [u, v, w, r, g, b, pdf, x, y, z, slot] = rows.each_mut().map(|row| &mut row[..len]);
-        let out = SampleSlices {
-            wi: [u, v, w],
-            value: [r, g, b],
-            pdf,
-            weight: [x, y, z],
-            slot,
+        let out = SampleColumns {
+            wi: Some([u, v, w]),
+            value: Some([r, g, b]),
+            pdf: Some(pdf),
+            weight: Some([x, y, z]),
+            slot: Some(slot),
         };
-        bsdf.sample_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
+        bsdf.with_level(level)
+            .sample_columns([&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
             .expect("one length");
         rows[3..10].iter().for_each(|row| sound(row));
         let mut weights = [[0.0; 8]; 7];
         let [u, v, w, pdf, x, y, z] = weights.each_mut().map(|row| &mut row[..len]);
-        let out = SampleWeightSlices {
-            wi: [u, v, w],
-            pdf,
-            weight: [x, y, z],
+        let out = SampleColumns {
+            wi: Some([u, v, w]),
+            pdf: Some(pdf),
+            weight: Some([x, y, z]),
+            ..SampleColumns::default()
         };
-        bsdf.sample_weight_batch_at(level, [&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
+        bsdf.with_level(level)
+            .sample_columns([&xi[0][..len], &xi[1][..len], &xi[2][..len]], out)
             .expect("one length");
         let same = weights
             .iter()

@@ -3,7 +3,7 @@
 //!
 //! With the argument `bad` it reads one float behind a slice: the tool must report that.
 
-use hairis::columns::{EvalSlices, SampleSlices, SampleWeightSlices};
+use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::model::Model;
 use hairis::simd::{Level, f32x8};
 use hairis::{Bsdf, Gaussian, HairParams, Matched, Material, Published, Vec3x8};
@@ -38,15 +38,26 @@ fn slices<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers) -> u64 {
                     core::array::from_fn(|_| numbers.block(offset, len));
                 let [u, v, w, r, g, b, pdf, x, y, z, slot] =
                     output.each_mut().map(|block| &mut block[offset..]);
-                let out = EvalSlices {
-                    value: [&mut *r, &mut *g, &mut *b],
-                    pdf: &mut *pdf,
+                let out = EvalColumns {
+                    value: Some([&mut *r, &mut *g, &mut *b]),
+                    pdf: Some(&mut *pdf),
                 };
-                bsdf.eval_pdf_batch_at(level, input, out)
+                bsdf.with_level(level)
+                    .eval_columns(input, out)
                     .expect("one length");
-                bsdf.eval_batch_at(level, input, [&mut *x, &mut *y, &mut *z])
+                let values = EvalColumns {
+                    value: Some([&mut *x, &mut *y, &mut *z]),
+                    pdf: None,
+                };
+                bsdf.with_level(level)
+                    .eval_columns(input, values)
                     .expect("one length");
-                bsdf.pdf_batch_at(level, input, &mut *slot)
+                let densities = EvalColumns {
+                    value: None,
+                    pdf: Some(&mut *slot),
+                };
+                bsdf.with_level(level)
+                    .eval_columns(input, densities)
                     .expect("one length");
                 let same = r
                     .iter()
@@ -54,24 +65,36 @@ fn slices<M: Model>(bsdf: &Bsdf<M>, numbers: &mut Numbers) -> u64 {
                     .chain(pdf.iter().zip(&*slot))
                     .all(|(a, b)| a.to_bits() == b.to_bits());
                 assert!(same, "{len} entries from {offset} on {level}");
-                let out = SampleSlices {
-                    wi: [u, v, w],
-                    value: [r, g, b],
-                    pdf,
-                    weight: [x, y, z],
-                    slot,
+                let out = SampleColumns {
+                    wi: Some([u, v, w]),
+                    value: Some([r, g, b]),
+                    pdf: Some(pdf),
+                    weight: Some([x, y, z]),
+                    slot: Some(slot),
                 };
-                bsdf.sample_batch_at(level, input, out).expect("one length");
+                bsdf.with_level(level)
+                    .sample_columns(input, out)
+                    .expect("one length");
                 let [u, v, w, pdf, x, y, z, ..] =
                     output.each_mut().map(|block| &mut block[offset..]);
-                let out = SampleWeightSlices {
-                    wi: [u, v, w],
-                    pdf,
-                    weight: [x, y, z],
+                let out = SampleColumns {
+                    wi: Some([u, v, w]),
+                    pdf: Some(pdf),
+                    weight: Some([x, y, z]),
+                    ..SampleColumns::default()
                 };
-                bsdf.sample_weight_batch_at(level, input, out)
+                bsdf.with_level(level)
+                    .sample_columns(input, out)
                     .expect("one length");
-                calls += 5;
+                let [u, v, w, ..] = output.each_mut().map(|block| &mut block[offset..]);
+                let some = SampleColumns {
+                    wi: Some([u, v, w]),
+                    ..SampleColumns::default()
+                };
+                bsdf.with_level(level)
+                    .sample_columns(input, some)
+                    .expect("one length");
+                calls += 6;
             }
         }
     }
@@ -94,11 +117,11 @@ fn packets<M: Model>(material: &Material<M>, numbers: &mut Numbers) -> u64 {
             let xi = Box::new(core::array::from_fn(|_| {
                 f32x8::new(core::array::from_fn(|_| numbers.next()))
             }));
-            let points = Box::new(material.prepare8_at(level, &*wi));
+            let points = Box::new(material.with_level(level).prepare8(&*wi));
             let all = [
-                points.eval_pdf8_at(level, &wi).pdf,
-                points.sample8_at(level, &xi).pdf,
-                points.lobes8_at(level, &wi).0[0].pdf,
+                points.with_level(level).eval_pdf8(&wi).pdf,
+                points.with_level(level).sample8(&xi).pdf,
+                points.with_level(level).lobes8(&wi).0[0].pdf,
             ];
             assert!(
                 all.iter()

@@ -8,7 +8,7 @@ mod hash;
 use crate::numbers::Numbers;
 use core::array::from_fn;
 use glam::Vec3;
-use hairis::columns::{EvalSlices, SampleSlices};
+use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::model::{Model, math};
 use hairis::simd::{Broadcast, Kernel, Lanes, Level, Vec3x, f32x8};
 use hairis::{
@@ -143,9 +143,9 @@ impl<M: Model<Params: Parameters>> Hits<M> {
         let [mut eval, mut lobes, mut sample, mut slices, mut samples] = [Hash::NEW; 5];
         self.each_scalar(|bsdf| {
             for (wi, xi) in self.wi.iter().zip(&self.xi) {
-                eval.eval8(&bsdf.eval_pdf8_at(level, wi));
-                lobes.lobes8(&bsdf.lobes8_at(level, wi));
-                sample.sample8(&bsdf.sample8_at(level, xi));
+                eval.eval8(&bsdf.with_level(level).eval_pdf8(wi));
+                lobes.lobes8(&bsdf.with_level(level).lobes8(wi));
+                sample.sample8(&bsdf.with_level(level).sample8(xi));
             }
         });
         let mut numbers = Numbers(0x2545_f491_4f6c_dd1d);
@@ -176,25 +176,27 @@ impl<M: Model<Params: Parameters>> Hits<M> {
         let packed = Material8::pack(from_fn(|lane| &self.materials[lane]));
         for hits in &self.hits {
             let points: [Bsdf8<M>; 2] = [
-                self.materials[0].prepare8_at(level, hits),
-                packed.prepare8_at(level, hits),
+                self.materials[0].with_level(level).prepare8(hits),
+                packed.with_level(level).prepare8(hits),
             ];
             for (points, prepare) in points.iter().zip(&mut prepare) {
                 // Scalar calls add no rounding that depends on the level.
                 (0..8).for_each(|lane| prepare.sample(points.lane(lane).sample([0.3, 0.6, 0.9])));
                 for (wi, xi) in self.wi.iter().zip(&self.xi) {
-                    eval.eval8(&points.eval_pdf8_at(level, wi));
-                    lobes.lobes8(&points.lobes8_at(level, wi));
-                    sample.sample8(&points.sample8_at(level, xi));
+                    eval.eval8(&points.with_level(level).eval_pdf8(wi));
+                    lobes.lobes8(&points.with_level(level).lobes8(wi));
+                    sample.sample8(&points.with_level(level).sample8(xi));
                     some.eval8(
                         &points
                             .with_lobes(LobeMask::of(&[Lobe::slot(0)]))
-                            .eval_pdf8_at(level, wi),
+                            .with_level(level)
+                            .eval_pdf8(wi),
                     );
                 }
-                for points in [points, &points.conserving_at(level)] {
+                for points in [points, &points.with_level(level).conserving()] {
                     points
-                        .albedo8_at(level)
+                        .with_level(level)
+                        .albedo8()
                         .0
                         .iter()
                         .for_each(|lobe| albedo.lanes(lobe));
@@ -220,18 +222,25 @@ fn hash_slices<M: Model<Params: Parameters>>(
 ) {
     let wi = [&wi[0][..], &wi[1][..], &wi[2][..]];
     let (mut value, mut pdf) = ([[0.0; LEN]; 3], [0.0; LEN]);
-    let mut passed = bsdf.eval_pdf_batch_at(
-        level,
+    let mut passed = bsdf.with_level(level).eval_columns(
         wi,
-        EvalSlices {
-            value: value.each_mut().map(|x| &mut x[..]),
-            pdf: &mut pdf,
+        EvalColumns {
+            value: Some(value.each_mut().map(|x| &mut x[..])),
+            pdf: Some(&mut pdf),
         },
     );
     value.iter().for_each(|row| hash.numbers(row));
     hash.numbers(&pdf);
-    passed = passed.and(bsdf.eval_batch_at(level, wi, value.each_mut().map(|x| &mut x[..])));
-    passed = passed.and(bsdf.pdf_batch_at(level, wi, &mut pdf));
+    let values = EvalColumns {
+        value: Some(value.each_mut().map(|x| &mut x[..])),
+        pdf: None,
+    };
+    let densities = EvalColumns {
+        value: None,
+        pdf: Some(&mut pdf),
+    };
+    passed = passed.and(bsdf.with_level(level).eval_columns(wi, values));
+    passed = passed.and(bsdf.with_level(level).eval_columns(wi, densities));
     value.iter().for_each(|row| hash.numbers(row));
     hash.numbers(&pdf);
     assert!(passed.is_ok(), "slices of one length");
@@ -245,15 +254,16 @@ fn hash_samples<M: Model<Params: Parameters>>(
 ) {
     let mut rows = [[0.0; LEN]; 11];
     let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = rows.each_mut().map(|row| &mut row[..]);
-    let out = SampleSlices {
-        wi: [u, v, w],
-        value: [r, g, b],
-        pdf,
-        weight: [wr, wg, wb],
-        slot,
+    let out = SampleColumns {
+        wi: Some([u, v, w]),
+        value: Some([r, g, b]),
+        pdf: Some(pdf),
+        weight: Some([wr, wg, wb]),
+        slot: Some(slot),
     };
     assert!(
-        bsdf.sample_batch_at(level, [&xi[0], &xi[1], &xi[2]], out)
+        bsdf.with_level(level)
+            .sample_columns([&xi[0], &xi[1], &xi[2]], out)
             .is_ok(),
         "slices of one length"
     );

@@ -15,7 +15,7 @@ mod numbers;
 mod system;
 
 use glam::Vec3;
-use hairis::columns::EvalSlices;
+use hairis::columns::EvalColumns;
 use hairis::model::Model;
 use hairis::{Gaussian, HairParams, Material, Published, Vec3x8, random};
 use hairis_variants::Cauchy;
@@ -61,12 +61,12 @@ fn check<M: Model<Params = HairParams>>(model: &M, first: i32) -> Result<(), i32
                 samples.wi.y.as_array(),
                 samples.wi.z.as_array(),
             ];
-            let out = EvalSlices {
-                value: [r, g, b],
-                pdf: &mut pdf,
+            let out = EvalColumns {
+                value: Some([r, g, b]),
+                pdf: Some(&mut pdf),
             };
             ensure(
-                bsdf.eval_pdf_batch([&wi[0][..], &wi[1][..], &wi[2][..]], out)
+                bsdf.eval_columns([&wi[0][..], &wi[1][..], &wi[2][..]], out)
                     .is_ok(),
                 1,
             )?;

@@ -9,7 +9,7 @@ use crate::inputs::{arrays, packets, xi_packets};
 use crate::platform::{Platform, platform};
 use crate::task::{Answer, Output, Pass, Several, Slices, task};
 use glam::Vec3;
-use hairis::columns::{EvalColumns, HitSlices, SampleColumns};
+use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
 use hairis::reference::Reference;
 use hairis::simd::f32x8;
 use hairis::{Material8, Sample8};
@@ -70,12 +70,13 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
         }),
     )
     .levels(EIGHT, |level| {
+        let material = material.with_level(level);
         several(
             pairs(&packets(wo), &by_sample),
             place,
             move |(wo, xi), keep| {
-                let points = material.prepare8_at(level, wo);
-                xi.iter().for_each(|xi| keep(&points.sample8_at(level, xi)));
+                let points = material.prepare8(wo);
+                xi.iter().for_each(|xi| keep(&points.sample8(xi)));
             },
         )
     });
@@ -88,14 +89,16 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
         };
         let packed: Vec<_> = rows.iter().map(packed).collect();
         contenders = contenders.levels(EIGHT_AT_ONE, |level| {
+            let material = material.with_level(level);
             several(pairs(wo, &packed), in_turn, move |(wo, xi), keep| {
                 let point = material.prepare(*wo);
                 xi.iter()
-                    .for_each(|xi| keep(&Leading::<N>(point.sample8_at(level, xi))));
+                    .for_each(|xi| keep(&Leading::<N>(point.sample8(xi))));
             })
         });
     } else {
         contenders = contenders.levels(HITS, |level| {
+            let material = material.with_level(level);
             let call = move |[x, y, z, a, b, c]: [&[f32]; 6], out: [&mut [f32]; 11]| {
                 let [red, green, blue, pdf, u, v, w, wr, wg, wb, slot] = out;
                 let (value, weight) = (Some([red, green, blue]), Some([wr, wg, wb]));
@@ -106,9 +109,8 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
                     weight,
                     slot: Some(slot),
                 };
-                material.sample_hits_at(
-                    level,
-                    HitSlices {
+                material.sample_hits(
+                    HitColumns {
                         wo: [x, y, z],
                         h: None,
                     },
@@ -160,19 +162,18 @@ pub(super) fn eval<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
         }),
     )
     .levels(EIGHT, |level| {
-        task(&eights, move |(wo, wi)| {
-            material.prepare8_at(level, wo).eval_pdf8_at(level, wi)
-        })
+        let material = material.with_level(level);
+        task(&eights, move |(wo, wi)| material.prepare8(wo).eval_pdf8(wi))
     })
     .levels(HITS, |level| {
+        let material = material.with_level(level);
         let call = move |[x, y, z, u, v, w]: [&[f32]; 6], [r, g, b, pdf]: [&mut [f32]; 4]| {
             let out = EvalColumns {
                 value: Some([r, g, b]),
                 pdf: Some(pdf),
             };
-            material.eval_pdf_hits_at(
-                level,
-                HitSlices {
+            material.eval_hits(
+                HitColumns {
                     wo: [x, y, z],
                     h: None,
                 },
@@ -222,16 +223,15 @@ pub(super) fn mixed<M: Registered>(inputs: &TimedInputs<M::Params>, pack_each: b
         }),
     )
     .levels(EIGHT, |level| {
+        let packed = packed.with_level(level);
         if pack_each {
+            let materials = materials.map(|material| material.with_level(level));
             task(&eights, move |(wo, xi)| {
-                Material8::pack(materials.each_ref())
-                    .prepare8_at(level, wo)
-                    .sample8_at(level, xi)
+                let packed = Material8::pack(materials.each_ref());
+                packed.prepare8(wo).sample8(xi)
             })
         } else {
-            task(&eights, move |(wo, xi)| {
-                packed.prepare8_at(level, wo).sample8_at(level, xi)
-            })
+            task(&eights, move |(wo, xi)| packed.prepare8(wo).sample8(xi))
         }
     });
     let points = numbered

@@ -6,7 +6,7 @@ use crate::entries::Visitor;
 use crate::inputs::{DIRECTIONS, packets, xi_packets};
 use crate::resample::{COUNTS, PoolTask, SKY_PDF, STREAMED, Stream, looked_up, proposed, sky8};
 use crate::task::{Each, Slices};
-use hairis::resample::{CandidateSlices, Partition, WeightSlices};
+use hairis::resample::{CandidateColumns, Partition, WeightColumns};
 use hairis::simd::{Level, f32x8};
 use hairis_variants::Registered;
 
@@ -15,11 +15,9 @@ impl<M: Registered> Of<'_, M> {
         let inputs = self.inputs;
         for level in Level::available() {
             let drawn = |i| self.at_one(Given::Xi(inputs.xi[i]));
-            self.show(visitor, "propose_batch", label(level), drawn, || {
-                let bsdf = self.bsdf();
-                let call = move |xi: [&[f32]; 3], wi: [&mut [f32]; 3]| {
-                    bsdf.propose_batch_at(level, xi, wi)
-                };
+            self.show(visitor, "propose_columns", label(level), drawn, || {
+                let bsdf = self.bsdf().with_level(level);
+                let call = move |xi: [&[f32]; 3], wi: [&mut [f32]; 3]| bsdf.propose_columns(xi, wi);
                 Slices::new(DIRECTIONS, &inputs.xi, call).read_by(|wi| proposed(wi.into()))
             });
             let drawn_in_lane = |i| self.at_lane(i, Given::Xi(inputs.xi[i]));
@@ -30,29 +28,27 @@ impl<M: Registered> Of<'_, M> {
                 drawn_in_lane,
                 || {
                     let bsdf = self.bsdf8(level);
-                    Each::new(8, xi_packets(&inputs.xi), move |xi| {
-                        bsdf.propose8_at(level, xi)
-                    })
+                    Each::new(8, xi_packets(&inputs.xi), move |xi| bsdf.propose8(xi))
                 },
             );
             let weighed = |i| self.at_one(Given::Candidate(inputs.wi[i]));
-            self.show(visitor, "weigh_batch", label(level), weighed, || {
-                let bsdf = self.bsdf();
+            self.show(visitor, "weigh_columns", label(level), weighed, || {
+                let bsdf = self.bsdf().with_level(level);
                 Slices::new(
                     DIRECTIONS,
                     &looked_up(&inputs.wi),
                     move |[x, y, z, r, g, b, pdf_light]: [&[f32]; 7],
                           [fr, fg, fb, weight]: [&mut [f32]; 4]| {
-                        let candidates = CandidateSlices {
+                        let candidates = CandidateColumns {
                             wi: [x, y, z],
                             radiance: [r, g, b],
                             pdf_light,
                         };
-                        let out = WeightSlices {
+                        let out = WeightColumns {
                             contribution: [fr, fg, fb],
                             weight,
                         };
-                        bsdf.weigh_batch_at(level, candidates, COUNTS, Partition::All, out)
+                        bsdf.weigh_columns(candidates, COUNTS, Partition::All, out)
                     },
                 )
             });
@@ -69,7 +65,7 @@ impl<M: Registered> Of<'_, M> {
                         .map(|wi| (wi, sky8(&wi)))
                         .collect();
                     Each::new(8, candidates, move |(wi, radiance)| {
-                        bsdf.weigh8_at(level, wi, radiance, &pdf, COUNTS, Partition::All)
+                        bsdf.weigh8(wi, radiance, &pdf, COUNTS, Partition::All)
                     })
                 },
             );
@@ -83,13 +79,13 @@ impl<M: Registered> Of<'_, M> {
                 })
             };
             self.show(visitor, "pool-32-32-16", label(level), in_pool, || {
-                PoolTask::new(self.bsdf(), level, inputs)
+                PoolTask::new(self.bsdf().with_level(level), inputs)
             });
             let kept = |i| self.at_lane(i, Given::Kept);
             self.show(visitor, "reservoir8-4-4", label(level), kept, || {
                 let bsdf = self.bsdf8(level);
                 Each::new(STREAMED, Stream::of(inputs), move |stream: &Stream| {
-                    stream.keep(&bsdf, level)
+                    stream.keep(&bsdf)
                 })
             });
         }

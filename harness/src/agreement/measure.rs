@@ -94,8 +94,10 @@ pub(super) fn measure(
         }),
         CodePath::Shared(level) => {
             let bsdf = materials[0].prepare(hit(0));
-            let eval = bsdf.eval_pdf8_at(level, &Vec3x8::from(packet.wi_shared));
-            let sample = bsdf.sample8_at(level, &xi);
+            let eval = bsdf
+                .with_level(level)
+                .eval_pdf8(&Vec3x8::from(packet.wi_shared));
+            let sample = bsdf.with_level(level).sample8(&xi);
             core::array::from_fn(|k| (eval.lane(k), sample.lane(k)))
         }
         CodePath::Points(level) => {
@@ -105,9 +107,9 @@ pub(super) fn measure(
             };
             let materials = AnyMaterial8::pack(core::array::from_fn(|k| &materials[k]))
                 .expect("eight of one model");
-            let bsdf = materials.prepare8_at(level, hits);
-            let eval = bsdf.eval_pdf8_at(level, &Vec3x8::from(packet.wi));
-            let sample = bsdf.sample8_at(level, &xi);
+            let bsdf = materials.with_level(level).prepare8(hits);
+            let eval = bsdf.with_level(level).eval_pdf8(&Vec3x8::from(packet.wi));
+            let sample = bsdf.with_level(level).sample8(&xi);
             core::array::from_fn(|k| (eval.lane(k), sample.lane(k)))
         }
     };

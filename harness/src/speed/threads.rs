@@ -3,7 +3,7 @@
 use super::{TimedInputs, TimedOp, quartiles};
 use core::hint::black_box;
 use hairis::ParamError;
-use hairis::columns::{EvalSlices, SampleSlices};
+use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::simd::Level;
 use hairis_variants::ModelId;
 use rayon::prelude::*;
@@ -87,24 +87,24 @@ pub(super) fn run(model: ModelId, inputs: &TimedInputs) -> Result<Vec<ThreadsRes
     let eval = time(&pools, &wi, |chunk: &mut Chunk<4>| {
         let [r, g, b, pdf] = chunk.out.each_mut().map(Vec::as_mut_slice);
         // The columns of a chunk are of one length.
-        let _ = bsdf.eval_pdf_batch(
+        let _ = bsdf.eval_columns(
             chunk.inputs.each_ref().map(Vec::as_slice),
-            EvalSlices {
-                value: [r, g, b],
-                pdf,
+            EvalColumns {
+                value: Some([r, g, b]),
+                pdf: Some(pdf),
             },
         );
     });
     let sample = time(&pools, &inputs.xi, |chunk: &mut Chunk<11>| {
         let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = chunk.out.each_mut().map(Vec::as_mut_slice);
-        let out = SampleSlices {
-            wi: [u, v, w],
-            value: [r, g, b],
-            pdf,
-            weight: [wr, wg, wb],
-            slot,
+        let out = SampleColumns {
+            wi: Some([u, v, w]),
+            value: Some([r, g, b]),
+            pdf: Some(pdf),
+            weight: Some([wr, wg, wb]),
+            slot: Some(slot),
         };
-        let _ = bsdf.sample_batch(chunk.inputs.each_ref().map(Vec::as_slice), out);
+        let _ = bsdf.sample_columns(chunk.inputs.each_ref().map(Vec::as_slice), out);
     });
     let rows = |(op, ns): (TimedOp, Vec<Vec<f64>>)| {
         let of = |(threads, times): (&usize, &Vec<f64>)| {

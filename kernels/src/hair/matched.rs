@@ -73,7 +73,7 @@ use crate::{HairParams, LobeMask, PerLobe};
 /// ```
 /// use glam::Vec3;
 /// use hairis::{Gaussian, HairParams, Matched, Material, Published};
-/// let (hair, matched) = (Published(Gaussian), Matched::<_>(Gaussian));
+/// let (hair, matched) = (Published(Gaussian), Matched::new(Gaussian));
 /// let wo = Vec3::new(0.6, 0.8, 0.0);
 /// let [hair, matched] = [Material::new(&hair, &HairParams::default()).prepare(wo).eval(Vec3::Y),
 ///     Material::new(&matched, &HairParams::default()).prepare(wo).eval(Vec3::Y)];
@@ -81,6 +81,16 @@ use crate::{HairParams, LobeMask, PerLobe};
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Matched<B, const BANDS: usize = 9, const BY_CHANNEL: bool = false>(pub B);
+
+impl<B> Matched<B> {
+    /// The matched sampler as it is recommended: nine bands, lobes chosen by their mean over the channels. For others name the
+    /// type: `Matched::<_, 25>(Gaussian)`.
+    #[inline]
+    #[must_use]
+    pub const fn new(bell: B) -> Self {
+        Self(bell)
+    }
+}
 
 impl<B: MatchedBell, const BANDS: usize, const BY_CHANNEL: bool> Model
     for Matched<B, BANDS, BY_CHANNEL>

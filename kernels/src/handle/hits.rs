@@ -1,6 +1,6 @@
 //! Slice calls over hits: each entry has a hit and a direction of its own.
 
-use crate::columns::{EvalColumns, HitSlices, LengthError, SampleColumns, WI, XI, check_lengths};
+use crate::columns::{EvalColumns, HitColumns, LengthError, SampleColumns, WI, XI, check_length};
 use crate::handle::kernels::{AtHits, EightHits, HitEvals, HitRow, HitSamples};
 use crate::model::Model;
 use crate::simd::Level;
@@ -12,7 +12,7 @@ use wide::f32x8;
 
 /// Materials of a slice call: a table, and the index of each hit's material in it.
 ///
-/// Eight hits in a row with one material take the path of [`Material::eval_pdf_hits`]; hits sorted by material are the fastest.
+/// Eight hits in a row with one material take the path of [`Material::eval_hits`]; hits sorted by material are the fastest.
 #[derive(Debug)]
 pub struct MaterialTable<'a, M: Model> {
     /// The materials.
@@ -87,46 +87,24 @@ impl<M: Model> Material<M> {
     ///
     /// ```
     /// use hairis::{Gaussian, HairParams, Material, Published};
-    /// use hairis::columns::{EvalColumns, HitSlices};
+    /// use hairis::columns::{EvalColumns, HitColumns};
     /// let hair = Material::new(&Published(Gaussian), &HairParams::default());
     /// let (wo, wi) = ([[0.0; 11], [0.6; 11], [0.8; 11]], [[0.1; 11], [0.7; 11], [0.7; 11]]);
-    /// let hits = HitSlices { wo: [&wo[0], &wo[1], &wo[2]], h: None };
+    /// let hits = HitColumns { wo: [&wo[0], &wo[1], &wo[2]], h: None };
     /// let mut pdf = [0.0; 11];
     /// let out = EvalColumns { pdf: Some(&mut pdf), ..EvalColumns::default() };
-    /// hair.eval_pdf_hits(hits, [&wi[0], &wi[1], &wi[2]], out)?;
+    /// hair.eval_hits(hits, [&wi[0], &wi[1], &wi[2]], out)?;
     /// assert!(pdf.iter().all(|pdf| *pdf > 0.0));
     /// # Ok::<(), hairis::columns::LengthError>(())
     /// ```
     #[inline]
-    pub fn eval_pdf_hits(
+    pub fn eval_hits(
         &self,
-        hits: HitSlices<'_>,
+        hits: HitColumns<'_>,
         wi: [&[f32]; 3],
         out: EvalColumns<'_>,
     ) -> Result<(), LengthError> {
-        self.eval_pdf_hits_at(Level::detect(), hits, wi, out)
-    }
-
-    /// As [`eval_pdf_hits`](Self::eval_pdf_hits), on a given instruction set.
-    ///
-    /// # Errors
-    ///
-    /// If the slices differ in length; nothing is written then.
-    #[inline]
-    pub fn eval_pdf_hits_at(
-        &self,
-        level: Level,
-        hits: HitSlices<'_>,
-        wi: [&[f32]; 3],
-        out: EvalColumns<'_>,
-    ) -> Result<(), LengthError> {
-        clean_upper_halves();
-        let (inputs, mut outputs) = (hits.with(wi, WI)?, out.columns(hits.len())?);
-        level.run_rows(
-            AtHits::<M, HitEvals>::new(&self.material),
-            inputs,
-            &mut outputs,
-        );
+        self.run::<HitEvals, 4>(hits.with(wi, WI)?, out.columns(hits.len())?);
         Ok(())
     }
 
@@ -139,10 +117,10 @@ impl<M: Model> Material<M> {
     ///
     /// ```
     /// use hairis::{Gaussian, HairParams, Material, Published};
-    /// use hairis::columns::{HitSlices, SampleColumns};
+    /// use hairis::columns::{HitColumns, SampleColumns};
     /// let hair = Material::new(&Published(Gaussian), &HairParams::default());
     /// let (wo, xi) = ([[0.0; 11], [0.6; 11], [0.8; 11]], [[0.1; 11], [0.5; 11], [0.7; 11]]);
-    /// let hits = HitSlices { wo: [&wo[0], &wo[1], &wo[2]], h: None };
+    /// let hits = HitColumns { wo: [&wo[0], &wo[1], &wo[2]], h: None };
     /// let (mut wi, mut pdf, mut weight) = ([[0.0; 11]; 3], [0.0; 11], [[0.0; 11]; 3]);
     /// let out = SampleColumns {
     ///     wi: Some(wi.each_mut().map(|column| &mut column[..])),
@@ -157,109 +135,65 @@ impl<M: Model> Material<M> {
     #[inline]
     pub fn sample_hits(
         &self,
-        hits: HitSlices<'_>,
+        hits: HitColumns<'_>,
         xi: [&[f32]; 3],
         out: SampleColumns<'_>,
     ) -> Result<(), LengthError> {
-        self.sample_hits_at(Level::detect(), hits, xi, out)
+        self.run::<HitSamples, 11>(hits.with(xi, XI)?, out.columns(hits.len())?);
+        Ok(())
     }
 
-    /// As [`sample_hits`](Self::sample_hits), on a given instruction set.
-    ///
-    /// # Errors
-    ///
-    /// If the slices differ in length; nothing is written then.
     #[inline]
-    pub fn sample_hits_at(
+    fn run<K: HitRow<M, N>, const N: usize>(
         &self,
-        level: Level,
-        hits: HitSlices<'_>,
-        xi: [&[f32]; 3],
-        out: SampleColumns<'_>,
-    ) -> Result<(), LengthError> {
+        inputs: [&[f32]; 7],
+        mut outputs: [&mut [f32]; N],
+    ) {
         clean_upper_halves();
-        let (inputs, mut outputs) = (hits.with(xi, XI)?, out.columns(hits.len())?);
-        level.run_rows(
-            AtHits::<M, HitSamples>::new(&self.material),
-            inputs,
-            &mut outputs,
-        );
-        Ok(())
+        let row = AtHits::<M, K>::new(&self.constants);
+        self.level.run_rows(row, inputs, &mut outputs);
     }
 }
 
 impl<M: Model> MaterialTable<'_, M> {
-    /// As [`Material::eval_pdf_hits`], each hit with the material of its index.
+    /// As [`Material::eval_hits`], each hit with the material of its index, on the level of the first material.
     ///
     /// # Errors
     ///
-    /// If the slices differ in length, or an index is not in the table; nothing is written then.
+    /// If the columns differ in length, or an index is not in the table; nothing is written then.
     #[inline]
-    pub fn eval_pdf_hits(
+    pub fn eval_hits(
         &self,
-        hits: HitSlices<'_>,
+        hits: HitColumns<'_>,
         wi: [&[f32]; 3],
         out: EvalColumns<'_>,
     ) -> Result<(), HitsError> {
-        self.eval_pdf_hits_at(Level::detect(), hits, wi, out)
+        self.run::<HitEvals, 4>(hits.with(wi, WI)?, out.columns(hits.len())?)
     }
 
-    /// As [`eval_pdf_hits`](Self::eval_pdf_hits), on a given instruction set.
+    /// As [`Material::sample_hits`], each hit with the material of its index, on the level of the first material.
     ///
     /// # Errors
     ///
-    /// If the slices differ in length, or an index is not in the table; nothing is written then.
-    #[inline]
-    pub fn eval_pdf_hits_at(
-        &self,
-        level: Level,
-        hits: HitSlices<'_>,
-        wi: [&[f32]; 3],
-        out: EvalColumns<'_>,
-    ) -> Result<(), HitsError> {
-        self.run::<HitEvals, 4>(level, hits.with(wi, WI)?, out.columns(hits.len())?)
-    }
-
-    /// As [`Material::sample_hits`], each hit with the material of its index.
-    ///
-    /// # Errors
-    ///
-    /// If the slices differ in length, or an index is not in the table; nothing is written then.
+    /// If the columns differ in length, or an index is not in the table; nothing is written then.
     #[inline]
     pub fn sample_hits(
         &self,
-        hits: HitSlices<'_>,
+        hits: HitColumns<'_>,
         xi: [&[f32]; 3],
         out: SampleColumns<'_>,
     ) -> Result<(), HitsError> {
-        self.sample_hits_at(Level::detect(), hits, xi, out)
-    }
-
-    /// As [`sample_hits`](Self::sample_hits), on a given instruction set.
-    ///
-    /// # Errors
-    ///
-    /// If the slices differ in length, or an index is not in the table; nothing is written then.
-    #[inline]
-    pub fn sample_hits_at(
-        &self,
-        level: Level,
-        hits: HitSlices<'_>,
-        xi: [&[f32]; 3],
-        out: SampleColumns<'_>,
-    ) -> Result<(), HitsError> {
-        self.run::<HitSamples, 11>(level, hits.with(xi, XI)?, out.columns(hits.len())?)
+        self.run::<HitSamples, 11>(hits.with(xi, XI)?, out.columns(hits.len())?)
     }
 
     /// Runs of one material as slice calls, and the rest eight hits at a time, one material per lane.
     fn run<K: HitRow<M, N>, const N: usize>(
         &self,
-        level: Level,
         inputs: [&[f32]; 7],
         mut outputs: [&mut [f32]; N],
     ) -> Result<(), HitsError> {
         clean_upper_halves();
-        check_lengths(inputs[0].len(), [("index", Some(self.index.len()))])?;
+        check_length(inputs[0].len(), "index", Some(self.index))?;
         let materials = self.materials.len();
         let material = |index: u32| {
             self.materials
@@ -274,6 +208,10 @@ impl<M: Model> MaterialTable<'_, M> {
                 });
             }
         }
+        let level = self
+            .materials
+            .first()
+            .map_or_else(Level::portable, Material::level);
         let (mut at, mut rest) = (0, self.index);
         while let [index, ..] = rest
             && let Some(first) = material(*index)
@@ -289,7 +227,7 @@ impl<M: Model> MaterialTable<'_, M> {
                 .each_mut()
                 .map(|column| column.get_mut(at..at + done).unwrap_or_default());
             if done == alike {
-                level.run_rows(AtHits::<M, K>::new(&first.material), inputs, &mut outputs);
+                level.run_rows(AtHits::<M, K>::new(&first.constants), inputs, &mut outputs);
             } else {
                 // Lanes past the last hit have the material of the first.
                 let mut lanes = [first; 8];
@@ -301,8 +239,8 @@ impl<M: Model> MaterialTable<'_, M> {
                     copy_few(column, &mut lanes);
                     f32x8::new(lanes)
                 });
-                let Material8 { material } = Material8::pack(lanes);
-                let output = level.run(EightHits::<M, K, N>::new(&material, &input));
+                let Material8 { constants, .. } = Material8::pack(lanes);
+                let output = level.run(EightHits::<M, K, N>::new(&constants, &input));
                 for (lanes, column) in output.iter().zip(outputs) {
                     copy_few(lanes.as_array(), column);
                 }

@@ -2,7 +2,7 @@
 
 use crate::model::{Eval8, Hit8, LobeEval8, Model, Sample8, SampleLanes};
 use crate::resample::{Weighed8, Weighing};
-use crate::simd::{Broadcast, Constant, Kernel, Lanes, Row, Vec3x, fresh_lanes3, store3};
+use crate::simd::{Broadcast, Constant, Kernel, Lanes, Level, Row, Vec3x, fresh_lanes3, store3};
 use crate::{Bsdf8, Hit, PerLobe, Vec3x8};
 use core::marker::PhantomData;
 use wide::f32x8;
@@ -10,6 +10,7 @@ use wide::f32x8;
 /// Eight shading points. The caller's arguments are converted to hits inside the kernel, by vector code.
 pub(crate) struct Prepare<'a, M: Model, C: Constant, H> {
     pub(crate) material: &'a M::Material<C>,
+    pub(crate) level: Level,
     pub(crate) hits: H,
 }
 
@@ -30,7 +31,8 @@ impl<M: Model, C: Constant, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
             h: hits.h.lanes(),
         };
         Bsdf8 {
-            inner: M::prepare::<L, C>(self.material, hit),
+            prepared: M::prepare::<L, C>(self.material, hit),
+            level: self.level,
         }
     }
 }
@@ -162,6 +164,20 @@ impl<M: Model> Row<3, 4> for AtBsdf<'_, M, ValuePdf> {
 /// Columns of samples.
 pub(crate) struct Samples;
 impl<M: Model> Row<3, 11> for AtBsdf<'_, M, Samples> {
+    #[inline(always)]
+    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11]
+    where
+        f32: Broadcast<L>,
+    {
+        columns(M::sample::<L, f32>(self.prepared, xi))
+    }
+}
+
+/// Columns of samples, some of which are left out.
+pub(crate) struct SomeSamples;
+impl<M: Model> Row<3, 11> for AtBsdf<'_, M, SomeSamples> {
+    const OPTIONAL: bool = true;
+
     #[inline(always)]
     fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11]
     where

@@ -1,44 +1,34 @@
 //! Energy per direction: a model that returns no more light than arrives.
 
 use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
-use crate::simd::{Broadcast, Kernel, Lanes, Level, Scalar, Vec3x};
+use crate::simd::{Broadcast, Kernel, Lanes, Scalar, Vec3x};
 use crate::{Bsdf, Bsdf8, LobeMask, PerLobe};
 use wide::f32x8;
 
 impl<M: Model> Bsdf<M> {
-    /// The shading point with each channel divided by its albedo where that is above 1: see [`Conserving`].
+    /// The BSDF with each channel divided by its albedo where that is above 1: see [`Conserving`].
     ///
-    /// With some lobes alone, give the lobes first: `with_lobes` of a shading point that conserves keeps its factors.
+    /// With some lobes alone, give the lobes first: `with_lobes` of a BSDF that conserves keeps its factors.
     #[inline]
     #[must_use]
     pub fn conserving(&self) -> Self {
         Self {
-            inner: M::conserve::<f32>(&self.inner),
+            prepared: M::conserve::<f32>(&self.prepared),
+            level: self.level,
         }
     }
 }
 
 impl<M: Model> Bsdf8<M> {
-    /// The shading points with each channel divided by its albedo where that is above 1: see [`Conserving`].
+    /// The BSDFs with each channel divided by its albedo where that is above 1: see [`Conserving`].
     #[inline]
     #[must_use]
     pub fn conserving(&self) -> Self {
-        self.conserving_at(Level::detect())
-    }
-
-    /// As [`conserving`](Self::conserving), on a given instruction set.
-    #[inline]
-    #[must_use]
-    pub fn conserving_at(&self, level: Level) -> Self {
-        level.run(Conserve::<M> {
-            prepared: &self.inner,
-        })
+        self.level.run(Conserve(self))
     }
 }
 
-struct Conserve<'a, M: Model> {
-    prepared: &'a M::Prepared<f32x8>,
-}
+struct Conserve<'a, M: Model>(&'a Bsdf8<M>);
 
 impl<M: Model> Kernel for Conserve<'_, M> {
     type Constant = f32x8;
@@ -50,8 +40,10 @@ impl<M: Model> Kernel for Conserve<'_, M> {
     where
         f32x8: Broadcast<L>,
     {
+        let Bsdf8 { prepared, level } = self.0;
         Bsdf8 {
-            inner: M::conserve::<L>(self.prepared),
+            prepared: M::conserve::<L>(prepared),
+            level: *level,
         }
     }
 }

@@ -33,7 +33,7 @@ pub struct Choices<'a> {
 /// whose interval of the running sum holds `(u + j) / k` of it, j from 0 to `k - 1`.
 ///
 /// The sum of `V * contribution` over the choices, V being visibility, is the estimate. Columns are those of
-/// [`weigh_batch`](crate::Bsdf::weigh_batch); the shortest counts. No candidate without a weight is chosen, and none if all
+/// [`weigh_columns`](crate::Bsdf::weigh_columns); the shortest counts. No candidate without a weight is chosen, and none if all
 /// are without. NaN as `u` counts as 0.
 ///
 /// Sums are in double precision: a faint candidate keeps its share beside one that is a million times as bright.

@@ -1,9 +1,8 @@
 //! The candidates of one hit, stored by column.
 
-use super::{CandidateSlices, Choice, Choices, Counts, Partition, WeightSlices, choose};
-use crate::Bsdf;
+use super::{CandidateColumns, Choice, Choices, Counts, Partition, WeightColumns, choose};
 use crate::columns::LengthError;
-use crate::model::Model;
+use crate::model::DynBsdf;
 use glam::Vec3;
 
 /// The candidates of one hit, at most `N`: those of the BSDF first. Keep one per thread and use it again.
@@ -54,7 +53,7 @@ pub struct Pool<const N: usize> {
 
 /// Columns of a technique's candidates that the host writes.
 #[derive(Debug)]
-pub struct CandidateColumns<'a> {
+pub struct CandidateColumnsMut<'a> {
     /// Towards the light, in the fibre's frame: u, v, w.
     pub wi: [&'a mut [f32]; 3],
     /// Radiance from there, linear RGB.
@@ -92,52 +91,50 @@ impl<const N: usize> Pool<N> {
     ///
     /// If there are more or less numbers than candidates.
     #[inline]
-    pub fn propose<M: Model>(
+    pub fn propose(
         &mut self,
-        prepared: &Bsdf<M>,
+        bsdf: &(impl DynBsdf + ?Sized),
         xi: [&[f32]; 3],
     ) -> Result<(), LengthError> {
-        prepared
-            .propose_batch(xi, self.bsdf_candidates().wi)
-            .map_err(
-                |LengthError {
-                     field,
-                     len,
-                     expected,
-                 }| {
-                    // The numbers are the first slices of that call, and the room of the pool is what they must fill.
-                    if field.starts_with("wi") {
-                        LengthError {
-                            field: "xi.lobe",
-                            len: expected,
-                            expected: len,
-                        }
-                    } else {
-                        LengthError {
-                            field,
-                            len,
-                            expected,
-                        }
+        bsdf.propose_columns(xi, self.bsdf_candidates().wi).map_err(
+            |LengthError {
+                 field,
+                 len,
+                 expected,
+             }| {
+                // The numbers are the first slices of that call, and the room of the pool is what they must fill.
+                if field.starts_with("wi") {
+                    LengthError {
+                        field: "xi.lobe",
+                        len: expected,
+                        expected: len,
                     }
-                },
-            )
+                } else {
+                    LengthError {
+                        field,
+                        len,
+                        expected,
+                    }
+                }
+            },
+        )
     }
 
     /// The BSDF's candidates: directions to look up, and where radiance and density go.
     #[inline]
-    pub fn bsdf_candidates(&mut self) -> CandidateColumns<'_> {
+    pub fn bsdf_candidates(&mut self) -> CandidateColumnsMut<'_> {
         self.candidates(0, self.bsdf)
     }
 
     /// The light's candidates, all of which the host writes.
     #[inline]
-    pub fn light_candidates(&mut self) -> CandidateColumns<'_> {
+    pub fn light_candidates(&mut self) -> CandidateColumnsMut<'_> {
         self.candidates(self.bsdf, self.len)
     }
 
     #[inline]
-    fn candidates(&mut self, from: usize, to: usize) -> CandidateColumns<'_> {
-        CandidateColumns {
+    fn candidates(&mut self, from: usize, to: usize) -> CandidateColumnsMut<'_> {
+        CandidateColumnsMut {
             wi: self
                 .wi
                 .each_mut()
@@ -181,9 +178,9 @@ impl<const N: usize> Pool<N> {
 
     /// Weighs the candidates, once all are looked up.
     #[inline]
-    pub fn weigh<M: Model>(&mut self, prepared: &Bsdf<M>) {
+    pub fn weigh(&mut self, bsdf: &(impl DynBsdf + ?Sized)) {
         let len = self.len;
-        let candidates = CandidateSlices {
+        let candidates = CandidateColumns {
             wi: self
                 .wi
                 .each_ref()
@@ -194,14 +191,14 @@ impl<const N: usize> Pool<N> {
                 .map(|column| column.get(..len).unwrap_or_default()),
             pdf_light: self.pdf_light.get(..len).unwrap_or_default(),
         };
-        let out = WeightSlices {
+        let out = WeightColumns {
             contribution: self
                 .contribution
                 .each_mut()
                 .map(|column| column.get_mut(..len).unwrap_or_default()),
             weight: self.weight.get_mut(..len).unwrap_or_default(),
         };
-        let written = prepared.weigh_batch(candidates, self.counts, self.partition, out);
+        let written = bsdf.weigh_columns(candidates, self.counts, self.partition, out);
         debug_assert!(written.is_ok(), "all columns have the length of the pool");
     }
 

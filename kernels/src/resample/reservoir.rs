@@ -2,6 +2,7 @@
 
 use super::Weighed8;
 use crate::Vec3x8;
+use crate::handle::level_methods;
 use crate::simd::lanes::{lanes3, store3};
 use crate::simd::{Broadcast, Kernel, Lanes, Level, Vec3x};
 use wide::f32x8;
@@ -18,6 +19,7 @@ pub struct Reservoir8 {
     pub contribution: [f32x8; 3],
     /// The sum of all weights: the estimate of the mean over the channels, were everything visible.
     pub sum: f32x8,
+    level: Level,
 }
 
 impl Default for Reservoir8 {
@@ -29,29 +31,27 @@ impl Default for Reservoir8 {
             wi: Vec3x::new(zero, zero, zero),
             contribution: [zero; 3],
             sum: zero,
+            level: Level::detect(),
         }
     }
 }
 
 impl Reservoir8 {
+    level_methods! {}
+
     /// Adds a candidate per lane, kept if `u` times the sum of the weights is below its own. `u` is uniform in `[0, 1)`, drawn
     /// anew for each candidate: one number that is rescaled runs out of bits after twenty.
     ///
     /// The candidate's weight counts the candidates of one hit: see [`Bsdf8::weigh8`](crate::Bsdf8::weigh8).
     #[inline]
     pub fn add(&mut self, wi: &Vec3x8, candidate: &Weighed8, u: &f32x8) {
-        self.add_at(Level::detect(), wi, candidate, u);
-    }
-
-    /// As [`add`](Self::add), on a given instruction set.
-    #[inline]
-    pub fn add_at(&mut self, level: Level, wi: &Vec3x8, candidate: &Weighed8, u: &f32x8) {
         let other = Self {
             wi: *wi,
             contribution: candidate.contribution,
             sum: candidate.weight,
+            level: self.level,
         };
-        self.merge_at(level, &other, u);
+        self.merge(&other, u);
     }
 
     /// Merges a reservoir of other candidates, whose `u` it takes: exact for the same hits, the same target and weights that
@@ -59,13 +59,7 @@ impl Reservoir8 {
     /// the weights of Lin et al. 2022.
     #[inline]
     pub fn merge(&mut self, other: &Self, u: &f32x8) {
-        self.merge_at(Level::detect(), other, u);
-    }
-
-    /// As [`merge`](Self::merge), on a given instruction set.
-    #[inline]
-    pub fn merge_at(&mut self, level: Level, other: &Self, u: &f32x8) {
-        *self = level.run(Merge {
+        *self = self.level.run(Merge {
             a: self,
             b: other,
             u,
@@ -76,14 +70,7 @@ impl Reservoir8 {
     #[inline]
     #[must_use]
     pub fn estimate(&self) -> [f32x8; 3] {
-        self.estimate_at(Level::detect())
-    }
-
-    /// As [`estimate`](Self::estimate), on a given instruction set.
-    #[inline]
-    #[must_use]
-    pub fn estimate_at(&self, level: Level) -> [f32x8; 3] {
-        level.run(Estimate(self))
+        self.level.run(Estimate(self))
     }
 }
 
@@ -123,6 +110,7 @@ impl Kernel for Merge<'_> {
                 L::select(taken, new[2], old[2]),
             ]),
             sum: sum.min(L::splat(f32::MAX)).store(),
+            level: a.level,
         }
     }
 }

@@ -16,11 +16,11 @@ pub(crate) mod sealed {
 }
 
 /// Entry of a struct of lanes: one number, or one per lane. Sealed.
-pub trait Scalar: sealed::Sealed + Copy + Debug {}
-impl<T: sealed::Sealed + Copy + Debug> Scalar for T {}
+pub trait Scalar: sealed::Sealed + Copy + Debug + Send + Sync + 'static {}
+impl<T: sealed::Sealed + Copy + Debug + Send + Sync + 'static> Scalar for T {}
 
 /// A struct of lanes, as [`lane_struct!`](crate::simd::lane_struct) declares it: eight of one lane are one of eight.
-pub trait LaneStruct: Copy + Debug {
+pub trait LaneStruct: Copy + Debug + Send + Sync + 'static {
     /// The struct of one lane.
     type One;
     /// The struct of eight.

@@ -8,7 +8,7 @@ use crate::near::Nearby;
 use crate::probe::{Draws, cos_theta, direction, hits, hits_and, masks, triples};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::simd::Level;
-use hairis::{Eval, Hit, LobeMask};
+use hairis::{Eval, LobeMask};
 
 /// Integral of `S cos theta_i` of one channel.
 fn reflected(bsdf: &dyn ErasedBsdf, mesh: &Mesh, channel: usize) -> Integral {
@@ -17,7 +17,9 @@ fn reflected(bsdf: &dyn ErasedBsdf, mesh: &Mesh, channel: usize) -> Integral {
             v.resize(out.len(), 0.0);
             v
         });
-        let written = bsdf.value_slices(Level::detect(), wi, value.each_mut().map(|v| &mut v[..]));
+        let written = bsdf
+            .with_level(Level::detect())
+            .value_array(wi, value.each_mut().map(|v| &mut v[..]));
         assert!(
             written.is_ok(),
             "slices of one length are accepted: {written:?}"
@@ -146,7 +148,7 @@ pub fn weights_are_bounded(subject: &dyn ErasedSubject) -> Outcome {
                     };
                 }
                 for level in Level::available() {
-                    let eight = bsdf.sample8(level, &triples(&xi));
+                    let eight = bsdf.with_level(level).sample8(&triples(&xi));
                     for s in (0..8).filter_map(|lane| eight.lane(lane)) {
                         let most = s.weight.into_iter().fold(0.0, f32::max);
                         (closest, seen) = (closest.max(f64::from(most) / bound), seen + 1);
@@ -187,15 +189,15 @@ pub fn eval_is_reciprocal(subject: &dyn ErasedSubject) -> Outcome {
             let mut any =
                 || direction(draws.between(-FRAC_PI_2, FRAC_PI_2), draws.between(-PI, PI));
             let (a, mut b) = (any(), any());
-            let here = Nearby::new(material, Hit { wo: a, h: 0.0 }, claims.near_field);
+            let here = Nearby::new(material, a.into(), claims.near_field);
             if round % 2 == 0 {
-                b = here.bsdf().sample(draws.xi3()).map_or(b, |s| s.wi.into());
+                b = here.bsdf().sample(draws.xi3()).map_or(b, |s| s.wi);
             }
             if cos_theta(a).min(cos_theta(b)) < 1e-3 {
                 continue;
             }
-            let there = material.prepare(Hit { wo: b, h: 0.0 });
-            let (forth, back) = (here.bsdf().eval(b), there.eval(a));
+            let there = material.prepare(b.into());
+            let (forth, back) = (here.bsdf().eval_pdf(b), there.eval_pdf(a));
             // Densities are not reciprocal.
             let error = here.error(Eval { pdf: 0.0, ..back }, Eval { pdf: 0.0, ..forth }, b);
             worst.see(error, || {

@@ -11,7 +11,7 @@ use crate::probe::{Draws, columns, hits8, packet, triples};
 use crate::totality;
 use core::hint::black_box;
 use hairis::Hit;
-use hairis::simd::{Level, Vec3x, control, set_control};
+use hairis::simd::{Level, control, set_control};
 
 const NAME: &str = "results are finite however they are rounded";
 
@@ -84,10 +84,10 @@ fn unit(draws: &mut Draws) -> Direction {
         any,
         any,
         any,
-        Vec3x::new(1.0, 0.0, 0.0),
-        Vec3x::new(0.0, -1.0, 0.0),
-        Vec3x::new(-0.6, 0.0, -0.8),
-        Vec3x::new(-1.0, off, -off),
+        Direction::new(1.0, 0.0, 0.0),
+        Direction::new(0.0, -1.0, 0.0),
+        Direction::new(-0.6, 0.0, -0.8),
+        Direction::new(-1.0, off, -off),
     ])
 }
 
@@ -126,13 +126,12 @@ fn slices_are_finite(subject: &dyn ErasedSubject) -> Outcome {
                 [const { [0.0_f32; 69] }; COLUMNS],
             );
             let lengths = bsdf
-                .eval_slices(
-                    Some(level),
+                .with_level(level)
+                .eval_array(
                     wi.each_ref().map(|c| &c[..]),
                     evals.each_mut().map(|c| &mut c[..]),
                 )
-                .and(bsdf.sample_slices(
-                    Some(level),
+                .and(bsdf.with_level(level).sample_array(
                     xi.each_ref().map(|c| &c[..]),
                     samples.each_mut().map(|c| &mut c[..]),
                 ));
@@ -187,24 +186,29 @@ pub fn everyday_input_raises_no_exception(subject: &dyn ErasedSubject) -> Outcom
                     NamedMaterial::prepare_packed([material; 8], level, hits8)
                 })?;
                 let each = NamedMaterial::prepare_packed([material; 8], level, hits8);
-                quiet("eval_pdf8 of one hit", at, || one.eval8(level, &wi8))?;
-                quiet("eval_pdf8 of eight hits", at, || each.eval(level, &wi8))?;
-                quiet("sample8 of one hit", at, || one.sample8(level, &xi8))?;
-                quiet("sample8 of eight hits", at, || each.sample(level, &xi8))?;
-                quiet("lobes8", at, || each.lobes(&wi8))?;
+                quiet("eval_pdf8 of one hit", at, || {
+                    one.with_level(level).eval_pdf8(&wi8)
+                })?;
+                quiet("eval_pdf8 of eight hits", at, || {
+                    each.with_level(level).eval_pdf8(&wi8)
+                })?;
+                quiet("sample8 of one hit", at, || {
+                    one.with_level(level).sample8(&xi8)
+                })?;
+                quiet("sample8 of eight hits", at, || {
+                    each.with_level(level).sample8(&xi8)
+                })?;
+                quiet("lobes8", at, || each.lobes8(&wi8))?;
                 if round % 8 == 0 {
-                    quiet("albedo8", at, || each.albedo(level))?;
-                    quiet("conserving", at, || each.conserving(level))?;
+                    quiet("albedo8", at, || each.with_level(level).albedo8())?;
+                    quiet("conserving", at, || each.with_level(level).conserving())?;
                 }
                 let mut room = [[0.0; 8]; 4];
                 let len = round % 9;
-                quiet("eval_pdf_batch", at, || {
+                quiet("eval_columns", at, || {
                     let out = room.each_mut().map(|column| &mut column[..len]);
-                    one.eval_slices(
-                        Some(level),
-                        by_axis.each_ref().map(|column| &column[..len]),
-                        out,
-                    )
+                    one.with_level(level)
+                        .eval_array(by_axis.each_ref().map(|column| &column[..len]), out)
                 })?;
             }
         }
@@ -221,7 +225,7 @@ fn scalar_is_quiet(
 ) -> Outcome {
     let at = || format!("{}, one lane, {hit:?} {wi:?} {xi:?}", material.name());
     quiet("prepare", at, || material.prepare(hit))?;
-    quiet("eval_pdf", at, || one.eval(wi))?;
+    quiet("eval_pdf", at, || one.eval_pdf(wi))?;
     quiet("lobes", at, || one.lobes(wi))?;
     quiet("sample", at, || one.sample(xi))?;
     quiet("albedo", at, || one.albedo())?;

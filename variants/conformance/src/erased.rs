@@ -3,20 +3,16 @@
 //! Properties take these, so that each is compiled once; the calls below are compiled once per model.
 
 pub(crate) mod hits;
-pub(crate) mod light;
 
 use crate::subject::{Claims, ParamsOf, Reference, Subject};
-use core::fmt;
-use hairis::columns::{EvalSlices, LengthError, SampleSlices, SampleWeightSlices};
-use hairis::model::{LobeEval, LobeEval8, Model};
-use hairis::simd::{Level, Vec3x, f32x8};
-use hairis::{
-    Bsdf, Bsdf8, Eval, Eval8, Hit, Hit8, Lobe, LobeMask, Material, Material8, PerLobe, Sample,
-    Sample8, Vec3x8,
-};
+use glam::Vec3;
+use hairis::columns::{EvalColumns, LengthError, SampleColumns};
+use hairis::model::{DynBsdf, DynBsdf8, Model};
+use hairis::simd::Level;
+use hairis::{Bsdf, Bsdf8, Hit, Hit8, Lobe, LobeMask, Material, Material8};
 
 /// A direction, or any vector, in the fibre's frame.
-pub(crate) type Direction = Vec3x<f32>;
+pub(crate) type Direction = Vec3;
 
 /// A [`Subject`] without its model's type: pass a reference to any subject.
 pub trait ErasedSubject: Sync {
@@ -188,11 +184,15 @@ impl<S: Subject> MaterialSet for Set<'_, S> {
     }
 
     fn prepare8(&self, index: usize, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
-        Box::new(self.materials[index].prepare8_at(level, hits))
+        Box::new(self.materials[index].with_level(level).prepare8(hits))
     }
 
     fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
-        Box::new(Material8::pack(index.map(|i| &self.materials[i])).prepare8_at(level, hits))
+        Box::new(
+            Material8::pack(index.map(|i| &self.materials[i]))
+                .with_level(level)
+                .prepare8(hits),
+        )
     }
 
     fn edges(&self, index: usize, hit: &Hit) -> [Vec<f64>; 2] {
@@ -208,196 +208,109 @@ impl<S: Subject> MaterialSet for Set<'_, S> {
     }
 }
 
-/// Columns of a sample in slices: direction, value, density, weight, slot.
+/// Columns of a sample: direction, value, density, weight, slot.
 pub(crate) const COLUMNS: usize = 11;
 
-/// Places of the columns of [`ErasedBsdf::weight_slices`] among those of [`ErasedBsdf::sample_slices`].
+/// Places of the columns that a path tracer needs among those of a sample.
 pub(crate) const WEIGHT_COLUMNS: [usize; 7] = [0, 1, 2, 6, 7, 8, 9];
 
-/// Outcome of a call on slices: an error if their lengths differ.
-type SliceResult = Result<(), LengthError>;
+/// Outcome of a call on columns: an error if their lengths differ.
+type ColumnResult = Result<(), LengthError>;
 
-/// [`Bsdf`] of any model. Without a level, slices run on the one that is found.
-pub trait ErasedBsdf: fmt::Debug {
-    fn eval(&self, wi: Direction) -> Eval;
-    fn value(&self, wi: Direction) -> [f32; 3];
-    fn pdf(&self, wi: Direction) -> f32;
-    fn eval8(&self, level: Level, wi: &Vec3x8) -> Eval8;
-    fn lobes(&self, wi: Direction) -> PerLobe<LobeEval>;
-    fn lobes8(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8>;
-    fn sample(&self, xi: [f32; 3]) -> Option<Sample>;
-    fn sample8(&self, level: Level, xi: &[f32x8; 3]) -> Sample8;
-    fn albedo(&self) -> PerLobe<[f32; 3]>;
-    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedBsdf>;
-    fn conserving(&self) -> Box<dyn ErasedBsdf>;
-    fn eval_slices(
-        &self,
-        level: Option<Level>,
-        wi: [&[f32]; 3],
-        out: [&mut [f32]; 4],
-    ) -> SliceResult;
-    fn value_slices(&self, level: Level, wi: [&[f32]; 3], out: [&mut [f32]; 3]) -> SliceResult;
-    fn pdf_slice(&self, level: Level, wi: [&[f32]; 3], out: &mut [f32]) -> SliceResult;
-    fn sample_slices(
-        &self,
-        level: Option<Level>,
-        xi: [&[f32]; 3],
-        out: [&mut [f32]; COLUMNS],
-    ) -> SliceResult;
-    fn weight_slices(
-        &self,
-        level: Option<Level>,
-        xi: [&[f32]; 3],
-        out: [&mut [f32]; WEIGHT_COLUMNS.len()],
-    ) -> SliceResult;
+/// [`Bsdf`] of any model.
+pub trait ErasedBsdf: DynBsdf {
+    fn boxed(&self) -> Box<dyn ErasedBsdf>;
 }
 
 impl<M: Model + 'static> ErasedBsdf for Bsdf<M> {
-    fn eval(&self, wi: Direction) -> Eval {
-        self.eval_pdf(wi)
-    }
-
-    fn value(&self, wi: Direction) -> [f32; 3] {
-        self.eval(wi)
-    }
-
-    fn pdf(&self, wi: Direction) -> f32 {
-        self.pdf(wi)
-    }
-
-    fn eval8(&self, level: Level, wi: &Vec3x8) -> Eval8 {
-        self.eval_pdf8_at(level, wi)
-    }
-
-    fn lobes(&self, wi: Direction) -> PerLobe<LobeEval> {
-        self.lobes(wi)
-    }
-
-    fn lobes8(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        self.lobes8_at(level, wi)
-    }
-
-    fn sample(&self, xi: [f32; 3]) -> Option<Sample> {
-        self.sample(xi)
-    }
-
-    fn sample8(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
-        self.sample8_at(level, xi)
-    }
-
-    fn albedo(&self) -> PerLobe<[f32; 3]> {
-        self.albedo()
-    }
-
-    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedBsdf> {
-        Box::new(self.with_lobes(lobes))
-    }
-
-    fn conserving(&self) -> Box<dyn ErasedBsdf> {
-        Box::new(self.conserving())
-    }
-
-    fn eval_slices(
-        &self,
-        level: Option<Level>,
-        wi: [&[f32]; 3],
-        out: [&mut [f32]; 4],
-    ) -> SliceResult {
-        let [r, g, b, pdf] = out;
-        let out = EvalSlices {
-            value: [r, g, b],
-            pdf,
-        };
-        match level {
-            Some(level) => self.eval_pdf_batch_at(level, wi, out),
-            None => self.eval_pdf_batch(wi, out),
-        }
-    }
-
-    fn value_slices(&self, level: Level, wi: [&[f32]; 3], out: [&mut [f32]; 3]) -> SliceResult {
-        self.eval_batch_at(level, wi, out)
-    }
-
-    fn pdf_slice(&self, level: Level, wi: [&[f32]; 3], out: &mut [f32]) -> SliceResult {
-        self.pdf_batch_at(level, wi, out)
-    }
-
-    fn sample_slices(
-        &self,
-        level: Option<Level>,
-        xi: [&[f32]; 3],
-        out: [&mut [f32]; COLUMNS],
-    ) -> SliceResult {
-        let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = out;
-        let out = SampleSlices {
-            wi: [u, v, w],
-            value: [r, g, b],
-            pdf,
-            weight: [wr, wg, wb],
-            slot,
-        };
-        match level {
-            Some(level) => self.sample_batch_at(level, xi, out),
-            None => self.sample_batch(xi, out),
-        }
-    }
-
-    fn weight_slices(
-        &self,
-        level: Option<Level>,
-        xi: [&[f32]; 3],
-        out: [&mut [f32]; WEIGHT_COLUMNS.len()],
-    ) -> SliceResult {
-        let [u, v, w, pdf, wr, wg, wb] = out;
-        let out = SampleWeightSlices {
-            wi: [u, v, w],
-            pdf,
-            weight: [wr, wg, wb],
-        };
-        match level {
-            Some(level) => self.sample_weight_batch_at(level, xi, out),
-            None => self.sample_weight_batch(xi, out),
-        }
+    fn boxed(&self) -> Box<dyn ErasedBsdf> {
+        Box::new(*self)
     }
 }
 
 /// [`Bsdf8`] of any model.
-pub trait ErasedBsdf8: fmt::Debug {
-    fn eval(&self, level: Level, wi: &Vec3x8) -> Eval8;
-    fn lobes(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
-    fn sample(&self, level: Level, xi: &[f32x8; 3]) -> Sample8;
-    fn albedo(&self, level: Level) -> PerLobe<[f32x8; 3]>;
-    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedBsdf8>;
-    fn conserving(&self, level: Level) -> Box<dyn ErasedBsdf8>;
+pub trait ErasedBsdf8: DynBsdf8 {
+    fn boxed(&self) -> Box<dyn ErasedBsdf8>;
     fn lane(&self, lane: usize) -> Box<dyn ErasedBsdf>;
 }
 
 impl<M: Model + 'static> ErasedBsdf8 for Bsdf8<M> {
-    fn eval(&self, level: Level, wi: &Vec3x8) -> Eval8 {
-        self.eval_pdf8_at(level, wi)
-    }
-
-    fn lobes(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        self.lobes8(wi)
-    }
-
-    fn sample(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
-        self.sample8_at(level, xi)
-    }
-
-    fn albedo(&self, level: Level) -> PerLobe<[f32x8; 3]> {
-        self.albedo8_at(level)
-    }
-
-    fn with_lobes(&self, lobes: LobeMask) -> Box<dyn ErasedBsdf8> {
-        Box::new(self.with_lobes(lobes))
-    }
-
-    fn conserving(&self, level: Level) -> Box<dyn ErasedBsdf8> {
-        Box::new(self.conserving_at(level))
+    fn boxed(&self) -> Box<dyn ErasedBsdf8> {
+        Box::new(*self)
     }
 
     fn lane(&self, lane: usize) -> Box<dyn ErasedBsdf> {
         Box::new(self.lane(lane))
+    }
+}
+
+macro_rules! with {
+    ($($object:ident)*) => { $(
+        impl dyn $object + '_ {
+            pub(crate) fn with_level(&self, level: Level) -> Box<dyn $object> {
+                let mut other = self.boxed();
+                other.set_level(level);
+                other
+            }
+
+            pub(crate) fn with_lobes(&self, lobes: LobeMask) -> Box<dyn $object> {
+                let mut other = self.boxed();
+                other.set_lobes(lobes);
+                other
+            }
+
+            pub(crate) fn conserving(&self) -> Box<dyn $object> {
+                let mut other = self.boxed();
+                other.conserve();
+                other
+            }
+        }
+    )* };
+}
+with! { ErasedBsdf ErasedBsdf8 }
+
+/// Calls on columns by array.
+impl dyn ErasedBsdf + '_ {
+    pub(crate) fn eval_array(&self, wi: [&[f32]; 3], out: [&mut [f32]; 4]) -> ColumnResult {
+        let [r, g, b, pdf] = out;
+        let (value, pdf) = (Some([r, g, b]), Some(pdf));
+        self.eval_columns(wi, EvalColumns { value, pdf })
+    }
+
+    pub(crate) fn value_array(&self, wi: [&[f32]; 3], value: [&mut [f32]; 3]) -> ColumnResult {
+        let (value, pdf) = (Some(value), None);
+        self.eval_columns(wi, EvalColumns { value, pdf })
+    }
+
+    pub(crate) fn pdf_array(&self, wi: [&[f32]; 3], pdf: &mut [f32]) -> ColumnResult {
+        let (value, pdf) = (None, Some(pdf));
+        self.eval_columns(wi, EvalColumns { value, pdf })
+    }
+
+    pub(crate) fn sample_array(&self, xi: [&[f32]; 3], out: [&mut [f32]; COLUMNS]) -> ColumnResult {
+        let [u, v, w, r, g, b, pdf, wr, wg, wb, slot] = out;
+        let out = SampleColumns {
+            wi: Some([u, v, w]),
+            value: Some([r, g, b]),
+            pdf: Some(pdf),
+            weight: Some([wr, wg, wb]),
+            slot: Some(slot),
+        };
+        self.sample_columns(xi, out)
+    }
+
+    pub(crate) fn weight_array(
+        &self,
+        xi: [&[f32]; 3],
+        out: [&mut [f32]; WEIGHT_COLUMNS.len()],
+    ) -> ColumnResult {
+        let [u, v, w, pdf, wr, wg, wb] = out;
+        let out = SampleColumns {
+            wi: Some([u, v, w]),
+            pdf: Some(pdf),
+            weight: Some([wr, wg, wb]),
+            ..SampleColumns::default()
+        };
+        self.sample_columns(xi, out)
     }
 }

@@ -8,7 +8,7 @@ use crate::lanes::{eval_bits, sample_bits};
 use crate::probe::{Draws, hits8, packet, triples};
 use crate::slices::{Room, UNTOUCHED};
 use hairis::Hit;
-use hairis::columns::{EvalColumns, HitSlices, HitsError, LengthError, SampleColumns};
+use hairis::columns::{EvalColumns, HitColumns, HitsError, LengthError, SampleColumns};
 use hairis::simd::Level;
 
 const NAME: &str = "slices of hits give the bits of packets";
@@ -161,7 +161,7 @@ impl Slices {
 
     /// The arguments of a call for these results: directions to evaluate, or numbers to sample with.
     fn call<'a>(&'a self, out: Columns<'a>) -> HitsCall<'a> {
-        let hits = HitSlices {
+        let hits = HitColumns {
             wo: self.three(0),
             h: self.has_h.then(|| &self.columns[3][self.offset..]),
         };
@@ -246,8 +246,12 @@ impl Expected {
             let packed = core::array::from_fn(|i| materials[lane(i)]);
             let row: [Row; 8] = core::array::from_fn(|i| rows[lane(i)]);
             let bsdf = NamedMaterial::prepare_packed(packed, level, hits8(&row.map(|row| row.hit)));
-            let evals = bsdf.eval(level, &packet(&row.map(|row| row.wi)));
-            let samples = bsdf.sample(level, &triples(&row.map(|row| row.xi)));
+            let evals = bsdf
+                .with_level(level)
+                .eval_pdf8(&packet(&row.map(|row| row.wi)));
+            let samples = bsdf
+                .with_level(level)
+                .sample8(&triples(&row.map(|row| row.xi)));
             for lane in 0..rows.len() {
                 all.evals.push(eval_bits(evals.lane(lane)));
                 all.samples.push(sample_bits(&samples, lane));
@@ -274,7 +278,7 @@ fn arguments_are_checked(set: &dyn HitsSet) -> Outcome {
         };
         let got = set.eval_each(
             &all,
-            HitSlices {
+            HitColumns {
                 wo: [&u, v, w],
                 h: Some(h),
             },

@@ -146,7 +146,7 @@ impl Integral {
     /// The density of a shading point.
     pub(crate) fn density(bsdf: &dyn ErasedBsdf, mesh: &Mesh) -> Self {
         Self::new(mesh, |wi, out| {
-            let written = bsdf.pdf_slice(Level::detect(), wi, out);
+            let written = bsdf.with_level(Level::detect()).pdf_array(wi, out);
             assert!(
                 written.is_ok(),
                 "slices of one length are accepted: {written:?}"

@@ -119,14 +119,17 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
         for level in Level::available() {
             let each = m.prepare(level);
             let (wi, xi) = (packet(&m.wi), triples(&m.xi));
-            let (evals, samples) = (each.eval(level, &wi), each.sample(level, &xi));
+            let (evals, samples) = (
+                each.with_level(level).eval_pdf8(&wi),
+                each.with_level(level).sample8(&xi),
+            );
             for lane in 0..8 {
                 let at = || m.at(lane, level);
                 let nearby = Nearby::new(m.material[lane], m.hits[lane], claims.near_field);
                 let one = nearby.bsdf();
-                let eight = one.eval8(level, &wi);
+                let eight = one.with_level(level).eval_pdf8(&wi);
                 let of_lane = each.lane(lane);
-                let apart = of_lane.eval8(level, &wi);
+                let apart = of_lane.with_level(level).eval_pdf8(&wi);
                 if eval_bits(apart.lane(lane)) != eval_bits(evals.lane(lane)) {
                     let message = format!(
                         "`lane` gives {:?}, the packet {:?}: {}",
@@ -136,7 +139,7 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
                     );
                     return Err(Failure::new(NAME, message));
                 }
-                let want = one.eval(m.wi[lane]);
+                let want = one.eval_pdf(m.wi[lane]);
                 for got in [evals.lane(lane), eight.lane(lane)] {
                     if same_bits(&claims, level) {
                         if eval_bits(got) != eval_bits(want) {
@@ -152,7 +155,7 @@ pub fn lanes_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
                     }
                 }
                 let want = one.sample(m.xi[lane]);
-                let at_one = one.sample8(level, &xi);
+                let at_one = one.with_level(level).sample8(&xi);
                 for got in [samples.lane(lane), at_one.lane(lane)] {
                     let close = if same_bits(&claims, level) {
                         got == want
@@ -189,10 +192,13 @@ pub fn lanes_permute(subject: &dyn ErasedSubject) -> Outcome {
         let p = m.permuted(order);
         for level in Level::available() {
             let (g, h) = (m.prepare(level), p.prepare(level));
-            let (a, b) = (g.eval(level, &packet(&m.wi)), h.eval(level, &packet(&p.wi)));
+            let (a, b) = (
+                g.with_level(level).eval_pdf8(&packet(&m.wi)),
+                h.with_level(level).eval_pdf8(&packet(&p.wi)),
+            );
             let (s, t) = (
-                g.sample(level, &triples(&m.xi)),
-                h.sample(level, &triples(&p.xi)),
+                g.with_level(level).sample8(&triples(&m.xi)),
+                h.with_level(level).sample8(&triples(&p.xi)),
             );
             for (to, from) in order.into_iter().enumerate() {
                 let same = eval_bits(a.lane(from)) == eval_bits(b.lane(to))
@@ -230,14 +236,14 @@ pub fn levels_agree(subject: &dyn ErasedSubject) -> Outcome {
             let shared = material.prepare8(level, hits);
             let lane = packed.lane(3);
             let evals = [
-                packed.eval(level, &wi),
-                shared.eval(level, &wi),
-                lane.eval8(level, &wi),
+                packed.with_level(level).eval_pdf8(&wi),
+                shared.with_level(level).eval_pdf8(&wi),
+                lane.with_level(level).eval_pdf8(&wi),
             ];
             let samples = [
-                packed.sample(level, &xi),
-                shared.sample(level, &xi),
-                lane.sample8(level, &xi),
+                packed.with_level(level).sample8(&xi),
+                shared.with_level(level).sample8(&xi),
+                lane.with_level(level).sample8(&xi),
             ];
             for n in 0..8 {
                 let e = evals.each_ref().map(|e| eval_bits(e.lane(n)));
@@ -256,8 +262,12 @@ pub fn levels_agree(subject: &dyn ErasedSubject) -> Outcome {
             .windows(2)
             .filter(|pair| pair[0].0.fuses() == pair[1].0.fuses())
         {
-            let [a, b] =
-                [&pair[0], &pair[1]].map(|(level, g)| (g.eval(*level, &wi), g.sample(*level, &xi)));
+            let [a, b] = [&pair[0], &pair[1]].map(|(level, g)| {
+                (
+                    g.with_level(*level).eval_pdf8(&wi),
+                    g.with_level(*level).sample8(&xi),
+                )
+            });
             for n in 0..8 {
                 if eval_bits(a.0.lane(n)) != eval_bits(b.0.lane(n))
                     || sample_bits(&a.1, n) != sample_bits(&b.1, n)
@@ -291,11 +301,11 @@ pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
     each_mixed(subject, 0x10be, ROUNDS / 4, |m, _, _| {
         let each = m.prepare(level);
         let wi = packet(&m.wi);
-        let (lobes, albedo) = (each.lobes(&wi), each.albedo(level));
+        let (lobes, albedo) = (each.lobes8(&wi), each.with_level(level).albedo8());
         for lane in 0..8 {
             let at = || m.at(lane, level);
             let one = each.lane(lane);
-            let (alone, one_albedo) = (one.lobes8(level, &wi), one.albedo());
+            let (alone, one_albedo) = (one.with_level(level).lobes8(&wi), one.albedo());
             for lobe in Lobe::ALL {
                 let bits = |l: &PerLobe<hairis::model::LobeEval8>| {
                     let l = &l[lobe];
@@ -324,7 +334,8 @@ pub fn lobes_and_albedo_equal_scalar(subject: &dyn ErasedSubject) -> Outcome {
             if !claims.near_field {
                 let [a, b] =
                     [-0.9, 0.4].map(|h| m.material[lane].prepare(Hit { h, ..m.hits[lane] }));
-                let same_eval = eval_bits(a.eval(m.wi[lane])) == eval_bits(b.eval(m.wi[lane]));
+                let same_eval =
+                    eval_bits(a.eval_pdf(m.wi[lane])) == eval_bits(b.eval_pdf(m.wi[lane]));
                 if !same_eval || a.sample(m.xi[lane]) != b.sample(m.xi[lane]) {
                     return Err(Failure::new(
                         NAME,

@@ -96,7 +96,6 @@ pub mod totality;
 
 pub use erased::ErasedSubject;
 pub use erased::hits::HitsSubject;
-pub use erased::light::LitSubject;
 pub use failure::{Failure, Outcome};
 pub use formula_reference::FormulaReference;
 pub use subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subject, Tolerance};

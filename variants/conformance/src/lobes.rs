@@ -29,7 +29,7 @@ pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
             let any = draws.direction();
             let drawn = bsdf.sample(draws.xi3()).map_or(any, |s| s.wi.into());
             let wi = if round % 3 == 0 { any } else { drawn };
-            let (whole, lobes) = (bsdf.eval(wi), bsdf.lobes(wi));
+            let (whole, lobes) = (bsdf.eval_pdf(wi), bsdf.lobes(wi));
             let at = || format!("{name} {hit:?} {wi:?} {lobes:?}, whole {whole:?}");
             for c in 0..3 {
                 let sum = lobes
@@ -41,7 +41,7 @@ pub fn lobes_sum_to_value(subject: &dyn ErasedSubject) -> Outcome {
             }
             let mut densities = Vec::new();
             for lobe in subject.slots() {
-                let alone = bsdf.with_lobes(LobeMask::of(&[lobe])).eval(wi);
+                let alone = bsdf.with_lobes(LobeMask::of(&[lobe])).eval_pdf(wi);
                 for (value, color) in alone.value.into_iter().zip(lobes[lobe].color) {
                     let want = f64::from(lobes[lobe].value) * f64::from(color);
                     alone_worst.see(relative(f64::from(value), want, 1e-20), || {
@@ -98,11 +98,14 @@ pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
             let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
             let single: Vec<(Lobe, Eval)> = subject
                 .slots()
-                .map(|lobe| (lobe, bsdf.with_lobes(LobeMask::of(&[lobe])).eval(wi[0])))
+                .map(|lobe| (lobe, bsdf.with_lobes(LobeMask::of(&[lobe])).eval_pdf(wi[0])))
                 .collect();
             for mask in masks() {
                 let (part, part8) = (bsdf.with_lobes(mask), each.with_lobes(mask));
-                let (e, eight) = (part.eval(wi[0]), part8.eval(level, &packet(&wi)));
+                let (e, eight) = (
+                    part.eval_pdf(wi[0]),
+                    part8.with_level(level).eval_pdf8(&packet(&wi)),
+                );
                 let at = || format!("{name} {mask:?} {hit:?} {:?}", wi[0]);
                 for got in [e, eight.lane(0)] {
                     for c in 0..3 {
@@ -137,7 +140,7 @@ pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
                         ));
                     }
                 }
-                let samples = part8.sample(level, &triples(&xi));
+                let samples = part8.with_level(level).sample8(&triples(&xi));
                 for (lane, xi) in xi.into_iter().enumerate() {
                     for s in [part.sample(xi), samples.lane(lane)].into_iter().flatten() {
                         if !mask.contains(s.lobe) || s.lobe.index() >= subject.lobe_count() {
@@ -153,8 +156,8 @@ pub fn masks_select_lobes(subject: &dyn ErasedSubject) -> Outcome {
                     .into_iter()
                     .filter(|lobe| mask.contains(*lobe) && other.contains(*lobe))
                     .collect();
-                let twice = part.with_lobes(other).eval(wi[0]);
-                let once = bsdf.with_lobes(LobeMask::of(&common)).eval(wi[0]);
+                let twice = part.with_lobes(other).eval_pdf(wi[0]);
+                let once = bsdf.with_lobes(LobeMask::of(&common)).eval_pdf(wi[0]);
                 let error = relative(f64::from(twice.pdf), f64::from(once.pdf), 1e-20);
                 nested.see(error, || {
                     format!("{twice:?}, at once {once:?}: {} then {other:?}", at())

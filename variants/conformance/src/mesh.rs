@@ -72,11 +72,9 @@ impl Samples {
     pub(crate) fn draw(bsdf: &dyn ErasedBsdf, xi: [Vec<f32>; 3]) -> Self {
         let mut columns: [Vec<f32>; COLUMNS] = core::array::from_fn(|_| vec![0.0; xi[0].len()]);
         let inputs = xi.each_ref().map(|column| &column[..]);
-        let written = bsdf.sample_slices(
-            Some(Level::detect()),
-            inputs,
-            columns.each_mut().map(|c| &mut c[..]),
-        );
+        let written = bsdf
+            .with_level(Level::detect())
+            .sample_array(inputs, columns.each_mut().map(|c| &mut c[..]));
         assert!(
             written.is_ok(),
             "slices of one length are accepted: {written:?}"

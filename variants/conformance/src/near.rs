@@ -35,7 +35,7 @@ impl<'a> Nearby<'a> {
     /// The shading points of rounded hits.
     fn bsdfs(&self) -> impl Iterator<Item = Box<dyn ErasedBsdf>> {
         let Hit { wo, h } = self.hit;
-        let moved = rounded(wo, ROUNDING).map(|wo| Hit { wo, h });
+        let moved = rounded(wo.into(), ROUNDING).map(|wo| Hit { wo: wo.into(), h });
         let by = if self.near_field {
             narrow(ROUNDING)
         } else {
@@ -51,12 +51,12 @@ impl<'a> Nearby<'a> {
     /// The largest change of value and density as `wi` and the hit are rounded.
     fn spread(&self, wi: Direction) -> [f64; 4] {
         let numbers = |e: Eval| [e.value[0], e.value[1], e.value[2], e.pdf].map(f64::from);
-        let centre = numbers(self.bsdf.eval(wi));
-        let moved = rounded(wi, ROUNDING).map(|wi| self.bsdf.eval(wi));
+        let centre = numbers(self.bsdf.eval_pdf(wi));
+        let moved = rounded(wi, ROUNDING).map(|wi| self.bsdf.eval_pdf(wi));
         let mut spread = [0.0; 4];
         for e in moved
             .into_iter()
-            .chain(self.bsdfs().map(|bsdf| bsdf.eval(wi)))
+            .chain(self.bsdfs().map(|bsdf| bsdf.eval_pdf(wi)))
         {
             for ((most, x), c) in spread.iter_mut().zip(numbers(e)).zip(centre) {
                 *most = f64::max(*most, (x - c).abs());

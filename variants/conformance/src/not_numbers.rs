@@ -63,7 +63,7 @@ fn no_lobes(lobes: &[[f32x8; 2]]) -> bool {
 /// Describes any result other than zero at this direction, or of these numbers.
 fn at_one(bsdf: &dyn ErasedBsdf, wi: Option<Direction>, xi: Option<[f32; 3]>) -> Option<String> {
     if let Some(wi) = wi {
-        let e = bsdf.eval(wi);
+        let e = bsdf.eval_pdf(wi);
         let lobes = bsdf.lobes(wi);
         if !black(e)
             || lobes
@@ -81,8 +81,8 @@ fn at_one(bsdf: &dyn ErasedBsdf, wi: Option<Direction>, xi: Option<[f32; 3]>) ->
     for level in Level::available() {
         if let Some(wi) = wi {
             let (e, lobes) = (
-                bsdf.eval8(level, &packet(&[wi; 8])),
-                bsdf.lobes8(level, &packet(&[wi; 8])),
+                bsdf.with_level(level).eval_pdf8(&packet(&[wi; 8])),
+                bsdf.with_level(level).lobes8(&packet(&[wi; 8])),
             );
             if !(0..8).all(|lane| black(e.lane(lane)))
                 || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf]))
@@ -90,8 +90,7 @@ fn at_one(bsdf: &dyn ErasedBsdf, wi: Option<Direction>, xi: Option<[f32; 3]>) ->
                 return Some(format!("{e:?} {lobes:?}, {level}"));
             }
             let mut out = [const { [1.0; ROWS] }; 4];
-            let written = bsdf.eval_slices(
-                Some(level),
+            let written = bsdf.with_level(level).eval_array(
                 [&[wi.x; ROWS], &[wi.y; ROWS], &[wi.z; ROWS]],
                 slices(&mut out),
             );
@@ -100,13 +99,12 @@ fn at_one(bsdf: &dyn ErasedBsdf, wi: Option<Direction>, xi: Option<[f32; 3]>) ->
             }
         }
         if let Some(xi) = xi {
-            let s = bsdf.sample8(level, &triples(&[xi; 8]));
+            let s = bsdf.with_level(level).sample8(&triples(&[xi; 8]));
             if !discarded(&s) {
                 return Some(format!("{s:?}, {level}"));
             }
             let mut out = [const { [1.0; ROWS] }; COLUMNS];
-            let written = bsdf.sample_slices(
-                Some(level),
+            let written = bsdf.with_level(level).sample_array(
                 [&[xi[0]; ROWS], &[xi[1]; ROWS], &[xi[2]; ROWS]],
                 slices(&mut out),
             );
@@ -132,14 +130,17 @@ fn at_each(
     xi: Option<[[f32; 3]; 8]>,
 ) -> Option<String> {
     if let Some(wi) = wi {
-        let (e, lobes) = (each.eval(level, &packet(&wi)), each.lobes(&packet(&wi)));
+        let (e, lobes) = (
+            each.with_level(level).eval_pdf8(&packet(&wi)),
+            each.lobes8(&packet(&wi)),
+        );
         if !(0..8).all(|lane| black(e.lane(lane)))
             || !no_lobes(&lobes.0.map(|lobe| [lobe.value, lobe.pdf]))
         {
             return Some(format!("{e:?} {lobes:?}, eight hits on {level}"));
         }
     }
-    let sample = xi.map(|xi| each.sample(level, &triples(&xi)));
+    let sample = xi.map(|xi| each.with_level(level).sample8(&triples(&xi)));
     sample
         .filter(|s| !discarded(s))
         .map(|s| format!("{s:?}, eight hits on {level}"))
@@ -158,7 +159,7 @@ pub fn inputs_that_are_no_numbers_are_black(subject: &dyn ErasedSubject) -> Outc
         for _ in 0..ROUNDS {
             let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
             let odd_hits = hits.map(|hit| Hit {
-                wo: vector(&mut draws),
+                wo: vector(&mut draws).into(),
                 ..hit
             });
             let wi: [Direction; 8] = core::array::from_fn(|_| draws.direction());
@@ -181,7 +182,7 @@ pub fn inputs_that_are_no_numbers_are_black(subject: &dyn ErasedSubject) -> Outc
                 faults.push(at_each(&*unseen, level, Some(wi), Some(xi)));
                 let seen = material.prepare8(level, hits8(&hits));
                 faults.push(at_each(&*seen, level, Some(odd_wi), Some(odd_xi)));
-                let albedo = unseen.albedo(level);
+                let albedo = unseen.with_level(level).albedo8();
                 if albedo
                     .0
                     .as_flattened()

@@ -2,7 +2,7 @@
 
 use crate::erased::Direction;
 use core::f64::consts::PI;
-use hairis::simd::{Vec3x, f32x8};
+use hairis::simd::f32x8;
 use hairis::{Hit, Hit8, Lobe, LobeMask, Vec3x8};
 use std::sync::OnceLock;
 
@@ -79,7 +79,7 @@ impl Draws {
     /// A hit from any direction.
     pub(crate) fn hit(&mut self) -> Hit {
         Hit {
-            wo: self.direction(),
+            wo: self.direction().into(),
             h: narrow(self.between(-1.0, 1.0)),
         }
     }
@@ -88,7 +88,7 @@ impl Draws {
 /// The direction at these angles, rounded.
 pub(crate) fn direction(theta: f64, phi: f64) -> Direction {
     let ((sin, cos), (sin_phi, cos_phi)) = (theta.sin_cos(), phi.sin_cos());
-    Vec3x::new(narrow(sin), narrow(cos * cos_phi), narrow(cos * sin_phi))
+    Direction::new(narrow(sin), narrow(cos * cos_phi), narrow(cos * sin_phi))
 }
 
 /// The vector in double precision.
@@ -127,7 +127,7 @@ pub(crate) fn relative(got: f64, want: f64, floor: f64) -> f64 {
 pub(crate) fn rounded(v: Direction, by: f64) -> [Direction; 8] {
     let cos = cos_theta(v);
     let (along, across) = (narrow(by), narrow(by * cos));
-    let moved = |x: f32, y: f32, z: f32| Vec3x::new(v.x + x, v.y + y, v.z + z);
+    let moved = |x: f32, y: f32, z: f32| Direction::new(v.x + x, v.y + y, v.z + z);
     let turned = |by: f64| {
         // On the axis every way across is as good.
         let [y, z] = if cos > 0.0 {
@@ -155,7 +155,7 @@ pub(crate) fn hits() -> [Hit; 7] {
     const THETA_O: [f64; 7] = [0.0, 25.0, -50.0, 70.0, -82.0, 87.0, 89.9];
     const H: [f32; 7] = [0.0, 0.35, -0.8, 0.99, -0.6, 0.999, -0.1];
     core::array::from_fn(|i| Hit {
-        wo: direction(THETA_O[i].to_radians(), 0.9 * i as f64 - 2.5),
+        wo: direction(THETA_O[i].to_radians(), 0.9 * i as f64 - 2.5).into(),
         h: H[i],
     })
 }
@@ -182,17 +182,13 @@ pub(crate) fn masks() -> Vec<LobeMask> {
 
 /// Eight vectors as lanes.
 pub(crate) fn packet(v: &[Direction; 8]) -> Vec3x8 {
-    Vec3x::new(
-        f32x8::new(v.map(|v| v.x)),
-        f32x8::new(v.map(|v| v.y)),
-        f32x8::new(v.map(|v| v.z)),
-    )
+    (*v).into()
 }
 
 /// Eight hits as lanes.
 pub(crate) fn hits8(hits: &[Hit; 8]) -> Hit8 {
     Hit {
-        wo: packet(&hits.map(|hit| hit.wo)),
+        wo: packet(&hits.map(|hit| hit.wo.into())),
         h: f32x8::new(hits.map(|hit| hit.h)),
     }
 }

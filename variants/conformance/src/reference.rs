@@ -60,8 +60,8 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                 });
                 let levels = Level::available().map(|level| {
                     let (e, s) = (
-                        bsdf.eval8(level, &packet(&wi)),
-                        bsdf.sample8(level, &triples(&xi)),
+                        bsdf.with_level(level).eval_pdf8(&packet(&wi)),
+                        bsdf.with_level(level).sample8(&triples(&xi)),
                     );
                     (e, s, level.name())
                 });
@@ -70,7 +70,7 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                     let lanes = levels
                         .iter()
                         .map(|(e, s, level)| (e.lane(lane), s.lane(lane), *level));
-                    let one = (bsdf.eval(wi[lane]), bsdf.sample(xi[lane]), "one lane");
+                    let one = (bsdf.eval_pdf(wi[lane]), bsdf.sample(xi[lane]), "one lane");
                     for (e, s, level) in lanes.chain([one]) {
                         let at = || {
                             format!("{name} {hit:?} {:?} xi {:?} on {level}", wi[lane], xi[lane])

@@ -1,7 +1,7 @@
 //! Resampled estimates of direct light have the mean of plain ones.
 
 use crate::environment::{DOWN, with_mode};
-use crate::erased::light::{LitBsdf, LitBsdf8, LitSubject};
+use crate::erased::{ErasedBsdf, ErasedBsdf8, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, hits8, packet, triples};
 use core::f32::consts::PI;
@@ -102,7 +102,7 @@ fn mean(rgb: [f32; 3]) -> f64 {
 
 /// One-sample estimates of what a direction brings by both techniques at once, in double precision and without a pool.
 struct Plain<'a> {
-    bsdf: &'a dyn LitBsdf,
+    bsdf: &'a dyn ErasedBsdf,
     light: Light,
 }
 
@@ -110,7 +110,7 @@ impl Plain<'_> {
     /// `f V`, and the densities of the BSDF and of the light.
     fn terms(&self, wi: Vec3) -> [f64; 3] {
         let (radiance, pdf_light) = self.light.look_up(wi);
-        let eval = self.bsdf.eval(wi.into());
+        let eval = self.bsdf.eval_pdf(wi);
         let cos = f64::from(wi.y).hypot(f64::from(wi.z));
         let f = (0..3)
             .map(|c| f64::from(eval.value[c]) * f64::from(radiance[c]))
@@ -137,15 +137,15 @@ impl Plain<'_> {
         let mut pool = Pool::<16>::new(counts, partition).expect("16 candidates at most");
         let xi: Vec<[f32; 3]> = (0..counts.bsdf).map(|_| draws.xi3()).collect();
         let xi = [0, 1, 2].map(|axis| xi.iter().map(|xi| xi[axis]).collect::<Vec<_>>());
-        self.bsdf
-            .propose(&mut pool, xi.each_ref().map(|column| &column[..]));
+        pool.propose(self.bsdf, xi.each_ref().map(|column| &column[..]))
+            .expect("of one length");
         for i in 0..counts.light as usize {
             let wi = self.light.draw(draws);
             let (radiance, pdf) = self.light.look_up(wi);
             pool.set_light(i, wi, radiance, pdf);
         }
         pool.look_up(|wi| self.light.look_up(wi));
-        self.bsdf.weigh(&mut pool);
+        pool.weigh(self.bsdf);
         let chosen: Vec<_> = pool.choose(k, draws.xi()).collect();
         let count: u32 = chosen.iter().map(|(_, choice)| choice.count).sum();
         assert!(chosen.is_empty() || count == k, "{count} of {k} choices");
@@ -168,12 +168,12 @@ impl Plain<'_> {
 }
 
 /// Estimates of eight hits with a reservoir each: the candidates in two reservoirs that are merged.
-fn reservoirs(bsdf: &dyn LitBsdf8, light: Light, level: Level, draws: &mut Draws) -> [f64; 8] {
+fn reservoirs(bsdf: &dyn ErasedBsdf8, light: Light, level: Level, draws: &mut Draws) -> [f64; 8] {
     let counts = Counts { bsdf: 4, light: 4 };
-    let mut kept = [Reservoir8::default(); 2];
+    let mut kept = [Reservoir8::default().with_level(level); 2];
     for i in 0..8 {
         let wi = if i < 4 {
-            bsdf.propose(level, &triples(&core::array::from_fn(|_| draws.xi3())))
+            bsdf.propose8(&triples(&core::array::from_fn(|_| draws.xi3())))
         } else {
             packet(&core::array::from_fn(|_| light.draw(draws).into()))
         };
@@ -182,21 +182,16 @@ fn reservoirs(bsdf: &dyn LitBsdf8, light: Light, level: Level, draws: &mut Draws
             triples(&found.map(|(rgb, _)| rgb)),
             f32x8::new(found.map(|(_, pdf)| pdf)),
         );
-        let weighed = bsdf.weigh(level, &wi, &radiance, &pdf, counts);
-        kept[i % 2].add_at(
-            level,
+        let weighed = bsdf.weigh8(&wi, &radiance, &pdf, counts, Partition::All);
+        kept[i % 2].add(
             &wi,
             &weighed,
             &f32x8::new(core::array::from_fn(|_| draws.xi())),
         );
     }
     let [mut all, other] = kept;
-    all.merge_at(
-        level,
-        &other,
-        &f32x8::new(core::array::from_fn(|_| draws.xi())),
-    );
-    let light = all.estimate_at(level);
+    all.merge(&other, &f32x8::new(core::array::from_fn(|_| draws.xi())));
+    let light = all.estimate();
     core::array::from_fn(|lane| {
         visible(all.wi.lane(lane)) * mean(light.map(|c| c.as_array()[lane]))
     })
@@ -239,7 +234,7 @@ impl Sums {
 /// # Errors
 ///
 /// If more cells lie apart than chance allows, or all lie to one side on average.
-pub fn resampling_is_unbiased(subject: &dyn LitSubject) -> Outcome {
+pub fn resampling_is_unbiased(subject: &dyn ErasedSubject) -> Outcome {
     any_rounding_is_finite(subject)?;
     check(subject, 1.0)
 }
@@ -250,17 +245,17 @@ pub fn resampling_is_unbiased(subject: &dyn LitSubject) -> Outcome {
 ///
 /// As there.
 #[doc(hidden)]
-pub fn check(subject: &dyn LitSubject, factor: f64) -> Outcome {
+pub fn check(subject: &dyn ErasedSubject, factor: f64) -> Outcome {
     let mut draws = Draws(0x2e5a);
     let mut errors: Vec<f64> = Vec::new();
-    let set = subject.lit();
+    let set = subject.set(Which::Everyday);
     for index in 0..set.len() {
         let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
         for light in Light::all(&mut draws) {
             // Errors of a cell: its resampled estimates, from their number, against plain ones.
             let mut cell =
                 |hit: Hit, draws: &mut Draws, resampled: &dyn Fn(usize, &mut Draws) -> Sums| {
-                    let bsdf = set.lit(index, hit);
+                    let bsdf = set.prepare(index, hit);
                     let apart = |count: usize, draws: &mut Draws| {
                         let resampled = resampled(count, draws);
                         // SampleLanes for each cell alone, so that the cells' errors are independent.
@@ -285,7 +280,7 @@ pub fn check(subject: &dyn LitSubject, factor: f64) -> Outcome {
                     });
                 };
             for (n, hit) in hits.into_iter().enumerate() {
-                let bsdf = set.lit(index, hit);
+                let bsdf = set.prepare(index, hit);
                 let one = Plain {
                     bsdf: &*bsdf,
                     light,
@@ -301,7 +296,7 @@ pub fn check(subject: &dyn LitSubject, factor: f64) -> Outcome {
                 });
             }
             for (level, lane) in Level::available().zip(0..) {
-                let bsdf = set.lit8(index, level, hits8(&hits));
+                let bsdf = set.prepare8(index, level, hits8(&hits));
                 cell(hits[lane], &mut draws, &|count, draws| {
                     Sums::of(count, || reservoirs(&*bsdf, light, level, draws)[lane])
                 });
@@ -325,23 +320,23 @@ pub fn check(subject: &dyn LitSubject, factor: f64) -> Outcome {
 }
 
 /// Estimates are finite and not negative where the host rounds down and takes denormals for 0.
-fn any_rounding_is_finite(subject: &dyn LitSubject) -> Outcome {
+fn any_rounding_is_finite(subject: &dyn ErasedSubject) -> Outcome {
     let mut draws = Draws(0xd0);
-    let set = subject.lit();
+    let set = subject.set(Which::Everyday);
     for index in 0..set.len() {
         let name = set.name(index);
         let hits: [Hit; 8] = core::array::from_fn(|_| draws.hit());
         for light in Light::all(&mut draws) {
             let estimates = with_mode(DOWN, || {
                 let one = Plain {
-                    bsdf: &*set.lit(index, hits[0]),
+                    bsdf: &*set.prepare(index, hits[0]),
                     light,
                 };
                 let mut all =
                     vec![one.pooled(Counts { bsdf: 6, light: 10 }, Partition::All, 4, &mut draws)];
                 all.push(one.path(Partition::Power, &mut draws));
                 for level in Level::available() {
-                    let bsdf = set.lit8(index, level, hits8(&hits));
+                    let bsdf = set.prepare8(index, level, hits8(&hits));
                     all.extend(reservoirs(&*bsdf, light, level, &mut draws));
                 }
                 all

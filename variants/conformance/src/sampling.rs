@@ -33,7 +33,7 @@ pub fn samples_agree_with_eval(subject: &dyn ErasedSubject) -> Outcome {
             for _ in 0..PACKETS {
                 let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
                 let packets = Level::available().flat_map(|level| {
-                    let eight = bsdf.sample8(level, &triples(&xi));
+                    let eight = bsdf.with_level(level).sample8(&triples(&xi));
                     (0..8).map(move |lane| (eight.lane(lane), lane, level.name()))
                 });
                 let scalar = (0..8).map(|lane| (bsdf.sample(xi[lane]), lane, "one lane"));
@@ -53,7 +53,7 @@ pub fn samples_agree_with_eval(subject: &dyn ErasedSubject) -> Outcome {
                     if cos < 1e-3 {
                         continue;
                     }
-                    let e = bsdf.eval(wi);
+                    let e = bsdf.eval_pdf(wi);
                     let error = nearby.error(
                         Eval {
                             value: s.value,

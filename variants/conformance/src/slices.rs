@@ -126,8 +126,12 @@ impl Expected {
         };
         for eight in rows.chunks(8) {
             let padded: [_; 8] = core::array::from_fn(|lane| eight[lane % eight.len()]);
-            let evals = bsdf.eval8(level, &packet(&padded.map(|(wi, _)| wi)));
-            let samples = bsdf.sample8(level, &triples(&padded.map(|(_, xi)| xi)));
+            let evals = bsdf
+                .with_level(level)
+                .eval_pdf8(&packet(&padded.map(|(wi, _)| wi)));
+            let samples = bsdf
+                .with_level(level)
+                .sample8(&triples(&padded.map(|(_, xi)| xi)));
             for lane in 0..eight.len() {
                 all.evals.push(eval_bits(evals.lane(lane)));
                 all.samples.push(sample_bits(&samples, lane));
@@ -156,25 +160,29 @@ impl Expected {
             .each_ref()
             .map(|columns| columns.each_ref().map(|column| &column[from..]));
         let mut out = Room::<4>::new(offset, len);
-        bsdf.eval_slices(Some(level), wi, out.slices())
+        bsdf.with_level(level)
+            .eval_array(wi, out.slices())
             .map_err(refused)?;
         out.check(&self.evals, "value and density", at)?;
         let mut values = Room::<3>::new(offset, len);
-        bsdf.value_slices(level, wi, values.slices())
+        bsdf.with_level(level)
+            .value_array(wi, values.slices())
             .map_err(refused)?;
         let colors: Vec<_> = self.evals.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
         values.check(&colors, "value alone", at)?;
         let mut densities = Room::<1>::new(offset, len);
         let [pdf] = densities.slices();
-        bsdf.pdf_slice(level, wi, pdf).map_err(refused)?;
+        bsdf.with_level(level).pdf_array(wi, pdf).map_err(refused)?;
         let pdfs: Vec<_> = self.evals.iter().map(|[.., pdf]| [*pdf]).collect();
         densities.check(&pdfs, "density alone", at)?;
         let mut samples = Room::<COLUMNS>::new(offset, len);
-        bsdf.sample_slices(Some(level), xi, samples.slices())
+        bsdf.with_level(level)
+            .sample_array(xi, samples.slices())
             .map_err(refused)?;
         samples.check(&self.samples, "samples", at)?;
         let mut weights = Room::<{ WEIGHT_COLUMNS.len() }>::new(offset, len);
-        bsdf.weight_slices(Some(level), xi, weights.slices())
+        bsdf.with_level(level)
+            .weight_array(xi, weights.slices())
             .map_err(refused)?;
         let some: Vec<_> = self
             .samples
@@ -226,14 +234,16 @@ fn lengths_are_checked(bsdf: &dyn ErasedBsdf) -> Outcome {
                 let read = inputs.each_ref().map(|column| &column[..]);
                 let room = || [3, 4, 5, 6].map(|n| vec![UNTOUCHED; length(n, wrong)]);
                 let mut out = room();
-                let got = bsdf.eval_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
+                let got = bsdf
+                    .with_level(level)
+                    .eval_array(read, out.each_mut().map(|c| &mut c[..]));
                 check(name, got, &out)?;
                 // Value and density alone each have some of the slices.
                 let mut out = room();
                 let [r, g, b, pdf] = out.each_mut().map(|c| &mut c[..]);
                 let (value, density) = (
-                    bsdf.value_slices(level, read, [r, g, b]),
-                    bsdf.pdf_slice(level, read, pdf),
+                    bsdf.with_level(level).value_array(read, [r, g, b]),
+                    bsdf.with_level(level).pdf_array(read, pdf),
                 );
                 if name != "pdf" {
                     check(name, value, &out[..3])?;
@@ -247,13 +257,16 @@ fn lengths_are_checked(bsdf: &dyn ErasedBsdf) -> Outcome {
                 let read = inputs.each_ref().map(|column| &column[..]);
                 let mut out: [Vec<f32>; COLUMNS] =
                     core::array::from_fn(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
-                let got = bsdf.sample_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
+                let got = bsdf
+                    .with_level(level)
+                    .sample_array(read, out.each_mut().map(|c| &mut c[..]));
                 check(name, got, &out)?;
                 // Weights alone have some of the slices.
                 if wrong < 3 || WEIGHT_COLUMNS.contains(&(wrong - 3)) {
                     let mut out = WEIGHT_COLUMNS.map(|n| vec![UNTOUCHED; length(n + 3, wrong)]);
-                    let got =
-                        bsdf.weight_slices(Some(level), read, out.each_mut().map(|c| &mut c[..]));
+                    let got = bsdf
+                        .with_level(level)
+                        .weight_array(read, out.each_mut().map(|c| &mut c[..]));
                     check(name, got, &out)?;
                 }
             }
@@ -270,19 +283,18 @@ fn found_level_is_default(bsdf: &dyn ErasedBsdf, inputs: &[[Vec<f32>; 3]; 2]) ->
     let refused =
         |e: LengthError| Failure::new(NAME, format!("{e}: 13 entries, at the level found"));
     let (mut found, mut default) = (Room::<4>::new(0, 13), Room::<4>::new(0, 13));
-    bsdf.eval_slices(Some(Level::detect()), wi, found.slices())
+    bsdf.with_level(Level::detect())
+        .eval_array(wi, found.slices())
         .map_err(refused)?;
-    bsdf.eval_slices(None, wi, default.slices())
-        .map_err(refused)?;
+    bsdf.eval_array(wi, default.slices()).map_err(refused)?;
     let (mut found_samples, mut samples) =
         (Room::<COLUMNS>::new(0, 13), Room::<COLUMNS>::new(0, 13));
-    bsdf.sample_slices(Some(Level::detect()), xi, found_samples.slices())
+    bsdf.with_level(Level::detect())
+        .sample_array(xi, found_samples.slices())
         .map_err(refused)?;
-    bsdf.sample_slices(None, xi, samples.slices())
-        .map_err(refused)?;
+    bsdf.sample_array(xi, samples.slices()).map_err(refused)?;
     let mut weights = Room::<{ WEIGHT_COLUMNS.len() }>::new(0, 13);
-    bsdf.weight_slices(None, xi, weights.slices())
-        .map_err(refused)?;
+    bsdf.weight_array(xi, weights.slices()).map_err(refused)?;
     let same = WEIGHT_COLUMNS
         .iter()
         .zip(&weights.columns)

@@ -4,7 +4,7 @@ use crate::erased::{Direction, ErasedSubject, NamedMaterial, Which};
 use crate::failure::{Failure, Outcome};
 use crate::probe::{Draws, LAST, direction, hits8, masks, packet, triples};
 use hairis::model::LobeEval;
-use hairis::simd::{Level, Vec3x};
+use hairis::simd::Level;
 use hairis::{Eval, Hit, Lobe, LobeMask, Sample8};
 
 const NAME: &str = "results are finite and not negative";
@@ -57,14 +57,14 @@ const NUMBERS: [f32; 12] = [
 /// A vector of odd components, or a direction next to the axis, or any direction.
 fn vector(draws: &mut Draws) -> Direction {
     match draws.pick(&[0, 0, 1, 2, 3]) {
-        0 => Vec3x::new(
+        0 => Direction::new(
             *draws.pick(&COMPONENTS),
             *draws.pick(&COMPONENTS),
             *draws.pick(&COMPONENTS),
         ),
         1 => {
             let off = *draws.pick(&[1e-38, 1e-20, 1e-12, 1e-7, 0.99e-5, 1.01e-5, 1e-4_f32]);
-            Vec3x::new(
+            Direction::new(
                 *draws.pick(&[1.0, -1.0, LAST]),
                 off * *draws.pick(&[1.0, -1.0]),
                 off * *draws.pick(&[0.0, 1.0]),
@@ -170,7 +170,7 @@ pub(crate) fn sweep(
             let hits: [Hit; 8] = core::array::from_fn(|_| {
                 let h = *draws.pick(&[0.0, -0.0, 1.0, -1.0, 1e-40, 0.3, LAST, -1.5, 1e30]);
                 Hit {
-                    wo: vector(&mut draws),
+                    wo: vector(&mut draws).into(),
                     h,
                 }
             });
@@ -194,8 +194,14 @@ pub(crate) fn sweep(
                 let each = NamedMaterial::prepare_packed([material; 8], level, hits8(&hits));
                 let each = each.with_lobes(mask);
                 let one = material.prepare(hits[0]).with_lobes(mask);
-                let evals = [each.eval(level, &wi8), one.eval8(level, &wi8)];
-                let samples = [each.sample(level, &xi8), one.sample8(level, &xi8)];
+                let evals = [
+                    each.with_level(level).eval_pdf8(&wi8),
+                    one.with_level(level).eval_pdf8(&wi8),
+                ];
+                let samples = [
+                    each.with_level(level).sample8(&xi8),
+                    one.with_level(level).sample8(&xi8),
+                ];
                 for lane in 0..8 {
                     for (e, of) in evals.iter().zip(["eight hits", "one hit (that of lane 0)"]) {
                         if !sound_eval(&e.lane(lane)) {
@@ -223,7 +229,7 @@ pub(crate) fn sweep(
             }
             let lane = round % 8;
             let bsdf = material.prepare(hits[lane]).with_lobes(mask);
-            let e = bsdf.eval(wi[lane]);
+            let e = bsdf.eval_pdf(wi[lane]);
             if !sound_eval(&e) || (mask == LobeMask::NONE && (e.pdf != 0.0 || e.value != [0.0; 3]))
             {
                 return fail("a value or density", lane, "scalar", format!("{e:?}"));

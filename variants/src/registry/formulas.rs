@@ -1,5 +1,28 @@
 //! The formulas of a model chosen at run time.
 
+/// Methods that do the same with each model; after `=>`, the enum that the result goes into.
+macro_rules! each {
+    ($variants:tt $($(#[$attribute:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),*) -> $out:ty $(=> $into:ident)?;)*) => {
+        $(
+            $(#[$attribute])*
+            $vis fn $name(&self $(, $arg: $type)*) -> $out {
+                formulas::each!(@match $variants self $name ($($arg),*) $($into)?)
+            }
+        )*
+    };
+    (@match [$($variant:ident)*] $self:ident $name:ident $args:tt) => {
+        match $self {
+            $(Self::$variant(one) => one.$name $args),*
+        }
+    };
+    (@match [$($variant:ident)*] $self:ident $name:ident $args:tt $into:ident) => {
+        match $self {
+            $(Self::$variant(one) => $into::$variant(one.$name $args)),*
+        }
+    };
+}
+pub(super) use each;
+
 macro_rules! formulas {
     ([$($variant:ident: $model:ty;)*] $variants:tt) => {
         /// The formulas of one of the models at one shading point.
@@ -79,7 +102,7 @@ macro_rules! formulas {
         }
 
         impl<T: Real> Reference<T> for AnyReference<T> {
-            any::each! { $variants
+            formulas::each! { $variants
                 #[inline(never)]
                 fn eval(wi: [T; 3]) -> [T; 3];
                 #[inline(never)]

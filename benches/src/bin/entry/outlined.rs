@@ -3,7 +3,7 @@
 
 use core::hint::black_box;
 use glam::Vec3;
-use hairis::columns::{EvalSlices, LengthError, SampleSlices};
+use hairis::columns::{EvalColumns, LengthError, SampleColumns};
 use hairis::model::Model;
 use hairis::simd::{Level, f32x8};
 use hairis::{
@@ -31,17 +31,17 @@ outlined! {
     scalar_prepare(material: &Material<M>, wo: Vec3) -> Bsdf<M> { material.prepare(wo) }
     scalar_eval_pdf(bsdf: &Bsdf<M>, wi: Vec3) -> Eval { bsdf.eval_pdf(wi) }
     scalar_sample(bsdf: &Bsdf<M>, xi: [f32; 3]) -> Option<Sample> { bsdf.sample(xi) }
-    portable_prepare8_shared(material: &Material<M>, wo: &Vec3x8) -> Bsdf8<M> { material.prepare8_at(Level::portable(), wo) }
-    portable_prepare8_mixed(material: &Material8<M>, wo: &Vec3x8) -> Bsdf8<M> { material.prepare8_at(Level::portable(), wo) }
-    portable_eval_pdf8(bsdf: &Bsdf<M>, wi: &Vec3x8) -> Eval8 { bsdf.eval_pdf8_at(Level::portable(), wi) }
-    portable_eval_pdf8_points(bsdf: &Bsdf8<M>, wi: &Vec3x8) -> Eval8 { bsdf.eval_pdf8_at(Level::portable(), wi) }
-    portable_sample8(bsdf: &Bsdf<M>, xi: &[f32x8; 3]) -> Sample8 { bsdf.sample8_at(Level::portable(), xi) }
-    portable_sample8_points(bsdf: &Bsdf8<M>, xi: &[f32x8; 3]) -> Sample8 { bsdf.sample8_at(Level::portable(), xi) }
-    portable_eval_pdf_batch(bsdf: &Bsdf<M>, wi: [&[f32]; 3], out: EvalSlices<'_>) -> Result<(), LengthError> {
-        bsdf.eval_pdf_batch_at(Level::portable(), wi, out)
+    portable_prepare8_shared(material: &Material<M>, wo: &Vec3x8) -> Bsdf8<M> { material.with_level(Level::portable()).prepare8(wo) }
+    portable_prepare8_mixed(material: &Material8<M>, wo: &Vec3x8) -> Bsdf8<M> { material.with_level(Level::portable()).prepare8(wo) }
+    portable_eval_pdf8(bsdf: &Bsdf<M>, wi: &Vec3x8) -> Eval8 { bsdf.with_level(Level::portable()).eval_pdf8(wi) }
+    portable_eval_pdf8_points(bsdf: &Bsdf8<M>, wi: &Vec3x8) -> Eval8 { bsdf.with_level(Level::portable()).eval_pdf8(wi) }
+    portable_sample8(bsdf: &Bsdf<M>, xi: &[f32x8; 3]) -> Sample8 { bsdf.with_level(Level::portable()).sample8(xi) }
+    portable_sample8_points(bsdf: &Bsdf8<M>, xi: &[f32x8; 3]) -> Sample8 { bsdf.with_level(Level::portable()).sample8(xi) }
+    portable_eval_columns(bsdf: &Bsdf<M>, wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), LengthError> {
+        bsdf.with_level(Level::portable()).eval_columns(wi, out)
     }
-    portable_sample_batch(bsdf: &Bsdf<M>, xi: [&[f32]; 3], out: SampleSlices<'_>) -> Result<(), LengthError> {
-        bsdf.sample_batch_at(Level::portable(), xi, out)
+    portable_sample_columns(bsdf: &Bsdf<M>, xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), LengthError> {
+        bsdf.with_level(Level::portable()).sample_columns(xi, out)
     }
 }
 

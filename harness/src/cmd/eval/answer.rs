@@ -5,7 +5,7 @@ use crate::args::CodePath;
 use core::array::from_fn;
 use core::ops::Index;
 use glam::Vec3;
-use hairis::columns::{EvalSlices, SampleSlices};
+use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::model::LobeEval8;
 use hairis::reference::{Reference, ReferenceSample};
 use hairis::{Eval, Hit, Lobe, PerLobe, Sample, Vec3x8};
@@ -177,11 +177,11 @@ fn at(columns: &[Vec<f32>; 3], i: usize) -> [f32; 3] {
 /// Values and densities.
 fn batch_values(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<Found<f32>> {
     let (mut value, mut pdf) = (columns(wi), vec![0.0; wi.len()]);
-    let out = EvalSlices {
-        value: value.each_mut().map(Vec::as_mut_slice),
-        pdf: &mut pdf,
+    let out = EvalColumns {
+        value: Some(value.each_mut().map(Vec::as_mut_slice)),
+        pdf: Some(&mut pdf),
     };
-    bsdf.eval_pdf_batch(columns(wi).each_ref().map(Vec::as_slice), out)
+    bsdf.eval_columns(columns(wi).each_ref().map(Vec::as_slice), out)
         .expect(ONE_LENGTH);
     (0..wi.len())
         .map(|i| Found::Value(at(&value, i), pdf[i]))
@@ -195,14 +195,14 @@ fn batch_samples(bsdf: &AnyBsdf, xi: &[[f32; 3]]) -> Vec<(Vec3, Found<f32>)> {
     let [wi, value, weight] = vectors
         .each_mut()
         .map(|v| v.each_mut().map(Vec::as_mut_slice));
-    let out = SampleSlices {
-        wi,
-        value,
-        pdf: &mut pdf,
-        weight,
-        slot: &mut slot,
+    let out = SampleColumns {
+        wi: Some(wi),
+        value: Some(value),
+        pdf: Some(&mut pdf),
+        weight: Some(weight),
+        slot: Some(&mut slot),
     };
-    bsdf.sample_batch(columns(xi).each_ref().map(Vec::as_slice), out)
+    bsdf.sample_columns(columns(xi).each_ref().map(Vec::as_slice), out)
         .expect(ONE_LENGTH);
     let sample = |i: usize| {
         let [wi, value, weight] = vectors.each_ref().map(|vector| at(vector, i));

@@ -2,7 +2,8 @@
 
 use super::{MaterialSet, Set, Which};
 use crate::subject::Subject;
-use hairis::columns::{EvalColumns, HitSlices, HitsError, MaterialTable, SampleColumns};
+use hairis::Material;
+use hairis::columns::{EvalColumns, HitColumns, HitsError, MaterialTable, SampleColumns};
 use hairis::simd::Level;
 
 /// The columns of a call that are asked for.
@@ -33,7 +34,7 @@ impl<S: Subject> HitsSubject for S {
 /// Arguments of a call on slices of hits.
 #[derive(Debug)]
 pub struct HitsCall<'a> {
-    pub(crate) hits: HitSlices<'a>,
+    pub(crate) hits: HitColumns<'a>,
     /// Directions towards the light, or uniform numbers.
     pub(crate) inputs: [&'a [f32]; 3],
     pub(crate) out: Columns<'a>,
@@ -49,7 +50,7 @@ pub trait HitsSet: MaterialSet {
     fn eval_each(
         &self,
         index: &[u32],
-        hits: HitSlices<'_>,
+        hits: HitColumns<'_>,
         wi: [&[f32]; 3],
         out: EvalColumns<'_>,
     ) -> HitsResult;
@@ -69,21 +70,23 @@ impl<S: Subject> HitsSet for Set<'_, S> {
         let HitsCall { hits, inputs, out } = call;
         match of {
             HitMaterials::Shared(index) => Ok(match out {
-                Columns::Eval(out) => {
-                    self.materials[index].eval_pdf_hits_at(level, hits, inputs, out)
-                }
-                Columns::Sample(out) => {
-                    self.materials[index].sample_hits_at(level, hits, inputs, out)
-                }
+                Columns::Eval(out) => self.materials[index]
+                    .with_level(level)
+                    .eval_hits(hits, inputs, out),
+                Columns::Sample(out) => self.materials[index]
+                    .with_level(level)
+                    .sample_hits(hits, inputs, out),
             }?),
             HitMaterials::PerHit(index) => {
+                let on_level = |material: &Material<S::Model>| material.with_level(level);
+                let materials: Vec<_> = self.materials.iter().map(on_level).collect();
                 let table = MaterialTable {
-                    materials: &self.materials,
+                    materials: &materials,
                     index,
                 };
                 match out {
-                    Columns::Eval(out) => table.eval_pdf_hits_at(level, hits, inputs, out),
-                    Columns::Sample(out) => table.sample_hits_at(level, hits, inputs, out),
+                    Columns::Eval(out) => table.eval_hits(hits, inputs, out),
+                    Columns::Sample(out) => table.sample_hits(hits, inputs, out),
                 }
             }
         }
@@ -92,7 +95,7 @@ impl<S: Subject> HitsSet for Set<'_, S> {
     fn eval_each(
         &self,
         index: &[u32],
-        hits: HitSlices<'_>,
+        hits: HitColumns<'_>,
         wi: [&[f32]; 3],
         out: EvalColumns<'_>,
     ) -> HitsResult {
@@ -100,6 +103,6 @@ impl<S: Subject> HitsSet for Set<'_, S> {
             materials: &self.materials,
             index,
         }
-        .eval_pdf_hits(hits, wi, out)
+        .eval_hits(hits, wi, out)
     }
 }

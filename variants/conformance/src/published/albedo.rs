@@ -250,8 +250,10 @@ pub fn conserving_hair_returns_at_most_what_it_receives(tested: &Tested) {
                 }
                 for level in Level::available() {
                     let eight = raw
-                        .prepare8_at(level, &packet(&[wo]))
-                        .conserving_at(level)
+                        .with_level(level)
+                        .prepare8(&packet(&[wo]))
+                        .with_level(level)
+                        .conserving()
                         .lane(5);
                     for (eight, one) in sums(eight.albedo()).into_iter().zip(got) {
                         lanes.see((eight - one).abs() / one.max(1e-6), || {

@@ -19,7 +19,8 @@ fn material<'a>(tested: &'a Tested, desc: &HairDesc) -> Material<'a> {
 
 /// A sample of one lane, the same of every level if they round alike.
 fn samples(bsdf: &Bsdf, xi: [f32; 3]) -> Vec<Option<Sample>> {
-    let wide = Level::available().map(|level| bsdf.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
+    let wide =
+        Level::available().map(|level| bsdf.with_level(level).sample8(&lanes_of(&[xi; 8])).lane(5));
     wide.chain([bsdf.sample(xi)]).collect()
 }
 
@@ -161,7 +162,7 @@ pub fn the_axis_scatters_nothing(tested: &Tested) {
             ];
             for wi in axis {
                 for level in Level::available() {
-                    let eight = bsdf.eval_pdf8_at(level, &packet(&[wi])).lane(2);
+                    let eight = bsdf.with_level(level).eval_pdf8(&packet(&[wi])).lane(2);
                     for e in [bsdf.eval_pdf(wi), eight] {
                         assert_eq!(
                             (e.value, e.pdf),
@@ -210,7 +211,7 @@ pub fn vectors_that_are_no_direction_give_zero(tested: &Tested) {
         for level in Level::available() {
             for e in [
                 bsdf.eval_pdf(wi),
-                bsdf.eval_pdf8_at(level, &packet(&[wi])).lane(7),
+                bsdf.with_level(level).eval_pdf8(&packet(&[wi])).lane(7),
             ] {
                 assert_eq!((e.value, e.pdf), ([0.0; 3], 0.0), "{level} {wi:?}");
             }
@@ -336,10 +337,9 @@ pub fn lobes_without_energy_are_never_drawn(tested: &Tested) {
             seen[sample.lobe.index()] = true;
         };
         for _ in 0..100_000 / 8 {
-            let eight = bsdf.sample8_at(
-                Level::detect(),
-                &lanes_of(&core::array::from_fn(|_| draws.xi3())),
-            );
+            let eight = bsdf
+                .with_level(Level::detect())
+                .sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
             (0..8).for_each(|lane| take(eight.lane(lane)));
         }
         for xi in [0.0, f32::from_bits(1), f32::EPSILON / 2.0, LAST, 1.0] {
@@ -370,7 +370,9 @@ pub fn black_hair_scatters_and_samples_nothing(tested: &Tested) {
             assert_eq!(sample, None, "xi {xi}");
         }
     }
-    let eight = bsdf.sample8_at(Level::detect(), &lanes_of(&[[0.1, 0.2, 0.3]; 8]));
+    let eight = bsdf
+        .with_level(Level::detect())
+        .sample8(&lanes_of(&[[0.1, 0.2, 0.3]; 8]));
     assert_eq!(eight.live(), 0, "live lanes");
     assert_eq!(eight.slot.to_array(), [-1.0; 8], "slots");
     assert_eq!(bsdf.albedo().0, [[0.0; 3]; 4], "albedo");
@@ -384,7 +386,9 @@ pub fn grazing_samples_are_discarded(tested: &Tested) {
         for sample in samples(&bsdf, [0.1, 0.0, 0.3]) {
             assert_eq!(sample, None, "theta_i of -pi/2 was kept");
         }
-        let eight = bsdf.sample8_at(Level::detect(), &lanes_of(&[[0.1, 0.0, 0.3]; 8]));
+        let eight = bsdf
+            .with_level(Level::detect())
+            .sample8(&lanes_of(&[[0.1, 0.0, 0.3]; 8]));
         assert_eq!(
             (eight.live(), eight.slot.to_array()),
             (0, [-1.0; 8]),

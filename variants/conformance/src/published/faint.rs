@@ -15,7 +15,8 @@ fn bsdf(tested: &Tested, desc: &HairDesc, wo: Vec3) -> Bsdf {
 
 /// The sample of one lane, and of every level.
 fn samples(bsdf: &Bsdf, xi: [f32; 3]) -> Vec<Option<Sample>> {
-    let wide = Level::available().map(|level| bsdf.sample8_at(level, &lanes_of(&[xi; 8])).lane(5));
+    let wide =
+        Level::available().map(|level| bsdf.with_level(level).sample8(&lanes_of(&[xi; 8])).lane(5));
     wide.chain([bsdf.sample(xi)]).collect()
 }
 
@@ -49,7 +50,8 @@ pub fn a_faint_lobe_alone_is_sampled_as_a_bright_one(tested: &Tested) {
                 }
                 let wi = usual.sample(xi).unwrap().wi;
                 for level in Level::available() {
-                    let eight = |bsdf: &Bsdf| bsdf.eval_pdf8_at(level, &packet(&[wi])).lane(3);
+                    let eight =
+                        |bsdf: &Bsdf| bsdf.with_level(level).eval_pdf8(&packet(&[wi])).lane(3);
                     for (got, want) in [
                         (eight(&faint), eight(&usual)),
                         (faint.eval_pdf(wi), usual.eval_pdf(wi)),
@@ -94,8 +96,8 @@ pub fn a_lobe_off_the_sphere_has_the_density_it_is_drawn_with(tested: &Tested) {
             let wi = wi.normalize();
             let eight = |level| {
                 (
-                    bsdf.eval_pdf8_at(level, &packet(&[wi])).lane(2).pdf,
-                    bsdf.lobes8_at(level, &packet(&[wi]))[Lobe::TRT]
+                    bsdf.with_level(level).eval_pdf8(&packet(&[wi])).lane(2).pdf,
+                    bsdf.with_level(level).lobes8(&packet(&[wi]))[Lobe::TRT]
                         .pdf
                         .to_array()[2],
                 )

@@ -64,10 +64,9 @@ fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
             });
         }
         for _ in 0..4 {
-            let eight = bsdf.sample8_at(
-                Level::detect(),
-                &lanes_of(&core::array::from_fn(|_| draws.xi3())),
-            );
+            let eight = bsdf
+                .with_level(Level::detect())
+                .sample8(&lanes_of(&core::array::from_fn(|_| draws.xi3())));
             for s in (0..8).filter_map(|lane| eight.lane(lane)) {
                 let weight = s.weight.iter().map(|x| f64::from(*x) / 3.0).sum::<f64>();
                 worst[0].see(weight / limit, || {

@@ -1,12 +1,9 @@
 //! Handles of any model of the family, with the names of those of [`hairis`]: the tests are compiled once, and these calls once
 //! per model.
 
-use crate::erased::{Direction, ErasedBsdf, ErasedBsdf8};
-use hairis::model::{LobeEval, LobeEval8};
-use hairis::simd::{Level, f32x8};
-use hairis::{
-    Conserving, Eval, Eval8, HairParams, Hit, Hit8, LobeMask, PerLobe, Sample, Sample8, Vec3x8,
-};
+use crate::erased::{ErasedBsdf, ErasedBsdf8};
+use hairis::simd::Level;
+use hairis::{Conserving, HairParams, Hit, Hit8, PerLobe};
 
 /// A model of the family.
 pub(super) trait AnyModel {
@@ -32,7 +29,11 @@ impl<M: hairis::model::Model<Params = HairParams> + 'static> AnyModel for M {
     }
 
     fn prepare8(&self, params: &HairParams, level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8> {
-        Box::new(hairis::Material::new(self, params).prepare8_at(level, hits))
+        Box::new(
+            hairis::Material::new(self, params)
+                .with_level(level)
+                .prepare8(hits),
+        )
     }
 
     fn prepare_packed(
@@ -42,7 +43,11 @@ impl<M: hairis::model::Model<Params = HairParams> + 'static> AnyModel for M {
         hits: Hit8,
     ) -> Box<dyn ErasedBsdf8> {
         let materials = params.map(|params| hairis::Material::new(self, params));
-        Box::new(hairis::Material8::pack(materials.each_ref()).prepare8_at(level, hits))
+        Box::new(
+            hairis::Material8::pack(materials.each_ref())
+                .with_level(level)
+                .prepare8(hits),
+        )
     }
 
     fn constants(&self, params: &HairParams, hit: Hit) -> [String; 2] {
@@ -73,6 +78,7 @@ impl<M: hairis::model::Model<Params = HairParams> + 'static> AnyModel for M {
 pub(super) struct Material<'a> {
     model: &'a dyn AnyModel,
     pub(super) params: HairParams,
+    level: Level,
 }
 
 impl<'a> Material<'a> {
@@ -80,15 +86,21 @@ impl<'a> Material<'a> {
         Self {
             model,
             params: *params,
+            level: Level::detect(),
         }
     }
 
     pub(super) fn prepare(&self, hit: impl Into<Hit>) -> Bsdf {
-        Bsdf(self.model.prepare(&self.params, hit.into()))
+        self.model.prepare(&self.params, hit.into())
     }
 
-    pub(super) fn prepare8_at(&self, level: Level, hits: impl Into<Hit8>) -> Bsdf8 {
-        Bsdf8(self.model.prepare8(&self.params, level, hits.into()))
+    pub(super) fn with_level(mut self, level: Level) -> Self {
+        self.level = level;
+        self
+    }
+
+    pub(super) fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8 {
+        self.model.prepare8(&self.params, self.level, hits.into())
     }
 
     /// Eight hits on eight materials of one model.
@@ -97,11 +109,11 @@ impl<'a> Material<'a> {
         level: Level,
         hits: impl Into<Hit8>,
     ) -> Bsdf8 {
-        Bsdf8(materials[0].model.prepare_packed(
+        materials[0].model.prepare_packed(
             materials.map(|material| &material.params),
             level,
             hits.into(),
-        ))
+        )
     }
 
     pub(super) fn max_albedo(&self) -> f32 {
@@ -113,86 +125,7 @@ impl<'a> Material<'a> {
     }
 }
 
-/// A shading point.
-#[derive(Debug)]
-pub(super) struct Bsdf(Box<dyn ErasedBsdf>);
-
-impl Bsdf {
-    pub(super) fn eval_pdf(&self, wi: impl Into<Direction>) -> Eval {
-        self.0.eval(wi.into())
-    }
-
-    pub(super) fn eval(&self, wi: impl Into<Direction>) -> [f32; 3] {
-        self.0.value(wi.into())
-    }
-
-    pub(super) fn pdf(&self, wi: impl Into<Direction>) -> f32 {
-        self.0.pdf(wi.into())
-    }
-
-    pub(super) fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
-        self.0.eval8(level, wi)
-    }
-
-    pub(super) fn lobes(&self, wi: impl Into<Direction>) -> PerLobe<LobeEval> {
-        self.0.lobes(wi.into())
-    }
-
-    pub(super) fn lobes8_at(&self, level: Level, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        self.0.lobes8(level, wi)
-    }
-
-    pub(super) fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        self.lobes8_at(Level::detect(), wi)
-    }
-
-    pub(super) fn sample(&self, xi: [f32; 3]) -> Option<Sample> {
-        self.0.sample(xi)
-    }
-
-    pub(super) fn sample8_at(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
-        self.0.sample8(level, xi)
-    }
-
-    pub(super) fn albedo(&self) -> PerLobe<[f32; 3]> {
-        self.0.albedo()
-    }
-
-    pub(super) fn with_lobes(&self, lobes: LobeMask) -> Self {
-        Self(self.0.with_lobes(lobes))
-    }
-}
-
-/// Eight shading points.
-#[derive(Debug)]
-pub(super) struct Bsdf8(Box<dyn ErasedBsdf8>);
-
-impl Bsdf8 {
-    pub(super) fn eval_pdf8_at(&self, level: Level, wi: &Vec3x8) -> Eval8 {
-        self.0.eval(level, wi)
-    }
-
-    pub(super) fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8> {
-        self.0.lobes(wi)
-    }
-
-    pub(super) fn sample8_at(&self, level: Level, xi: &[f32x8; 3]) -> Sample8 {
-        self.0.sample(level, xi)
-    }
-
-    pub(super) fn albedo8_at(&self, level: Level) -> PerLobe<[f32x8; 3]> {
-        self.0.albedo(level)
-    }
-
-    pub(super) fn conserving_at(&self, level: Level) -> Self {
-        Self(self.0.conserving(level))
-    }
-
-    pub(super) fn with_lobes(&self, lobes: LobeMask) -> Self {
-        Self(self.0.with_lobes(lobes))
-    }
-
-    pub(super) fn lane(&self, lane: usize) -> Bsdf {
-        Bsdf(self.0.lane(lane))
-    }
-}
+/// A BSDF.
+pub(super) type Bsdf = Box<dyn ErasedBsdf>;
+/// Eight BSDFs.
+pub(super) type Bsdf8 = Box<dyn ErasedBsdf8>;

@@ -42,7 +42,9 @@ pub fn a_subset_scatters_and_samples_its_lobes_alone(tested: &Tested) {
     let (mut s, mut pdf) = (LargestError::default(), LargestError::default());
     for_each_point(tested, Kind::Wide, |material, reference, point| {
         let bsdf = material.prepare(point.wo);
-        let eight = material.prepare8_at(Level::detect(), &hairis::Vec3x8::splat(point.wo));
+        let eight = material
+            .with_level(Level::detect())
+            .prepare8(&hairis::Vec3x8::splat(point.wo));
         let mut draws = Draws(point.seed);
         for mask in masks() {
             let part = bsdf.with_lobes(mask);
@@ -80,7 +82,8 @@ pub fn a_subset_scatters_and_samples_its_lobes_alone(tested: &Tested) {
             let xi = core::array::from_fn(|_| draws.xi3());
             let samples = eight
                 .with_lobes(mask)
-                .sample8_at(Level::detect(), &lanes_of(&xi));
+                .with_level(Level::detect())
+                .sample8(&lanes_of(&xi));
             for (lane, xi) in xi.into_iter().enumerate() {
                 for sample in [part.sample(xi), samples.lane(lane)] {
                     let lobe = sample.map(|s| s.lobe);
@@ -97,7 +100,7 @@ pub fn a_subset_scatters_and_samples_its_lobes_alone(tested: &Tested) {
         }
         let none = bsdf.with_lobes(LobeMask::NONE);
         for eight in point.directions(8).chunks(8) {
-            let all = none.eval_pdf8_at(Level::detect(), &packet(eight));
+            let all = none.with_level(Level::detect()).eval_pdf8(&packet(eight));
             assert!(
                 all.pdf.to_array() == [0.0; 8],
                 "a pdf without lobes: {all:?}"

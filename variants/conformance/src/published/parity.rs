@@ -84,8 +84,8 @@ pub fn every_lane_position_equals_one_lane(tested: &Tested) {
             let xi: [_; 8] = core::array::from_fn(|_| draws.xi3());
             for level in unfused() {
                 let (evals, samples) = (
-                    bsdf.eval_pdf8_at(level, &packet(eight)),
-                    bsdf.sample8_at(level, &lanes_of(&xi)),
+                    bsdf.with_level(level).eval_pdf8(&packet(eight)),
+                    bsdf.with_level(level).sample8(&lanes_of(&xi)),
                 );
                 for (lane, wi) in eight.iter().enumerate() {
                     let (one, wide) = (bsdf.eval_pdf(*wi), evals.lane(lane));
@@ -109,8 +109,8 @@ pub fn eight_shading_points_equal_one_each(tested: &Tested) {
         for level in unfused() {
             let bsdf = bsdfs(&m, level);
             let (evals, samples) = (
-                bsdf.eval_pdf8_at(level, &packet(&m.wi)),
-                bsdf.sample8_at(level, &lanes_of(&m.xi)),
+                bsdf.with_level(level).eval_pdf8(&packet(&m.wi)),
+                bsdf.with_level(level).sample8(&lanes_of(&m.xi)),
             );
             for lane in 0..8 {
                 let one = m.material[lane].prepare(m.wo[lane]);
@@ -144,7 +144,7 @@ pub fn one_lane_never_fuses(tested: &Tested) {
     let mut draws = Draws(16);
     for _ in 0..2000 {
         let (params, wo) = (draws.params(1e3), draws.direction());
-        let hit = Hit { wo, h: 0.0 };
+        let hit = Hit::from(wo);
         let [one, lane] = model.constants(&params, hit);
         assert_eq!(one, lane, "{hit:?} {params:?}");
     }
@@ -160,7 +160,7 @@ pub fn one_shading_point_in_every_lane_equals_a_shared_one(tested: &Tested) {
         let wo = packet(&[m.wo[0]]);
         for level in Level::available() {
             let eight = Material::prepare_packed([&material; 8], level, &wo);
-            let same = material.prepare8_at(level, &wo);
+            let same = material.with_level(level).prepare8(&wo);
             assert_eq!(
                 format!("{eight:?}"),
                 format!("{same:?}"),
@@ -168,12 +168,12 @@ pub fn one_shading_point_in_every_lane_equals_a_shared_one(tested: &Tested) {
             );
             let shared = eight.lane(3);
             let (a, b) = (
-                eight.eval_pdf8_at(level, &packet(&m.wi)),
-                shared.eval_pdf8_at(level, &packet(&m.wi)),
+                eight.with_level(level).eval_pdf8(&packet(&m.wi)),
+                shared.with_level(level).eval_pdf8(&packet(&m.wi)),
             );
             let (s, t) = (
-                eight.sample8_at(level, &lanes_of(&m.xi)),
-                shared.sample8_at(level, &lanes_of(&m.xi)),
+                eight.with_level(level).sample8(&lanes_of(&m.xi)),
+                shared.with_level(level).sample8(&lanes_of(&m.xi)),
             );
             for lane in 0..8 {
                 assert_eq!(
@@ -208,12 +208,12 @@ pub fn permuted_lanes_permute_the_results(tested: &Tested) {
         for level in Level::available() {
             let (g, h) = (bsdfs(&m, level), bsdfs(&p, level));
             let (a, b) = (
-                g.eval_pdf8_at(level, &packet(&m.wi)),
-                h.eval_pdf8_at(level, &packet(&p.wi)),
+                g.with_level(level).eval_pdf8(&packet(&m.wi)),
+                h.with_level(level).eval_pdf8(&packet(&p.wi)),
             );
             let (s, t) = (
-                g.sample8_at(level, &lanes_of(&m.xi)),
-                h.sample8_at(level, &lanes_of(&p.xi)),
+                g.with_level(level).sample8(&lanes_of(&m.xi)),
+                h.with_level(level).sample8(&lanes_of(&p.xi)),
             );
             for (to, from) in order.into_iter().enumerate() {
                 assert_eq!(
@@ -251,8 +251,8 @@ pub fn levels_agree_with_one_lane(tested: &Tested) {
             let xi: [_; 8] = core::array::from_fn(|_| draws.xi3());
             for level in Level::available() {
                 let (evals, samples) = (
-                    bsdf.eval_pdf8_at(level, &packet(eight)),
-                    bsdf.sample8_at(level, &lanes_of(&xi)),
+                    bsdf.with_level(level).eval_pdf8(&packet(eight)),
+                    bsdf.with_level(level).sample8(&lanes_of(&xi)),
                 );
                 for (lane, wi) in eight.iter().enumerate() {
                     let at = || format!("{level} wo {:?} wi {wi:?} xi {:?}", point.wo, xi[lane]);
@@ -303,7 +303,8 @@ pub fn levels_that_round_alike_give_the_same_bits(tested: &Tested) {
                 pair[0],
                 pair[1]
             );
-            let albedos = [pair[0], pair[1]].map(|level| albedo_bits(&g.albedo8_at(level)));
+            let albedos =
+                [pair[0], pair[1]].map(|level| albedo_bits(&g.with_level(level).albedo8()));
             assert_eq!(
                 albedos[0], albedos[1],
                 "albedos on {} and {}",
@@ -311,8 +312,8 @@ pub fn levels_that_round_alike_give_the_same_bits(tested: &Tested) {
             );
             let of = |level| {
                 (
-                    g.eval_pdf8_at(level, &packet(&m.wi)),
-                    g.sample8_at(level, &lanes_of(&m.xi)),
+                    g.with_level(level).eval_pdf8(&packet(&m.wi)),
+                    g.with_level(level).sample8(&lanes_of(&m.xi)),
                 )
             };
             let ((a, s), (b, t)) = (of(pair[0]), of(pair[1]));
@@ -344,10 +345,13 @@ pub fn lobes_and_albedo_agree_with_one_lane(tested: &Tested) {
         let bsdf = bsdfs(&m, Level::detect());
         let (lobes, albedo) = (
             bsdf.lobes8(&packet(&m.wi)),
-            bsdf.albedo8_at(Level::detect()),
+            bsdf.with_level(Level::detect()).albedo8(),
         );
         for level in unfused() {
-            for (lane, bits) in albedo_bits(&bsdf.albedo8_at(level)).into_iter().enumerate() {
+            for (lane, bits) in albedo_bits(&bsdf.with_level(level).albedo8())
+                .into_iter()
+                .enumerate()
+            {
                 let one: Vec<u32> = bsdf
                     .lane(lane)
                     .albedo()

@@ -76,8 +76,8 @@ fn params(draws: &mut Draws) -> HairParams {
 /// Every number of a packet of eight, for `wi` and `xi` in every lane.
 fn numbers(bsdf: &Bsdf8, level: Level, wi: Vec3, xi: [f32; 3]) -> (Vec<f32>, Vec<f32>) {
     let first = |x: &f32x8| x.as_array()[0];
-    let e = bsdf.eval_pdf8_at(level, &packet(&[wi]));
-    let s = bsdf.sample8_at(level, &lanes_of(&[xi; 8]));
+    let e = bsdf.with_level(level).eval_pdf8(&packet(&[wi]));
+    let s = bsdf.with_level(level).sample8(&lanes_of(&[xi; 8]));
     let mut positive: Vec<f32> = e
         .value
         .iter()
@@ -182,7 +182,7 @@ pub fn a_sample_agrees_with_eval_and_pdf(tested: &Tested) {
             for _ in 0..8 {
                 let xi = draws.xi3();
                 let wide = Level::available()
-                    .map(|level| bsdf.sample8_at(level, &lanes_of(&[xi; 8])).lane(1));
+                    .map(|level| bsdf.with_level(level).sample8(&lanes_of(&[xi; 8])).lane(1));
                 for s in wide.chain([bsdf.sample(xi)]).flatten() {
                     let [theta, phi] = angles(wo, s.wi);
                     if theta.cos() < 1e-2 || PI - phi < 1e-2 || (phi - 0.5 * PI).abs() < 1e-3 {

@@ -75,7 +75,7 @@ fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 
         for _ in 0..per_point {
             let xi = draw8(&mut draws);
             let wide: Vec<_> = Level::available()
-                .map(|level| bsdf.sample8_at(level, &lanes_of(&xi)))
+                .map(|level| bsdf.with_level(level).sample8(&lanes_of(&xi)))
                 .collect();
             for (lane, xi) in xi.iter().enumerate() {
                 let all = wide
@@ -107,7 +107,7 @@ fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 
             for lobe in Lobe::ALL {
                 let alone = bsdf.with_lobes(LobeMask::of(&[lobe]));
                 let wide: Vec<_> = Level::available()
-                    .map(|level| alone.sample8_at(level, &lanes_of(&xi)))
+                    .map(|level| alone.with_level(level).sample8(&lanes_of(&xi)))
                     .collect();
                 for (lane, xi) in xi.iter().enumerate() {
                     let all = wide

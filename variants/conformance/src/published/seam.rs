@@ -46,7 +46,7 @@ pub fn samples_next_to_the_seam_report_their_own_direction(tested: &Tested) {
                     [(lane as f32 + 0.5) / 8.0, 0.11 * lane as f32 + 0.05, xi_phi]
                 });
                 for sample in Level::available().flat_map(|level| {
-                    let eight = bsdf.sample8_at(level, &lanes_of(&xi));
+                    let eight = bsdf.with_level(level).sample8(&lanes_of(&xi));
                     (0..8).filter_map(move |lane| eight.lane(lane))
                 }) {
                     // R and TRT-g are 0 where TT and the glints are drawn about pi, and elsewhere where they are.

@@ -50,7 +50,7 @@ fn errors(
             for [theta, phi] in ends {
                 let xi = core::array::from_fn(|lane| [(lane as f32 + 0.5) / 8.0, theta, phi]);
                 let wide = Level::available().flat_map(|level| {
-                    let eight = bsdf.sample8_at(level, &lanes_of(&xi));
+                    let eight = bsdf.with_level(level).sample8(&lanes_of(&xi));
                     (0..8).map(move |lane| eight.lane(lane))
                 });
                 for sample in wide.chain(xi.iter().map(|xi| bsdf.sample(*xi))).flatten() {

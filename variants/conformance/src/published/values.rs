@@ -16,7 +16,12 @@ fn scan(tested: &Tested, kind: Kind, per_point: usize) -> [LargestError; 4] {
         for eight in point.directions(per_point).chunks(8) {
             let wi = packet(eight);
             let wide: Vec<_> = Level::available()
-                .map(|level| (level, material.prepare(point.wo).eval_pdf8_at(level, &wi)))
+                .map(|level| {
+                    (
+                        level,
+                        material.prepare(point.wo).with_level(level).eval_pdf8(&wi),
+                    )
+                })
                 .collect();
             let wide_lobes = bsdf.lobes8(&wi);
             for (lane, wi) in eight.iter().enumerate() {

@@ -146,7 +146,7 @@ pub fn weights_are_below_their_bound(tested: &Tested) {
             for _ in 0..16 {
                 let xi = core::array::from_fn(|_| draws.xi3());
                 for level in Level::available() {
-                    let eight = bsdf.sample8_at(level, &lanes_of(&xi));
+                    let eight = bsdf.with_level(level).sample8(&lanes_of(&xi));
                     let all = (0..8)
                         .filter_map(|lane| eight.lane(lane))
                         .chain(bsdf.sample(xi[0]));

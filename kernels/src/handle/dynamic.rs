@@ -1,0 +1,260 @@
+//! Handles of a model that is chosen at run time: object-safe traits, which the handle of every model implements.
+//!
+//! Each call is compiled once per model, and choosing it costs one jump. Scalar calls take a `Vec3`: a `Vec3x` by value
+//! would cost 8 to 15 ns.
+
+use super::{Bsdf, Bsdf8, Material};
+use crate::columns::{EvalColumns, HitColumns, LengthError, SampleColumns};
+use crate::model::{LobeEval, LobeEval8, Model};
+use crate::resample::{CandidateColumns, Counts, Partition, Weighed8, WeightColumns};
+use crate::simd::{Level, Vec3x, f32x8};
+use crate::{Eval, Eval8, LobeMask, PerLobe, Sample, Sample8, Vec3x8};
+use core::fmt::Debug;
+use glam::Vec3;
+
+/// A [`Material`] of any model. What prepares hits returns a type of the model: see `AnyMaterial` of `hairis-variants`.
+pub trait DynMaterial: Debug + Send + Sync {
+    /// See [`Material::eval_hits`].
+    ///
+    /// # Errors
+    ///
+    /// If the columns differ in length; nothing is written then.
+    fn eval_hits(
+        &self,
+        hits: HitColumns<'_>,
+        wi: [&[f32]; 3],
+        out: EvalColumns<'_>,
+    ) -> Result<(), LengthError>;
+
+    /// See [`Material::sample_hits`].
+    ///
+    /// # Errors
+    ///
+    /// If the columns differ in length; nothing is written then.
+    fn sample_hits(
+        &self,
+        hits: HitColumns<'_>,
+        xi: [&[f32]; 3],
+        out: SampleColumns<'_>,
+    ) -> Result<(), LengthError>;
+
+    /// See [`Material::max_albedo`].
+    fn max_albedo(&self) -> f32;
+
+    /// See [`Material::conserving_scale`].
+    fn conserving_scale(&self) -> f32;
+
+    /// See [`Material::with_level`].
+    fn set_level(&mut self, level: Level);
+}
+
+/// A [`Bsdf`] of any model.
+///
+/// ```
+/// use hairis::model::DynBsdf;
+/// use hairis::{Gaussian, HairParams, Matched, Material, Published};
+/// let (wo, brown) = (glam::Vec3::Y, HairParams::brown());
+/// let one = Material::new(&Published(Gaussian), &brown).prepare(wo);
+/// let other = Material::new(&Matched::new(Gaussian), &brown).prepare(wo);
+/// let chosen: [&dyn DynBsdf; 2] = [&one, &other];
+/// assert_eq!(chosen[0].eval_pdf(wo).value, chosen[1].eval_pdf(wo).value);
+/// ```
+pub trait DynBsdf: Debug + Send + Sync {
+    /// See [`Bsdf::eval_pdf`].
+    fn eval_pdf(&self, wi: Vec3) -> Eval;
+
+    /// See [`Bsdf::eval`].
+    fn eval(&self, wi: Vec3) -> [f32; 3] {
+        self.eval_pdf(wi).value
+    }
+
+    /// See [`Bsdf::pdf`].
+    fn pdf(&self, wi: Vec3) -> f32 {
+        self.eval_pdf(wi).pdf
+    }
+
+    /// See [`Bsdf::lobes`].
+    fn lobes(&self, wi: Vec3) -> PerLobe<LobeEval>;
+
+    /// See [`Bsdf::sample`].
+    fn sample(&self, xi: [f32; 3]) -> Option<Sample>;
+
+    /// See [`Bsdf::eval_pdf8`].
+    fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8;
+
+    /// See [`Bsdf::lobes8`].
+    fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
+
+    /// See [`Bsdf::sample8`].
+    fn sample8(&self, xi: &[f32x8; 3]) -> Sample8;
+
+    /// See [`Bsdf::eval_columns`].
+    ///
+    /// # Errors
+    ///
+    /// If the columns differ in length; nothing is written then.
+    fn eval_columns(&self, wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), LengthError>;
+
+    /// See [`Bsdf::sample_columns`].
+    ///
+    /// # Errors
+    ///
+    /// If the columns differ in length; nothing is written then.
+    fn sample_columns(&self, xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), LengthError>;
+
+    /// See [`Bsdf::propose_columns`].
+    ///
+    /// # Errors
+    ///
+    /// If the columns differ in length; nothing is written then.
+    fn propose_columns(&self, xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError>;
+
+    /// See [`Bsdf::weigh_columns`].
+    ///
+    /// # Errors
+    ///
+    /// If the columns differ in length; nothing is written then.
+    fn weigh_columns(
+        &self,
+        candidates: CandidateColumns<'_>,
+        counts: Counts,
+        partition: Partition,
+        out: WeightColumns<'_>,
+    ) -> Result<(), LengthError>;
+
+    /// See [`Bsdf::albedo`].
+    fn albedo(&self) -> PerLobe<[f32; 3]>;
+
+    /// Keeps some lobes alone: see [`Bsdf::with_lobes`].
+    fn set_lobes(&mut self, lobes: LobeMask);
+
+    /// Returns no more light than arrives: see [`Bsdf::conserving`].
+    fn conserve(&mut self);
+
+    /// See [`Bsdf::with_level`].
+    fn set_level(&mut self, level: Level);
+}
+
+/// A [`Bsdf8`] of any model.
+pub trait DynBsdf8: Debug + Send + Sync {
+    /// See [`Bsdf8::eval_pdf8`].
+    fn eval_pdf8(&self, wi: &Vec3x8) -> Eval8;
+
+    /// See [`Bsdf8::lobes8`].
+    fn lobes8(&self, wi: &Vec3x8) -> PerLobe<LobeEval8>;
+
+    /// See [`Bsdf8::sample8`].
+    fn sample8(&self, xi: &[f32x8; 3]) -> Sample8;
+
+    /// See [`Bsdf8::propose8`].
+    fn propose8(&self, xi: &[f32x8; 3]) -> Vec3x8;
+
+    /// See [`Bsdf8::weigh8`].
+    fn weigh8(
+        &self,
+        wi: &Vec3x8,
+        radiance: &[f32x8; 3],
+        pdf_light: &f32x8,
+        counts: Counts,
+        partition: Partition,
+    ) -> Weighed8;
+
+    /// See [`Bsdf8::albedo8`].
+    fn albedo8(&self) -> PerLobe<[f32x8; 3]>;
+
+    /// Keeps some lobes alone: see [`Bsdf8::with_lobes`].
+    fn set_lobes(&mut self, lobes: LobeMask);
+
+    /// Returns no more light than arrives: see [`Bsdf8::conserving`].
+    fn conserve(&mut self);
+
+    /// See [`Bsdf8::with_level`].
+    fn set_level(&mut self, level: Level);
+}
+
+/// Methods of a trait that are those of the handle.
+macro_rules! forward {
+    ($handle:ident: $($(#[$attribute:meta])* $method:ident($($arg:ident: $type:ty),*) $(-> $out:ty)?;)*) => { $(
+        #[inline]
+        fn $method(&self $(, $arg: $type)*) $(-> $out)? {
+            $handle::$method(self $(, $arg)*)
+        }
+    )* };
+}
+
+/// Methods of a trait that change a handle as its `with_` methods do.
+macro_rules! set {
+    ($($method:ident($($arg:ident: $type:ty)?) = $with:ident;)*) => { $(
+        #[inline]
+        fn $method(&mut self $(, $arg: $type)?) {
+            *self = self.$with($($arg)?);
+        }
+    )* };
+}
+
+impl<M: Model> DynMaterial for Material<M> {
+    forward! { Material:
+        eval_hits(hits: HitColumns<'_>, wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), LengthError>;
+        sample_hits(hits: HitColumns<'_>, xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), LengthError>;
+        max_albedo() -> f32;
+        conserving_scale() -> f32;
+    }
+    set! { set_level(level: Level) = with_level; }
+}
+
+impl<M: Model> DynBsdf for Bsdf<M> {
+    // Not the handle's, whose debug builds refuse a `wi` that is not of unit length: tests of totality call these.
+    #[inline]
+    fn eval_pdf(&self, wi: Vec3) -> Eval {
+        M::eval::<f32, f32>(&self.prepared, Vec3x::from(wi))
+    }
+
+    #[inline]
+    fn lobes(&self, wi: Vec3) -> PerLobe<LobeEval> {
+        M::lobes::<f32, f32>(&self.prepared, Vec3x::from(wi))
+    }
+
+    forward! { Bsdf:
+        sample(xi: [f32; 3]) -> Option<Sample>;
+        eval_pdf8(wi: &Vec3x8) -> Eval8;
+        lobes8(wi: &Vec3x8) -> PerLobe<LobeEval8>;
+        sample8(xi: &[f32x8; 3]) -> Sample8;
+        eval_columns(wi: [&[f32]; 3], out: EvalColumns<'_>) -> Result<(), LengthError>;
+        sample_columns(xi: [&[f32]; 3], out: SampleColumns<'_>) -> Result<(), LengthError>;
+        propose_columns(xi: [&[f32]; 3], wi: [&mut [f32]; 3]) -> Result<(), LengthError>;
+        weigh_columns(
+            candidates: CandidateColumns<'_>,
+            counts: Counts,
+            partition: Partition,
+            out: WeightColumns<'_>
+        ) -> Result<(), LengthError>;
+        albedo() -> PerLobe<[f32; 3]>;
+    }
+    set! {
+        set_lobes(lobes: LobeMask) = with_lobes;
+        conserve() = conserving;
+        set_level(level: Level) = with_level;
+    }
+}
+
+impl<M: Model> DynBsdf8 for Bsdf8<M> {
+    forward! { Bsdf8:
+        eval_pdf8(wi: &Vec3x8) -> Eval8;
+        lobes8(wi: &Vec3x8) -> PerLobe<LobeEval8>;
+        sample8(xi: &[f32x8; 3]) -> Sample8;
+        propose8(xi: &[f32x8; 3]) -> Vec3x8;
+        weigh8(
+            wi: &Vec3x8,
+            radiance: &[f32x8; 3],
+            pdf_light: &f32x8,
+            counts: Counts,
+            partition: Partition
+        ) -> Weighed8;
+        albedo8() -> PerLobe<[f32x8; 3]>;
+    }
+    set! {
+        set_lobes(lobes: LobeMask) = with_lobes;
+        conserve() = conserving;
+        set_level(level: Level) = with_level;
+    }
+}
