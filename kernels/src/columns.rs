@@ -1,6 +1,9 @@
 //! Arguments of calls on columns: a slice per component, of one length, which is checked.
 
+mod frames;
+
 pub use crate::handle::{HitsError, MaterialTable};
+pub use frames::FrameColumns;
 
 use crate::simd::columns::Columns;
 use core::fmt;

@@ -40,6 +40,20 @@ impl<L: Lanes> Vec3x<L> {
             .mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
     }
 
+    /// Cosine of the inclination of a unit vector in a fibre's frame: the factor that [`Eval`](crate::Eval)'s value leaves out.
+    ///
+    /// ```
+    /// use hairis::Vec3x8;
+    /// use glam::Vec3;
+    /// let towards_light = Vec3x8::splat(Vec3::new(0.6, 0.48, 0.64));
+    /// assert_eq!(towards_light.cos_theta().to_array(), [0.8; 8]);
+    /// ```
+    #[inline(always)]
+    #[must_use]
+    pub fn cos_theta(self) -> L {
+        self.y.mul_add(self.y, self.z * self.z).sqrt()
+    }
+
     /// The same vector, its components read one by one: see [`Lanes::alone`]. Callers have often just written them; what is read
     /// across two such writes waits until both have left the CPU's queue.
     #[inline(always)]
@@ -244,6 +258,15 @@ impl FiberFrame {
         self.u * v.x + self.v * v.y + self.w * v.z
     }
 
+    /// Cosine of the inclination of a unit vector in a fibre's frame: the factor that [`Eval`](crate::Eval)'s value leaves out.
+    ///
+    /// `cos theta_i = sqrt(v^2 + w^2)`
+    #[inline]
+    #[must_use]
+    pub fn cos_theta(wi: Vec3) -> f32 {
+        Vec3x::from(wi).cos_theta()
+    }
+
     /// Offset across the fibre of a hit with this outward normal, seen from `wo`: [`Hit::h`](crate::Hit::h). Both are in
     /// the world.
     ///
@@ -359,6 +382,49 @@ impl FiberFrame8 {
             u.x * v.y - u.y * v.x,
         );
         Self { u: *u, v, w }
+    }
+
+    /// Frames of eight hits: lane by lane as [`FiberFrame::from_tangent`], for unit vectors.
+    ///
+    /// - Shape: a hit per lane.
+    /// - Accuracy: orthonormal to 1e-6.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use hairis::{FiberFrame8, Vec3x8};
+    /// let frames = FiberFrame8::from_tangents(&Vec3x8::splat(Vec3::Z));
+    /// assert_eq!((frames.v.lane(7), frames.w.lane(7)), (Vec3::X, Vec3::Y));
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn from_tangents(tangents: &Vec3x8) -> Self {
+        // Duff et al. 2017, in the order of glam's `any_orthonormal_pair`.
+        let u = *tangents;
+        let sign = f32x8::ONE.copysign(u.z);
+        let a = -f32x8::ONE / (sign + u.z);
+        let b = u.x * u.y * a;
+        Self {
+            u,
+            v: Vec3x8::new(f32x8::ONE + sign * u.x * u.x * a, sign * b, -sign * u.x),
+            w: Vec3x8::new(b, sign + u.y * u.y * a, -u.y),
+        }
+    }
+
+    /// Offsets across the fibres, lane by lane as [`FiberFrame::offset`], for unit vectors.
+    ///
+    /// - Shape: a hit per lane.
+    /// - Domain: unit vectors in the world. The offset is 0 where either lies along the fibre.
+    #[inline]
+    #[must_use]
+    pub fn offset(&self, normals: &Vec3x8, wo: &Vec3x8) -> f32x8 {
+        let across = |vector: &Vec3x8| {
+            let local = self.to_local(vector);
+            unit8(&Vec3x8::new(f32x8::ZERO, local.y, local.z))
+        };
+        let (n, wo) = (across(normals), across(wo));
+        (n.y * wo.z - n.z * wo.y)
+            .fast_max(-f32x8::ONE)
+            .fast_min(f32x8::ONE)
     }
 
     /// World to fibre, each lane in its own frame.

@@ -28,6 +28,53 @@
 //! | evaluate, sample | direction | [`Bsdf::eval_pdf`], [`Bsdf::sample`]; eight directions at one hit: [`Bsdf::eval_pdf8`], [`Bsdf::sample8`]; one at each of eight hits: [`Bsdf8::eval_pdf8`], [`Bsdf8::sample8`]; columns: [`Bsdf::eval_columns`], [`Bsdf::sample_columns`] |
 //! | both in one | hit and direction | slices of hits: [`Material::eval_hits`], [`Material::sample_hits`]; a material per hit: [`MaterialTable`](columns::MaterialTable) |
 //!
+//! # Direct light by multiple importance sampling
+//!
+//! Both techniques at one hit, with the balance heuristic: a direction of the light, weighed by `cos theta_i` over the sum of both
+//! densities, and one of the BSDF, whose `weight` is multiplied by its share. Under light of radiance 1 from everywhere the sum is
+//! the albedo:
+//!
+//! ```
+//! use core::f32::consts::PI;
+//! use glam::Vec3;
+//! use hairis::{Conserving, FiberFrame, Gaussian, HairParams, Matched, Material, random};
+//! # use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
+//! # let mut rng = ChaCha8Rng::seed_from_u64(1);
+//!
+//! const PDF_LIGHT: f32 = 0.25 / PI;
+//! fn from_light([_, u, v]: [f32; 3]) -> Vec3 {
+//!     let (sin, phi) = (2.0 * u - 1.0, 2.0 * PI * v);
+//!     let cos = (1.0 - sin * sin).sqrt();
+//!     Vec3::new(sin, cos * phi.cos(), cos * phi.sin())
+//! }
+//!
+//! let hair = Material::new(&Conserving(Matched::new(Gaussian)), &HairParams::brown());
+//! let bsdf = hair.prepare(Vec3::new(0.6, 0.0, 0.8));
+//! let (mut red, n) = (0.0, 4096);
+//! for _ in 0..n {
+//!     let wi = from_light(random::xi(&mut rng));
+//!     let eval = bsdf.eval_pdf(wi);
+//!     red += eval.value[0] * FiberFrame::cos_theta(wi) / (PDF_LIGHT + eval.pdf);
+//!     if let Some(sample) = bsdf.sample(random::xi(&mut rng)) {
+//!         red += sample.weight[0] * sample.pdf / (PDF_LIGHT + sample.pdf);
+//!     }
+//! }
+//! let albedo: f32 = bsdf.albedo().0.iter().map(|lobe| lobe[0]).sum();
+//! assert!((red / n as f32 / albedo - 1.0).abs() < 0.05);
+//!
+//! // The same in eight lanes: a discarded lane has weight 0.
+//! use hairis::{Vec3x8, f32x8};
+//! let (mut red, pdf_light) = (f32x8::ZERO, f32x8::splat(PDF_LIGHT));
+//! for _ in 0..n / 8 {
+//!     let wi = Vec3x8::from(core::array::from_fn(|_| from_light(random::xi(&mut rng))));
+//!     let eval = bsdf.eval_pdf8(&wi);
+//!     red += eval.value[0] * wi.cos_theta() / (pdf_light + eval.pdf);
+//!     let sample = bsdf.sample8(&random::xi8(&mut rng));
+//!     red += sample.weight[0] * sample.pdf / (pdf_light + sample.pdf);
+//! }
+//! assert!((red.reduce_add() / n as f32 / albedo - 1.0).abs() < 0.05);
+//! ```
+//!
 //! # Conventions
 //!
 //! - **Frame.** A fibre has the frame (u, v, w): u along it from root to tip, v and w across. A direction is

@@ -40,6 +40,10 @@ use wide::f32x8;
 ///   that may or may not fuse.
 /// - Every function over lanes is `#[inline(always)]`, and so is all it calls: the dispatched entry points then
 ///   contain no call, and the model runs at the speed of ours. Array `map` and closures over lanes are calls.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a scattering model",
+    note = "a bell is part of one: `Published(Gaussian)`, `Matched::new(Gaussian)`"
+)]
 pub trait Model: Copy {
     /// Checked parameters of a material.
     type Params;

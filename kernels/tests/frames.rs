@@ -3,7 +3,7 @@
 use crate::support::Draws;
 use crate::tolerance as bound;
 use glam::Vec3;
-use hairis::{FiberFrame, FiberFrame8};
+use hairis::{FiberFrame, FiberFrame8, Vec3x8};
 use hairis_conformance::published::props::{finite, three};
 
 #[test]
@@ -74,6 +74,40 @@ fn eight_lanes_round_as_sums_do_in_every_build() {
             );
         }
     }
+}
+
+#[test]
+fn frames_and_offsets_of_eight_hits_are_those_of_one() {
+    let mut draws = Draws(59);
+    let mut unit = || {
+        Vec3::from_array(core::array::from_fn(|_| 2.0 * draws.xi() - 1.0))
+            .try_normalize()
+            .unwrap_or(Vec3::Z)
+    };
+    for round in 0..2000 {
+        let [mut tangents, normals, wo]: [[Vec3; 8]; 3] =
+            core::array::from_fn(|_| core::array::from_fn(|_| unit()));
+        tangents[round % 8] = [Vec3::Z, -Vec3::Z, Vec3::X, -Vec3::Y][round / 8 % 4];
+        let eight = FiberFrame8::from_tangents(&tangents.into());
+        let offset = eight.offset(&normals.into(), &wo.into());
+        for lane in 0..8 {
+            let frame = FiberFrame::from_tangent(tangents[lane]);
+            for (got, want) in [(eight.v, frame.v), (eight.w, frame.w)] {
+                let error = (got.lane(lane) - want).length();
+                assert!(error < bound::FRAME, "{frame:?} is off by {error}");
+            }
+            let want = frame.offset(normals[lane], wo[lane]);
+            let error = (offset.to_array()[lane] - want).abs();
+            // Both lose digits next to the axis.
+            let across =
+                [normals[lane], wo[lane]].map(|v| FiberFrame::cos_theta(frame.to_local(v)));
+            let most = 2.0 * bound::FRAME / across[0].min(across[1]).max(1e-3);
+            assert!(error < most, "{error} at {frame:?}");
+        }
+    }
+    let axis = FiberFrame8::from_tangents(&Vec3x8::splat(Vec3::X));
+    let along = axis.offset(&Vec3x8::splat(Vec3::X), &Vec3x8::splat(Vec3::Y));
+    assert_eq!(along.to_array(), [0.0; 8], "a normal along the fibre");
 }
 
 #[test]

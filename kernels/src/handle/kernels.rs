@@ -396,7 +396,7 @@ fn weighed<M: Model, L: Lanes, C: Broadcast<L>>(
     radiance: [L; 3],
     pdf_light: L,
 ) -> [L; 4] {
-    let cos_theta_i = wi.y.mul_add(wi.y, wi.z * wi.z).sqrt();
+    let cos_theta_i = wi.cos_theta();
     let eval = M::eval::<L, C>(prepared, wi);
     weighing.weigh(eval.value, eval.pdf, cos_theta_i, radiance, pdf_light)
 }

@@ -85,6 +85,10 @@ use wide::f32x8;
 /// let sample = prepared.sample([0.2, 0.6, 0.3]).expect("not along the fibre");
 /// assert!((sample.weight[0] - 0.9).abs() < 1e-6 && (prepared.albedo().0[0][2] - 0.1).abs() < 1e-6);
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a scattering model",
+    note = "a bell is part of one: `Published(Gaussian)`, `Matched::new(Gaussian)`"
+)]
 pub trait LobeModel: Copy {
     /// Parameters of a material, checked.
     type Params;
