@@ -291,20 +291,6 @@ impl FiberFrame {
         let (n, wo) = (across(normal), across(wo));
         (n.y * wo.z - n.z * wo.y).clamp(-1.0, 1.0)
     }
-
-    /// World to fibre, for glam's aligned vectors.
-    #[inline]
-    #[must_use]
-    pub fn to_local_a(&self, v: Vec3A) -> Vec3A {
-        self.to_local(v.into()).into()
-    }
-
-    /// Fibre to world, for glam's aligned vectors.
-    #[inline]
-    #[must_use]
-    pub fn to_world_a(&self, v: Vec3A) -> Vec3A {
-        self.to_world(v.into()).into()
-    }
 }
 
 /// `v` at unit length; `fallback` if it is zero or not finite. Scaled first, so that no finite length overflows.

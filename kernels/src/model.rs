@@ -196,7 +196,7 @@ pub type Eval8 = Eval<f32x8>;
 impl<L: Lanes> Eval<L> {
     /// The lanes in their storage form.
     #[inline(always)]
-    pub fn store(self) -> Eval<L::Stored> {
+    pub(crate) fn store(self) -> Eval<L::Stored> {
         Eval {
             value: crate::simd::lanes::store3(self.value),
             pdf: self.pdf.store(),
@@ -249,7 +249,7 @@ impl<L: Lanes> LobeEval<L> {
 
     /// The lanes in their storage form.
     #[inline(always)]
-    pub fn store(self) -> LobeEval<L::Stored> {
+    pub(crate) fn store(self) -> LobeEval<L::Stored> {
         LobeEval {
             value: self.value.store(),
             color: crate::simd::lanes::store3(self.color),
@@ -277,7 +277,7 @@ pub struct SampleLanes<L> {
 impl<L: Lanes> SampleLanes<L> {
     /// The lanes in their storage form.
     #[inline(always)]
-    pub fn store(self) -> SampleLanes<L::Stored> {
+    pub(crate) fn store(self) -> SampleLanes<L::Stored> {
         SampleLanes {
             wi: self.wi.store(),
             value: crate::simd::lanes::store3(self.value),

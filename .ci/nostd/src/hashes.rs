@@ -375,8 +375,6 @@ fn frames() {
             ]
             .into_iter()
             .for_each(|v| one.vec3(v));
-            one.vec3(frame.to_local_a(v.lane(lane).into()).into());
-            one.vec3(frame.to_world_a(v.lane(lane).into()).into());
         }
         let eight_frames = FiberFrame8::splat(&frames[0]);
         for Vec3x { x, y, z } in [eight_frames.to_local(&v), eight_frames.to_world(&v)] {
