@@ -2,25 +2,24 @@
 
 use crate::model::{Eval8, Hit8, LobeEval8, Model, Sample8, SampleLanes};
 use crate::resample::{Weighed8, Weighing};
-use crate::simd::{Broadcast, Constant, Kernel, Lanes, Level, Row, Vec3x, fresh_lanes3, store3};
-use crate::{Bsdf8, Hit, PerLobe, Vec3x8};
+use crate::simd::{Broadcast, Constant, Kernel, Lanes, Row, Vec3x, fresh_lanes3, store3};
+use crate::{Hit, PerLobe, Vec3x8};
 use core::marker::PhantomData;
 use wide::f32x8;
 
 /// Eight shading points. The caller's arguments are converted to hits inside the kernel, by vector code.
 pub(crate) struct Prepare<'a, M: Model, C: Constant, H> {
     pub(crate) material: &'a M::Material<C>,
-    pub(crate) level: Level,
     pub(crate) hits: H,
 }
 
 impl<M: Model, C: Constant, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
     type Constant = C;
-    type Output = Bsdf8<M>;
+    type Output = M::Prepared<f32x8>;
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Bsdf8<M>
+    fn run<L: Lanes<Stored = f32x8>>(self) -> M::Prepared<f32x8>
     where
         C: Broadcast<L>,
         f32x8: Broadcast<L>,
@@ -30,10 +29,7 @@ impl<M: Model, C: Constant, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
             wo: Vec3x::load(&hits.wo),
             h: hits.h.lanes(),
         };
-        Bsdf8 {
-            prepared: M::prepare::<L, C>(self.material, hit),
-            level: self.level,
-        }
+        M::prepare::<L, C>(self.material, hit)
     }
 }
 

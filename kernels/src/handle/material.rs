@@ -80,11 +80,13 @@ impl<M: Model> Material<M> {
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
-        self.level.run(Prepare::<M, f32, _> {
-            material: &self.constants,
+        Bsdf8 {
+            prepared: self.level.run(Prepare::<M, f32, _> {
+                material: &self.constants,
+                hits,
+            }),
             level: self.level,
-            hits,
-        })
+        }
     }
 
     /// The largest directional albedo over all `wo` and the three channels: above 1 the hair gives back more light
@@ -186,10 +188,12 @@ impl<M: Model> Material8<M> {
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
-        self.level.run(Prepare::<M, f32x8, _> {
-            material: &self.constants,
+        Bsdf8 {
+            prepared: self.level.run(Prepare::<M, f32x8, _> {
+                material: &self.constants,
+                hits,
+            }),
             level: self.level,
-            hits,
-        })
+        }
     }
 }
