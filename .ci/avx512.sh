@@ -53,7 +53,7 @@ done
 for entry in $(cat entries); do
   ./entry run "$entry" 1 > out 2>&1 || fail "$entry"
 done
-echo "$(wc -l < entries) entry points of AVX-512 give the textbook's answers"
+echo "$(wc -l < entries) entry points of AVX-512 give the reference's answers"
 ./broken hair::slices_equal_packets > out 2>&1 && fail "slices without square roots passed"
 grep -q 'entry .* on avx512' out || fail "slices without square roots failed, but not on AVX-512"
 echo "without square roots a test fails, as it must: $(grep -o 'entry .* on avx512.*' out | head -1)"

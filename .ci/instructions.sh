@@ -64,7 +64,7 @@ export -f count sums
 export program dir passes
 
 valgrind -q --tool=none "$program" list > "$dir/names"
-names=$(grep -vE '^path-|/textbook/' "$dir/names")
+names=$(grep -vE '^path-|/reference/' "$dir/names")
 xargs -P "$(nproc)" -I NAME bash -euo pipefail -c 'count NAME' <<< "$names"
 rows=$(while read -r name; do cat "$dir/${name//\//_}.row"; done <<< "$names")
 echo "$rows" > "$counts"

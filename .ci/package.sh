@@ -1,12 +1,12 @@
 #!/bin/bash
-# Promise: the packages can be published. Each archive has both licences, a README and no source outside it; the library, the
-# programs and the tests of hairis-variants compile from the archives alone.
+# Promise: the packages can be published. Each archive has both licences, a README and no source outside it; the libraries and
+# the programs compile from the archives alone.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-packages=(hairis hairis-conformance hairis-variants hairis-benches hairis-instruments hairis-harness)
+packages=(hairis hairis-variants hairis-reference hairis-conformance hairis-benches hairis-instruments hairis-harness)
 
 rm -rf "$target/package"
 cargo package -q --no-verify --allow-dirty --target-dir "$target" "${packages[@]/#/-p}" 2> "$dir/log" || { cat "$dir/log"; exit 1; }
@@ -23,9 +23,11 @@ check() { # check PACKAGE ARGUMENT...: compiles it from its archive, with the ot
   echo "$1 from its archive: cargo check ${*:2}"
   (cd "$dir/$1" && cargo check -q "${patches[@]}" --target-dir "$target" "${@:2}" 2>&1 | { grep -v 'Patch.*was not used' || true; })
 }
-# hairis depends on its own tests' package by path alone: its archive has no tests to compile.
+# The first three depend on the package of their tests by path alone: their archives have no tests to compile.
 check hairis --lib --all-features
-check hairis-variants --all-targets --features textbook
+check hairis-variants --lib --all-features
+check hairis-reference --lib
+check hairis-conformance --lib
 check hairis-instruments --lib --all-features
 check hairis-harness --lib --bins --all-features
 echo "${#packages[@]} packages can be published"

@@ -26,7 +26,7 @@ if [ "${1:-}" = --time ]; then
     for start in prepare/ eval/ sample/ resample/; do
       for level in 3 s z; do "$dir/entry-$level" time "$start*" 0.02 | sed "s/^/$round $level /"; done
     done
-  done | grep -v textbook | python3 -c '
+  done | grep -v reference | python3 -c '
 import statistics, sys
 ns = {}
 for line in sys.stdin:

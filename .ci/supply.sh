@@ -13,8 +13,9 @@ check() { # check PACKAGE FEATURES...: without the default features, with each o
     echo "$package with '$features'"
   done
 }
-check hairis '' textbook
-check hairis-variants '' any textbook any,textbook
+check hairis ''
+check hairis-reference ''
+check hairis-variants '' any
 check hairis-instruments '' parquet png parquet,png
 check hairis-harness '' parquet png parquet,png
 

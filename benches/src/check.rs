@@ -4,7 +4,7 @@ use crate::Name;
 use crate::resample::{COUNTS, SKY_PDF};
 use crate::task::{Answer, Task};
 use glam::Vec3;
-use hairis::reference::Reference;
+use hairis_reference::{Reference, reference};
 use hairis_variants::{ModelId, Values};
 
 /// Largest error of an answer that counts as correct: relative for value and density, rad for a direction. The reference in
@@ -70,24 +70,22 @@ pub fn check(name: &Name, task: &mut impl Task, model: ModelId, asked: impl Fn(u
 }
 
 fn right(asked: &Asked, model: ModelId, answer: &Answer) -> bool {
-    let point = model
-        .reference::<f64>(&asked.values, to_f64(asked.wo), 0.0)
-        .expect("checked parameters");
+    let point = reference(model, &asked.values, to_f64(asked.wo), 0.0).expect("checked parameters");
     let truth = match asked.given {
         Given::Wi(wi) | Given::Candidate(wi) => Some(to_f64(wi)),
-        Given::Xi(xi) | Given::Proposal(xi) => drawn(&point, xi),
+        Given::Xi(xi) | Given::Proposal(xi) => drawn(&*point, xi),
         Given::Kept => answer.wi.map(to_f64),
     };
     match asked.given {
-        Given::Wi(_) | Given::Xi(_) => is_right(&point, truth, answer),
+        Given::Wi(_) | Given::Xi(_) => is_right(&*point, truth, answer),
         Given::Candidate(_) | Given::Proposal(_) | Given::Kept => {
-            agrees(truth, answer, |wi| weighed(&point, wi))
+            agrees(truth, answer, |wi| weighed(&*point, wi))
         }
     }
 }
 
 /// Contribution and weight of a candidate.
-fn weighed(point: &impl Reference<f64>, wi: [f64; 3]) -> ([f64; 3], f64) {
+fn weighed(point: &dyn Reference<f64>, wi: [f64; 3]) -> ([f64; 3], f64) {
     let cosine = wi[1].hypot(wi[2]);
     // The sky of `resample`, in double precision.
     let (value, radiance) = (point.eval(wi), wi.map(|x| 1.0 + 0.5 * x));
@@ -99,7 +97,7 @@ fn weighed(point: &impl Reference<f64>, wi: [f64; 3]) -> ([f64; 3], f64) {
 
 /// The direction that these numbers come to at a shading point; `None` if the sample is discarded.
 #[must_use]
-pub fn drawn(point: &impl Reference<f64>, xi: [f32; 3]) -> Option<[f64; 3]> {
+pub fn drawn(point: &dyn Reference<f64>, xi: [f32; 3]) -> Option<[f64; 3]> {
     let sample = point.sample(xi.map(f64::from));
     sample.lobe.map(|_| sample.wi)
 }
@@ -107,7 +105,7 @@ pub fn drawn(point: &impl Reference<f64>, xi: [f32; 3]) -> Option<[f64; 3]> {
 /// Whether an answer is correct for the direction that was given, or that a sample must come to; `None` if the sample must be
 /// discarded.
 #[must_use]
-pub fn is_right(point: &impl Reference<f64>, truth: Option<[f64; 3]>, answer: &Answer) -> bool {
+pub fn is_right(point: &dyn Reference<f64>, truth: Option<[f64; 3]>, answer: &Answer) -> bool {
     agrees(truth, answer, |wi| (point.eval(wi), point.pdf(wi)))
 }
 

@@ -8,17 +8,17 @@ pub use inputs::{TIMED_DIRECTIONS, TimedInputs};
 pub use truth::Truth;
 
 use crate::check::to_f64;
-use crate::entries::TEXTBOOK;
+use crate::entries::REFERENCE;
 use crate::inputs::{arrays, packets, xi_packets};
 use crate::platform::{Platform, platform};
 use crate::task::{PROBE, Pass, Point, Slices, task};
 use core::marker::PhantomData;
 use glam::Vec3;
 use hairis::columns::{EvalColumns, SampleColumns};
-use hairis::reference::Reference;
 use hairis::simd::{Level, f32x8};
 use hairis::{Material, ParamError, Vec3x8};
-use hairis_variants::{AnyReference, ModelId, Parameters, Registered, Visitor};
+use hairis_reference::{Formulas, Reference, Visitor, reference, visit};
+use hairis_variants::{ModelId, Parameters};
 use serde::Serialize;
 
 /// Timed operation.
@@ -106,7 +106,7 @@ const FEW: usize = 8;
 /// Code that takes part in an operation.
 #[derive(Debug)]
 pub struct Contender {
-    /// [`TEXTBOOK`], or one of the kinds of calls of the kernel.
+    /// [`REFERENCE`], or one of the kinds of calls of the kernel.
     pub name: &'static str,
     /// Instruction set of its lanes.
     pub level: &'static str,
@@ -137,7 +137,7 @@ pub struct Contest {
 ///
 /// If there are not [`TIMED_DIRECTIONS`] of each input.
 pub fn contests(model: ModelId, inputs: &TimedInputs) -> Result<Vec<Contest>, ParamError> {
-    model.visit(OfModel(inputs))
+    visit(model, OfModel(inputs))
 }
 
 /// The contenders of an operation, and the answers.
@@ -149,7 +149,7 @@ struct OfModel<'a>(&'a TimedInputs);
 impl Visitor for OfModel<'_> {
     type Output = Result<Vec<Contest>, ParamError>;
 
-    fn visit<M: Registered>(self) -> Self::Output {
+    fn visit<M: Formulas>(self) -> Self::Output {
         // At compile time: models that are not timed are not compiled.
         if const { !ModelId::of::<M>().is_default() } {
             return Ok(Vec::new());
@@ -181,12 +181,12 @@ impl Visitor for OfModel<'_> {
 }
 
 /// The formulas in `f64` for these parameters, seen from each of `wo`.
-fn truth<M: Registered>(
+fn truth<M: Formulas>(
     params: &M::Params,
     wo: &[Vec3],
-) -> Result<Vec<AnyReference<f64>>, ParamError> {
+) -> Result<Vec<Box<dyn Reference<f64>>>, ParamError> {
     wo.iter()
-        .map(|wo| ModelId::of::<M>().reference(&params.values(), to_f64(*wo), 0.0))
+        .map(|wo| reference(ModelId::of::<M>(), &params.values(), to_f64(*wo), 0.0))
         .collect()
 }
 
@@ -198,7 +198,7 @@ impl Contenders {
     fn new(libm: Box<dyn Pass>, std: Box<dyn Pass>, one: Box<dyn Pass>) -> Self {
         let [libm, std] =
             [("scalar, libm crate", libm), ("scalar, std", std)].map(|(level, task)| Contender {
-                name: TEXTBOOK,
+                name: REFERENCE,
                 level,
                 task,
             });
@@ -225,13 +225,13 @@ impl Contenders {
 }
 
 /// A material: the kernel's, and the formulas on the libm crate and on std.
-struct Implementations<M: Registered> {
+struct Implementations<M: Formulas> {
     material: Material<M>,
-    libm: M::Formulas<f32>,
-    std: M::Formulas<Platform>,
+    libm: M::Constants<f32>,
+    std: M::Constants<Platform>,
 }
 
-impl<M: Registered> Implementations<M> {
+impl<M: Formulas> Implementations<M> {
     fn new(params: &M::Params) -> Self {
         Self {
             material: Material::new(&M::MODEL, params),
@@ -241,16 +241,16 @@ impl<M: Registered> Implementations<M> {
     }
 
     /// The formulas seen from `wo`.
-    fn references(&self, wo: Vec3) -> (M::Reference<f32>, M::Reference<Platform>) {
+    fn references(&self, wo: Vec3) -> (M::Point<f32>, M::Point<Platform>) {
         let wo = wo.to_array();
         (
-            M::reference_at(&self.libm, wo, 0.0),
-            M::reference_at(&self.std, platform(wo), Platform(0.0)),
+            M::point(&self.libm, wo, 0.0),
+            M::point(&self.std, platform(wo), Platform(0.0)),
         )
     }
 }
 
-fn prepare<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
+fn prepare<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let params = &inputs.params[0];
     let Implementations::<M> {
         material,
@@ -260,13 +260,10 @@ fn prepare<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let wo = arrays(&inputs.wo);
     let contenders = Contenders::new(
         task(&wo, move |wo| {
-            Point::<_, f32>(M::reference_at(&libm, *wo, 0.0), PhantomData)
+            Point::<_, f32>(M::point(&libm, *wo, 0.0), PhantomData)
         }),
         task(&wo, move |wo| {
-            Point(
-                M::reference_at(&std, platform(*wo), Platform(0.0)),
-                PhantomData,
-            )
+            Point(M::point(&std, platform(*wo), Platform(0.0)), PhantomData)
         }),
         task(&inputs.wo, move |wo| material.prepare(*wo)),
     )
@@ -280,7 +277,7 @@ fn prepare<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
     ))
 }
 
-fn eval_pdf<M: Registered>(
+fn eval_pdf<M: Formulas>(
     params: &M::Params,
     inputs: &TimedInputs<M::Params>,
     every_way: bool,
@@ -327,11 +324,11 @@ fn eval_pdf<M: Registered>(
     }
     Ok((
         contenders,
-        Truth::of_directions(truth::<M>(params, &[wo; TIMED_DIRECTIONS])?, &inputs.wi),
+        Truth::of_directions(truth::<M>(params, &[wo])?, &inputs.wi),
     ))
 }
 
-fn sample<M: Registered>(
+fn sample<M: Formulas>(
     params: &M::Params,
     inputs: &TimedInputs<M::Params>,
     every_way: bool,
@@ -383,6 +380,6 @@ fn sample<M: Registered>(
     }
     Ok((
         contenders,
-        Truth::of_samples(truth::<M>(params, &[wo; TIMED_DIRECTIONS])?, xi),
+        Truth::of_samples(truth::<M>(params, &[wo])?, xi),
     ))
 }

@@ -10,10 +10,10 @@ use core::hint::black_box;
 use core::marker::PhantomData;
 use glam::Vec3;
 use hairis::columns::{EvalColumns, SampleColumns};
-use hairis::reference::Reference;
 use hairis::simd::Level;
 use hairis::{Bsdf, Bsdf8, Material, Material8};
-use hairis_variants::{ModelId, Parameters, Registered};
+use hairis_reference::{Formulas, Reference};
+use hairis_variants::{ModelId, Parameters};
 use std::sync::LazyLock;
 
 /// Operation of an entry point.
@@ -114,7 +114,7 @@ const fn takes_part(id: ModelId) -> bool {
 }
 
 /// Name of the scalar baseline, the paper's formulas in `f32`.
-pub const TEXTBOOK: &str = "textbook";
+pub const REFERENCE: &str = "reference";
 /// Directions in a short slice: less than a packet.
 const SHORT: usize = 5;
 
@@ -137,12 +137,13 @@ pub fn label(level: Level) -> &'static str {
 pub fn visit(op: Op, visitor: &mut impl Visitor) {
     let inputs = &Inputs::draw();
     for (name, id) in MODELS.iter() {
-        id.visit(OfModel {
+        let model = OfModel {
             op,
             name,
             inputs,
             visitor,
-        });
+        };
+        hairis_reference::visit(*id, model);
     }
 }
 
@@ -154,10 +155,10 @@ struct OfModel<'a, V> {
     visitor: &'a mut V,
 }
 
-impl<V: Visitor> hairis_variants::Visitor for OfModel<'_, V> {
+impl<V: Visitor> hairis_reference::Visitor for OfModel<'_, V> {
     type Output = ();
 
-    fn visit<M: Registered>(self) {
+    fn visit<M: Formulas>(self) {
         // At compile time: models that are not measured are not compiled.
         if const { takes_part(ModelId::of::<M>()) } {
             let Self {
@@ -187,7 +188,7 @@ struct Of<'a, M> {
     model: PhantomData<M>,
 }
 
-impl<M: Registered> Of<'_, M> {
+impl<M: Formulas> Of<'_, M> {
     fn visit(&self, visitor: &mut impl Visitor) {
         match self.op {
             Op::Prepare => self.prepare(visitor),
@@ -213,7 +214,7 @@ impl<M: Registered> Of<'_, M> {
             model: self.name,
             level,
         };
-        let baseline_of_its_own = entry == TEXTBOOK && !self.id.is_default();
+        let baseline_of_its_own = entry == REFERENCE && !self.id.is_default();
         if !baseline_of_its_own && visitor.wants(&name) {
             let mut task = task();
             check(&name, &mut task, self.id, asked);
@@ -222,8 +223,8 @@ impl<M: Registered> Of<'_, M> {
     }
 
     /// The formulas for the default parameters, seen from `wo`.
-    fn reference(wo: [f32; 3]) -> M::Reference<f32> {
-        M::reference(&M::Params::default(), wo, 0.0)
+    fn reference(wo: [f32; 3]) -> M::Point<f32> {
+        M::point(&M::formulas(&M::Params::default()), wo, 0.0)
     }
 
     fn material(&self) -> Material<M> {
@@ -286,10 +287,10 @@ impl<M: Registered> Of<'_, M> {
         let inputs = self.inputs;
         let shared = |i| self.shared(i, Given::Wi(PROBE));
         let mixed = |i| self.mixed_hair(i, Given::Wi(PROBE));
-        self.show(visitor, TEXTBOOK, "scalar", shared, || {
+        self.show(visitor, REFERENCE, "scalar", shared, || {
             let formulas = M::formulas::<f32>(&M::Params::default());
             Each::new(1, arrays(&inputs.wo), move |wo| {
-                Point(M::reference_at(&formulas, *wo, 0.0), PhantomData)
+                Point(M::point(&formulas, *wo, 0.0), PhantomData)
             })
         });
         self.show(visitor, "prepare", "scalar", shared, || {
@@ -312,7 +313,7 @@ impl<M: Registered> Of<'_, M> {
         let inputs = self.inputs;
         let one = |i| self.at_one(Given::Wi(inputs.wi[i]));
         let lane = |i| self.at_lane(i, Given::Wi(inputs.wi[i]));
-        self.show(visitor, TEXTBOOK, "scalar", one, || {
+        self.show(visitor, REFERENCE, "scalar", one, || {
             let reference = Self::reference(inputs.wo[0].to_array());
             Each::new(1, arrays(&inputs.wi), move |wi| reference.eval_pdf(*wi))
         });
@@ -376,7 +377,7 @@ impl<M: Registered> Of<'_, M> {
         let inputs = self.inputs;
         let one = |i| self.at_one(Given::Xi(inputs.xi[i]));
         let lane = |i| self.at_lane(i, Given::Xi(inputs.xi[i]));
-        self.show(visitor, TEXTBOOK, "scalar", one, || {
+        self.show(visitor, REFERENCE, "scalar", one, || {
             let reference = Self::reference(inputs.wo[0].to_array());
             Each::new(1, inputs.xi.clone(), move |xi| reference.sample(*xi))
         });
@@ -453,10 +454,10 @@ impl<M: Registered> Of<'_, M> {
             )
         };
         let eight = |i| self.mixed_hair(i, Given::Xi(inputs.xi[8 * (samples - 1) + i % 8]));
-        self.show(visitor, TEXTBOOK, "scalar", scalar, || {
+        self.show(visitor, REFERENCE, "scalar", scalar, || {
             let (formulas, xi) = (M::formulas::<f32>(&M::Params::default()), xi.to_vec());
             Each::new(samples, arrays(&inputs.wo), move |wo| {
-                let reference = M::reference_at(&formulas, *wo, 0.0);
+                let reference = M::point(&formulas, *wo, 0.0);
                 last(&xi, |xi| reference.sample(*xi))
             })
         });

@@ -1,7 +1,7 @@
 //! Single precision with the platform's elementary functions, for a fair baseline.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
-use hairis::reference::Real;
+use hairis_reference::Real;
 
 /// An `f32` whose elementary functions are those of std, which are the C library's: glibc's take two thirds of the time of
 /// the libm crate's. Of functions that std lacks it has the libm crate's.

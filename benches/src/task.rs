@@ -9,9 +9,9 @@ use core::marker::PhantomData;
 use glam::Vec3;
 use hairis::columns::LengthError;
 use hairis::model::Model;
-use hairis::reference::{self, Real, Reference};
 use hairis::simd::f32x8;
 use hairis::{Bsdf, Bsdf8, Eval, Eval8, Sample, Sample8, Vec3x8};
+use hairis_reference::{Real, Reference, ReferenceSample};
 
 /// Direction at which prepared shading points are evaluated to check them: no lobe is negligible there.
 pub const PROBE: Vec3 = Vec3::new(0.28, 0.576, 0.768);
@@ -308,7 +308,7 @@ impl Output for Eval8 {
     }
 }
 
-impl<T: Single> Output for reference::ReferenceSample<T> {
+impl<T: Single> Output for ReferenceSample<T> {
     fn answers(&self, out: &mut Vec<Answer>) {
         let (wi, value) = (self.wi.map(T::number), self.value.map(T::number));
         out.push(Answer {

@@ -17,7 +17,8 @@ mod packet;
 use crate::subject::values_json;
 use hairis::ParamError;
 use hairis_instruments::stats::percentile;
-use hairis_variants::{Accuracy, ModelId};
+use hairis_reference::{Accuracy, accuracy};
+use hairis_variants::ModelId;
 use measure::{CodePath, LanePlace, LocatedError, measure};
 use packet::{Formulas, Packet, formulas};
 use rayon::prelude::*;
@@ -277,7 +278,7 @@ impl Column {
     ) -> AgreementResult {
         self.errors.sort_by(f64::total_cmp);
         let worst = self.errors.last().copied().unwrap_or(f64::NAN);
-        let bound = quantity.bound(&model.accuracy());
+        let bound = quantity.bound(&accuracy(model));
         AgreementResult {
             model: model.name(),
             sampler: model.choice().map(|(_, word)| word),

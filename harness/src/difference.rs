@@ -171,9 +171,9 @@ fn hair(cell: &Cell) -> Result<HairValues, ParamError> {
 mod tests {
     use super::*;
     use crate::subject::ModelKind;
-    use hairis::reference::{HairReference, Parameters};
     use hairis_instruments::direction::fibre_direction;
     use hairis_instruments::quadrature::{SphereIntegrator, Tolerance};
+    use hairis_reference::{HairReference, Parameters, Reference};
 
     #[test]
     fn the_best_factors_are_the_best_in_their_norm() {

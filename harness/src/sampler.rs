@@ -5,9 +5,9 @@
 use crate::subject::ModelKind;
 use core::f32::consts::{PI, TAU};
 use glam::Vec3;
-use hairis::reference::{MatchedReference, Parameters};
 use hairis::{Eval8, HairParams, LobeMask, Sample8, Vec3x8};
 use hairis_instruments::direction::{cosine, fibre_direction};
+use hairis_reference::Parameters;
 use hairis_variants::{AnyBsdf, AnyMaterial, ModelId, Parameters as _};
 use serde::Serialize;
 use wide::f32x8;
@@ -100,12 +100,11 @@ pub(crate) fn weight_bound(
             mean(desc.intensity_r) + mean(desc.intensity_tt) + mean(desc.intensity_trt) * glints;
         return Some(4.0 * core::f64::consts::PI * peak / theta_o.cos());
     }
-    let bands = sampler.bands()?;
     let wo = fibre_direction(theta_o, 0.0).to_array();
-    Some(
-        MatchedReference::prepare(&Parameters::from(params), model.shape(), wo, bands)
-            .weight_bound(LobeMask::ALL),
-    )
+    let formulas = model.formulas(sampler.bands());
+    formulas
+        .prepare(&Parameters::<f64>::from(params), wo)
+        .weight_bound(LobeMask::ALL)
 }
 
 /// Density of a uniform direction, per steradian.

@@ -62,9 +62,9 @@ pub struct SpeedResult {
     pub op: TimedOp,
     /// The model.
     pub model: &'static str,
-    /// `textbook`, `one lane`, or eight lanes, one of the kinds of packets and slices.
+    /// `reference`, `one lane`, or eight lanes, one of the kinds of packets and slices.
     pub contender: &'static str,
-    /// Instruction set of the lanes; `scalar` for one lane, with the library that a textbook takes its functions from.
+    /// Instruction set of the lanes; `scalar` for one lane, with the library that the reference takes its functions from.
     pub level: &'static str,
     /// Number of rounds.
     pub rounds: usize,
@@ -76,7 +76,7 @@ pub struct SpeedResult {
     pub ns_q1: f64,
     /// Third quartile of the same.
     pub ns_q3: f64,
-    /// How many times as fast as the faster textbook: median over the rounds of the ratio within a round.
+    /// How many times as fast as the faster reference: median over the rounds of the ratio within a round.
     pub ratio: f64,
     /// First quartile of the same.
     pub ratio_q1: f64,
@@ -99,7 +99,7 @@ pub struct SpeedReport {
     pub compiled_level: &'static str,
     /// Default instruction set of eight lanes.
     pub detected_level: &'static str,
-    /// By model, operation and contender; the textbooks lead each block.
+    /// By model, operation and contender; the two references lead each block.
     pub rows: Vec<SpeedResult>,
     /// Slices on several threads.
     pub threads: Vec<ThreadsResult>,
@@ -258,8 +258,8 @@ impl SpeedCell {
                 },
             times,
         } = self;
-        // The two textbooks lead; ratios are to the faster of them.
-        let [libm, std] = [0, 1].map(|textbook: usize| times[textbook].ns.clone());
+        // The two references lead; ratios are to the faster of them.
+        let [libm, std] = [0, 1].map(|reference: usize| times[reference].ns.clone());
         let fastest = if quartiles(&std)[1] < quartiles(&libm)[1] {
             std
         } else {
@@ -269,7 +269,7 @@ impl SpeedCell {
             let ratios: Vec<f64> = fastest
                 .iter()
                 .zip(&ns)
-                .map(|(textbook, ns)| textbook / ns)
+                .map(|(reference, ns)| reference / ns)
                 .collect();
             let ([ns_q1, ns, ns_q3], [ratio_q1, ratio, ratio_q3]) =
                 (quartiles(&ns), quartiles(&ratios));

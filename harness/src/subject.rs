@@ -1,8 +1,8 @@
 //! The two models of hair that the experiments compare, and the parameters that comparisons draw.
 
-use hairis::reference::Shape;
 use hairis::{HairParams, ParamError};
 use hairis_instruments::sequence::Independent;
+use hairis_reference::{HairFormulas, Shape};
 use hairis_variants::{Draw, Field, Kind, ModelId, Parameters as _, Values};
 use serde::Serialize;
 
@@ -46,6 +46,15 @@ impl ModelKind {
         match self {
             Self::Gaussian => Shape::Gaussian,
             Self::Cauchy => Shape::Cauchy,
+        }
+    }
+
+    /// Its formulas with the matched sampler of so many bands, or with the published one.
+    pub(crate) const fn formulas(self, bands: Option<usize>) -> HairFormulas {
+        HairFormulas {
+            shape: self.shape(),
+            bands,
+            by_channel: false,
         }
     }
 

@@ -4,9 +4,9 @@ use crate::cases::{Case, Cases, Region, angles};
 use core::array::from_fn;
 use core::fmt::Write as _;
 use glam::Vec3;
-use hairis::reference::{HairReference, Parameters, Shape};
 use hairis::simd::Level;
 use hairis::{HairParams, Vec3x8};
+use hairis_reference::{HairReference, Parameters, Reference, Shape};
 use hairis_variants::{AnyMaterial, AnyMaterial8, ModelId, Parameters as _};
 
 const CASES: usize = 10_000;

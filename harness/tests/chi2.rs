@@ -6,12 +6,12 @@ use core::fmt::Write as _;
 use glam::Vec3;
 use hairis::model::Model;
 use hairis::params::HairDesc;
-use hairis::reference::{HairReference, MatchedReference, Parameters, Shape};
 use hairis::simd::f32x8;
-use hairis::{Gaussian, HairParams, Lobe, LobeMask, Matched, Material, PerLobe, Sample8};
+use hairis::{Gaussian, HairParams, Lobe, LobeMask, Matched, Material, Sample8};
 use hairis_conformance::statistics::{AngleEdges, ChiSquare, chi_square, ks_statistic};
 use hairis_instruments::sequence::Independent;
 use hairis_instruments::stats::sidak;
+use hairis_reference::{HairReference, MatchedReference, Parameters, Reference, Shape};
 use hairis_variants::{Cauchy, ModelId, Parameters as _};
 
 const SAMPLES: u32 = 1_000_000;
@@ -121,8 +121,7 @@ fn for_each_sample(draw: &Draw, stream: u64, mut f: impl FnMut(Option<Vec3>)) {
 }
 
 /// A sampler in double precision.
-trait ReferenceSampler {
-    fn probabilities(&self) -> PerLobe<f64>;
+trait ReferenceSampler: Reference<f64> {
     fn sample_theta(&self, lobe: Lobe, xi: f64) -> f64;
     fn sample_phi(&self, lobe: Lobe, xi: f64) -> f64;
     fn cdf_theta(&self, lobe: Lobe, theta_i: f64) -> f64;
@@ -132,9 +131,6 @@ trait ReferenceSampler {
 macro_rules! reference_sampler {
     ($($Book:ident)*) => { $(
         impl ReferenceSampler for $Book<f64> {
-            fn probabilities(&self) -> PerLobe<f64> {
-                self.probabilities()
-            }
             fn sample_theta(&self, lobe: Lobe, xi: f64) -> f64 {
                 self.sample_theta(lobe, xi)
             }

@@ -36,8 +36,11 @@ fn every_contender_is_timed_and_right() {
     for op in TimedOp::ALL {
         let name = op.label();
         for model in ModelId::defaults_of_names() {
-            let textbooks = report.rows.iter().filter(|row| row.contender == "textbook");
-            let ratios = textbooks
+            let references = report
+                .rows
+                .iter()
+                .filter(|row| row.contender == "reference");
+            let ratios = references
                 .filter(|row| (row.op, row.model) == (op, model.name()))
                 .map(|row| row.ratio);
             let ratios: Vec<f64> = ratios.collect();

@@ -122,8 +122,6 @@ mod handle;
 pub mod model;
 pub mod params;
 pub mod random;
-#[cfg(feature = "textbook")]
-pub mod reference;
 pub mod resample;
 pub mod simd;
 

@@ -6,7 +6,6 @@ mod avx2;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 mod avx512;
 pub(crate) mod columns;
-#[cfg(feature = "textbook")]
 pub(crate) mod control;
 pub(crate) mod dispatch;
 pub(crate) mod lanes;
@@ -18,7 +17,6 @@ pub(crate) mod unfused;
 pub use crate::frame::Vec3x;
 pub use crate::lane_struct;
 pub use columns::Row;
-#[cfg(feature = "textbook")]
 #[doc(hidden)]
 pub use control::{control, set_control};
 #[doc(hidden)]

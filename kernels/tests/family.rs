@@ -1,10 +1,10 @@
 //! The published model and its samplers: the suite that every model passes, and the tests against the reference.
 
 use crate::rows::{MATCHED, PUBLISHED};
-use hairis::reference::Shape;
 use hairis::{Gaussian, Matched, Published};
 use hairis_conformance::published::{Family, FamilyModel, Rows};
 use hairis_conformance::{conformance, published};
+use hairis_reference::Shape;
 
 /// The published sampler.
 pub(crate) struct PublishedHair;

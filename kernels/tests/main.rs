@@ -7,11 +7,10 @@ mod family;
 mod frames;
 mod math;
 mod params;
-mod reference;
 mod rows;
 mod tolerance;
 mod vector;
 
-use hairis_conformance::published::{quadrature, support};
+use hairis_conformance::published::support;
 // At opt-level 1 rustc links generic code of other crates: this one has compiled the models for every instruction set.
 use hairis_variants as _;

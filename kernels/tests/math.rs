@@ -8,8 +8,8 @@ use hairis::model::math::{
     half_atan2, half_atan2_parts, log2, log2_one_plus, normal_tail, normal_tail_inverse,
     normal_tail_ratio, sin_cos_absolute, sin_cos_twice, tan_half_turn,
 };
-use hairis::reference::Real;
 use hairis::simd::{Lanes, Level, f32x8};
+use hairis_reference::Real;
 
 const POINTS: u32 = 1 << 20;
 

@@ -1,10 +1,10 @@
 //! Parameters: the presets and the artist's controls.
 
-use crate::quadrature::{panels, rule};
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::params::{ArtistControls, Glints, HairDesc, Highlight, Transmission};
-use hairis::reference::{HairReference, Parameters, Shape};
 use hairis::{HairParams, ParamError};
+use hairis_conformance::published::quadrature::{panels, rule};
+use hairis_reference::{HairReference, Parameters, Reference, Shape};
 
 #[test]
 fn presets_pass_their_own_checks() {

@@ -5,15 +5,11 @@ mod fields;
 mod gather;
 mod lobes;
 mod params;
-#[cfg(feature = "textbook")]
-mod reference;
 mod sampling;
 
 pub use far_field::{FarField, OffsetNodes};
 pub use gather::{ChiangMaterial, ChiangPrepared, ChiangWidths};
-pub use params::{ChiangDesc, ChiangParams, Selection, Shifts};
-#[cfg(feature = "textbook")]
-pub use reference::{ChiangConstants, ChiangParameters, ChiangReference, bessel_i0_scaled};
+pub use params::{ChiangDesc, ChiangParams, Shifts};
 
 use hairis::model::{Direction, LobeEval, LobeModel};
 use hairis::simd::{Broadcast, Lanes, Scalar};

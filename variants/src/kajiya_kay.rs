@@ -2,14 +2,8 @@
 
 mod fields;
 mod params;
-#[cfg(feature = "textbook")]
-mod reference;
 
 pub use params::{Form, KajiyaKayDesc, KajiyaKayParams, cosine_integral};
-#[cfg(feature = "textbook")]
-pub use reference::{
-    KajiyaKayConstants, KajiyaKayParameters, KajiyaKayReference, cosine_power_integral,
-};
 
 use core::f32::consts::{FRAC_1_PI, FRAC_PI_2, LN_2, PI};
 use hairis::model::math::{

@@ -18,16 +18,13 @@ pub mod chiang;
 mod hair;
 pub mod kajiya_kay;
 mod parameters;
-#[cfg(feature = "textbook")]
-mod reference;
 mod registry;
 
 pub use cauchy::Cauchy;
 pub use chiang::{Chiang, ChiangDesc, ChiangParams};
+pub use hair::RegisteredBell;
 pub use kajiya_kay::{KajiyaKay, KajiyaKayDesc, KajiyaKayParams};
 pub use parameters::{Draw, Field, Kind, Parameters, Values};
-#[cfg(feature = "textbook")]
-pub use registry::{Accuracy, AnyReference};
 #[cfg(feature = "any")]
 pub use registry::{AnyBsdf, AnyBsdf8, AnyMaterial, AnyMaterial8};
 pub use registry::{ModelId, Registered, Visitor};

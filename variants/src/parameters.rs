@@ -152,7 +152,7 @@ impl Field {
         Self { draw, ..self }
     }
 
-    /// SampleLanes after the fields that are not late.
+    /// In random materials, drawn after the fields that are not late.
     #[inline]
     #[must_use]
     pub const fn late(self) -> Self {

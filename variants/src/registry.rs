@@ -1,21 +1,17 @@
 //! The only list of models.
 //!
-//! A new model is a line of [`models!`] below, and beside its [`Model`] an implementation of [`Registered`], with
+//! A new model is a line of [`for_each_model!`] below, and beside its [`Model`] an implementation of [`Registered`], with
 //! [`Parameters`] for its parameters. Run-time handles, the harness and the benches then include it.
 
 #[cfg(feature = "any")]
 mod any;
-#[cfg(feature = "textbook")]
-mod formulas;
 
 use crate::{AllCauchy, Cauchy, Chiang, Field, KajiyaKay, Parameters, Values};
 use hairis::model::Model;
 use hairis::{Gaussian, Matched, Published};
 
-#[cfg(any(feature = "any", feature = "textbook"))]
+#[cfg(feature = "any")]
 use hairis::ParamError;
-#[cfg(feature = "textbook")]
-use hairis::PerLobe;
 #[cfg(feature = "any")]
 use {
     core::ops::{Deref, DerefMut},
@@ -25,14 +21,7 @@ use {
     hairis::{Bsdf, Bsdf8, Hit, Hit8, LobeMask, Material, Material8},
 };
 
-#[cfg(feature = "textbook")]
-use core::fmt::Debug;
-#[cfg(feature = "textbook")]
-use hairis::{
-    Lobe, reference::LobeAt, reference::Real, reference::Reference, reference::ReferenceSample,
-};
-
-/// A model of the list: its names, and the formulas it is compared with.
+/// A model of the list: its names.
 ///
 /// Types of one model with different samplers share a [`NAME`](Self::NAME); each has its own [`CHOICE`](Self::CHOICE).
 pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
@@ -46,80 +35,6 @@ pub trait Registered: Model<Params: Parameters> + Send + Sync + 'static {
     const NEAR_FIELD: bool = false;
     /// Name of the lobes' colours in reports; `None` if they are not reported.
     const COLORS: Option<&'static str> = None;
-
-    /// Formulas prepared once per material.
-    #[cfg(feature = "textbook")]
-    type Formulas<T: Real>: Copy + Debug;
-    /// The formulas at one shading point.
-    #[cfg(feature = "textbook")]
-    type Reference<T: Real>: Reference<T> + Copy + Debug;
-    /// The accuracy that comparisons with the formulas require.
-    #[cfg(feature = "textbook")]
-    const ACCURACY: Accuracy;
-
-    /// The formulas for these parameters.
-    #[cfg(feature = "textbook")]
-    fn formulas<T: Real>(params: &Self::Params) -> Self::Formulas<T>;
-
-    /// The formulas for the numbers of `exact`, in any precision; `params` are the same, rounded, and give the words.
-    #[cfg(feature = "textbook")]
-    fn exact_formulas<T: Real>(params: &Self::Params, exact: &Values<T>) -> Self::Formulas<T>;
-
-    /// The formulas seen from `wo` at the offset `h`.
-    #[cfg(feature = "textbook")]
-    fn reference_at<T: Real>(formulas: &Self::Formulas<T>, wo: [T; 3], h: T) -> Self::Reference<T>;
-
-    /// The formulas for these parameters, seen from `wo` at the offset `h`; for many hits, see
-    /// [`formulas`](Self::formulas).
-    #[cfg(feature = "textbook")]
-    #[inline]
-    fn reference<T: Real>(params: &Self::Params, wo: [T; 3], h: T) -> Self::Reference<T> {
-        Self::reference_at(&Self::formulas(params), wo, h)
-    }
-
-    /// Absolute error allowed of S beside the relative one, by channel: 0 unless the model cuts its tails.
-    #[cfg(feature = "textbook")]
-    #[inline]
-    fn slack(params: &Self::Params, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
-        let _ = (params, wo, wi);
-        [0.0; 3]
-    }
-
-    /// Probability of a smaller inclination, and of a smaller azimuth `phi_o - phi_i`, of a sample of `lobe`, where the
-    /// formulas have them: the `xi[1]` and `xi[2]` of the sample.
-    #[cfg(feature = "textbook")]
-    #[inline]
-    fn cdf(
-        reference: &Self::Reference<f64>,
-        lobe: Lobe,
-        theta_i: f64,
-        phi: f64,
-    ) -> Option<[f64; 2]> {
-        let _ = (reference, lobe, theta_i, phi);
-        None
-    }
-}
-
-/// Largest errors against the formulas in `f64`: relative, of a cdf absolute.
-///
-/// - Domain: directions further than 1e-3 rad from the axis, random materials of [`Field::draw`].
-#[cfg(feature = "textbook")]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Accuracy {
-    /// S at a given direction.
-    pub value: f64,
-    /// Density of a given direction.
-    pub pdf: f64,
-    /// S that a sample reports, at its direction.
-    pub sample_value: f64,
-    /// Density that a sample reports.
-    pub sample_pdf: f64,
-    /// Weight that a sample reports.
-    pub sample_weight: f64,
-    /// Distance of [`Registered::cdf`] from the numbers of a sample.
-    pub cdf: f64,
-    /// Whether the density has the [`slack`](Registered::slack) of S, as a share of it.
-    pub slack_in_pdf: bool,
 }
 
 /// Work on a model of the list as a type: see [`ModelId::visit`].
@@ -257,35 +172,41 @@ macro_rules! models {
         #[cfg(feature = "any")]
         any::handles! { [$($variant: $model;)*] }
 
-        #[cfg(feature = "textbook")]
-        formulas::formulas! { [$($variant: $model;)*] [$($variant)*] }
     };
 }
 
-models! {
-    /// The published model with the published sampler.
-    Gaussian: Published<Gaussian>;
-    /// The published model, sampler matched with five bands.
-    GaussianMatched5: Matched<Gaussian, 5>;
-    /// The published model, sampler matched with nine bands.
-    GaussianMatched: Matched<Gaussian>;
-    /// The published model, sampler matched with twenty-five bands.
-    GaussianMatched25: Matched<Gaussian, 25>;
-    /// The all-Cauchy variant with the published sampler.
-    Cauchy: AllCauchy;
-    /// The all-Cauchy variant, sampler matched with five bands.
-    CauchyMatched5: Matched<Cauchy, 5>;
-    /// The all-Cauchy variant, sampler matched with nine bands.
-    CauchyMatched: Matched<Cauchy>;
-    /// The all-Cauchy variant, sampler matched with twenty-five bands.
-    CauchyMatched25: Matched<Cauchy, 25>;
-    /// Kajiya and Kay's model.
-    KajiyaKay: KajiyaKay;
-    /// The energy-conserving fibre, lobes chosen by their mean over the channels.
-    Chiang: Chiang;
-    /// The energy-conserving fibre, lobes chosen by their share in each channel.
-    ChiangByChannel: Chiang<true>;
+/// Calls `$callback!` with the list, a line `Variant: Type;` per model. Types are named as here: the caller imports them.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! for_each_model {
+    ($callback:ident) => {
+        $callback! {
+            /// The published model with the published sampler.
+            Gaussian: Published<Gaussian>;
+            /// The published model, sampler matched with five bands.
+            GaussianMatched5: Matched<Gaussian, 5>;
+            /// The published model, sampler matched with nine bands.
+            GaussianMatched: Matched<Gaussian>;
+            /// The published model, sampler matched with twenty-five bands.
+            GaussianMatched25: Matched<Gaussian, 25>;
+            /// The all-Cauchy variant with the published sampler.
+            Cauchy: AllCauchy;
+            /// The all-Cauchy variant, sampler matched with five bands.
+            CauchyMatched5: Matched<Cauchy, 5>;
+            /// The all-Cauchy variant, sampler matched with nine bands.
+            CauchyMatched: Matched<Cauchy>;
+            /// The all-Cauchy variant, sampler matched with twenty-five bands.
+            CauchyMatched25: Matched<Cauchy, 25>;
+            /// Kajiya and Kay's model.
+            KajiyaKay: KajiyaKay;
+            /// The energy-conserving fibre, lobes chosen by their mean over the channels.
+            Chiang: Chiang;
+            /// The energy-conserving fibre, lobes chosen by their share in each channel.
+            ChiangByChannel: Chiang<true>;
+        }
+    };
 }
+for_each_model! { models }
 
 impl ModelId {
     /// The first entry of each name.

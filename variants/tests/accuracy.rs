@@ -8,14 +8,14 @@ use crate::support::{Draws, direction, narrow, packet};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::model::{LobeEval, Model};
-use hairis::reference::LobeAt;
 use hairis::simd::Level;
 use hairis::{Bsdf, Eval, Hit, Lobe, Material, PerLobe, Sample};
-use hairis_variants::KajiyaKay;
-use hairis_variants::chiang::{
-    Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, Selection, Shifts,
+use hairis_reference::{
+    ChiangParameters, ChiangReference, KajiyaKayReference, LobeAt, Reference, Selection,
 };
-use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams, KajiyaKayReference};
+use hairis_variants::KajiyaKay;
+use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, Shifts};
+use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams};
 
 const CASES: usize = 10_000;
 /// Below this lobes approach the end of `gaussian`, from where on they are 0.

@@ -3,13 +3,9 @@
 
 use crate::support::Draws;
 use hairis::{Hit, LobeMask, Material};
-use hairis_conformance::{
-    Claims, FormulaReference, Materials, Reference, Subject, Tolerance, conformance,
-};
-use hairis_variants::chiang::{
-    Chiang, ChiangDesc, ChiangParameters, ChiangParams, ChiangReference, FarField, OffsetNodes,
-    Selection,
-};
+use hairis_conformance::{Claims, Expected, Materials, Subject, Tolerance, conformance};
+use hairis_reference::{ChiangReference, Reference, Selection};
+use hairis_variants::chiang::{Chiang, ChiangDesc, ChiangParams, FarField, OffsetNodes};
 
 /// The model with one of its selections.
 struct ChiangFibers<const BY_CHANNEL: bool>;
@@ -32,17 +28,8 @@ fn double(hit: &Hit) -> [f64; 3] {
 
 impl<const BY_CHANNEL: bool> ChiangFibers<BY_CHANNEL> {
     fn formulas(params: &ChiangParams, hit: &Hit) -> ChiangReference<f64> {
-        let selection = if BY_CHANNEL {
-            Selection::ByChannel
-        } else {
-            Selection::Mean
-        };
-        ChiangReference::prepare(
-            &ChiangParameters::from(params),
-            selection,
-            double(hit),
-            f64::from(hit.h),
-        )
+        let h = f64::from(hit.h);
+        ChiangReference::prepare(&params.into(), Selection::of(BY_CHANNEL), double(hit), h)
     }
 }
 
@@ -170,7 +157,7 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
         (!BY_CHANNEL || lobes == LobeMask::ALL).then_some(3.0 * most * (1.0 + 1e-6))
     }
 
-    fn reference(&self, params: &ChiangParams, hit: &Hit) -> Option<Box<dyn Reference>> {
+    fn reference(&self, params: &ChiangParams, hit: &Hit) -> Option<Expected> {
         let desc = params.desc();
         let width = (0.5 * f64::from(desc.longitudinal_variance()).sqrt())
             .min(f64::from(desc.azimuthal_scale()));
@@ -184,19 +171,18 @@ impl<const BY_CHANNEL: bool> Subject for ChiangFibers<BY_CHANNEL> {
         let [_, v, w] = double(hit);
         // Next to the axis the lobes are as much higher as the circle about it is smaller.
         let floor = (-12.0_f64).exp() * 0.5 * peak.max(0.1) / v.hypot(w).max(1e-3);
-        let direction = 1e-5;
         let tolerance = Tolerance {
             value: bound,
             pdf: bound,
-            lobes: bound,
+            lobes: Some(bound),
             floor,
-            direction,
+            direction: Some(1e-5),
             ..Tolerance::default()
         };
-        Some(Box::new(FormulaReference {
-            formulas: Self::formulas(params, hit),
+        Some(Expected {
+            reference: Box::new(Self::formulas(params, hit)),
             tolerance,
-        }))
+        })
     }
 
     fn random_materials(&self) -> Vec<ChiangParams> {

@@ -1,10 +1,10 @@
 //! The all-Cauchy variant and its samplers: the suite that every model passes, and the tests against the reference.
 
 use crate::rows::{MATCHED, PUBLISHED};
-use hairis::reference::Shape;
 use hairis::{Matched, Published};
 use hairis_conformance::published::{Family, FamilyModel, Rows};
 use hairis_conformance::{conformance, published};
+use hairis_reference::Shape;
 use hairis_variants::Cauchy;
 
 /// The published sampler, which follows this model exactly.

@@ -2,13 +2,10 @@
 
 use crate::support::Draws;
 use hairis::{Hit, Lobe, LobeMask};
-use hairis_conformance::{
-    Claims, FormulaReference, Materials, Reference, Subject, Tolerance, conformance,
-};
-use hairis_variants::kajiya_kay::{
-    Form, KajiyaKayDesc, KajiyaKayParams, KajiyaKayReference, cosine_integral,
-};
-use hairis_variants::{KajiyaKay, kajiya_kay};
+use hairis_conformance::{Claims, Expected, Materials, Subject, Tolerance, conformance};
+use hairis_reference::{KajiyaKayReference, Reference};
+use hairis_variants::KajiyaKay;
+use hairis_variants::kajiya_kay::{Form, KajiyaKayDesc, KajiyaKayParams, cosine_integral};
 
 /// The model in one of its forms.
 struct KajiyaKayFibers(Form);
@@ -21,7 +18,7 @@ fn params(desc: KajiyaKayDesc) -> KajiyaKayParams {
 
 fn formulas(params: &KajiyaKayParams, hit: &Hit) -> KajiyaKayReference<f64> {
     let wo = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
-    KajiyaKayReference::prepare(&kajiya_kay::KajiyaKayParameters::from(params), wo)
+    KajiyaKayReference::prepare(&params.into(), wo)
 }
 
 impl KajiyaKayFibers {
@@ -155,16 +152,16 @@ impl Subject for KajiyaKayFibers {
         (d + s > 0.0).then(|| part(desc.kd, 1.0, d).max(part(desc.ks, ratio, s)))
     }
 
-    fn reference(&self, params: &KajiyaKayParams, hit: &Hit) -> Option<Box<dyn Reference>> {
+    fn reference(&self, params: &KajiyaKayParams, hit: &Hit) -> Option<Expected> {
         // The logarithm of the bell is rounded: beyond exp(-17) of the peak, 3e-6 + 4e-7 * 17 is above the tolerance.
         let tolerance = Tolerance {
             floor: 4e-8,
             ..Tolerance::default()
         };
-        Some(Box::new(FormulaReference {
-            formulas: formulas(params, hit),
+        Some(Expected {
+            reference: Box::new(formulas(params, hit)),
             tolerance,
-        }))
+        })
     }
 
     fn random_materials(&self) -> Vec<KajiyaKayParams> {

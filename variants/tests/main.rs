@@ -7,7 +7,7 @@ mod chiang;
 mod family;
 mod kajiya_kay;
 mod lambert_fiber;
-mod reference;
+mod params;
 mod registry;
 mod rows;
 

@@ -61,7 +61,7 @@ struct Both {
 impl Visitor for Both {
     fn wants(&self, name: &Name) -> bool {
         !matches!(name.op, Op::Path(_))
-            && name.entry != entries::TEXTBOOK
+            && name.entry != entries::REFERENCE
             && name.to_string().starts_with(&self.start)
     }
 

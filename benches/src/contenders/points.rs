@@ -10,10 +10,9 @@ use crate::platform::{Platform, platform};
 use crate::task::{Answer, Output, Pass, Several, Slices, task};
 use glam::Vec3;
 use hairis::columns::{EvalColumns, HitColumns, SampleColumns};
-use hairis::reference::Reference;
 use hairis::simd::f32x8;
 use hairis::{Material8, Sample8};
-use hairis_variants::Registered;
+use hairis_reference::{Formulas, Reference};
 
 /// The first `N` samples of a packet.
 struct Leading<const N: usize>(Sample8);
@@ -36,7 +35,7 @@ fn several<I: 'static, O: Output + 'static>(
 
 /// A shading point and `N` samples of it, all on the same hair: each lane at its own point, or a point's samples in `P`
 /// packets, the last of which may have lanes to spare.
-pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
+pub(super) fn shared<M: Formulas, const N: usize, const P: usize>(
     inputs: &TimedInputs<M::Params>,
 ) -> Entrants {
     let params = &inputs.params[0];
@@ -57,11 +56,11 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
     let place = |i: usize| (i / (8 * N) * 8 + i % 8) * N + i / 8 % N;
     let mut contenders = Contenders::new(
         several(pairs(&arrays(wo), rows), in_turn, move |(wo, xi), keep| {
-            let point = M::reference_at(&libm, *wo, 0.0);
+            let point = M::point(&libm, *wo, 0.0);
             xi.iter().for_each(|xi| keep(&point.sample(*xi)));
         }),
         several(pairs(&arrays(wo), rows), in_turn, move |(wo, xi), keep| {
-            let point = M::reference_at(&std, platform(*wo), Platform(0.0));
+            let point = M::point(&std, platform(*wo), Platform(0.0));
             xi.iter().for_each(|xi| keep(&point.sample(platform(*xi))));
         }),
         several(pairs(wo, rows), in_turn, move |(wo, xi), keep| {
@@ -125,10 +124,7 @@ pub(super) fn shared<M: Registered, const N: usize, const P: usize>(
             ))
         });
     }
-    let points = truth::<M>(params, wo)?
-        .into_iter()
-        .flat_map(|point| core::iter::repeat_n(point, N))
-        .collect();
+    let points = truth::<M>(params, wo)?;
     Ok((contenders, Truth::of_samples(points, &inputs.xi)))
 }
 
@@ -141,7 +137,7 @@ fn joined(a: &[[f32; 3]], b: &[[f32; 3]]) -> Vec<[f32; 6]> {
 }
 
 /// A shading point and an evaluation at it, all on the same hair.
-pub(super) fn eval<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
+pub(super) fn eval<M: Formulas>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let params = &inputs.params[0];
     let Implementations::<M> {
         material,
@@ -152,10 +148,10 @@ pub(super) fn eval<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
     let eights = pairs(&packets(&inputs.wo), &packets(&inputs.wi));
     let contenders = Contenders::new(
         task(&both, move |(wo, wi)| {
-            M::reference_at(&libm, *wo, 0.0).eval_pdf(*wi)
+            M::point(&libm, *wo, 0.0).eval_pdf(*wi)
         }),
         task(&both, move |(wo, wi)| {
-            M::reference_at(&std, platform(*wo), Platform(0.0)).eval_pdf(platform(*wi))
+            M::point(&std, platform(*wo), Platform(0.0)).eval_pdf(platform(*wi))
         }),
         task(&pairs(&inputs.wo, &inputs.wi), move |(wo, wi)| {
             material.prepare(*wo).eval_pdf(*wi)
@@ -194,7 +190,7 @@ pub(super) fn eval<M: Registered>(inputs: &TimedInputs<M::Params>) -> Entrants {
 }
 
 /// A shading point and one sample of it, each lane on hair of its own; packed beforehand, or once per packet.
-pub(super) fn mixed<M: Registered>(inputs: &TimedInputs<M::Params>, pack_each: bool) -> Entrants {
+pub(super) fn mixed<M: Formulas>(inputs: &TimedInputs<M::Params>, pack_each: bool) -> Entrants {
     let each = inputs.params.each_ref().map(Implementations::<M>::new);
     let (libm, std) = (
         each.each_ref().map(|one| one.libm),
@@ -213,10 +209,10 @@ pub(super) fn mixed<M: Registered>(inputs: &TimedInputs<M::Params>, pack_each: b
     let packed = Material8::pack(materials.each_ref());
     let contenders = Contenders::new(
         task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
-            M::reference_at(&libm[*i], *wo, 0.0).sample(*xi)
+            M::point(&libm[*i], *wo, 0.0).sample(*xi)
         }),
         task(&pairs(&arrays, &inputs.xi), move |((i, wo), xi)| {
-            M::reference_at(&std[*i], platform(*wo), Platform(0.0)).sample(platform(*xi))
+            M::point(&std[*i], platform(*wo), Platform(0.0)).sample(platform(*xi))
         }),
         task(&pairs(&numbered, &inputs.xi), move |((i, wo), xi)| {
             materials[*i].prepare(*wo).sample(*xi)
@@ -238,5 +234,8 @@ pub(super) fn mixed<M: Registered>(inputs: &TimedInputs<M::Params>, pack_each: b
         .iter()
         .map(|(i, wo)| truth::<M>(&inputs.params[*i], &[*wo]))
         .collect::<Result<Vec<_>, _>>()?;
-    Ok((contenders, Truth::of_samples(points.concat(), &inputs.xi)))
+    Ok((
+        contenders,
+        Truth::of_samples(points.into_iter().flatten().collect(), &inputs.xi),
+    ))
 }

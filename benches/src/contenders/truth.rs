@@ -3,33 +3,35 @@
 use crate::check::{drawn, is_right, to_f64};
 use crate::task::Answer;
 use glam::Vec3;
-use hairis_variants::AnyReference;
+use hairis_reference::Reference;
 
 /// Correct answers for the directions of a pass, by the reference in `f64`.
 #[derive(Debug)]
 pub struct Truth {
-    points: Vec<AnyReference<f64>>,
+    /// Each for as many directions.
+    points: Vec<Box<dyn Reference<f64>>>,
     /// The direction given, or the one that a sample must come to; `None` if it must be discarded.
     wi: Vec<Option<[f64; 3]>>,
 }
 
 impl Truth {
-    /// For directions that are given.
+    /// For directions that are given: as many, one after the other, at each point.
     #[must_use]
-    pub fn of_directions(points: Vec<AnyReference<f64>>, wi: &[Vec3]) -> Self {
+    pub fn of_directions(points: Vec<Box<dyn Reference<f64>>>, wi: &[Vec3]) -> Self {
         Self {
             points,
             wi: wi.iter().map(|wi| Some(to_f64(*wi))).collect(),
         }
     }
 
-    /// For samples.
+    /// For samples: as many, one after the other, at each point.
     #[must_use]
-    pub fn of_samples(points: Vec<AnyReference<f64>>, xi: &[[f32; 3]]) -> Self {
-        let wi = points
+    pub fn of_samples(points: Vec<Box<dyn Reference<f64>>>, xi: &[[f32; 3]]) -> Self {
+        let per_point = xi.len() / points.len();
+        let wi = xi
             .iter()
-            .zip(xi)
-            .map(|(point, xi)| drawn(point, *xi))
+            .enumerate()
+            .map(|(i, xi)| drawn(&*points[i / per_point], *xi))
             .collect();
         Self { points, wi }
     }
@@ -40,12 +42,11 @@ impl Truth {
         if answers.len() != self.wi.len() {
             return 1.0;
         }
-        let wrong = self
-            .points
+        let per_point = self.wi.len() / self.points.len();
+        let wrong = answers
             .iter()
-            .zip(&self.wi)
-            .zip(answers)
-            .filter(|((point, wi), answer)| !is_right(*point, **wi, answer));
+            .enumerate()
+            .filter(|(i, answer)| !is_right(&*self.points[i / per_point], self.wi[*i], answer));
         wrong.count() as f64 / answers.len() as f64
     }
 }

@@ -8,9 +8,9 @@ use crate::resample::{COUNTS, PoolTask, SKY_PDF, STREAMED, Stream, looked_up, pr
 use crate::task::{Each, Slices};
 use hairis::resample::{CandidateColumns, Partition, WeightColumns};
 use hairis::simd::{Level, f32x8};
-use hairis_variants::Registered;
+use hairis_reference::Formulas;
 
-impl<M: Registered> Of<'_, M> {
+impl<M: Formulas> Of<'_, M> {
     pub(super) fn resample(&self, visitor: &mut impl Visitor) {
         let inputs = self.inputs;
         for level in Level::available() {

@@ -4,11 +4,11 @@ use super::packet::Packet;
 use super::{Quantity, Region};
 use core::f64::consts::TAU;
 use glam::Vec3;
-use hairis::reference::Reference;
 use hairis::simd::Level;
 use hairis::{Eval, Hit, Lobe, ParamError, Sample, Vec3x8};
 use hairis_instruments::direction::to_f64;
-use hairis_variants::{Accuracy, AnyMaterial8, AnyReference, ModelId, Values};
+use hairis_reference::{Accuracy, Reference, accuracy, slack};
+use hairis_variants::{AnyMaterial8, ModelId, Values};
 use wide::f32x8;
 
 /// Rounding error of an azimuth, rad: a few units in the last place of a component near 1.
@@ -141,8 +141,8 @@ pub(super) fn measure(
             };
             let exact = Exact {
                 model,
-                accuracy: model.accuracy(),
-                truth: &packet.truth[point],
+                accuracy: accuracy(model),
+                truth: &*packet.truth[point],
                 place,
             };
             exact.errors(&eval, sample, keep)?;
@@ -155,7 +155,7 @@ pub(super) fn measure(
 struct Exact<'a> {
     model: ModelId,
     accuracy: Accuracy,
-    truth: &'a AnyReference<f64>,
+    truth: &'a dyn Reference<f64>,
     place: LanePlace,
 }
 
@@ -169,7 +169,7 @@ impl Exact<'_> {
     ) -> Result<(), ParamError> {
         use Quantity::{Pdf, SampleCdf, SamplePdf, SampleValue, SampleWeight, Value};
         let LanePlace { values, wo, wi, .. } = &self.place;
-        let slack = self.model.slack(values, to_f64(*wo), to_f64(*wi))?;
+        let slack = slack(self.model, values, to_f64(*wo), to_f64(*wi))?;
         let [pdf, value] = if sample.is_some() {
             [SamplePdf, SampleValue]
         } else {

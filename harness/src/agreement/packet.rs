@@ -7,7 +7,8 @@ use glam::Vec3;
 use hairis::ParamError;
 use hairis_instruments::direction::{direction, to_f64, uniform_direction};
 use hairis_instruments::sequence::{Independent, stream_id};
-use hairis_variants::{AnyReference, ModelId, Values};
+use hairis_reference::{Reference, reference};
+use hairis_variants::{ModelId, Values};
 
 /// Between these angles from the axis, rad, a direction is near it.
 pub(super) const AXIS: [f64; 2] = [1e-3, 1e-2];
@@ -20,13 +21,13 @@ const SEAM: f64 = 1e-9;
 
 /// Formulas of these values, seen from `wo` at the offset `h`.
 pub(super) type Formulas<'a> =
-    dyn Fn(&Values, Vec3, f32) -> Result<AnyReference<f64>, ParamError> + Sync + 'a;
+    dyn Fn(&Values, Vec3, f32) -> Result<Box<dyn Reference<f64>>, ParamError> + Sync + 'a;
 
 /// The formulas of a model.
 pub(super) fn formulas(
     model: ModelId,
-) -> impl Fn(&Values, Vec3, f32) -> Result<AnyReference<f64>, ParamError> {
-    move |values, wo, h| model.reference(values, to_f64(wo), f64::from(h))
+) -> impl Fn(&Values, Vec3, f32) -> Result<Box<dyn Reference<f64>>, ParamError> {
+    move |values, wo, h| reference(model, values, to_f64(wo), f64::from(h))
 }
 
 /// Eight materials seen from eight directions, with the directions and the numbers to evaluate and sample.
@@ -40,7 +41,7 @@ pub(super) struct Packet {
     /// Eight for the first shading point.
     pub(super) wi_shared: [Vec3; 8],
     pub(super) xi: [[f32; 3]; 8],
-    pub(super) truth: Vec<AnyReference<f64>>,
+    pub(super) truth: Vec<Box<dyn Reference<f64>>>,
 }
 
 impl Packet {

@@ -4,7 +4,7 @@ use super::bounded::{Bounded, integrals, largest};
 use super::claim::{Claim, Figure, Origin, Side, Statement};
 use super::hair::theta_h_interval;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::reference::Shape;
+use hairis_reference::Shape;
 
 const STATEMENT: Statement = Statement {
     id: "energy-within-1-percent",

@@ -8,8 +8,8 @@ use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::params::HairDesc;
-use hairis::reference::Parameters;
 use hairis::{HairParams, ParamError};
+use hairis_reference::Parameters;
 
 const DENSITY: Statement = Statement {
     id: "misprint-glint-density",

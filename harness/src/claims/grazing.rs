@@ -6,8 +6,8 @@ use super::hair::Longitudinal;
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::reference::{HairReference, Parameters, Shape};
 use hairis::{HairParams, Lobe, ParamError};
+use hairis_reference::{HairReference, Parameters, Reference, Shape};
 
 /// The bound is a hundredth of an error of 1%.
 const STATEMENT: Statement = Statement {

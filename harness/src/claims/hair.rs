@@ -5,10 +5,10 @@ use crate::efficiency::with_beta;
 use crate::study::Grid;
 use crate::subject::ModelKind;
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::reference::{CauchyDensity, HairReference, Parameters};
 use hairis::{HairParams, Lobe, PerLobe};
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::quadrature::{Tolerance, bell_breakpoints, integrate_rectangle};
+use hairis_reference::{CauchyDensity, HairReference, Parameters, Reference};
 
 /// The interval of `theta_h` as `theta_i` runs over all inclinations, rad.
 pub(super) fn theta_h_interval(theta_o: f64) -> [f64; 2] {

@@ -4,7 +4,7 @@ use super::bounded::{Bounded, Spread, integrals};
 use super::claim::{Claim, Figure, Side, Statement};
 use super::hair::{Longitudinal, longitudinal_grid, theta_h_interval};
 use core::f64::consts::PI;
-use hairis::reference::Shape;
+use hairis_reference::Shape;
 
 const STATEMENT: Statement = Statement {
     id: "wider-tails",

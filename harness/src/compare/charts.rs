@@ -58,7 +58,7 @@ pub(super) fn summary(of: &Comparison) -> Drawing {
     Drawing::new("summary", chart, caption)
 }
 
-/// Speed against the textbook, a chart per model.
+/// Speed against the reference, a chart per model.
 pub(super) fn speeds(of: &Comparison) -> Vec<Drawing> {
     let ops = [
         TimedOp::Prepare,
@@ -78,7 +78,7 @@ pub(super) fn speeds(of: &Comparison) -> Vec<Drawing> {
     let contenders = distinct(contenders);
     let figure = |model: ModelId| {
         let title = format!(
-            "Speed against the faster textbook in f32, {} model",
+            "Speed against the faster reference in f32, {} model",
             model.name()
         );
         let series: Vec<(String, Vec<Bar>)> = contenders

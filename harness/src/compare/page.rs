@@ -92,7 +92,7 @@ pub fn report(of: &Comparison) -> Report {
     }
 }
 
-/// How many times as fast as the textbook eight lanes are.
+/// How many times as fast as the reference eight lanes are.
 fn speed_ratio(of: &Comparison, op: TimedOp, model: ModelKind) -> Option<String> {
     let row = of
         .speed

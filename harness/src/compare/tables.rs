@@ -62,11 +62,11 @@ pub(super) fn speed(of: &Comparison, depth: Depth) -> Vec<Table> {
             });
         Table::new(format!("Time a direction, {} model", model.name()))
             .texts(["operation", "contender", "instruction set"])
-            .numbers(["ns", "quartiles, ns", "against the faster textbook"])
+            .numbers(["ns", "quartiles, ns", "against the faster reference"])
             .rows(rows)
             .note(format!(
-                "{}. Medians over rounds in which all contenders run in turn; the ratio is formed within each round. A \
-                 textbook is the model's formulas in f32, a material's constants formed once: on the libm crate, and on the \
+                "{}. Medians over rounds in which all contenders run in turn; the ratio is formed within each round. The \
+                 reference is the model's formulas in f32, a material's constants formed once: on the libm crate, and on the \
                  platform's library by the methods of std. Ratios are to the faster of the two.",
                 of.machine.summary()
             ))

@@ -10,8 +10,8 @@
 use core::array;
 use core::f64::consts::{FRAC_PI_2, PI};
 use hairis::HairParams;
-use hairis::reference::{Parameters, Shape};
 use hairis_instruments::quadrature::GaussLegendre;
+use hairis_reference::{Parameters, Shape};
 
 /// The products of `S cos theta_i`.
 pub(super) const TERMS: usize = 3;
@@ -215,10 +215,10 @@ mod tests {
     use super::*;
     use crate::study::Grid;
     use crate::subject::random_hair;
-    use hairis::reference::HairReference;
     use hairis::{Gaussian, Material, Published};
     use hairis_instruments::direction::fibre_direction;
     use hairis_instruments::sequence::Independent;
+    use hairis_reference::{HairReference, Reference};
     use hairis_variants::Cauchy;
 
     #[test]

@@ -149,7 +149,7 @@ mod tests {
     use core::f64::consts::PI;
     use hairis::HairParams;
     use hairis::params::HairDesc;
-    use hairis::reference::Real;
+    use hairis_reference::Real;
 
     fn blur(size: usize) -> Blur {
         Blur::new(SIGMA_DEG.to_radians(), size, size)

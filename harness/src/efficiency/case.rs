@@ -6,11 +6,11 @@ use core::array;
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::{DVec3, Vec3};
 use hairis::HairParams;
-use hairis::reference::{Oracle, Parameters};
 use hairis::simd::f32x8;
 use hairis_instruments::direction::fibre_direction;
 use hairis_instruments::quadrature::{SphereIntegrator, Tolerance};
 use hairis_instruments::sequence::{XiSource, to_unit_f32};
+use hairis_reference::{Parameters, Reference};
 
 /// A model with its parameters, seen from `wo`.
 pub(super) struct Case {
@@ -24,7 +24,7 @@ pub(super) struct Case {
 struct SampledCase {
     scatter: Scatter,
     /// S, and the density of every sampler but the uniform one.
-    oracle: Oracle<f64>,
+    oracle: Box<dyn Reference<f64>>,
     /// An integrator with breakpoints at the lobes, and at the jumps of the density.
     sphere: SphereIntegrator,
 }
@@ -44,13 +44,9 @@ impl Case {
         // The oracle gets the same rounded direction.
         let (parameters, exact) = (Parameters::<f64>::from(params), wo.as_dvec3());
         let estimators = Sampler::ALL.map(|sampler| {
-            let oracle = Oracle::prepare(
-                &parameters,
-                model.shape(),
-                exact.to_array(),
-                sampler.bands(),
-            );
-            let sphere = oracle.jumps().fold(
+            let formulas = model.formulas(sampler.bands());
+            let oracle = formulas.prepare(&parameters, exact.to_array());
+            let sphere = oracle.jumps().into_iter().fold(
                 integrator(&parameters, exact),
                 SphereIntegrator::theta_break,
             );

@@ -4,7 +4,6 @@ use super::result::{RayFigures, RayPose, RayRow, RaysResult};
 use super::{EqualTime, Lit, RaySubject, measure, times};
 use crate::efficiency::{Check, EfficiencyResult, THETA_O_DEG, intensity, stratified};
 use crate::lights::lights;
-use hairis::reference::Reference as _;
 use hairis_instruments::light::{Environment, Light, product};
 use hairis_instruments::progress::Progress;
 use hairis_instruments::sequence::stream_id;

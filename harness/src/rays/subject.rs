@@ -5,7 +5,8 @@ use crate::sampler::{Sampler, Scatter};
 use glam::Vec3;
 use hairis::Hit;
 use hairis_instruments::direction::fibre_direction;
-use hairis_variants::{AnyReference, ModelId};
+use hairis_reference::{Reference, reference};
+use hairis_variants::ModelId;
 
 /// Offset of the ray from the fibre's axis, for models that read it, by place in [`THETA_O_DEG`].
 const OFFSETS: [f32; 4] = [0.0, 0.5, -0.75, 0.25];
@@ -78,10 +79,9 @@ impl RaySubject {
     /// # Panics
     ///
     /// Never: default parameters are within their ranges.
-    pub(super) fn formulas(self, pose: usize) -> AnyReference<f64> {
+    pub(super) fn formulas(self, pose: usize) -> Box<dyn Reference<f64>> {
         let wo = viewer(pose).as_dvec3().to_array();
-        self.id
-            .reference(&self.id.defaults(), wo, f64::from(OFFSETS[pose]))
+        reference(self.id, &self.id.defaults(), wo, f64::from(OFFSETS[pose]))
             .expect("defaults are accepted")
     }
 }

@@ -2,9 +2,12 @@
 
 use super::{eval, numbers};
 use glam::DVec3;
-use hairis::reference::{HairReference, MatchedReference, Parameters, Reference, Shape};
-use hairis_variants::chiang::{ChiangConstants, ChiangParameters, Selection, Shifts};
-use hairis_variants::kajiya_kay::{Form, KajiyaKayConstants, KajiyaKayParameters};
+use hairis_reference::{
+    ChiangConstants, ChiangParameters, HairReference, KajiyaKayConstants, KajiyaKayParameters,
+    MatchedReference, Parameters, Reference, Selection, Shape,
+};
+use hairis_variants::chiang::Shifts;
+use hairis_variants::kajiya_kay::Form;
 use serde_json::{Value, json};
 
 // None of them is a number of single precision.

@@ -42,7 +42,7 @@ use crate::{HairParams, LobeMask, PerLobe};
 ///   itself times `h / W`. It jumps where bands meet. The band of a direction follows from its first component alone, so that
 ///   every precision agrees.
 /// - Weights: bounded by the sum of the energies times the largest `W / h`, in closed form
-///   (`reference::MatchedReference::weight_bound`); the mean of a weight's RGB is `W / h` times that sum. By channel in place of
+///   (`Reference::weight_bound` of `hairis-reference`); the mean of a weight's RGB is `W / h` times that sum. By channel in place of
 ///   the sum: the largest energy over its lobe's probability.
 /// - Accuracy: the density is as exact as S, to 1e-4 relative (Gaussian) and 1e-5 (Cauchy): the bells are in it. What a sample
 ///   reports holds for the direction it returns to 6e-5 and 1e-5, to the ends of the uniform numbers, where S is above 1e-20

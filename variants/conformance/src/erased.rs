@@ -4,7 +4,7 @@
 
 pub(crate) mod hits;
 
-use crate::subject::{Claims, ParamsOf, Reference, Subject};
+use crate::subject::{Claims, Expected, ParamsOf, Subject};
 use glam::Vec3;
 use hairis::columns::{EvalColumns, LengthError, SampleColumns};
 use hairis::model::{DynBsdf, DynBsdf8, Model};
@@ -76,7 +76,7 @@ pub trait MaterialSet {
     fn prepare_packed(&self, index: [usize; 8], level: Level, hits: Hit8) -> Box<dyn ErasedBsdf8>;
     fn edges(&self, index: usize, hit: &Hit) -> [Vec<f64>; 2];
     fn weight_bound(&self, index: usize, hit: &Hit, lobes: LobeMask) -> Option<f64>;
-    fn reference(&self, index: usize, hit: &Hit) -> Option<Box<dyn Reference>>;
+    fn reference(&self, index: usize, hit: &Hit) -> Option<Expected>;
 }
 
 impl dyn MaterialSet + '_ {
@@ -124,7 +124,7 @@ impl NamedMaterial<'_> {
         self.set.weight_bound(self.index, hit, lobes)
     }
 
-    pub(crate) fn reference(&self, hit: &Hit) -> Option<Box<dyn Reference>> {
+    pub(crate) fn reference(&self, hit: &Hit) -> Option<Expected> {
         self.set.reference(self.index, hit)
     }
 }
@@ -203,7 +203,7 @@ impl<S: Subject> MaterialSet for Set<'_, S> {
         self.subject.weight_bound(&self.params[index], hit, lobes)
     }
 
-    fn reference(&self, index: usize, hit: &Hit) -> Option<Box<dyn Reference>> {
+    fn reference(&self, index: usize, hit: &Hit) -> Option<Expected> {
         self.subject.reference(&self.params[index], hit)
     }
 }

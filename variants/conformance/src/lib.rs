@@ -69,7 +69,6 @@ pub mod chi_square;
 pub mod environment;
 mod erased;
 mod failure;
-mod formula_reference;
 pub mod hits;
 pub mod integral;
 pub mod inversion;
@@ -97,8 +96,8 @@ pub mod totality;
 pub use erased::ErasedSubject;
 pub use erased::hits::HitsSubject;
 pub use failure::{Failure, Outcome};
-pub use formula_reference::FormulaReference;
-pub use subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subject, Tolerance};
+pub use hairis_reference::{LobeAt, Reference, ReferenceSample};
+pub use subject::{Claims, Expected, Materials, ParamsOf, Subject, Tolerance};
 
 /// Declares a module with a `#[test]` for each property of a [`Subject`].
 ///

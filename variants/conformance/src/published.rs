@@ -13,7 +13,6 @@ pub mod lobes;
 pub mod parity;
 pub mod props;
 pub mod quadrature;
-mod reference;
 mod rows;
 pub mod sampling;
 pub mod seam;
@@ -24,14 +23,13 @@ pub mod values;
 pub mod variance;
 pub mod weights;
 
-pub use reference::PublishedReference;
 pub use rows::Rows;
 pub use subject::Family;
 
 use core::fmt;
 use hairis::model::{MatchedBell, Model};
-use hairis::reference::Shape;
 use hairis::{HairParams, Matched, Published};
+use hairis_reference::{HairFormulas, Shape};
 use handles::AnyModel;
 
 /// A model of the family.
@@ -62,24 +60,12 @@ pub trait FamilyModel: Sync {
 }
 
 /// The formulas that a model is held against.
-#[derive(Clone, Copy, Debug)]
-pub struct Formulas {
-    /// See [`FamilyModel::SHAPE`].
-    pub shape: Shape,
-    /// See [`FamilyModel::BANDS`].
-    pub bands: Option<usize>,
-    /// See [`FamilyModel::BY_CHANNEL`].
-    pub by_channel: bool,
-}
-
-impl Formulas {
-    /// Formulas of a model.
-    pub const fn of<S: FamilyModel>() -> Self {
-        Self {
-            shape: S::SHAPE,
-            bands: S::BANDS,
-            by_channel: S::BY_CHANNEL,
-        }
+#[must_use]
+pub const fn formulas<S: FamilyModel>() -> HairFormulas {
+    HairFormulas {
+        shape: S::SHAPE,
+        bands: S::BANDS,
+        by_channel: S::BY_CHANNEL,
     }
 }
 
@@ -88,7 +74,7 @@ pub struct Tested {
     forms: Vec<(Box<dyn AnyModel>, f32)>,
     /// With the published sampler, and with the matched ones of 5, 9 and 25 bands.
     samplers: [(Option<usize>, Box<dyn AnyModel>); 4],
-    formulas: Formulas,
+    formulas: HairFormulas,
     over_cauchy: f64,
     pdf_floor: f64,
     rows: Rows,
@@ -115,7 +101,7 @@ impl Tested {
         Self {
             forms: forms.collect(),
             samplers,
-            formulas: Formulas::of::<S>(),
+            formulas: formulas::<S>(),
             over_cauchy: S::OVER_CAUCHY,
             pdf_floor: S::PDF_FLOOR,
             rows: S::ROWS,

@@ -3,9 +3,10 @@
 use crate::erased::{Direction, ErasedSubject, Which};
 use crate::failure::{Failure, Outcome, Worst};
 use crate::probe::{Draws, cos_theta, double, hits_and, packet, relative, rounded, triples};
-use crate::subject::{Reference, ReferenceSample, Tolerance};
+use crate::subject::{Expected, Tolerance};
 use hairis::simd::Level;
 use hairis::{Eval, Lobe, Sample};
+use hairis_reference::{Reference, ReferenceSample};
 
 const NAME: &str = "the model agrees with its reference";
 
@@ -46,16 +47,19 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
     for material in subject.set(Which::WithRandom).iter() {
         let name = material.name();
         for hit in hits_and(HITS, &mut draws) {
-            let Some(reference) = material.reference(&hit) else {
+            let Some(Expected {
+                reference,
+                tolerance,
+            }) = material.reference(&hit)
+            else {
                 return Ok(());
             };
-            let tolerance = reference.tolerance();
             let bsdf = material.prepare(hit);
             for n in 0..PACKETS {
                 let xi: [[f32; 3]; 8] = core::array::from_fn(|_| draws.xi3());
                 let wi: [Direction; 8] = core::array::from_fn(|lane| {
                     let any = draws.direction();
-                    let drawn = bsdf.sample(draws.xi3()).map_or(any, |s| s.wi.into());
+                    let drawn = bsdf.sample(draws.xi3()).map_or(any, |s| s.wi);
                     if (lane + n) % 2 == 0 { any } else { drawn }
                 });
                 let levels = Level::available().map(|level| {
@@ -79,21 +83,31 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
                         compare_sample(&*reference, s, xi[lane], &tolerance, &at)?;
                         compared += 1;
                     }
-                    let lobes = bsdf.lobes(wi[lane]);
-                    if reference.lobes(double(wi[lane])).is_none() {
+                    let Some(bound) = tolerance.lobes else {
+                        continue;
+                    };
+                    let values = reference.lobe_values(double(wi[lane])).0;
+                    if values.into_iter().any(|value| value < tolerance.lobe_floor) {
                         continue;
                     }
+                    let lobes = bsdf.lobes(wi[lane]);
                     for lobe in Lobe::ALL {
-                        for (part, got) in
-                            [lobes[lobe].value, lobes[lobe].pdf].into_iter().enumerate()
-                        {
-                            let of = |d| {
-                                reference
-                                    .lobes(d)
-                                    .map_or(0.0, |all| all[lobe.index()][part])
-                            };
-                            let error =
-                                excess(f64::from(got), of, wi[lane], tolerance.lobes, &tolerance);
+                        let (value, pdf) = (lobes[lobe].value, lobes[lobe].pdf);
+                        let value = excess(
+                            f64::from(value),
+                            |d| reference.lobe_values(d)[lobe],
+                            wi[lane],
+                            bound,
+                            &tolerance,
+                        );
+                        let pdf = excess(
+                            f64::from(pdf),
+                            |d| reference.lobe_pdfs(d)[lobe],
+                            wi[lane],
+                            bound,
+                            &tolerance,
+                        );
+                        for error in [value, pdf] {
                             worst[2].see(error, || {
                                 format!("{lobe:?} {lobes:?}: {name} {hit:?} {:?}", wi[lane])
                             })?;
@@ -109,7 +123,7 @@ pub fn agrees_with_reference(subject: &dyn ErasedSubject) -> Outcome {
 
 fn see_eval(
     [value, pdf, _]: &mut [Worst; 3],
-    reference: &dyn Reference,
+    reference: &dyn Reference<f64>,
     got: Eval,
     wi: Direction,
     tolerance: &Tolerance,
@@ -155,24 +169,25 @@ const NUMBERS: [f64; 11] = [
 /// The sample has the lobe of the reference's, and its direction to the tolerance and to what rounding the numbers moves it:
 /// it lies between the samples of numbers on both sides. At the boundary of two lobes, and next to the axis, either is right.
 fn compare_sample(
-    reference: &dyn Reference,
+    reference: &dyn Reference<f64>,
     got: Option<Sample>,
     xi: [f32; 3],
     tolerance: &Tolerance,
     at: &impl Fn() -> String,
 ) -> Outcome {
+    let Some(bound) = tolerance.direction else {
+        return Ok(());
+    };
     let xi = xi.map(f64::from);
     // Distance of the sample from one of the reference's, if they are of one lobe.
-    let distance = |want: ReferenceSample| match (want, got) {
-        (ReferenceSample::Unknown, _) | (ReferenceSample::Discarded, None) => Some(0.0),
-        (ReferenceSample::Discarded, Some(s)) => (cos_theta(s.wi.into()) < 1e-3).then_some(0.0),
-        (ReferenceSample::SampleLanes(_, [_, v, w]), None) => (v.hypot(w) < 1e-3).then_some(0.0),
-        (ReferenceSample::SampleLanes(slot, wi), Some(s)) => {
-            (slot == s.lobe.index()).then(|| apart(double(s.wi.into()), wi))
-        }
+    let distance = |want: &ReferenceSample<f64>| match (want.lobe, got) {
+        (None, None) => Some(0.0),
+        (None, Some(s)) => (cos_theta(s.wi) < 1e-3).then_some(0.0),
+        (Some(_), None) => (want.wi[1].hypot(want.wi[2]) < 1e-3).then_some(0.0),
+        (Some(lobe), Some(s)) => (lobe == s.lobe).then(|| apart(double(s.wi), want.wi)),
     };
-    let near = |want| distance(want).is_some_and(|off| off <= tolerance.direction);
-    if near(reference.sample(xi)) {
+    let near = |want: &ReferenceSample<f64>| distance(want).is_some_and(|off| off <= bound);
+    if near(&reference.sample(xi)) {
         return Ok(());
     }
     for axis in 0..3 {
@@ -181,21 +196,16 @@ fn compare_sample(
             xi[axis] = (xi[axis] + by).clamp(0.0, 1.0 - 1e-9);
             reference.sample(xi)
         });
-        let is_between = |pair: &[ReferenceSample]| match (
-            pair[0],
-            pair[1],
-            distance(pair[0]),
-            distance(pair[1]),
-        ) {
-            (
-                ReferenceSample::SampleLanes(_, a),
-                ReferenceSample::SampleLanes(_, b),
-                Some(from),
-                Some(to),
-            ) => from.max(to) <= 1.1 * apart(a, b) + tolerance.direction,
-            _ => false,
+        let is_between = |pair: &[ReferenceSample<f64>]| {
+            let drawn = pair.iter().all(|want| want.lobe.is_some());
+            match (distance(&pair[0]), distance(&pair[1])) {
+                (Some(from), Some(to)) if drawn => {
+                    from.max(to) <= 1.1 * apart(pair[0].wi, pair[1].wi) + bound
+                }
+                _ => false,
+            }
         };
-        if path.into_iter().any(near) || path.windows(2).any(is_between) {
+        if path.iter().any(near) || path.windows(2).any(is_between) {
             return Ok(());
         }
     }

@@ -2,6 +2,7 @@
 
 use hairis::model::Model;
 use hairis::{Hit, LobeMask};
+use hairis_reference::Reference;
 
 /// Parameters of the subject's model.
 pub type ParamsOf<S> = <<S as Subject>::Model as Model>::Params;
@@ -56,7 +57,7 @@ pub trait Subject: Sync {
     }
 
     /// The model in double precision at this hit, if there is one.
-    fn reference(&self, params: &ParamsOf<Self>, hit: &Hit) -> Option<Box<dyn Reference>> {
+    fn reference(&self, params: &ParamsOf<Self>, hit: &Hit) -> Option<Expected> {
         let _ = (params, hit);
         None
     }
@@ -128,43 +129,13 @@ impl Default for Claims {
     }
 }
 
-/// A model in double precision at one hit: made by [`Subject::reference`].
-///
-/// Vectors are (u, v, w). Slots are those of [`Model::LOBES`].
-pub trait Reference {
-    /// S, linear RGB, without the cosine.
-    fn eval(&self, wi: [f64; 3]) -> [f64; 3];
-
-    /// Density of sampling `wi`, per steradian.
-    fn pdf(&self, wi: [f64; 3]) -> f64;
-
-    /// Value without the colour and density of each slot, if known.
-    fn lobes(&self, wi: [f64; 3]) -> Option<[[f64; 2]; 4]> {
-        let _ = wi;
-        None
-    }
-
-    /// The sample that these numbers give.
-    fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
-        let _ = xi;
-        ReferenceSample::Unknown
-    }
-
+/// A model in double precision at one hit, and the agreement to expect: made by [`Subject::reference`].
+#[derive(Debug)]
+pub struct Expected {
+    /// The model's formulas.
+    pub reference: Box<dyn Reference<f64>>,
     /// Agreement to expect.
-    fn tolerance(&self) -> Tolerance {
-        Tolerance::default()
-    }
-}
-
-/// A sample of a [`Reference`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ReferenceSample {
-    /// The reference does not sample: nothing is compared.
-    Unknown,
-    /// The sample was discarded.
-    Discarded,
-    /// The lobe's slot and the direction.
-    SampleLanes(usize, [f64; 3]),
+    pub tolerance: Tolerance,
 }
 
 /// Tolerances against the [`Reference`] at directions further than 1e-3 rad from the axis.
@@ -174,14 +145,16 @@ pub struct Tolerance {
     pub value: f64,
     /// Relative error of the density.
     pub pdf: f64,
-    /// Relative error of each lobe's value and density.
-    pub lobes: f64,
+    /// Relative error of each lobe's value and density; `None` if the reference has no lobes.
+    pub lobes: Option<f64>,
+    /// Lobes are compared where every one of them has at least this value.
+    pub lobe_floor: f64,
     /// Values and densities below this are compared absolutely.
     pub floor: f64,
     /// Backward error in rad: results may also differ by what moving the direction by so much changes.
     pub rounding: f64,
-    /// Largest distance between the sampled directions.
-    pub direction: f64,
+    /// Largest distance between the sampled directions; `None` if the reference has no sampler.
+    pub direction: Option<f64>,
 }
 
 impl Default for Tolerance {
@@ -189,10 +162,11 @@ impl Default for Tolerance {
         Self {
             value: 1e-5,
             pdf: 1e-5,
-            lobes: 1e-5,
+            lobes: Some(1e-5),
+            lobe_floor: 0.0,
             floor: 1e-20,
             rounding: 2.5e-7,
-            direction: 1e-4,
+            direction: Some(1e-4),
         }
     }
 }

@@ -2,13 +2,15 @@
 
 use crate::broken::{Broken, Fiber, Params, SOUND};
 use core::f64::consts::PI;
-use hairis::Hit;
 use hairis::model::Model;
+use hairis::{Hit, Lobe, PerLobe};
 use hairis_conformance::reference::agrees_with_reference;
-use hairis_conformance::{Claims, Materials, Reference, ReferenceSample, Subject, Tolerance};
+use hairis_conformance::{
+    Claims, Expected, LobeAt, Materials, Reference, ReferenceSample, Subject, Tolerance,
+};
 
 /// Errors of a reference, relative: of the value, of the density, of a lobe; and in the number that a lobe is chosen by.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Errors {
     value: f64,
     pdf: f64,
@@ -17,6 +19,7 @@ struct Errors {
 }
 
 /// The formulas of the fibre.
+#[derive(Debug)]
 struct Formulas {
     kd: [f64; 3],
     ks: [f64; 3],
@@ -41,37 +44,27 @@ impl Formulas {
     }
 }
 
-impl Reference for Formulas {
-    fn eval(&self, wi: [f64; 3]) -> [f64; 3] {
+impl Reference<f64> for Formulas {
+    fn eval_pdf(&self, wi: [f64; 3]) -> ([f64; 3], f64) {
         let [diffuse, cone] = self.both(wi);
-        [0, 1, 2]
-            .map(|c| (self.kd[c] * diffuse[0] + self.ks[c] * cone[0]) * (1.0 + self.errors.value))
-    }
-
-    fn pdf(&self, wi: [f64; 3]) -> f64 {
-        let [diffuse, cone] = self.both(wi);
+        let value = [0, 1, 2].map(|c| self.kd[c] * diffuse[0] + self.ks[c] * cone[0]);
         let mixed = self.share() * diffuse[1] + (1.0 - self.share()) * cone[1];
-        if self.lit() {
-            mixed * (1.0 + self.errors.pdf)
-        } else {
-            0.0
-        }
+        let pdf = if self.lit() { mixed } else { 0.0 };
+        (
+            value.map(|s| s * (1.0 + self.errors.value)),
+            pdf * (1.0 + self.errors.pdf),
+        )
     }
 
-    fn lobes(&self, wi: [f64; 3]) -> Option<[[f64; 2]; 4]> {
+    fn lobes(&self, wi: [f64; 3]) -> PerLobe<LobeAt<f64>> {
         let [diffuse, cone] = self.both(wi);
-        Some([
-            diffuse,
-            cone.map(|x| x * (1.0 + self.errors.lobe)),
-            [0.0; 2],
-            [0.0; 2],
-        ])
+        let cone = cone.map(|x| x * (1.0 + self.errors.lobe));
+        let lobe = |[value, pdf]: [f64; 2], color| LobeAt { value, color, pdf };
+        let lobes = [lobe(diffuse, self.kd), lobe(cone, self.ks)];
+        PerLobe::padded(lobes, LobeAt::default())
     }
 
-    fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
-        if !self.lit() {
-            return ReferenceSample::Discarded;
-        }
+    fn sample(&self, xi: [f64; 3]) -> ReferenceSample<f64> {
         let (lo, hi) = (self.angle(-1.0), self.angle(1.0));
         let diffuse = xi[0] < self.share() + self.errors.choice;
         let cone = self.width * (lo + xi[1] * (hi - lo)).tan() - self.sin_theta_o;
@@ -81,19 +74,13 @@ impl Reference for Formulas {
             cone.clamp(-1.0, 1.0)
         };
         let (cos, phi) = (((1.0 - sin) * (1.0 + sin)).sqrt(), 2.0 * PI * (xi[2] - 0.5));
-        let wi = [sin, cos * phi.cos(), cos * phi.sin()];
-        if cos < 1e-5 {
-            ReferenceSample::Discarded
-        } else {
-            ReferenceSample::SampleLanes(usize::from(!diffuse), wi)
+        if !self.lit() || cos < 1e-5 {
+            return ReferenceSample::default();
         }
-    }
-
-    // The cone inverts the difference of two arc tangents, rounded to 1e-7 rad, over its width: 2.1e-4 where it is narrow.
-    fn tolerance(&self) -> Tolerance {
-        Tolerance {
-            direction: 3e-4,
-            ..Tolerance::default()
+        ReferenceSample {
+            wi: [sin, cos * phi.cos(), cos * phi.sin()],
+            lobe: Some(Lobe::slot(u8::from(!diffuse))),
+            ..ReferenceSample::default()
         }
     }
 }
@@ -138,19 +125,24 @@ impl Subject for Beside {
         }]
     }
 
-    fn reference(
-        &self,
-        params: &<Self::Model as Model>::Params,
-        hit: &Hit,
-    ) -> Option<Box<dyn Reference>> {
+    fn reference(&self, params: &<Self::Model as Model>::Params, hit: &Hit) -> Option<Expected> {
         let [u, v, w] = [hit.wo.x, hit.wo.y, hit.wo.z].map(f64::from);
-        Some(Box::new(Formulas {
+        let formulas = Formulas {
             kd: params.kd.map(f64::from),
             ks: params.ks.map(f64::from),
             width: f64::from(params.width),
             sin_theta_o: u / u.hypot(v).hypot(w),
             errors: self.0,
-        }))
+        };
+        // The cone inverts the difference of two arc tangents, rounded to 1e-7 rad, over its width: 2.1e-4 where it is narrow.
+        let tolerance = Tolerance {
+            direction: Some(3e-4),
+            ..Tolerance::default()
+        };
+        Some(Expected {
+            reference: Box::new(formulas),
+            tolerance,
+        })
     }
 }
 

@@ -4,13 +4,6 @@ use super::{Chiang, ChiangDesc, ChiangParams, Shifts};
 use crate::{Field, Kind, Parameters, Registered, Values};
 use hairis::ParamError;
 
-#[cfg(feature = "textbook")]
-use super::{ChiangConstants, ChiangParameters, ChiangReference, Selection};
-#[cfg(feature = "textbook")]
-use crate::Accuracy;
-#[cfg(feature = "textbook")]
-use hairis::reference::Real;
-
 const SHIFTS: [(&str, Shifts); 2] = [("d-eon", Shifts::DEon), ("small-angle", Shifts::SmallAngle)];
 
 impl Parameters for ChiangParams {
@@ -86,83 +79,4 @@ impl<const BY_CHANNEL: bool> Registered for Chiang<BY_CHANNEL> {
     const MODEL: Self = Self;
     const NEAR_FIELD: bool = true;
     const COLORS: Option<&'static str> = Some("attenuation");
-
-    #[cfg(feature = "textbook")]
-    type Formulas<T: Real> = ChiangConstants<T>;
-    #[cfg(feature = "textbook")]
-    type Reference<T: Real> = ChiangReference<T>;
-    // `5e-6 + 5e-7 / min(sqrt(v), s)`, the narrowest v and s those of roughnesses of .1.
-    #[cfg(feature = "textbook")]
-    const ACCURACY: Accuracy = Accuracy {
-        value: 2.6e-5,
-        pdf: 2.6e-5,
-        sample_value: 2.6e-5,
-        sample_pdf: 2.6e-5,
-        sample_weight: 1e-4,
-        cdf: 0.0,
-        slack_in_pdf: true,
-    };
-
-    #[cfg(feature = "textbook")]
-    #[inline]
-    fn formulas<T: Real>(params: &ChiangParams) -> ChiangConstants<T> {
-        ChiangConstants::new(&params.into(), selection::<BY_CHANNEL>())
-    }
-
-    #[cfg(feature = "textbook")]
-    #[inline]
-    fn exact_formulas<T: Real>(params: &ChiangParams, exact: &Values<T>) -> ChiangConstants<T> {
-        let number = |name| {
-            let [number] = exact.get(name);
-            number
-        };
-        let parameters = ChiangParameters {
-            beta_m: number("beta_m"),
-            beta_n: number("beta_n"),
-            tilt: number("tilt"),
-            eta: number("eta"),
-            sigma_a: exact.get("sigma_a"),
-            shifts: params.desc().shifts,
-        };
-        let parameters = if exact.has("melanin") {
-            let [eumelanin, pheomelanin] = exact.get("melanin");
-            parameters.with_melanin(eumelanin, pheomelanin)
-        } else if exact.has("color") {
-            parameters.with_color(exact.get("color"))
-        } else {
-            parameters
-        };
-        ChiangConstants::new(&parameters, selection::<BY_CHANNEL>())
-    }
-
-    #[cfg(feature = "textbook")]
-    #[inline]
-    fn reference_at<T: Real>(
-        formulas: &ChiangConstants<T>,
-        wo: [T; 3],
-        h: T,
-    ) -> ChiangReference<T> {
-        formulas.prepare(wo, h)
-    }
-
-    /// Errors grow with the exponent of a lobe: from `exp(-12)` of its peak down they are absolute.
-    #[cfg(feature = "textbook")]
-    #[inline]
-    fn slack(params: &ChiangParams, _wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
-        let (desc, [_, v, w]) = (params.desc(), wi);
-        let spread = libm::sqrt(core::f64::consts::TAU * f64::from(desc.longitudinal_variance()));
-        let peak = 0.25 / (spread * f64::from(desc.azimuthal_scale()));
-        [Self::ACCURACY.value * libm::exp(-12.0) * peak / libm::hypot(v, w); 3]
-    }
-}
-
-/// The criterion for the choice of a lobe.
-#[cfg(feature = "textbook")]
-#[inline]
-const fn selection<const BY_CHANNEL: bool>() -> Selection {
-    if BY_CHANNEL {
-        Selection::ByChannel
-    } else {
-        Selection::Mean
-    }
 }

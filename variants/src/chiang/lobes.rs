@@ -8,9 +8,9 @@ use hairis::model::math::{atan_eighth_turn, gaussian, polynomial};
 use hairis::simd::{Broadcast, Lanes, Pair};
 
 /// Below this the scaled Bessel function is a series in `x^2`, above one in `1 / x`.
-pub(super) const SEAM: f32 = 5.5;
+const SEAM: f32 = 5.5;
 /// `I0(x)` in powers of `x^2`, for `x` below the seam.
-pub(super) const SERIES: [f32; 8] = [
+const SERIES: [f32; 8] = [
     0.999_999_964_93,
     0.250_000_247_14,
     0.015_624_746_521,
@@ -21,7 +21,7 @@ pub(super) const SERIES: [f32; 8] = [
     3.643_167_776e-12,
 ];
 /// `exp(-x) I0(x) sqrt(x)` in powers of `1 / x`, above it.
-pub(super) const TAIL: [f32; 6] = [
+const TAIL: [f32; 6] = [
     0.398_942_300_81,
     0.049_868_737_73,
     0.027_805_208_42,

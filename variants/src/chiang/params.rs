@@ -24,16 +24,6 @@ pub enum Shifts {
     SmallAngle,
 }
 
-/// Criterion for the choice of a lobe.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Selection {
-    /// The mean over the channels of each lobe's attenuation: the least variance of a grey result.
-    #[default]
-    Mean,
-    /// The lobe's shares of red, green and blue, `sqrt(sum_c (A_pc / sum_k A_kc)^2)`: evens out the channels.
-    ByChannel,
-}
-
 /// Parameters of the model of Chiang et al. 2016, not checked yet: set the fields that differ from the default and pass it to
 /// [`ChiangParams::new`].
 ///

@@ -7,8 +7,8 @@ use core::ops::Index;
 use glam::Vec3;
 use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::model::LobeEval8;
-use hairis::reference::{Reference, ReferenceSample};
 use hairis::{Eval, Hit, Lobe, PerLobe, Sample, Vec3x8};
+use hairis_reference::{ReferenceSample, exact_reference};
 use hairis_variants::{AnyBsdf, AnyMaterial8, ModelId};
 use serde::Serialize;
 use serde_json::json;
@@ -57,7 +57,7 @@ pub(super) fn answers(
         match request {
             Err(error) => *line = json!({ "error": error }).to_string(),
             Ok(request) if path == CodePath::F64 => {
-                *line = serde_json::to_string(&textbook(request))?
+                *line = serde_json::to_string(&formulas(request))?
             }
             Ok(_) => {}
         }
@@ -234,7 +234,7 @@ fn batch_densities(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<[f32; 4]> {
 }
 
 /// The formulas in double precision, for the numbers of the line as they are.
-fn textbook(request: &Request) -> Answer<f64> {
+fn formulas(request: &Request) -> Answer<f64> {
     let Request {
         model,
         values,
@@ -247,9 +247,7 @@ fn textbook(request: &Request) -> Answer<f64> {
             },
         ..
     } = request;
-    let point = model
-        .exact_reference(values, exact, *wo, *h)
-        .expect("checked when it was read");
+    let point = exact_reference(*model, values, exact, *wo, *h).expect("checked when it was read");
     let (found, wi) = match request.query {
         Query::Wi(_) => (
             Found::Value(point.eval(*numbers), point.pdf(*numbers)),

@@ -1,20 +1,20 @@
 //! The directional albedo against quadrature of the reference, and the scale that keeps it at most 1.
 
+use super::Tested;
 use super::handles::Material;
 use super::quadrature::{integrate, panels};
 use super::support::{
     Draws, Kind, LargestError, Point, direction, for_each_point, narrow, packet, parameters,
 };
-use super::{PublishedReference, Tested};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::params::HairDesc;
-use hairis::reference::Parameters;
 use hairis::simd::Level;
 use hairis::{HairParams, Lobe, PerLobe};
+use hairis_reference::{Parameters, Reference};
 
 /// Integral of each lobe's value times the cosine: a product of two line integrals, as the lobes are products.
-fn integrals(reference: &PublishedReference, point: &Point) -> PerLobe<f64> {
+fn integrals(reference: &dyn Reference<f64>, point: &Point) -> PerLobe<f64> {
     let p = &point.p;
     let l = |lobe: Lobe| lobe.index().min(2);
     let at = |lobe: Lobe, theta: f64, phi: f64| {

@@ -5,8 +5,8 @@ use super::handles::Material;
 use super::quadrature::{integrate, panels};
 use super::support::{Kind, LargestError, THETA_O, direction, double, materials, parameters};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::reference::MatchedReference;
 use hairis::{HairParams, Lobe};
+use hairis_reference::{MatchedReference, Reference};
 
 /// Integral over the sphere of the density of each lobe alone, of the others but for rounding a product of two.
 fn integrals(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -> [f64; 4] {
@@ -28,7 +28,7 @@ fn integrals(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -
         let inner = FRAC_PI_2 - 1e-5;
         let mut ends = panels(-inner, inner, &[(centre, p.beta[l])]);
         // The density jumps between bands: panels end there.
-        ends.extend(reference.bands().filter(|x| x.abs() < inner));
+        ends.extend(reference.jumps().into_iter().filter(|x| x.abs() < inner));
         ends.sort_by(f64::total_cmp);
         let phi = panels(0.0, PI, &[(p.phi_g, p.gamma_g), (PI, p.gamma_tt)]);
         let largest = at(theta_0, phi_0);

@@ -5,9 +5,9 @@ use super::handles::Material;
 use super::support::{Draws, LargestError, direction, double, lanes_of, narrow, parameters};
 use core::f64::consts::PI;
 use hairis::params::HairDesc;
-use hairis::reference::MatchedReference;
 use hairis::simd::Level;
 use hairis::{HairParams, Lobe, LobeMask};
+use hairis_reference::{MatchedReference, Reference};
 
 /// Hair with `beta_r` from 0.5 to 60 degrees and all else as wide as it is found, seen from up to 89.9 degrees.
 fn hair(draws: &mut Draws) -> (HairParams, f64) {
@@ -50,7 +50,7 @@ fn scan(tested: &Tested, bands: usize, worst: &mut [LargestError; 2]) {
             double(wo),
             bands,
         );
-        let limit = reference.weight_bound(mask);
+        let limit = reference.weight_bound(mask).unwrap();
         if mask == LobeMask::ALL {
             let mean: f64 = bsdf
                 .albedo()

@@ -1,12 +1,13 @@
 //! Samples against the reference: cdf of the drawn angle, value, density and weight at the drawn direction.
 
+use super::Tested;
 use super::support::{
     Draws, Kind, LargestError, Point, angles, double, for_each_point, lanes_of, relative,
 };
-use super::{PublishedReference, Tested};
 use core::f64::consts::PI;
 use hairis::simd::Level;
 use hairis::{Lobe, LobeMask, Sample};
+use hairis_reference::Reference;
 
 const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 
@@ -37,7 +38,7 @@ fn phi(point: &Point, sample: &Sample) -> f64 {
 fn see(
     tested: &Tested,
     worst: &mut [LargestError; 4],
-    reference: &PublishedReference,
+    reference: &dyn Reference<f64>,
     point: &Point,
     sample: &Sample,
 ) {
@@ -122,10 +123,11 @@ fn check(tested: &Tested, kind: Kind, per_point: usize, [s, pdf, weight]: [f64; 
                             )
                         };
                         assert_eq!(sample.lobe, lobe, "only this lobe may be drawn");
-                        let got = reference.cdf_theta(lobe, angles(point.wo, sample.wi)[0]);
-                        theta.see((got - f64::from(xi[1])).abs(), at);
-                        let got = reference.cdf_phi(lobe, phi(point, &sample));
-                        azimuth.see(around(got, f64::from(xi[2])), at);
+                        let theta_i = angles(point.wo, sample.wi)[0];
+                        let cdf = reference.cdf(lobe, theta_i, phi(point, &sample));
+                        let [got_theta, got_phi] = cdf.unwrap();
+                        theta.see((got_theta - f64::from(xi[1])).abs(), at);
+                        azimuth.see(around(got_phi, f64::from(xi[2])), at);
                     }
                 }
             }

@@ -1,14 +1,14 @@
 //! The family as subjects of the suite.
 
 use super::support::{double, oracle, parameters};
-use super::{FamilyModel, Formulas, PublishedReference};
+use super::{FamilyModel, formulas};
 use crate::probe::{angles, narrow};
-use crate::subject::{Claims, Materials, ParamsOf, Reference, ReferenceSample, Subject, Tolerance};
+use crate::subject::{Claims, Expected, Materials, ParamsOf, Subject, Tolerance};
 use core::f64::consts::{FRAC_PI_2, PI};
 use core::marker::PhantomData;
 use glam::Vec3;
 use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
-use hairis::{HairParams, Hit, Lobe, LobeMask};
+use hairis::{HairParams, Hit, LobeMask};
 
 /// A model of the family, under the general suite.
 #[derive(Clone, Copy, Debug, Default)]
@@ -123,10 +123,7 @@ impl<P: FamilyModel> Subject for Family<P> {
     }
 
     fn edges(&self, params: &HairParams, hit: &Hit) -> [Vec<f64>; 2] {
-        let theta = match oracle(&Formulas::of::<P>(), params, P::forms()[0].1, vector(hit)) {
-            PublishedReference::Published(_) => Vec::new(),
-            PublishedReference::Matched(book) => book.bands().collect(),
-        };
+        let theta = oracle(&formulas::<P>(), params, P::forms()[0].1, vector(hit)).jumps();
         let [_, phi_o] = angles(double(vector(hit)));
         let glint = f64::from(params.desc().phi_g);
         let around = [0.0, PI, FRAC_PI_2, -FRAC_PI_2, glint, -glint].map(|phi| {
@@ -138,12 +135,11 @@ impl<P: FamilyModel> Subject for Family<P> {
 
     /// The bound is on the mean of the channels.
     fn weight_bound(&self, params: &HairParams, hit: &Hit, lobes: LobeMask) -> Option<f64> {
-        let reference = oracle(&Formulas::of::<P>(), params, P::forms()[0].1, vector(hit));
-        matches!(reference, PublishedReference::Matched(_))
-            .then(|| 3.0 * reference.weight_bound(lobes))
+        let reference = oracle(&formulas::<P>(), params, P::forms()[0].1, vector(hit));
+        Some(3.0 * reference.weight_bound(lobes)?)
     }
 
-    fn reference(&self, params: &ParamsOf<Self>, hit: &Hit) -> Option<Box<dyn Reference>> {
+    fn reference(&self, params: &ParamsOf<Self>, hit: &Hit) -> Option<Expected> {
         let p = parameters(params, P::forms()[0].1);
         let least = p
             .beta
@@ -158,49 +154,15 @@ impl<P: FamilyModel> Subject for Family<P> {
         let tolerance = Tolerance {
             value,
             pdf,
-            lobes: lobe_value.max(lobe_pdf),
+            lobes: Some(lobe_value.max(lobe_pdf)),
+            // Normalised, a lobe of the last few powers of two of a Gaussian would show its cut.
+            lobe_floor: P::PDF_FLOOR,
             rounding: 5e-7,
             ..Tolerance::default()
         };
-        Some(Box::new(FlooredReference {
-            reference: oracle(&Formulas::of::<P>(), params, P::forms()[0].1, vector(hit)),
-            floor: P::PDF_FLOOR,
+        Some(Expected {
+            reference: oracle(&formulas::<P>(), params, P::forms()[0].1, vector(hit)),
             tolerance,
-        }))
-    }
-}
-
-/// A reference, and the densities below which it is compared absolutely.
-struct FlooredReference {
-    reference: PublishedReference,
-    floor: f64,
-    tolerance: Tolerance,
-}
-
-impl Reference for FlooredReference {
-    fn eval(&self, wi: [f64; 3]) -> [f64; 3] {
-        self.reference.eval(wi)
-    }
-
-    fn pdf(&self, wi: [f64; 3]) -> f64 {
-        self.reference.pdf(wi)
-    }
-
-    fn lobes(&self, wi: [f64; 3]) -> Option<[[f64; 2]; 4]> {
-        let (values, pdfs) = (self.reference.lobe_values(wi), self.reference.lobe_pdfs(wi));
-        // Normalised, a lobe of the last few powers of two of a Gaussian would show its cut.
-        let whole = Lobe::ALL.into_iter().all(|lobe| values[lobe] >= self.floor);
-        whole.then(|| Lobe::ALL.map(|lobe| [values[lobe], pdfs[lobe]]))
-    }
-
-    fn sample(&self, xi: [f64; 3]) -> ReferenceSample {
-        let drawn = self.reference.sample(xi);
-        drawn.lobe.map_or(ReferenceSample::Discarded, |lobe| {
-            ReferenceSample::SampleLanes(lobe.index(), drawn.wi)
         })
-    }
-
-    fn tolerance(&self) -> Tolerance {
-        self.tolerance
     }
 }

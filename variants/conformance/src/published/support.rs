@@ -2,14 +2,14 @@
 
 pub use crate::probe::{Draws, narrow};
 
+use super::Tested;
 use super::handles::Material;
-use super::{Formulas, PublishedReference, Tested};
 use core::f64::consts::{FRAC_PI_2, PI};
 use glam::Vec3;
 use hairis::params::{HairDesc, MAX_WIDTH, MIN_WIDTH};
-use hairis::reference::Parameters;
 use hairis::simd::f32x8;
 use hairis::{HairParams, Vec3x8};
+use hairis_reference::{HairFormulas, Parameters, Reference};
 
 pub const DEG: f64 = PI / 180.0;
 
@@ -131,12 +131,12 @@ pub fn parameters(params: &HairParams, factor: f32) -> Parameters<f64> {
 
 /// The reference at the shading point of `wo`.
 pub fn oracle(
-    formulas: &Formulas,
+    formulas: &HairFormulas,
     params: &HairParams,
     factor: f32,
     wo: Vec3,
-) -> PublishedReference {
-    PublishedReference::prepare(formulas, &parameters(params, factor), double(wo))
+) -> Box<dyn Reference<f64>> {
+    formulas.prepare(&parameters(params, factor), double(wo))
 }
 
 /// Error of `got` relative to `want`, or to `floor` where `want` is smaller.
@@ -267,7 +267,7 @@ pub const THETA_O: [f64; 12] = [
 pub(super) fn for_each_point(
     tested: &Tested,
     kind: Kind,
-    mut f: impl FnMut(&Material<'_>, &PublishedReference, &Point),
+    mut f: impl FnMut(&Material<'_>, &dyn Reference<f64>, &Point),
 ) {
     for (model, factor) in tested.forms() {
         for (index, params) in materials(kind).iter().enumerate() {
@@ -287,7 +287,7 @@ pub(super) fn for_each_point(
                 };
                 f(
                     &material,
-                    &oracle(&tested.formulas, params, factor, wo),
+                    &*oracle(&tested.formulas, params, factor, wo),
                     &point,
                 );
             }

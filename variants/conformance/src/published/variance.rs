@@ -6,31 +6,35 @@ use super::handles::{AnyModel, Bsdf, Material};
 use super::quadrature::{panels, rule};
 use super::support::{DEG, direction, double, grid_point, narrow, parameters};
 use core::f64::consts::{FRAC_PI_2, PI};
-use hairis::reference::{HairReference, MatchedReference};
 use hairis::{HairParams, Lobe, PerLobe};
+use hairis_reference::{HairFormulas, Reference};
 
 const PHI_O: f64 = 0.4;
 
 /// Probabilities of the lobes, by parameters and `theta_o`.
 type Shares<'a> = &'a dyn Fn(&HairParams, f64) -> PerLobe<f64>;
 
-fn published(tested: &Tested, params: &HairParams, theta_o: f64) -> PerLobe<f64> {
-    HairReference::prepare(
-        &parameters(params, 1.0),
-        tested.formulas.shape,
-        double(direction(theta_o, PHI_O)),
-    )
-    .probabilities()
+/// With the matched sampler of so many bands, or with the published one.
+fn shares(
+    tested: &Tested,
+    bands: Option<usize>,
+    params: &HairParams,
+    theta_o: f64,
+) -> PerLobe<f64> {
+    reference(tested, bands, params, double(direction(theta_o, PHI_O))).probabilities()
 }
 
-fn matched(tested: &Tested, bands: usize, params: &HairParams, theta_o: f64) -> PerLobe<f64> {
-    MatchedReference::prepare(
-        &parameters(params, 1.0),
-        tested.formulas.shape,
-        double(direction(theta_o, PHI_O)),
+fn reference(
+    tested: &Tested,
+    bands: Option<usize>,
+    params: &HairParams,
+    wo: [f64; 3],
+) -> Box<dyn Reference<f64>> {
+    let formulas = HairFormulas {
         bands,
-    )
-    .probabilities()
+        ..tested.formulas
+    };
+    formulas.prepare(&parameters(params, 1.0), wo)
 }
 
 /// Quadrature in one angle: its weights, and each lobe's value and density there, the other angle at a peak.
@@ -140,10 +144,7 @@ fn v(long: &Line, round: &Line, params: &HairParams, shares: PerLobe<f64>) -> f6
 
 /// The inclinations where the density of a sampler of so many bands jumps: the same for all hair.
 fn jumps(tested: &Tested, bands: usize) -> Vec<f64> {
-    let p = parameters(&HairParams::default(), 1.0);
-    MatchedReference::prepare(&p, tested.formulas.shape, [0.0, 1.0, 0.0], bands)
-        .bands()
-        .collect()
+    reference(tested, Some(bands), &HairParams::default(), [0.0, 1.0, 0.0]).jumps()
 }
 
 /// V at every point of the grid.
@@ -207,11 +208,12 @@ fn gain(tested: &Tested, bands: usize, published: &[f64], v: &[f64]) -> [f64; 3]
 pub fn variance_falls_by_what_is_promised(tested: &Tested) {
     let published = over_grid(
         tested.sampler(None),
-        &|params, theta_o| published(tested, params, theta_o),
+        &|params, theta_o| shares(tested, None, params, theta_o),
         &[],
     );
     let gains = [5, 9, 25].map(|bands| {
-        let shares = |params: &HairParams, theta_o: f64| matched(tested, bands, params, theta_o);
+        let shares =
+            |params: &HairParams, theta_o: f64| shares(tested, Some(bands), params, theta_o);
         gain(
             tested,
             bands,

@@ -1,0 +1,375 @@
+//! The energy-conserving fibre, formula by formula, in either precision.
+
+mod azimuth;
+mod bessel;
+mod cone;
+mod parameters;
+
+use crate::steps::{Fixed, GRAZING, choose, finish_sample, fixed, inclination, mix, sum_to_one};
+use crate::{LobeAt, Real, Reference, ReferenceSample};
+use azimuth::Logistic;
+use cone::Cone;
+use hairis::{Lobe, PerLobe};
+
+pub use bessel::bessel_i0_scaled;
+pub use parameters::{ChiangParameters, Selection};
+
+/// The lobe of all paths with two and more internal reflections, TRRT and what follows.
+const REST: Lobe = Lobe::slot(3);
+
+/// The model and its sampler for one set of parameters, one `wo` and one offset across the fibre.
+///
+/// `S = sum_p A_p M_p N_p / cos theta_i`, p = R, TT, TRT and the rest.
+///
+/// - Source: Chiang et al. 2016; M of d'Eon et al. 2011, its sampling as d'Eon et al. 2013 have it, mended by
+///   variants/ERRATA.md.
+/// - Energy: the integral of `S cos theta_i` is the sum of A, exactly 1 without absorption. Not reciprocal.
+/// - Domain: within 1e-5 rad of the fibre axis `eval` and `pdf` are 0 and samples are discarded. `wo` of any length; `h` is
+///   clamped to `[-1, 1]`.
+/// - Accuracy: in `f32`, at directions it draws itself, within `2e-6 / min(sqrt(v_tt), s)`.
+///
+/// ```
+/// use hairis_reference::{ChiangReference, Reference, Selection};
+/// use hairis_variants::ChiangParams;
+/// let parameters = (&ChiangParams::brown()).into();
+/// let fiber = ChiangReference::<f64>::prepare(&parameters, Selection::Mean, [0.0, 1.0, 0.0], 0.4);
+/// let drawn = fiber.sample([0.1, 0.4, 0.7]);
+/// assert!((fiber.eval_pdf(drawn.wi).1 / drawn.pdf - 1.0).abs() < 1e-9);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChiangReference<T> {
+    phi_o: T,
+    cones: PerLobe<Cone<T>>,
+    logistic: Logistic<T>,
+    /// Azimuth of each lobe's centre from that of `wo`.
+    centres: PerLobe<T>,
+    fresnel: T,
+    path_length: T,
+    attenuation: PerLobe<[T; 3]>,
+    probabilities: PerLobe<T>,
+}
+
+/// Constants of a material: variances, the logistic, and the shifts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChiangConstants<T> {
+    eta: T,
+    sigma_a: [T; 3],
+    selection: Selection,
+    variances: PerLobe<T>,
+    /// Sine and cosine of each.
+    shifts: PerLobe<[T; 2]>,
+    logistic: Logistic<T>,
+}
+
+impl<T: Real> ChiangConstants<T> {
+    /// Computes the constants of `parameters`.
+    #[inline]
+    #[must_use]
+    pub fn new(parameters: &ChiangParameters<T>, selection: Selection) -> Self {
+        Self {
+            eta: parameters.eta,
+            sigma_a: parameters.sigma_a,
+            selection,
+            variances: parameters.variances(),
+            shifts: PerLobe(
+                parameters
+                    .shifts_rad()
+                    .0
+                    .map(|shift| [shift.sin(), shift.cos()]),
+            ),
+            logistic: Logistic::new(parameters.scale()),
+        }
+    }
+
+    /// Computes what is constant for `wo` and the offset `h`.
+    #[inline]
+    #[must_use]
+    pub fn prepare(&self, wo: [T; 3], h: T) -> ChiangReference<T> {
+        let number = T::from_f64;
+        let (zero, one, two) = (T::default(), number(1.0), number(2.0));
+        let Fixed {
+            sin_theta_o,
+            cos_theta_o,
+            phi_o,
+        } = fixed(wo);
+        let h = h.max(-one).min(one);
+
+        // Cones about theta' = theta_o - shift, folded back beyond a pole.
+        let cone = |lobe: Lobe| {
+            let [sin, cos] = self.shifts[lobe];
+            let folded = (cos_theta_o * cos + sin_theta_o * sin).abs();
+            Cone::new(
+                self.variances[lobe],
+                sin_theta_o * cos - cos_theta_o * sin,
+                folded,
+            )
+        };
+
+        // The refracted ray: sin gamma_t = h / eta', of the projected index eta' = sqrt(eta^2 - sin^2 theta_o) / cos theta_o.
+        let contrast = (self.eta - one) * (self.eta + one);
+        let root = (contrast + cos_theta_o * cos_theta_o).sqrt();
+        let sin_gamma_t = if root > zero {
+            (h * cos_theta_o / root).max(-one).min(one)
+        } else {
+            h
+        };
+        let cos_gamma_t = ((one - sin_gamma_t) * (one + sin_gamma_t)).sqrt();
+        let (gamma_o, gamma_t) = (h.asin(), sin_gamma_t.asin());
+        let centre = |p: f64| number(2.0 * p) * gamma_t - two * gamma_o + number(p) * T::PI;
+        // One passage through the fibre, 2 cos gamma_t / cos theta_t, in radii.
+        let path_length = two * self.eta * cos_gamma_t / root.max(number(1e-30));
+
+        let cos_gamma_o = ((one - h) * (one + h)).sqrt();
+        let [fresnel, passed] = fresnel(contrast, self.eta, cos_theta_o * cos_gamma_o);
+        let attenuation = attenuation(
+            fresnel,
+            passed,
+            self.sigma_a.map(|sigma| sigma * path_length),
+        );
+        ChiangReference {
+            phi_o,
+            cones: PerLobe([cone(Lobe::R), cone(Lobe::TT), cone(Lobe::TRT), cone(REST)]),
+            logistic: self.logistic,
+            centres: PerLobe([centre(0.0), centre(1.0), centre(2.0), centre(3.0)]),
+            fresnel,
+            path_length,
+            attenuation,
+            probabilities: probabilities(&attenuation, self.selection),
+        }
+    }
+}
+
+impl<T: Real> ChiangReference<T> {
+    /// Computes the constants of `parameters`, `wo` and the offset `h`; for many hits, see [`ChiangConstants`].
+    #[inline]
+    #[must_use]
+    pub fn prepare(
+        parameters: &ChiangParameters<T>,
+        selection: Selection,
+        wo: [T; 3],
+        h: T,
+    ) -> Self {
+        ChiangConstants::new(parameters, selection).prepare(wo, h)
+    }
+
+    /// Unpolarised reflectance F of the surface at the hit.
+    #[inline]
+    #[must_use]
+    pub fn fresnel(&self) -> T {
+        self.fresnel
+    }
+
+    /// Length of one passage through the fibre, in radii.
+    #[inline]
+    #[must_use]
+    pub fn path_length(&self) -> T {
+        self.path_length
+    }
+
+    /// Azimuth of a lobe's centre from that of `wo`, rad, of any number of turns: `2 p gamma_t - 2 gamma_o + p pi`.
+    #[inline]
+    #[must_use]
+    pub fn centre(&self, lobe: Lobe) -> T {
+        self.centres[lobe]
+    }
+
+    /// The inclination of a lobe's cone, rad: `-theta'`, where M peaks unless it is wide.
+    #[inline]
+    #[must_use]
+    pub fn cone(&self, lobe: Lobe) -> T {
+        self.cones[lobe].inclination()
+    }
+
+    /// Longitudinal term M of a lobe: d'Eon et al. 2011.
+    ///
+    /// - Integral: `M cos theta_i` is 1 over `[-pi/2, pi/2]`.
+    #[inline]
+    #[must_use]
+    pub fn longitudinal(&self, lobe: Lobe, theta_i: T) -> T {
+        self.cones[lobe].density(theta_i.sin(), theta_i.cos())
+    }
+
+    /// Azimuthal term N of a lobe at `phi_i - phi_o`, of any number of turns.
+    ///
+    /// - Integral: 1 over a turn.
+    #[inline]
+    #[must_use]
+    pub fn azimuthal(&self, lobe: Lobe, phi: T) -> T {
+        if lobe == REST {
+            T::from_f64(0.5) / T::PI
+        } else {
+            self.logistic
+                .density(azimuth::wrap(phi - self.centres[lobe]))
+        }
+    }
+
+    fn lobes_at(&self, sin_theta_i: T, cos_theta_i: T, phi: T) -> PerLobe<LobeAt<T>> {
+        let mut lobes = PerLobe::default();
+        for lobe in Lobe::ALL {
+            let pdf =
+                self.cones[lobe].density(sin_theta_i, cos_theta_i) * self.azimuthal(lobe, phi);
+            lobes[lobe] = LobeAt {
+                value: pdf / cos_theta_i,
+                color: self.attenuation[lobe],
+                pdf,
+            };
+        }
+        lobes
+    }
+
+    /// Sampled sine and cosine of `theta_i` of a lobe: d'Eon et al. 2013.
+    #[inline]
+    #[must_use]
+    pub fn sample_inclination(&self, lobe: Lobe, xi_cone: T, xi_turn: T) -> [T; 2] {
+        self.cones[lobe].direction(self.cones[lobe].sample(xi_cone), xi_turn)
+    }
+
+    /// Sampled `1 - cos` of the angle from a lobe's cone, in `[0, 2]`.
+    #[inline]
+    #[must_use]
+    pub fn sample_cone(&self, lobe: Lobe, xi: T) -> T {
+        self.cones[lobe].sample(xi)
+    }
+
+    /// The inverse of [`sample_cone`](Self::sample_cone).
+    #[inline]
+    #[must_use]
+    pub fn cdf_cone(&self, lobe: Lobe, delta: T) -> T {
+        self.cones[lobe].cdf(delta)
+    }
+
+    /// Sampled azimuth from a lobe's centre, in `[-pi, pi]`.
+    #[inline]
+    #[must_use]
+    pub fn sample_azimuth(&self, lobe: Lobe, xi: T) -> T {
+        if lobe == REST {
+            T::PI * (xi + xi - T::from_f64(1.0))
+        } else {
+            self.logistic.sample(xi)
+        }
+    }
+
+    /// The inverse of [`sample_azimuth`](Self::sample_azimuth).
+    #[inline]
+    #[must_use]
+    pub fn cdf_azimuth(&self, lobe: Lobe, x: T) -> T {
+        if lobe == REST {
+            T::from_f64(0.5) * (x / T::PI + T::from_f64(1.0))
+        } else {
+            self.logistic.cdf(x)
+        }
+    }
+}
+
+impl<T: Real> Reference<T> for ChiangReference<T> {
+    /// S and the density of the mixture, per steradian.
+    #[inline]
+    fn eval_pdf(&self, wi: [T; 3]) -> ([T; 3], T) {
+        mix(&self.lobes(wi), &self.probabilities)
+    }
+
+    /// Each lobe's value, colour and own density: `M N / cos theta_i`, A, `M N`.
+    #[inline]
+    fn lobes(&self, wi: [T; 3]) -> PerLobe<LobeAt<T>> {
+        let [sin_theta_i, cos_theta_i] = inclination(wi);
+        if cos_theta_i < T::from_f64(GRAZING) {
+            return PerLobe::default();
+        }
+        self.lobes_at(sin_theta_i, cos_theta_i, wi[2].atan2(wi[1]) - self.phi_o)
+    }
+
+    /// Probability of each lobe; all 0 if everything is absorbed.
+    #[inline]
+    fn probabilities(&self) -> PerLobe<T> {
+        self.probabilities
+    }
+
+    /// The sample of three uniform numbers in `[0, 1)`.
+    ///
+    /// - The first chooses the lobe, and its remainder the azimuth; the other two choose the inclination.
+    /// - A sample within 1e-5 rad of the axis, or of zero density, is discarded. It counts in N.
+    #[inline]
+    fn sample(&self, xi: [T; 3]) -> ReferenceSample<T> {
+        let Some((lobe, rest)) = choose(&self.probabilities, xi[0]) else {
+            return ReferenceSample::default();
+        };
+        let inclination @ [sin_theta_i, cos_theta_i] = self.sample_inclination(lobe, xi[1], xi[2]);
+        let phi = self.centres[lobe] + self.sample_azimuth(lobe, rest);
+        if cos_theta_i < T::from_f64(GRAZING) {
+            return ReferenceSample::default();
+        }
+        let lobes = self.lobes_at(sin_theta_i, cos_theta_i, phi);
+        finish_sample(
+            lobe,
+            inclination,
+            self.phi_o + phi,
+            mix(&lobes, &self.probabilities),
+        )
+    }
+
+    /// A of each lobe, linear RGB: the share of the light that leaves by it. It is the lobe's directional albedo.
+    #[inline]
+    fn albedo(&self) -> PerLobe<[T; 3]> {
+        self.attenuation
+    }
+}
+
+/// F and `1 - F` of unpolarised light at an angle of this cosine; the difference is exact where F is nearly 1.
+fn fresnel<T: Real>(contrast: T, eta: T, cos: T) -> [T; 2] {
+    let (half, two, one) = (T::from_f64(0.5), T::from_f64(2.0), T::from_f64(1.0));
+    // eta cos of the refracted angle.
+    let inner = (contrast + cos * cos).sqrt();
+    let (eta_sq, outer) = (eta * eta, cos + inner);
+    if outer <= T::default() {
+        return [T::default(), one];
+    }
+    let parallel_sum = eta_sq * cos + inner;
+    let [perpendicular, parallel] = [(cos - inner) / outer, (eta_sq * cos - inner) / parallel_sum];
+    let passed =
+        two * cos * inner * (one / (outer * outer) + eta_sq / (parallel_sum * parallel_sum));
+    [
+        half * (perpendicular * perpendicular + parallel * parallel),
+        passed,
+    ]
+}
+
+/// A of R, TT, TRT and of all the rest, a geometric series: Chiang et al. 2016, section 3; `depth` is that of one passage.
+fn attenuation<T: Real>(fresnel: T, passed: T, depth: [T; 3]) -> PerLobe<[T; 3]> {
+    let mut all = PerLobe([[fresnel; 3]; 4]);
+    for (channel, depth) in depth.into_iter().enumerate() {
+        let (transmitted, absorbed) = ((-depth).exp(), -(-depth).exp_m1());
+        let tt = passed * passed * transmitted;
+        let trt = tt * fresnel * transmitted;
+        // 1 - F T.
+        let lost = (passed + fresnel * absorbed).max(T::from_f64(1e-30));
+        all[Lobe::TT][channel] = tt;
+        all[Lobe::TRT][channel] = trt;
+        all[REST][channel] = trt * fresnel * transmitted / lost;
+    }
+    all
+}
+
+fn probabilities<T: Real>(attenuation: &PerLobe<[T; 3]>, selection: Selection) -> PerLobe<T> {
+    let zero = T::default();
+    let mut returned = [zero; 3];
+    for (channel, sum) in returned.iter_mut().enumerate() {
+        *sum = attenuation
+            .0
+            .into_iter()
+            .fold(zero, |sum, lobe| sum + lobe[channel]);
+    }
+    sum_to_one(attenuation.0.map(|lobe| match selection {
+        Selection::Mean => lobe[0] + lobe[1] + lobe[2],
+        Selection::ByChannel => {
+            let share = |c: usize| {
+                if returned[c] > zero {
+                    lobe[c] / returned[c]
+                } else {
+                    zero
+                }
+            };
+            let [r, g, b] = [share(0), share(1), share(2)];
+            (r * r + g * g + b * b).sqrt()
+        }
+    }))
+}

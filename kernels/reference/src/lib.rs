@@ -1,0 +1,46 @@
+//! Formulas of the models of [`hairis`] line by line, in `f32` and in `f64`: the second source beside the kernels.
+//!
+//! In `f64` they are the reference of tests and reports, in `f32` the scalar baseline of speed comparisons: the code people
+//! write from the papers today. The kernels share no code with them, only the plain structs of their parameters.
+//!
+//! | model | formulas | source |
+//! |---|---|---|
+//! | [`Published`](hairis::Published) over any bell | [`HairReference`] | Ou et al. 2012 |
+//! | [`Matched`](hairis::Matched) over any bell | [`MatchedReference`] | ours |
+//! | [`KajiyaKay`](hairis_variants::KajiyaKay) | [`KajiyaKayReference`] | Kajiya & Kay 1989 |
+//! | [`Chiang`](hairis_variants::Chiang) | [`ChiangReference`] | Chiang et al. 2016 |
+//!
+//! All implement [`Reference`], and `Box<dyn Reference<f64>>` is the handle of a model chosen at run time: see [`reference`]
+//! for the models of the registry, [`HairFormulas`] for the published model. [`Formulas`] pairs a kernel with its formulas.
+//!
+//! - Conventions: those of [`hairis`]. `wo` is the paper's `omega_r`, `wi` its `omega_i`.
+//! - Numbers: [`Real`], elementary functions of `libm` unless the caller brings others.
+
+mod chiang;
+mod interface;
+mod kajiya_kay;
+mod published;
+mod quadrature;
+mod real;
+mod registry;
+mod steps;
+
+pub use chiang::{ChiangConstants, ChiangParameters, ChiangReference, Selection, bessel_i0_scaled};
+pub use interface::{LobeAt, Reference, ReferenceSample};
+pub use kajiya_kay::{
+    KajiyaKayConstants, KajiyaKayParameters, KajiyaKayReference, cosine_power_integral,
+};
+pub use published::{
+    CauchyDensity, HairFormulas, HairReference, MatchedReference, Parameters, Shape,
+};
+pub use quadrature::integrate;
+pub use real::Real;
+pub use registry::{
+    Accuracy, Formulas, Visitor, accuracy, exact_reference, reference, slack, visit,
+};
+
+/// Examples of the package's README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+#[derive(Debug)]
+pub struct Readme;

@@ -1,0 +1,387 @@
+//! The formulas of the models of the registry.
+
+use crate::{
+    ChiangConstants, ChiangParameters, ChiangReference, HairReference, KajiyaKayConstants,
+    KajiyaKayParameters, KajiyaKayReference, MatchedReference, Parameters, Real, Reference,
+    Selection, Shape, cosine_power_integral,
+};
+use core::f64::consts::{PI, TAU};
+use core::fmt::Debug;
+use hairis::{Gaussian, HairParams, Lobe, Matched, ParamError, Published};
+use hairis_variants::{
+    AllCauchy, Cauchy, Chiang, ChiangParams, KajiyaKay, KajiyaKayParams, ModelId, Parameters as _,
+    Registered, RegisteredBell, Values,
+};
+
+/// A model of the registry with its formulas.
+pub trait Formulas: Registered {
+    /// What the formulas need to know of a material, computed once.
+    type Constants<T: Real>: Copy + Debug + Send + Sync;
+    /// The formulas at one shading point.
+    type Point<T: Real>: Reference<T> + Copy + 'static;
+    /// The accuracy that comparisons with the formulas require.
+    const ACCURACY: Accuracy;
+
+    /// The formulas for these parameters.
+    fn formulas<T: Real>(params: &Self::Params) -> Self::Constants<T>;
+
+    /// The formulas for the numbers of `exact`, in any precision; `params` are the same, rounded, and give the words.
+    fn exact_formulas<T: Real>(params: &Self::Params, exact: &Values<T>) -> Self::Constants<T>;
+
+    /// The formulas seen from `wo` at the offset `h`.
+    fn point<T: Real>(constants: &Self::Constants<T>, wo: [T; 3], h: T) -> Self::Point<T>;
+
+    /// Absolute error allowed of S beside the relative one, by channel: 0 unless the model cuts its tails.
+    fn slack(params: &Self::Params, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3];
+}
+
+/// Largest errors against the formulas in `f64`: relative, of a cdf absolute.
+///
+/// - Domain: directions further than 1e-3 rad from the axis, random materials of [`Field::draw`](hairis_variants::Field::draw).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// S at a given direction.
+    pub value: f64,
+    /// Density of a given direction.
+    pub pdf: f64,
+    /// S that a sample reports, at its direction.
+    pub sample_value: f64,
+    /// Density that a sample reports.
+    pub sample_pdf: f64,
+    /// Weight that a sample reports.
+    pub sample_weight: f64,
+    /// Distance of [`Reference::cdf`] from the numbers of a sample.
+    pub cdf: f64,
+    /// Whether the density has the [`slack`] of S, as a share of it.
+    pub slack_in_pdf: bool,
+}
+
+/// Work on a model of the registry as a type: see [`visit`].
+pub trait Visitor {
+    /// Result of the work.
+    type Output;
+
+    /// Does the work on the model `M`.
+    fn visit<M: Formulas>(self) -> Self::Output;
+}
+
+macro_rules! formulas {
+    ($($(#[$doc:meta])* $variant:ident: $model:ty;)*) => {
+        /// Calls `visitor` with the model's type, as [`ModelId::visit`] does.
+        pub fn visit<V: Visitor>(id: ModelId, visitor: V) -> V::Output {
+            match id {
+                $(ModelId::$variant => visitor.visit::<$model>(),)*
+                _ => unreachable!("the list has every model"),
+            }
+        }
+    };
+}
+hairis_variants::for_each_model! { formulas }
+
+/// The formulas of a model for these values, seen from `wo` at the offset `h`.
+///
+/// # Errors
+///
+/// If a value is out of its range.
+pub fn reference<T: Real>(
+    id: ModelId,
+    values: &Values,
+    wo: [T; 3],
+    h: T,
+) -> Result<Box<dyn Reference<T>>, ParamError> {
+    exact_reference(id, values, &values.map(T::from_f32), wo, h)
+}
+
+/// The formulas for the numbers of `exact`, seen from `wo` at the offset `h`. `values` are the same, rounded.
+///
+/// # Errors
+///
+/// If one of `values` is out of its range; `exact` is not checked.
+pub fn exact_reference<T: Real>(
+    id: ModelId,
+    values: &Values,
+    exact: &Values<T>,
+    wo: [T; 3],
+    h: T,
+) -> Result<Box<dyn Reference<T>>, ParamError> {
+    struct Prepare<'a, T>(&'a Values, &'a Values<T>, [T; 3], T);
+    impl<T: Real> Visitor for Prepare<'_, T> {
+        type Output = Result<Box<dyn Reference<T>>, ParamError>;
+        fn visit<M: Formulas>(self) -> Self::Output {
+            let Self(values, exact, wo, h) = self;
+            let constants = M::exact_formulas(&M::Params::from_values(values)?, exact);
+            Ok(Box::new(M::point(&constants, wo, h)))
+        }
+    }
+    visit(id, Prepare(values, exact, wo, h))
+}
+
+/// The accuracy that comparisons with the formulas require.
+#[must_use]
+pub fn accuracy(id: ModelId) -> Accuracy {
+    struct Required;
+    impl Visitor for Required {
+        type Output = Accuracy;
+        fn visit<M: Formulas>(self) -> Accuracy {
+            M::ACCURACY
+        }
+    }
+    visit(id, Required)
+}
+
+/// Absolute error allowed of S, by channel: see [`Formulas::slack`].
+///
+/// # Errors
+///
+/// If a value is out of its range.
+pub fn slack(
+    id: ModelId,
+    values: &Values,
+    wo: [f64; 3],
+    wi: [f64; 3],
+) -> Result<[f64; 3], ParamError> {
+    struct Allowed<'a>(&'a Values, [f64; 3], [f64; 3]);
+    impl Visitor for Allowed<'_> {
+        type Output = Result<[f64; 3], ParamError>;
+        fn visit<M: Formulas>(self) -> Self::Output {
+            Ok(M::slack(&M::Params::from_values(self.0)?, self.1, self.2))
+        }
+    }
+    visit(id, Allowed(values, wo, wi))
+}
+
+/// A bell of the registry in the formulas.
+trait Bell: RegisteredBell {
+    const SHAPE: Shape;
+    /// Relative errors allowed of S, of what a matched sampler reports, and of its cdf.
+    const ERRORS: [f64; 3];
+}
+
+impl Bell for Gaussian {
+    const SHAPE: Shape = Shape::Gaussian;
+    const ERRORS: [f64; 3] = [1e-4, 3e-5, 5e-5];
+}
+
+impl Bell for Cauchy {
+    const SHAPE: Shape = Shape::Cauchy;
+    const ERRORS: [f64; 3] = [1e-5; 3];
+}
+
+/// Of the published sampler a weight is a value over a density: its bound is the sum of theirs. A cdf moves by 20 times as
+/// much as the angle on the narrowest lobe, of a degree, and the angle of a rounded direction by 2e-7 rad.
+impl<B: Bell> Formulas for Published<B> {
+    type Constants<T: Real> = Parameters<T>;
+    type Point<T: Real> = HairReference<T>;
+    const ACCURACY: Accuracy = {
+        let [value, _, _] = B::ERRORS;
+        Accuracy {
+            value,
+            pdf: 1e-5,
+            sample_value: value,
+            sample_pdf: 1e-5,
+            sample_weight: value + 1e-5,
+            cdf: 1e-5,
+            slack_in_pdf: false,
+        }
+    };
+
+    #[inline]
+    fn formulas<T: Real>(params: &HairParams) -> Parameters<T> {
+        Parameters::from(params)
+    }
+
+    #[inline]
+    fn exact_formulas<T: Real>(_params: &HairParams, exact: &Values<T>) -> Parameters<T> {
+        exact_parameters(exact)
+    }
+
+    #[inline]
+    fn point<T: Real>(constants: &Parameters<T>, wo: [T; 3], _h: T) -> HairReference<T> {
+        HairReference::prepare(constants, B::SHAPE, wo)
+    }
+
+    fn slack(params: &HairParams, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
+        hair_slack(B::SHAPE, params, wo, wi)
+    }
+}
+
+/// A matched density is made of the model's own bells, and is allowed what S is; samples stay away from where S is known
+/// worst. The largest seen of their density, S and weight is 2e-5 (Gaussian) and 9.8e-6 (Cauchy); of their cdf, 2.5e-5 on
+/// Gaussian lobes that lie off the sphere and fall from its pole, and 2.4e-6 on Cauchy ones (four seeds, in full).
+impl<B: Bell, const BANDS: usize> Formulas for Matched<B, BANDS> {
+    type Constants<T: Real> = Parameters<T>;
+    type Point<T: Real> = MatchedReference<T>;
+    const ACCURACY: Accuracy = {
+        let [value, sample, cdf] = B::ERRORS;
+        Accuracy {
+            value,
+            pdf: value,
+            sample_value: sample,
+            sample_pdf: sample,
+            sample_weight: sample,
+            cdf,
+            slack_in_pdf: true,
+        }
+    };
+
+    #[inline]
+    fn formulas<T: Real>(params: &HairParams) -> Parameters<T> {
+        Parameters::from(params)
+    }
+
+    #[inline]
+    fn exact_formulas<T: Real>(_params: &HairParams, exact: &Values<T>) -> Parameters<T> {
+        exact_parameters(exact)
+    }
+
+    #[inline]
+    fn point<T: Real>(constants: &Parameters<T>, wo: [T; 3], _h: T) -> MatchedReference<T> {
+        MatchedReference::prepare(constants, B::SHAPE, wo, BANDS)
+    }
+
+    fn slack(params: &HairParams, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
+        hair_slack(B::SHAPE, params, wo, wi)
+    }
+}
+
+/// The formulas' parameters of these values.
+fn exact_parameters<T: Real>(exact: &Values<T>) -> Parameters<T> {
+    let number = |name| {
+        let [number] = exact.get(name);
+        number
+    };
+    Parameters {
+        alpha: exact.get("alpha"),
+        beta: exact.get("beta"),
+        gamma_tt: number("gamma_tt"),
+        gamma_g: number("gamma_g"),
+        phi_g: number("phi_g"),
+        intensity_r: exact.get("i_r"),
+        intensity_tt: exact.get("i_tt"),
+        intensity_trt: exact.get("i_trt"),
+        intensity_g: number("i_g"),
+    }
+}
+
+/// The kernels' Gaussians are 0 from between `2^-114` and `2^-115` down, each of the four lobes.
+fn hair_slack(shape: Shape, params: &HairParams, wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
+    const FLOOR: f64 = 1.0 / (1_u128 << 114) as f64;
+    if shape != Shape::Gaussian {
+        return [0.0; 3];
+    }
+    let [theta_o, theta_i] = [wo, wi].map(|[u, v, w]| u.atan2(v.hypot(w)));
+    let cos_theta_d = (0.5 * (theta_o - theta_i)).cos();
+    let d = params.desc();
+    core::array::from_fn(|c| {
+        let intensity =
+            d.intensity_r[c] + d.intensity_tt[c] + d.intensity_trt[c] * (1.0 + d.intensity_g);
+        f64::from(intensity) * FLOOR / (cos_theta_d * cos_theta_d)
+    })
+}
+
+/// For exponents up to 1000.
+impl Formulas for KajiyaKay {
+    type Constants<T: Real> = KajiyaKayConstants<T>;
+    type Point<T: Real> = KajiyaKayReference<T>;
+    const ACCURACY: Accuracy = Accuracy {
+        value: 1e-5,
+        pdf: 1e-5,
+        sample_value: 1e-5,
+        sample_pdf: 1e-5,
+        sample_weight: 2e-5,
+        cdf: 0.0,
+        slack_in_pdf: true,
+    };
+
+    #[inline]
+    fn formulas<T: Real>(params: &KajiyaKayParams) -> KajiyaKayConstants<T> {
+        KajiyaKayConstants::new(&params.into())
+    }
+
+    #[inline]
+    fn exact_formulas<T: Real>(
+        params: &KajiyaKayParams,
+        exact: &Values<T>,
+    ) -> KajiyaKayConstants<T> {
+        let [exponent] = exact.get("exponent");
+        KajiyaKayConstants::new(&KajiyaKayParameters {
+            kd: exact.get("kd"),
+            ks: exact.get("ks"),
+            exponent,
+            form: params.desc().form,
+        })
+    }
+
+    #[inline]
+    fn point<T: Real>(
+        constants: &KajiyaKayConstants<T>,
+        wo: [T; 3],
+        _h: T,
+    ) -> KajiyaKayReference<T> {
+        constants.prepare(wo)
+    }
+
+    /// Errors grow with the exponent of the bell: from 1e-12 of its peak down they are absolute.
+    fn slack(params: &KajiyaKayParams, _wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
+        let (desc, [_, v, w]) = (params.desc(), wi);
+        let peak = 0.5 / (PI * cosine_power_integral(f64::from(desc.exponent) + 2.0));
+        desc.ks.map(|ks| 1e-17 * f64::from(ks) * peak / v.hypot(w))
+    }
+}
+
+impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
+    type Constants<T: Real> = ChiangConstants<T>;
+    type Point<T: Real> = ChiangReference<T>;
+    // `5e-6 + 5e-7 / min(sqrt(v), s)`, the narrowest v and s those of roughnesses of .1.
+    const ACCURACY: Accuracy = Accuracy {
+        value: 2.6e-5,
+        pdf: 2.6e-5,
+        sample_value: 2.6e-5,
+        sample_pdf: 2.6e-5,
+        sample_weight: 1e-4,
+        cdf: 0.0,
+        slack_in_pdf: true,
+    };
+
+    #[inline]
+    fn formulas<T: Real>(params: &ChiangParams) -> ChiangConstants<T> {
+        ChiangConstants::new(&params.into(), Selection::of(BY_CHANNEL))
+    }
+
+    #[inline]
+    fn exact_formulas<T: Real>(params: &ChiangParams, exact: &Values<T>) -> ChiangConstants<T> {
+        let number = |name| {
+            let [number] = exact.get(name);
+            number
+        };
+        let parameters = ChiangParameters {
+            beta_m: number("beta_m"),
+            beta_n: number("beta_n"),
+            tilt: number("tilt"),
+            eta: number("eta"),
+            sigma_a: exact.get("sigma_a"),
+            shifts: params.desc().shifts,
+        };
+        let parameters = if exact.has("melanin") {
+            let [eumelanin, pheomelanin] = exact.get("melanin");
+            parameters.with_melanin(eumelanin, pheomelanin)
+        } else if exact.has("color") {
+            parameters.with_color(exact.get("color"))
+        } else {
+            parameters
+        };
+        ChiangConstants::new(&parameters, Selection::of(BY_CHANNEL))
+    }
+
+    #[inline]
+    fn point<T: Real>(constants: &ChiangConstants<T>, wo: [T; 3], h: T) -> ChiangReference<T> {
+        constants.prepare(wo, h)
+    }
+
+    /// Errors grow with the exponent of a lobe: from `exp(-12)` of its peak down they are absolute.
+    fn slack(params: &ChiangParams, _wo: [f64; 3], wi: [f64; 3]) -> [f64; 3] {
+        let (p, [_, v, w]) = (ChiangParameters::<f64>::from(params), wi);
+        let peak = 0.25 / ((TAU * p.variances()[Lobe::R]).sqrt() * p.scale());
+        [Self::ACCURACY.value * (-12.0_f64).exp() * peak / v.hypot(w); 3]
+    }
+}

@@ -1,0 +1,7 @@
+//! Tests of the formulas: one binary.
+#![allow(clippy::unwrap_used, reason = "a test may panic: that is how it fails")]
+
+mod fibers;
+mod published;
+
+use hairis_conformance::published::quadrature;
