@@ -80,13 +80,11 @@ impl<M: Model> Material<M> {
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
-        Bsdf8 {
-            prepared: self.level.run(Prepare::<M, f32, _> {
-                material: &self.constants,
-                hits,
-            }),
-            level: self.level,
-        }
+        let (material, level) = (&self.constants, self.level);
+        level.run_into(Prepare::<M, f32, _> { material, hits }, |prepared| Bsdf8 {
+            prepared,
+            level,
+        })
     }
 
     /// The largest directional albedo over all `wo` and the three channels: above 1 the hair gives back more light
@@ -188,12 +186,9 @@ impl<M: Model> Material8<M> {
     #[inline]
     #[must_use]
     pub fn prepare8(&self, hits: impl Into<Hit8>) -> Bsdf8<M> {
-        Bsdf8 {
-            prepared: self.level.run(Prepare::<M, f32x8, _> {
-                material: &self.constants,
-                hits,
-            }),
-            level: self.level,
-        }
+        let (material, level) = (&self.constants, self.level);
+        level.run_into(Prepare::<M, f32x8, _> { material, hits }, |prepared| {
+            Bsdf8 { prepared, level }
+        })
     }
 }

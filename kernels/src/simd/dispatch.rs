@@ -242,16 +242,22 @@ impl Level {
     /// Runs `kernel` on eight lanes of this instruction set.
     #[inline(always)]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        self.run_into(kernel, |output| output)
+    }
+
+    /// Runs `kernel`, and wraps its output: in each branch, so that the output is written where the result goes.
+    #[inline(always)]
+    pub(crate) fn run_into<K: Kernel, T>(self, kernel: K, wrap: impl Fn(K::Output) -> T) -> T {
         match self.0 {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             // SAFETY: a `Level` of this kind is made only where these features were found.
-            Kind::Avx512 if K::MANY_REGISTERS => unsafe { run_avx512(kernel) },
+            Kind::Avx512 if K::MANY_REGISTERS => wrap(unsafe { run_avx512(kernel) }),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             // SAFETY: as above.
-            Kind::Avx2 | Kind::Avx512 => unsafe { run_avx2(kernel) },
+            Kind::Avx2 | Kind::Avx512 => wrap(unsafe { run_avx2(kernel) }),
             Kind::Portable => {
                 clean_upper_halves();
-                kernel.run::<f32x8>()
+                wrap(kernel.run::<f32x8>())
             }
         }
     }
