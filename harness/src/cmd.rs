@@ -9,7 +9,7 @@ pub mod study;
 use crate::args::Command;
 use hairis_instruments::error::Error;
 use hairis_instruments::light::{Environment, LightError, Sky};
-use hairis_instruments::program::say;
+use hairis_instruments::program::{check_threads, say};
 use hairis_instruments::table::Table;
 use std::io::{self, Write};
 use std::path::Path;
@@ -20,6 +20,9 @@ use std::path::Path;
 ///
 /// [`Error`] if it was stopped, or if a check failed.
 pub fn run(command: &Command) -> Result<(), Error> {
+    if !matches!(command, Command::Eval(_)) {
+        check_threads();
+    }
     match command {
         Command::Eval(flags) => eval::run(flags),
         Command::Compare(flags) => compare::run(flags),

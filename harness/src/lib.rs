@@ -11,6 +11,7 @@ pub mod figures;
 pub mod lights;
 pub mod rays;
 pub mod sampler;
+mod sealed;
 pub mod speed;
 pub mod study;
 pub mod subject;

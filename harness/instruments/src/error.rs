@@ -1,5 +1,6 @@
 //! Errors that end a run of `hairis` with an exit code other than 0.
 
+use crate::interrupt::Signal;
 use crate::light::LightError;
 use core::fmt;
 use hairis::ParamError;
@@ -44,6 +45,13 @@ pub enum Error {
         /// Number of lines in all.
         of: u64,
     },
+    /// A signal asked the run to end, and what it had done is saved.
+    Interrupted {
+        /// The signal.
+        signal: Signal,
+        /// Where the work is, and how to continue.
+        saved: String,
+    },
 }
 
 impl Error {
@@ -55,13 +63,14 @@ impl Error {
         }
     }
 
-    /// The exit code: 1 for a failed comparison or check, 2 for bad usage or input.
+    /// The exit code: 1 for a failed comparison or check, 2 for bad usage or input, and what shells
+    /// report for a process that a signal has ended.
     #[must_use]
     pub const fn exit_code(&self) -> u8 {
-        if matches!(self, Self::Failed(_) | Self::Params(_)) {
-            1
-        } else {
-            2
+        match self {
+            Self::Failed(_) | Self::Params(_) => 1,
+            Self::Interrupted { signal, .. } => 128 + signal.number(),
+            _ => 2,
         }
     }
 }
@@ -80,6 +89,9 @@ impl fmt::Display for Error {
             Self::Failed(1) => f.write_str("1 check failed"),
             Self::Failed(checks) => write!(f, "{checks} checks failed"),
             Self::Malformed { lines, of } => write!(f, "{lines} of {of} lines were refused"),
+            Self::Interrupted { signal, saved } => {
+                write!(f, "interrupted by {}: {saved}", signal.name())
+            }
         }
     }
 }

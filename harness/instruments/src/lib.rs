@@ -3,10 +3,12 @@
 //!
 //! They depend on no experiment, scene or model of hair.
 
+pub mod appended;
 pub mod columns;
 pub mod direction;
 pub mod error;
 pub mod files;
+pub mod interrupt;
 pub mod light;
 pub mod machine;
 pub mod markup;

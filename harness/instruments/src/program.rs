@@ -2,8 +2,14 @@
 
 use crate::error::Error;
 use clap::Parser;
+use core::num::NonZero;
+use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::{env, thread};
+
+/// The variable that tells rayon how many threads to use.
+const THREADS: &str = "RAYON_NUM_THREADS";
 
 /// Parses the command line and calls `work`. Prints an error as one line on standard error, after `name`, and returns its exit
 /// code.
@@ -43,7 +49,57 @@ fn one_line(message: &str) -> String {
     )
 }
 
+/// Remarks on a count of threads, in the variable `RAYON_NUM_THREADS`, that is none or above the
+/// cores. Programs with parallel work call it first.
+pub fn check_threads() {
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    let wanted = env::var_os(THREADS);
+    if let Some(remark) = wanted.and_then(|wanted| remark_on_threads(&wanted, cores)) {
+        say(&remark);
+    }
+}
+
+/// The remark on a value of the variable; `None` if there is nothing odd about it. For rayon 0 is
+/// its default, as for none.
+fn remark_on_threads(wanted: &OsStr, cores: usize) -> Option<String> {
+    let count = wanted.to_str().and_then(|text| text.parse::<usize>().ok());
+    match count {
+        None => Some(format!(
+            "{THREADS} must be a whole number of threads, got {wanted:?}: using {cores}, one per core"
+        )),
+        Some(count) if count > cores => Some(format!(
+            "{THREADS} should be at most {cores}, the cores that this process may use, got {count}: threads will share cores"
+        )),
+        Some(_) => None,
+    }
+}
+
 /// Prints a line on standard error. Ignores write errors.
 pub fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn odd_counts_of_threads_are_reported() {
+        let remark = |text: &str| remark_on_threads(OsStr::new(text), 4);
+        for text in ["0", "1", "4"] {
+            assert_eq!(remark(text), None, "{text}");
+        }
+        for text in ["", "four", "-1", "2.5", "1e1"] {
+            let remark = remark(text).expect("no number");
+            assert!(
+                remark.contains(&format!("got {text:?}: using 4")),
+                "{remark}"
+            );
+        }
+        let above = remark("64").expect("too many");
+        assert!(
+            above.contains("at most 4") && above.contains("got 64"),
+            "{above}"
+        );
+    }
 }

@@ -7,6 +7,7 @@ pub(crate) use render::environment;
 
 use crate::args::Command;
 use hairis_instruments::error::Error;
+use hairis_instruments::program::check_threads;
 
 /// Runs a subcommand.
 ///
@@ -14,6 +15,7 @@ use hairis_instruments::error::Error;
 ///
 /// Errors of the subcommand.
 pub fn run(command: &Command) -> Result<(), Error> {
+    check_threads();
     match command {
         Command::Render(flags) => render::run(flags),
         Command::Merge(flags) => merge::run(flags),

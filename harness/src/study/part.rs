@@ -3,22 +3,19 @@
 //! It is only ever appended to, a whole line at a time. A process that is killed leaves at most its last line torn:
 //! the next run drops that line and computes its cell again. Each line ends in a checksum of the rest of it.
 
-mod sealed;
-
-pub use sealed::line;
+pub use crate::sealed::line;
 
 use super::cell::Measured;
 use super::tally::Figures;
+use crate::sealed::unseal;
+use hairis_instruments::appended::Appended;
 use hairis_instruments::error::Error;
 use hairis_instruments::light::Environment;
 use hairis_instruments::shard::Shard;
 use hairis_instruments::stats::Estimate;
-use sealed::unseal;
 use serde::{Deserialize, Serialize};
-use std::fs::{self, File, TryLockError};
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::{fs, io};
 
 /// First word of every part file: the layout of its lines.
 pub const FORMAT: &str = "hairis-study-4";
@@ -282,13 +279,9 @@ pub(super) fn refuse(path: &Path, problem: impl Into<String>) -> Error {
     }
 }
 
-/// A part file that is being written. The system frees it when the process ends, however it ends.
+/// A part file that is being written.
 #[derive(Debug)]
-pub struct Part {
-    path: PathBuf,
-    /// The cause once a line might be torn: nothing must follow it.
-    file: Mutex<Result<File, io::Error>>,
-}
+pub struct Part(Appended);
 
 impl Part {
     /// Opens the part file of `header` in `dir`, or begins it; also gives the cells it has.
@@ -300,16 +293,7 @@ impl Part {
         let shard = header.shard().map_err(Error::Usage)?;
         let path = dir.join(format!("cells-{}-of-{}.jsonl", shard.index(), shard.of()));
         let output = Error::output(&path);
-        let mut file = File::options()
-            .append(true)
-            .create(true)
-            .read(true)
-            .open(&path)
-            .map_err(&output)?;
-        // File systems without locks go without.
-        if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
-            return Err(refuse(&path, "another process is writing to it"));
-        }
+        let file = Appended::open(&path)?;
         let bytes = fs::read(&path).map_err(&output)?;
         let first = line(header).map_err(&output)?;
         let (whole, finished) = match parse(&path, &bytes)? {
@@ -326,23 +310,17 @@ impl Part {
             None if first.starts_with(&bytes) => (0, Vec::new()),
             None => return Err(refuse(&path, "is no part of a study")),
         };
-        file.set_len(whole as u64).map_err(&output)?;
+        file.cut(whole)?;
         if whole == 0 {
-            file.write_all(&first).map_err(&output)?;
+            file.append(&first)?;
         }
-        Ok((
-            Self {
-                path: path.clone(),
-                file: Mutex::new(Ok(file)),
-            },
-            finished,
-        ))
+        Ok((Self(file), finished))
     }
 
     /// The file.
     #[must_use]
     pub fn path(&self) -> &Path {
-        &self.path
+        self.0.path()
     }
 
     /// Appends a cell.
@@ -351,18 +329,8 @@ impl Part {
     ///
     /// [`Error::Output`] if it cannot be written.
     pub fn keep(&self, finished: &Finished) -> Result<(), Error> {
-        let output = Error::output(&self.path);
-        let line = line(finished).map_err(&output)?;
-        let mut file = self
-            .file
-            .lock()
-            .map_err(|_| output(io::Error::other("another thread failed")))?;
-        if let Err(cause) = file.as_mut().map_or(Ok(()), |file| file.write_all(&line)) {
-            *file = Err(cause);
-        }
-        // Other threads fail by the same cause: whichever is reported names it.
-        let copy = |cause: &io::Error| output(io::Error::new(cause.kind(), cause.to_string()));
-        file.as_ref().map(|_| ()).map_err(copy)
+        let line = line(finished).map_err(Error::output(self.path()))?;
+        self.0.append(&line)
     }
 }
 

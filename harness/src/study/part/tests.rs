@@ -98,36 +98,6 @@ fn headers_tell_runs_apart_but_for_the_shard() {
 }
 
 #[test]
-#[cfg(target_os = "linux")]
-fn nothing_follows_a_line_that_could_not_be_written() {
-    let path = PathBuf::from("/dev/full");
-    let file = File::options()
-        .append(true)
-        .open(&path)
-        .expect("Linux has it");
-    let part = Part {
-        path,
-        file: Mutex::new(Ok(file)),
-    };
-    let header = header(1);
-    // Of several threads any may be the one whose error is reported: all of them name the cause.
-    for _ in 0..3 {
-        let error = part
-            .keep(&finished(0, &header))
-            .expect_err("the device is full")
-            .to_string();
-        assert!(
-            error.starts_with("cannot write /dev/full: No space left"),
-            "{error}"
-        );
-    }
-    assert!(
-        part.file.lock().is_ok_and(|file| file.is_err()),
-        "nothing is written after that"
-    );
-}
-
-#[test]
 fn a_changed_byte_is_found() {
     let dir = tempfile::TempDir::new().expect("a folder");
     let header = header(1);

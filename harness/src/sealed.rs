@@ -1,4 +1,4 @@
-//! Lines of a part file: a JSON object that ends in a checksum of the rest of it.
+//! Lines of files that grow: a JSON object that ends in a checksum of the rest of it.
 
 use serde::Serialize;
 use std::io;
@@ -6,8 +6,8 @@ use std::io;
 /// What stands before the checksum of a line, and after.
 const CHECKSUM: [&str; 2] = [",\"checksum\":\"", "\"}"];
 
-/// Hash of the bytes of a line before its checksum (FNV-1a).
-fn checksum(line: &[u8]) -> String {
+/// Hash of bytes (FNV-1a): in a line, of those before its checksum.
+pub(crate) fn checksum(line: &[u8]) -> String {
     let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
     format!("{:016x}", line.iter().fold(0xcbf2_9ce4_8422_2325, step))
 }
@@ -30,7 +30,7 @@ pub fn line(content: &impl Serialize) -> io::Result<Vec<u8>> {
 }
 
 /// The object in a line, and whether its checksum is right; `None` if it has none.
-pub(super) fn unseal(line: &[u8]) -> Option<(Vec<u8>, bool)> {
+pub(crate) fn unseal(line: &[u8]) -> Option<(Vec<u8>, bool)> {
     let [before, after] = CHECKSUM.map(str::as_bytes);
     let (rest, sum) = line.strip_suffix(after)?.split_last_chunk::<16>()?;
     let content = rest.strip_suffix(before)?;

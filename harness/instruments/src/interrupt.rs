@@ -1,0 +1,141 @@
+//! Signals that ask a run to end: it saves what it has first.
+
+use crate::error::Error;
+use core::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Arc;
+
+/// A signal that asks a program to end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal {
+    /// SIGINT: Ctrl-C.
+    Interrupt,
+    /// SIGTERM: `kill`, `timeout`, and schedulers before they pre-empt a job.
+    Terminate,
+}
+
+impl Signal {
+    const ALL: [Self; 2] = [Self::Interrupt, Self::Terminate];
+
+    /// Its number on every Unix.
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        match self {
+            Self::Interrupt => 2,
+            Self::Terminate => 15,
+        }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Interrupt => "SIGINT",
+            Self::Terminate => "SIGTERM",
+        }
+    }
+
+    fn from_number(number: usize) -> Option<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|signal| usize::from(signal.number()) == number)
+    }
+}
+
+/// Whether a signal has asked this process to end. Clones share the answer.
+#[derive(Clone, Debug, Default)]
+pub struct Interrupt(Arc<AtomicUsize>);
+
+impl Interrupt {
+    /// Watches for SIGINT and SIGTERM, which no longer end the process by themselves. A second
+    /// signal does, at once; but not within a second of the first, because `timeout` and launchers
+    /// send the same one twice in a row.
+    ///
+    /// Without signals of Unix nothing is watched.
+    #[must_use]
+    pub fn watch() -> Self {
+        let watched = Self::default();
+        #[cfg(unix)]
+        if let Err(error) = watched.watch_signals() {
+            crate::program::say(&format!(
+                "cannot watch for signals: {error}; SIGINT and SIGTERM end the run at once"
+            ));
+        }
+        watched
+    }
+
+    #[cfg(unix)]
+    fn watch_signals(&self) -> std::io::Result<()> {
+        use core::time::Duration;
+        use std::time::Instant;
+
+        let numbers = Signal::ALL.map(|signal| i32::from(signal.number()));
+        let mut signals = signal_hook::iterator::Signals::new(numbers)?;
+        let watched = self.clone();
+        let watch = move || {
+            let mut first: Option<Instant> = None;
+            for number in signals.forever() {
+                if first.is_some_and(|first| first.elapsed() > Duration::from_secs(1)) {
+                    std::process::exit(128 + number);
+                }
+                first.get_or_insert_with(Instant::now);
+                if let Some(signal) = usize::try_from(number).ok().and_then(Signal::from_number) {
+                    watched.raise(signal);
+                }
+            }
+        };
+        std::thread::Builder::new()
+            .name("signals".to_owned())
+            .spawn(watch)
+            .map(|_| ())
+    }
+
+    /// As if the process had received the signal.
+    pub fn raise(&self, signal: Signal) {
+        // The first one names the exit code.
+        let _ = self.0.compare_exchange(
+            0,
+            usize::from(signal.number()),
+            Ordering::Relaxed,
+            Ordering::Relaxed,
+        );
+    }
+
+    /// The first signal, if there was one.
+    #[must_use]
+    pub fn signal(&self) -> Option<Signal> {
+        Signal::from_number(self.0.load(Ordering::Relaxed))
+    }
+
+    /// Ends a run that a signal has asked to end; `saved` says where its work is, and how to
+    /// continue.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Interrupted`] if there was a signal.
+    pub fn check(&self, saved: impl FnOnce() -> String) -> Result<(), Error> {
+        self.signal().map_or(Ok(()), |signal| {
+            Err(Error::Interrupted {
+                signal,
+                saved: saved(),
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_signal_gives_the_exit_code_of_shells() {
+        let interrupt = Interrupt::default();
+        assert!(interrupt.check(|| unreachable!("no signal")).is_ok());
+        interrupt.clone().raise(Signal::Terminate);
+        interrupt.raise(Signal::Interrupt);
+        let error = interrupt
+            .check(|| "half is saved".to_owned())
+            .expect_err("a signal");
+        assert_eq!(error.exit_code(), 143);
+        assert_eq!(error.to_string(), "interrupted by SIGTERM: half is saved");
+    }
+}
