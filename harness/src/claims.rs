@@ -34,14 +34,18 @@ mod uniform;
 pub use claim::{Claim, Figure, Origin, Role, Side, Threshold, Verdict};
 pub use tables::tables;
 
+use crate::journal::Journal;
+use crate::study::part::Header;
 use crate::study::{Cell, Grid, Plan};
 use crate::subject::ModelKind;
 use hair::{Hair, HairFigures};
 use hairis::ParamError;
+use hairis_instruments::error::Error;
 use hairis_instruments::light::Sky;
 use hairis_instruments::machine;
 use hairis_instruments::machine::Machine;
 use hairis_instruments::progress::Progress;
+use hairis_instruments::shard::Shard;
 use serde::Serialize;
 
 /// All results; the content of `claims.json`.
@@ -73,13 +77,31 @@ pub struct Settings {
 /// Results of quadrature for every cell and model.
 type FoundCells = [(Cell, ModelKind, HairFigures)];
 
-/// Computes the claims with this seed; if `quick`, on the 48 cells and with the samples of the short study, in place of all 3024.
-/// Workers call `progress` with the share that is done, from 0 to 1, in no order.
+/// Everything that the figures depend on: with the same header they are the same, but for times.
+#[must_use]
+pub fn header(seed: u64, quick: bool) -> Header {
+    let sky = Sky::default().environment();
+    let plan = Plan {
+        seed,
+        quick,
+        environment: &sky,
+    };
+    plan.header(Shard::WHOLE)
+}
+
+/// Computes the claims with this seed; if `quick`, on the 48 cells and with the samples of the
+/// short study, in place of all 3024. Workers call `progress` with the share that is done, from 0
+/// to 1, in no order. Figures are taken from `journal`, or put there.
 ///
 /// # Errors
 ///
-/// Never in practice: the hair of the grid is within the accepted ranges.
-pub fn run(seed: u64, quick: bool, progress: &(dyn Fn(f64) + Sync)) -> Result<Claims, ParamError> {
+/// Those of `journal`. The hair of the grid is within the accepted ranges.
+pub fn run(
+    seed: u64,
+    quick: bool,
+    journal: &Journal,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Claims, Error> {
     let sky = Sky::default().environment();
     let plan = Plan {
         seed,
@@ -91,16 +113,17 @@ pub fn run(seed: u64, quick: bool, progress: &(dyn Fn(f64) + Sync)) -> Result<Cl
     let [first, second] = [0.0, 0.5].map(|begin| {
         move |done: usize, total: usize| progress(begin + 0.5 * done as f64 / total as f64)
     });
-    let cells = by_quadrature(grid, &Progress::new(grid.len(), &first))?;
+    let cells = by_quadrature(grid, journal, &Progress::new(grid.len(), &first))?;
 
     let mut claims = vec![
         energy::claim(),
         tails::claim(),
-        uniform::claim(&plan, &cells)?,
+        uniform::claim(&plan, &cells, journal)?,
         grazing::claim()?,
     ];
     claims.extend(performance::claims(
         &plan,
+        journal,
         &Progress::new(grid.len(), &second),
     )?);
     claims.extend([
@@ -135,10 +158,17 @@ fn hair_of(cell: &Cell, model: ModelKind) -> Result<Hair, ParamError> {
 /// Integrates every cell of `grid` on all cores.
 fn by_quadrature(
     grid: Grid,
+    journal: &Journal,
     progress: &Progress<'_>,
-) -> Result<Vec<(Cell, ModelKind, HairFigures)>, ParamError> {
+) -> Result<Vec<(Cell, ModelKind, HairFigures)>, Error> {
     let cells: Vec<Cell> = grid.cells().collect();
-    let found =
-        |cell: &Cell| ModelKind::ALL.map(|model| Ok((*cell, model, hair_of(cell, model)?.found())));
+    let found = |cell: &Cell| {
+        ModelKind::ALL.map(|model| {
+            let key = format!("quadrature of cell {}, {}", cell.index, model.name());
+            let find = || hair_of(cell, model).map(|hair| hair.found().numbers());
+            let numbers = journal.numbers(&key, find)?;
+            Ok((*cell, model, HairFigures::from_numbers(numbers)))
+        })
+    };
     progress.map(&cells, found).into_iter().flatten().collect()
 }

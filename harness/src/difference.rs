@@ -30,13 +30,16 @@ pub use blur::SIGMA_DEG;
 pub use measure::{Differences, Norms};
 pub(crate) use output::{Summary, albedo_ratio};
 
+use crate::journal::Journal;
 use crate::study::{Cell, Grid};
 use blur::{Blur, Harmonics};
+use core::convert::Infallible;
 use hairis::model::Bell;
 use hairis::{HairParams, ParamError};
+use hairis_instruments::error::Error;
 use hairis_variants::Cauchy;
 use lobes::{Kind, ViewedHair};
-use measure::HairValues;
+use measure::{HairValues, NUMBERS};
 use rayon::prelude::*;
 
 /// Points of the rule on each panel between breakpoints.
@@ -104,43 +107,63 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Computes them, on all cores: in less than a minute for the whole grid.
+    /// Computes them, on all cores: in less than a minute for the whole grid. Figures are taken
+    /// from `journal`, or put there.
     ///
     /// # Errors
     ///
-    /// Never for [`Grid::FULL`] and [`Grid::QUICK`]: their hair is accepted.
-    pub fn over(grid: Grid) -> Result<Self, ParamError> {
+    /// Those of `journal`. The hair of [`Grid::FULL`] and [`Grid::QUICK`] is accepted.
+    pub fn over(grid: Grid, journal: &Journal) -> Result<Self, Error> {
+        const BEST: &str = "best factor";
+        let key = |cell: &Cell| format!("difference in cell {}", cell.index);
         let cells: Vec<Cell> = grid.cells().collect();
-        let hair: Vec<HairValues> = cells
+        // All hair has its say in the best factor, and after that the hair of cells that are left.
+        let is_needed = |cell: &Cell| !(journal.has(BEST) && journal.has(&key(cell)));
+        let hair: Vec<Option<HairValues>> = cells
             .par_iter()
-            .map(hair)
-            .collect::<Result<_, ParamError>>()?;
-        let best_of_grid = best::least(|k| {
-            let squares: Vec<f64> = hair.par_iter().map(|hair| hair.square_error(k)).collect();
-            squares.iter().sum()
-        });
+            .map(|cell| {
+                journal.check()?;
+                is_needed(cell)
+                    .then(|| hair(cell))
+                    .transpose()
+                    .map_err(Error::from)
+            })
+            .collect::<Result<_, Error>>()?;
+        let [best_of_grid] = journal.numbers(BEST, || {
+            let squares = |k: f64| {
+                let [sum] = journal.numbers(&format!("square for factor {k:e}"), || {
+                    let squares: Vec<f64> = hair
+                        .par_iter()
+                        .flatten()
+                        .map(|hair| hair.square_error(k))
+                        .collect();
+                    Ok::<_, Error>([squares.iter().sum()])
+                })?;
+                Ok::<_, Error>(sum)
+            };
+            Ok::<_, Error>([best::least(squares)?])
+        })?;
         let blur = Blur::new(SIGMA_DEG.to_radians(), LATITUDES, LATITUDES);
-        let rows = (cells.par_iter().zip(&hair)).flat_map_iter(|(cell, hair)| {
-            let factors = Width::ALL.map(|width| match width {
-                Width::Paper => f64::from(Cauchy::PAPER.width_factor()),
-                Width::HalfWidth => f64::from(Cauchy::HALF_WIDTH.width_factor()),
-                Width::Area => f64::from(Cauchy::AREA.width_factor()),
-                Width::BestOfGrid => best_of_grid,
-                Width::BestOfCell => best::least(|k| hair.square_error(k)),
-            });
-            let found = hair.figures(&factors.map(Kind::cauchy), &blur);
-            Width::ALL
-                .into_iter()
-                .zip(found)
-                .map(|(width, figures)| DifferenceRow {
-                    cell: *cell,
-                    width,
-                    figures,
-                })
+        let rows = (cells.par_iter().zip(&hair)).map(|(cell, hair)| {
+            let find = || {
+                let hair = hair.as_ref().ok_or_else(|| Error::Missing(key(cell)))?;
+                let found = figures(hair, best_of_grid, &blur);
+                let numbers: Vec<f64> = found.iter().flat_map(Differences::numbers).collect();
+                Ok::<_, Error>(core::array::from_fn(|place| numbers[place]))
+            };
+            let numbers = journal.numbers::<{ NUMBERS * Width::ALL.len() }, _>(&key(cell), find)?;
+            let (all, _) = numbers.as_chunks();
+            let row = |(width, numbers): (Width, &[f64; NUMBERS])| DifferenceRow {
+                cell: *cell,
+                width,
+                figures: Differences::from_numbers(*numbers),
+            };
+            Ok(Width::ALL.into_iter().zip(all).map(row).collect())
         });
+        let rows = rows.collect::<Result<Vec<Vec<DifferenceRow>>, Error>>()?;
         Ok(Self {
             grid,
-            rows: rows.collect(),
+            rows: rows.into_iter().flatten().collect(),
         })
     }
 
@@ -157,6 +180,21 @@ pub(crate) fn blurred(params: &HairParams, theta_o: f64, k: f64) -> Vec<Harmonic
     let rule = view.rule(ORDER);
     let values = [Kind::GAUSSIAN, Kind::cauchy(k)].map(|kind| rule.values(&view, kind));
     Blur::new(SIGMA_DEG.to_radians(), 1, 1).harmonics(&rule, &values)
+}
+
+/// The figures of a hair by the choices of its widths.
+fn figures(hair: &HairValues, best_of_grid: f64, blur: &Blur) -> Vec<Differences> {
+    let factors = Width::ALL.map(|width| match width {
+        Width::Paper => f64::from(Cauchy::PAPER.width_factor()),
+        Width::HalfWidth => f64::from(Cauchy::HALF_WIDTH.width_factor()),
+        Width::Area => f64::from(Cauchy::AREA.width_factor()),
+        Width::BestOfGrid => best_of_grid,
+        Width::BestOfCell => {
+            let Ok(best) = best::least(|k| Ok::<_, Infallible>(hair.square_error(k)));
+            best
+        }
+    });
+    hair.figures(&factors.map(Kind::cauchy), blur)
 }
 
 fn hair(cell: &Cell) -> Result<HairValues, ParamError> {
@@ -177,7 +215,7 @@ mod tests {
 
     #[test]
     fn the_best_factors_are_the_best_in_their_norm() {
-        let found = Difference::over(Grid::QUICK).expect("accepted");
+        let found = Difference::over(Grid::QUICK, &Journal::default()).expect("accepted");
         assert_eq!(found.rows.len(), Grid::QUICK.len() * Width::ALL.len());
         let squares = |width| {
             found

@@ -1,11 +1,12 @@
 //! The direction of each of the paper's claims: which figures are on which side, and what verdict they come to.
 
 use hairis_harness::claims::{Claim, Claims, Figure, Origin, Role, Verdict, run, tables};
+use hairis_harness::journal::Journal;
 use std::sync::OnceLock;
 
 fn claims() -> &'static Claims {
     static CLAIMS: OnceLock<Claims> = OnceLock::new();
-    CLAIMS.get_or_init(|| run(1, true, &|_| ()).unwrap())
+    CLAIMS.get_or_init(|| run(1, true, &Journal::default(), &|_| ()).unwrap())
 }
 
 fn claim(id: &str) -> &'static Claim {

@@ -10,7 +10,9 @@ mod study;
 use crate::cases::Case;
 use serde_json::{Value, json};
 use std::io::Write;
-use std::process::{Command, Stdio};
+#[cfg(unix)]
+use std::process::Child;
+use std::process::{Command, Output, Stdio};
 use std::thread;
 
 const PATHS: [&str; 4] = ["scalar", "x8", "batch", "f64"];
@@ -41,6 +43,16 @@ fn command(args: &[&str]) -> Command {
     command
 }
 
+/// Sends a signal to a process, and waits for its end.
+#[cfg(unix)]
+fn end(child: Child, signal: &str) -> Run {
+    let sent = Command::new("kill")
+        .args([format!("-{signal}"), child.id().to_string()])
+        .status();
+    assert!(sent.unwrap().success(), "it runs");
+    child.wait_with_output().unwrap().into()
+}
+
 fn run(args: &[&str], input: &[u8]) -> Run {
     let mut child = command(args).spawn().unwrap();
     let (mut stdin, input) = (child.stdin.take().unwrap(), input.to_vec());
@@ -48,17 +60,23 @@ fn run(args: &[&str], input: &[u8]) -> Run {
     let writer = thread::spawn(move || drop(stdin.write_all(&input)));
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap();
-    let lines = |bytes: Vec<u8>| {
-        String::from_utf8(bytes)
-            .unwrap()
-            .lines()
-            .map(str::to_owned)
-            .collect()
-    };
-    Run {
-        code: output.status.code(),
-        out: lines(output.stdout),
-        err: lines(output.stderr),
+    output.into()
+}
+
+impl From<Output> for Run {
+    fn from(output: Output) -> Self {
+        let lines = |bytes: Vec<u8>| {
+            String::from_utf8(bytes)
+                .unwrap()
+                .lines()
+                .map(str::to_owned)
+                .collect()
+        };
+        Self {
+            code: output.status.code(),
+            out: lines(output.stdout),
+            err: lines(output.stderr),
+        }
     }
 }
 

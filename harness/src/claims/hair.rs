@@ -101,6 +101,42 @@ pub(super) struct HairFigures {
     pub(super) lost: f64,
 }
 
+impl HairFigures {
+    /// All of its numbers.
+    pub(super) fn numbers(&self) -> [f64; 11] {
+        let Self {
+            uniform,
+            published,
+            printed,
+            whole,
+            uncut_bias,
+            lost,
+        } = self;
+        let mut numbers = [*lost; 11];
+        let pairs = [uniform, published, printed, whole, uncut_bias];
+        for (pair, of) in numbers.as_chunks_mut::<2>().0.iter_mut().zip(pairs) {
+            *pair = [of.value, of.error];
+        }
+        numbers
+    }
+
+    /// From its numbers.
+    pub(super) fn from_numbers(numbers: [f64; 11]) -> Self {
+        let of = |place: usize| Bounded {
+            value: numbers[place],
+            error: numbers[place + 1],
+        };
+        Self {
+            uniform: of(0),
+            published: of(2),
+            printed: of(4),
+            whole: of(6),
+            uncut_bias: of(8),
+            lost: numbers[10],
+        }
+    }
+}
+
 impl Hair {
     pub(super) fn new(model: ModelKind, params: &HairParams, theta_o: f64) -> Self {
         let parameters = Parameters::from(params);
@@ -225,6 +261,12 @@ mod tests {
     use super::*;
     use crate::efficiency::quadrature;
     use hairis_instruments::light::Constant;
+
+    #[test]
+    fn figures_come_back_from_their_numbers() {
+        let numbers = core::array::from_fn(|place| place as f64);
+        assert_eq!(HairFigures::from_numbers(numbers).numbers(), numbers);
+    }
 
     #[test]
     fn variances_are_those_of_the_whole_sphere() {

@@ -1,11 +1,13 @@
 //! The all-Cauchy model against the Gaussian one, each under the published sampler: the study's machinery, light by light.
 
 use super::claim::{Claim, Figure, Origin, Side, Statement};
+use crate::journal::Journal;
 use crate::sampler::Sampler;
 use crate::study::output::Times;
 use crate::study::{Cell, Plan, gain, variances};
 use crate::subject::ModelKind;
 use hairis::ParamError;
+use hairis_instruments::error::Error;
 use hairis_instruments::progress::Progress;
 use hairis_instruments::stats::Estimate;
 use hairis_instruments::table::number;
@@ -48,20 +50,40 @@ const PER_POINT: usize = 16;
 type Pairs = [[Estimate; 2]; 5];
 
 /// Measures every cell.
-fn measure(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Pairs>, ParamError> {
+fn measure(
+    plan: &Plan<'_>,
+    journal: &Journal,
+    progress: &Progress<'_>,
+) -> Result<Vec<Pairs>, Error> {
     let cells: Vec<Cell> = plan.grid().cells().collect();
     let pairs = |cell: &Cell| {
-        let v = variances(plan, plan.budget(), cell, &[Sampler::Published])?;
+        let find = || {
+            let v = variances(plan, plan.budget(), cell, &[Sampler::Published])?;
+            // Models outermost, then lights; a value and its error each.
+            Ok::<_, ParamError>(core::array::from_fn::<_, 20, _>(|place| {
+                let of = v[place / 2];
+                [of.value, of.standard_error][place % 2]
+            }))
+        };
+        let numbers = journal.numbers(&format!("V in cell {}", cell.index), find)?;
+        let of = |place: usize| Estimate {
+            value: numbers[2 * place],
+            standard_error: numbers[2 * place + 1],
+        };
         Ok(core::array::from_fn(|light| {
-            [v[light], v[LIGHTS.len() + light]]
+            [of(light), of(LIGHTS.len() + light)]
         }))
     };
     progress.map(&cells, pairs).into_iter().collect()
 }
 
 /// The claims: one per light, then one of all lights in equal time.
-pub(super) fn claims(plan: &Plan<'_>, progress: &Progress<'_>) -> Result<Vec<Claim>, ParamError> {
-    let cells = measure(plan, progress)?;
+pub(super) fn claims(
+    plan: &Plan<'_>,
+    journal: &Journal,
+    progress: &Progress<'_>,
+) -> Result<Vec<Claim>, Error> {
+    let cells = measure(plan, journal, progress)?;
     let mut claims = Vec::new();
     let mut means = Vec::new();
     for (light, [id, name]) in LIGHTS.into_iter().enumerate() {

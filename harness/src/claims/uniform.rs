@@ -3,10 +3,11 @@
 use super::bounded::{Bounded, Spread, largest};
 use super::claim::{Claim, Figure, Origin, Side, Statement};
 use super::{FoundCells, hair_of};
+use crate::journal::Journal;
 use crate::sampler::Sampler;
 use crate::study::{Cell, Grid, Plan, StudyBudget, variances};
 use crate::subject::ModelKind;
-use hairis::ParamError;
+use hairis_instruments::error::Error;
 use hairis_instruments::stats::Estimate;
 
 const STATEMENT: Statement = Statement {
@@ -29,20 +30,33 @@ fn example() -> Cell {
 }
 
 /// V of uniform sampling and of the published sampler on the example, Gaussian model, from samples.
-fn measured(plan: &Plan<'_>, cell: &Cell) -> Result<[Estimate; 2], ParamError> {
+fn measured(plan: &Plan<'_>, cell: &Cell, journal: &Journal) -> Result<[Estimate; 2], Error> {
     let budget = if plan.quick { 1 << 18 } else { 1 << 22 };
     let budget = StudyBudget {
         samples: budget,
         light_samples: 8,
         pools: 0,
     };
-    let v = variances(plan, budget, cell, &[Sampler::Uniform, Sampler::Published])?;
-    // Models outermost, then samplers, then lights: the constant light is the first of five.
-    Ok([v[0], v[5]])
+    let of = |sampler: Sampler| {
+        let key = format!("V of {} on the example", sampler.name());
+        // Models outermost, then lights: the constant light is the first.
+        let find =
+            || variances(plan, budget, cell, &[sampler]).map(|v| [v[0].value, v[0].standard_error]);
+        let [value, standard_error] = journal.numbers(&key, find)?;
+        Ok::<_, Error>(Estimate {
+            value,
+            standard_error,
+        })
+    };
+    Ok([of(Sampler::Uniform)?, of(Sampler::Published)?])
 }
 
 /// The claim.
-pub(super) fn claim(plan: &Plan<'_>, cells: &FoundCells) -> Result<Claim, ParamError> {
+pub(super) fn claim(
+    plan: &Plan<'_>,
+    cells: &FoundCells,
+    journal: &Journal,
+) -> Result<Claim, Error> {
     let ratios: Vec<(&Cell, ModelKind, Bounded)> = cells
         .iter()
         .map(|(cell, model, found)| (cell, *model, found.published.over(found.uniform)))
@@ -64,7 +78,7 @@ pub(super) fn claim(plan: &Plan<'_>, cells: &FoundCells) -> Result<Claim, ParamE
     let of_each = cells.len() / ModelKind::ALL.len();
 
     let cell = example();
-    let [uniform, published] = measured(plan, &cell)?;
+    let [uniform, published] = measured(plan, &cell, journal)?;
     let exact = hair_of(&cell, ModelKind::Gaussian)?.found();
     let at = "β_R = 20°, γ_TT = 45°, γ_g = 20°, θ_o = 0°";
     let [of_published, of_uniform] = ["the published sampler", "uniform"]
@@ -126,7 +140,7 @@ mod tests {
             environment: &sky,
         };
         let cell = example();
-        let [uniform, published] = measured(&plan, &cell).expect("accepted");
+        let [uniform, published] = measured(&plan, &cell, &Journal::default()).expect("accepted");
         let exact = hair_of(&cell, ModelKind::Gaussian)
             .expect("accepted")
             .found();

@@ -5,6 +5,7 @@ use super::study::finish;
 use crate::args::Merge;
 use crate::study::output::Study;
 use hairis_instruments::error::Error;
+use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::program::say;
 use std::fs;
 
@@ -30,5 +31,6 @@ pub fn run(flags: &Merge) -> Result<(), Error> {
         say("the look-up of the environment is not timed; pass --env FILE to time it");
     }
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
-    finish(study, is_theirs.then_some(&environment), &flags.out)
+    let environment = is_theirs.then_some(&environment);
+    finish(study, environment, &flags.out, Interrupt::watch())
 }

@@ -3,10 +3,12 @@
 use super::{environment, print_tables, report_failures};
 use crate::args::Study as Flags;
 use crate::difference::Difference;
+use crate::journal::Journal;
 use crate::study::output::Study;
 use crate::study::part::{Part, read};
 use crate::study::{self, Plan};
 use hairis_instruments::error::Error;
+use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::light::Environment;
 use hairis_instruments::program::say;
 use hairis_instruments::progress::bar;
@@ -19,9 +21,10 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// [`Error::Usage`], [`Error::Environment`], [`Error::Output`] and [`Error::Part`] before any work is done, if the shard is
-/// none, or a file cannot be read or written, or is of another study; [`Error::Failed`] at the end, with all files written,
-/// if a check failed.
+/// [`Error::Usage`], [`Error::Environment`], [`Error::Output`] and [`Error::Part`] before any work
+/// is done, if the shard is none, or a file cannot be read or written, or is of another study;
+/// [`Error::Failed`] at the end, with all files written, if a check failed; [`Error::Interrupted`]
+/// after a signal, with all cells kept that were begun.
 pub fn run(flags: &Flags) -> Result<(), Error> {
     let shard: Shard = flags
         .shard
@@ -56,16 +59,21 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
         todo.len() as u64,
         "cells {pos:>4} of {len} {wide_bar} {elapsed} (left {eta})",
     );
+    let interrupt = Interrupt::watch();
     study::run(&plan, &todo, |cell| {
         part.keep(&cell)?;
         bar.inc(1);
-        Ok(())
+        interrupt.check(|| {
+            let done = finished.len() as u64 + bar.position();
+            let path = part.path().display();
+            format!("{done} of {owned} cells are in {path}; the same command goes on from there")
+        })
     })?;
     bar.finish_and_clear();
 
     if shard == Shard::WHOLE {
         let study = Study::join(&[(part.path().to_owned(), read(part.path())?)])?;
-        finish(study, Some(&environment), &flags.out)
+        finish(study, Some(&environment), &flags.out, interrupt)
     } else {
         say(&format!(
             "wrote {}; `hairis merge` joins it with the others",
@@ -75,15 +83,20 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
     }
 }
 
-/// Measures times, computes how different the models look, writes the tables and prints the summary.
+/// Computes how different the models look, measures times, writes the tables and prints the
+/// summary.
 pub(super) fn finish(
     mut study: Study,
     environment: Option<&Environment>,
     out: &Path,
+    interrupt: Interrupt,
 ) -> Result<(), Error> {
+    let journal = Journal::open(out, "difference", study.header(), interrupt)?;
+    let difference = Difference::over(study.grid(), &journal)?;
     study.time(environment);
-    let difference = Difference::over(study.grid())?;
+    journal.check()?;
     study.write(out, &difference)?;
+    journal.remove();
     study
         .report(&difference, claims(out, &study).as_ref())
         .write(out, "study")?;

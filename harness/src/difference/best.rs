@@ -1,6 +1,6 @@
 //! The width factor that fits best.
 
-use core::f64::consts::E;
+use core::f64::consts;
 
 /// The factors that are tried, the range that the kernels accept.
 pub(super) const RANGE: [f64; 2] = [0.5, 4.0];
@@ -9,13 +9,17 @@ pub(super) const RANGE: [f64; 2] = [0.5, 4.0];
 const PRECISION: f64 = 1e-6;
 
 /// Where `f` is least in [`RANGE`]: the best of a scan, then golden sections on either side of it.
-pub(super) fn least(mut f: impl FnMut(f64) -> f64) -> f64 {
+///
+/// # Errors
+///
+/// The first of `f`.
+pub(super) fn least<E>(mut f: impl FnMut(f64) -> Result<f64, E>) -> Result<f64, E> {
     const STEPS: i32 = 16;
     let [low, high] = RANGE.map(f64::ln);
     let at = |step: i32| low + (high - low) * f64::from(step) / f64::from(STEPS);
     let mut best = (0, f64::INFINITY);
     for step in 0..=STEPS {
-        let value = f(at(step).exp());
+        let value = f(at(step).exp())?;
         if value < best.1 {
             best = (step, value);
         }
@@ -23,24 +27,30 @@ pub(super) fn least(mut f: impl FnMut(f64) -> f64) -> f64 {
     let (mut low, mut high) = (at((best.0 - 1).max(0)), at((best.0 + 1).min(STEPS)));
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut a, mut b) = (high - golden * (high - low), low + golden * (high - low));
-    let (mut f_a, mut f_b) = (f(a.exp()), f(b.exp()));
+    let (mut f_a, mut f_b) = (f(a.exp())?, f(b.exp())?);
     while high - low > PRECISION {
         if f_a < f_b {
             (high, b, f_b) = (b, a, f_a);
             a = high - golden * (high - low);
-            f_a = f(a.exp());
+            f_a = f(a.exp())?;
         } else {
             (low, a, f_a) = (a, b, f_b);
             b = low + golden * (high - low);
-            f_b = f(b.exp());
+            f_b = f(b.exp())?;
         }
     }
-    E.powf(0.5 * (low + high))
+    Ok(consts::E.powf(0.5 * (low + high)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use core::convert::Infallible;
+
+    fn least(f: impl Fn(f64) -> f64) -> f64 {
+        let Ok(found) = super::least(|k| Ok::<_, Infallible>(f(k)));
+        found
+    }
 
     #[test]
     fn the_least_is_found_wherever_it_is() {

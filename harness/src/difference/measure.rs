@@ -32,6 +32,46 @@ pub struct Norms {
     pub l2: f64,
 }
 
+/// Count of the numbers of [`Differences`].
+pub(super) const NUMBERS: usize = 11;
+
+impl Differences {
+    /// All of its numbers.
+    pub(super) fn numbers(&self) -> [f64; NUMBERS] {
+        let Self {
+            k,
+            albedo_gaussian,
+            albedo_cauchy,
+            plain,
+            shape,
+            blurred,
+            blurred_shape,
+        } = *self;
+        let norms = [plain, shape, blurred, blurred_shape].map(|of| [of.l1, of.l2]);
+        let mut numbers = [0.0; NUMBERS];
+        numbers[..3].copy_from_slice(&[k, albedo_gaussian, albedo_cauchy]);
+        numbers[3..].copy_from_slice(norms.as_flattened());
+        numbers
+    }
+
+    /// From its numbers.
+    pub(super) fn from_numbers(numbers: [f64; NUMBERS]) -> Self {
+        let norms = |place: usize| Norms {
+            l1: numbers[place],
+            l2: numbers[place + 1],
+        };
+        Self {
+            k: numbers[0],
+            albedo_gaussian: numbers[1],
+            albedo_cauchy: numbers[2],
+            plain: norms(3),
+            shape: norms(5),
+            blurred: norms(7),
+            blurred_shape: norms(9),
+        }
+    }
+}
+
 /// A hair with the values of its Gaussian model at the points of its rule.
 #[derive(Debug)]
 pub(super) struct HairValues {

@@ -199,6 +199,7 @@ pub(crate) fn albedo_ratio(of: &Differences) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::journal::Journal;
     use crate::study::Grid;
 
     #[test]
@@ -213,11 +214,11 @@ mod tests {
 
     #[test]
     fn every_row_has_every_column() {
-        let found = Difference::over(Grid {
+        let grid = Grid {
             theta_o_deg: &[45.0],
             ..Grid::QUICK
-        })
-        .expect("accepted");
+        };
+        let found = Difference::over(grid, &Journal::default()).expect("accepted");
         let mut csv = Vec::new();
         found.columns().write_csv(&mut csv).expect("written");
         let fields: Vec<usize> = csv

@@ -134,6 +134,12 @@ impl Study {
         Self::join(&parts)
     }
 
+    /// What its rows depend on.
+    #[must_use]
+    pub const fn header(&self) -> &Header {
+        &self.header
+    }
+
     /// The cells it is of.
     #[must_use]
     pub const fn grid(&self) -> Grid {

@@ -1,45 +1,44 @@
 //! `hairis claims`: its file, its seed and its threads.
 
+#[cfg(unix)]
+use super::end;
 use super::{Run, command};
+use core::time::Duration;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
+use std::sync::OnceLock;
+use std::thread;
+use std::time::Instant;
 use tempfile::TempDir;
 
-fn claims(dir: &Path, threads: &str, seed: &str) -> Run {
-    let args = [
-        "claims",
-        "--quick",
-        "--seed",
-        seed,
-        "--out",
-        dir.to_str().unwrap(),
-    ];
-    let output = command(&args)
+fn quick(dir: &Path, threads: &str, seed: &str) -> Command {
+    let out = dir.to_str().unwrap();
+    let mut command = command(&["claims", "--quick", "--seed", seed, "--out", out]);
+    command
         .env("RAYON_NUM_THREADS", threads)
-        .stdin(Stdio::null())
-        .output()
-        .unwrap();
-    let lines = |bytes: Vec<u8>| {
-        String::from_utf8(bytes)
-            .unwrap()
-            .lines()
-            .map(str::to_owned)
-            .collect()
-    };
-    Run {
-        code: output.status.code(),
-        out: lines(output.stdout),
-        err: lines(output.stderr),
-    }
+        .stdin(Stdio::null());
+    command
+}
+
+fn claims(dir: &Path, threads: &str, seed: &str) -> Run {
+    quick(dir, threads, seed).output().unwrap().into()
 }
 
 /// `claims.json` of a run, without the claim that depends on times.
 fn untimed(threads: &str, seed: &str) -> Value {
-    let dir = TempDir::new().unwrap();
+    untimed_in(&TempDir::new().unwrap(), threads, seed)
+}
+
+fn untimed_in(dir: &TempDir, threads: &str, seed: &str) -> Value {
     let run = claims(dir.path(), threads, seed);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
+    assert_eq!(
+        fs::read_dir(dir.path()).unwrap().count(),
+        1,
+        "one file is left"
+    );
     let mut json: Value =
         serde_json::from_slice(&fs::read(dir.path().join("claims.json")).unwrap()).unwrap();
     let all = json["claims"].as_array_mut().unwrap();
@@ -49,10 +48,52 @@ fn untimed(threads: &str, seed: &str) -> Value {
     json
 }
 
+/// The run of seed 1 on one thread.
+fn reference() -> &'static Value {
+    static CLAIMS: OnceLock<Value> = OnceLock::new();
+    CLAIMS.get_or_init(|| untimed("1", "1"))
+}
+
+/// A run that a signal has ended goes on from the figures that it had, of quadrature and of
+/// samples.
+#[cfg(unix)]
+#[test]
+fn a_killed_run_goes_on() {
+    let dir = TempDir::new().unwrap();
+    let lines = || {
+        let mut files = fs::read_dir(dir.path()).unwrap();
+        let text = files.find_map(|file| {
+            let path = file.unwrap().path();
+            let is_part = path.extension().is_some_and(|end| end == "part");
+            is_part.then(|| fs::read_to_string(path).unwrap_or_default())
+        });
+        text.unwrap_or_default().lines().count()
+    };
+    for (least, signal, code) in [(3, "TERM", Some(143)), (100, "KILL", None)] {
+        let child = quick(dir.path(), "1", "1").spawn().unwrap();
+        let start = Instant::now();
+        while lines() < least && start.elapsed() < Duration::from_secs(120) {
+            thread::sleep(Duration::from_millis(1));
+        }
+        let run = end(child, signal);
+        assert_eq!(run.code, code, "{:?}", run.err);
+        assert!(!dir.path().join("claims.json").exists(), "killed too late");
+        if code.is_some() {
+            let last = run.err.last().unwrap();
+            assert!(
+                last.contains("interrupted by SIGTERM: the figures so far are in ")
+                    && last.contains("claims-"),
+                "{last}"
+            );
+        }
+    }
+    assert_eq!(&untimed_in(&dir, "2", "1"), reference());
+}
+
 #[test]
 fn the_file_is_complete_and_depends_on_the_seed_alone() {
-    let one = untimed("1", "1");
-    assert_eq!(one, untimed("2", "1"), "another number of threads");
+    let one = reference();
+    assert_eq!(one, &untimed("2", "1"), "another number of threads");
     let other = untimed("2", "2");
     assert_ne!(one["claims"], other["claims"], "another seed");
     assert_eq!(
@@ -96,7 +137,7 @@ fn a_full_disk_leaves_the_file_as_it_was() {
     fs::write(&path, "before").unwrap();
     // No file may grow beyond a kilobyte or two; the signal for that is ignored, as for any program that checks its writes.
     let script = "trap '' XFSZ; ulimit -f 2; exec \"$0\" claims --quick --out \"$1\"";
-    let output = std::process::Command::new("sh")
+    let output = Command::new("sh")
         .args([
             "-c",
             script,
@@ -109,14 +150,14 @@ fn a_full_disk_leaves_the_file_as_it_was() {
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{error}");
     assert!(
-        error.starts_with("hairis: cannot write") && error.contains("claims.json: File too large"),
+        error.starts_with("hairis: cannot write") && error.contains(".part: File too large"),
         "{error}"
     );
     assert_eq!(fs::read_to_string(&path).unwrap(), "before");
     assert_eq!(
         fs::read_dir(dir.path()).unwrap().count(),
-        1,
-        "nothing else is left"
+        2,
+        "the figures so far are left, and nothing else"
     );
 }
 

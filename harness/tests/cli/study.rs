@@ -4,6 +4,8 @@ mod files;
 mod inputs;
 mod refused;
 
+#[cfg(unix)]
+use super::end;
 use super::{Run, command};
 use core::time::Duration;
 use std::fs;
@@ -23,34 +25,18 @@ const WHOLE: &str = "cells-1-of-1.jsonl";
 fn study(dir: &Path, threads: &str, more: &[&str]) -> Run {
     let mut args = vec!["study", "--quick", "--out", dir.to_str().unwrap()];
     args.extend(more);
-    finish(
-        command(&args)
-            .env("RAYON_NUM_THREADS", threads)
-            .stdin(Stdio::null())
-            .output()
-            .unwrap(),
-    )
+    command(&args)
+        .env("RAYON_NUM_THREADS", threads)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap()
+        .into()
 }
 
 fn merge(out: &Path, parts: &[&Path]) -> Run {
     let mut args = vec!["merge", out.to_str().unwrap()];
     args.extend(parts.iter().map(|part| part.to_str().unwrap()));
-    finish(command(&args).stdin(Stdio::null()).output().unwrap())
-}
-
-fn finish(output: std::process::Output) -> Run {
-    let lines = |bytes: Vec<u8>| {
-        String::from_utf8(bytes)
-            .unwrap()
-            .lines()
-            .map(str::to_owned)
-            .collect()
-    };
-    Run {
-        code: output.status.code(),
-        out: lines(output.stdout),
-        err: lines(output.stderr),
-    }
+    command(&args).stdin(Stdio::null()).output().unwrap().into()
 }
 
 /// A finished run on one thread, made once.
@@ -130,6 +116,7 @@ fn rows_do_not_depend_on_the_number_of_threads_or_on_stops() {
     }
 }
 
+#[cfg(unix)]
 #[test]
 fn a_killed_run_goes_on() {
     let dir = TempDir::new().unwrap();
@@ -141,8 +128,13 @@ fn a_killed_run_goes_on() {
             .filter(|byte| **byte == b'\n')
             .count()
     };
-    for least in [2, 5, 12] {
-        let mut child = command(&["study", "--quick", "--out", dir.path().to_str().unwrap()])
+    // SIGKILL, which nothing can prepare for, and signals that ask for an end.
+    for (least, signal, code) in [
+        (2, "KILL", None),
+        (5, "TERM", Some(143)),
+        (12, "INT", Some(130)),
+    ] {
+        let child = command(&["study", "--quick", "--out", dir.path().to_str().unwrap()])
             .env("RAYON_NUM_THREADS", "1")
             .stdin(Stdio::null())
             .spawn()
@@ -151,9 +143,17 @@ fn a_killed_run_goes_on() {
         while lines() < least && start.elapsed() < Duration::from_secs(60) {
             thread::sleep(Duration::from_millis(1));
         }
-        // On Unix: SIGKILL, which nothing can prepare for.
-        child.kill().unwrap();
-        child.wait().unwrap();
+        let run = end(child, signal);
+        assert_eq!(run.code, code, "{:?}", run.err);
+        if code.is_some() {
+            let last = run.err.last().unwrap();
+            assert!(
+                last.contains(&format!("interrupted by SIG{signal}: "))
+                    && last.contains(&format!("of {CELLS} cells are in "))
+                    && last.contains(WHOLE),
+                "{last}"
+            );
+        }
         assert!(lines() >= least, "only {} lines after a minute", lines());
     }
     assert!(
@@ -162,7 +162,11 @@ fn a_killed_run_goes_on() {
     );
     let run = study(dir.path(), "2", &[]);
     assert_eq!(run.code, Some(0), "{:?}", run.err);
-    assert!(run.err[0].contains("continues after"), "{:?}", run.err);
+    assert!(
+        run.err.iter().any(|line| line.contains("continues after")),
+        "{:?}",
+        run.err
+    );
     assert_same_rows(dir.path(), "killed three times");
 }
 
@@ -295,7 +299,7 @@ fn a_look_up_is_timed_after_a_merge_if_the_environment_is_at_hand() {
             .chain(env(path))
             .collect();
         let args: Vec<&str> = args.iter().map(String::as_str).collect();
-        finish(command(&args).stdin(Stdio::null()).output().unwrap())
+        command(&args).stdin(Stdio::null()).output().unwrap().into()
     };
     assert_refused(
         &merged(&other),

@@ -1,6 +1,6 @@
 //! Files that a study reads beside its parts: environments and claims; and a standard output that nobody reads.
 
-use super::{CELLS, assert_refused, finish, merge, reference};
+use super::{CELLS, Run, assert_refused, merge, reference};
 use crate::cli::{command, run};
 use hairis_harness::study::output::Study;
 use image::{ImageFormat, Rgb32FImage};
@@ -159,7 +159,7 @@ fn a_reader_that_leaves_is_told_where_the_tables_are() {
     ];
     let mut child = command(&args).stdin(Stdio::null()).spawn().unwrap();
     drop(child.stdout.take());
-    let run = finish(child.wait_with_output().unwrap());
+    let run: Run = child.wait_with_output().unwrap().into();
     assert_eq!(run.code, Some(0), "{:?}", run.err);
     let words = format!(
         "standard output was closed; the tables are in {}",
