@@ -16,6 +16,7 @@ use crate::args::Figures;
 use crate::cmd::environment;
 use crate::scenes::Name;
 use hairis_instruments::error::Error;
+use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::progress::bar;
 use hairis_variants::ModelId;
 use measure::{Measured, Plan};
@@ -63,7 +64,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         .map(|path| environment(path))
         .collect::<Result<Vec<_>, _>>()?;
     prepare(&flags.out)?;
-    let store = Store::new(&flags.out)?;
+    let store = Store::new(&flags.out, Interrupt::watch())?;
     let mut scenes = Vec::new();
     for name in chosen {
         if *name == Name::Env && !maps.is_empty() {

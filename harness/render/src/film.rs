@@ -5,9 +5,22 @@ use glam::Vec3;
 use hairis_instruments::light::luminance;
 use hairis_instruments::sequence::mix;
 use hairis_instruments::shard::Shard;
+use std::collections::HashMap;
 
-/// Side of a tile in pixels.
+/// Side of a tile in pixels, at most.
 pub const TILE: u32 = 32;
+
+/// Side of the tiles of a picture of which each sample is so many camera rays: smaller for many,
+/// because a run saves whole tiles.
+#[must_use]
+pub fn side(rays: u32) -> u32 {
+    const MOST: u32 = 16 * TILE * TILE;
+    let mut side = TILE;
+    while side > 1 && side * side * rays > MOST {
+        side /= 2;
+    }
+    side
+}
 
 /// Part of a picture in pixels: columns `x` to `x + width`, rows `y` to `y + height`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,9 +71,9 @@ impl Crop {
         self.len() == 0
     }
 
-    /// Tiles of at most [`TILE`] pixels a side, row by row.
-    pub fn tiles(self) -> impl Iterator<Item = Self> {
-        let step = TILE as usize;
+    /// Tiles of at most `side` pixels a side, row by row.
+    pub fn tiles(self, side: u32) -> impl Iterator<Item = Self> {
+        let step = side as usize;
         (self.y..self.y + self.height)
             .step_by(step)
             .flat_map(move |y| {
@@ -69,20 +82,20 @@ impl Crop {
                     .map(move |x| Self {
                         x,
                         y,
-                        width: TILE.min(self.x + self.width - x),
-                        height: TILE.min(self.y + self.height - y),
+                        width: side.min(self.x + self.width - x),
+                        height: side.min(self.y + self.height - y),
                     })
             })
     }
 
     /// Whether it is one of the [`tiles`](Self::tiles) of `whole`.
     #[must_use]
-    pub fn is_tile_of(self, whole: Self) -> bool {
+    pub fn is_tile_of(self, whole: Self, side: u32) -> bool {
         let one_axis = |from: u32, count: u32, start: u32, all: u32| {
             let Some(offset) = from.checked_sub(start) else {
                 return false;
             };
-            offset < all && offset.is_multiple_of(TILE) && count == TILE.min(all - offset)
+            offset < all && offset.is_multiple_of(side) && count == side.min(all - offset)
         };
         one_axis(self.x, self.width, whole.x, whole.width)
             && one_axis(self.y, self.height, whole.y, whole.height)
@@ -126,10 +139,25 @@ pub struct Tile {
     pub first: Vec<[f32; 7]>,
 }
 
+impl Tile {
+    /// Its first pixel, which tells it from the other tiles of a film.
+    #[must_use]
+    pub fn key(&self) -> [u32; 2] {
+        [self.place.x, self.place.y]
+    }
+
+    /// Whether there is anything in it.
+    #[must_use]
+    pub fn is_begun(&self) -> bool {
+        self.samples > 0 || !self.first.is_empty()
+    }
+}
+
 /// The sums of a picture. Tiles share nothing, so that threads may work on them in any order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     crop: Crop,
+    side: u32,
     /// The tiles, row by row.
     pub tiles: Vec<Tile>,
     /// Where the time went, if that was measured.
@@ -137,9 +165,15 @@ pub struct Film {
 }
 
 impl Film {
-    /// No samples yet.
+    /// No samples yet, in tiles of [`TILE`] pixels a side.
     #[must_use]
     pub fn new(crop: Crop) -> Self {
+        Self::with_tiles(crop, TILE)
+    }
+
+    /// No samples yet, in tiles of `side` pixels a side.
+    #[must_use]
+    pub fn with_tiles(crop: Crop, side: u32) -> Self {
         let tile = |place: Crop| Tile {
             place,
             sums: vec![Sums::default(); place.len()],
@@ -147,14 +181,15 @@ impl Film {
             seconds: 0.0,
             first: Vec::new(),
         };
-        Self::of(crop, crop.tiles().map(tile).collect())
+        Self::of(crop, side, crop.tiles(side).map(tile).collect())
     }
 
-    /// Of tiles that are there already.
+    /// Of tiles of `side` pixels a side that are there already.
     #[must_use]
-    pub fn of(crop: Crop, tiles: Vec<Tile>) -> Self {
+    pub fn of(crop: Crop, side: u32, tiles: Vec<Tile>) -> Self {
         Self {
             crop,
+            side,
             tiles,
             profile: Profile::default(),
         }
@@ -169,11 +204,45 @@ impl Film {
         self
     }
 
-    /// Whether it covers the same part of the picture with the same tiles.
+    /// Takes the tiles of another film of the same part of the picture in place of its own. Gives
+    /// the other back, and takes none, if one of them is not among its own.
+    ///
+    /// # Errors
+    ///
+    /// The other film.
+    pub fn adopt(&mut self, other: Self) -> Result<(), Self> {
+        let places: HashMap<[u32; 2], usize> = self.tiles.iter().map(Tile::key).zip(0..).collect();
+        if (self.crop, self.side) != (other.crop, other.side)
+            || !other
+                .tiles
+                .iter()
+                .all(|tile| places.contains_key(&tile.key()))
+        {
+            return Err(other);
+        }
+        for tile in other.tiles {
+            let place = places[&tile.key()];
+            self.tiles[place] = tile;
+        }
+        Ok(())
+    }
+
+    /// Samples of a pixel, mean over the pixels.
     #[must_use]
-    pub fn has_tiles_of(&self, other: &Self) -> bool {
-        let places = |film: &Self| film.tiles.iter().map(|tile| tile.place).collect::<Vec<_>>();
-        self.crop == other.crop && places(self) == places(other)
+    pub fn mean_samples(&self) -> f64 {
+        let sum = |of: fn(&Tile) -> f64| self.tiles.iter().map(of).sum::<f64>();
+        let pixels = sum(|tile| tile.place.len() as f64);
+        sum(|tile| tile.place.len() as f64 * f64::from(tile.samples)) / pixels.max(1.0)
+    }
+
+    /// Samples of the pixels that have most.
+    #[must_use]
+    pub fn most_samples(&self) -> u32 {
+        self.tiles
+            .iter()
+            .map(|tile| tile.samples)
+            .max()
+            .unwrap_or(0)
     }
 
     /// Samples that every pixel has.
@@ -184,6 +253,12 @@ impl Film {
             .map(|tile| tile.samples)
             .min()
             .unwrap_or(0)
+    }
+
+    /// Side of its tiles in pixels.
+    #[must_use]
+    pub fn side(&self) -> u32 {
+        self.side
     }
 
     /// The part of the picture that it covers.
@@ -280,9 +355,13 @@ mod tests {
                 width,
                 height,
             }
-            .is_tile_of(crop)
+            .is_tile_of(crop, TILE)
         };
-        assert!(film.tiles.iter().all(|tile| tile.place.is_tile_of(crop)));
+        assert!(
+            film.tiles
+                .iter()
+                .all(|tile| tile.place.is_tile_of(crop, TILE))
+        );
         assert!(
             !is_tile(6, 3, 32, 32)
                 && !is_tile(5, 3, 32, 31)
@@ -298,6 +377,14 @@ mod tests {
         let mut expected: Vec<[u32; 2]> = crop.pixels().collect();
         expected.sort_unstable();
         assert_eq!(pixels, expected);
+    }
+
+    #[test]
+    fn tiles_are_smaller_where_samples_are_many_rays() {
+        assert_eq!([1, 16, 17, 64, 4096].map(side), [32, 32, 16, 16, 2]);
+        let crop = Crop::whole([40, 33]);
+        assert_eq!(crop.tiles(16).count(), 9);
+        assert!(crop.tiles(16).all(|tile| tile.is_tile_of(crop, 16)));
     }
 
     #[test]

@@ -2,11 +2,11 @@
 
 use crate::film::Film;
 use crate::scene::{Met, Scene};
+use crate::transport::{Stop, each_until};
 use glam::Vec3;
 use hairis::simd::Level;
 use hairis_instruments::light::{luminance, rounded};
 use hairis_instruments::machine;
-use rayon::iter::{IntoParallelRefMutIterator as _, ParallelIterator as _};
 
 /// One channel of a layer, row by row from the upper left corner.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,20 +93,19 @@ fn command() -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Sees what the ray through each pixel's centre meets first, where that is not known yet: for the layers `albedo`, the
-/// directional albedo of hair and the albedo of surfaces; and `tangent`, the direction of the fibre from root to tip; and
-/// `Z`, the distance along the ray in cm. All are 0 elsewhere.
-pub fn look(scene: &Scene, film: &mut Film) {
-    film.tiles
-        .par_iter_mut()
-        .filter(|tile| tile.first.is_empty())
-        .for_each(|tile| {
-            tile.first = tile
-                .place
-                .pixels()
-                .map(|pixel| first(scene, pixel))
-                .collect();
-        });
+/// Sees what the ray through each pixel's centre meets first, where that is not known yet, until
+/// `stop` says so: for the layers `albedo`, the directional albedo of hair and the albedo of
+/// surfaces; and `tangent`, the direction of the fibre from root to tip; and `Z`, the distance
+/// along the ray in cm. All are 0 elsewhere.
+pub fn look(scene: &Scene, film: &mut Film, stop: &Stop<'_>) {
+    let unseen = film.tiles.iter_mut().filter(|tile| tile.first.is_empty());
+    each_until(unseen.collect(), stop, |tile| {
+        tile.first = tile
+            .place
+            .pixels()
+            .map(|pixel| first(scene, pixel))
+            .collect();
+    });
 }
 
 /// Albedo, tangent and distance of what the ray through a pixel's centre meets first.

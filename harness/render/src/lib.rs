@@ -28,6 +28,7 @@ pub mod numbers;
 pub mod part;
 pub mod picture;
 pub mod protocol;
+mod saver;
 pub mod scene;
 pub mod scenes;
 pub mod transport;

@@ -1,9 +1,15 @@
 //! Unfinished pictures as files: what a run that was stopped goes on from, and what shards leave for `merge`.
+//!
+//! A file has a header and then tiles, each with a digest of its own. A [`Log`] appends tiles as
+//! they are rendered, and the last of a place counts. A process that is killed leaves at most its
+//! last tile torn, which is left out.
 
+mod log;
+mod read;
 mod sealed;
 
-pub use sealed::seal;
-pub(crate) use sealed::{Reader, digest, unseal};
+pub use log::Log;
+pub(crate) use sealed::{Reader, digest, seal, unseal};
 
 use crate::film::{Crop, Film, Sums, Tile};
 use hairis::simd::Level;
@@ -11,13 +17,17 @@ use hairis_instruments::error::Error;
 use hairis_instruments::files::whole;
 use hairis_instruments::machine;
 use hairis_instruments::program::say;
+use read::{is_damage, parse};
 use std::collections::HashMap;
-use std::io::Write as _;
+use std::env;
+use std::fs::{self, File};
+use std::io::{self, BufRead as _, BufReader, Read as _};
 use std::path::{Path, PathBuf};
-use std::{env, fs};
 
+/// First line of a file, but for the number of the format.
+const FORMAT: &str = "hairis-render part ";
 /// First line of a file.
-const MAGIC: &str = "hairis-render part 3";
+const MAGIC: &str = "hairis-render part 4";
 
 /// Sums of tiles, and of which run they are.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,13 +53,26 @@ impl Part {
     ///
     /// If it cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
-        let bytes = self.to_bytes();
-        whole(path, |out| out.write_all(&bytes))
+        whole(path, |out| self.write_to(out))
     }
 
     /// The bytes of the file.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        // Memory takes all of it.
+        let _ = self.write_to(&mut bytes);
+        bytes
+    }
+
+    fn write_to(&self, out: &mut impl io::Write) -> io::Result<()> {
+        out.write_all(&self.header())?;
+        let mut begun = self.film.tiles.iter().filter(|tile| tile.is_begun());
+        begun.try_for_each(|tile| out.write_all(&record(tile)))
+    }
+
+    /// The file but for its tiles.
+    fn header(&self) -> Vec<u8> {
         let Crop {
             x,
             y,
@@ -58,72 +81,67 @@ impl Part {
         } = self.film.crop();
         let mut bytes = format!("{MAGIC}\n{}\n", self.run).into_bytes();
         bytes.extend(
-            [x, y, width, height, u32::from(self.finished)]
-                .into_iter()
-                .flat_map(u32::to_le_bytes),
-        );
-        for Tile {
-            place,
-            sums,
-            samples,
-            seconds,
-            first,
-        } in &self.film.tiles
-        {
-            let Crop {
+            [
                 x,
                 y,
                 width,
                 height,
-            } = *place;
-            bytes.extend(
-                [x, y, width, height, *samples]
-                    .into_iter()
-                    .flat_map(u32::to_le_bytes),
-            );
-            bytes.extend(seconds.to_le_bytes());
-            for Sums {
-                radiance: [r, g, b],
-                luminance_sq,
-            } in sums
-            {
-                bytes.extend(
-                    [r, g, b, luminance_sq]
-                        .into_iter()
-                        .flat_map(|sum| sum.to_le_bytes()),
-                );
-            }
-            bytes.extend(u32::from(!first.is_empty()).to_le_bytes());
-            bytes.extend(
-                first
-                    .iter()
-                    .flatten()
-                    .flat_map(|number| number.to_le_bytes()),
-            );
-        }
+                self.film.side(),
+                u32::from(self.finished),
+            ]
+            .into_iter()
+            .flat_map(u32::to_le_bytes),
+        );
         seal(&mut bytes);
         bytes
     }
 
-    /// Reads a file.
+    /// Reads a file. What is not whole at its end is left out, with a remark.
     ///
     /// # Errors
     ///
     /// If it cannot be read, or is no such file.
     pub fn read(path: &Path) -> Result<Self, Error> {
+        Self::read_whole(path).map(|(part, _)| part)
+    }
+
+    /// Reads a file, and says how many of its bytes are whole.
+    fn read_whole(path: &Path) -> Result<(Self, usize), Error> {
         let refuse = |problem: String| Error::Part {
             path: path.to_owned(),
             problem,
         };
-        let bytes = fs::read(path).map_err(|source| refuse(format!("cannot read: {source}")))?;
-        Self::from_bytes(&bytes)
-            .ok_or_else(|| refuse("damaged, or not a part of a picture: remove it".to_owned()))
+        let unread = |source: io::Error| refuse(format!("cannot read: {source}"));
+        let file = File::open(path).map_err(unread)?;
+        let length = file.metadata().map_err(unread)?.len();
+        let (part, whole) = parse(BufReader::new(file), is_sealed).map_err(|error| {
+            if is_damage(&error) {
+                refuse(problem(path))
+            } else {
+                unread(error)
+            }
+        })?;
+        let left = length.saturating_sub(whole as u64);
+        if left > 0 {
+            say(&format!(
+                "{}: the last {left} bytes are not whole, and left out",
+                path.display()
+            ));
+        }
+        Ok((part, whole))
     }
 
-    /// Reads the bytes of a file; `None` if they are damaged, or not those of a part.
+    /// Reads the bytes of a file; `None` if they are damaged, or not those of a part. What is not
+    /// whole at their end is left out.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
-        parse(unseal(bytes)?)
+        parse(bytes, is_sealed).ok().map(|(part, _)| part)
+    }
+
+    /// The same whatever the digests, for tests of the reader.
+    #[must_use]
+    pub fn from_bytes_unchecked(bytes: &[u8]) -> Option<Self> {
+        parse(bytes, |_, _| true).ok().map(|(part, _)| part)
     }
 
     /// Goes on from a file, if there is one and it belongs to the same run and tiles as `fresh`; otherwise `fresh`. A finished
@@ -131,30 +149,45 @@ impl Part {
     ///
     /// # Errors
     ///
-    /// As [`read`](Self::read), and if the file belongs to an unfinished picture of another run, of another shard, or with more
-    /// than `samples` samples.
-    pub fn resume(path: &Path, fresh: Self, samples: Option<u32>) -> Result<Self, Error> {
+    /// As [`read`](Self::read), and if the file belongs to an unfinished picture of another run, of
+    /// another shard, or with more than `samples` samples, or another process is writing to it.
+    pub fn resume(
+        path: &Path,
+        mut fresh: Self,
+        samples: Option<u32>,
+    ) -> Result<(Self, Log), Error> {
         if !path.exists() {
-            return Ok(fresh);
+            let log = Log::new(path);
+            return Ok((fresh, log));
         }
-        let part = Self::read(path)?;
-        let got = part.film.samples();
-        let other = if part.run != fresh.run {
-            let words = difference(&part.run, &fresh.run).unwrap_or_default();
+        let (
+            Self {
+                run,
+                film,
+                finished,
+            },
+            whole,
+        ) = Self::read_whole(path)?;
+        let got = film.most_samples();
+        let other = if run != fresh.run {
+            let words = difference(&run, &fresh.run).unwrap_or_default();
             format!("belongs to another run ({words})")
-        } else if !part.film.has_tiles_of(&fresh.film) {
-            "belongs to another shard".to_owned()
         } else if let Some(samples) = samples.filter(|samples| *samples < got) {
             format!("has {got} samples, more than --spp {samples}")
+        } else if fresh.film.adopt(film).is_err() {
+            "belongs to another shard".to_owned()
         } else {
-            return Ok(part);
+            fresh.finished = finished;
+            let log = Log::go_on(path, &fresh, whole)?;
+            return Ok((fresh, log));
         };
-        if part.finished {
+        if finished {
             say(&format!(
                 "{}: {other}; the picture is begun anew",
                 path.display()
             ));
-            return Ok(fresh);
+            let log = Log::new(path);
+            return Ok((fresh, log));
         }
         let problem = format!("{other}: remove it, or choose another --out");
         Err(Error::Part {
@@ -177,23 +210,28 @@ impl Part {
         let Some((first_path, first)) = parts.next() else {
             return Err(Error::Missing("no parts".to_owned()));
         };
-        let (run, crop, samples) = (first.run, first.film.crop(), first.film.samples());
+        let (run, crop, samples) = (first.run.clone(), first.film.crop(), first.film.samples());
+        let side = first.film.side();
         let mut tiles: HashMap<[u32; 2], Tile> = HashMap::new();
         let mut add = |film: Film| {
             for tile in film.tiles {
-                tiles.entry([tile.place.x, tile.place.y]).or_insert(tile);
+                tiles.entry(tile.key()).or_insert(tile);
             }
         };
-        add(first.film);
-        for (path, part) in parts {
-            let problem = if part.run != run || part.film.crop() != crop {
+        for (path, part) in [(first_path.clone(), first)].into_iter().chain(parts) {
+            let most = part.film.most_samples();
+            let problem = if part.run != run || (part.film.crop(), part.film.side()) != (crop, side)
+            {
                 let words = difference(&part.run, &run).unwrap_or_default();
                 format!(
                     "belongs to another run than {} ({words})",
                     first_path.display()
                 )
-            } else if is_counted(&part) && part.film.samples() != samples {
+            } else if part.film.samples() < most {
                 let got = part.film.samples();
+                format!("has tiles of {got} to {most} samples: start its run again to finish it")
+            } else if is_counted(&part) && most != samples {
+                let got = most;
                 format!(
                     "has {got} samples, expected {samples} as in {}: render it to the same --spp",
                     first_path.display()
@@ -204,9 +242,9 @@ impl Part {
             };
             return Err(Error::Part { path, problem });
         }
-        let all = crop.tiles().count();
+        let all = crop.tiles(side).count();
         let tiles: Vec<Tile> = crop
-            .tiles()
+            .tiles(side)
             .filter_map(|place| tiles.remove(&[place.x, place.y]))
             .collect();
         if tiles.len() < all {
@@ -217,7 +255,7 @@ impl Part {
         }
         Ok(Self {
             run,
-            film: Film::of(crop, tiles),
+            film: Film::of(crop, side, tiles),
             finished: false,
         })
     }
@@ -247,189 +285,67 @@ fn difference(found: &str, expected: &str) -> Option<String> {
     Some(format!("{found}, expected {expected}"))
 }
 
-/// A part of a picture, if it lies within the largest.
-fn crop(reader: &mut Reader<'_>) -> Option<Crop> {
-    let [x, y, width, height] = [
-        reader.number()?,
-        reader.number()?,
-        reader.number()?,
-        reader.number()?,
-    ];
-    let fits = |from: u32, count: u32| from.checked_add(count).is_some_and(|end| end <= 1 << 14);
-    (fits(x, width) && fits(y, height)).then_some(Crop {
+/// What is wrong with a file without a whole header.
+fn problem(path: &Path) -> String {
+    let mut first = String::new();
+    // What is no text is no part of any format.
+    let read = File::open(path).map(|file| BufReader::new(file.take(80)).read_line(&mut first));
+    let got = first.trim_end();
+    if read.is_ok() && got.starts_with(FORMAT) && got != MAGIC {
+        format!("expected \"{MAGIC}\", got \"{got}\": remove it")
+    } else {
+        "damaged, or not a part of a picture: remove it".to_owned()
+    }
+}
+
+/// A tile in the file.
+fn record(tile: &Tile) -> Vec<u8> {
+    let Tile {
+        place,
+        sums,
+        samples,
+        seconds,
+        first,
+    } = tile;
+    let Crop {
         x,
         y,
         width,
         height,
-    })
+    } = *place;
+    let mut bytes = Vec::with_capacity(64 * (1 + sums.len()));
+    bytes.extend(
+        [x, y, width, height, *samples]
+            .into_iter()
+            .flat_map(u32::to_le_bytes),
+    );
+    bytes.extend(seconds.to_le_bytes());
+    for Sums {
+        radiance: [r, g, b],
+        luminance_sq,
+    } in sums
+    {
+        bytes.extend(
+            [r, g, b, luminance_sq]
+                .into_iter()
+                .flat_map(|sum| sum.to_le_bytes()),
+        );
+    }
+    bytes.extend(u32::from(!first.is_empty()).to_le_bytes());
+    bytes.extend(
+        first
+            .iter()
+            .flatten()
+            .flat_map(|number| number.to_le_bytes()),
+    );
+    seal(&mut bytes);
+    bytes
 }
 
-/// The two lines of text, then the numbers.
-fn parse(content: &[u8]) -> Option<Part> {
-    let mut lines = content.splitn(3, |byte| *byte == b'\n');
-    if lines.next()? != MAGIC.as_bytes() {
-        return None;
-    }
-    let run = core::str::from_utf8(lines.next()?).ok()?.to_owned();
-    let mut rest = Reader::new(lines.next()?);
-    let whole = crop(&mut rest)?;
-    let finished = rest.number()? != 0;
-    let mut tiles = Vec::new();
-    while !rest.is_empty() {
-        let place = crop(&mut rest).filter(|place| place.is_tile_of(whole))?;
-        let (samples, seconds) = (rest.number()?, rest.double()?);
-        let mut sums = Vec::new();
-        for _ in 0..place.len() {
-            let radiance = [rest.double()?, rest.double()?, rest.double()?];
-            sums.push(Sums {
-                radiance,
-                luminance_sq: rest.double()?,
-            });
-        }
-        let mut first = Vec::new();
-        if rest.number()? != 0 {
-            for _ in 0..place.len() {
-                let mut numbers = [0.0; 7];
-                for number in &mut numbers {
-                    *number = f32::from_le_bytes(rest.bytes()?);
-                }
-                first.push(numbers);
-            }
-        }
-        tiles.push(Tile {
-            place,
-            sums,
-            samples,
-            seconds,
-            first,
-        });
-    }
-    Some(Part {
-        run,
-        film: Film::of(whole, tiles),
-        finished,
-    })
+/// Whether a digest is that of the bytes before it.
+fn is_sealed(bytes: &[u8], check: u64) -> bool {
+    digest(bytes) == check
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::Vec3;
-
-    fn part() -> Part {
-        let mut film = Film::new(Crop {
-            x: 3,
-            y: 0,
-            width: 70,
-            height: 20,
-        });
-        for (k, tile) in (0_u16..).zip(&mut film.tiles) {
-            tile.samples = 4;
-            tile.seconds = 0.5;
-            tile.first = vec![
-                [0.1, 0.2, 0.3, 1.0, 0.0, 0.0, f32::from(k)];
-                if k == 1 { 0 } else { tile.sums.len() }
-            ];
-            tile.sums
-                .iter_mut()
-                .for_each(|sums| sums.add(Vec3::splat(1.0 / f32::from(k + 3))));
-        }
-        Part {
-            run: "scene=head seed=1".to_owned(),
-            film,
-            finished: false,
-        }
-    }
-
-    #[test]
-    fn files_hold_every_bit() {
-        let folder = tempfile::TempDir::new().expect("a folder");
-        let path = folder.path().join("a.part");
-        part().write(&path).expect("written");
-        assert_eq!(Part::read(&path).expect("read"), part());
-        let bytes = fs::read(&path).expect("there");
-        // Cuts between tiles among them.
-        for length in 0..bytes.len() {
-            assert_eq!(Part::from_bytes(&bytes[..length]), None, "cut at {length}");
-        }
-        for byte in (0..bytes.len()).step_by(97) {
-            let mut damaged = bytes.clone();
-            damaged[byte] ^= 4;
-            assert_eq!(Part::from_bytes(&damaged), None, "byte {byte} changed");
-        }
-        assert!(Part::read(&folder.path().join("none")).is_err());
-    }
-
-    #[test]
-    fn runs_go_on_from_their_own_parts() {
-        let folder = tempfile::TempDir::new().expect("a folder");
-        let path = folder.path().join("a.part");
-        let fresh = |run: &str| Part {
-            run: run.to_owned(),
-            film: Film::new(part().film.crop()),
-            finished: false,
-        };
-        let (same, other) = ("scene=head seed=1", "scene=head seed=2");
-        let resume =
-            |fresh, samples| Part::resume(&path, fresh, samples).map_err(|error| error.to_string());
-        assert_eq!(
-            resume(fresh(same), Some(8)),
-            Ok(fresh(same)),
-            "there is no file"
-        );
-        part().write(&path).expect("written");
-        assert_eq!(resume(fresh(same), Some(4)), Ok(part()));
-        assert_eq!(resume(fresh(same), None), Ok(part()));
-        let refused = |fresh, samples| resume(fresh, samples).expect_err("refused");
-        assert!(refused(fresh(other), None).contains("seed=1, expected seed=2"));
-        assert!(refused(fresh(same), Some(3)).contains("has 4 samples, more than --spp 3"));
-        let mut shard = fresh(same);
-        shard.film.tiles.remove(1);
-        assert!(refused(shard, None).contains("another shard"));
-        Part {
-            finished: true,
-            ..part()
-        }
-        .write(&path)
-        .expect("written");
-        assert_eq!(
-            resume(fresh(other), Some(4)),
-            Ok(fresh(other)),
-            "a finished picture"
-        );
-        assert_eq!(resume(fresh(same), Some(3)), Ok(fresh(same)));
-        assert!(resume(fresh(same), Some(8)).expect("its own").finished);
-    }
-
-    #[test]
-    fn parts_of_one_run_join_and_others_do_not() {
-        let (mut a, mut b) = (part(), part());
-        a.film.tiles.truncate(1);
-        b.film.tiles.remove(0);
-        let named = |name: &str, part: &Part| (PathBuf::from(name), part.clone());
-        assert_eq!(
-            Part::merge(vec![named("b", &b), named("a", &a)]).expect("whole"),
-            part()
-        );
-        let message = |parts| Part::merge(parts).expect_err("refused").to_string();
-        assert!(message(vec![named("a", &a)]).contains("2 of 3 tiles"));
-        let mut none = b.clone();
-        none.film.tiles.clear();
-        assert_eq!(
-            Part::merge(vec![named("none", &none), named("b", &b), named("a", &a)]).expect("whole"),
-            part()
-        );
-        let mut more = b.clone();
-        more.film.tiles.iter_mut().for_each(|tile| tile.samples = 8);
-        let refused = message(vec![named("a", &a), named("more", &more)]);
-        assert!(
-            refused.contains("more: has 8 samples, expected 4 as in a"),
-            "{refused}"
-        );
-        b.run = "scene=box seed=1".to_owned();
-        assert!(
-            message(vec![named("a", &a), named("b", &b)])
-                .contains("scene=box, expected scene=head")
-        );
-    }
-}
+mod tests;

@@ -18,7 +18,7 @@ use crate::numbers::Sequence;
 use crate::scene::Scene;
 use crate::tree::Ray;
 use clap::ValueEnum;
-use core::sync::atomic::{AtomicUsize, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use rayon::prelude::*;
 use std::sync::Mutex;
 
@@ -142,15 +142,33 @@ pub fn render(
     samples: u32,
     progress: &(dyn Fn(f64) + Sync),
 ) {
+    render_until(scene, settings, film, samples, progress, &|| false);
+}
+
+/// The same, but no further tile is begun once `stop` says so. It is asked after each tile: at
+/// least one gets its samples.
+pub fn render_until(
+    scene: &Scene,
+    settings: &Settings,
+    film: &mut Film,
+    samples: u32,
+    progress: &(dyn Fn(f64) + Sync),
+    stop: &Stop<'_>,
+) {
     let total = film.tiles.len().max(1);
     let tables = Tables::new(
         &scene.sky,
         settings.seed,
         resampled::length(settings.integrator),
     );
-    let done = AtomicUsize::new(0);
+    let todo: Vec<&mut Tile> = film
+        .tiles
+        .iter_mut()
+        .filter(|tile| tile.samples < samples)
+        .collect();
+    let done = AtomicUsize::new(total - todo.len());
     let whole = Mutex::new(Profile::default());
-    film.tiles.par_iter_mut().for_each(|tile| {
+    each_until(todo, stop, |tile| {
         let start = seconds_of_thread();
         if settings.profile {
             profile::start();
@@ -169,6 +187,24 @@ pub fn render(
         progress(done as f64 / total as f64);
     });
     film.profile.add(whole.into_inner().unwrap_or_default());
+}
+
+/// Whether to begin no further tile.
+pub type Stop<'a> = dyn Fn() -> bool + Sync + 'a;
+
+/// Works on tiles on all threads, until `stop` says so after one of them.
+pub(crate) fn each_until(
+    tiles: Vec<&mut Tile>,
+    stop: &Stop<'_>,
+    work: impl Fn(&mut Tile) + Sync + Send,
+) {
+    let stopped = AtomicBool::new(false);
+    tiles.into_par_iter().for_each(|tile| {
+        if !stopped.load(Ordering::Relaxed) {
+            work(tile);
+            stopped.fetch_or(stop(), Ordering::Relaxed);
+        }
+    });
 }
 
 /// The picture of a part of a scene.

@@ -3,7 +3,7 @@
 mod description;
 
 use crate::args::Render;
-use crate::film::Film;
+use crate::film::{self, Film};
 use crate::formats::{Follow, Import, import, write_mitsuba};
 use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, check_paths, default_sampler};
@@ -12,13 +12,15 @@ use crate::material::Hair;
 use crate::memory;
 use crate::part::{self, Part};
 use crate::picture;
+use crate::saver::Saver;
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
-use crate::transport::{self, Settings};
+use crate::transport::{Integrator, Settings};
 use core::time::Duration;
 use description::describe;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::whole;
+use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::light::Environment;
 use hairis_instruments::program::say;
 use hairis_instruments::progress::{share_bar, show_share};
@@ -30,6 +32,8 @@ use std::time::Instant;
 
 /// Bounds of the time between two previews, which is half of the time since the start.
 const PREVIEW: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
+/// How many times as long as the last preview took a run goes on before the next.
+const PREVIEW_SHARE: u32 = 10;
 
 /// Renders a scene.
 ///
@@ -96,21 +100,33 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         Some(shard) => out.with_extension(format!("{}-of-{}.part", shard.index(), shard.of())),
         None => part::path(&out),
     };
+    let rays = match settings.integrator {
+        Integrator::Gather => settings.rays,
+        Integrator::Direct | Integrator::Path => 1,
+    };
     let fresh = Part {
         run,
-        film: Film::new(crop).shard(shard),
+        film: Film::with_tiles(crop, film::side(rays)).shard(shard),
         finished: false,
     };
     let samples = flags.spp.unwrap_or(defaults.samples);
     let most = flags.time.is_none().then_some(samples);
-    let mut part = Part::resume(&part_path, fresh, most)?;
-    layers::look(&scene, &mut part.film);
-    passes(flags, &scene, &settings, samples, &mut part, &part_path)?;
+    let interrupt = Interrupt::watch();
+    let (mut part, log) = Part::resume(&part_path, fresh, most)?;
+    let mut saver = Saver::new(log, &interrupt);
+    // The file is there, and this run's, from the beginning.
+    saver.save(&part)?;
+    saver.work(&mut part, |film, stop| {
+        layers::look(&scene, film, stop);
+        film.tiles.iter().all(|tile| !tile.first.is_empty())
+    })?;
+    passes(flags, &scene, &settings, samples, &mut part, &mut saver)?;
     if flags.profile {
         writeln!(io::stdout(), "time: {}", part.film.profile).map_err(Error::Write)?;
     }
+    let mut log = saver.end();
     if flags.shard.is_some() {
-        part.write(&part_path)?;
+        log.write(&part)?;
         for preview in ["exr", "png"] {
             // Ignore errors: a short run has left none.
             let _ = fs::remove_file(part_path.with_extension(preview));
@@ -131,7 +147,7 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     )?;
     // A larger --spp goes on from it.
     part.finished = true;
-    part.write(&part_path)
+    log.write(&part)
 }
 
 /// Writes a picture that is whole, and says so.
@@ -247,20 +263,21 @@ fn read_hair(flags: &Render, path: &Path) -> Result<Strands, Error> {
     Ok(imported.strands)
 }
 
-/// Renders pass by pass; from time to time writes what there is: the part, and the picture with its preview.
+/// Renders pass by pass, saving what there is; from time to time writes the picture so far, with
+/// its preview.
 fn passes(
     flags: &Render,
     scene: &Scene,
     settings: &Settings,
     samples: u32,
     part: &mut Part,
-    part_path: &Path,
+    saver: &mut Saver<'_>,
 ) -> Result<(), Error> {
     let bar = share_bar("{msg:>12} {wide_bar} {percent:>3}% {elapsed} (left {eta})");
     let show = |share: f64| show_share(&bar, share);
     let pass = settings.integrator.pass();
     let start = Instant::now();
-    let mut written = start;
+    let (mut written, mut took) = (start, Duration::ZERO);
     let mut done = part.film.samples();
     let is_over = |done: u32| {
         flags.time.map_or(done >= samples, |time| {
@@ -278,25 +295,27 @@ fn passes(
             None => (f64::from(done) + part * f64::from(next - done)) / f64::from(samples),
         };
         bar.set_message(format!("{done} samples"));
-        transport::render(scene, settings, &mut part.film, next, &|part| {
-            show(share(part))
-        });
+        saver.render(part, scene, settings, next, &|part| show(share(part)))?;
         done = next;
         let [least, most] = PREVIEW;
-        if written.elapsed() >= (start.elapsed() / 2).clamp(least, most) && !is_over(done) {
-            part.write(part_path)?;
+        let wait = (start.elapsed() / 2)
+            .clamp(least, most)
+            .max(took * PREVIEW_SHARE);
+        if written.elapsed() >= wait && !is_over(done) {
+            let begin = Instant::now();
+            saver.save(part)?;
             let picture = part.film.picture();
             let exposure = flags
                 .exposure
                 .unwrap_or_else(|| picture::exposure(&picture));
-            let growing = part_path.with_extension("exr");
+            let growing = saver.path().with_extension("exr");
             picture::write(
                 &picture,
                 &Beside::film(&part.film, &part.run),
                 &growing,
                 exposure,
             )?;
-            written = Instant::now();
+            (written, took) = (Instant::now(), begin.elapsed());
         }
     }
     bar.finish_and_clear();

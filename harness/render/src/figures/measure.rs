@@ -225,8 +225,14 @@ impl Measured {
             let file = format!("{}-{sampler}-{samples}", name.word());
             let of_runs =
                 format!("{of_scene} sampler={drawn} samples={samples} runs={runs} {settings:?}");
-            store.get(&file, &of_runs, || {
-                Runs::render(scene, &settings, &reference, samples, runs)
+            store.get(&file, &of_runs, |films| {
+                Runs::render(
+                    &settings,
+                    &reference,
+                    samples,
+                    runs,
+                    |settings, picture| films.render(scene, settings, samples, picture),
+                )
             })
         };
         let mut all = Vec::new();

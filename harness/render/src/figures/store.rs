@@ -1,24 +1,36 @@
 //! Finished measurements as files, for a run that is started again after it was stopped.
 
-use crate::film::{Crop, Picture};
-use crate::part::{Reader, build, digest, seal, unseal};
+use crate::film::{Crop, Film, Picture};
+use crate::part::{Log, Part, Reader, build, digest, seal, unseal};
 use crate::protocol::{Errors, Reference, Runs};
+use crate::saver::Saver;
 use crate::scene::Scene;
-use crate::transport::Settings;
+use crate::transport::{Integrator, Settings};
 use core::cell::{Cell, RefCell};
+use core::time::Duration;
 use hairis_instruments::error::Error;
 use hairis_instruments::files::whole;
+use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::program::say;
 use hairis_instruments::stats::Estimate;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// First line of a file, but for the number of the format.
 const FORMAT: &str = "hairis-render measurement ";
 /// First line of a file.
 const MAGIC: &str = "hairis-render measurement 2";
+
+/// Samples of a pixel that are added before others are, at shading points: each pass finds its
+/// points again, in next to no time beside so many samples.
+const GATHER_PASS: u32 = 1024;
+/// The same of paths.
+const PATH_PASS: u32 = 64;
+/// A picture that took longer is kept while the others of its measurement are rendered.
+const MOMENT: Duration = Duration::from_millis(300);
 
 /// A folder of finished measurements.
 ///
@@ -28,18 +40,19 @@ const MAGIC: &str = "hairis-render measurement 2";
 pub(super) struct Store {
     folder: PathBuf,
     build: String,
+    interrupt: Interrupt,
     /// Files that this run has written or read.
     used: RefCell<BTreeSet<PathBuf>>,
     resumed: Cell<usize>,
 }
 
 impl Store {
-    /// The measurements of the report in `out`.
+    /// The measurements of the report in `out`, by a run that `interrupt` may end.
     ///
     /// # Errors
     ///
     /// If there can be no such folder, or if it holds measurements in another format.
-    pub(super) fn new(out: &Path) -> Result<Self, Error> {
+    pub(super) fn new(out: &Path, interrupt: Interrupt) -> Result<Self, Error> {
         let folder = out.join("unfinished");
         let refuse = |source| Error::Output {
             path: folder.clone(),
@@ -52,6 +65,7 @@ impl Store {
         Ok(Self {
             folder,
             build: build(),
+            interrupt,
             used: RefCell::default(),
             resumed: Cell::new(0),
         })
@@ -62,25 +76,34 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// If the file cannot be written.
+    /// If the file cannot be written; those of `measure`.
     pub(super) fn get(
         &self,
         name: &str,
         settings: &str,
-        measure: impl FnOnce() -> Runs,
+        measure: impl FnOnce(&Films<'_>) -> Result<Runs, Error>,
     ) -> Result<Runs, Error> {
         let key = format!("{settings} {}", self.build);
-        let path = self
-            .folder
-            .join(format!("{name}-{:016x}.part", digest(key.as_bytes())));
+        let stem = format!("{name}-{:016x}", digest(key.as_bytes()));
+        let path = self.folder.join(format!("{stem}.part"));
         let is_new = self.used.borrow_mut().insert(path.clone());
         if let Some(found) = read(&path, &key) {
             self.resumed.set(self.resumed.get() + usize::from(is_new));
             return Ok(found);
         }
-        let measured = measure();
+        let films = Films {
+            store: self,
+            stem,
+            key: &key,
+            paths: RefCell::default(),
+        };
+        let measured = measure(&films)?;
         let bytes = bytes(&measured, &key);
         whole(&path, |out| out.write_all(&bytes))?;
+        for path in films.paths.into_inner() {
+            // Quick pictures have left none.
+            let _ = fs::remove_file(path);
+        }
         Ok(measured)
     }
 
@@ -100,8 +123,10 @@ impl Store {
     ) -> Result<Reference, Error> {
         let half = |half: u64| {
             let of_half = format!("{of_scene} samples={samples} half={half} {settings:?}");
-            self.get(&format!("{name}-reference-{half}"), &of_half, || {
-                Runs::half(scene, settings, samples, half)
+            self.get(&format!("{name}-reference-{half}"), &of_half, |films| {
+                Runs::half(settings, samples, half, |settings, picture| {
+                    films.render(scene, settings, samples, picture)
+                })
             })
         };
         let (a, b) = (half(0)?, half(1)?);
@@ -126,6 +151,64 @@ impl Store {
         }
         // It stays if runs with other settings have left files.
         let _ = fs::remove_dir(self.folder);
+    }
+}
+
+/// Pictures of a measurement that is not finished. Each has a file of its own as soon as it takes
+/// longer than a moment.
+pub(super) struct Films<'a> {
+    store: &'a Store,
+    /// Name of the measurement's file, but for the ending.
+    stem: String,
+    key: &'a str,
+    paths: RefCell<Vec<PathBuf>>,
+}
+
+impl Films<'_> {
+    /// Renders the whole picture of a scene, or what an earlier run has left to do of it.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be saved, and [`Error::Interrupted`].
+    pub(super) fn render(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        samples: u32,
+        picture: u64,
+    ) -> Result<Film, Error> {
+        let path = self
+            .store
+            .folder
+            .join(format!("{}-{picture}.film", self.stem));
+        self.paths.borrow_mut().push(path.clone());
+        let fresh = || Part {
+            run: format!("{} picture={picture}", self.key),
+            film: Film::new(Crop::whole(scene.camera.size())),
+            finished: false,
+        };
+        let resumed = Part::resume(&path, fresh(), Some(samples)).or_else(|error| match error {
+            Error::Part { path, problem } => {
+                say(&format!("{}: {problem}; rendered again", path.display()));
+                Ok((fresh(), Log::new(&path)))
+            }
+            error => Err(error),
+        });
+        let (mut part, log) = resumed?;
+        let (start, mut saver) = (Instant::now(), Saver::new(log, &self.store.interrupt));
+        let pass = match settings.integrator {
+            Integrator::Gather => GATHER_PASS,
+            Integrator::Direct | Integrator::Path => PATH_PASS,
+        };
+        let mut done = part.film.samples();
+        while done < samples {
+            done = samples.min(done + pass);
+            saver.render(&mut part, scene, settings, done, &|_| ())?;
+        }
+        if start.elapsed() > MOMENT {
+            saver.save(&part)?;
+        }
+        Ok(part.film)
     }
 }
 
@@ -265,6 +348,10 @@ mod tests {
         }
     }
 
+    fn new(out: &Path) -> Result<Store, Error> {
+        Store::new(out, Interrupt::default())
+    }
+
     fn only_file(store: &Store) -> PathBuf {
         let mut files = fs::read_dir(&store.folder).expect("a folder");
         files.next().expect("a file").expect("read").path()
@@ -273,12 +360,12 @@ mod tests {
     #[test]
     fn settings_that_differ_share_nothing() {
         let folder = tempfile::TempDir::new().expect("a folder");
-        let store = Store::new(folder.path()).expect("a folder");
+        let store = new(folder.path()).expect("a folder");
         let get = |store: &Store, settings: &str| {
             let mut made = false;
-            let make = || {
+            let make = |_: &Films<'_>| {
                 made = true;
-                runs()
+                Ok(runs())
             };
             assert_eq!(store.get("area", settings, make).expect("written"), runs());
             made
@@ -288,7 +375,7 @@ mod tests {
             !get(&store, "seed=1") && store.resumed() == 0,
             "the same run"
         );
-        let again = Store::new(folder.path()).expect("a folder");
+        let again = new(folder.path()).expect("a folder");
         assert!(
             !get(&again, "seed=1") && again.resumed() == 1,
             "the next run"
@@ -296,7 +383,7 @@ mod tests {
         assert!(get(&again, "seed=2"), "another seed");
         let other = Store {
             build: "commit=other".to_owned(),
-            ..Store::new(folder.path()).expect("a folder")
+            ..new(folder.path()).expect("a folder")
         };
         assert!(get(&other, "seed=1"), "another build");
         other.remove();
@@ -310,12 +397,14 @@ mod tests {
     #[test]
     fn other_formats_are_refused_by_name() {
         let folder = tempfile::TempDir::new().expect("a folder");
-        let store = Store::new(folder.path()).expect("a folder");
-        store.get("area", "seed=1", runs).expect("written");
-        Store::new(folder.path()).expect("the same format");
+        let store = new(folder.path()).expect("a folder");
+        store
+            .get("area", "seed=1", |_| Ok(runs()))
+            .expect("written");
+        new(folder.path()).expect("the same format");
         let path = store.folder.join("box-uniform-4-0123.part");
         fs::write(&path, "hairis-render measurement 1\nscene=box\n\u{0}").expect("written");
-        let message = Store::new(folder.path()).expect_err("refused").to_string();
+        let message = new(folder.path()).expect_err("refused").to_string();
         assert!(
             message.contains("box-uniform-4-0123.part") && message.contains("measurement 1\""),
             "{message}"
@@ -325,8 +414,10 @@ mod tests {
     #[test]
     fn damaged_files_are_measured_again() {
         let folder = tempfile::TempDir::new().expect("a folder");
-        let store = Store::new(folder.path()).expect("a folder");
-        store.get("area", "seed=1", runs).expect("written");
+        let store = new(folder.path()).expect("a folder");
+        store
+            .get("area", "seed=1", |_| Ok(runs()))
+            .expect("written");
         let path = only_file(&store);
         let (good, key) = (
             fs::read(&path).expect("there"),
@@ -341,9 +432,9 @@ mod tests {
         }
         fs::write(&path, &good[..99]).expect("written");
         let mut made = false;
-        let make = || {
+        let make = |_: &Films<'_>| {
             made = true;
-            runs()
+            Ok(runs())
         };
         store.get("area", "seed=1", make).expect("written");
         assert!(

@@ -9,6 +9,7 @@ use crate::scenes::Name;
 use crate::transport::Integrator;
 use core::cell::Cell;
 use core::panic::AssertUnwindSafe;
+use hairis_instruments::interrupt::{Interrupt, Signal};
 use std::panic::catch_unwind;
 use std::path::Path;
 
@@ -23,7 +24,7 @@ const TINY: Plan = Plan {
 
 /// Measures a scene, and stops at the given step of progress; with the count of measurements that were there.
 fn measured(plan: &Plan, seed: u64, out: &Path, last: usize) -> Option<(Measured, usize)> {
-    let store = Store::new(out).expect("a folder");
+    let store = Store::new(out, Interrupt::default()).expect("a folder");
     let steps = Cell::new(0);
     let step = |what: &str| {
         steps.set(steps.get() + 1);
@@ -71,6 +72,38 @@ fn a_run_that_is_stopped_goes_on_to_the_same_results() {
             a.name
         );
     }
+}
+
+#[test]
+fn a_signal_within_a_measurement_loses_no_picture() {
+    let folders = [0; 2].map(|_| tempfile::TempDir::new().expect("a folder"));
+    let [at_once, stopped] = folders.each_ref().map(|folder| folder.path());
+    let (expected, _) = measured(&TINY, 1, at_once, usize::MAX).expect("whole");
+    let files = |ending: &str| {
+        let files = std::fs::read_dir(stopped.join("unfinished")).expect("a folder");
+        files
+            .filter(|file| {
+                let path = file.as_ref().expect("read").path();
+                path.extension().is_some_and(|end| end == ending)
+            })
+            .count()
+    };
+    // Each run renders one picture: the halves of the reference, and some of the first error's
+    // three.
+    for run in 0..4 {
+        let interrupt = Interrupt::default();
+        interrupt.raise(Signal::Terminate);
+        let store = Store::new(stopped, interrupt).expect("a folder");
+        let error = Measured::render(Name::AreaHead, None, &TINY, 1, &store, &|_| ());
+        assert_eq!(error.expect_err("a signal").exit_code(), 143);
+        assert_eq!(
+            (files("part"), files("film")),
+            [(0, 1), (1, 1), (2, 1), (2, 2)][run]
+        );
+    }
+    let (got, resumed) = measured(&TINY, 1, stopped, usize::MAX).expect("whole");
+    assert_eq!((resumed, files("film")), (2, 0));
+    assert_eq!(results(&got), results(&expected));
 }
 
 #[test]
@@ -129,7 +162,7 @@ fn other_settings_use_no_results_of_a_run() {
 fn pictures_of_models_are_kept() {
     let folder = tempfile::TempDir::new().expect("a folder");
     let render = || {
-        let store = Store::new(folder.path()).expect("a folder");
+        let store = Store::new(folder.path(), Interrupt::default()).expect("a folder");
         Preset::render("brown", &TINY, 1, &store, &|_| ()).expect("rendered");
         store.resumed()
     };

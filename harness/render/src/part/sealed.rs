@@ -13,7 +13,7 @@ pub(crate) fn digest(bytes: &[u8]) -> u64 {
 }
 
 /// Puts a digest of all bytes behind them.
-pub fn seal(bytes: &mut Vec<u8>) {
+pub(crate) fn seal(bytes: &mut Vec<u8>) {
     let check = digest(bytes);
     bytes.extend(check.to_le_bytes());
 }

@@ -2,9 +2,8 @@
 
 use super::rate::{average, jackknife};
 use super::{Errors, Measure, Reference};
-use crate::film::{Crop, Film, Picture};
-use crate::scene::Scene;
-use crate::transport::{Settings, film};
+use crate::film::{Film, Picture};
+use crate::transport::Settings;
 use hairis_instruments::stats::{Estimate, Moments};
 
 /// Renders with one sampler at one count of samples, each with a seed of its own.
@@ -27,17 +26,21 @@ pub struct Runs {
 }
 
 impl Runs {
-    /// Renders half of a reference: 0 or 1.
-    #[must_use]
-    pub fn half(scene: &Scene, settings: &Settings, samples: u32, half: u64) -> Self {
+    /// Renders half of a reference: 0 or 1. `film` renders with some settings, and takes which
+    /// picture it is.
+    ///
+    /// # Errors
+    ///
+    /// Those of `film`.
+    pub fn half<E>(
+        settings: &Settings,
+        samples: u32,
+        half: u64,
+        film: impl FnOnce(&Settings, u64) -> Result<Film, E>,
+    ) -> Result<Self, E> {
         let seed = (settings.seed ^ 0x7265_6665_7265_6e63).wrapping_add(half);
-        let film = film(
-            scene,
-            &Settings { seed, ..*settings },
-            Crop::whole(scene.camera.size()),
-            samples,
-        );
-        Self {
+        let film = film(&Settings { seed, ..*settings }, half)?;
+        Ok(Self {
             samples,
             seconds: film.seconds(),
             errors: Vec::new(),
@@ -45,33 +48,30 @@ impl Runs {
             picture: film.picture(),
             bias: Vec::new(),
             squares: Vec::new(),
-        }
+        })
     }
 
-    /// Renders `runs` pictures and compares them with a reference.
-    #[must_use]
-    pub fn render(
-        scene: &Scene,
+    /// Renders `runs` pictures, by `film` as in [`half`](Self::half), and compares them with a
+    /// reference.
+    ///
+    /// # Errors
+    ///
+    /// Those of `film`.
+    pub fn render<E>(
         settings: &Settings,
         reference: &Reference,
         samples: u32,
         runs: u32,
-    ) -> Self {
-        let whole = Crop::whole(scene.camera.size());
-        let one = |run: u32| -> Film {
-            let seed = settings
-                .seed
-                .wrapping_mul(1000)
-                .wrapping_add(u64::from(run));
-            film(scene, &Settings { seed, ..*settings }, whole, samples)
-        };
-        let films: Vec<Film> = (0..runs.max(1)).map(one).collect();
-        let pictures: Vec<Picture> = films.iter().map(Film::picture).collect();
-        let seconds = films
-            .iter()
-            .map(Film::seconds)
-            .fold(f64::INFINITY, f64::min);
-        Self::of(&pictures, reference, samples, seconds)
+        film: impl Fn(&Settings, u64) -> Result<Film, E>,
+    ) -> Result<Self, E> {
+        let (mut pictures, mut seconds) = (Vec::new(), f64::INFINITY);
+        for run in 0..u64::from(runs.max(1)) {
+            let seed = settings.seed.wrapping_mul(1000).wrapping_add(run);
+            let film = film(&Settings { seed, ..*settings }, run)?;
+            seconds = seconds.min(film.seconds());
+            pictures.push(film.picture());
+        }
+        Ok(Self::of(&pictures, reference, samples, seconds))
     }
 
     /// Compares pictures with a reference.

@@ -1,6 +1,8 @@
 //! Pictures that were stopped, extended, or rendered in shards.
 
 use super::{SMALL, channels, refuse, render, succeed};
+#[cfg(unix)]
+use hairis_render::part::Part;
 use tempfile::TempDir;
 
 /// A shard's part stays, and may be continued by the same run alone.
@@ -142,61 +144,77 @@ fn finished_pictures_are_replaced() {
 #[test]
 fn killed_runs_go_on() {
     let folder = TempDir::new().expect("a folder");
-    let flags = [
-        "render",
-        "head",
-        "--out",
-        "a.exr",
-        "--spp",
-        "1000000",
-        "--strands",
-        "300",
-        "--size",
-        "24x24",
-    ];
-    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_hairis-render"))
-        .args(flags)
+    let flags = ["render", "head", "--strands", "300", "--size", "24x24"];
+    for (signal, code, words) in [
+        ("KILL", None, ""),
+        ("TERM", Some(143), "interrupted by SIGTERM"),
+        ("INT", Some(130), "interrupted by SIGINT"),
+    ] {
+        let picture = format!("{signal}.exr");
+        let child = std::process::Command::new(env!("CARGO_BIN_EXE_hairis-render"))
+            .args(flags)
+            .args(["--out", &picture, "--spp", "1000000"])
+            .current_dir(folder.path())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("it starts");
+        let part = folder.path().join(format!("{signal}.part"));
+        let start = std::time::Instant::now();
+        // The picture that grows follows the part.
+        let preview = folder.path().join(format!("{signal}.png"));
+        while !preview.exists() && start.elapsed().as_secs() < 120 {
+            std::thread::sleep(core::time::Duration::from_millis(20));
+        }
+        std::process::Command::new("kill")
+            .args([format!("-{signal}"), child.id().to_string()])
+            .status()
+            .expect("sent");
+        let output = child.wait_with_output().expect("ended");
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), code, "{errors}");
+        let last = errors.lines().last().unwrap_or_default();
+        assert!(
+            last.contains(words) && (code.is_none() || last.contains(&format!("{signal}.part"))),
+            "{errors}"
+        );
+        let grown = channels(&folder, &picture);
+        let samples = &grown
+            .iter()
+            .find(|(name, _)| name == "samples")
+            .expect("a layer")
+            .1;
+        assert!(f32::from_bits(samples[0]) > 0.0, "the picture grows");
+        let saved = Part::read(&part).expect("whole").film.most_samples();
+        let target = (saved + 8).to_string();
+        for picture in [&picture, "once.exr"] {
+            succeed(
+                &folder,
+                &[&flags[..], &["--spp", &target, "--out", picture]].concat(),
+            );
+        }
+        assert!(
+            channels(&folder, &picture) == channels(&folder, "once.exr"),
+            "{signal}: {saved} samples, and then {target}"
+        );
+        std::fs::remove_file(folder.path().join("once.part")).expect("there");
+    }
+}
+
+/// A count of threads that is none is reported, and the run goes on.
+#[test]
+fn odd_counts_of_threads_are_reported() {
+    let folder = TempDir::new().expect("a folder");
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_hairis-render"))
+        .args(["render", "area", "--spp", "1", "--out", "a.exr"])
+        .args(SMALL)
+        .env("RAYON_NUM_THREADS", "many")
         .current_dir(folder.path())
-        .stderr(std::process::Stdio::null())
-        .spawn()
+        .output()
         .expect("it starts");
-    let part = folder.path().join("a.part");
-    let start = std::time::Instant::now();
-    while !part.exists() && start.elapsed().as_secs() < 120 {
-        std::thread::sleep(core::time::Duration::from_millis(20));
-    }
-    // The picture that grows follows the part.
-    while !folder.path().join("a.png").exists() && start.elapsed().as_secs() < 120 {
-        std::thread::sleep(core::time::Duration::from_millis(20));
-    }
-    child.kill().expect("it runs, or has ended");
-    child.wait().expect("ended");
-    let samples = |file: &str| {
-        let all = channels(&folder, file);
-        f32::from_bits(
-            all.iter()
-                .find(|(name, _)| name == "samples")
-                .expect("a layer")
-                .1[0],
-        )
-    };
-    let grown = samples("a.exr");
-    assert!(grown > 0.0, "the picture grows");
-    let target = (grown + 8.0).to_string();
-    let flags = [
-        "render",
-        "head",
-        "--strands",
-        "300",
-        "--size",
-        "24x24",
-        "--spp",
-        &target,
-    ];
-    succeed(&folder, &[&flags[..], &["--out", "a.exr"]].concat());
-    succeed(&folder, &[&flags[..], &["--out", "b.exr"]].concat());
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
     assert!(
-        channels(&folder, "a.exr") == channels(&folder, "b.exr"),
-        "{grown} samples, and then {target}"
+        errors.starts_with("RAYON_NUM_THREADS must be a whole number of threads, got \"many\""),
+        "{errors}"
     );
 }

@@ -1,0 +1,121 @@
+//! A part that grows as its picture does.
+
+use super::{Part, record};
+use crate::film::Tile;
+use hairis_instruments::appended::Appended;
+use hairis_instruments::error::Error;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// Bytes that are written at once.
+const BLOCK: usize = 1 << 23;
+/// How many times as long as it need be a file may grow, before it is written anew.
+const MOST: usize = 3;
+
+/// The file of a part, to which tiles are appended. It is written as a whole when the first are
+/// saved, and again once most of it is out of date.
+#[derive(Debug)]
+pub struct Log {
+    path: PathBuf,
+    file: Option<Appended>,
+    /// Samples of the tiles in the file, and whether it has what their pixels meet first.
+    saved: HashMap<[u32; 2], (u32, bool)>,
+    /// Length of the file in bytes.
+    length: usize,
+}
+
+fn state(tile: &Tile) -> (u32, bool) {
+    (tile.samples, !tile.first.is_empty())
+}
+
+impl Log {
+    /// A file that is written when the first tiles are saved, in place of what is there.
+    #[must_use]
+    pub fn new(path: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+            file: None,
+            saved: HashMap::new(),
+            length: 0,
+        }
+    }
+
+    /// A file that has the tiles of a part in its first bytes.
+    pub(super) fn go_on(path: &Path, part: &Part, whole: usize) -> Result<Self, Error> {
+        let file = Appended::open(path)?;
+        file.cut(whole)?;
+        Ok(Self {
+            file: Some(file),
+            saved: begun(part).collect(),
+            length: whole,
+            ..Self::new(path)
+        })
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Saves the tiles that are not as in the file.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written, or another process is writing to it.
+    pub fn save(&mut self, part: &Part) -> Result<(), Error> {
+        let Some(file) = &self.file else {
+            return self.write(part);
+        };
+        let mut block = Vec::new();
+        let (mut added, mut whole) = (0, 0);
+        for tile in part.film.tiles.iter().filter(|tile| tile.is_begun()) {
+            let size = || record_size(tile);
+            whole += size();
+            if self.saved.get(&tile.key()) == Some(&state(tile)) {
+                continue;
+            }
+            block.extend(record(tile));
+            added += size();
+            if block.len() >= BLOCK {
+                file.append(&block)?;
+                block.clear();
+            }
+        }
+        file.append(&block)?;
+        self.saved.extend(begun(part));
+        self.length += added;
+        if self.length > MOST * whole + BLOCK {
+            self.write(part)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the file as a whole.
+    ///
+    /// # Errors
+    ///
+    /// As [`save`](Self::save).
+    pub fn write(&mut self, part: &Part) -> Result<(), Error> {
+        if self.file.take().is_none() && self.path.exists() {
+            // Whoever writes to it has it.
+            Appended::open(&self.path)?;
+        }
+        part.write(&self.path)?;
+        self.saved = begun(part).collect();
+        self.length = part.film.tiles.iter().map(record_size).sum();
+        self.file = Some(Appended::open(&self.path)?);
+        Ok(())
+    }
+}
+
+/// Tiles that are in a file, with their states.
+fn begun(part: &Part) -> impl Iterator<Item = ([u32; 2], (u32, bool))> {
+    let begun = part.film.tiles.iter().filter(|tile| tile.is_begun());
+    begun.map(|tile| (tile.key(), state(tile)))
+}
+
+/// Bytes of a tile in a file, or a few more.
+fn record_size(tile: &Tile) -> usize {
+    64 + 32 * tile.sums.len() + 28 * tile.first.len()
+}
