@@ -4,6 +4,7 @@ mod csv;
 mod map;
 mod measure;
 mod models;
+mod names;
 mod page;
 mod panel;
 mod rates;
@@ -37,9 +38,9 @@ const SCENES: [Name; 7] = [
     Name::Head,
 ];
 
-/// Compares samplers on every scene, and writes `report.html` with its figures as `figures.csv` and an EXR file of
-/// each picture beside it. A run that was
-/// stopped goes on from the measurements that it had finished.
+/// Compares samplers on every scene, and writes `report.html` with its figures as `figures.csv`,
+/// its settings as `figures.json` and an EXR file of each picture beside it. A run that was stopped
+/// goes on from what it had saved.
 ///
 /// # Errors
 ///
@@ -52,25 +53,33 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         rectangle_sampling: flags.rectangles,
         ..plan
     };
-    let chosen: &[Name] = if flags.scene.is_empty() {
-        &SCENES
+    let mut chosen = if flags.scene.is_empty() {
+        SCENES.to_vec()
     } else {
-        &flags.scene
+        flags.scene.clone()
     };
+    let mut known = Vec::new();
+    // A scene that is asked for twice is the same one.
+    chosen.retain(|name| {
+        let is_new = !known.contains(name);
+        known.push(*name);
+        is_new
+    });
     chosen.iter().try_for_each(|name| plan.check(*name))?;
-    let maps = flags
-        .env
+    let names = names::of_files(&flags.env)?;
+    let maps = names
         .iter()
-        .map(|path| environment(path))
-        .collect::<Result<Vec<_>, _>>()?;
+        .zip(&flags.env)
+        .map(|(name, path)| Ok((name.clone(), environment(path)?)))
+        .collect::<Result<Vec<_>, Error>>()?;
     prepare(&flags.out)?;
     let store = Store::new(&flags.out, Interrupt::watch())?;
     let mut scenes = Vec::new();
     for name in chosen {
-        if *name == Name::Env && !maps.is_empty() {
-            scenes.extend(maps.iter().map(|map| (*name, Some(map.clone()))));
+        if name == Name::Env && !maps.is_empty() {
+            scenes.extend(maps.iter().map(|map| (name, Some(map.clone()))));
         } else {
-            scenes.push((*name, None));
+            scenes.push((name, None));
         }
     }
     // Models are compared where the scenes are not chosen one by one.
@@ -101,24 +110,29 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         bar.set_message(what.to_owned());
         bar.inc(1);
     };
+    let titles: Vec<String> = scenes
+        .iter()
+        .map(|(name, map)| measure::title(*name, map.as_ref().map(|(name, _)| name.as_str())))
+        .collect();
+    let settings = csv::settings(&plan, flags, &names);
     let mut all = Vec::new();
-    for (name, map) in scenes {
+    for ((name, map), stem) in scenes.into_iter().zip(names::of_pictures(&titles)) {
         let measured = Measured::render(name, map, &plan, flags.seed, &store, &step)?;
         if flags.shard.is_some() {
             continue;
         }
-        measured.write_pictures(&flags.out)?;
+        measured.write_pictures(&flags.out, &stem)?;
         all.push(measured);
         // After every scene, so that a run that is stopped leaves a page.
         page::write(&all, &[], &plan, flags, &flags.out)?;
-        csv::write(&all, &[], &plan, flags, &flags.out)?;
+        csv::write(&all, &[], &settings, &flags.out)?;
     }
     let mut compared = Vec::new();
     for name in presets {
         compared.push(Preset::render(name, &plan, flags.seed, &store, &step)?);
         if flags.shard.is_none() {
             page::write(&all, &compared, &plan, flags, &flags.out)?;
-            csv::write(&all, &compared, &plan, flags, &flags.out)?;
+            csv::write(&all, &compared, &settings, &flags.out)?;
         }
     }
     bar.finish_and_clear();

@@ -10,83 +10,142 @@ use crate::lights::RectangleSampling;
 use crate::numbers::Sequence;
 use crate::protocol::{Measure, Reach, Runs, reach, slope_of};
 use clap::ValueEnum;
+use hairis_instruments::columns::Columns;
 use hairis_instruments::error::Error;
-use hairis_instruments::files::whole;
+use hairis_instruments::files::{whole, write_json};
 use hairis_instruments::machine;
+use hairis_instruments::machine::Machine;
 use hairis_instruments::stats::Estimate;
-use std::io::Write as _;
+use serde::Serialize;
 use std::path::Path;
 
-/// Names of the columns.
-const HEADER: &str =
-    "scene,light,hair,sampler,protocol,samples,figure,value,standard_error,below_reference";
+/// What the figures depend on: `figures.json`.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct FiguresSettings {
+    /// The command line, with the names of maps alone, and without folders.
+    command: String,
+    /// Width and height of pictures in pixels.
+    side: u32,
+    /// Strands of hair.
+    strands: usize,
+    /// Pictures for each error.
+    pictures_per_error: u32,
+    /// What times are.
+    time: &'static str,
+    machine: Machine,
+}
 
-/// Writes `figures.csv`.
+/// The settings of a run, with the names of its maps.
+pub(super) fn settings(plan: &Plan, flags: &Figures, maps: &[String]) -> FiguresSettings {
+    FiguresSettings {
+        command: command(flags, maps),
+        side: plan.side,
+        strands: plan.strands,
+        pictures_per_error: plan.runs,
+        time: "seconds of a thread, per picture",
+        machine: machine!(),
+    }
+}
+
+/// Writes `figures.csv`, and `figures.json` with what it depends on.
 pub(super) fn write(
     all: &[Measured],
     presets: &[Preset],
-    plan: &Plan,
-    flags: &Figures,
+    settings: &FiguresSettings,
     out: &Path,
 ) -> Result<(), Error> {
-    let mut lines = head(plan, flags);
+    let mut rows = Vec::new();
     for measured in all {
-        scene(measured, &mut lines);
+        scene(measured, &mut rows);
     }
     for preset in presets {
         for (model, brightness, look) in preset.differences() {
-            let start = format!(
-                "models,paths,{},{model},,{}",
-                preset.name(),
-                preset.samples()
-            );
-            lines.push(row(
-                &start,
-                "brightness relative to the published model",
-                Estimate::exact(brightness),
-                false,
-            ));
-            lines.push(row(
-                &start,
-                "relative difference of the look",
-                Estimate::exact(look),
-                false,
-            ));
+            let start = Start {
+                scene: "models".to_owned(),
+                light: "paths".to_owned(),
+                hair: preset.name(),
+                sampler: model,
+                protocol: "",
+                samples: Some(preset.samples()),
+            };
+            let what = "brightness relative to the published model";
+            rows.push(start.row(what, Estimate::exact(brightness), false));
+            let what = "relative difference of the look";
+            rows.push(start.row(what, Estimate::exact(look), false));
         }
     }
     whole(&out.join("figures.csv"), |file| {
-        file.write_all((lines.join("\n") + "\n").as_bytes())
-    })
+        columns(&rows).write_csv(file)
+    })?;
+    write_json(&out.join("figures.json"), settings)
 }
 
-/// Machine, compiler, command and settings, and the names of the columns.
-fn head(plan: &Plan, flags: &Figures) -> Vec<String> {
-    let Plan {
-        side,
-        strands,
-        runs,
-        ..
-    } = plan;
-    vec![
-        format!("# {}", machine!().summary()),
-        format!("# {}", command(flags)),
-        format!(
-            "# {side} by {side} pixels, {strands} strands, {runs} pictures per error; time: seconds of a thread, per picture"
-        ),
-        HEADER.to_owned(),
-    ]
+/// What a figure is of.
+#[derive(Clone, Debug)]
+struct Start {
+    scene: String,
+    light: String,
+    hair: &'static str,
+    /// The sampler, or the model.
+    sampler: &'static str,
+    protocol: &'static str,
+    /// Samples of a pixel, if the figure is of one count of them.
+    samples: Option<u32>,
+}
+
+/// A line of the table.
+struct Row {
+    start: Start,
+    figure: String,
+    estimate: Estimate,
+    is_below: bool,
+}
+
+impl Start {
+    fn row(&self, figure: &str, estimate: Estimate, is_below: bool) -> Row {
+        Row {
+            start: self.clone(),
+            figure: figure.to_owned(),
+            estimate,
+            is_below,
+        }
+    }
+}
+
+/// The table.
+fn columns(rows: &[Row]) -> Columns {
+    let text = |of: fn(&Start) -> String| rows.iter().map(move |row| of(&row.start));
+    Columns::default()
+        .text("scene", text(|start| start.scene.clone()))
+        .text("light", text(|start| start.light.clone()))
+        .text("hair", text(|start| start.hair.to_owned()))
+        .text("sampler", text(|start| start.sampler.to_owned()))
+        .text("protocol", text(|start| start.protocol.to_owned()))
+        .text(
+            "samples",
+            text(|start| {
+                start
+                    .samples
+                    .map_or_else(String::new, |samples| samples.to_string())
+            }),
+        )
+        .text("figure", rows.iter().map(|row| row.figure.clone()))
+        .number("value", rows.iter().map(|row| digits(row.estimate.value)))
+        .number(
+            "standard_error",
+            rows.iter().map(|row| digits(row.estimate.standard_error)),
+        )
+        .text(
+            "below_reference",
+            rows.iter().map(|row| if row.is_below { "yes" } else { "" }),
+        )
 }
 
 /// The command line, with the names of maps alone, and without folders.
-fn command(flags: &Figures) -> String {
+fn command(flags: &Figures, maps: &[String]) -> String {
     let mut words = vec!["hairis-render figures".to_owned()];
     words.extend(flags.quick.then(|| "--quick".to_owned()));
-    for map in &flags.env {
-        words.push(format!(
-            "--env {}",
-            map.file_name().unwrap_or_default().display()
-        ));
-    }
+    words.extend(maps.iter().map(|map| format!("--env {map}")));
     words.extend(
         flags
             .scene
@@ -113,16 +172,17 @@ fn flag(name: &str, value: impl ValueEnum) -> Option<String> {
 }
 
 /// Adds the rows of a scene.
-fn scene(measured: &Measured, lines: &mut Vec<String>) {
-    let title = measured.title().replace([',', '"', '\n'], " ");
-    let start = format!(
-        "{title},{},{}",
-        kind(measured).replace(',', ""),
-        measured.preset
-    );
+fn scene(measured: &Measured, rows: &mut Vec<Row>) {
+    let start = Start {
+        scene: measured.title(),
+        light: kind(measured).replace(',', ""),
+        hair: measured.preset,
+        sampler: "matched",
+        protocol: "",
+        samples: None,
+    };
     let visible = Estimate::exact(measured.visible);
-    lines.push(row(
-        &format!("{start},matched,,"),
+    rows.push(start.row(
         "share of the rays towards lights that reach them",
         visible,
         false,
@@ -132,94 +192,53 @@ fn scene(measured: &Measured, lines: &mut Vec<String>) {
     };
     let level = level(measured);
     for sampler in &measured.samplers {
+        let start = Start {
+            sampler: sampler.name,
+            ..start.clone()
+        };
+        let at = |protocol, runs: &Runs| Start {
+            protocol,
+            samples: Some(runs.samples),
+            ..start.clone()
+        };
         for (runs, best) in sampler.runs.iter().zip(&best.runs) {
-            figures(
-                &format!("{start},{},equal samples,{}", sampler.name, runs.samples),
-                runs,
-                best,
-                lines,
-            );
+            figures(&at("equal samples", runs), runs, best, rows);
         }
         let runs = &sampler.equal_time;
-        figures(
-            &format!("{start},{},equal time,{}", sampler.name, runs.samples),
-            runs,
-            &best.equal_time,
-            lines,
-        );
-        let start = format!("{start},{},,", sampler.name);
+        figures(&at("equal time", runs), runs, &best.equal_time, rows);
         for measure in Measure::ALL {
             if let Some(slope) = slope_of(&sampler.runs, measure) {
-                lines.push(row(
-                    &start,
-                    &format!("slope of log {}", measure.name()),
-                    slope,
-                    false,
-                ));
+                let what = format!("slope of log {}", measure.name());
+                rows.push(start.row(&what, slope, false));
             }
         }
-        if let Some(Reach::At([samples, seconds])) = reach(&sampler.runs, Measure::RelMse, level) {
-            lines.push(row(
-                &start,
-                &format!("samples to relMSE {}", digits(level)),
-                samples,
-                false,
-            ));
-            lines.push(row(
-                &start,
-                &format!("time to relMSE {}", digits(level)),
-                seconds,
-                false,
-            ));
+        if let Some(Reach::At(both)) = reach(&sampler.runs, Measure::RelMse, level) {
+            for (what, estimate) in ["samples", "time"].into_iter().zip(both) {
+                let what = format!("{what} to relMSE {}", digits(level));
+                rows.push(start.row(&what, estimate, false));
+            }
         }
     }
 }
 
 /// Adds the rows of a sampler at a count of samples.
-fn figures(start: &str, runs: &Runs, best: &Runs, lines: &mut Vec<String>) {
-    lines.push(row(start, "time", Estimate::exact(runs.seconds), false));
-    lines.push(row(start, "variance per sample", runs.variance, false));
+fn figures(start: &Start, runs: &Runs, best: &Runs, rows: &mut Vec<Row>) {
+    rows.push(start.row("time", Estimate::exact(runs.seconds), false));
+    rows.push(start.row("variance per sample", runs.variance, false));
     for measure in Measure::ALL {
         let name = measure.name();
-        lines.push(row(
-            start,
-            name,
-            runs.mean(measure),
-            runs.is_below_reference(measure),
-        ));
+        rows.push(start.row(name, runs.mean(measure), runs.is_below_reference(measure)));
         for (what, with_time) in [("", false), (" × time", true)] {
             let Gain { ratio, is_below } = Gain::new(runs, best, measure, with_time);
-            lines.push(row(
-                start,
-                &format!("{name}{what} relative to matched"),
-                ratio,
-                is_below,
-            ));
+            let what = format!("{name}{what} relative to matched");
+            rows.push(start.row(&what, ratio, is_below));
         }
     }
 }
 
-fn row(start: &str, figure: &str, estimate: Estimate, is_below: bool) -> String {
-    let Estimate {
-        value,
-        standard_error,
-    } = estimate;
-    let below = if is_below { "yes" } else { "" };
-    format!(
-        "{start},{figure},{},{},{below}",
-        digits(value),
-        digits(standard_error)
-    )
-}
-
-/// A number to five digits; nothing for one that is not known.
-fn digits(value: f64) -> String {
-    let rounded = format!("{value:.4e}").parse::<f64>().unwrap_or(value);
-    if rounded.is_finite() {
-        rounded.to_string()
-    } else {
-        String::new()
-    }
+/// A number to five digits.
+fn digits(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]
@@ -227,24 +246,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_have_a_field_per_column() {
-        let line = row(
-            "area,direct,glossy,uniform,equal samples,16",
-            "MSE",
-            Estimate {
-                value: 0.123_456_7,
-                standard_error: f64::NAN,
-            },
-            true,
-        );
-        assert_eq!(
-            line,
-            "area,direct,glossy,uniform,equal samples,16,MSE,0.12346,,yes"
-        );
-        assert_eq!(line.split(',').count(), HEADER.split(',').count());
-        assert_eq!(
-            [digits(1234.567), digits(2e-7), digits(0.0)],
-            ["1234.6", "0.0000002", "0"]
-        );
+    fn the_names_of_the_columns_come_first() {
+        let start = Start {
+            scene: "env (a, b.exr)".to_owned(),
+            light: "direct at shading points".to_owned(),
+            hair: "glossy",
+            sampler: "uniform",
+            protocol: "equal samples",
+            samples: Some(16),
+        };
+        let estimate = Estimate {
+            value: 0.123_456_7,
+            standard_error: f64::NAN,
+        };
+        let rows = [
+            start.row("MSE", estimate, true),
+            Start {
+                samples: None,
+                ..start
+            }
+            .row("slope", Estimate::exact(1234.567), false),
+        ];
+        let mut bytes = Vec::new();
+        columns(&rows).write_csv(&mut bytes).expect("written");
+        let want = "\
+scene,light,hair,sampler,protocol,samples,figure,value,standard_error,below_reference
+\"env (a, b.exr)\",direct at shading points,glossy,uniform,equal samples,16,MSE,0.12346,,yes
+\"env (a, b.exr)\",direct at shading points,glossy,uniform,equal samples,,slope,1234.6,0.0,
+";
+        assert_eq!(String::from_utf8(bytes).expect("text"), want);
     }
 }

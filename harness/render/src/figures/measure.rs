@@ -144,7 +144,7 @@ pub(super) struct BySampler {
 pub(super) struct Measured {
     /// The scene.
     pub(super) name: Name,
-    /// The map, if it is the caller's.
+    /// Name of the map, if it is the caller's.
     map: Option<String>,
     /// How light is estimated.
     pub(super) integrator: Integrator,
@@ -168,16 +168,14 @@ impl Measured {
     /// Renders what is not in the store.
     pub(super) fn render(
         name: Name,
-        map: Option<Environment>,
+        map: Option<(String, Environment)>,
         plan: &Plan,
         seed: u64,
         store: &Store,
         step: &dyn Fn(&str),
     ) -> Result<Self, Error> {
         let defaults = name.defaults();
-        let title = map
-            .as_ref()
-            .map(|map| hairis_instruments::light::Light::name(map).to_owned());
+        let (map_name, map) = map.unzip();
         let digest = map.as_ref().map_or(0, Environment::digest);
         let hair = |sampler| Choice::find(MODEL, sampler, defaults.preset)?.hair(Energy::Raw);
         let strands = scenes::grow(name, plan.strands)?;
@@ -226,13 +224,9 @@ impl Measured {
             let of_runs =
                 format!("{of_scene} sampler={drawn} samples={samples} runs={runs} {settings:?}");
             store.get(&file, &of_runs, |films| {
-                Runs::render(
-                    &settings,
-                    &reference,
-                    samples,
-                    runs,
-                    |settings, picture| films.render(scene, settings, samples, picture),
-                )
+                Runs::render(&settings, &reference, samples, runs, |settings, picture| {
+                    films.render(scene, settings, samples, picture)
+                })
             })
         };
         let mut all = Vec::new();
@@ -265,7 +259,7 @@ impl Measured {
                 equal_time,
             });
         }
-        let (map, preset) = (title, defaults.preset);
+        let (map, preset) = (map_name, defaults.preset);
         Ok(Self {
             name,
             map,
@@ -282,10 +276,7 @@ impl Measured {
 
     /// Name of the scene on the page.
     pub(super) fn title(&self) -> String {
-        let word = self.name.word();
-        self.map
-            .as_ref()
-            .map_or_else(|| word.to_owned(), |map| format!("{word} ({map})"))
+        title(self.name, self.map.as_deref())
     }
 
     /// Place of the count of samples that pictures show.
@@ -293,12 +284,10 @@ impl Measured {
         shown(self.samplers[0].runs.len())
     }
 
-    /// Writes the pictures as files: the reference, and each sampler's at equal samples and at equal time.
-    pub(super) fn write_pictures(&self, out: &Path) -> Result<(), Error> {
+    /// Writes the pictures as files whose names begin with `stem`: the reference, and each
+    /// sampler's at equal samples and at equal time.
+    pub(super) fn write_pictures(&self, out: &Path, stem: &str) -> Result<(), Error> {
         let exposure = picture::exposure(&self.reference.picture);
-        let stem = self
-            .title()
-            .replace(|c: char| !c.is_ascii_alphanumeric(), "-");
         let write = |what: &str, picture: &Picture, sampler: &str, samples: u32, seconds: f64| {
             let path = out.join(format!("{stem}-{what}.exr"));
             picture::write(
@@ -354,6 +343,12 @@ impl Measured {
             ..Beside::default()
         }
     }
+}
+
+/// Name of a scene on the page, with that of the map if it is the caller's.
+pub(super) fn title(name: Name, map: Option<&str>) -> String {
+    let word = name.word();
+    map.map_or_else(|| word.to_owned(), |map| format!("{word} ({map})"))
 }
 
 /// Place of the count of samples that pictures show: the second.

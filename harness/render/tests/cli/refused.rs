@@ -23,6 +23,10 @@ fn bad_flags_are_refused() {
             &["--mis", "all", "both"],
         ),
         (&["figures", "--shard", "3/2"], &["--shard", "3/2"]),
+        (
+            &["figures", "--env", "a.exr", "--env", "./a.exr"],
+            &["--env", "a.exr twice"],
+        ),
     ] {
         let output = run(&folder, flags);
         let errors = String::from_utf8_lossy(&output.stderr);
