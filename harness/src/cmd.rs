@@ -32,13 +32,13 @@ pub fn run(command: &Command) -> Result<(), Error> {
     }
 }
 
-/// The environment in a file, or the procedural sky if there is none, and its name in reports. Its oddities go to standard
+/// The environment in a file or a layer of it, or the procedural sky if there is none, and its name in reports. Its oddities go to standard
 /// error; a map without light is refused.
-fn environment(path: Option<&Path>) -> Result<(Environment, String), Error> {
+fn environment(path: Option<&Path>, layer: Option<&str>) -> Result<(Environment, String), Error> {
     let Some(path) = path else {
         return Ok((Sky::default().environment(), "procedural sky".to_owned()));
     };
-    let environment = Environment::load(path).map_err(Error::Environment)?;
+    let environment = Environment::load_layer(path, layer).map_err(Error::Environment)?;
     if environment.is_black() {
         return Err(Error::Environment(LightError::black(
             path,

@@ -70,7 +70,7 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     let maps = names
         .iter()
         .zip(&flags.env)
-        .map(|(name, path)| Ok((name.clone(), environment(path)?)))
+        .map(|(name, path)| Ok((name.clone(), environment(path, flags.layer.as_deref())?)))
         .collect::<Result<Vec<_>, Error>>()?;
     prepare(&flags.out)?;
     let store = Store::new(&flags.out, Interrupt::watch())?;

@@ -17,7 +17,7 @@ use std::fs;
 /// [`Error::Environment`] and [`Error::Output`] before any work is done, if a file cannot be read or the folder cannot
 /// be written; [`Error::Failed`] at the end, with all files written, if a check failed.
 pub fn run(flags: &Compare) -> Result<(), Error> {
-    let (environment, name) = environment(flags.env.as_deref())?;
+    let (environment, name) = environment(flags.env.as_deref(), flags.layer.as_deref())?;
     fs::create_dir_all(&flags.out).map_err(Error::output(&flags.out))?;
     let [json, page] = ["compare.json", "report.html"].map(|name| flags.out.join(name));
     writable(&json)?;

@@ -20,7 +20,7 @@ use std::fs;
 /// written; [`Error::Failed`] at the end, with all files written, if a check failed.
 pub fn run(flags: &Merge) -> Result<(), Error> {
     let study = Study::read(&flags.parts)?;
-    let (environment, name) = environment(flags.env.as_deref())?;
+    let (environment, name) = environment(flags.env.as_deref(), flags.layer.as_deref())?;
     let is_theirs = study.has_environment(&environment);
     if !is_theirs && flags.env.is_some() {
         return Err(Error::Usage(format!(

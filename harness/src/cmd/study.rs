@@ -30,7 +30,7 @@ pub fn run(flags: &Flags) -> Result<(), Error> {
         .shard
         .parse()
         .map_err(|problem| Error::Usage(format!("--shard {problem}")))?;
-    let (environment, _) = environment(flags.env.as_deref())?;
+    let (environment, _) = environment(flags.env.as_deref(), flags.layer.as_deref())?;
     let plan = Plan {
         seed: flags.seed,
         quick: flags.quick,

@@ -17,7 +17,7 @@ use serde::Serialize;
 use wide::f32x8;
 
 /// The radiance that replaces an infinite pixel: the largest half float of `OpenEXR`.
-const INFINITE_PIXEL: f32 = 65_504.0;
+pub(super) const INFINITE_PIXEL: f32 = 65_504.0;
 
 /// Samples are at least this far, in shares of a texel, from its edges where it is not looked up once more.
 const EDGE: f64 = 1e-6;
@@ -65,6 +65,8 @@ pub struct Environment {
     row_guide: Vec<u32>,
     column_guide: Vec<u32>,
     repairs: PixelRepairs,
+    /// What a reader had to do to the values of a file.
+    remarks: Vec<String>,
 }
 
 impl Environment {
@@ -134,11 +136,17 @@ impl Environment {
             row_guide,
             column_guide,
             repairs,
+            remarks: Vec::new(),
         };
         for place in 0..map.texels.len() {
             map.texels[place][3] = rounded(map.density(colour(map.texels[place])));
         }
         Ok(map)
+    }
+
+    /// Adds remarks of a reader to the [`notes`](Self::notes).
+    pub(super) fn with_remarks(self, remarks: Vec<String>) -> Self {
+        Self { remarks, ..self }
     }
 
     /// Width and height in texels.
@@ -153,10 +161,12 @@ impl Environment {
         self.repairs
     }
 
-    /// Warnings about the map for reports, one line each: a shape other than 2:1, repaired channels, no light at all.
+    /// Remarks on the map for reports, one line each: conversions of a file, a shape other than 2:1, repaired channels, no
+    /// light at all.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
-        let mut notes = Vec::new();
+        let remark = |remark| format!("{}: {remark}", self.name);
+        let mut notes: Vec<String> = self.remarks.iter().map(remark).collect();
         if self.width != 2 * self.height {
             notes.push(format!(
                 "{}: {} x {} is not 2:1; it is stretched over the sphere",

@@ -1,12 +1,15 @@
 //! Environment maps from files.
 
-use super::{Environment, PixelRepairs};
+mod openexr;
+mod primaries;
+mod radiance;
+
+use super::environment::INFINITE_PIXEL;
+use super::{Environment, PixelRepairs, rounded};
 use core::fmt;
-use exr::meta::MetaData;
-use exr::meta::header::Header;
-use exr::prelude::{ReadChannels as _, ReadLayers as _, ReadSpecificChannel as _, read};
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
-use std::io::ErrorKind;
+use glam::{DMat3, DVec3};
+use std::fs::File;
+use std::io::{self, BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
 
 /// Texels beyond which a map is refused, 8192 x 4096: its tables would take a gigabyte.
@@ -43,21 +46,33 @@ impl fmt::Display for LightError {
 impl core::error::Error for LightError {}
 
 impl Environment {
-    /// Reads a latitude-longitude map, Radiance HDR or `OpenEXR` by content, whatever the file is called. An alpha channel is ignored.
-    ///
-    /// Pixel values are taken as linear RGB with the Rec. 709 primaries; the exposure of a Radiance header is not applied, so the scale is the file's own.
+    /// [`load_layer`](Self::load_layer) without the name of a layer.
     ///
     /// # Errors
     /// [`LightError`], one line that names the file and the reason.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, LightError> {
+        Self::load_layer(path, None)
+    }
+
+    /// Reads a latitude-longitude map, Radiance HDR or `OpenEXR` by content, whatever the file is called.
+    ///
+    /// The map is linear RGB with the Rec. 709 primaries. Files with other primaries and XYZ files are converted with
+    /// their tristimulus values kept: whites are not adapted. Radiance values are divided by `EXPOSURE` and `COLORCORR`.
+    /// An `OpenEXR` map covers the display window and is black outside the data window; alpha is ignored. `layer` names
+    /// the layer to read where the file has several with colour. [`notes`](Self::notes) reports every conversion.
+    ///
+    /// # Errors
+    /// [`LightError`], one line that names the file and the reason.
+    pub fn load_layer(path: impl AsRef<Path>, layer: Option<&str>) -> Result<Self, LightError> {
         let path = path.as_ref();
         let name = path.file_name().map_or_else(
             || path.display().to_string(),
             |n| n.to_string_lossy().into_owned(),
         );
-        read_map(path)
-            .and_then(|([width, height], pixels)| {
-                Self::from_pixels(name, width, height, pixels).map_err(damaged)
+        read_map(path, layer)
+            .and_then(|map| {
+                let [width, height] = map.size;
+                Ok(Self::from_pixels(name, width, height, map.pixels)?.with_remarks(map.remarks))
             })
             .map_err(|reason| LightError {
                 path: path.to_owned(),
@@ -66,98 +81,72 @@ impl Environment {
     }
 }
 
-/// Width and height, and the pixels.
-type Map = ([usize; 2], Vec<[f32; 3]>);
+/// The content of a file: linear Rec. 709 pixels, row by row from the zenith.
+struct Map {
+    size: [usize; 2],
+    pixels: Vec<[f32; 3]>,
+    /// What had to be done to the values of the file, one line each.
+    remarks: Vec<String>,
+}
+
+impl Map {
+    /// Replaces pixels by their products with a matrix. Infinite channels count as the largest half float first, because
+    /// a sum with both signs of infinity is NaN.
+    fn convert(&mut self, matrix: &DMat3) {
+        let mut infinite = 0;
+        for pixel in &mut self.pixels {
+            for channel in pixel
+                .iter_mut()
+                .filter(|channel| **channel == f32::INFINITY)
+            {
+                *channel = INFINITE_PIXEL;
+                infinite += 1;
+            }
+            let rgb = *matrix * DVec3::from(pixel.map(f64::from));
+            *pixel = rgb.to_array().map(rounded);
+        }
+        if infinite > 0 {
+            self.remarks.push(format!(
+                "{infinite} infinite channels set to {INFINITE_PIXEL} before the conversion"
+            ));
+        }
+    }
+}
 
 /// The map of a file, or the reason to refuse it.
-fn read_map(path: &Path) -> Result<Map, String> {
-    let unreadable = |e| format!("cannot read: {}", line(&e));
+fn read_map(path: &Path, layer: Option<&str>) -> Result<Map, String> {
+    let unreadable = |e: io::Error| format!("cannot read: {}", line(&e));
     if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
         return Err("is a directory, not an environment map".to_owned());
     }
-    let reader = ImageReader::open(path)
-        .and_then(ImageReader::with_guessed_format)
-        .map_err(unreadable)?;
-    let is_exr = match reader.format() {
-        Some(ImageFormat::Hdr) => false,
-        Some(ImageFormat::OpenExr) => true,
-        Some(other) => {
-            return Err(format!(
-                "unsupported: {other:?} is not Radiance HDR or OpenEXR"
-            ));
-        }
-        None => return Err("unsupported: not a Radiance HDR or OpenEXR file".to_owned()),
-    };
-    let refuse = |e: ImageError| match e {
-        ImageError::IoError(e) if e.kind() != ErrorKind::UnexpectedEof => unreadable(e),
-        ImageError::Unsupported(e) => format!("unsupported: {}", line(&e)),
-        e => damaged(e),
-    };
-    let decoder = reader.into_decoder();
-    // The decoder knows colour alone.
-    if is_exr
-        && decoder.is_err()
-        && let Some(map) = luminance_map(path)?
-    {
-        return Ok(map);
+    let mut file = BufReader::new(File::open(path).map_err(unreadable)?);
+    let start = file.fill_buf().map_err(unreadable)?;
+    if start.is_empty() {
+        return Err("the file is empty".to_owned());
     }
-    let mut decoder = decoder.map_err(refuse)?;
-    let (width, height) = decoder.dimensions();
+    if start.starts_with(&exr::meta::magic_number::BYTES) {
+        return openexr::read(file, layer);
+    }
+    if !start.starts_with(b"#?") {
+        let kind = match image::guess_format(start) {
+            Ok(format) => format!("{format:?} is not"),
+            Err(_) => "not a".to_owned(),
+        };
+        return Err(format!("unsupported: {kind} Radiance HDR or OpenEXR file"));
+    }
+    if let Some(layer) = layer {
+        return Err(format!(
+            "has no layers, because it is Radiance HDR: leave out --layer {layer}"
+        ));
+    }
+    radiance::read(file)
+}
+
+/// The size of a map that is neither empty nor too large.
+fn checked([width, height]: [usize; 2]) -> Result<[usize; 2], String> {
     if width == 0 || height == 0 {
         return Err(format!("the image has no pixels: {width} x {height}"));
     }
-    let size = checked([width as usize, height as usize])?;
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(64 * MAX_TEXELS as u64);
-    decoder.set_limits(limits).map_err(refuse)?;
-    match DynamicImage::from_decoder(decoder).map_err(refuse)? {
-        DynamicImage::ImageRgb32F(map) => Ok((size, map.pixels().map(|p| p.0).collect())),
-        DynamicImage::ImageRgba32F(map) => Ok((
-            size,
-            map.pixels().map(|p| [p.0[0], p.0[1], p.0[2]]).collect(),
-        )),
-        other => Err(format!("unsupported: pixels of type {:?}", other.color())),
-    }
-}
-
-/// The map of an `OpenEXR` file that has luminance (channel Y) and no colour; `None` for any other file.
-fn luminance_map(path: &Path) -> Result<Option<Map>, String> {
-    let Ok(meta) = MetaData::read_from_file(path, false) else {
-        return Ok(None);
-    };
-    let has = |header: &Header, name: &str| {
-        header
-            .channels
-            .list
-            .iter()
-            .any(|channel| channel.name == *name)
-    };
-    let Some(header) = meta.headers.iter().find(|header| has(header, "Y")) else {
-        return Ok(None);
-    };
-    if has(header, "RY") || has(header, "BY") {
-        return Err("unsupported: luminance with chroma; convert it to RGB".to_owned());
-    }
-    checked([header.layer_size.width(), header.layer_size.height()])?;
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .specific_channels()
-        .required("Y")
-        .collect_pixels(
-            |size, _| (size.width(), vec![[0.0; 3]; size.area()]),
-            |(width, pixels), at, (y,): (f32,)| pixels[at.y() * *width + at.x()] = [y; 3],
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_file(path)
-        .map_err(damaged)?;
-    let (width, pixels) = image.layer_data.channel_data.pixels;
-    Ok(Some(([width, pixels.len() / width.max(1)], pixels)))
-}
-
-/// The size of a map that is not too large.
-fn checked([width, height]: [usize; 2]) -> Result<[usize; 2], String> {
     if width.saturating_mul(height) > MAX_TEXELS {
         return Err(format!("{width} x {height} is more than 2^25 pixels"));
     }
@@ -174,4 +163,14 @@ fn line(e: &dyn fmt::Display) -> String {
         .split_whitespace()
         .collect::<Vec<_>>()
         .join(" ")
+}
+
+/// The start of a text out of a file, for a message.
+fn excerpt(text: &str) -> String {
+    let text = line(&text);
+    let mut start: String = text.chars().take(60).collect();
+    if start.len() < text.len() {
+        start.push_str("...");
+    }
+    start
 }

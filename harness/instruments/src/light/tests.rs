@@ -2,6 +2,8 @@
 
 mod environment;
 mod files;
+mod maps;
+mod radiance;
 
 use super::*;
 use crate::quadrature::Tolerance;

@@ -60,7 +60,8 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("out/render/{}.exr", flags.scene.word())));
     let hair = hair(flags, &settings)?;
-    let env = flags.env.as_deref().map(environment).transpose()?;
+    let read = |path| environment(path, flags.layer.as_deref());
+    let env = flags.env.as_deref().map(read).transpose()?;
     let pixels = crop.len() as u64;
     let strands = match &flags.import {
         Some(path) => {
@@ -229,8 +230,8 @@ pub(super) fn check_out(path: &Path) -> Result<(), Error> {
 }
 
 /// Reads an environment map, and remarks on what is odd about it.
-pub(crate) fn environment(path: &Path) -> Result<Environment, Error> {
-    let map = Environment::load(path).map_err(Error::Environment)?;
+pub(crate) fn environment(path: &Path, layer: Option<&str>) -> Result<Environment, Error> {
+    let map = Environment::load_layer(path, layer).map_err(Error::Environment)?;
     for note in map.notes() {
         say(&note);
     }

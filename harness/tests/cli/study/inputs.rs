@@ -51,6 +51,18 @@ fn maps_without_light_are_refused() {
 }
 
 #[test]
+fn a_layer_that_is_not_there_is_refused() {
+    let dir = TempDir::new().unwrap();
+    let path = map(dir.path(), [4, 2], [1.0; 3]);
+    let words = "map.exr: --layer must be a layer with colour of the file, got beauty; it has one without a name (R G B)";
+    for name in ["compare", "study"] {
+        let mut args = vec![name, "--quick", "--env", path.to_str().unwrap()];
+        args.extend(["--layer", "beauty"]);
+        assert_refused(&run(&args, b""), words);
+    }
+}
+
+#[test]
 fn a_stretched_map_is_reported() {
     let dir = TempDir::new().unwrap();
     let path = map(dir.path(), [4, 4], [1.0; 3]);

@@ -48,6 +48,7 @@ pub(super) fn describe(
         seed: _,
         crop: _,
         env: _,
+        layer: _,
         // How much is rendered, what else is done, and where files lie.
         spp: _,
         time: _,

@@ -1,0 +1,230 @@
+//! Radiance HDR: the header, which is read here in full, and pixels, which the crate `image` decodes.
+
+use super::primaries::{Primaries, xyz_to_rec_709};
+use super::{Map, checked, damaged, excerpt, line};
+use crate::light::rounded;
+use image::codecs::hdr::HdrDecoder;
+use image::{DynamicImage, ImageError};
+use std::io::{BufRead, ErrorKind, Read as _};
+
+/// Headers are at most this long, in bytes.
+const LONGEST_HEADER: u64 = 1 << 20;
+
+/// Reads a map.
+pub(super) fn read(mut file: impl BufRead) -> Result<Map, String> {
+    let header = Header::read(&mut file.by_ref().take(LONGEST_HEADER))?;
+    let [lines, length] = header.scan.map(|axis| axis.length);
+    let mut map = Map {
+        size: checked(header.size())?,
+        pixels: Vec::new(),
+        remarks: Vec::new(),
+    };
+    // The crate knows one signature, one order and one format, whose bytes are those of all.
+    let plain = format!("#?RADIANCE\n\n-Y {lines} +X {length}\n");
+    let scanned = HdrDecoder::new(plain.as_bytes().chain(file))
+        .and_then(DynamicImage::from_decoder)
+        .map_err(|e| match e {
+            ImageError::IoError(e) if e.kind() != ErrorKind::UnexpectedEof => {
+                format!("cannot read: {}", line(&e))
+            }
+            e => damaged(e),
+        })?;
+    map.pixels = vec![[0.0; 3]; lines * length];
+    let scanned = scanned.into_rgb32f();
+    for (k, pixel) in scanned.pixels().enumerate() {
+        map.pixels[header.place(k)] = pixel.0;
+    }
+    if header.divisor != [1.0; 3] {
+        for pixel in &mut map.pixels {
+            *pixel = core::array::from_fn(|c| rounded(f64::from(pixel[c]) / header.divisor[c]));
+        }
+        let [r, g, b] = header.divisor;
+        map.remarks.push(format!(
+            "divided by EXPOSURE and COLORCORR of the file, {r} {g} {b}"
+        ));
+    }
+    if header.is_xyz {
+        map.convert(&xyz_to_rec_709());
+        map.remarks
+            .push("converted from XYZ to Rec. 709".to_owned());
+    } else if let Some(matrix) = header.primaries.to_rec_709()? {
+        map.convert(&matrix);
+        map.remarks.push(format!(
+            "converted to Rec. 709 from the primaries of the file, {}",
+            header.primaries
+        ));
+    }
+    Ok(map)
+}
+
+/// One axis of the order in which pixels are stored.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Axis {
+    is_x: bool,
+    /// Whether it runs to the left or to the top.
+    is_backward: bool,
+    length: usize,
+}
+
+/// What a header says about pixels.
+#[derive(Debug, PartialEq)]
+struct Header {
+    is_xyz: bool,
+    primaries: Primaries,
+    /// Pixels over these are radiances.
+    divisor: [f64; 3],
+    /// From one scan line to the next, and along a scan line.
+    scan: [Axis; 2],
+}
+
+impl Header {
+    fn read(file: &mut impl BufRead) -> Result<Self, String> {
+        let mut header = Self {
+            is_xyz: false,
+            primaries: Primaries::REC_709,
+            divisor: [1.0; 3],
+            scan: [Axis {
+                is_x: false,
+                is_backward: false,
+                length: 0,
+            }; 2],
+        };
+        let mut is_first = true;
+        loop {
+            let text = next_line(file)?;
+            // Indented lines belong to pictures that this one was made from.
+            match text.split_once('=') {
+                _ if is_first || text.starts_with('#') => {}
+                _ if text.is_empty() => break,
+                Some((key, value)) => header.take(key, value.trim())?,
+                None => {}
+            }
+            is_first = false;
+        }
+        let resolution = next_line(file)?;
+        header.scan = scan(&resolution)?;
+        Ok(header)
+    }
+
+    /// Takes a line of the header.
+    fn take(&mut self, key: &str, value: &str) -> Result<(), String> {
+        match key {
+            "FORMAT" => match value {
+                "32-bit_rle_rgbe" => self.is_xyz = false,
+                "32-bit_rle_xyze" => self.is_xyz = true,
+                _ => return Err(format!("unsupported: FORMAT={}", excerpt(value))),
+            },
+            "EXPOSURE" => {
+                let [exposure] = numbers(key, value, 0.0)?;
+                self.divisor = self.divisor.map(|divisor| divisor * exposure);
+            }
+            "COLORCORR" => {
+                let factors: [f64; 3] = numbers(key, value, 0.0)?;
+                self.divisor = core::array::from_fn(|c| self.divisor[c] * factors[c]);
+            }
+            "PRIMARIES" => {
+                let [rx, ry, gx, gy, bx, by, wx, wy] = numbers(key, value, f64::NEG_INFINITY)?;
+                self.primaries = Primaries([[rx, ry], [gx, gy], [bx, by], [wx, wy]]);
+            }
+            "GAMMA" => {
+                let [gamma] = numbers(key, value, 0.0)?;
+                if gamma != 1.0 {
+                    return Err(format!(
+                        "unsupported: GAMMA={gamma}; write the file with linear values"
+                    ));
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Width and height.
+    fn size(&self) -> [usize; 2] {
+        let [lines, along] = self.scan;
+        if along.is_x {
+            [along.length, lines.length]
+        } else {
+            [lines.length, along.length]
+        }
+    }
+
+    /// The place, row by row from the upper left corner, of the `k`th stored pixel.
+    fn place(&self, k: usize) -> usize {
+        let [lines, along] = self.scan;
+        let step = |axis: Axis, k: usize| {
+            if axis.is_backward {
+                axis.length - 1 - k
+            } else {
+                k
+            }
+        };
+        let (line, offset) = (step(lines, k / along.length), step(along, k % along.length));
+        if along.is_x {
+            line * along.length + offset
+        } else {
+            offset * lines.length + line
+        }
+    }
+}
+
+/// The next line without its end.
+fn next_line(file: &mut impl BufRead) -> Result<String, String> {
+    let mut bytes = Vec::new();
+    file.read_until(b'\n', &mut bytes)
+        .map_err(|e| format!("cannot read: {}", line(&e)))?;
+    if bytes.pop() != Some(b'\n') {
+        return Err(damaged("the header has no end"));
+    }
+    let text = String::from_utf8_lossy(&bytes);
+    Ok(text.strip_suffix('\r').unwrap_or(&text).to_owned())
+}
+
+/// The order of pixels and the size, such as `-Y 512 +X 1024`: both axes with their directions, y upwards.
+fn scan(text: &str) -> Result<[Axis; 2], String> {
+    let axis = |name: &str, length: &str| {
+        let is_x = name.ends_with('X');
+        let is_backward = match name {
+            "+X" | "-Y" => false,
+            "-X" | "+Y" => true,
+            _ => return None,
+        };
+        Some(Axis {
+            is_x,
+            is_backward,
+            length: length.parse().ok()?,
+        })
+    };
+    let words: Vec<&str> = text.split_whitespace().collect();
+    if let [first, lines, second, length] = words[..]
+        && let (Some(lines), Some(along)) = (axis(first, lines), axis(second, length))
+        && lines.is_x != along.is_x
+    {
+        return Ok([lines, along]);
+    }
+    Err(damaged(format_args!(
+        "the resolution must be like -Y 512 +X 1024, got {}",
+        excerpt(text)
+    )))
+}
+
+/// `N` finite numbers above `least` in a line of the header.
+fn numbers<const N: usize>(key: &str, value: &str, least: f64) -> Result<[f64; N], String> {
+    let number = |word: &str| {
+        word.parse()
+            .ok()
+            .filter(|x: &f64| x.is_finite() && *x > least)
+    };
+    let numbers: Option<Vec<f64>> = value.split_whitespace().map(number).collect();
+    numbers
+        .and_then(|numbers| numbers.try_into().ok())
+        .ok_or_else(|| {
+            let count = if N == 1 {
+                "a number".to_owned()
+            } else {
+                format!("{N} numbers")
+            };
+            let range = if least == 0.0 { " above 0" } else { "" };
+            format!("{key} must be {count}{range}, got {}", excerpt(value))
+        })
+}
