@@ -87,7 +87,7 @@ pub struct Compare {
     /// Environment light, latitude-longitude, as a .hdr or .exr file [default: a procedural sky]
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
-    /// Layer of the OpenEXR environment [default: the only one with colour]
+    /// Layer of the .exr environment [default: the only one with colour]
     #[arg(long, value_name = "NAME", requires = "env")]
     pub layer: Option<String>,
 }
@@ -107,7 +107,7 @@ pub struct Study {
     /// Environment light, latitude-longitude, as a .hdr or .exr file [default: a procedural sky]
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
-    /// Layer of the OpenEXR environment [default: the only one with colour]
+    /// Layer of the .exr environment [default: the only one with colour]
     #[arg(long, value_name = "NAME", requires = "env")]
     pub layer: Option<String>,
     /// Compute only part I of N (I from 1 to N), for `hairis merge` to join
@@ -146,7 +146,7 @@ pub struct Merge {
     /// Environment light of the parts, to time its look-up [default: the procedural sky if the parts used it, else no times]
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
-    /// Layer of the OpenEXR environment [default: the only one with colour]
+    /// Layer of the .exr environment [default: the only one with colour]
     #[arg(long, value_name = "NAME", requires = "env")]
     pub layer: Option<String>,
 }

@@ -112,7 +112,7 @@ pub struct Render {
     /// Environment map in place of the scene's light, latitude-longitude, .hdr or .exr
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
-    /// Layer of the OpenEXR map [default: the only one with colour]
+    /// Layer of the .exr map [default: the only one with colour]
     #[arg(long, value_name = "NAME", requires = "env")]
     pub layer: Option<String>,
     /// Radiance that the camera sees beside the hair, in place of the map
@@ -163,7 +163,7 @@ pub struct Figures {
     /// Environment maps, each a scene of its own [default: a clear sky]
     #[arg(long, value_name = "FILE")]
     pub env: Vec<PathBuf>,
-    /// Layer of the OpenEXR maps [default: the only one with colour]
+    /// Layer of the .exr maps [default: the only one with colour]
     #[arg(long, value_name = "NAME", requires = "env")]
     pub layer: Option<String>,
     /// Seed of the samples
