@@ -1,7 +1,7 @@
 //! Entry point of a command-line program: flags, help, errors and exit codes.
 
 use crate::error::Error;
-use clap::Parser;
+use clap::{ArgMatches, Command, Parser};
 use core::num::NonZero;
 use std::ffi::OsStr;
 use std::io::{self, Write};
@@ -27,7 +27,7 @@ pub fn run<F: Parser>(name: &str, work: impl FnOnce(&F) -> Result<(), Error>) ->
 
 /// The flags; `None` after printing the help or the version.
 fn flags<F: Parser>() -> Result<Option<F>, Error> {
-    match F::try_parse() {
+    match matches(F::command()).and_then(|matches| F::from_arg_matches(&matches)) {
         Ok(flags) => Ok(Some(flags)),
         Err(error) if error.use_stderr() => Err(Error::Usage(one_line(&error.to_string()))),
         Err(help) => {
@@ -36,6 +36,19 @@ fn flags<F: Parser>() -> Result<Option<F>, Error> {
             Ok(None)
         }
     }
+}
+
+/// The words of the command line. Numbers below 0 are values, whose flag refuses them, and no flags of their own.
+fn matches(command: Command) -> Result<ArgMatches, clap::Error> {
+    let with_numbers = |command: Command| {
+        command.mut_args(|arg| {
+            let takes_values = arg.get_action().takes_values();
+            arg.allow_negative_numbers(takes_values)
+        })
+    };
+    with_numbers(command)
+        .mut_subcommands(with_numbers)
+        .try_get_matches()
 }
 
 /// The first paragraph of clap's message, in one line; the usage that follows it is left to `--help`.
@@ -74,9 +87,17 @@ fn remark_on_threads(wanted: &OsStr, cores: usize) -> Option<String> {
     }
 }
 
-/// Prints a line on standard error. Ignores write errors.
+/// Prints a line on standard error. Ignores write errors. Control characters, which names of files may have, are escaped.
 pub fn say(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
+    let mut text = String::new();
+    for character in line.chars() {
+        if character.is_control() {
+            text.extend(character.escape_default());
+        } else {
+            text.push(character);
+        }
+    }
+    let _ = writeln!(io::stderr(), "{text}");
 }
 
 #[cfg(test)]

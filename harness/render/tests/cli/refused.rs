@@ -27,6 +27,7 @@ fn bad_flags_are_refused() {
             &["figures", "--env", "a.exr", "--env", "./a.exr"],
             &["--env", "a.exr twice"],
         ),
+        (&["figures", "--layer", "beauty"], &["--env"]),
     ] {
         let output = run(&folder, flags);
         let errors = String::from_utf8_lossy(&output.stderr);
@@ -48,6 +49,7 @@ fn bad_values_are_refused_in_one_line() {
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("file"), "no folder").expect("written");
     fs::write(folder.path().join("cut.hair"), b"HAIR\x01\0\0\0").expect("written");
+    fs::write(folder.path().join("file.hair"), [0; 200]).expect("written");
     fs::write(folder.path().join("cut.tfx"), [0; 90]).expect("written");
     fs::write(
         folder.path().join("cut.hdr"),
@@ -71,6 +73,18 @@ fn bad_values_are_refused_in_one_line() {
         (&["--import", "cut.hair"], &["cut.hair"]),
         (&["--import", "cut.tfx"], &["cut.tfx"]),
         (&["--env", "cut.hdr"], &["cut.hdr"]),
+        (
+            &["--env", "cut.hdr", "--layer", "beauty"],
+            &["cut.hdr", "no layers"],
+        ),
+        // Numbers below 0 are values and no flags.
+        (&["--exposure", "-1"], &["--exposure", "got -1"]),
+        (&["--backdrop", "-0.5"], &["--backdrop", "got -0.5"]),
+        (&["--spp", "-1"], &["-1", "--spp"]),
+        (
+            &["--import", "file.hair", "--scale", "-1"],
+            &["scale", "got -1"],
+        ),
         (
             &["--hair", "default", "--integrator", "path"],
             &["default", "--energy per-wo"],
