@@ -3,7 +3,7 @@
 mod merge;
 mod render;
 
-pub(crate) use render::environment;
+pub(crate) use render::{environment, picture_size};
 
 use crate::args::Command;
 use hairis_instruments::error::Error;

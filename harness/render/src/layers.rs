@@ -1,5 +1,6 @@
 //! Layers and attributes of the file of a picture.
 
+use crate::cmd::picture_size;
 use crate::film::Film;
 use crate::scene::{Met, Scene};
 use crate::transport::{Stop, each_until};
@@ -7,6 +8,7 @@ use glam::Vec3;
 use hairis::simd::Level;
 use hairis_instruments::light::{luminance, rounded};
 use hairis_instruments::machine;
+use std::ffi::OsStr;
 
 /// One channel of a layer, row by row from the upper left corner.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +26,9 @@ pub struct Beside {
     pub channels: Vec<Channel>,
     /// Names and values of the attributes.
     pub attributes: Vec<(&'static str, String)>,
+    /// Where the pixels lie in which picture: left column, upper row, and width and height of the whole. Without it they
+    /// are the whole.
+    pub frame: Option<([u32; 2], [u32; 2])>,
 }
 
 impl Beside {
@@ -83,14 +88,27 @@ impl Beside {
         Self {
             channels,
             attributes,
+            frame: picture_size(run).map(|size| ([crop.x, crop.y], size)),
         }
     }
 }
 
-/// The command line of this process. Paths are as they were given.
+/// The command line of this process, as Bash reads it. Paths are as they were given.
 fn command() -> String {
-    let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
-    words.collect::<Vec<_>>().join(" ")
+    let words: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
+    words.join(" ")
+}
+
+/// A word in ASCII. Those with other bytes than letters, digits and a few signs are in `$'...'`: quotes and backslashes
+/// have a backslash before them, and bytes that are not printable ASCII are `\xNN`.
+fn quoted(word: &OsStr) -> String {
+    let bytes = word.as_encoded_bytes();
+    let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"-_./:=,+@%".contains(byte);
+    if !bytes.is_empty() && bytes.iter().all(is_plain) {
+        bytes.escape_ascii().to_string()
+    } else {
+        format!("$'{}'", bytes.escape_ascii())
+    }
 }
 
 /// Sees what the ray through each pixel's centre meets first, where that is not known yet, until

@@ -3,8 +3,8 @@
 use crate::film::Picture;
 use crate::layers::Beside;
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes,
-    WritableImage as _,
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, IntegerBounds, Layer,
+    LayerAttributes, Text, Vec2, WritableImage as _,
 };
 use hairis_instruments::error::Error;
 use hairis_instruments::files::whole;
@@ -117,23 +117,40 @@ fn exr(picture: &Picture, beside: &Beside) -> exr::error::Result<Vec<u8>> {
         .iter()
         .map(|layer| channel(layer.name, layer.pixels.clone()));
     let channels = AnyChannels::sort(radiance.chain(layers).collect());
-    let [width, height] = picture.size.map(|side| side as usize);
+    let ([x, y], whole) = beside.frame.unwrap_or(([0, 0], picture.size));
+    let pixels = |[width, height]: [u32; 2]| Vec2(width as usize, height as usize);
+    let attributes =
+        LayerAttributes::default().with_position(Vec2(i32::try_from(x)?, i32::try_from(y)?));
     let mut image = Image::from_layer(Layer::new(
-        (width, height),
-        LayerAttributes::default(),
+        pixels(picture.size),
+        attributes,
         Encoding::SMALL_LOSSLESS,
         channels,
     ));
+    image.attributes.display_window = IntegerBounds::from_dimensions(pixels(whole));
     for (name, value) in &beside.attributes {
         image
             .layer_data
             .attributes
             .other
-            .insert((*name).into(), AttributeValue::Text(value.as_str().into()));
+            .insert((*name).into(), AttributeValue::Text(text(value)));
     }
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes)?;
     Ok(bytes.into_inner())
+}
+
+/// The text of an attribute, in ASCII: other bytes of the value become `\xNN`.
+fn text(value: &str) -> Text {
+    let mut ascii = String::new();
+    for byte in value.bytes() {
+        if matches!(byte, b' '..=b'~') {
+            ascii.push(char::from(byte));
+        } else {
+            ascii.push_str(&format!("\\x{byte:02x}"));
+        }
+    }
+    Text::from_slice_unchecked(ascii.as_bytes())
 }
 
 /// Writes a PNG preview as a whole.
@@ -159,7 +176,7 @@ mod tests {
         picture.pixels[7] = [0.25, 1.5, 1e-3];
         let path = folder.path().join("a.exr");
         let film = Film::new(Crop::whole(picture.size));
-        let beside = Beside::film(&film, "seed=1 commit=abc");
+        let beside = Beside::film(&film, "seed=1 commit=abc\nname=日");
         write(&picture, &beside, &path, 1.0).expect("written");
         let file = exr::prelude::read_all_flat_layers_from_file(&path).expect("an EXR file");
         let [layer] = &file.layer_data[..] else {
@@ -172,8 +189,13 @@ mod tests {
             .map(|channel| channel.name.to_string())
             .collect();
         assert_eq!(names, ["B", "G", "R", "samples", "variance"]);
-        let run = layer.attributes.other.get(&exr::prelude::Text::from("run"));
-        assert_eq!(run, Some(&AttributeValue::Text("seed=1 commit=abc".into())));
+        let run = layer.attributes.other.get(&Text::from("run"));
+        assert_eq!(
+            run,
+            Some(&AttributeValue::Text(
+                "seed=1 commit=abc\\x0aname=\\xe6\\x97\\xa5".into()
+            ))
+        );
         let read = image::open(&path).expect("an image").to_rgb32f();
         assert_eq!(read.get_pixel(2, 1).0, [0.25, 1.5, 1e-3]);
         assert_eq!(read.get_pixel(1, 2).0, [0.0; 3]);

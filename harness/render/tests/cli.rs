@@ -1,9 +1,12 @@
 //! The program, as it is run from a shell.
 
+mod frames;
+mod paths;
 mod refused;
 mod resumed;
 
 use exr::prelude::{FlatSamples, read_all_flat_layers_from_file};
+use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;
@@ -12,7 +15,7 @@ use tempfile::TempDir;
 const SMALL: [&str; 4] = ["--strands", "300", "--size", "40x40"];
 
 /// Runs the program in a folder.
-fn run(folder: &TempDir, flags: &[&str]) -> Output {
+fn run(folder: &TempDir, flags: &[impl AsRef<OsStr>]) -> Output {
     let program = env!("CARGO_BIN_EXE_hairis-render");
     Command::new(program)
         .args(flags)

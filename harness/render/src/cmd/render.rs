@@ -18,8 +18,9 @@ use crate::scenes::{self, Name, Parts};
 use crate::transport::{Integrator, Settings};
 use core::time::Duration;
 use description::describe;
+pub(crate) use description::picture_size;
 use hairis_instruments::error::Error;
-use hairis_instruments::files::whole;
+use hairis_instruments::files::{whole, writable};
 use hairis_instruments::interrupt::Interrupt;
 use hairis_instruments::light::Environment;
 use hairis_instruments::program::say;
@@ -105,6 +106,7 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         Integrator::Gather => settings.rays,
         Integrator::Direct | Integrator::Path => 1,
     };
+    writable(&part_path)?;
     let fresh = Part {
         run,
         film: Film::with_tiles(crop, film::side(rays)).shard(shard),
@@ -204,29 +206,19 @@ fn hair(flags: &Render, settings: &Settings) -> Result<Hair, Error> {
 
 /// Makes the folder of a file, and sees that files can be written there.
 pub(super) fn check_out(path: &Path) -> Result<(), Error> {
-    let refuse = |source| Error::Output {
-        path: path.to_owned(),
-        source,
-    };
     if path.extension().is_none_or(|end| end != "exr") {
         return Err(Error::Usage(format!(
             "the picture must end in .exr, got {}",
             path.display()
         )));
     }
-    if path.is_dir() {
-        return Err(refuse(io::ErrorKind::IsADirectory.into()));
-    }
     if let Some(folder) = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())
     {
-        fs::create_dir_all(folder).map_err(refuse)?;
+        fs::create_dir_all(folder).map_err(Error::output(path))?;
     }
-    let probe = path.with_extension("exr.new");
-    fs::write(&probe, "")
-        .and_then(|()| fs::remove_file(&probe))
-        .map_err(refuse)
+    writable(path)
 }
 
 /// Reads an environment map, and remarks on what is odd about it.

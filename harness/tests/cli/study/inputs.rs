@@ -62,6 +62,43 @@ fn a_layer_that_is_not_there_is_refused() {
     }
 }
 
+/// One cell in a folder, and a refusal of the rest, one line each.
+#[cfg(unix)]
+#[test]
+fn any_path_works() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+    for name in ["日本".as_bytes(), b"\xff\xfe", b"a 'b'\n\"c\""] {
+        let dir = TempDir::new().unwrap();
+        let inside = dir.path().join(OsStr::from_bytes(name));
+        fs::create_dir(&inside).unwrap();
+        let sky = map(&inside, [4, 2], [1.0; 3]);
+        let call = |args: &[&OsStr]| {
+            let output = command(&[]).args(args).stdin(Stdio::null()).output();
+            Run::from(output.unwrap())
+        };
+        let [study, merge, quick, out, env, shard, first] = [
+            "study", "merge", "--quick", "--out", "--env", "--shard", "1/48",
+        ]
+        .map(OsStr::new);
+        let (here, sky) = (inside.as_os_str(), sky.as_os_str());
+        let run = call(&[study, quick, shard, first, out, here, env, sky]);
+        assert_eq!(run.code, Some(0), "{name:?}: {:?}", run.err);
+        let lines = run.err.len();
+        assert!(inside.join("cells-1-of-48.jsonl").exists(), "{name:?}");
+        // Named in as many lines, resumed.
+        assert_eq!(
+            call(&[study, quick, shard, first, out, here, env, sky])
+                .err
+                .len(),
+            lines
+        );
+        let joined = inside.join("joined");
+        let run = call(&[merge, joined.as_os_str(), here]);
+        assert_eq!((run.code, run.err.len()), (Some(2), 1), "{:?}", run.err);
+    }
+}
+
 #[test]
 fn a_stretched_map_is_reported() {
     let dir = TempDir::new().unwrap();

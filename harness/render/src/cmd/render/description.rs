@@ -99,3 +99,11 @@ pub(super) fn describe(
     ];
     Ok(words.join(" "))
 }
+
+/// Width and height of the whole picture, out of the line that [`describe`] makes.
+pub(crate) fn picture_size(run: &str) -> Option<[u32; 2]> {
+    let size = run
+        .split_whitespace()
+        .find_map(|word| word.strip_prefix("size="))?;
+    size.parse().ok().map(|Size(size)| size)
+}
