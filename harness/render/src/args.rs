@@ -80,10 +80,15 @@ pub struct Render {
     #[arg(long, value_enum)]
     pub energy: Option<Energy>,
     /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "512x512")]
+    #[arg(
+        long,
+        value_name = "WxH",
+        default_value = "512x512",
+        allow_hyphen_values = true
+    )]
     pub size: Size,
     /// The part of the picture to render
-    #[arg(long, value_name = "X,Y,W,H")]
+    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
     pub crop: Option<CropArg>,
     /// Strands of the procedural hair
     #[arg(long, value_name = "N", default_value_t = 30_000)]
@@ -119,12 +124,7 @@ pub struct Render {
     #[arg(long, value_name = "X")]
     pub backdrop: Option<f32>,
     /// Degrees by which the camera goes around the hair, to the right
-    #[arg(
-        long,
-        value_name = "DEG",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DEG", default_value_t = 0.0)]
     pub turn: f32,
     /// Seed of the samples
     #[arg(long, value_name = "N", default_value_t = 1)]

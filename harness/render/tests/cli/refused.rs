@@ -81,6 +81,8 @@ fn bad_values_are_refused_in_one_line() {
         (&["--exposure", "-1"], &["--exposure", "got -1"]),
         (&["--backdrop", "-0.5"], &["--backdrop", "got -0.5"]),
         (&["--spp", "-1"], &["-1", "--spp"]),
+        (&["--crop", "-1,0,5,5"], &["--crop", "-1,0,5,5"]),
+        (&["--size", "-1x40"], &["--size", "-1x40"]),
         (
             &["--import", "file.hair", "--scale", "-1"],
             &["scale", "got -1"],
