@@ -73,14 +73,10 @@ pub struct Eight<'a, F: Function> {
 }
 
 impl<F: Function> Kernel for Eight<'_, F> {
-    type Constant = f32x8;
     type Output = [f32x8; 2];
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 2]
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 2] {
         let [x, y] = self.arguments;
         let [first, second] = F::lanes::<L>(x.lanes(), y.lanes());
         [first.store(), second.store()]
@@ -93,10 +89,7 @@ pub struct Columns<F: Function>(pub F);
 
 impl<F: Function> Row<3, 3> for Columns<F> {
     #[inline(always)]
-    fn row<L: Lanes>(self, [x, y, zero]: [L; 3]) -> [L; 3]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, [x, y, zero]: [L; 3]) -> [L; 3] {
         let [first, second] = F::lanes(x, y);
         [first, second, zero]
     }

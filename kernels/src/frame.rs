@@ -4,7 +4,6 @@
 //! normal plane. The azimuth of `v` is 0 and that of `w` is pi/2.
 
 use crate::simd::Lanes;
-use crate::simd::unfused::Unfused;
 use glam::{Vec3, Vec3A};
 use wide::f32x8;
 
@@ -54,8 +53,9 @@ impl<L: Lanes> Vec3x<L> {
         self.y.mul_add(self.y, self.z * self.z).sqrt()
     }
 
-    /// The same vector, its components read one by one: see [`Lanes::alone`]. Callers have often just written them; what is read
-    /// across two such writes waits until both have left the CPU's queue.
+    /// The same vector, its components read one by one: see
+    /// [`Schedule::alone`](crate::simd::Schedule::alone). Callers have often just written them;
+    /// what is read across two such writes waits until both have left the CPU's queue.
     #[inline(always)]
     #[must_use]
     pub(crate) fn alone(self) -> Self {
@@ -417,13 +417,7 @@ impl FiberFrame8 {
     #[inline]
     #[must_use]
     pub fn to_local(&self, v: &Vec3x8) -> Vec3x8 {
-        let unfused = |v: &Vec3x8| Vec3x::new(Unfused(v.x), Unfused(v.y), Unfused(v.z));
-        let v = unfused(v);
-        Vec3x::new(
-            v.dot(unfused(&self.u)).0,
-            v.dot(unfused(&self.v)).0,
-            v.dot(unfused(&self.w)).0,
-        )
+        Vec3x::new(v.dot(self.u), v.dot(self.v), v.dot(self.w))
     }
 
     /// Fibre to world, each lane out of its own frame.

@@ -11,19 +11,21 @@ mod sampling;
 mod truncated;
 mod view;
 
-pub use bell::{Bell, Gaussian};
-pub use matched::{Matched, MatchedBell, MatchedMaterial, MatchedPrepared};
-pub use published::{PublishedConstants, PublishedMaterial, PublishedPrepared};
-pub use view::{HairLobes, HairView};
+use published::{PublishedMaterial, PublishedPrepared};
+use view::{HairLobes, HairView};
+
+pub use bell::{Bell, FourBells, Gaussian, TwoBells};
+pub use matched::{Matched, MatchedBell};
 
 pub(crate) use angles::{Angles, LobeTerms};
 pub(crate) use published::selection;
 pub(crate) use results::{finish_eval, finish_lobes, finish_sample, mix_densities};
 pub(crate) use sampling::{FoldedXi, direction_from_angles};
-pub(crate) use view::{prepare as prepare_view, times};
+pub(crate) use view::prepare as prepare_view;
 
+use crate::model::lobe::times;
 use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
-use crate::simd::{Broadcast, Lanes, Scalar, Vec3x};
+use crate::simd::{Broadcast, Lanes, Scalar, Vec3x, lanes4};
 use crate::{HairParams, LobeMask, PerLobe};
 
 /// Cosine of the inclination below which a direction lies on the fibre's axis: value and density are 0 there, and a
@@ -89,12 +91,7 @@ impl<B: Bell> Model for Published<B> {
     ) -> PerLobe<LobeEval<L>> {
         let (angles, sound) = Angles::from_direction(&prepared.view, wi);
         let terms = angles.eval_lobes::<B, C>(&prepared.view);
-        let density = [
-            terms.density[0] * prepared.density[0].lanes(),
-            terms.density[1] * prepared.density[1].lanes(),
-            terms.density[2] * prepared.density[2].lanes(),
-            terms.density[3] * prepared.density[3].lanes(),
-        ];
+        let density = times(terms.density, lanes4(&prepared.density));
         finish_lobes(&prepared.view, &angles, sound, &terms, density)
     }
 

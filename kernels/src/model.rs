@@ -5,19 +5,18 @@
 
 mod direction;
 mod energy;
-mod lobe;
+pub(crate) mod lobe;
 mod lobe_model;
 pub mod math;
 
-pub use crate::hair::{
-    Bell, GRAZING, HairLobes, HairView, MatchedBell, MatchedMaterial, MatchedPrepared,
-    PublishedConstants, PublishedMaterial, PublishedPrepared,
-};
+pub use crate::hair::{Bell, FourBells, GRAZING, MatchedBell, TwoBells};
 pub use crate::handle::{DynBsdf, DynBsdf8, DynMaterial};
 pub use direction::Direction;
 pub use energy::Conserving;
 pub use lobe::{Lobe, LobeMask, PerLobe};
-pub use lobe_model::{LobeModel, Mixed, Mixture};
+pub use lobe_model::LobeModel;
+#[doc(hidden)]
+pub use lobe_model::Mixed;
 
 use crate::simd::{Broadcast, LaneStruct, Lanes, Scalar, Vec3x};
 use glam::{Vec3, Vec3A};
@@ -48,9 +47,9 @@ pub trait Model: Copy {
     /// Checked parameters of a material.
     type Params;
     /// Constants of a material: one number each (`C = f32`), or one per lane (`C = f32x8`).
-    type Material<C: Scalar>: LaneStruct<One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
+    type Material<C: Scalar>: LaneStruct<Number = C, One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
     /// Constants of a shading point.
-    type Prepared<C: Scalar>: LaneStruct<One = Self::Prepared<f32>, Eight = Self::Prepared<f32x8>>;
+    type Prepared<C: Scalar>: LaneStruct<Number = C, One = Self::Prepared<f32>, Eight = Self::Prepared<f32x8>>;
 
     /// Names of the lobes, in slot order: at most [`Lobe::COUNT`].
     const LOBES: &'static [&'static str];
@@ -235,16 +234,19 @@ pub struct LobeEval<L = f32> {
 pub type LobeEval8 = LobeEval<f32x8>;
 
 impl<L: Lanes> LobeEval<L> {
+    /// A lobe at a direction.
+    #[inline(always)]
+    #[must_use]
+    pub const fn new(value: L, color: [L; 3], pdf: L) -> Self {
+        Self { value, color, pdf }
+    }
+
     /// No lobe: all 0.
     #[inline(always)]
     #[must_use]
     pub fn none() -> Self {
         let zero = L::splat(0.0);
-        Self {
-            value: zero,
-            color: [zero; 3],
-            pdf: zero,
-        }
+        Self::new(zero, [zero; 3], zero)
     }
 
     /// The lanes in their storage form.

@@ -129,8 +129,8 @@ impl Weighing {
             (value[2] * scale * positive(b)).min(most),
         ];
         let [bsdf, light] = self.counts;
-        let density = pdf_bsdf.min(most).mul_add(c(bsdf), pdf_light * c(light));
-        let mean = (f[0] + f[1] + f[2]) * c(1.0 / 3.0);
+        let density = pdf_bsdf.min(most).mul_add(c(bsdf), pdf_light * light);
+        let mean = (f[0] + f[1] + f[2]) * (1.0 / 3.0);
         let weight = L::keep(
             zero.lt(density),
             L::quotient(mean, c(f32::MIN_POSITIVE).max(density)),

@@ -2,9 +2,10 @@
 
 use crate::support::Draws;
 use glam::Vec3;
-use hairis::model::Direction;
-use hairis::simd::{Broadcast, Kernel, Lanes, Level, Row, Vec3x, f32x8};
-use hairis::{FiberFrame, Hit};
+use hairis::model::{Direction, Model};
+use hairis::simd::{Broadcast, Choice, Kernel, LaneStruct, Lanes, Level, Path, Row, Vec3x, f32x8};
+use hairis::{FiberFrame, Gaussian, HairParams, Hit, Matched, Published};
+use std::collections::HashSet;
 
 /// Where each of eight numbers falls among three bounds, and what tables hold there.
 struct Search<'a, C> {
@@ -14,32 +15,32 @@ struct Search<'a, C> {
     count: usize,
 }
 
-impl<C: hairis::simd::Constant> Kernel for Search<'_, C> {
-    type Constant = C;
-    type Output = [f32x8; 4];
+macro_rules! search {
+    ($($C:ty)*) => { $(
+        impl Kernel for Search<'_, $C> {
+            type Output = [f32x8; 4];
 
-    #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 4]
-    where
-        C: Broadcast<L>,
-        f32x8: Broadcast<L>,
-    {
-        let [a, b, c] = self.bounds;
-        let index = L::search(
-            self.x.lanes(),
-            [L::splat(a), L::splat(b), L::splat(c)],
-            self.count,
-        );
-        let [first, second, third, _] = *self.table;
-        let table = [first, second, third, third];
-        [
-            L::index_number(index).store(),
-            <C as Broadcast<L>>::look_up(self.table, index).store(),
-            <C as Broadcast<L>>::look_up_three(&table, index).store(),
-            <C as Broadcast<L>>::look_up_half(&[first, second], index).store(),
-        ]
-    }
+            #[inline(always)]
+            fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 4] {
+                let [a, b, c] = self.bounds;
+                let index = L::Index::search(
+                    self.x.lanes(),
+                    [a.lanes(), b.lanes(), c.lanes()],
+                    self.count,
+                );
+                let [first, second, third, _] = *self.table;
+                let table = [first, second, third, third];
+                [
+                    index.to_number().store(),
+                    <$C as Broadcast<L>>::look_up(self.table, index).store(),
+                    <$C as Broadcast<L>>::look_up_three(&table, index).store(),
+                    <$C as Broadcast<L>>::look_up_half(&[first, second], index).store(),
+                ]
+            }
+        }
+    )* };
 }
+search! { f32 f32x8 }
 
 #[test]
 fn search_counts_bounds_and_tables_answer_by_index() {
@@ -88,10 +89,7 @@ struct Sums;
 
 impl Row<3, 2> for Sums {
     #[inline(always)]
-    fn row<L: Lanes>(self, [a, b, c]: [L; 3]) -> [L; 2]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, [a, b, c]: [L; 3]) -> [L; 2] {
         [a + b + c, a - b - c]
     }
 }
@@ -237,5 +235,65 @@ fn any_finite_vector_has_a_direction() {
         Direction::normalized(Vec3x::<f32>::from(Vec3::X)).cos_theta,
         0.0,
         "along the fibre"
+    );
+}
+
+/// Hands a function of its lanes out of the call.
+struct Escape;
+
+impl Kernel for Escape {
+    type Output = fn([f32; 8]) -> [f32; 8];
+
+    #[inline(always)]
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output {
+        |x| {
+            let x: L = f32x8::new(x).lanes();
+            (x * 2.0 - 1.0).sqrt().store().to_array()
+        }
+    }
+}
+
+#[test]
+fn lanes_work_outside_the_call_that_they_came_from() {
+    // A level is found on this CPU: its instructions are there for good, on every thread, if slow
+    // in a plain build.
+    for level in Level::available() {
+        let function = level.run(Escape);
+        let roots = std::thread::spawn(move || function([5.0; 8])).join();
+        assert_eq!(roots.expect("no panic"), [3.0; 8], "{level}");
+    }
+}
+
+/// Flattens the constants of a default material at a hit, and builds them again. Their number.
+fn flatten<M: Model<Params = HairParams>>(model: M) -> usize {
+    let material = model.material(&HairParams::default());
+    let prepared = M::prepare_one(&material, Vec3::new(0.6, 0.8, 0.0).into());
+    let (mut names, mut numbers) = (HashSet::new(), Vec::new());
+    prepared.visit(&Path::Root, &mut |path, number| {
+        assert!(names.insert(path.to_string()), "{path} is there twice");
+        numbers.push(number);
+    });
+    assert!(names.contains("view.lobes.color_tt[2]"), "{names:?}");
+    let mut next = numbers.iter();
+    let again = M::Prepared::<f32>::make(&Path::Root, &mut |path| {
+        assert!(names.remove(&path.to_string()), "{path} was not visited");
+        *next.next().expect("as many as were visited")
+    });
+    assert!(names.is_empty(), "{names:?} were left out");
+    assert_eq!(format!("{again:?}"), format!("{prepared:?}"), "the same");
+    numbers.len()
+}
+
+#[test]
+fn constants_are_rebuilt_from_their_numbers() {
+    let floats = |bytes: usize| bytes / size_of::<f32>();
+    type Prepared<M> = <M as Model>::Prepared<f32>;
+    assert_eq!(
+        flatten(Published(Gaussian)),
+        floats(size_of::<Prepared<Published<Gaussian>>>())
+    );
+    assert_eq!(
+        flatten(Matched::<_, 5>(Gaussian)),
+        floats(size_of::<Prepared<Matched<Gaussian, 5>>>())
     );
 }

@@ -2,7 +2,7 @@
 
 use core::f32::consts::FRAC_PI_2;
 use hairis::model::math::{atan_unit, tan_half_turn};
-use hairis::model::{Bell, MatchedBell};
+use hairis::model::{Bell, MatchedBell, TwoBells};
 use hairis::simd::Lanes;
 use hairis::{Matched, ParamError, Published};
 
@@ -80,8 +80,8 @@ impl Bell for Cauchy {
     }
 
     #[inline(always)]
-    fn two<L: Lanes>(_s: L, _t: L, cauchy: L, _cauchy_s: L, _cauchy_t: L) -> L {
-        cauchy
+    fn two<L: Lanes>(at: TwoBells<L>) -> L {
+        at.cauchy
     }
 
     #[inline]

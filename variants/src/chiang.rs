@@ -8,7 +8,8 @@ mod params;
 mod sampling;
 
 pub use far_field::{FarField, OffsetNodes};
-pub use gather::{ChiangMaterial, ChiangPrepared, ChiangWidths};
+use gather::ChiangMaterial;
+pub use gather::ChiangPrepared;
 pub use params::{ChiangDesc, ChiangParams, Shifts};
 
 use hairis::model::{Direction, LobeEval, LobeModel};

@@ -11,7 +11,7 @@ use hairis::model::math::{
     sin_cos_half_turn,
 };
 use hairis::model::{Direction, LobeEval, LobeModel};
-use hairis::simd::{Broadcast, Lanes, Scalar, lane_struct, lanes3};
+use hairis::simd::{Broadcast, Choice, Lanes, Scalar, lane_struct, lanes3};
 use hairis::{Hit, PerLobe};
 
 /// The model of Kajiya & Kay 1989, normalised, in a reciprocal form and in that of the publication.
@@ -43,23 +43,23 @@ lane_struct! {
     /// The constants of a material of Kajiya and Kay's model.
     pub struct KajiyaKayMaterial {
         /// Diffuse albedo, linear RGB.
-        pub kd: [C; 3],
+        kd: [C; 3],
         /// Specular albedo, linear RGB.
-        pub ks: [C; 3],
+        ks: [C; 3],
         /// Mean of the channels of both.
-        pub mean: [C; 2],
+        mean: [C; 2],
         /// 1 for the reciprocal form, 0 for the published one.
-        pub reciprocal: C,
+        reciprocal: C,
         /// From `log2 cos^2` to the argument of a Gaussian that is `cos^p`: `-p ln 2`.
-        pub exponent: C,
+        exponent: C,
         /// From `log2 (1 - xi)` to that of one that is `(1 - xi)^(2/p)`.
-        pub inv_exponent: C,
+        inv_exponent: C,
         /// The specular value at its peak.
-        pub peak: C,
+        peak: C,
         /// The specular density but for its shape.
-        pub density: C,
+        density: C,
         /// Share of `sin^2 theta_o` in the estimate of the specular albedo.
-        pub grazing: C,
+        grazing: C,
     }
 }
 
@@ -67,11 +67,11 @@ lane_struct! {
     /// The constants of a shading point of Kajiya and Kay's model.
     pub struct KajiyaKayPrepared {
         /// Sine and cosine of `theta_o`.
-        pub theta_o: [C; 2],
+        theta_o: [C; 2],
         /// Weights of the lobes.
-        pub weights: [C; 2],
+        weights: [C; 2],
         /// The constants of the material.
-        pub material: (KajiyaKayMaterial<C>),
+        material: KajiyaKayMaterial<C>,
     }
 }
 
@@ -176,16 +176,8 @@ impl LobeModel for KajiyaKay {
         let pdf = bell * m.density.lanes() * (inverse * cos_i) * L::select(reciprocal, cos_i, one);
 
         let flat = c(FRAC_1_PI * FRAC_1_PI);
-        let diffuse = LobeEval {
-            value: flat,
-            color: lanes3(&m.kd),
-            pdf: flat * cos_i,
-        };
-        let specular = LobeEval {
-            value,
-            color: lanes3(&m.ks),
-            pdf,
-        };
+        let diffuse = LobeEval::new(flat, lanes3(&m.kd), flat * cos_i);
+        let specular = LobeEval::new(value, lanes3(&m.ks), pdf);
         PerLobe::padded([diffuse, specular], LobeEval::none())
     }
 
@@ -197,7 +189,7 @@ impl LobeModel for KajiyaKay {
     ) -> Direction<L> {
         let (c, zero, one) = (L::splat, L::splat(0.0), L::splat(1.0));
         let [sin_o, cos_o] = [prepared.theta_o[0].lanes(), prepared.theta_o[1].lanes()];
-        let is_diffuse = L::is_index(lobe, 0);
+        let is_diffuse = lobe.equals(0);
         let reciprocal = c(0.5).lt(prepared.material.reciprocal.lanes());
 
         // The polar method for a power of the cosine: 2 for the diffuse lobe, p for the specular one. `rest` is what the
@@ -208,7 +200,7 @@ impl LobeModel for KajiyaKay {
             L::select(is_diffuse, one - xi[1], rest),
             L::select(is_diffuse, xi[1], radius_sq),
         );
-        let (sin_turn, cos_turn) = sin_cos_half_turn((c(0.5) - xi[0]) * c(PI));
+        let (sin_turn, cos_turn) = sin_cos_half_turn((c(0.5) - xi[0]) * PI);
         let sin = radius_sq.sqrt() * sin_turn;
         let cos = (radius_sq * cos_turn).mul_add(cos_turn, rest).sqrt();
 
@@ -247,7 +239,7 @@ impl LobeModel for KajiyaKay {
             [prepared.theta_o[0].lanes(), prepared.theta_o[1].lanes()],
         );
         let reciprocal = c(0.5).lt(m.reciprocal.lanes());
-        let theta_o = half_atan2(sin_o, cos_o, c(1.0)) * c(2.0);
+        let theta_o = half_atan2(sin_o, cos_o, c(1.0)) * 2.0;
         let reach = half_turn.min(c(6.5) * L::quotient(c(-LN_2), m.exponent.lanes()).sqrt());
         let (lo, hi) = (
             (theta_o - half_turn).max(-reach),
@@ -260,7 +252,7 @@ impl LobeModel for KajiyaKay {
             let cos_i = zero.max(cos.mul_add(cos_o, sin * sin_o));
             sum = (bell * power(reciprocal, cos_i)).mul_add(c(weight), sum);
         }
-        let returned = sum * (hi - lo) * m.peak.lanes() * c(2.0 * PI);
+        let returned = sum * (hi - lo) * m.peak.lanes() * (2.0 * PI);
         let (kd, [r, g, b]) = (lanes3(&m.kd), lanes3(&m.ks));
         PerLobe::padded([kd, [r * returned, g * returned, b * returned]], [zero; 3])
     }

@@ -6,7 +6,8 @@
 //! | [`KajiyaKay`] | a diffuse cylinder and one cone of highlights | `kd + ks` of its parameters | one of two forms | Kajiya & Kay 1989 |
 //! | [`Chiang`] | near field, absorption in place of colours | yes | no | Chiang et al. 2016; d'Eon et al. 2011 |
 //!
-//! A model of your own needs no change in the kernels: `examples/lambert_fiber.rs` is one. A model of this crate also has
+//! A model of your own needs no change in the kernels: `examples/lambert_fiber` is one. A model of
+//! this crate also has
 //! [`Parameters`], an implementation of [`Registered`], and a line in `registry.rs`, the only list of models. Hosts can then
 //! choose it at run time ([`ModelId`], [`AnyMaterial`]), and the harness and the benches include it.
 #![no_std]

@@ -1,16 +1,18 @@
 //! The example model, written on public traits alone: it runs, its lobes add up, its weights are bounded, and every
 //! service of the crate works on it.
 
-#[path = "../examples/lambert_fiber.rs"]
+#[path = "../examples/lambert_fiber/main.rs"]
 mod example;
 
 use crate::support::{Draws, direction, double, lanes_of, packet};
-use example::{CONE, DIFFUSE, LambertFiber, Params, pdf_integral};
+use example::{CONE, Fiber, LambertFiber, pdf_integral};
 use glam::Vec3;
 use hairis::columns::EvalColumns;
 use hairis::simd::Level;
 use hairis::{Hit, Lobe, LobeMask, Material, Material8};
 use hairis_conformance::{Claims, Materials, Subject};
+
+const DIFFUSE: Lobe = Lobe::slot(0);
 
 /// The example under the suite that every model passes.
 struct LambertFibers;
@@ -28,21 +30,21 @@ impl Subject for LambertFibers {
             ("everyday", FIBER),
             (
                 "narrow",
-                Params {
+                Fiber {
                     width: 0.01,
                     ..FIBER
                 },
             ),
             (
                 "wide",
-                Params {
+                Fiber {
                     width: 1.0,
                     ..FIBER
                 },
             ),
             (
                 "black",
-                Params {
+                Fiber {
                     kd: black,
                     ks: black,
                     width: 0.1,
@@ -54,7 +56,7 @@ impl Subject for LambertFibers {
     fn white(&self) -> Materials<Self> {
         vec![(
             "diffuse alone",
-            Params {
+            Fiber {
                 kd: [1.0; 3],
                 ks: [0.0; 3],
                 width: 0.1,
@@ -75,7 +77,7 @@ impl Subject for LambertFibers {
     }
 
     /// Lobe by lobe the weight is `4 kd cos / (pi p)`, or `ks cos span / (pi p)`: `p` is the share of the lobe.
-    fn weight_bound(&self, params: &Params, _hit: &Hit, lobes: LobeMask) -> Option<f64> {
+    fn weight_bound(&self, params: &Fiber<f32>, _hit: &Hit, lobes: LobeMask) -> Option<f64> {
         let sum = |color: [f32; 3]| color.iter().map(|x| f64::from(*x)).sum::<f64>();
         let most = |color: [f32; 3]| f64::from(color.into_iter().fold(0.0, f32::max));
         let lit = |lobe, color: [f32; 3]| {
@@ -100,7 +102,7 @@ impl Subject for LambertFibers {
 
 hairis_conformance::conformance!(suite, LambertFibers);
 
-const FIBER: Params = Params {
+const FIBER: Fiber<f32> = Fiber {
     kd: [0.4, 0.3, 0.2],
     ks: [0.5, 0.4, 0.6],
     width: 0.1,
@@ -115,7 +117,7 @@ fn the_example_runs() {
 fn the_density_integrates_to_one() {
     for width in [0.01, 0.1, 1.0] {
         for theta in [0.0, 0.7, -1.5] {
-            let prepared = Material::new(&LambertFiber, &Params { width, ..FIBER })
+            let prepared = Material::new(&LambertFiber, &Fiber { width, ..FIBER })
                 .prepare(direction(theta, 0.3));
             for lobes in [
                 LobeMask::ALL,
@@ -226,7 +228,7 @@ fn every_service_of_the_crate_works_on_it() {
         let width = crate::support::narrow(draws.scale(0.01, 1.0));
         Material::new(
             &LambertFiber,
-            &Params {
+            &Fiber {
                 kd: draws.xi3(),
                 ks: draws.xi3(),
                 width,

@@ -299,26 +299,22 @@ fn models() {
 struct Math(f32x8, f32x8);
 
 impl Kernel for Math {
-    type Constant = f32x8;
     type Output = [f32x8; 18];
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 18]
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 18] {
         // In [-1, 1), in [0, 1) and above 0.
         let (x, y): (L, L) = (self.0.lanes(), self.1.lanes());
-        let (gaussian, complement) = math::gaussian_and_complement(y * L::splat(90.0));
+        let (gaussian, complement) = math::gaussian_and_complement(y * 90.0);
         let [(a, b), (c, d), (e, f)] = [
             math::sin_cos_half_turn(x),
-            math::sin_cos_twice(x * L::splat(0.5)),
+            math::sin_cos_twice(x * 0.5),
             math::sin_cos_absolute(x),
         ];
         let (tan, over) = math::tan_half_turn(x);
-        let above = y + L::splat(1e-7);
+        let above = y + 1e-7;
         [
-            math::gaussian(y * L::splat(170.0)).store(),
+            math::gaussian(y * 170.0).store(),
             gaussian.store(),
             complement.store(),
             math::atan_unit(x).store(),
@@ -333,9 +329,9 @@ impl Kernel for Math {
             math::half_angle(x, y).store(),
             math::sin_half_turn(x).store(),
             math::log2(above).store(),
-            math::log2_one_plus(x * L::splat(0.2)).store(),
-            math::normal_tail(y * L::splat(9.0)).store(),
-            math::normal_tail_inverse(above * L::splat(0.5)).store(),
+            math::log2_one_plus(x * 0.2).store(),
+            math::normal_tail(y * 9.0).store(),
+            math::normal_tail_inverse(above * 0.5).store(),
         ]
     }
 }

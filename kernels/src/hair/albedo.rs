@@ -38,10 +38,10 @@ impl<L: Lanes> Nodes<L> {
         let above = c(node).mul_add(self.span, self.above);
         let below = c(rest).mul_add(self.span, self.below);
         let inv = L::quotient(c(1.0), above * below);
-        let u = (above - below) * c(0.5);
+        let u = (above - below) * 0.5;
         (
             u * inv,
-            u.mul_add(u, c(1.0)) * (inv * inv) * (self.span * c(weight)),
+            u.mul_add(u, c(1.0)) * (inv * inv) * (self.span * weight),
         )
     }
 }
@@ -86,12 +86,11 @@ pub(crate) fn albedo<B: Bell, L: Lanes, C: Broadcast<L>>(view: &HairView<C>) -> 
         lanes3(&hair.color_trt),
     );
     // The azimuthal term of R and TRT-g, cos(phi / 2), has an area of 4.
-    let four = L::splat(4.0);
     let area = inclinations::<B, L, C, _>(view, &GRADED);
     PerLobe([
-        lobe(view, 0, area[0] * four, r),
+        lobe(view, 0, area[0] * 4.0, r),
         lobe(view, 1, area[1] * hair.azimuth_area[0].lanes(), tt),
-        lobe(view, 2, area[2] * four, trt),
+        lobe(view, 2, area[2] * 4.0, trt),
         lobe(view, 3, area[2] * hair.azimuth_area[1].lanes(), trt),
     ])
 }
@@ -116,7 +115,7 @@ pub(crate) fn conserve<B: Bell, L: Lanes>(view: &HairView<L::Stored>) -> HairVie
     let (four, most) = (L::splat(4.0), L::splat(f32::MAX));
     let [r, tt, trt] = inclinations::<B, L, L::Stored, _>(view, &COARSE);
     let glints = hair.azimuth_area[1].lanes() * hair.strength[3].lanes();
-    let r = r * four * hair.strength[0].lanes();
+    let r = r * 4.0 * hair.strength[0].lanes();
     let tt = tt * hair.azimuth_area[0].lanes() * hair.strength[1].lanes();
     let trt = trt * four.mul_add(hair.strength[2].lanes(), glints);
     let mut colors = [
@@ -176,7 +175,7 @@ fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let tilt = view.lobes.alpha[l].lanes().times_sign(sin);
     let to_pole = half_atan2(cos, sin.abs(), c(0.5));
     let lower = tilt + to_pole;
-    let upper = ((c(FRAC_PI_2) - tilt) + c(FRAC_PI_2_LOW)) - to_pole;
+    let upper = ((c(FRAC_PI_2) - tilt) + FRAC_PI_2_LOW) - to_pole;
     let (from, to) = (-lower * inv_beta, upper * inv_beta);
     let nodes = Nodes::between(from, to);
     let (sin_pole, cos_pole) = sin_cos_half_turn(to_pole);
@@ -191,7 +190,7 @@ fn longitudinal<B: Bell, L: Lanes, C: Broadcast<L>, const N: usize>(
         // Cos theta_i is that of twice the distance, and cos theta_d the sine of the distance and half of wo's.
         let cos_theta_d = sin.mul_add(cos_pole, cos * sin_pole);
         let s = x * x;
-        let d = s + one;
+        let d = s + 1.0;
         let reciprocal = L::quotient(one, d * cos_theta_d.max(c(f32::MIN_POSITIVE)));
         let ratio = two * sin * cos * (reciprocal * d);
         sum = (B::one(s, reciprocal * cos_theta_d) * (ratio * ratio)).mul_add(dx, sum);

@@ -1,8 +1,8 @@
 //! Angles of a direction relative to the shading point, and the lobe terms there.
 
 use super::{GRAZING, HairView};
-use crate::model::Bell;
 use crate::model::math::{atan_unit, half_angle, quotients};
+use crate::model::{Bell, FourBells, TwoBells};
 use crate::simd::{Broadcast, Lanes, Vec3x, lanes3};
 use core::f32::consts::FRAC_PI_2;
 
@@ -57,7 +57,7 @@ impl<L: Lanes> Angles<L> {
         // Off the axis, seen from a wo that is a direction: else the length of its part across the fibre is NaN. Longer than
         // 2 is no direction; the comparison is false for the infinities of a sum that overflowed.
         let sound = L::and(
-            (cos_o * c(GRAZING)).lt(reach),
+            (cos_o * GRAZING).lt(reach),
             wi.x.mul_add(wi.x, plane_sq).lt(c(4.0)),
         );
 
@@ -132,15 +132,28 @@ impl<L: Lanes> Angles<L> {
         let cos_sq_theta_d = mean_u.mul_add(mean_u, (mean_c * mean_c).alone()).alone();
         let [cauchy_r, inv_cos_sq_theta_d] = quotients([one, d_r], [one, cos_sq_theta_d]);
 
-        let of_tt = [
-            s_tt,
-            t_tt,
-            cauchy_tt,
-            cauchy_tt * d_tt_y,
-            cauchy_tt * d_tt_x,
-        ];
-        let of_g = [s_trt, t_g, cauchy_g, cauchy_trt, cauchy_g * d_trt];
-        let [m_r, f_tt, m_trt, f_g] = B::four([s_r, cauchy_r], of_tt, [s_trt, cauchy_trt], of_g);
+        let tt = TwoBells {
+            s: s_tt,
+            t: t_tt,
+            cauchy: cauchy_tt,
+            cauchy_s: cauchy_tt * d_tt_y,
+            cauchy_t: cauchy_tt * d_tt_x,
+        };
+        let glint = TwoBells {
+            s: s_trt,
+            t: t_g,
+            cauchy: cauchy_g,
+            cauchy_s: cauchy_trt,
+            cauchy_t: cauchy_g * d_trt,
+        };
+        let [m_r, f_tt, m_trt, f_g] = B::four(FourBells {
+            s_r,
+            cauchy_r,
+            tt,
+            s_trt,
+            cauchy_trt,
+            glint,
+        });
         LobeTerms {
             value: [
                 m_r * self.cos_half_phi,

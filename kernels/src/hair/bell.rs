@@ -21,7 +21,7 @@ use crate::simd::pair::Pair;
 /// impl Bell for Bump {
 ///     #[inline(always)]
 ///     fn one<L: Lanes>(s: L, _cauchy: L) -> L {
-///         let x = L::splat(0.0).max(s.mul_add(L::splat(-0.125), L::splat(1.0)));
+///         let x = L::splat(0.0).max(s * -0.125 + 1.0);
 ///         (x * x) * (x * x)
 ///     }
 /// }
@@ -34,24 +34,21 @@ pub trait Bell: Copy {
     /// `cauchy` is `1 / (1 + s)`.
     fn one<L: Lanes>(s: L, cauchy: L) -> L;
 
-    /// The product of two bells, at `s` and `t`.
-    ///
-    /// `cauchy` is `1 / ((1 + s) (1 + t))`, `cauchy_s` and `cauchy_t` its two factors.
+    /// The product of two bells.
     #[inline(always)]
-    fn two<L: Lanes>(s: L, t: L, cauchy: L, cauchy_s: L, cauchy_t: L) -> L {
-        let _ = cauchy;
-        Self::one(s, cauchy_s) * Self::one(t, cauchy_t)
+    fn two<L: Lanes>(at: TwoBells<L>) -> L {
+        Self::one(at.s, at.cauchy_s) * Self::one(at.t, at.cauchy_t)
     }
 
     /// The bells of the four lobes at one direction: [`one`](Self::one) of R, [`two`](Self::two) of TT, `one` of TRT, `two` of
-    /// the glints, with these arguments. Override it where the four together cost less than one after another.
+    /// the glints. Override it where the four together cost less than one after another.
     #[inline(always)]
-    fn four<L: Lanes>(r: [L; 2], tt: [L; 5], trt: [L; 2], glint: [L; 5]) -> [L; 4] {
+    fn four<L: Lanes>(at: FourBells<L>) -> [L; 4] {
         [
-            Self::one(r[0], r[1]),
-            Self::two(tt[0], tt[1], tt[2], tt[3], tt[4]),
-            Self::one(trt[0], trt[1]),
-            Self::two(glint[0], glint[1], glint[2], glint[3], glint[4]),
+            Self::one(at.s_r, at.cauchy_r),
+            Self::two(at.tt),
+            Self::one(at.s_trt, at.cauchy_trt),
+            Self::two(at.glint),
         ]
     }
 
@@ -60,6 +57,38 @@ pub trait Bell: Copy {
     fn width_factor(&self) -> f32 {
         1.0
     }
+}
+
+/// Arguments of the product of two bells, at squared distances `s` and `t` in widths.
+#[derive(Clone, Copy, Debug)]
+pub struct TwoBells<L> {
+    /// Squared distance from the centre of the first, in widths.
+    pub s: L,
+    /// That of the second.
+    pub t: L,
+    /// `1 / ((1 + s) (1 + t))`.
+    pub cauchy: L,
+    /// `1 / (1 + s)`.
+    pub cauchy_s: L,
+    /// `1 / (1 + t)`.
+    pub cauchy_t: L,
+}
+
+/// Arguments of the bells of the four lobes at one direction.
+#[derive(Clone, Copy, Debug)]
+pub struct FourBells<L> {
+    /// Squared distance of the inclination from the centre of R, in widths.
+    pub s_r: L,
+    /// `1 / (1 + s_r)`.
+    pub cauchy_r: L,
+    /// Inclination and azimuth of TT.
+    pub tt: TwoBells<L>,
+    /// As `s_r`, of TRT.
+    pub s_trt: L,
+    /// `1 / (1 + s_trt)`.
+    pub cauchy_trt: L,
+    /// Inclination and azimuth of the glints.
+    pub glint: TwoBells<L>,
 }
 
 /// The bell of the published model: `exp(-s/2)`, a Gaussian whose deviation is the width.
@@ -77,16 +106,16 @@ impl Bell for Gaussian {
 
     // Two Gaussians are one.
     #[inline(always)]
-    fn two<L: Lanes>(s: L, t: L, _cauchy: L, _cauchy_s: L, _cauchy_t: L) -> L {
-        Self::one(s + t, s)
+    fn two<L: Lanes>(at: TwoBells<L>) -> L {
+        gaussian(at.s + at.t)
     }
 
     // Interleaved in pairs: each constant is read once for two, and no dependency chain waits alone. Four at a time would need more
     // registers than AVX2 has.
     #[inline(always)]
-    fn four<L: Lanes>(r: [L; 2], tt: [L; 5], trt: [L; 2], glint: [L; 5]) -> [L; 4] {
-        let Pair(r, tt) = gaussian(Pair(r[0], tt[0] + tt[1]));
-        let Pair(trt, glint) = gaussian(Pair(trt[0], glint[0] + glint[1]));
+    fn four<L: Lanes>(at: FourBells<L>) -> [L; 4] {
+        let Pair(r, tt) = gaussian(Pair(at.s_r, at.tt.s + at.tt.t));
+        let Pair(trt, glint) = gaussian(Pair(at.s_trt, at.glint.s + at.glint.t));
         [r, tt, trt, glint]
     }
 }

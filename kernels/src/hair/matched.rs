@@ -9,15 +9,16 @@ mod prepared;
 mod sampling;
 
 pub use bell::MatchedBell;
-pub use material::MatchedMaterial;
-pub use prepared::MatchedPrepared;
+use material::MatchedMaterial;
+use prepared::MatchedPrepared;
 
 use crate::hair::{
-    Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities, times,
+    Angles, LobeTerms, albedo, finish_eval, finish_lobes, finish_sample, mix_densities,
 };
+use crate::model::lobe::times;
 use crate::model::{Eval, Hit, LobeEval, Model, SampleLanes};
 use crate::simd::pair::Pair;
-use crate::simd::unfused::Unfused;
+use crate::simd::portable::Unfused;
 use crate::simd::{Broadcast, Lanes, Scalar, Vec3x};
 use crate::{HairParams, LobeMask, PerLobe};
 

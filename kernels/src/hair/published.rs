@@ -1,25 +1,26 @@
 //! Constants of the published sampler: per material, and per material and direction (section 3.3 of the paper).
 
-use super::view::{self, HairLobes, HairView, times};
+use super::view::{self, HairLobes, HairView};
 use crate::hair::truncated::TruncatedCauchy;
 use crate::model::Bell;
-use crate::simd::{Broadcast, Lanes, Vec3x, store4};
-use crate::{HairParams, Lobe, LobeMask};
+use crate::model::lobe::times;
+use crate::simd::{Broadcast, Lanes, Vec3x, lanes4, store4};
+use crate::{HairParams, LobeMask};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 crate::simd::lane_struct! {
     /// The published sampler's constants of a material; arrays of two are TT and the glints.
-    pub struct PublishedConstants {
+    pub(super) struct PublishedConstants {
         /// The azimuth's truncated Cauchy on one side: tangent of the middle of its angles.
-        pub azimuth_middle: [C; 2],
+        pub(in crate::hair) azimuth_middle: [C; 2],
         /// Angle from end to end, rad; below 0 for TT, whose cdf runs towards its centre.
-        pub azimuth_span: [C; 2],
+        pub(in crate::hair) azimuth_span: [C; 2],
         /// Normalisation of the azimuthal density, per rad.
-        pub azimuth_density: [C; 2],
+        pub(in crate::hair) azimuth_density: [C; 2],
         /// Probability of choosing each lobe: its share of the energy.
-        pub selection: [C; 4],
+        pub(in crate::hair) selection: [C; 4],
         /// Where the next lobe begins in `xi_lobe`.
-        pub bounds: [C; 3],
+        pub(in crate::hair) bounds: [C; 3],
     }
 }
 
@@ -27,9 +28,9 @@ crate::simd::lane_struct! {
     /// The constants of a material of the published model.
     pub struct PublishedMaterial {
         /// Its lobes.
-        pub lobes: (HairLobes<C>),
+        pub(in crate::hair) lobes: HairLobes<C>,
         /// The sampler's constants of these lobes.
-        pub sampler: (PublishedConstants<C>),
+        pub(in crate::hair) sampler: PublishedConstants<C>,
     }
 }
 
@@ -37,17 +38,17 @@ crate::simd::lane_struct! {
     /// The constants of a shading point of the published model: those of its material, and those of `wo`.
     pub struct PublishedPrepared {
         /// The lobes as seen from `wo`.
-        pub view: (HairView<C>),
+        pub(in crate::hair) view: HairView<C>,
         /// The inclination's truncated Cauchy: tangent of the middle of its angles.
-        pub inclination_middle: [C; 4],
+        pub(in crate::hair) inclination_middle: [C; 4],
         /// Angle from end to end (A - B in the paper), rad.
-        pub inclination_span: [C; 4],
+        pub(in crate::hair) inclination_span: [C; 4],
         /// Density of each lobe but for its shape and for `1 / cos theta_i`.
-        pub density: [C; 4],
+        pub(in crate::hair) density: [C; 4],
         /// The same times the probability of the lobe.
-        pub weight: [C; 4],
+        pub(in crate::hair) weight: [C; 4],
         /// The constants of the material.
-        pub sampler: (PublishedConstants<C>),
+        pub(in crate::hair) sampler: PublishedConstants<C>,
     }
 }
 
@@ -62,12 +63,7 @@ pub(crate) fn selection<L: Lanes>(energy: [L; 4]) -> ([L; 4], [L; 3], L) {
     let zero = c(0.0);
     let total = (energy[0] + energy[1]) + (energy[2] + energy[3]);
     let inv_total = L::select(zero.lt(total), L::quotient(c(1.0), total), zero);
-    let p = [
-        energy[0] * inv_total,
-        energy[1] * inv_total,
-        energy[2] * inv_total,
-        energy[3] * inv_total,
-    ];
+    let p = times(energy, [inv_total; 4]);
     let (two, low) = (c(2.0), p[0] + p[1]);
     let more = [p[1] + p[2] + p[3], p[2] + p[3], p[3]];
     let bounds = [
@@ -161,7 +157,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
     let (hair, sampler) = (&m.lobes, &m.sampler);
     let view = view::prepare(hair, wo);
     let quarter_o = view.quarter_o.lanes();
-    let ends = [quarter_o - c(FRAC_PI_4), quarter_o + c(FRAC_PI_4)];
+    let ends = [quarter_o - FRAC_PI_4, quarter_o + FRAC_PI_4];
     let [r, tt, trt] = [
         inclination::<L, C>(ends, view.shift[0].lanes(), hair.beta[0]),
         inclination::<L, C>(ends, view.shift[1].lanes(), hair.beta[1]),
@@ -186,13 +182,7 @@ pub(super) fn prepare<L: Lanes, C: Broadcast<L>>(
         of_trt * quarter,
         of_trt * sampler.azimuth_density[1].lanes(),
     ];
-    let p = &sampler.selection;
-    let weight = [
-        density[0] * p[0].lanes(),
-        density[1] * p[1].lanes(),
-        density[2] * p[2].lanes(),
-        density[3] * p[3].lanes(),
-    ];
+    let weight = times(density, lanes4(&sampler.selection));
 
     PublishedPrepared {
         view,
@@ -208,8 +198,7 @@ impl<C: Lanes> PublishedPrepared<C> {
     /// The shading point with only some of its lobes.
     #[inline(always)]
     pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
-        let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));
-        let (p, bounds, _) = selection(times(self.sampler.selection, factor));
+        let (p, bounds, _) = selection(times(self.sampler.selection, lobes.factors()));
         Self {
             view: self.view.restrict(lobes),
             weight: times(self.density, p),

@@ -3,7 +3,7 @@
 use super::{Angles, GRAZING, HairView, LobeTerms};
 use crate::PerLobe;
 use crate::model::{Eval, LobeEval, SampleLanes};
-use crate::simd::{Broadcast, Lanes, Vec3x, lanes3};
+use crate::simd::{Broadcast, Choice, Lanes, Vec3x, lanes3};
 
 /// The density below which a sample is discarded: next to denormals its weight would have no digits.
 const LEAST_DENSITY: f32 = 1e-30;
@@ -67,20 +67,12 @@ pub(crate) fn finish_lobes<L: Lanes, C: Broadcast<L>>(
         lanes3(&hair.color_trt),
         lanes3(&hair.color_trt),
     ];
-    let zero = L::splat(0.0);
-    let mut lobes = [LobeEval {
-        value: zero,
-        color: [zero; 3],
-        pdf: zero,
-    }; 4];
+    let mut lobes = [LobeEval::none(); 4];
     let mut l = 0;
     while l < 4 {
         let strength = hair.strength[l].lanes() * terms.inv_cos_sq_theta_d;
-        lobes[l] = LobeEval {
-            value: (terms.value[l] * strength).min(limit),
-            color: colors[l],
-            pdf: (density[l] * angles.inv_cos_theta_i).min(limit),
-        };
+        let pdf = (density[l] * angles.inv_cos_theta_i).min(limit);
+        lobes[l] = LobeEval::new((terms.value[l] * strength).min(limit), colors[l], pdf);
         l += 1;
     }
     PerLobe(lobes)
@@ -114,6 +106,6 @@ pub(crate) fn finish_sample<L: Lanes, C: Broadcast<L>>(
         value: scale3(sum, inv_cos_sq_theta_d, limit),
         pdf: (density * angles.inv_cos_theta_i).min(limit),
         weight: scale3(sum, by, limit),
-        slot: L::select(sound, L::index_number(choice), L::splat(-1.0)),
+        slot: L::select(sound, choice.to_number(), L::splat(-1.0)),
     }
 }

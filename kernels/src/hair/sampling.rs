@@ -4,7 +4,7 @@ use super::{Angles, HairView, PublishedPrepared};
 use crate::hair::truncated::TruncatedCauchy;
 use crate::model::math::{half_angle, sin_cos_absolute, sin_cos_twice};
 use crate::simd::pair::Pair;
-use crate::simd::{Broadcast, Lanes, Vec3x, lanes3};
+use crate::simd::{Broadcast, Choice, Lanes, Vec3x, lanes3};
 use core::f32::consts::FRAC_PI_4;
 
 /// A direction for `xi = [lobe, theta, phi]`, the lobe it came from, and its angles.
@@ -16,7 +16,7 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(
     let c = L::splat;
     let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
     let (view, hair, sampler) = (&prepared.view, &prepared.view.lobes, &prepared.sampler);
-    let choice = L::search(xi[0], lanes3(&sampler.bounds), 3);
+    let choice = L::Index::search(xi[0], lanes3(&sampler.bounds), 3);
     // The second operand wins over NaN: that of a number stays, and the sample has no inclination, or no density.
     let along = zero.max(one.min(xi[0].mul_add(zero, xi[1])));
 
@@ -32,12 +32,12 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(
             C::look_up_half(&sampler.azimuth_span, choice),
         ),
     };
-    let Pair(x, y) = both.invert(Pair(along - half, half - folded.across));
+    let Pair(x, y) = both.invert(Pair(along - 0.5, half - folded.across));
     let from_quarter = x.mul_sub(
         C::look_up_three(&hair.beta, choice),
         C::look_up_three(&view.shift, choice),
     );
-    let center = L::keep(L::is_index(choice, 3), hair.half_phi_g.lanes());
+    let center = L::keep(choice.equals(3), hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
     let (wi, angles) = direction_from_angles(view, choice, from_quarter, folded, psi);
     (wi, choice, angles)
@@ -56,7 +56,7 @@ impl<L: Lanes> FoldedXi<L> {
     /// Of a number in `[0, 1]`, or NaN.
     #[inline(always)]
     pub(crate) fn of(xi: L) -> Self {
-        let side = xi + xi - L::splat(1.0);
+        let side = xi + xi - 1.0;
         Self {
             side,
             across: L::splat(1.0).min(side.abs()),
@@ -83,8 +83,8 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
 ) -> (Vec3x<L>, Angles<L>) {
     let c = L::splat;
     let (zero, one) = (c(0.0), c(1.0));
-    let is_tt = L::is_index(choice, 1);
-    let is_glint = L::is_index(choice, 3);
+    let is_tt = choice.equals(1);
+    let is_glint = choice.equals(3);
     let is_bell = L::or(is_tt, is_glint);
     let (from_quarter, psi) = L::interleave(from_quarter, psi);
     let quarter_o = view.quarter_o.lanes();
@@ -111,7 +111,7 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let cos_phi = L::negate(is_tt, cos_psi.mul_sub(cos_psi, sin_psi_sq));
     let sin_phi = sin_twice.times_sign(L::negate(is_bell, side));
     // The length absorbs the distance of sine and cosine from the unit circle.
-    let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - one;
+    let off_unit = cos_psi.mul_add(cos_psi, sin_psi_sq) - 1.0;
     let [v_o, w_o, _] = lanes3(&view.plane_o);
     let inv_plane_o = view.inv_plane_o.lanes();
     let by = (inv_plane_o - inv_plane_o * off_unit) * cos_theta_i;
@@ -123,7 +123,7 @@ pub(crate) fn direction_from_angles<L: Lanes, C: Broadcast<L>>(
     let dot = v.mul_add(v_o, w * w_o);
     let cross = L::difference_of_products(w, v_o, v, w_o).abs();
     let rotation =
-        cross.mul_sub(cos_phi, dot * sin_twice) * (inv_cos_theta_i * (inv_plane_o * c(0.5)));
+        cross.mul_sub(cos_phi, dot * sin_twice) * (inv_cos_theta_i * (inv_plane_o * 0.5));
     let angles = Angles {
         // Not `from_quarter`: the direction is that of the rounded half.
         half_theta_i_plus_quarter: half_theta_i + quarter_o,

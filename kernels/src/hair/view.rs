@@ -2,62 +2,63 @@
 
 use super::albedo::bell_area;
 use crate::model::Bell;
+use crate::model::lobe::times;
 use crate::model::math::{FRAC_PI_2_LOW, half_atan2_parts};
-use crate::simd::{Broadcast, Lanes, Vec3x, store3, store4};
-use crate::{HairParams, Lobe, LobeMask};
+use crate::simd::{Broadcast, Lanes, Vec3x, lanes3, store3, store4};
+use crate::{HairParams, LobeMask};
 use core::f32::consts::PI;
 
 crate::simd::lane_struct! {
     /// The lobes of a material: the constants of its value, which every sampler reads.
     ///
     /// Arrays of two are TT and the glints, of three R, TT, TRT; arrays of four are in the order of [`Lobe`](crate::Lobe).
-    pub struct HairLobes {
+    pub(crate) struct HairLobes {
         /// Longitudinal shift, rad.
-        pub alpha: [C; 3],
+        pub(in crate::hair) alpha: [C; 3],
         /// Longitudinal width, rad; the glints share TRT's.
-        pub beta: [C; 4],
+        pub(in crate::hair) beta: [C; 4],
         /// `1 / beta`.
-        pub inv_beta: [C; 3],
+        pub(in crate::hair) inv_beta: [C; 3],
         /// Half the azimuthal width of TT and the glints, rad.
-        pub half_gamma: [C; 2],
+        pub(in crate::hair) half_gamma: [C; 2],
         /// `2 / gamma`.
-        pub inv_half_gamma: [C; 2],
+        pub(in crate::hair) inv_half_gamma: [C; 2],
         /// Half of the angle between a glint and `wo`, rad.
-        pub half_phi_g: C,
+        pub(in crate::hair) half_phi_g: C,
         /// `pi/2` less that.
-        pub half_back_g: C,
+        pub(in crate::hair) half_back_g: C,
         /// Integral of the azimuthal term over the circle, rad.
-        pub azimuth_area: [C; 2],
+        pub(in crate::hair) azimuth_area: [C; 2],
         /// Colour of R, linear RGB.
-        pub color_r: [C; 3],
+        pub(in crate::hair) color_r: [C; 3],
         /// Colour of TT.
-        pub color_tt: [C; 3],
+        pub(in crate::hair) color_tt: [C; 3],
         /// Colour of TRT and the glints.
-        pub color_trt: [C; 3],
+        pub(in crate::hair) color_trt: [C; 3],
         /// Factor on each lobe that is no colour: 1, and the strength of the glints (up to 1e6; its excess is in the
         /// colour of TRT).
-        pub strength: [C; 4],
+        pub(in crate::hair) strength: [C; 4],
     }
 }
 
 crate::simd::lane_struct! {
     /// View terms of a shading point, which every sampler reads: the lobes of its material, and `wo`.
-    pub struct HairView {
+    pub(crate) struct HairView {
         /// Half the sine of `theta_o`.
-        pub half_sin_theta_o: C,
+        pub(in crate::hair) half_sin_theta_o: C,
         /// Half its cosine.
-        pub half_cos_theta_o: C,
+        pub(in crate::hair) half_cos_theta_o: C,
         /// The part of `wo` in the normal plane, with the digits it was given: v and w, and its length.
-        pub plane_o: [C; 3],
+        pub(in crate::hair) plane_o: [C; 3],
         /// One over that length.
-        pub inv_plane_o: C,
+        pub(in crate::hair) inv_plane_o: C,
         /// `pi/4` with the sign of `theta_o` where that is next to a pole, else 0.
-        pub quarter_o: C,
+        pub(in crate::hair) quarter_o: C,
         /// `theta_o / 2 - alpha` less that: small, and with more digits than the sum. Both added to `theta_i / 2` are
         /// `theta_h - alpha`.
-        pub shift: [C; 4],
+        pub(in crate::hair) shift: [C; 4],
         /// The lobes of the material.
-        pub lobes: (HairLobes<C>),
+        pub(in crate::hair) lobes: HairLobes<C>,
     }
 }
 
@@ -109,7 +110,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
     wo: Vec3x<L>,
 ) -> HairView<L::Stored> {
     let c = L::splat;
-    let (zero, one) = (c(0.0), c(1.0));
+    let one = c(1.0);
     // The digits of a wo of about unit length are kept as they are; any other is scaled by its largest component, so
     // that no finite wo overflows or vanishes. Zero counts as v. Of any other, the component that is NaN, or infinite and
     // then scaled by 0, is NaN after that.
@@ -135,11 +136,8 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
     let cos_phi_o = L::select(off_axis, y * inv_plane, one);
     let sin_phi_o = z * inv_plane;
 
-    let [r, tt, trt] = [
-        half_rest - lobes.alpha[0].lanes(),
-        half_rest - lobes.alpha[1].lanes(),
-        half_rest - lobes.alpha[2].lanes(),
-    ];
+    let [r, tt, trt] = lanes3(&lobes.alpha);
+    let [r, tt, trt] = [half_rest - r, half_rest - tt, half_rest - trt];
 
     HairView {
         half_sin_theta_o: (x * half_inv_len).store(),
@@ -149,7 +147,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
             L::select(near_axis, sin_phi_o, z),
             // NaN if any component is. No direction is sound then (`Angles::from_direction`), and every sample is next to the
             // axis.
-            len.mul_add(zero, L::select(near_axis, one, plane)),
+            len.mul_add(c(0.0), L::select(near_axis, one, plane)),
         ]),
         inv_plane_o: L::select(near_axis, one, inv_plane).store(),
         quarter_o: quarter_o.store(),
@@ -162,7 +160,7 @@ impl<C: Lanes> HairView<C> {
     /// The shading point with only some of its lobes.
     #[inline(always)]
     pub(crate) fn restrict(&self, lobes: LobeMask) -> Self {
-        let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));
+        let factor = lobes.factors::<C>();
         let hair = &self.lobes;
         Self {
             lobes: HairLobes {
@@ -174,10 +172,4 @@ impl<C: Lanes> HairView<C> {
             ..*self
         }
     }
-}
-
-/// Product, entry by entry.
-#[inline(always)]
-pub(crate) fn times<C: Lanes>(x: [C; 4], y: [C; 4]) -> [C; 4] {
-    [x[0] * y[0], x[1] * y[1], x[2] * y[2], x[3] * y[3]]
 }

@@ -3,7 +3,7 @@
 use super::kernels::{Albedo, EvalPdf, Lobes, SampleWi};
 use super::{handle_impls, level_methods};
 use crate::model::{LobeEval, LobeEval8, Model};
-use crate::simd::{LaneStruct, Lanes, Level, Vec3x, f32x8};
+use crate::simd::{LaneStruct, Level, Schedule, Vec3x, f32x8};
 use crate::{Eval, Eval8, LobeMask, PerLobe, Sample, Sample8, Vec3x8};
 
 /// The BSDF at a hit: a material seen from one direction. Evaluate and sample it any number of times, one direction or

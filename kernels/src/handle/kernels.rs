@@ -2,28 +2,39 @@
 
 use crate::model::{Eval8, Hit8, LobeEval8, Model, Sample8, SampleLanes};
 use crate::resample::{Weighed8, Weighing};
-use crate::simd::{Broadcast, Constant, Kernel, Lanes, Row, Vec3x, fresh_lanes3, store3};
+use crate::simd::{Broadcast, Kernel, Lanes, Row, Scalar, Vec3x, fresh_lanes3, store3};
 use crate::{Hit, PerLobe, Vec3x8};
 use core::marker::PhantomData;
 use wide::f32x8;
 
+/// Declares an `impl` for constants `C` that are `f32`, one number for all lanes, and for `f32x8`,
+/// one number per lane.
+macro_rules! for_constants {
+    ($C:ident: $($item:tt)*) => {
+        const _: () = {
+            type $C = f32;
+            $($item)*
+        };
+        const _: () = {
+            type $C = f32x8;
+            $($item)*
+        };
+    };
+}
+
 /// Eight shading points. The caller's arguments are converted to hits inside the kernel, by vector code.
-pub(crate) struct Prepare<'a, M: Model, C: Constant, H> {
+pub(crate) struct Prepare<'a, M: Model, C: Scalar, H> {
     pub(crate) material: &'a M::Material<C>,
     pub(crate) hits: H,
 }
 
-impl<M: Model, C: Constant, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
-    type Constant = C;
+for_constants! { C:
+impl<M: Model, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
     type Output = M::Prepared<f32x8>;
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> M::Prepared<f32x8>
-    where
-        C: Broadcast<L>,
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> M::Prepared<f32x8> {
         let hits: Hit8 = self.hits.into();
         let hit = Hit {
             wo: Vec3x::load(&hits.wo),
@@ -32,28 +43,26 @@ impl<M: Model, C: Constant, H: Into<Hit8>> Kernel for Prepare<'_, M, C, H> {
         M::prepare::<L, C>(self.material, hit)
     }
 }
+}
 
 /// Declares the kernel of one of a model's functions at a shading point, of eight lanes each.
 macro_rules! at_bsdf {
-    ($(#[$meta:meta])* $name:ident($input:ident: &$Input:ty) -> $Output:ty, $M:ident $L:ident $prepared:ident $body:expr) => {
+    ($(#[$meta:meta])* $name:ident($input:ident: &$Input:ty) -> $Output:ty, $M:ident $L:ident $C:ident $prepared:ident $body:expr) => {
         $(#[$meta])*
-        pub(crate) struct $name<'a, M: Model, C: Constant> {
+        pub(crate) struct $name<'a, M: Model, C: Scalar> {
             pub(crate) prepared: &'a M::Prepared<C>,
             pub(crate) $input: &'a $Input,
         }
 
-        impl<$M: Model, C: Constant> Kernel for $name<'_, $M, C> {
-            type Constant = C;
-            type Output = $Output;
+        for_constants! { $C:
+            impl<$M: Model> Kernel for $name<'_, $M, $C> {
+                type Output = $Output;
 
-            #[inline(always)]
-            fn run<$L: Lanes<Stored = f32x8>>(self) -> $Output
-            where
-                C: Broadcast<$L>,
-                f32x8: Broadcast<$L>,
-            {
-                let Self { $prepared, $input } = self;
-                $body
+                #[inline(always)]
+                fn run<$L: Lanes<Stored = f32x8>>(self) -> $Output {
+                    let Self { $prepared, $input } = self;
+                    $body
+                }
             }
         }
     };
@@ -61,18 +70,18 @@ macro_rules! at_bsdf {
 
 at_bsdf! {
     /// Value and density of eight directions.
-    EvalPdf(wi: &Vec3x8) -> Eval8, M L prepared M::eval::<L, C>(prepared, Vec3x::load_fresh(wi)).store()
+    EvalPdf(wi: &Vec3x8) -> Eval8, M L C prepared M::eval::<L, C>(prepared, Vec3x::load_fresh(wi)).store()
 }
 at_bsdf! {
     /// Each lobe's value, colour and density at eight directions.
-    Lobes(wi: &Vec3x8) -> PerLobe<LobeEval8>, M L prepared {
+    Lobes(wi: &Vec3x8) -> PerLobe<LobeEval8>, M L C prepared {
         let [a, b, c, d] = M::lobes::<L, C>(prepared, Vec3x::load_fresh(wi)).0;
         PerLobe([a.store(), b.store(), c.store(), d.store()])
     }
 }
 at_bsdf! {
     /// Eight sampled directions.
-    SampleWi(xi: &[f32x8; 3]) -> Sample8, M L prepared M::sample::<L, C>(prepared, fresh_lanes3(xi)).store()
+    SampleWi(xi: &[f32x8; 3]) -> Sample8, M L C prepared M::sample::<L, C>(prepared, fresh_lanes3(xi)).store()
 }
 
 /// The directional albedos of eight shading points.
@@ -81,15 +90,11 @@ pub(crate) struct Albedo<'a, M: Model> {
 }
 
 impl<M: Model> Kernel for Albedo<'_, M> {
-    type Constant = f32x8;
     type Output = PerLobe<[f32x8; 3]>;
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> PerLobe<[f32x8; 3]>
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> PerLobe<[f32x8; 3]> {
         let [a, b, c, d] = M::albedo::<L, f32x8>(self.prepared).0;
         PerLobe([store3(a), store3(b), store3(c), store3(d)])
     }
@@ -123,10 +128,7 @@ impl<M: Model, K> Copy for AtBsdf<'_, M, K> {}
 pub(crate) struct Value;
 impl<M: Model> Row<3, 3> for AtBsdf<'_, M, Value> {
     #[inline(always)]
-    fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 3]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 3] {
         M::eval::<L, f32>(self.prepared, Vec3x::new(x, y, z)).value
     }
 }
@@ -135,10 +137,7 @@ impl<M: Model> Row<3, 3> for AtBsdf<'_, M, Value> {
 pub(crate) struct Pdf;
 impl<M: Model> Row<3, 1> for AtBsdf<'_, M, Pdf> {
     #[inline(always)]
-    fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 1]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 1] {
         [M::eval::<L, f32>(self.prepared, Vec3x::new(x, y, z)).pdf]
     }
 }
@@ -147,10 +146,7 @@ impl<M: Model> Row<3, 1> for AtBsdf<'_, M, Pdf> {
 pub(crate) struct ValuePdf;
 impl<M: Model> Row<3, 4> for AtBsdf<'_, M, ValuePdf> {
     #[inline(always)]
-    fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 4]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, [x, y, z]: [L; 3]) -> [L; 4] {
         let eval = M::eval::<L, f32>(self.prepared, Vec3x::new(x, y, z));
         let [r, g, b] = eval.value;
         [r, g, b, eval.pdf]
@@ -161,10 +157,7 @@ impl<M: Model> Row<3, 4> for AtBsdf<'_, M, ValuePdf> {
 pub(crate) struct Samples;
 impl<M: Model> Row<3, 11> for AtBsdf<'_, M, Samples> {
     #[inline(always)]
-    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11] {
         columns(M::sample::<L, f32>(self.prepared, xi))
     }
 }
@@ -175,10 +168,7 @@ impl<M: Model> Row<3, 11> for AtBsdf<'_, M, SomeSamples> {
     const OPTIONAL: bool = true;
 
     #[inline(always)]
-    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 11] {
         columns(M::sample::<L, f32>(self.prepared, xi))
     }
 }
@@ -187,10 +177,7 @@ impl<M: Model> Row<3, 11> for AtBsdf<'_, M, SomeSamples> {
 pub(crate) struct Weights;
 impl<M: Model> Row<3, 7> for AtBsdf<'_, M, Weights> {
     #[inline(always)]
-    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 7]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 7] {
         let s = M::sample::<L, f32>(self.prepared, xi);
         let [r, g, b] = s.weight;
         [s.wi.x, s.wi.y, s.wi.z, s.pdf, r, g, b]
@@ -269,10 +256,7 @@ impl<M: Model, K: HitRow<M, N>, const N: usize> Row<7, N> for AtHits<'_, M, K> {
     const PAIRS: bool = size_of::<M::Prepared<f32>>() <= 768;
 
     #[inline(always)]
-    fn row<L: Lanes>(self, input: [L; 7]) -> [L; N]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, input: [L; 7]) -> [L; N] {
         K::row::<L, f32>(self.material, input)
     }
 }
@@ -296,16 +280,12 @@ impl<'a, M: Model, K, const N: usize> EightHits<'a, M, K, N> {
 }
 
 impl<M: Model, K: HitRow<M, N>, const N: usize> Kernel for EightHits<'_, M, K, N> {
-    type Constant = f32x8;
     type Output = [f32x8; N];
     // Packing the materials takes longer than what more registers would save.
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; N]
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; N] {
         let [u, v, w, h, x, y, z] = self.input;
         let input = [
             u.fresh_lanes(),
@@ -332,10 +312,7 @@ pub(crate) type Proposals<'a, M> = AtBsdf<'a, M, Proposed>;
 pub(crate) struct Proposed;
 impl<M: Model> Row<3, 3> for Proposals<'_, M> {
     #[inline(always)]
-    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 3]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, xi: [L; 3]) -> [L; 3] {
         proposed(M::sample::<L, f32>(self.prepared, xi))
     }
 }
@@ -370,10 +347,7 @@ impl<'a, M: Model> Weighs<'a, M> {
 
 impl<M: Model> Row<7, 4> for Weighs<'_, M> {
     #[inline(always)]
-    fn row<L: Lanes>(self, [x, y, z, r, g, b, pdf_light]: [L; 7]) -> [L; 4]
-    where
-        f32: Broadcast<L>,
-    {
+    fn row<L: Lanes>(self, [x, y, z, r, g, b, pdf_light]: [L; 7]) -> [L; 4] {
         weighed::<M, L, f32>(
             self.at.prepared,
             self.weighing,
@@ -404,14 +378,10 @@ pub(crate) struct ProposalsOf<'a, M: Model> {
 }
 
 impl<M: Model> Kernel for ProposalsOf<'_, M> {
-    type Constant = f32x8;
     type Output = Vec3x8;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Vec3x8
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Vec3x8 {
         let [x, y, z] = store3(proposed(M::sample::<L, f32x8>(
             self.prepared,
             fresh_lanes3(self.xi),
@@ -430,14 +400,10 @@ pub(crate) struct WeighOf<'a, M: Model> {
 }
 
 impl<M: Model> Kernel for WeighOf<'_, M> {
-    type Constant = f32x8;
     type Output = Weighed8;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Weighed8
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Weighed8 {
         let (wi, light) = (Vec3x::load_fresh(self.wi), self.pdf_light.fresh_lanes());
         let [r, g, b, weight] = weighed::<M, L, f32x8>(
             self.prepared,

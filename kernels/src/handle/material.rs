@@ -4,7 +4,7 @@ use super::bsdf::{Bsdf, Bsdf8};
 use super::kernels::Prepare;
 use super::{handle_impls, level_methods};
 use crate::model::Model;
-use crate::simd::{LaneStruct, Lanes, Level, f32x8};
+use crate::simd::{LaneStruct, Level, Schedule, f32x8};
 use crate::{Hit, Hit8, PerLobe};
 use core::f32::consts::FRAC_PI_2;
 use core::mem::MaybeUninit;

@@ -57,12 +57,12 @@ impl<L: Lanes> Direction<L> {
         let (x, y, z) = (x * by, y * by, z * by);
         let length_sq = x.mul_add(x, y.mul_add(y, z * z));
         let some = c(1e-30).lt(length_sq);
-        let unit = (length_sq - one).abs().lt(c(1e-5));
+        let unit = (length_sq - 1.0).abs().lt(c(1e-5));
         let by = L::select(unit, one, L::keep(some, L::quotient(one, length_sq.sqrt())));
         let (x, y, z) = (x * by, L::select(some, y * by, one), z * by);
         // Correct the length by its remaining difference from 1: one rounding per component.
         let plane_sq = y.mul_add(y, z * z);
-        let off = half - half * x.mul_add(x, plane_sq);
+        let off = half - x.mul_add(x, plane_sq) * 0.5;
         let cos = plane_sq.sqrt();
         let vector = Vec3x::new(x.mul_add(off, x), y.mul_add(off, y), z.mul_add(off, z));
         let (sin_theta, cos_theta) = (vector.x, cos.mul_add(off, cos));
@@ -91,7 +91,7 @@ impl<L: Lanes> Direction<L> {
     #[inline(always)]
     #[must_use]
     pub fn with_uniform_azimuth(theta: [L; 2], xi: L) -> Self {
-        let (sin, cos) = sin_cos_half_turn((xi - L::splat(0.5)) * L::splat(PI));
+        let (sin, cos) = sin_cos_half_turn((xi - 0.5) * PI);
         Self::from_sin_cos(theta, [(sin + sin) * cos, cos.mul_sub(cos, sin * sin)])
     }
 

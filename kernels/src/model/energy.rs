@@ -31,15 +31,11 @@ impl<M: Model> Bsdf8<M> {
 struct Conserve<'a, M: Model>(&'a Bsdf8<M>);
 
 impl<M: Model> Kernel for Conserve<'_, M> {
-    type Constant = f32x8;
     type Output = Bsdf8<M>;
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Bsdf8<M>
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Bsdf8<M> {
         let Bsdf8 { prepared, level } = self.0;
         Bsdf8 {
             prepared: M::conserve::<L>(prepared),

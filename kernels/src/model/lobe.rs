@@ -1,5 +1,6 @@
 //! The four lobes of a model. Their order is defined in this file alone.
 
+use crate::simd::Lanes;
 use core::ops::{Index, IndexMut};
 
 /// One lobe of a scattering model: a slot from 0 to 3.
@@ -74,6 +75,12 @@ impl<T: Copy> PerLobe<T> {
     }
 }
 
+/// Product, entry by entry.
+#[inline(always)]
+pub(crate) fn times<L: Lanes>(x: [L; 4], y: [L; 4]) -> [L; 4] {
+    [x[0] * y[0], x[1] * y[1], x[2] * y[2], x[3] * y[3]]
+}
+
 impl<T> Index<Lobe> for PerLobe<T> {
     type Output = T;
     #[inline(always)]
@@ -130,6 +137,14 @@ impl LobeMask {
     #[must_use]
     pub const fn factor(self, lobe: Lobe) -> f32 {
         if self.contains(lobe) { 1.0 } else { 0.0 }
+    }
+}
+
+impl LobeMask {
+    /// [`factor`](Self::factor) of each lobe.
+    #[inline(always)]
+    pub(crate) fn factors<C: Lanes>(self) -> [C; Lobe::COUNT] {
+        Lobe::ALL.map(|lobe| C::splat(self.factor(lobe)))
     }
 }
 

@@ -2,10 +2,11 @@
 
 mod mixture;
 
-pub use mixture::Mixture;
+use mixture::Mixture;
 
+use crate::model::lobe::times;
 use crate::model::{Direction, Eval, Hit, LobeEval, LobeMask, Model, SampleLanes};
-use crate::simd::{Broadcast, LaneStruct, Lanes, Scalar, Vec3x, lanes3};
+use crate::simd::{Broadcast, Choice, LaneStruct, Lanes, Scalar, Vec3x, lanes3};
 use crate::{Lobe, PerLobe};
 use wide::f32x8;
 
@@ -24,8 +25,8 @@ use wide::f32x8;
 ///
 /// # Examples
 ///
-/// A complete model of one lobe. One of two lobes, with a sampler of its own, is `examples/lambert_fiber.rs` of the package
-/// `hairis-variants`.
+/// A complete model of one lobe. One of two lobes, with a sampler of its own, is
+/// `examples/lambert_fiber` of the package `hairis-variants`.
 ///
 /// ```
 /// use core::f32::consts::FRAC_1_PI;
@@ -76,7 +77,7 @@ use wide::f32x8;
 ///
 ///     #[inline(always)]
 ///     fn sample_lobe<L: Lanes, C: Broadcast<L>>(_: &Albedo<C>, _: L::Index, xi: [L; 3]) -> Direction<L> {
-///         let (one, sin) = (L::splat(1.0), xi[1] + xi[1] - L::splat(1.0));
+///         let (one, sin) = (L::splat(1.0), xi[1] + xi[1] - 1.0);
 ///         Direction::with_uniform_azimuth([sin, ((one - sin) * (one + sin)).sqrt()], xi[2])
 ///     }
 /// }
@@ -93,9 +94,9 @@ pub trait LobeModel: Copy {
     /// Parameters of a material, checked.
     type Params;
     /// Constants of a material, declared with [`lane_struct!`](crate::simd::lane_struct).
-    type Material<C: Scalar>: LaneStruct<One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
+    type Material<C: Scalar>: LaneStruct<Number = C, One = Self::Material<f32>, Eight = Self::Material<f32x8>>;
     /// Constants of a shading point.
-    type Prepared<C: Scalar>: LaneStruct<One = Self::Prepared<f32>, Eight = Self::Prepared<f32x8>>;
+    type Prepared<C: Scalar>: LaneStruct<Number = C, One = Self::Prepared<f32>, Eight = Self::Prepared<f32x8>>;
 
     /// Names of the lobes, in slot order: 1 to 4.
     const LOBES: &'static [&'static str];
@@ -151,34 +152,11 @@ impl<P, C> Mixed<P, C> {
     pub const fn prepared(&self) -> &P {
         &self.prepared
     }
-
-    /// Probabilities of the lobes.
-    #[inline(always)]
-    #[must_use]
-    pub const fn mixture(&self) -> &Mixture<C> {
-        &self.mixture
-    }
 }
 
-impl<C: Scalar, P: LaneStruct> LaneStruct for Mixed<P, C> {
-    type One = Mixed<P::One, f32>;
-    type Eight = Mixed<P::Eight, f32x8>;
-
-    #[inline]
-    fn pack(items: [&Self::One; 8]) -> Self::Eight {
-        Mixed {
-            prepared: P::pack(items.map(|i| &i.prepared)),
-            mixture: Mixture::pack(items.map(|i| &i.mixture)),
-        }
-    }
-
-    #[inline]
-    fn lane(eight: &Self::Eight, lane: usize) -> Self::One {
-        Mixed {
-            prepared: P::lane(&eight.prepared, lane),
-            mixture: eight.mixture.lane(lane),
-        }
-    }
+crate::simd::lane_struct! {
+    @impl {P: LaneStruct<Number = C>, C: Scalar} Mixed {P, C} {P::One, f32} {P::Eight, f32x8}
+    prepared: P, mixture: Mixture<C>
 }
 
 /// The density below which a sample is discarded: next to denormals its weight would have no digits.
@@ -218,14 +196,10 @@ fn total<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     }
     add!(1 2 3);
     let limit = limit::<L>(wi.is_sound());
-    let value = [
-        within(sum[0], limit),
-        within(sum[1], limit),
-        within(sum[2], limit),
-    ];
+    let [r, g, b, pdf] = sum;
     Eval {
-        value,
-        pdf: within(sum[3], limit),
+        value: [within(r, limit), within(g, limit), within(b, limit)],
+        pdf: within(pdf, limit),
     }
 }
 
@@ -239,6 +213,12 @@ fn limit<L: Lanes>(sound: L::Mask) -> L {
 #[inline(always)]
 fn within<L: Lanes>(x: L, limit: L) -> L {
     L::splat(0.0).max(x.min(limit))
+}
+
+/// The numbers, at most `limit`.
+#[inline(always)]
+fn min3<L: Lanes>([x, y, z]: [L; 3], limit: L) -> [L; 3] {
+    [x.min(limit), y.min(limit), z.min(limit)]
 }
 
 impl<M: LobeModel> Model for M {
@@ -290,14 +270,8 @@ impl<M: LobeModel> Model for M {
         let Mixture {
             selection, kept, ..
         } = prepared.mixture;
-        let kept = [
-            kept[0] * C::splat(lobes.factor(Lobe::ALL[0])),
-            kept[1] * C::splat(lobes.factor(Lobe::ALL[1])),
-            kept[2] * C::splat(lobes.factor(Lobe::ALL[2])),
-            kept[3] * C::splat(lobes.factor(Lobe::ALL[3])),
-        ];
         Mixed {
-            mixture: Mixture::new(selection, kept),
+            mixture: Mixture::new(selection, times(kept, lobes.factors())),
             ..*prepared
         }
     }
@@ -336,7 +310,7 @@ impl<M: LobeModel> Model for M {
         let c = L::splat;
         let (zero, most) = (c(0.0), c(BELOW_ONE));
         let m = &prepared.mixture;
-        let lobe = L::search(xi[0], lanes3(&m.bounds), M::LOBES.len() - 1);
+        let lobe = L::Index::search(xi[0], lanes3(&m.bounds), M::LOBES.len() - 1);
         // Stretch the first number again, from the nearer end, where differences are exact: a rare lobe keeps the low bits.
         let (start, start_less_one) = (
             C::look_up(&m.start, lobe),
@@ -345,7 +319,7 @@ impl<M: LobeModel> Model for M {
         let into = L::select(
             xi[0].lt(c(0.5)),
             xi[0] - start,
-            (xi[0] - c(1.0)) - start_less_one,
+            (xi[0] - 1.0) - start_less_one,
         );
         let again = L::quotient(into, C::look_up(&m.selection, lobe));
         // False for NaN.
@@ -363,18 +337,10 @@ impl<M: LobeModel> Model for M {
         let Vec3x { x, y, z } = wi.vector;
         SampleLanes {
             wi: Vec3x::new(L::keep(sound, x), L::keep(sound, y), L::keep(sound, z)),
-            value: [
-                value[0].min(limit),
-                value[1].min(limit),
-                value[2].min(limit),
-            ],
+            value: min3(value, limit),
             pdf: pdf.min(limit),
-            weight: [
-                (value[0] * by).min(limit),
-                (value[1] * by).min(limit),
-                (value[2] * by).min(limit),
-            ],
-            slot: L::select(sound, L::index_number(lobe), c(-1.0)),
+            weight: min3([value[0] * by, value[1] * by, value[2] * by], limit),
+            slot: L::select(sound, lobe.to_number(), c(-1.0)),
         }
     }
 
@@ -386,11 +352,7 @@ impl<M: LobeModel> Model for M {
         while l < Lobe::COUNT {
             let kept: L = prepared.mixture.kept[l].lanes();
             let [r, g, b] = albedo.0[l];
-            albedo.0[l] = [
-                (r * kept).min(most),
-                (g * kept).min(most),
-                (b * kept).min(most),
-            ];
+            albedo.0[l] = min3([r * kept, g * kept, b * kept], most);
             l += 1;
         }
         albedo
@@ -407,7 +369,7 @@ fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(
     let mut albedo = [[c(0.0); 3]; Lobe::COUNT];
     let mut l = 0;
     while l < M::LOBES.len() {
-        let lobe = L::search(c([0.0, 1.0, 2.0, 3.0][l]), [c(1.0), c(2.0), c(3.0)], 3);
+        let lobe = L::Index::search(c([0.0, 1.0, 2.0, 3.0][l]), [c(1.0), c(2.0), c(3.0)], 3);
         let (mut sum, mut color) = (c(0.0), [c(0.0); 3]);
         let mut step = 0;
         while step < STEPS {
@@ -426,7 +388,7 @@ fn sampled_albedo<M: LobeModel, L: Lanes, C: Broadcast<L>>(
             sum = sum
                 + L::select(
                     sound,
-                    L::quotient(at.value * wi.cos_theta, at.pdf) * c(slope),
+                    L::quotient(at.value * wi.cos_theta, at.pdf) * slope,
                     c(0.0),
                 );
             color = at.color;

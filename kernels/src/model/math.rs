@@ -215,7 +215,7 @@ pub fn half_atan2_parts<L: Lanes>(y: L, x: L, length: L) -> [L; 2] {
     let half = atan_eighth_turn(L::quotient(across.min(x), length + across.max(x)));
     let (steep, quarter) = (x.lt(across), c(FRAC_PI_4));
     let less = c(0.5 * FRAC_PI_2_LOW) - half;
-    let near = (x * c(1.5)).lt(across);
+    let near = (x * 1.5).lt(across);
     let rest = L::select(near, less, L::select(steep, quarter + less, half));
     [L::keep(near, quarter).times_sign(y), rest.times_sign(y)]
 }
@@ -244,21 +244,21 @@ pub fn atan2_upper<L: Lanes>(y: L, x: L) -> L {
     let steep = across.lt(y);
     let (small, large) = (L::select(steep, across, y), L::select(steep, y, across));
     let a = atan_unit(L::quotient(small, large.max(c(f32::MIN_POSITIVE))));
-    let a = L::select(steep, c(FRAC_PI_2) - (a - c(FRAC_PI_2_LOW)), a);
-    L::select(x.lt(c(0.0)), c(PI) - (a - c(2.0 * FRAC_PI_2_LOW)), a)
+    let a = L::select(steep, c(FRAC_PI_2) - (a - FRAC_PI_2_LOW), a);
+    L::select(x.lt(c(0.0)), c(PI) - (a - 2.0 * FRAC_PI_2_LOW), a)
 }
 
 /// `(sin x, cos x)` for `|x| <= pi/2`.
 #[inline(always)]
 pub fn sin_cos_half_turn<L: Lanes>(x: L) -> (L, L) {
-    sin_cos_twice(x * L::splat(0.5))
+    sin_cos_twice(x * 0.5)
 }
 
 /// `(sin 2x, cos 2x)` for `|x| <= pi/4`.
 #[inline(always)]
 pub fn sin_cos_twice<L: Lanes>(x: L) -> (L, L) {
     // cos 2x = sin(pi/2 - |2x|), with pi/2 in two parts: the cosine keeps its digits where it vanishes.
-    let y = x.abs().mul_add(L::splat(-2.0), L::splat(FRAC_PI_2)) + L::splat(FRAC_PI_2_LOW);
+    let y = x.abs().mul_add(L::splat(-2.0), L::splat(FRAC_PI_2)) + FRAC_PI_2_LOW;
     let Pair(sin, cos) = sin_half_turn(Pair(x + x, y));
     (sin, cos)
 }
@@ -323,7 +323,7 @@ const LOG2_MANTISSA: [f32; 9] = [
 #[inline(always)]
 pub fn log2<L: Lanes>(x: L) -> L {
     let (mantissa, exponent) = x.split_exponent();
-    let f = (mantissa - L::splat(1.0)).interleaved();
+    let f = (mantissa - 1.0).interleaved();
     polynomial(f, LOG2_MANTISSA).mul_add(f, exponent)
 }
 
@@ -332,7 +332,7 @@ pub fn log2<L: Lanes>(x: L) -> L {
 #[inline(always)]
 pub fn log2_near_one<L: Lanes>(x: L, less_one: L) -> L {
     let (mantissa, exponent) = x.split_exponent();
-    let f = (mantissa - L::splat(1.0)).interleaved();
+    let f = (mantissa - 1.0).interleaved();
     // The exponent is 0 there.
     let f = L::select(L::splat(-0.292_893_2).lt(less_one), less_one, f);
     polynomial(f, LOG2_MANTISSA).mul_add(f, exponent)
@@ -361,7 +361,7 @@ pub fn normal_tail_ratio<L: Lanes>(x: L) -> L {
     let c = L::splat;
     let over = horner(x, [11.961_291_3, 8.593_118_7, 2.821_643_8, 0.398_885_7]);
     // The leading coefficient is 1.
-    let under = (x + c(7.067_357_5))
+    let under = (x + 7.067_357_5)
         .mul_add(x, c(22.627_039))
         .mul_add(x, c(36.273_33))
         .mul_add(x, c(23.922_586_4));

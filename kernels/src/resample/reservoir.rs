@@ -82,18 +82,14 @@ struct Merge<'a> {
 }
 
 impl Kernel for Merge<'_> {
-    type Constant = f32x8;
     type Output = Reservoir8;
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Reservoir8
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Reservoir8 {
         let Self { a, b, u } = self;
-        let (u, added): (L, L) = (u.lanes(), b.sum.lanes());
-        let sum = a.sum.lanes() + added;
+        let (u, old, added): (L, L, L) = (u.lanes(), a.sum.lanes(), b.sum.lanes());
+        let sum = old + added;
         // False for a weight of 0, and for NaN as `u`.
         let taken = (u * sum).lt(added);
         let (from, to) = (Vec3x::<L>::load(&a.wi), Vec3x::<L>::load(&b.wi));
@@ -119,15 +115,11 @@ impl Kernel for Merge<'_> {
 struct Estimate<'a>(&'a Reservoir8);
 
 impl Kernel for Estimate<'_> {
-    type Constant = f32x8;
     type Output = [f32x8; 3];
     const MANY_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 3]
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 3] {
         let [r, g, b]: [L; 3] = lanes3(&self.0.contribution);
         let sum: L = self.0.sum.lanes();
         let c = L::splat;

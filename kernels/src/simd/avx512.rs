@@ -8,25 +8,29 @@
     reason = "intrinsics of target features that `dispatch` has checked"
 )]
 
+use super::choice::Choice;
 use super::lanes::{
-    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, difference_fused,
-    sealed::Sealed, select_of_four,
+    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, by_splat,
+    difference_fused, sealed::Sealed,
 };
+use super::schedule::Schedule;
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
 use core::arch::x86_64::*;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Sixteen lanes. Values exist only below `dispatch`'s functions of AVX-512F, VL, DQ and BW, which it enters only where
-/// the CPU has them: that is what makes every `unsafe` of this module sound.
+/// Sixteen lanes. As for [`Avx2`](super::avx2::Avx2), code with this type comes only from below
+/// `dispatch`'s functions of AVX-512F, VL, DQ and BW, which a `Level` enters only where the CPU has
+/// them: every `unsafe` of this module rests on that.
 #[derive(Clone, Copy, Debug)]
-pub struct Avx512(__m512);
+pub(super) struct Avx512(__m512);
 
 /// Intrinsics of this module's target features.
 macro_rules! avx512 {
     ($e:expr) => {{
-        // SAFETY: a value of `Avx512` exists, or is made below `dispatch`'s check: the CPU has these features.
+        // SAFETY: code with the type `Avx512` comes from below `dispatch`'s check: the CPU has
+        // these features.
         unsafe { $e }
     }};
 }
@@ -42,6 +46,7 @@ macro_rules! binary {
     )* };
 }
 binary! { Add add _mm512_add_ps; Sub sub _mm512_sub_ps; Mul mul _mm512_mul_ps; Div div _mm512_div_ps; }
+by_splat! { Avx512, [] }
 
 impl Neg for Avx512 {
     type Output = Self;
@@ -52,10 +57,11 @@ impl Neg for Avx512 {
 }
 
 impl Sealed for Avx512 {}
+impl Schedule for Avx512 {}
 
 /// An index from 0 to 3 per lane: its number, and where it is at least 1, 2 and 3. What is not used is not kept.
 #[derive(Clone, Copy, Debug)]
-pub struct Indices16 {
+pub(super) struct Indices16 {
     number: __m512i,
     at_least: [__mmask16; 3],
 }
@@ -74,6 +80,10 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn store(self) -> Self {
         self
+    }
+    #[inline(always)]
+    fn load(stored: &Self) -> Self {
+        *stored
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
@@ -171,8 +181,11 @@ impl Lanes for Avx512 {
     fn keep(mask: __mmask16, x: Self) -> Self {
         Self(avx512!(_mm512_maskz_mov_ps(mask, x.0)))
     }
+}
+
+impl Choice<Avx512> for Indices16 {
     #[inline(always)]
-    fn search(x: Self, bounds: [Self; 3], count: usize) -> Indices16 {
+    fn search(x: Avx512, bounds: [Avx512; 3], count: usize) -> Self {
         let at_least = avx512!([
             if count > 0 {
                 _mm512_cmp_ps_mask::<_CMP_GE_OQ>(x.0, bounds[0].0)
@@ -196,11 +209,15 @@ impl Lanes for Avx512 {
             let second = _mm512_mask_mov_epi32(first, at_least[1], _mm512_set1_epi32(2));
             _mm512_mask_mov_epi32(second, at_least[2], _mm512_set1_epi32(3))
         });
-        Indices16 { number, at_least }
+        Self { number, at_least }
     }
     #[inline(always)]
-    fn is_index(index: Indices16, entry: usize) -> __mmask16 {
-        let [one, two, three] = index.at_least;
+    fn masks(self) -> [__mmask16; 3] {
+        self.at_least
+    }
+    #[inline(always)]
+    fn equals(self, entry: usize) -> __mmask16 {
+        let [one, two, three] = self.at_least;
         match entry {
             0 => !one,
             1 => one & !two,
@@ -209,36 +226,29 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
-    fn index_number(index: Indices16) -> Self {
-        Self(avx512!(_mm512_cvtepi32_ps(index.number)))
-    }
-}
-
-impl Broadcast<Avx512> for f32 {
-    #[inline(always)]
-    fn lanes(&self) -> Avx512 {
-        Avx512::splat(*self)
+    fn to_number(self) -> Avx512 {
+        Avx512(avx512!(_mm512_cvtepi32_ps(self.number)))
     }
     // One shuffle in place of three blends.
     #[inline(always)]
-    fn look_up(table: &[f32; 4], index: Indices16) -> Avx512 {
+    fn look_up(self, table: &[f32; 4]) -> Avx512 {
         Avx512(avx512!(_mm512_permutevar_ps(
             _mm512_broadcast_f32x4(_mm_loadu_ps(table.as_ptr())),
-            index.number
+            self.number
         )))
     }
     #[inline(always)]
-    fn look_up_three(table: &[f32; 4], index: Indices16) -> Avx512 {
-        Self::look_up(table, index)
+    fn look_up_three(self, table: &[f32; 4]) -> Avx512 {
+        self.look_up(table)
     }
     #[inline(always)]
-    fn look_up_half(table: &[f32; 2], index: Indices16) -> Avx512 {
+    fn look_up_half(self, table: &[f32; 2]) -> Avx512 {
         Avx512(avx512!({
             // Either entry in every second lane: the upper of an index's two bits is which.
             let two = _mm512_castpd_ps(_mm512_set1_pd(
                 table.as_ptr().cast::<f64>().read_unaligned(),
             ));
-            _mm512_permutevar_ps(two, _mm512_srli_epi32::<1>(index.number))
+            _mm512_permutevar_ps(two, _mm512_srli_epi32::<1>(self.number))
         }))
     }
 }
@@ -247,18 +257,6 @@ impl Broadcast<Self> for Avx512 {
     #[inline(always)]
     fn lanes(&self) -> Self {
         *self
-    }
-    #[inline(always)]
-    fn look_up(table: &[Self; 4], index: Indices16) -> Self {
-        select_of_four(*table, index.at_least)
-    }
-    #[inline(always)]
-    fn look_up_three(table: &[Self; 4], index: Indices16) -> Self {
-        select_of_four(*table, index.at_least)
-    }
-    #[inline(always)]
-    fn look_up_half(table: &[Self; 2], index: Indices16) -> Self {
-        Self::select(index.at_least[1], table[1], table[0])
     }
 }
 

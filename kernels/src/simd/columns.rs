@@ -4,7 +4,7 @@
     reason = "a check per packet and column is most of what a short call costs"
 )]
 
-use super::lanes::{Broadcast, Lanes, Packet};
+use super::lanes::{Lanes, Packet};
 use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 use core::ptr;
@@ -17,9 +17,7 @@ pub trait Row<const I: usize, const N: usize>: Copy {
     const PAIRS: bool = true;
 
     /// The numbers of each lane. Mark it `#[inline(always)]`, and all it calls.
-    fn row<L: Lanes>(self, input: [L; I]) -> [L; N]
-    where
-        f32: Broadcast<L>;
+    fn row<L: Lanes>(self, input: [L; I]) -> [L; N];
 }
 
 /// Runs `body` for every column `i` below `n`, without a loop: compilers that save space keep loops, and with them the
@@ -181,9 +179,7 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         &self,
         row: R,
         packets: usize,
-    ) where
-        f32: Broadcast<L>,
-    {
+    ) {
         let columns = *self;
         for packet in 0..packets {
             // SAFETY: there are as many packets.
@@ -201,9 +197,7 @@ impl<'a, const I: usize, const N: usize> Columns<'a, I, N> {
         &self,
         row: R,
         at: usize,
-    ) where
-        f32: Broadcast<L>,
-    {
+    ) {
         const { assert!(I <= 11 && N <= 11, "every column is read or written") };
         let mut input = [L::splat(0.0); I];
         each!(i < I, {

@@ -5,7 +5,8 @@
 )]
 
 use super::columns::{Columns, Row};
-use super::lanes::{Broadcast, Lanes, Scalar};
+use super::lanes::Lanes;
+use super::portable::{FUSES, Portable};
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use super::{avx2::Avx2, avx512::Avx512, pair::Pair};
 use core::fmt;
@@ -121,7 +122,7 @@ impl Level {
         match self.0 {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Kind::Avx2 | Kind::Avx512 => true,
-            Kind::Portable => super::portable::FUSES,
+            Kind::Portable => FUSES,
         }
     }
 }
@@ -159,14 +160,10 @@ impl fmt::Display for Level {
 /// struct Atan<'a>(&'a f32x8);
 ///
 /// impl Kernel for Atan<'_> {
-///     type Constant = f32x8;
 ///     type Output = f32x8;
 ///
 ///     #[inline(always)]
-///     fn run<L: Lanes<Stored = f32x8>>(self) -> f32x8
-///     where
-///         f32x8: Broadcast<L>,
-///     {
+///     fn run<L: Lanes<Stored = f32x8>>(self) -> f32x8 {
 ///         math::atan_unit::<L>(self.0.lanes()).store()
 ///     }
 /// }
@@ -175,8 +172,6 @@ impl fmt::Display for Level {
 /// assert!((angles.to_array()[7] - core::f32::consts::FRAC_PI_4).abs() < 1e-6);
 /// ```
 pub trait Kernel {
-    /// Storage of the constants that it reads: `f32` for all lanes alike, `f32x8` for one number per lane.
-    type Constant: Constant;
     /// Its result.
     type Output;
 
@@ -186,20 +181,8 @@ pub trait Kernel {
 
     /// Runs it on the lanes `L`. Mark it `#[inline(always)]`, and all it calls: the dispatched function then contains
     /// no call.
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output
-    where
-        Self::Constant: Broadcast<L>,
-        f32x8: Broadcast<L>;
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output;
 }
-
-/// Storage that every backend reads: `f32` or `f32x8`. Sealed.
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-pub trait Constant: Scalar + Broadcast<f32x8> + Broadcast<Avx2> {}
-/// Storage that every backend reads: `f32` or `f32x8`. Sealed.
-#[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-pub trait Constant: Scalar + Broadcast<f32x8> {}
-impl Constant for f32 {}
-impl Constant for f32x8 {}
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 #[target_feature(enable = "avx2,fma")]
@@ -257,7 +240,7 @@ impl Level {
             Kind::Avx2 | Kind::Avx512 => wrap(unsafe { run_avx2(kernel) }),
             Kind::Portable => {
                 clean_upper_halves();
-                wrap(kernel.run::<f32x8>())
+                wrap(kernel.run::<Portable<FUSES>>())
             }
         }
     }
@@ -320,7 +303,7 @@ impl Level {
         }
         // SAFETY: there are eight rows.
         columns.in_eights(0, |columns, at| unsafe {
-            columns.packet::<R, f32x8, 8>(row, at)
+            columns.packet::<R, Portable<FUSES>, 8>(row, at)
         });
     }
 }

@@ -1,14 +1,19 @@
 //! SIMD vector trait in which every model is written: one lane (`f32`), or eight.
 //!
-//! A lane is one sample of one shading point, or one of eight shading points, as the caller has it: models never mix
-//! lanes. [`Lanes`] holds the arithmetic and nothing else, so that a model compiles to the same straight line of
-//! instructions on every backend. It is public for models to be written over it, and sealed: the backends are ours.
+//! A lane is one sample of one shading point, or one of eight shading points, as the caller has it:
+//! models never mix lanes. [`Lanes`] has arithmetic and masks, [`Choice`] the choice of one of
+//! four, and [`Schedule`] the hints for a compiler, so that a model compiles to the same straight
+//! line of instructions on every backend. All are public for models to be written over them, and
+//! sealed.
 //!
-//! Comparisons are false for NaN. `min` and `max` give their second operand when either is NaN, which is what the
-//! machine does and what lets one `min` at the end of a model turn a NaN into its bound.
+//! Comparisons are false for NaN. `min` and `max` return their second operand when either is NaN,
+//! as the machine does, so that one `min` at the end of a model turns a NaN into its bound.
 
+use super::choice::Choice;
+use super::schedule::Schedule;
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
+use wide::f32x8;
 
 pub(crate) mod sealed {
     /// Keeps the backends in this crate.
@@ -19,31 +24,24 @@ pub(crate) mod sealed {
 pub trait Scalar: sealed::Sealed + Copy + Debug + Send + Sync + 'static {}
 impl<T: sealed::Sealed + Copy + Debug + Send + Sync + 'static> Scalar for T {}
 
-/// A struct of lanes, as [`lane_struct!`](crate::simd::lane_struct) declares it: eight of one lane are one of eight.
-pub trait LaneStruct: Copy + Debug + Send + Sync + 'static {
-    /// The struct of one lane.
-    type One;
-    /// The struct of eight.
-    type Eight;
-    /// Eight structs as one: lane `i` holds the numbers of `items[i]`.
-    fn pack(items: [&Self::One; 8]) -> Self::Eight;
-    /// The numbers of one lane, 0 to 7.
-    fn lane(eight: &Self::Eight, lane: usize) -> Self::One;
-}
-
-/// One number per lane, with the arithmetic that models are written in.
+/// One number per lane, with the arithmetic that models are written in. The same number for all
+/// lanes is a float: `x * 0.5 + 1.0`.
 pub trait Lanes:
     Scalar
+    + Schedule
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
     + Div<Output = Self>
     + Neg<Output = Self>
+    + Add<f32, Output = Self>
+    + Sub<f32, Output = Self>
+    + Mul<f32, Output = Self>
 {
     /// One truth value per lane.
     type Mask: Copy;
-    /// An index from 0 to 3 per lane, see [`search`](Self::search).
-    type Index: Copy;
+    /// An index from 0 to 3 per lane.
+    type Index: Choice<Self>;
     /// Storage of the lanes between calls: `f32` for one, `wide::f32x8` for eight.
     type Stored: Broadcast<Self>;
     /// Whether [`mul_add`](Self::mul_add) rounds once.
@@ -53,6 +51,14 @@ pub trait Lanes:
     fn splat(x: f32) -> Self;
     /// The lanes in their storage form.
     fn store(self) -> Self::Stored;
+    /// The lanes of a storage form: [`Broadcast::lanes`] calls it.
+    fn load(stored: &Self::Stored) -> Self;
+    /// As [`load`](Self::load), for numbers that may just have been written: see
+    /// [`Broadcast::fresh_lanes`].
+    #[inline(always)]
+    fn load_fresh(stored: &Self::Stored) -> Self {
+        Self::load(stored)
+    }
     /// `self * a + b`, rounded once where the backend fuses and twice where it does not.
     #[must_use]
     fn mul_add(self, a: Self, b: Self) -> Self;
@@ -69,13 +75,6 @@ pub trait Lanes:
     #[must_use]
     fn quotient(a: Self, b: Self) -> Self {
         (a / b).alone()
-    }
-    /// The same number. On one lane of x86-64 a barrier for the compiler, without an instruction: the number is computed by itself,
-    /// not as one lane of several.
-    #[inline(always)]
-    #[must_use]
-    fn alone(self) -> Self {
-        self
     }
     /// Square root, correctly rounded.
     #[must_use]
@@ -113,29 +112,6 @@ pub trait Lanes:
     fn swap(mask: Self::Mask, a: Self, b: Self) -> (Self, Self);
     /// `x` where the mask is set, 0 elsewhere.
     fn keep(mask: Self::Mask, x: Self) -> Self;
-
-    /// Returns both. With AVX2 a barrier for the compiler, without an instruction: neither is used before both are computed.
-    /// Elsewhere no operation.
-    ///
-    /// Compilers tend to emit two dependency chains one after the other, which takes fewer registers. A CPU that looks a
-    /// hundred instructions ahead then waits for each in turn.
-    #[inline(always)]
-    fn interleave(a: Self, b: Self) -> (Self, Self) {
-        (a, b)
-    }
-    /// [`interleave`](Self::interleave) of the two halves of a pair; others are returned unchanged.
-    #[inline(always)]
-    #[must_use]
-    fn interleaved(self) -> Self {
-        self
-    }
-
-    /// How many of the first `count` ascending `bounds` are at most `x`.
-    fn search(x: Self, bounds: [Self; 3], count: usize) -> Self::Index;
-    /// Where the index is `entry`, 0 to 3.
-    fn is_index(index: Self::Index, entry: usize) -> Self::Mask;
-    /// The index as a number: 0, 1, 2 or 3.
-    fn index_number(index: Self::Index) -> Self;
 }
 
 /// Storage of lanes: one number for all of them, or one per lane.
@@ -145,18 +121,57 @@ pub trait Lanes:
 pub trait Broadcast<L: Lanes>: Scalar {
     /// The number of each lane.
     fn lanes(&self) -> L;
-    /// The same of numbers that the caller may just have written, by narrower stores: a CPU does not forward two stores to one
-    /// load, but waits some fifteen cycles for both to reach the cache.
+    /// As [`lanes`](Self::lanes), for numbers that the caller may just have stored lane by lane.
+    /// Loading them in two halves avoids a store-forwarding stall of about 15 cycles.
     #[inline(always)]
     fn fresh_lanes(&self) -> L {
         self.lanes()
     }
     /// The entry of each lane's index.
-    fn look_up(table: &[Self; 4], index: L::Index) -> L;
+    #[inline(always)]
+    fn look_up(table: &[Self; 4], index: L::Index) -> L {
+        index.choose(lanes4(table))
+    }
     /// The entry of each lane's index, of a table whose last two entries are equal: for less.
-    fn look_up_three(table: &[Self; 4], index: L::Index) -> L;
+    #[inline(always)]
+    fn look_up_three(table: &[Self; 4], index: L::Index) -> L {
+        index.choose_three([table[0].lanes(), table[1].lanes(), table[2].lanes()])
+    }
     /// The entry of half of each lane's index: the first for 0 and 1, the second for 2 and 3.
-    fn look_up_half(table: &[Self; 2], index: L::Index) -> L;
+    #[inline(always)]
+    fn look_up_half(table: &[Self; 2], index: L::Index) -> L {
+        index.choose_half([table[0].lanes(), table[1].lanes()])
+    }
+}
+
+impl<L: Lanes> Broadcast<L> for f32 {
+    #[inline(always)]
+    fn lanes(&self) -> L {
+        L::splat(*self)
+    }
+    #[inline(always)]
+    fn look_up(table: &[Self; 4], index: L::Index) -> L {
+        index.look_up(table)
+    }
+    #[inline(always)]
+    fn look_up_three(table: &[Self; 4], index: L::Index) -> L {
+        index.look_up_three(table)
+    }
+    #[inline(always)]
+    fn look_up_half(table: &[Self; 2], index: L::Index) -> L {
+        index.look_up_half(table)
+    }
+}
+
+impl<L: Lanes<Stored = f32x8>> Broadcast<L> for f32x8 {
+    #[inline(always)]
+    fn lanes(&self) -> L {
+        L::load(self)
+    }
+    #[inline(always)]
+    fn fresh_lanes(&self) -> L {
+        L::load_fresh(self)
+    }
 }
 
 /// `W` lanes that are read from as many numbers in a row, of any alignment, and written to them.
@@ -238,129 +253,21 @@ fn rounding_error<L: Lanes>(product: L, a: [L; 2], b: [L; 2]) -> L {
 /// Bits of the sign, the exponent and the upper 11 of the fraction.
 pub(crate) const UPPER: u32 = 0xffff_f000;
 
-/// The entry of `table` for an index given by where it is at least 1, 2 and 3.
-#[inline(always)]
-pub(crate) fn select_of_four<L: Lanes>(table: [L; 4], [one, two, three]: [L::Mask; 3]) -> L {
-    L::select(
-        two,
-        L::select(three, table[3], table[2]),
-        L::select(one, table[1], table[0]),
-    )
-}
-
-/// The same of a table whose last two entries are equal.
-#[inline(always)]
-pub(crate) fn select_of_three<L: Lanes>(table: [L; 3], [one, two, _]: [L::Mask; 3]) -> L {
-    L::select(two, table[2], L::select(one, table[1], table[0]))
-}
-
-/// Declares a struct of lanes, `Name<C>`, and its `pack` (eight scalars into lanes), `lane` (one lane out) and `spread`
-/// (the same numbers in the storage of lanes).
-///
-/// Every field is a `C`, an array `[C; N]`, or another such struct in parentheses, `(Other<C>)`.
-///
-/// ```
-/// hairis::simd::lane_struct! {
-///     /// Constants of one shading point.
-///     pub struct Constants {
-///         /// Exponent of the highlight.
-///         pub exponent: C,
-///         /// Colour, linear RGB.
-///         pub color: [C; 3],
-///     }
-/// }
-/// let one = Constants { exponent: 8.0_f32, color: [0.1, 0.2, 0.3] };
-/// let two = Constants { exponent: 2.0_f32, color: [0.4, 0.5, 0.6] };
-/// let eight = Constants::pack([&one, &two, &one, &one, &one, &one, &one, &one]);
-/// assert_eq!(eight.lane(1), two);
-/// ```
-#[macro_export]
-macro_rules! lane_struct {
-    (
-        $(#[$meta:meta])*
-        $vis:vis struct $name:ident { $($(#[$field_meta:meta])* $field_vis:vis $field:ident: $kind:tt,)* }
-    ) => {
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        #[allow(unused_parens, reason = "parentheses tell a nested struct from a number")]
-        $vis struct $name<C> { $($(#[$field_meta])* $field_vis $field: $kind,)* }
-
-        impl<C: Copy> $name<C> {
-            /// The same numbers in the storage of `L`: one number for all lanes becomes one per lane.
+/// Arithmetic of lanes with the same number for all of them.
+macro_rules! by_splat {
+    ($Lanes:ty, $generics:tt) => {
+        by_splat! { $Lanes, $generics, Add add }
+        by_splat! { $Lanes, $generics, Sub sub }
+        by_splat! { $Lanes, $generics, Mul mul }
+    };
+    ($Lanes:ty, [$($generics:tt)*], $Op:ident $op:ident) => {
+        impl<$($generics)*> $Op<f32> for $Lanes {
+            type Output = Self;
             #[inline(always)]
-            #[must_use]
-            pub fn spread<L: $crate::simd::Lanes>(&self) -> $name<L::Stored>
-            where
-                C: $crate::simd::Broadcast<L>,
-            {
-                $name { $($field: $crate::simd::lane_struct!(@spread self, L, $field, $kind),)* }
+            fn $op(self, number: f32) -> Self {
+                $Op::$op(self, <Self as Lanes>::splat(number))
             }
         }
-
-        impl<C: $crate::simd::Scalar> $crate::simd::LaneStruct for $name<C> {
-            type One = $name<f32>;
-            type Eight = $name<$crate::simd::f32x8>;
-            #[inline]
-            fn pack(items: [&$name<f32>; 8]) -> $name<$crate::simd::f32x8> {
-                $name::<f32>::pack(items)
-            }
-            #[inline]
-            fn lane(eight: &$name<$crate::simd::f32x8>, lane: usize) -> $name<f32> {
-                eight.lane(lane)
-            }
-        }
-
-        impl $name<f32> {
-            /// Eight structs as one: lane `i` holds the numbers of `items[i]`.
-            #[inline]
-            #[must_use]
-            pub fn pack(items: [&Self; 8]) -> $name<$crate::simd::f32x8> {
-                $name { $($field: $crate::simd::lane_struct!(@pack items, $field, $kind),)* }
-            }
-        }
-
-        impl $name<$crate::simd::f32x8> {
-            /// The numbers of one lane.
-            ///
-            /// # Panics
-            ///
-            /// If `lane` is above 7.
-            #[inline]
-            #[must_use]
-            pub fn lane(&self, lane: usize) -> $name<f32> {
-                $name { $($field: $crate::simd::lane_struct!(@lane self, lane, $field, $kind),)* }
-            }
-        }
-    };
-    (@pack $items:ident, $field:ident, C) => { $crate::simd::f32x8::new($items.map(|item| item.$field)) };
-    (@pack $items:ident, $field:ident, [C; $n:literal]) => {
-        core::array::from_fn::<_, $n, _>(|i| $crate::simd::f32x8::new($items.map(|item| item.$field[i])))
-    };
-    (@pack $items:ident, $field:ident, ($inner:ident<C>)) => { $inner::pack($items.map(|item| &item.$field)) };
-    (@spread $this:ident, $L:ident, $field:ident, C) => {
-        $crate::simd::Lanes::store($crate::simd::Broadcast::<$L>::lanes(&$this.$field))
-    };
-    // Without a loop where arrays are short: compilers that save space leave it one.
-    (@spread $this:ident, $L:ident, $field:ident, [C; 2]) => { $crate::simd::lane_struct!(@each $this, $L, $field, 0 1) };
-    (@spread $this:ident, $L:ident, $field:ident, [C; 3]) => { $crate::simd::lane_struct!(@each $this, $L, $field, 0 1 2) };
-    (@spread $this:ident, $L:ident, $field:ident, [C; 4]) => { $crate::simd::lane_struct!(@each $this, $L, $field, 0 1 2 3) };
-    (@each $this:ident, $L:ident, $field:ident, $($i:literal)*) => {
-        [$($crate::simd::Lanes::store($crate::simd::Broadcast::<$L>::lanes(&$this.$field[$i]))),*]
-    };
-    (@spread $this:ident, $L:ident, $field:ident, [C; $n:literal]) => {{
-        // A loop, not `map`: closures over lanes are not inlined into functions of target features.
-        let mut out = [$crate::simd::Lanes::store($crate::simd::Broadcast::<$L>::lanes(&$this.$field[0])); $n];
-        let mut i = 1;
-        while i < $n {
-            out[i] = $crate::simd::Lanes::store($crate::simd::Broadcast::<$L>::lanes(&$this.$field[i]));
-            i += 1;
-        }
-        out
-    }};
-    (@spread $this:ident, $L:ident, $field:ident, ($inner:ident<C>)) => { $this.$field.spread::<$L>() };
-    (@lane $this:ident, $lane:ident, $field:ident, ($inner:ident<C>)) => { $this.$field.lane($lane) };
-    (@lane $this:ident, $lane:ident, $field:ident, C) => { $this.$field.as_array()[$lane] };
-    (@lane $this:ident, $lane:ident, $field:ident, [C; $n:literal]) => {
-        core::array::from_fn::<_, $n, _>(|i| $this.$field[i].as_array()[$lane])
     };
 }
+pub(super) use by_splat;

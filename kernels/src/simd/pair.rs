@@ -5,7 +5,9 @@
 //!
 //! Models interleave equal steps of one packet in the same way, two or four of them.
 
-use super::lanes::{Broadcast, Lanes, Packet, sealed::Sealed};
+use super::choice::Choice;
+use super::lanes::{Broadcast, Lanes, Packet, by_splat, sealed::Sealed};
+use super::schedule::Schedule;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Two packets, or two equal steps of one, as lanes: each instruction for one is followed by that for the other.
@@ -35,6 +37,7 @@ macro_rules! binary {
     )* };
 }
 binary! { Add add; Sub sub; Mul mul; Div div; }
+by_splat! { Pair<L>, [L: Lanes] }
 
 impl<L: Lanes> Neg for Pair<L> {
     type Output = Self;
@@ -53,11 +56,16 @@ impl<L: Lanes> Lanes for Pair<L> {
 
     #[inline(always)]
     fn splat(x: f32) -> Self {
-        Self(L::splat(x), L::splat(x))
+        let x = L::splat(x);
+        Self(x, x)
     }
     #[inline(always)]
     fn store(self) -> Self {
         self
+    }
+    #[inline(always)]
+    fn load(stored: &Self) -> Self {
+        *stored
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
@@ -73,10 +81,6 @@ impl<L: Lanes> Lanes for Pair<L> {
             L::difference_of_products(a.0, b.0, c.0, d.0),
             L::difference_of_products(a.1, b.1, c.1, d.1),
         )
-    }
-    #[inline(always)]
-    fn alone(self) -> Self {
-        Self(self.0.alone(), self.1.alone())
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -139,6 +143,13 @@ impl<L: Lanes> Lanes for Pair<L> {
     fn keep(mask: Self::Mask, x: Self) -> Self {
         Self(L::keep(mask.0, x.0), L::keep(mask.1, x.1))
     }
+}
+
+impl<L: Lanes> Schedule for Pair<L> {
+    #[inline(always)]
+    fn alone(self) -> Self {
+        Self(self.0.alone(), self.1.alone())
+    }
     #[inline(always)]
     fn interleave(a: Self, b: Self) -> (Self, Self) {
         let (a0, b0) = L::interleave(a.0, b.0);
@@ -150,85 +161,47 @@ impl<L: Lanes> Lanes for Pair<L> {
         let (a, b) = L::interleave(self.0, self.1);
         Self(a, b)
     }
+}
+
+impl<L: Lanes> Choice<Pair<L>> for (L::Index, L::Index) {
     #[inline(always)]
-    fn search(x: Self, [a, b, c]: [Self; 3], count: usize) -> Self::Index {
+    fn search(x: Pair<L>, [a, b, c]: [Pair<L>; 3], count: usize) -> Self {
         (
-            L::search(x.0, [a.0, b.0, c.0], count),
-            L::search(x.1, [a.1, b.1, c.1], count),
+            L::Index::search(x.0, [a.0, b.0, c.0], count),
+            L::Index::search(x.1, [a.1, b.1, c.1], count),
         )
     }
     #[inline(always)]
-    fn is_index(index: Self::Index, entry: usize) -> Self::Mask {
-        (L::is_index(index.0, entry), L::is_index(index.1, entry))
+    fn masks(self) -> [(L::Mask, L::Mask); 3] {
+        let ([a, b, c], [d, e, f]) = (self.0.masks(), self.1.masks());
+        [(a, d), (b, e), (c, f)]
     }
     #[inline(always)]
-    fn index_number(index: Self::Index) -> Self {
-        Self(L::index_number(index.0), L::index_number(index.1))
+    fn equals(self, entry: usize) -> (L::Mask, L::Mask) {
+        (self.0.equals(entry), self.1.equals(entry))
+    }
+    #[inline(always)]
+    fn to_number(self) -> Pair<L> {
+        Pair(self.0.to_number(), self.1.to_number())
+    }
+    #[inline(always)]
+    fn look_up(self, table: &[f32; 4]) -> Pair<L> {
+        Pair(self.0.look_up(table), self.1.look_up(table))
+    }
+    #[inline(always)]
+    fn look_up_three(self, table: &[f32; 4]) -> Pair<L> {
+        Pair(self.0.look_up_three(table), self.1.look_up_three(table))
+    }
+    #[inline(always)]
+    fn look_up_half(self, table: &[f32; 2]) -> Pair<L> {
+        Pair(self.0.look_up_half(table), self.1.look_up_half(table))
     }
 }
 
-impl<L: Lanes> Broadcast<Pair<L>> for f32
-where
-    f32: Broadcast<L>,
-{
-    #[inline(always)]
-    fn lanes(&self) -> Pair<L> {
-        let lanes = Broadcast::<L>::lanes(self);
-        Pair(lanes, lanes)
-    }
-    #[inline(always)]
-    fn look_up(table: &[f32; 4], index: (L::Index, L::Index)) -> Pair<L> {
-        Pair(
-            <f32 as Broadcast<L>>::look_up(table, index.0),
-            <f32 as Broadcast<L>>::look_up(table, index.1),
-        )
-    }
-    #[inline(always)]
-    fn look_up_three(table: &[f32; 4], index: (L::Index, L::Index)) -> Pair<L> {
-        Pair(
-            <f32 as Broadcast<L>>::look_up_three(table, index.0),
-            <f32 as Broadcast<L>>::look_up_three(table, index.1),
-        )
-    }
-    #[inline(always)]
-    fn look_up_half(table: &[f32; 2], index: (L::Index, L::Index)) -> Pair<L> {
-        Pair(
-            <f32 as Broadcast<L>>::look_up_half(table, index.0),
-            <f32 as Broadcast<L>>::look_up_half(table, index.1),
-        )
-    }
-}
-
-impl<L: Lanes> Broadcast<Self> for Pair<L>
-where
-    L::Stored: Broadcast<L>,
-{
+impl<L: Lanes> Broadcast<Self> for Pair<L> {
     #[inline(always)]
     fn lanes(&self) -> Self {
         *self
-    }
-    #[inline(always)]
-    fn look_up(table: &[Self; 4], index: (L::Index, L::Index)) -> Self {
-        let [a, b, c, d] = table;
-        let first = [a.0.store(), b.0.store(), c.0.store(), d.0.store()];
-        let second = [a.1.store(), b.1.store(), c.1.store(), d.1.store()];
-        Self(
-            L::Stored::look_up(&first, index.0),
-            L::Stored::look_up(&second, index.1),
-        )
-    }
-    #[inline(always)]
-    fn look_up_three(table: &[Self; 4], index: (L::Index, L::Index)) -> Self {
-        Self::look_up(table, index)
-    }
-    #[inline(always)]
-    fn look_up_half(table: &[Self; 2], index: (L::Index, L::Index)) -> Self {
-        let [a, b] = table;
-        let (first, second) = ([a.0.store(), b.0.store()], [a.1.store(), b.1.store()]);
-        Self(
-            L::Stored::look_up_half(&first, index.0),
-            L::Stored::look_up_half(&second, index.1),
-        )
     }
 }
 

@@ -1,17 +1,21 @@
 //! Eight lanes through `wide`: the instruction set the program was compiled for, whatever the machine has.
+//!
+//! [`Portable`] is the backend of [`Level::portable`](crate::simd::Level::portable). `f32x8` itself never fuses: what is
+//! computed without a level has the same bits in every build.
 
 #![allow(
     unsafe_code,
     reason = "intrinsics of target features that the program is compiled for"
 )]
 
+use super::choice::Choice;
 use super::lanes::{
-    Broadcast, INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, UPPER, difference_fused,
-    difference_split, sealed::Sealed, select_of_four, select_of_three,
+    INTEGER, INTEGER_BIAS, Lanes, ONE, Packet, ROUND_EXPONENT, UPPER, by_splat, difference_fused,
+    difference_split, sealed::Sealed,
 };
+use super::schedule::Schedule;
+use core::ops::{Add, Div, Mul, Neg, Sub};
 use wide::{f32x8, u32x8};
-
-impl Sealed for f32x8 {}
 
 /// Whether `wide`'s `mul_add` rounds once in this build.
 pub(crate) const FUSES: bool = cfg!(any(
@@ -19,11 +23,47 @@ pub(crate) const FUSES: bool = cfg!(any(
     all(target_arch = "aarch64", target_feature = "neon")
 ));
 
+/// Eight lanes of this build: with `FUSE`, `mul_add` rounds once.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Portable<const FUSE: bool>(pub(crate) f32x8);
+
+/// Eight lanes whose `mul_add` rounds twice, as that of one lane does.
+pub(crate) type Unfused = Portable<false>;
+
+/// A type that holds eight lanes of this build.
+trait Eight: Copy {
+    fn wrap(lanes: f32x8) -> Self;
+    fn unwrap(self) -> f32x8;
+}
+
+impl Eight for f32x8 {
+    #[inline(always)]
+    fn wrap(lanes: f32x8) -> Self {
+        lanes
+    }
+    #[inline(always)]
+    fn unwrap(self) -> f32x8 {
+        self
+    }
+}
+
+impl<const FUSE: bool> Eight for Portable<FUSE> {
+    #[inline(always)]
+    fn wrap(lanes: f32x8) -> Self {
+        Self(lanes)
+    }
+    #[inline(always)]
+    fn unwrap(self) -> f32x8 {
+        self.0
+    }
+}
+
 /// Masks of the sign, and of everything but the sign.
 const SIGN: f32x8 = f32x8::new([-0.0; 8]);
 const MAGNITUDE: f32x8 = f32x8::new([f32::from_bits(0x7fff_ffff); 8]);
 
-/// The same number in every lane.
+/// The same number in every lane. The operators of `f32x8` with a float do without it, those of
+/// [`Portable`] do not.
 ///
 /// `wide` fills an array, which the compiler leaves a loop over memory where it saves space: a packet took three to ten
 /// times as long at opt-level s.
@@ -77,192 +117,205 @@ fn splat(x: f32) -> f32x8 {
 
 /// The upper half of the digits, and the rest.
 #[inline(always)]
-pub(super) fn split(x: f32x8) -> [f32x8; 2] {
+fn split<P: Eight>(x: P) -> [P; 2] {
     const MASK: u32x8 = u32x8::new([UPPER; 8]);
+    let x = x.unwrap();
     let upper = f32x8::from_bits(x.to_bits() & MASK);
-    [upper, x - upper]
+    [P::wrap(upper), P::wrap(x - upper)]
 }
 
-impl Lanes for f32x8 {
-    type Mask = f32x8;
-    /// Where the chosen number is at least each of the three bounds.
-    type Index = [f32x8; 3];
-    type Stored = f32x8;
-    const FUSES: bool = FUSES;
-
-    #[inline(always)]
-    fn splat(x: f32) -> Self {
-        splat(x)
-    }
-    #[inline(always)]
-    fn store(self) -> f32x8 {
-        self
-    }
-    #[inline(always)]
-    fn mul_add(self, a: Self, b: Self) -> Self {
-        f32x8::mul_add(self, a, b)
-    }
-    // `wide` splats the sign that it negates with, at a cost (see `splat`).
-    #[inline(always)]
-    fn mul_sub(self, a: Self, b: Self) -> Self {
-        if FUSES {
-            f32x8::mul_add(self, a, b ^ SIGN)
-        } else {
-            self * a - b
-        }
-    }
-    #[inline(always)]
-    fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
-        if FUSES {
-            difference_fused(a, b, c, d)
-        } else {
-            difference_split([a, b, c, d], [split(a), split(b), split(c), split(d)])
-        }
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        f32x8::sqrt(self)
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self & MAGNITUDE
-    }
-    // `fast_min` is the machine's own: its result for NaN is specified on x86 alone.
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
-            self.fast_min(other)
-        } else {
-            self.simd_lt(other).select(self, other)
-        }
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
-            self.fast_max(other)
-        } else {
-            other.simd_lt(self).select(self, other)
-        }
-    }
-    #[inline(always)]
-    fn times_sign(self, sign: Self) -> Self {
-        self ^ (sign & SIGN)
-    }
-    #[inline(always)]
-    fn negate(mask: f32x8, x: Self) -> Self {
-        x ^ (mask & SIGN)
-    }
-    #[inline(always)]
-    fn bits_shl_23(self) -> Self {
-        f32x8::from_bits(self.to_bits() << 23_u32)
-    }
-    #[inline(always)]
-    fn split_exponent(self) -> (Self, Self) {
-        const ROUND: u32x8 = u32x8::new([ROUND_EXPONENT; 8]);
-        const ONES: u32x8 = u32x8::new([ONE; 8]);
-        const INTEGERS: u32x8 = u32x8::new([INTEGER; 8]);
-        let bits = self.to_bits();
-        let exponent = (bits + ROUND) >> 23_u32;
-        let mantissa = bits + ONES - (exponent << 23_u32);
-        (
-            f32x8::from_bits(mantissa),
-            f32x8::from_bits(exponent | INTEGERS) - splat(INTEGER_BIAS),
-        )
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> f32x8 {
-        self.simd_lt(other)
-    }
-    #[inline(always)]
-    fn and(a: f32x8, b: f32x8) -> f32x8 {
-        a & b
-    }
-    #[inline(always)]
-    fn or(a: f32x8, b: f32x8) -> f32x8 {
-        a | b
-    }
-    #[inline(always)]
-    fn select(mask: f32x8, yes: Self, no: Self) -> Self {
-        mask.select(yes, no)
-    }
-    #[inline(always)]
-    fn swap(mask: f32x8, a: Self, b: Self) -> (Self, Self) {
-        let kept = (a ^ b) & mask;
-        (b ^ kept, a ^ kept)
-    }
-    #[inline(always)]
-    fn keep(mask: f32x8, x: Self) -> Self {
-        mask & x
-    }
-    #[inline(always)]
-    fn search(x: Self, bounds: [Self; 3], count: usize) -> [f32x8; 3] {
-        [
-            if count > 0 {
-                x.simd_ge(bounds[0])
-            } else {
-                f32x8::ZERO
-            },
-            if count > 1 {
-                x.simd_ge(bounds[1])
-            } else {
-                f32x8::ZERO
-            },
-            if count > 2 {
-                x.simd_ge(bounds[2])
-            } else {
-                f32x8::ZERO
-            },
-        ]
-    }
-    #[inline(always)]
-    fn is_index(index: [f32x8; 3], entry: usize) -> f32x8 {
-        match entry {
-            0 => !index[0],
-            1 => index[0] & !index[1],
-            2 => index[1] & !index[2],
-            _ => index[2],
-        }
-    }
-    #[inline(always)]
-    fn index_number(index: [f32x8; 3]) -> Self {
-        let one = splat(1.0);
-        (index[0] & one) + (index[1] & one) + (index[2] & one)
-    }
-}
-
-/// [`Broadcast`] by selection among the entries, each read as lanes.
-macro_rules! broadcast {
-    ($($Stored:ty, $x:ident, $lanes:expr;)*) => { $(
-        impl Broadcast<f32x8> for $Stored {
+macro_rules! binary {
+    ($($Op:ident $op:ident;)*) => { $(
+        impl<const FUSE: bool> $Op for Portable<FUSE> {
+            type Output = Self;
             #[inline(always)]
-            fn lanes(&self) -> f32x8 {
-                let $x = *self;
-                $lanes
-            }
-            #[inline(always)]
-            fn look_up(table: &[$Stored; 4], index: [f32x8; 3]) -> f32x8 {
-                select_of_four([table[0].lanes(), table[1].lanes(), table[2].lanes(), table[3].lanes()], index)
-            }
-            #[inline(always)]
-            fn look_up_three(table: &[$Stored; 4], index: [f32x8; 3]) -> f32x8 {
-                select_of_three([table[0].lanes(), table[1].lanes(), table[2].lanes()], index)
-            }
-            #[inline(always)]
-            fn look_up_half(table: &[$Stored; 2], index: [f32x8; 3]) -> f32x8 {
-                index[1].select(table[1].lanes(), table[0].lanes())
+            fn $op(self, other: Self) -> Self {
+                Self(self.0.$op(other.0))
             }
         }
     )* };
 }
-broadcast! { f32, x, splat(x); f32x8, x, x; }
+binary! { Add add; Sub sub; Mul mul; Div div; }
+by_splat! { Portable<FUSE>, [const FUSE: bool] }
 
-impl Packet<8> for f32x8 {
+impl<const FUSE: bool> Neg for Portable<FUSE> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+/// The lanes of a type that holds eight of this build.
+macro_rules! eight_lanes {
+    ($Lanes:ty, [$($generics:tt)*], $fuses:expr) => {
+        impl<$($generics)*> Sealed for $Lanes {}
+        impl<$($generics)*> Schedule for $Lanes {}
+
+        impl<$($generics)*> Lanes for $Lanes {
+            type Mask = f32x8;
+            /// Where the chosen number is at least each of the three bounds.
+            type Index = [f32x8; 3];
+            type Stored = f32x8;
+            const FUSES: bool = $fuses;
+
+            #[inline(always)]
+            fn splat(x: f32) -> Self {
+                Self::wrap(splat(x))
+            }
+            #[inline(always)]
+            fn store(self) -> f32x8 {
+                self.unwrap()
+            }
+            #[inline(always)]
+            fn load(stored: &f32x8) -> Self {
+                Self::wrap(*stored)
+            }
+            #[inline(always)]
+            fn mul_add(self, a: Self, b: Self) -> Self {
+                if Self::FUSES {
+                    Self::wrap(self.unwrap().mul_add(a.unwrap(), b.unwrap()))
+                } else {
+                    self * a + b
+                }
+            }
+            // `wide` splats the sign that it negates with, at a cost (see `splat`).
+            #[inline(always)]
+            fn mul_sub(self, a: Self, b: Self) -> Self {
+                if Self::FUSES {
+                    Self::wrap(self.unwrap().mul_add(a.unwrap(), b.unwrap() ^ SIGN))
+                } else {
+                    self * a - b
+                }
+            }
+            #[inline(always)]
+            fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {
+                if Self::FUSES {
+                    difference_fused(a, b, c, d)
+                } else {
+                    difference_split([a, b, c, d], [split(a), split(b), split(c), split(d)])
+                }
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                Self::wrap(self.unwrap().sqrt())
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                Self::wrap(self.unwrap() & MAGNITUDE)
+            }
+            // `fast_min` is the machine's own: its result for NaN is specified on x86 alone.
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                let (a, b) = (self.unwrap(), other.unwrap());
+                Self::wrap(if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
+                    a.fast_min(b)
+                } else {
+                    a.simd_lt(b).select(a, b)
+                })
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                let (a, b) = (self.unwrap(), other.unwrap());
+                Self::wrap(if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
+                    a.fast_max(b)
+                } else {
+                    b.simd_lt(a).select(a, b)
+                })
+            }
+            #[inline(always)]
+            fn times_sign(self, sign: Self) -> Self {
+                Self::wrap(self.unwrap() ^ (sign.unwrap() & SIGN))
+            }
+            #[inline(always)]
+            fn negate(mask: f32x8, x: Self) -> Self {
+                Self::wrap(x.unwrap() ^ (mask & SIGN))
+            }
+            #[inline(always)]
+            fn bits_shl_23(self) -> Self {
+                Self::wrap(f32x8::from_bits(self.unwrap().to_bits() << 23_u32))
+            }
+            #[inline(always)]
+            fn split_exponent(self) -> (Self, Self) {
+                const ROUND: u32x8 = u32x8::new([ROUND_EXPONENT; 8]);
+                const ONES: u32x8 = u32x8::new([ONE; 8]);
+                const INTEGERS: u32x8 = u32x8::new([INTEGER; 8]);
+                let bits = self.unwrap().to_bits();
+                let exponent = (bits + ROUND) >> 23_u32;
+                let mantissa = bits + ONES - (exponent << 23_u32);
+                let number = f32x8::from_bits(exponent | INTEGERS) - splat(INTEGER_BIAS);
+                (Self::wrap(f32x8::from_bits(mantissa)), Self::wrap(number))
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> f32x8 {
+                self.unwrap().simd_lt(other.unwrap())
+            }
+            #[inline(always)]
+            fn and(a: f32x8, b: f32x8) -> f32x8 {
+                a & b
+            }
+            #[inline(always)]
+            fn or(a: f32x8, b: f32x8) -> f32x8 {
+                a | b
+            }
+            #[inline(always)]
+            fn select(mask: f32x8, yes: Self, no: Self) -> Self {
+                Self::wrap(mask.select(yes.unwrap(), no.unwrap()))
+            }
+            #[inline(always)]
+            fn swap(mask: f32x8, a: Self, b: Self) -> (Self, Self) {
+                let (a, b) = (a.unwrap(), b.unwrap());
+                let kept = (a ^ b) & mask;
+                (Self::wrap(b ^ kept), Self::wrap(a ^ kept))
+            }
+            #[inline(always)]
+            fn keep(mask: f32x8, x: Self) -> Self {
+                Self::wrap(mask & x.unwrap())
+            }
+        }
+
+        impl<$($generics)*> Choice<$Lanes> for [f32x8; 3] {
+            #[inline(always)]
+            fn search(x: $Lanes, bounds: [$Lanes; 3], count: usize) -> Self {
+                let (x, none) = (x.unwrap(), f32x8::ZERO);
+                [
+                    if count > 0 { x.simd_ge(bounds[0].unwrap()) } else { none },
+                    if count > 1 { x.simd_ge(bounds[1].unwrap()) } else { none },
+                    if count > 2 { x.simd_ge(bounds[2].unwrap()) } else { none },
+                ]
+            }
+            #[inline(always)]
+            fn masks(self) -> Self {
+                self
+            }
+            #[inline(always)]
+            fn equals(self, entry: usize) -> f32x8 {
+                let [one, two, three] = self;
+                match entry {
+                    0 => !one,
+                    1 => one & !two,
+                    2 => two & !three,
+                    _ => three,
+                }
+            }
+            #[inline(always)]
+            fn to_number(self) -> $Lanes {
+                let (one, [a, b, c]) = (splat(1.0), self);
+                <$Lanes>::wrap((a & one) + (b & one) + (c & one))
+            }
+        }
+    };
+}
+eight_lanes! { f32x8, [], false }
+eight_lanes! { Portable<FUSE>, [const FUSE: bool], FUSE }
+
+impl<const FUSE: bool> Packet<8> for Portable<FUSE> {
     #[inline(always)]
     fn read(from: &[f32; 8]) -> Self {
-        f32x8::new(*from)
+        Self(f32x8::new(*from))
     }
     #[inline(always)]
     fn write(self, to: &mut [f32; 8]) {
-        *to = self.to_array();
+        *to = self.0.to_array();
     }
 }

@@ -5,7 +5,7 @@ use core::f32::consts::{FRAC_1_PI, PI};
 use core::ops::Deref;
 use hairis::model::math::{atan2_upper, sin_cos_half_turn};
 use hairis::model::{GRAZING, LobeEval, Model, SampleLanes};
-use hairis::simd::{Broadcast, LaneStruct, Lanes, Scalar, Vec3x, lanes3, store3};
+use hairis::simd::{Broadcast, LaneStruct, Lanes, Path, Scalar, Vec3x, lanes3, store3};
 use hairis::{Eval, Hit, Lobe, LobeMask, PerLobe};
 use hairis_conformance::{Claims, Materials, Subject};
 
@@ -100,8 +100,20 @@ impl<T> Deref for Faulty<T> {
 }
 
 impl<T: LaneStruct> LaneStruct for Faulty<T> {
+    type Number = T::Number;
     type One = Faulty<T::One>;
     type Eight = Faulty<T::Eight>;
+
+    fn make(path: &Path<'_>, next: &mut dyn FnMut(&Path<'_>) -> T::Number) -> Self {
+        Self {
+            fault: SOUND,
+            constants: T::make(path, next),
+        }
+    }
+
+    fn visit(&self, path: &Path<'_>, see: &mut dyn FnMut(&Path<'_>, T::Number)) {
+        self.constants.visit(path, see);
+    }
 
     fn pack(mut items: [&Self::One; 8]) -> Self::Eight {
         let fault = items[0].fault;
@@ -156,9 +168,9 @@ fn shapes<L: Lanes, C: Broadcast<L>>(
         pdf: c(0.25 * FRAC_1_PI),
     };
     let cone = LobeEval {
-        value: bell * c(0.5 * FRAC_1_PI * FRAC_1_PI),
+        value: bell * (0.5 * FRAC_1_PI * FRAC_1_PI),
         color: lanes3(&prepared.ks),
-        pdf: L::quotient(bell * c(0.5 * FRAC_1_PI), prepared.span.lanes()),
+        pdf: L::quotient(bell * (0.5 * FRAC_1_PI), prepared.span.lanes()),
     };
     ([diffuse, cone], cos, sound)
 }
@@ -171,7 +183,7 @@ fn cone_sine<L: Lanes, C: Broadcast<L>>(prepared: &Point<C>, xi: L) -> L {
         prepared.width.lanes(),
         prepared.sin_theta_o.lanes(),
     );
-    let (s, c) = sin_cos_half_turn(xi * prepared.span.lanes() * L::splat(0.5));
+    let (s, c) = sin_cos_half_turn(xi * prepared.span.lanes() * 0.5);
     let (sin, cos) = ((s + s) * c, c * c - s * s);
     let lo = sin_theta_o - one;
     let x = L::quotient(
@@ -206,14 +218,14 @@ impl Fiber {
                 sum = cone.value * cone.color[channel];
             }
             if prepared.fault == NEGATIVE {
-                sum = sum - c(1e-3);
+                sum = sum - 1e-3;
             }
             if prepared.fault == DIVIDES_BY_ZERO {
                 sum = sum.min(c(1.0) / L::keep(c(9.0).lt(wi.x), wi.x));
             }
             if prepared.fault == NEGATIVE_ROUNDED_DOWN {
-                let tiny = wi.x * wi.x * c(1e-10);
-                sum = sum + ((c(1.0) - tiny) - c(1.0)) * c(1e9);
+                let tiny = wi.x * wi.x * 1e-10;
+                sum = sum + ((c(1.0) - tiny) - 1.0) * 1e9;
             }
             value[channel] = sum.min(limit);
             channel += 1;
@@ -221,12 +233,12 @@ impl Fiber {
         let [p_diffuse, p_cone] = [prepared.selection[0].lanes(), prepared.selection[1].lanes()];
         let mut pdf = diffuse.pdf.mul_add(p_diffuse, cone.pdf * p_cone).min(limit);
         if prepared.fault == DENSITY_TOO_HIGH {
-            pdf = pdf * c(1.02);
+            pdf = pdf * 1.02;
         }
         if (prepared.fault == WIDE_SLICES_DIFFER && width_of::<L>() > 8)
             || (prepared.fault == PACKET_DIFFERS && width_of::<L>() > 1)
         {
-            pdf = pdf * c(1.0 + 4.0 * f32::EPSILON) + c(1e-4) * pdf;
+            pdf = pdf * (1.0 + 4.0 * f32::EPSILON) + pdf * 1e-4;
         }
         if prepared.fault == NAN_AT_THE_POLE {
             // 0 / 0 on the axis.
@@ -376,7 +388,7 @@ impl Model for Fiber {
         let (zero, one) = (c(0.0), c(1.0));
         let mut selection: L = prepared.selection[0].lanes();
         if prepared.fault == WRONG_PROBABILITY {
-            selection = selection * c(1.05);
+            selection = selection * 1.05;
         }
         let is_diffuse = xi[0].lt(selection);
         let mut along = xi[1];
@@ -390,7 +402,7 @@ impl Model for Fiber {
             around = around * (one - around).mul_add(c(0.02), one);
         }
         // The azimuth is uniform: the double of an angle in [-pi/2, pi/2].
-        let (s, k) = sin_cos_half_turn((around - c(0.5)) * c(PI));
+        let (s, k) = sin_cos_half_turn((around - 0.5) * PI);
         let mut wi = Vec3x::new(sin, cos * (k * k - s * s), cos * ((s + s) * k));
         let (lobes, _, sound) = shapes(prepared, wi);
         let Eval { value, pdf } = Self::total(prepared, lobes, wi, sound);
@@ -406,7 +418,7 @@ impl Model for Fiber {
             by = L::select(sound, L::quotient(one, pdf), zero);
         }
         if prepared.fault == HEAVY_WEIGHT {
-            by = L::select(c(0.999).lt(xi[1]), by * c(20.0), by);
+            by = L::select(c(0.999).lt(xi[1]), by * 20.0, by);
         }
         if prepared.fault == LONG_DIRECTION {
             wi = wi.scale(c(1.0001));
@@ -452,7 +464,7 @@ impl Model for Fiber {
         ];
         let by = L::keep(
             seen,
-            sum * prepared.span.lanes() * L::splat(loss * FRAC_1_PI / f32::from(STEPS)),
+            sum * prepared.span.lanes() * (loss * FRAC_1_PI / f32::from(STEPS)),
         );
         PerLobe([
             kd,

@@ -8,21 +8,21 @@ use hairis::{Hit, PerLobe};
 
 lane_struct! {
     /// The widths of the lobes. Arrays of four are R, TT, TRT and the rest.
-    pub struct ChiangWidths {
+    pub(super) struct ChiangWidths {
         /// Longitudinal variance v.
-        pub variance: [C; 4],
+        pub(super) variance: [C; 4],
         /// `1 / v`.
-        pub inv_variance: [C; 4],
+        pub(super) inv_variance: [C; 4],
         /// `1 - exp(-2 / v)`.
-        pub cut: [C; 4],
+        pub(super) cut: [C; 4],
         /// Norm of `M N`: `1 / (v (1 - exp(-2 / v)) s K)`, and for the rest `2 pi` in place of `s K`.
-        pub norm: [C; 4],
+        pub(super) norm: [C; 4],
         /// Scale s of the azimuthal logistic, rad.
-        pub scale: C,
+        pub(super) scale: C,
         /// `4 / s`.
-        pub four_inv_scale: C,
+        pub(super) four_inv_scale: C,
         /// `K = tanh(pi / 2s)`: the part of the logistic within half a turn.
-        pub kept: C,
+        pub(super) kept: C,
     }
 }
 
@@ -30,15 +30,15 @@ lane_struct! {
     /// The constants of a material of the energy-conserving fibre.
     pub struct ChiangMaterial {
         /// Absorption per radius, linear RGB, doubled: the argument of a Gaussian, per length.
-        pub twice_sigma_a: [C; 3],
+        pub(super) twice_sigma_a: [C; 3],
         /// Index of refraction, doubled; its square; and its square less 1.
-        pub eta: [C; 3],
+        pub(super) eta: [C; 3],
         /// Sine of each lobe's shift of `theta_i + theta_o`.
-        pub sin_shift: [C; 4],
+        pub(super) sin_shift: [C; 4],
         /// Cosine of each lobe's shift.
-        pub cos_shift: [C; 4],
+        pub(super) cos_shift: [C; 4],
         /// The widths of the lobes.
-        pub widths: (ChiangWidths<C>),
+        pub(super) widths: ChiangWidths<C>,
     }
 }
 
@@ -46,25 +46,25 @@ lane_struct! {
     /// The constants of a shading point of the energy-conserving fibre.
     pub struct ChiangPrepared {
         /// Sine of each lobe's cone, `theta' = theta_o - shift`.
-        pub sin_cone: [C; 4],
+        pub(super) sin_cone: [C; 4],
         /// Its cosine.
-        pub cos_cone: [C; 4],
+        pub(super) cos_cone: [C; 4],
         /// `cos theta' / v`.
-        pub concentration: [C; 4],
+        pub(super) concentration: [C; 4],
         /// `sqrt(v / cos theta')`.
-        pub spread: [C; 4],
+        pub(super) spread: [C; 4],
         /// Component along v of the unit vector at each lobe's azimuth.
-        pub azimuth_v: [C; 4],
+        pub(super) azimuth_v: [C; 4],
         /// Its component along w.
-        pub azimuth_w: [C; 4],
+        pub(super) azimuth_w: [C; 4],
         /// Attenuation of each lobe, linear RGB: the channels of R first.
-        pub attenuation: [C; 12],
+        pub(super) attenuation: [C; 12],
         /// Fresnel reflectance.
-        pub fresnel: C,
+        pub(super) fresnel: C,
         /// Length of one passage through the fibre, in radii.
-        pub path_length: C,
+        pub(super) path_length: C,
         /// The widths of the lobes.
-        pub widths: (ChiangWidths<C>),
+        pub(super) widths: ChiangWidths<C>,
     }
 }
 
@@ -151,7 +151,7 @@ fn fresnel<L: Lanes>(c: L, k: L, eta_sq: L, eta_sq_less_one: L) -> [L; 2] {
     let (inv_across, inv_along) = (inverse * along, inverse * across);
     let (t_s, t_p) = (inv_across * inv_across, inv_along * inv_along);
     let r_s = eta_sq_less_one * t_s;
-    let r_p = eta_sq_less_one * t_p * (c * c).mul_sub(eta_sq + one, one);
+    let r_p = eta_sq_less_one * t_p * (c * c).mul_sub(eta_sq + 1.0, one);
     let reflected = (L::splat(0.5) * r_s.mul_add(r_s, r_p * r_p)).min(one);
     let passed = (c + c) * k * eta_sq.mul_add(t_p, t_s);
     [

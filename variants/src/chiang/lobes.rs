@@ -5,7 +5,7 @@ use super::gather::{Four, apart, four, same};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 use hairis::model::Direction;
 use hairis::model::math::{atan_eighth_turn, gaussian, polynomial};
-use hairis::simd::{Broadcast, Lanes, Pair};
+use hairis::simd::{Broadcast, Lanes, Pair, Schedule};
 
 /// Below this the scaled Bessel function is a series in `x^2`, above one in `1 / x`.
 const SEAM: f32 = 5.5;

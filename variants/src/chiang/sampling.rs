@@ -4,7 +4,7 @@ use super::ChiangPrepared;
 use core::f32::consts::{LN_2, PI};
 use hairis::model::Direction;
 use hairis::model::math::{log2, log2_one_plus, sin_cos_half_turn};
-use hairis::simd::{Broadcast, Lanes};
+use hairis::simd::{Broadcast, Choice, Lanes};
 
 /// A direction of a lobe: the angle from its cone, the turn about the cone, and the azimuth.
 #[inline(always)]
@@ -19,10 +19,10 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
 
     // Inclination (d'Eon 2013): 1 less the cosine of the angle from the cone; the turn's cosine is even.
     let cut = C::look_up(&m.cut, lobe);
-    let by = C::look_up(&m.variance, lobe) * c(-LN_2);
+    let by = C::look_up(&m.variance, lobe) * -LN_2;
     let drop = zero.max((log2_one_plus(-(xi[1] * cut)) * by).min(two));
     let radius = (drop * (two - drop)).sqrt();
-    let (minus_cos, sin) = sin_cos_half_turn((xi[2] - c(0.5)) * c(PI));
+    let (minus_cos, sin) = sin_cos_half_turn((xi[2] - 0.5) * PI);
     let (towards, across) = (-(radius * minus_cos), radius * sin);
     let (sin_cone, cos_cone) = (
         C::look_up(&prepared.sin_cone, lobe),
@@ -35,12 +35,12 @@ pub(super) fn sample<L: Lanes, C: Broadcast<L>>(
 
     // Azimuth: the trimmed logistic by inversion; that of the rest is uniform.
     let kept = m.kept.lanes();
-    let edge = (one - kept) * c(0.5);
+    let edge = (one - kept) * 0.5;
     let ratio = L::quotient(xi[0].mul_add(kept, edge), (one - xi[0]).mul_add(kept, edge));
-    let logistic = log2(ratio) * (m.scale.lanes() * c(0.5 * LN_2));
-    let uniform = (xi[0] - c(0.5)) * c(PI);
+    let logistic = log2(ratio) * (m.scale.lanes() * (0.5 * LN_2));
+    let uniform = (xi[0] - 0.5) * PI;
     let half_turn = c(0.5 * PI);
-    let half = L::select(L::is_index(lobe, 3), uniform, logistic)
+    let half = L::select(lobe.equals(3), uniform, logistic)
         .min(half_turn)
         .max(-half_turn);
     let (sin, cos) = sin_cos_half_turn(half);

@@ -53,10 +53,7 @@ impl Block {
         &self,
         ray: &Spread<L>,
         limit: f32,
-    ) -> (u32, [f32x8; 2])
-    where
-        f32x8: Broadcast<L>,
-    {
+    ) -> (u32, [f32x8; 2]) {
         let [dx, dy, dz] = ray.direction;
         let from = [
             self.start[0].lanes() - ray.origin[0],

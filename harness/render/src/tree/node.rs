@@ -67,10 +67,11 @@ impl Node {
 
     /// The boxes that the ray passes before `limit`: lanes as bits, and where it enters them.
     #[inline(always)]
-    pub(super) fn pass<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, f32x8)
-    where
-        f32x8: Broadcast<L>,
-    {
+    pub(super) fn pass<L: Lanes<Stored = f32x8>>(
+        &self,
+        ray: &Spread<L>,
+        limit: f32,
+    ) -> (u32, f32x8) {
         let mut near = L::splat(0.0);
         let mut far = L::splat(limit);
         let mut axis = 0;
@@ -86,7 +87,7 @@ impl Node {
                 .min(far);
             axis += 1;
         }
-        (bits::<L>(near.lt(far * L::splat(ROUNDING))), near.store())
+        (bits::<L>(near.lt(far * ROUNDING)), near.store())
     }
 
     #[inline(always)]

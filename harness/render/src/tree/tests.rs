@@ -13,14 +13,10 @@ use rand_core::{Rng, SeedableRng};
 struct Alone<'a>(&'a Block, &'a Ray);
 
 impl Kernel for Alone<'_> {
-    type Constant = f32x8;
     type Output = (u32, [f32x8; 2]);
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Self::Output {
         self.0.meet(&Spread::<L>::new(self.1), f32::INFINITY)
     }
 }

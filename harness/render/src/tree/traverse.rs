@@ -54,27 +54,19 @@ pub(super) struct Any<'a, C> {
 }
 
 impl<C: Count> Kernel for Closest<'_, C> {
-    type Constant = f32x8;
     type Output = Option<Hit>;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Option<Hit>
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Option<Hit> {
         search::<L, C, false>(self.tree, self.ray, self.visits)
     }
 }
 
 impl<C: Count> Kernel for Any<'_, C> {
-    type Constant = f32x8;
     type Output = bool;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> bool
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> bool {
         search::<L, C, true>(self.tree, self.ray, self.visits).is_some()
     }
 }
@@ -98,10 +90,7 @@ fn search<L: Lanes<Stored = f32x8>, C: Count, const ANY: bool>(
     tree: &Tree,
     ray: &Ray,
     visits: &mut C,
-) -> Option<Hit>
-where
-    f32x8: Broadcast<L>,
-{
+) -> Option<Hit> {
     let spread = Spread::<L>::new(ray);
     // No segment has a number below 0: what is at `t_max` itself is not met.
     let mut best = Best {

@@ -147,7 +147,7 @@ pub(super) fn integrate_bands<
         // Heights ascend inwards, though W may have its mode before the middle.
         let cos_sq: P = band.cos_sq_theta_d(theta_o);
         height = height.max(P::splat(band.cos_sq_theta_i()) / cos_sq);
-        minus_slope = minus_slope.max(cos_sq * P::splat(-1.0 / band.cos_sq_theta_i()));
+        minus_slope = minus_slope.max(cos_sq * (-1.0 / band.cos_sq_theta_i()));
         let to = quarter_o + P::outwards(band.half_inner);
         for_each!(k < K, {
             of_lobes[k] = lobes[k].pass::<B, L, K>(to, height, minus_slope);

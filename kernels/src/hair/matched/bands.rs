@@ -94,7 +94,7 @@ impl Band {
         [half_sin_theta_o, half_cos_theta_o]: [L; 2],
     ) -> P {
         let sin = P::of(half_sin_theta_o) + P::outwards(self.half_sin);
-        let cos = half_cos_theta_o + L::splat(self.half_cos);
+        let cos = half_cos_theta_o + self.half_cos;
         sin.mul_add(sin, P::of(cos * cos))
     }
 

@@ -49,6 +49,6 @@ impl MatchedBell for Gaussian {
         // Half of the least step below 1: no number stands for a point without density.
         let tail = sum.abs().min((c(1.0) - sum).max(c(f32::EPSILON / 4.0)));
         // Below the centre where the sum is between 0 and 1/2.
-        normal_tail_inverse(tail).times_sign(sum * (sum - c(0.5)))
+        normal_tail_inverse(tail).times_sign(sum * (sum - 0.5))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::simd::Lanes;
 use crate::simd::pair::Pair;
-use crate::simd::unfused::Unfused;
+use crate::simd::portable::Unfused;
 use wide::f32x8;
 
 /// Numbers of lobes below the normal plane and above it: `K` of these are those of R, TT and TRT.

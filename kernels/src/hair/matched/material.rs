@@ -2,7 +2,7 @@
 
 use super::MatchedBell;
 use crate::HairParams;
-use crate::model::HairLobes;
+use crate::hair::HairLobes;
 use crate::simd::{Broadcast, Lanes};
 use core::f32::consts::PI;
 
@@ -15,19 +15,19 @@ crate::simd::lane_struct! {
     /// Arrays of two are TT and the glints, of four in the order of [`Lobe`](crate::Lobe).
     pub struct MatchedMaterial {
         /// Its lobes.
-        pub lobes: (HairLobes<C>),
+        pub(in crate::hair) lobes: HairLobes<C>,
         /// Intensity of each lobe, the mean of its RGB, to the scale of the largest.
-        pub importance: [C; 4],
+        pub(in crate::hair) importance: [C; 4],
         /// Intensity of each lobe in each channel, to the same scale: the channels of R first.
-        pub intensity: [C; 12],
+        pub(in crate::hair) intensity: [C; 12],
         /// Integral of a lobe without its colour, per unit of its inclination's integral.
-        pub extent: [C; 4],
+        pub(in crate::hair) extent: [C; 4],
         /// Integral of the azimuth's bell over one side.
-        pub azimuth_mass: [C; 2],
+        pub(in crate::hair) azimuth_mass: [C; 2],
         /// Its integral up to where the side begins.
-        pub azimuth_from: [C; 2],
+        pub(in crate::hair) azimuth_from: [C; 2],
         /// The origin of both.
-        pub azimuth_origin: [C; 2],
+        pub(in crate::hair) azimuth_origin: [C; 2],
     }
 }
 
@@ -47,8 +47,7 @@ pub(super) fn extent<B: MatchedBell, L: Lanes, C: Broadcast<L>>(
     let both_sides = L::splat(4.0 * B::UNIT);
     let azimuth_tt = hair.half_gamma[0].lanes() * azimuth_mass[0] * both_sides;
     let azimuth_g = hair.half_gamma[1].lanes() * azimuth_mass[1] * both_sides;
-    let four = L::splat(4.0);
-    [r * four, tt * azimuth_tt, trt * four, trt * azimuth_g]
+    [r * 4.0, tt * azimuth_tt, trt * 4.0, trt * azimuth_g]
 }
 
 impl MatchedMaterial<f32> {

@@ -5,11 +5,10 @@ use super::band_cdf::integrate_bands;
 use super::bands::bands;
 use super::hemispheres::Hemispheres;
 use super::material::{MatchedMaterial, extent};
-use crate::hair::{prepare_view, selection, times};
-use crate::model::HairView;
-use crate::simd::{Broadcast, LaneStruct, Lanes, Scalar, Vec3x, lanes3, lanes4, store3, store4};
-use crate::{Lobe, LobeMask};
-use wide::f32x8;
+use crate::LobeMask;
+use crate::hair::{HairView, prepare_view, selection};
+use crate::model::lobe::times;
+use crate::simd::{Broadcast, Lanes, Spread, Vec3x, lanes3, lanes4, store3, store4};
 
 /// Energies and areas below this count as 0: next to denormals their reciprocals would have no digits. Energies are to the scale
 /// of the brightest lobe and of the largest area.
@@ -21,42 +20,44 @@ const LEAST_AREA: f32 = 3e-39;
 /// A channel below this share of the largest is ignored in the choice of lobes: the square of its reciprocal is a float.
 const LEAST_CHANNEL: f32 = 1e-18;
 
-/// The constants of a shading point with a matched sampler of `N` bands.
-///
-/// Arrays of four are in the order of [`Lobe`], of two TT and the glints, of `N` from the lower pole to the upper.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MatchedPrepared<C, const N: usize> {
-    /// The lobes as seen from `wo`.
-    pub view: HairView<C>,
-    /// Origin of the integrals of each inclination.
-    pub origin: [C; 4],
-    /// The constant for W in each band; ascends to the band in the middle.
-    pub height: [C; N],
-    /// One over it.
-    pub slope: [C; N],
-    /// In each band the integral of a lobe's M exceeds `slope` times that of `M W` from the nearer pole by this much. Above the
-    /// middle it is the negative integral.
-    pub offset: [[C; 4]; N],
-    /// The same in the middle, with the integral of `M W` from the upper pole.
-    pub offset_above: [C; 4],
-    /// Integral of `M W` from the lower pole up to a point in the middle band.
-    pub below: [C; 4],
-    /// Integral of `M W` over the sphere.
-    pub area: [C; 4],
-    /// Factor on `M N` of each lobe in the mixture density, but for W.
-    pub weight: [C; 4],
-    /// Factor on areas that makes the largest 1.
-    pub scale: C,
-    /// Probability of choosing each lobe.
-    pub selection: [C; 4],
-    /// Where the next lobe begins in `xi_lobe`.
-    pub bounds: [C; 3],
-    /// Integral of the azimuth's bell over one side.
-    pub azimuth_mass: [C; 2],
-    /// Its integral up to where the side begins.
-    pub azimuth_from: [C; 2],
-    /// The origin of both.
-    pub azimuth_origin: [C; 2],
+crate::simd::lane_struct! {
+    /// The constants of a shading point with a matched sampler of `N` bands.
+    ///
+    /// Arrays of four are in the order of [`Lobe`], of two TT and the glints, of `N` from the lower
+    /// pole to the upper.
+    pub struct MatchedPrepared<const N: usize> {
+        /// The lobes as seen from `wo`.
+        pub(in crate::hair) view: HairView<C>,
+        /// Origin of the integrals of each inclination.
+        pub(in crate::hair) origin: [C; 4],
+        /// The constant for W in each band; ascends to the band in the middle.
+        pub(in crate::hair) height: [C; N],
+        /// One over it.
+        pub(in crate::hair) slope: [C; N],
+        /// In each band the integral of a lobe's M exceeds `slope` times that of `M W` from the
+        /// nearer pole by this much. Above the middle it is the negative integral.
+        pub(in crate::hair) offset: [[C; 4]; N],
+        /// The same in the middle, with the integral of `M W` from the upper pole.
+        pub(in crate::hair) offset_above: [C; 4],
+        /// Integral of `M W` from the lower pole up to a point in the middle band.
+        pub(in crate::hair) below: [C; 4],
+        /// Integral of `M W` over the sphere.
+        pub(in crate::hair) area: [C; 4],
+        /// Factor on `M N` of each lobe in the mixture density, but for W.
+        pub(in crate::hair) weight: [C; 4],
+        /// Factor on areas that makes the largest 1.
+        pub(in crate::hair) scale: C,
+        /// Probability of choosing each lobe.
+        pub(in crate::hair) selection: [C; 4],
+        /// Where the next lobe begins in `xi_lobe`.
+        pub(in crate::hair) bounds: [C; 3],
+        /// Integral of the azimuth's bell over one side.
+        pub(in crate::hair) azimuth_mass: [C; 2],
+        /// Its integral up to where the side begins.
+        pub(in crate::hair) azimuth_from: [C; 2],
+        /// The origin of both.
+        pub(in crate::hair) azimuth_origin: [C; 2],
+    }
 }
 
 /// The shading point of a material seen from `wo`.
@@ -87,7 +88,7 @@ where
 
     // To the scale of the largest area, which may be next to nothing where all lobes lie off the sphere.
     let mut importance = lanes4(&m.importance);
-    let mut size = lanes4(&m.extent);
+    let size = lanes4(&m.extent);
     let mut largest = zero;
     let mut l = 0;
     while l < 4 {
@@ -95,11 +96,7 @@ where
         l += 1;
     }
     let scale = L::select(zero.lt(largest), L::quotient(c(1.0), largest), zero);
-    l = 0;
-    while l < 4 {
-        size[l] = size[l] * (total[l] * scale);
-        l += 1;
-    }
+    let size = times(size, times(total, [scale; 4]));
     if BY_CHANNEL {
         importance = by_channel::<L, C>(size, &m.intensity);
     }
@@ -130,9 +127,9 @@ where
         scale: scale.store(),
         selection: store4(p),
         bounds: store3(bounds),
-        azimuth_mass: spread2::<L, C>(&m.azimuth_mass),
-        azimuth_from: spread2::<L, C>(&m.azimuth_from),
-        azimuth_origin: spread2::<L, C>(&m.azimuth_origin),
+        azimuth_mass: Spread::<L>::spread(&m.azimuth_mass),
+        azimuth_from: Spread::<L>::spread(&m.azimuth_from),
+        azimuth_origin: Spread::<L>::spread(&m.azimuth_origin),
     }
 }
 
@@ -155,7 +152,7 @@ fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [
     c = 0;
     while c < 3 {
         let relative = L::keep(
-            (most * L::splat(LEAST_CHANNEL)).lt(total[c]),
+            (most * LEAST_CHANNEL).lt(total[c]),
             L::quotient(most, total[c]),
         );
         let mut l = 0;
@@ -173,12 +170,6 @@ fn by_channel<L: Lanes, C: Broadcast<L>>(size: [L; 4], intensity: &[C; 12]) -> [
 #[inline(always)]
 pub(super) fn shared4<L: Lanes>([r, tt, trt]: [L; 3]) -> [L::Stored; 4] {
     store4([r, tt, trt, trt])
-}
-
-/// Two numbers of a material, one per lane.
-#[inline(always)]
-fn spread2<L: Lanes, C: Broadcast<L>>(x: &[C; 2]) -> [L::Stored; 2] {
-    [x[0].lanes().store(), x[1].lanes().store()]
 }
 
 impl<C, const N: usize> MatchedPrepared<C, N> {
@@ -240,7 +231,7 @@ impl<C: Lanes, const N: usize> MatchedPrepared<C, N> {
     /// The shading point with only some of its lobes.
     #[inline(always)]
     pub(super) fn restrict(&self, lobes: LobeMask) -> Self {
-        let factor = Lobe::ALL.map(|lobe| C::splat(lobes.factor(lobe)));
+        let factor = lobes.factors();
         let (p, bounds, inv_total) = selection(times(self.selection, factor));
         let weight = times(times(self.weight, factor), [inv_total; 4]);
         Self {
@@ -250,71 +241,5 @@ impl<C: Lanes, const N: usize> MatchedPrepared<C, N> {
             bounds,
             ..*self
         }
-    }
-}
-
-impl<const N: usize> MatchedPrepared<f32x8, N> {
-    /// The numbers of one lane.
-    ///
-    /// # Panics
-    ///
-    /// If `lane` is above 7.
-    #[inline]
-    #[must_use]
-    pub fn lane(&self, lane: usize) -> MatchedPrepared<f32, N> {
-        let at = |x: f32x8| x.as_array()[lane];
-        MatchedPrepared {
-            view: self.view.lane(lane),
-            origin: self.origin.map(at),
-            height: self.height.map(at),
-            slope: self.slope.map(at),
-            offset: self.offset.map(|band| band.map(at)),
-            offset_above: self.offset_above.map(at),
-            below: self.below.map(at),
-            area: self.area.map(at),
-            weight: self.weight.map(at),
-            scale: at(self.scale),
-            selection: self.selection.map(at),
-            bounds: self.bounds.map(at),
-            azimuth_mass: self.azimuth_mass.map(at),
-            azimuth_from: self.azimuth_from.map(at),
-            azimuth_origin: self.azimuth_origin.map(at),
-        }
-    }
-}
-
-impl<C: Scalar, const N: usize> LaneStruct for MatchedPrepared<C, N> {
-    type One = MatchedPrepared<f32, N>;
-    type Eight = MatchedPrepared<f32x8, N>;
-    #[inline]
-    fn pack(g: [&MatchedPrepared<f32, N>; 8]) -> MatchedPrepared<f32x8, N> {
-        macro_rules! n {
-            ($f:ident) => {
-                core::array::from_fn(|i| f32x8::new(g.map(|g| g.$f[i])))
-            };
-        }
-        MatchedPrepared {
-            view: HairView::pack(g.map(|g| &g.view)),
-            origin: n!(origin),
-            height: n!(height),
-            slope: n!(slope),
-            offset: core::array::from_fn(|i| {
-                core::array::from_fn(|j| f32x8::new(g.map(|g| g.offset[i][j])))
-            }),
-            offset_above: n!(offset_above),
-            below: n!(below),
-            area: n!(area),
-            weight: n!(weight),
-            scale: f32x8::new(g.map(|g| g.scale)),
-            selection: n!(selection),
-            bounds: n!(bounds),
-            azimuth_mass: n!(azimuth_mass),
-            azimuth_from: n!(azimuth_from),
-            azimuth_origin: n!(azimuth_origin),
-        }
-    }
-    #[inline]
-    fn lane(eight: &MatchedPrepared<f32x8, N>, lane: usize) -> MatchedPrepared<f32, N> {
-        eight.lane(lane)
     }
 }

@@ -3,7 +3,7 @@
 use super::{MatchedBell, MatchedPrepared};
 use crate::hair::{Angles, FoldedXi, direction_from_angles};
 use crate::simd::pair::Pair;
-use crate::simd::{Broadcast, Lanes, Vec3x, lanes3};
+use crate::simd::{Broadcast, Choice, Lanes, Vec3x, lanes3};
 
 /// A quarter of the step between uniform numbers of 24 bits: the share of an integral that is left out at its ends, so that
 /// where they have digits for it, on narrow bells and in far tails, rounding takes no sample past them, to a pole or to where a
@@ -17,9 +17,9 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     xi: [L; 3],
 ) -> (Vec3x<L>, L::Index, Angles<L>) {
     let c = L::splat;
-    let (zero, one) = (c(0.0), c(1.0));
+    let one = c(1.0);
     let (view, hair) = (&prepared.view, &prepared.view.lobes);
-    let choice = L::search(xi[0], lanes3(&prepared.bounds), 3);
+    let choice = L::Index::search(xi[0], lanes3(&prepared.bounds), 3);
 
     // Inclination: the number's share of the integral of M W, from the nearer pole. As a function of it the integral of M is the
     // least of the bands' lines: outwards they are steeper. Above the middle it is the negative integral.
@@ -47,7 +47,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
 
     // Azimuth: TT's runs from its centre outwards, that of a glint from phi = 0.
     let folded = FoldedXi::of(xi[2]);
-    let is_glint = L::is_index(choice, 3);
+    let is_glint = choice.equals(3);
     let share = L::select(is_glint, one - folded.across, folded.across);
     let share = c(LEAST_SHARE).max(share.min(c(1.0 - f32::EPSILON / 2.0)));
     let (mass, from) = (
@@ -63,7 +63,7 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
     let Pair(x, y) = B::invert(origin, Pair(integral, share.mul_add(mass, from)));
     // NaN if any number is, or infinite: the sample has no inclination then, and no density. Rounding may take another past
     // the pole, where it has none either.
-    let shift = (xi[0] + xi[1] + xi[2]).mul_add(zero, C::look_up_three(&view.shift, choice));
+    let shift = (xi[0] + xi[1] + xi[2]).mul_add(c(0.0), C::look_up_three(&view.shift, choice));
     let from_quarter = x.mul_sub(C::look_up_three(&hair.beta, choice), shift);
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);

@@ -1,21 +1,22 @@
 //! Probabilities of the lobes.
 
+use crate::model::lobe::times;
 use crate::simd::{Lanes, store3, store4};
 
 crate::simd::lane_struct! {
     /// Probabilities of the lobes of a shading point, and the choice of one.
-    pub struct Mixture {
+    pub(crate) struct Mixture {
         /// Probability of each lobe.
-        pub selection: [C; 4],
+        pub(super) selection: [C; 4],
         /// Where the next lobe begins in `xi[0]`.
-        pub bounds: [C; 3],
+        pub(super) bounds: [C; 3],
         /// Where each lobe begins in `xi[0]`, from 0 and from 1: the sums of the lobes before it, and of those from it on,
         /// negative.
-        pub start: [C; 4],
+        pub(super) start: [C; 4],
         /// As `start`, from 1.
-        pub start_less_one: [C; 4],
+        pub(super) start_less_one: [C; 4],
         /// 1 for a lobe that scatters, 0 for one that does not.
-        pub kept: [C; 4],
+        pub(super) kept: [C; 4],
     }
 }
 
@@ -30,22 +31,18 @@ impl<C: Lanes> Mixture<C> {
         let (zero, one, two) = (c(0.0), c(1.0), c(2.0));
         // Scaled so that the sum of four does not overflow.
         let most = c(f32::MAX / 8.0);
-        let e = [
-            weights[0].min(most) * kept[0],
-            weights[1].min(most) * kept[1],
-            weights[2].min(most) * kept[2],
-            weights[3].min(most) * kept[3],
-        ];
+        let [a, b, d, e] = weights;
+        let e = times([a.min(most), b.min(most), d.min(most), e.min(most)], kept);
         // A sum of denormals has no reciprocal: it is scaled first.
         let total = (e[0] + e[1]) + (e[2] + e[3]);
         let scale = C::select(total.lt(c(1e-19)), c(1e19), one);
-        let e = [e[0] * scale, e[1] * scale, e[2] * scale, e[3] * scale];
+        let e = times(e, [scale; 4]);
         let total = total * scale;
         let by = C::keep(
             zero.lt(total),
             C::quotient(one, total.max(c(f32::MIN_POSITIVE))),
         );
-        let p = [e[0] * by, e[1] * by, e[2] * by, e[3] * by];
+        let p = times(e, [by; 4]);
         let (first, last) = (p[0] + p[1], p[2] + p[3]);
         let later = [p[1] + last, last, p[3]];
         Self {

@@ -16,20 +16,16 @@ pub(super) struct Places<'a> {
 }
 
 impl Kernel for Places<'_> {
-    type Constant = f32x8;
     type Output = [f32x8; 2];
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 2]
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 2] {
         let (x, y, z): (L, L, L) = (self.dir.x.lanes(), self.dir.y.lanes(), self.dir.z.lanes());
         let c = L::splat;
         let [rows, columns] = self.texels;
         let polar = atan2_upper(x.mul_add(x, z * z).sqrt(), y);
         let turn = atan2_upper(x.abs(), -z).times_sign(x);
-        let row = polar * c(rows / core::f32::consts::PI);
+        let row = polar * (rows / core::f32::consts::PI);
         let column = turn.mul_add(c(columns / core::f32::consts::TAU), c(0.5 * columns));
         [row.store(), column.store()]
     }

@@ -30,14 +30,10 @@ pub(super) fn cells(direction: &Vec3x8) -> [u8; 8] {
 struct Unfold<'a>(&'a Vec3x8);
 
 impl Kernel for Unfold<'_> {
-    type Constant = f32x8;
     type Output = [f32x8; 2];
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 2]
-    where
-        f32x8: Broadcast<L>,
-    {
+    fn run<L: Lanes<Stored = f32x8>>(self) -> [f32x8; 2] {
         let (x, y, z): (L, L, L) = (self.0.x.lanes(), self.0.y.lanes(), self.0.z.lanes());
         let c = L::splat;
         let one = c(1.0);
@@ -49,7 +45,7 @@ impl Kernel for Unfold<'_> {
         let half = c(0.5 * SIDE as f32);
         let place = |upper: L, lower: L| {
             L::select(below, lower, upper)
-                .mul_add(half * c(1.0 - 1e-6), half)
+                .mul_add(half * (1.0 - 1e-6), half)
                 .store()
         };
         [place(a, folded[0]), place(b, folded[1])]

@@ -1,0 +1,52 @@
+//! The choice of one of four per lane: by bounds that a number is compared with, and from tables.
+
+use super::lanes::{Broadcast, Lanes, lanes4};
+
+/// An index from 0 to 3 per lane of `L`.
+pub trait Choice<L: Lanes<Index = Self>>: Copy {
+    /// Counts the first `count` of the ascending `bounds` that are at most `x`.
+    fn search(x: L, bounds: [L; 3], count: usize) -> Self;
+    /// Masks of the lanes whose index is at least 1, 2 and 3.
+    fn masks(self) -> [L::Mask; 3];
+    /// Mask of the lanes whose index is `entry`, 0 to 3.
+    fn equals(self, entry: usize) -> L::Mask;
+    /// The index as a number: 0, 1, 2 or 3.
+    fn to_number(self) -> L;
+
+    /// The entry of each lane's index.
+    #[inline(always)]
+    fn choose(self, table: [L; 4]) -> L {
+        let [one, two, three] = self.masks();
+        L::select(
+            two,
+            L::select(three, table[3], table[2]),
+            L::select(one, table[1], table[0]),
+        )
+    }
+    /// The entry of each lane's index, where 2 and 3 share the last one.
+    #[inline(always)]
+    fn choose_three(self, table: [L; 3]) -> L {
+        let [one, two, _] = self.masks();
+        L::select(two, table[2], L::select(one, table[1], table[0]))
+    }
+    /// The entry of half of each lane's index: the first for 0 and 1, the second for 2 and 3.
+    #[inline(always)]
+    fn choose_half(self, [low, high]: [L; 2]) -> L {
+        L::select(self.masks()[1], high, low)
+    }
+    /// [`choose`](Self::choose), of numbers that all lanes share.
+    #[inline(always)]
+    fn look_up(self, table: &[f32; 4]) -> L {
+        self.choose(lanes4(table))
+    }
+    /// As [`look_up`](Self::look_up), of a table whose last two entries are equal.
+    #[inline(always)]
+    fn look_up_three(self, table: &[f32; 4]) -> L {
+        self.choose_three([table[0].lanes(), table[1].lanes(), table[2].lanes()])
+    }
+    /// [`choose_half`](Self::choose_half), of numbers that all lanes share.
+    #[inline(always)]
+    fn look_up_half(self, table: &[f32; 2]) -> L {
+        self.choose_half([table[0].lanes(), table[1].lanes()])
+    }
+}
