@@ -17,8 +17,9 @@ pub(super) fn draw<L: Lanes, C: Broadcast<L>>(
     let (zero, one, half) = (c(0.0), c(1.0), c(0.5));
     let (view, hair, sampler) = (&prepared.view, &prepared.view.lobes, &prepared.sampler);
     let choice = L::Index::search(xi[0], lanes3(&sampler.bounds), 3);
-    // The second operand wins over NaN: that of a number stays, and the sample has no inclination, or no density.
-    let along = zero.max(one.min(xi[0].mul_add(zero, xi[1])));
+    // The second operand wins over NaN: that of either number stays, and the sample has no
+    // inclination.
+    let along = zero.max(one.min(xi[1].min(xi[0] + xi[1])));
 
     // Inclination: x = theta_h - alpha, and theta_i = 2 (x + alpha) - theta_o. Interleaved with the azimuth.
     let folded = FoldedXi::of(xi[2]);

@@ -123,8 +123,10 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
     let y = L::select(none, one, wo.y * by);
     let z = wo.z * by;
     let plane_sq = y.mul_add(y, z * z);
-    let plane = plane_sq.sqrt();
     let len = x.mul_add(x, plane_sq).sqrt();
+    // NaN if any component is, as the second operand wins: no direction is sound then
+    // (`Angles::from_direction`), and no sample has an inclination.
+    let plane = plane_sq.sqrt().min(len);
     // On the axis the azimuth is 0 by convention, and so it is where `plane_sq` is next to denormals and has no digits.
     let off_axis = c(1e-18).lt(plane);
     let span_plane = L::select(off_axis, plane, one);
@@ -145,9 +147,7 @@ pub(crate) fn prepare<L: Lanes, C: Broadcast<L>>(
         plane_o: store3([
             L::select(near_axis, cos_phi_o, y),
             L::select(near_axis, sin_phi_o, z),
-            // NaN if any component is. No direction is sound then (`Angles::from_direction`), and every sample is next to the
-            // axis.
-            len.mul_add(c(0.0), L::select(near_axis, one, plane)),
+            L::select(near_axis, one, plane),
         ]),
         inv_plane_o: L::select(near_axis, one, inv_plane).store(),
         quarter_o: quarter_o.store(),

@@ -61,10 +61,13 @@ pub(super) fn draw<B: MatchedBell, L: Lanes, C: Broadcast<L>, const N: usize>(
         C::look_up_half(&prepared.azimuth_origin, choice),
     );
     let Pair(x, y) = B::invert(origin, Pair(integral, share.mul_add(mass, from)));
-    // NaN if any number is, or infinite: the sample has no inclination then, and no density. Rounding may take another past
-    // the pole, where it has none either.
-    let shift = (xi[0] + xi[1] + xi[2]).mul_add(c(0.0), C::look_up_three(&view.shift, choice));
-    let from_quarter = x.mul_sub(C::look_up_three(&hair.beta, choice), shift);
+    let from_quarter = x.mul_sub(
+        C::look_up_three(&hair.beta, choice),
+        C::look_up_three(&view.shift, choice),
+    );
+    // Far below 8. NaN if any number is, as the second operand wins: the sample has no inclination
+    // then, and no density. Rounding may take another past the pole, where it has none either.
+    let from_quarter = from_quarter.min(xi[0] + 8.0 + xi[1] + xi[2]);
     let center = L::keep(is_glint, hair.half_phi_g.lanes());
     let psi = y.mul_add(C::look_up_half(&hair.half_gamma, choice), center);
     let (wi, angles) = direction_from_angles(view, choice, from_quarter, folded, psi);
