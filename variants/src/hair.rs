@@ -115,16 +115,34 @@ impl<B: RegisteredBell> Registered for Published<B> {
     const MODEL: Self = Self(B::BELL);
 }
 
+/// Word of the matched sampler: `matched` for nine bands, the default, and `matched-` with their
+/// number for others.
+struct Word<const BANDS: usize>;
+
+impl<const BANDS: usize> Word<BANDS> {
+    const DIGITS: &'static [u8] = b"0123456789";
+    const BYTES: [u8; 10] = {
+        let [tens, ones] = [Self::DIGITS[BANDS / 10], Self::DIGITS[BANDS % 10]];
+        let [first, second] = if BANDS < 10 { [ones, 0] } else { [tens, ones] };
+        [
+            b'm', b'a', b't', b'c', b'h', b'e', b'd', b'-', first, second,
+        ]
+    };
+    const WORD: &'static str = {
+        let len = if BANDS == 9 {
+            7
+        } else {
+            9 + (BANDS >= 10) as usize
+        };
+        match core::str::from_utf8(Self::BYTES.split_at(len).0) {
+            Ok(word) => word,
+            Err(_) => panic!("the bytes are ASCII"),
+        }
+    };
+}
+
 impl<B: RegisteredBell, const BANDS: usize> Registered for Matched<B, BANDS> {
     const NAME: &'static str = B::NAME;
-    const CHOICE: Option<(&'static str, &'static str)> = Some((
-        "sampler",
-        match BANDS {
-            5 => "matched-5",
-            9 => "matched",
-            25 => "matched-25",
-            _ => panic!("there is no such sampler"),
-        },
-    ));
+    const CHOICE: Option<(&'static str, &'static str)> = Some(("sampler", Word::<BANDS>::WORD));
     const MODEL: Self = Self(B::BELL);
 }
