@@ -3,7 +3,7 @@
 use super::ray::{Hit, Ray, Spread};
 use crate::geometry::Strands;
 use glam::Vec3;
-use hairis::simd::{Broadcast, Lanes, f32x8};
+use hairis::simd::{Broadcast, Lanes, f32x8, lanes3};
 
 /// Eight segments, lane by lane. Free lanes start at NaN, which nothing meets.
 #[derive(Clone, Copy, Debug)]
@@ -55,15 +55,11 @@ impl Block {
         limit: f32,
     ) -> (u32, [f32x8; 2]) {
         let [dx, dy, dz] = ray.direction;
+        let (start, edge): ([L; 3], [L; 3]) = (lanes3(&self.start), lanes3(&self.edge));
         let from = [
-            self.start[0].lanes() - ray.origin[0],
-            self.start[1].lanes() - ray.origin[1],
-            self.start[2].lanes() - ray.origin[2],
-        ];
-        let edge: [L; 3] = [
-            self.edge[0].lanes(),
-            self.edge[1].lanes(),
-            self.edge[2].lanes(),
+            start[0] - ray.origin[0],
+            start[1] - ray.origin[1],
+            start[2] - ray.origin[2],
         ];
         let from_along = from[0].mul_add(dx, from[1].mul_add(dy, from[2] * dz));
         let edge_along = edge[0].mul_add(dx, edge[1].mul_add(dy, edge[2] * dz));

@@ -5,7 +5,7 @@ use super::ray::Spread;
 use super::{Hit, Ray, Skip, Tree, TreeError};
 use crate::geometry::{Builder, Flattening, Groom, Kind, Strands};
 use glam::Vec3;
-use hairis::simd::{Broadcast, Kernel, Lanes, Level, f32x8};
+use hairis::simd::{Kernel, Lanes, Level, f32x8};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 

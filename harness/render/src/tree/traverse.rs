@@ -4,7 +4,7 @@ use super::Tree;
 use super::build::DEEPEST;
 use super::node::Child;
 use super::ray::{Hit, Ray, Spread};
-use hairis::simd::{Broadcast, Kernel, Lanes, f32x8};
+use hairis::simd::{Kernel, Lanes, f32x8};
 
 /// Numbers of nodes and blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
