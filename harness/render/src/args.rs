@@ -67,9 +67,9 @@ pub struct Render {
     /// Which samples count where both find a light
     #[arg(long, value_enum, default_value_t = Mis::Both)]
     pub mis: Mis,
-    /// Most scatterings of a path
-    #[arg(long, value_name = "N", default_value_t = 64)]
-    pub depth: u32,
+    /// Most scatterings of a path [default: no limit]
+    #[arg(long, value_name = "N")]
+    pub depth: Option<u32>,
     /// End paths that come from hair where they meet hair
     #[arg(long)]
     pub no_multiple: bool,
@@ -296,8 +296,8 @@ impl Render {
         if !(1..=4096).contains(&self.aa) {
             return refuse("--aa", "from 1 to 4096", &self.aa);
         }
-        if !(1..=10_000).contains(&self.depth) {
-            return refuse("--depth", "from 1 to 10000", &self.depth);
+        if let Some(depth) = self.depth.filter(|depth| !(1..=10_000).contains(depth)) {
+            return refuse("--depth", "from 1 to 10000", &depth);
         }
         Ok(())
     }

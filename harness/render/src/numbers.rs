@@ -61,6 +61,15 @@ impl Numbers {
         self.sample
     }
 
+    /// The numbers of a further part of a path, where it is split. Part 1 and up: the path itself
+    /// keeps its numbers.
+    #[inline]
+    #[must_use]
+    pub fn part(&self, part: u32) -> Self {
+        let key = mix(self.key ^ mix(u64::from(part) << 32 | u64::from(self.group)));
+        Self { key, ..*self }
+    }
+
     /// The next four numbers, each in `[0, 1 - 2^-24]`.
     #[inline]
     pub fn four(&mut self) -> [f32; 4] {

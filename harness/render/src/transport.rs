@@ -1,6 +1,7 @@
 //! Light transport: from a scene to the sums of a film.
 
 mod clock;
+mod cut_off;
 mod gather;
 mod path;
 mod profile;
@@ -10,6 +11,7 @@ mod tests;
 mod wave;
 
 pub use clock::seconds_of_thread;
+pub use cut_off::{CutOff, cut_off};
 pub use profile::{Phase, Profile};
 
 use crate::film::{Crop, Film, Tile};
@@ -101,9 +103,9 @@ pub struct Settings {
     pub seed: u64,
     /// Which samples count.
     pub mis: Mis,
-    /// Most scatterings of a path.
-    pub depth: u32,
-    /// Whether long paths end at random, their survivors weighted.
+    /// Most scatterings of a path; `None` for paths of any length.
+    pub depth: Option<u32>,
+    /// Whether paths that have lost throughput end at random, their survivors weighted.
     pub roulette: bool,
     /// Whether a path that comes from hair goes on where it meets hair.
     pub multiple: bool,
@@ -120,7 +122,7 @@ impl Default for Settings {
             sequence: Sequence::Sobol,
             seed: 1,
             mis: Mis::Both,
-            depth: 64,
+            depth: None,
             roulette: true,
             multiple: true,
             rays: 1,
@@ -220,12 +222,9 @@ fn paths(scene: &Scene, tables: &Tables<'_>, settings: &Settings, tile: &mut Til
     let mut wave = wave::Wave::default();
     while tile.samples < samples {
         let pass = PASS.min(samples - tile.samples);
-        wave.start(
-            scene,
-            settings,
-            tile.place,
-            tile.samples..tile.samples + pass,
-        );
+        let samples = tile.samples..tile.samples + pass;
+        let of_pixel = |pixel| samples.clone().map(move |sample| (pixel, sample));
+        wave.start(scene, settings, tile.place.pixels().flat_map(of_pixel));
         path::run(scene, tables, settings, &mut wave);
         for (sums, radiances) in tile
             .sums

@@ -6,11 +6,11 @@ use hairis_instruments::stats::Moments;
 use hairis_render::camera::Camera;
 use hairis_render::film::Crop;
 use hairis_render::hair::{Choice, Energy, default_sampler, samplers};
-use hairis_render::material::Hair;
+use hairis_render::material::{Hair, Sampling, Scale};
 use hairis_render::numbers::Sequence;
 use hairis_render::scene::Met;
 use hairis_render::scenes::Name;
-use hairis_render::transport::{Integrator, Mis, Settings};
+use hairis_render::transport::{Integrator, Mis, Settings, cut_off};
 use hairis_variants::ModelId;
 
 /// Width and height of pictures of one strand.
@@ -147,7 +147,7 @@ fn every_model_returns_its_albedo_near_field_ones_by_offset() {
 fn hair_that_absorbs_nothing_is_invisible() {
     let iso = scene(Name::FurnaceIso, Hair::Isotropic, 1500, 16);
     let endless = Settings {
-        depth: 1000,
+        depth: Some(1000),
         roulette: false,
         mis: Mis::Bsdf,
         ..Settings::default()
@@ -161,9 +161,7 @@ fn hair_that_absorbs_nothing_is_invisible() {
     }
     for mis in MIS {
         for roulette in [false, true] {
-            let depth = if roulette { 1000 } else { 300 };
             let settings = Settings {
-                depth,
                 roulette,
                 mis,
                 ..Settings::default()
@@ -177,6 +175,102 @@ fn hair_that_absorbs_nothing_is_invisible() {
             assert!(got.standard_error < 0.02, "{mis:?}: {got:?}");
         }
     }
+}
+
+/// Roulette ends no path that nothing has absorbed, so that every path of unscaled weights finds
+/// the white sphere.
+#[test]
+fn roulette_adds_no_variance_to_hair_that_absorbs_nothing() {
+    let strands = [300, 1500];
+    for (strands, hair) in strands.into_iter().zip([Hair::Isotropic, clear("mean")]) {
+        let scene = scene(Name::FurnaceIso, hair, strands, 16);
+        let settings = Settings {
+            mis: Mis::Bsdf,
+            ..Settings::default()
+        };
+        for (place, pixel) in film(&scene, &settings, 8)
+            .picture()
+            .pixels
+            .iter()
+            .enumerate()
+        {
+            let apart = pixel.map(|channel| (channel - 1.0).abs());
+            assert!(
+                apart.iter().all(|apart| *apart < 1e-4),
+                "pixel {place}: {pixel:?}"
+            );
+        }
+    }
+}
+
+/// Chiang's fibre without absorption.
+fn clear(select: &str) -> Hair {
+    let id = ModelId::find("chiang", Some(select)).expect("listed");
+    let values = id.defaults().with("sigma_a", &[0.0; 3]);
+    let bsdf = id.bsdf(&values).expect("in range");
+    Hair::Model(bsdf, Sampling::Own, Scale::Factor(1.0))
+}
+
+#[test]
+fn clear_hair_is_invisible_whatever_counts() {
+    let scene = scene(Name::FurnaceIso, clear("by-channel"), 1500, 16);
+    for mis in MIS {
+        let settings = Settings {
+            mis,
+            ..Settings::default()
+        };
+        for channel in 0..3 {
+            let got = mean(&scene, &settings, 4, 16, channel);
+            let exact = (got.value - 1.0).abs() < 1e-4;
+            assert!(
+                exact || got.z_score(1.0).abs() < 4.0,
+                "{mis:?}, channel {channel}: {got:?}"
+            );
+            // The white sphere alone, sampled uniformly, is a poor guide to the narrow lobes.
+            let most = if mis == Mis::Light { 0.06 } else { 0.02 };
+            assert!(got.standard_error < most, "{mis:?}: {got:?}");
+        }
+    }
+}
+
+#[test]
+fn light_beyond_the_depth_is_estimated() {
+    let scene = scene(Name::FurnaceIso, clear("mean"), 1500, 16);
+    let lost = |depth: Option<u32>, samples: u32| {
+        let settings = Settings {
+            depth,
+            mis: Mis::Bsdf,
+            ..Settings::default()
+        };
+        let film = film(&scene, &settings, samples);
+        (film.picture().mean(), cut_off(&scene, &settings, &film))
+    };
+    assert_eq!(lost(None, 4).1, None, "paths of any length");
+    // A picture of few samples, whose paths are all followed: the missing light to the last bit of
+    // a sum, in every channel.
+    let (seen, of_all) = lost(Some(8), 4);
+    let of_all = of_all.expect("a depth");
+    for (share, seen) in of_all.shares().iter().zip(seen) {
+        assert!(
+            (share.value - (1.0 - seen)).abs() < 1e-4,
+            "{seen} {share:?}"
+        );
+        assert!(share.value > 0.1, "it shows: {share:?}");
+    }
+    assert!(of_all.is_notable());
+    let line = of_all.to_string();
+    assert!(
+        line.starts_with("--depth 8 leaves out ") && !line.contains('\n'),
+        "{line}"
+    );
+    // One of more samples than are followed.
+    let (seen, of_some) = lost(Some(8), 256);
+    for (share, seen) in of_some.expect("a depth").shares().iter().zip(seen) {
+        let got = share.z_score(1.0 - seen).abs();
+        assert!(got < 4.0 && share.standard_error < 5e-3, "{seen} {share:?}");
+    }
+    let (_, nothing) = lost(Some(10_000), 4);
+    assert!(!nothing.expect("a depth").is_notable());
 }
 
 #[test]
@@ -224,7 +318,8 @@ fn presets_converge_and_scaled_hair_never_shines() {
         depth,
         ..Settings::default()
     };
-    let [short, long] = [64, 128].map(|depth| film(&raw, &settings(depth), 64).picture().mean()[0]);
+    let [short, long] =
+        [Some(64), Some(128)].map(|depth| film(&raw, &settings(depth), 64).picture().mean()[0]);
     assert!((long - short).abs() < 1e-3, "depth 64 {short}, 128 {long}");
 }
 

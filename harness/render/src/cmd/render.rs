@@ -15,7 +15,7 @@ use crate::picture;
 use crate::saver::Saver;
 use crate::scene::Scene;
 use crate::scenes::{self, Name, Parts};
-use crate::transport::{Integrator, Settings};
+use crate::transport::{self, CutOff, Integrator, Settings};
 use core::time::Duration;
 use description::describe;
 pub(crate) use description::picture_size;
@@ -124,6 +124,10 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         film.tiles.iter().all(|tile| !tile.first.is_empty())
     })?;
     passes(flags, &scene, &settings, samples, &mut part, &mut saver)?;
+    if let Some(lost) = transport::cut_off(&scene, &settings, &part.film).filter(CutOff::is_notable)
+    {
+        say(&lost.to_string());
+    }
     if flags.profile {
         writeln!(io::stdout(), "time: {}", part.film.profile).map_err(Error::Write)?;
     }

@@ -14,20 +14,46 @@ use hairis_instruments::direction::cosine;
 
 /// Scatterings before paths may end at random.
 const FIRST_ROULETTE: u32 = 4;
-/// Largest probability with which a path goes on.
-const MOST_SURVIVAL: f32 = 0.95;
+/// Most paths that a camera ray is split into.
+pub(super) const MOST_PARTS: u32 = 64;
 
-/// Follows all paths of a wave to their ends.
+/// Follows all paths of a wave to their ends, or to the depth.
 pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave: &mut Wave) {
     let depth = if settings.integrator == Integrator::Direct {
-        1
+        Some(1)
     } else {
         settings.depth
     };
     lap(Phase::Numbers);
-    for scatterings in 0.. {
-        trace(scene, settings, wave, scatterings == 0);
-        if scatterings == depth {
+    trace(scene, settings, wave, true);
+    scatter(scene, tables, settings, wave, 0, depth);
+}
+
+/// Goes on with the paths of a wave that [`run`] has followed to a depth, to their ends. Only light
+/// beyond the depth counts.
+pub(super) fn run_beyond(
+    scene: &Scene,
+    tables: &Tables<'_>,
+    settings: &Settings,
+    wave: &mut Wave,
+    depth: u32,
+) {
+    wave.forget();
+    scatter(scene, tables, settings, wave, depth, None);
+}
+
+/// Scatters paths that have met something, `first` scatterings behind them, until they have ended
+/// or have a count of scatterings.
+fn scatter(
+    scene: &Scene,
+    tables: &Tables<'_>,
+    settings: &Settings,
+    wave: &mut Wave,
+    first: u32,
+    depth: Option<u32>,
+) {
+    for scatterings in first.. {
+        if Some(scatterings) == depth {
             break;
         }
         wave.shadows.clear();
@@ -44,6 +70,7 @@ pub(super) fn run(scene: &Scene, tables: &Tables<'_>, settings: &Settings, wave:
         if wave.paths.is_empty() {
             break;
         }
+        trace(scene, settings, wave, false);
     }
 }
 
@@ -269,19 +296,45 @@ pub(super) fn leave(
     }
 }
 
-/// Removes paths that have ended, and with `roulette` ends some of the others, each with a probability that grows as its
-/// throughput falls.
+/// Removes paths that have ended. With `roulette`, keeps the throughputs of the others about that
+/// of a camera ray, which is 1: a path whose largest channel `t` is
+///
+/// - below 1 survives with probability `t`, and its throughput is divided by that. A path that
+///   nothing has absorbed never ends at random, and survival never raises a channel above 1: a cap
+///   on the probability would multiply throughputs without end, with infinite variance where fewer
+///   paths leave hair per scattering than the cap ends;
+/// - 2 or more goes on as `floor(t)` paths of equal parts, as far as the camera ray's
+///   [`MOST_PARTS`] allow. Weights of a sampler are 1 on average, but over scatterings without end
+///   their products have infinite variance.
+///
+/// Both are relative to the camera ray and not to the scattering before, which would keep what one
+/// weight has raised and end what the next lowers.
 fn end_some(wave: &mut Wave, roulette: bool) {
-    wave.paths.retain_mut(|path| {
+    let Wave { paths, parts, .. } = wave;
+    paths.retain_mut(|path| {
         let most = path.throughput.max_element();
-        if !path.alive || most.is_nan() || most <= 0.0 {
+        if !path.alive || !most.is_finite() || most <= 0.0 {
             return false;
         }
-        if roulette {
-            let survival = most.min(MOST_SURVIVAL);
-            path.throughput /= survival;
-            return path.roulette < survival;
+        if roulette && most < 1.0 {
+            path.throughput /= most;
+            return path.roulette < most;
+        }
+        if roulette && most >= 2.0 {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "the cast saturates"
+            )]
+            let count = (most as u32).min(path.parts);
+            path.throughput /= count as f32;
+            path.parts /= count;
+            parts.extend((1..count).map(|part| Path {
+                numbers: path.numbers.part(part),
+                ..*path
+            }));
         }
         true
     });
+    paths.append(parts);
 }

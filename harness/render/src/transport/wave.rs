@@ -1,11 +1,10 @@
 //! The paths of a tile that are followed side by side.
 
+use super::path::MOST_PARTS;
 use super::{Settings, key};
-use crate::film::Crop;
 use crate::numbers::Numbers;
 use crate::scene::{Met, Scene};
 use crate::tree::{self, Ray};
-use core::ops::Range;
 use glam::Vec3;
 
 /// A path on its way.
@@ -24,6 +23,8 @@ pub(super) struct Path {
     /// Number that decides whether the path goes on.
     pub(super) roulette: f32,
     pub(super) alive: bool,
+    /// Most paths that it may be split into.
+    pub(super) parts: u32,
 }
 
 /// A ray to a light, and what the light adds to a sample if nothing is between.
@@ -42,45 +43,43 @@ pub(super) struct Wave {
     /// Paths that met hair, and where.
     pub(super) hits: Vec<(u32, tree::Hit)>,
     pub(super) shadows: Vec<Shadow>,
+    /// Parts of paths that were split, before they are paths.
+    pub(super) parts: Vec<Path>,
     radiances: Vec<Vec3>,
 }
 
 impl Wave {
-    /// Camera rays of some samples of every pixel.
+    /// Camera rays, each of a sample of a pixel.
     pub(super) fn start(
         &mut self,
         scene: &Scene,
         settings: &Settings,
-        place: Crop,
-        samples: Range<u32>,
+        samples: impl Iterator<Item = ([u32; 2], u32)>,
     ) {
         self.paths.clear();
-        for pixel in place.pixels() {
-            for sample in samples.clone() {
-                let mut numbers =
-                    Numbers::new(settings.sequence, settings.seed, key(pixel), sample);
-                let [x, y, ..] = numbers.four();
-                let ray = scene.camera.ray(pixel[0] as f32 + x, pixel[1] as f32 + y);
-                let slot = self.paths.len();
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    reason = "a tile has a few thousand samples"
-                )]
-                let slot = slot as u32;
-                self.paths.push(Path {
-                    ray,
-                    throughput: Vec3::ONE,
-                    pdf: 0.0,
-                    slot,
-                    numbers,
-                    from_hair: false,
-                    roulette: 0.0,
-                    alive: true,
-                });
-            }
+        for (slot, (pixel, sample)) in (0..).zip(samples) {
+            let mut numbers = Numbers::new(settings.sequence, settings.seed, key(pixel), sample);
+            let [x, y, ..] = numbers.four();
+            let ray = scene.camera.ray(pixel[0] as f32 + x, pixel[1] as f32 + y);
+            self.paths.push(Path {
+                ray,
+                throughput: Vec3::ONE,
+                pdf: 0.0,
+                slot,
+                numbers,
+                from_hair: false,
+                roulette: 0.0,
+                alive: true,
+                parts: MOST_PARTS,
+            });
         }
         self.radiances.clear();
         self.radiances.resize(self.paths.len(), Vec3::ZERO);
+    }
+
+    /// Sets all radiances to 0.
+    pub(super) fn forget(&mut self) {
+        self.radiances.fill(Vec3::ZERO);
     }
 
     /// Adds light to a sample.
@@ -89,7 +88,7 @@ impl Wave {
         self.radiances[slot as usize] += radiance;
     }
 
-    /// The samples: those of a pixel side by side.
+    /// The samples, in the order of the camera rays.
     pub(super) fn radiances(&self) -> &[Vec3] {
         &self.radiances
     }

@@ -94,7 +94,7 @@ pub(super) fn describe(
         format!("strands={strands} import={file:016x} scale={scale:?} radius={radius:?} up={up:?}"),
         format!("follow={follow} spread={spread} rectangles={rectangles:?}"),
         format!("integrator={integrator:?} xi={sequence:?} seed={seed} mis={mis:?}"),
-        format!("depth={depth} roulette={roulette} multiple={multiple} aa={rays}"),
+        format!("depth={depth:?} roulette={roulette} multiple={multiple} aa={rays}"),
         build(),
     ];
     Ok(words.join(" "))
