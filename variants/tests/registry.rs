@@ -7,8 +7,8 @@ use hairis::columns::EvalColumns;
 use hairis::simd::Level;
 use hairis::{HairParams, Hit, Lobe, LobeMask, Material, Material8, ParamError};
 use hairis_variants::{
-    AnyMaterial8, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters, Registered,
-    Visitor,
+    AnyMaterial8, ChiangDesc, ChiangParams, Field, KajiyaKayParams, Kind, ModelId, Parameters,
+    Registered, Visitor,
 };
 
 #[test]
@@ -87,6 +87,14 @@ fn a_field_takes_the_place_of_another() {
     );
     let refused = ChiangParams::from_values(&melanin.with("melanin", &[0.3, -1.0]));
     assert_eq!(refused, Err(ParamError::Scalar("pheomelanin", -1.0)));
+    let amount = melanin
+        .without("melanin")
+        .with("melanin_amount", &[0.7, 0.6]);
+    let desc = ChiangDesc::default().with_melanin_amount(0.7, 0.6);
+    assert_eq!(
+        ChiangParams::from_values(&amount),
+        desc.and_then(|desc| ChiangParams::new(&desc))
+    );
 }
 
 /// Compares the handles of a type with those chosen at run time, to the bit.

@@ -365,6 +365,9 @@ impl<const BY_CHANNEL: bool> Formulas for Chiang<BY_CHANNEL> {
         let parameters = if exact.has("melanin") {
             let [eumelanin, pheomelanin] = exact.get("melanin");
             parameters.with_melanin(eumelanin, pheomelanin)
+        } else if exact.has("melanin_amount") {
+            let [amount, redness] = exact.get("melanin_amount");
+            parameters.with_melanin_amount(amount, redness)
         } else if exact.has("color") {
             parameters.with_color(exact.get("color"))
         } else {

@@ -21,6 +21,7 @@ impl Parameters for ChiangParams {
         Field::new("eta", Kind::Number).uniform(1.3, 1.7).optional(),
         Field::new("sigma_a", Kind::Rgb).log_uniform(0.05, 5.0),
         Field::new("melanin", Kind::Numbers(&["eumelanin", "pheomelanin"])).instead_of("sigma_a"),
+        Field::new("melanin_amount", Kind::Numbers(&["amount", "redness"])).instead_of("sigma_a"),
         Field::new("color", Kind::Rgb).instead_of("sigma_a"),
         Field::new("shifts", Kind::Word(&[SHIFTS[0].0, SHIFTS[1].0])).optional(),
     ];
@@ -63,6 +64,9 @@ impl Parameters for ChiangParams {
         let desc = if values.has("melanin") {
             let [eumelanin, pheomelanin] = values.get("melanin");
             desc.with_melanin(eumelanin, pheomelanin)?
+        } else if values.has("melanin_amount") {
+            let [amount, redness] = values.get("melanin_amount");
+            desc.with_melanin_amount(amount, redness)?
         } else if values.has("color") {
             desc.with_color(values.get("color"))?
         } else {

@@ -75,6 +75,16 @@ impl<T: Real> ChiangParameters<T> {
         }
     }
 
+    /// The same fibre with an artist's melanin: see
+    /// [`ChiangDesc::with_melanin_amount`](hairis_variants::ChiangDesc::with_melanin_amount).
+    #[inline]
+    #[must_use]
+    pub fn with_melanin_amount(self, amount: T, redness: T) -> Self {
+        let one = T::from_f64(1.0);
+        let quantity = -(one - amount).max(T::from_f64(1e-4)).ln();
+        self.with_melanin(quantity * (one - redness), quantity * redness)
+    }
+
     /// The same fibre with the absorption of a colour: see [`ChiangDesc::with_color`](hairis_variants::ChiangDesc::with_color).
     #[inline]
     #[must_use]
