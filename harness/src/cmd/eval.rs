@@ -6,7 +6,6 @@
 //! depend on that.
 
 mod answer;
-mod json;
 mod lines;
 mod request;
 

@@ -108,6 +108,11 @@ fn chiang_by_absorption_melanin_and_color() {
     let of_melanin: [f64; 3] = core::array::from_fn(|c| {
         melanin[0] * [0.419, 0.697, 1.37][c] + melanin[1] * [0.187, 0.4, 1.05][c]
     });
+    // As MaterialX prints it: a quantity of melanin, of which the redness is pheomelanin.
+    let quantity = -(1.0_f64 - 0.7).ln();
+    let of_amount: [f64; 3] = core::array::from_fn(|c| {
+        quantity * (0.6 * [0.419, 0.697, 1.37][c] + 0.4 * [0.187, 0.4, 1.05][c])
+    });
     let powers = [2, 3, 4, 5].map(|n| beta_n.powi(n));
     let denominator = 5.969 - 0.215 * beta_n + 2.532 * powers[0] - 10.73 * powers[1]
         + 5.574 * powers[2]
@@ -116,6 +121,7 @@ fn chiang_by_absorption_melanin_and_color() {
     for (field, numbers, sigma_a) in [
         ("sigma_a", json!([0.3, 0.5, 0.7]), [0.3, 0.5, 0.7]),
         ("melanin", json!(melanin), of_melanin),
+        ("melanin_amount", json!([0.7, 0.4]), of_amount),
         ("color", json!(color), of_color),
     ] {
         let p = ChiangParameters {

@@ -185,6 +185,64 @@ fn each_bad_value_is_refused_by_name_and_the_rest_still_runs() {
 }
 
 #[test]
+fn an_offset_beyond_the_fibre_is_refused() {
+    let line = |h: &str| {
+        format!(
+            r#"{{"model":"chiang","params":{{"beta_m":0.3,"beta_n":0.3,"melanin_amount":[0.5,0]}},"h":{h},"wo":[0,1,0],"wi":[0,0,1]}}"#
+        )
+    };
+    for path in PATHS {
+        for h in ["-1", "1", "1.0", "-0.0"] {
+            let run = run(&["eval", "--path", path], line(h).as_bytes());
+            assert_eq!(run.code, Some(0), "{path}, h {h}: {:?}", run.out);
+        }
+        for h in ["1.5", "-1.0000001", "1e300"] {
+            let run = run(&["eval", "--path", path], line(h).as_bytes());
+            let error = run.json()[0]["error"]
+                .as_str()
+                .unwrap_or_default()
+                .to_owned();
+            let start = "h: must be in [-1, 1], got ";
+            assert!(
+                run.code == Some(2) && error.starts_with(start),
+                "{path}, h {h}: {error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn amounts_of_melanin_have_ranges() {
+    let refused = |melanin: &str| {
+        let line = format!(
+            r#"{{"model":"chiang","params":{{"beta_m":0.3,"beta_n":0.3,{melanin}}},"wo":[0,1,0],"wi":[0,0,1]}}"#
+        );
+        let run = run(&["eval"], line.as_bytes());
+        run.json()[0]["error"].as_str().unwrap().to_owned()
+    };
+    for (melanin, problem) in [
+        (
+            r#""melanin_amount":[1.5,0]"#,
+            "params.melanin_amount[0]: must be in [0, 1], got 1.5",
+        ),
+        (
+            r#""melanin_amount":[0.5,-1]"#,
+            "params.melanin_amount[1]: must be in [0, 1], got -1",
+        ),
+        (
+            r#""melanin_amount":0.5"#,
+            "params.melanin_amount: must be an array of 2 numbers, got 0.5",
+        ),
+        (
+            r#""melanin_amount":[0.5,0],"color":[1,1,1]"#,
+            "params.melanin_amount: given together with color; give one of them",
+        ),
+    ] {
+        assert_eq!(refused(melanin), problem);
+    }
+}
+
+#[test]
 fn each_bad_line_is_refused_and_the_rest_still_runs() {
     let text = good().to_string();
     let long = vec![b' '; (1 << 20) + 1];

@@ -29,6 +29,23 @@ fn a_last_line_needs_no_end() {
 }
 
 #[test]
+fn byte_order_marks_cost_no_line() {
+    let text = good().to_string();
+    for path in PATHS {
+        let expected = run(&["eval", "--path", path], text.as_bytes()).out;
+        // One file, and two that were joined.
+        let input = format!("\u{feff}{text}\r\n{text}\r\n\u{feff}{text}\r\n");
+        let run = run(&["eval", "--path", path], input.as_bytes());
+        assert_eq!(run.code, Some(0), "{path}: {:?}", run.out);
+        assert_eq!(
+            run.out,
+            [&expected[..], &expected, &expected].concat(),
+            "{path}"
+        );
+    }
+}
+
+#[test]
 fn a_reader_that_leaves_is_no_error() {
     let input = format!("{}\n", good()).repeat(20_000);
     for path in PATHS {

@@ -8,6 +8,7 @@ use glam::Vec3;
 use hairis::columns::{EvalColumns, SampleColumns};
 use hairis::model::LobeEval8;
 use hairis::{Eval, Hit, Lobe, PerLobe, Sample, Vec3x8};
+use hairis_materials::MaterialSpec;
 use hairis_reference::{ReferenceSample, exact_reference};
 use hairis_variants::{AnyBsdf, AnyMaterial8, ModelId};
 use serde::Serialize;
@@ -68,13 +69,15 @@ pub(super) fn answers(
             .iter()
             .enumerate()
             .filter_map(|(at, line)| Some((at, line.as_ref().ok()?)));
-        let (places, requests): (Vec<usize>, Vec<&Request>) =
-            requests.filter(|(_, of)| of.model == *model).unzip();
+        let (places, requests): (Vec<usize>, Vec<&Request>) = requests
+            .filter(|(_, of)| of.spec.model == *model)
+            .unzip();
         let found: Vec<_> = match path {
             CodePath::X8 => requests.chunks(8).flat_map(eight).collect(),
             CodePath::Batch => {
-                let is_shared =
-                    |a: &&Request, b: &&Request| (a.wo, a.h) == (b.wo, b.h) && a.values == b.values;
+                let is_shared = |a: &&Request, b: &&Request| {
+                    (a.wo, a.h) == (b.wo, b.h) && a.spec.values == b.spec.values
+                };
                 requests.chunk_by(is_shared).flat_map(batch).collect()
             }
             CodePath::Scalar | CodePath::F64 => requests.into_iter().map(scalar).collect(),
@@ -97,7 +100,7 @@ fn scalar(request: &Request) -> Answer<f32> {
         }
     };
     let densities = bsdf.lobes(wi).0.map(|lobe| lobe.pdf);
-    answer(request.model, found, densities, &|| {
+    answer(request.spec.model, found, densities, &|| {
         bsdf.lobes(request.wo).0.map(|lobe| lobe.color)
     })
 }
@@ -107,7 +110,7 @@ fn scalar(request: &Request) -> Answer<f32> {
 fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
     let lane = |i: usize| group[i.min(group.len() - 1)];
     let materials =
-        AnyMaterial8::pack(from_fn(|i| &lane(i).material)).expect("requests of one model");
+        AnyMaterial8::pack(from_fn(|i| &lane(i).spec.material)).expect("requests of one model");
     let wo = Vec3x8::from(from_fn(|i| lane(i).wo));
     let bsdfs = materials.prepare8(Hit {
         wo,
@@ -130,7 +133,12 @@ fn eight(group: &[&Request]) -> Vec<Answer<f32>> {
             Query::Xi(_) => drawn(samples.lane(i)),
         };
         let colors = || at_wo.0.map(|lobe| lobe.color.map(|c| c.as_array()[i]));
-        answer(request.model, found, densities_of_lane(&lobes, i), &colors)
+        answer(
+            request.spec.model,
+            found,
+            densities_of_lane(&lobes, i),
+            &colors,
+        )
     };
     group.iter().enumerate().map(of_lane).collect()
 }
@@ -155,7 +163,7 @@ fn batch(run: &[&Request]) -> Vec<Answer<f32>> {
             Query::Wi(_) => values.next()?,
             Query::Xi(_) => samples.next()?,
         };
-        Some(answer(request.model, found, densities, &|| {
+        Some(answer(request.spec.model, found, densities, &|| {
             bsdf.lobes(request.wo).0.map(|lobe| lobe.color)
         }))
     };
@@ -235,18 +243,17 @@ fn batch_densities(bsdf: &AnyBsdf, wi: &[Vec3]) -> Vec<[f32; 4]> {
 
 /// The formulas in double precision, for the numbers of the line as they are.
 fn formulas(request: &Request) -> Answer<f64> {
-    let Request {
+    let MaterialSpec {
         model,
         values,
-        exact:
-            Exact {
-                values: exact,
-                wo,
-                h,
-                query: numbers,
-            },
+        exact,
         ..
-    } = request;
+    } = &request.spec;
+    let Exact {
+        wo,
+        h,
+        query: numbers,
+    } = &request.exact;
     let point = exact_reference(*model, values, exact, *wo, *h).expect("checked when it was read");
     let (found, wi) = match request.query {
         Query::Wi(_) => (
@@ -265,7 +272,7 @@ fn formulas(request: &Request) -> Answer<f64> {
 }
 
 fn bsdf(request: &Request) -> AnyBsdf {
-    request.material.prepare(Hit {
+    request.spec.material.prepare(Hit {
         wo: request.wo.into(),
         h: request.h,
     })

@@ -1,10 +1,13 @@
 //! The lines of a stream, with a bound on their length.
 
-use super::request::refusal;
+use hairis_materials::json::refusal;
 use std::io::{self, BufRead, BufReader, Read};
 
 /// Longest line taken, in bytes: a thousand times what a request needs.
 const LONGEST: usize = 1 << 20;
+
+/// The byte-order mark in UTF-8.
+const MARK: &[u8] = "\u{feff}".as_bytes();
 
 /// Lines one by one, in one buffer.
 pub(super) struct Lines<R> {
@@ -46,7 +49,10 @@ impl<R: Read> Lines<R> {
                 format!("longer than {LONGEST} bytes"),
             ))));
         }
-        let text = core::str::from_utf8(&self.line).map_err(|error| {
+        // Files that editors and shells of Windows write begin with a mark, and several of them may
+        // have been joined.
+        let line = self.line.strip_prefix(MARK).unwrap_or(&self.line);
+        let text = core::str::from_utf8(line).map_err(|error| {
             refusal(
                 "line",
                 format!("not UTF-8 after byte {}", error.valid_up_to()),

@@ -1,0 +1,257 @@
+//! JSON with the path of an error.
+
+use core::fmt;
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde_json::de::StrRead;
+use serde_path_to_error::{Segment, Track};
+use std::collections::BTreeMap;
+
+/// A text that is being read.
+type Input<'a> = serde_json::Deserializer<StrRead<'a>>;
+
+/// A JSON value.
+#[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[serde(untagged)]
+pub enum Json {
+    /// `null`.
+    Null,
+    /// `true` or `false`.
+    Bool(bool),
+    /// A number, in double precision.
+    Number(f64),
+    /// A string.
+    Text(String),
+    /// An array.
+    Array(Vec<Json>),
+    /// An object.
+    Object(Entries),
+}
+
+/// The fields of an object, in the order of the input and as often as they are given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entries(Vec<(String, Json)>);
+
+impl<'de> Deserialize<'de> for Entries {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        from.deserialize_map(EntriesVisitor)
+    }
+}
+
+struct EntriesVisitor;
+
+impl<'de> Visitor<'de> for EntriesVisitor {
+    type Value = Entries;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Entries, A::Error> {
+        let mut entries = Vec::new();
+        while let Some(entry) = map.next_entry()? {
+            entries.push(entry);
+        }
+        Ok(Entries(entries))
+    }
+}
+
+impl Json {
+    /// Parses a line that holds one value. A refusal names the innermost field that was being read.
+    ///
+    /// # Errors
+    ///
+    /// If the line is blank, or not JSON.
+    pub fn parse(line: &str) -> Result<Self, String> {
+        if line.trim_ascii().is_empty() {
+            return Err(refusal("line", "blank"));
+        }
+        let mut input = serde_json::Deserializer::from_str(line);
+        Self::next(&mut input, |json, input| input.end().map(|()| json)).map_err(
+            |(field, problem, error)| {
+                refusal(&field, format!("{problem} (column {})", error.column()))
+            },
+        )
+    }
+
+    /// Parses all values of a text, with or without white space between them.
+    ///
+    /// # Errors
+    ///
+    /// If the text is not JSON.
+    pub fn parse_all(text: &str) -> Result<Vec<Self>, String> {
+        let mut input = serde_json::Deserializer::from_str(text);
+        let mut values = Vec::new();
+        while input.end().is_err() {
+            let value = Self::next(&mut input, |json, _| Ok(json));
+            values.push(value.map_err(|(field, problem, error)| {
+                let place = format!("line {}, column {}", error.line(), error.column());
+                refusal(&field, format!("{problem} ({place})"))
+            })?);
+        }
+        Ok(values)
+    }
+
+    /// The next value, checked by `then`; or the field that was being read, the problem and the
+    /// error.
+    fn next<'a>(
+        input: &mut Input<'a>,
+        then: impl FnOnce(Self, &mut Input<'a>) -> serde_json::Result<Self>,
+    ) -> Result<Self, (String, String, serde_json::Error)> {
+        let mut track = Track::new();
+        let tracked = serde_path_to_error::Deserializer::new(&mut *input, &mut track);
+        let parsed = Self::deserialize(tracked).and_then(|json| then(json, input));
+        parsed.map_err(|error| {
+            let text = error.to_string();
+            let problem = text
+                .rsplit_once(" at line ")
+                .map_or(&*text, |(problem, _)| problem);
+            let path = track
+                .path()
+                .iter()
+                .fold(String::new(), |path, segment| match segment {
+                    Segment::Map { key } => join(&path, key),
+                    Segment::Seq { index } => format!("{path}[{index}]"),
+                    _ => path,
+                });
+            if path.is_empty() {
+                ("line".to_owned(), format!("not JSON: {problem}"), error)
+            } else {
+                (path, problem.to_owned(), error)
+            }
+        })
+    }
+
+    /// The text of the object's field `name`, if there is one.
+    #[must_use]
+    pub fn peek(&self, name: &str) -> Option<&str> {
+        let Self::Object(Entries(entries)) = self else {
+            return None;
+        };
+        entries.iter().find_map(|(field, value)| match value {
+            Self::Text(text) if field == name => Some(&**text),
+            _ => None,
+        })
+    }
+
+    /// The fields of an object at `path`, empty for that of the line: all of them `known`, and none
+    /// given twice.
+    ///
+    /// # Errors
+    ///
+    /// If it is no object, or has other fields or one of them twice.
+    pub fn fields(self, path: &str, known: &[&str]) -> Result<BTreeMap<String, Self>, String> {
+        let Self::Object(Entries(entries)) = self else {
+            let field = if path.is_empty() { "line" } else { path };
+            return Err(refusal(field, format!("must be an object, got {self}")));
+        };
+        let mut fields = BTreeMap::new();
+        for (name, value) in entries {
+            let at = join(path, &name);
+            if !known.contains(&&*name) {
+                return Err(refusal(
+                    &at,
+                    format!("unknown field, expected one of {}", known.join(", ")),
+                ));
+            }
+            if fields.insert(name, value).is_some() {
+                return Err(refusal(&at, "given twice"));
+            }
+        }
+        Ok(fields)
+    }
+}
+
+impl fmt::Display for Json {
+    /// The value as refusals show it, shortened.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Null => f.write_str("null"),
+            Self::Bool(value) => write!(f, "{value}"),
+            Self::Number(value) => write!(f, "{value}"),
+            Self::Text(text) => write!(f, "\"{}\"", shortened(text)),
+            Self::Array(items) => write!(f, "an array of {}", items.len()),
+            Self::Object(_) => f.write_str("an object"),
+        }
+    }
+}
+
+/// The path of a field of the object at `path`.
+#[must_use]
+pub fn join(path: &str, name: &str) -> String {
+    let name = shortened(name);
+    if path.is_empty() {
+        name
+    } else {
+        format!("{path}.{name}")
+    }
+}
+
+/// Enough of a text to recognise it.
+fn shortened(text: &str) -> String {
+    cut(text, 40)
+}
+
+/// Refusal of a line: the path of the field at fault, and the problem. A line of the input is
+/// echoed in part.
+#[must_use]
+pub fn refusal(field: &str, problem: impl Into<String>) -> String {
+    format!("{}: {}", cut(field, 80), cut(&problem.into(), 240))
+}
+
+/// The first `longest` characters of a text.
+fn cut(text: &str, longest: usize) -> String {
+    match text.char_indices().nth(longest) {
+        Some((at, _)) => format!("{}...", &text[..at]),
+        None => text.to_owned(),
+    }
+}
+
+/// The place among `words` of the one at `path`.
+///
+/// # Errors
+///
+/// If it is none of them.
+pub fn word(path: &str, json: &Json, words: &[&str]) -> Result<usize, String> {
+    let Json::Text(text) = json else {
+        return Err(refusal(path, format!("must be a string, got {json}")));
+    };
+    words.iter().position(|word| word == text).ok_or_else(|| {
+        let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+        refusal(path, format!("must be {}, got {json}", words.join(" or ")))
+    })
+}
+
+/// The number at `path`.
+///
+/// # Errors
+///
+/// If it is something else.
+pub fn number(path: &str, json: &Json) -> Result<f64, String> {
+    match json {
+        Json::Number(number) => Ok(*number),
+        other => Err(refusal(path, format!("must be a number, got {other}"))),
+    }
+}
+
+/// The `len` numbers at `path`.
+///
+/// # Errors
+///
+/// If it is no array of as many numbers.
+pub fn numbers(path: &str, json: &Json, len: usize) -> Result<Vec<f64>, String> {
+    match json {
+        Json::Array(items) if items.len() == len => items
+            .iter()
+            .zip(0..)
+            .map(|(json, i)| number(&format!("{path}[{i}]"), json))
+            .collect(),
+        Json::Array(items) => Err(refusal(
+            path,
+            format!("must have {len} numbers, got {}", items.len()),
+        )),
+        other => Err(refusal(
+            path,
+            format!("must be an array of {len} numbers, got {other}"),
+        )),
+    }
+}

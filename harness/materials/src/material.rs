@@ -1,0 +1,387 @@
+//! A model of the registry with its parameters.
+
+use crate::json::{Json, join, number, numbers, refusal, word};
+use hairis::ParamError;
+use hairis_variants::{AnyMaterial, Field, Kind, ModelId, Values};
+use std::collections::BTreeMap;
+
+/// Fields of an object, by name.
+type Fields = BTreeMap<String, Json>;
+
+/// A model with checked parameters.
+///
+/// ```
+/// use hairis_materials::MaterialSpec;
+/// let params = r#"{"beta_m": 0.2, "beta_n": 0.3, "melanin_amount": [0.7, 0.4]}"#;
+/// let text = format!(r#"{{"model": "chiang", "params": {params}}}"#);
+/// let [material] = &MaterialSpec::parse_all(&text)?[..] else { panic!("one") };
+/// assert_eq!(material.model.name(), "chiang");
+/// let smooth = material.set(&["beta_m=0.1".to_owned()])?;
+/// assert_eq!(smooth.values.numbers("beta_m"), [0.1]);
+/// assert!(material.set(&["beta_m=7".to_owned()]).is_err());
+/// # Ok::<(), String>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct MaterialSpec {
+    /// The model.
+    pub model: ModelId,
+    /// Whether the input names the model's sampler, or another [`choice`](ModelId::choice).
+    pub is_chosen: bool,
+    /// Parameters, rounded to single precision.
+    pub values: Values,
+    /// Parameters as they are in the input.
+    pub exact: Values<f64>,
+    /// The material for the kernels.
+    pub material: AnyMaterial,
+}
+
+impl MaterialSpec {
+    /// The material of a model's parameters.
+    ///
+    /// # Errors
+    ///
+    /// If a value is out of its range.
+    pub fn new(model: ModelId, values: Values) -> Result<Self, ParamError> {
+        Ok(Self {
+            model,
+            is_chosen: false,
+            values,
+            exact: values.map(f64::from),
+            material: model.material(&values)?,
+        })
+    }
+
+    /// The first model of the name that an object gives; the first of all, where the name is not
+    /// that of any.
+    #[must_use]
+    pub fn first_of_name(object: &Json) -> ModelId {
+        let name = object.peek("model");
+        name.and_then(|name| ModelId::find(name, None))
+            .unwrap_or(ModelId::ALL[0])
+    }
+
+    /// Names of the fields of a request of `hairis eval` for a model: the material, and the query
+    /// about it.
+    pub fn fields_of_request(first: ModelId) -> impl Iterator<Item = &'static str> {
+        let choice = first.choice().map(|(field, _)| field);
+        let h = first.is_near_field().then_some("h");
+        ["model"]
+            .into_iter()
+            .chain(choice)
+            .chain(["params"])
+            .chain(h)
+            .chain(["wo", "wi", "xi"])
+    }
+
+    /// Reads a material from the fields of an object, of which
+    /// [`first_of_name`](Self::first_of_name) has told the model.
+    ///
+    /// # Errors
+    ///
+    /// If a field is missing or has no legal value: the field and the problem.
+    pub fn read(first: ModelId, object: &Fields) -> Result<Self, String> {
+        let given = |name: &str| object.get(name).ok_or_else(|| refusal(name, "missing"));
+        let names: Vec<_> = ModelId::defaults_of_names().map(ModelId::name).collect();
+        word("model", given("model")?, &names)?;
+        let choice = first.choice().map(|(field, _)| field);
+        let choice = choice.and_then(|field| Some((field, object.get(field)?)));
+        let mut model = first;
+        if let Some((field, json)) = choice {
+            let of_name = ModelId::ALL.iter().filter(|id| id.name() == first.name());
+            let words: Vec<_> = of_name
+                .filter_map(|id| id.choice())
+                .map(|(_, word)| word)
+                .collect();
+            model = ModelId::find(first.name(), Some(words[word(field, json, &words)?]))
+                .unwrap_or(first);
+        }
+        let fields = model.fields();
+        let params = given("params")?.clone();
+        let params = params.fields("params", &names_of(fields))?;
+        check_present(fields, &params)?;
+        let (values, exact) = replaced(
+            "params",
+            model.defaults(),
+            model.defaults().map(f64::from),
+            &params,
+        )?;
+        let material = model
+            .material(&values)
+            .map_err(|error| refused("params", fields, &error, &exact))?;
+        Ok(Self {
+            model,
+            is_chosen: choice.is_some(),
+            values,
+            exact,
+            material,
+        })
+    }
+
+    /// Reads all materials of a text: objects with the fields of a request of `hairis eval`, one
+    /// after another. Fields of the query are not used.
+    ///
+    /// # Errors
+    ///
+    /// If there is none, or one is refused: the place of the material where there are several, the
+    /// field and the problem.
+    pub fn parse_all(text: &str) -> Result<Vec<Self>, String> {
+        // Files of Windows begin with a byte-order mark, and several may have been joined.
+        let objects = Json::parse_all(&text.replace('\u{feff}', " "))?;
+        if objects.is_empty() {
+            return Err("must have a material, got nothing".to_owned());
+        }
+        let is_single = objects.len() == 1;
+        let read = |(place, object): (usize, Json)| {
+            let first = Self::first_of_name(&object);
+            let known: Vec<_> = Self::fields_of_request(first).collect();
+            let material = object
+                .fields("", &known)
+                .and_then(|fields| Self::read(first, &fields));
+            material.map_err(|problem| {
+                if is_single {
+                    problem
+                } else {
+                    format!("material {place}: {problem}")
+                }
+            })
+        };
+        (1..).zip(objects).map(read).collect()
+    }
+
+    /// With other values for some parameters, each `NAME=VALUE`. A value is JSON, a word, or
+    /// numbers between commas.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such parameter, it is given twice, or a value is not legal: the parameter and
+    /// the problem.
+    pub fn set(&self, assignments: &[String]) -> Result<Self, String> {
+        let fields = self.model.fields();
+        let names = names_of(fields);
+        let mut given = Fields::new();
+        for assignment in assignments {
+            let Some((name, value)) = assignment.split_once('=') else {
+                return Err(refusal(assignment, "must be NAME=VALUE"));
+            };
+            let name = name.trim();
+            if !names.contains(&name) {
+                let (model, names) = (self.model.name(), names.join(", "));
+                let problem = format!("no parameter of {model}, which has {names}");
+                return Err(refusal(name, problem));
+            }
+            if given.insert(name.to_owned(), value_of(value)).is_some() {
+                return Err(refusal(name, "given twice"));
+            }
+        }
+        let (values, exact) = replaced("", self.values, self.exact, &given)?;
+        let material = self.model.material(&values);
+        Ok(Self {
+            material: material.map_err(|error| refused("", fields, &error, &exact))?,
+            values,
+            exact,
+            ..*self
+        })
+    }
+}
+
+/// The value of an assignment.
+fn value_of(text: &str) -> Json {
+    let text = text.trim();
+    let parse = |text: &str| Json::parse(text).ok();
+    let listed = || parse(&format!("[{text}]")).filter(|_| text.contains(','));
+    parse(text)
+        .or_else(listed)
+        .unwrap_or_else(|| Json::Text(text.to_owned()))
+}
+
+fn names_of(fields: &[Field]) -> Vec<&'static str> {
+    fields.iter().map(|field| field.name).collect()
+}
+
+/// The first field of the group that a field belongs to: exactly one of a group has a value.
+fn head(field: &Field) -> &'static str {
+    field.instead_of.unwrap_or(field.name)
+}
+
+/// Checks that every field is given which must be: one of each group.
+fn check_present(fields: &[Field], given: &Fields) -> Result<(), String> {
+    for field in fields.iter().filter(|field| field.instead_of.is_none()) {
+        let group = fields.iter().filter(|other| head(other) == field.name);
+        let group: Vec<&str> = group.map(|field| field.name).collect();
+        let is_given = group.iter().any(|name| given.contains_key(*name));
+        let problem = match &group[..] {
+            _ if is_given => continue,
+            [_] if field.optional => continue,
+            [_] => "missing".to_owned(),
+            names => format!("missing; give one of {}", names.join(", ")),
+        };
+        return Err(refusal(&join("params", field.name), problem));
+    }
+    Ok(())
+}
+
+/// Values with those that `given` has in place of others, rounded, and as they are in the input.
+fn replaced(
+    path: &str,
+    mut values: Values,
+    mut exact: Values<f64>,
+    given: &Fields,
+) -> Result<(Values, Values<f64>), String> {
+    let fields = values.fields();
+    for field in fields {
+        let Some(json) = given.get(field.name) else {
+            continue;
+        };
+        let at = join(path, field.name);
+        let others = fields
+            .iter()
+            .filter(|other| head(other) == head(field) && other.name != field.name);
+        let together = others.clone().filter(|one| given.contains_key(one.name));
+        let together: Vec<&str> = together.map(|other| other.name).collect();
+        if !together.is_empty() {
+            let names = together.join(", ");
+            let problem = format!("given together with {names}; give one of them");
+            return Err(refusal(&at, problem));
+        }
+        let numbers = match field.kind {
+            Kind::Number => vec![number(&at, json)?],
+            #[expect(clippy::cast_precision_loss, reason = "a few words")]
+            Kind::Word(words) => vec![word(&at, json, words)? as f64],
+            kind => numbers(&at, json, kind.width())?,
+        };
+        for other in others {
+            (values, exact) = (values.without(other.name), exact.without(other.name));
+        }
+        exact = exact.with(field.name, &numbers);
+        let rounded: Vec<f32> = numbers.iter().map(|x| single(*x)).collect();
+        values = values.with(field.name, &rounded);
+    }
+    Ok((values, exact))
+}
+
+/// A refusal with the text of [`ParamError`], and the field's name and value as they are in the
+/// input.
+fn refused(path: &str, fields: &[Field], error: &ParamError, exact: &Values<f64>) -> String {
+    let text = error.to_string();
+    let rule = text
+        .split_once(" must ")
+        .and_then(|(_, rest)| rest.rsplit_once(", got "));
+    let (Some((field, number)), Some((rule, value))) = (Field::refused(fields, error), rule) else {
+        return refusal("params", text);
+    };
+    let is_list = field.kind.width() > 1;
+    let item = number
+        .filter(|_| is_list)
+        .map_or_else(String::new, |number| format!("[{number}]"));
+    let numbers = exact.numbers(field.name);
+    let problem = match if is_list {
+        number.and_then(|number| numbers.get(number))
+    } else {
+        numbers.first()
+    } {
+        // Finite in the input, but too large for single precision.
+        Some(value) if single(*value).is_infinite() => {
+            format!("too large for single precision, got {value:e}")
+        }
+        Some(value) => format!("must {rule}, got {value}"),
+        None => format!("must {rule}, got {value}"),
+    };
+    refusal(&(join(path, field.name) + &item), problem)
+}
+
+/// The nearest number of single precision.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "single precision is what is asked for"
+)]
+#[must_use]
+pub fn single(x: f64) -> f32 {
+    x as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hairis_variants::{ChiangParams, KajiyaKayParams, Parameters};
+
+    /// The parameters that a text gives, or the refusal.
+    fn params<P: Parameters>(text: &str) -> Result<P, String> {
+        let given = Json::parse(text)?.fields("params", &names_of(P::FIELDS))?;
+        check_present(P::FIELDS, &given)?;
+        let values = P::default().values();
+        let (values, exact) = replaced("params", values, values.map(f64::from), &given)?;
+        P::from_values(&values).map_err(|error| refused("params", P::FIELDS, &error, &exact))
+    }
+
+    #[test]
+    fn words_and_fields_that_may_be_missing() {
+        let read = params::<KajiyaKayParams>(
+            r#"{"kd":[0.1,0.2,0.3],"ks":[0,0,0],"exponent":9,"form":"published"}"#,
+        );
+        let read = read.expect("legal").values();
+        assert_eq!(
+            (read.word("form"), read.numbers("exponent")),
+            ("published", &[9.0][..])
+        );
+        let read = params::<KajiyaKayParams>(r#"{"kd":[0.1,0.2,0.3],"ks":[0,0,0],"exponent":9}"#)
+            .expect("legal");
+        assert_eq!(read.values().word("form"), "reciprocal");
+        for (text, problem) in [
+            (r#"{"ks":[0,0,0],"exponent":9}"#, "params.kd: missing"),
+            (
+                r#"{"kd":[0,0,0],"ks":[0,0,0],"exponent":9,"form":"new"}"#,
+                "params.form: must be \"reciprocal\" or \"published\", got \"new\"",
+            ),
+            (
+                r#"{"kd":[0,-1,0],"ks":[0,0,0],"exponent":9}"#,
+                "params.kd[1]: must be finite and at least 0, got -1",
+            ),
+            (
+                r#"{"kd":[0,0,0],"ks":[0,0,0],"exponent":0.1}"#,
+                "params.exponent: must be in [1, 10000], got 0.1",
+            ),
+        ] {
+            assert_eq!(
+                params::<KajiyaKayParams>(text),
+                Err(problem.to_owned()),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn one_field_of_a_group() {
+        let read =
+            |rest: &str| params::<ChiangParams>(&format!(r#"{{"beta_m":0.3,"beta_n":0.3{rest}}}"#));
+        assert_eq!(read(r#","melanin":[0.3,0]"#), Ok(ChiangParams::blond()));
+        assert_eq!(
+            read(r#","tilt":0,"eta":1.5,"sigma_a":[0,1,2]"#).map(|read| read.desc().sigma_a),
+            Ok([0.0, 1.0, 2.0])
+        );
+        assert!(read(r#","color":[0.5,0.4,0.3]"#).is_ok(), "a colour");
+        for (rest, problem) in [
+            (
+                "",
+                "params.sigma_a: missing; give one of sigma_a, melanin, melanin_amount, color",
+            ),
+            (
+                r#","melanin":[0,0],"color":[0,0,0]"#,
+                "params.melanin: given together with color; give one of them",
+            ),
+            (
+                r#","melanin":[0,-1]"#,
+                "params.melanin[1]: must be finite and at least 0, got -1",
+            ),
+            (
+                r#","color":[0,1.5,0]"#,
+                "params.color: must be in [0, 1], got 1.5",
+            ),
+            (
+                r#","sigma_a":[0,0,0],"eta":0.5"#,
+                "params.eta: must be in [1, 4], got 0.5",
+            ),
+        ] {
+            assert_eq!(read(rest), Err(problem.to_owned()), "{rest}");
+        }
+    }
+}
