@@ -43,9 +43,15 @@ pub struct Render {
     /// Preset of the hair [default: that of the scene]
     #[arg(long, value_name = "PRESET")]
     pub hair: Option<String>,
-    /// Scattering model
-    #[arg(long, value_name = "NAME", default_value = "gaussian")]
-    pub model: String,
+    /// Scattering model [default: gaussian]
+    #[arg(long, value_name = "NAME")]
+    pub model: Option<String>,
+    /// Hair of a file in place of a preset, in the JSON of `hairis eval`; a picture for each material
+    #[arg(long, value_name = "FILE.json", conflicts_with_all = ["hair", "model"])]
+    pub material: Vec<PathBuf>,
+    /// Another value for a parameter of the hair
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
     /// How directions are drawn: uniform, published, or a word of the model's
     #[arg(long, value_name = "WORD")]
     pub sampler: Option<String>,
@@ -172,6 +178,12 @@ pub struct Figures {
     /// Only these scenes
     #[arg(long, value_enum, value_name = "SCENE")]
     pub scene: Vec<Name>,
+    /// Hair of files in place of the scenes' presets, in the JSON of `hairis eval`; each scene with each material
+    #[arg(long, value_name = "FILE.json")]
+    pub material: Vec<PathBuf>,
+    /// Another value for a parameter of the hair
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
     /// How light is estimated [default: by scene]
     #[arg(long, value_enum)]
     pub integrator: Option<Integrator>,

@@ -2,7 +2,9 @@
 
 use crate::material::{Hair, Sampling, Scale};
 use crate::transport::{Integrator, Settings};
+use core::fmt::Write as _;
 use hairis_instruments::error::Error;
+use hairis_materials::Material;
 use hairis_variants::{ModelId, Values};
 
 /// The word for directions that are uniform over the sphere.
@@ -14,8 +16,10 @@ pub const MATCHED: &str = "matched";
 /// A preset beside those of the models: the published model's default set with the narrow lobes of glossy hair.
 pub const GLOSSY: &str = "glossy";
 
-/// Largest mean albedo with which paths converge as they are.
+/// Largest mean albedo with which paths converge as they are, where single directions return more than they receive.
 pub const MOST_MEAN_ALBEDO: f32 = 0.98;
+/// Largest albedo with which paths converge whatever the mean: hair that returns no more than it receives, and rounding.
+pub const MOST_ALBEDO: f32 = 1.001;
 
 /// Whether hair scatters what the model says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -37,6 +41,8 @@ pub struct Choice {
     pub sampling: Sampling,
     /// Its parameters.
     pub values: Values,
+    /// Name in reports: that of the preset or of the file.
+    pub name: String,
 }
 
 impl Choice {
@@ -46,26 +52,7 @@ impl Choice {
     ///
     /// A line that names the one that there is not, and what there is.
     pub fn find(model: &str, sampler: &str, preset: &str) -> Result<Self, Error> {
-        let Some(first) = ModelId::find(model, None) else {
-            let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
-            return Err(Error::Usage(format!(
-                "--model must be one of {}, got {model}",
-                names.join(", ")
-            )));
-        };
-        let (id, sampling) = match sampler {
-            UNIFORM => (first, Sampling::Uniform),
-            PUBLISHED => (first, Sampling::Own),
-            word => match ModelId::find(model, Some(word)) {
-                Some(id) => (id, Sampling::Own),
-                None => {
-                    let words = samplers(model).join(", ");
-                    return Err(Error::Usage(format!(
-                        "--sampler of {model} must be one of {words}, got {word}"
-                    )));
-                }
-            },
-        };
+        let (id, sampling) = find_sampler(model, sampler)?;
         let Some(values) = preset_of(id, preset) else {
             let mut names: Vec<&str> = id.presets().map(|(name, _)| name).collect();
             names.extend(preset_of(id, GLOSSY).map(|_| GLOSSY));
@@ -78,6 +65,49 @@ impl Choice {
             id,
             sampling,
             values,
+            name: preset.to_owned(),
+        })
+    }
+
+    /// A material of a file, sampled as `sampler` says, or else as the file does, or else by [`default_sampler`].
+    ///
+    /// # Errors
+    ///
+    /// If the model has no such sampler.
+    pub fn of_material(
+        name: &str,
+        material: &Material,
+        sampler: Option<&str>,
+    ) -> Result<Self, Error> {
+        let model = material.model;
+        let (id, sampling) = match sampler {
+            None if material.is_chosen => (model, Sampling::Own),
+            word => find_sampler(
+                model.name(),
+                word.unwrap_or_else(|| default_sampler(model.name())),
+            )?,
+        };
+        Ok(Self {
+            id,
+            sampling,
+            values: material.values,
+            name: name.to_owned(),
+        })
+    }
+
+    /// With other values for some parameters, each `NAME=VALUE`.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such parameter, or a value is not legal.
+    pub fn set(self, assignments: &[String]) -> Result<Self, Error> {
+        let refuse = |problem: String| Error::Usage(format!("--set {problem}"));
+        let material = Material::new(self.id, self.values)?
+            .set(assignments)
+            .map_err(refuse)?;
+        Ok(Self {
+            values: material.values,
+            ..self
         })
     }
 
@@ -96,6 +126,20 @@ impl Choice {
         Ok(Hair::Model(material, self.sampling, scale))
     }
 
+    /// Everything that scattering depends on, in one line, but for the name.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        let mut line = format!("model={} sampler={}", self.id.name(), self.sampler());
+        let fields = self.values.fields();
+        for field in fields.iter().filter(|field| self.values.has(field.name)) {
+            let numbers = self.values.numbers(field.name).iter();
+            let numbers: Vec<String> = numbers.map(f32::to_string).collect();
+            // Writing into a string does not fail.
+            let _ = write!(line, " {}={}", field.name, numbers.join(","));
+        }
+        line
+    }
+
     /// Name of the sampler in reports.
     #[must_use]
     pub fn sampler(&self) -> &'static str {
@@ -104,6 +148,30 @@ impl Choice {
             (Sampling::Own, Some((_, word))) if !self.id.is_default() => word,
             (Sampling::Own, _) => PUBLISHED,
         }
+    }
+}
+
+/// Finds a model and its sampler by their names.
+fn find_sampler(model: &str, sampler: &str) -> Result<(ModelId, Sampling), Error> {
+    let Some(first) = ModelId::find(model, None) else {
+        let names: Vec<&str> = ModelId::defaults_of_names().map(ModelId::name).collect();
+        return Err(Error::Usage(format!(
+            "--model must be one of {}, got {model}",
+            names.join(", ")
+        )));
+    };
+    match sampler {
+        UNIFORM => Ok((first, Sampling::Uniform)),
+        PUBLISHED => Ok((first, Sampling::Own)),
+        word => match ModelId::find(model, Some(word)) {
+            Some(id) => Ok((id, Sampling::Own)),
+            None => {
+                let words = samplers(model).join(", ");
+                Err(Error::Usage(format!(
+                    "--sampler of {model} must be one of {words}, got {word}"
+                )))
+            }
+        },
     }
 }
 
@@ -125,21 +193,30 @@ pub fn samplers(model: &str) -> Vec<&'static str> {
     [UNIFORM, PUBLISHED].into_iter().chain(words).collect()
 }
 
+/// Whether paths that scatter several times in hair come to an end in the mean.
+#[must_use]
+pub fn converges(hair: &Hair) -> bool {
+    let [mean, worst] = hair.mean_and_worst_albedo();
+    mean < MOST_MEAN_ALBEDO || worst <= MOST_ALBEDO
+}
+
 /// Refuses hair of which paths do not converge. `remedy` ends the line.
 ///
 /// # Errors
 ///
-/// If paths scatter several times in hair of a mean albedo of [`MOST_MEAN_ALBEDO`] or above.
+/// If paths scatter several times in hair that returns more than it receives from single directions, and of a mean albedo of
+/// [`MOST_MEAN_ALBEDO`] or above.
 pub fn check_paths(
     hair: &Hair,
     settings: &Settings,
     preset: &str,
     remedy: &str,
 ) -> Result<(), Error> {
-    let [mean, _] = hair.mean_and_worst_albedo();
-    if settings.integrator == Integrator::Path && settings.multiple && mean >= MOST_MEAN_ALBEDO {
+    if settings.integrator == Integrator::Path && settings.multiple && !converges(hair) {
+        let [mean, worst] = hair.mean_and_worst_albedo();
         return Err(Error::Usage(format!(
-            "paths need hair of a mean albedo below {MOST_MEAN_ALBEDO}, got {mean:.3} of {preset}: {remedy}"
+            "paths need hair of a mean albedo below {MOST_MEAN_ALBEDO}, or of albedos up to 1, got a mean of {mean:.3} and \
+             {worst:.3} of {preset}: {remedy}"
         )));
     }
     Ok(())

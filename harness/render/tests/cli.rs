@@ -1,6 +1,7 @@
 //! The program, as it is run from a shell.
 
 mod frames;
+mod hair;
 mod paths;
 mod refused;
 mod resumed;

@@ -3,12 +3,13 @@
 mod description;
 
 use crate::args::Render;
-use crate::film::{self, Film};
+use crate::film::{self, Crop, Film};
 use crate::formats::{Follow, Import, import, write_mitsuba};
 use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, check_paths, default_sampler};
 use crate::layers::{self, Beside};
 use crate::material::Hair;
+use crate::materials;
 use crate::memory;
 use crate::part::{self, Part};
 use crate::picture;
@@ -36,7 +37,10 @@ const PREVIEW: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)]
 /// How many times as long as the last preview took a run goes on before the next.
 const PREVIEW_SHARE: u32 = 10;
 
-/// Renders a scene.
+/// The model of presets where none is asked for.
+const MODEL: &str = "gaussian";
+
+/// Renders a scene, with each hair that is asked for.
 ///
 /// # Errors
 ///
@@ -60,7 +64,8 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("out/render/{}.exr", flags.scene.word())));
-    let hair = hair(flags, &settings)?;
+    let hairs = hairs(flags, &settings)?;
+    let outs = outs(&out, &hairs)?;
     let read = |path| environment(path, flags.layer.as_deref());
     let env = flags.env.as_deref().map(read).transpose()?;
     let pixels = crop.len() as u64;
@@ -81,26 +86,45 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     if let Some(path) = &flags.export {
         whole(path, |out| write_mitsuba(&strands, out))?;
     }
-    let run = describe(flags, &settings, crop, env.as_ref())?;
+    let describe = |hair: &Named| describe(flags, &hair.line, &settings, crop, env.as_ref());
+    let runs = hairs.iter().map(describe).collect::<Result<Vec<_>, _>>()?;
     let parts = Parts {
         strands,
         imported: flags.import.is_some(),
-        hair,
+        hair: hairs[0].hair,
         env,
         size: flags.size.0,
         turn: flags.turn,
     };
     let backdrop = flags.backdrop.map(glam::Vec3::splat);
-    let scene = Scene {
+    let mut scene = Scene {
         backdrop,
         rectangle_sampling: flags.rectangles,
         ..scenes::build(flags.scene, parts)?
     };
-    check_out(&out)?;
+    outs.iter().try_for_each(|out| check_out(out))?;
+    let interrupt = Interrupt::watch();
+    for ((hair, out), run) in hairs.iter().zip(&outs).zip(runs) {
+        scene.hair = hair.hair;
+        picture(flags, &scene, &settings, crop, run, out, &interrupt)?;
+    }
+    Ok(())
+}
+
+/// Renders a picture of a scene, which `run` describes, and writes it.
+fn picture(
+    flags: &Render,
+    scene: &Scene,
+    settings: &Settings,
+    crop: Crop,
+    run: String,
+    out: &Path,
+    interrupt: &Interrupt,
+) -> Result<(), Error> {
     let shard = flags.shard.unwrap_or(Shard::WHOLE);
     let part_path = match flags.shard {
         Some(shard) => out.with_extension(format!("{}-of-{}.part", shard.index(), shard.of())),
-        None => part::path(&out),
+        None => part::path(out),
     };
     let rays = match settings.integrator {
         Integrator::Gather => settings.rays,
@@ -112,20 +136,18 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         film: Film::with_tiles(crop, film::side(rays)).shard(shard),
         finished: false,
     };
-    let samples = flags.spp.unwrap_or(defaults.samples);
+    let samples = flags.spp.unwrap_or(flags.scene.defaults().samples);
     let most = flags.time.is_none().then_some(samples);
-    let interrupt = Interrupt::watch();
     let (mut part, log) = Part::resume(&part_path, fresh, most)?;
-    let mut saver = Saver::new(log, &interrupt);
+    let mut saver = Saver::new(log, interrupt);
     // The file is there, and this run's, from the beginning.
     saver.save(&part)?;
     saver.work(&mut part, |film, stop| {
-        layers::look(&scene, film, stop);
+        layers::look(scene, film, stop);
         film.tiles.iter().all(|tile| !tile.first.is_empty())
     })?;
-    passes(flags, &scene, &settings, samples, &mut part, &mut saver)?;
-    if let Some(lost) = transport::cut_off(&scene, &settings, &part.film).filter(CutOff::is_notable)
-    {
+    passes(flags, scene, settings, samples, &mut part, &mut saver)?;
+    if let Some(lost) = transport::cut_off(scene, settings, &part.film).filter(CutOff::is_notable) {
         say(&lost.to_string());
     }
     if flags.profile {
@@ -149,7 +171,7 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     finish(
         &part.film,
         &Beside::film(&part.film, &part.run),
-        &out,
+        out,
         flags.exposure,
     )?;
     // A larger --spp goes on from it.
@@ -182,39 +204,91 @@ pub(super) fn finish(
         .map_err(Error::Write)
 }
 
-/// The hair that the flags ask for.
-fn hair(flags: &Render, settings: &Settings) -> Result<Hair, Error> {
-    if flags.scene == Name::FurnaceIso && flags.hair.is_none() {
-        return Ok(Hair::Isotropic);
+/// Hair of a picture.
+struct Named {
+    hair: Hair,
+    /// Its name: of several pictures each file has that of its hair.
+    name: String,
+    /// Everything that its scattering depends on.
+    line: String,
+}
+
+/// The hair that the flags ask for: a picture each, at least one.
+fn hairs(flags: &Render, settings: &Settings) -> Result<Vec<Named>, Error> {
+    let is_chosen = flags.hair.is_some() || flags.model.is_some() || flags.sampler.is_some();
+    let is_made = !flags.material.is_empty() || !flags.set.is_empty();
+    if flags.scene == Name::FurnaceIso && !is_chosen && !is_made {
+        return Ok(vec![Named {
+            hair: Hair::Isotropic,
+            name: "isotropic".to_owned(),
+            line: "hair=isotropic".to_owned(),
+        }]);
     }
-    let preset = flags
-        .hair
-        .as_deref()
-        .unwrap_or_else(|| flags.scene.defaults().preset);
-    let sampler = flags
-        .sampler
-        .as_deref()
-        .unwrap_or_else(|| default_sampler(&flags.model));
-    let choice = Choice::find(&flags.model, sampler, preset)?;
-    let energy = flags.energy.unwrap_or(Energy::Raw);
-    let hair = choice.hair(energy)?;
-    let [mean, worst] = hair.mean_and_worst_albedo();
-    say(&format!(
-        "albedo of the hair: mean {mean:.3}, largest {worst:.3}"
-    ));
-    if flags.energy.is_none() {
-        check_paths(&hair, settings, preset, "use --energy per-wo")?;
+    let mut choices = Vec::new();
+    if flags.material.is_empty() {
+        let preset = flags.scene.defaults().preset;
+        let preset = flags.hair.as_deref().unwrap_or(preset);
+        let model = flags.model.as_deref().unwrap_or(MODEL);
+        let sampler = flags.sampler.as_deref();
+        let sampler = sampler.unwrap_or_else(|| default_sampler(model));
+        choices.push(Choice::find(model, sampler, preset)?);
     }
-    Ok(hair)
+    for (name, material) in materials::read(&flags.material)? {
+        let sampler = flags.sampler.as_deref();
+        choices.push(Choice::of_material(&name, &material, sampler)?);
+    }
+    let named = |choice: Choice| {
+        let choice = choice.set(&flags.set)?;
+        let energy = flags.energy.unwrap_or(Energy::Raw);
+        let hair = choice.hair(energy)?;
+        let [mean, worst] = hair.mean_and_worst_albedo();
+        let whose = if flags.material.is_empty() {
+            "the hair"
+        } else {
+            &choice.name
+        };
+        say(&format!(
+            "albedo of {whose}: mean {mean:.3}, largest {worst:.3}"
+        ));
+        // Without --energy it is refused; with it, as long as its paths have an end.
+        let remedy = match flags.energy {
+            None => "use --energy per-wo",
+            Some(_) => "use --energy per-wo, or end paths by --depth",
+        };
+        if flags.energy.is_none() || flags.depth.is_none() {
+            check_paths(&hair, settings, &choice.name, remedy)?;
+        }
+        let line = format!("{} energy={energy:?}", choice.describe());
+        Ok(Named {
+            hair,
+            name: choice.name,
+            line,
+        })
+    };
+    choices.into_iter().map(named).collect()
+}
+
+/// The files of the pictures: of several, each with the name of its hair.
+fn outs(out: &Path, hairs: &[Named]) -> Result<Vec<PathBuf>, Error> {
+    if let [_] = hairs {
+        return Ok(vec![out.to_owned()]);
+    }
+    // What `check_out` refuses is refused by the name that was given.
+    let Some(stem) = out.file_stem().filter(|_| has_ending(out)) else {
+        return Err(wrong_ending(out));
+    };
+    let named = |hair: &Named| {
+        let mut name = stem.to_owned();
+        name.push(format!("-{}.exr", hair.name));
+        out.with_file_name(name)
+    };
+    Ok(hairs.iter().map(named).collect())
 }
 
 /// Makes the folder of a file, and sees that files can be written there.
 pub(super) fn check_out(path: &Path) -> Result<(), Error> {
-    if path.extension().is_none_or(|end| end != "exr") {
-        return Err(Error::Usage(format!(
-            "the picture must end in .exr, got {}",
-            path.display()
-        )));
+    if !has_ending(path) {
+        return Err(wrong_ending(path));
     }
     if let Some(folder) = path
         .parent()
@@ -223,6 +297,15 @@ pub(super) fn check_out(path: &Path) -> Result<(), Error> {
         fs::create_dir_all(folder).map_err(Error::output(path))?;
     }
     writable(path)
+}
+
+fn has_ending(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end == "exr")
+}
+
+fn wrong_ending(path: &Path) -> Error {
+    let path = path.display();
+    Error::Usage(format!("the picture must end in .exr, got {path}"))
 }
 
 /// Reads an environment map, and remarks on what is odd about it.

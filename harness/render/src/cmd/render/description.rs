@@ -9,13 +9,14 @@ use hairis_instruments::light::Environment;
 use std::fs;
 
 /// Everything that the sums of a picture depend on, but for the count of samples and the shard: parts of equal lines may be
-/// continued and joined.
+/// continued and joined. `hair` is what it depends on of the hair.
 ///
 /// # Errors
 ///
 /// If the file of hair cannot be read.
 pub(super) fn describe(
     flags: &Render,
+    hair: &str,
     settings: &Settings,
     crop: Crop,
     env: Option<&Environment>,
@@ -23,10 +24,6 @@ pub(super) fn describe(
     // Without `..`: whoever adds a flag decides whether it shapes the sums.
     let Render {
         scene,
-        hair,
-        model,
-        sampler,
-        energy,
         size: Size([columns, rows]),
         strands,
         import,
@@ -38,7 +35,13 @@ pub(super) fn describe(
         turn,
         backdrop,
         rectangles,
-        // In the settings, the crop and the environment.
+        // In the hair, the settings, the crop and the environment.
+        hair: _,
+        model: _,
+        sampler: _,
+        material: _,
+        set: _,
+        energy: _,
         integrator: _,
         xi: _,
         mis: _,
@@ -85,9 +88,7 @@ pub(super) fn describe(
     };
     let env = env.map_or(0, Environment::digest);
     let words = [
-        format!(
-            "scene={scene:?} model={model} sampler={sampler:?} hair={hair:?} energy={energy:?}"
-        ),
+        format!("scene={scene:?} {hair}"),
         format!(
             "size={columns}x{rows} crop={x},{y},{width},{height} turn={turn} backdrop={backdrop:?} env={env:016x}"
         ),

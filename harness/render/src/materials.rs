@@ -1,0 +1,60 @@
+//! Materials from files.
+
+use hairis_instruments::error::Error;
+use hairis_materials::Material;
+use std::fs::File;
+use std::io::{self, Read as _};
+use std::path::{Path, PathBuf};
+
+/// Longest file that is read, in bytes: thousands of materials.
+const LONGEST: u64 = 1 << 20;
+
+/// Reads the materials of files, each under a name of its own: that of its file, with its place
+/// where the file has several, and with a number where another file has the same name.
+///
+/// # Errors
+///
+/// If a file cannot be read, or a material is refused: the file and the field.
+pub fn read(paths: &[PathBuf]) -> Result<Vec<(String, Material)>, Error> {
+    let mut all: Vec<(String, Material)> = Vec::new();
+    for path in paths {
+        let refuse =
+            |problem: String| Error::Usage(format!("--material {}: {problem}", path.display()));
+        let materials = text(path)
+            .and_then(|text| Material::parse_all(&text))
+            .map_err(refuse)?;
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let is_single = materials.len() == 1;
+        for (place, material) in (1..).zip(materials) {
+            let name = if is_single {
+                stem.clone().into_owned()
+            } else {
+                format!("{stem}-{place}")
+            };
+            let is_new = |name: &String| all.iter().all(|(other, _)| other != name);
+            let numbered = (2_u64..).map(|number| format!("{name}-{number}"));
+            let name = core::iter::once(name.clone()).chain(numbered).find(is_new);
+            all.push((name.unwrap_or_default(), material));
+        }
+    }
+    Ok(all)
+}
+
+/// The text of a file.
+fn text(path: &Path) -> Result<String, String> {
+    let cannot = |error: io::Error| format!("cannot read: {error}");
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
+        .map_err(cannot)?;
+    if bytes.len() as u64 > LONGEST {
+        return Err(format!("must have at most {LONGEST} bytes, has more"));
+    }
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err("must be UTF-8, got UTF-16: save it as UTF-8".to_owned());
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let place = error.utf8_error().valid_up_to();
+        format!("must be UTF-8, got something else after byte {place}")
+    })
+}
