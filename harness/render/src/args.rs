@@ -46,7 +46,8 @@ pub struct Render {
     /// Scattering model [default: gaussian]
     #[arg(long, value_name = "NAME")]
     pub model: Option<String>,
-    /// Hair of a file in place of a preset, in the JSON of `hairis eval`; a picture for each material
+    /// Hair of a file in place of a preset, in the JSON of `hairis eval`; a picture for each
+    /// material
     #[arg(long, value_name = "FILE.json", conflicts_with_all = ["hair", "model"])]
     pub material: Vec<PathBuf>,
     /// Another value for a parameter of the hair
@@ -178,7 +179,8 @@ pub struct Figures {
     /// Only these scenes
     #[arg(long, value_enum, value_name = "SCENE")]
     pub scene: Vec<Name>,
-    /// Hair of files in place of the scenes' presets, in the JSON of `hairis eval`; each scene with each material
+    /// Hair of files in place of the scenes' presets, in the JSON of `hairis eval`; each scene with
+    /// each material
     #[arg(long, value_name = "FILE.json")]
     pub material: Vec<PathBuf>,
     /// Another value for a parameter of the hair

@@ -4,7 +4,7 @@ mod csv;
 mod map;
 mod measure;
 mod models;
-mod names;
+pub(crate) mod names;
 mod page;
 mod panel;
 mod rates;
@@ -15,6 +15,8 @@ mod verdict;
 
 use crate::args::Figures;
 use crate::cmd::environment;
+use crate::hair::Choice;
+use crate::materials;
 use crate::scenes::Name;
 use hairis_instruments::error::Error;
 use hairis_instruments::interrupt::Interrupt;
@@ -65,23 +67,39 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
         known.push(*name);
         is_new
     });
-    chosen.iter().try_for_each(|name| plan.check(*name))?;
+    let materials = materials::read(&flags.material)?;
+    let hairs = |name: Name| -> Result<Vec<Choice>, Error> {
+        let of_file = |(name, spec): &(String, _)| Choice::of_material(name, spec, None);
+        let hairs = if materials.is_empty() {
+            vec![measure::preset(name)?]
+        } else {
+            materials.iter().map(of_file).collect::<Result<_, _>>()?
+        };
+        hairs
+            .into_iter()
+            .map(|hair| set(hair, &flags.set))
+            .collect()
+    };
     let names = names::of_files(&flags.env)?;
     let maps = names
         .iter()
         .zip(&flags.env)
         .map(|(name, path)| Ok((name.clone(), environment(path, flags.layer.as_deref())?)))
         .collect::<Result<Vec<_>, Error>>()?;
-    prepare(&flags.out)?;
-    let store = Store::new(&flags.out, Interrupt::watch())?;
     let mut scenes = Vec::new();
     for name in chosen {
-        if name == Name::Env && !maps.is_empty() {
-            scenes.extend(maps.iter().map(|map| (name, Some(map.clone()))));
-        } else {
-            scenes.push((name, None));
+        for hair in hairs(name)? {
+            plan.check(name, &hair)?;
+            if name == Name::Env && !maps.is_empty() {
+                let with_map = |map: &(_, _)| (name, Some(map.clone()), hair.clone());
+                scenes.extend(maps.iter().map(with_map));
+            } else {
+                scenes.push((name, None, hair));
+            }
         }
     }
+    prepare(&flags.out)?;
+    let store = Store::new(&flags.out, Interrupt::watch())?;
     // Models are compared where the scenes are not chosen one by one.
     let presets: &[&'static str] = match (flags.scene.is_empty() || flags.models, flags.quick) {
         (false, _) => &[],
@@ -112,12 +130,15 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     };
     let titles: Vec<String> = scenes
         .iter()
-        .map(|(name, map)| measure::title(*name, map.as_ref().map(|(name, _)| name.as_str())))
+        .map(|(name, map, hair)| {
+            let map = map.as_ref().map(|(name, _)| name.as_str());
+            measure::title(*name, map, &hair.name)
+        })
         .collect();
     let settings = csv::settings(&plan, flags, &names);
     let mut all = Vec::new();
-    for ((name, map), stem) in scenes.into_iter().zip(names::of_pictures(&titles)) {
-        let measured = Measured::render(name, map, &plan, flags.seed, &store, &step)?;
+    for ((name, map, hair), stem) in scenes.into_iter().zip(names::of_pictures(&titles)) {
+        let measured = Measured::render(name, map, &hair, &plan, flags.seed, &store, &step)?;
         if flags.shard.is_some() {
             continue;
         }
@@ -164,6 +185,18 @@ pub(crate) fn run(flags: &Figures) -> Result<(), Error> {
     io::stdout()
         .write_all(lines.as_bytes())
         .map_err(Error::Write)
+}
+
+/// Hair with other values, which its name tells.
+fn set(hair: Choice, assignments: &[String]) -> Result<Choice, Error> {
+    if assignments.is_empty() {
+        return Ok(hair);
+    }
+    let name = format!("{} with {}", hair.name, assignments.join(" "));
+    Ok(Choice {
+        name,
+        ..hair.set(assignments)?
+    })
 }
 
 /// Makes the folder, and sees that files can be written into it.

@@ -4,7 +4,7 @@ use crate::material::{Hair, Sampling, Scale};
 use crate::transport::{Integrator, Settings};
 use core::fmt::Write as _;
 use hairis_instruments::error::Error;
-use hairis_materials::Material;
+use hairis_materials::MaterialSpec;
 use hairis_variants::{ModelId, Values};
 
 /// The word for directions that are uniform over the sphere.
@@ -16,9 +16,11 @@ pub const MATCHED: &str = "matched";
 /// A preset beside those of the models: the published model's default set with the narrow lobes of glossy hair.
 pub const GLOSSY: &str = "glossy";
 
-/// Largest mean albedo with which paths converge as they are, where single directions return more than they receive.
+/// Largest mean albedo with which paths converge as they are, where single directions return more
+/// than they receive.
 pub const MOST_MEAN_ALBEDO: f32 = 0.98;
-/// Largest albedo with which paths converge whatever the mean: hair that returns no more than it receives, and rounding.
+/// Largest albedo with which paths converge whatever the mean: hair that returns no more than it
+/// receives, and rounding.
 pub const MOST_ALBEDO: f32 = 1.001;
 
 /// Whether hair scatters what the model says.
@@ -69,14 +71,15 @@ impl Choice {
         })
     }
 
-    /// A material of a file, sampled as `sampler` says, or else as the file does, or else by [`default_sampler`].
+    /// A material of a file, sampled as `sampler` says, or else as the file does, or else by
+    /// [`default_sampler`].
     ///
     /// # Errors
     ///
     /// If the model has no such sampler.
     pub fn of_material(
         name: &str,
-        material: &Material,
+        material: &MaterialSpec,
         sampler: Option<&str>,
     ) -> Result<Self, Error> {
         let model = material.model;
@@ -95,6 +98,31 @@ impl Choice {
         })
     }
 
+    /// The same hair, sampled in another way. Of models without matched samplers, the published one
+    /// is the hair's own.
+    ///
+    /// # Errors
+    ///
+    /// If the model has no such sampler.
+    pub fn sampled(&self, sampler: &str) -> Result<Self, Error> {
+        let (id, sampling) = match sampler {
+            UNIFORM => (self.id, Sampling::Uniform),
+            PUBLISHED if self.best() == PUBLISHED => (self.id, Sampling::Own),
+            word => find_sampler(self.id.name(), word)?,
+        };
+        Ok(Self {
+            id,
+            sampling,
+            ..self.clone()
+        })
+    }
+
+    /// The word for its best sampler: see [`default_sampler`].
+    #[must_use]
+    pub fn best(&self) -> &'static str {
+        default_sampler(self.id.name())
+    }
+
     /// With other values for some parameters, each `NAME=VALUE`.
     ///
     /// # Errors
@@ -102,7 +130,7 @@ impl Choice {
     /// If there is no such parameter, or a value is not legal.
     pub fn set(self, assignments: &[String]) -> Result<Self, Error> {
         let refuse = |problem: String| Error::Usage(format!("--set {problem}"));
-        let material = Material::new(self.id, self.values)?
+        let material = MaterialSpec::new(self.id, self.values)?
             .set(assignments)
             .map_err(refuse)?;
         Ok(Self {
@@ -204,8 +232,8 @@ pub fn converges(hair: &Hair) -> bool {
 ///
 /// # Errors
 ///
-/// If paths scatter several times in hair that returns more than it receives from single directions, and of a mean albedo of
-/// [`MOST_MEAN_ALBEDO`] or above.
+/// If paths scatter several times in hair that returns more than it receives from single
+/// directions, and of a mean albedo of [`MOST_MEAN_ALBEDO`] or above.
 pub fn check_paths(
     hair: &Hair,
     settings: &Settings,

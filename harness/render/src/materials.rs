@@ -1,7 +1,8 @@
 //! Materials from files.
 
+use crate::figures::names::numbered;
 use hairis_instruments::error::Error;
-use hairis_materials::Material;
+use hairis_materials::MaterialSpec;
 use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
@@ -15,29 +16,22 @@ const LONGEST: u64 = 1 << 20;
 /// # Errors
 ///
 /// If a file cannot be read, or a material is refused: the file and the field.
-pub fn read(paths: &[PathBuf]) -> Result<Vec<(String, Material)>, Error> {
-    let mut all: Vec<(String, Material)> = Vec::new();
+pub fn read(paths: &[PathBuf]) -> Result<Vec<(String, MaterialSpec)>, Error> {
+    let (mut names, mut all) = (Vec::new(), Vec::new());
     for path in paths {
         let refuse =
             |problem: String| Error::Usage(format!("--material {}: {problem}", path.display()));
         let materials = text(path)
-            .and_then(|text| Material::parse_all(&text))
+            .and_then(|text| MaterialSpec::parse_all(&text))
             .map_err(refuse)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let is_single = materials.len() == 1;
-        for (place, material) in (1..).zip(materials) {
-            let name = if is_single {
-                stem.clone().into_owned()
-            } else {
-                format!("{stem}-{place}")
-            };
-            let is_new = |name: &String| all.iter().all(|(other, _)| other != name);
-            let numbered = (2_u64..).map(|number| format!("{name}-{number}"));
-            let name = core::iter::once(name.clone()).chain(numbered).find(is_new);
-            all.push((name.unwrap_or_default(), material));
-        }
+        names.extend((1..=materials.len()).map(|place| match materials.len() {
+            1 => stem.clone().into_owned(),
+            _ => format!("{stem}-{place}"),
+        }));
+        all.extend(materials);
     }
-    Ok(all)
+    Ok(numbered(names.into_iter()).into_iter().zip(all).collect())
 }
 
 /// The text of a file.

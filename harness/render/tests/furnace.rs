@@ -207,8 +207,8 @@ fn roulette_adds_no_variance_to_hair_that_absorbs_nothing() {
 fn clear(select: &str) -> Hair {
     let id = ModelId::find("chiang", Some(select)).expect("listed");
     let values = id.defaults().with("sigma_a", &[0.0; 3]);
-    let bsdf = id.bsdf(&values).expect("in range");
-    Hair::Model(bsdf, Sampling::Own, Scale::Factor(1.0))
+    let material = id.material(&values).expect("in range");
+    Hair::Model(material, Sampling::Own, Scale::Factor(1.0))
 }
 
 #[test]

@@ -63,7 +63,7 @@ pub(super) fn write(
             let start = Start {
                 scene: "models".to_owned(),
                 light: "paths".to_owned(),
-                hair: preset.name(),
+                hair: preset.name().to_owned(),
                 sampler: model,
                 protocol: "",
                 samples: Some(preset.samples()),
@@ -85,7 +85,7 @@ pub(super) fn write(
 struct Start {
     scene: String,
     light: String,
-    hair: &'static str,
+    hair: String,
     /// The sampler, or the model.
     sampler: &'static str,
     protocol: &'static str,
@@ -118,7 +118,7 @@ fn columns(rows: &[Row]) -> Columns {
     Columns::default()
         .text("scene", text(|start| start.scene.clone()))
         .text("light", text(|start| start.light.clone()))
-        .text("hair", text(|start| start.hair.to_owned()))
+        .text("hair", text(|start| start.hair.clone()))
         .text("sampler", text(|start| start.sampler.to_owned()))
         .text("protocol", text(|start| start.protocol.to_owned()))
         .text(
@@ -152,6 +152,11 @@ fn command(flags: &Figures, maps: &[String]) -> String {
             .iter()
             .map(|scene| format!("--scene {}", scene.word())),
     );
+    for material in &flags.material {
+        let name = material.file_name().unwrap_or_default();
+        words.push(format!("--material {}", name.display()));
+    }
+    words.extend(flags.set.iter().map(|set| format!("--set {set}")));
     words.extend(flags.integrator.and_then(|one| flag("integrator", one)));
     if flags.xi != Sequence::Sobol {
         words.extend(flag("xi", flags.xi));
@@ -176,8 +181,8 @@ fn scene(measured: &Measured, rows: &mut Vec<Row>) {
     let start = Start {
         scene: measured.title(),
         light: kind(measured).replace(',', ""),
-        hair: measured.preset,
-        sampler: "matched",
+        hair: measured.hair.clone(),
+        sampler: measured.best(),
         protocol: "",
         samples: None,
     };
@@ -202,10 +207,16 @@ fn scene(measured: &Measured, rows: &mut Vec<Row>) {
             ..start.clone()
         };
         for (runs, best) in sampler.runs.iter().zip(&best.runs) {
-            figures(&at("equal samples", runs), runs, best, rows);
+            figures(
+                &at("equal samples", runs),
+                runs,
+                (measured.best(), best),
+                rows,
+            );
         }
         let runs = &sampler.equal_time;
-        figures(&at("equal time", runs), runs, &best.equal_time, rows);
+        let best = (measured.best(), &best.equal_time);
+        figures(&at("equal time", runs), runs, best, rows);
         for measure in Measure::ALL {
             if let Some(slope) = slope_of(&sampler.runs, measure) {
                 let what = format!("slope of log {}", measure.name());
@@ -222,7 +233,7 @@ fn scene(measured: &Measured, rows: &mut Vec<Row>) {
 }
 
 /// Adds the rows of a sampler at a count of samples.
-fn figures(start: &Start, runs: &Runs, best: &Runs, rows: &mut Vec<Row>) {
+fn figures(start: &Start, runs: &Runs, (name_of_best, best): (&str, &Runs), rows: &mut Vec<Row>) {
     rows.push(start.row("time", Estimate::exact(runs.seconds), false));
     rows.push(start.row("variance per sample", runs.variance, false));
     for measure in Measure::ALL {
@@ -230,7 +241,7 @@ fn figures(start: &Start, runs: &Runs, best: &Runs, rows: &mut Vec<Row>) {
         rows.push(start.row(name, runs.mean(measure), runs.is_below_reference(measure)));
         for (what, with_time) in [("", false), (" × time", true)] {
             let Gain { ratio, is_below } = Gain::new(runs, best, measure, with_time);
-            let what = format!("{name}{what} relative to matched");
+            let what = format!("{name}{what} relative to {name_of_best}");
             rows.push(start.row(&what, ratio, is_below));
         }
     }
@@ -250,7 +261,7 @@ mod tests {
         let start = Start {
             scene: "env (a, b.exr)".to_owned(),
             light: "direct at shading points".to_owned(),
-            hair: "glossy",
+            hair: "glossy".to_owned(),
             sampler: "uniform",
             protocol: "equal samples",
             samples: Some(16),

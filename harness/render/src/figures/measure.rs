@@ -17,22 +17,25 @@ use hairis_instruments::light::Environment;
 use hairis_instruments::machine;
 use std::path::Path;
 
-/// The model of the scenes.
+/// The model of the scenes' presets.
 const MODEL: &str = "gaussian";
-/// The sampler that references are made with, and that others are compared with.
-pub(super) const BEST: &str = MATCHED;
-/// Rays chosen from candidates, those of the hair drawn by [`BEST`].
+/// Rays chosen from candidates, those of the hair drawn by its best sampler.
 pub(super) const RESAMPLED: &str = "resampled";
-/// The samplers, in the order of the page.
-pub(super) const SAMPLERS: [&str; 4] = [UNIFORM, PUBLISHED, RESAMPLED, BEST];
+/// All samplers, in the order of the page.
+pub(super) const SAMPLERS: [&str; 4] = [UNIFORM, PUBLISHED, RESAMPLED, MATCHED];
 
-/// How the model draws directions, and which samples count.
-fn strategy(sampler: &'static str) -> (&'static str, Mis) {
-    if sampler == RESAMPLED {
-        (BEST, Mis::Resampled)
-    } else {
-        (sampler, Mis::Both)
-    }
+/// The samplers of hair; the last is its best, which references are made with and others are
+/// compared with.
+fn samplers(hair: &Choice) -> Vec<&'static str> {
+    let others = SAMPLERS.into_iter().filter(|one| *one != MATCHED);
+    let others = others.filter(|one| *one != hair.best());
+    others.chain([hair.best()]).collect()
+}
+
+/// The hair of a scene where none is asked for.
+pub(super) fn preset(name: Name) -> Result<Choice, Error> {
+    let preset = name.defaults().preset;
+    Choice::find(MODEL, MATCHED, preset)
 }
 
 /// How much is rendered.
@@ -81,18 +84,16 @@ impl Plan {
         rectangle_sampling: RectangleSampling::SolidAngle,
     };
 
-    /// What a scene with hair of a model depends on, but for the light.
-    pub(super) fn scene(&self, name: Name, model: &str, preset: &str) -> String {
+    /// What a scene with hair depends on, but for the light.
+    pub(super) fn scene(&self, name: Name, hair: &Choice) -> String {
         let Self {
             side,
             strands,
             rectangle_sampling: rectangles,
             ..
         } = self;
-        let name = name.word();
-        format!(
-            "scene={name} model={model} hair={preset} side={side} strands={strands} rectangles={rectangles:?}"
-        )
+        let (name, hair) = (name.word(), hair.describe());
+        format!("scene={name} {hair} side={side} strands={strands} rectangles={rectangles:?}")
     }
 
     /// How the samplers' pictures of a scene are made, but for what is their own.
@@ -108,18 +109,13 @@ impl Plan {
     }
 
     /// Refuses a scene with hair that paths do not converge in.
-    pub(super) fn check(&self, name: Name) -> Result<(), Error> {
-        let (preset, settings) = (name.defaults().preset, self.settings(name, 1));
+    pub(super) fn check(&self, name: Name, hair: &Choice) -> Result<(), Error> {
+        let settings = self.settings(name, 1);
         let remedy = format!(
             "leave out scene {}, or use --integrator gather",
             name.word()
         );
-        check_paths(
-            &Choice::find(MODEL, BEST, preset)?.hair(Energy::Raw)?,
-            &settings,
-            preset,
-            &remedy,
-        )
+        check_paths(&hair.hair(Energy::Raw)?, &settings, &hair.name, &remedy)
     }
 
     /// Steps of progress for a count of scenes.
@@ -148,19 +144,19 @@ pub(super) struct Measured {
     map: Option<String>,
     /// How light is estimated.
     pub(super) integrator: Integrator,
-    /// The preset of the hair.
-    pub(super) preset: &'static str,
+    /// Name of the hair.
+    pub(super) hair: String,
     /// Settings of the pictures, but for samplers and samples.
     of_scene: String,
     /// Seed of the samples.
     seed: u64,
     /// Samples of each half of the reference.
     halves: u32,
-    /// Share of the rays towards lights that reach them, with [`BEST`].
+    /// Share of the rays towards lights that reach them, with the best sampler.
     pub(super) visible: f64,
     /// Picture that the others are compared with.
     pub(super) reference: Reference,
-    /// The samplers, in the order of [`SAMPLERS`].
+    /// The samplers, in the order of [`SAMPLERS`]; the last is the best.
     pub(super) samplers: Vec<BySampler>,
 }
 
@@ -169,20 +165,20 @@ impl Measured {
     pub(super) fn render(
         name: Name,
         map: Option<(String, Environment)>,
+        hair: &Choice,
         plan: &Plan,
         seed: u64,
         store: &Store,
         step: &dyn Fn(&str),
     ) -> Result<Self, Error> {
-        let defaults = name.defaults();
         let (map_name, map) = map.unzip();
         let digest = map.as_ref().map_or(0, Environment::digest);
-        let hair = |sampler| Choice::find(MODEL, sampler, defaults.preset)?.hair(Energy::Raw);
+        let sampled = |sampler| hair.sampled(sampler)?.hair(Energy::Raw);
         let strands = scenes::grow(name, plan.strands)?;
         let parts = Parts {
             strands,
             imported: false,
-            hair: hair(BEST)?,
+            hair: sampled(hair.best())?,
             env: map,
             size: [plan.side; 2],
             turn: 0.0,
@@ -198,7 +194,7 @@ impl Measured {
         let halves = plan.reference[kind];
         let of_scene = format!(
             "{} env={digest:016x} reference={halves}",
-            plan.scene(name, MODEL, defaults.preset)
+            plan.scene(name, &hair.sampled(hair.best())?)
         );
         step(&format!("{}: reference", name.word()));
         let reference = store.reference(name.word(), &of_scene, &scene, &settings, halves)?;
@@ -210,8 +206,11 @@ impl Measured {
             .profile
             .visible();
         let measure = |scene: &mut Scene, sampler: &'static str, samples: u32| {
-            let (drawn, mis) = strategy(sampler);
-            scene.hair = hair(drawn)?;
+            let (drawn, mis) = match sampler {
+                RESAMPLED => (hair.best(), Mis::Resampled),
+                _ => (sampler, Mis::Both),
+            };
+            scene.hair = sampled(drawn)?;
             let (settings, runs) = (
                 Settings {
                     mis,
@@ -230,7 +229,7 @@ impl Measured {
             })
         };
         let mut all = Vec::new();
-        for sampler in SAMPLERS {
+        for sampler in samplers(hair) {
             let run = |samples: &u32| {
                 step(&format!("{}: {sampler}, {samples} samples", name.word()));
                 measure(&mut scene, sampler, *samples)
@@ -259,12 +258,12 @@ impl Measured {
                 equal_time,
             });
         }
-        let (map, preset) = (map_name, defaults.preset);
+        let (map, hair) = (map_name, hair.name.clone());
         Ok(Self {
             name,
             map,
             integrator,
-            preset,
+            hair,
             of_scene,
             seed,
             halves,
@@ -276,7 +275,12 @@ impl Measured {
 
     /// Name of the scene on the page.
     pub(super) fn title(&self) -> String {
-        title(self.name, self.map.as_deref())
+        title(self.name, self.map.as_deref(), &self.hair)
+    }
+
+    /// Name of the best sampler.
+    pub(super) fn best(&self) -> &'static str {
+        self.samplers.last().map_or(MATCHED, |best| best.name)
     }
 
     /// Place of the count of samples that pictures show.
@@ -300,7 +304,8 @@ impl Measured {
         let Reference {
             picture, seconds, ..
         } = &self.reference;
-        write("reference", picture, BEST, 2 * self.halves, *seconds)?;
+        let best = self.best();
+        write("reference", picture, best, 2 * self.halves, *seconds)?;
         for BySampler {
             name,
             runs,
@@ -345,10 +350,16 @@ impl Measured {
     }
 }
 
-/// Name of a scene on the page, with that of the map if it is the caller's.
-pub(super) fn title(name: Name, map: Option<&str>) -> String {
+/// Name of a scene on the page, with those of the map and of the hair where they are the caller's.
+pub(super) fn title(name: Name, map: Option<&str>, hair: &str) -> String {
     let word = name.word();
-    map.map_or_else(|| word.to_owned(), |map| format!("{word} ({map})"))
+    let hair = Some(hair).filter(|hair| *hair != name.defaults().preset);
+    let parts: Vec<&str> = map.into_iter().chain(hair).collect();
+    if parts.is_empty() {
+        word.to_owned()
+    } else {
+        format!("{word} ({})", parts.join(", "))
+    }
 }
 
 /// Place of the count of samples that pictures show: the second.

@@ -39,13 +39,15 @@ impl Preset {
         // A quarter of what references of paths take: looks need less than errors.
         let samples = plan.reference[1] / 4;
         let strands = scenes::grow(scene, plan.strands)?;
-        let hair =
-            |model: &str| Choice::find(model, default_sampler(model), name)?.hair(Energy::Raw);
+        let hair = |model: &str| {
+            let choice = Choice::find(model, default_sampler(model), name)?;
+            Ok::<_, Error>((choice.hair(Energy::Raw)?, choice))
+        };
         let names = ModelId::defaults_of_names().map(ModelId::name);
         let hairs = names
             .map(|model| Ok((model, hair(model)?)))
             .collect::<Result<Vec<_>, Error>>()?;
-        let Some((_, first)) = hairs.first() else {
+        let Some((_, (first, _))) = hairs.first() else {
             return Ok(Self {
                 name,
                 samples,
@@ -72,7 +74,7 @@ impl Preset {
             ..Settings::default()
         };
         let mut models = Vec::new();
-        for (model, hair) in hairs {
+        for (model, (hair, choice)) in hairs {
             check_paths(
                 &hair,
                 &settings,
@@ -81,7 +83,7 @@ impl Preset {
             )?;
             step(&format!("{name}: {model}"));
             scene.hair = hair;
-            let of_model = plan.scene(Name::Head, model, name);
+            let of_model = plan.scene(Name::Head, &choice);
             models.push((
                 model,
                 store.reference(

@@ -56,7 +56,7 @@ pub(super) fn of_pictures(titles: &[String]) -> Vec<String> {
 
 /// The names, with a number behind those that would be there already. File systems may not tell
 /// capitals apart.
-fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
+pub(crate) fn numbered(names: impl Iterator<Item = String>) -> Vec<String> {
     let mut taken = HashSet::new();
     let mut own = |name: String| {
         let numbers = (2..).map(|number: u32| format!("{name}-{number}"));

@@ -1,7 +1,7 @@
 //! The page.
 
 use super::map::{Map, scale};
-use super::measure::{Measured, Plan};
+use super::measure::{BySampler, Measured, Plan, SAMPLERS};
 use super::models::{self, Preset};
 use super::panel::{Column, crops, panel};
 use super::rates;
@@ -70,7 +70,7 @@ fn page(
     );
     let method = Section::new("Method and machine")
         .paragraph(format!(
-            "Pictures of {side} by {side} pixels, procedural hair of {strands} strands, published model, sampled by \
+            "Pictures of {side} by {side} pixels, procedural hair of {strands} strands, sampled by \
              {}; light and BSDF samples are combined by the power heuristic, and rectangular lights are sampled {}. Each error \
              is the mean over {runs} pictures of different seeds, with a standard error by the jackknife.",
             numbers(*sequence),
@@ -102,22 +102,22 @@ fn page(
 fn overview(all: &[Measured]) -> Drawing {
     let measure = Measure::TrimmedRelMse;
     let axis = Axis::linear(format!(
-        "{} × time, relative to matched (×)",
-        measure.name()
+        "{} × time, relative to {} (×)",
+        measure.name(),
+        best(all)
     ));
     let scenes: Vec<String> = all.iter().map(Measured::title).collect();
     let (mut series, mut left_out) = (Vec::new(), Vec::new());
-    // All scenes have the same samplers; the last is the one that the others are relative to.
-    let samplers = all
-        .first()
-        .map_or(&[][..], |first| first.samplers.as_slice());
-    let others = samplers.len().saturating_sub(1);
-    for (place, sampler) in samplers.iter().take(others).enumerate() {
+    for name in others(all) {
         let mut gains: Vec<Bar> = Vec::new();
         for measured in all {
-            let Gain { ratio, is_below } = gain(measured, &measured.samplers[place], measure);
+            let Some(sampler) = other(measured, name) else {
+                gains.push(f64::NAN.into());
+                continue;
+            };
+            let Gain { ratio, is_below } = gain(measured, sampler, measure);
             if is_below {
-                left_out.push(format!("{} in {}", sampler.name, measured.title()));
+                left_out.push(format!("{name} in {}", measured.title()));
             }
             gains.push(if is_below {
                 f64::NAN.into()
@@ -125,12 +125,34 @@ fn overview(all: &[Measured]) -> Drawing {
                 ratio.into()
             });
         }
-        series.push((sampler.name.to_owned(), gains));
+        series.push((name.to_owned(), gains));
     }
-    let caption = "Bars above 1: `matched` is ahead. Trimmed: without the worst 0.1 % of the pixels, where uniform sampling has \
+    let caption = "Bars above 1: the best sampler of the model is ahead. Trimmed: without the worst 0.1 % of the pixels, where uniform sampling has \
                    most of its squared error.";
     let chart = bars("Samplers in each scene", axis, &scenes, &series, 1.0);
     Drawing::new("", chart, format!("{caption}{}", left_out_text(&left_out)))
+}
+
+/// The samplers that are compared with the best of their scene, in any of the scenes.
+fn others(all: &[Measured]) -> Vec<&'static str> {
+    let is_other = |name: &&str| all.iter().any(|measured| other(measured, name).is_some());
+    SAMPLERS.into_iter().filter(is_other).collect()
+}
+
+/// A sampler of a scene, unless it is the best.
+fn other<'a>(measured: &'a Measured, name: &str) -> Option<&'a BySampler> {
+    let [others @ .., _] = measured.samplers.as_slice() else {
+        return None;
+    };
+    others.iter().find(|one| one.name == name)
+}
+
+/// Names of the samplers that others are compared with.
+fn best(all: &[Measured]) -> String {
+    let mut names: Vec<&str> = all.iter().map(Measured::best).collect();
+    names.sort_unstable();
+    names.dedup();
+    names.join(" or ")
 }
 
 /// Names the points that a chart leaves out.
@@ -144,15 +166,11 @@ fn left_out_text(names: &[String]) -> String {
 
 /// How many times as large errors times time are, scene by scene.
 fn summary(all: &[Measured]) -> Table {
-    let mut table = Table::new("Error × time, relative to matched")
+    let mut table = Table::new(format!("Error × time, relative to {}", best(all)))
         .texts(["scene", "light"])
         .numbers(["visible", "samples"]);
-    let Some(first) = all.first() else {
-        return table;
-    };
-    for sampler in first.samplers.iter().rev().skip(1).rev() {
-        table =
-            table.numbers(MEASURES.map(|measure| format!("{}, {}", sampler.name, measure.name())));
+    for name in others(all) {
+        table = table.numbers(MEASURES.map(|measure| format!("{name}, {}", measure.name())));
     }
     for measured in all {
         let shown = measured.shown();
@@ -166,8 +184,13 @@ fn summary(all: &[Measured]) -> Table {
             visible,
             best.runs[shown].samples.to_string(),
         ];
-        for sampler in measured.samplers.iter().rev().skip(1).rev() {
-            row.extend(MEASURES.map(|measure| gain(measured, sampler, measure).text()));
+        for name in others(all) {
+            let text = |measure| {
+                other(measured, name).map_or_else(String::new, |sampler| {
+                    gain(measured, sampler, measure).text()
+                })
+            };
+            row.extend(MEASURES.map(text));
         }
         table.push(row);
     }
@@ -240,7 +263,7 @@ fn section(measured: &Measured) -> std::io::Result<Section> {
         .paragraph(format!(
             "Light: {}; hair: `{}`. {}",
             kind(measured),
-            measured.preset,
+            measured.hair,
             visible(measured)
         ))
         .paragraph(sentence(measured))

@@ -1,8 +1,9 @@
 //! Runs that are stopped and started again.
 
-use super::measure::{Measured, Plan};
+use super::measure::{Measured, Plan, preset};
 use super::models::Preset;
 use super::store::Store;
+use crate::hair::Choice;
 use crate::lights::RectangleSampling;
 use crate::protocol::Runs;
 use crate::scenes::Name;
@@ -10,6 +11,7 @@ use crate::transport::Integrator;
 use core::cell::Cell;
 use core::panic::AssertUnwindSafe;
 use hairis_instruments::interrupt::{Interrupt, Signal};
+use hairis_materials::MaterialSpec;
 use std::panic::catch_unwind;
 use std::path::Path;
 
@@ -24,14 +26,27 @@ const TINY: Plan = Plan {
 
 /// Measures a scene, and stops at the given step of progress; with the count of measurements that were there.
 fn measured(plan: &Plan, seed: u64, out: &Path, last: usize) -> Option<(Measured, usize)> {
+    let hair = preset(Name::AreaHead).expect("listed");
+    measured_with(&hair, plan, seed, out, last)
+}
+
+/// The same with other hair.
+fn measured_with(
+    hair: &Choice,
+    plan: &Plan,
+    seed: u64,
+    out: &Path,
+    last: usize,
+) -> Option<(Measured, usize)> {
     let store = Store::new(out, Interrupt::default()).expect("a folder");
     let steps = Cell::new(0);
     let step = |what: &str| {
         steps.set(steps.get() + 1);
         assert!(steps.get() < last, "stopped at {what}");
     };
-    let run =
-        || Measured::render(Name::AreaHead, None, plan, seed, &store, &step).expect("rendered");
+    let run = || {
+        Measured::render(Name::AreaHead, None, hair, plan, seed, &store, &step).expect("rendered")
+    };
     let measured = catch_unwind(AssertUnwindSafe(run)).ok()?;
     Some((measured, store.resumed()))
 }
@@ -94,7 +109,8 @@ fn a_signal_within_a_measurement_loses_no_picture() {
         let interrupt = Interrupt::default();
         interrupt.raise(Signal::Terminate);
         let store = Store::new(stopped, interrupt).expect("a folder");
-        let error = Measured::render(Name::AreaHead, None, &TINY, 1, &store, &|_| ());
+        let hair = preset(Name::AreaHead).expect("listed");
+        let error = Measured::render(Name::AreaHead, None, &hair, &TINY, 1, &store, &|_| ());
         assert_eq!(error.expect_err("a signal").exit_code(), 143);
         assert_eq!(
             (files("part"), files("film")),
@@ -177,8 +193,8 @@ fn hair_that_paths_do_not_converge_in_is_refused() {
         integrator: Some(Integrator::Path),
         ..TINY
     };
-    let message = paths
-        .check(Name::AreaSoft)
+    let check = |plan: &Plan, name| plan.check(name, &preset(name).expect("listed"));
+    let message = check(&paths, Name::AreaSoft)
         .expect_err("refused")
         .to_string();
     assert!(
@@ -186,7 +202,36 @@ fn hair_that_paths_do_not_converge_in_is_refused() {
         "{message}"
     );
     for name in super::SCENES {
-        TINY.check(name).expect("its own integrator");
+        check(&TINY, name).expect("its own integrator");
     }
-    paths.check(Name::Env).expect("blond hair");
+    check(&paths, Name::Env).expect("blond hair");
+}
+
+#[test]
+fn hair_of_any_model_is_measured_with_its_own_samplers() {
+    let folder = tempfile::TempDir::new().expect("a folder");
+    let material = |melanin: &str| {
+        let params = format!(r#"{{"beta_m":0.3,"beta_n":0.3,"melanin_amount":{melanin}}}"#);
+        let text = format!(r#"{{"model":"chiang","select":"by-channel","params":{params}}}"#);
+        let spec = MaterialSpec::parse_all(&text).expect("legal")[0];
+        Choice::of_material("mine", &spec, None).expect("its own sampler")
+    };
+    let render = |hair: &Choice| {
+        let (measured, resumed) =
+            measured_with(hair, &TINY, 1, folder.path(), usize::MAX).expect("whole");
+        (measured, resumed)
+    };
+    let (first, _) = render(&material("[0.5,0.2]"));
+    let names: Vec<&str> = first.samplers.iter().map(|one| one.name).collect();
+    assert_eq!(names, ["uniform", "resampled", "published"]);
+    assert_eq!(
+        (first.title().as_str(), first.best()),
+        ("area-head (mine)", "published")
+    );
+    let (again, resumed) = render(&material("[0.5,0.2]"));
+    assert!(resumed > 0 && results(&again) == results(&first));
+    // Another material of the same name shares nothing.
+    let (other, resumed) = render(&material("[0.9,0.2]"));
+    assert_eq!(resumed, 0);
+    assert_ne!(other.reference.picture, first.reference.picture);
 }

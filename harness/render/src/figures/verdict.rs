@@ -158,8 +158,11 @@ fn answer(measured: &Measured) -> String {
     if matters {
         compared
     } else {
+        let drawn = measured.samplers.iter().filter(|one| one.name != RESAMPLED);
+        let drawn: Vec<&str> = drawn.map(|one| one.name).collect();
         format!(
-            "The sampler does not matter: uniform, published and matched directions do equally well. {compared}"
+            "The sampler does not matter: {} directions do equally well. {compared}",
+            listed(&drawn)
         )
     }
 }

@@ -69,9 +69,8 @@ pub(super) fn answers(
             .iter()
             .enumerate()
             .filter_map(|(at, line)| Some((at, line.as_ref().ok()?)));
-        let (places, requests): (Vec<usize>, Vec<&Request>) = requests
-            .filter(|(_, of)| of.spec.model == *model)
-            .unzip();
+        let (places, requests): (Vec<usize>, Vec<&Request>) =
+            requests.filter(|(_, of)| of.spec.model == *model).unzip();
         let found: Vec<_> = match path {
             CodePath::X8 => requests.chunks(8).flat_map(eight).collect(),
             CodePath::Batch => {
