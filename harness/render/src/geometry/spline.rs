@@ -7,7 +7,12 @@ use glam::Vec3;
 pub(crate) enum Basis {
     /// Uniform cubic B-spline with doubled ends: smooth to the second derivative, near its nodes.
     BSpline,
-    /// Uniform Catmull-Rom spline: through its nodes, smooth to the first derivative.
+    /// The same with ends pinned to the first and the last node, as USD's curves of this name have it.
+    PinnedBSpline,
+    /// Centripetal Catmull-Rom spline: through its nodes, with a continuous direction.
+    ///
+    /// Parameters of nodes are apart by the square root of their distance. No other power keeps spans free of cusps and
+    /// loops (Yuksel et al. 2011). With even spans it is the uniform spline.
     CatmullRom,
 }
 
@@ -32,31 +37,39 @@ impl<'a> Spline<'a> {
     /// Point and derivative at `x` in `[0, 1]` of a span.
     fn at(&self, span: usize, x: f32) -> (Vec3, Vec3) {
         let last = self.nodes.len() - 1;
-        let [a, b, c, d] =
+        let [mut a, b, c, mut d] =
             [span.saturating_sub(1), span, span + 1, (span + 2).min(last)].map(|k| self.nodes[k]);
         let y = 1.0 - x;
-        match self.basis {
-            Basis::BSpline => {
-                let inner = |x: f32| (3.0 * x - 6.0) * x * x + 4.0;
-                let point = (a * (y * y * y) + b * inner(x) + c * inner(y) + d * (x * x * x)) / 6.0;
-                let slope = |x: f32| (1.5 * x - 2.0) * x;
-                (
-                    point,
-                    d * (0.5 * x * x) - a * (0.5 * y * y) + b * slope(x) - c * slope(y),
-                )
-            }
-            Basis::CatmullRom => {
-                let (from, to) = (0.5 * (c - a), 0.5 * (d - b));
-                let (chord, shift) = (c - b, x * x * (3.0 - 2.0 * x));
-                let point = b + chord * shift + from * (x * y * y) - to * (x * x * y);
-                (
-                    point,
-                    chord * (6.0 * x * y) + from * (y * (1.0 - 3.0 * x))
-                        - to * (x * (2.0 - 3.0 * x)),
-                )
-            }
+        if self.basis == Basis::CatmullRom {
+            let (from, to) = (slope(a, b, c), -slope(d, c, b));
+            let (chord, shift) = (c - b, x * x * (3.0 - 2.0 * x));
+            let point = b + chord * shift + from * (x * y * y) - to * (x * x * y);
+            let along = chord * (6.0 * x * y) + from * (y * (1.0 - 3.0 * x));
+            return (point, along - to * (x * (2.0 - 3.0 * x)));
         }
+        if self.basis == Basis::PinnedBSpline {
+            a = if span == 0 { 2.0 * b - c } else { a };
+            d = if span + 1 == last { 2.0 * c - b } else { d };
+        }
+        let inner = |x: f32| (3.0 * x - 6.0) * x * x + 4.0;
+        let point = (a * (y * y * y) + b * inner(x) + c * inner(y) + d * (x * x * x)) / 6.0;
+        let slope = |x: f32| (1.5 * x - 2.0) * x;
+        let along = d * (0.5 * x * x) - a * (0.5 * y * y) + b * slope(x) - c * slope(y);
+        (point, along)
     }
+}
+
+/// Derivative of the centripetal spline at `node`, per span to `after`. At an end, where `before` is the node itself, half of the
+/// way to the neighbour.
+fn slope(before: Vec3, node: Vec3, after: Vec3) -> Vec3 {
+    let (back, ahead) = (node - before, after - node);
+    let [p, q] = [back, ahead].map(|chord| chord.length().sqrt());
+    if p == 0.0 || q == 0.0 {
+        return 0.5 * ahead;
+    }
+    // The quotient of p and q alone: no square of a small distance.
+    let ratio = q / p;
+    (ratio * ratio * back + ahead) / (1.0 + ratio)
 }
 
 /// How finely curves are flattened to segments.
@@ -135,6 +148,7 @@ impl Flattening {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hairis_instruments::sequence::{Independent, XiSource as _};
 
     fn helix() -> Vec<Vec3> {
         (0..20)
@@ -146,7 +160,7 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_points() {
         let nodes = helix();
-        for basis in [Basis::BSpline, Basis::CatmullRom] {
+        for basis in [Basis::BSpline, Basis::PinnedBSpline, Basis::CatmullRom] {
             let spline = Spline::new(&nodes, basis).expect("twenty nodes");
             for (span, x) in [(0, 0.3), (7, 0.0), (7, 0.5), (18, 0.9)] {
                 let step = 0.01;
@@ -176,6 +190,56 @@ mod tests {
                 assert!(
                     point.distance(node) < 1e-6,
                     "span {span}: {point} for {node}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn straight_strands_stay_straight_whatever_their_spans() {
+        let mut random = Independent::new(3, 0);
+        let mut strands = vec![vec![0.0, 4.0, 4.01, 8.0, 8.02, 8.03, 12.0]];
+        strands.extend((0..200).map(|_| {
+            let steps = (0..12).map(|_| libm::powf(10.0, -5.0 * random.next_xi_f32::<1>()[0]));
+            steps
+                .scan(0.0, |y, step| {
+                    *y += step;
+                    Some(*y)
+                })
+                .collect()
+        }));
+        for strand in strands {
+            let nodes: Vec<Vec3> = strand.iter().map(|y| Vec3::new(1.0, *y, 0.0)).collect();
+            for basis in [Basis::PinnedBSpline, Basis::CatmullRom] {
+                let spline = Spline::new(&nodes, basis).expect("nodes");
+                let (mut last, end) = (strand[0], strand[strand.len() - 1]);
+                for (span, x) in (0..spline.spans()).flat_map(|k| (0..=32).map(move |i| (k, i))) {
+                    let (point, along) = spline.at(span, x as f32 / 32.0);
+                    assert!(
+                        point.y >= last - 1e-6 * end && along.y > 0.0 && along.x == 0.0,
+                        "{basis:?} of {strand:?}: {point} after {last} along {along}"
+                    );
+                    last = point.y;
+                }
+                assert!((last - end).abs() <= 1e-6 * end, "{basis:?}: {last}");
+            }
+        }
+    }
+
+    #[test]
+    fn uneven_spans_turn_no_further_than_their_corners() {
+        // A right angle between spans of very different length: no loop, so the direction stays between those of the legs.
+        for short in [1e-4, 0.01, 0.3, 1.0] {
+            let nodes = [-1.0, -0.5, 0.0].map(|x| Vec3::new(x, 0.0, 0.0));
+            let leg = [1.0, 2.0, 40.0].map(|k| Vec3::new(0.0, k * short, 0.0));
+            let nodes: Vec<Vec3> = nodes.into_iter().chain(leg).collect();
+            let spline = Spline::new(&nodes, Basis::CatmullRom).expect("six nodes");
+            let back = Vec3::new(-1.0, -1.0, 0.0);
+            for (span, x) in (0..5).flat_map(|k| (0..=64).map(move |i| (k, i))) {
+                let along = spline.at(span, x as f32 / 64.0).1.normalize();
+                assert!(
+                    along.dot(back) < 0.35,
+                    "{short}: {along} at {span} + {x}/64"
                 );
             }
         }
