@@ -2,11 +2,13 @@
 
 mod bounds;
 mod groom;
+mod mesh;
 mod spline;
 mod strands;
 
 pub use bounds::Bounds;
 pub use groom::{Groom, HEAD, Kind};
+pub use mesh::Mesh;
 pub use spline::Flattening;
 pub(crate) use spline::{Basis, Spline};
 pub use strands::{Builder, GeometryError, Strands};

@@ -123,6 +123,7 @@ mod tests {
         let parts = Parts {
             strands: scenes::grow(Name::Env, 300).expect("a few"),
             imported: false,
+            head: None,
             hair: hair.expect("listed"),
             env: None,
             size: [70; 2],

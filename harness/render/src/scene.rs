@@ -1,5 +1,9 @@
 //! Scene: hair, a head, walls and lights, and a camera.
 
+mod head;
+
+pub use head::{Ellipsoid, Head, Shape};
+
 use crate::camera::Camera;
 use crate::geometry::Strands;
 use crate::lights::{LightSample, LightSample8, Rectangle, RectangleSampling, Seen, Sky, View};
@@ -12,56 +16,6 @@ use hairis_instruments::light::Seen8;
 
 /// Rays to lights end this much before them.
 const SHORTER: f32 = 1.0 - 1e-4;
-
-/// An ellipsoid along the axes that reflects as Lambert's law says, seen from outside.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Head {
-    /// Half lengths of its axes.
-    pub radii: Vec3,
-    /// Share of the light that it reflects.
-    pub albedo: Vec3,
-}
-
-impl Head {
-    /// Distance along a ray, if it meets the head from outside beyond `t_min`.
-    #[inline]
-    #[must_use]
-    pub fn meet(&self, origin: Vec3, direction: Vec3, t_min: f32) -> Option<f32> {
-        let (origin, direction) = (origin / self.radii, direction / self.radii);
-        let (a, b) = (direction.length_squared(), origin.dot(direction));
-        let discriminant = b * b - a * (origin.length_squared() - 1.0);
-        let t = (-b - discriminant.max(0.0).sqrt()) / a;
-        (discriminant >= 0.0 && t > t_min).then_some(t)
-    }
-
-    /// Where eight rays from a point meet it before their ends: a mask, bit for bit what [`meet`](Self::meet) says.
-    #[inline]
-    #[must_use]
-    pub fn blocks8(&self, origin: Vec3, direction: &Vec3x8, t_max: &f32x8) -> f32x8 {
-        let c = f32x8::splat;
-        let origin = origin / self.radii;
-        let Vec3x8 { x, y, z } = *direction;
-        let (x, y, z) = (
-            x / c(self.radii.x),
-            y / c(self.radii.y),
-            z / c(self.radii.z),
-        );
-        let (a, b) = (
-            x * x + y * y + z * z,
-            c(origin.x) * x + c(origin.y) * y + c(origin.z) * z,
-        );
-        let discriminant = b * b - a * c(origin.length_squared() - 1.0);
-        let t = (-b - discriminant.max(c(0.0)).sqrt()) / a;
-        discriminant.simd_ge(c(0.0)) & t.simd_gt(c(0.0)) & t.simd_lt(*t_max)
-    }
-
-    /// Unit normal at a point of the surface.
-    #[inline]
-    #[must_use]
-    pub fn normal(&self, point: Vec3) -> Vec3 {
-        (point / (self.radii * self.radii)).normalize()
-    }
-}
 
 /// First object along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,13 +63,10 @@ impl Scene {
         let mut ray = *ray;
         let mut met = Met::Nothing;
         if let Some(head) = &self.head
-            && let Some(t) = head
-                .meet(ray.origin, ray.direction, 0.0)
-                .filter(|t| *t < ray.t_max)
+            && let Some((t, normal)) = head.meet(&ray)
         {
             ray.t_max = t;
-            let point = ray.origin + t * ray.direction;
-            met = Met::Surface(point, head.normal(point), head.albedo);
+            met = Met::Surface(ray.origin + t * ray.direction, normal, head.albedo);
         }
         for (index, rectangle) in self.rectangles.iter().enumerate() {
             let Some(t) = rectangle
@@ -147,7 +98,8 @@ impl Scene {
         let t_max = ray.t_max * SHORTER;
         let short = |t: f32| t < t_max;
         self.head
-            .is_some_and(|head| head.meet(ray.origin, ray.direction, 0.0).is_some_and(short))
+            .as_ref()
+            .is_some_and(|head| head.blocks(&Ray { t_max, ..*ray }))
             || self
                 .rectangles
                 .iter()
@@ -155,10 +107,12 @@ impl Scene {
             || self.tree.occluded(ray)
     }
 
-    /// Takes the radiance from directions that the head blocks: so cheap a test that candidates for rays pass it first.
+    /// Takes the radiance from directions that an ellipsoidal head blocks: so cheap a test that candidates for rays pass it first.
     #[inline]
     pub fn remove_blocked(&self, origin: Vec3, light: &mut LightSample8) {
-        let Some(head) = &self.head else { return };
+        let Some(Shape::Ellipsoid(head)) = self.head.as_ref().map(|head| &head.shape) else {
+            return;
+        };
         let clear = !head.blocks8(
             origin,
             &light.direction,
@@ -350,6 +304,7 @@ mod tests {
         let parts = Parts {
             strands,
             imported: false,
+            head: None,
             hair,
             env: None,
             size: [1; 2],
@@ -381,31 +336,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn eight_rays_meet_the_head_as_one_does() {
-        let head = Head {
-            radii: Vec3::new(7.5, 10.0, 8.8),
-            albedo: Vec3::ONE,
-        };
-        let mut xi = Independent::new(6, 0);
-        let mut met = 0;
-        for turn in 0..20_000 {
-            // Inside, on the surface and outside.
-            let origin =
-                [0.5, 1.0, 1.01, 3.0][turn % 4] * head.radii * uniform_direction(xi.next_xi_f32());
-            let dirs: [Vec3; 8] = core::array::from_fn(|_| uniform_direction(xi.next_xi_f32()));
-            let t_max = if turn % 3 == 0 { 12.0 } else { f32::INFINITY };
-            let lanes = head
-                .blocks8(origin, &dirs.into(), &f32x8::splat(t_max))
-                .to_bitmask();
-            for (lane, dir) in dirs.into_iter().enumerate() {
-                let one = head.meet(origin, dir, 0.0).is_some_and(|t| t < t_max);
-                assert_eq!(lanes >> lane & 1 == 1, one, "{origin} {dir}");
-                met += u32::from(one);
-            }
-        }
-        assert!(met > 10_000, "{met} met");
     }
 }

@@ -1,10 +1,10 @@
 //! Scenes by name: the set-ups of the paper's figures, and two that test transport.
 
 use crate::camera::Camera;
-use crate::geometry::{Flattening, Groom, HEAD, Kind, Strands};
+use crate::geometry::{Bounds, Flattening, Groom, HEAD, Kind, Strands};
 use crate::lights::{Rectangle, RectangleSampling, Sky};
 use crate::material::Hair;
-use crate::scene::{Head, Scene};
+use crate::scene::{Ellipsoid, Head, Scene};
 use crate::transport::Integrator;
 use crate::tree::Tree;
 use clap::ValueEnum;
@@ -144,8 +144,10 @@ fn groom(name: Name, count: usize) -> Groom {
 pub struct Parts {
     /// The fibres.
     pub strands: Strands,
-    /// Whether they were read from a file: there is no head then, and camera and lights go by their extent.
+    /// Whether they were read from a file: camera and lights then go by the extent of hair and head.
     pub imported: bool,
+    /// The head under hair from a file; procedural hair has its own.
+    pub head: Option<Head>,
     /// Their material.
     pub hair: Hair,
     /// An environment map in place of the scene's light.
@@ -165,13 +167,15 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
     let Parts {
         strands,
         imported,
+        head,
         hair,
         env,
         size,
         turn,
     } = parts;
     let tree = Tree::build(&strands).map_err(|problem| Error::Usage(problem.to_string()))?;
-    let bounds = strands.bounds();
+    let beside = head.as_ref().map_or(Bounds::EMPTY, Head::bounds);
+    let bounds = strands.bounds().union(&beside);
     let extent = bounds.size().length().max(1e-3);
     // Set-ups are for a head at the origin, 26 cm wide with its hair.
     let (scale, centre) = if imported {
@@ -217,10 +221,14 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
     };
     let camera = camera.orbit(centre, turn);
     let on_head = !imported && matches!(name.kind(), Kind::Straight | Kind::Wavy);
-    let head = on_head.then_some(Head {
-        radii: 0.995 * HEAD,
-        albedo: Vec3::new(0.45, 0.32, 0.25),
-    });
+    let head = if on_head {
+        Some(Head::ellipsoid(Ellipsoid {
+            centre: Vec3::ZERO,
+            radii: 0.995 * HEAD,
+        }))
+    } else {
+        head
+    };
     let rectangle_sampling = RectangleSampling::default();
     let gap = 1e-3 * scale;
     Ok(Scene {

@@ -1,6 +1,6 @@
-//! Which segment a ray meets first: a tree of boxes, eight to a node, over blocks of eight segments.
+//! Which segment or triangle a ray meets first: a tree of boxes, eight to a node, over blocks of eight segments or triangles.
 //!
-//! It knows strands and rays, and no light. Lanes are eight boxes or eight segments that one ray is tested against, and
+//! It knows strands, meshes and rays, and no light. Lanes are eight boxes or eight of the others that one ray is tested against, and
 //! [`hairis::simd::Level`] finds their instruction set at run time; hits depend on [`hairis::simd::Level::fuses`] in their last bits,
 //! and on nothing else of the machine.
 
@@ -12,12 +12,14 @@ mod split;
 #[cfg(test)]
 mod tests;
 mod traverse;
+mod triangles;
 
 pub use ray::{Hit, Ray, Skip};
 pub use traverse::Visits;
+pub use triangles::MeshTree;
 
 use crate::geometry::Strands;
-use block::Block;
+use block::{Block, Leaf};
 use core::fmt;
 use hairis::simd::Level;
 use node::Node;
@@ -26,6 +28,11 @@ use traverse::{Any, Closest};
 /// Scenes are at most this many times as large as the radius of their thinnest strand: distances are computed to about
 /// 2^-22 of the scene, which is then below 3 % of a radius.
 const LARGEST_SCALE: f32 = 1e5;
+
+/// The least radius of a strand in a scene of this size, with room for what it adds to the size.
+pub(crate) fn thinnest(size: f32) -> f32 {
+    1.001 * size / LARGEST_SCALE
+}
 
 /// Finds the segments that rays meet.
 ///
@@ -41,10 +48,42 @@ const LARGEST_SCALE: f32 = 1e5;
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Tree {
+pub struct Tree(Boxes<Block>);
+
+/// Nodes over blocks of eight.
+#[derive(Clone, Debug)]
+struct Boxes<B> {
     nodes: Vec<Node>,
-    blocks: Vec<Block>,
+    blocks: Vec<B>,
     level: Level,
+}
+
+impl<B: Leaf> Boxes<B> {
+    fn new((nodes, blocks): (Vec<Node>, Vec<B>)) -> Self {
+        Self {
+            nodes,
+            blocks,
+            level: Level::detect(),
+        }
+    }
+
+    #[inline]
+    fn closest(&self, ray: &Ray) -> Option<B::Hit> {
+        self.level.run(Closest {
+            boxes: self,
+            ray,
+            visits: &mut (),
+        })
+    }
+
+    #[inline]
+    fn occluded(&self, ray: &Ray) -> bool {
+        self.level.run(Any {
+            boxes: self,
+            ray,
+            visits: &mut (),
+        })
+    }
 }
 
 impl Tree {
@@ -69,18 +108,17 @@ impl Tree {
         if size > LARGEST_SCALE * radius {
             return Err(TreeError::Scale { size, radius });
         }
-        let (nodes, blocks) = build::build(strands);
-        Ok(Self {
-            nodes,
-            blocks,
-            level: Level::detect(),
-        })
+        let block = |segments: &[_]| Block::new(strands, segments);
+        Ok(Self(Boxes::new(build::build(
+            block::primitives(strands),
+            block,
+        ))))
     }
 
     /// The tree, searched with another instruction set.
     #[must_use]
     pub fn at(self, level: Level) -> Self {
-        Self { level, ..self }
+        Self(Boxes { level, ..self.0 })
     }
 
     /// The nearest segment that the ray meets. Of equally near ones it is the one with the lowest number, so that images do
@@ -88,29 +126,21 @@ impl Tree {
     #[inline]
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
-        self.level.run(Closest {
-            tree: self,
-            ray,
-            visits: &mut (),
-        })
+        self.0.closest(ray)
     }
 
     /// Whether the ray meets any segment.
     #[inline]
     #[must_use]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.level.run(Any {
-            tree: self,
-            ray,
-            visits: &mut (),
-        })
+        self.0.occluded(ray)
     }
 
     /// [`closest`](Self::closest), with the nodes and blocks that it looks at added to `visits`.
     #[must_use]
     pub fn closest_counted(&self, ray: &Ray, visits: &mut Visits) -> Option<Hit> {
-        self.level.run(Closest {
-            tree: self,
+        self.0.level.run(Closest {
+            boxes: &self.0,
             ray,
             visits,
         })
@@ -120,15 +150,15 @@ impl Tree {
     #[must_use]
     pub fn size(&self) -> Visits {
         Visits {
-            nodes: self.nodes.len() as u64,
-            blocks: self.blocks.len() as u64,
+            nodes: self.0.nodes.len() as u64,
+            blocks: self.0.blocks.len() as u64,
         }
     }
 
     /// Its size in bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice())
+        size_of_val(self.0.nodes.as_slice()) + size_of_val(self.0.blocks.as_slice())
     }
 }
 

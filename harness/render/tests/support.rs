@@ -23,6 +23,7 @@ pub(crate) fn scene(name: Name, hair: Hair, strands: usize, side: u32) -> Scene 
     let parts = Parts {
         strands,
         imported: false,
+        head: None,
         hair,
         env: None,
         size: [side, side],

@@ -91,6 +91,7 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     let parts = Parts {
         strands,
         imported: flags.import.is_some(),
+        head: None,
         hair: hairs[0].hair,
         env,
         size: flags.size.0,

@@ -178,6 +178,7 @@ impl Measured {
         let parts = Parts {
             strands,
             imported: false,
+            head: None,
             hair: sampled(hair.best())?,
             env: map,
             size: [plan.side; 2],

@@ -57,6 +57,7 @@ impl Preset {
         let parts = Parts {
             strands,
             imported: false,
+            head: None,
             hair: *first,
             env: None,
             size: [plan.side; 2],

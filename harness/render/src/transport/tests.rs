@@ -31,6 +31,7 @@ fn under_map(lamps: bool) -> Scene {
     let parts = Parts {
         strands,
         imported: false,
+        head: None,
         hair,
         env: Some(env),
         size: [32; 2],

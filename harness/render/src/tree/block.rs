@@ -1,7 +1,9 @@
 //! Eight segments, and which of them a ray meets.
 
+use super::build::slack;
 use super::ray::{Hit, Ray, Spread};
-use crate::geometry::Strands;
+use super::split::Primitive;
+use crate::geometry::{Bounds, Strands};
 use glam::Vec3;
 use hairis::simd::{Broadcast, Lanes, f32x8, lanes3};
 
@@ -18,13 +20,54 @@ pub(super) struct Block {
     strand: [u32; 8],
 }
 
+/// What the leaves of a tree hold.
+pub(super) trait Leaf {
+    /// A hit of one of them.
+    type Hit;
+
+    /// Which of the eight the ray meets before `limit`: lanes as bits, distances, and places along what is met.
+    fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2]);
+
+    /// Whether it is of what the ray leaves, and at a distance that the ray ignores.
+    fn skipped(&self, lane: usize, t: f32, ray: &Ray) -> bool;
+
+    /// Number of the primitive.
+    fn number(&self, lane: usize) -> u32;
+
+    /// All of a hit, of which distance and place are known.
+    fn hit(&self, lane: usize, ray: &Ray, t: f32, s: f32) -> Self::Hit;
+}
+
+/// The boxes of all segments. A ray that passes an end within its radius meets it, so that they are those of spheres about
+/// both ends, with some slack.
+pub(super) fn primitives(strands: &Strands) -> Vec<Primitive> {
+    let slack = slack(&strands.bounds());
+    let sphere = |k, s| {
+        let (centre, radius): (Vec3, f32) = (strands.position(k, s), strands.radius(k, s) + slack);
+        Bounds {
+            lo: centre - radius,
+            hi: centre + radius,
+        }
+    };
+    let box_of = |k| sphere(k, 0.0).union(&sphere(k, 1.0));
+    strands
+        .numbers()
+        .map(|(strand, number)| Primitive {
+            bounds: box_of(number),
+            strand,
+            number,
+        })
+        .collect()
+}
+
 impl Block {
-    /// The segments of at most eight numbers.
-    pub(super) fn new(strands: &Strands, numbers: impl IntoIterator<Item = (u32, u32)>) -> Self {
+    /// At most eight segments.
+    pub(super) fn new(strands: &Strands, segments: &[Primitive]) -> Self {
         let (mut start, mut edge) = ([[f32::NAN; 8]; 3], [[0.0; 8]; 3]);
         let (mut radius, mut widening) = ([0.0; 8], [0.0; 8]);
         let (mut number, mut strand) = ([u32::MAX; 8], [u32::MAX; 8]);
-        for (lane, (of, k)) in numbers.into_iter().enumerate() {
+        for (lane, segment) in segments.iter().enumerate() {
+            let (of, k) = (segment.strand, segment.number);
             let from = strands.position(k, 0.0);
             let along = strands.position(k, 1.0) - from;
             for axis in 0..3 {
@@ -45,15 +88,15 @@ impl Block {
             strand,
         }
     }
+}
+
+impl Leaf for Block {
+    type Hit = Hit;
 
     /// Where the ray passes nearer to an axis than the radius there, before `limit`: lanes as bits, distances, and places
     /// along the segments.
     #[inline(always)]
-    pub(super) fn meet<L: Lanes<Stored = f32x8>>(
-        &self,
-        ray: &Spread<L>,
-        limit: f32,
-    ) -> (u32, [f32x8; 2]) {
+    fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2]) {
         let [dx, dy, dz] = ray.direction;
         let (start, edge): ([L; 3], [L; 3]) = (lanes3(&self.start), lanes3(&self.edge));
         let from = [
@@ -93,22 +136,19 @@ impl Block {
         (bits::<L>(met), [t.store(), s.store()])
     }
 
-    /// Whether the segment is of a strand that the ray leaves, and at a distance that it ignores.
     #[inline(always)]
-    pub(super) fn skipped(&self, lane: usize, t: f32, ray: &Ray) -> bool {
+    fn skipped(&self, lane: usize, t: f32, ray: &Ray) -> bool {
         ray.skip
             .is_some_and(|skip| skip.strand == self.strand[lane] && t < skip.before)
     }
 
-    /// Number of the segment.
     #[inline(always)]
-    pub(super) fn number(&self, lane: usize) -> u32 {
+    fn number(&self, lane: usize) -> u32 {
         self.number[lane]
     }
 
-    /// All of a hit, of which distance and place are known.
     #[inline]
-    pub(super) fn hit(&self, lane: usize, ray: &Ray, t: f32, s: f32) -> Hit {
+    fn hit(&self, lane: usize, ray: &Ray, t: f32, s: f32) -> Hit {
         let vector = |of: &[f32x8; 3]| Vec3::from(of.map(|lanes| lanes.as_array()[lane]));
         let edge = vector(&self.edge);
         let radius = self.radius.as_array()[lane] + s * self.widening.as_array()[lane];

@@ -1,30 +1,31 @@
-//! Builds the tree from the root down: sets of segments are divided until eight parts are left, and so on with each.
+//! Builds the tree from the root down: sets of primitives are divided until eight parts are left, and so on with each.
 
-use super::block::Block;
 use super::node::{Child, Node};
 use super::split::{Extent, Primitive, middle, split};
-use crate::geometry::{Bounds, Strands};
+use crate::geometry::Bounds;
 use core::ops::Range;
-use glam::Vec3;
 use rayon::prelude::*;
 
 /// Down to this level sets are divided where it is cheapest; below, in the middle.
 const BY_COST: usize = 14;
 /// No node is deeper: eleven levels of halves hold 2^33 segments.
 pub(super) const DEEPEST: usize = BY_COST + 11;
-/// Parts with more segments than this are built in parallel.
+/// Parts with more primitives than this are built in parallel.
 const PARALLEL: usize = 4096;
 
 /// A part of the tree before it has its place.
 enum Draft {
-    /// The segments of a block, as a range of all in their final order.
+    /// The primitives of a block, as a range of all in their final order.
     Block(Range<usize>),
     Node(Vec<(Bounds, Self)>),
 }
 
-/// The nodes, the root first, and the blocks. Both are in the order of a search that turns to the first child first.
-pub(super) fn build(strands: &Strands) -> (Vec<Node>, Vec<Block>) {
-    let mut primitives = primitives(strands);
+/// The nodes, the root first, and the blocks, which `block` makes. Both are in the order of a search that turns to the first
+/// child first.
+pub(super) fn build<B: Send>(
+    mut primitives: Vec<Primitive>,
+    block: impl Fn(&[Primitive]) -> B + Sync,
+) -> (Vec<Node>, Vec<B>) {
     let extent = Extent::of(&primitives);
     let root = match draft(&mut primitives, extent, 0, 0) {
         Draft::Node(children) => children,
@@ -33,40 +34,17 @@ pub(super) fn build(strands: &Strands) -> (Vec<Node>, Vec<Block>) {
     };
     let (mut nodes, mut ranges) = (Vec::new(), Vec::new());
     place(root, &mut nodes, &mut ranges);
-    let block = |range: Range<usize>| {
-        Block::new(
-            strands,
-            primitives[range].iter().map(|p| (p.strand, p.number)),
-        )
-    };
+    let block = |range: Range<usize>| block(&primitives[range]);
     (nodes, ranges.into_par_iter().map(block).collect())
 }
 
-/// The boxes of all segments. A ray that passes an end within its radius meets it, so that they are those of spheres about
-/// both ends; they have some slack against rounding, for rays that start within a few scenes' sizes.
-fn primitives(strands: &Strands) -> Vec<Primitive> {
-    let bounds = strands.bounds();
-    let slack = if bounds.is_empty() {
+/// Slack of boxes against rounding, for rays that start within a few scenes' sizes.
+pub(super) fn slack(bounds: &Bounds) -> f32 {
+    if bounds.is_empty() {
         0.0
     } else {
         bounds.lo.abs().max(bounds.hi.abs()).max_element() / (1 << 21) as f32
-    };
-    let sphere = |k, s| {
-        let (centre, radius): (Vec3, f32) = (strands.position(k, s), strands.radius(k, s) + slack);
-        Bounds {
-            lo: centre - radius,
-            hi: centre + radius,
-        }
-    };
-    let box_of = |k| sphere(k, 0.0).union(&sphere(k, 1.0));
-    strands
-        .numbers()
-        .map(|(strand, number)| Primitive {
-            bounds: box_of(number),
-            strand,
-            number,
-        })
-        .collect()
+    }
 }
 
 /// The tree over `primitives`, whose order it changes; `first` is the place of the first of them among all.
@@ -97,7 +75,7 @@ fn draft(primitives: &mut [Primitive], extent: Extent, first: usize, depth: usiz
     })
 }
 
-/// At most eight parts, in order. The part with the largest surface is divided first, or the one with the most segments.
+/// At most eight parts, in order. The part with the largest surface is divided first, or the one with the most primitives.
 fn divide(
     primitives: &mut [Primitive],
     extent: Extent,
@@ -132,7 +110,7 @@ fn divide(
     parts
 }
 
-/// Writes a node and all below it, and gives its index. Blocks are listed by their segments.
+/// Writes a node and all below it, and gives its index. Blocks are listed by their primitives.
 fn place(
     children: Vec<(Bounds, Draft)>,
     nodes: &mut Vec<Node>,

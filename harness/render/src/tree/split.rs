@@ -4,7 +4,7 @@ use crate::geometry::Bounds;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// A segment as the tree is built of it.
+/// A segment or a triangle as the tree is built of it. Triangles are of no strand.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Primitive {
     pub(super) bounds: Bounds,

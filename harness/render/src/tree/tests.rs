@@ -1,6 +1,6 @@
 //! The tree against every block one by one, on every level.
 
-use super::block::Block;
+use super::block::{Block, Leaf as _};
 use super::ray::Spread;
 use super::{Hit, Ray, Skip, Tree, TreeError};
 use crate::geometry::{Builder, Flattening, Groom, Kind, Strands};
@@ -24,8 +24,8 @@ impl Kernel for Alone<'_> {
 /// The nearest hit, by looking at all segments.
 fn search_all(tree: &Tree, ray: &Ray) -> Option<Hit> {
     let mut best: Option<Hit> = None;
-    for block in &tree.blocks {
-        let (met, [t, s]) = tree.level.run(Alone(block, ray));
+    for block in &tree.0.blocks {
+        let (met, [t, s]) = tree.0.level.run(Alone(block, ray));
         for lane in (0..8).filter(|lane| met >> lane & 1 == 1) {
             let hit = block.hit(lane, ray, t.as_array()[lane], s.as_array()[lane]);
             let ignored = ray
@@ -287,7 +287,7 @@ fn strands_and_trees_are_the_same_for_any_number_of_threads() {
                 .grow(&Flattening::default())
                 .expect("settings in range");
             let tree = Tree::build(&strands).expect("a small scene");
-            (strands, format!("{:?} {:?}", tree.nodes, tree.blocks))
+            (strands, format!("{:?} {:?}", tree.0.nodes, tree.0.blocks))
         })
     };
     let one = with(1);

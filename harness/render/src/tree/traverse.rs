@@ -1,9 +1,10 @@
 //! The search through the tree: near boxes first.
 
-use super::Tree;
+use super::Boxes;
+use super::block::Leaf;
 use super::build::DEEPEST;
 use super::node::Child;
-use super::ray::{Hit, Ray, Spread};
+use super::ray::{Ray, Spread};
 use hairis::simd::{Kernel, Lanes, f32x8};
 
 /// Numbers of nodes and blocks.
@@ -11,7 +12,7 @@ use hairis::simd::{Kernel, Lanes, f32x8};
 pub struct Visits {
     /// Nodes: eight boxes each.
     pub nodes: u64,
-    /// Blocks: eight segments each.
+    /// Blocks: eight segments each, or triangles.
     pub blocks: u64,
 }
 
@@ -40,34 +41,34 @@ impl Count for Visits {
 }
 
 /// The nearest hit of a ray.
-pub(super) struct Closest<'a, C> {
-    pub(super) tree: &'a Tree,
+pub(super) struct Closest<'a, B, C> {
+    pub(super) boxes: &'a Boxes<B>,
     pub(super) ray: &'a Ray,
     pub(super) visits: &'a mut C,
 }
 
 /// Whether a ray meets anything.
-pub(super) struct Any<'a, C> {
-    pub(super) tree: &'a Tree,
+pub(super) struct Any<'a, B, C> {
+    pub(super) boxes: &'a Boxes<B>,
     pub(super) ray: &'a Ray,
     pub(super) visits: &'a mut C,
 }
 
-impl<C: Count> Kernel for Closest<'_, C> {
-    type Output = Option<Hit>;
+impl<B: Leaf, C: Count> Kernel for Closest<'_, B, C> {
+    type Output = Option<B::Hit>;
 
     #[inline(always)]
-    fn run<L: Lanes<Stored = f32x8>>(self) -> Option<Hit> {
-        search::<L, C, false>(self.tree, self.ray, self.visits)
+    fn run<L: Lanes<Stored = f32x8>>(self) -> Option<B::Hit> {
+        search::<L, B, C, false>(self.boxes, self.ray, self.visits)
     }
 }
 
-impl<C: Count> Kernel for Any<'_, C> {
+impl<B: Leaf, C: Count> Kernel for Any<'_, B, C> {
     type Output = bool;
 
     #[inline(always)]
     fn run<L: Lanes<Stored = f32x8>>(self) -> bool {
-        search::<L, C, true>(self.tree, self.ray, self.visits).is_some()
+        search::<L, B, C, true>(self.boxes, self.ray, self.visits).is_some()
     }
 }
 
@@ -86,11 +87,11 @@ const STACK: usize = 7 * DEEPEST + 1;
 
 /// The nearest hit, or with `ANY` the first that is found, of which only that it is there is known.
 #[inline(always)]
-fn search<L: Lanes<Stored = f32x8>, C: Count, const ANY: bool>(
-    tree: &Tree,
+fn search<L: Lanes<Stored = f32x8>, B: Leaf, C: Count, const ANY: bool>(
+    tree: &Boxes<B>,
     ray: &Ray,
     visits: &mut C,
-) -> Option<Hit> {
+) -> Option<B::Hit> {
     let spread = Spread::<L>::new(ray);
     // No segment has a number below 0: what is at `t_max` itself is not met.
     let mut best = Best {

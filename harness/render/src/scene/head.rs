@@ -1,0 +1,185 @@
+//! What hair grows on.
+
+use crate::geometry::{Bounds, Mesh};
+use crate::tree::{MeshTree, Ray};
+use glam::Vec3;
+use hairis::Vec3x8;
+use hairis::simd::f32x8;
+
+/// A head that reflects as Lambert's law says.
+#[derive(Clone, Debug)]
+pub struct Head {
+    /// Its surface.
+    pub shape: Shape,
+    /// Share of the light that it reflects.
+    pub albedo: Vec3,
+}
+
+/// The surface of a head.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// An ellipsoid, seen from outside.
+    Ellipsoid(Ellipsoid),
+    /// Triangles, seen from either side.
+    Mesh(Box<(Mesh, MeshTree)>),
+}
+
+impl Head {
+    /// The colour of skin.
+    pub const SKIN: Vec3 = Vec3::new(0.45, 0.32, 0.25);
+
+    /// An ellipsoid of skin.
+    #[must_use]
+    pub fn ellipsoid(ellipsoid: Ellipsoid) -> Self {
+        Self {
+            shape: Shape::Ellipsoid(ellipsoid),
+            albedo: Self::SKIN,
+        }
+    }
+
+    /// A mesh of skin.
+    #[must_use]
+    pub fn mesh(mesh: Mesh) -> Self {
+        let tree = MeshTree::build(&mesh);
+        Self {
+            shape: Shape::Mesh(Box::new((mesh, tree))),
+            albedo: Self::SKIN,
+        }
+    }
+
+    /// How many triangles it has.
+    #[must_use]
+    pub fn triangles(&self) -> usize {
+        match &self.shape {
+            Shape::Ellipsoid(_) => 0,
+            Shape::Mesh(mesh) => mesh.0.triangles(),
+        }
+    }
+
+    /// The smallest box that holds it.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        match &self.shape {
+            Shape::Ellipsoid(Ellipsoid { centre, radii }) => Bounds {
+                lo: *centre - *radii,
+                hi: *centre + *radii,
+            },
+            Shape::Mesh(mesh) => mesh.0.bounds(),
+        }
+    }
+
+    /// Distance along a ray to the head, and the unit normal there on the side of the ray.
+    #[inline]
+    #[must_use]
+    pub fn meet(&self, ray: &Ray) -> Option<(f32, Vec3)> {
+        match &self.shape {
+            Shape::Ellipsoid(ellipsoid) => {
+                let t = ellipsoid.meet(ray.origin, ray.direction, 0.0)?;
+                let normal = || ellipsoid.normal(ray.origin + t * ray.direction);
+                (t < ray.t_max).then(|| (t, normal()))
+            }
+            Shape::Mesh(mesh) => {
+                let (t, triangle) = mesh.1.closest(ray)?;
+                let normal = mesh.0.normal(triangle);
+                let behind = normal.dot(ray.direction) > 0.0;
+                Some((t, if behind { -normal } else { normal }))
+            }
+        }
+    }
+
+    /// Whether a ray meets the head.
+    #[inline]
+    #[must_use]
+    pub fn blocks(&self, ray: &Ray) -> bool {
+        match &self.shape {
+            Shape::Ellipsoid(ellipsoid) => ellipsoid
+                .meet(ray.origin, ray.direction, 0.0)
+                .is_some_and(|t| t < ray.t_max),
+            Shape::Mesh(mesh) => mesh.1.occluded(ray),
+        }
+    }
+}
+
+/// An ellipsoid along the axes, seen from outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipsoid {
+    /// Its centre.
+    pub centre: Vec3,
+    /// Half lengths of its axes.
+    pub radii: Vec3,
+}
+
+impl Ellipsoid {
+    /// Distance along a ray, if it meets the ellipsoid from outside beyond `t_min`.
+    #[inline]
+    #[must_use]
+    pub fn meet(&self, origin: Vec3, direction: Vec3, t_min: f32) -> Option<f32> {
+        let (origin, direction) = ((origin - self.centre) / self.radii, direction / self.radii);
+        let (a, b) = (direction.length_squared(), origin.dot(direction));
+        let discriminant = b * b - a * (origin.length_squared() - 1.0);
+        let t = (-b - discriminant.max(0.0).sqrt()) / a;
+        (discriminant >= 0.0 && t > t_min).then_some(t)
+    }
+
+    /// Where eight rays from a point meet it before their ends: a mask, bit for bit what [`meet`](Self::meet) says.
+    #[inline]
+    #[must_use]
+    pub fn blocks8(&self, origin: Vec3, direction: &Vec3x8, t_max: &f32x8) -> f32x8 {
+        let c = f32x8::splat;
+        let origin = (origin - self.centre) / self.radii;
+        let Vec3x8 { x, y, z } = *direction;
+        let (x, y, z) = (
+            x / c(self.radii.x),
+            y / c(self.radii.y),
+            z / c(self.radii.z),
+        );
+        let (a, b) = (
+            x * x + y * y + z * z,
+            c(origin.x) * x + c(origin.y) * y + c(origin.z) * z,
+        );
+        let discriminant = b * b - a * c(origin.length_squared() - 1.0);
+        let t = (-b - discriminant.max(c(0.0)).sqrt()) / a;
+        discriminant.simd_ge(c(0.0)) & t.simd_gt(c(0.0)) & t.simd_lt(*t_max)
+    }
+
+    /// Unit normal at a point of the surface.
+    #[inline]
+    #[must_use]
+    pub fn normal(&self, point: Vec3) -> Vec3 {
+        ((point - self.centre) / (self.radii * self.radii)).normalize()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lights::uniform_direction;
+    use hairis_instruments::sequence::{Independent, XiSource as _};
+
+    #[test]
+    fn eight_rays_meet_the_head_as_one_does() {
+        let head = Ellipsoid {
+            centre: Vec3::new(1.0, 150.0, -3.0),
+            radii: Vec3::new(7.5, 10.0, 8.8),
+        };
+        let mut xi = Independent::new(6, 0);
+        let mut met = 0;
+        for turn in 0..20_000 {
+            // Inside, on the surface and outside.
+            let origin =
+                [0.5, 1.0, 1.01, 3.0][turn % 4] * head.radii * uniform_direction(xi.next_xi_f32());
+            let origin = head.centre + origin;
+            let dirs: [Vec3; 8] = core::array::from_fn(|_| uniform_direction(xi.next_xi_f32()));
+            let t_max = if turn % 3 == 0 { 12.0 } else { f32::INFINITY };
+            let lanes = head
+                .blocks8(origin, &dirs.into(), &f32x8::splat(t_max))
+                .to_bitmask();
+            for (lane, dir) in dirs.into_iter().enumerate() {
+                let one = head.meet(origin, dir, 0.0).is_some_and(|t| t < t_max);
+                assert_eq!(lanes >> lane & 1 == 1, one, "{origin} {dir}");
+                met += u32::from(one);
+            }
+        }
+        assert!(met > 10_000, "{met} met");
+    }
+}

@@ -1,0 +1,248 @@
+//! Eight triangles, and which of them a ray meets.
+
+use super::Boxes;
+use super::block::{Leaf, bits};
+use super::build::{build, slack};
+use super::ray::{Ray, Spread};
+use super::split::Primitive;
+use crate::geometry::{Bounds, Mesh};
+use hairis::simd::{Lanes, f32x8};
+
+/// Finds the triangles that rays meet, from either side.
+#[derive(Clone, Debug)]
+pub struct MeshTree(Boxes<Triangles>);
+
+impl MeshTree {
+    /// Builds the tree. It is the same for any number of threads.
+    #[must_use]
+    pub fn build(mesh: &Mesh) -> Self {
+        let slack = slack(&mesh.bounds());
+        let primitive = |number: u32| {
+            let corners = mesh.corners(number);
+            let bounds = corners.into_iter().fold(Bounds::EMPTY, |b, p| b.with(p));
+            Primitive {
+                bounds: Bounds {
+                    lo: bounds.lo - slack,
+                    hi: bounds.hi + slack,
+                },
+                strand: u32::MAX,
+                number,
+            }
+        };
+        let primitives = (0..).take(mesh.triangles()).map(primitive).collect();
+        Self(Boxes::new(build(primitives, |block| {
+            Triangles::new(mesh, block)
+        })))
+    }
+
+    /// The nearest triangle that the ray meets: its distance and number. Of equally near ones it is that of the lowest number.
+    #[inline]
+    #[must_use]
+    pub fn closest(&self, ray: &Ray) -> Option<(f32, u32)> {
+        self.0.closest(ray)
+    }
+
+    /// Whether the ray meets any triangle.
+    #[inline]
+    #[must_use]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.0.occluded(ray)
+    }
+}
+
+/// Eight triangles, lane by lane. Free lanes are at NaN, which nothing meets.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+struct Triangles {
+    corners: [[f32x8; 3]; 3],
+    number: [u32; 8],
+}
+
+impl Triangles {
+    fn new(mesh: &Mesh, triangles: &[Primitive]) -> Self {
+        let mut corners = [[[f32::NAN; 8]; 3]; 3];
+        let mut number = [u32::MAX; 8];
+        for (lane, triangle) in triangles.iter().enumerate() {
+            number[lane] = triangle.number;
+            for (lanes, corner) in corners.iter_mut().zip(mesh.corners(triangle.number)) {
+                for (lanes, place) in lanes.iter_mut().zip(corner.to_array()) {
+                    lanes[lane] = place;
+                }
+            }
+        }
+        Self {
+            corners: corners.map(|corner| corner.map(f32x8::new)),
+            number,
+        }
+    }
+}
+
+/// `a x b`: exactly the opposite of `b x a`, as nothing is fused.
+#[inline(always)]
+fn cross<L: Lanes>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+#[inline(always)]
+fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
+}
+
+impl Leaf for Triangles {
+    type Hit = (f32, u32);
+
+    /// On which side of the three edges the ray passes. Two triangles find exactly opposite numbers at an edge that they share, so
+    /// that no ray slips between them.
+    #[inline(always)]
+    fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2]) {
+        let from = |corner: &[f32x8; 3]| -> [L; 3] {
+            [
+                corner[0].lanes() - ray.origin[0],
+                corner[1].lanes() - ray.origin[1],
+                corner[2].lanes() - ray.origin[2],
+            ]
+        };
+        let [a, b, c] = [
+            from(&self.corners[0]),
+            from(&self.corners[1]),
+            from(&self.corners[2]),
+        ];
+        let sides = [
+            dot(ray.direction, cross(a, b)),
+            dot(ray.direction, cross(b, c)),
+            dot(ray.direction, cross(c, a)),
+        ];
+        let least = sides[0].min(sides[1]).min(sides[2]);
+        let most = sides[0].max(sides[1]).max(sides[2]);
+        let edge = |to: [L; 3]| [to[0] - a[0], to[1] - a[1], to[2] - a[2]];
+        let normal = cross(edge(b), edge(c));
+        let t = dot(normal, a) / dot(normal, ray.direction);
+        let within = L::and(L::splat(0.0).lt(t), t.lt(L::splat(limit)));
+        // No two sides have opposite signs.
+        let inside = L::splat(-f32::MIN_POSITIVE).lt(least.max(L::splat(0.0) - most));
+        (bits::<L>(L::and(inside, within)), [t.store(), t.store()])
+    }
+
+    #[inline(always)]
+    fn skipped(&self, _lane: usize, _t: f32, _ray: &Ray) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn number(&self, lane: usize) -> u32 {
+        self.number[lane]
+    }
+
+    #[inline]
+    fn hit(&self, lane: usize, _ray: &Ray, t: f32, _s: f32) -> (f32, u32) {
+        (t, self.number[lane])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lights::uniform_direction;
+    use glam::{DVec3, Vec3};
+    use hairis_instruments::sequence::{Independent, XiSource as _};
+
+    /// A ball of triangles about a place, of radius 1.
+    fn ball(rings: u32, centre: Vec3) -> Mesh {
+        let around = 2 * rings;
+        let place = |ring: u32, k: u32| {
+            let theta = core::f32::consts::PI * ring as f32 / rings as f32;
+            let phi = core::f32::consts::TAU * (k % around) as f32 / around as f32;
+            let across = if ring % rings == 0 { 0.0 } else { theta.sin() };
+            centre + Vec3::new(across * phi.cos(), theta.cos(), across * phi.sin())
+        };
+        let places = (0..=rings).flat_map(|ring| (0..around).map(move |k| place(ring, k)));
+        let number = |ring: u32, k: u32| ring * around + k % around;
+        let quads = (0..rings).flat_map(|ring| (0..around).map(move |k| (ring, k)));
+        let triangles = quads.flat_map(|(ring, k)| {
+            let [a, b] = [number(ring, k), number(ring, k + 1)];
+            let [c, d] = [number(ring + 1, k), number(ring + 1, k + 1)];
+            [[a, b, c], [b, d, c]]
+        });
+        Mesh::new(places.collect(), triangles.collect()).expect("a ball")
+    }
+
+    /// The distance in `f64`, and how far inside its edges the triangle is met, as parts of its heights.
+    fn meet(corners: [Vec3; 3], ray: &Ray) -> (f64, f64) {
+        let [a, b, c] = corners.map(|p| p.as_dvec3());
+        let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let normal = (b - a).cross(c - a);
+        let t = normal.dot(a - origin) / normal.dot(direction);
+        let p = origin + t * direction;
+        let side = |a: DVec3, b: DVec3| (b - a).cross(p - a).dot(normal) / normal.length_squared();
+        (t, side(a, b).min(side(b, c)).min(side(c, a)))
+    }
+
+    #[test]
+    fn the_tree_finds_what_a_search_of_all_finds() {
+        let mesh = ball(24, Vec3::new(3.0, -2.0, 1.0));
+        let tree = MeshTree::build(&mesh);
+        let mut xi = Independent::new(2, 0);
+        let (mut met, mut unclear) = (0, 0);
+        for turn in 0..4000 {
+            let centre = Vec3::new(3.0, -2.0, 1.0);
+            let away = uniform_direction(xi.next_xi_f32());
+            let origin = centre + [0.3, 5.0, 60.0][turn % 3] * away;
+            let aim = centre + 1.1 * uniform_direction(xi.next_xi_f32());
+            let ray = Ray {
+                t_max: if turn % 5 == 0 { 4.0 } else { f32::INFINITY },
+                ..Ray::new(origin, (aim - origin).normalize())
+            };
+            let all = (0..)
+                .take(mesh.triangles())
+                .map(|k| meet(mesh.corners(k), &ray));
+            let ahead = all.filter(|(t, _)| *t > 0.0 && *t < f64::from(ray.t_max));
+            let (sure, near): (Vec<_>, Vec<_>) = ahead
+                .filter(|(_, inside)| *inside > -1e-3)
+                .partition(|(_, inside)| *inside > 1e-3);
+            let nearest = sure.iter().map(|hit| hit.0).fold(f64::INFINITY, f64::min);
+            assert_eq!(tree.closest(&ray).is_some(), tree.occluded(&ray), "{ray:?}");
+            match tree.closest(&ray) {
+                Some((t, _)) if near.is_empty() => {
+                    assert!((f64::from(t) - nearest).abs() < 1e-4, "{t} for {nearest}");
+                    met += 1;
+                }
+                None if near.is_empty() => assert!(sure.is_empty(), "{ray:?} is lost"),
+                _ => unclear += 1,
+            }
+        }
+        assert!(met > 2000 && unclear < 600, "{met} met, {unclear} at edges");
+    }
+
+    #[test]
+    fn no_ray_slips_between_triangles() {
+        for (rings, distance) in [(8, 3.0), (200, 3.0), (60, 90.0)] {
+            let centre = Vec3::new(1.0, 7.0, -3.0);
+            let mesh = ball(rings, centre);
+            let tree = MeshTree::build(&mesh);
+            let mut xi = Independent::new(5, u64::from(rings));
+            for _ in 0..3000 {
+                // From outside through corners and edges, and from inside anywhere.
+                let [pick, along, ..] = xi.next_xi_f32::<3>();
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "below the count"
+                )]
+                let triangle = (pick * mesh.triangles() as f32) as u32;
+                let [a, b, _] = mesh.corners(triangle.min(mesh.triangles() as u32 - 1));
+                let target = if along < 0.3 { a } else { a.lerp(b, along) };
+                let outward = (target - centre).normalize();
+                let tilt = 0.3 * uniform_direction(xi.next_xi_f32());
+                let direction = (tilt - outward).normalize();
+                let ray = Ray::new(target - distance * direction, direction);
+                assert!(tree.occluded(&ray), "{ray:?} passes {target}");
+                let inside = Ray::new(centre, uniform_direction(xi.next_xi_f32()));
+                assert!(tree.occluded(&inside), "{inside:?} leaves");
+            }
+        }
+    }
+}
