@@ -1,10 +1,11 @@
 //! The raw flags, and what clap cannot check.
 
 use crate::film::Crop;
-use crate::formats::Up;
+use crate::formats::{Curve, Up};
 use crate::hair::Energy;
 use crate::lights::RectangleSampling;
 use crate::numbers::Sequence;
+use crate::scalp::Scalp;
 use crate::scenes::Name;
 use crate::transport::{Integrator, Mis};
 use clap::{Parser, Subcommand};
@@ -100,18 +101,30 @@ pub struct Render {
     /// Strands of the procedural hair
     #[arg(long, value_name = "N", default_value_t = 30_000)]
     pub strands: usize,
-    /// Hair from a file in place of the scene's
-    #[arg(long, value_name = "FILE.hair|.tfx")]
+    /// Hair from a file in place of the scene's: cyHair, TressFX, USC-HairSalon, CT2Hair, MonoHair, PLY, Mitsuba
+    #[arg(long, value_name = "FILE")]
     pub import: Option<PathBuf>,
-    /// Centimetres per unit of the file of hair [default: 1 for .hair, 100 for .tfx]
+    /// Centimetres per unit of the file of hair [default: by its format]
     #[arg(long, value_name = "X", requires = "import")]
     pub scale: Option<f32>,
     /// Radius at the roots in centimetres in place of the file's
     #[arg(long, value_name = "CM", requires = "import")]
     pub radius: Option<f32>,
-    /// The axis of the file of hair that points up
+    /// The axis of the file of hair, and of the head, that points up
     #[arg(long, value_enum, requires = "import", default_value_t = Up::Y)]
     pub up: Up,
+    /// How nodes of the file make a strand
+    #[arg(long, value_enum, requires = "import", default_value_t)]
+    pub curve: Curve,
+    /// A mesh of skin under the hair of the file: PLY or OBJ
+    #[arg(long, value_name = "FILE", requires = "import")]
+    pub head: Option<PathBuf>,
+    /// Centimetres per unit of the mesh [default: those of the file of hair]
+    #[arg(long, value_name = "X", requires = "head")]
+    pub head_scale: Option<f32>,
+    /// An ellipsoid of skin, fitted to the roots of the hair of the file
+    #[arg(long, value_enum, requires = "import", conflicts_with = "head")]
+    pub scalp: Option<Scalp>,
     /// Strands to add beside each strand of the file: of hair for games, which holds guides
     #[arg(long, value_name = "N", requires = "import", default_value_t = 0)]
     pub follow: u32,

@@ -30,6 +30,7 @@ pub mod part;
 pub mod picture;
 pub mod protocol;
 mod saver;
+pub mod scalp;
 pub mod scene;
 pub mod scenes;
 pub mod transport;

@@ -2,6 +2,7 @@
 
 mod frames;
 mod hair;
+mod imported;
 mod paths;
 mod refused;
 mod resumed;

@@ -5,6 +5,7 @@ mod bits;
 mod cli;
 mod furnace;
 mod groom;
+mod heads;
 mod import;
 mod rays;
 mod segments;

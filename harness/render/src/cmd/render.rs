@@ -4,7 +4,7 @@ mod description;
 
 use crate::args::Render;
 use crate::film::{self, Crop, Film};
-use crate::formats::{Follow, Import, import, write_mitsuba};
+use crate::formats::{self, Follow, Import, Imported, import, import_head, write_mitsuba};
 use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, check_paths, default_sampler};
 use crate::layers::{self, Beside};
@@ -14,7 +14,8 @@ use crate::memory;
 use crate::part::{self, Part};
 use crate::picture;
 use crate::saver::Saver;
-use crate::scene::Scene;
+use crate::scalp;
+use crate::scene::{Head, Scene};
 use crate::scenes::{self, Name, Parts};
 use crate::transport::{self, CutOff, Integrator, Settings};
 use core::time::Duration;
@@ -69,18 +70,20 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     let read = |path| environment(path, flags.layer.as_deref());
     let env = flags.env.as_deref().map(read).transpose()?;
     let pixels = crop.len() as u64;
-    let strands = match &flags.import {
+    let (strands, head) = match &flags.import {
         Some(path) => {
-            let strands = read_hair(flags, path)?;
-            memory::check(strands.segments() as u64, pixels)?;
-            strands
+            let Imported { strands, scale, .. } = read_hair(flags, path)?;
+            let head = read_head(flags, &strands, scale)?;
+            let triangles = head.as_ref().map_or(0, Head::triangles);
+            memory::check((strands.segments() + triangles) as u64, pixels)?;
+            (strands, head)
         }
         None => {
             memory::check(
                 scenes::estimate_segments(flags.scene, flags.strands)?,
                 pixels,
             )?;
-            scenes::grow(flags.scene, flags.strands)?
+            (scenes::grow(flags.scene, flags.strands)?, None)
         }
     };
     if let Some(path) = &flags.export {
@@ -91,7 +94,7 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
     let parts = Parts {
         strands,
         imported: flags.import.is_some(),
-        head: None,
+        head,
         hair: hairs[0].hair,
         env,
         size: flags.size.0,
@@ -319,7 +322,7 @@ pub(crate) fn environment(path: &Path, layer: Option<&str>) -> Result<Environmen
 }
 
 /// Reads hair, and remarks on what is odd about it.
-fn read_hair(flags: &Render, path: &Path) -> Result<Strands, Error> {
+fn read_hair(flags: &Render, path: &Path) -> Result<Imported, Error> {
     let follow = Follow {
         strands: flags.follow,
         spread: flags.spread,
@@ -328,11 +331,11 @@ fn read_hair(flags: &Render, path: &Path) -> Result<Strands, Error> {
         radius: flags.radius,
         scale: flags.scale,
         up: flags.up,
+        curve: flags.curve,
         follow,
-        ..Import::default()
     };
     let imported = import(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
-    for remark in imported.remarks {
+    for remark in &imported.remarks {
         say(&format!("{}: {remark}", path.display()));
     }
     if imported.strands.strands() == 0 {
@@ -341,7 +344,34 @@ fn read_hair(flags: &Render, path: &Path) -> Result<Strands, Error> {
             path.display()
         )));
     }
-    Ok(imported.strands)
+    Ok(imported)
+}
+
+/// The head under hair from a file of this scale, if flags ask for one.
+fn read_head(flags: &Render, strands: &Strands, scale: f32) -> Result<Option<Head>, Error> {
+    if flags.scalp.is_some() {
+        let fit = scalp::fit(strands).map_err(Error::Usage)?;
+        say(&fit.to_string());
+        return Ok(Some(Head::ellipsoid(fit.ellipsoid)));
+    }
+    let Some(path) = &flags.head else {
+        return Ok(None);
+    };
+    let options = formats::Head {
+        scale: flags.head_scale.unwrap_or(scale),
+        up: flags.up,
+    };
+    let mesh = import_head(path, &options).map_err(|problem| Error::Usage(problem.to_string()))?;
+    let [head, hair] = [mesh.bounds(), strands.bounds()].map(|bounds| bounds.size().length());
+    if !(0.1..=10.0).contains(&(head / hair)) {
+        say(&format!(
+            "{}: warning: the head is {head} cm across and the hair {hair} cm: --head-scale sets centimetres per unit of the \
+             head (here {})",
+            path.display(),
+            options.scale
+        ));
+    }
+    Ok(Some(Head::mesh(mesh)))
 }
 
 /// Renders pass by pass, saving what there is; from time to time writes the picture so far, with

@@ -4,7 +4,7 @@ use super::{LONGEST_FILE, Problem, Wrong};
 use glam::Vec3;
 
 /// A file.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Bytes<'a>(pub(super) &'a [u8]);
 
 impl<'a> Bytes<'a> {
@@ -23,22 +23,31 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Refuses a file of another length than its header says, and any that is longer than what is read.
-    pub(super) fn length(self, expected: u64) -> Result<(), Wrong> {
+    /// Refuses a file that ends before `end`, and an `end` beyond what is read of any.
+    pub(super) fn length(self, end: u64) -> Result<(), Wrong> {
         let got = self.len();
-        if expected > LONGEST_FILE {
-            Err((
-                4,
-                Problem::TooLarge {
-                    bytes: expected,
-                    most: LONGEST_FILE,
-                },
-            ))
-        } else if got != expected {
-            Err((got.min(expected), Problem::Length { expected, got }))
+        if end > LONGEST_FILE {
+            let most = LONGEST_FILE;
+            Err((4, Problem::TooLarge { bytes: end, most }))
+        } else if got < end {
+            let expected = end;
+            Err((got, Problem::Length { expected, got }))
         } else {
             Ok(())
         }
+    }
+
+    /// Says that the file goes on where everything ends that its header tells of, or that it ends before.
+    pub(super) fn remark_behind(self, end: u64) -> Option<String> {
+        let got = self.len();
+        if got < end {
+            let missing = end - got;
+            return Some(format!(
+                "warning: the last {missing} bytes are missing, which are not used"
+            ));
+        }
+        let more = got - end;
+        (more > 0).then(|| format!("warning: {more} bytes follow the end, byte {end}: not used"))
     }
 
     /// The bytes at `offset`; 0 beyond the end, which callers have checked.

@@ -3,29 +3,31 @@
 //! A header of 128 bytes: `HAIR`, then strands, points, flags and default segments as u32, default thickness, transparency
 //! and colour as f32, and 88 bytes of text. Then, where flagged: segments per strand as u16, three f32 per point, and per
 //! point a thickness, a transparency, and three f32 of colour. The format's page has up to 65,536 segments per strand; u16
-//! holds 65,535. Thickness is a diameter.
+//! holds 65,535. Thickness is a diameter. `LuxCore` adds a flag for two f32 of texture coordinates per point, behind all else.
 
 use super::bytes::Bytes;
-use super::{Problem, Raw, RawStrand, Wrong};
+use super::raw::{Raw, RawStrand};
+use super::{Problem, Wrong};
 
 const HEADER: u64 = 128;
 /// Where the header has the default thickness.
-pub(super) const THICKNESS_AT: u64 = 20;
+const THICKNESS_AT: u64 = 20;
 const SEGMENTS: u32 = 1;
 const POINTS: u32 = 2;
 const THICKNESS: u32 = 4;
 const TRANSPARENCY: u32 = 8;
 const COLOURS: u32 = 16;
+const UVS: u32 = 32;
 
-/// The file, checked.
-pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
+/// The file, checked; thickness only if it is wanted.
+pub(super) fn parse(bytes: Bytes<'_>, wants_thickness: bool) -> Result<Raw<'_>, Wrong> {
     bytes.header(HEADER)?;
     let signature = bytes.u32(0).to_le_bytes();
     if &signature != b"HAIR" {
         return Err((
             0,
             Problem::Signature {
-                expected: "\"HAIR\"",
+                expected: "\"HAIR\" (cyHair), or with counts that agree (MonoHair)",
                 got: signature,
             },
         ));
@@ -45,15 +47,6 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
             12,
             Problem::Flags {
                 expected: "have points (2)",
-                got: flags,
-            },
-        ));
-    }
-    if flags > 31 {
-        return Err((
-            12,
-            Problem::Flags {
-                expected: "be at most 31",
                 got: flags,
             },
         ));
@@ -85,8 +78,15 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
         array(THICKNESS, 4, points),
         array(TRANSPARENCY, 4, points),
         array(COLOURS, 12, points),
+        array(UVS, 8, points),
     ];
-    bytes.length(end)?;
+    let points_end = points_at + 12 * u64::from(points);
+    let thickness_end = thickness_at + 4 * u64::from(points);
+    bytes.length(if wants_thickness && flags & THICKNESS != 0 {
+        thickness_end
+    } else {
+        points_end
+    })?;
 
     let has = move |flag: u32| flags & flag != 0;
     let segments_of = move |strand: u32| {
@@ -122,9 +122,9 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
         };
         (offset, bytes.f32(offset))
     };
-    for (offset, value) in (0..if has(THICKNESS) { u64::from(points) } else { 1 }).map(thickness_of)
-    {
-        if !(0.0..=1e6).contains(&value) {
+    let thicknesses = if has(THICKNESS) { u64::from(points) } else { 1 };
+    for (offset, value) in (0..thicknesses).map(thickness_of) {
+        if wants_thickness && !(0.0..=1e6).contains(&value) {
             return Err((offset, Problem::Thickness { value }));
         }
     }
@@ -138,20 +138,37 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
             (position, 0.5 * thickness_of(point).1)
         };
         RawStrand {
+            number: strand as usize,
             offset: points_at + 12 * range.start,
             nodes: Box::new(range.map(node)),
         }
     });
-    let unused = [(TRANSPARENCY, "transparency"), (COLOURS, "colours")];
+    let unused: Vec<&str> = [
+        (TRANSPARENCY, "transparency"),
+        (COLOURS, "colours"),
+        (UVS, "texture coordinates"),
+    ]
+    .into_iter()
+    .filter(|&(flag, _)| has(flag))
+    .map(|(_, name)| name)
+    .collect();
+    let mut remarks = Vec::new();
+    if !unused.is_empty() {
+        remarks.push(format!("not used: {}", unused.join(", ")));
+    }
+    if flags >= 2 * UVS {
+        remarks.push(format!(
+            "warning: flags {} are unknown, and what they stand for is not used",
+            flags & !(2 * UVS - 1)
+        ));
+    }
+    remarks.extend(bytes.remark_behind(end));
     Ok(Raw {
         scale: 1.0,
         strands: Box::new(strands_of_file),
         count: strands as usize,
-        radii: true,
-        unused: unused
-            .into_iter()
-            .filter(|&(flag, _)| has(flag))
-            .map(|(_, name)| name)
-            .collect(),
+        nodes: u64::from(points),
+        radii: wants_thickness.then_some(thickness_of(0).0),
+        remarks,
     })
 }

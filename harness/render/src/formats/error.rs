@@ -1,11 +1,11 @@
-//! Why a file of hair was refused.
+//! Why a file of hair, or of a head, was refused.
 
 use crate::geometry::GeometryError;
 use core::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// A file of hair was refused: one line with its name, the byte that shows the problem, and the numbers that disagree.
+/// A file of hair or of a head was refused: one line with its name, the byte that shows the problem, and the numbers that disagree.
 #[derive(Debug)]
 pub struct ImportError {
     /// The file.
@@ -20,8 +20,8 @@ pub struct ImportError {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Problem {
-    /// Its name ends in neither `.hair` nor `.tfx`.
-    Ending,
+    /// Neither its content nor its name is of a known format.
+    Unknown,
     /// It cannot be read.
     Read(io::Error),
     /// It is longer than any that is read.
@@ -78,7 +78,7 @@ pub enum Problem {
         /// The most bytes.
         most: u64,
     },
-    /// The file is shorter or longer than what its header says.
+    /// The file is shorter than what its header says of what is needed.
     Length {
         /// According to the header.
         expected: u64,
@@ -104,18 +104,44 @@ pub enum Problem {
     },
     /// Thickness is 0 everywhere.
     NoRadius,
+    /// The vertices of a strand do not fit in the file.
+    Strand {
+        /// The strand, from 0.
+        strand: u32,
+        /// Where its vertices would end.
+        end: u64,
+        /// Bytes of the file.
+        got: u64,
+    },
+    /// Text, or a header of text, is not as its format has it.
+    Text(String),
     /// Scaled, a strand is too large.
-    Geometry(GeometryError),
+    Geometry {
+        /// The strand of the file, from 0.
+        strand: usize,
+        /// Problem with it.
+        error: GeometryError,
+    },
+    /// The scene is so wide that no thickness of its strands would show in it.
+    Scattered {
+        /// Diagonal of the scene, in centimetres.
+        size: f32,
+        /// Median length of the strands, in centimetres.
+        length: f32,
+        /// The strand of the file that is farthest from the others, from 0.
+        strand: usize,
+    },
 }
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Ending => f.write_str(
-                "the name of a file of hair must end in .hair (cyHair) or .tfx (TressFX)",
+            Self::Unknown => f.write_str(
+                "must be hair: .hair (cyHair, MonoHair), .tfx (TressFX), .data (USC-HairSalon), .bin (CT2Hair), .ply or \
+                 Mitsuba's text",
             ),
             Self::Read(source) => write!(f, "cannot be read: {source}"),
-            Self::TooLong { most } => write!(f, "a file of hair must have at most {most} bytes"),
+            Self::TooLong { most } => write!(f, "the file must have at most {most} bytes"),
             Self::Option { name, value } => {
                 write!(f, "`{name}` must be in [1e-6, 1e6], got {value}")
             }
@@ -134,7 +160,7 @@ impl fmt::Display for Problem {
                 write!(f, "arrays must have at most {most} bytes, got {bytes}")
             }
             Self::Length { expected, got } => {
-                write!(f, "the file must have {expected} bytes, got {got}")
+                write!(f, "the file must have at least {expected} bytes, got {got}")
             }
             Self::Section { header, got } => {
                 write!(f, "sections must begin after byte {header}, got {got}")
@@ -146,9 +172,22 @@ impl fmt::Display for Problem {
                 write!(f, "thickness must be finite and at least 0, got {value}")
             }
             Self::NoRadius => {
-                f.write_str("thickness must be above 0 somewhere, got 0 everywhere; give a radius")
+                f.write_str("thickness must be above 0 somewhere, got 0 everywhere: give --radius")
             }
-            Self::Geometry(error) => write!(f, "{error}"),
+            Self::Strand { strand, end, got } => {
+                write!(f, "strand {strand} must end by byte {got}, the file's end, got {end}")
+            }
+            Self::Text(problem) => f.write_str(problem),
+            Self::Geometry { strand, error } => write!(f, "strand {strand}: {error}"),
+            Self::Scattered {
+                size,
+                length,
+                strand,
+            } => write!(
+                f,
+                "the hair must be less than 10000 times as wide as its strands are long, got {size} cm and {length} cm: strand \
+                 {strand} is farthest from the others"
+            ),
         }
     }
 }
@@ -171,7 +210,7 @@ impl core::error::Error for ImportError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match &self.problem {
             Problem::Read(source) => Some(source),
-            Problem::Geometry(source) => Some(source),
+            Problem::Geometry { error, .. } => Some(error),
             _ => None,
         }
     }

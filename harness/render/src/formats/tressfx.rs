@@ -5,10 +5,16 @@
 //! per node (four f32); 32 reserved numbers. Metres.
 
 use super::bytes::Bytes;
-use super::{Problem, Raw, RawStrand, Wrong};
+use super::raw::{Raw, RawStrand};
+use super::{Problem, Wrong};
 
 const HEADER: u64 = 160;
 const VERSION: f32 = 4.0;
+
+/// Whether the file begins with the version; no number of strands of another format has its bits.
+pub(super) fn fits(bytes: Bytes<'_>) -> bool {
+    bytes.f32(0) == VERSION && bytes.len() >= HEADER
+}
 
 /// The file, checked.
 pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
@@ -53,24 +59,22 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
         (24, 4 * of_strands),
         (28, 16 * of_nodes),
     ];
-    let mut end = HEADER;
+    let (mut end, mut positions_end) = (HEADER, HEADER);
     for (offset, size) in sections {
-        let start = bytes.u32(offset);
+        let start = u64::from(bytes.u32(offset));
         if start == 0 && offset != 12 {
             continue;
         }
-        if u64::from(start) < HEADER {
-            return Err((
-                offset,
-                Problem::Section {
-                    header: HEADER,
-                    got: u64::from(start),
-                },
-            ));
+        if start < HEADER {
+            let header = HEADER;
+            return Err((offset, Problem::Section { header, got: start }));
         }
-        end = end.max(u64::from(start) + size);
+        end = end.max(start + size);
+        if offset == 12 {
+            positions_end = end;
+        }
     }
-    bytes.length(end)?;
+    bytes.length(positions_end)?;
     let start = u64::from(bytes.u32(12));
     let (strands, nodes) = (u64::from(strands), u64::from(nodes));
     for node in 0..strands * nodes {
@@ -80,25 +84,32 @@ pub(super) fn parse(bytes: Bytes<'_>) -> Result<Raw<'_>, Wrong> {
         let offset = start + 16 * strand * nodes;
         let node = move |k: u64| (bytes.position(offset + 16 * k).unwrap_or_default(), 0.0);
         RawStrand {
+            number: usize::try_from(strand).unwrap_or(usize::MAX),
             offset,
             nodes: Box::new((0..nodes).map(node)),
         }
     };
-    let unused = [
+    let unused: Vec<&str> = [
         (16, "texture coordinates of strands"),
         (20, "texture coordinates of nodes"),
         (24, "thickness"),
         (28, "colours"),
-    ];
+    ]
+    .into_iter()
+    .filter(|&(offset, _)| bytes.u32(offset) != 0)
+    .map(|(_, name)| name)
+    .collect();
+    let mut remarks = Vec::new();
+    if !unused.is_empty() {
+        remarks.push(format!("not used: {}", unused.join(", ")));
+    }
+    remarks.extend(bytes.remark_behind(end));
     Ok(Raw {
         scale: 100.0,
         strands: Box::new((0..strands).map(strand)),
         count: usize::try_from(strands).unwrap_or(usize::MAX),
-        radii: false,
-        unused: unused
-            .into_iter()
-            .filter(|&(offset, _)| bytes.u32(offset) != 0)
-            .map(|(_, name)| name)
-            .collect(),
+        nodes: of_nodes,
+        radii: None,
+        remarks,
     })
 }

@@ -134,6 +134,16 @@ impl Strands {
             .fold(0.0, f32::max)
     }
 
+    /// Multiplies the radii of a strand.
+    pub(crate) fn widen(&mut self, strand: u32, factor: f32) {
+        for k in self.nodes_of(strand) {
+            let node = &mut self.nodes[k as usize];
+            node.radius *= factor;
+            self.bounds = self.bounds.with(node.position - node.radius);
+            self.bounds = self.bounds.with(node.position + node.radius);
+        }
+    }
+
     /// The radius at a node.
     ///
     /// # Panics
@@ -221,6 +231,12 @@ impl Builder {
     /// Whether two nodes in a row count as one.
     pub(crate) fn coincide(a: Vec3, b: Vec3) -> bool {
         a.distance(b) < SHORTEST
+    }
+
+    /// How many strands there are so far.
+    #[must_use]
+    pub fn strands(&self) -> usize {
+        self.last.len()
     }
 
     /// How many nodes lay on the node before them.

@@ -6,7 +6,7 @@ use super::build::{build, slack};
 use super::ray::{Ray, Spread};
 use super::split::Primitive;
 use crate::geometry::{Bounds, Mesh};
-use hairis::simd::{Lanes, f32x8};
+use hairis::simd::{Lanes, f32x8, lanes3};
 
 /// Finds the triangles that rays meet, from either side.
 #[derive(Clone, Debug)]
@@ -100,11 +100,8 @@ impl Leaf for Triangles {
     #[inline(always)]
     fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2]) {
         let from = |corner: &[f32x8; 3]| -> [L; 3] {
-            [
-                corner[0].lanes() - ray.origin[0],
-                corner[1].lanes() - ray.origin[1],
-                corner[2].lanes() - ray.origin[2],
-            ]
+            let [x, y, z]: [L; 3] = lanes3(corner);
+            [x - ray.origin[0], y - ray.origin[1], z - ray.origin[2]]
         };
         let [a, b, c] = [
             from(&self.corners[0]),

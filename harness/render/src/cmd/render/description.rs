@@ -7,6 +7,7 @@ use crate::transport::Settings;
 use hairis_instruments::error::Error;
 use hairis_instruments::light::Environment;
 use std::fs;
+use std::path::PathBuf;
 
 /// Everything that the sums of a picture depend on, but for the count of samples and the shard: parts of equal lines may be
 /// continued and joined. `hair` is what it depends on of the hair.
@@ -30,6 +31,10 @@ pub(super) fn describe(
         scale,
         radius,
         up,
+        curve,
+        head,
+        head_scale,
+        scalp,
         follow,
         spread,
         turn,
@@ -78,14 +83,13 @@ pub(super) fn describe(
         width,
         height,
     } = crop;
-    let file = match import {
-        Some(path) => {
-            let unreadable =
-                |source| Error::Usage(format!("{}: cannot read: {source}", path.display()));
-            digest(&fs::read(path).map_err(unreadable)?)
-        }
-        None => 0,
+    let content = |path: &Option<PathBuf>| -> Result<u64, Error> {
+        let Some(path) = path else { return Ok(0) };
+        let unreadable =
+            |source| Error::Usage(format!("{}: cannot read: {source}", path.display()));
+        Ok(digest(&fs::read(path).map_err(unreadable)?))
     };
+    let (file, mesh) = (content(import)?, content(head)?);
     let env = env.map_or(0, Environment::digest);
     let words = [
         format!("scene={scene:?} {hair}"),
@@ -93,6 +97,7 @@ pub(super) fn describe(
             "size={columns}x{rows} crop={x},{y},{width},{height} turn={turn} backdrop={backdrop:?} env={env:016x}"
         ),
         format!("strands={strands} import={file:016x} scale={scale:?} radius={radius:?} up={up:?}"),
+        format!("curve={curve:?} head={mesh:016x} head_scale={head_scale:?} scalp={scalp:?}"),
         format!("follow={follow} spread={spread} rectangles={rectangles:?}"),
         format!("integrator={integrator:?} xi={sequence:?} seed={seed} mis={mis:?}"),
         format!("depth={depth:?} roulette={roulette} multiple={multiple} aa={rays}"),

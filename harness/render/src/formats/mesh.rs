@@ -1,0 +1,141 @@
+//! Heads: meshes of PLY and Wavefront OBJ.
+
+use super::bytes::Bytes;
+use super::ply::{self, Ply};
+use super::ply_strands::Vertices;
+use super::{ImportError, Problem, Up, Wrong, check_option, read};
+use crate::geometry::Mesh;
+use glam::Vec3;
+use std::path::Path;
+
+/// How a mesh is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Head {
+    /// Centimetres per unit of the file.
+    pub scale: f32,
+    /// The axis that points up.
+    pub up: Up,
+}
+
+/// Reads a mesh of triangles or polygons, PLY or OBJ by its content.
+///
+/// # Errors
+///
+/// If the file cannot be read, or anything that is needed is not as its format has it; see [`Problem`].
+pub fn import_head(path: &Path, options: &Head) -> Result<Mesh, ImportError> {
+    import_head_bytes(path, &read(path)?, options)
+}
+
+/// Reads what a file of this name holds.
+///
+/// # Errors
+///
+/// See [`import_head`].
+pub fn import_head_bytes(path: &Path, data: &[u8], options: &Head) -> Result<Mesh, ImportError> {
+    let refuse = |offset, problem| ImportError {
+        path: path.to_owned(),
+        offset,
+        problem,
+    };
+    check_option("head-scale", Some(options.scale)).map_err(|problem| refuse(None, problem))?;
+    let bytes = Bytes(data);
+    let parts = if ply::fits(bytes) {
+        of_ply(bytes)
+    } else {
+        of_obj(data)
+    };
+    let (mut places, triangles) =
+        parts.map_err(|(offset, problem)| refuse(Some(offset), problem))?;
+    for place in &mut places {
+        *place = options.up.turn(options.scale * *place);
+    }
+    Mesh::new(places, triangles).map_err(|problem| refuse(None, Problem::Text(problem)))
+}
+
+/// Places, and triangles of their numbers.
+type Parts = (Vec<Vec3>, Vec<[u32; 3]>);
+
+fn of_ply(bytes: Bytes<'_>) -> Result<Parts, Wrong> {
+    let ply = Ply::new(bytes)?;
+    let (vertex, columns) = Vertices::new(&ply)?;
+    let faces = ply.elements.iter().find_map(|one| {
+        let lists = ["vertex_indices", "vertex_index", "indices"];
+        Some((
+            one,
+            one.column(&lists, true).filter(|_| one.name == "face")?,
+        ))
+    });
+    let Some((face, column)) = faces else {
+        let problem = "a head must be a mesh: an element `face` with `vertex_indices`";
+        return Err((0, Problem::Text(problem.to_owned())));
+    };
+    let (mut places, mut triangles) = (Vec::new(), Vec::new());
+    ply.rows(|element, row| {
+        if core::ptr::eq(element, vertex) {
+            places.push(columns.place(row)?);
+        } else if core::ptr::eq(element, face) {
+            let corners = row.columns[column]
+                .iter()
+                .map(|value| row.index(*value, vertex.count))
+                .collect::<Result<Vec<u32>, Wrong>>()?;
+            triangles.extend(fan(&corners));
+        }
+        Ok(())
+    })?;
+    Ok((places, triangles))
+}
+
+/// Wavefront OBJ: of its lines `v x y z` and `f a b c ...` alone, where `a` is a number of a vertex, from 1 or back from -1, and
+/// may have others behind slashes.
+///
+/// Own code: `tobj` refuses meshes for normals and colours, which are not used, and names no line.
+fn of_obj(data: &[u8]) -> Result<Parts, Wrong> {
+    let (mut places, mut triangles) = (Vec::new(), Vec::new());
+    let mut offset = 0;
+    for line in data.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
+        let start = offset;
+        offset += line.len() as u64;
+        // Names may be in any encoding.
+        let line = String::from_utf8_lossy(line);
+        let line = line.trim_start_matches('\u{feff}');
+        let mut words = line.split_ascii_whitespace();
+        let kind = words.next();
+        let wrong = |what: &str| {
+            let problem = format!("{what}, got {:.60?}", line.trim_end());
+            (start, Problem::Text(problem))
+        };
+        if kind == Some("v") {
+            let numbers: Option<Vec<f32>> = words.take(3).map(|word| word.parse().ok()).collect();
+            let numbers = numbers.filter(|numbers| numbers.len() == 3);
+            let numbers = numbers.ok_or_else(|| wrong("a vertex must have three numbers"))?;
+            places.push(Vec3::from_slice(&numbers));
+        } else if kind == Some("f") {
+            let corner = |word: &str| {
+                let number: i64 = word.split('/').next()?.parse().ok()?;
+                let count = i64::try_from(places.len()).ok()?;
+                let place = if number < 0 {
+                    count + number
+                } else {
+                    number - 1
+                };
+                u32::try_from(place).ok().filter(|_| place < count)
+            };
+            let corners: Option<Vec<u32>> = words.map(corner).collect();
+            let corners = corners.filter(|corners| corners.len() > 2).ok_or_else(|| {
+                wrong("a face must have three or more numbers of vertices before it")
+            })?;
+            triangles.extend(fan(&corners));
+        }
+    }
+    if places.is_empty() {
+        let problem = "a head must be a mesh, PLY or OBJ, got no vertex".to_owned();
+        return Err((0, Problem::Text(problem)));
+    }
+    Ok((places, triangles))
+}
+
+/// A polygon as triangles that share its first corner.
+fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    let pairs = corners.windows(2).skip(1);
+    pairs.map(|pair| [corners[0], pair[0], pair[1]])
+}

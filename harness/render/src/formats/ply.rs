@@ -1,0 +1,374 @@
+//! PLY, the Stanford triangle format: tables of numbers under a header of text, as text or binary in either byte order.
+//!
+//! Own code: `ply-rs-bw` reads no number such as `.5`, `1.` or `nan`, no header with a comment that is not UTF-8 and no empty
+//! line, which files in use have, and names no byte of what it refuses.
+
+use super::bytes::Bytes;
+use super::{Problem, Wrong};
+
+/// Type of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Number {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Number {
+    fn of(word: &str) -> Option<Self> {
+        Some(match word {
+            "char" | "int8" => Self::I8,
+            "uchar" | "uint8" => Self::U8,
+            "short" | "int16" => Self::I16,
+            "ushort" | "uint16" => Self::U16,
+            "int" | "int32" => Self::I32,
+            "uint" | "uint32" => Self::U32,
+            "float" | "float32" => Self::F32,
+            "double" | "float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    /// The number in bytes, the lowest first.
+    fn value(self, bytes: [u8; 8]) -> f64 {
+        let [a, b, c, d, ..] = bytes;
+        match self {
+            Self::I8 => f64::from(i8::from_le_bytes([a])),
+            Self::U8 => f64::from(a),
+            Self::I16 => f64::from(i16::from_le_bytes([a, b])),
+            Self::U16 => f64::from(u16::from_le_bytes([a, b])),
+            Self::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
+            Self::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
+            Self::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
+            Self::F64 => f64::from_le_bytes(bytes),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Encoding {
+    Text,
+    Little,
+    Big,
+}
+
+/// A column of a table.
+#[derive(Clone, Debug)]
+pub(super) struct Property {
+    pub(super) name: String,
+    /// Type of the counts of a column of lists.
+    count: Option<Number>,
+    number: Number,
+}
+
+impl Property {
+    pub(super) fn is_list(&self) -> bool {
+        self.count.is_some()
+    }
+}
+
+/// A table.
+#[derive(Clone, Debug)]
+pub(super) struct Element {
+    pub(super) name: String,
+    pub(super) count: u64,
+    pub(super) properties: Vec<Property>,
+}
+
+impl Element {
+    /// The place of the first column that has one of these names, and whose rows are lists or not.
+    pub(super) fn column(&self, names: &[&str], lists: bool) -> Option<usize> {
+        let places = names.iter().map(|name| {
+            let mut properties = self.properties.iter();
+            properties.position(|own| own.name.eq_ignore_ascii_case(name) && own.is_list() == lists)
+        });
+        places.flatten().next()
+    }
+}
+
+/// A file, of which the header is read.
+#[derive(Clone, Debug)]
+pub(super) struct Ply<'a> {
+    bytes: Bytes<'a>,
+    encoding: Encoding,
+    pub(super) elements: Vec<Element>,
+    body: u64,
+}
+
+/// The row of a table: per column its number, or the numbers of its list.
+#[derive(Debug, Default)]
+pub(super) struct Row {
+    pub(super) offset: u64,
+    pub(super) columns: Vec<Vec<f64>>,
+}
+
+impl Row {
+    pub(super) fn number(&self, column: usize) -> f64 {
+        self.columns[column].first().copied().unwrap_or(f64::NAN)
+    }
+
+    /// A number that counts or names something below `limit`.
+    pub(super) fn index(&self, value: f64, limit: u64) -> Result<u32, Wrong> {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "compared with the number"
+        )]
+        let index = value as u32;
+        if f64::from(index) == value && u64::from(index) < limit {
+            return Ok(index);
+        }
+        let problem = format!("numbers of vertices must be whole and below {limit}, got {value}");
+        Err((self.offset, Problem::Text(problem)))
+    }
+}
+
+pub(super) fn fits(bytes: Bytes<'_>) -> bool {
+    [&b"ply\n"[..], b"ply\r", b"ply ", b"ply\t"]
+        .iter()
+        .any(|start| bytes.0.starts_with(start))
+}
+
+impl<'a> Ply<'a> {
+    /// Reads the header.
+    pub(super) fn new(bytes: Bytes<'a>) -> Result<Self, Wrong> {
+        let mut lines = Lines { bytes, at: 0 };
+        let (mut encoding, mut elements) = (None, Vec::<Element>::new());
+        if !fits(bytes) {
+            let problem = "must begin with a line \"ply\"".to_owned();
+            return Err((0, Problem::Text(problem)));
+        }
+        lines.next();
+        loop {
+            let Some((offset, line)) = lines.next() else {
+                let problem = "the header must end with a line \"end_header\"".to_owned();
+                return Err((bytes.len(), Problem::Text(problem)));
+            };
+            let line = String::from_utf8_lossy(line);
+            let words: Vec<&str> = line.split_ascii_whitespace().collect();
+            match words[..] {
+                [] | ["comment" | "obj_info", ..] => {}
+                ["end_header"] => break,
+                ["format", "ascii", _] => encoding = Some(Encoding::Text),
+                ["format", "binary_little_endian", _] => encoding = Some(Encoding::Little),
+                ["format", "binary_big_endian", _] => encoding = Some(Encoding::Big),
+                ["element", name, count] if count.parse::<u64>().is_ok() => {
+                    elements.push(Element {
+                        name: name.to_owned(),
+                        count: count.parse().unwrap_or(0),
+                        properties: Vec::new(),
+                    });
+                }
+                _ => {
+                    let property = property(&words).zip(elements.last_mut());
+                    let Some((property, element)) = property else {
+                        let problem = format!("the header must not have a line {line:.60?}");
+                        return Err((offset, Problem::Text(problem)));
+                    };
+                    element.properties.push(property);
+                }
+            }
+        }
+        let problem = "the header must have a line \"format\"".to_owned();
+        let ply = Self {
+            bytes,
+            encoding: encoding.ok_or((0, Problem::Text(problem)))?,
+            elements,
+            body: lines.at,
+        };
+        ply.check_counts()?;
+        Ok(ply)
+    }
+
+    /// Refuses tables that take more bytes than there are, before anything is made for their rows.
+    fn check_counts(&self) -> Result<(), Wrong> {
+        let left = self.bytes.len() - self.body;
+        for Element {
+            name,
+            count,
+            properties,
+        } in &self.elements
+        {
+            let least = properties.iter().map(|property| match self.encoding {
+                Encoding::Text => 2,
+                _ => property.count.unwrap_or(property.number).size() as u64,
+            });
+            // The last line of text may have no end.
+            if count.saturating_mul(least.sum()) > left + 1 {
+                let problem = format!(
+                    "the {count} rows of `{name}` must fit in what follows the header, got {left} bytes"
+                );
+                return Err((self.body, Problem::Text(problem)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Visits all rows of all tables, and returns where the last ends.
+    pub(super) fn rows(
+        &self,
+        mut visit: impl FnMut(&Element, &Row) -> Result<(), Wrong>,
+    ) -> Result<u64, Wrong> {
+        let mut source = Source {
+            bytes: self.bytes,
+            encoding: self.encoding,
+            at: self.body,
+            line: Vec::new().into_iter(),
+        };
+        let mut row = Row::default();
+        // Rows without columns take no bytes.
+        for element in self
+            .elements
+            .iter()
+            .filter(|one| !one.properties.is_empty())
+        {
+            row.columns = vec![Vec::new(); element.properties.len()];
+            for number in 0..element.count {
+                source.row(element, &mut row).map_err(|(offset, what)| {
+                    let Element { name, count, .. } = element;
+                    let problem = format!("row {number} of the {count} of `{name}` {what}");
+                    (offset, Problem::Text(problem))
+                })?;
+                visit(element, &row)?;
+            }
+        }
+        Ok(match self.encoding {
+            Encoding::Text => self.bytes.len(),
+            _ => source.at,
+        })
+    }
+}
+
+/// A column by the words of its line.
+fn property(words: &[&str]) -> Option<Property> {
+    let (count, number, name) = match words {
+        ["property", "list", count, number, name] => (Some(Number::of(count)?), number, name),
+        ["property", number, name] => (None, number, name),
+        _ => return None,
+    };
+    Some(Property {
+        name: (*name).to_owned(),
+        count,
+        number: Number::of(number)?,
+    })
+}
+
+/// Lines from a place on, without what ends them: a line feed, a carriage return, or both.
+struct Lines<'a> {
+    bytes: Bytes<'a>,
+    at: u64,
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (u64, &'a [u8]);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let start = self.at;
+        let rest = self.bytes.0.get(usize::try_from(start).ok()?..)?;
+        if rest.is_empty() {
+            return None;
+        }
+        let ends = |byte: &u8| matches!(byte, b'\n' | b'\r');
+        let length = rest.iter().position(ends).unwrap_or(rest.len());
+        let end = if rest[length..].starts_with(b"\r\n") {
+            2
+        } else {
+            1
+        };
+        self.at = (start + (length + end) as u64).min(self.bytes.len());
+        Some((start, &rest[..length]))
+    }
+}
+
+/// The numbers of the tables, from a place on.
+struct Source<'a> {
+    bytes: Bytes<'a>,
+    encoding: Encoding,
+    at: u64,
+    /// What is left of a line of text.
+    line: std::vec::IntoIter<&'a [u8]>,
+}
+
+impl Source<'_> {
+    /// Reads a row. A problem says what is wrong with it.
+    fn row(&mut self, element: &Element, row: &mut Row) -> Result<(), (u64, String)> {
+        if self.encoding == Encoding::Text {
+            let bytes = self.bytes;
+            let mut lines = Lines { bytes, at: self.at };
+            let is_row = |line: &[u8]| line.iter().any(|byte| !byte.is_ascii_whitespace());
+            let Some((offset, line)) = lines.find(|(_, line)| is_row(line)) else {
+                return Err((bytes.len(), "is missing".to_owned()));
+            };
+            (self.at, row.offset) = (lines.at, offset);
+            let words = line
+                .split(u8::is_ascii_whitespace)
+                .filter(|word| !word.is_empty());
+            self.line = words.collect::<Vec<_>>().into_iter();
+        } else {
+            row.offset = self.at;
+        }
+        for (column, property) in row.columns.iter_mut().zip(&element.properties) {
+            column.clear();
+            let length = match property.count {
+                None => 1.0,
+                Some(number) => self.number(number, row.offset)?,
+            };
+            // Whole, and no longer than what is left.
+            let left = self.bytes.len() - row.offset;
+            if !(0.0..=left as f64).contains(&length) || length.fract() != 0.0 {
+                return Err((row.offset, format!("has a list of {length} numbers")));
+            }
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "whole, and below the file's length"
+            )]
+            for _ in 0..length as u64 {
+                column.push(self.number(property.number, row.offset)?);
+            }
+        }
+        match self.line.len() {
+            0 => Ok(()),
+            more => Err((row.offset, format!("has {more} numbers too many"))),
+        }
+    }
+
+    fn number(&mut self, number: Number, row: u64) -> Result<f64, (u64, String)> {
+        if self.encoding == Encoding::Text {
+            let word = self
+                .line
+                .next()
+                .ok_or_else(|| (row, "is too short".to_owned()))?;
+            let word = String::from_utf8_lossy(word);
+            return word
+                .parse()
+                .map_err(|_| (row, format!("must have numbers, got {word:.20?}")));
+        }
+        let start = usize::try_from(self.at).unwrap_or(usize::MAX);
+        let size = number.size();
+        let Some(own) = self.bytes.0.get(start..).and_then(|rest| rest.get(..size)) else {
+            return Err((self.bytes.len(), "is cut off".to_owned()));
+        };
+        let mut bytes = [0; 8];
+        bytes[..size].copy_from_slice(own);
+        if self.encoding == Encoding::Big {
+            bytes[..size].reverse();
+        }
+        self.at += size as u64;
+        Ok(number.value(bytes))
+    }
+}

@@ -1,0 +1,299 @@
+//! The ellipsoid that roots of hair lie on.
+
+use crate::geometry::{HEAD, Strands};
+use crate::scene::Ellipsoid;
+use clap::ValueEnum;
+use glam::{DVec3, Vec3};
+
+/// Where the ellipsoid under hair from a file comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Scalp {
+    /// Fitted to the roots
+    Auto,
+}
+
+/// Fewer roots make no surface.
+const FEWEST: usize = 10;
+/// At most this many roots are looked at, evenly spread.
+const MOST: usize = 20_000;
+/// Roots farther from their median than this many times the median distance are not on the scalp.
+const STRAY: f64 = 3.0;
+/// Weight of the proportions of a head against the mean squared distance of roots, in radii: it decides where roots cover too little
+/// of a head to show its shape, and moves the axes of a covered one by less than a thousandth.
+const PRIOR: f64 = 1e-5;
+/// Distances in radii count in full up to this, and farther ones less and less: some roots are not on the scalp. One after the
+/// other, as the fit comes nearer.
+const OUTLIERS: [f64; 3] = [1.0, 0.2, 0.05];
+/// Rounds of least squares; differences end sooner.
+const ROUNDS: usize = 200;
+/// This part of the roots may lie below the surface ...
+const BELOW: f64 = 0.02;
+/// ... which is this much smaller than the ellipsoid through them, so that strands begin above it.
+const CLEARANCE: f64 = 0.995;
+/// Surfaces that are farther from roots than this part of their radius are no scalp.
+const WORST: f64 = 0.15;
+
+/// A fitted ellipsoid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    /// The ellipsoid, a little below the roots.
+    pub ellipsoid: Ellipsoid,
+    /// Median distance of the roots from the one through them, in centimetres.
+    pub distance: f32,
+    /// Number of roots.
+    pub roots: usize,
+}
+
+/// Fits an ellipsoid along the axes to the roots.
+///
+/// # Errors
+///
+/// A line, if there are too few roots, or they do not lie on an ellipsoid.
+pub fn fit(strands: &Strands) -> Result<Fit, String> {
+    let root = |strand| strands.node_position(strands.nodes_of(strand).start);
+    let mut roots: Vec<DVec3> = (0..)
+        .take(strands.strands())
+        .step_by(strands.strands() / MOST + 1)
+        .map(|strand| root(strand).as_dvec3())
+        .collect();
+    if roots.len() < FEWEST {
+        return Err(format!(
+            "--scalp auto must have at least {FEWEST} strands, got {}",
+            roots.len()
+        ));
+    }
+    let middle = median(&roots);
+    let mut distances: Vec<f64> = roots.iter().map(|root| root.distance(middle)).collect();
+    distances.sort_by(f64::total_cmp);
+    let reach = STRAY * part(&distances, 0.5);
+    roots.retain(|root| root.distance(middle) <= reach);
+    let mean = roots.iter().sum::<DVec3>() / roots.len() as f64;
+    let spread = roots
+        .iter()
+        .map(|root| root.distance_squared(mean))
+        .sum::<f64>();
+    let size = (spread / roots.len() as f64).sqrt();
+    let refused = |what: &str| {
+        Err(format!(
+            "--scalp auto must have roots on an ellipsoid, {what}: use --head, or check that strands begin at their roots"
+        ))
+    };
+    if size.is_nan() || size < 1e-6 {
+        return refused("got all at one place");
+    }
+    // In units of the spread of the roots.
+    let places: Vec<DVec3> = roots.iter().map(|root| (*root - mean) / size).collect();
+    // Roots lie on the upper side: begin below them.
+    let proportions = HEAD.as_dvec3() / HEAD.as_dvec3().element_product().cbrt();
+    let start = Surface {
+        centre: DVec3::new(0.0, -0.5, 0.0),
+        logs: proportions.map(|p| (1.2 * p).ln()),
+    };
+    let improved = OUTLIERS.into_iter().try_fold(start, |surface, outlier| {
+        surface.improve(&places, proportions, outlier)
+    });
+    let Some(surface) = improved else {
+        return refused("got a surface without a bound");
+    };
+    let radii = surface.radii();
+    let mut depths: Vec<f64> = places.iter().map(|place| surface.depth(*place)).collect();
+    depths.sort_by(f64::total_cmp);
+    let mut distances: Vec<f64> = depths.iter().map(|depth| (depth - 1.0).abs()).collect();
+    distances.sort_by(f64::total_cmp);
+    let distance = part(&distances, 0.5);
+    if distance > WORST {
+        return refused(&format!(
+            "got a median distance of {distance:.2} of its radius"
+        ));
+    }
+    if radii.max_element() > 20.0 {
+        return refused("got roots on a plane");
+    }
+    let shrink = part(&depths, BELOW).min(1.0) * CLEARANCE * size;
+    let length = radii.element_product().cbrt() * size;
+    #[expect(clippy::cast_possible_truncation, reason = "rounded to the nearest")]
+    let distance = (distance * length) as f32;
+    Ok(Fit {
+        ellipsoid: Ellipsoid {
+            centre: (mean + size * surface.centre).as_vec3(),
+            radii: (shrink * radii).as_vec3(),
+        },
+        distance,
+        roots: roots.len(),
+    })
+}
+
+/// The number that a share of sorted ones are below.
+fn part(sorted: &[f64], share: f64) -> f64 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a place in a list"
+    )]
+    let place = (share * (sorted.len() - 1) as f64).round() as usize;
+    sorted[place]
+}
+
+/// The median along each axis.
+fn median(places: &[DVec3]) -> DVec3 {
+    let along = |axis: usize| {
+        let mut all: Vec<f64> = places.iter().map(|place| place[axis]).collect();
+        all.sort_by(f64::total_cmp);
+        part(&all, 0.5)
+    };
+    DVec3::new(along(0), along(1), along(2))
+}
+
+impl core::fmt::Display for Fit {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Ellipsoid { centre, radii } = self.ellipsoid;
+        let three = |v: Vec3| format!("{:.2} x {:.2} x {:.2}", v.x, v.y, v.z);
+        write!(
+            f,
+            "scalp: an ellipsoid of {} cm about ({:.2}, {:.2}, {:.2}), a median of {:.3} cm from {} roots",
+            three(radii),
+            centre.x,
+            centre.y,
+            centre.z,
+            self.distance,
+            self.roots
+        )
+    }
+}
+
+/// An ellipsoid by its centre and the logarithms of its half axes.
+#[derive(Clone, Copy)]
+struct Surface {
+    centre: DVec3,
+    logs: DVec3,
+}
+
+impl Surface {
+    fn radii(&self) -> DVec3 {
+        self.logs.map(f64::exp)
+    }
+
+    /// Distance from the centre in radii: 1 on the surface.
+    fn depth(&self, place: DVec3) -> f64 {
+        ((place - self.centre) / self.radii()).length()
+    }
+
+    /// What is minimised.
+    fn cost(&self, places: &[DVec3], proportions: DVec3, outlier: f64) -> f64 {
+        let of = |place: &DVec3| {
+            let off = (self.depth(*place) - 1.0) / outlier;
+            outlier * outlier * (off * off).ln_1p()
+        };
+        places.iter().map(of).sum::<f64>() / places.len() as f64
+            + PRIOR * self.disproportion(proportions).length_squared()
+    }
+
+    /// Differences of the logarithms from those of a head of any size.
+    fn disproportion(&self, proportions: DVec3) -> DVec3 {
+        let off = self.logs - proportions.map(f64::ln);
+        off - off.element_sum() / 3.0
+    }
+
+    /// Levenberg and Marquardt's method.
+    fn improve(mut self, places: &[DVec3], proportions: DVec3, outlier: f64) -> Option<Self> {
+        let mut damping = 1e-2;
+        let mut cost = self.cost(places, proportions, outlier);
+        for _ in 0..ROUNDS {
+            let (mut matrix, mut slope) = self.normal_equations(places, proportions, outlier);
+            for (k, row) in matrix.iter_mut().enumerate() {
+                row[k] *= 1.0 + damping;
+                row[k] += 1e-12;
+            }
+            let step = solve(&mut matrix, &mut slope)?;
+            let next = Self {
+                centre: self.centre - DVec3::new(step[0], step[1], step[2]),
+                logs: self.logs
+                    - DVec3::new(step[3], step[4], step[5])
+                        .clamp(DVec3::splat(-0.5), DVec3::splat(0.5)),
+            };
+            let next_cost = next.cost(places, proportions, outlier);
+            if next_cost < cost {
+                let gain = (cost - next_cost) / cost;
+                (self, cost, damping) = (next, next_cost, damping * 0.3);
+                if gain < 1e-12 {
+                    break;
+                }
+            } else {
+                damping *= 4.0;
+                if damping > 1e12 {
+                    break;
+                }
+            }
+        }
+        (self.centre.is_finite() && self.logs.is_finite()).then_some(self)
+    }
+
+    /// Matrix and right side of the linear problem.
+    fn normal_equations(
+        &self,
+        places: &[DVec3],
+        proportions: DVec3,
+        outlier: f64,
+    ) -> ([[f64; 6]; 6], [f64; 6]) {
+        let (mut matrix, mut slope) = ([[0.0; 6]; 6], [0.0; 6]);
+        let mut add = |row: [f64; 6], off: f64, weight: f64| {
+            for i in 0..6 {
+                slope[i] += weight * row[i] * off;
+                for j in 0..6 {
+                    matrix[i][j] += weight * row[i] * row[j];
+                }
+            }
+        };
+        let radii = self.radii();
+        for place in places {
+            let scaled = (*place - self.centre) / radii;
+            let depth = scaled.length().max(1e-9);
+            let off = depth - 1.0;
+            let centre = -scaled / radii / depth;
+            let logs = -scaled * scaled / depth;
+            let weight = 1.0 / (1.0 + (off / outlier).powi(2)) / places.len() as f64;
+            let row = [centre.x, centre.y, centre.z, logs.x, logs.y, logs.z];
+            add(row, off, weight);
+        }
+        for (axis, off) in self
+            .disproportion(proportions)
+            .to_array()
+            .into_iter()
+            .enumerate()
+        {
+            let mut row = [0.0; 6];
+            row[3..].fill(-1.0 / 3.0);
+            row[3 + axis] += 1.0;
+            add(row, off, PRIOR);
+        }
+        (matrix, slope)
+    }
+}
+
+/// Solves six linear equations by elimination with pivots.
+fn solve(matrix: &mut [[f64; 6]; 6], right: &mut [f64; 6]) -> Option<[f64; 6]> {
+    for k in 0..6 {
+        let pivot = (k..6).max_by(|&a, &b| matrix[a][k].abs().total_cmp(&matrix[b][k].abs()))?;
+        matrix.swap(k, pivot);
+        right.swap(k, pivot);
+        let lead = matrix[k][k];
+        if lead == 0.0 || !lead.is_finite() {
+            return None;
+        }
+        for below in k + 1..6 {
+            let factor = matrix[below][k] / lead;
+            for column in k..6 {
+                matrix[below][column] -= factor * matrix[k][column];
+            }
+            right[below] -= factor * right[k];
+        }
+    }
+    let mut solution = [0.0; 6];
+    for k in (0..6).rev() {
+        let rest: f64 = (k + 1..6)
+            .map(|column| matrix[k][column] * solution[column])
+            .sum();
+        solution[k] = (right[k] - rest) / matrix[k][k];
+    }
+    Some(solution)
+}
