@@ -4,7 +4,7 @@ use hairis_harness::args::CodePath;
 use hairis_harness::cmd::eval;
 use hairis_harness::study::part;
 use hairis_instruments::light::{Environment, Light};
-use hairis_render::formats::{Import, import_bytes};
+use hairis_render::formats::{Curve, Head, Import, Up, import_bytes, import_head_bytes};
 use hairis_render::part::Part;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -90,12 +90,25 @@ pub fn map(data: &[u8]) {
     }
 }
 
-/// A file of strands, cyHair or TressFX by its first bytes: strands, or refused.
+/// A file of strands or of a head, of a format by its first bytes: strands or a mesh, or refused.
 pub fn hair(data: &[u8]) {
-    for name in ["fuzz.hair", "fuzz.tfx"] {
-        if let Err(error) = import_bytes(Path::new(name), data, &Import::default()) {
-            one_line(&error.to_string());
+    for name in ["fuzz.hair", "fuzz.tfx", "fuzz.data", "fuzz.bin", "fuzz.ply", "fuzz.txt"] {
+        for curve in [Curve::Smooth, Curve::BSpline] {
+            let options = Import {
+                curve,
+                ..Import::default()
+            };
+            if let Err(error) = import_bytes(Path::new(name), data, &options) {
+                one_line(&error.to_string());
+            }
         }
+    }
+    let options = Head {
+        scale: 1.0,
+        up: Up::Y,
+    };
+    if let Err(error) = import_head_bytes(Path::new("fuzz.obj"), data, &options) {
+        one_line(&error.to_string());
     }
 }
 
