@@ -101,7 +101,7 @@ pub struct Render {
     /// Strands of the procedural hair
     #[arg(long, value_name = "N", default_value_t = 30_000)]
     pub strands: usize,
-    /// Hair from a file in place of the scene's: cyHair, TressFX, USC-HairSalon, CT2Hair, MonoHair, PLY, Mitsuba
+    /// Hair from a file in place of the scene's: .hair, .tfx, .data, .bin, .ply or Mitsuba's text
     #[arg(long, value_name = "FILE")]
     pub import: Option<PathBuf>,
     /// Centimetres per unit of the file of hair [default: by its format]
@@ -131,8 +131,8 @@ pub struct Render {
     /// Largest distance of added strands from theirs in centimetres
     #[arg(long, value_name = "CM", requires = "import", default_value_t = 0.5)]
     pub spread: f32,
-    /// Write the hair as Mitsuba's text, too
-    #[arg(long, value_name = "FILE.txt")]
+    /// Write the hair, too: as .hair, .data, .bin or .ply, or else as Mitsuba's text
+    #[arg(long, value_name = "FILE")]
     pub export: Option<PathBuf>,
     /// Environment map in place of the scene's light, latitude-longitude, .hdr or .exr
     #[arg(long, value_name = "FILE")]

@@ -4,6 +4,7 @@ mod bytes;
 mod counted;
 mod cyhair;
 mod error;
+mod export;
 mod follow;
 mod format;
 mod mesh;
@@ -15,6 +16,7 @@ mod raw;
 mod tressfx;
 
 pub use error::{ImportError, Problem};
+pub use export::write_hair;
 pub use follow::Follow;
 pub use mesh::{Head, import_head, import_head_bytes};
 pub use mitsuba::write_mitsuba;

@@ -282,8 +282,9 @@ fn solve(matrix: &mut [[f64; 6]; 6], right: &mut [f64; 6]) -> Option<[f64; 6]> {
         }
         for below in k + 1..6 {
             let factor = matrix[below][k] / lead;
-            for column in k..6 {
-                matrix[below][column] -= factor * matrix[k][column];
+            let upper = matrix[k];
+            for (entry, above) in matrix[below].iter_mut().zip(upper).skip(k) {
+                *entry -= factor * above;
             }
             right[below] -= factor * right[k];
         }

@@ -6,7 +6,7 @@ mod tolerated;
 
 use glam::Vec3;
 use hairis_render::formats::{
-    Curve, Follow, Import, ImportError, Imported, Up, import_bytes, write_mitsuba,
+    Curve, Follow, Import, ImportError, Imported, Up, import_bytes, write_hair,
 };
 use hairis_render::geometry::{Flattening, Groom, Kind};
 use rand_chacha::ChaCha8Rng;
@@ -277,13 +277,35 @@ fn no_bytes_make_it_panic_or_grow() {
 }
 
 #[test]
-fn exported_text_reads_back_the_same() {
+fn exported_hair_reads_back_the_same() {
     let strands = Groom::new(Kind::Curly, 20)
         .grow(&Flattening::default())
         .expect("settings in range");
-    let mut text = Vec::new();
-    write_mitsuba(&strands, &mut text).expect("memory takes anything");
-    let back = read("a.txt", &text, &STRAIGHT).expect("what was written");
-    assert_eq!(back.strands, strands, "read back");
-    assert!(back.remarks.is_empty(), "{:?}", back.remarks);
+    for (ending, has_radii, tolerance) in [
+        ("txt", true, 0.0),
+        ("hair", true, 0.0),
+        ("ply", true, 0.0),
+        ("data", false, 1e-5),
+        ("bin", false, 1e-5),
+    ] {
+        let name = format!("a.{ending}");
+        let mut file = Vec::new();
+        write_hair(Path::new(&name), &strands, &mut file).expect("memory takes anything");
+        let back = read(&name, &file, &STRAIGHT).expect("what was written");
+        assert_eq!(remarks(back.clone()), [""; 0], "{name}");
+        assert_eq!(back.strands.strands(), strands.strands(), "{name}");
+        assert_eq!(back.strands.nodes(), strands.nodes(), "{name}");
+        for node in (0..).take(strands.nodes()) {
+            let off = back
+                .strands
+                .node_position(node)
+                .distance(strands.node_position(node));
+            assert!(off <= tolerance, "{name}: off by {off}");
+            let radius = back.strands.node_radius(node);
+            assert!(
+                !has_radii || radius == strands.node_radius(node),
+                "{name}: {radius}"
+            );
+        }
+    }
 }

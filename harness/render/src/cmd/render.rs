@@ -4,7 +4,7 @@ mod description;
 
 use crate::args::Render;
 use crate::film::{self, Crop, Film};
-use crate::formats::{self, Follow, Import, Imported, import, import_head, write_mitsuba};
+use crate::formats::{self, Follow, Import, Imported, import, import_head, write_hair};
 use crate::geometry::Strands;
 use crate::hair::{Choice, Energy, check_paths, default_sampler};
 use crate::layers::{self, Beside};
@@ -87,7 +87,7 @@ pub(super) fn run(flags: &Render) -> Result<(), Error> {
         }
     };
     if let Some(path) = &flags.export {
-        whole(path, |out| write_mitsuba(&strands, out))?;
+        whole(path, |out| write_hair(path, &strands, out))?;
     }
     let describe = |hair: &Named| describe(flags, &hair.line, &settings, crop, env.as_ref());
     let runs = hairs.iter().map(describe).collect::<Result<Vec<_>, _>>()?;

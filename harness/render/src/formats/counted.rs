@@ -1,7 +1,7 @@
-//! Strands behind their counts: USC-HairSalon (`.data`) and CT2Hair (`.bin`).
+//! Strands behind their counts: USC-HairSalon (`.data`) and `CT2Hair` (`.bin`).
 //!
 //! Little endian: the number of strands as i32; per strand the number of its vertices as i32, then as many vertices. A vertex
-//! is three f32 in USC-HairSalon, whose unit is the metre. In CT2Hair, in millimetres, four f32 follow them, a normal or a
+//! is three f32 in USC-HairSalon, whose unit is the metre. In `CT2Hair`, in millimetres, four f32 follow them, a normal or a
 //! colour and a label. Strands of one vertex are roots without hair. Some published strands have coordinates that are NaN,
 //! which the authors' readers drop, as does this one.
 

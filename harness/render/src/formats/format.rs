@@ -13,7 +13,7 @@ pub(super) enum Format {
     TressFx,
     /// USC-HairSalon: counted strands of places.
     HairSalon,
-    /// CT2Hair: the same, with a normal and a label beside each place.
+    /// `CT2Hair`: the same, with a normal and a label beside each place.
     Ct2Hair,
     Ply,
     MitsubaText,

@@ -68,7 +68,7 @@ fn collected<'a>(
     let strand = move |(number, (offset, range)): (usize, (u64, Range<usize>))| RawStrand {
         number,
         offset,
-        nodes: Box::new(nodes[range].to_vec().into_iter()),
+        nodes: Box::new(Vec::from(&nodes[range]).into_iter()),
     };
     Raw {
         scale: 1.0,
@@ -104,7 +104,10 @@ pub(super) fn parse_text(bytes: Bytes<'_>, wants_radii: bool) -> Result<Raw<'_>,
                 "every line must have four numbers, or every line three",
             ));
         }
-        if let Some(value) = values[..3].iter().find(|value| !(value.abs() <= 1e6)) {
+        if let Some(value) = values[..3]
+            .iter()
+            .find(|value| value.is_nan() || value.abs() > 1e6)
+        {
             return Err((start, Problem::Coordinate { value: *value }));
         }
         let radius = values.get(3).filter(|_| wants_radii).copied();

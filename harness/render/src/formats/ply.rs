@@ -246,10 +246,10 @@ impl<'a> Ply<'a> {
                 visit(element, &row)?;
             }
         }
-        Ok(match self.encoding {
-            Encoding::Text => self.bytes.len(),
-            _ => source.at,
-        })
+        let behind = usize::try_from(source.at).unwrap_or(usize::MAX);
+        let rest = self.bytes.0.get(behind..).unwrap_or_default();
+        let blank = self.encoding == Encoding::Text && rest.iter().all(u8::is_ascii_whitespace);
+        Ok(if blank { self.bytes.len() } else { source.at })
     }
 }
 

@@ -140,7 +140,7 @@ impl Vertices {
         let far = place
             .to_array()
             .into_iter()
-            .find(|value| !(value.abs() <= 1e6));
+            .find(|value| value.is_nan() || value.abs() > 1e6);
         match far {
             Some(value) => Err((row.offset, Problem::Coordinate { value })),
             None => Ok(place),

@@ -153,7 +153,11 @@ mod tests {
         let place = |ring: u32, k: u32| {
             let theta = core::f32::consts::PI * ring as f32 / rings as f32;
             let phi = core::f32::consts::TAU * (k % around) as f32 / around as f32;
-            let across = if ring % rings == 0 { 0.0 } else { theta.sin() };
+            let across = if ring.is_multiple_of(rings) {
+                0.0
+            } else {
+                theta.sin()
+            };
             centre + Vec3::new(across * phi.cos(), theta.cos(), across * phi.sin())
         };
         let places = (0..=rings).flat_map(|ring| (0..around).map(move |k| place(ring, k)));
@@ -229,8 +233,8 @@ mod tests {
                     clippy::cast_sign_loss,
                     reason = "below the count"
                 )]
-                let triangle = (pick * mesh.triangles() as f32) as u32;
-                let [a, b, _] = mesh.corners(triangle.min(mesh.triangles() as u32 - 1));
+                let triangle = (0.999 * pick * mesh.triangles() as f32) as u32;
+                let [a, b, _] = mesh.corners(triangle);
                 let target = if along < 0.3 { a } else { a.lerp(b, along) };
                 let outward = (target - centre).normalize();
                 let tilt = 0.3 * uniform_direction(xi.next_xi_f32());

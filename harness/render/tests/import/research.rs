@@ -22,7 +22,7 @@ fn number(value: usize) -> [u8; 4] {
     u32::try_from(value).expect("small").to_le_bytes()
 }
 
-/// USC-HairSalon, or with `beside` numbers after each place CT2Hair.
+/// USC-HairSalon, or with `beside` numbers after each place `CT2Hair`.
 fn counted(lines: &Lines, beside: &[f32]) -> Vec<u8> {
     let mut file = number(lines.len()).to_vec();
     for line in lines {
@@ -270,6 +270,18 @@ fn text_of_ply_may_be_untidy() {
         element edge 1\r\nproperty int vertex1\r\nproperty int vertex2\r\nend_header\r\n.5 1. -2e0\r\n\r\n  +1\t0 0 \r\n0 1";
     let lines = vec![vec![[0.5, 1.0, -2.0], [1.0, 0.0, 0.0]]];
     check("a.ply", file.as_bytes(), &lines, 1.0, &[]);
+    let end = file.len();
+    let behind = format!(
+        "warning: 7 bytes follow the end, byte {}: not used",
+        end + 1
+    );
+    check(
+        "a.ply",
+        (file.to_owned() + "\n\n5 5 5\n").as_bytes(),
+        &lines,
+        1.0,
+        &[&behind],
+    );
 }
 
 #[test]
