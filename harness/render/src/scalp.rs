@@ -18,20 +18,22 @@ const FEWEST: usize = 10;
 const MOST: usize = 20_000;
 /// Roots farther from their median than this many times the median distance are not on the scalp.
 const STRAY: f64 = 3.0;
-/// Weight of the proportions of a head against the mean squared distance of roots, in radii: it decides where roots cover too little
-/// of a head to show its shape, and moves the axes of a covered one by less than a thousandth.
-const PRIOR: f64 = 1e-5;
-/// Distances in radii count in full up to this, and farther ones less and less: some roots are not on the scalp. One after the
-/// other, as the fit comes nearer.
-const OUTLIERS: [f64; 3] = [1.0, 0.2, 0.05];
+/// Weight of the proportions of a head against the mean squared distance of the roots, in units of their spread: it decides where
+/// roots cover too little of a head to show its shape, and moves the axes of a covered one by less than a hundredth.
+const PRIOR: f64 = 1e-3;
+/// Distances in units of the spread count in full up to this, and farther ones less and less: some roots are not on the scalp.
+/// One after the other, as the fit comes nearer.
+const OUTLIERS: [f64; 2] = [1.0, 0.2];
 /// Rounds of least squares; differences end sooner.
 const ROUNDS: usize = 200;
 /// This part of the roots may lie below the surface ...
 const BELOW: f64 = 0.02;
 /// ... which is this much smaller than the ellipsoid through them, so that strands begin above it.
 const CLEARANCE: f64 = 0.995;
-/// Surfaces that are farther from roots than this part of their radius are no scalp.
+/// Surfaces that are farther from roots than this part of their radius are no scalp ...
 const WORST: f64 = 0.15;
+/// ... nor are those whose half axes exceed this many times the spread: the roots are on a plane.
+const FLATTEST: f64 = 10.0;
 
 /// A fitted ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,7 +108,7 @@ pub fn fit(strands: &Strands) -> Result<Fit, String> {
             "got a median distance of {distance:.2} of its radius"
         ));
     }
-    if radii.max_element() > 20.0 {
+    if radii.max_element() > FLATTEST {
         return refused("got roots on a plane");
     }
     let shrink = part(&depths, BELOW).min(1.0) * CLEARANCE * size;
@@ -178,10 +180,20 @@ impl Surface {
         ((place - self.centre) / self.radii()).length()
     }
 
+    /// Distance from the surface, about. In radii it would be least for the largest ellipsoid.
+    fn off(&self, place: DVec3) -> f64 {
+        (self.depth(place) - 1.0) * self.size()
+    }
+
+    /// Geometric mean of the half axes.
+    fn size(&self) -> f64 {
+        (self.logs.element_sum() / 3.0).exp()
+    }
+
     /// What is minimised.
     fn cost(&self, places: &[DVec3], proportions: DVec3, outlier: f64) -> f64 {
         let of = |place: &DVec3| {
-            let off = (self.depth(*place) - 1.0) / outlier;
+            let off = self.off(*place) / outlier;
             outlier * outlier * (off * off).ln_1p()
         };
         places.iter().map(of).sum::<f64>() / places.len() as f64
@@ -248,9 +260,9 @@ impl Surface {
         for place in places {
             let scaled = (*place - self.centre) / radii;
             let depth = scaled.length().max(1e-9);
-            let off = depth - 1.0;
-            let centre = -scaled / radii / depth;
-            let logs = -scaled * scaled / depth;
+            let off = self.off(*place);
+            let centre = -self.size() * scaled / radii / depth;
+            let logs = -self.size() * scaled * scaled / depth + off / 3.0;
             let weight = 1.0 / (1.0 + (off / outlier).powi(2)) / places.len() as f64;
             let row = [centre.x, centre.y, centre.z, logs.x, logs.y, logs.z];
             add(row, off, weight);

@@ -144,7 +144,7 @@ fn groom(name: Name, count: usize) -> Groom {
 pub struct Parts {
     /// The fibres.
     pub strands: Strands,
-    /// Whether they were read from a file: camera and lights then go by the extent of hair and head.
+    /// Whether they were read from a file: camera and lights then go by the extent of the hair, and of a mesh under it.
     pub imported: bool,
     /// The head under hair from a file; procedural hair has its own.
     pub head: Option<Head>,
@@ -174,7 +174,11 @@ pub fn build(name: Name, parts: Parts) -> Result<Scene, Error> {
         turn,
     } = parts;
     let tree = Tree::build(&strands).map_err(|problem| Error::Usage(problem.to_string()))?;
-    let beside = head.as_ref().map_or(Bounds::EMPTY, Head::bounds);
+    // A fitted ellipsoid goes on where there is no hair.
+    let beside = match &head {
+        Some(head) if head.triangles() > 0 => head.bounds(),
+        _ => Bounds::EMPTY,
+    };
     let bounds = strands.bounds().union(&beside);
     let extent = bounds.size().length().max(1e-3);
     // Set-ups are for a head at the origin, 26 cm wide with its hair.

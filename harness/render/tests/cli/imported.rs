@@ -12,7 +12,10 @@ fn dome(folder: &TempDir) {
         let across = (1.0 - height * height).sqrt();
         for radius in [10.0_f32, 12.0, 14.0] {
             let [x, y, z] = [across * turn.cos(), height, across * turn.sin()];
-            text += &format!("{} {} {} 0.2\n", radius * x, 5.0 + radius * y, radius * z);
+            // Tips bend down.
+            let fall = 0.3 * (radius - 10.0) * (radius - 10.0);
+            let [x, y, z] = [x, y, z].map(|along| radius * along);
+            text += &format!("{x} {} {z} 0.2\n", 5.0 + y - fall);
         }
         text += "\n";
     }
