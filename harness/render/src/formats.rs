@@ -1,4 +1,5 @@
-//! Files of hair and of heads: read with every number checked. Hair is written for other renderers, too.
+//! Files of hair and of heads: read with every number checked. Hair is written for other renderers,
+//! too.
 
 mod bytes;
 mod counted;
@@ -71,8 +72,8 @@ pub enum Curve {
 /// How a file of hair is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Import {
-    /// Radius at the roots in centimetres, instead of the file's, which is not looked at; strands then taper as procedural
-    /// ones do.
+    /// Radius at the roots in centimetres, instead of the file's, which is not looked at; strands
+    /// then taper as procedural ones do.
     pub radius: Option<f32>,
     /// Centimetres per unit of the file. Without it, they depend on the format.
     pub scale: Option<f32>,
@@ -95,12 +96,14 @@ pub struct Imported {
     pub remarks: Vec<String>,
 }
 
-/// Reads a file of hair. Its format is that of the content; the ending of the name decides where the content fits several.
+/// Reads a file of hair. Its format is that of the content; the ending of the name decides where
+/// the content fits several.
 ///
 /// # Errors
 ///
-/// If the file cannot be read, or anything that is needed is not as its format has it; see [`Problem`]. No file makes this
-/// panic, or take more memory than 64 times its length, times the strands that follow each.
+/// If the file cannot be read, or anything that is needed is not as its format has it; see
+/// [`Problem`]. No file makes this panic, or take more memory than 64 times its length, times the
+/// strands that follow each.
 pub fn import(path: &Path, options: &Import) -> Result<Imported, ImportError> {
     import_bytes(path, &read(path)?, options)
 }

@@ -3,7 +3,8 @@
 use hairis_instruments::error::Error;
 use std::fs;
 
-/// The most that a segment takes while the tree is built, of any kind of hair: strands, boxes and blocks. Triangles take less.
+/// The most that a segment takes while the tree is built, of any kind of hair: strands, boxes and
+/// blocks. Triangles take less.
 const PER_SEGMENT: u64 = 256;
 /// The most that a pixel takes while its picture is written: sums, layers and the file.
 const PER_PIXEL: u64 = 176;

@@ -18,11 +18,12 @@ const FEWEST: usize = 10;
 const MOST: usize = 20_000;
 /// Roots farther from their median than this many times the median distance are not on the scalp.
 const STRAY: f64 = 3.0;
-/// Weight of the proportions of a head against the mean squared distance of the roots, in units of their spread: it decides where
-/// roots cover too little of a head to show its shape, and moves the axes of a covered one by less than a hundredth.
+/// Weight of the proportions of a head against the mean squared distance of the roots, in units of
+/// their spread: it decides where roots cover too little of a head to show its shape, and moves the
+/// axes of a covered one by less than a hundredth.
 const PRIOR: f64 = 1e-3;
-/// Distances in units of the spread count in full up to this, and farther ones less and less: some roots are not on the scalp.
-/// One after the other, as the fit comes nearer.
+/// Distances in units of the spread count in full up to this, and farther ones less and less: some
+/// roots are not on the scalp. One after the other, as the fit comes nearer.
 const OUTLIERS: [f64; 2] = [1.0, 0.2];
 /// Rounds of least squares; differences end sooner.
 const ROUNDS: usize = 200;

@@ -107,7 +107,8 @@ impl Scene {
             || self.tree.occluded(ray)
     }
 
-    /// Takes the radiance from directions that an ellipsoidal head blocks: so cheap a test that candidates for rays pass it first.
+    /// Takes the radiance from directions that an ellipsoidal head blocks: so cheap a test that
+    /// candidates for rays pass it first.
     #[inline]
     pub fn remove_blocked(&self, origin: Vec3, light: &mut LightSample8) {
         let Some(Shape::Ellipsoid(head)) = self.head.as_ref().map(|head| &head.shape) else {

@@ -144,7 +144,8 @@ fn groom(name: Name, count: usize) -> Groom {
 pub struct Parts {
     /// The fibres.
     pub strands: Strands,
-    /// Whether they were read from a file: camera and lights then go by the extent of the hair, and of a mesh under it.
+    /// Whether they were read from a file: camera and lights then go by the extent of the hair, and
+    /// of a mesh under it.
     pub imported: bool,
     /// The head under hair from a file; procedural hair has its own.
     pub head: Option<Head>,

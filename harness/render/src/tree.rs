@@ -1,4 +1,5 @@
-//! Which segment or triangle a ray meets first: a tree of boxes, eight to a node, over blocks of eight segments or triangles.
+//! Which segment or triangle a ray meets first: a tree of boxes, eight to a node, over blocks of
+//! eight segments or triangles.
 //!
 //! It knows strands, meshes and rays, and no light. Lanes are eight boxes or eight of the others that one ray is tested against, and
 //! [`hairis::simd::Level`] finds their instruction set at run time; hits depend on [`hairis::simd::Level::fuses`] in their last bits,

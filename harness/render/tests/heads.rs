@@ -261,7 +261,8 @@ fn roots(places: impl IntoIterator<Item = Vec3>) -> Strands {
     builder.finish()
 }
 
-/// Roots on the part of an ellipsoid above `lowest` of its height, `noise` of its size off the surface.
+/// Roots on the part of an ellipsoid above `lowest` of its height, `noise` of its size off the
+/// surface.
 fn on(ellipsoid: Ellipsoid, count: usize, lowest: f32, noise: f32) -> Vec<Vec3> {
     let mut xi = Independent::new(9, 0);
     (0..count)

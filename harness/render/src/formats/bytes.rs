@@ -37,7 +37,8 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Says that the file goes on where everything ends that its header tells of, or that it ends before.
+    /// Says that the file goes on where everything ends that its header tells of, or that it ends
+    /// before.
     pub(super) fn remark_behind(self, end: u64) -> Option<String> {
         let got = self.len();
         if got < end {

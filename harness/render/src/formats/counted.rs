@@ -1,9 +1,10 @@
 //! Strands behind their counts: USC-HairSalon (`.data`) and `CT2Hair` (`.bin`).
 //!
-//! Little endian: the number of strands as i32; per strand the number of its vertices as i32, then as many vertices. A vertex
-//! is three f32 in USC-HairSalon, whose unit is the metre. In `CT2Hair`, in millimetres, four f32 follow them, a normal or a
-//! colour and a label. Strands of one vertex are roots without hair. Some published strands have coordinates that are NaN,
-//! which the authors' readers drop, as does this one.
+//! Little endian: the number of strands as i32; per strand the number of its vertices as i32, then
+//! as many vertices. A vertex is three f32 in USC-HairSalon, whose unit is the metre. In `CT2Hair`,
+//! in millimetres, four f32 follow them, a normal or a colour and a label. Strands of one vertex
+//! are roots without hair. Some published strands have coordinates that are NaN, which the authors'
+//! readers drop, as does this one.
 
 use super::bytes::Bytes;
 use super::raw::{Raw, RawStrand};
@@ -32,7 +33,8 @@ pub(super) fn fits(bytes: Bytes<'_>, layout: Layout) -> bool {
     possible && walk(bytes, layout, |_, _, _| ()).is_ok_and(|end| end == bytes.len())
 }
 
-/// Visits every strand, by its number, the offset of its first vertex and how many there are, and returns where the last ends.
+/// Visits every strand, by its number, the offset of its first vertex and how many there are, and
+/// returns where the last ends.
 fn walk(
     bytes: Bytes<'_>,
     layout: Layout,

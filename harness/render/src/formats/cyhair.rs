@@ -1,9 +1,11 @@
 //! cyHair (`.hair`), after Cem Yuksel's `cyHairFile.h`.
 //!
-//! A header of 128 bytes: `HAIR`, then strands, points, flags and default segments as u32, default thickness, transparency
-//! and colour as f32, and 88 bytes of text. Then, where flagged: segments per strand as u16, three f32 per point, and per
-//! point a thickness, a transparency, and three f32 of colour. The format's page has up to 65,536 segments per strand; u16
-//! holds 65,535. Thickness is a diameter. `LuxCore` adds a flag for two f32 of texture coordinates per point, behind all else.
+//! A header of 128 bytes: `HAIR`, then strands, points, flags and default segments as u32, default
+//! thickness, transparency and colour as f32, and 88 bytes of text. Then, where flagged: segments
+//! per strand as u16, three f32 per point, and per point a thickness, a transparency, and three f32
+//! of colour. The format's page has up to 65,536 segments per strand; u16 holds 65,535. Thickness
+//! is a diameter. `LuxCore` adds a flag for two f32 of texture coordinates per point, behind all
+//! else.
 
 use super::bytes::Bytes;
 use super::raw::{Raw, RawStrand};

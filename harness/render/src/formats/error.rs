@@ -5,7 +5,8 @@ use core::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// A file of hair or of a head was refused: one line with its name, the byte that shows the problem, and the numbers that disagree.
+/// A file of hair or of a head was refused: one line with its name, the byte that shows the
+/// problem, and the numbers that disagree.
 #[derive(Debug)]
 pub struct ImportError {
     /// The file.

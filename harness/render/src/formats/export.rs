@@ -6,8 +6,9 @@ use glam::Vec3;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes strands in the format of the name's ending, in its unit: `.hair` (cyHair), `.data` (USC-HairSalon), `.bin` (`CT2Hair`),
-/// `.ply`; with any other ending Mitsuba's text. Without smoothing, [`import`](super::import) reads the same nodes.
+/// Writes strands in the format of the name's ending, in its unit: `.hair` (cyHair), `.data`
+/// (USC-HairSalon), `.bin` (`CT2Hair`), `.ply`; with any other ending Mitsuba's text. Without
+/// smoothing, [`import`](super::import) reads the same nodes.
 ///
 /// # Errors
 ///

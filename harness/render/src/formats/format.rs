@@ -32,8 +32,8 @@ impl Format {
         Self::MitsubaBinary,
     ];
 
-    /// Name in messages, and the endings that its files have; the formats of an ending in the order in which damaged files
-    /// are taken for them.
+    /// Name in messages, and the endings that its files have; the formats of an ending in the order
+    /// in which damaged files are taken for them.
     fn words(self) -> (&'static str, &'static [&'static str]) {
         match self {
             Self::CyHair => ("cyHair", &["hair"]),

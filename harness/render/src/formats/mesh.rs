@@ -21,7 +21,8 @@ pub struct Head {
 ///
 /// # Errors
 ///
-/// If the file cannot be read, or anything that is needed is not as its format has it; see [`Problem`].
+/// If the file cannot be read, or anything that is needed is not as its format has it; see
+/// [`Problem`].
 pub fn import_head(path: &Path, options: &Head) -> Result<Mesh, ImportError> {
     import_head_bytes(path, &read(path)?, options)
 }
@@ -85,8 +86,8 @@ fn of_ply(bytes: Bytes<'_>) -> Result<Parts, Wrong> {
     Ok((places, triangles))
 }
 
-/// Wavefront OBJ: of its lines `v x y z` and `f a b c ...` alone, where `a` is a number of a vertex, from 1 or back from -1, and
-/// may have others behind slashes.
+/// Wavefront OBJ: of its lines `v x y z` and `f a b c ...` alone, where `a` is a number of a
+/// vertex, from 1 or back from -1, and may have others behind slashes.
 ///
 /// Own code: `tobj` refuses meshes for normals and colours, which are not used, and names no line.
 fn of_obj(data: &[u8]) -> Result<Parts, Wrong> {

@@ -1,8 +1,9 @@
-//! Mitsuba's hair: text for `linearcurve` and `bsplinecurve`, and what its earlier versions had for `hair`.
+//! Mitsuba's hair: text for `linearcurve` and `bsplinecurve`, and what its earlier versions had for
+//! `hair`.
 //!
-//! Text: a line `x y z radius` per node, and an empty line between strands. Mitsuba 0.6 and 2 have `x y z` as well, and lines
-//! of `#` between strands. Binary, little endian: `BINARY_HAIR`, the number of nodes as u32, three f32 per node, and an
-//! infinity before those that begin a strand.
+//! Text: a line `x y z radius` per node, and an empty line between strands. Mitsuba 0.6 and 2 have
+//! `x y z` as well, and lines of `#` between strands. Binary, little endian: `BINARY_HAIR`, the
+//! number of nodes as u32, three f32 per node, and an infinity before those that begin a strand.
 
 use super::bytes::Bytes;
 use super::raw::{Raw, RawStrand};

@@ -1,13 +1,14 @@
 //! `MonoHair` (`.hair`).
 //!
-//! Little endian, without a signature: strands and points as u32, points per strand as u16, and three f32 per point. The unit
-//! is the metre.
+//! Little endian, without a signature: strands and points as u32, points per strand as u16, and
+//! three f32 per point. The unit is the metre.
 
 use super::Wrong;
 use super::bytes::Bytes;
 use super::raw::{Raw, RawStrand};
 
-/// Whether the points of the strands add up to those of the header. What follows them may be short or long.
+/// Whether the points of the strands add up to those of the header. What follows them may be short
+/// or long.
 pub(super) fn fits(bytes: Bytes<'_>) -> bool {
     let (strands, points) = (u64::from(bytes.u32(0)), u64::from(bytes.u32(4)));
     let counted = 8 + 2 * strands;

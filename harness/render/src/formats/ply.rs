@@ -1,7 +1,8 @@
-//! PLY, the Stanford triangle format: tables of numbers under a header of text, as text or binary in either byte order.
+//! PLY, the Stanford triangle format: tables of numbers under a header of text, as text or binary
+//! in either byte order.
 //!
-//! Own code: `ply-rs-bw` reads no number such as `.5`, `1.` or `nan`, no header with a comment that is not UTF-8 and no empty
-//! line, which files in use have, and names no byte of what it refuses.
+//! Own code: `ply-rs-bw` reads no number such as `.5`, `1.` or `nan`, no header with a comment that
+//! is not UTF-8 and no empty line, which files in use have, and names no byte of what it refuses.
 
 use super::bytes::Bytes;
 use super::{Problem, Wrong};

@@ -1,7 +1,7 @@
 //! Strands in PLY, which has no standard for them: as tools write them.
 //!
-//! Nodes are the rows of `vertex`: `x y z`, and `radius`, or a diameter as `thickness` or `width`. What joins them is, in this
-//! order:
+//! Nodes are the rows of `vertex`: `x y z`, and `radius`, or a diameter as `thickness` or `width`.
+//! What joins them is, in this order:
 //!
 //! 1. a table with a count per strand, as hairutil's `strand` with `nsegs`; nodes then stand in order;
 //! 2. a table of lists of vertices, such as `strand`, `line` or `polyline`;

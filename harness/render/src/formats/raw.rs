@@ -15,7 +15,8 @@ const EXTENTS: core::ops::RangeInclusive<f32> = 1.0..=1000.0;
 const HALVINGS: i32 = 4;
 /// ... and at most so many that hair takes no more than this many times the bytes of the file ...
 const GROWTH: u64 = 64;
-/// ... where a node takes this many: 16, while their vector grows to twice that, and 12 for its tangent.
+/// ... where a node takes this many: 16, while their vector grows to twice that, and 12 for its
+/// tangent.
 const NODE_BYTES: u64 = 2 * 16 + 12;
 
 /// Strands as a file has them: places in its units, and where in it they are.
@@ -48,7 +49,8 @@ struct Seen {
     repeated: usize,
     /// Strands that have length but no thickness.
     invisible: usize,
-    /// Strands whose radius exceeds [`THICK`] of their length, the largest such radius, and its strand's length.
+    /// Strands whose radius exceeds [`THICK`] of their length, the largest such radius, and its
+    /// strand's length.
     thick: (usize, f32, f32),
     lengths: Vec<f32>,
 }
@@ -119,7 +121,8 @@ impl Raw<'_> {
     }
 }
 
-/// How often spans may be halved, so that the hair of a file of `length` bytes stays within its memory.
+/// How often spans may be halved, so that the hair of a file of `length` bytes stays within its
+/// memory.
 fn halvings(length: u64, nodes: u64) -> i32 {
     let most = GROWTH.saturating_mul(length) / nodes.saturating_mul(NODE_BYTES).max(1);
     let fits = |halvings: &i32| most >= 1 << halvings;

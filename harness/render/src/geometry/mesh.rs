@@ -19,7 +19,8 @@ impl Mesh {
     ///
     /// # Errors
     ///
-    /// A line, if a coordinate is not finite or above 1e6 cm in magnitude, a number is of no place, or no triangle is left.
+    /// A line, if a coordinate is not finite or above 1e6 cm in magnitude, a number is of no place,
+    /// or no triangle is left.
     pub fn new(places: Vec<Vec3>, mut triangles: Vec<[u32; 3]>) -> Result<Self, String> {
         let far = |place: &&Vec3| !place.abs().cmple(Vec3::splat(FARTHEST)).all();
         if let Some(place) = places.iter().find(far) {

@@ -7,12 +7,14 @@ use glam::Vec3;
 pub(crate) enum Basis {
     /// Uniform cubic B-spline with doubled ends: smooth to the second derivative, near its nodes.
     BSpline,
-    /// The same with ends pinned to the first and the last node, as USD's curves of this name have it.
+    /// The same with ends pinned to the first and the last node, as USD's curves of this name have
+    /// it.
     PinnedBSpline,
     /// Centripetal Catmull-Rom spline: through its nodes, with a continuous direction.
     ///
-    /// Parameters of nodes are apart by the square root of their distance. No other power keeps spans free of cusps and
-    /// loops (Yuksel et al. 2011). With even spans it is the uniform spline.
+    /// Parameters of nodes are apart by the square root of their distance. No other power keeps
+    /// spans free of cusps and loops (Yuksel et al. 2011). With even spans it is the uniform
+    /// spline.
     CatmullRom,
 }
 
@@ -59,8 +61,8 @@ impl<'a> Spline<'a> {
     }
 }
 
-/// Derivative of the centripetal spline at `node`, per span to `after`. At an end, where `before` is the node itself, half of the
-/// way to the neighbour.
+/// Derivative of the centripetal spline at `node`, per span to `after`. At an end, where `before`
+/// is the node itself, half of the way to the neighbour.
 fn slope(before: Vec3, node: Vec3, after: Vec3) -> Vec3 {
     let (back, ahead) = (node - before, after - node);
     let [p, q] = [back, ahead].map(|chord| chord.length().sqrt());
@@ -228,7 +230,8 @@ mod tests {
 
     #[test]
     fn uneven_spans_turn_no_further_than_their_corners() {
-        // A right angle between spans of very different length: no loop, so the direction stays between those of the legs.
+        // A right angle between spans of very different length: no loop, so the direction stays
+        // between those of the legs.
         for short in [1e-4, 0.01, 0.3, 1.0] {
             let nodes = [-1.0, -0.5, 0.0].map(|x| Vec3::new(x, 0.0, 0.0));
             let leg = [1.0, 2.0, 40.0].map(|k| Vec3::new(0.0, k * short, 0.0));

@@ -121,7 +121,8 @@ impl Ellipsoid {
         (discriminant >= 0.0 && t > t_min).then_some(t)
     }
 
-    /// Where eight rays from a point meet it before their ends: a mask, bit for bit what [`meet`](Self::meet) says.
+    /// Where eight rays from a point meet it before their ends: a mask, bit for bit what
+    /// [`meet`](Self::meet) says.
     #[inline]
     #[must_use]
     pub fn blocks8(&self, origin: Vec3, direction: &Vec3x8, t_max: &f32x8) -> f32x8 {

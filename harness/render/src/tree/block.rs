@@ -25,7 +25,8 @@ pub(super) trait Leaf {
     /// A hit of one of them.
     type Hit;
 
-    /// Which of the eight the ray meets before `limit`: lanes as bits, distances, and places along what is met.
+    /// Which of the eight the ray meets before `limit`: lanes as bits, distances, and places along
+    /// what is met.
     fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2]);
 
     /// Whether it is of what the ray leaves, and at a distance that the ray ignores.
@@ -38,8 +39,8 @@ pub(super) trait Leaf {
     fn hit(&self, lane: usize, ray: &Ray, t: f32, s: f32) -> Self::Hit;
 }
 
-/// The boxes of all segments. A ray that passes an end within its radius meets it, so that they are those of spheres about
-/// both ends, with some slack.
+/// The boxes of all segments. A ray that passes an end within its radius meets it, so that they are
+/// those of spheres about both ends, with some slack.
 pub(super) fn primitives(strands: &Strands) -> Vec<Primitive> {
     let slack = slack(&strands.bounds());
     let sphere = |k, s| {

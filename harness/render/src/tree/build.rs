@@ -1,4 +1,5 @@
-//! Builds the tree from the root down: sets of primitives are divided until eight parts are left, and so on with each.
+//! Builds the tree from the root down: sets of primitives are divided until eight parts are left,
+//! and so on with each.
 
 use super::node::{Child, Node};
 use super::split::{Extent, Primitive, middle, split};
@@ -20,8 +21,8 @@ enum Draft {
     Node(Vec<(Bounds, Self)>),
 }
 
-/// The nodes, the root first, and the blocks, which `block` makes. Both are in the order of a search that turns to the first
-/// child first.
+/// The nodes, the root first, and the blocks, which `block` makes. Both are in the order of a
+/// search that turns to the first child first.
 pub(super) fn build<B: Send>(
     mut primitives: Vec<Primitive>,
     block: impl Fn(&[Primitive]) -> B + Sync,
@@ -75,7 +76,8 @@ fn draft(primitives: &mut [Primitive], extent: Extent, first: usize, depth: usiz
     })
 }
 
-/// At most eight parts, in order. The part with the largest surface is divided first, or the one with the most primitives.
+/// At most eight parts, in order. The part with the largest surface is divided first, or the one
+/// with the most primitives.
 fn divide(
     primitives: &mut [Primitive],
     extent: Extent,

@@ -35,7 +35,8 @@ impl MeshTree {
         })))
     }
 
-    /// The nearest triangle that the ray meets: its distance and number. Of equally near ones it is that of the lowest number.
+    /// The nearest triangle that the ray meets: its distance and number. Of equally near ones it is
+    /// that of the lowest number.
     #[inline]
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<(f32, u32)> {
@@ -95,8 +96,8 @@ fn dot<L: Lanes>(a: [L; 3], b: [L; 3]) -> L {
 impl Leaf for Triangles {
     type Hit = (f32, u32);
 
-    /// On which side of the three edges the ray passes. Two triangles find exactly opposite numbers at an edge that they share, so
-    /// that no ray slips between them.
+    /// On which side of the three edges the ray passes. Two triangles find exactly opposite numbers
+    /// at an edge that they share, so that no ray slips between them.
     #[inline(always)]
     fn meet<L: Lanes<Stored = f32x8>>(&self, ray: &Spread<L>, limit: f32) -> (u32, [f32x8; 2]) {
         let from = |corner: &[f32x8; 3]| -> [L; 3] {
@@ -171,7 +172,8 @@ mod tests {
         Mesh::new(places.collect(), triangles.collect()).expect("a ball")
     }
 
-    /// The distance in `f64`, and how far inside its edges the triangle is met, as parts of its heights.
+    /// The distance in `f64`, and how far inside its edges the triangle is met, as parts of its
+    /// heights.
     fn meet(corners: [Vec3; 3], ray: &Ray) -> (f64, f64) {
         let [a, b, c] = corners.map(|p| p.as_dvec3());
         let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());

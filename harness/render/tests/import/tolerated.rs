@@ -6,7 +6,8 @@ use hairis_render::formats::{Curve, Import};
 use hairis_render::geometry::Strands;
 use hairis_render::tree::Tree;
 
-/// A cyHair file of strands along y, side by side, each of equal spans, with a thickness per strand.
+/// A cyHair file of strands along y, side by side, each of equal spans, with a thickness per
+/// strand.
 fn upright(thicknesses: &[f32], length: f32) -> Vec<u8> {
     let count = u32::try_from(thicknesses.len()).expect("a few");
     let mut file = b"HAIR".to_vec();
@@ -84,7 +85,8 @@ fn curves_are_what_was_asked_for() {
         distance(&smooth) < 1e-6 && smooth.nodes() > 8,
         "through the corner"
     );
-    // The middle of the quarters: a sixth of the way from the corner to the middle of its neighbours, twice.
+    // The middle of the quarters: a sixth of the way from the corner to the middle of its
+    // neighbours, twice.
     let expected = (Vec3::ZERO + Vec3::new(1.0, 1.0, 0.0) - 2.0 * Vec3::Y).length() / 6.0;
     assert!(
         (distance(&spline) - expected).abs() < 0.02,
