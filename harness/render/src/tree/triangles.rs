@@ -209,8 +209,12 @@ mod tests {
             let nearest = sure.iter().map(|hit| hit.0).fold(f64::INFINITY, f64::min);
             assert_eq!(tree.closest(&ray).is_some(), tree.occluded(&ray), "{ray:?}");
             match tree.closest(&ray) {
-                Some((t, _)) if near.is_empty() => {
-                    assert!((f64::from(t) - nearest).abs() < 1e-4, "{t} for {nearest}");
+                Some((t, triangle)) if near.is_empty() => {
+                    // Off the surface by some roundings of the distance: along a ray that grazes it by more.
+                    let cos = f64::from(mesh.normal(triangle).dot(ray.direction).abs());
+                    let off = cos * (f64::from(t) - nearest).abs();
+                    let bound = 4.0 * f64::from(f32::EPSILON) * (1.0 + nearest);
+                    assert!(off < bound, "{t} for {nearest}, where cos is {cos}");
                     met += 1;
                 }
                 None if near.is_empty() => assert!(sure.is_empty(), "{ray:?} is lost"),
