@@ -92,7 +92,14 @@ pub fn map(data: &[u8]) {
 
 /// A file of strands or of a head, of a format by its first bytes: strands or a mesh, or refused.
 pub fn hair(data: &[u8]) {
-    for name in ["fuzz.hair", "fuzz.tfx", "fuzz.data", "fuzz.bin", "fuzz.ply", "fuzz.txt"] {
+    for name in [
+        "fuzz.hair",
+        "fuzz.tfx",
+        "fuzz.data",
+        "fuzz.bin",
+        "fuzz.ply",
+        "fuzz.txt",
+    ] {
         for curve in [Curve::Smooth, Curve::BSpline] {
             let options = Import {
                 curve,
