@@ -128,7 +128,7 @@ pub(crate) const SAMPLE: [&str; 11] = [
 ];
 
 #[inline(always)]
-fn three<'a>(columns: Option<[&'a mut [f32]; 3]>) -> [Option<&'a mut [f32]>; 3] {
+fn three(columns: Option<[&mut [f32]; 3]>) -> [Option<&mut [f32]>; 3] {
     columns.map_or([None, None, None], |columns| columns.map(Some))
 }
 

@@ -64,11 +64,13 @@ pub trait DynBsdf: Debug + Send + Sync {
     fn eval_pdf(&self, wi: Vec3) -> Eval;
 
     /// See [`Bsdf::eval`].
+    #[inline]
     fn eval(&self, wi: Vec3) -> [f32; 3] {
         self.eval_pdf(wi).value
     }
 
     /// See [`Bsdf::pdf`].
+    #[inline]
     fn pdf(&self, wi: Vec3) -> f32 {
         self.eval_pdf(wi).pdf
     }
